@@ -1,0 +1,33 @@
+# Helpers for one target per room: skyquilt_library(core_geo SOURCES a.cpp PUBLIC deps PRIVATE deps)
+# and one test program per room: skyquilt_test(core_geo SOURCES a_test.cpp LIBRARIES core_geo).
+
+add_library(skyquilt_warnings INTERFACE)
+target_compile_options(skyquilt_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Wold-style-cast)
+if(SKYQUILT_WERROR)
+  target_compile_options(skyquilt_warnings INTERFACE -Werror)
+endif()
+if(SKYQUILT_SANITIZE)
+  target_compile_options(skyquilt_warnings INTERFACE -fsanitize=${SKYQUILT_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(skyquilt_warnings INTERFACE -fsanitize=${SKYQUILT_SANITIZE})
+endif()
+
+function(skyquilt_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  # Third-party headers are not held to our warnings.
+  target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE skyquilt_warnings ${ARG_PRIVATE})
+endfunction()
+
+function(skyquilt_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(test_${name} ${ARG_SOURCES})
+  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(test_${name} PRIVATE ${ARG_LIBRARIES} skyquilt_warnings GTest::gtest GTest::gtest_main)
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 600)
+  endif()
+  add_test(NAME ${name} COMMAND test_${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT}
+    ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
+endfunction()

@@ -1,0 +1,47 @@
+// Errors that end a command, each with the exit status a shell sees.
+//   UsageError   2  wrong option or configuration
+//   InputError   3  a file or its content cannot be used; names file, finding and mend
+//   BlockError   4  a block failed after its retries
+//   Interrupted 130 a signal asked to stop; the work is saved and can be resumed
+// Wrong use of our own code throws std::logic_error through SKYQUILT_CHECK and is a bug, never a user's message.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace skyquilt::base {
+
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class InputError : public std::runtime_error {
+ public:
+  InputError(const std::filesystem::path& file, const std::string& found, const std::string& mend)
+      : std::runtime_error(file.string() + ": " + found + (mend.empty() ? "" : ". " + mend)), file_(file) {}
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+};
+
+class BlockError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted() : std::runtime_error("interrupted; run the same command again to continue") {}
+};
+
+[[noreturn]] void ThrowCheckFailure(const char* condition, const char* file, int line, const std::string& detail);
+
+}  // namespace skyquilt::base
+
+#define SKYQUILT_CHECK(condition, detail)                                                    \
+  do {                                                                                       \
+    if (!(condition)) ::skyquilt::base::ThrowCheckFailure(#condition, __FILE__, __LINE__, detail); \
+  } while (false)

@@ -1,0 +1,29 @@
+// A read-only view of a whole file; pages come and go by need, so files may exceed memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+namespace skyquilt::base {
+
+class MemoryMap {
+ public:
+  MemoryMap() = default;
+  // Throws InputError if the file cannot be opened or mapped. An empty file maps to an empty span.
+  explicit MemoryMap(const std::filesystem::path& file);
+  ~MemoryMap();
+  MemoryMap(MemoryMap&& other) noexcept;
+  MemoryMap& operator=(MemoryMap&& other) noexcept;
+  MemoryMap(const MemoryMap&) = delete;
+  MemoryMap& operator=(const MemoryMap&) = delete;
+
+  std::span<const uint8_t> bytes() const { return {data_, size_}; }
+
+ private:
+  const uint8_t* data_ = nullptr;
+  size_t size_ = 0;
+};
+
+}  // namespace skyquilt::base

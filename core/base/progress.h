@@ -1,0 +1,35 @@
+// One line of progress for long work: bar, percentage, rate, elapsed and remaining time, and a free text.
+// On a terminal the line is redrawn in place; in a file one line appears about every 10 s. Silent when quiet. Thread-safe.
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace skyquilt::base {
+
+class Progress {
+ public:
+  // `unit` is shown with the rate ("photos", "rays"); total <= 0 means unknown.
+  Progress(const std::string& label, double total, const std::string& unit);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void Update(double done, const std::string& detail = "");
+  void Advance(double by = 1.0, const std::string& detail = "");
+  // Draws the final state and ends the line; later calls do nothing.
+  void Finish(const std::string& detail = "");
+
+  static void SetQuiet(bool quiet);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// "1h02m", "3m20s", "12.3s"
+std::string FormatDuration(double seconds);
+// "1.50 M", "12.3 k"
+std::string FormatCount(double count);
+
+}  // namespace skyquilt::base

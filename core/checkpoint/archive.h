@@ -1,0 +1,72 @@
+// Named arrays and attributes in one HDF5 file that is complete or absent.
+// Writing: everything to <file>.tmp, flush, close, fsync, reopened and verified, previous file kept as <file>.prev, rename, fsync of the folder.
+// Every dataset is chunked with fletcher32; a digest over names, shapes and bytes of all arrays and attributes guards the whole file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace skyquilt::checkpoint {
+
+// Collects by copy-free reference: spans given to Put must live until Commit.
+class ArchiveWriter {
+ public:
+  // kind: what the file is ("block", "context", "scene"); version: of that kind's layout.
+  ArchiveWriter(const std::string& kind, int version);
+  ~ArchiveWriter();
+  ArchiveWriter(ArchiveWriter&&) noexcept;
+
+  // name may hold '/' for groups. shape empty: one-dimensional.
+  void Put(const std::string& name, std::span<const float> values, const std::vector<int64_t>& shape = {});
+  void Put(const std::string& name, std::span<const double> values, const std::vector<int64_t>& shape = {});
+  void Put(const std::string& name, std::span<const uint8_t> values, const std::vector<int64_t>& shape = {});
+  void Put(const std::string& name, std::span<const int64_t> values, const std::vector<int64_t>& shape = {});
+  void SetAttribute(const std::string& name, const std::string& value);
+  void SetAttribute(const std::string& name, double value);
+  void SetAttribute(const std::string& name, int64_t value);
+
+  // Throws base::InputError (disk full, no permission, verification failed); the old file is untouched then.
+  void Commit(const std::filesystem::path& file) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+class ArchiveReader {
+ public:
+  // Opens and verifies checksums and digest. Throws base::InputError with the reason: not HDF5, not ours, damaged, version too new.
+  explicit ArchiveReader(const std::filesystem::path& file);
+  ~ArchiveReader();
+  ArchiveReader(ArchiveReader&&) noexcept;
+
+  const std::string& kind() const;
+  int version() const;
+  std::vector<std::string> Names() const;             // of arrays, sorted
+  std::vector<std::string> AttributeNames() const;    // sorted
+  bool Has(const std::string& name) const;
+  bool HasAttribute(const std::string& name) const;
+  std::vector<int64_t> Shape(const std::string& name) const;
+  std::string TypeName(const std::string& name) const;  // "float32", "float64", "uint8", "int64"
+  // Throw base::InputError when absent or of another type.
+  std::vector<float> Floats(const std::string& name) const;
+  std::vector<double> Doubles(const std::string& name) const;
+  std::vector<uint8_t> Bytes(const std::string& name) const;
+  std::vector<int64_t> Ints(const std::string& name) const;
+  std::string StringAttribute(const std::string& name) const;
+  double DoubleAttribute(const std::string& name) const;
+  int64_t IntAttribute(const std::string& name) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// `file` if it opens and verifies, else <file>.prev if that does (with a warning), else empty with the reasons in *why.
+std::filesystem::path NewestUsable(const std::filesystem::path& file, const std::string& kind, std::string* why);
+
+}  // namespace skyquilt::checkpoint

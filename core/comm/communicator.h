@@ -1,0 +1,43 @@
+// Ranks that send bytes. One process alone has the same interface without MPI traffic. Only this room includes mpi.h.
+// Waiting polls with short sleeps, so idle ranks leave their core to those that work.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace skyquilt::comm {
+
+struct Message {
+  int source = 0;
+  int tag = 0;
+  std::string bytes;
+};
+
+class Communicator {
+ public:
+  virtual ~Communicator() = default;
+  virtual int rank() const = 0;
+  virtual int size() const = 0;
+  // Ranks that share this node, this one included.
+  virtual int local_size() const = 0;
+  // Reliable and ordered per (source, tag). Never blocks on the receiver. Throws std::runtime_error on a broken link.
+  virtual void Send(int destination, int tag, const std::string& bytes) = 0;
+  // The next message from anyone, if one has arrived.
+  virtual std::optional<Message> TryReceive() = 0;
+  // Waits for a message; throws base::Interrupted when a cancel is requested and nothing arrives.
+  Message Receive();
+  // Collective: everybody gets rank 0's bytes.
+  virtual std::string Broadcast(const std::string& bytes_on_root) = 0;
+  virtual void Barrier() = 0;
+  virtual int64_t bytes_sent() const = 0;
+  // Ends all ranks with this status.
+  [[noreturn]] virtual void Abort(int exit_status) = 0;
+};
+
+// Under an MPI launcher (OMPI_COMM_WORLD_SIZE, PMI_SIZE or PMIX_RANK in the environment) an MPI communicator, otherwise a one-process one.
+// Finalises MPI when destroyed.
+std::unique_ptr<Communicator> Connect();
+
+}  // namespace skyquilt::comm

@@ -1,0 +1,24 @@
+// UTM (UPS beyond 84 N / 80 S): the projected frame of map products.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "core/geo/geodetic.h"
+
+namespace skyquilt::geo {
+
+struct UtmZone {
+  int zone = 0;  // 1..60; 0 = UPS (polar)
+  bool north = true;
+
+  int Epsg() const;          // 326zz / 327zz; 32661 / 32761 for UPS
+  std::string Name() const;  // "UTM 15N", "UPS N"
+};
+
+UtmZone UtmZoneOf(const Geodetic& position);
+// Easting, northing in metres, in the given zone (also just outside it).
+Eigen::Vector2d UtmFromGeodetic(const Geodetic& position, const UtmZone& zone);
+Geodetic GeodeticFromUtm(const Eigen::Vector2d& easting_northing, double height_m, const UtmZone& zone);
+
+}  // namespace skyquilt::geo

@@ -1,0 +1,80 @@
+// The merged result: the context field and every block's field, ready to answer rays.
+// A sample's density is the sum of its blocks' densities times partition-of-unity weights (smooth across margins); outside all
+// boxes the context answers. Frame: rays in survey ENU, metres, double; each field converts once into its own box.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/thread_pool.h"
+#include "core/camera/camera.h"
+#include "core/geo/geodetic.h"
+#include "core/geo/transform.h"
+
+namespace skyquilt::render {
+
+struct SceneBlock {
+  std::string name;
+  Eigen::Vector3d min_enu, max_enu;  // core box
+  double margin_m = 0.0;
+  int64_t parameters = 0;
+  int64_t steps = 0;
+  double train_seconds = 0.0;
+  int64_t samples = 0;               // trained
+};
+
+struct SceneInfo {
+  geo::Geodetic origin;
+  bool georeferenced = false;
+  std::vector<SceneBlock> blocks;    // non-empty ones
+  Eigen::Vector3d min_enu, max_enu;  // union of the core boxes
+  double reference_exposure = 0.0;   // EXIF E = t ISO / (100 N^2) that "normal" renders show; 0 when unknown
+  int64_t parameters = 0;            // of all fields, context included
+  double context_seconds = 0.0;
+  int64_t context_samples = 0;
+  double gsd_m = 0.0;                // finest of the blocks
+  std::string config;                // TOML text it was trained with
+};
+
+// One ray. Direction of length 1. The stretch outside [t_near, t_far] is not evaluated (0 and infinity for all).
+struct Ray {
+  Eigen::Vector3d origin_enu;
+  Eigen::Vector3d direction_enu;
+  double t_near = 0.0;
+  double t_far = 1e30;
+  float pixel_radius = 0.0F;  // cone radius per metre of t
+};
+
+struct RayColor {
+  float rgb_srgb[3] = {0, 0, 0};  // premultiplied by opacity over black, at reference exposure times gain, display values
+  float opacity = 0.0F;           // 1 - final transmittance
+  float depth = 0.0F;             // metres along the ray, mean weighted; NaN where opacity is 0
+  float depth_median = 0.0F;      // metres along the ray where transmittance passes 0.5; NaN if it never does
+};
+
+class Scene {
+ public:
+  // Throws base::InputError.
+  static Scene Load(const std::filesystem::path& scene_h5);
+  Scene(Scene&&) noexcept;
+  ~Scene();
+
+  const SceneInfo& info() const;
+  // Any number of rays, 0 included; out has the same length. exposure_gain multiplies linear light. Deterministic.
+  // Throws base::Interrupted when cancelled.
+  void RenderRays(std::span<const Ray> rays, std::span<RayColor> out, float exposure_gain, base::ThreadPool& threads) const;
+  // All pixels of a camera, row-major, width * height results.
+  std::vector<RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, float exposure_gain, base::ThreadPool& threads) const;
+
+ private:
+  Scene();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skyquilt::render

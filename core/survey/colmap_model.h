@@ -1,0 +1,44 @@
+// COLMAP sparse models, text and binary (cameras, images, points3D), as COLMAP 3.8 writes them.
+// Frame: the model's own; cam_from_world, camera looks along +z, y down.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/camera/camera.h"
+#include "core/geo/transform.h"
+
+namespace skyquilt::survey {
+
+struct ColmapImage {
+  uint32_t id = 0;
+  uint32_t camera_id = 0;
+  std::string name;
+  geo::Rigid3d cam_from_world;
+};
+
+struct ColmapPoint {
+  uint64_t id = 0;
+  Eigen::Vector3d x_in_world = Eigen::Vector3d::Zero();
+  std::array<uint8_t, 3> rgb{};
+  double error_px = 0.0;
+  std::vector<uint32_t> image_ids;  // track, one entry per observation
+};
+
+struct ColmapModel {
+  std::map<uint32_t, camera::Camera> cameras;
+  std::vector<ColmapImage> images;
+  std::vector<ColmapPoint> points;
+};
+
+// `folder` holds cameras/images/points3D as .bin (preferred) or .txt. 2-D observations are skipped.
+// Throws base::InputError: missing files, truncation, unsupported camera model, sizes that cannot be, NaN in a pose (names the image).
+ColmapModel ReadColmapModel(const std::filesystem::path& folder);
+void WriteColmapText(const ColmapModel& model, const std::filesystem::path& folder);
+
+}  // namespace skyquilt::survey

@@ -1,4 +1,4 @@
-// Options of training, [train] and [context] in the configuration.
+// Options of training one field: [context] and [train] in the configuration.
 #pragma once
 
 #include <string>
@@ -8,20 +8,28 @@
 namespace skyquilt::worker {
 
 struct TrainOptions {
-  int steps = 0;                    // > 0: exactly this many; 0: as many as the time budget allows
-  double seconds = 0.0;             // time budget of this field; 0 with steps = 0: the default number of steps
-  int batch_samples = 1 << 16;
+  int steps = 0;                    // > 0: exactly this many
+  double seconds = 0.0;             // time budget of this field when steps = 0; both 0: kDefaultSteps
+  int batch_samples = 32768;        // samples per step; the number of rays adapts to it
   int levels = 8;
   int features = 4;
   int base_resolution = 16;
   int hidden = 64;
   int color_hidden_layers = 1;
+  int sh_degree = 3;
   double learning_rate = 1e-2;
+  double final_learning_rate_share = 0.03;
+  double network_l2 = 1e-6;
+  double distortion = 2e-3;
+  double empty_ray_share = 0.05;
   double checkpoint_every_s = 60.0;
-  std::string coupling = "guided";  // "guided" or "independent"
-  bool exif_gain = true;
+  std::string coupling = "guided";
 
   void Visit(config::OptionVisitor& v);
+  // Throws base::UsageError naming the option and the rule it broke; `section` is its name in the configuration.
+  void Check(const std::string& section) const;
 };
+
+constexpr int kDefaultSteps = 2000;
 
 }  // namespace skyquilt::worker

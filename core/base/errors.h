@@ -41,7 +41,7 @@ class Interrupted : public std::runtime_error {
 
 }  // namespace skyquilt::base
 
-#define SKYQUILT_CHECK(condition, detail)                                                    \
-  do {                                                                                       \
+#define SKYQUILT_CHECK(condition, detail)                                                          \
+  do {                                                                                             \
     if (!(condition)) ::skyquilt::base::ThrowCheckFailure(#condition, __FILE__, __LINE__, detail); \
   } while (false)

@@ -17,5 +17,7 @@ void SyncPath(const std::filesystem::path& path);
 void RequireWritableFolder(const std::filesystem::path& folder);
 // 64-bit FNV-1a of the bytes as 16 hex digits: identity of configurations, not a defence against attackers.
 std::string HashHex(std::string_view bytes);
+// Throws InputError: file, finding, the system's words for the error number `code`, and its mend.
+[[noreturn]] void ThrowFileError(const std::filesystem::path& file, const std::string& finding, int code);
 
 }  // namespace skyquilt::base

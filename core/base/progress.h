@@ -27,6 +27,8 @@ class Progress {
   std::unique_ptr<State> state_;
 };
 
+// Wipes the line being drawn on a terminal, so that other output to standard error starts clean; the next update draws it again.
+void ClearProgressLine();
 // "1h02m", "3m20s", "12.3s"
 std::string FormatDuration(double seconds);
 // "1.50 M", "12.3 k"

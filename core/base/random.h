@@ -30,9 +30,7 @@ class Random {
   }
   double Uniform(double low, double high) { return low + (high - low) * UniformDouble(); }
   // Uniform in [0, n); n = 0 gives 0. The bias is below n / 2^32.
-  uint32_t Below(uint32_t n) {
-    return static_cast<uint32_t>((static_cast<uint64_t>(NextU32()) * n) >> 32U);
-  }
+  uint32_t Below(uint32_t n) { return static_cast<uint32_t>((static_cast<uint64_t>(NextU32()) * n) >> 32U); }
   // Standard normal (Box-Muller, one of the pair).
   double Normal();
 

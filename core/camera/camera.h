@@ -32,13 +32,15 @@ struct Camera {
   double FocalY() const;
   Eigen::Vector2d PrincipalPoint() const;
 
-  // Pixel of a point in the camera frame; nothing when it is not in front of the camera (fisheye: also none at the centre).
+  // Pixel of a point in the camera frame; nothing when it is not in front of the camera (fisheye: also none at the centre), nor when it
+  // lies beyond the first fold of the distortion, where its polynomial would mirror far-off points back into the image.
   std::optional<Eigen::Vector2d> ImgFromCam(const Eigen::Vector3d& x_in_cam) const;
   // Unit direction of a pixel's ray in the camera frame. Distortion is inverted by Newton steps with a fixed-point fallback;
   // outside the invertible region the nearest converged direction is returned, never NaN.
   Eigen::Vector3d RayFromImg(const Eigen::Vector2d& pixel) const;
 
   // The same lens on an image of another size (focal lengths and principal point scale, distortion stays).
+  // A change of aspect turns a model with one focal length into the same lens with two (PINHOLE, OPENCV).
   Camera Resized(int new_width, int new_height) const;
 };
 

@@ -1,6 +1,9 @@
 // Named arrays and attributes in one HDF5 file that is complete or absent.
-// Writing: everything to <file>.tmp, flush, close, fsync, reopened and verified, previous file kept as <file>.prev, rename, fsync of the folder.
-// Every dataset is chunked with fletcher32; a digest over names, shapes and bytes of all arrays and attributes guards the whole file.
+// Writing: everything to <file>.tmp, flush, close, fsync, reopened and compared with memory, previous file kept as <file>.prev, rename, fsync of the
+// folder. At every moment at least one complete file is there. Same content gives the same bytes.
+// Every dataset is chunked with fletcher32 (so any HDF5 tool notices damage); the first 512 bytes, an HDF5 user block, say in plain text what the
+// file is, its length and the XXH64 digest of all bytes after them, so that a flipped bit anywhere is found before HDF5 sees the file.
+// Calls are serialised by one lock, for HDF5 is not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +23,7 @@ class ArchiveWriter {
   ~ArchiveWriter();
   ArchiveWriter(ArchiveWriter&&) noexcept;
 
-  // name may hold '/' for groups. shape empty: one-dimensional.
+  // name may hold '/' for groups. shape empty: one-dimensional. Arrays of zero elements are legal. A name may be used once.
   void Put(const std::string& name, std::span<const float> values, const std::vector<int64_t>& shape = {});
   void Put(const std::string& name, std::span<const double> values, const std::vector<int64_t>& shape = {});
   void Put(const std::string& name, std::span<const uint8_t> values, const std::vector<int64_t>& shape = {});
@@ -28,6 +31,7 @@ class ArchiveWriter {
   void SetAttribute(const std::string& name, const std::string& value);
   void SetAttribute(const std::string& name, double value);
   void SetAttribute(const std::string& name, int64_t value);
+  void SetAttribute(const std::string& name, int value) { SetAttribute(name, static_cast<int64_t>(value)); }
 
   // Throws base::InputError (disk full, no permission, verification failed); the old file is untouched then.
   void Commit(const std::filesystem::path& file) const;
@@ -46,8 +50,8 @@ class ArchiveReader {
 
   const std::string& kind() const;
   int version() const;
-  std::vector<std::string> Names() const;             // of arrays, sorted
-  std::vector<std::string> AttributeNames() const;    // sorted
+  std::vector<std::string> Names() const;           // of arrays, sorted
+  std::vector<std::string> AttributeNames() const;  // sorted
   bool Has(const std::string& name) const;
   bool HasAttribute(const std::string& name) const;
   std::vector<int64_t> Shape(const std::string& name) const;

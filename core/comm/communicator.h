@@ -1,5 +1,7 @@
 // Ranks that send bytes. One process alone has the same interface without MPI traffic. Only this room includes mpi.h.
 // Waiting polls with short sleeps, so idle ranks leave their core to those that work.
+// Only the thread that called Connect may use a communicator. A large message travels while both sides call Send or TryReceive now and then.
+// Destroying it is the orderly end, which every rank must reach: what was sent and not yet received is thrown away. A rank that fails calls Abort.
 #pragma once
 
 #include <cstdint>
@@ -22,13 +24,14 @@ class Communicator {
   virtual int size() const = 0;
   // Ranks that share this node, this one included.
   virtual int local_size() const = 0;
-  // Reliable and ordered per (source, tag). Never blocks on the receiver. Throws std::runtime_error on a broken link.
+  // Reliable and ordered per (source, tag). Never blocks on the receiver; a rank may send to itself. tag: 0 to 32767; at most 2 GiB.
+  // Throws std::runtime_error on a broken link.
   virtual void Send(int destination, int tag, const std::string& bytes) = 0;
   // The next message from anyone, if one has arrived.
   virtual std::optional<Message> TryReceive() = 0;
   // Waits for a message; throws base::Interrupted when a cancel is requested and nothing arrives.
   Message Receive();
-  // Collective: everybody gets rank 0's bytes.
+  // Collective: everybody gets rank 0's bytes. Neither this nor Barrier heeds a cancel: all ranks must come.
   virtual std::string Broadcast(const std::string& bytes_on_root) = 0;
   virtual void Barrier() = 0;
   virtual int64_t bytes_sent() const = 0;

@@ -16,12 +16,12 @@ struct RobustSimilarityOptions {
 };
 
 struct RobustSimilarityFit {
-  bool ok = false;       // false: fewer than 3 matches, or all on one line or point
+  bool ok = false;  // false: fewer than 3 matches, or all on one line or point
   const char* reason = "";
   Similarity3d b_from_a;
-  std::vector<char> inlier;         // per match
-  std::vector<double> residual_m;   // per match, |b - b_from_a * a|
-  double rmse_m = 0.0;              // over the inliers, 3-D
+  std::vector<char> inlier;        // per match
+  std::vector<double> residual_m;  // per match, |b - b_from_a * a|
+  double rmse_m = 0.0;             // over the inliers, 3-D
   int n_inliers = 0;
 };
 

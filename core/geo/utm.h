@@ -16,6 +16,7 @@ struct UtmZone {
   std::string Name() const;  // "UTM 15N", "UPS N"
 };
 
+// Norway and Svalbard exceptions included. Throws std::invalid_argument for an invalid position.
 UtmZone UtmZoneOf(const Geodetic& position);
 // Easting, northing in metres, in the given zone (also just outside it).
 Eigen::Vector2d UtmFromGeodetic(const Geodetic& position, const UtmZone& zone);

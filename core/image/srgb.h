@@ -5,10 +5,18 @@
 
 namespace skyquilt::image {
 
-inline float LinearFromSrgb(float srgb) { return srgb <= 0.04045F ? srgb / 12.92F : std::pow((srgb + 0.055F) / 1.055F, 2.4F); }
-inline float SrgbFromLinear(float linear) { return linear <= 0.0031308F ? linear * 12.92F : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F; }
+inline float LinearFromSrgb(float srgb) {
+  return srgb <= 0.04045F ? srgb / 12.92F : std::pow((srgb + 0.055F) / 1.055F, 2.4F);
+}
+inline float SrgbFromLinear(float linear) {
+  return linear <= 0.0031308F ? linear * 12.92F : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+}
 // d srgb / d linear and d linear / d srgb.
-inline float SrgbSlope(float linear) { return linear <= 0.0031308F ? 12.92F : (1.055F / 2.4F) * std::pow(linear, 1.0F / 2.4F - 1.0F); }
-inline float LinearSlope(float srgb) { return srgb <= 0.04045F ? 1.0F / 12.92F : (2.4F / 1.055F) * std::pow((srgb + 0.055F) / 1.055F, 1.4F); }
+inline float SrgbSlope(float linear) {
+  return linear <= 0.0031308F ? 12.92F : (1.055F / 2.4F) * std::pow(linear, 1.0F / 2.4F - 1.0F);
+}
+inline float LinearSlope(float srgb) {
+  return srgb <= 0.04045F ? 1.0F / 12.92F : (2.4F / 1.055F) * std::pow((srgb + 0.055F) / 1.055F, 1.4F);
+}
 
 }  // namespace skyquilt::image

@@ -11,7 +11,8 @@
 namespace skyquilt::survey {
 
 struct PhotoTags {
-  std::optional<geo::Geodetic> gps;            // XMP latitude/longitude preferred (some firmware truncates EXIF); GPSAltitudeRef 1 = below
+  std::optional<geo::Geodetic> gps;            // XMP latitude/longitude preferred (some firmware truncates EXIF); GPSAltitudeRef 1 = below.
+                                               // Height: XMP AbsoluteAltitude, else EXIF, else NaN. Latitude = longitude = 0 counts as no fix.
   std::optional<double> relative_altitude_m;   // XMP drone-dji:RelativeAltitude
   std::optional<double> absolute_altitude_m;   // XMP drone-dji:AbsoluteAltitude
   bool rtk = false;                            // XMP drone-dji:RtkFlag says fixed: altitude is ellipsoidal

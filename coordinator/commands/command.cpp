@@ -1,0 +1,57 @@
+#include "coordinator/commands/command.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "coordinator/duration.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+
+namespace skyquilt::coordinator {
+
+Settings CommandState::Load(const std::vector<std::filesystem::path>& files, const std::vector<Override>& flags) const {
+  std::vector<std::filesystem::path> all_files = files;
+  if (!config.empty()) all_files.emplace_back(config);
+  std::vector<Override> overrides;
+  for (const std::string& text : set) overrides.push_back(ParseOverride(text));
+  overrides.insert(overrides.end(), flags.begin(), flags.end());
+  if (!threads.empty()) overrides.push_back({"run.threads", threads});
+  return LoadSettings(all_files, overrides);
+}
+
+Pipeline CommandState::Begin(const Project& project, Settings settings, bool restart) const {
+  base::AddLogFile(project.LogFile());
+  return Pipeline{.comm = *comm, .project = project, .settings = std::move(settings), .restart = restart, .quiet = quiet, .verbose = verbose};
+}
+
+void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help) {
+  command.add_option_function<std::string>(
+      flag, [overrides, key](const std::string& value) { overrides->push_back({key, value}); }, help + " [" + key + "]");
+}
+
+void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
+  command.add_option_function<std::string>(
+      "--time-budget",
+      [overrides](const std::string& text) {
+        // Whole milliseconds: the text form of the option must read back to the same number.
+        const double seconds = std::round(ParseDurationSeconds(text) * 1000.0) / 1000.0;
+        overrides->push_back({"run.time_budget_s", std::to_string(seconds)});
+      },
+      "time for all training together, as 90s, 10min or 1h30m [run.time_budget_s]");
+  AddOverride(command, overrides, "--steps", "train.steps", "train every block for exactly so many steps, instead of a time budget");
+  AddOverride(command, overrides, "--seed", "run.seed", "start of every random sequence of the training");
+  command.add_option_function<std::string>(
+      "--brightness",
+      [overrides](const std::string& value) {
+        overrides->push_back({"brightness.correction", value});
+        overrides->push_back({"evaluate.exif_gain", value == "none" ? "false" : "true"});
+      },
+      "exif: divide out each photo's exposure; none: colours as photographed [brightness.correction]");
+}
+
+std::vector<std::filesystem::path> ProjectConfig(const Project& project) {
+  if (!std::filesystem::exists(project.ConfigFile())) return {};
+  return {project.ConfigFile()};
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,55 @@
+// What all commands share: global flags, the ranks, and how a command line becomes settings.
+// Each command has one file with a function that adds it to the table.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coordinator/pipeline.h"
+#include "coordinator/settings.h"
+#include "core/comm/communicator.h"
+
+namespace CLI {
+class App;
+}
+
+namespace skyquilt::coordinator {
+
+struct CommandState {
+  comm::Communicator* comm = nullptr;
+  std::string config;            // --config
+  std::vector<std::string> set;  // --set
+  std::string threads;           // --threads
+  bool quiet = false;
+  bool verbose = false;
+  std::function<void()> chosen;  // the body of the command on the command line, set while parsing
+
+  // Defaults, `files`, --config, --set, then the command's own flags.
+  Settings Load(const std::vector<std::filesystem::path>& files, const std::vector<Override>& flags) const;
+  // A project for a command: logging into it begins. `restart` as given on the command line.
+  Pipeline Begin(const Project& project, Settings settings, bool restart) const;
+};
+
+using Overrides = std::shared_ptr<std::vector<Override>>;
+
+// A flag with a value that sets one option, "section.key".
+void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help);
+// --time-budget, --steps, --seed, --brightness.
+void AddTrainingFlags(CLI::App& command, const Overrides& overrides);
+// The project's own configuration as the lowest layer; empty when there is none yet.
+std::vector<std::filesystem::path> ProjectConfig(const Project& project);
+
+void AddSimulate(CLI::App& app, CommandState& state);
+void AddPrepare(CLI::App& app, CommandState& state);
+void AddPartition(CLI::App& app, CommandState& state);
+void AddTrain(CLI::App& app, CommandState& state);
+void AddMerge(CLI::App& app, CommandState& state);
+void AddRender(CLI::App& app, CommandState& state);
+void AddEvaluate(CLI::App& app, CommandState& state);
+void AddInfo(CLI::App& app, CommandState& state);
+void AddRun(CLI::App& app, CommandState& state);
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,33 @@
+#include <CLI/CLI.hpp>
+
+#include "coordinator/commands/command.h"
+
+namespace skyquilt::coordinator {
+
+void AddEvaluate(CLI::App& app, CommandState& state) {
+  struct Flags {
+    std::string project;
+    bool restart = false;
+  };
+  const auto flags = std::make_shared<Flags>();
+  const auto overrides = std::make_shared<std::vector<Override>>();
+  CLI::App* command = app.add_subcommand("evaluate", "score the scene on the held-out photos and write the report");
+  command->add_option("project", flags->project, "project folder with a scene")->required()->type_name("FOLDER");
+  AddOverride(*command, overrides, "--lpips", "evaluate.lpips_network", "ONNX network for LPIPS; without it LPIPS is not measured");
+  AddOverride(*command, overrides, "--max-photos", "evaluate.max_photos", "score at most so many, evenly spread");
+  command->add_flag("--restart", flags->restart, "remove the report first");
+  command->footer(
+      "Examples:\n"
+      "  skyquilt evaluate out\n"
+      "  skyquilt evaluate out --lpips lpips_alex.onnx\n"
+      "Writes out/report/metrics.json and out/report/index.html, which opens offline.");
+  command->callback([&state, flags, overrides] {
+    state.chosen = [&state, flags, overrides] {
+      const Project project = Project::Open(flags->project);
+      Pipeline pipeline = state.Begin(project, state.Load(ProjectConfig(project), *overrides), flags->restart);
+      EvaluateStage(pipeline);
+    };
+  });
+}
+
+}  // namespace skyquilt::coordinator

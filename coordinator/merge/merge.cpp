@@ -1,0 +1,59 @@
+#include "coordinator/merge/merge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/errors.h"
+#include "core/checkpoint/archive.h"
+#include "core/render/scene_file.h"
+#include "core/render/trained_field.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+struct Loaded {
+  render::TrainedField field;
+  double reference_exposure = 0.0;
+};
+
+Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, const geo::Geodetic& origin) {
+  if (!std::filesystem::exists(file)) throw base::InputError(file, "is missing", "Run `skyquilt train` to the end first");
+  const checkpoint::ArchiveReader reader(file);
+  if (reader.kind() != kind) throw base::InputError(file, "is a " + reader.kind() + " file, not a " + kind, "Give this project's own checkpoints");
+  if (reader.IntAttribute("complete") == 0) throw base::InputError(file, "is not trained to the end", "Run `skyquilt train` again, it continues");
+  const bool same_place = reader.DoubleAttribute("origin_latitude_deg") == origin.latitude_deg &&
+                          reader.DoubleAttribute("origin_longitude_deg") == origin.longitude_deg &&
+                          reader.DoubleAttribute("origin_height_m") == origin.height_m;
+  if (!same_place) throw base::InputError(file, "belongs to a survey with another origin", "Train this survey again with --restart");
+  return {render::GetField(reader, file, ""), reader.DoubleAttribute("reference_exposure")};
+}
+
+}  // namespace
+
+void MergeScene(const MergeInput& input) {
+  if (input.blocks.empty()) throw base::InputError(input.scene, "there is no trained block to merge", "Run `skyquilt train` first");
+  const Loaded context = LoadTrained(input.context, "context", input.origin);
+  std::vector<Loaded> blocks;
+  double gsd_m = std::numeric_limits<double>::infinity();
+  for (const auto& [block, file] : input.blocks) {
+    blocks.push_back(LoadTrained(file, "block", input.origin));
+    gsd_m = std::min(gsd_m, block.gsd_m);
+  }
+
+  checkpoint::ArchiveWriter writer(render::kSceneKind, render::kSceneVersion);
+  writer.SetAttribute("origin_latitude_deg", input.origin.latitude_deg);
+  writer.SetAttribute("origin_longitude_deg", input.origin.longitude_deg);
+  writer.SetAttribute("origin_height_m", input.origin.height_m);
+  writer.SetAttribute("georeferenced", static_cast<int64_t>(input.georeferenced ? 1 : 0));
+  writer.SetAttribute("reference_exposure", context.reference_exposure);
+  writer.SetAttribute("gsd_m", std::isfinite(gsd_m) ? gsd_m : 0.0);
+  writer.SetAttribute("config", input.config_toml);
+  writer.SetAttribute("config_hash", input.config_hash);
+  writer.SetAttribute("blocks", static_cast<int64_t>(blocks.size()));
+  if (input.use_context) render::PutField(context.field, render::kContextPrefix, writer);
+  for (size_t i = 0; i < blocks.size(); ++i) render::PutField(blocks[i].field, render::BlockPrefix(static_cast<int64_t>(i)), writer);
+  writer.Commit(input.scene);
+}
+
+}  // namespace skyquilt::coordinator

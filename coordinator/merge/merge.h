@@ -1,0 +1,28 @@
+// Joins the context and the blocks' checkpoints into one scene file: inference parameters only, no optimiser state.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geo/geodetic.h"
+#include "partition/block.h"
+
+namespace skyquilt::coordinator {
+
+struct MergeInput {
+  std::filesystem::path context;
+  std::vector<std::pair<partition::Block, std::filesystem::path>> blocks;  // trained ones; empty or failed blocks left out
+  geo::Geodetic origin;
+  bool georeferenced = false;
+  bool use_context = true;     // false: the context does not fill what no block covers (independent blocks)
+  std::string config_toml;     // stored in the scene
+  std::string config_hash;
+  std::filesystem::path scene; // out
+};
+
+// Throws base::InputError: a checkpoint missing, damaged, unfinished, or of another survey origin; disk full.
+void MergeScene(const MergeInput& input);
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,48 @@
+// Where everything of one project lies, and which stages of the pipeline its files belong to.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace skyquilt::coordinator {
+
+struct Project {
+  std::filesystem::path folder;  // absolute
+
+  std::filesystem::path SimulatedFolder() const { return folder / "simulated"; }
+  std::filesystem::path SurveyFolder() const { return folder / "survey"; }
+  std::filesystem::path BlocksFile() const { return folder / "blocks.geojson"; }
+  std::filesystem::path CheckpointFolder() const { return folder / "checkpoints"; }
+  std::filesystem::path ContextCheckpoint() const { return CheckpointFolder() / "context.h5"; }
+  std::filesystem::path BlockCheckpoint(const std::string& block_name) const { return CheckpointFolder() / ("block_" + block_name + ".h5"); }
+  std::filesystem::path TrainLog(const std::string& field_name) const { return CheckpointFolder() / (field_name + ".log.csv"); }
+  std::filesystem::path TrainReport() const { return folder / "train.json"; }
+  std::filesystem::path PixelCacheFile() const { return folder / "cache" / "pixels.bin"; }
+  std::filesystem::path SceneFile() const { return folder / "scene.h5"; }
+  std::filesystem::path RendersFolder() const { return folder / "renders"; }
+  std::filesystem::path ProductsFolder() const { return folder / "products"; }
+  std::filesystem::path ReportFolder() const { return folder / "report"; }
+  std::filesystem::path ConfigFile() const { return folder / "config.toml"; }
+  std::filesystem::path LogFile() const { return folder / "log.txt"; }
+  std::filesystem::path StateFolder() const { return folder / ".state"; }
+  std::filesystem::path StampFile(const std::string& stage) const { return StateFolder() / (stage + ".json"); }
+
+  // Creates the folder and proves it writable. Throws base::InputError.
+  static Project Create(const std::filesystem::path& folder);
+  // Throws base::InputError when the folder does not exist or is no project (neither a survey nor a begun one inside).
+  static Project Open(const std::filesystem::path& folder);
+  // What Open asks, without throwing.
+  static bool IsProject(const std::filesystem::path& folder);
+};
+
+// "simulate", "prepare", "partition", "train", "merge", "products", "evaluate": in the order they run.
+const std::vector<std::string>& StageNames();
+// What a stage leaves behind, all of it removed when it is restarted.
+std::vector<std::filesystem::path> StageFiles(const Project& project, const std::string& stage);
+// What must exist for a finished stage to count as finished. For "simulate" the project is the simulated survey's own folder.
+std::vector<std::filesystem::path> StageProof(const Project& project, const std::string& stage);
+// Deletes the files and stamps of this stage and of every later one.
+void RemoveStagesFrom(const Project& project, const std::string& stage);
+
+}  // namespace skyquilt::coordinator

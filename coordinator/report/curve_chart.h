@@ -1,0 +1,31 @@
+// Line charts as inline SVG, coloured by the page's style sheet (light and dark).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace skyquilt::report {
+
+struct Curve {
+  std::string name;
+  std::vector<std::pair<double, double>> points;  // x, y; non-finite points are left out
+  bool emphasised = false;
+};
+
+struct ChartOptions {
+  std::string title;
+  std::string x_label;  // with unit
+  std::string y_label;
+  bool log_y = false;       // points with y <= 0 are left out
+  size_t max_points = 240;  // per curve; longer ones are thinned by averaging neighbours
+};
+
+// A <figure>; says "no data" inside when no curve has a point.
+std::string CurveChart(const std::vector<Curve>& curves, const ChartOptions& options);
+// At most about `count` round numbers (1, 2, 5 times a power of ten) inside [low, high].
+std::vector<double> RoundTicks(double low, double high, int count);
+// Averages runs of neighbours so that at most `max_points` remain; first and last stay in place.
+std::vector<std::pair<double, double>> Thin(const std::vector<std::pair<double, double>>& points, size_t max_points);
+
+}  // namespace skyquilt::report

@@ -1,0 +1,281 @@
+#include "coordinator/report/evaluate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "coordinator/report/photo_scorer.h"
+#include "coordinator/report/report_images.h"
+#include "coordinator/report/report_page.h"
+#include "coordinator/report/train_log.h"
+#include "coordinator/report/warnings.h"
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/base/system.h"
+#include "core/brightness/exposure.h"
+#include "core/metrics/depth_errors.h"
+#include "core/metrics/lpips.h"
+#include "core/metrics/psnr.h"
+#include "core/render/scene.h"
+
+namespace skyquilt::report {
+
+namespace {
+
+constexpr float kErrorHigh = 0.25F;  // display values at the top of the error colours
+
+double SecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// `count` of the entries, evenly spread; all when count is 0 or enough.
+std::vector<int> EvenlySpread(const std::vector<int>& entries, int count) {
+  const size_t n = entries.size();
+  if (count <= 0 || static_cast<size_t>(count) >= n) return entries;
+  std::vector<int> chosen;
+  for (size_t i = 0; i < static_cast<size_t>(count); ++i) chosen.push_back(entries[(2 * i + 1) * n / (2 * static_cast<size_t>(count))]);
+  return chosen;
+}
+
+SceneArea AreaOf(const render::SceneInfo& info) {
+  SceneArea area;
+  for (const render::SceneBlock& block : info.blocks) area.boxes.push_back({block.min_enu, block.max_enu, block.margin_m});
+  if (area.boxes.empty()) area.boxes.push_back({info.min_enu, info.max_enu, 0.0});
+  area.heights = {info.min_enu.z(), info.max_enu.z()};
+  return area;
+}
+
+TrainingViews ViewsOf(const EvaluateInput& input) {
+  std::vector<TrainingView> views;
+  for (size_t i = 0; i < input.survey->photos.size(); ++i) {
+    const survey::Photo& photo = input.survey->photos[i];
+    if (photo.is_test) continue;
+    const camera::Camera& camera = input.survey->cameras[static_cast<size_t>(photo.camera)];
+    views.push_back({camera.Resized(input.pixels->Width(i), input.pixels->Height(i)), photo.cam_from_enu, input.pixels->Mask(i)});
+  }
+  return TrainingViews(std::move(views));
+}
+
+// The photo at the scored size: from the cache when that is large enough, else decoded again.
+PhotoTask LoadTask(const EvaluateInput& input, int index) {
+  const auto i = static_cast<size_t>(index);
+  const survey::Photo& photo = input.survey->photos[i];
+  const camera::Camera& camera = input.survey->cameras[static_cast<size_t>(photo.camera)];
+  const int cached_width = input.pixels->Width(i);
+  const int width = input.options.image_width > 0 ? std::min(input.options.image_width, camera.width) : cached_width;
+  PhotoTask task;
+  task.cam_from_enu = photo.cam_from_enu;
+  image::Image8 mask;
+  if (width <= cached_width) {
+    task.photo = image::Image8(cached_width, input.pixels->Height(i), 3);
+    const auto rgb = input.pixels->Rgb(i);
+    std::copy(rgb.begin(), rgb.end(), task.photo.data.begin());
+    if (const auto cached_mask = input.pixels->Mask(i); !cached_mask.empty()) {
+      mask = image::Image8(cached_width, input.pixels->Height(i), 1);
+      std::copy(cached_mask.begin(), cached_mask.end(), mask.data.begin());
+    }
+  } else {
+    task.photo = image::LoadRgb8(input.survey->photo_root / photo.name);
+    if (!photo.mask.empty()) mask = image::LoadMask(photo.mask);
+  }
+  if (task.photo.width != width) {
+    task.photo = image::Resize(task.photo, width, image::ScaledHeight(task.photo.width, task.photo.height, width));
+  }
+  if (!mask.Empty()) {
+    if (mask.width != task.photo.width || mask.height != task.photo.height) mask = image::ResizeMask(mask, task.photo.width, task.photo.height);
+    task.mask = std::move(mask.data);
+  }
+  task.camera = camera.Resized(task.photo.width, task.photo.height);
+  if (input.survey->truth) {
+    const std::filesystem::path stem = std::filesystem::path(photo.name).replace_extension(".tiff");
+    for (const std::filesystem::path& file : {input.survey->truth->depth_folder / stem, input.survey->truth->depth_folder / stem.filename()}) {
+      if (!std::filesystem::is_regular_file(file)) continue;
+      task.true_depth = image::LoadFloatTiff(file);
+      break;
+    }
+  }
+  return task;
+}
+
+double GainOf(const survey::Photo& photo, double reference_exposure, bool exif_gain) {
+  if (!exif_gain || !(reference_exposure > 0.0)) return 1.0;
+  const auto exposure = brightness::ExifExposure(photo.exposure.time_s, photo.exposure.f_number, photo.exposure.iso);
+  // Beyond ten stops a tag is wrong; training limits gains in the same way.
+  return exposure ? std::clamp(*exposure / reference_exposure, 0x1.0p-10, 0x1.0p10) : 1.0;
+}
+
+double LpipsOf(metrics::Lpips& network, const PhotoTask& task, const image::Image8& render) {
+  image::Image8 used;
+  if (!task.mask.empty()) {
+    used = image::Image8(task.photo.width, task.photo.height, 1);
+    used.data = task.mask;
+  }
+  return network.Distance(image::ToImageF(render), image::ToImageF(task.photo), used.Empty() ? nullptr : &used);
+}
+
+void FillSurveyFacts(const EvaluateInput& input, const render::SceneInfo& info, const TrainLog& log, Metrics* metrics) {
+  const survey::Survey& survey = *input.survey;
+  metrics->has_truth = survey.truth.has_value();
+  metrics->train_seconds = log.TrainSeconds();
+  metrics->samples_per_second = log.SamplesPerSecond();
+  metrics->peak_rss_bytes = log.peak_rss_bytes;
+  metrics->parameters = info.parameters;
+  metrics->ranks = input.ranks > 0 ? input.ranks : std::max(log.ranks, 1);
+  metrics->threads = log.threads;
+  metrics->config = input.config_text.empty() ? info.config : input.config_text;
+  metrics->georeferenced = survey.georeferenced;
+  metrics->geo_fit = survey.fit;
+  metrics->median_agl_m = survey.MedianAgl();
+  std::vector<double> relative;
+  for (const survey::Photo& photo : survey.photos) {
+    if (photo.relative_altitude_m) relative.push_back(*photo.relative_altitude_m);
+  }
+  metrics->median_relative_altitude_m = MedianOfMeasured(std::move(relative));
+  metrics->gsd_m = info.gsd_m > 0.0 ? info.gsd_m : kNotMeasured;
+  metrics->n_photos = static_cast<int>(survey.photos.size());
+  metrics->n_unregistered = static_cast<int>(survey.unregistered.size());
+  metrics->n_test = static_cast<int>(std::count_if(survey.photos.begin(), survey.photos.end(), [](const auto& photo) { return photo.is_test; }));
+  metrics->machine = base::MachineDescription();
+  metrics->date = base::UtcTimestamp();
+}
+
+// Sums over the photos that the means over photos cannot give.
+struct Pools {
+  std::vector<metrics::SquaredError> per_block;
+  metrics::SquaredError interior, seam;
+  metrics::DepthErrorCollector depth;
+};
+
+void FillMeans(const render::SceneInfo& info, const Pools& pools, Metrics* metrics) {
+  std::vector<double> psnr, ssim, psnr_full, ssim_full, lpips;
+  int64_t used = 0, covered = 0;
+  for (const PhotoScore& score : metrics->photos) {
+    psnr.push_back(score.psnr_db);
+    ssim.push_back(score.ssim);
+    psnr_full.push_back(score.psnr_full_db);
+    ssim_full.push_back(score.ssim_full);
+    lpips.push_back(score.lpips);
+    used += score.used_pixels;
+    covered += score.covered_pixels;
+  }
+  metrics->psnr = MeanOfMeasured(psnr);
+  metrics->ssim = MeanOfMeasured(ssim);
+  metrics->psnr_full_frame = MeanOfMeasured(psnr_full);
+  metrics->ssim_full_frame = MeanOfMeasured(ssim_full);
+  metrics->lpips = MeanOfMeasured(lpips);
+  metrics->coverage = used > 0 ? static_cast<double>(covered) / static_cast<double>(used) : kNotMeasured;
+  for (size_t b = 0; b < info.blocks.size(); ++b) {
+    metrics->blocks.push_back({info.blocks[b].name, metrics::PsnrOf(pools.per_block[b]), PixelsOf(pools.per_block[b])});
+  }
+  metrics->psnr_interior_db = metrics::PsnrOf(pools.interior);
+  metrics->psnr_seam_db = metrics::PsnrOf(pools.seam);
+  metrics->seam_psnr_gap_db = metrics->psnr_interior_db - metrics->psnr_seam_db;  // NaN when either is
+  if (metrics->has_truth) {
+    const metrics::DepthErrors errors = pools.depth.Result();
+    metrics->depth_rmse_m = errors.rmse_m;
+    metrics->depth_median_abs_m = errors.median_abs_m;
+  }
+}
+
+}  // namespace
+
+void EvaluateOptions::Visit(config::OptionVisitor& v) {
+  v.Field("image_width", image_width, "width in pixels at which held-out photos are scored; 0: the training width");
+  v.Field("lpips_network", lpips_network, "ONNX file of an LPIPS network; empty: LPIPS is not measured");
+  v.Field("max_photos", max_photos, "score at most so many held-out photos, evenly spread; 0: all");
+  v.Field("exif_gain", exif_gain, "render each held-out photo at the exposure its EXIF states");
+  v.Field("report_photos", report_photos, "held-out photos with pictures in the report, evenly spread; all are in its tables");
+  v.Field("report_image_width", report_image_width, "largest width in pixels of the report's pictures");
+}
+
+Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
+  SKYQUILT_CHECK(input.survey != nullptr && input.blocks != nullptr && input.pixels != nullptr, "survey, blocks and pixels");
+  SKYQUILT_CHECK(input.pixels->size() == input.survey->photos.size(), "one cached photo per photo of the survey");
+  const EvaluateOptions& options = input.options;
+  if (options.image_width < 0 || options.max_photos < 0 || options.report_photos < 0 || options.report_image_width < 16) {
+    throw base::UsageError("evaluate: image_width, max_photos and report_photos must not be negative, report_image_width at least 16");
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const std::filesystem::path report_folder = input.project_folder / "report";
+  base::RequireWritableFolder(report_folder / "images");
+  const std::filesystem::path checkpoints = input.project_folder / "checkpoints";
+  const TrainLog log = ReadTrainLog(input.train_json.empty() ? checkpoints / "train.json" : input.train_json, checkpoints);
+  const render::Scene scene = render::Scene::Load(input.scene_h5);
+  const render::SceneInfo& info = scene.info();
+  const SceneArea area = AreaOf(info);
+  const TrainingViews views = ViewsOf(input);
+  std::optional<metrics::Lpips> lpips;
+  if (!options.lpips_network.empty()) lpips.emplace(options.lpips_network);
+
+  Metrics metrics;
+  FillSurveyFacts(input, info, log, &metrics);
+  metrics.lpips_note =
+      lpips ? "full frame, network " + std::filesystem::path(options.lpips_network).filename().string() : "not measured: no network file was given";
+  std::vector<int> held_out;
+  for (size_t i = 0; i < input.survey->photos.size(); ++i) {
+    if (input.survey->photos[i].is_test) held_out.push_back(static_cast<int>(i));
+  }
+  held_out = EvenlySpread(held_out, options.max_photos);
+  const std::vector<int> pictured = options.report_photos == 0 ? std::vector<int>() : EvenlySpread(held_out, options.report_photos);
+
+  Pools pools;
+  pools.per_block.resize(area.boxes.size());
+  std::vector<PhotoImages> images;
+  base::Progress progress("evaluate", static_cast<double>(held_out.size()), "photos");
+  for (const int index : held_out) {
+    base::ThrowIfCancelled();
+    const survey::Photo& photo = input.survey->photos[static_cast<size_t>(index)];
+    const PhotoTask task = LoadTask(input, index);
+    const double gain = GainOf(photo, info.reference_exposure, options.exif_gain);
+    const auto render_start = std::chrono::steady_clock::now();
+    const std::vector<render::RayColor> rendered = scene.RenderCamera(task.camera, task.cam_from_enu, static_cast<float>(gain), threads);
+    const double render_seconds = SecondsSince(render_start);
+    PhotoFindings findings = ScorePhoto(task, rendered, views, area, threads);
+    PhotoScore& score = findings.score;
+    score.photo = index;
+    score.name = photo.name;
+    score.exposure_gain = gain;
+    score.render_seconds = render_seconds;
+    if (lpips) score.lpips = LpipsOf(*lpips, task, findings.render);
+    for (size_t b = 0; b < pools.per_block.size(); ++b) pools.per_block[b] += findings.per_block[b];
+    pools.interior += findings.interior;
+    pools.seam += findings.seam;
+    if (!findings.true_depth.Empty()) pools.depth.Add(findings.z_depth, findings.true_depth, &findings.scored);
+    images.emplace_back();
+    if (std::find(pictured.begin(), pictured.end(), index) != pictured.end()) {
+      images.back() = WritePhotoImages({&task.photo, &findings.render, &findings.z_depth, findings.scored.data}, report_folder,
+                                       fmt::format("photo_{:05d}", index), options.report_image_width, kErrorHigh);
+    }
+    if (metrics.image_width == 0) metrics.image_width = score.width;
+    metrics.photos.push_back(score);
+    progress.Advance(1.0, fmt::format("{} {:.2f} dB", photo.name, score.psnr_db));
+  }
+  FillMeans(info, pools, &metrics);
+  progress.Finish(fmt::format("PSNR {:.2f} dB, coverage {:.1f} %", metrics.psnr, 100.0 * metrics.coverage));
+  metrics.evaluate_seconds = SecondsSince(start);
+  metrics.evaluate_peak_rss_bytes = base::PeakRssBytes();
+  metrics.warnings = CollectWarnings(*input.survey, *input.blocks, log, metrics);
+  for (const std::string& warning : metrics.warnings) spdlog::warn("{}", warning);
+
+  ReportInput page;
+  page.title = std::filesystem::absolute(input.project_folder).lexically_normal().filename().string();
+  if (page.title.empty()) page.title = std::filesystem::absolute(input.project_folder).lexically_normal().parent_path().filename().string();
+  page.metrics = &metrics;
+  page.survey = input.survey;
+  page.blocks = input.blocks;
+  page.log = &log;
+  page.images = std::move(images);
+  page.background = CopyMapBackground(input.project_folder / "products", report_folder);
+  page.color_ramp = WriteColorRamp(report_folder);
+  page.error_high = static_cast<double>(kErrorHigh);
+  base::WriteFileAtomically(report_folder / "index.html", BuildReportPage(page));
+  // Last, because its presence says that the evaluation is complete.
+  base::WriteFileAtomically(report_folder / "metrics.json", MetricsJson(metrics));
+  return metrics;
+}
+
+}  // namespace skyquilt::report

@@ -1,0 +1,43 @@
+// Scores the merged scene on the held-out photos and writes report/metrics.json and report/index.html.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "coordinator/report/metrics.h"
+#include "core/base/thread_pool.h"
+#include "core/config/options.h"
+#include "core/image/pixel_cache.h"
+#include "core/survey/survey.h"
+#include "partition/block.h"
+
+namespace skyquilt::report {
+
+struct EvaluateOptions {
+  int image_width = 0;           // pixels; 0: the training width
+  std::string lpips_network;     // ONNX file; empty: LPIPS is not measured
+  int max_photos = 0;            // score at most so many held-out photos, evenly spread; 0: all
+  bool exif_gain = true;         // render each photo at its EXIF exposure
+  int report_photos = 40;        // photos with pictures in the report, evenly spread
+  int report_image_width = 960;  // pixels
+
+  void Visit(config::OptionVisitor& v);
+};
+
+struct EvaluateInput {
+  std::filesystem::path scene_h5;
+  const survey::Survey* survey = nullptr;
+  const partition::BlockSet* blocks = nullptr;
+  const image::PixelCache* pixels = nullptr;  // entry i belongs to survey->photos[i]
+  std::filesystem::path project_folder;       // report/ is written here; checkpoints/ and products/ are read
+  std::filesystem::path train_json;           // empty: checkpoints/train.json of the project
+  int ranks = 0;                              // 0: as train.json says, else 1
+  std::string config_text;                    // TOML; empty: what the scene was trained with
+  EvaluateOptions options;
+};
+
+// Renders every held-out photo and compares. Deterministic for any number of threads.
+// Throws base::UsageError for options out of range, base::InputError for files that cannot be read or written, base::Interrupted.
+Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads);
+
+}  // namespace skyquilt::report

@@ -1,0 +1,96 @@
+// What one evaluation found, and its JSON form (report/metrics.json).
+// NaN stands for "not measured" in every number and becomes null in JSON; so does an infinite PSNR (identical images).
+// PSNR in dB with display values in [0,1] (MAX = 1), higher better; SSIM at most 1, higher better; LPIPS a distance, lower better.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/survey/survey.h"
+
+namespace skyquilt::report {
+
+inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+struct PhotoScore {
+  int photo = -1;  // index into Survey::photos
+  std::string name;
+  int width = 0;  // scored size, pixels
+  int height = 0;
+  int64_t used_pixels = 0;        // not masked
+  int64_t covered_pixels = 0;     // used and covered (see kCoverageDefinition)
+  double exposure_gain = 1.0;     // linear light, applied to the render
+  double psnr_db = kNotMeasured;  // over the covered pixels
+  double ssim = kNotMeasured;
+  double psnr_full_db = kNotMeasured;  // over all pixels that are not masked
+  double ssim_full = kNotMeasured;
+  double lpips = kNotMeasured;         // full frame
+  double depth_rmse_m = kNotMeasured;  // simulated surveys only: z-depth over covered pixels where both depths exist
+  double depth_median_abs_m = kNotMeasured;
+  double render_seconds = 0.0;
+
+  double Coverage() const;  // covered share of the used pixels; NaN when none is used
+};
+
+struct BlockScore {
+  std::string name;
+  double psnr_db = kNotMeasured;  // pooled over the covered pixels of all test photos whose surface point lies in the block
+  int64_t pixels = 0;
+};
+
+struct Metrics {
+  // Means over the test photos of the per-photo values, the convention of the field; photos without the value do not count.
+  double psnr = kNotMeasured;
+  double ssim = kNotMeasured;
+  double coverage = kNotMeasured;  // pooled: all covered pixels / all used pixels
+  double psnr_full_frame = kNotMeasured;
+  double ssim_full_frame = kNotMeasured;
+  double lpips = kNotMeasured;
+  std::string lpips_note;  // why lpips is null, or which network measured it
+  std::vector<PhotoScore> photos;
+  std::vector<BlockScore> blocks;
+  double psnr_interior_db = kNotMeasured;  // covered pixels deeper than the margin inside a block, pooled
+  double psnr_seam_db = kNotMeasured;      // covered pixels where two or more blocks blend, pooled
+  double seam_psnr_gap_db = kNotMeasured;  // interior minus seam; NaN with a single block
+  double depth_rmse_m = kNotMeasured;      // pooled over the pixels of all test photos
+  double depth_median_abs_m = kNotMeasured;
+  bool has_truth = false;
+
+  double train_seconds = kNotMeasured;
+  double samples_per_second = kNotMeasured;
+  int64_t peak_rss_bytes = 0;
+  int64_t evaluate_peak_rss_bytes = 0;
+  double evaluate_seconds = 0.0;
+  int64_t parameters = 0;
+  int ranks = 1;
+  int threads = 0;
+  std::string config;  // TOML text of the training
+
+  bool georeferenced = false;
+  survey::GeoFit geo_fit;
+  double median_agl_m = kNotMeasured;
+  double median_relative_altitude_m = kNotMeasured;  // XMP, the drone's own figure
+  double gsd_m = kNotMeasured;
+  int n_photos = 0;  // registered
+  int n_unregistered = 0;
+  int n_test = 0;
+  int image_width = 0;  // of the first scored photo, pixels
+  std::string machine;
+  std::string date;  // UTC
+  std::vector<std::string> warnings;
+};
+
+extern const char* const kCoverageDefinition;
+extern const char* const kPsnrDefinition;
+extern const char* const kSeamDefinition;
+
+// Mean of the finite values; NaN when there is none. An infinite value makes the mean infinite.
+double MeanOfMeasured(const std::vector<double>& values);
+// Median of the finite values; NaN when there is none.
+double MedianOfMeasured(std::vector<double> values);
+// UTF-8 JSON text, keys as in the project's documentation; file names that are not UTF-8 are repaired, never refused.
+std::string MetricsJson(const Metrics& metrics);
+
+}  // namespace skyquilt::report

@@ -1,0 +1,110 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+
+#include "coordinator/report/html.h"
+#include "coordinator/report/report_page.h"
+
+namespace skyquilt::report {
+
+namespace {
+
+std::string Chip(const char* label, const std::string& value, const char* css_class = "") {
+  return fmt::format("<span class=\"chip {}\"><b>{}</b>{}</span>", css_class, value, label);
+}
+
+std::string Picture(const std::string& file, const PhotoImages& images, const char* kind, const std::string& caption,
+                    const std::string& legend = "") {
+  if (file.empty()) return "";
+  return fmt::format(
+      "<figure class=\"pic {0}\"><img src=\"{1}\" width=\"{2}\" height=\"{3}\" loading=\"lazy\" alt=\"{4}\" "
+      "data-kind=\"{0}\"><figcaption>{4}{5}</figcaption></figure>",
+      kind, EscapeHtml(file), images.width, images.height, EscapeHtml(caption), legend);
+}
+
+std::string Legend(const ReportInput& input, const std::string& low, const std::string& high) {
+  if (input.color_ramp.empty()) return "";
+  return fmt::format("<span class=\"ramp\">{}<i style=\"background-image:url({})\"></i>{}</span>", low, EscapeHtml(input.color_ramp), high);
+}
+
+std::string PhotoCard(const ReportInput& input, size_t index) {
+  const PhotoScore& score = input.metrics->photos[index];
+  const PhotoImages& images = input.images[index];
+  std::string html =
+      fmt::format("<article class=\"card photo\" id=\"photo-{}\" data-order=\"{}\" data-psnr=\"{}\"><header><h3>{}</h3><div class=\"chips\">", index,
+                  index, std::isfinite(score.psnr_db) ? fmt::format("{:.4f}", score.psnr_db) : "", EscapeHtml(score.name));
+  html += Chip("PSNR", FormatFixed(score.psnr_db, 2, "dB"), "main");
+  html += Chip("SSIM", FormatFixed(score.ssim, 3));
+  html += Chip("covered", FormatPercent(score.Coverage()));
+  html += Chip("full frame", FormatFixed(score.psnr_full_db, 2, "dB"));
+  if (input.metrics->has_truth) html += Chip("median depth error", FormatFixed(score.depth_median_abs_m, 2, "m"));
+  html += "</div></header><div class=\"pics\">";
+  html += fmt::format(
+      "<figure class=\"pic slider\"><div class=\"compare\" style=\"aspect-ratio:{0}/{1}\"><img src=\"{2}\" loading=\"lazy\" alt=\"Render\"><img "
+      "class=\"top\" "
+      "src=\"{3}\" loading=\"lazy\" alt=\"Photo\"><i></i><span class=\"tag l\">Photo</span><span class=\"tag r\">Render</span><input type=\"range\" "
+      "min=\"0\" max=\"100\" step=\"0.1\" value=\"50\" "
+      "aria-label=\"Move between photo and render\"></div><figcaption>Drag to compare photo and render</figcaption></figure>",
+      images.width, images.height, EscapeHtml(images.render), EscapeHtml(images.photo));
+  html += Picture(images.photo, images, "photo-pic", "Photo");
+  html += Picture(images.render, images, "render-pic", "Render");
+  html += Picture(images.error, images, "error-pic", "Error", Legend(input, "0", FormatFixed(input.error_high, 2)));
+  html += Picture(images.depth, images, "depth-pic", "Depth",
+                  Legend(input, FormatFixed(images.depth_low_m, 1), FormatFixed(images.depth_high_m, 1, "m")));
+  return html + "</div></article>\n";
+}
+
+std::string PhotoTable(const ReportInput& input) {
+  const bool truth = input.metrics->has_truth;
+  std::string html =
+      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Held-out photo</th><th class=\"num\">PSNR</th><th class=\"num\">SSIM</th>"
+      "<th class=\"num\">Covered</th><th class=\"num\">PSNR, full frame</th><th class=\"num\">SSIM, full frame</th><th class=\"num\">LPIPS</th>";
+  if (truth) html += "<th class=\"num\">Depth RMSE</th><th class=\"num\">Depth, median error</th>";
+  html += "<th class=\"num\">Exposure gain</th><th class=\"num\">Size</th><th class=\"num\">Render time</th></tr></thead><tbody>";
+  for (size_t i = 0; i < input.metrics->photos.size(); ++i) {
+    const PhotoScore& score = input.metrics->photos[i];
+    const bool pictured = i < input.images.size() && !input.images[i].photo.empty();
+    html += pictured ? fmt::format("<tr><td><a href=\"#photo-{}\">{}</a></td>", i, EscapeHtml(score.name)) : "<tr>" + TextCell(score.name);
+    html += NumberCell(score.psnr_db, FormatFixed(score.psnr_db, 2, "dB")) + NumberCell(score.ssim, FormatFixed(score.ssim, 3));
+    html += NumberCell(score.Coverage(), FormatPercent(score.Coverage()));
+    html += NumberCell(score.psnr_full_db, FormatFixed(score.psnr_full_db, 2, "dB")) + NumberCell(score.ssim_full, FormatFixed(score.ssim_full, 3));
+    html += NumberCell(score.lpips, FormatFixed(score.lpips, 3));
+    if (truth) {
+      html += NumberCell(score.depth_rmse_m, FormatFixed(score.depth_rmse_m, 2, "m"));
+      html += NumberCell(score.depth_median_abs_m, FormatFixed(score.depth_median_abs_m, 2, "m"));
+    }
+    html += NumberCell(score.exposure_gain, FormatFixed(score.exposure_gain, 3));
+    html += NumberCell(score.width, fmt::format("{} \xC3\x97 {}", score.width, score.height));
+    html += NumberCell(score.render_seconds, FormatFixed(score.render_seconds, 2, "s")) + "</tr>";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+}  // namespace
+
+std::string PhotoSection(const ReportInput& input) {
+  std::string html = "<section id=\"photos\"><div class=\"heading\"><h2>Held-out photos</h2>";
+  if (input.metrics->photos.empty()) return html + "</div><p class=\"card empty\">No photo was scored.</p></section>\n";
+  html +=
+      "<div class=\"controls\"><div class=\"segmented\" role=\"group\" aria-label=\"View\"><button data-view=\"side\" class=\"on\">Side by "
+      "side</button>"
+      "<button data-view=\"slide\">Slider</button></div><label>Order <select id=\"order\"><option value=\"name\">by name</option><option "
+      "value=\"worst\">worst first</option><option value=\"best\">best first</option></select></label></div></div>"
+      "<p class=\"lead\">Never trained on. Error is the mean absolute difference of red, green and blue in display values; pixels that fewer than "
+      "two training "
+      "photos cover, or that a mask excludes, are shown in dimmed grey and do not count. Click a picture to enlarge it.</p><div id=\"photo-list\">";
+  size_t pictured = 0;
+  for (size_t i = 0; i < input.metrics->photos.size() && i < input.images.size(); ++i) {
+    if (input.images[i].photo.empty()) continue;
+    html += PhotoCard(input, i);
+    ++pictured;
+  }
+  html += "</div>";
+  if (pictured < input.metrics->photos.size()) {
+    html += fmt::format("<p class=\"note\">Pictures of {} of {} scored photos are kept; all are in the table.</p>", pictured,
+                        input.metrics->photos.size());
+  }
+  return html + PhotoTable(input) + "</section>\n";
+}
+
+}  // namespace skyquilt::report

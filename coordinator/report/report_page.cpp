@@ -1,0 +1,191 @@
+#include "coordinator/report/report_page.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "coordinator/report/curve_chart.h"
+#include "coordinator/report/html.h"
+#include "core/base/errors.h"
+#include "core/base/progress.h"
+
+namespace skyquilt::report {
+
+namespace {
+
+constexpr const char* kLogo =
+    "<svg class=\"logo\" viewBox=\"0 0 24 24\" aria-hidden=\"true\"><path class=\"q1\" d=\"M2 2h9v9H2z\"/><path class=\"q2\" d=\"M13 2h9v9h-9z\"/>"
+    "<path class=\"q3\" d=\"M2 13h9v9H2z\"/><path class=\"q4\" d=\"M13 13h9v9h-9z\"/></svg>";
+
+std::string Figure(const std::string& label, const std::string& value, const std::string& note, const char* css_class = "") {
+  return fmt::format("<div class=\"kpi {}\"><span>{}</span><strong>{}</strong><small>{}</small></div>", css_class, label, value, note);
+}
+
+std::string Duration(double seconds) {
+  return std::isfinite(seconds) ? base::FormatDuration(seconds) : FormatFixed(seconds, 0);
+}
+
+std::string Headline(const ReportInput& input) {
+  const Metrics& metrics = *input.metrics;
+  std::string html = "<section id=\"summary\" class=\"kpis\">";
+  html += Figure("PSNR, held-out photos", FormatFixed(metrics.psnr, 2, "dB"), "full frame " + FormatFixed(metrics.psnr_full_frame, 2, "dB"), "hero");
+  html += Figure("SSIM", FormatFixed(metrics.ssim, 3), "full frame " + FormatFixed(metrics.ssim_full_frame, 3));
+  html += Figure("Coverage", FormatPercent(metrics.coverage), fmt::format("of the pixels of {} held-out photos", metrics.photos.size()));
+  html += Figure("LPIPS", FormatFixed(metrics.lpips, 3), EscapeHtml(metrics.lpips_note));
+  if (metrics.has_truth) {
+    html += Figure("Median depth error", FormatFixed(metrics.depth_median_abs_m, 2, "m"), "RMSE " + FormatFixed(metrics.depth_rmse_m, 2, "m"));
+  }
+  html += Figure("Seam gap", FormatFixed(metrics.seam_psnr_gap_db, 2, "dB"),
+                 std::isfinite(metrics.seam_psnr_gap_db)
+                     ? "inside " + FormatFixed(metrics.psnr_interior_db, 2) + ", in seams " + FormatFixed(metrics.psnr_seam_db, 2, "dB")
+                     : "no seams were scored");
+  html += Figure("Training time", Duration(metrics.train_seconds),
+                 fmt::format("{} {}{}", metrics.ranks, metrics.ranks == 1 ? "process" : "ranks",
+                             metrics.threads > 0 ? fmt::format(", {} threads", metrics.threads) : ""));
+  html += Figure("Training speed", FormatLarge(metrics.samples_per_second), "samples per second");
+  html += Figure("Peak memory", FormatBytes(metrics.peak_rss_bytes), metrics.ranks > 1 ? "training, largest rank" : "training");
+  html += Figure("Parameters", FormatLarge(static_cast<double>(metrics.parameters)), "all fields, context included");
+  const survey::GeoFit& fit = metrics.geo_fit;
+  html += Figure(
+      "Geo-reference", metrics.georeferenced ? FormatFixed(fit.rmse_m, 2, "m") : "none",
+      metrics.georeferenced ? fmt::format("RMSE to GPS, {} of {} photos", fit.n_inliers, fit.n_matches) : "no GPS: local frame, unknown scale");
+  html += Figure("Height above ground", FormatFixed(metrics.median_agl_m, 1, "m"),
+                 std::isfinite(metrics.median_relative_altitude_m)
+                     ? "median; drone's own figure " + FormatFixed(metrics.median_relative_altitude_m, 1, "m")
+                     : "median over photos");
+  return html + "</section>\n";
+}
+
+std::string Warnings(const Metrics& metrics) {
+  if (metrics.warnings.empty()) return "<p class=\"banner good\"><b>No warnings.</b> Every photo is registered and every block was trained.</p>\n";
+  std::string html = fmt::format("<details class=\"banner warn\" open><summary><b>{} {}</b></summary><ul>", metrics.warnings.size(),
+                                 metrics.warnings.size() == 1 ? "warning" : "warnings");
+  for (const std::string& warning : metrics.warnings) html += "<li>" + EscapeHtml(warning) + "</li>";
+  return html + "</ul></details>\n";
+}
+
+std::string Toggle(const char* layer, const char* label, const char* mark) {
+  return fmt::format("<label><input type=\"checkbox\" data-layer=\"layer-{}\" checked><i class=\"{}\"></i>{}</label>", layer, mark, label);
+}
+
+std::string BlockBars(const ReportInput& input) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const BlockScore& block : input.metrics->blocks) {
+    if (!std::isfinite(block.psnr_db)) continue;
+    low = std::min(low, block.psnr_db);
+    high = std::max(high, block.psnr_db);
+  }
+  std::string html = "<div class=\"card bars\"><h3>Held-out PSNR per block</h3>";
+  if (input.metrics->blocks.empty() || !std::isfinite(low)) return html + "<p class=\"empty\">No block was scored.</p></div>";
+  // Bars start a little below the worst block: differences of tenths of a decibel are what one looks for.
+  const double base = std::max(0.0, std::floor(low - 0.35 * std::max(high - low, 1.0)));
+  std::vector<const BlockScore*> order;
+  for (const BlockScore& block : input.metrics->blocks) order.push_back(&block);
+  std::stable_sort(order.begin(), order.end(), [](const BlockScore* a, const BlockScore* b) {
+    return std::isfinite(a->psnr_db) && (!std::isfinite(b->psnr_db) || a->psnr_db > b->psnr_db);
+  });
+  html += "<div class=\"rows\">";
+  for (const BlockScore* block : order) {
+    const double share = std::isfinite(block->psnr_db) ? std::clamp((block->psnr_db - base) / std::max(high - base, 1e-9), 0.0, 1.0) : 0.0;
+    html += fmt::format("<div class=\"row\"><a href=\"#block-{0}\">{0}</a><span><i style=\"width:{1:.1f}%\"></i></span><b>{2}</b></div>",
+                        EscapeHtml(block->name), 100.0 * share, FormatFixed(block->psnr_db, 2, "dB"));
+  }
+  return html + fmt::format("</div><p class=\"note\">Bars start at {}.</p></div>", FormatFixed(base, 0, "dB"));
+}
+
+std::string MapSection(const ReportInput& input) {
+  std::string html = "<section id=\"map-section\"><div class=\"heading\"><h2>Blocks</h2></div><div class=\"map-grid\"><div class=\"card map-card\">" +
+                     BlockMapSvg(input);
+  html += "<div class=\"toggles\">";
+  if (input.background) html += Toggle("ortho", "Orthophoto", "k-ortho");
+  html += Toggle("blocks", "Blocks and margins", "k-block") + Toggle("cameras", "Training photos", "k-camera") +
+          Toggle("tests", "Held-out photos", "k-test");
+  if (input.survey->georeferenced) html += Toggle("gps", "GPS tracks", "k-gps");
+  return html + "</div></div>" + BlockBars(input) + "</div>" + BlockTable(input) + "</section>\n";
+}
+
+std::string TrainingSection(const ReportInput& input) {
+  std::vector<Curve> loss, psnr;
+  for (const FieldLog& field : input.log->fields) {
+    Curve loss_curve{field.name, {}, field.name == "context"}, psnr_curve = loss_curve;
+    for (const CurvePoint& point : field.curve) {
+      const double x = std::isfinite(point.seconds) ? point.seconds : point.step;
+      loss_curve.points.emplace_back(x, point.loss);
+      psnr_curve.points.emplace_back(x, point.psnr_db);
+    }
+    loss.push_back(std::move(loss_curve));
+    psnr.push_back(std::move(psnr_curve));
+  }
+  return "<section id=\"training\"><div class=\"heading\"><h2>Training</h2></div><div class=\"chart-grid\">" +
+         CurveChart(loss, {.title = "Loss", .x_label = "training time of the field (s)", .y_label = "loss", .log_y = true}) +
+         CurveChart(psnr, {.title = "PSNR of the training batches", .x_label = "training time of the field (s)", .y_label = "PSNR (dB)"}) +
+         "</div></section>\n";
+}
+
+std::string GeoSection(const ReportInput& input) {
+  const survey::GeoFit& fit = input.metrics->geo_fit;
+  std::string html = "<section id=\"geo\"><div class=\"heading\"><h2>Geo-reference</h2></div>";
+  if (input.metrics->georeferenced) {
+    html += fmt::format(
+        "<p class=\"lead\">Similarity fit of the reconstruction to the GPS tags: RMSE {} over {} of {} tagged photos (horizontal {}, vertical {}).",
+        FormatFixed(fit.rmse_m, 2, "m"), fit.n_inliers, fit.n_matches, FormatFixed(fit.rmse_horizontal_m, 2, "m"),
+        FormatFixed(fit.rmse_vertical_m, 2, "m"));
+    html += fmt::format(" Local frame: east, north, up about {}, {}, height {}.", FormatFixed(input.survey->origin.latitude_deg, 6, "\xC2\xB0"),
+                        FormatFixed(input.survey->origin.longitude_deg, 6, "\xC2\xB0"), FormatFixed(input.survey->origin.height_m, 1, "m"));
+    for (size_t i = 0; i < fit.flight_vertical_offset_m.size(); ++i) {
+      html += fmt::format(" Tags of flight {} were moved by {} in height.", i + 1, FormatFixed(fit.flight_vertical_offset_m[i], 2, "m"));
+    }
+    html += "</p>";
+  }
+  return html + ResidualTable(input) + "</section>\n";
+}
+
+std::string Facts(const ReportInput& input) {
+  const Metrics& metrics = *input.metrics;
+  std::string html =
+      "<section id=\"details\"><div class=\"heading\"><h2>How this was measured</h2></div><div class=\"facts-grid\"><dl class=\"card facts\">";
+  const auto fact = [&](const char* name, const std::string& value) { html += fmt::format("<dt>{}</dt><dd>{}</dd>", name, value); };
+  fact("Machine", EscapeHtml(metrics.machine));
+  fact("Date", EscapeHtml(metrics.date));
+  fact("Photos", fmt::format("{} registered, {} not registered, {} held out, {} scored", FormatInteger(metrics.n_photos),
+                             FormatInteger(metrics.n_unregistered), FormatInteger(metrics.n_test), metrics.photos.size()));
+  fact("Scored at", metrics.image_width > 0 ? fmt::format("{} pixels width", metrics.image_width) : FormatFixed(kNotMeasured, 0));
+  fact("Ground sampling distance", FormatFixed(metrics.gsd_m * 100.0, 1, "cm") + " (finest block)");
+  fact("Evaluation", fmt::format("{}, peak memory {}", Duration(metrics.evaluate_seconds), FormatBytes(metrics.evaluate_peak_rss_bytes)));
+  html += "</dl><div class=\"card prose\"><h3>Definitions</h3><p>";
+  html += EscapeHtml(kPsnrDefinition) + "</p><p>" + EscapeHtml(kCoverageDefinition) + "</p><p>" + EscapeHtml(kSeamDefinition) + "</p>";
+  html += "<p>Renders are shown at the exposure of each photo as its EXIF states it; nothing is fitted to the held-out photo.</p></div></div>";
+  if (!metrics.config.empty())
+    html += "<details class=\"card config\"><summary>Configuration</summary><pre>" + EscapeHtml(metrics.config) + "</pre></details>";
+  return html + "</section>\n";
+}
+
+}  // namespace
+
+std::string BuildReportPage(const ReportInput& input) {
+  SKYQUILT_CHECK(input.metrics != nullptr && input.survey != nullptr && input.blocks != nullptr && input.log != nullptr, "all parts of the input");
+  SKYQUILT_CHECK(input.images.empty() || input.images.size() == input.metrics->photos.size(), "one entry of images per scored photo");
+  const std::string title = EscapeHtml(input.title);
+  std::string html =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">";
+  html += "<meta name=\"color-scheme\" content=\"light dark\"><title>" + title + " \xC2\xB7 Skyquilt report</title><style>" + PageStyle() +
+          "</style></head><body>\n";
+  html += fmt::format(
+      "<div class=\"topbar\"><div class=\"inner\"><a class=\"brand\" href=\"#top\">{}<b>Skyquilt</b></a><nav><a href=\"#summary\">Summary</a>"
+      "<a href=\"#map-section\">Blocks</a><a href=\"#photos\">Photos</a><a href=\"#training\">Training</a><a href=\"#geo\">Geo-reference</a>"
+      "<a href=\"#details\">Details</a></nav><button id=\"theme\" title=\"Switch between light and dark\" aria-label=\"Switch between light and "
+      "dark\">"
+      "<svg viewBox=\"0 0 24 24\"><path d=\"M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z\"/></svg></button></div></div><main id=\"top\">\n",
+      kLogo);
+  html += fmt::format("<header class=\"title\"><h1>{}</h1><p>{} photos, {} blocks \xC2\xB7 {} \xC2\xB7 {}</p></header>\n", title,
+                      FormatInteger(input.metrics->n_photos), input.blocks->blocks.size(), EscapeHtml(input.metrics->date),
+                      EscapeHtml(input.metrics->machine));
+  html += Headline(input) + Warnings(*input.metrics) + MapSection(input) + PhotoSection(input) + TrainingSection(input) + GeoSection(input) +
+          Facts(input);
+  html += "</main><dialog id=\"viewer\"><button aria-label=\"Close\">\xC3\x97</button><div></div><p></p></dialog><script>" + PageScript() +
+          "</script></body></html>\n";
+  return html;
+}
+
+}  // namespace skyquilt::report

@@ -1,0 +1,204 @@
+#include "coordinator/scheduler/coordinate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/log.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+void ThrowIfEndsCommand(const FieldOutcome& outcome) {
+  if (outcome.failure == Failure::kInterrupted) throw base::Interrupted();
+  if (outcome.failure == Failure::kUsage) throw base::UsageError(outcome.reason);
+  if (outcome.failure != Failure::kInput) return;
+  // The text already names file, finding and mend.
+  const size_t colon = outcome.reason.find(": ");
+  if (colon == std::string::npos) throw base::InputError(outcome.job.name, outcome.reason, "");
+  throw base::InputError(outcome.reason.substr(0, colon), outcome.reason.substr(colon + 2), "");
+}
+
+namespace {
+
+void CoordinateAlone(BlockQueue& queue, const FieldTrainer& trainer, int threads, const CoordinateHooks& hooks) {
+  while (queue.HasWaiting()) {
+    base::ThrowIfCancelled();
+    const FieldJob job = queue.Take(hooks.now_s(), {});
+    hooks.handed_out(job, 0);
+    const FieldOutcome outcome = RunField(
+        trainer, job, [&](const worker::TrainStatus& status) { hooks.status(job, status); }, 0, threads);
+    ThrowIfEndsCommand(outcome);
+    hooks.finished(outcome, queue.Finish(outcome));
+  }
+}
+
+// State of one training spread over ranks.
+class Coordination {
+ public:
+  Coordination(comm::Communicator& comm, BlockQueue& queue, const CoordinateHooks& hooks) : comm_(comm), queue_(queue), hooks_(hooks) {
+    for (int rank = 1; rank < comm.size(); ++rank) idle_.insert(rank);
+  }
+
+  void Run() {
+    while (true) {
+      if (!stopping_ && base::CancelRequested()) {
+        interrupted_ = true;
+        Stop();
+      }
+      while (!stopping_ && queue_.HasWaiting() && !idle_.empty()) HandOut();
+      if (busy_.empty() && (stopping_ || !queue_.HasWaiting())) break;
+      const std::optional<comm::Message> message = comm_.TryReceive();
+      if (!message) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        continue;
+      }
+      if (message->tag == kTagStatus) TakeStatus(*message);
+      if (message->tag == kTagOutcome) TakeOutcome(*message);
+    }
+    if (fatal_) ThrowIfEndsCommand(*fatal_);
+    if (interrupted_) throw base::Interrupted();
+  }
+
+ private:
+  struct Busy {
+    FieldJob job;
+    double until_s = 0.0;  // expected
+  };
+
+  void HandOut() {
+    std::vector<double> busy_until;
+    for (const auto& [rank, busy] : busy_) busy_until.push_back(busy.until_s);
+    const double now = hooks_.now_s();
+    const int rank = *idle_.begin();
+    const FieldJob job = queue_.Take(now, busy_until);
+    idle_.erase(rank);
+    busy_[rank] = {job, now + job.seconds};
+    comm_.Send(rank, kTagJob, ToText(job));
+    hooks_.handed_out(job, rank);
+  }
+
+  void Stop() {
+    stopping_ = true;
+    for (const auto& [rank, busy] : busy_) comm_.Send(rank, kTagStop, "");
+  }
+
+  void TakeStatus(const comm::Message& message) {
+    const auto busy = busy_.find(message.source);
+    if (busy == busy_.end()) return;
+    const size_t newline = message.bytes.find('\n');
+    const worker::TrainStatus status = StatusFromText(message.bytes.substr(newline + 1));
+    if (busy->second.job.seconds > 0.0) busy->second.until_s = hooks_.now_s() + std::max(0.0, busy->second.job.seconds - status.seconds);
+    hooks_.status(busy->second.job, status);
+  }
+
+  void TakeOutcome(const comm::Message& message) {
+    FieldOutcome outcome = OutcomeFromText(message.bytes);
+    busy_.erase(message.source);
+    idle_.insert(message.source);
+    switch (outcome.failure) {
+      case Failure::kInterrupted:
+        // Also when the signal reached only that rank: the batch system wants its machines back.
+        interrupted_ = true;
+        if (!stopping_) Stop();
+        break;
+      case Failure::kInput:
+      case Failure::kUsage:
+        if (!fatal_) fatal_ = outcome;
+        if (!stopping_) Stop();
+        break;
+      case Failure::kNone:
+      case Failure::kBlock:
+        hooks_.finished(outcome, queue_.Finish(outcome));
+        break;
+    }
+  }
+
+  comm::Communicator& comm_;
+  BlockQueue& queue_;
+  const CoordinateHooks& hooks_;
+  std::set<int> idle_;
+  std::map<int, Busy> busy_;
+  std::optional<FieldOutcome> fatal_;
+  bool stopping_ = false;
+  bool interrupted_ = false;
+};
+
+// Called by the trainer between steps: passes the status on about twice a second and looks for a stop from rank 0.
+class RankReporter {
+ public:
+  RankReporter(comm::Communicator& comm, const FieldJob& job) : comm_(comm), job_text_(ToText(job)) {}
+
+  void operator()(const worker::TrainStatus& status) {
+    if (SecondsSince(last_poll_) > 0.05) {
+      last_poll_ = Clock::now();
+      while (const std::optional<comm::Message> message = comm_.TryReceive()) {
+        if (message->tag == kTagStop) base::RequestCancel();
+      }
+    }
+    if (!sent_ || SecondsSince(last_sent_) > 0.5) {
+      sent_ = true;
+      last_sent_ = Clock::now();
+      comm_.Send(0, kTagStatus, job_text_ + "\n" + ToText(status));
+    }
+  }
+
+ private:
+  comm::Communicator& comm_;
+  std::string job_text_;
+  Clock::time_point last_poll_{};
+  Clock::time_point last_sent_{};
+  bool sent_ = false;
+};
+
+}  // namespace
+
+void CoordinateBlocks(comm::Communicator& comm, BlockQueue& queue, const FieldTrainer& alone, int alone_threads, const CoordinateHooks& hooks) {
+  if (comm.size() == 1) {
+    CoordinateAlone(queue, alone, alone_threads, hooks);
+  } else {
+    Coordination(comm, queue, hooks).Run();
+  }
+}
+
+void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int threads) {
+  while (true) {
+    const comm::Message message = WaitForMessage(comm);
+    if (message.tag == kTagDone) return;
+    if (message.tag != kTagJob) continue;  // a stop that crossed the outcome of the job it was meant for
+    const FieldJob job = JobFromText(message.bytes);
+    RankReporter reporter(comm, job);
+    const FieldOutcome outcome = RunField(
+        trainer, job, [&reporter](const worker::TrainStatus& status) { reporter(status); }, comm.rank(), threads);
+    comm.Send(0, kTagOutcome, ToText(outcome));
+  }
+}
+
+comm::Message WaitForMessage(comm::Communicator& comm) {
+  auto pause = std::chrono::microseconds(200);
+  std::optional<Clock::time_point> cancelled;
+  while (true) {
+    if (std::optional<comm::Message> message = comm.TryReceive()) return *std::move(message);
+    if (base::CancelRequested()) {
+      if (!cancelled) cancelled = Clock::now();
+      if (SecondsSince(*cancelled) > 60.0) throw base::Interrupted();
+    }
+    std::this_thread::sleep_for(pause);
+    pause = std::min(pause * 2, std::chrono::microseconds(20000));
+  }
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,104 @@
+#include "coordinator/scheduler/field_context.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "coordinator/scheduler/training_log.h"
+#include "core/base/errors.h"
+
+namespace skyquilt::coordinator {
+
+std::vector<image::PixelSource> PixelSources(const survey::Survey& survey) {
+  std::vector<image::PixelSource> sources;
+  for (const survey::Photo& photo : survey.photos) sources.push_back({survey.photo_root / photo.name, photo.mask});
+  return sources;
+}
+
+brightness::PhotoGains GainsOf(const survey::Survey& survey, const std::string& correction) {
+  if (correction == "none") return {0.0, std::vector<float>(survey.photos.size(), 1.0F)};
+  std::vector<std::optional<double>> exposures;
+  for (const survey::Photo& photo : survey.photos) {
+    exposures.push_back(brightness::ExifExposure(photo.exposure.time_s, photo.exposure.f_number, photo.exposure.iso));
+  }
+  return brightness::GainsFromExif(exposures);
+}
+
+worker::BoxView ViewOfBlock(const partition::Block& block) {
+  worker::BoxView view;
+  view.name = block.name;
+  view.min_enu = block.min_enu;
+  view.max_enu = block.max_enu;
+  view.margin_m = block.margin_m;
+  view.finest_voxel_m = block.finest_voxel_m;
+  view.log2_table_size = block.log2_table_size;
+  view.photos = block.photos;
+  return view;
+}
+
+worker::BoxView ViewOfSurvey(const partition::BlockSet& blocks, const survey::Survey& survey, const std::filesystem::path& blocks_file) {
+  worker::BoxView view;
+  view.name = "context";
+  bool any = false;
+  double finest_block_voxel_m = 0.0;
+  for (const partition::Block& block : blocks.blocks) {
+    if (block.empty) continue;
+    view.min_enu = any ? view.min_enu.cwiseMin(block.min_enu).eval() : block.min_enu;
+    view.max_enu = any ? view.max_enu.cwiseMax(block.max_enu).eval() : block.max_enu;
+    finest_block_voxel_m = any ? std::min(finest_block_voxel_m, block.finest_voxel_m) : block.finest_voxel_m;
+    any = true;
+  }
+  if (!any)
+    throw base::InputError(blocks_file, "every block is empty, so there is nothing to train", "Check the photos' positions or choose larger blocks");
+  // A thousandth of the survey: what stands behind a block is seen from afar.
+  const Eigen::Vector3d extent = view.max_enu - view.min_enu;
+  view.finest_voxel_m = std::max(2.0 * finest_block_voxel_m, std::max(extent.x(), extent.y()) / 1024.0);
+  view.photos.resize(survey.photos.size());
+  std::iota(view.photos.begin(), view.photos.end(), 0);
+  return view;
+}
+
+int ContextSteps(const Settings& settings) {
+  if (settings.context.steps > 0) return settings.context.steps;
+  return settings.train.steps > 0 ? std::max(200, settings.train.steps / 2) : 0;
+}
+
+double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads) {
+  const double entries = std::ldexp(1.0, block.log2_table_size);
+  const double table = entries * options.levels * options.features * 16.0;
+  const double per_sample = 4.0 * (2.0 * options.levels * options.features + 6.0 * options.hidden + 64.0);
+  return table + per_sample * options.batch_samples + 64e6 * threads;
+}
+
+FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,
+                              const Settings& settings, const Project& project, const std::string& config_hash, base::ThreadPool& threads) {
+  const brightness::PhotoGains gains = GainsOf(survey, settings.brightness.correction);
+  return [&survey, &blocks, &pixels, &settings, project, config_hash, gains, &threads](const FieldJob& job, const worker::Reporter& report) {
+    worker::TrainJob train;
+    train.survey = &survey;
+    train.pixels = &pixels;
+    train.options = job.block < 0 ? settings.context : settings.train;
+    train.options.steps = job.steps;
+    train.options.seconds = job.seconds;
+    train.gains = gains.gain;
+    train.reference_exposure = gains.reference_exposure;
+    train.learning_rate_scale = job.rate_factor;
+    train.config_hash = config_hash;
+    train.seed = job.seed;
+    TrainingLog log(project.TrainLog(job.name));
+    const worker::Reporter both = [&log, &report](const worker::TrainStatus& status) {
+      log.Add(status);
+      report(status);
+    };
+    if (job.block < 0) {
+      train.checkpoint = project.ContextCheckpoint();
+      return worker::TrainContext(train, ViewOfSurvey(blocks, survey, project.BlocksFile()), threads, both);
+    }
+    const partition::Block& block = blocks.blocks[static_cast<size_t>(job.block)];
+    train.checkpoint = project.BlockCheckpoint(block.name);
+    return worker::TrainBlock(train, ViewOfBlock(block), project.ContextCheckpoint(), threads, both);
+  };
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,39 @@
+// What a rank needs to train any field of one project, loaded once per training.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "coordinator/pipeline_project.h"
+#include "coordinator/scheduler/field_job.h"
+#include "coordinator/settings.h"
+#include "core/base/thread_pool.h"
+#include "core/brightness/exposure.h"
+#include "core/image/pixel_cache.h"
+#include "core/survey/survey.h"
+#include "partition/block.h"
+#include "worker/box_view.h"
+
+namespace skyquilt::coordinator {
+
+// Photos and masks in the order of Survey::photos.
+std::vector<image::PixelSource> PixelSources(const survey::Survey& survey);
+// What each photo recorded over the light at reference exposure; all 1 when `correction` is "none".
+brightness::PhotoGains GainsOf(const survey::Survey& survey, const std::string& correction);
+
+// One block as the trainer wants it.
+worker::BoxView ViewOfBlock(const partition::Block& block);
+// The whole survey as one box: the union of the blocks that are not empty. Throws base::InputError when all are.
+worker::BoxView ViewOfSurvey(const partition::BlockSet& blocks, const survey::Survey& survey, const std::filesystem::path& blocks_file);
+
+// A trainer over references that must outlive it; writes the field's log beside its checkpoint.
+FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,
+                              const Settings& settings, const Project& project, const std::string& config_hash, base::ThreadPool& threads);
+
+// Steps of the context: its own, or half of the blocks' (at least 200); 0 when the blocks have none either.
+int ContextSteps(const Settings& settings);
+// Rough peak memory of training one block: tables with gradient and two moments, and the workspace of a batch per thread.
+double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads);
+
+}  // namespace skyquilt::coordinator

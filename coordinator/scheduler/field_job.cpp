@@ -1,0 +1,145 @@
+#include "coordinator/scheduler/field_job.h"
+
+#include <chrono>
+#include <exception>
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "core/base/errors.h"
+#include "core/base/system.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+using nlohmann::json;
+
+json ToJson(const FieldJob& job) {
+  return {{"block", job.block},     {"name", job.name},        {"attempt", job.attempt}, {"steps", job.steps},
+          {"seconds", job.seconds}, {"rate", job.rate_factor}, {"seed", job.seed}};
+}
+
+FieldJob JobFromJson(const json& j) {
+  FieldJob job;
+  job.block = j.at("block").get<int>();
+  job.name = j.at("name").get<std::string>();
+  job.attempt = j.at("attempt").get<int>();
+  job.steps = j.at("steps").get<int>();
+  job.seconds = j.at("seconds").get<double>();
+  job.rate_factor = j.at("rate").get<double>();
+  job.seed = j.at("seed").get<uint64_t>();
+  return job;
+}
+
+// JSON has no NaN: it travels as null and comes back as 0.
+double Number(const json& j, const char* key) {
+  return j.contains(key) && j.at(key).is_number() ? j.at(key).get<double>() : 0.0;
+}
+
+}  // namespace
+
+FieldOutcome RunField(const FieldTrainer& trainer, const FieldJob& job, const worker::Reporter& report, int rank, int threads) {
+  FieldOutcome outcome;
+  outcome.job = job;
+  outcome.rank = rank;
+  outcome.threads = threads;
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    outcome.result = trainer(job, report);
+    if (!outcome.result.ok) {
+      outcome.failure = Failure::kBlock;
+      outcome.reason = outcome.result.reason;
+    }
+  } catch (const base::Interrupted& error) {
+    outcome.failure = Failure::kInterrupted;
+    outcome.reason = error.what();
+  } catch (const base::InputError& error) {
+    outcome.failure = Failure::kInput;
+    outcome.reason = error.what();
+  } catch (const base::UsageError& error) {
+    outcome.failure = Failure::kUsage;
+    outcome.reason = error.what();
+  } catch (const std::bad_alloc&) {
+    outcome.failure = Failure::kBlock;
+    outcome.reason = "out of memory: smaller blocks, fewer ranks on this machine or a smaller table would fit";
+  } catch (const std::exception& error) {
+    outcome.failure = Failure::kBlock;
+    outcome.reason = error.what();
+  }
+  outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  outcome.peak_rss_bytes = base::PeakRssBytes();
+  return outcome;
+}
+
+std::string ToText(const FieldJob& job) {
+  return ToJson(job).dump();
+}
+
+std::string ToText(const FieldOutcome& outcome) {
+  const worker::TrainResult& r = outcome.result;
+  const json j = {{"job", ToJson(outcome.job)},
+                  {"failure", static_cast<int>(outcome.failure)},
+                  {"reason", outcome.reason},
+                  {"rank", outcome.rank},
+                  {"threads", outcome.threads},
+                  {"wall_s", outcome.wall_s},
+                  {"peak_rss_bytes", outcome.peak_rss_bytes},
+                  {"ok", r.ok},
+                  {"steps", r.steps},
+                  {"seconds", r.seconds},
+                  {"samples", r.samples},
+                  {"rays", r.rays},
+                  {"parameters", r.parameters},
+                  {"psnr", r.final_psnr_db},
+                  {"dropped", r.dropped_steps}};
+  return j.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string ToText(const worker::TrainStatus& s) {
+  const json j = {
+      {"step", s.step},    {"total", s.total_steps},    {"fraction", s.fraction},          {"seconds", s.seconds},        {"loss", s.loss},
+      {"psnr", s.psnr_db}, {"rays", s.rays_per_second}, {"samples", s.samples_per_second}, {"per_ray", s.samples_per_ray}};
+  return j.dump();
+}
+
+FieldJob JobFromText(const std::string& text) {
+  return JobFromJson(json::parse(text));
+}
+
+FieldOutcome OutcomeFromText(const std::string& text) {
+  const json j = json::parse(text);
+  FieldOutcome outcome;
+  outcome.job = JobFromJson(j.at("job"));
+  outcome.failure = static_cast<Failure>(j.at("failure").get<int>());
+  outcome.reason = j.at("reason").get<std::string>();
+  outcome.rank = j.at("rank").get<int>();
+  outcome.threads = j.at("threads").get<int>();
+  outcome.wall_s = Number(j, "wall_s");
+  outcome.peak_rss_bytes = j.at("peak_rss_bytes").get<int64_t>();
+  outcome.result.ok = j.at("ok").get<bool>();
+  outcome.result.reason = outcome.reason;
+  outcome.result.steps = j.at("steps").get<int64_t>();
+  outcome.result.seconds = Number(j, "seconds");
+  outcome.result.samples = j.at("samples").get<int64_t>();
+  outcome.result.rays = j.at("rays").get<int64_t>();
+  outcome.result.parameters = j.at("parameters").get<int64_t>();
+  outcome.result.final_psnr_db = Number(j, "psnr");
+  outcome.result.dropped_steps = j.at("dropped").get<int>();
+  return outcome;
+}
+
+worker::TrainStatus StatusFromText(const std::string& text) {
+  const json j = json::parse(text);
+  worker::TrainStatus s;
+  s.step = j.at("step").get<int64_t>();
+  s.total_steps = j.at("total").get<int64_t>();
+  s.fraction = Number(j, "fraction");
+  s.seconds = Number(j, "seconds");
+  s.loss = Number(j, "loss");
+  s.psnr_db = Number(j, "psnr");
+  s.rays_per_second = Number(j, "rays");
+  s.samples_per_second = Number(j, "samples");
+  s.samples_per_ray = Number(j, "per_ray");
+  return s;
+}
+
+}  // namespace skyquilt::coordinator

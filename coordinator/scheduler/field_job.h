@@ -1,0 +1,55 @@
+// One field to train, handed to a rank, and what came of it. Both travel as small JSON texts.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "worker/trainer.h"
+
+namespace skyquilt::coordinator {
+
+struct FieldJob {
+  int block = -1;            // index into BlockSet::blocks; -1: the context
+  std::string name;          // "context" or "block_<name>"
+  int attempt = 0;           // 0, then one more after each failure
+  int steps = 0;             // > 0: exactly this many
+  double seconds = 0.0;      // budget when steps = 0; 0: the trainer's default
+  double rate_factor = 1.0;  // multiplies the learning rate; halved with each attempt
+  uint64_t seed = 1;
+};
+
+enum class Failure {
+  kNone,
+  kBlock,        // this block only: diverged, out of memory, an exception
+  kInput,        // base::InputError: ends the command
+  kUsage,        // base::UsageError: ends the command
+  kInterrupted,  // saved and stopped
+};
+
+struct FieldOutcome {
+  FieldJob job;
+  worker::TrainResult result;
+  Failure failure = Failure::kNone;
+  std::string reason;
+  int rank = 0;
+  int threads = 1;
+  double wall_s = 0.0;
+  int64_t peak_rss_bytes = 0;
+};
+
+// Trains one field and calls the reporter often; the seam that tests replace.
+using FieldTrainer = std::function<worker::TrainResult(const FieldJob&, const worker::Reporter&)>;
+
+// Runs the trainer and turns whatever happens into an outcome; never throws. `rank` and `threads` are written into it.
+FieldOutcome RunField(const FieldTrainer& trainer, const FieldJob& job, const worker::Reporter& report, int rank, int threads);
+
+std::string ToText(const FieldJob& job);
+std::string ToText(const FieldOutcome& outcome);
+std::string ToText(const worker::TrainStatus& status);
+// Throw std::runtime_error on text that is not theirs.
+FieldJob JobFromText(const std::string& text);
+FieldOutcome OutcomeFromText(const std::string& text);
+worker::TrainStatus StatusFromText(const std::string& text);
+
+}  // namespace skyquilt::coordinator

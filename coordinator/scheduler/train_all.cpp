@@ -1,0 +1,307 @@
+#include "coordinator/scheduler/train_all.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "coordinator/scheduler/block_queue.h"
+#include "coordinator/scheduler/coordinate.h"
+#include "coordinator/scheduler/field_context.h"
+#include "coordinator/scheduler/train_ledger.h"
+#include "coordinator/scheduler/train_progress.h"
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/base/system.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kMaxTries = 3;
+
+std::string HostName() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+int UsableThreads(const Settings& settings) {
+  return settings.run.threads > 0 ? settings.run.threads : base::UsableCores();
+}
+
+// The other ranks during one training; leaving it, by whatever way, sends them back to waiting.
+class Crew {
+ public:
+  Crew(comm::Communicator& comm, const Project& project, Settings settings, const TrainInput& input) : comm_(comm) {
+    const json setup = {{"project", project.folder.string()},
+                        {"settings", settings.Toml()},
+                        {"config_hash", input.config_hash},
+                        {"verbose", input.verbose},
+                        {"quiet", input.quiet}};
+    for (int rank = 1; rank < comm.size(); ++rank) comm.Send(rank, kTagSetup, setup.dump());
+  }
+  ~Crew() {
+    for (int rank = 1; rank < comm_.size(); ++rank) comm_.Send(rank, kTagDone, "");
+  }
+  Crew(const Crew&) = delete;
+  Crew& operator=(const Crew&) = delete;
+
+  // Waits until all have loaded the survey and tells each how many threads it has. Returns the smallest number, and in *per_host the
+  // largest number of training ranks that share a machine.
+  int AssignThreads(int* per_host) {
+    std::vector<json> hello(static_cast<size_t>(comm_.size()));
+    std::map<std::string, int> workers_on;
+    for (int n = 1; n < comm_.size();) {
+      const comm::Message message = comm_.Receive();
+      if (message.tag != kTagHello) continue;
+      json one = json::parse(message.bytes);
+      if (one.contains("error")) {
+        const std::string text =
+            "rank " + std::to_string(message.source) + " on " + one.at("host").get<std::string>() + ": " + one.at("error").get<std::string>();
+        if (one.at("kind") == "usage") throw base::UsageError(text);
+        throw base::InputError(one.at("file").get<std::string>(), text, "All ranks must see the same project folder");
+      }
+      ++workers_on[one.at("host").get<std::string>()];
+      hello[static_cast<size_t>(message.source)] = std::move(one);
+      ++n;
+    }
+    int fewest = 1 << 20;
+    *per_host = 1;
+    for (int rank = 1; rank < comm_.size(); ++rank) {
+      const json& one = hello[static_cast<size_t>(rank)];
+      const int sharing = workers_on[one.at("host").get<std::string>()];
+      const int threads = std::max(1, one.at("threads").get<int>() / sharing);
+      comm_.Send(rank, kTagThreads, std::to_string(threads));
+      fewest = std::min(fewest, threads);
+      *per_host = std::max(*per_host, sharing);
+    }
+    return fewest;
+  }
+
+ private:
+  comm::Communicator& comm_;
+};
+
+void RequireMemory(const partition::BlockSet& blocks, const Settings& settings, int threads, int per_host) {
+  const double limit = settings.run.memory_gb > 0.0 ? settings.run.memory_gb * 1073741824.0 : static_cast<double>(base::TotalMemoryBytes());
+  for (const partition::Block& block : blocks.blocks) {
+    if (block.empty) continue;
+    const double bytes = ExpectedTrainingBytes(block, settings.train, threads);
+    if (bytes * per_host > limit) {
+      throw base::UsageError(
+          "block " + block.name + " needs about " + base::FormatCount(bytes) + "B to train, but " + std::to_string(per_host) + " rank(s) share " +
+          base::FormatCount(limit) +
+          "B of memory (run.memory_gb): use fewer ranks on one machine, more and smaller blocks, or a smaller table in [partition]");
+    }
+  }
+}
+
+class Training {
+ public:
+  Training(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project)
+      : comm_(comm), input_(input), settings_(settings), project_(project), ledger_(project, input.config_hash), spent_before_s_(ledger_.spent_s()) {}
+
+  TrainSummary Run() {
+    std::filesystem::create_directories(project_.CheckpointFolder());
+    std::filesystem::create_directories(project_.PixelCacheFile().parent_path());
+    TrainSummary summary;
+    const int all_threads = UsableThreads(settings_);
+    base::ThreadPool pool(all_threads);
+    const image::PixelCache pixels =
+        image::PixelCache::Open(project_.PixelCacheFile(), PixelSources(*input_.survey), settings_.run.image_width, pool);
+    // Decoding is not training: the budget starts here.
+    start_ = std::chrono::steady_clock::now();
+    Crew crew(comm_, project_, settings_, input_);
+    const FieldTrainer trainer = MakeFieldTrainer(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
+    summary.fields.push_back(TrainContext(trainer, all_threads));
+    int per_host = 1;
+    const int threads = comm_.size() > 1 ? crew.AssignThreads(&per_host) : all_threads;
+    RequireMemory(*input_.blocks, settings_, threads, per_host);
+    TrainBlocks(trainer, threads, &summary);
+    ledger_.SetSpent(Now(), true);
+    ledger_.WriteReport(comm_.size(), threads);
+    return summary;
+  }
+
+ private:
+  // Seconds of this configuration's training, earlier runs included.
+  double Now() const { return spent_before_s_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+  FieldOutcome TrainContext(const FieldTrainer& trainer, int threads) {
+    QueueOptions options;
+    options.steps = ContextSteps(settings_);
+    options.seconds = settings_.run.time_budget_s > 0.0 ? settings_.run.time_budget_s * settings_.run.context_share : settings_.context.seconds;
+    if (settings_.run.time_budget_s > 0.0) options.steps = settings_.context.steps;
+    options.seed = static_cast<uint64_t>(settings_.run.seed);
+    options.max_tries = kMaxTries;
+    BlockQueue queue({{-1, "context", 1.0, 0.0}}, options);
+    TrainProgress progress("context", 1.0, 1);
+    while (queue.HasWaiting()) {
+      base::ThrowIfCancelled();
+      const FieldJob job = queue.Take(Now(), {});
+      const auto report = [&](const worker::TrainStatus& status) {
+        progress.Update(job, 1.0, status);
+        ledger_.SetSpent(Now(), false);
+      };
+      const FieldOutcome outcome = RunField(trainer, job, report, 0, threads);
+      RethrowIfFatal(outcome);
+      if (queue.Finish(outcome)) {
+        spdlog::warn("the context failed and is tried again: {}", outcome.reason);
+        progress.FieldAgain(job);
+      }
+    }
+    progress.FieldDone(queue.outcomes().front().job, 1.0);
+    progress.Finish();
+    const FieldOutcome outcome = queue.outcomes().front();
+    ledger_.AddOutcome(outcome);
+    if (outcome.failure != Failure::kNone) throw base::BlockError("the context failed " + std::to_string(kMaxTries) + " times: " + outcome.reason);
+    LogField(outcome);
+    return outcome;
+  }
+
+  void TrainBlocks(const FieldTrainer& trainer, int threads, TrainSummary* summary) {
+    std::vector<QueueBlock> waiting;
+    for (const partition::Block& block : input_.blocks->blocks) {
+      const std::string name = "block_" + block.name;
+      if (block.empty) {
+        spdlog::info("{} is empty and skipped: {}", name, block.empty_reason);
+      } else {
+        waiting.push_back({block.id, name, block.cost, ledger_.Promised(name)});
+      }
+    }
+    QueueOptions options;
+    options.steps = settings_.run.time_budget_s > 0.0 ? 0 : settings_.train.steps;
+    options.has_deadline = settings_.run.time_budget_s > 0.0;
+    options.deadline_s = settings_.run.time_budget_s;
+    options.seconds = settings_.train.seconds;
+    options.n_workers = std::max(1, std::min(comm_.size() - 1, static_cast<int>(waiting.size())));
+    options.max_tries = kMaxTries;
+    options.seed = static_cast<uint64_t>(settings_.run.seed);
+    BlockQueue queue(waiting, options);
+    TrainProgress progress("blocks", queue.TotalCost(), static_cast<int>(waiting.size()));
+    CoordinateHooks hooks;
+    hooks.now_s = [this] { return Now(); };
+    hooks.handed_out = [&](const FieldJob& job, int rank) {
+      if (options.has_deadline) ledger_.Promise(job.name, job.seconds);
+      spdlog::debug("{} goes to rank {}{}", job.name, rank, job.seconds > 0.0 ? " for " + base::FormatDuration(job.seconds) : "");
+    };
+    hooks.status = [&](const FieldJob& job, const worker::TrainStatus& status) {
+      progress.Update(job, queue.Cost(job.block), status);
+      ledger_.SetSpent(Now(), false);
+    };
+    hooks.finished = [&](const FieldOutcome& outcome, bool retried) {
+      if (retried) {
+        spdlog::warn("{} failed and is tried again with half the learning rate: {}", outcome.job.name, outcome.reason);
+        progress.FieldAgain(outcome.job);
+        return;
+      }
+      progress.FieldDone(outcome.job, queue.Cost(outcome.job.block));
+      ledger_.AddOutcome(outcome);
+      if (outcome.failure == Failure::kNone) {
+        LogField(outcome);
+      } else {
+        spdlog::error("{} failed after {} tries: {}", outcome.job.name, outcome.job.attempt + 1, outcome.reason);
+        summary->failed.push_back(outcome.job.name + ": " + outcome.reason);
+      }
+    };
+    try {
+      CoordinateBlocks(comm_, queue, trainer, threads, hooks);
+    } catch (...) {
+      ledger_.SetSpent(Now(), true);
+      throw;
+    }
+    progress.Finish();
+    summary->fields.insert(summary->fields.end(), queue.outcomes().begin(), queue.outcomes().end());
+  }
+
+  void RethrowIfFatal(const FieldOutcome& outcome) {
+    if (outcome.failure != Failure::kNone) ledger_.SetSpent(Now(), true);
+    ThrowIfEndsCommand(outcome);
+  }
+
+  static void LogField(const FieldOutcome& outcome) {
+    const worker::TrainResult& r = outcome.result;
+    spdlog::info("{}: {} steps in {}, {} samples, {} parameters, training PSNR {:.2f} dB{}", outcome.job.name, r.steps,
+                 base::FormatDuration(r.seconds), base::FormatCount(static_cast<double>(r.samples)),
+                 base::FormatCount(static_cast<double>(r.parameters)), r.final_psnr_db,
+                 r.dropped_steps > 0 ? ", " + std::to_string(r.dropped_steps) + " steps dropped" : "");
+  }
+
+  comm::Communicator& comm_;
+  const TrainInput& input_;
+  const Settings& settings_;
+  const Project& project_;
+  TrainLedger ledger_;
+  double spent_before_s_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// One training as a worker rank sees it.
+void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
+  json hello = {{"host", HostName()}};
+  try {
+    const json setup = json::parse(setup_text);
+    base::InitLog(setup.at("verbose").get<bool>(), "rank " + std::to_string(comm.rank()));
+    if (setup.at("quiet").get<bool>()) spdlog::set_level(spdlog::level::warn);
+    base::Progress::SetQuiet(true);
+    const Project project{setup.at("project").get<std::string>()};
+    Settings settings;
+    config::Sections sections = settings.AllSections();
+    config::ReadTomlText(setup.at("settings").get<std::string>(), "settings from rank 0", sections);
+    const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
+    const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
+    base::ThreadPool one(1);
+    const image::PixelCache pixels = image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), settings.run.image_width, one);
+    hello["threads"] = UsableThreads(settings);
+    comm.Send(0, kTagHello, hello.dump());
+    comm::Message message = WaitForMessage(comm);
+    while (message.tag != kTagThreads && message.tag != kTagDone) message = WaitForMessage(comm);
+    if (message.tag == kTagDone) return;
+    const int threads = std::stoi(message.bytes);
+    base::ThreadPool pool(threads);
+    ServeBlocks(comm, MakeFieldTrainer(survey, blocks, pixels, settings, project, setup.at("config_hash").get<std::string>(), pool), threads);
+    return;
+  } catch (const base::UsageError& error) {
+    hello["kind"] = "usage";
+    hello["error"] = error.what();
+  } catch (const base::InputError& error) {
+    hello["kind"] = "input";
+    hello["file"] = error.file().string();
+    hello["error"] = error.what();
+  } catch (const base::Interrupted&) {
+    return;  // rank 0 is gone
+  } catch (const std::exception& error) {
+    hello["kind"] = "input";
+    hello["file"] = "";
+    hello["error"] = error.what();
+  }
+  comm.Send(0, kTagHello, hello.dump(-1, ' ', false, json::error_handler_t::replace));
+  while (WaitForMessage(comm).tag != kTagDone) {
+  }
+}
+
+}  // namespace
+
+TrainSummary TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project) {
+  SKYQUILT_CHECK(comm.rank() == 0, "rank 0 coordinates");
+  return Training(comm, input, settings, project).Run();
+}
+
+void ServeRank(comm::Communicator& comm) {
+  while (true) {
+    const comm::Message message = WaitForMessage(comm);
+    if (message.tag == kTagQuit) return;
+    if (message.tag == kTagSetup) ServeTraining(comm, message.bytes);
+  }
+}
+
+void ReleaseRanks(comm::Communicator& comm) {
+  for (int rank = 1; rank < comm.size(); ++rank) comm.Send(rank, kTagQuit, "");
+}
+
+}  // namespace skyquilt::coordinator

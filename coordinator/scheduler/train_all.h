@@ -1,0 +1,40 @@
+// Trains the context and then every block of a survey, over all ranks.
+// Rank 0 trains the context with all its cores, then hands out blocks, dearest first, and trains them itself only when it is alone.
+// All ranks read survey, blocks and pixels from the project folder, which they share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coordinator/pipeline_project.h"
+#include "coordinator/scheduler/field_job.h"
+#include "coordinator/settings.h"
+#include "core/comm/communicator.h"
+#include "core/survey/survey.h"
+#include "partition/block.h"
+
+namespace skyquilt::coordinator {
+
+struct TrainInput {
+  const survey::Survey* survey = nullptr;
+  const partition::BlockSet* blocks = nullptr;
+  std::string config_hash;  // of everything the result depends on; checkpoints with another one are refused
+  bool verbose = false;
+  bool quiet = false;
+};
+
+struct TrainSummary {
+  std::vector<FieldOutcome> fields;  // context first, then blocks in order of completion
+  std::vector<std::string> failed;   // "block_r0c1: reason", after all tries
+};
+
+// Called on rank 0. Writes checkpoints, <field>.log.csv and train.json into the project; continues from what is there.
+// Throws base::Interrupted (everything saved), base::InputError, base::UsageError, base::BlockError when the context itself failed.
+TrainSummary TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project);
+
+// What every other rank does from start to end: serves rank 0's trainings until ReleaseRanks. Never throws for what a training met.
+void ServeRank(comm::Communicator& comm);
+// Called on rank 0 before it ends, whatever happened.
+void ReleaseRanks(comm::Communicator& comm);
+
+}  // namespace skyquilt::coordinator

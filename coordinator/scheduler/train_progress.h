@@ -1,0 +1,39 @@
+// One line for all ranks: share done, loss, PSNR, rays and samples per second of the fields now in training.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "coordinator/scheduler/field_job.h"
+#include "core/base/progress.h"
+
+namespace skyquilt::coordinator {
+
+class TrainProgress {
+ public:
+  // total_cost: of all fields of this line, in the unit of Update's costs.
+  TrainProgress(const std::string& label, double total_cost, int n_fields);
+
+  void Update(const FieldJob& job, double cost, const worker::TrainStatus& status);
+  // The field is finished for good.
+  void FieldDone(const FieldJob& job, double cost);
+  // The field starts again: what it had done no longer counts.
+  void FieldAgain(const FieldJob& job) { active_.erase(job.name); }
+  void Finish();
+
+ private:
+  struct Active {
+    double cost = 0.0;
+    worker::TrainStatus status;
+  };
+  void Show();
+
+  base::Progress progress_;
+  double total_cost_;
+  int n_fields_;
+  int n_done_ = 0;
+  double done_cost_ = 0.0;
+  std::map<std::string, Active> active_;
+};
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,60 @@
+// Triangles with normals and a tag that says what they are part of. ENU metres, float (a simulated survey spans a few kilometres at most).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace skyquilt::simulate {
+
+enum class Part : uint8_t {
+  kGround,
+  kWater,
+  kWall,
+  kFlatRoof,
+  kPitchedRoof,
+  kParapet,
+  kRooftopBox,
+  kChimney,
+  kTrunk,
+  kLeaves,
+  kCarBody,
+  kCarGlass,
+  kCarTyre
+};
+
+struct Tag {
+  Part part = Part::kGround;
+  uint32_t object = 0;  // index of the building, tree or car
+};
+
+struct Mesh {
+  std::vector<Eigen::Vector3f> position;
+  std::vector<Eigen::Vector3f> normal;            // per vertex, unit, outwards
+  std::vector<std::array<uint32_t, 3>> triangle;  // counter-clockwise seen from outside
+  std::vector<Tag> tag;                           // per triangle
+
+  // Flat faces get vertices of their own; corners counter-clockwise seen from outside.
+  void AddTriangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, Tag t);
+  void AddQuad(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, const Eigen::Vector3f& d, Tag t);
+  // Sides and top of a box standing on z = low.z, turned by yaw (radians, counter-clockwise) about `centre`; half sizes along its own axes.
+  void AddBox(const Eigen::Vector3f& centre_bottom, const Eigen::Vector3f& half, float height, float yaw, Tag sides, Tag top);
+  // Unit sphere from an icosahedron cut `subdivisions` times, every vertex moved by `place` (which gets the unit vector); smooth normals.
+  template <typename Place>
+  void AddSphere(int subdivisions, const Place& place, Tag t) {
+    const Mesh& sphere = UnitSphere(subdivisions);
+    const auto first = static_cast<uint32_t>(position.size());
+    for (const Eigen::Vector3f& unit : sphere.position) position.push_back(place(unit));
+    AppendSmooth(sphere, first, t);
+  }
+
+  Eigen::Vector3f FaceNormal(uint32_t triangle_index) const;
+  Eigen::Vector3f ShadingNormal(uint32_t triangle_index, float u, float v) const;
+
+ private:
+  static const Mesh& UnitSphere(int subdivisions);
+  void AppendSmooth(const Mesh& shape, uint32_t first, Tag t);
+};
+
+}  // namespace skyquilt::simulate

@@ -1,0 +1,31 @@
+// Sun and sky. Radiances are relative: a white surface square to the sun is about 1.2 in linear light.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace skyquilt::simulate {
+
+class Sky {
+ public:
+  // azimuth clockwise from north; clouds 0..1.
+  Sky(double sun_azimuth_deg, double sun_elevation_deg, double intensity, double clouds, uint32_t seed);
+
+  const Eigen::Vector3f& sun_direction() const { return sun_direction_; }      // towards the sun, unit
+  const Eigen::Vector3f& sun_over_pi() const { return sun_over_pi_; }          // irradiance square to the sun / pi
+  const Eigen::Vector3f& ground_radiance() const { return ground_radiance_; }  // mean light coming up from the ground
+  // Sky without the sun, below the horizon the ground's mean.
+  Eigen::Vector3f Radiance(const Eigen::Vector3f& direction) const;
+  // What a smooth wet surface adds near the sun's mirror image.
+  Eigen::Vector3f SunGlow(const Eigen::Vector3f& direction) const;
+
+ private:
+  Eigen::Vector3f sun_direction_;
+  Eigen::Vector3f sun_over_pi_;
+  Eigen::Vector3f ground_radiance_;
+  float intensity_;
+  float clouds_;
+  uint32_t seed_;
+};
+
+}  // namespace skyquilt::simulate

@@ -1,0 +1,60 @@
+// A simulated place: geometry, light and the look of everything in it, made from a preset. Read-only once made; thread-safe.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "coordinator/simulate/ambient_volume.h"
+#include "coordinator/simulate/city_layout.h"
+#include "coordinator/simulate/preset.h"
+#include "coordinator/simulate/sky.h"
+#include "coordinator/simulate/surface.h"
+#include "coordinator/simulate/terrain.h"
+#include "coordinator/simulate/tidal_channels.h"
+#include "coordinator/simulate/traced_scene.h"
+#include "core/base/thread_pool.h"
+
+namespace skyquilt::simulate {
+
+// The moving cars where they are at one moment.
+struct MovingScene {
+  std::vector<Car> cars;
+  Mesh mesh;
+  TracedScene scene;
+};
+
+class World {
+ public:
+  World(const Preset& preset, double light_intensity, base::ThreadPool& threads);
+
+  const Mesh& mesh() const { return mesh_; }
+  const TracedScene& scene() const { return *scene_; }
+  const Sky& sky() const { return sky_; }
+  const AmbientVolume& ambient() const { return *ambient_; }
+  const Terrain& terrain() const { return *terrain_; }
+  // Everything of known size, empty without a city.
+  const std::vector<Building>& buildings() const;
+
+  MovingScene MovingAt(double time_s) const;
+  // Looks of the fixed scenery and, given their cars, of moving things.
+  Surface SurfaceAt(const Hit& hit) const;
+  static Surface MovingSurfaceAt(const Hit& hit, const std::vector<Car>& cars);
+
+ private:
+  void BuildCity(const Preset& preset, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  void BuildTidalFlat(const Preset& preset, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  void AddWater(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double z, uint32_t object);
+
+  uint32_t seed_;
+  std::unique_ptr<CityLayout> city_;
+  std::unique_ptr<TidalChannels> channels_;
+  std::unique_ptr<Terrain> terrain_;
+  std::vector<MovingCar> moving_;
+  Mesh mesh_;
+  std::unique_ptr<TracedScene> scene_;
+  Sky sky_;
+  std::unique_ptr<AmbientVolume> ambient_;
+};
+
+}  // namespace skyquilt::simulate

@@ -1,0 +1,51 @@
+#include "core/base/memory_map.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+
+namespace skyquilt::base {
+
+MemoryMap::MemoryMap(const std::filesystem::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) ThrowFileError(file, "cannot open", errno);
+  struct stat status = {};
+  if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
+    const int code = S_ISDIR(status.st_mode) ? EISDIR : EINVAL;
+    close(descriptor);
+    ThrowFileError(file, "cannot map into memory", code);
+  }
+  const auto size = static_cast<size_t>(status.st_size);
+  if (size > 0) {
+    void* address = mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
+    if (address == MAP_FAILED) {
+      const int code = errno;
+      close(descriptor);
+      ThrowFileError(file, "cannot map into memory", code);
+    }
+    data_ = static_cast<const uint8_t*>(address);
+    size_ = size;
+  }
+  close(descriptor);
+}
+
+MemoryMap::~MemoryMap() {
+  if (data_ != nullptr) munmap(const_cast<uint8_t*>(data_), size_);
+}
+
+MemoryMap::MemoryMap(MemoryMap&& other) noexcept : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+MemoryMap& MemoryMap::operator=(MemoryMap&& other) noexcept {
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+}  // namespace skyquilt::base

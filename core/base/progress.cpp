@@ -1,0 +1,167 @@
+#include "core/base/progress.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <mutex>
+
+namespace skyquilt::base {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr double kTerminalInterval_s = 0.2;
+constexpr double kFileInterval_s = 10.0;
+constexpr int kBarWidth = 24;
+
+std::atomic<bool> quiet_everywhere{false};
+
+// Standard error is one device: a bar being drawn, and whether it occupies the line now.
+std::mutex terminal_mutex;
+bool line_drawn = false;
+
+template <typename... Args>
+std::string Format(const char* format, Args... args) {
+  std::array<char, 128> text;
+  const int n = std::snprintf(text.data(), text.size(), format, args...);
+  return {text.data(), static_cast<size_t>(std::clamp(n, 0, static_cast<int>(text.size()) - 1))};
+}
+
+size_t TerminalWidth() {
+  struct winsize size = {};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  return 80;
+}
+
+}  // namespace
+
+struct Progress::State {
+  std::mutex mutex;
+  std::string label;
+  double total = 0.0;
+  std::string unit;
+  std::string detail;
+  double done = 0.0;
+  Clock::time_point start = Clock::now();
+  Clock::time_point last_draw = start;
+  bool is_terminal = isatty(STDERR_FILENO) != 0;
+  bool finished = false;
+
+  std::string Line(double elapsed_s) const {
+    const double rate = elapsed_s > 0.0 ? done / elapsed_s : 0.0;
+    std::string line = label + " ";
+    if (total > 0.0) {
+      const double share = std::clamp(done / total, 0.0, 1.0);
+      const auto n_full = static_cast<size_t>(share * kBarWidth);
+      line.append("[").append(n_full, '#').append(kBarWidth - n_full, '.').append("] ").append(Format("%3.0f %%", std::floor(share * 100.0)));
+    } else {
+      line += FormatCount(done) + " " + unit;
+    }
+    line.append("  ").append(FormatCount(rate)).append(" ").append(unit).append("/s  ").append(FormatDuration(elapsed_s));
+    if (total > 0.0 && !finished && rate > 0.0) line.append(", ").append(FormatDuration(std::max(0.0, total - done) / rate)).append(" left");
+    if (!detail.empty()) line += "  " + detail;
+    return line;
+  }
+
+  void Draw(bool force) {
+    if (quiet_everywhere.load()) return;
+    const Clock::time_point now = Clock::now();
+    const double since_last_s = std::chrono::duration<double>(now - last_draw).count();
+    if (!force && since_last_s < (is_terminal ? kTerminalInterval_s : kFileInterval_s)) return;
+    last_draw = now;
+    std::string line = Line(std::chrono::duration<double>(now - start).count());
+    const std::lock_guard lock(terminal_mutex);
+    if (is_terminal) {
+      // A line that wraps could not be redrawn in place.
+      line.resize(std::min(line.size(), TerminalWidth() - 1));
+      line.insert(0, 1, '\r');
+      line += "\x1b[K";
+      if (finished) line += "\n";
+      line_drawn = !finished;
+    } else {
+      line += "\n";
+    }
+    std::fwrite(line.data(), 1, line.size(), stderr);
+    std::fflush(stderr);
+  }
+};
+
+Progress::Progress(const std::string& label, double total, const std::string& unit) : state_(std::make_unique<State>()) {
+  state_->label = label;
+  state_->total = total;
+  state_->unit = unit;
+}
+
+Progress::~Progress() {
+  if (state_->finished) return;
+  // Left by an exception: the line stays as it is, without claiming an end.
+  const std::lock_guard lock(terminal_mutex);
+  if (state_->is_terminal && line_drawn) std::fputc('\n', stderr);
+  line_drawn = false;
+}
+
+void Progress::Update(double done, const std::string& detail) {
+  const std::lock_guard lock(state_->mutex);
+  if (state_->finished) return;
+  state_->done = done;
+  if (!detail.empty()) state_->detail = detail;
+  state_->Draw(false);
+}
+
+void Progress::Advance(double by, const std::string& detail) {
+  const std::lock_guard lock(state_->mutex);
+  if (state_->finished) return;
+  state_->done += by;
+  if (!detail.empty()) state_->detail = detail;
+  state_->Draw(false);
+}
+
+void Progress::Finish(const std::string& detail) {
+  const std::lock_guard lock(state_->mutex);
+  if (state_->finished) return;
+  state_->finished = true;
+  if (!detail.empty()) state_->detail = detail;
+  state_->Draw(true);
+}
+
+void Progress::SetQuiet(bool quiet) {
+  quiet_everywhere.store(quiet);
+}
+
+void ClearProgressLine() {
+  const std::lock_guard lock(terminal_mutex);
+  if (!line_drawn) return;
+  std::fputs("\r\x1b[K", stderr);
+  line_drawn = false;
+}
+
+std::string FormatDuration(double seconds) {
+  if (!std::isfinite(seconds) || seconds < 0.0) return "?";
+  if (seconds < 59.95) return Format("%.1fs", seconds);
+  const double rounded = std::round(seconds);
+  if (rounded < 3600.0) return Format("%.0fm%02.0fs", std::floor(rounded / 60.0), std::fmod(rounded, 60.0));
+  const double minutes = std::round(seconds / 60.0);
+  return Format("%.0fh%02.0fm", std::floor(minutes / 60.0), std::fmod(minutes, 60.0));
+}
+
+std::string FormatCount(double count) {
+  if (!std::isfinite(count)) return "?";
+  static constexpr std::array<const char*, 5> kUnits = {"", " k", " M", " G", " T"};
+  double value = count;
+  size_t unit = 0;
+  // 999.5 would be shown as 1000 of the smaller unit.
+  while (std::abs(value) >= 999.5 && unit + 1 < kUnits.size()) {
+    value /= 1000.0;
+    ++unit;
+  }
+  if (unit == 0 && value == std::round(value)) return Format("%.0f", value);
+  const int decimals = std::abs(value) < 9.995 ? 2 : std::abs(value) < 99.95 ? 1 : 0;
+  return Format("%.*f", decimals, value) + kUnits[unit];
+}
+
+}  // namespace skyquilt::base

@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <map>
+#include <variant>
+
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/checkpoint/archive.h"
+#include "core/checkpoint/hdf5_handle.h"
+#include "core/checkpoint/user_block.h"
+
+namespace skyquilt::checkpoint {
+namespace {
+
+using base::InputError;
+
+constexpr const char* kMendVersion = "It comes from another version of the program; run the stage that writes it again with --restart";
+constexpr const char* kMendDamaged = "Remove it and run the same command again, or bring back a copy";
+
+struct ArrayInfo {
+  ElementType type = ElementType::kUint8;
+  std::vector<int64_t> shape;
+  size_t n_values = 0;
+};
+
+using Attribute = std::variant<std::string, double, int64_t>;
+
+// Callbacks from C must not throw: they collect names and everything else happens afterwards.
+herr_t CollectDatasets(hid_t, const char* name, const H5O_info_t* info, void* names) {
+  if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+herr_t CollectAttributes(hid_t, const char* name, const H5A_info_t*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+}  // namespace
+
+struct ArchiveReader::Impl {
+  std::filesystem::path path;
+  std::string kind;
+  int version = 0;
+  uint64_t n_file_bytes = 0;
+  Handle file;
+  std::map<std::string, ArrayInfo> arrays;
+  std::map<std::string, Attribute> attributes;
+
+  ~Impl() {
+    const HdfLock lock;
+    file.Close();
+  }
+
+  [[noreturn]] void Damaged(const std::string& where) const {
+    throw InputError(path, "is damaged: " + where + " (" + HdfErrorText() + ")", kMendDamaged);
+  }
+
+  void Open() {
+    FileGuard guard;
+    const std::string block = VerifiedUserBlock(path, &guard);
+    n_file_bytes = guard.n_bytes;
+    const HdfLock lock;
+    const Handle access = FileAccess();
+    file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
+    if (!file.Valid()) Damaged("HDF5 cannot open it");
+    ReadAttributes();
+    ReadDirectory();
+    if (block != UserBlockText(kind, version, guard)) throw InputError(path, "is damaged: its first bytes do not fit its content", kMendDamaged);
+  }
+
+  void ReadAttributes() {
+    std::vector<std::string> names;
+    hsize_t position = 0;
+    if (H5Aiterate2(file.id(), H5_INDEX_NAME, H5_ITER_INC, &position, CollectAttributes, &names) < 0) Damaged("its attributes cannot be listed");
+    for (const std::string& name : names) attributes[name] = ReadAttribute(name);
+    const auto kind_at = attributes.find("skyquilt.kind");
+    const auto version_at = attributes.find("skyquilt.version");
+    if (kind_at == attributes.end() || version_at == attributes.end() || !std::holds_alternative<std::string>(kind_at->second) ||
+        !std::holds_alternative<int64_t>(version_at->second)) {
+      throw InputError(path, "does not say what kind of archive it is", kMendDamaged);
+    }
+    kind = std::get<std::string>(kind_at->second);
+    version = static_cast<int>(std::get<int64_t>(version_at->second));
+    attributes.erase("skyquilt.kind");
+    attributes.erase("skyquilt.version");
+  }
+
+  Attribute ReadAttribute(const std::string& name) const {
+    const Handle attribute(H5Aopen(file.id(), name.c_str(), H5P_DEFAULT), H5Aclose);
+    const Handle type(attribute.Valid() ? H5Aget_type(attribute.id()) : -1, H5Tclose);
+    const Handle space(attribute.Valid() ? H5Aget_space(attribute.id()) : -1, H5Sclose);
+    if (!type.Valid() || !space.Valid() || H5Sget_simple_extent_npoints(space.id()) != 1) Damaged("attribute " + name);
+    const size_t n_bytes = H5Tget_size(type.id());
+    const H5T_class_t type_class = H5Tget_class(type.id());
+    if (type_class == H5T_STRING && n_bytes >= 1 && n_bytes <= n_file_bytes && H5Tis_variable_str(type.id()) == 0) {
+      std::string text(n_bytes, '\0');
+      if (H5Aread(attribute.id(), type.id(), text.data()) < 0) Damaged("attribute " + name);
+      text.pop_back();
+      return text;
+    }
+    if (type_class == H5T_FLOAT) {
+      double value = 0.0;
+      if (H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &value) < 0) Damaged("attribute " + name);
+      return value;
+    }
+    if (type_class == H5T_INTEGER) {
+      int64_t value = 0;
+      if (H5Aread(attribute.id(), H5T_NATIVE_INT64, &value) < 0) Damaged("attribute " + name);
+      return value;
+    }
+    Damaged("attribute " + name + " has an unknown type");
+  }
+
+  void ReadDirectory() {
+    std::vector<std::string> names;
+    if (H5Ovisit(file.id(), H5_INDEX_NAME, H5_ITER_INC, CollectDatasets, &names) < 0) Damaged("its arrays cannot be listed");
+    for (const std::string& name : names) arrays[name] = ReadInfo(name);
+  }
+
+  ArrayInfo ReadInfo(const std::string& name) const {
+    const Handle dataset(H5Dopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    const Handle type(dataset.Valid() ? H5Dget_type(dataset.id()) : -1, H5Tclose);
+    const Handle space(dataset.Valid() ? H5Dget_space(dataset.id()) : -1, H5Sclose);
+    if (!type.Valid() || !space.Valid()) Damaged("array " + name);
+    ArrayInfo info;
+    bool known = false;
+    for (const ElementType candidate : {ElementType::kFloat32, ElementType::kFloat64, ElementType::kUint8, ElementType::kInt64}) {
+      if (H5Tequal(type.id(), FileType(candidate)) > 0) {
+        info.type = candidate;
+        known = true;
+      }
+    }
+    const int rank = H5Sget_simple_extent_ndims(space.id());
+    if (!known || rank < 1) Damaged("array " + name + " has an unknown type or shape");
+    std::vector<hsize_t> sizes(static_cast<size_t>(rank));
+    if (H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr) != rank) Damaged("array " + name);
+    info.n_values = 1;
+    for (const hsize_t size : sizes) {
+      // Nothing is compressed, so an array cannot be larger than its file: checked before memory is asked for.
+      if (size != 0 && info.n_values > n_file_bytes / size) Damaged("array " + name + " claims more values than the file has bytes");
+      info.n_values *= size;
+      info.shape.push_back(static_cast<int64_t>(size));
+    }
+    if (info.n_values * ElementBytes(info.type) > n_file_bytes) Damaged("array " + name + " claims more bytes than the file has");
+    return info;
+  }
+
+  const ArrayInfo& Info(const std::string& name) const {
+    const auto at = arrays.find(name);
+    if (at == arrays.end()) throw InputError(path, "holds no array '" + name + "'", kMendVersion);
+    return at->second;
+  }
+
+  template <typename T>
+  std::vector<T> Read(const std::string& name, ElementType type) const {
+    const ArrayInfo& info = Info(name);
+    if (info.type != type) {
+      throw InputError(path, "holds array '" + name + "' as " + ElementName(info.type) + " where " + ElementName(type) + " is expected",
+                       kMendVersion);
+    }
+    std::vector<T> values(info.n_values);
+    if (values.empty()) return values;
+    const HdfLock lock;
+    const Handle dataset(H5Dopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!dataset.Valid() || H5Dread(dataset.id(), MemoryType(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) Damaged("array " + name);
+    return values;
+  }
+
+  template <typename T>
+  const T& Get(const std::string& name, const char* type_name) const {
+    const auto at = attributes.find(name);
+    if (at == attributes.end()) throw InputError(path, "holds no attribute '" + name + "'", kMendVersion);
+    const T* value = std::get_if<T>(&at->second);
+    if (value == nullptr) throw InputError(path, "holds attribute '" + name + "', but not as a " + type_name, kMendVersion);
+    return *value;
+  }
+};
+
+ArchiveReader::ArchiveReader(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
+  impl_->path = file;
+  impl_->Open();
+}
+ArchiveReader::~ArchiveReader() = default;
+ArchiveReader::ArchiveReader(ArchiveReader&&) noexcept = default;
+
+const std::string& ArchiveReader::kind() const {
+  return impl_->kind;
+}
+int ArchiveReader::version() const {
+  return impl_->version;
+}
+
+std::vector<std::string> ArchiveReader::Names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : impl_->arrays) names.push_back(name);
+  return names;
+}
+std::vector<std::string> ArchiveReader::AttributeNames() const {
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : impl_->attributes) names.push_back(name);
+  return names;
+}
+bool ArchiveReader::Has(const std::string& name) const {
+  return impl_->arrays.contains(name);
+}
+bool ArchiveReader::HasAttribute(const std::string& name) const {
+  return impl_->attributes.contains(name);
+}
+std::vector<int64_t> ArchiveReader::Shape(const std::string& name) const {
+  return impl_->Info(name).shape;
+}
+std::string ArchiveReader::TypeName(const std::string& name) const {
+  return ElementName(impl_->Info(name).type);
+}
+
+std::vector<float> ArchiveReader::Floats(const std::string& name) const {
+  return impl_->Read<float>(name, ElementType::kFloat32);
+}
+std::vector<double> ArchiveReader::Doubles(const std::string& name) const {
+  return impl_->Read<double>(name, ElementType::kFloat64);
+}
+std::vector<uint8_t> ArchiveReader::Bytes(const std::string& name) const {
+  return impl_->Read<uint8_t>(name, ElementType::kUint8);
+}
+std::vector<int64_t> ArchiveReader::Ints(const std::string& name) const {
+  return impl_->Read<int64_t>(name, ElementType::kInt64);
+}
+std::string ArchiveReader::StringAttribute(const std::string& name) const {
+  return impl_->Get<std::string>(name, "text");
+}
+double ArchiveReader::DoubleAttribute(const std::string& name) const {
+  return impl_->Get<double>(name, "number");
+}
+int64_t ArchiveReader::IntAttribute(const std::string& name) const {
+  return impl_->Get<int64_t>(name, "whole number");
+}
+
+std::filesystem::path NewestUsable(const std::filesystem::path& file, const std::string& kind, std::string* why) {
+  std::string reasons;
+  const std::filesystem::path previous = file.string() + ".prev";
+  for (const std::filesystem::path& candidate : {file, previous}) {
+    try {
+      const ArchiveReader reader(candidate);
+      if (reader.kind() == kind) {
+        if (candidate == previous) spdlog::warn("{}; going on from {}", reasons, previous.string());
+        return candidate;
+      }
+      throw InputError(candidate, "is an archive of kind '" + reader.kind() + "' where '" + kind + "' is expected", "");
+    } catch (const InputError& error) {
+      reasons += (reasons.empty() ? "" : "; ") + std::string(error.what());
+    }
+  }
+  if (why != nullptr) *why = reasons;
+  return {};
+}
+
+}  // namespace skyquilt::checkpoint

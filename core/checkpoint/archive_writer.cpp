@@ -1,0 +1,263 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <set>
+#include <variant>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/checkpoint/archive.h"
+#include "core/checkpoint/hdf5_handle.h"
+#include "core/checkpoint/user_block.h"
+
+namespace skyquilt::checkpoint {
+namespace {
+
+using base::InputError;
+
+constexpr size_t kMaxChunkBytes = size_t{1} << 20U;
+constexpr const char* kMendDisk = "Free disk space or choose an output folder that can be written, then run the same command again";
+
+struct Array {
+  ElementType type = ElementType::kUint8;
+  const void* data = nullptr;
+  std::vector<hsize_t> shape;
+  size_t n_bytes = 0;
+};
+
+using Attribute = std::variant<std::string, double, int64_t>;
+
+[[noreturn]] void Fail(const std::filesystem::path& file, const std::string& what) {
+  throw InputError(file, what + " (" + HdfErrorText() + ")", kMendDisk);
+}
+
+// Halves the slowest dimensions until a chunk holds at most kMaxChunkBytes.
+std::vector<hsize_t> ChunkShape(const Array& array) {
+  std::vector<hsize_t> chunk = array.shape;
+  const auto bytes = [&] {
+    size_t n = ElementBytes(array.type);
+    for (const hsize_t size : chunk) n *= size;
+    return n;
+  };
+  for (hsize_t& size : chunk) {
+    while (size > 1 && bytes() > kMaxChunkBytes) size = (size + 1) / 2;
+  }
+  return chunk;
+}
+
+void WriteArray(hid_t file, const std::string& name, const Array& array, const std::filesystem::path& path) {
+  const Handle space = SimpleSpace(array.shape);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  SKYQUILT_CHECK(creation.Valid() && H5Pset_obj_track_times(creation.id(), false) >= 0, HdfErrorText());
+  if (array.n_bytes > 0) {
+    const std::vector<hsize_t> chunk = ChunkShape(array);
+    SKYQUILT_CHECK(H5Pset_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data()) >= 0, HdfErrorText());
+    SKYQUILT_CHECK(H5Pset_fletcher32(creation.id()) >= 0, HdfErrorText());
+    // Every chunk is written whole, so filling it first would only cost time.
+    SKYQUILT_CHECK(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER) >= 0, HdfErrorText());
+  }
+  Handle dataset(H5Dcreate2(file, name.c_str(), FileType(array.type), space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.Valid()) Fail(path, "cannot be written at array " + name);
+  if (array.n_bytes > 0 && H5Dwrite(dataset.id(), MemoryType(array.type), H5S_ALL, H5S_ALL, H5P_DEFAULT, array.data) < 0) {
+    Fail(path, "cannot be written at array " + name);
+  }
+  if (!dataset.Close()) Fail(path, "cannot be written at array " + name);
+}
+
+void WriteAttribute(hid_t file, const std::string& name, const Attribute& value, const std::filesystem::path& path) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  Handle string_type;
+  hid_t type = H5T_IEEE_F64LE;
+  hid_t memory_type = H5T_NATIVE_DOUBLE;
+  const void* data = nullptr;
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    // The terminating zero is stored too: HDF5 has no empty strings, and the length stays exact.
+    string_type = Handle(H5Tcopy(H5T_C_S1), H5Tclose);
+    SKYQUILT_CHECK(H5Tset_size(string_type.id(), text->size() + 1) >= 0 && H5Tset_cset(string_type.id(), H5T_CSET_UTF8) >= 0, HdfErrorText());
+    type = memory_type = string_type.id();
+    data = text->c_str();
+  } else if (const auto* number = std::get_if<double>(&value)) {
+    data = number;
+  } else {
+    type = H5T_STD_I64LE;
+    memory_type = H5T_NATIVE_INT64;
+    data = &std::get<int64_t>(value);
+  }
+  Handle attribute(H5Acreate2(file, name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (!attribute.Valid() || H5Awrite(attribute.id(), memory_type, data) < 0 || !attribute.Close())
+    Fail(path, "cannot be written at attribute " + name);
+}
+
+// Groups are made one by one because only an explicit creation list keeps the time of day out of the file.
+void WriteGroups(hid_t file, const std::set<std::string>& groups, const std::filesystem::path& path) {
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  SKYQUILT_CHECK(creation.Valid() && H5Pset_obj_track_times(creation.id(), false) >= 0, HdfErrorText());
+  for (const std::string& name : groups) {
+    const Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose);
+    if (!group.Valid()) Fail(path, "cannot be written at group " + name);
+  }
+}
+
+// "a/b/c" has the groups "a" and "a/b".
+std::set<std::string> GroupsOf(const std::string& name) {
+  std::set<std::string> groups;
+  for (size_t at = name.find('/'); at != std::string::npos; at = name.find('/', at + 1)) groups.insert(name.substr(0, at));
+  return groups;
+}
+
+// Removes the unfinished file unless it was renamed away.
+struct RemoveOnExit {
+  std::filesystem::path file;
+  ~RemoveOnExit() {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+  }
+};
+
+void Rename(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0) throw InputError(to, "cannot be replaced (" + std::string(std::strerror(errno)) + ")", kMendDisk);
+}
+
+// The old file gets a second name before the new one takes the first, so that a kill at any point leaves a complete file.
+void ReplaceKeepingPrevious(const std::filesystem::path& temporary, const std::filesystem::path& file) {
+  const std::filesystem::path previous = file.string() + ".prev";
+  const std::filesystem::path new_previous = file.string() + ".prev.tmp";
+  std::error_code ignored;
+  std::filesystem::remove(new_previous, ignored);
+  if (!std::filesystem::exists(file)) {
+    Rename(temporary, file);
+  } else if (link(file.c_str(), new_previous.c_str()) == 0) {
+    Rename(temporary, file);
+    Rename(new_previous, previous);
+  } else {  // no hard links on this file system
+    Rename(file, previous);
+    Rename(temporary, file);
+  }
+  base::SyncPath(file.has_parent_path() ? file.parent_path() : ".");
+}
+
+}  // namespace
+
+struct ArchiveWriter::Impl {
+  std::string kind;
+  int version = 0;
+  std::map<std::string, Array> arrays;
+  std::map<std::string, Attribute> attributes;
+
+  void Put(const std::string& name, ElementType type, const void* data, size_t n, const std::vector<int64_t>& shape) {
+    SKYQUILT_CHECK(!name.empty() && name.front() != '/' && name.back() != '/' && name.find("//") == std::string::npos, "array name '" + name + "'");
+    SKYQUILT_CHECK(!arrays.contains(name), "array " + name + " is put twice");
+    for (const auto& [other, unused] : arrays) {
+      SKYQUILT_CHECK(!GroupsOf(other).contains(name) && !GroupsOf(name).contains(other), "array " + name + " clashes with array " + other);
+    }
+    Array array{type, data, {}, n * ElementBytes(type)};
+    size_t n_shape = 1;
+    for (const int64_t size : shape) {
+      SKYQUILT_CHECK(size >= 0, "array " + name + " has a negative size");
+      array.shape.push_back(static_cast<hsize_t>(size));
+      n_shape *= static_cast<size_t>(size);
+    }
+    if (shape.empty()) array.shape = {n};
+    SKYQUILT_CHECK(shape.empty() || n_shape == n,
+                   "array " + name + " has " + std::to_string(n) + " values for a shape of " + std::to_string(n_shape));
+    arrays[name] = std::move(array);
+  }
+
+  void SetAttribute(const std::string& name, Attribute value) {
+    SKYQUILT_CHECK(!name.empty() && name.rfind("skyquilt.", 0) != 0, "attribute name '" + name + "'");
+    attributes[name] = std::move(value);
+  }
+
+  void Write(const std::filesystem::path& path) const {
+    const HdfLock lock;
+    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    SKYQUILT_CHECK(creation.Valid() && H5Pset_userblock(creation.id(), kUserBlockBytes) >= 0, HdfErrorText());
+    SKYQUILT_CHECK(H5Pset_obj_track_times(creation.id(), false) >= 0, HdfErrorText());
+    const Handle access = FileAccess();
+    Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
+    if (!file.Valid()) Fail(path, "cannot be created");
+    WriteAttribute(file.id(), "skyquilt.kind", kind, path);
+    WriteAttribute(file.id(), "skyquilt.version", static_cast<int64_t>(version), path);
+    for (const auto& [name, value] : attributes) WriteAttribute(file.id(), name, value, path);
+    std::set<std::string> groups;
+    for (const auto& [name, unused] : arrays) groups.merge(GroupsOf(name));
+    WriteGroups(file.id(), groups, path);
+    for (const auto& [name, array] : arrays) WriteArray(file.id(), name, array, path);
+    if (H5Fflush(file.id(), H5F_SCOPE_GLOBAL) < 0 || !file.Close()) Fail(path, "cannot be written");
+  }
+
+  // Reopens through the public reader and compares every byte with memory.
+  void Verify(const std::filesystem::path& path) const {
+    const ArchiveReader reader(path);
+    bool same = reader.kind() == kind && reader.version() == version && reader.Names().size() == arrays.size() &&
+                reader.AttributeNames().size() == attributes.size();
+    for (const auto& [name, array] : arrays) {
+      if (!same) break;
+      const auto matches = [&](const auto& values) { return array.n_bytes == 0 || std::memcmp(values.data(), array.data, array.n_bytes) == 0; };
+      const std::vector<int64_t> shape = reader.Shape(name);
+      same = reader.TypeName(name) == ElementName(array.type) && std::equal(shape.begin(), shape.end(), array.shape.begin(), array.shape.end(),
+                                                                            [](int64_t a, hsize_t b) { return static_cast<hsize_t>(a) == b; });
+      if (!same) break;
+      switch (array.type) {
+        case ElementType::kFloat32:
+          same = matches(reader.Floats(name));
+          break;
+        case ElementType::kFloat64:
+          same = matches(reader.Doubles(name));
+          break;
+        case ElementType::kUint8:
+          same = matches(reader.Bytes(name));
+          break;
+        case ElementType::kInt64:
+          same = matches(reader.Ints(name));
+          break;
+      }
+    }
+    if (!same) throw InputError(path, "does not read back as it was written", "Check the disk");
+  }
+};
+
+ArchiveWriter::ArchiveWriter(const std::string& kind, int version) : impl_(std::make_unique<Impl>()) {
+  SKYQUILT_CHECK(!kind.empty() && kind.size() < 64 && kind.find('\n') == std::string::npos, "archive kind '" + kind + "'");
+  impl_->kind = kind;
+  impl_->version = version;
+}
+ArchiveWriter::~ArchiveWriter() = default;
+ArchiveWriter::ArchiveWriter(ArchiveWriter&&) noexcept = default;
+
+void ArchiveWriter::Put(const std::string& name, std::span<const float> values, const std::vector<int64_t>& shape) {
+  impl_->Put(name, ElementType::kFloat32, values.data(), values.size(), shape);
+}
+void ArchiveWriter::Put(const std::string& name, std::span<const double> values, const std::vector<int64_t>& shape) {
+  impl_->Put(name, ElementType::kFloat64, values.data(), values.size(), shape);
+}
+void ArchiveWriter::Put(const std::string& name, std::span<const uint8_t> values, const std::vector<int64_t>& shape) {
+  impl_->Put(name, ElementType::kUint8, values.data(), values.size(), shape);
+}
+void ArchiveWriter::Put(const std::string& name, std::span<const int64_t> values, const std::vector<int64_t>& shape) {
+  impl_->Put(name, ElementType::kInt64, values.data(), values.size(), shape);
+}
+void ArchiveWriter::SetAttribute(const std::string& name, const std::string& value) {
+  impl_->SetAttribute(name, value);
+}
+void ArchiveWriter::SetAttribute(const std::string& name, double value) {
+  impl_->SetAttribute(name, value);
+}
+void ArchiveWriter::SetAttribute(const std::string& name, int64_t value) {
+  impl_->SetAttribute(name, value);
+}
+
+void ArchiveWriter::Commit(const std::filesystem::path& file) const {
+  const RemoveOnExit temporary{file.string() + ".tmp"};
+  impl_->Write(temporary.file);
+  WriteUserBlock(temporary.file, UserBlockText(impl_->kind, impl_->version, MeasureFile(temporary.file)));
+  base::SyncPath(temporary.file);
+  impl_->Verify(temporary.file);
+  ReplaceKeepingPrevious(temporary.file, file);
+}
+
+}  // namespace skyquilt::checkpoint

@@ -1,0 +1,99 @@
+#include "core/checkpoint/hdf5_handle.h"
+
+#include "core/base/errors.h"
+
+namespace skyquilt::checkpoint {
+namespace {
+
+std::mutex& LibraryMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+herr_t KeepDescription(unsigned, const H5E_error2_t* error, void* text) {
+  if (error->desc != nullptr && error->desc[0] != '\0') *static_cast<std::string*>(text) = error->desc;
+  return 0;
+}
+
+}  // namespace
+
+HdfLock::HdfLock() : lock_(LibraryMutex()) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+std::string HdfErrorText() {
+  std::string text = "HDF5 gives no reason";
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, KeepDescription, &text);
+  return text;
+}
+
+size_t ElementBytes(ElementType type) {
+  switch (type) {
+    case ElementType::kFloat32:
+      return 4;
+    case ElementType::kUint8:
+      return 1;
+    case ElementType::kFloat64:
+    case ElementType::kInt64:
+      break;
+  }
+  return 8;
+}
+
+const char* ElementName(ElementType type) {
+  switch (type) {
+    case ElementType::kFloat32:
+      return "float32";
+    case ElementType::kFloat64:
+      return "float64";
+    case ElementType::kUint8:
+      return "uint8";
+    case ElementType::kInt64:
+      break;
+  }
+  return "int64";
+}
+
+hid_t FileType(ElementType type) {
+  switch (type) {
+    case ElementType::kFloat32:
+      return H5T_IEEE_F32LE;
+    case ElementType::kFloat64:
+      return H5T_IEEE_F64LE;
+    case ElementType::kUint8:
+      return H5T_STD_U8LE;
+    case ElementType::kInt64:
+      break;
+  }
+  return H5T_STD_I64LE;
+}
+
+hid_t MemoryType(ElementType type) {
+  switch (type) {
+    case ElementType::kFloat32:
+      return H5T_NATIVE_FLOAT;
+    case ElementType::kFloat64:
+      return H5T_NATIVE_DOUBLE;
+    case ElementType::kUint8:
+      return H5T_NATIVE_UINT8;
+    case ElementType::kInt64:
+      break;
+  }
+  return H5T_NATIVE_INT64;
+}
+
+Handle FileAccess() {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  SKYQUILT_CHECK(access.Valid() && H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0, HdfErrorText());
+  SKYQUILT_CHECK(H5Pset_file_locking(access.id(), false, true) >= 0, HdfErrorText());
+  SKYQUILT_CHECK(H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG) >= 0, HdfErrorText());
+  return access;
+}
+
+Handle SimpleSpace(const std::vector<hsize_t>& shape) {
+  Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  SKYQUILT_CHECK(space.Valid(), HdfErrorText());
+  return space;
+}
+
+}  // namespace skyquilt::checkpoint

@@ -1,0 +1,69 @@
+#include "core/comm/communicator.h"
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <thread>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/comm/mpi_communicator.h"
+
+namespace skyquilt::comm {
+namespace {
+
+class SingleCommunicator : public Communicator {
+ public:
+  int rank() const override { return 0; }
+  int size() const override { return 1; }
+  int local_size() const override { return 1; }
+  void Send(int destination, int tag, const std::string& bytes) override {
+    SKYQUILT_CHECK(destination == 0, "rank " + std::to_string(destination) + " of 1");
+    inbox_.push_back({0, tag, bytes});
+    bytes_sent_ += static_cast<int64_t>(bytes.size());
+  }
+  std::optional<Message> TryReceive() override {
+    if (inbox_.empty()) return std::nullopt;
+    Message message = std::move(inbox_.front());
+    inbox_.pop_front();
+    return message;
+  }
+  std::string Broadcast(const std::string& bytes_on_root) override { return bytes_on_root; }
+  void Barrier() override {}
+  int64_t bytes_sent() const override { return bytes_sent_; }
+  [[noreturn]] void Abort(int exit_status) override {
+    spdlog::default_logger()->flush();
+    std::fflush(nullptr);
+    std::_Exit(exit_status);
+  }
+
+ private:
+  std::deque<Message> inbox_;
+  int64_t bytes_sent_ = 0;
+};
+
+bool UnderMpiLauncher() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) {
+    if (std::getenv(name) != nullptr) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Message Communicator::Receive() {
+  for (;;) {
+    if (std::optional<Message> message = TryReceive()) return std::move(*message);
+    base::ThrowIfCancelled();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+std::unique_ptr<Communicator> Connect() {
+  if (UnderMpiLauncher()) return ConnectMpi();
+  return std::make_unique<SingleCommunicator>();
+}
+
+}  // namespace skyquilt::comm

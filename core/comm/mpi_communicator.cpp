@@ -1,0 +1,211 @@
+#include "core/comm/mpi_communicator.h"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <chrono>
+#include <climits>
+#include <cstdio>
+#include <cstdlib>
+#include <list>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "core/base/errors.h"
+#include "core/base/log.h"
+
+namespace skyquilt::comm {
+namespace {
+
+void Check(int status, const char* what) {
+  if (status == MPI_SUCCESS) return;
+  char text[MPI_MAX_ERROR_STRING] = "";
+  int length = 0;
+  MPI_Error_string(status, text, &length);
+  throw std::runtime_error(std::string("MPI: ") + what + " failed (" + text + ")");
+}
+
+void Nap() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+int Count(size_t n_bytes) {
+  SKYQUILT_CHECK(n_bytes <= INT_MAX, "a message of " + std::to_string(n_bytes) + " bytes; MPI counts to " + std::to_string(INT_MAX));
+  return static_cast<int>(n_bytes);
+}
+
+// A message under way, in or out; the buffer must keep its address until the request is done.
+struct Transfer {
+  MPI_Request request = MPI_REQUEST_NULL;
+  Message message;
+  bool done = false;
+
+  bool Test() {
+    if (!done) {
+      int flag = 0;
+      Check(MPI_Test(&request, &flag, MPI_STATUS_IGNORE), "transfer");
+      done = flag != 0;
+    }
+    return done;
+  }
+};
+
+class MpiCommunicator : public Communicator {
+ public:
+  MpiCommunicator() {
+    int already = 0;
+    MPI_Initialized(&already);
+    SKYQUILT_CHECK(already == 0, "Connect may be called once per process");
+    // Copying straight between processes needs ptrace rights, which containers often withhold; Open MPI then fails on large messages.
+    setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 0);
+    int provided = 0;
+    Check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "start");
+    Check(MPI_Comm_dup(MPI_COMM_WORLD, &comm_), "start");
+    Check(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "start");
+    Check(MPI_Comm_rank(comm_, &rank_), "start");
+    Check(MPI_Comm_size(comm_, &size_), "start");
+    MPI_Comm node = MPI_COMM_NULL;
+    Check(MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &node), "start");
+    Check(MPI_Comm_size(node, &local_size_), "start");
+    MPI_Comm_free(&node);
+  }
+
+  ~MpiCommunicator() override {
+    try {
+      // Receiving while waiting lets ranks that still send to each other end together.
+      while (!outgoing_.empty()) {
+        Discard();
+        Nap();
+      }
+      MPI_Request request = MPI_REQUEST_NULL;
+      Check(MPI_Ibarrier(comm_, &request), "end");
+      for (int done = 0; done == 0;) {
+        Check(MPI_Test(&request, &done, MPI_STATUS_IGNORE), "end");
+        if (done == 0) {
+          Discard();
+          Nap();
+        }
+      }
+      while (!incoming_.empty()) {
+        Discard();
+        Nap();
+      }
+      MPI_Comm_free(&comm_);
+      MPI_Finalize();
+    } catch (const std::exception& error) {
+      spdlog::error("{}", error.what());
+    }
+  }
+
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+  int local_size() const override { return local_size_; }
+
+  void Send(int destination, int tag, const std::string& bytes) override {
+    SKYQUILT_CHECK(destination >= 0 && destination < size_, "rank " + std::to_string(destination) + " of " + std::to_string(size_));
+    SKYQUILT_CHECK(tag >= 0 && tag <= 32767, "tag " + std::to_string(tag));
+    const int count = Count(bytes.size());
+    Transfer& transfer = outgoing_.emplace_back();
+    transfer.message = {rank_, tag, bytes};
+    Check(MPI_Isend(transfer.message.bytes.data(), count, MPI_BYTE, destination, tag, comm_, &transfer.request), "send");
+    bytes_sent_ += count;
+    Progress();
+  }
+
+  std::optional<Message> TryReceive() override {
+    Progress();
+    // A small message may overtake a large one, but not one of the same source and tag.
+    std::set<std::pair<int, int>> held_up;
+    for (auto at = incoming_.begin(); at != incoming_.end(); ++at) {
+      const std::pair<int, int> stream = {at->message.source, at->message.tag};
+      if (!held_up.contains(stream) && at->Test()) {
+        Message message = std::move(at->message);
+        incoming_.erase(at);
+        return message;
+      }
+      held_up.insert(stream);
+    }
+    return std::nullopt;
+  }
+
+  std::string Broadcast(const std::string& bytes_on_root) override {
+    uint64_t n_bytes = rank_ == 0 ? bytes_on_root.size() : 0;
+    MPI_Request request = MPI_REQUEST_NULL;
+    Check(MPI_Ibcast(&n_bytes, 1, MPI_UINT64_T, 0, comm_, &request), "broadcast");
+    Wait(&request, "broadcast");
+    const int count = Count(n_bytes);
+    std::string bytes = rank_ == 0 ? bytes_on_root : std::string(n_bytes, '\0');
+    Check(MPI_Ibcast(bytes.data(), count, MPI_BYTE, 0, comm_, &request), "broadcast");
+    Wait(&request, "broadcast");
+    if (rank_ == 0) bytes_sent_ += count * static_cast<int64_t>(size_ - 1);
+    return bytes;
+  }
+
+  void Barrier() override {
+    MPI_Request request = MPI_REQUEST_NULL;
+    Check(MPI_Ibarrier(comm_, &request), "barrier");
+    Wait(&request, "barrier");
+  }
+
+  int64_t bytes_sent() const override { return bytes_sent_; }
+
+  [[noreturn]] void Abort(int exit_status) override {
+    spdlog::default_logger()->flush();
+    std::fflush(nullptr);
+    MPI_Abort(comm_, exit_status);
+    std::_Exit(exit_status);
+  }
+
+ private:
+  // Starts receiving whatever was announced and forgets what has been sent. A receive is only started here, never waited for:
+  // a sender that is busy computing must not hold up this rank.
+  void Progress() {
+    for (;;) {
+      int found = 0;
+      MPI_Message handle = MPI_MESSAGE_NULL;
+      MPI_Status status;
+      Check(MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &found, &handle, &status), "probe");
+      if (found == 0) break;
+      int count = 0;
+      Check(MPI_Get_count(&status, MPI_BYTE, &count), "probe");
+      Transfer& transfer = incoming_.emplace_back();
+      transfer.message = {status.MPI_SOURCE, status.MPI_TAG, std::string(static_cast<size_t>(count), '\0')};
+      Check(MPI_Imrecv(transfer.message.bytes.data(), count, MPI_BYTE, &handle, &transfer.request), "receive");
+    }
+    outgoing_.remove_if([](Transfer& transfer) { return transfer.Test(); });
+  }
+
+  void Discard() {
+    while (TryReceive()) {
+    }
+  }
+
+  // Point-to-point traffic goes on while a collective is awaited.
+  void Wait(MPI_Request* request, const char* what) {
+    for (;;) {
+      int done = 0;
+      Check(MPI_Test(request, &done, MPI_STATUS_IGNORE), what);
+      if (done != 0) return;
+      Progress();
+      Nap();
+    }
+  }
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int rank_ = 0;
+  int size_ = 1;
+  int local_size_ = 1;
+  int64_t bytes_sent_ = 0;
+  std::list<Transfer> outgoing_;
+  std::list<Transfer> incoming_;
+};
+
+}  // namespace
+
+std::unique_ptr<Communicator> ConnectMpi() {
+  return std::make_unique<MpiCommunicator>();
+}
+
+}  // namespace skyquilt::comm

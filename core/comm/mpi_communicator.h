@@ -1,0 +1,13 @@
+// Ranks of an MPI launcher. mpi.h stays in the .cpp file.
+#pragma once
+
+#include <memory>
+
+#include "core/comm/communicator.h"
+
+namespace skyquilt::comm {
+
+// Initialises MPI; at most once per process. Throws std::runtime_error if MPI cannot start.
+std::unique_ptr<Communicator> ConnectMpi();
+
+}  // namespace skyquilt::comm

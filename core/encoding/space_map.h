@@ -1,0 +1,41 @@
+// Survey ENU metres to a field's own unit box, computed in double and rounded to float once.
+//   Box:   x_unit = (x - min) / longest edge; the box maps to [0, extent].
+//   Slab:  for the context: horizontally the survey square |u|_inf <= 1 is kept and everything beyond is contracted,
+//          u (2 - 1/|u|) / |u| (mip-NeRF 360, eq. 10, in the max norm over x and y); vertically linear between two heights. The contracted
+//          square [-2, 2] maps to [0, 1].
+#pragma once
+
+#include <Eigen/Core>
+
+namespace skyquilt::encoding {
+
+class SpaceMap {
+ public:
+  SpaceMap() = default;
+  static SpaceMap Box(const Eigen::Vector3d& min_enu, const Eigen::Vector3d& max_enu);
+  static SpaceMap Slab(const Eigen::Vector3d& min_enu, const Eigen::Vector3d& max_enu);
+
+  bool contracted() const { return contracted_; }
+  const Eigen::Vector3d& min_enu() const { return min_enu_; }
+  const Eigen::Vector3d& max_enu() const { return max_enu_; }
+  // Edges of the unit box; the longest is 1.
+  const Eigen::Vector3d& extent() const { return extent_; }
+  // Unit lengths per metre (inside the uncontracted part).
+  double units_per_metre() const { return units_per_metre_; }
+
+  Eigen::Vector3f UnitFromEnu(const Eigen::Vector3d& x_in_enu) const;
+  Eigen::Vector3d EnuFromUnit(const Eigen::Vector3d& x_in_unit) const;
+  // How much a metre shrinks against the uncontracted part at this place, in (0, 1].
+  double LocalScale(const Eigen::Vector3d& x_in_enu) const;
+
+ private:
+  bool contracted_ = false;
+  Eigen::Vector3d min_enu_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d max_enu_ = Eigen::Vector3d::Ones();
+  Eigen::Vector3d extent_ = Eigen::Vector3d::Ones();
+  Eigen::Vector2d centre_ = Eigen::Vector2d::Zero();  // Slab only
+  double half_size_m_ = 1.0;                          // Slab only
+  double units_per_metre_ = 1.0;
+};
+
+}  // namespace skyquilt::encoding

@@ -1,0 +1,69 @@
+#include "core/field/occupancy_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skyquilt::field {
+
+OccupancyGrid OccupancyGrid::Make(const double extent[3], double wanted_cell, int64_t max_cells) {
+  OccupancyGrid grid;
+  double cell = wanted_cell;
+  const auto cells_along = [&](int axis) { return std::max<int64_t>(1, static_cast<int64_t>(std::ceil(extent[axis] / cell - 1e-9))); };
+  while (cells_along(0) * cells_along(1) * cells_along(2) > max_cells) cell *= 1.1;
+  for (int axis = 0; axis < 3; ++axis) grid.size[axis] = static_cast<int>(cells_along(axis));
+  grid.cell = static_cast<float>(cell);
+  grid.depth.assign(static_cast<size_t>(grid.CellCount()), 0.0F);
+  grid.occupied.assign(static_cast<size_t>(grid.CellCount()), 1);
+  return grid;
+}
+
+int64_t OccupancyGrid::IndexAt(float x, float y, float z) const {
+  const auto along = [&](float position, int axis) { return std::clamp(static_cast<int>(position / cell), 0, size[axis] - 1); };
+  return Index(along(x, 0), along(y, 1), along(z, 2));
+}
+
+double OccupancyGrid::Refresh(float limit) {
+  double sum = 0.0;
+  int64_t seen = 0;
+  for (const float value : depth) {
+    if (value >= 0.0F) {
+      sum += static_cast<double>(value);
+      ++seen;
+    }
+  }
+  const float threshold = std::min(limit, seen > 0 ? static_cast<float>(sum / static_cast<double>(seen)) : 0.0F);
+  for (size_t i = 0; i < depth.size(); ++i) occupied[i] = depth[i] > threshold ? 1 : 0;
+  return OccupiedShare();
+}
+
+double OccupancyGrid::OccupiedShare() const {
+  if (occupied.empty()) return 0.0;
+  int64_t count = 0;
+  for (const uint8_t value : occupied) count += value;
+  return static_cast<double>(count) / static_cast<double>(occupied.size());
+}
+
+void OccupancyGrid::Dilate(int cells) {
+  // The box is separable: one pass per axis.
+  std::vector<uint8_t> source = occupied;
+  const int64_t strides[3] = {1, size[0], static_cast<int64_t>(size[0]) * size[1]};
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<uint8_t> result(source.size(), 0);
+    for (int z = 0; z < size[2]; ++z) {
+      for (int y = 0; y < size[1]; ++y) {
+        for (int x = 0; x < size[0]; ++x) {
+          const int64_t index = Index(x, y, z);
+          if (source[static_cast<size_t>(index)] == 0) continue;
+          const int along = axis == 0 ? x : axis == 1 ? y : z;
+          const int low = std::max(-cells, -along);
+          const int high = std::min(cells, size[axis] - 1 - along);
+          for (int k = low; k <= high; ++k) result[static_cast<size_t>(index + k * strides[axis])] = 1;
+        }
+      }
+    }
+    source = std::move(result);
+  }
+  for (size_t i = 0; i < source.size(); ++i) occupied[i] = source[i] != 0 && depth[i] >= 0.0F ? 1 : 0;
+}
+
+}  // namespace skyquilt::field

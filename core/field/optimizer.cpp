@@ -1,0 +1,79 @@
+#include "core/field/optimizer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skyquilt::field {
+
+void TrainableState::Allocate(const HashField& field) {
+  const auto grid_size = static_cast<size_t>(field.GridParameters());
+  const auto network_size = static_cast<size_t>(field.NetworkParameters());
+  for (auto* buffer : {&grid, &grid_moment1, &grid_moment2, &grid_gradient}) buffer->assign(grid_size, 0.0F);
+  for (auto* buffer : {&networks, &network_moment1, &network_moment2, &network_gradient}) buffer->assign(network_size, 0.0F);
+  touched.assign(static_cast<size_t>(field.grid().EntryCount()), 0);
+  list.assign(static_cast<size_t>(field.grid().EntryCount()), 0);
+  listed.assign(static_cast<size_t>(field.grid().levels()), 0);
+  step = 0;
+}
+
+void AccumulateGrid(const HashField& field, const float* x, const float* y, const float* z, int64_t n, const float* feature_gradient, size_t stride,
+                    TrainableState& state, base::ThreadPool& threads) {
+  const encoding::HashGrid& grid = field.grid();
+  threads.ParallelFor(grid.levels(), [&](int64_t task, int) {
+    // The finest levels cost most: start with them.
+    const int l = grid.levels() - 1 - static_cast<int>(task);
+    kernel::HashBackward(grid.level(l), grid.features(), x, y, z, n, feature_gradient + static_cast<size_t>(l * grid.features()) * stride, stride,
+                         state.grid_gradient.data() + grid.Offset(l), state.touched.data() + grid.EntryOffset(l),
+                         state.list.data() + grid.EntryOffset(l), &state.listed[static_cast<size_t>(l)]);
+  });
+}
+
+void ApplyAdam(const HashField& field, double learning_rate, double network_l2, TrainableState& state, base::ThreadPool& threads) {
+  ++state.step;
+  kernel::AdamStep step;
+  const auto t = static_cast<double>(state.step);
+  step.learning_rate = static_cast<float>(learning_rate);
+  step.correction1 = static_cast<float>(1.0 - std::pow(static_cast<double>(step.beta1), t));
+  step.correction2 = static_cast<float>(1.0 - std::pow(static_cast<double>(step.beta2), t));
+  const encoding::HashGrid& grid = field.grid();
+  threads.ParallelFor(grid.levels() + 1, [&](int64_t task, int) {
+    if (task == grid.levels()) {
+      kernel::AdamDense(step, static_cast<float>(network_l2), field.NetworkParameters(), state.networks.data(), state.network_gradient.data(),
+                        state.network_moment1.data(), state.network_moment2.data());
+      return;
+    }
+    const int l = grid.levels() - 1 - static_cast<int>(task);
+    const int64_t offset = grid.Offset(l);
+    kernel::AdamListed(step, grid.features(), state.list.data() + grid.EntryOffset(l), state.listed[static_cast<size_t>(l)], state.grid.data() + offset,
+                       state.grid_gradient.data() + offset, state.grid_moment1.data() + offset, state.grid_moment2.data() + offset,
+                       state.touched.data() + grid.EntryOffset(l));
+    state.listed[static_cast<size_t>(l)] = 0;
+  });
+}
+
+void DropGradients(TrainableState& state) {
+  std::fill(state.grid_gradient.begin(), state.grid_gradient.end(), 0.0F);
+  std::fill(state.network_gradient.begin(), state.network_gradient.end(), 0.0F);
+  std::fill(state.touched.begin(), state.touched.end(), uint8_t{0});
+  std::fill(state.listed.begin(), state.listed.end(), 0U);
+}
+
+bool GradientsFinite(const HashField& field, const TrainableState& state) {
+  for (const float value : state.network_gradient) {
+    if (!std::isfinite(value)) return false;
+  }
+  const encoding::HashGrid& grid = field.grid();
+  const auto features = static_cast<size_t>(grid.features());
+  for (int l = 0; l < grid.levels(); ++l) {
+    const uint32_t* list = state.list.data() + grid.EntryOffset(l);
+    const float* gradient = state.grid_gradient.data() + grid.Offset(l);
+    for (uint32_t k = 0; k < state.listed[static_cast<size_t>(l)]; ++k) {
+      for (size_t f = 0; f < features; ++f) {
+        if (!std::isfinite(gradient[list[k] * features + f])) return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace skyquilt::field

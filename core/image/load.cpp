@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <fstream>
+#include <mutex>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <span>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/image/image.h"
+#include "core/image/jpeg_structure.h"
+
+namespace skyquilt::image {
+namespace {
+
+using base::InputError;
+
+constexpr const char* kMendDamaged = "Copy it again from the card or take it out of the set";
+
+std::span<const uint8_t> AsBytes(const std::string& content) {
+  return {reinterpret_cast<const uint8_t*>(content.data()), content.size()};
+}
+
+bool StartsWith(const std::string& content, std::string_view magic) {
+  return std::string_view(content).substr(0, magic.size()) == magic;
+}
+
+bool LooksLikeImage(const std::string& content) {
+  using std::string_view_literals::operator""sv;
+  return StartsWith(content, "\xFF\xD8\xFF"sv) || StartsWith(content, "\x89PNG"sv) || StartsWith(content, "II*\0"sv) ||
+         StartsWith(content, "MM\0*"sv);
+}
+
+// Decodes to whatever the file holds; BGR(A) order.
+cv::Mat Decode(const std::string& content, const std::filesystem::path& file) {
+  if (content.empty()) throw InputError(file, "is empty", kMendDamaged);
+  const JpegStructure jpeg = ParseJpeg(AsBytes(content), false);
+  if (jpeg.is_jpeg && !jpeg.complete) throw InputError(file, "ends early (truncated JPEG)", kMendDamaged);
+  cv::Mat pixels;
+  try {
+    const cv::Mat wrapped(1, static_cast<int>(std::min<size_t>(content.size(), INT32_MAX)), CV_8UC1, const_cast<char*>(content.data()));
+    pixels = cv::imdecode(wrapped, cv::IMREAD_UNCHANGED);  // UNCHANGED leaves the EXIF orientation alone as well
+  } catch (const cv::Exception& error) {
+    throw InputError(file, "cannot be decoded (" + error.err + ")", kMendDamaged);
+  }
+  if (pixels.empty()) {
+    if (LooksLikeImage(content)) throw InputError(file, "cannot be decoded (damaged or of an unsupported kind)", kMendDamaged);
+    throw InputError(file, "is not an image", "Give JPEG, PNG or TIFF photos and keep other files out of the folder");
+  }
+  return pixels;
+}
+
+// The first 256 KiB, where the sizes of nearly all photos stand; nothing if the file cannot be opened.
+std::string ReadStart(const std::filesystem::path& file) {
+  std::string content(256 * 1024, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  if (stream) stream.read(content.data(), static_cast<std::streamsize>(content.size()));
+  content.resize(static_cast<size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+  return content;
+}
+
+void WarnAboutAlpha(const std::filesystem::path& file) {
+  static std::once_flag once;
+  std::call_once(once, [&] {
+    spdlog::warn("{}: has an alpha channel; it is ignored, here and in further photos (use masks to leave pixels out)", file.string());
+  });
+}
+
+}  // namespace
+
+Image8 LoadRgb8(const std::filesystem::path& file) {
+  cv::Mat pixels = Decode(base::ReadFile(file), file);
+  if (pixels.depth() == CV_16U) {
+    cv::Mat narrow;
+    pixels.convertTo(narrow, CV_8U, 1.0 / 257.0);
+    pixels = narrow;
+  }
+  if (pixels.depth() != CV_8U) throw InputError(file, "has pixels that are neither 8 nor 16 bit integers", "Export it as an 8-bit JPEG or PNG");
+  int conversion = cv::COLOR_BGR2RGB;
+  if (pixels.channels() == 1) {
+    conversion = cv::COLOR_GRAY2RGB;
+  } else if (pixels.channels() == 4) {
+    conversion = cv::COLOR_BGRA2RGB;
+    WarnAboutAlpha(file);
+  } else if (pixels.channels() != 3) {
+    throw InputError(file, "has " + std::to_string(pixels.channels()) + " channels", "Export it as RGB");
+  }
+  Image8 image(pixels.cols, pixels.rows, 3);
+  cv::Mat target(image.height, image.width, CV_8UC3, image.data.data());
+  cv::cvtColor(pixels, target, conversion);
+  return image;
+}
+
+void ReadImageSize(const std::filesystem::path& file, int* width, int* height) {
+  std::string content = ReadStart(file);
+  if (ParseJpeg(AsBytes(content), true).width == 0 && !StartsWith(content, "\x89PNG")) content = base::ReadFile(file);
+  *width = 0;
+  *height = 0;
+  const JpegStructure jpeg = ParseJpeg(AsBytes(content), true);
+  if (jpeg.is_jpeg) {
+    *width = jpeg.width;
+    *height = jpeg.height;
+  } else if (StartsWith(content, "\x89PNG\r\n\x1A\n") && content.size() >= 24 && content.substr(12, 4) == "IHDR") {
+    const auto big_endian = [&](size_t at) {
+      uint32_t value = 0;
+      for (size_t i = 0; i < 4; ++i) value = value << 8U | static_cast<uint8_t>(content[at + i]);
+      return value > INT32_MAX ? 0 : static_cast<int>(value);
+    };
+    *width = big_endian(16);
+    *height = big_endian(20);
+  } else {
+    const cv::Mat pixels = Decode(content, file);
+    *width = pixels.cols;
+    *height = pixels.rows;
+  }
+  if (*width <= 0 || *height <= 0) throw InputError(file, "has no image size in its header (ends early or damaged)", kMendDamaged);
+}
+
+Image8 LoadMask(const std::filesystem::path& file) {
+  const cv::Mat pixels = Decode(base::ReadFile(file), file);
+  if (pixels.depth() != CV_8U && pixels.depth() != CV_16U)
+    throw InputError(file, "is a mask of an unsupported pixel type", "Save it as an 8-bit PNG");
+  const int colours = pixels.channels() == 4 ? 3 : std::min(pixels.channels(), 3);
+  const size_t pixel_bytes = pixels.elemSize();
+  const size_t colour_bytes = pixels.elemSize1() * static_cast<size_t>(colours);
+  Image8 mask(pixels.cols, pixels.rows, 1);
+  for (int y = 0; y < mask.height; ++y) {
+    const uint8_t* row = pixels.ptr<uint8_t>(y);
+    uint8_t* out = mask.At(0, y);
+    for (size_t x = 0; x < static_cast<size_t>(mask.width); ++x) {
+      bool use = false;
+      for (size_t b = 0; b < colour_bytes; ++b) use = use || row[x * pixel_bytes + b] != 0;
+      out[x] = use ? 255 : 0;
+    }
+  }
+  return mask;
+}
+
+ImageF LoadFloatTiff(const std::filesystem::path& file) {
+  const cv::Mat pixels = Decode(base::ReadFile(file), file);
+  if (pixels.channels() != 1 || (pixels.depth() != CV_32F && pixels.depth() != CV_64F)) {
+    throw InputError(file, "is not a one-channel floating-point TIFF", "Depth images hold metres as 32-bit floats");
+  }
+  ImageF image(pixels.cols, pixels.rows, 1);
+  cv::Mat target(image.height, image.width, CV_32FC1, image.data.data());
+  pixels.convertTo(target, CV_32F);
+  return image;
+}
+
+}  // namespace skyquilt::image

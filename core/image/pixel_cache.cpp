@@ -1,0 +1,139 @@
+#include "core/image/pixel_cache.h"
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+#include "core/image/pixel_cache_file.h"
+
+namespace skyquilt::image {
+namespace {
+
+constexpr char kMagic[] = "SKQPIXEL";
+constexpr uint32_t kVersion = 1;
+
+nlohmann::json Stamp(const std::filesystem::path& path) {
+  return {std::filesystem::absolute(path).lexically_normal().string(), std::filesystem::file_size(path),
+          static_cast<int64_t>(std::filesystem::last_write_time(path).time_since_epoch().count())};
+}
+
+std::string Dump(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+template <typename T>
+T Load(std::span<const uint8_t> bytes, size_t at) {
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof(T));
+  return value;
+}
+
+// True if width x height x channels bytes at `offset` lie before `end`.
+bool Fits(const PixelCache::Entry& entry, size_t offset, size_t channels, size_t end) {
+  const size_t bytes = static_cast<size_t>(entry.width) * static_cast<size_t>(entry.height) * channels;
+  return offset >= kPixelCacheHeaderBytes && offset <= end && bytes <= end - offset;
+}
+
+}  // namespace
+
+void ThrowPhotoErrors(const std::vector<base::InputError>& errors, size_t n_photos) {
+  if (errors.empty()) return;
+  if (errors.size() == 1) throw errors.front();
+  std::string all = std::to_string(errors.size()) + " of " + std::to_string(n_photos) + " photos cannot be used:";
+  for (const base::InputError& error : errors) all += std::string("\n  ") + error.what();
+  throw base::InputError(errors.front().file().parent_path(), all, "");
+}
+
+std::string PixelCacheKey(const std::vector<PixelSource>& sources, int image_width) {
+  nlohmann::json stamps = nlohmann::json::array();
+  std::vector<base::InputError> errors;
+  for (const PixelSource& source : sources) {
+    SKYQUILT_CHECK(!source.photo.empty(), "a pixel source needs a photo");
+    for (const std::filesystem::path& path : {source.photo, source.mask}) {
+      if (path.empty()) {
+        stamps.push_back(nullptr);
+        continue;
+      }
+      try {
+        stamps.push_back(Stamp(path));
+      } catch (const std::filesystem::filesystem_error& error) {
+        errors.emplace_back(path, "cannot be read (" + error.code().message() + ")", "Put it back, or run prepare again without it");
+      }
+    }
+  }
+  ThrowPhotoErrors(errors, sources.size());
+  return Dump({{"image_width", std::max(image_width, 0)}, {"sources", stamps}});
+}
+
+std::optional<PixelCacheIndex> ReadPixelCacheIndex(std::span<const uint8_t> bytes) {
+  if (bytes.size() < kPixelCacheHeaderBytes || std::memcmp(bytes.data(), kMagic, 8) != 0) return std::nullopt;
+  const auto index_offset = Load<uint64_t>(bytes, 16);
+  const auto index_length = Load<uint64_t>(bytes, 24);
+  if (Load<uint32_t>(bytes, 8) != kVersion || index_offset > bytes.size() || index_length != bytes.size() - index_offset) return std::nullopt;
+  const std::string text(reinterpret_cast<const char*>(bytes.data()) + index_offset, index_length);
+  if (base::HashHex(text) != std::string(reinterpret_cast<const char*>(bytes.data()) + 32, 16)) return std::nullopt;
+  try {
+    const nlohmann::json json = nlohmann::json::parse(text);
+    PixelCacheIndex index;
+    index.key = json.at("key").get<std::string>();
+    for (const nlohmann::json& row : json.at("entries")) {
+      const PixelCache::Entry entry{row.at(0).get<int>(), row.at(1).get<int>(), row.at(2).get<size_t>(), row.at(3).get<size_t>()};
+      if (entry.width <= 0 || entry.height <= 0 || !Fits(entry, entry.rgb_offset, 3, index_offset)) return std::nullopt;
+      if (entry.mask_offset != 0 && !Fits(entry, entry.mask_offset, 1, index_offset)) return std::nullopt;
+      index.entries.push_back(entry);
+    }
+    return index;
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::string PixelCacheIndexText(const PixelCacheIndex& index) {
+  nlohmann::json entries = nlohmann::json::array();
+  for (const PixelCache::Entry& entry : index.entries) entries.push_back({entry.width, entry.height, entry.rgb_offset, entry.mask_offset});
+  return Dump({{"key", index.key}, {"entries", entries}});
+}
+
+std::string PixelCacheHeader(const std::string& index_text, size_t index_offset) {
+  std::string header(kPixelCacheHeaderBytes, '\0');
+  const uint64_t offset = index_offset;
+  const uint64_t length = index_text.size();
+  std::memcpy(header.data(), kMagic, 8);
+  std::memcpy(header.data() + 8, &kVersion, sizeof(kVersion));
+  std::memcpy(header.data() + 16, &offset, sizeof(offset));
+  std::memcpy(header.data() + 24, &length, sizeof(length));
+  std::memcpy(header.data() + 32, base::HashHex(index_text).data(), 16);
+  return header;
+}
+
+PixelCache PixelCache::Open(const std::filesystem::path& file, const std::vector<PixelSource>& sources, int image_width, base::ThreadPool& threads) {
+  const std::string key = PixelCacheKey(sources, image_width);
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    if (std::filesystem::is_regular_file(file)) {
+      PixelCache cache;
+      cache.map_ = base::MemoryMap(file);
+      std::optional<PixelCacheIndex> index = ReadPixelCacheIndex(cache.map_.bytes());
+      if (index && index->key == key && index->entries.size() == sources.size()) {
+        cache.entries_ = std::move(index->entries);
+        return cache;
+      }
+    }
+    if (attempt == 0) BuildPixelCache(file, key, sources, image_width, threads);
+  }
+  throw base::InputError(file, "changed while it was being opened", "Let only one command at a time work on this project folder");
+}
+
+std::span<const uint8_t> PixelCache::Rgb(size_t photo) const {
+  SKYQUILT_CHECK(photo < entries_.size(), "photo " + std::to_string(photo) + " of " + std::to_string(entries_.size()));
+  const Entry& entry = entries_[photo];
+  return map_.bytes().subspan(entry.rgb_offset, static_cast<size_t>(entry.width) * static_cast<size_t>(entry.height) * 3);
+}
+
+std::span<const uint8_t> PixelCache::Mask(size_t photo) const {
+  SKYQUILT_CHECK(photo < entries_.size(), "photo " + std::to_string(photo) + " of " + std::to_string(entries_.size()));
+  const Entry& entry = entries_[photo];
+  if (entry.mask_offset == 0) return {};
+  return map_.bytes().subspan(entry.mask_offset, static_cast<size_t>(entry.width) * static_cast<size_t>(entry.height));
+}
+
+}  // namespace skyquilt::image

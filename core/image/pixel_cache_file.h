@@ -1,0 +1,42 @@
+// The file behind PixelCache. Layout, little-endian:
+//   0  magic "SKQPIXEL"   8  uint32 version   12  uint32 zero   16  uint64 index offset   24  uint64 index length   32  index hash, 16 hex digits
+//   64 photos in order: RGB bytes, then mask bytes where there is a mask; then the index, JSON:
+//      {"key": {image width, sources with size and time}, "entries": [[width, height, rgb offset, mask offset], ...]}
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/errors.h"
+#include "core/base/thread_pool.h"
+#include "core/image/pixel_cache.h"
+
+namespace skyquilt::image {
+
+struct PixelCacheIndex {
+  std::string key;
+  std::vector<PixelCache::Entry> entries;
+};
+
+// What the cache depends on, as JSON text. Throws base::InputError naming every photo or mask that is missing.
+std::string PixelCacheKey(const std::vector<PixelSource>& sources, int image_width);
+
+// The index of a mapped cache file, or nothing if the bytes are no complete cache of this version.
+std::optional<PixelCacheIndex> ReadPixelCacheIndex(std::span<const uint8_t> bytes);
+
+// The index and the 64 header bytes that point to it.
+std::string PixelCacheIndexText(const PixelCacheIndex& index);
+std::string PixelCacheHeader(const std::string& index_text, size_t index_offset);
+inline constexpr size_t kPixelCacheHeaderBytes = 64;
+
+// Decodes, resizes and writes all photos, unless another process finished the same file while this one waited for its lock.
+void BuildPixelCache(const std::filesystem::path& file, const std::string& key, const std::vector<PixelSource>& sources, int image_width,
+                     base::ThreadPool& threads);
+
+// Throws nothing for an empty list, the error itself for one, and one error that quotes all of them otherwise.
+void ThrowPhotoErrors(const std::vector<base::InputError>& errors, size_t n_photos);
+
+}  // namespace skyquilt::image

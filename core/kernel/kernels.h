@@ -1,0 +1,71 @@
+// The inner loops of the field, one source for every instruction set, chosen at run time (Highway).
+// All matrices are structures of arrays: row r of a batch starts at data + r * stride; a batch of n samples is padded with zeros to a
+// multiple of kPad samples (stride >= padded n, stride a multiple of kPad). Scalar twins of every kernel: core/kernel/reference.h.
+// Every kernel is single-threaded and gives the same bits on every call on one instruction set.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace skyquilt::kernel {
+
+// Samples per vector group: a multiple of every supported vector width.
+constexpr int kPad = 64;
+// Rows of a weight matrix are padded to a multiple of this with zero rows.
+constexpr int kRowPad = 4;
+
+constexpr int64_t Padded(int64_t n) { return (n + kPad - 1) / kPad * kPad; }
+constexpr int PaddedRows(int n) { return (n + kRowPad - 1) / kRowPad * kRowPad; }
+
+// Name of the instruction set in use ("AVX3_ZEN4", "AVX2", "SSE4", ...).
+std::string ActiveInstructionSet();
+
+// out[o][s] = sum_i weights[o * n_in + i] * in[i][s], then max(0, .) when relu.
+// n_out a multiple of kRowPad, n a multiple of kPad; weights n_out x n_in row-major.
+void Dense(const float* weights, int n_out, int n_in, const float* in, size_t in_stride, int64_t n, bool relu, float* out, size_t out_stride);
+
+// weight_gradient[o * n_in + i] += sum_s out_gradient[o][s] * in[i][s]. n_out and n_in multiples of kRowPad, n of kPad.
+void DenseWeightGradient(const float* out_gradient, size_t out_stride, int n_out, const float* in, size_t in_stride, int n_in, int64_t n,
+                         float* weight_gradient);
+
+// gradient[r][s] = 0 where activation[r][s] <= 0: backward of ReLU.
+void ReluBackward(const float* activation, size_t activation_stride, int rows, int64_t n, float* gradient, size_t gradient_stride);
+
+// One level of the multi-resolution hash grid (Mueller et al. 2022, eq. 2-4), with its own size per axis.
+struct HashLevel {
+  float cells_per_unit = 1.0F;         // resolution: cells along an axis of length 1
+  int32_t size[3] = {2, 2, 2};         // lattice points per axis
+  bool dense = true;                   // every corner has its own entry
+  uint32_t entries = 8;                // rows of the table; a power of two when hashed
+};
+
+// Entry of a lattice point: x + y * size0 + z * size0 * size1 when dense, else (x ^ y * 2654435761 ^ z * 805459861) mod entries.
+uint32_t HashIndex(const HashLevel& level, uint32_t x, uint32_t y, uint32_t z);
+
+// Trilinear lookup of n positions (any n). position: x, y, z rows of length n in [0, extent]; clamped into the lattice.
+// table: entries x features. out: `features` rows. features is 2 or 4 (throws std::logic_error otherwise).
+void HashForward(const HashLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
+                 size_t out_stride);
+
+// Adds the gradient of the lookup to table_gradient and lists every entry that becomes non-zero for the first time:
+// touched[entry] is set to 1 and the entry appended to list at *count. Samples with an all-zero gradient are skipped.
+void HashBackward(const HashLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
+                  size_t out_stride, float* table_gradient, uint8_t* touched, uint32_t* list, uint32_t* count);
+
+struct AdamStep {
+  float learning_rate = 1e-2F;
+  float beta1 = 0.9F;
+  float beta2 = 0.99F;
+  float epsilon = 1e-15F;
+  float correction1 = 1.0F;  // 1 - beta1^t
+  float correction2 = 1.0F;  // 1 - beta2^t
+};
+
+// Adam on the listed entries only (entries without a gradient keep parameters and moments); clears their gradient and mark.
+void AdamListed(const AdamStep& step, int features, const uint32_t* list, uint32_t count, float* table, float* table_gradient, float* moment1,
+                float* moment2, uint8_t* touched);
+// Adam on n consecutive parameters with L2 decay; clears the gradient.
+void AdamDense(const AdamStep& step, float l2, int64_t n, float* parameters, float* gradient, float* moment1, float* moment2);
+
+}  // namespace skyquilt::kernel

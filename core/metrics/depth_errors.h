@@ -1,0 +1,35 @@
+// Errors of rendered depth against true depth, both in metres along the same rays.
+//   rendered, truth   one channel, equal sizes; NaN or infinity = no depth there
+//   mask              one channel, 0 = ignore; null: every pixel counts
+// A pixel is scored when both depths are finite and the mask allows it. Nothing scored gives NaN errors and n = 0.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/image/image.h"
+
+namespace skyquilt::metrics {
+
+struct DepthErrors {
+  double rmse_m = 0.0;
+  double median_abs_m = 0.0;
+  int64_t n = 0;          // scored pixels
+  int64_t n_missing = 0;  // pixels with true depth, allowed by the mask, for which nothing was rendered
+};
+
+// Gathers several photos: the median is over all their pixels. Keeps four bytes per scored pixel.
+class DepthErrorCollector {
+ public:
+  void Add(const image::ImageF& rendered, const image::ImageF& truth, const image::Image8* mask);
+  DepthErrors Result() const;
+
+ private:
+  std::vector<float> absolute_m_;
+  double sum_of_squares_ = 0.0;
+  int64_t n_missing_ = 0;
+};
+
+DepthErrors CompareDepth(const image::ImageF& rendered, const image::ImageF& truth, const image::Image8* mask);
+
+}  // namespace skyquilt::metrics

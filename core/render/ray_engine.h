@@ -1,0 +1,33 @@
+// Renders rays through any number of fields at once. Every field's density is multiplied by its blend weight at the sample; samples of all
+// fields on a ray are composed in order of distance, so a ray's optical depth is exactly the weighted sum of its fields' depths.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "core/base/thread_pool.h"
+#include "core/render/scene.h"
+#include "core/render/trained_field.h"
+
+namespace skyquilt::render {
+
+struct FieldSet {
+  std::vector<const TrainedField*> blocks;  // boxes; may be empty
+  const TrainedField* context = nullptr;    // fills what no block covers; may be null
+};
+
+struct EngineOptions {
+  double step_scale = 1.0;         // marching step as a multiple of the field's own
+  float colour_threshold = 1e-4F;  // samples of smaller weight get no colour
+};
+
+// Blend weights of the set at a place: one per block, and the context's share in the return value. Sums to 1 inside any core box.
+double BlendWeights(const FieldSet& fields, std::span<const int> candidates, double x, double y, std::span<double> weights);
+
+// rays and out have the same length. Colours are display values at the reference exposure, premultiplied, over black. Samples evaluated are
+// added to *samples when not null. Deterministic for any number of threads. Throws base::Interrupted when cancelled.
+void RenderRays(const FieldSet& fields, std::span<const Ray> rays, std::span<RayColor> out, const EngineOptions& options, base::ThreadPool& threads,
+                int64_t* samples = nullptr);
+
+}  // namespace skyquilt::render

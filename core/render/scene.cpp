@@ -1,0 +1,102 @@
+#include "core/render/scene.h"
+
+#include <algorithm>
+
+#include "core/base/errors.h"
+#include "core/checkpoint/archive.h"
+#include "core/image/srgb.h"
+#include "core/render/ray_engine.h"
+#include "core/render/scene_file.h"
+
+namespace skyquilt::render {
+namespace {
+
+constexpr size_t kBandRays = 1 << 16;  // rays built at a time: memory does not grow with the image
+
+}  // namespace
+
+struct Scene::Impl {
+  SceneInfo info;
+  std::vector<TrainedField> blocks;
+  std::unique_ptr<TrainedField> context;
+  FieldSet set;
+};
+
+Scene::Scene() : impl_(std::make_unique<Impl>()) {}
+Scene::Scene(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
+const SceneInfo& Scene::info() const { return impl_->info; }
+
+Scene Scene::Load(const std::filesystem::path& scene_h5) {
+  const checkpoint::ArchiveReader reader(scene_h5);
+  if (reader.kind() != kSceneKind) {
+    throw base::InputError(scene_h5, "is a " + reader.kind() + " file, not a scene", "Give the scene.h5 that `skyquilt merge` wrote");
+  }
+  Scene scene;
+  Impl& impl = *scene.impl_;
+  SceneInfo& info = impl.info;
+  info.origin = {reader.DoubleAttribute("origin_latitude_deg"), reader.DoubleAttribute("origin_longitude_deg"), reader.DoubleAttribute("origin_height_m")};
+  info.georeferenced = reader.IntAttribute("georeferenced") != 0;
+  info.reference_exposure = reader.DoubleAttribute("reference_exposure");
+  info.config = reader.StringAttribute("config");
+  info.gsd_m = reader.DoubleAttribute("gsd_m");
+  const int64_t n_blocks = reader.IntAttribute("blocks");
+  info.min_enu = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  info.max_enu = -info.min_enu;
+  for (int64_t i = 0; i < n_blocks; ++i) {
+    impl.blocks.push_back(GetField(reader, scene_h5, BlockPrefix(i)));
+    const TrainedField& f = impl.blocks.back();
+    info.blocks.push_back({f.name, f.core_min_enu, f.core_max_enu, f.margin_m, f.ParameterCount(), f.steps, f.seconds, f.samples});
+    info.parameters += f.ParameterCount();
+    info.min_enu = info.min_enu.cwiseMin(f.core_min_enu);
+    info.max_enu = info.max_enu.cwiseMax(f.core_max_enu);
+  }
+  if (n_blocks == 0) throw base::InputError(scene_h5, "holds no blocks", "Train at least one block, then merge again");
+  for (const TrainedField& f : impl.blocks) impl.set.blocks.push_back(&f);
+  if (reader.HasAttribute(std::string(kContextPrefix) + "name")) {
+    impl.context = std::make_unique<TrainedField>(GetField(reader, scene_h5, kContextPrefix));
+    info.parameters += impl.context->ParameterCount();
+    info.context_seconds = impl.context->seconds;
+    info.context_samples = impl.context->samples;
+    impl.set.context = impl.context.get();
+  }
+  return scene;
+}
+
+void Scene::RenderRays(std::span<const Ray> rays, std::span<RayColor> out, float exposure_gain, base::ThreadPool& threads) const {
+  SKYQUILT_CHECK(rays.size() == out.size(), std::to_string(rays.size()) + " rays, " + std::to_string(out.size()) + " results");
+  render::RenderRays(impl_->set, rays, out, EngineOptions{}, threads);
+  if (exposure_gain == 1.0F) return;
+  for (RayColor& color : out) {
+    for (float& value : color.rgb_srgb) value = image::SrgbFromLinear(exposure_gain * image::LinearFromSrgb(value));
+  }
+}
+
+std::vector<RayColor> Scene::RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, float exposure_gain,
+                                          base::ThreadPool& threads) const {
+  const auto width = static_cast<size_t>(camera.width);
+  const size_t total = width * static_cast<size_t>(camera.height);
+  std::vector<RayColor> out(total);
+  const geo::Rigid3d enu_from_cam = cam_from_enu.Inverse();
+  const float radius = static_cast<float>(0.5 / std::max(1e-9, camera.FocalX()));
+  std::vector<Ray> rays;
+  for (size_t begin = 0; begin < total; begin += kBandRays) {
+    const size_t count = std::min(kBandRays, total - begin);
+    rays.assign(count, Ray{});
+    threads.ParallelFor(static_cast<int64_t>((count + 255) / 256), [&](int64_t task, int) {
+      const size_t first = static_cast<size_t>(task) * 256;
+      for (size_t i = first; i < std::min(first + 256, count); ++i) {
+        const size_t pixel = begin + i;
+        const Eigen::Vector2d img(static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5);
+        rays[i].origin_enu = enu_from_cam.translation;
+        rays[i].direction_enu = (enu_from_cam.rotation * camera.RayFromImg(img)).normalized();
+        rays[i].pixel_radius = radius;
+      }
+    });
+    RenderRays(rays, std::span<RayColor>(out).subspan(begin, count), exposure_gain, threads);
+  }
+  return out;
+}
+
+}  // namespace skyquilt::render

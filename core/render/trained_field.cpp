@@ -1,0 +1,110 @@
+#include "core/render/trained_field.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/errors.h"
+
+namespace skyquilt::render {
+namespace {
+
+// Fixed order of the numbers that rebuild a field.
+std::vector<double> Describe(const TrainedField& f) {
+  const auto& g = f.config.grid;
+  std::vector<double> d = {static_cast<double>(g.levels),
+                           static_cast<double>(g.features),
+                           static_cast<double>(g.log2_table_size),
+                           g.base_resolution,
+                           g.finest_resolution,
+                           g.extent[0],
+                           g.extent[1],
+                           g.extent[2],
+                           static_cast<double>(f.config.hidden),
+                           static_cast<double>(f.config.color_hidden_layers),
+                           static_cast<double>(f.config.sh_degree),
+                           f.config.color_range,
+                           f.config.density_bias,
+                           f.map.contracted() ? 1.0 : 0.0};
+  for (const auto& corner : {f.map.min_enu(), f.map.max_enu(), f.core_min_enu, f.core_max_enu}) {
+    for (int axis = 0; axis < 3; ++axis) d.push_back(corner[axis]);
+  }
+  d.push_back(f.margin_m);
+  d.push_back(f.step_m);
+  return d;
+}
+
+}  // namespace
+
+void TrainedField::Finish() {
+  field = std::make_unique<field::HashField>(config);
+  weights = field->Prepare(networks);
+}
+
+void PutField(const TrainedField& f, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
+  writer.SetAttribute(prefix + "name", f.name);
+  writer.SetAttribute(prefix + "steps", f.steps);
+  writer.SetAttribute(prefix + "seconds", f.seconds);
+  writer.SetAttribute(prefix + "samples", f.samples);
+  const std::vector<double> numbers = Describe(f);
+  for (size_t i = 0; i < numbers.size(); ++i) writer.SetAttribute(prefix + "describe" + std::to_string(i), numbers[i]);
+  writer.Put(prefix + "grid", f.grid);
+  writer.Put(prefix + "networks", f.networks);
+  writer.SetAttribute(prefix + "occupancy_cell", static_cast<double>(f.occupancy.cell));
+  const std::vector<int64_t> shape = {f.occupancy.size[2], f.occupancy.size[1], f.occupancy.size[0]};
+  writer.Put(prefix + "occupied", f.occupancy.occupied, shape);
+  writer.Put(prefix + "occupancy_depth", f.occupancy.depth, shape);
+}
+
+TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
+  TrainedField f;
+  f.name = reader.StringAttribute(prefix + "name");
+  f.steps = reader.IntAttribute(prefix + "steps");
+  f.seconds = reader.DoubleAttribute(prefix + "seconds");
+  f.samples = reader.IntAttribute(prefix + "samples");
+  size_t next = 0;
+  const auto number = [&] { return reader.DoubleAttribute(prefix + "describe" + std::to_string(next++)); };
+  const auto integer = [&] { return static_cast<int>(std::lround(number())); };
+  auto& g = f.config.grid;
+  g.levels = integer();
+  g.features = integer();
+  g.log2_table_size = integer();
+  g.base_resolution = number();
+  g.finest_resolution = number();
+  for (double& edge : g.extent) edge = number();
+  f.config.hidden = integer();
+  f.config.color_hidden_layers = integer();
+  f.config.sh_degree = integer();
+  f.config.color_range = number();
+  f.config.density_bias = number();
+  const bool contracted = integer() != 0;
+  Eigen::Vector3d min_enu, max_enu;
+  for (auto* corner : {&min_enu, &max_enu, &f.core_min_enu, &f.core_max_enu}) {
+    for (int axis = 0; axis < 3; ++axis) (*corner)[axis] = number();
+  }
+  f.margin_m = number();
+  f.step_m = number();
+  const std::string mend = "Train it again with --restart";
+  try {
+    f.map = contracted ? encoding::SpaceMap::Slab(min_enu, max_enu) : encoding::SpaceMap::Box(min_enu, max_enu);
+    f.grid = reader.Floats(prefix + "grid");
+    f.networks = reader.Floats(prefix + "networks");
+    f.Finish();
+  } catch (const std::invalid_argument& error) {
+    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), mend);
+  }
+  const std::vector<int64_t> shape = reader.Shape(prefix + "occupied");
+  f.occupancy.occupied = reader.Bytes(prefix + "occupied");
+  f.occupancy.depth = reader.Floats(prefix + "occupancy_depth");
+  f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
+  if (shape.size() == 3) {
+    for (int axis = 0; axis < 3; ++axis) f.occupancy.size[axis] = static_cast<int>(shape[static_cast<size_t>(2 - axis)]);
+  }
+  const auto cells = static_cast<size_t>(f.occupancy.CellCount());
+  if (static_cast<int64_t>(f.grid.size()) != f.field->GridParameters() || static_cast<int64_t>(f.networks.size()) != f.field->NetworkParameters() ||
+      cells == 0 || f.occupancy.occupied.size() != cells || f.occupancy.depth.size() != cells || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {
+    throw base::InputError(file, "arrays and configuration of field '" + f.name + "' disagree", mend);
+  }
+  return f;
+}
+
+}  // namespace skyquilt::render

@@ -1,0 +1,43 @@
+// A field with its parameters, occupancy and place in the survey: what training leaves behind and rendering reads.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/checkpoint/archive.h"
+#include "core/encoding/space_map.h"
+#include "core/field/hash_field.h"
+#include "core/field/occupancy_grid.h"
+
+namespace skyquilt::render {
+
+struct TrainedField {
+  std::string name;
+  field::FieldConfig config;
+  encoding::SpaceMap map;
+  Eigen::Vector3d core_min_enu = Eigen::Vector3d::Zero();  // without margin
+  Eigen::Vector3d core_max_enu = Eigen::Vector3d::Zero();
+  double margin_m = 0.0;
+  double step_m = 0.1;  // marching step inside the uncontracted part = the length that log density refers to
+  std::vector<float> grid, networks;
+  field::OccupancyGrid occupancy;
+  // Training record.
+  int64_t steps = 0;
+  double seconds = 0.0;
+  int64_t samples = 0;
+
+  // Built from the above by Finish().
+  std::unique_ptr<field::HashField> field;
+  field::NetworkWeights weights;
+  void Finish();
+  int64_t ParameterCount() const { return static_cast<int64_t>(grid.size() + networks.size()); }
+};
+
+// Arrays under `prefix` ("" or "fields/r0c0/"). The field must outlive the writer's Commit.
+void PutField(const TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
+// Throws base::InputError when arrays and configuration disagree.
+TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix);
+
+}  // namespace skyquilt::render

@@ -1,0 +1,142 @@
+#include <charconv>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "core/base/errors.h"
+#include "core/survey/colmap_files.h"
+
+namespace skyquilt::survey {
+namespace {
+
+constexpr std::string_view kBlank = " \t\r";
+
+// Line by line, with the line number for messages.
+class Lines {
+ public:
+  explicit Lines(const std::filesystem::path& file) : file_(file), in_(file) {
+    if (!in_) throw base::InputError(file, "cannot be read", "Give the folder that holds the whole model, or check permissions");
+  }
+
+  bool Next() {
+    if (!std::getline(in_, line_)) return false;
+    ++number_;
+    rest_ = line_;
+    return true;
+  }
+  // The next line that is neither empty nor a comment.
+  bool NextRecord() {
+    while (Next()) {
+      const size_t first = rest_.find_first_not_of(kBlank);
+      if (first != std::string_view::npos && rest_[first] != '#') return true;
+    }
+    return false;
+  }
+
+  bool AtEnd() { return rest_.find_first_not_of(kBlank) == std::string_view::npos; }
+
+  std::string_view Word(const char* what) {
+    const size_t first = rest_.find_first_not_of(kBlank);
+    if (first == std::string_view::npos) Fail("ends before " + std::string(what));
+    rest_.remove_prefix(first);
+    const size_t length = std::min(rest_.find_first_of(kBlank), rest_.size());
+    const std::string_view word = rest_.substr(0, length);
+    rest_.remove_prefix(length);
+    return word;
+  }
+
+  // Reads "nan" and "inf" too: the caller says which photo they belong to.
+  template <typename T>
+  T Number(const char* what) {
+    std::string_view word = Word(what);
+    if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+    T value{};
+    const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (result.ec != std::errc() || result.ptr != word.data() + word.size()) Fail("has '" + std::string(word) + "' where " + what + " is expected");
+    return value;
+  }
+
+  // The rest of the line: photo names may hold spaces.
+  std::string Remainder(const char* what) {
+    const size_t first = rest_.find_first_not_of(kBlank);
+    if (first == std::string_view::npos) Fail("ends before " + std::string(what));
+    const size_t last = rest_.find_last_not_of(kBlank);
+    return std::string(rest_.substr(first, last - first + 1));
+  }
+
+  [[noreturn]] void Fail(const std::string& found) const {
+    throw base::InputError(file_, "line " + std::to_string(number_) + " " + found, "The file is truncated or not a COLMAP text model; export the model again");
+  }
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+  std::ifstream in_;
+  std::string line_;
+  std::string_view rest_;
+  int number_ = 0;
+};
+
+void ReadCameras(const std::filesystem::path& file, ColmapModel& model) {
+  Lines in(file);
+  while (in.NextRecord()) {
+    const auto id = in.Number<uint32_t>("a camera id");
+    const std::string name(in.Word("a camera model"));
+    const auto camera_model = camera::ModelFromName(name);
+    if (!camera_model) {
+      throw base::InputError(file, "camera " + std::to_string(id) + " has the camera model '" + name + "', which is not supported",
+                             "Use SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV or OPENCV_FISHEYE");
+    }
+    camera::Camera camera;
+    camera.model = *camera_model;
+    camera.width = in.Number<int>("a width");
+    camera.height = in.Number<int>("a height");
+    for (int p = 0; p < camera::ModelParamCount(*camera_model); ++p) camera.params.push_back(in.Number<double>("a camera parameter"));
+    if (!model.cameras.emplace(id, std::move(camera)).second) in.Fail("has camera " + std::to_string(id) + " for the second time");
+  }
+}
+
+void ReadImages(const std::filesystem::path& file, ColmapModel& model) {
+  Lines in(file);
+  while (in.NextRecord()) {
+    ColmapImage image;
+    image.id = in.Number<uint32_t>("an image id");
+    double pose[7];
+    for (double& value : pose) value = in.Number<double>("a pose");
+    image.cam_from_world.rotation = Eigen::Quaterniond(pose[0], pose[1], pose[2], pose[3]);
+    image.cam_from_world.translation = Eigen::Vector3d(pose[4], pose[5], pose[6]);
+    image.camera_id = in.Number<uint32_t>("a camera id");
+    image.name = in.Remainder("a photo name");
+    model.images.push_back(std::move(image));
+    // The observations: always one line, empty when there are none.
+    in.Next();
+  }
+}
+
+void ReadPoints(const std::filesystem::path& file, ColmapModel& model) {
+  Lines in(file);
+  while (in.NextRecord()) {
+    ColmapPoint point;
+    point.id = in.Number<uint64_t>("a point id");
+    for (int axis = 0; axis < 3; ++axis) point.x_in_world[axis] = in.Number<double>("a coordinate");
+    for (uint8_t& channel : point.rgb) channel = in.Number<uint8_t>("a colour");
+    point.error_px = in.Number<double>("an error");
+    while (!in.AtEnd()) {
+      point.image_ids.push_back(in.Number<uint32_t>("an image id of the track"));
+      in.Number<uint32_t>("an observation index of the track");
+    }
+    model.points.push_back(std::move(point));
+  }
+}
+
+}  // namespace
+
+ColmapModel ReadColmapTextFiles(const std::filesystem::path& folder) {
+  ColmapModel model;
+  ReadCameras(folder / "cameras.txt", model);
+  ReadImages(folder / "images.txt", model);
+  ReadPoints(folder / "points3D.txt", model);
+  return model;
+}
+
+}  // namespace skyquilt::survey

@@ -1,0 +1,200 @@
+#include "core/survey/exif.h"
+
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exiv2/exiv2.hpp>
+#include <limits>
+#include <string_view>
+
+#include "core/base/errors.h"
+#include "core/survey/exiv2_guard.h"
+
+namespace skyquilt::survey {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+std::optional<double> Finite(double value) { return std::isfinite(value) ? std::optional<double>(value) : std::nullopt; }
+
+// Component `index` of a rational or integer tag; nothing for 0/0, n/0, a wrong type or a short array.
+std::optional<double> ExifNumber(const Exiv2::ExifData& exif, const char* key, long index = 0) {
+  const auto found = exif.findKey(Exiv2::ExifKey(key));
+  if (found == exif.end() || index >= found->count()) return std::nullopt;
+  switch (found->typeId()) {
+    case Exiv2::unsignedRational:
+    case Exiv2::signedRational: {
+      // As signed 32-bit pairs Exiv2 would show numerators above 2^31 as negative.
+      const bool is_unsigned = found->typeId() == Exiv2::unsignedRational;
+      const Exiv2::Rational pair = found->toRational(index);
+      const double numerator = is_unsigned ? static_cast<double>(static_cast<uint32_t>(pair.first)) : static_cast<double>(pair.first);
+      const double denominator = is_unsigned ? static_cast<double>(static_cast<uint32_t>(pair.second)) : static_cast<double>(pair.second);
+      if (denominator == 0.0) return std::nullopt;
+      return Finite(numerator / denominator);
+    }
+    case Exiv2::unsignedByte:
+    case Exiv2::unsignedShort:
+    case Exiv2::unsignedLong:
+    case Exiv2::signedShort:
+    case Exiv2::signedLong:
+      return static_cast<double>(found->toLong(index));
+    case Exiv2::tiffFloat:
+    case Exiv2::tiffDouble:
+      return Finite(static_cast<double>(found->toFloat(index)));
+    default:
+      return std::nullopt;
+  }
+}
+
+std::string ExifText(const Exiv2::ExifData& exif, const char* key) {
+  const auto found = exif.findKey(Exiv2::ExifKey(key));
+  if (found == exif.end()) return {};
+  std::string text = found->toString();
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\0')) text.pop_back();
+  return text;
+}
+
+// Compared by the local name: the prefix of the namespace is the file's own choice.
+std::string XmpText(const Exiv2::XmpData& xmp, std::string_view name) {
+  for (const Exiv2::Xmpdatum& datum : xmp) {
+    if (datum.tagName() == name) return datum.toString();
+  }
+  return {};
+}
+
+std::optional<double> XmpNumber(const Exiv2::XmpData& xmp, std::string_view name) {
+  const std::string text = XmpText(xmp, name);
+  std::string_view rest = text;
+  while (!rest.empty() && (rest.front() == ' ' || rest.front() == '+')) rest.remove_prefix(1);
+  double value = 0.0;
+  const auto result = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  if (result.ec != std::errc()) return std::nullopt;
+  // Some vendors write rationals ("1500/10").
+  if (result.ptr != rest.data() + rest.size() && *result.ptr == '/') {
+    double denominator = 0.0;
+    if (std::from_chars(result.ptr + 1, rest.data() + rest.size(), denominator).ec != std::errc() || denominator == 0.0) return std::nullopt;
+    value /= denominator;
+  }
+  return Finite(value);
+}
+
+std::optional<double> ExifAngle(const Exiv2::ExifData& exif, const char* value_key, const char* reference_key, char negative) {
+  const auto degrees = ExifNumber(exif, value_key, 0);
+  if (!degrees) return std::nullopt;
+  // Minutes or seconds are 0/0 in some writers that put everything into the first rational.
+  const double angle = *degrees + ExifNumber(exif, value_key, 1).value_or(0.0) / 60.0 + ExifNumber(exif, value_key, 2).value_or(0.0) / 3600.0;
+  const std::string reference = ExifText(exif, reference_key);
+  return !reference.empty() && (reference[0] == negative || reference[0] == negative + ('a' - 'A')) ? -angle : angle;
+}
+
+std::optional<double> ExifAltitude(const Exiv2::ExifData& exif) {
+  const auto altitude = ExifNumber(exif, "Exif.GPSInfo.GPSAltitude");
+  if (!altitude) return std::nullopt;
+  const auto reference = ExifNumber(exif, "Exif.GPSInfo.GPSAltitudeRef");
+  return reference && *reference == 1.0 ? -std::abs(*altitude) : *altitude;
+}
+
+bool IsPlausible(double latitude_deg, double longitude_deg) {
+  const bool no_fix = latitude_deg == 0.0 && longitude_deg == 0.0;
+  return !no_fix && std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 360.0;
+}
+
+// XMP first: it carries more digits than the EXIF of some firmware. XMP altitude may come without XMP latitude and the other way round.
+std::optional<geo::Geodetic> ReadPosition(const Exiv2::ExifData& exif, const Exiv2::XmpData& xmp, const std::optional<double>& absolute_altitude_m) {
+  auto latitude = XmpNumber(xmp, "GpsLatitude");
+  if (!latitude) latitude = XmpNumber(xmp, "Latitude");
+  auto longitude = XmpNumber(xmp, "GpsLongitude");
+  // DJI's own spelling mistake in years of firmware.
+  if (!longitude) longitude = XmpNumber(xmp, "GpsLongtitude");
+  if (!longitude) longitude = XmpNumber(xmp, "Longitude");
+  if (!latitude || !longitude || !IsPlausible(*latitude, *longitude)) {
+    latitude = ExifAngle(exif, "Exif.GPSInfo.GPSLatitude", "Exif.GPSInfo.GPSLatitudeRef", 'S');
+    longitude = ExifAngle(exif, "Exif.GPSInfo.GPSLongitude", "Exif.GPSInfo.GPSLongitudeRef", 'W');
+  }
+  if (!latitude || !longitude || !IsPlausible(*latitude, *longitude)) return std::nullopt;
+  auto altitude = absolute_altitude_m;
+  if (!altitude) altitude = ExifAltitude(exif);
+  return geo::Geodetic{*latitude, geo::WrapLongitudeDeg(*longitude), altitude.value_or(kNan)};
+}
+
+ExposureSettings ReadExposure(const Exiv2::ExifData& exif) {
+  ExposureSettings exposure;
+  const auto positive = [](std::optional<double> value) { return value && *value > 0.0 ? value : std::nullopt; };
+  exposure.time_s = positive(ExifNumber(exif, "Exif.Photo.ExposureTime"));
+  if (!exposure.time_s) {
+    if (const auto apex = ExifNumber(exif, "Exif.Photo.ShutterSpeedValue")) exposure.time_s = positive(Finite(std::exp2(-*apex)));
+  }
+  exposure.f_number = positive(ExifNumber(exif, "Exif.Photo.FNumber"));
+  if (!exposure.f_number) {
+    if (const auto apex = ExifNumber(exif, "Exif.Photo.ApertureValue")) exposure.f_number = positive(Finite(std::exp2(*apex / 2.0)));
+  }
+  exposure.iso = positive(ExifNumber(exif, "Exif.Photo.ISOSpeedRatings"));
+  // 65535 means "see the long tags" (EXIF 2.3).
+  if (!exposure.iso || *exposure.iso >= 65535.0) {
+    for (const char* key : {"Exif.Photo.RecommendedExposureIndex", "Exif.Photo.ISOSpeed", "Exif.Photo.StandardOutputSensitivity"}) {
+      if (const auto iso = positive(ExifNumber(exif, key))) {
+        exposure.iso = iso;
+        break;
+      }
+    }
+  }
+  return exposure;
+}
+
+std::optional<double> ReadCaptureTime(const Exiv2::ExifData& exif) {
+  const std::pair<const char*, const char*> keys[] = {{"Exif.Photo.DateTimeOriginal", "Exif.Photo.SubSecTimeOriginal"},
+                                                      {"Exif.Photo.DateTimeDigitized", "Exif.Photo.SubSecTimeDigitized"},
+                                                      {"Exif.Image.DateTime", "Exif.Photo.SubSecTime"}};
+  for (const auto& [key, sub_second_key] : keys) {
+    int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0;
+    if (std::sscanf(ExifText(exif, key).c_str(), "%d%*1[:-]%d%*1[:-]%d%*1[ T]%d:%d:%d", &year, &month, &day, &hour, &minute, &second) != 6) continue;
+    const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                                           std::chrono::day(static_cast<unsigned>(day))};
+    if (month < 1 || day < 1 || !date.ok() || year < 1900 || hour < 0 || minute < 0 || second < 0) continue;
+    double time_s = static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count()) * 86400.0;
+    time_s += hour * 3600.0 + minute * 60.0 + second;
+    // Digits after the decimal point.
+    const std::string digits = ExifText(exif, sub_second_key);
+    double place = 0.1;
+    for (const char digit : digits) {
+      if (digit < '0' || digit > '9') break;
+      time_s += place * (digit - '0');
+      place *= 0.1;
+    }
+    return time_s;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
+  const auto lock = LockExiv2();
+  try {
+    const auto image = Exiv2::ImageFactory::open(file.string());
+    image->readMetadata();
+    const Exiv2::ExifData& exif = image->exifData();
+    const Exiv2::XmpData& xmp = image->xmpData();
+    PhotoTags tags;
+    tags.relative_altitude_m = XmpNumber(xmp, "RelativeAltitude");
+    tags.absolute_altitude_m = XmpNumber(xmp, "AbsoluteAltitude");
+    tags.gps = ReadPosition(exif, xmp, tags.absolute_altitude_m);
+    constexpr double kRtkFixed = 50.0;
+    tags.rtk = XmpNumber(xmp, "RtkFlag").value_or(0.0) == kRtkFixed;
+    tags.gimbal_yaw_deg = XmpNumber(xmp, "GimbalYawDegree");
+    tags.gimbal_pitch_deg = XmpNumber(xmp, "GimbalPitchDegree");
+    tags.gimbal_roll_deg = XmpNumber(xmp, "GimbalRollDegree");
+    tags.exposure = ReadExposure(exif);
+    tags.focal_length_mm = ExifNumber(exif, "Exif.Photo.FocalLength");
+    tags.focal_length_35mm = ExifNumber(exif, "Exif.Photo.FocalLengthIn35mmFilm");
+    tags.capture_time_s = ReadCaptureTime(exif);
+    tags.make = ExifText(exif, "Exif.Image.Make");
+    tags.model = ExifText(exif, "Exif.Image.Model");
+    return tags;
+  } catch (const Exiv2::AnyError& error) {
+    throw base::InputError(file, std::string("is not an image that can be read (") + error.what() + ")", "Copy the photo again or remove it from the folder");
+  }
+}
+
+}  // namespace skyquilt::survey

@@ -1,0 +1,116 @@
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exiv2/exiv2.hpp>
+
+#include "core/base/errors.h"
+#include "core/survey/exif.h"
+#include "core/survey/exiv2_guard.h"
+
+namespace skyquilt::survey {
+
+std::unique_lock<std::mutex> LockExiv2() {
+  static std::mutex mutex;
+  std::unique_lock<std::mutex> lock(mutex);
+  static const bool ready = [] {
+    // Maker notes of every vendor trip warnings that say nothing about the photo.
+    Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
+    Exiv2::XmpParser::initialize();
+    Exiv2::XmpProperties::registerNs("http://www.dji.com/drone-dji/1.0/", "drone-dji");
+    return true;
+  }();
+  static_cast<void>(ready);
+  return lock;
+}
+
+namespace {
+
+std::string Format(const char* format, double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof(buffer), format, value);
+  return buffer;
+}
+
+void SetRational(Exiv2::ExifData& exif, const char* key, double value, uint32_t denominator) {
+  const double numerator = std::round(value * denominator);
+  SKYQUILT_CHECK(numerator >= 0.0 && numerator <= 4294967295.0, std::string(key) + " = " + std::to_string(value));
+  exif[key] = Exiv2::URational(static_cast<uint32_t>(numerator), denominator);
+}
+
+// Degrees, minutes and 1e-7 seconds (3 micrometres).
+void SetAngle(Exiv2::ExifData& exif, const char* key, double angle_deg) {
+  constexpr int64_t kPerSecond = 10'000'000;
+  const int64_t total = std::llround(std::abs(angle_deg) * 3600.0 * static_cast<double>(kPerSecond));
+  Exiv2::URationalValue value;
+  value.value_ = {{static_cast<uint32_t>(total / (3600 * kPerSecond)), 1U},
+                  {static_cast<uint32_t>(total / (60 * kPerSecond) % 60), 1U},
+                  {static_cast<uint32_t>(total % (60 * kPerSecond)), static_cast<uint32_t>(kPerSecond)}};
+  exif[key].setValue(&value);
+}
+
+void SetPosition(Exiv2::ExifData& exif, Exiv2::XmpData& xmp, const geo::Geodetic& gps) {
+  exif["Exif.GPSInfo.GPSVersionID"] = "2 3 0 0";
+  exif["Exif.GPSInfo.GPSLatitudeRef"] = gps.latitude_deg < 0.0 ? "S" : "N";
+  SetAngle(exif, "Exif.GPSInfo.GPSLatitude", gps.latitude_deg);
+  exif["Exif.GPSInfo.GPSLongitudeRef"] = gps.longitude_deg < 0.0 ? "W" : "E";
+  SetAngle(exif, "Exif.GPSInfo.GPSLongitude", gps.longitude_deg);
+  xmp["Xmp.drone-dji.GpsLatitude"] = Format("%+.9f", gps.latitude_deg);
+  xmp["Xmp.drone-dji.GpsLongitude"] = Format("%+.9f", gps.longitude_deg);
+  if (std::isfinite(gps.height_m)) {
+    Exiv2::DataValue below(Exiv2::unsignedByte);
+    below.read(gps.height_m < 0.0 ? "1" : "0");
+    exif["Exif.GPSInfo.GPSAltitudeRef"].setValue(&below);
+    SetRational(exif, "Exif.GPSInfo.GPSAltitude", std::abs(gps.height_m), 1000);
+  }
+}
+
+void SetCaptureTime(Exiv2::ExifData& exif, double capture_time_s) {
+  // Rounded once, so that 0.9999 s carries into the next second.
+  const int64_t milliseconds = std::llround(capture_time_s * 1000.0);
+  const auto time = std::chrono::sys_time<std::chrono::milliseconds>(std::chrono::milliseconds(milliseconds));
+  const auto day = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(time - day);
+  char text[64];
+  std::snprintf(text, sizeof(text), "%04d:%02u:%02u %02d:%02d:%02d", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                static_cast<unsigned>(date.day()), static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
+                static_cast<int>(clock.seconds().count()));
+  exif["Exif.Image.DateTime"] = text;
+  exif["Exif.Photo.DateTimeOriginal"] = text;
+  exif["Exif.Photo.DateTimeDigitized"] = text;
+  std::snprintf(text, sizeof(text), "%03d", static_cast<int>(clock.subseconds().count()));
+  exif["Exif.Photo.SubSecTimeOriginal"] = text;
+}
+
+}  // namespace
+
+void WritePhotoTags(const PhotoTags& tags, const std::filesystem::path& file) {
+  const auto lock = LockExiv2();
+  try {
+    const auto image = Exiv2::ImageFactory::open(file.string());
+    image->readMetadata();
+    Exiv2::ExifData& exif = image->exifData();
+    Exiv2::XmpData& xmp = image->xmpData();
+    exif["Exif.Photo.ExifVersion"] = "48 50 51 48";
+    if (!tags.make.empty()) exif["Exif.Image.Make"] = tags.make;
+    if (!tags.model.empty()) exif["Exif.Image.Model"] = tags.model;
+    if (tags.gps) SetPosition(exif, xmp, *tags.gps);
+    if (tags.absolute_altitude_m) xmp["Xmp.drone-dji.AbsoluteAltitude"] = Format("%+.3f", *tags.absolute_altitude_m);
+    if (tags.relative_altitude_m) xmp["Xmp.drone-dji.RelativeAltitude"] = Format("%+.3f", *tags.relative_altitude_m);
+    if (tags.rtk) xmp["Xmp.drone-dji.RtkFlag"] = "50";
+    if (tags.gimbal_yaw_deg) xmp["Xmp.drone-dji.GimbalYawDegree"] = Format("%+.2f", *tags.gimbal_yaw_deg);
+    if (tags.gimbal_pitch_deg) xmp["Xmp.drone-dji.GimbalPitchDegree"] = Format("%+.2f", *tags.gimbal_pitch_deg);
+    if (tags.gimbal_roll_deg) xmp["Xmp.drone-dji.GimbalRollDegree"] = Format("%+.2f", *tags.gimbal_roll_deg);
+    if (tags.exposure.time_s) SetRational(exif, "Exif.Photo.ExposureTime", *tags.exposure.time_s, 100'000'000);
+    if (tags.exposure.f_number) SetRational(exif, "Exif.Photo.FNumber", *tags.exposure.f_number, 1000);
+    if (tags.exposure.iso) exif["Exif.Photo.ISOSpeedRatings"] = static_cast<uint16_t>(std::lround(std::min(*tags.exposure.iso, 65534.0)));
+    if (tags.focal_length_mm) SetRational(exif, "Exif.Photo.FocalLength", *tags.focal_length_mm, 10'000);
+    if (tags.focal_length_35mm) exif["Exif.Photo.FocalLengthIn35mmFilm"] = static_cast<uint16_t>(std::lround(*tags.focal_length_35mm));
+    if (tags.capture_time_s) SetCaptureTime(exif, *tags.capture_time_s);
+    image->writeMetadata();
+  } catch (const Exiv2::AnyError& error) {
+    throw base::InputError(file, std::string("photo tags cannot be written (") + error.what() + ")", "Check that the file is a JPEG and the disk has room");
+  }
+}
+
+}  // namespace skyquilt::survey

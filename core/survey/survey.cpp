@@ -1,0 +1,214 @@
+#include "core/survey/survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/survey/points_ply.h"
+
+namespace skyquilt::survey {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr const char* kFormat = "skyquilt survey";
+constexpr int kVersion = 1;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+ordered_json NumberOrNull(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
+ordered_json NumberOrNull(const std::optional<double>& value) { return NumberOrNull(value.value_or(kNan)); }
+double NanIfNull(const json& value) { return value.is_null() ? kNan : value.get<double>(); }
+std::optional<double> OptionalNumber(const json& value) { return value.is_null() ? std::nullopt : std::optional<double>(value.get<double>()); }
+
+ordered_json ToJson(const geo::Geodetic& position) {
+  return {{"latitude_deg", position.latitude_deg}, {"longitude_deg", position.longitude_deg}, {"height_m", NumberOrNull(position.height_m)}};
+}
+
+geo::Geodetic GeodeticFromJson(const json& value) {
+  return {value.at("latitude_deg").get<double>(), value.at("longitude_deg").get<double>(), NanIfNull(value.at("height_m"))};
+}
+
+ordered_json ToJson(const camera::Camera& camera) {
+  return {{"model", camera::ModelName(camera.model)}, {"width", camera.width}, {"height", camera.height}, {"params", camera.params}};
+}
+
+camera::Camera CameraFromJson(const json& value) {
+  camera::Camera camera;
+  const auto name = value.at("model").get<std::string>();
+  const auto model = camera::ModelFromName(name);
+  if (!model) throw std::invalid_argument("unknown camera model '" + name + "'");
+  camera.model = *model;
+  camera.width = value.at("width").get<int>();
+  camera.height = value.at("height").get<int>();
+  camera.params = value.at("params").get<std::vector<double>>();
+  const std::string problem = camera.Problem();
+  if (!problem.empty()) throw std::invalid_argument("a camera cannot be used: " + problem);
+  return camera;
+}
+
+ordered_json ToJson(const Photo& photo) {
+  const Eigen::Quaterniond& q = photo.cam_from_enu.rotation;
+  const Eigen::Vector3d& t = photo.cam_from_enu.translation;
+  return {{"name", photo.name},
+          {"mask", photo.mask},
+          {"camera", photo.camera},
+          {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+          {"translation_m", {t.x(), t.y(), t.z()}},
+          {"gps", photo.gps ? ToJson(*photo.gps) : ordered_json(nullptr)},
+          {"relative_altitude_m", NumberOrNull(photo.relative_altitude_m)},
+          {"time_s", NumberOrNull(photo.time_s)},
+          {"exposure_time_s", NumberOrNull(photo.exposure.time_s)},
+          {"f_number", NumberOrNull(photo.exposure.f_number)},
+          {"iso", NumberOrNull(photo.exposure.iso)},
+          {"agl_m", NumberOrNull(photo.agl_m)},
+          {"gps_residual_m", NumberOrNull(photo.gps_residual_m)},
+          {"gps_inlier", photo.gps_inlier},
+          {"flight", photo.flight},
+          {"is_test", photo.is_test}};
+}
+
+Photo PhotoFromJson(const json& value) {
+  Photo photo;
+  photo.name = value.at("name").get<std::string>();
+  photo.mask = value.at("mask").get<std::string>();
+  photo.camera = value.at("camera").get<int>();
+  const json& q = value.at("rotation_wxyz");
+  const json& t = value.at("translation_m");
+  if (q.size() != 4 || t.size() != 3) throw std::invalid_argument("photo '" + photo.name + "' has a pose of the wrong length");
+  photo.cam_from_enu.rotation = Eigen::Quaterniond(NanIfNull(q[0]), NanIfNull(q[1]), NanIfNull(q[2]), NanIfNull(q[3]));
+  photo.cam_from_enu.translation = Eigen::Vector3d(NanIfNull(t[0]), NanIfNull(t[1]), NanIfNull(t[2]));
+  const double norm = photo.cam_from_enu.rotation.norm();
+  if (!photo.cam_from_enu.translation.allFinite() || !(std::abs(norm - 1.0) < 1e-6)) {
+    throw std::invalid_argument("the pose of photo '" + photo.name + "' is not a number or not a rotation");
+  }
+  if (!value.at("gps").is_null()) photo.gps = GeodeticFromJson(value.at("gps"));
+  photo.relative_altitude_m = OptionalNumber(value.at("relative_altitude_m"));
+  photo.time_s = OptionalNumber(value.at("time_s"));
+  photo.exposure = {OptionalNumber(value.at("exposure_time_s")), OptionalNumber(value.at("f_number")), OptionalNumber(value.at("iso"))};
+  photo.agl_m = NanIfNull(value.at("agl_m"));
+  photo.gps_residual_m = NanIfNull(value.at("gps_residual_m"));
+  photo.gps_inlier = value.at("gps_inlier").get<bool>();
+  photo.flight = value.at("flight").get<int>();
+  photo.is_test = value.at("is_test").get<bool>();
+  return photo;
+}
+
+ordered_json ToJson(const GeoFit& fit) {
+  return {{"n_matches", fit.n_matches},
+          {"n_inliers", fit.n_inliers},
+          {"rmse_m", NumberOrNull(fit.rmse_m)},
+          {"rmse_horizontal_m", NumberOrNull(fit.rmse_horizontal_m)},
+          {"rmse_vertical_m", NumberOrNull(fit.rmse_vertical_m)},
+          {"scale", fit.scale},
+          {"flight_vertical_offset_m", fit.flight_vertical_offset_m}};
+}
+
+GeoFit GeoFitFromJson(const json& value) {
+  GeoFit fit;
+  fit.n_matches = value.at("n_matches").get<int>();
+  fit.n_inliers = value.at("n_inliers").get<int>();
+  fit.rmse_m = NanIfNull(value.at("rmse_m"));
+  fit.rmse_horizontal_m = NanIfNull(value.at("rmse_horizontal_m"));
+  fit.rmse_vertical_m = NanIfNull(value.at("rmse_vertical_m"));
+  fit.scale = value.at("scale").get<double>();
+  fit.flight_vertical_offset_m = value.at("flight_vertical_offset_m").get<std::vector<double>>();
+  return fit;
+}
+
+Survey SurveyFromJson(const json& value) {
+  if (value.value("format", "") != kFormat) throw std::invalid_argument("is not a survey description");
+  if (value.value("version", 0) != kVersion) throw std::invalid_argument("was written by another version of skyquilt");
+  Survey survey;
+  survey.origin = GeodeticFromJson(value.at("origin"));
+  survey.georeferenced = value.at("georeferenced").get<bool>();
+  if (!geo::IsValid(survey.origin)) throw std::invalid_argument("has an origin that is not on Earth");
+  survey.photo_root = value.at("photo_root").get<std::string>();
+  for (const json& camera : value.at("cameras")) survey.cameras.push_back(CameraFromJson(camera));
+  std::set<std::string> names;
+  for (const json& entry : value.at("photos")) {
+    Photo photo = PhotoFromJson(entry);
+    if (photo.camera < 0 || static_cast<size_t>(photo.camera) >= survey.cameras.size()) {
+      throw std::invalid_argument("photo '" + photo.name + "' names camera " + std::to_string(photo.camera) + " of " + std::to_string(survey.cameras.size()));
+    }
+    if (!names.insert(photo.name).second) throw std::invalid_argument("photo '" + photo.name + "' appears twice");
+    survey.photos.push_back(std::move(photo));
+  }
+  survey.unregistered = value.at("unregistered").get<std::vector<std::string>>();
+  survey.fit = GeoFitFromJson(value.at("fit"));
+  const json& truth = value.at("truth");
+  if (!truth.is_null()) {
+    survey.truth = Truth{truth.at("depth_folder").get<std::string>(), truth.at("buildings_json").get<std::string>(), truth.at("exposure_json").get<std::string>()};
+  }
+  return survey;
+}
+
+}  // namespace
+
+double Survey::MedianAgl() const {
+  std::vector<double> known;
+  for (const Photo& photo : photos) {
+    if (std::isfinite(photo.agl_m)) known.push_back(photo.agl_m);
+  }
+  if (known.empty()) return kNan;
+  std::sort(known.begin(), known.end());
+  const size_t n = known.size();
+  return n % 2 == 1 ? known[n / 2] : 0.5 * (known[n / 2 - 1] + known[n / 2]);
+}
+
+void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
+  for (const Photo& photo : survey.photos) {
+    SKYQUILT_CHECK(photo.cam_from_enu.rotation.coeffs().allFinite() && photo.cam_from_enu.translation.allFinite(), photo.name);
+  }
+  base::RequireWritableFolder(folder);
+  ordered_json value = {{"format", kFormat},
+                        {"version", kVersion},
+                        {"origin", ToJson(survey.origin)},
+                        {"georeferenced", survey.georeferenced},
+                        {"photo_root", survey.photo_root.string()},
+                        {"n_points", survey.points.size()},
+                        {"fit", ToJson(survey.fit)},
+                        {"truth", nullptr},
+                        {"cameras", ordered_json::array()},
+                        {"unregistered", survey.unregistered},
+                        {"photos", ordered_json::array()}};
+  if (survey.truth) {
+    value["truth"] = {{"depth_folder", survey.truth->depth_folder.string()},
+                      {"buildings_json", survey.truth->buildings_json.string()},
+                      {"exposure_json", survey.truth->exposure_json.string()}};
+  }
+  for (const camera::Camera& camera : survey.cameras) value["cameras"].push_back(ToJson(camera));
+  for (const Photo& photo : survey.photos) value["photos"].push_back(ToJson(photo));
+  // The description comes last: where it exists, the points are complete.
+  WritePointsPly(survey.points, folder / "points.ply");
+  base::WriteFileAtomically(folder / "survey.json", value.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+}
+
+Survey LoadSurvey(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "survey.json";
+  if (!std::filesystem::exists(file)) throw base::InputError(file, "no such file", "Run 'skyquilt prepare' first");
+  const std::string text = base::ReadFile(file);
+  Survey survey;
+  size_t n_points = 0;
+  try {
+    const json value = json::parse(text);
+    survey = SurveyFromJson(value);
+    n_points = value.at("n_points").get<size_t>();
+  } catch (const json::exception& error) {
+    throw base::InputError(file, std::string("is damaged (") + error.what() + ")", "Run 'skyquilt prepare' again");
+  } catch (const std::invalid_argument& error) {
+    throw base::InputError(file, error.what(), "Run 'skyquilt prepare' again");
+  }
+  survey.points = ReadPointsPly(folder / "points.ply");
+  if (survey.points.size() != n_points) {
+    throw base::InputError(folder / "points.ply", "holds " + std::to_string(survey.points.size()) + " points, survey.json announces " + std::to_string(n_points),
+                           "The two files are from different runs: run 'skyquilt prepare' again");
+  }
+  return survey;
+}
+
+}  // namespace skyquilt::survey

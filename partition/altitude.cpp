@@ -1,0 +1,44 @@
+#include "partition/altitude.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/errors.h"
+#include "partition/percentile.h"
+
+namespace skyquilt::partition {
+
+std::vector<double> PhotoAltitudes(const survey::Survey& survey, const Eigen::Vector2d& centre, double ground_m) {
+  std::vector<double> altitude;
+  altitude.reserve(survey.photos.size());
+  for (const survey::Photo& photo : survey.photos) {
+    const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
+    double agl = photo.agl_m;
+    if (!std::isfinite(agl) || agl <= 0.0) agl = eye.z() - ground_m;
+    if (agl <= 0.0) agl = std::max(1e-3, (eye - Eigen::Vector3d(centre.x(), centre.y(), ground_m)).norm());
+    altitude.push_back(agl);
+  }
+  return altitude;
+}
+
+double BlockAltitude(const survey::Survey& survey, const std::vector<double>& photo_altitude_m, const Eigen::Vector2d& low,
+                     const Eigen::Vector2d& high) {
+  SKYQUILT_CHECK(photo_altitude_m.size() == survey.photos.size() && !survey.photos.empty(), std::to_string(photo_altitude_m.size()));
+  std::vector<double> above;
+  std::vector<std::pair<double, double>> by_distance;
+  for (size_t i = 0; i < survey.photos.size(); ++i) {
+    const Eigen::Vector2d eye = survey.photos[i].cam_from_enu.OriginInSource().head<2>();
+    const Eigen::Vector2d outside = (low - eye).cwiseMax(eye - high).cwiseMax(0.0);
+    if (outside.isZero(0.0)) above.push_back(photo_altitude_m[i]);
+    by_distance.emplace_back(outside.norm(), photo_altitude_m[i]);
+  }
+  if (above.size() >= 2) return Percentile(std::move(above), 0.5);
+  constexpr size_t kNearest = 5;
+  const size_t n = std::min(kNearest, by_distance.size());
+  std::partial_sort(by_distance.begin(), by_distance.begin() + static_cast<std::ptrdiff_t>(n), by_distance.end());
+  std::vector<double> nearest;
+  for (size_t i = 0; i < n; ++i) nearest.push_back(by_distance[i].second);
+  return Percentile(std::move(nearest), 0.5);
+}
+
+}  // namespace skyquilt::partition

@@ -1,0 +1,107 @@
+#include "partition/visibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace skyquilt::partition {
+namespace {
+
+constexpr int kRaysAcross = 16;
+constexpr int kRaysDown = 12;
+
+struct RayGrid {
+  std::vector<Eigen::Vector3d> direction_in_cam;
+  std::vector<double> share;  // sums to 1
+};
+
+RayGrid MakeRayGrid(const camera::Camera& camera) {
+  RayGrid grid;
+  for (int j = 0; j < kRaysDown; ++j) {
+    for (int i = 0; i < kRaysAcross; ++i) {
+      const bool side = i == 0 || i == kRaysAcross - 1;
+      const bool end = j == 0 || j == kRaysDown - 1;
+      const Eigen::Vector2d pixel(static_cast<double>(camera.width) * i / (kRaysAcross - 1),
+                                  static_cast<double>(camera.height) * j / (kRaysDown - 1));
+      grid.direction_in_cam.push_back(camera.RayFromImg(pixel));
+      grid.share.push_back((side ? 0.5 : 1.0) * (end ? 0.5 : 1.0) / ((kRaysAcross - 1) * (kRaysDown - 1)));
+    }
+  }
+  return grid;
+}
+
+double ShareByRays(const RayGrid& grid, const std::vector<Eigen::Vector3d>& direction, const Eigen::Vector3d& eye, const Box& box) {
+  double share = 0.0;
+  for (size_t i = 0; i < direction.size(); ++i) {
+    if (RayMeetsBox(eye, direction[i], box.low, box.high)) share += grid.share[i];
+  }
+  return share;
+}
+
+double ShareByProjection(const camera::Camera& camera, const survey::Photo& photo, const Box& box) {
+  const Eigen::Vector2d size(camera.width, camera.height);
+  const auto centre = camera.ImgFromCam(photo.cam_from_enu * (0.5 * (box.low + box.high)));
+  if (!centre || (centre->array() < 0.0).any() || (centre->array() > size.array()).any()) return 0.0;
+  Eigen::Vector2d low = *centre;
+  Eigen::Vector2d high = *centre;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d x((corner & 1) ? box.high.x() : box.low.x(), (corner & 2) ? box.high.y() : box.low.y(),
+                            (corner & 4) ? box.high.z() : box.low.z());
+    const auto pixel = camera.ImgFromCam(photo.cam_from_enu * x);
+    if (!pixel) continue;
+    low = low.cwiseMin(*pixel);
+    high = high.cwiseMax(*pixel);
+  }
+  const Eigen::Vector2d extent = high.cwiseMin(size) - low.cwiseMax(0.0);
+  // A box smaller than a pixel is still seen by one.
+  return std::max(extent.prod(), 1.0) / size.prod();
+}
+
+}  // namespace
+
+bool RayMeetsBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  if (!origin.allFinite() || !direction.allFinite()) return false;
+  double t_near = 0.0;
+  double t_far = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    // Dividing by a zero component would give 0 / 0 for rays along a face.
+    if (direction[axis] == 0.0) {
+      if (!(origin[axis] >= low[axis] && origin[axis] <= high[axis])) return false;
+      continue;
+    }
+    const double to_low = (low[axis] - origin[axis]) / direction[axis];
+    const double to_high = (high[axis] - origin[axis]) / direction[axis];
+    t_near = std::max(t_near, std::min(to_low, to_high));
+    t_far = std::min(t_far, std::max(to_low, to_high));
+  }
+  return t_near <= t_far;
+}
+
+std::vector<BoxViews> FindViews(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width) {
+  std::vector<RayGrid> grids;
+  for (const camera::Camera& camera : survey.cameras) grids.push_back(MakeRayGrid(camera));
+  std::vector<BoxViews> views(boxes.size());
+  for (size_t p = 0; p < survey.photos.size(); ++p) {
+    const survey::Photo& photo = survey.photos[p];
+    const camera::Camera& camera = survey.cameras.at(static_cast<size_t>(photo.camera));
+    const RayGrid& grid = grids[static_cast<size_t>(photo.camera)];
+    const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
+    std::vector<Eigen::Vector3d> direction;
+    direction.reserve(grid.direction_in_cam.size());
+    for (const Eigen::Vector3d& in_cam : grid.direction_in_cam) direction.emplace_back(photo.cam_from_enu.rotation.conjugate() * in_cam);
+    const double scale = image_width > 0 ? std::min(1.0, static_cast<double>(image_width) / camera.width) : 1.0;
+    const double pixels = scale * scale * camera.width * camera.height;
+    for (size_t b = 0; b < boxes.size(); ++b) {
+      double share = ShareByRays(grid, direction, eye, boxes[b]);
+      if (share == 0.0) share = ShareByProjection(camera, photo, boxes[b]);
+      if (share == 0.0) continue;
+      views[b].photos.push_back(static_cast<int>(p));
+      if (photo.is_test) continue;
+      ++views[b].n_training;
+      views[b].training_pixels += share * pixels;
+    }
+  }
+  return views;
+}
+
+}  // namespace skyquilt::partition

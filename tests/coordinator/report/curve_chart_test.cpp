@@ -1,0 +1,45 @@
+#include "coordinator/report/curve_chart.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace skyquilt::report {
+namespace {
+
+TEST(RoundTicks, AreRoundNumbersInsideTheRange) {
+  const auto ticks = RoundTicks(0.0, 97.0, 5);
+  EXPECT_EQ(ticks, (std::vector<double>{0, 20, 40, 60, 80}));
+  for (const double tick : RoundTicks(-3.7, 12.2, 6)) {
+    EXPECT_GE(tick, -3.7);
+    EXPECT_LE(tick, 12.2);
+  }
+  EXPECT_TRUE(RoundTicks(1.0, 1.0, 5).empty());
+  EXPECT_TRUE(RoundTicks(0.0, std::numeric_limits<double>::infinity(), 5).empty());
+}
+
+TEST(Thin, KeepsTheEndsAndTheMean) {
+  std::vector<std::pair<double, double>> points;
+  for (int i = 0; i < 5000; ++i) points.emplace_back(i, i % 2 == 0 ? 1.0 : 3.0);
+  const auto thinned = Thin(points, 100);
+  EXPECT_EQ(thinned.size(), 100U);
+  EXPECT_EQ(thinned.front(), points.front());
+  EXPECT_EQ(thinned.back(), points.back());
+  for (size_t i = 1; i + 1 < thinned.size(); ++i) EXPECT_NEAR(thinned[i].second, 2.0, 0.05);
+  EXPECT_EQ(Thin(points, 10000).size(), points.size());
+}
+
+TEST(CurveChart, SurvivesEmptySingleAndNonFiniteData) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(CurveChart({}, {}).find("No training log"), std::string::npos);
+  EXPECT_NE(CurveChart({{"a", {{nan, 1.0}, {1.0, nan}}}}, {}).find("No training log"), std::string::npos);
+  const std::string single = CurveChart({{"a", {{1.0, 5.0}}}}, {"t", "x", "y", true});
+  EXPECT_NE(single.find("<circle"), std::string::npos);
+  EXPECT_EQ(single.find("nan"), std::string::npos);
+  EXPECT_EQ(CurveChart({{"a", {{0.0, 0.0}, {1.0, -1.0}, {2.0, 0.1}}}}, {"t", "x", "y", true}).find("nan"), std::string::npos);
+  EXPECT_NE(CurveChart({{"<i>", {{0.0, 1.0}, {1.0, 2.0}}}}, {}).find("&lt;i&gt;"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace skyquilt::report

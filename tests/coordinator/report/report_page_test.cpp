@@ -1,0 +1,114 @@
+#include "coordinator/report/report_page.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+
+#include "coordinator/report/report_images.h"
+#include "core/base/file.h"
+#include "sample_report.h"
+
+namespace skyquilt::report {
+namespace {
+
+// SKYQUILT_SAMPLE_REPORT=<folder> keeps the page for a look at it.
+class ReportPage : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* kept = std::getenv("SKYQUILT_SAMPLE_REPORT");
+    keep_ = kept != nullptr;
+    folder_ = keep_ ? std::filesystem::path(kept)
+                    : std::filesystem::temp_directory_path() /
+                          ("skyquilt_report_" + std::to_string(::getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_ / "images");
+  }
+  void TearDown() override {
+    if (!keep_) std::filesystem::remove_all(folder_);
+  }
+  std::filesystem::path folder_;
+  bool keep_ = false;
+};
+
+size_t CountOf(const std::string& text, const std::string& part) {
+  size_t n = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
+  return n;
+}
+
+TEST_F(ReportPage, OpensOfflineAndEveryPictureExists) {
+  const SampleReport sample(folder_);
+  const std::string html = BuildReportPage(sample.input);
+  base::WriteFileAtomically(folder_ / "index.html", html);
+  EXPECT_EQ(html.find("http://"), std::string::npos);
+  EXPECT_EQ(html.find("https://"), std::string::npos);
+  EXPECT_EQ(html.find("@import"), std::string::npos);
+  const std::regex source("(?:src|href)=\"(images/[^\"]+)\"");
+  size_t n_pictures = 0;
+  for (std::sregex_iterator it(html.begin(), html.end(), source), end; it != end; ++it, ++n_pictures) {
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / (*it)[1].str())) << (*it)[1];
+  }
+  EXPECT_GE(n_pictures, 4 * sample.metrics.photos.size());
+}
+
+TEST_F(ReportPage, FileNamesNeverBecomeMarkup) {
+  const SampleReport sample(folder_);
+  const std::string html = BuildReportPage(sample.input);
+  EXPECT_EQ(html.find("<b>DJI"), std::string::npos);
+  EXPECT_NE(html.find("&lt;b&gt;DJI &amp; &quot;co&quot;&lt;/b&gt;.jpg"), std::string::npos);
+  EXPECT_EQ(html.find("town <sample>"), std::string::npos);
+}
+
+TEST_F(ReportPage, TagsAreBalancedAndNoNumberIsNan) {
+  const SampleReport sample(folder_);
+  const std::string html = BuildReportPage(sample.input);
+  for (const char* tag : {"section", "table", "tbody", "tr", "svg", "figure", "article", "details", "div", "span", "a"}) {
+    const std::string name(tag);
+    const size_t opened = CountOf(html, "<" + name + " ") + CountOf(html, "<" + name + ">");
+    EXPECT_EQ(opened, CountOf(html, "</" + name + ">")) << name;
+  }
+  EXPECT_EQ(CountOf(html, "\"nan\"") + CountOf(html, ">nan") + CountOf(html, "inf\""), 0U);
+}
+
+TEST_F(ReportPage, SurvivesASurveyWithNothingToShow) {
+  SampleReport sample(folder_);
+  sample.metrics = Metrics{};
+  sample.survey = survey::Survey{};
+  sample.blocks = partition::BlockSet{};
+  sample.log = TrainLog{};
+  sample.input.images.clear();
+  sample.input.background.reset();
+  const std::string html = BuildReportPage(sample.input);
+  EXPECT_NE(html.find("No photo was scored"), std::string::npos);
+  EXPECT_NE(html.find("no usable GPS"), std::string::npos);
+  EXPECT_EQ(CountOf(html, "\"nan\"") + CountOf(html, ">nan") + CountOf(html, ">inf"), 0U);
+}
+
+TEST_F(ReportPage, BackgroundNeedsPictureAndBounds) {
+  const std::filesystem::path products = folder_ / "products";
+  std::filesystem::create_directories(products);
+  EXPECT_FALSE(CopyMapBackground(products, folder_).has_value());
+  image::SavePng(image::Image8(8, 4, 3, 90), products / "orthophoto.png");
+  std::ofstream(products / "orthophoto.json") << "{\"min_enu\": [0, 0]}";
+  EXPECT_FALSE(CopyMapBackground(products, folder_).has_value());
+  std::ofstream(products / "orthophoto.json") << "{\"min_enu\": [-5, -2.5], \"max_enu\": [5, 2.5]}";
+  const auto background = CopyMapBackground(products, folder_);
+  ASSERT_TRUE(background.has_value());
+  EXPECT_DOUBLE_EQ(background->min_enu.y(), -2.5);
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / background->image));
+}
+
+TEST(ErrorPicture, PixelsThatDoNotCountAreGrey) {
+  const image::Image8 photo(2, 1, 3, 200), render(2, 1, 3, 100);
+  const image::ImageF error = AbsoluteError(photo, render);
+  EXPECT_NEAR(error.data[0], 100.0F / 255.0F, 1e-6F);
+  const std::vector<uint8_t> scored = {1, 0};
+  const image::Image8 picture = ErrorPicture({&photo, &render, nullptr, scored}, 0.25F);
+  EXPECT_FALSE(picture.data[0] == picture.data[1] && picture.data[1] == picture.data[2]);
+  EXPECT_TRUE(picture.data[3] == picture.data[4] && picture.data[4] == picture.data[5]);
+}
+
+}  // namespace
+}  // namespace skyquilt::report

@@ -1,0 +1,50 @@
+#include "core/base/cancel.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cstdlib>
+
+#include "core/base/errors.h"
+
+namespace skyquilt::base {
+namespace {
+
+TEST(Cancel, FlagIsSetSeenAndCleared) {
+  ClearCancel();
+  EXPECT_FALSE(CancelRequested());
+  EXPECT_NO_THROW(ThrowIfCancelled());
+  RequestCancel();
+  EXPECT_TRUE(CancelRequested());
+  EXPECT_THROW(ThrowIfCancelled(), Interrupted);
+  ClearCancel();
+  EXPECT_FALSE(CancelRequested());
+}
+
+// Exit status 0 proves that the process survived every signal before it and saw each of them.
+void SurviveEachSignalOnce() {
+  InstallSignalHandlers();
+  for (const int signal_number : {SIGTERM, SIGTERM, SIGUSR1, SIGINT}) {
+    ClearCancel();
+    raise(signal_number);
+    if (!CancelRequested()) std::_Exit(1);
+  }
+  std::_Exit(0);
+}
+
+TEST(CancelDeathTest, OneSignalOnlySetsTheFlag) {
+  EXPECT_EXIT(SurviveEachSignalOnce(), testing::ExitedWithCode(0), "");
+}
+
+TEST(CancelDeathTest, SecondInterruptEndsAtOnce) {
+  const auto interrupt_twice = [] {
+    InstallSignalHandlers();
+    raise(SIGINT);
+    raise(SIGINT);
+    std::_Exit(0);
+  };
+  EXPECT_EXIT(interrupt_twice(), testing::ExitedWithCode(130), "");
+}
+
+}  // namespace
+}  // namespace skyquilt::base

@@ -1,0 +1,119 @@
+#include "core/base/file.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "core/base/errors.h"
+#include "tests/core/base/temporary_folder.h"
+
+namespace skyquilt::base {
+namespace {
+
+namespace fs = std::filesystem;
+
+size_t CountEntries(const fs::path& folder) {
+  return static_cast<size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(File, ContentComesBackByteForByte) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "bytes";
+  for (const size_t size : {size_t{0}, size_t{1}, size_t{65536}, size_t{200003}}) {
+    std::string content(size, '\0');
+    for (size_t i = 0; i < size; ++i) content[i] = static_cast<char>(i * 31 % 256);
+    WriteFileAtomically(file, content);
+    EXPECT_EQ(ReadFile(file), content);
+  }
+  EXPECT_EQ(CountEntries(folder.path()), 1U) << "temporary files were left behind";
+}
+
+TEST(File, ErrorsNameTheFileAndTheMend) {
+  const TemporaryFolder folder;
+  const fs::path missing = folder.path() / "nowhere" / "file.txt";
+  try {
+    ReadFile(missing);
+    FAIL() << "a missing file was read";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.file(), missing);
+    EXPECT_NE(std::string(error.what()).find(missing.string()), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("Check the path"), std::string::npos);
+  }
+  EXPECT_THROW(WriteFileAtomically(missing, "x"), InputError);
+  EXPECT_THROW(ReadFile(folder.path()), InputError);
+  EXPECT_THROW(SyncPath(missing), InputError);
+}
+
+TEST(File, FailedReplacementLeavesATargetFolderAlone) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "taken" / "inner");
+  EXPECT_THROW(WriteFileAtomically(folder.path() / "taken", "x"), InputError);
+  EXPECT_TRUE(fs::is_directory(folder.path() / "taken" / "inner"));
+  EXPECT_EQ(CountEntries(folder.path()), 1U);
+}
+
+// A file size limit stands in for a full disk: both make write() fail half-way.
+void WriteBeyondTheLimit(const fs::path& file) {
+  signal(SIGXFSZ, SIG_IGN);
+  const struct rlimit limit = {100000, 100000};
+  setrlimit(RLIMIT_FSIZE, &limit);
+  try {
+    WriteFileAtomically(file, std::string(300000, 'n'));
+  } catch (const InputError&) {
+    std::_Exit(7);
+  }
+  std::_Exit(0);
+}
+
+TEST(FileDeathTest, FailedWriteKeepsTheOldFileWhole) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "kept";
+  WriteFileAtomically(file, "old");
+  EXPECT_EXIT(WriteBeyondTheLimit(file), testing::ExitedWithCode(7), "");
+  EXPECT_EQ(ReadFile(file), "old");
+  EXPECT_EQ(CountEntries(folder.path()), 1U) << "temporary files were left behind";
+}
+
+TEST(File, WritableFolderIsCreatedAndLeftEmpty) {
+  const TemporaryFolder folder;
+  const fs::path deep = folder.path() / "a" / "b" / "c";
+  RequireWritableFolder(deep);
+  EXPECT_TRUE(fs::is_directory(deep));
+  EXPECT_EQ(CountEntries(deep), 0U);
+  WriteFileAtomically(deep / "file", "x");
+  EXPECT_THROW(RequireWritableFolder(deep / "file"), InputError);
+  EXPECT_THROW(RequireWritableFolder(deep / "file" / "below"), InputError);
+}
+
+TEST(File, FolderWithoutPermissionIsRefused) {
+  if (geteuid() == 0) GTEST_SKIP() << "the superuser may write everywhere";
+  const TemporaryFolder folder;
+  fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THROW(RequireWritableFolder(folder.path()), InputError);
+  fs::permissions(folder.path(), fs::perms::owner_all);
+}
+
+// Published test vectors of 64-bit FNV-1a (draft-eastlake-fnv, appendix C).
+TEST(HashHex, MatchesPublishedVectors) {
+  EXPECT_EQ(HashHex(""), "cbf29ce484222325");
+  EXPECT_EQ(HashHex("a"), "af63dc4c8601ec8c");
+  EXPECT_EQ(HashHex("foobar"), "85944171f73967e8");
+}
+
+TEST(Check, NamesConditionAndPlace) {
+  EXPECT_NO_THROW(SKYQUILT_CHECK(1 + 1 == 2, "fine"));
+  try {
+    SKYQUILT_CHECK(1 + 1 == 3, "two against three");
+    FAIL() << "a false condition passed";
+  } catch (const std::logic_error& error) {
+    const std::string text = error.what();
+    for (const char* part : {"1 + 1 == 3", "file_test.cpp", "two against three"}) EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace skyquilt::base

@@ -1,0 +1,89 @@
+#include "core/base/progress.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <thread>
+#include <vector>
+
+namespace skyquilt::base {
+namespace {
+
+TEST(Progress, FinalLineShowsWhatWasDone) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("decode", 40.0, "photos");
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 4; ++i) {
+      threads.emplace_back([&progress] {
+        for (int k = 0; k < 10; ++k) progress.Advance();
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    progress.Finish("all read");
+    progress.Finish("ignored");
+  }
+  const std::string text = testing::internal::GetCapturedStderr();
+  for (const char* part : {"decode", "100 %", "photos/s", "all read"}) EXPECT_NE(text.find(part), std::string::npos) << text;
+  EXPECT_EQ(text.find("ignored"), std::string::npos);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+TEST(Progress, UnknownTotalShowsTheCount) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("train", 0.0, "rays");
+    progress.Update(1500.0);
+    progress.Finish();
+  }
+  const std::string text = testing::internal::GetCapturedStderr();
+  EXPECT_NE(text.find("1.50 k rays"), std::string::npos) << text;
+  EXPECT_EQ(text.find('%'), std::string::npos) << text;
+}
+
+TEST(Progress, NeverClaimsMoreThanAll) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("over", 10.0, "steps");
+    progress.Update(25.0);
+    progress.Finish();
+  }
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("100 %"), std::string::npos);
+}
+
+TEST(Progress, QuietIsSilent) {
+  testing::internal::CaptureStderr();
+  Progress::SetQuiet(true);
+  {
+    Progress progress("quiet", 1.0, "steps");
+    progress.Advance();
+    progress.Finish();
+  }
+  Progress::SetQuiet(false);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Format, Durations) {
+  EXPECT_EQ(FormatDuration(0.0), "0.0s");
+  EXPECT_EQ(FormatDuration(12.34), "12.3s");
+  EXPECT_EQ(FormatDuration(59.97), "1m00s");
+  EXPECT_EQ(FormatDuration(200.0), "3m20s");
+  EXPECT_EQ(FormatDuration(3599.7), "1h00m");
+  EXPECT_EQ(FormatDuration(3720.0), "1h02m");
+  EXPECT_EQ(FormatDuration(std::numeric_limits<double>::quiet_NaN()), "?");
+  EXPECT_EQ(FormatDuration(std::numeric_limits<double>::infinity()), "?");
+}
+
+TEST(Format, Counts) {
+  EXPECT_EQ(FormatCount(0.0), "0");
+  EXPECT_EQ(FormatCount(532.0), "532");
+  EXPECT_EQ(FormatCount(0.25), "0.25");
+  EXPECT_EQ(FormatCount(999.7), "1.00 k");
+  EXPECT_EQ(FormatCount(12345.0), "12.3 k");
+  EXPECT_EQ(FormatCount(1.5e6), "1.50 M");
+  EXPECT_EQ(FormatCount(-2.0e9), "-2.00 G");
+}
+
+}  // namespace
+}  // namespace skyquilt::base

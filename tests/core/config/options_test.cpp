@@ -1,0 +1,195 @@
+#include "core/config/options.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+
+namespace skyquilt::config {
+namespace {
+
+struct TrainOptions {
+  int steps = 2000;
+  double rate = 0.01;
+  bool guided = true;
+  std::string note = "plain";
+  std::vector<double> altitudes_m = {150.0, 300.5};
+  void Visit(OptionVisitor& v) {
+    v.Field("steps", steps, "optimiser updates, > 0");
+    v.Field("rate", rate, "learning rate\nof the first step");
+    v.Field("guided", guided, "use the context");
+    v.Field("note", note, "free text");
+    v.Field("altitudes_m", altitudes_m, "one per block, metres above ground");
+  }
+};
+
+struct RenderOptions {
+  double exposure_stops = 0.0;
+  int supersample = 1;
+  void Visit(OptionVisitor& v) {
+    v.Field("exposure_stops", exposure_stops, "brighter or darker");
+    v.Field("supersample", supersample, "rays per pixel and axis");
+  }
+};
+
+struct All {
+  TrainOptions train;
+  RenderOptions render;
+  Sections sections;
+  All() {
+    sections.Add("train", train, "training of one block");
+    sections.Add("products.render", render, "pictures");
+  }
+};
+
+template <typename Error>
+std::string MessageOf(const std::string& text) {
+  All all;
+  try {
+    ReadTomlText(text, "skyquilt.toml", all.sections);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Toml, ValuesComeBackExactly) {
+  All written;
+  written.train.steps = std::numeric_limits<int>::min();
+  written.train.rate = 0.1 + 0.2;
+  written.train.guided = false;
+  written.train.note = "quote \" backslash \\ tab \t newline \n bell \a umlaut \xc3\xbc # no comment";
+  written.train.altitudes_m = {-0.0, 1e-300, 5e-324, 123456789.0, 1e22, std::numeric_limits<double>::infinity(), 1.0 / 3.0};
+  written.render.exposure_stops = -10.0;
+  const std::string text = WriteToml(written.sections);
+  All read;
+  ReadTomlText(text, "skyquilt.toml", read.sections);
+  EXPECT_EQ(read.train.steps, written.train.steps);
+  EXPECT_EQ(read.train.rate, written.train.rate);
+  EXPECT_EQ(read.train.guided, written.train.guided);
+  EXPECT_EQ(read.train.note, written.train.note);
+  EXPECT_EQ(read.train.altitudes_m, written.train.altitudes_m);
+  EXPECT_EQ(read.render.exposure_stops, written.render.exposure_stops);
+  EXPECT_EQ(WriteToml(read.sections), text);
+}
+
+TEST(Toml, EmptyArrayAndStringComeBack) {
+  All written;
+  written.train.note = "";
+  written.train.altitudes_m = {};
+  All read;
+  ReadTomlText(WriteToml(written.sections), "skyquilt.toml", read.sections);
+  EXPECT_EQ(read.train.note, "");
+  EXPECT_TRUE(read.train.altitudes_m.empty());
+}
+
+TEST(Toml, EveryHelpLineIsAComment) {
+  All all;
+  const std::string text = WriteToml(all.sections);
+  for (const char* part :
+       {"# training of one block\n[train]\n", "# optimiser updates, > 0\nsteps = 2000\n", "# learning rate\n# of the first step\nrate = 0.01\n",
+        "[products.render]\n", "altitudes_m = [150.0, 300.5]\n", "guided = true\n", "note = \"plain\"\n"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "in\n" << text;
+  }
+}
+
+TEST(Toml, AbsentKeysKeepTheirValues) {
+  All all;
+  all.train.rate = 5.0;
+  ReadTomlText("[train]\nsteps = 7\n", "skyquilt.toml", all.sections);
+  EXPECT_EQ(all.train.steps, 7);
+  EXPECT_EQ(all.train.rate, 5.0);
+  ReadTomlText("", "skyquilt.toml", all.sections);
+  EXPECT_EQ(all.train.steps, 7);
+}
+
+TEST(Toml, IntegersServeAsNumbers) {
+  All all;
+  ReadTomlText("train.rate = 3\ntrain.altitudes_m = [100, 2.5]\n[products.render]\nexposure_stops = -2\n", "skyquilt.toml", all.sections);
+  EXPECT_EQ(all.train.rate, 3.0);
+  EXPECT_EQ(all.train.altitudes_m, (std::vector<double>{100.0, 2.5}));
+  EXPECT_EQ(all.render.exposure_stops, -2.0);
+}
+
+TEST(Toml, UnknownNamesAreRefusedWithTheNearest) {
+  EXPECT_EQ(MessageOf<base::UsageError>("[train]\nstepz = 3\n"), "skyquilt.toml: unknown key 'train.stepz'; did you mean 'train.steps'? (line 2)");
+  EXPECT_EQ(MessageOf<base::UsageError>("[trian]\nsteps = 3\n"), "skyquilt.toml: unknown section 'trian'; did you mean 'train'? (line 1)");
+  // The right word in the wrong section.
+  EXPECT_NE(MessageOf<base::UsageError>("[train]\nsupersample = 3\n").find("'products.render.supersample'"), std::string::npos);
+  EXPECT_NE(MessageOf<base::UsageError>("steps = 3\n").find("'train.steps'"), std::string::npos);
+  // Nothing near: what there is.
+  EXPECT_NE(MessageOf<base::UsageError>("[train]\nxxxxxxxxxx = 3\n").find("guided"), std::string::npos);
+  EXPECT_NE(MessageOf<base::UsageError>("[zzzzzzzzzz]\n").find("products.render"), std::string::npos);
+  EXPECT_NE(MessageOf<base::UsageError>("[train.deeper]\nsteps = 1\n").find("unknown section 'train.deeper'"), std::string::npos);
+}
+
+TEST(Toml, WrongTypesAreRefused) {
+  for (const char* text : {"[train]\nsteps = 3.5\n", "[train]\nsteps = \"3\"\n", "[train]\nsteps = 3000000000\n", "[train]\nrate = true\n",
+                           "[train]\nrate = nan\n", "[train]\nguided = 1\n", "[train]\nnote = 3\n", "[train]\naltitudes_m = 3.0\n",
+                           "[train]\naltitudes_m = [1.0, \"2\"]\n", "[train]\nrate = 2026-01-31\n", "[train.rate]\n", "train = 3\n"}) {
+    const std::string message = MessageOf<base::UsageError>(text);
+    EXPECT_NE(message.find("skyquilt.toml"), std::string::npos) << text;
+    EXPECT_NE(message.find("train"), std::string::npos) << text << message;
+    EXPECT_NE(message.find("line"), std::string::npos) << text << message;
+  }
+}
+
+TEST(Toml, SyntaxErrorsNameTheLine) {
+  const std::string message = MessageOf<base::InputError>("[train]\nsteps = 3\nrate = = 4\n");
+  EXPECT_NE(message.find("skyquilt.toml"), std::string::npos) << message;
+  EXPECT_NE(message.find("line 3"), std::string::npos) << message;
+  EXPECT_NE(MessageOf<base::InputError>("[train]\nsteps = 3\nsteps = 4\n"), "");
+  EXPECT_NE(MessageOf<base::InputError>("[train]\nnote = unquoted\n"), "");
+}
+
+TEST(Toml, FilesAreReadAndMissingOnesNamed) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("skyquilt_options_test_" + std::to_string(getpid()) + ".toml");
+  base::WriteFileAtomically(file, "[train]\nsteps = 9\n");
+  All all;
+  ReadToml(file, all.sections);
+  EXPECT_EQ(all.train.steps, 9);
+  std::filesystem::remove(file);
+  EXPECT_THROW(ReadToml(file, all.sections), base::InputError);
+}
+
+TEST(Flatten, HashFollowsEveryValueAndNothingElse) {
+  All one;
+  All two;
+  EXPECT_EQ(Flatten(one.sections).size(), 7U);
+  EXPECT_EQ(Flatten(one.sections).at("train.rate"), "0.01");
+  EXPECT_EQ(Flatten(one.sections).at("products.render.supersample"), "1");
+  EXPECT_EQ(Hash(Flatten(one.sections)), Hash(Flatten(two.sections)));
+  EXPECT_EQ(Hash(Flatten(one.sections)).size(), 16U);
+  two.train.rate = std::nextafter(two.train.rate, 1.0);
+  EXPECT_NE(Hash(Flatten(one.sections)), Hash(Flatten(two.sections)));
+}
+
+TEST(Differences, NameEveryChangedKey) {
+  All one;
+  All two;
+  EXPECT_TRUE(Differences(Flatten(one.sections), Flatten(two.sections)).empty());
+  two.train.steps = 4000;
+  std::map<std::string, std::string> after = Flatten(two.sections);
+  after.erase("train.note");
+  after["train.zeal"] = "1";
+  EXPECT_EQ(Differences(Flatten(one.sections), after),
+            (std::vector<std::string>{"train.note: \"plain\" -> (none)", "train.steps: 2000 -> 4000", "train.zeal: (none) -> 1"}));
+}
+
+TEST(Nearest, FindsTypingErrorsOnly) {
+  const std::vector<std::string> words = {"steps", "rate", "levels", "log2_table_size"};
+  EXPECT_EQ(Nearest("stpes", words), "steps");
+  EXPECT_EQ(Nearest("level", words), "levels");
+  EXPECT_EQ(Nearest("raet", words), "rate");
+  EXPECT_EQ(Nearest("log2_tabel_sise", words), "log2_table_size");
+  EXPECT_EQ(Nearest("steps", words), "steps");
+  EXPECT_EQ(Nearest("brightness", words), "");
+  EXPECT_EQ(Nearest("anything", {}), "");
+}
+
+}  // namespace
+}  // namespace skyquilt::config

@@ -1,0 +1,230 @@
+#include "partition/make_blocks.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/base/errors.h"
+#include "tests/partition/flown_survey.h"
+
+namespace skyquilt::partition {
+namespace {
+
+PartitionOptions Request(const std::string& blocks) {
+  PartitionOptions options;
+  options.blocks = blocks;
+  return options;
+}
+
+std::string MessageOf(const PartitionOptions& options) {
+  try {
+    MakeBlocks(FlySurvey({}), options, 0);
+  } catch (const base::UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MakeBlocks, CoversTheSurveyOnce) {
+  const BlockSet set = MakeBlocks(FlySurvey({}), Request("2x3"), 0);
+  ASSERT_EQ(set.blocks.size(), 6U);
+  EXPECT_EQ(set.rows, 2);
+  EXPECT_EQ(set.columns, 3);
+  double area = 0.0;
+  double cost = 0.0;
+  for (const Block& block : set.blocks) {
+    area += (block.max_enu - block.min_enu).head<2>().prod();
+    cost += block.cost;
+    EXPECT_FALSE(block.empty) << block.name << block.empty_reason;
+    EXPECT_GT(block.cost, 0.0);
+  }
+  EXPECT_NEAR(cost, 1.0, 1e-12);
+  EXPECT_EQ(set.blocks[0].name, "r0c0");
+  EXPECT_EQ(set.blocks[5].name, "r1c2");
+  EXPECT_EQ(set.blocks[0].max_enu.x(), set.blocks[1].min_enu.x()) << "to the last bit";
+  EXPECT_EQ(set.blocks[0].max_enu.y(), set.blocks[3].min_enu.y());
+  EXPECT_LT(set.blocks[0].min_enu.y(), set.blocks[3].min_enu.y()) << "rows from the south";
+  // All of the flown ground is seen by three photos except a rim.
+  EXPECT_GT(area, 0.85 * 200 * 200);
+  EXPECT_LT(area, 1.05 * 200 * 200);
+}
+
+TEST(MakeBlocks, GroundThatFewPhotosSeeIsLeftOut) {
+  survey::Survey survey = FlySurvey({});
+  // Keep the photos over the western half only; the points stay everywhere. Their images reach 57 m to each side.
+  std::erase_if(survey.photos, [](const survey::Photo& photo) { return photo.cam_from_enu.OriginInSource().x() > 60.0; });
+  const BlockSet set = MakeBlocks(survey, Request("1x1"), 0);
+  EXPECT_GT(set.blocks[0].max_enu.x(), 88.0);
+  EXPECT_LT(set.blocks[0].max_enu.x(), 100.0);
+  PartitionOptions by_points = Request("1x1");
+  by_points.area = "points";
+  EXPECT_GT(MakeBlocks(survey, by_points, 0).blocks[0].max_enu.x(), 195.0);
+}
+
+TEST(MakeBlocks, LowBlocksAreNotAsTallAsTheTowers) {
+  FlownSurveyOptions flown;
+  flown.roof_m = 52.0;
+  const BlockSet set = MakeBlocks(FlySurvey(flown), Request("3x3"), 0);
+  EXPECT_NEAR(set.blocks[0].max_enu.z(), 12.2 + 1.5, 0.3);
+  EXPECT_NEAR(set.blocks[0].min_enu.z(), 11.8 - 1.5, 0.3);
+  EXPECT_NEAR(set.blocks[8].max_enu.z(), 52.2 + 1.5, 0.3);
+  EXPECT_NEAR(set.blocks[8].min_enu.z(), 51.8 - 1.5, 0.3);
+  // Towers and ground.
+  EXPECT_NEAR(set.blocks[4].max_enu.z(), 52.2 + 1.5, 0.3);
+  EXPECT_NEAR(set.blocks[4].min_enu.z(), 11.8 - 1.5, 0.3);
+}
+
+TEST(MakeBlocks, CapacityFollowsResolution) {
+  const survey::Survey survey = FlySurvey({});
+  const BlockSet full = MakeBlocks(survey, Request("2x2"), 0);
+  const BlockSet half = MakeBlocks(survey, Request("2x2"), 400);
+  const Block& block = full.blocks[0];
+  EXPECT_NEAR(block.altitude_agl_m, 100.0, 0.5);
+  EXPECT_NEAR(block.gsd_m, 100.0 / 700.0, 1e-3);
+  EXPECT_NEAR(block.finest_voxel_m, 1.5 * block.gsd_m, 1e-12);
+  EXPECT_NEAR(half.blocks[0].gsd_m, 2.0 * block.gsd_m, 1e-9);
+  // About 112 x 112 m in voxels of 0.214 m: 2^18.
+  EXPECT_EQ(block.log2_table_size, 18);
+  EXPECT_EQ(half.blocks[0].log2_table_size, 16);
+  EXPECT_NEAR(half.blocks[0].expected_pixels, 0.25 * block.expected_pixels, 1e-6 * block.expected_pixels);
+  EXPECT_NE(full.config_hash, half.config_hash);
+}
+
+TEST(MakeBlocks, TowersNeedMoreThanFlatGround) {
+  FlownSurveyOptions flown;
+  flown.n_points = 20000;
+  survey::Survey flat = FlySurvey(flown);
+  survey::Survey rough = flat;
+  // Houses 25 m wide and 25 m high in a chequerboard.
+  for (survey::SparsePoint& point : rough.points) {
+    const auto cell = static_cast<int>(std::floor(point.x_in_enu.x() / 25.0) + std::floor(point.x_in_enu.y() / 25.0));
+    if (cell % 2 == 0) point.x_in_enu.z() += 25.0;
+  }
+  EXPECT_GT(MakeBlocks(rough, Request("2x2"), 0).blocks[0].log2_table_size, MakeBlocks(flat, Request("2x2"), 0).blocks[0].log2_table_size);
+}
+
+TEST(MakeBlocks, GivenAltitudesSetTheResolution) {
+  PartitionOptions options = Request("2x2");
+  options.altitudes = {150, 300, 450, 600};
+  const BlockSet set = MakeBlocks(FlySurvey({}), options, 0);
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(set.blocks[i].altitude_agl_m, options.altitudes[i]);
+    EXPECT_NEAR(set.blocks[i].gsd_m, options.altitudes[i] / 700.0, 1e-9);
+  }
+  EXPECT_GT(set.blocks[0].log2_table_size, set.blocks[3].log2_table_size);
+}
+
+TEST(MakeBlocks, AltitudeComesFromThePhotosAboveTheBlock) {
+  survey::Survey survey = FlySurvey({});
+  for (survey::Photo& photo : survey.photos) {
+    Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
+    if (eye.x() > 100.0) eye.z() += 100.0;
+    photo.cam_from_enu.translation = -(photo.cam_from_enu.rotation * eye);
+  }
+  const BlockSet set = MakeBlocks(survey, Request("1x2"), 0);
+  EXPECT_NEAR(set.blocks[0].altitude_agl_m, 100.0, 1.0);
+  EXPECT_NEAR(set.blocks[1].altitude_agl_m, 200.0, 1.0);
+}
+
+TEST(MakeBlocks, AutoSplitsUntilTablesFit) {
+  PartitionOptions options = Request("auto");
+  const BlockSet one = MakeBlocks(FlySurvey({}), options, 200);
+  EXPECT_EQ(one.blocks.size(), 1U);
+  options.max_log2_table_size = 15;
+  const BlockSet several = MakeBlocks(FlySurvey({}), options, 400);
+  EXPECT_GT(several.blocks.size(), 2U);
+  options.parameter_budget = 4.0 * 32768.0;
+  const BlockSet few = MakeBlocks(FlySurvey({}), options, 800);
+  EXPECT_LE(few.blocks.size(), 4U);
+  EXPECT_GT(few.blocks.size(), 1U);
+}
+
+TEST(MakeBlocks, EmptyBlocksAreNamedAndSkipped) {
+  FlownSurveyOptions flown;
+  flown.empty_east = true;
+  survey::Survey survey = FlySurvey(flown);
+  // A few stray points keep the bounds wide, none of them in the north-eastern block.
+  for (int i = 0; i < 200; ++i) {
+    survey::SparsePoint point;
+    point.x_in_enu = {199.0, 1.0 + 0.2 * i, 12.0};
+    point.track_length = 5;
+    survey.points.push_back(point);
+  }
+  const BlockSet set = MakeBlocks(survey, Request("3x3"), 0);
+  const Block& north_east = set.blocks[8];
+  EXPECT_EQ(north_east.name, "r2c2");
+  EXPECT_TRUE(north_east.empty);
+  EXPECT_EQ(north_east.empty_reason, "no sparse point lies in it");
+  EXPECT_EQ(north_east.cost, 0.0);
+  EXPECT_TRUE(north_east.photos.empty());
+  EXPECT_FALSE(set.blocks[0].empty);
+}
+
+TEST(MakeBlocks, ABlockNobodyPhotographedIsEmpty) {
+  survey::Survey survey = FlySurvey({});
+  std::erase_if(survey.photos, [](const survey::Photo& photo) { return photo.cam_from_enu.OriginInSource().x() > 60.0; });
+  PartitionOptions options = Request("1x4");
+  options.area = "points";
+  const BlockSet set = MakeBlocks(survey, options, 0);
+  EXPECT_TRUE(set.blocks[3].empty);
+  EXPECT_EQ(set.blocks[3].empty_reason, "no training photo sees it");
+  EXPECT_FALSE(set.blocks[0].empty);
+}
+
+TEST(MakeBlocks, WrongRequestsAreClear) {
+  PartitionOptions options = Request("2x2");
+  options.altitudes = {150, -20, 300, 300};
+  EXPECT_NE(MessageOf(options).find("altitudes[1] = -20"), std::string::npos) << MessageOf(options);
+  options.altitudes = {150, std::nan(""), 300, 300};
+  EXPECT_NE(MessageOf(options).find("altitudes[1]"), std::string::npos);
+  options.altitudes = {150, 300, 300};
+  EXPECT_NE(MessageOf(options).find("3 altitude(s)"), std::string::npos) << MessageOf(options);
+  EXPECT_NE(MessageOf(options).find("4 block(s)"), std::string::npos);
+  options = Request("size:50");
+  options.altitudes = {150};
+  EXPECT_NE(MessageOf(options).find("1 altitude(s)"), std::string::npos);
+  for (const char* blocks : {"0x2", "size:0", "size:-10", "size:nan", "2by2"}) EXPECT_NE(MessageOf(Request(blocks)), "") << blocks;
+  options = Request("1x1");
+  options.voxel_per_gsd = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(MessageOf(options).find("voxel_per_gsd"), std::string::npos);
+  options = Request("1x1");
+  options.min_log2_table_size = 20;
+  EXPECT_NE(MessageOf(options).find("min_log2_table_size"), std::string::npos);
+  EXPECT_THROW(MakeBlocks(FlySurvey({}), Request("1x1"), -3), base::UsageError);
+}
+
+TEST(MakeBlocks, SurveysWithoutAreaAreRefused) {
+  survey::Survey no_points = FlySurvey({});
+  no_points.points.clear();
+  EXPECT_THROW(MakeBlocks(no_points, Request("1x1"), 0), base::InputError);
+  survey::Survey no_photos = FlySurvey({});
+  no_photos.photos.clear();
+  EXPECT_THROW(MakeBlocks(no_photos, Request("1x1"), 0), base::InputError);
+  survey::Survey one_place = FlySurvey({});
+  for (survey::SparsePoint& point : one_place.points) point.x_in_enu = {3, 3, 3};
+  EXPECT_THROW(MakeBlocks(one_place, Request("1x1"), 0), base::InputError);
+}
+
+// The same survey a thousand times smaller or larger gives the same partition: nothing depends on metres alone but the margins' wishes.
+RC_GTEST_PROP(MakeBlocks, WorksAtAnyScale, ()) {
+  const double scale = std::pow(10.0, *rc::gen::inRange(-2, 4));
+  FlownSurveyOptions flown;
+  flown.width_m *= scale;
+  flown.height_m *= scale;
+  flown.agl_m *= scale;
+  flown.n_points = 2000;
+  const BlockSet set = MakeBlocks(FlySurvey(flown), Request("2x2"), 0);
+  for (const Block& block : set.blocks) {
+    RC_ASSERT(!block.empty);
+    RC_ASSERT(block.log2_table_size >= 17 && block.log2_table_size <= 19);
+    const Eigen::Vector3d extent = block.max_enu - block.min_enu;
+    RC_ASSERT(block.margin_m > 0.0 && block.margin_m <= 0.2501 * extent.head<2>().minCoeff());
+    RC_ASSERT(extent.z() > 16.0 * block.gsd_m);
+    RC_ASSERT(extent.allFinite());
+  }
+}
+
+}  // namespace
+}  // namespace skyquilt::partition

@@ -1,0 +1,98 @@
+#include "worker/block_session.h"
+
+#include "core/base/errors.h"
+#include "core/base/log.h"
+
+namespace skyquilt::worker {
+
+void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
+                 const std::vector<float>& tile_depth) {
+  field::TrainableState& state = trainer.state();
+  target.steps = state.step;
+  target.seconds = record.seconds;
+  target.samples = record.samples;
+  // Lent, not copied: tables are the largest thing in memory.
+  target.grid.swap(state.grid);
+  target.networks.swap(state.networks);
+  struct Return {
+    render::TrainedField& target;
+    field::TrainableState& state;
+    ~Return() {
+      target.grid.swap(state.grid);
+      target.networks.swap(state.networks);
+    }
+  } give_back{target, state};
+
+  checkpoint::ArchiveWriter writer(kind, kCheckpointVersion);
+  render::PutField(target, "", writer);
+  writer.Put("grid_moment1", state.grid_moment1);
+  writer.Put("grid_moment2", state.grid_moment2);
+  writer.Put("network_moment1", state.network_moment1);
+  writer.Put("network_moment2", state.network_moment2);
+  writer.SetAttribute("config_hash", job.config_hash);
+  writer.SetAttribute("seed", static_cast<int64_t>(job.seed));
+  writer.SetAttribute("rays_per_step", static_cast<int64_t>(trainer.rays_per_step()));
+  writer.SetAttribute("rays", record.rays);
+  writer.SetAttribute("dropped_steps", static_cast<int64_t>(record.dropped_steps));
+  writer.SetAttribute("mean_squared_error", record.mean_squared_error);
+  writer.SetAttribute("complete", static_cast<int64_t>(record.complete ? 1 : 0));
+  writer.SetAttribute("reference_exposure", job.reference_exposure);
+  writer.SetAttribute("origin_latitude_deg", job.survey->origin.latitude_deg);
+  writer.SetAttribute("origin_longitude_deg", job.survey->origin.longitude_deg);
+  writer.SetAttribute("origin_height_m", job.survey->origin.height_m);
+  if (!tile_depth.empty()) {
+    writer.Put("tile_depth", tile_depth, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns});
+  }
+  writer.Commit(job.checkpoint);
+}
+
+bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record) {
+  if (!std::filesystem::exists(job.checkpoint) && !std::filesystem::exists(job.checkpoint.string() + ".prev")) return false;
+  std::string why;
+  const std::filesystem::path usable = checkpoint::NewestUsable(job.checkpoint, kind, &why);
+  if (usable.empty()) {
+    spdlog::warn("{}: cannot be used ({}); training this field from the start", job.checkpoint.string(), why);
+    return false;
+  }
+  const checkpoint::ArchiveReader reader(usable);
+  if (reader.StringAttribute("config_hash") != job.config_hash) {
+    throw base::UsageError(usable.string() +
+                           ": was trained with another configuration. Use the configuration it was trained with, or --restart to train anew");
+  }
+  render::TrainedField loaded = render::GetField(reader, usable, "");
+  field::TrainableState& state = trainer.state();
+  const auto take = [&](std::vector<float>& to, std::vector<float> from, const char* name) {
+    if (from.size() != to.size()) {
+      throw base::InputError(usable, std::string("array '") + name + "' has another size than this configuration", "Train again with --restart");
+    }
+    to = std::move(from);
+  };
+  take(state.grid, std::move(loaded.grid), "grid");
+  take(state.networks, std::move(loaded.networks), "networks");
+  take(state.grid_moment1, reader.Floats("grid_moment1"), "grid_moment1");
+  take(state.grid_moment2, reader.Floats("grid_moment2"), "grid_moment2");
+  take(state.network_moment1, reader.Floats("network_moment1"), "network_moment1");
+  take(state.network_moment2, reader.Floats("network_moment2"), "network_moment2");
+  target.occupancy = std::move(loaded.occupancy);
+  state.step = loaded.steps;
+  trainer.rays_per_step() = static_cast<int>(reader.IntAttribute("rays_per_step"));
+  record->seconds = loaded.seconds;
+  record->samples = loaded.samples;
+  record->rays = reader.IntAttribute("rays");
+  record->dropped_steps = static_cast<int>(reader.IntAttribute("dropped_steps"));
+  record->mean_squared_error = reader.DoubleAttribute("mean_squared_error");
+  record->complete = reader.IntAttribute("complete") != 0;
+  return true;
+}
+
+LoadedContext LoadContext(const std::filesystem::path& checkpoint) {
+  std::string why;
+  const std::filesystem::path usable = checkpoint::NewestUsable(checkpoint, "context", &why);
+  if (usable.empty()) throw base::InputError(checkpoint, "the context cannot be read (" + why + ")", "Train it again with --restart");
+  const checkpoint::ArchiveReader reader(usable);
+  LoadedContext context{render::GetField(reader, usable, ""), {}};
+  if (reader.Has("tile_depth")) context.tile_depth = reader.Floats("tile_depth");
+  return context;
+}
+
+}  // namespace skyquilt::worker

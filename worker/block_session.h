@@ -1,0 +1,41 @@
+// The life of one field on disk: parameters, moments, occupancy, step, adaptive batch and the configuration hash.
+// Random numbers are functions of (seed, step), so the step is all their state.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "worker/field_trainer.h"
+#include "worker/trainer.h"
+
+namespace skyquilt::worker {
+
+constexpr int kCheckpointVersion = 1;
+
+struct SessionRecord {
+  double seconds = 0.0;
+  int64_t samples = 0;
+  int64_t rays = 0;
+  int dropped_steps = 0;
+  double mean_squared_error = 0.0;  // running mean of training rays
+  bool complete = false;
+};
+
+// kind: "context" or "block". Extra arrays (the context's tile depths) may be empty. Throws base::InputError.
+void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
+                 const std::vector<float>& tile_depth);
+
+// True when a usable checkpoint was found and loaded. Damaged files fall back to the previous one with a warning; when both are damaged
+// training starts anew with a warning. Throws base::UsageError when the file belongs to another configuration.
+bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record);
+
+// The trained context with the depth (metres along the ray, NaN where open) seen at every tile's centre:
+// [photo][row][column], kTileRows x kTileColumns per photo.
+struct LoadedContext {
+  render::TrainedField field;
+  std::vector<float> tile_depth;
+};
+LoadedContext LoadContext(const std::filesystem::path& checkpoint);
+
+}  // namespace skyquilt::worker

@@ -1,0 +1,72 @@
+#include "worker/ray_source.h"
+
+#include <algorithm>
+
+namespace skyquilt::worker {
+
+RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixels, const std::vector<float>& gains)
+    : survey_(survey), pixels_(pixels), gains_(gains) {
+  for (size_t i = 0; i < survey.photos.size(); ++i) {
+    const survey::Photo& photo = survey.photos[i];
+    cameras_.push_back(survey.cameras[static_cast<size_t>(photo.camera)].Resized(pixels.Width(i), pixels.Height(i)));
+    enu_from_cam_.push_back(photo.cam_from_enu.Inverse());
+  }
+}
+
+void RaySource::SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, double empty_share) {
+  inside_ = std::move(inside);
+  empty_ = std::move(empty);
+  empty_share_ = empty_.empty() ? 0.0 : empty_share;
+}
+
+void RaySource::RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vector3d* origin_enu, Eigen::Vector3d* direction_enu) const {
+  const geo::Rigid3d& pose = enu_from_cam_[static_cast<size_t>(photo)];
+  *origin_enu = pose.translation;
+  *direction_enu = (pose.rotation * cameras_[static_cast<size_t>(photo)].RayFromImg(pixel)).normalized();
+}
+
+Eigen::Vector2d RaySource::TileCentre(const Tile& tile) const {
+  const auto photo = static_cast<size_t>(tile.photo);
+  return {(tile.column + 0.5) * pixels_.Width(photo) / kTileColumns, (tile.row + 0.5) * pixels_.Height(photo) / kTileRows};
+}
+
+bool RaySource::Draw(base::Random& random, PixelRay* ray) const {
+  for (int attempt = 0; attempt < 8; ++attempt) {
+    const bool empty = static_cast<double>(random.Uniform()) < empty_share_;
+    const std::vector<Tile>& tiles = empty ? empty_ : inside_;
+    const Tile& tile = tiles[random.Below(static_cast<uint32_t>(tiles.size()))];
+    const auto photo = static_cast<size_t>(tile.photo);
+    const int width = pixels_.Width(photo);
+    const int height = pixels_.Height(photo);
+    const auto along = [&](int index, int count, int size) {
+      const int begin = index * size / count;
+      const int end = std::max(begin + 1, (index + 1) * size / count);
+      return std::min(size - 1, begin + static_cast<int>(random.Below(static_cast<uint32_t>(end - begin))));
+    };
+    const int x = along(tile.column, kTileColumns, width);
+    const int y = along(tile.row, kTileRows, height);
+    const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+    const auto mask = pixels_.Mask(photo);
+    if (!mask.empty() && mask[pixel] == 0) continue;
+    const auto rgb = pixels_.Rgb(photo).subspan(pixel * 3, 3);
+    RayThrough(tile.photo, Eigen::Vector2d(x + 0.5, y + 0.5), &ray->origin_enu, &ray->direction_enu);
+    for (size_t c = 0; c < 3; ++c) ray->target_srgb[c] = static_cast<float>(rgb[c]) / 255.0F;
+    ray->gain = gains_[photo];
+    ray->empty = empty;
+    return true;
+  }
+  return false;
+}
+
+std::vector<Tile> TrainingTiles(const survey::Survey& survey, const std::vector<int>& photos) {
+  std::vector<Tile> tiles;
+  for (const int photo : photos) {
+    if (survey.photos[static_cast<size_t>(photo)].is_test) continue;
+    for (int row = 0; row < kTileRows; ++row) {
+      for (int column = 0; column < kTileColumns; ++column) tiles.push_back({photo, static_cast<int16_t>(column), static_cast<int16_t>(row)});
+    }
+  }
+  return tiles;
+}
+
+}  // namespace skyquilt::worker

@@ -12,13 +12,15 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr size_t kDirections = 48;
+constexpr size_t kDirections = 32;  // over the upper half of the sphere; what comes from below is the ground's mean light
 static_assert(kDirections % kPacket == 0);
 
-std::array<Vector3f, kDirections> SphereDirections() {
+constexpr float kShare = 0.5F / static_cast<float>(kDirections);  // of the whole sphere
+
+std::array<Vector3f, kDirections> SkyDirections() {
   std::array<Vector3f, kDirections> directions;
   for (size_t i = 0; i < kDirections; ++i) {
-    const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / kDirections;
+    const double z = 1.0 - (static_cast<double>(i) + 0.5) / kDirections;
     const double angle = static_cast<double>(i) * std::numbers::pi * (3.0 - std::sqrt(5.0));
     const double r = std::sqrt(1.0 - z * z);
     directions[i] = Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), z).cast<float>();
@@ -39,7 +41,7 @@ AmbientVolume::AmbientVolume(const Mesh& mesh, const TracedScene& scene, const S
   min_ = low;
   const Vector3f extent = high - low;
   for (int axis = 0; axis < 3; ++axis) size_[static_cast<size_t>(axis)] = static_cast<int>(extent[axis] / voxel_m) + 2;
-  const std::array<Vector3f, kDirections> directions = SphereDirections();
+  const std::array<Vector3f, kDirections> directions = SkyDirections();
   const auto nx = static_cast<size_t>(size_[0]);
   const auto ny = static_cast<size_t>(size_[1]);
   const auto nz = static_cast<size_t>(size_[2]);
@@ -55,6 +57,9 @@ AmbientVolume::AmbientVolume(const Mesh& mesh, const TracedScene& scene, const S
           min_ + voxel_m_ * Vector3f(static_cast<float>(i) + 0.013F, static_cast<float>(row % ny) + 0.017F, static_cast<float>(row / ny) + 0.11F);
       Node& node = node_[row * nx + i];
       int n_inside = 0;
+      // The lower half of the sphere, whole: mean of the directions there is half a unit down.
+      node.harmonics.col(0) = 0.5F * 0.85F * sky.ground_radiance();
+      node.harmonics.col(3) = -0.25F * 3.0F * 0.85F * sky.ground_radiance();
       for (size_t begin = 0; begin < kDirections; begin += kPacket) {
         for (size_t lane = 0; lane < kPacket; ++lane) rays.Set(lane, place, directions[begin + lane], 0.0F, 1e6F);
         scene.Intersect(rays);
@@ -64,8 +69,8 @@ AmbientVolume::AmbientVolume(const Mesh& mesh, const TracedScene& scene, const S
           // Seeing the back of a closed surface means being inside it.
           if (hit != kNoTriangle && mesh.FaceNormal(hit).dot(d) > 0.0F && mesh.tag[hit].part != Part::kLeaves) ++n_inside;
           const Vector3f light = hit == kNoTriangle ? open_sky[begin + lane] : Vector3f(0.85F * sky.ground_radiance());
-          node.harmonics.col(0) += light / static_cast<float>(kDirections);
-          node.harmonics.rightCols<3>() += light * d.transpose() * (3.0F / static_cast<float>(kDirections));
+          node.harmonics.col(0) += light * kShare;
+          node.harmonics.rightCols<3>() += light * d.transpose() * (3.0F * kShare);
         }
       }
       // Nodes inside solids count only where a surface has no other neighbour.

@@ -124,13 +124,15 @@ const char* RoofName(RoofKind roof) {
   return "";
 }
 
-Vector3f Building::Local(const Vector3f& x_in_enu) const {
+Eigen::Vector2d Building::Axis() const {
   const double yaw = yaw_deg * std::numbers::pi / 180.0;
-  const auto c = static_cast<float>(std::cos(yaw));
-  const auto s = static_cast<float>(std::sin(yaw));
+  return {std::cos(yaw), std::sin(yaw)};
+}
+
+Vector3f Building::Local(const Vector3f& x_in_enu, const Eigen::Vector2f& axis) const {
   const float x = x_in_enu.x() - static_cast<float>(centre.x());
   const float y = x_in_enu.y() - static_cast<float>(centre.y());
-  return {c * x + s * y, c * y - s * x, x_in_enu.z() - static_cast<float>(ground_z_m)};
+  return {axis.x() * x + axis.y() * y, axis.x() * y - axis.y() * x, x_in_enu.z() - static_cast<float>(ground_z_m)};
 }
 
 double Building::DistanceTo(const Eigen::Vector2d& point) const {

@@ -26,8 +26,12 @@ struct Building {
   double ground_z_m = 0.0;                           // ENU height of the ground at the centre
   uint32_t seed = 0;
 
+  // Unit vector of the length axis on the map.
+  Eigen::Vector2d Axis() const;
   // ENU to the building's own axes: x along the length, y along the width, z above ground_z_m.
-  Eigen::Vector3f Local(const Eigen::Vector3f& x_in_enu) const;
+  Eigen::Vector3f Local(const Eigen::Vector3f& x_in_enu) const { return Local(x_in_enu, Axis().cast<float>()); }
+  // The same with Axis() at hand.
+  Eigen::Vector3f Local(const Eigen::Vector3f& x_in_enu, const Eigen::Vector2f& axis) const;
   // Distance of a point on the map to the walls, metres; negative inside.
   double DistanceTo(const Eigen::Vector2d& point) const;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "coordinator/simulate/noise.h"
 
@@ -36,20 +35,8 @@ Vector3f Pick(const std::array<std::array<float, 3>, N>& palette, int channel, u
   return Vector3f(color[0], color[1], color[2]) * (0.92F + 0.16F * HashUnit(channel, 1, seed));
 }
 
-// The building's axes in ENU, as two rows.
-struct Axes {
-  Eigen::Vector2f along, across;
-};
-
-Axes AxesOf(const Building& b) {
-  const double yaw = b.yaw_deg * std::numbers::pi / 180.0;
-  const auto c = static_cast<float>(std::cos(yaw));
-  const auto s = static_cast<float>(std::sin(yaw));
-  return {{c, s}, {-s, c}};
-}
-
-void Wall(const Building& b, const Hit& hit, const Vector3f& local, Surface& surface) {
-  const bool end_wall = std::abs(hit.normal.head<2>().dot(AxesOf(b).along)) > 0.7F;
+void Wall(const Building& b, const Eigen::Vector2f& axis, const Hit& hit, const Vector3f& local, Surface& surface) {
+  const bool end_wall = std::abs(hit.normal.head<2>().dot(axis)) > 0.7F;
   const float span = static_cast<float>(end_wall ? b.width_m : b.length_m);
   const float s = (end_wall ? local.y() : local.x()) + 0.5F * span;
   const float z = local.z();
@@ -95,10 +82,9 @@ void Wall(const Building& b, const Hit& hit, const Vector3f& local, Surface& sur
   surface.mirror_normal = hit.normal;
 }
 
-void PitchedRoof(const Building& b, const Hit& hit, const Vector3f& local, Surface& surface) {
-  const Axes axes = AxesOf(b);
+void PitchedRoof(const Building& b, const Eigen::Vector2f& axis, const Hit& hit, const Vector3f& local, Surface& surface) {
   const Eigen::Vector2f fall = hit.normal.head<2>();
-  const bool hip_end = std::abs(fall.dot(axes.along)) > std::abs(fall.dot(axes.across));
+  const bool hip_end = std::abs(fall.dot(axis)) > std::abs(fall.dot(Eigen::Vector2f(-axis.y(), axis.x())));
   const float level = hip_end ? local.y() : local.x();  // along the tile rows
   const float down = hip_end ? local.x() : local.y();
   const float w = SurfaceFootprint(hit);
@@ -150,18 +136,18 @@ void FlatRoof(const Building& b, const Hit& hit, const Vector3f& local, Surface&
 
 }  // namespace
 
-Surface BuildingSurface(const Building& b, const Hit& hit) {
-  const Vector3f local = b.Local(hit.position);
+Surface BuildingSurface(const Building& b, const Eigen::Vector2f& axis, const Hit& hit) {
+  const Vector3f local = b.Local(hit.position, axis);
   Surface surface;
   surface.normal = hit.normal;
   const float w = SurfaceFootprint(hit);
   const float grain = 1.0F + 0.07F * FractalNoise(local.x() + local.z(), local.y() + 0.7F * local.z(), {2.5F, 3, 0.5F}, b.seed + 60U, w);
   switch (hit.tag.part) {
     case Part::kWall:
-      Wall(b, hit, local, surface);
+      Wall(b, axis, hit, local, surface);
       break;
     case Part::kPitchedRoof:
-      PitchedRoof(b, hit, local, surface);
+      PitchedRoof(b, axis, hit, local, surface);
       break;
     case Part::kFlatRoof:
       FlatRoof(b, hit, local, surface);

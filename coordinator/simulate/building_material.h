@@ -6,6 +6,7 @@
 
 namespace skyquilt::simulate {
 
-Surface BuildingSurface(const Building& building, const Hit& hit);
+// axis: building.Axis(), which costs too much to find again for every ray.
+Surface BuildingSurface(const Building& building, const Eigen::Vector2f& axis, const Hit& hit);
 
 }  // namespace skyquilt::simulate

@@ -24,18 +24,18 @@ struct Place {
 };
 
 Vector3f Asphalt(const Place& at, float tint) {
-  const float tone = 1.0F + 0.10F * at.Noise(14.0F, 3, 1) + 0.09F * at.Noise(1.9F, 3, 2);
+  const float tone = 1.0F + 0.12F * at.Noise(14.0F, 3, 1) + 0.12F * at.Noise(2.3F, 3, 2);
   return Vector3f(0.100F, 0.101F, 0.106F) * tint * tone;
 }
 
 Vector3f Grass(const Place& at, float dryness, float tint) {
   const float dry = std::clamp(dryness + 0.33F * at.Noise(21.0F, 4, 3), 0.0F, 1.0F);
   const Vector3f base = Mix({0.072F, 0.128F, 0.034F}, {0.190F, 0.178F, 0.082F}, dry);
-  return base * tint * (1.0F + 0.17F * at.Noise(3.1F, 4, 4, 0.6F));
+  return base * tint * (1.0F + 0.21F * at.Noise(3.1F, 4, 4, 0.6F));
 }
 
 Vector3f Concrete(const Place& at, const Vector3f& base) {
-  return base * (1.0F + 0.08F * at.Noise(7.0F, 3, 5) + 0.07F * at.Noise(1.3F, 2, 6));
+  return base * (1.0F + 0.09F * at.Noise(7.0F, 3, 5) + 0.09F * at.Noise(1.7F, 2, 6));
 }
 
 Vector3f Road(const GroundSample& ground, const Place& at) {

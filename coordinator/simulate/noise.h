@@ -77,7 +77,7 @@ inline float FractalNoise(float x, float y, const FractalShape& shape, uint32_t 
 // Share of [x - width/2, x + width/2] covered by bars [0, duty) of a pattern with period 1: the exact box filter of a pulse train.
 inline float PulseTrain(float x, float duty, float width) {
   const auto integral = [duty](float at) {
-    const float whole = std::floor(at);
+    const auto whole = static_cast<float>(FloorInt(at));
     return whole * duty + std::min(at - whole, duty);
   };
   const float w = std::max(width, 1e-4F);

@@ -90,7 +90,7 @@ Preset SmallCity() {
   preset.camera = MakeCamera(camera::CameraModel::kPinhole, 640, 360, 70.0, {});
   preset.gps_noise_m = 1.0;
   preset.moving_cars = 12;
-  preset.ambient_voxel_m = 4.0;
+  preset.ambient_voxel_m = 6.0;
   return preset;
 }
 

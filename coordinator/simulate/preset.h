@@ -52,7 +52,7 @@ struct Preset {
   int moving_cars = 3;
   double sun_azimuth_deg = 140.0;
   double sun_elevation_deg = 48.0;
-  double ambient_voxel_m = 2.0;
+  double ambient_voxel_m = 3.0;
   double sky_clouds = 0.0;  // 0..1, contrast of the clouds that wet surfaces mirror
 };
 

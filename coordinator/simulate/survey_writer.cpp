@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kFirstPhoto_s = 1777888800.0;  // 2026-05-04 10:00:00 on the camera's clock
 // So bright that grass in the sun comes out in the middle of the scale.
-constexpr float kNormalExposure = 0.92F;
+constexpr float kNormalExposure = 1.35F;
 
 // The options as they were given, for the record.
 class JsonVisitor : public config::OptionVisitor {

@@ -57,6 +57,7 @@ void World::BuildCity(const Preset& preset, const Eigen::Vector2d& ground_min, c
   };
   for (size_t i = 0; i < contents.buildings.size(); ++i) {
     contents.buildings[i].ground_z_m = Ground(contents.buildings[i].centre);
+    building_axis_.push_back(contents.buildings[i].Axis().cast<float>());
     AddBuilding(contents.buildings[i], static_cast<uint32_t>(i), mesh_);
   }
   for (size_t i = 0; i < contents.trees.size(); ++i) {
@@ -115,7 +116,7 @@ Surface World::SurfaceAt(const Hit& hit) const {
     case Part::kCarTyre:
       return CarSurface(city_->contents().parked[hit.tag.object], hit);
     default:
-      return BuildingSurface(city_->contents().buildings[hit.tag.object], hit);
+      return BuildingSurface(city_->contents().buildings[hit.tag.object], building_axis_[hit.tag.object], hit);
   }
 }
 

@@ -51,6 +51,7 @@ class World {
   std::unique_ptr<TidalChannels> channels_;
   std::unique_ptr<Terrain> terrain_;
   std::vector<MovingCar> moving_;
+  std::vector<Eigen::Vector2f> building_axis_;
   Mesh mesh_;
   std::unique_ptr<TracedScene> scene_;
   Sky sky_;

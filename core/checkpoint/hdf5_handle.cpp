@@ -1,9 +1,15 @@
 #include "core/checkpoint/hdf5_handle.h"
 
+#include <hdf5.h>
+
+#include <type_traits>
+
 #include "core/base/errors.h"
 
 namespace skyquilt::checkpoint {
 namespace {
+
+static_assert(std::is_same_v<HdfId, hid_t> && std::is_same_v<HdfSize, hsize_t> && std::is_same_v<int, herr_t>);
 
 std::mutex& LibraryMutex() {
   static std::mutex mutex;

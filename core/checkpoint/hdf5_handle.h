@@ -1,14 +1,18 @@
-// HDF5 identifiers that close themselves, one lock for the library, and its last error as text. Private to this room's .cpp files.
+// HDF5 identifiers that close themselves, one lock for the library, and its last error as text. Private to this room's .cpp files;
+// spelled with plain integers so that hdf5.h stays in those (hdf5_handle.cpp asserts that they are the library's types).
 #pragma once
 
-#include <hdf5.h>
-
+#include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace skyquilt::checkpoint {
+
+using HdfId = int64_t;               // hid_t
+using HdfSize = unsigned long long;  // hsize_t
 
 // Holds the library's lock and silences its own error printing.
 class HdfLock {
@@ -21,9 +25,9 @@ class HdfLock {
 
 class Handle {
  public:
-  using Closer = herr_t (*)(hid_t);
+  using Closer = int (*)(HdfId);
   Handle() = default;
-  Handle(hid_t id, Closer closer) : id_(id), closer_(closer) {}
+  Handle(HdfId id, Closer closer) : id_(id), closer_(closer) {}
   ~Handle() { Close(); }
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), closer_(other.closer_) {}
   Handle& operator=(Handle&& other) noexcept {
@@ -35,7 +39,7 @@ class Handle {
   Handle& operator=(const Handle&) = delete;
 
   bool Valid() const { return id_ >= 0; }
-  hid_t id() const { return id_; }
+  HdfId id() const { return id_; }
   // False if closing failed, as it does when buffered data meets a full disk.
   bool Close() {
     if (id_ < 0) return true;
@@ -43,7 +47,7 @@ class Handle {
   }
 
  private:
-  hid_t id_ = -1;
+  HdfId id_ = -1;
   Closer closer_ = nullptr;
 };
 
@@ -54,12 +58,12 @@ std::string HdfErrorText();
 enum class ElementType { kFloat32, kFloat64, kUint8, kInt64 };
 size_t ElementBytes(ElementType type);
 const char* ElementName(ElementType type);
-hid_t FileType(ElementType type);    // little-endian, never closed
-hid_t MemoryType(ElementType type);  // native, never closed
+HdfId FileType(ElementType type);    // little-endian, never closed
+HdfId MemoryType(ElementType type);  // native, never closed
 
 // File access: format of HDF5 1.10 (checksummed metadata), no file locks (parallel file systems often lack them).
 Handle FileAccess();
 // rank 0 is not used; `shape` has at least one dimension.
-Handle SimpleSpace(const std::vector<hsize_t>& shape);
+Handle SimpleSpace(const std::vector<HdfSize>& shape);
 
 }  // namespace skyquilt::checkpoint

@@ -31,7 +31,7 @@ const std::map<std::string, std::set<std::string>>& CoreArrows() {
       {"field", {"encoding", "kernel", "base"}},
       {"render", {"field", "encoding", "kernel", "camera", "geo", "checkpoint", "image", "base"}},
       {"metrics", {"image", "base"}},
-      {"brightness", {"image", "base"}},
+      {"brightness", {"image", "config", "base"}},
   };
   return arrows;
 }

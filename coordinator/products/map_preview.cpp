@@ -1,0 +1,147 @@
+#include "coordinator/products/map_preview.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "coordinator/products/geotiff.h"
+#include "core/base/file.h"
+
+namespace skyquilt::products {
+namespace {
+
+constexpr int kLattice = 32;  // exact nodes along each side of a preview
+
+// Cell coordinates in the map for each pixel of a preview over the scene's box.
+class CellLookup {
+ public:
+  CellLookup(const render::SceneInfo& info, const MapGrid& grid, int width, int height) : width_(width), height_(height) {
+    const MapProjection projection(info, grid);
+    const double z = 0.5 * (info.min_enu.z() + info.max_enu.z());
+    for (int j = 0; j <= kLattice; ++j) {
+      for (int i = 0; i <= kLattice; ++i) {
+        const double x = info.min_enu.x() + (info.max_enu.x() - info.min_enu.x()) * i / kLattice;
+        const double y = info.max_enu.y() - (info.max_enu.y() - info.min_enu.y()) * j / kLattice;
+        nodes_.push_back(grid.CellOf(projection.EastingNorthing({x, y, z})));
+      }
+    }
+  }
+  Eigen::Vector2d At(int x, int y) const {
+    const double u = (x + 0.5) / width_ * kLattice;
+    const double v = (y + 0.5) / height_ * kLattice;
+    const int i = std::min(static_cast<int>(u), kLattice - 1);
+    const int j = std::min(static_cast<int>(v), kLattice - 1);
+    const double fu = u - i;
+    const double fv = v - j;
+    return (1 - fv) * ((1 - fu) * Node(j, i) + fu * Node(j, i + 1)) + fv * ((1 - fu) * Node(j + 1, i) + fu * Node(j + 1, i + 1));
+  }
+
+ private:
+  const Eigen::Vector2d& Node(int j, int i) const { return nodes_[static_cast<size_t>(j) * (kLattice + 1) + static_cast<size_t>(i)]; }
+  int width_;
+  int height_;
+  std::vector<Eigen::Vector2d> nodes_;
+};
+
+// The pixel of the reduced map nearest to a cell of the full one; null outside.
+const float* Sample(const ReducedRaster& raster, const Eigen::Vector2d& cell) {
+  const double x = std::floor((cell.x() + 0.5) / raster.scale);
+  const double y = std::floor((cell.y() + 0.5) / raster.scale_down);
+  if (!(x >= 0.0 && y >= 0.0 && x < raster.image.width && y < raster.image.height)) return nullptr;
+  return raster.image.At(static_cast<int>(x), static_cast<int>(y));
+}
+
+image::Image8 OrthophotoPreview(const ReducedRaster& raster, const CellLookup& lookup, int width, int height) {
+  image::Image8 preview(width, height, 3, 255);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const float* rgba = Sample(raster, lookup.At(x, y));
+      if (rgba == nullptr || rgba[3] < 128.0F) continue;
+      for (int c = 0; c < 3; ++c) preview.At(x, y)[c] = static_cast<uint8_t>(std::lround(std::clamp(rgba[c], 0.0F, 255.0F)));
+    }
+  }
+  return preview;
+}
+
+image::ImageF HeightPreview(const ReducedRaster& raster, const CellLookup& lookup, int width, int height) {
+  image::ImageF preview(width, height, 1, std::numeric_limits<float>::quiet_NaN());
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (const float* value = Sample(raster, lookup.At(x, y))) *preview.At(x, y) = *value;
+    }
+  }
+  return preview;
+}
+
+float OrderStatistic(std::vector<float>& values, double share) {
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::floor(share * static_cast<double>(values.size() - 1)));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+// Central difference where both neighbours exist, one-sided at the rim of the data, 0 for a lone pixel.
+double Slope(const image::ImageF& height, int x, int y, int dx, int dy, double cell_m) {
+  const auto at = [&](int px, int py) {
+    const bool inside = px >= 0 && py >= 0 && px < height.width && py < height.height;
+    return inside ? static_cast<double>(*height.At(px, py)) : std::numeric_limits<double>::quiet_NaN();
+  };
+  const double here = at(x, y);
+  const double before = at(x - dx, y - dy);
+  const double after = at(x + dx, y + dy);
+  if (std::isfinite(before) && std::isfinite(after)) return (after - before) / (2.0 * cell_m);
+  if (std::isfinite(after)) return (after - here) / cell_m;
+  if (std::isfinite(before)) return (here - before) / cell_m;
+  return 0.0;
+}
+
+}  // namespace
+
+image::Image8 ShadedRelief(const image::ImageF& height_m, double cell_m) {
+  std::vector<float> finite;
+  for (const float value : height_m.data) {
+    if (std::isfinite(value)) finite.push_back(value);
+  }
+  image::Image8 relief(height_m.width, height_m.height, 3, 255);
+  if (finite.empty()) return relief;
+  const float low = OrderStatistic(finite, 0.02);
+  const float high = std::max(OrderStatistic(finite, 0.98), low + 1e-3F);
+  const image::Image8 colored = image::Colorize(height_m, low, high);
+  const Eigen::Vector3d light = Eigen::Vector3d(-1.0, 1.0, std::sqrt(2.0)).normalized();
+  for (int y = 0; y < height_m.height; ++y) {
+    for (int x = 0; x < height_m.width; ++x) {
+      if (!std::isfinite(*height_m.At(x, y))) continue;
+      const double to_east = Slope(height_m, x, y, 1, 0, cell_m);
+      const double to_north = -Slope(height_m, x, y, 0, 1, cell_m);
+      const double shade = 0.35 + 0.65 * std::max(0.0, Eigen::Vector3d(-to_east, -to_north, 1.0).normalized().dot(light)) * std::sqrt(2.0);
+      for (int c = 0; c < 3; ++c) {
+        const double value = static_cast<double>(colored.At(x, y)[c]) * shade;
+        relief.At(x, y)[c] = static_cast<uint8_t>(std::lround(std::min(value, 255.0)));
+      }
+    }
+  }
+  return relief;
+}
+
+void WriteMapPreviews(const render::SceneInfo& info, const MapGrid& grid, const std::filesystem::path& orthophoto, const std::filesystem::path& dsm,
+                      const std::filesystem::path& folder, int preview_width) {
+  const Eigen::Vector2d extent = (info.max_enu - info.min_enu).head<2>();
+  const int full_width = std::max(1, static_cast<int>(std::ceil(extent.x() / grid.resolution_m)));
+  const int width = std::min(preview_width, full_width);
+  const int height = std::clamp(static_cast<int>(std::lround(width * extent.y() / extent.x())), 1, 8 * preview_width);
+  const CellLookup lookup(info, grid, width, height);
+  if (!orthophoto.empty()) {
+    image::SavePng(OrthophotoPreview(ReadReduced(orthophoto, preview_width), lookup, width, height), folder / "orthophoto.png");
+  }
+  if (!dsm.empty()) {
+    image::SavePng(ShadedRelief(HeightPreview(ReadReduced(dsm, preview_width), lookup, width, height), extent.x() / width), folder / "dsm.png");
+  }
+  const nlohmann::ordered_json bounds = {{"min_enu", {info.min_enu.x(), info.min_enu.y()}},
+                                         {"max_enu", {info.max_enu.x(), info.max_enu.y()}},
+                                         {"resolution_m", grid.resolution_m},
+                                         {"crs", grid.georeferenced ? "EPSG:" + std::to_string(grid.zone.Epsg()) : "local"}};
+  base::WriteFileAtomically(folder / "orthophoto.json", bounds.dump(1) + "\n");
+}
+
+}  // namespace skyquilt::products

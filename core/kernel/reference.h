@@ -1,0 +1,85 @@
+// Scalar twins of the kernels in any floating type: the reference they are tested against, and what finite differences check in double.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/kernel/kernels.h"
+
+namespace skyquilt::kernel::reference {
+
+// out = W in for one sample, then max(0, .) when relu.
+template <typename T>
+std::vector<T> Dense(const std::vector<T>& weights, int n_out, const std::vector<T>& in, bool relu) {
+  std::vector<T> out(static_cast<size_t>(n_out), T(0));
+  for (size_t o = 0; o < out.size(); ++o) {
+    for (size_t i = 0; i < in.size(); ++i) out[o] += weights[o * in.size() + i] * in[i];
+    if (relu) out[o] = std::max(out[o], T(0));
+  }
+  return out;
+}
+
+// Gradients of Dense for one sample: overwrites in_gradient, adds to weight_gradient. out is Dense's result.
+template <typename T>
+void DenseBackward(const std::vector<T>& weights, const std::vector<T>& in, const std::vector<T>& out, bool relu, std::vector<T> out_gradient,
+                   std::vector<T>* in_gradient, std::vector<T>* weight_gradient) {
+  in_gradient->assign(in.size(), T(0));
+  for (size_t o = 0; o < out.size(); ++o) {
+    if (relu && out[o] <= T(0)) out_gradient[o] = T(0);
+    for (size_t i = 0; i < in.size(); ++i) {
+      (*in_gradient)[i] += weights[o * in.size() + i] * out_gradient[o];
+      (*weight_gradient)[o * in.size() + i] += out_gradient[o] * in[i];
+    }
+  }
+}
+
+template <typename T>
+struct Corner {
+  uint32_t entry;
+  T weight;
+};
+
+// The eight corners of a position's cell with trilinear weights; positions are clamped into the lattice.
+template <typename T>
+std::vector<Corner<T>> Corners(const HashLevel& level, const T position[3]) {
+  uint32_t cell[3];
+  T fraction[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    T scaled = position[axis] * static_cast<T>(level.cells_per_unit);
+    scaled = scaled > T(0) ? std::min(scaled, static_cast<T>(level.size[axis] - 1)) : T(0);
+    cell[axis] = static_cast<uint32_t>(std::min(static_cast<int32_t>(scaled), level.size[axis] - 2));
+    fraction[axis] = scaled - static_cast<T>(cell[axis]);
+  }
+  std::vector<Corner<T>> corners;
+  for (uint32_t c = 0; c < 8; ++c) {
+    T weight = T(1);
+    uint32_t at[3];
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      const uint32_t bit = (c >> axis) & 1U;
+      at[axis] = cell[axis] + bit;
+      weight *= bit != 0 ? fraction[axis] : T(1) - fraction[axis];
+    }
+    corners.push_back({HashIndex(level, at[0], at[1], at[2]), weight});
+  }
+  return corners;
+}
+
+template <typename T>
+std::vector<T> HashForward(const HashLevel& level, int features, const std::vector<T>& table, const T position[3]) {
+  std::vector<T> out(static_cast<size_t>(features), T(0));
+  for (const Corner<T>& corner : Corners(level, position)) {
+    for (size_t f = 0; f < out.size(); ++f) out[f] += corner.weight * table[corner.entry * out.size() + f];
+  }
+  return out;
+}
+
+template <typename T>
+void HashBackward(const HashLevel& level, const T position[3], const std::vector<T>& out_gradient, std::vector<T>* table_gradient) {
+  for (const Corner<T>& corner : Corners(level, position)) {
+    for (size_t f = 0; f < out_gradient.size(); ++f) (*table_gradient)[corner.entry * out_gradient.size() + f] += corner.weight * out_gradient[f];
+  }
+}
+
+}  // namespace skyquilt::kernel::reference

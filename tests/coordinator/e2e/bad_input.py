@@ -1,0 +1,90 @@
+"""Wrong usage and bad input: each with its own message and exit status, and nothing that was saved is lost."""
+import os
+import shutil
+
+from harness import expect, main
+
+
+def test(skyquilt, folder):
+    out = folder / "out"
+
+    empty = folder / "empty"
+    empty.mkdir()
+    text = skyquilt.call("run", empty, "-o", out, status=3)
+    expect(str(empty) in text, f"the empty folder is not named:\n{text}")
+
+    fake = folder / "fake"
+    fake.mkdir()
+    for i in range(4):
+        (fake / f"p{i}.jpg").write_text("this is no photo\n")
+    text = skyquilt.call("run", fake, "-o", folder / "out_fake", status=3)
+    expect("p0.jpg" in text, f"the text file is not named:\n{text}")
+
+    text = skyquilt.call("run", folder / "absent", "-o", out, status=3)
+    expect("absent" in text, text)
+
+    survey = folder / "hamlet"
+    skyquilt.call("simulate", "hamlet", "-o", survey)
+
+    config = folder / "wrong.toml"
+    config.write_text("[train]\nlevles = 4\n")
+    text = skyquilt.call("run", survey, "-o", out, "--config", config, status=2)
+    expect("levels" in text and "wrong.toml" in text, f"the unknown key is not named:\n{text}")
+    config.write_text("[train\n")
+    text = skyquilt.call("run", survey, "-o", out, "--config", config, status=3)
+    expect("wrong.toml" in text, text)
+
+    for words in (["--altitudes=-5,10", "--blocks", "1x2"], ["--blocks", "0x2"], ["--blocks", "many"], ["--time-budget", "soon"], ["--time-budget", "-5min"],
+                  ["--time-budget", "1min", "--steps", "5"], ["--steps", "-1"], ["--brightness", "sunny"], ["--holdout", "every:0"]):
+        skyquilt.call("run", survey, "-o", folder / "out_usage", *words, status=2)
+    text = skyquilt.call("run", survey, "-o", folder / "out_altitudes", "--blocks", "2x2", "--altitudes", "50,60", status=2)
+    expect("2" in text and "4" in text, f"counts of altitudes and blocks are not named:\n{text}")
+    skyquilt.call("simulate", "atlantis", "-o", folder / "atlantis", status=2)
+    skyquilt.call("train", survey, status=3)
+
+    blocked = folder / "blocked"
+    blocked.write_text("a file where a folder should be")
+    text = skyquilt.call("run", survey, "-o", blocked, status=3)
+    expect("blocked" in text, text)
+    if os.geteuid() != 0:
+        locked = folder / "locked"
+        locked.mkdir()
+        locked.chmod(0o555)
+        text = skyquilt.call("run", survey, "-o", locked / "out", status=3)
+        expect("locked" in text, text)
+
+    # One damaged photo among good ones is left out with a warning that names it.
+    damaged = folder / "damaged"
+    shutil.copytree(survey, damaged)
+    photos = sorted((damaged / "images").rglob("*.jpg"))
+    photos[1].write_bytes(photos[1].read_bytes()[:5000])
+    text = skyquilt.call("prepare", damaged, "-o", folder / "out_damaged")
+    expect(photos[1].name in text, f"the truncated photo is not named:\n{text}")
+
+    # A pose that is no number.
+    broken = folder / "broken"
+    shutil.copytree(survey, broken)
+    images = next(broken.rglob("images.txt"))
+    lines = images.read_text().splitlines()
+    first = next(i for i, line in enumerate(lines) if line and not line.startswith("#"))
+    words = lines[first].split()
+    words[1] = "nan"
+    lines[first] = " ".join(words)
+    images.write_text("\n".join(lines) + "\n")
+    text = skyquilt.call("prepare", broken, "-o", folder / "out_broken", status=3)
+    expect(words[-1] in text, f"the photo with the NaN pose is not named:\n{text}")
+
+    # What an earlier command saved survives all of the following refusals.
+    project = folder / "project"
+    skyquilt.call("prepare", survey, "-o", project)
+    saved = (project / "survey" / "survey.json").read_bytes()
+    skyquilt.call("prepare", survey, "-o", project, "--holdout", "every:5", status=2)
+    skyquilt.call("train", project, status=3)
+    skyquilt.call("merge", project, status=3)
+    skyquilt.call("evaluate", project, status=3)
+    skyquilt.call("render", project / "scene.h5", status=3)
+    expect((project / "survey" / "survey.json").read_bytes() == saved, "a refused command changed the survey")
+    skyquilt.call("prepare", survey, "-o", project, "--holdout", "every:5", "--restart")
+
+
+main(test)

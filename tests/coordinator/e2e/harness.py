@@ -1,0 +1,90 @@
+"""Drives the skyquilt program as a person would: commands in, exit status and files out. Python's standard library only."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+STEPS = "300"
+# Small fields: the test is about the way, not about the picture.
+SMALL = ["--steps", STEPS, "--blocks", "1x2", "--image-width", "240", "--set", "train.batch_samples=8192", "--set", "context.batch_samples=8192",
+         "--set", "partition.max_log2_table_size=15"]
+
+
+class Failure(Exception):
+    pass
+
+
+def expect(condition, text):
+    if not condition:
+        raise Failure(text)
+
+
+class Skyquilt:
+    def __init__(self, program):
+        self.program = program
+        self.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+
+    def command(self, words, ranks):
+        launcher = ["mpirun", "-n", str(ranks), "--oversubscribe"] if ranks else []
+        return launcher + [self.program] + [str(word) for word in words]
+
+    def call(self, *words, ranks=0, status=0, timeout=900):
+        """Runs to the end and returns everything printed; a different exit status is a failure."""
+        done = subprocess.run(self.command(words, ranks), env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              errors="replace", timeout=timeout)
+        shown = " ".join(str(word) for word in words)
+        expect(done.returncode == status, f"'skyquilt {shown}' ended with {done.returncode}, not {status}:\n{done.stdout}")
+        return done.stdout
+
+    def start(self, *words, ranks=0):
+        return subprocess.Popen(self.command(words, ranks), env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                errors="replace", start_new_session=True)
+
+
+def metrics_of(project):
+    return json.loads((project / "report" / "metrics.json").read_text())
+
+
+def wait_for(condition, what, process, seconds=300):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if condition():
+            return
+        expect(process.poll() is None, f"the program ended before {what}:\n{process.stdout.read() if process.stdout else ''}")
+        time.sleep(0.05)
+    raise Failure(f"no {what} within {seconds} s")
+
+
+def digest(folder, but=()):
+    """Names, sizes and times of all files below a folder."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.name not in but:
+            stat = path.stat()
+            found[str(path.relative_to(folder))] = (stat.st_size, stat.st_mtime_ns)
+    return found
+
+
+def kill_group(process):
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def main(test):
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="skyquilt_e2e_"))
+    try:
+        test(Skyquilt(sys.argv[1]), folder)
+        print("passed")
+    except Failure as failure:
+        print(f"FAILED: {failure}")
+        sys.exit(1)
+    finally:
+        for path in folder.rglob("*"):
+            if path.is_dir() and not path.is_symlink():
+                path.chmod(0o755)
+        shutil.rmtree(folder, ignore_errors=True)

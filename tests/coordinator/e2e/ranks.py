@@ -1,0 +1,66 @@
+"""The whole way on 1, 2 and 3 ranks gives the same quality; stage by stage gives what `run` gives; running again does nothing twice."""
+from harness import SMALL, digest, expect, main, metrics_of
+
+
+def test(skyquilt, folder):
+    survey = folder / "hamlet"
+    skyquilt.call("simulate", "hamlet", "-o", survey)
+    before = digest(survey)
+    skyquilt.call("simulate", "hamlet", "-o", survey)
+    expect(digest(survey) == before, "simulating again wrote something")
+
+    psnr = {}
+    for ranks in (1, 2, 3):
+        project = folder / f"ranks{ranks}"
+        skyquilt.call("run", survey, "-o", project, *SMALL, ranks=ranks)
+        metrics = metrics_of(project)
+        psnr[ranks] = metrics["psnr"]
+        print(f"{ranks} ranks: PSNR {metrics['psnr']:.3f} dB, SSIM {metrics['ssim']:.4f}, coverage {metrics['coverage']:.3f}, "
+              f"median depth error {metrics['depth_median_abs_m']:.2f} m")
+        expect(metrics["ranks"] == ranks, f"the report speaks of {metrics['ranks']} ranks")
+        for name in ("blocks.geojson", "scene.h5", "checkpoints/context.h5", "checkpoints/context.log.csv", "report/index.html", "log.txt", "config.toml"):
+            expect((project / name).exists(), f"{name} is missing")
+    expect(max(psnr.values()) - min(psnr.values()) <= 0.1, f"PSNR depends on the ranks: {psnr}")
+    # A field that only learned the mean colour would stay near 15 dB.
+    expect(psnr[1] > 18.0, f"PSNR {psnr[1]:.2f} dB says that nothing was learned")
+
+    alone = folder / "ranks1"
+    before = digest(alone, but=("log.txt",))
+    text = skyquilt.call("run", survey, "-o", alone, *SMALL)
+    expect(digest(alone, but=("log.txt",)) == before, f"running again wrote something:\n{text}")
+
+    stages = folder / "stages"
+    skyquilt.call("prepare", survey, "-o", stages)
+    skyquilt.call("partition", stages, *pick(SMALL, "--blocks", "--image-width", "--set"))
+    skyquilt.call("train", stages, *pick(SMALL, "--steps"))
+    skyquilt.call("merge", stages)
+    skyquilt.call("render", stages)
+    skyquilt.call("evaluate", stages)
+    difference = abs(metrics_of(stages)["psnr"] - psnr[1])
+    expect(difference < 1e-6, f"stage by stage differs from run by {difference} dB")
+
+    for path in (alone, alone / "survey", alone / "blocks.geojson", alone / "scene.h5", alone / "checkpoints" / "context.h5",
+                 alone / "report" / "metrics.json", survey / "simulate.json"):
+        expect(skyquilt.call("info", path).strip(), f"info says nothing of {path}")
+        expect(skyquilt.call("info", path, "--json").lstrip().startswith("{"), f"info --json is no JSON for {path}")
+
+    text = skyquilt.call("run", survey, "-o", alone, *replaced(SMALL, "--steps", "301"), status=2)
+    expect("train.steps: 300 -> 301" in text and "--restart" in text, f"the changed option is not named:\n{text}")
+    expect(digest(alone, but=("log.txt",)) == before, "a refused run changed files")
+
+
+def pick(words, *flags):
+    chosen = []
+    for flag, value in zip(words[::2], words[1::2]):
+        if flag in flags:
+            chosen += [flag, value]
+    return chosen
+
+
+def replaced(words, flag, value):
+    changed = list(words)
+    changed[changed.index(flag) + 1] = value
+    return changed
+
+
+main(test)

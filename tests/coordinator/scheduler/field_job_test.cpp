@@ -1,0 +1,61 @@
+#include "coordinator/scheduler/field_job.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <new>
+
+#include "core/base/errors.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+const worker::Reporter kSilent = [](const worker::TrainStatus&) {};
+
+TEST(FieldJob, TravelsUnchanged) {
+  const FieldJob job{.block = 3, .name = "block_r1c0", .attempt = 2, .steps = 0, .seconds = 1.0 / 3.0, .rate_factor = 0.25, .seed = 0xFFFFFFFFFFFFFFF1ULL};
+  const FieldJob back = JobFromText(ToText(job));
+  EXPECT_EQ(back.block, job.block);
+  EXPECT_EQ(back.name, job.name);
+  EXPECT_EQ(back.attempt, job.attempt);
+  EXPECT_EQ(back.seconds, job.seconds);
+  EXPECT_EQ(back.rate_factor, job.rate_factor);
+  EXPECT_EQ(back.seed, job.seed);
+}
+
+TEST(FieldJob, OutcomeTravelsUnchangedEvenWithStrangeText) {
+  FieldOutcome outcome;
+  outcome.job.name = "block_r0c0";
+  outcome.failure = Failure::kInput;
+  outcome.reason = "photo \xff\xfe \"quoted\"\nsecond line";
+  outcome.result.samples = (int64_t{1} << 60) + 1;
+  outcome.result.final_psnr_db = std::numeric_limits<double>::quiet_NaN();
+  outcome.peak_rss_bytes = 123456789012;
+  const FieldOutcome back = OutcomeFromText(ToText(outcome));
+  EXPECT_EQ(back.failure, Failure::kInput);
+  EXPECT_NE(back.reason.find("\"quoted\"\nsecond line"), std::string::npos);
+  EXPECT_EQ(back.result.samples, outcome.result.samples);
+  EXPECT_EQ(back.peak_rss_bytes, outcome.peak_rss_bytes);
+}
+
+TEST(FieldJob, StatusWithANonFiniteLossStillTravels) {
+  worker::TrainStatus status;
+  status.step = 7;
+  status.loss = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(StatusFromText(ToText(status)).step, 7);
+}
+
+TEST(RunField, EveryWayToFailBecomesAnOutcome) {
+  const auto failure = [](const FieldTrainer& trainer) { return RunField(trainer, {}, kSilent, 1, 2).failure; };
+  using Result = worker::TrainResult;
+  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) { return Result{.ok = true}; }), Failure::kNone);
+  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) { return Result{.ok = false, .reason = "x"}; }), Failure::kBlock);
+  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) -> Result { throw std::bad_alloc(); }), Failure::kBlock);
+  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) -> Result { throw std::logic_error("x"); }), Failure::kBlock);
+  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) -> Result { throw base::InputError("a", "b", "c"); }), Failure::kInput);
+  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) -> Result { throw base::UsageError("a"); }), Failure::kUsage);
+  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) -> Result { throw base::Interrupted(); }), Failure::kInterrupted);
+}
+
+}  // namespace
+}  // namespace skyquilt::coordinator

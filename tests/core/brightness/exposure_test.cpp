@@ -1,0 +1,61 @@
+#include "core/brightness/exposure.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/gradient_check.h"
+
+namespace skyquilt::brightness {
+namespace {
+
+TEST(ExifExposure, FollowsTheFormula) {
+  EXPECT_DOUBLE_EQ(*ExifExposure(1.0 / 200.0, 2.0, 400.0), (1.0 / 200.0) * 4.0 / 4.0);
+  EXPECT_DOUBLE_EQ(*ExifExposure(0.01, std::nullopt, std::nullopt), 0.01);
+  EXPECT_FALSE(ExifExposure(std::nullopt, 2.0, 100.0));
+  EXPECT_FALSE(ExifExposure(0.0, 2.0, 100.0));
+  EXPECT_FALSE(ExifExposure(std::nan(""), 2.0, 100.0));
+}
+
+TEST(GainsFromExif, AreRelativeToTheMedian) {
+  const PhotoGains gains = GainsFromExif({0.01, 0.02, 0.04, std::nullopt});
+  EXPECT_DOUBLE_EQ(gains.reference_exposure, 0.02);
+  EXPECT_FLOAT_EQ(gains.gain[0], 0.5F);
+  EXPECT_FLOAT_EQ(gains.gain[2], 2.0F);
+  EXPECT_FLOAT_EQ(gains.gain[3], 1.0F);
+}
+
+TEST(GainsFromExif, MostlyUntaggedSurveysKeepTheirColours) {
+  const PhotoGains gains = GainsFromExif({0.01, std::nullopt, std::nullopt});
+  EXPECT_EQ(gains.reference_exposure, 0.0);
+  for (const float g : gains.gain) EXPECT_EQ(g, 1.0F);
+  EXPECT_TRUE(GainsFromExif({}).gain.empty());
+}
+
+TEST(GainsFromExif, LimitsImpossibleTags) {
+  const PhotoGains gains = GainsFromExif({1e-9, 0.01, 0.01, 1e9});
+  EXPECT_FLOAT_EQ(gains.gain[0], 1.0F / 1024.0F);
+  EXPECT_FLOAT_EQ(gains.gain[3], 1024.0F);
+}
+
+TEST(Expose, SlopeMatchesFiniteDifferencesOverTenStops) {
+  for (const float gain : {1.0F / 1024.0F, 0.3F, 1.0F, 2.5F, 1024.0F}) {
+    for (const float value : {0.01F, 0.2F, 0.5F, 0.99F, 1.4F}) {
+      const float h = 1e-3F;
+      const float numeric = (Expose(value + h, gain).value - Expose(value - h, gain).value) / (2.0F * h);
+      EXPECT_NEAR(Expose(value, gain).slope, numeric, 0.02F * std::max(1.0F, std::abs(numeric))) << gain << " " << value;
+      EXPECT_TRUE(std::isfinite(Expose(value, gain).slope));
+    }
+  }
+  EXPECT_TRUE(std::isfinite(Expose(-0.5F, 3.0F).value));
+}
+
+TEST(ColorRange, LeavesRoomForTheDarkestPhoto) {
+  EXPECT_NEAR(ColorRange({1.0F, 1.0F}), 1.02, 1e-6);
+  const double range = ColorRange({0.25F, 1.0F, 4.0F});
+  EXPECT_GE(Expose(static_cast<float>(range), 0.25F).value, 1.0F);
+  EXPECT_LE(ColorRange({1e-6F}), 4.0);
+}
+
+}  // namespace
+}  // namespace skyquilt::brightness

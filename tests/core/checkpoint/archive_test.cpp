@@ -1,0 +1,231 @@
+#include "core/checkpoint/archive.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <limits>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/random.h"
+#include "core/checkpoint/digest.h"
+#include "core/checkpoint/user_block.h"
+#include "tests/core/base/temporary_folder.h"
+
+namespace skyquilt::checkpoint {
+namespace {
+
+std::string InputErrorOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void WriteBytes(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+// Everything an archive can hold: odd values, several chunks, groups, empty arrays.
+struct Content {
+  std::vector<float> table;
+  std::vector<double> matrix = {1.0, -0.0, 1e-300, std::numeric_limits<double>::infinity(), 5.0, 6.0};
+  std::vector<uint8_t> bits = {0, 1, 255};
+  std::vector<int64_t> numbers = {std::numeric_limits<int64_t>::min(), -1, std::numeric_limits<int64_t>::max()};
+  std::vector<float> none;
+  std::string text = "[train]\nrate = 0.01  # \xC3\xA4\n";
+
+  explicit Content(size_t n_table = 1000) : table(n_table) {
+    base::Random random(7);
+    for (float& value : table) value = static_cast<float>(random.Normal());
+    if (!table.empty()) table[0] = std::numeric_limits<float>::quiet_NaN();
+  }
+
+  ArchiveWriter Writer() const {
+    ArchiveWriter writer("block", 3);
+    writer.Put("table/level0", table);
+    writer.Put("table/moments/first", matrix, {2, 3});
+    writer.Put("occupancy", bits, {1, 3, 1});
+    writer.Put("random", numbers);
+    writer.Put("none", none);
+    writer.SetAttribute("config", text);
+    writer.SetAttribute("empty", std::string());
+    writer.SetAttribute("rate", 0.1);
+    writer.SetAttribute("step", int64_t{1} << 60);
+    writer.SetAttribute("small", 5);
+    return writer;
+  }
+};
+
+// Makes length and digest in the user block fit the changed bytes again.
+void Resign(std::string* bytes) {
+  Digest digest;
+  digest.Update({reinterpret_cast<const uint8_t*>(bytes->data()) + kUserBlockBytes, bytes->size() - kUserBlockBytes});
+  const std::string block = UserBlockText("block", 3, {bytes->size(), digest.Value()});
+  bytes->replace(0, kUserBlockBytes, block);
+}
+
+template <typename T>
+bool SameBits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+bool Holds(const ArchiveReader& reader, const Content& content) {
+  return reader.kind() == "block" && reader.version() == 3 && SameBits(reader.Floats("table/level0"), content.table) &&
+         SameBits(reader.Doubles("table/moments/first"), content.matrix) && SameBits(reader.Bytes("occupancy"), content.bits) &&
+         SameBits(reader.Ints("random"), content.numbers) && reader.Floats("none").empty() && reader.StringAttribute("config") == content.text &&
+         reader.StringAttribute("empty").empty() && reader.DoubleAttribute("rate") == 0.1 && reader.IntAttribute("step") == int64_t{1} << 60 &&
+         reader.IntAttribute("small") == 5;
+}
+
+TEST(Archive, GivesBackEveryBit) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "block.h5";
+  for (const size_t n : {size_t{0}, size_t{1}, size_t{1000}, size_t{1500001}}) {  // none, one, some, several chunks with a ragged end
+    const Content content(n);
+    content.Writer().Commit(file);
+    const ArchiveReader reader(file);
+    EXPECT_TRUE(Holds(reader, content)) << n;
+    EXPECT_EQ(reader.Shape("table/level0"), (std::vector<int64_t>{static_cast<int64_t>(n)}));
+  }
+}
+
+TEST(Archive, TellsWhatItHolds) {
+  const TemporaryFolder folder;
+  const Content content;
+  content.Writer().Commit(folder.path() / "a.h5");
+  const ArchiveReader reader(folder.path() / "a.h5");
+  EXPECT_EQ(reader.Names(), (std::vector<std::string>{"none", "occupancy", "random", "table/level0", "table/moments/first"}));
+  EXPECT_EQ(reader.AttributeNames(), (std::vector<std::string>{"config", "empty", "rate", "small", "step"}));
+  EXPECT_EQ(reader.Shape("table/moments/first"), (std::vector<int64_t>{2, 3}));
+  EXPECT_EQ(reader.Shape("occupancy"), (std::vector<int64_t>{1, 3, 1}));
+  EXPECT_EQ(reader.TypeName("occupancy"), "uint8");
+  EXPECT_EQ(reader.TypeName("none"), "float32");
+  EXPECT_TRUE(reader.Has("random"));
+  EXPECT_FALSE(reader.Has("table"));
+  EXPECT_TRUE(reader.HasAttribute("rate"));
+  EXPECT_FALSE(reader.HasAttribute("skyquilt.kind"));
+}
+
+TEST(Archive, HoldsLongTextsAndManyAttributes) {
+  const TemporaryFolder folder;
+  ArchiveWriter writer("context", 1);
+  const std::string text(300000, 'x');
+  writer.SetAttribute("long", text);
+  for (int i = 0; i < 200; ++i) writer.SetAttribute("attribute" + std::to_string(i), i);
+  writer.Commit(folder.path() / "a.h5");
+  const ArchiveReader reader(folder.path() / "a.h5");
+  EXPECT_EQ(reader.StringAttribute("long"), text);
+  EXPECT_EQ(reader.IntAttribute("attribute199"), 199);
+}
+
+TEST(Archive, SameContentGivesTheSameBytes) {
+  const TemporaryFolder folder;
+  Content().Writer().Commit(folder.path() / "a.h5");
+  Content().Writer().Commit(folder.path() / "b.h5");
+  EXPECT_EQ(base::ReadFile(folder.path() / "a.h5"), base::ReadFile(folder.path() / "b.h5"));
+}
+
+TEST(Archive, RefusesWhatIsAbsentOrOfAnotherType) {
+  const TemporaryFolder folder;
+  Content().Writer().Commit(folder.path() / "a.h5");
+  const ArchiveReader reader(folder.path() / "a.h5");
+  EXPECT_NE(InputErrorOf([&] { reader.Floats("absent"); }).find("no array 'absent'"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { reader.Doubles("table/level0"); }).find("float32 where float64"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { reader.IntAttribute("absent"); }).find("no attribute"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { reader.IntAttribute("rate"); }).find("not as a whole number"), std::string::npos);
+}
+
+TEST(Archive, MisuseIsABug) {
+  const std::vector<float> values(6);
+  ArchiveWriter writer("block", 1);
+  writer.Put("a/b", values);
+  EXPECT_THROW(writer.Put("a/b", values), std::logic_error);
+  EXPECT_THROW(writer.Put("a", values), std::logic_error);
+  EXPECT_THROW(writer.Put("a/b/c", values), std::logic_error);
+  EXPECT_THROW(writer.Put("/x", values), std::logic_error);
+  EXPECT_THROW(writer.Put("", values), std::logic_error);
+  EXPECT_THROW(writer.Put("x", values, {2, 2}), std::logic_error);
+  EXPECT_THROW(writer.Put("x", values, {-1, -6}), std::logic_error);
+  EXPECT_THROW(writer.SetAttribute("skyquilt.kind", 1), std::logic_error);
+}
+
+TEST(ArchiveReader, SaysWhyAFileIsNoArchive) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a.h5";
+  const auto message = [&](const std::string& bytes) {
+    WriteBytes(file, bytes);
+    return InputErrorOf([&] { const ArchiveReader reader(file); });
+  };
+  EXPECT_NE(InputErrorOf([&] { const ArchiveReader reader(folder.path() / "absent.h5"); }).find("does not exist"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { const ArchiveReader reader(folder.path()); }).find("is not a file"), std::string::npos);
+  EXPECT_NE(message("").find("is not a Skyquilt archive"), std::string::npos);
+  EXPECT_NE(message("some text").find("is not a Skyquilt archive"), std::string::npos);
+  EXPECT_NE(message("\x89HDF\r\n\x1A\n and more").find("HDF5 file that Skyquilt did not write"), std::string::npos);
+  EXPECT_NE(message("SKYQUILT ARCHIVE 2\n" + std::string(600, '\0')).find("newer Skyquilt"), std::string::npos);
+}
+
+TEST(ArchiveReader, NoticesEveryFlippedBit) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a.h5";
+  const Content content;
+  content.Writer().Commit(file);
+  const std::string good = base::ReadFile(file);
+  base::Random random(2024);
+  for (int i = 0; i < 300; ++i) {
+    std::string bad = good;
+    // A third of the flips hits the first 1.5 kB, where the guard and HDF5's own header are.
+    const size_t at = random.Below(static_cast<uint32_t>(i % 3 == 0 ? 1536 : bad.size()));
+    bad[at] = static_cast<char>(bad[at] ^ (1 << random.Below(8)));
+    WriteBytes(file, bad);
+    EXPECT_NE(InputErrorOf([&] { const ArchiveReader reader(file); }), "") << "flip at " << at;
+  }
+}
+
+TEST(ArchiveReader, NoticesEveryTruncationAndAddition) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a.h5";
+  Content().Writer().Commit(file);
+  const std::string good = base::ReadFile(file);
+  base::Random random(2025);
+  for (int i = 0; i < 40; ++i) {
+    const size_t n = i < 3 ? good.size() - 1 - static_cast<size_t>(i) : random.Below(static_cast<uint32_t>(good.size()));
+    WriteBytes(file, good.substr(0, n));
+    EXPECT_NE(InputErrorOf([&] { const ArchiveReader reader(file); }), "") << "cut to " << n;
+  }
+  WriteBytes(file, good + '\0');
+  EXPECT_NE(InputErrorOf([&] { const ArchiveReader reader(file); }), "");
+}
+
+// Damage that a matching digest hides (as a program's own mistake would) still meets HDF5's checks and ours: an error or the truth, never a crash.
+TEST(ArchiveReader, SurvivesDamageBehindAValidDigest) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a.h5";
+  const Content content;
+  content.Writer().Commit(file);
+  const std::string good = base::ReadFile(file);
+  base::Random random(2026);
+  int n_refused = 0;
+  for (int i = 0; i < 100; ++i) {
+    std::string bad = good;
+    const size_t at = 512 + random.Below(static_cast<uint32_t>(bad.size() - 512));
+    bad[at] = static_cast<char>(bad[at] ^ (1 << random.Below(8)));
+    Resign(&bad);
+    WriteBytes(file, bad);
+    try {
+      const ArchiveReader reader(file);
+      EXPECT_TRUE(Holds(reader, content)) << "flip at " << at;
+    } catch (const base::InputError&) {
+      ++n_refused;
+    }
+  }
+  EXPECT_GT(n_refused, 50);
+}
+
+}  // namespace
+}  // namespace skyquilt::checkpoint

@@ -1,0 +1,152 @@
+// How an archive takes the place of the one before: complete or absent, whatever happens meanwhile.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/checkpoint/archive.h"
+#include "tests/core/base/temporary_folder.h"
+
+namespace skyquilt::checkpoint {
+namespace {
+
+std::string InputErrorOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void Commit(const std::filesystem::path& file, int64_t step, size_t n_values = 1000) {
+  const std::vector<float> values(n_values, static_cast<float>(step));
+  ArchiveWriter writer("block", 1);
+  writer.Put("values", values);
+  writer.SetAttribute("step", step);
+  writer.Commit(file);
+}
+
+int64_t StepOf(const std::filesystem::path& file) {
+  const ArchiveReader reader(file);
+  const std::vector<float> values = reader.Floats("values");
+  for (const float value : values) EXPECT_EQ(value, static_cast<float>(reader.IntAttribute("step")));
+  return reader.IntAttribute("step");
+}
+
+class Replacement : public testing::Test {
+ protected:
+  void Damage(const std::filesystem::path& file) const {
+    std::string bytes = base::ReadFile(file);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4);
+    std::ofstream(file, std::ios::binary) << bytes;
+  }
+  size_t FilesInFolder() const {
+    size_t n = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.path())) ++n;
+    return n;
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.path() / "block.h5";
+  std::filesystem::path previous_ = folder_.path() / "block.h5.prev";
+};
+
+TEST_F(Replacement, KeepsTheOneBefore) {
+  Commit(file_, 1);
+  EXPECT_EQ(FilesInFolder(), 1U);
+  Commit(file_, 2);
+  Commit(file_, 3);
+  EXPECT_EQ(StepOf(file_), 3);
+  EXPECT_EQ(StepOf(previous_), 2);
+  EXPECT_EQ(FilesInFolder(), 2U);
+}
+
+TEST_F(Replacement, NewestUsableFallsBack) {
+  std::string why;
+  EXPECT_TRUE(NewestUsable(file_, "block", &why).empty());
+  EXPECT_NE(why.find("does not exist"), std::string::npos);
+  Commit(file_, 1);
+  Commit(file_, 2);
+  EXPECT_EQ(NewestUsable(file_, "block", &why), file_);
+  EXPECT_TRUE(NewestUsable(file_, "scene", &why).empty());
+  EXPECT_NE(why.find("kind 'block'"), std::string::npos);
+  Damage(file_);
+  EXPECT_EQ(NewestUsable(file_, "block", &why), previous_);
+  Damage(previous_);
+  EXPECT_TRUE(NewestUsable(file_, "block", &why).empty());
+  EXPECT_NE(why.find("block.h5: is damaged"), std::string::npos) << why;
+  EXPECT_NE(why.find("block.h5.prev: is damaged"), std::string::npos) << why;
+}
+
+TEST_F(Replacement, ADamagedFileDoesNotCostTheGoodOneBeforeUntilTheNewOneIsThere) {
+  Commit(file_, 1);
+  Commit(file_, 2);
+  Damage(file_);
+  Commit(file_, 3);
+  EXPECT_EQ(StepOf(file_), 3);
+}
+
+TEST_F(Replacement, LeftoversOfAKilledWriterDoNoHarm) {
+  Commit(file_, 1);
+  std::ofstream(file_.string() + ".tmp") << "half a file";
+  std::ofstream(file_.string() + ".prev.tmp") << "half a file";
+  Commit(file_, 2);
+  EXPECT_EQ(StepOf(file_), 2);
+  EXPECT_EQ(StepOf(previous_), 1);
+  EXPECT_EQ(FilesInFolder(), 2U);
+}
+
+TEST_F(Replacement, AFullDiskLeavesTheOldFileAlone) {
+  Commit(file_, 1);
+  // A limit on the size of files fails a write just as a full disk does.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  for (const rlim_t limit : {rlim_t{0}, rlim_t{600}, rlim_t{4096}, rlim_t{1000000}, rlim_t{3999000}}) {
+    rlimit small = before;
+    small.rlim_cur = limit;
+    setrlimit(RLIMIT_FSIZE, &small);
+    const std::string message = InputErrorOf([&] { Commit(file_, 2, 1000000); });
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_NE(message.find("block.h5"), std::string::npos) << limit;
+    EXPECT_EQ(StepOf(file_), 1) << limit;
+    EXPECT_EQ(FilesInFolder(), 1U) << limit;
+  }
+  Commit(file_, 3, 1000000);
+  EXPECT_EQ(StepOf(file_), 3);
+}
+
+TEST_F(Replacement, AFolderThatIsNotThereIsNamed) {
+  EXPECT_NE(InputErrorOf([&] { Commit(folder_.path() / "absent/block.h5", 1); }).find("absent/block.h5"), std::string::npos);
+}
+
+TEST_F(Replacement, SurvivesAKillAtAnyMoment) {
+  Commit(file_, 1, 200000);
+  for (int i = 0; i < 12; ++i) {
+    const int64_t at_least = StepOf(NewestUsable(file_, "block", nullptr));
+    const pid_t child = fork();
+    if (child == 0) {
+      for (int64_t step = at_least + 1;; ++step) Commit(file_, step, 200000);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(15 + 7 * i));
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    std::string why;
+    ASSERT_EQ(NewestUsable(file_, "block", &why), file_) << why;
+    EXPECT_GE(StepOf(file_), at_least);
+  }
+}
+
+}  // namespace
+}  // namespace skyquilt::checkpoint

@@ -1,0 +1,159 @@
+#include "core/field/hash_field.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "core/encoding/spherical_harmonics.h"
+#include "core/field/optimizer.h"
+#include "core/kernel/reference.h"
+
+namespace skyquilt::field {
+namespace {
+
+FieldConfig SmallConfig(int color_hidden_layers) {
+  FieldConfig config;
+  config.grid.levels = 3;
+  config.grid.features = 4;
+  config.grid.log2_table_size = 6;
+  config.grid.base_resolution = 2;
+  config.grid.finest_resolution = 11;
+  config.grid.extent[2] = 0.4;
+  config.hidden = 8;
+  config.color_hidden_layers = color_hidden_layers;
+  config.sh_degree = 3;
+  return config;
+}
+
+// The same field, one sample, in double and in the plainest way.
+struct Reference {
+  const HashField& field;
+  std::vector<double> Forward(const std::vector<double>& grid, const std::vector<double>& networks, const double x[3], const double d[3]) const {
+    std::vector<double> features;
+    for (int l = 0; l < field.grid().levels(); ++l) {
+      const std::vector<double> table(grid.begin() + field.grid().Offset(l), grid.begin() + field.grid().Offset(l + 1));
+      for (const double f : kernel::reference::HashForward(field.grid().level(l), field.grid().features(), table, x)) features.push_back(f);
+    }
+    auto next = networks.begin();
+    const auto dense = [&](int n_out, const std::vector<double>& in, bool relu) {
+      const std::vector<double> weights(next, next + n_out * static_cast<int>(in.size()));
+      next += n_out * static_cast<int>(in.size());
+      return kernel::reference::Dense(weights, n_out, in, relu);
+    };
+    const int hidden = field.config().hidden;
+    std::vector<double> geometry = dense(kGeometryRows, dense(hidden, features, true), false);
+    std::vector<double> in = geometry;
+    double sh[16] = {};
+    encoding::SphericalHarmonics(d[0], d[1], d[2], field.config().sh_degree, sh);
+    for (int k = 0; k < field.ColorInputRows() - kGeometryRows; ++k) in.push_back(k < field.config().sh_degree * field.config().sh_degree ? sh[k] : 0.0);
+    for (int l = 0; l < field.config().color_hidden_layers; ++l) in = dense(hidden, in, true);
+    const std::vector<double> color = dense(kColorRows, in, false);
+    return {color[0], color[1], color[2], geometry[0]};
+  }
+};
+
+class HashFieldGradient : public ::testing::TestWithParam<int> {};
+
+TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
+  const HashField field(SmallConfig(GetParam()));
+  base::Random random(19);
+  TrainableState state;
+  state.Allocate(field);
+  field.Initialize(random, state.grid, state.networks);
+  for (float& value : state.grid) value = random.Uniform() - 0.5F;  // large enough to matter
+  base::ThreadPool threads(2);
+
+  const int64_t n = 5;
+  const auto stride = static_cast<size_t>(kernel::Padded(n));
+  std::vector<float> x(stride, 0.0F), y(stride, 0.0F), z(stride, 0.0F), direction(3 * stride, 0.0F);
+  std::vector<float> color_gradient(4 * stride, 0.0F), density_gradient(stride, 0.0F);
+  for (size_t s = 0; s < static_cast<size_t>(n); ++s) {
+    x[s] = random.Uniform();
+    y[s] = random.Uniform();
+    z[s] = 0.4F * random.Uniform();
+    const Eigen::Vector3d d = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
+    for (size_t axis = 0; axis < 3; ++axis) direction[axis * stride + s] = static_cast<float>(d[static_cast<int>(axis)]);
+    for (size_t c = 0; c < 3; ++c) color_gradient[c * stride + s] = random.Uniform() - 0.5F;
+    density_gradient[s] = random.Uniform() - 0.5F;
+  }
+  const auto rows = static_cast<size_t>(field.FeatureRows());
+  std::vector<float> features(rows * stride, 0.0F), feature_gradient(rows * stride, 0.0F);
+  field.Encode(state.grid, x.data(), y.data(), z.data(), n, features.data(), stride, threads);
+  ChunkScratch scratch = field.MakeScratch();
+  const NetworkWeights weights = field.Prepare(state.networks);
+  field.Backward(weights, features.data(), stride, direction.data(), stride, static_cast<int64_t>(stride), color_gradient.data(), stride,
+                 density_gradient.data(), scratch, feature_gradient.data(), stride, state.network_gradient.data());
+  AccumulateGrid(field, x.data(), y.data(), z.data(), n, feature_gradient.data(), stride, state, threads);
+  ASSERT_TRUE(GradientsFinite(field, state));
+
+  std::vector<double> grid(state.grid.begin(), state.grid.end()), networks(state.networks.begin(), state.networks.end());
+  const Reference reference{field};
+  const auto loss = [&] {
+    double sum = 0.0;
+    for (size_t s = 0; s < static_cast<size_t>(n); ++s) {
+      const double position[3] = {static_cast<double>(x[s]), static_cast<double>(y[s]), static_cast<double>(z[s])};
+      const double d[3] = {static_cast<double>(direction[s]), static_cast<double>(direction[stride + s]), static_cast<double>(direction[2 * stride + s])};
+      const auto out = reference.Forward(grid, networks, position, d);
+      for (size_t c = 0; c < 3; ++c) sum += static_cast<double>(color_gradient[c * stride + s]) * out[c];
+      sum += static_cast<double>(density_gradient[s]) * out[3];
+    }
+    return sum;
+  };
+  const auto check = [&](std::vector<double>& parameters, const std::vector<float>& gradient, const char* name, size_t skip_from) {
+    size_t nonzero = 0;
+    for (size_t i = 0; i < std::min(parameters.size(), skip_from); ++i) {
+      const double keep = parameters[i];
+      double best = 1e300, numeric = 0.0;
+      for (const double h : {1e-4, 1e-6}) {  // the smaller one where a ReLU turns on within the larger
+        parameters[i] = keep + h;
+        const double above = loss();
+        parameters[i] = keep - h;
+        const double candidate = (above - loss()) / (2.0 * h);
+        parameters[i] = keep;
+        if (std::abs(candidate - static_cast<double>(gradient[i])) < best) {
+          best = std::abs(candidate - static_cast<double>(gradient[i]));
+          numeric = candidate;
+        }
+      }
+      nonzero += numeric != 0.0 ? 1U : 0U;
+      // Float arithmetic of a few dozen terms of size one.
+      EXPECT_NEAR(static_cast<double>(gradient[i]), numeric, 2e-5 * std::max(1.0, std::abs(numeric))) << name << " " << i;
+    }
+    EXPECT_GT(nonzero, 20U) << name;
+  };
+  check(grid, state.grid_gradient, "grid", grid.size());
+  // The last row of the last layer is padding.
+  check(networks, state.network_gradient, "networks", networks.size() - static_cast<size_t>(field.config().hidden));
+}
+
+INSTANTIATE_TEST_SUITE_P(Depths, HashFieldGradient, ::testing::Values(1, 2, 3));
+
+TEST(HashField, RefusesImpossibleSettings) {
+  FieldConfig config = SmallConfig(1);
+  config.hidden = 6;
+  EXPECT_THROW(HashField{config}, std::invalid_argument);
+  config = SmallConfig(4);
+  EXPECT_THROW(HashField{config}, std::invalid_argument);
+  config = SmallConfig(1);
+  config.grid.log2_table_size = 25;
+  EXPECT_THROW(HashField{config}, std::invalid_argument);
+}
+
+TEST(TrainableState, DroppedGradientsLeaveNoTrace) {
+  const HashField field(SmallConfig(1));
+  TrainableState state;
+  state.Allocate(field);
+  state.grid_gradient[3] = std::nanf("");
+  state.list[0] = 0;
+  state.listed[0] = 1;
+  state.touched[0] = 1;
+  EXPECT_FALSE(GradientsFinite(field, state));
+  DropGradients(state);
+  EXPECT_TRUE(GradientsFinite(field, state));
+  EXPECT_EQ(state.grid_gradient[3], 0.0F);
+  EXPECT_EQ(state.touched[0], 0);
+}
+
+}  // namespace
+}  // namespace skyquilt::field

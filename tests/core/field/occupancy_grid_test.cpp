@@ -1,0 +1,50 @@
+#include "core/field/occupancy_grid.h"
+
+#include <gtest/gtest.h>
+
+namespace skyquilt::field {
+namespace {
+
+TEST(OccupancyGrid, CoversTheBoxWithinItsBudget) {
+  const double extent[3] = {1.0, 0.5, 0.1};
+  const OccupancyGrid fine = OccupancyGrid::Make(extent, 0.01, 1 << 20);
+  EXPECT_EQ(fine.size[0], 100);
+  EXPECT_EQ(fine.size[1], 50);
+  EXPECT_EQ(fine.size[2], 10);
+  const OccupancyGrid bounded = OccupancyGrid::Make(extent, 1e-4, 10000);
+  EXPECT_LE(bounded.CellCount(), 10000);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_GE(static_cast<double>(bounded.cell) * bounded.size[axis], extent[axis] - 1e-6);
+}
+
+TEST(OccupancyGrid, PositionsOutsideLandInTheNearestCell) {
+  const double extent[3] = {1.0, 1.0, 1.0};
+  const OccupancyGrid grid = OccupancyGrid::Make(extent, 0.25, 1000);
+  EXPECT_EQ(grid.IndexAt(-3.0F, -1.0F, 0.0F), grid.Index(0, 0, 0));
+  EXPECT_EQ(grid.IndexAt(2.0F, 1.0F, 0.3F), grid.Index(3, 3, 1));
+}
+
+TEST(OccupancyGrid, RefreshKeepsDenseCellsAndNeverUnseenOnes) {
+  const double extent[3] = {1.0, 1.0, 1.0};
+  OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 1000);
+  grid.depth = {0.5F, 0.0F, -1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.001F};
+  grid.Refresh(0.01F);
+  EXPECT_EQ(grid.occupied[0], 1);
+  EXPECT_EQ(grid.occupied[2], 0);
+  EXPECT_EQ(grid.occupied[7], 0);
+  grid.Dilate(1);
+  for (size_t i = 0; i < 8; ++i) EXPECT_EQ(grid.occupied[i], i == 2 ? 0 : 1);
+}
+
+TEST(OccupancyGrid, DilateReachesExactlyItsDistance) {
+  const double extent[3] = {1.0, 1.0, 1.0};
+  OccupancyGrid grid = OccupancyGrid::Make(extent, 0.1, 2000);
+  std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
+  grid.occupied[static_cast<size_t>(grid.Index(5, 5, 5))] = 1;
+  grid.Dilate(2);
+  int count = 0;
+  for (const uint8_t v : grid.occupied) count += v;
+  EXPECT_EQ(count, 125);
+}
+
+}  // namespace
+}  // namespace skyquilt::field

@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include "core/base/random.h"
+#include "core/kernel/kernels.h"
+#include "core/kernel/reference.h"
+#include "tests/support/gradient_check.h"
+
+namespace skyquilt::kernel {
+namespace {
+
+std::vector<double> RandomVector(base::Random& random, size_t n) {
+  std::vector<double> v(n);
+  for (double& value : v) value = random.Uniform(-1.0, 1.0);
+  return v;
+}
+
+TEST(DenseReference, GradientsMatchFiniteDifferences) {
+  base::Random random(3);
+  for (const bool relu : {false, true}) {
+    const auto weights = RandomVector(random, 5 * 7);
+    const auto in = RandomVector(random, 7);
+    const auto out_gradient = RandomVector(random, 5);
+    const auto loss = [&](const std::vector<double>& w, const std::vector<double>& x) {
+      const auto out = reference::Dense(w, 5, x, relu);
+      double sum = 0.0;
+      for (size_t o = 0; o < out.size(); ++o) sum += out[o] * out_gradient[o];
+      return sum;
+    };
+    std::vector<double> in_gradient, weight_gradient(weights.size(), 0.0);
+    reference::DenseBackward(weights, in, reference::Dense(weights, 5, in, relu), relu, out_gradient, &in_gradient, &weight_gradient);
+    testing::ExpectGradient([&](const auto& x) { return loss(weights, x); }, in, in_gradient);
+    testing::ExpectGradient([&](const auto& w) { return loss(w, in); }, weights, weight_gradient);
+  }
+}
+
+TEST(Dense, AgreesWithReference) {
+  base::Random random(5);
+  for (const int n_in : {4, 12, 28, 32, 64}) {
+    for (const int n_out : {4, 16, 64}) {
+      for (const int64_t n : {0, 64, 192, 512}) {
+        const size_t stride = static_cast<size_t>(n) + 64;
+        std::vector<float> weights(static_cast<size_t>(n_out * n_in)), in(static_cast<size_t>(n_in) * stride), out(static_cast<size_t>(n_out) * stride, -7.0F);
+        for (float& w : weights) w = random.Uniform() - 0.5F;
+        for (float& x : in) x = random.Uniform() - 0.5F;
+        Dense(weights.data(), n_out, n_in, in.data(), stride, n, true, out.data(), stride);
+        for (size_t s = 0; s < static_cast<size_t>(n); s += 37) {
+          std::vector<float> column;
+          for (int i = 0; i < n_in; ++i) column.push_back(in[static_cast<size_t>(i) * stride + s]);
+          const auto expected = reference::Dense(weights, n_out, column, true);
+          // Sums of at most 64 products below 1/4: float rounding stays under 1e-5.
+          for (size_t o = 0; o < expected.size(); ++o) EXPECT_NEAR(out[o * stride + s], expected[o], 1e-5F);
+        }
+        // Nothing past the batch is written.
+        for (size_t o = 0; o < static_cast<size_t>(n_out); ++o) EXPECT_EQ(out[o * stride + static_cast<size_t>(n)], -7.0F);
+      }
+    }
+  }
+}
+
+TEST(DenseWeightGradient, AgreesWithReferenceAndAdds) {
+  base::Random random(7);
+  const int n_in = 28, n_out = 16;
+  const int64_t n = 128;
+  const size_t stride = 128;
+  std::vector<float> in(static_cast<size_t>(n_in) * stride), gradient(static_cast<size_t>(n_out) * stride), sum(static_cast<size_t>(n_in * n_out), 1.0F);
+  for (float& x : in) x = random.Uniform() - 0.5F;
+  for (float& g : gradient) g = random.Uniform() - 0.5F;
+  DenseWeightGradient(gradient.data(), stride, n_out, in.data(), stride, n_in, n, sum.data());
+  for (int o = 0; o < n_out; ++o) {
+    for (int i = 0; i < n_in; ++i) {
+      double expected = 1.0;
+      for (size_t s = 0; s < stride; ++s) {
+        expected += static_cast<double>(gradient[static_cast<size_t>(o) * stride + s]) * static_cast<double>(in[static_cast<size_t>(i) * stride + s]);
+      }
+      EXPECT_NEAR(static_cast<double>(sum[static_cast<size_t>(o * n_in + i)]), expected, 2e-5);
+    }
+  }
+}
+
+TEST(Dense, RefusesUnpaddedShapes) {
+  float buffer[64] = {};
+  EXPECT_THROW(Dense(buffer, 3, 4, buffer, 64, 64, false, buffer, 64), std::logic_error);
+  EXPECT_THROW(Dense(buffer, 4, 4, buffer, 64, 63, false, buffer, 64), std::logic_error);
+}
+
+TEST(ReluBackward, ZeroesWhereTheUnitSlept) {
+  std::vector<float> activation(64, 1.0F), gradient(64, 2.0F);
+  activation[3] = 0.0F;
+  activation[63] = 0.0F;
+  ReluBackward(activation.data(), 64, 1, 64, gradient.data(), 64);
+  EXPECT_EQ(gradient[3], 0.0F);
+  EXPECT_EQ(gradient[63], 0.0F);
+  EXPECT_EQ(gradient[4], 2.0F);
+}
+
+}  // namespace
+}  // namespace skyquilt::kernel

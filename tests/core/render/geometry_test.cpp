@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/base/random.h"
+#include "core/render/blend.h"
+#include "core/render/march.h"
+#include "core/render/ray_box.h"
+
+namespace skyquilt::render {
+namespace {
+
+const Eigen::Vector3d kMin(-1.0, -2.0, 0.0), kMax(3.0, 2.0, 5.0);
+
+TEST(RayBox, StretchEndsLieOnTheBox) {
+  base::Random random(37);
+  int hits = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d origin(random.Uniform(-10, 10), random.Uniform(-10, 10), random.Uniform(-10, 10));
+    const Eigen::Vector3d direction = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
+    const Stretch s = RayBox(origin, direction, kMin, kMax);
+    if (s.Empty()) {
+      // No point of the ray is inside.
+      for (double t = 0.0; t < 30.0; t += 0.05) {
+        const Eigen::Vector3d p = origin + t * direction;
+        EXPECT_FALSE(((p - kMin).array() > 1e-2).all() && ((kMax - p).array() > 1e-2).all());
+      }
+      continue;
+    }
+    ++hits;
+    const Eigen::Vector3d middle = origin + 0.5 * (s.t_near + s.t_far) * direction;
+    EXPECT_TRUE(((middle - kMin).array() >= -1e-9).all() && ((kMax - middle).array() >= -1e-9).all());
+    const Eigen::Vector3d out = origin + (s.t_far + 1e-6) * direction;
+    EXPECT_TRUE(((out - kMin).array() < 0.0).any() || ((kMax - out).array() < 0.0).any());
+  }
+  EXPECT_GT(hits, 100);
+}
+
+TEST(RayBox, EdgesAreLegal) {
+  EXPECT_DOUBLE_EQ(RayBox({0, 0, 1}, {0, 0, 1}, kMin, kMax).t_far, 4.0);       // starts inside
+  EXPECT_FALSE(RayBox({-5, -2, 1}, {1, 0, 0}, kMin, kMax).Empty());            // runs along a face
+  EXPECT_TRUE(RayBox({-5, -2.001, 1}, {1, 0, 0}, kMin, kMax).Empty());         // just misses it
+  EXPECT_TRUE(RayBox({0, 0, 9}, {0, 0, 1}, kMin, kMax).Empty());               // behind the origin
+  EXPECT_TRUE(RayBox({NAN, 0, 1}, {0, 0, 1}, kMin, kMax).Empty());
+  EXPECT_TRUE(RayBox({0, 0, 1}, {NAN, NAN, NAN}, kMin, kMax).Empty() || !std::isnan(RayBox({0, 0, 1}, {NAN, NAN, NAN}, kMin, kMax).t_near));
+}
+
+TEST(Blend, NeighboursSumToOneAcrossTheirBorder) {
+  const Eigen::Vector3d a_min(0, 0, 0), a_max(10, 10, 5), b_min(10, 0, 0), b_max(20, 10, 9);
+  for (double x = 3.0; x < 17.0; x += 0.1) {
+    const double sum = BlockRamp(a_min, a_max, 2.0, x, 5.0) + BlockRamp(b_min, b_max, 2.0, x, 5.0);
+    EXPECT_NEAR(sum, 1.0, 1e-12) << x;
+  }
+  EXPECT_EQ(BlockRamp(a_min, a_max, 0.0, 10.5, 5.0), 0.0);
+  EXPECT_EQ(BlockRamp(a_min, a_max, 0.0, 9.5, 5.0), 1.0);
+}
+
+TrainedField BoxField() {
+  TrainedField f;
+  f.map = encoding::SpaceMap::Box(kMin, kMax);
+  const double extent[3] = {f.map.extent().x(), f.map.extent().y(), f.map.extent().z()};
+  f.occupancy = field::OccupancyGrid::Make(extent, 0.05, 1 << 20);
+  f.step_m = 0.1;
+  return f;
+}
+
+TEST(March, FullOccupancyGivesEveryLatticePointOnce) {
+  const TrainedField f = BoxField();
+  base::Random random(41);
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d origin(random.Uniform(-6, 6), random.Uniform(-6, 6), random.Uniform(-3, 9));
+    const Eigen::Vector3d target(random.Uniform(-1, 3), random.Uniform(-2, 2), random.Uniform(0, 5));
+    const Eigen::Vector3d direction = (target - origin).normalized();
+    const Stretch s = FieldStretch(f.map, origin, direction);
+    if (s.Empty()) continue;
+    std::vector<double> ts;
+    March(f, origin, direction, s, f.step_m, 0.5F, [&](double t, double, double) {
+      ts.push_back(t);
+      return true;
+    });
+    EXPECT_NEAR(static_cast<double>(ts.size()), (s.t_far - s.t_near) / f.step_m, 1.01);
+    for (size_t k = 1; k < ts.size(); ++k) EXPECT_NEAR(ts[k] - ts[k - 1], f.step_m, 1e-9);
+  }
+}
+
+TEST(March, SamplesLieInOccupiedCellsOnly) {
+  TrainedField f = BoxField();
+  base::Random random(43);
+  for (uint8_t& cell : f.occupancy.occupied) cell = random.Below(3) == 0 ? 1 : 0;
+  int samples = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d origin(random.Uniform(-6, 6), random.Uniform(-6, 6), 8.0);
+    const Eigen::Vector3d direction = Eigen::Vector3d(random.Uniform(-0.5, 0.5), random.Uniform(-0.5, 0.5), -1.0).normalized();
+    const Stretch s = FieldStretch(f.map, origin, direction);
+    std::set<int64_t> expected, got;
+    // Every lattice point tested one by one; points within rounding of a cell face may fall either way.
+    int64_t k = 0;
+    for (double t = s.t_near + 0.05; t < s.t_far && !s.Empty(); t += f.step_m, ++k) {
+      const Eigen::Vector3f p = f.map.UnitFromEnu(origin + t * direction);
+      if (f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(p.x(), p.y(), p.z()))] != 0) expected.insert(k);
+    }
+    March(f, origin, direction, s, f.step_m, 0.5F, [&](double t, double, double) {
+      got.insert(static_cast<int64_t>(std::lround((t - s.t_near - 0.05) / f.step_m)));
+      ++samples;
+      return true;
+    });
+    std::vector<int64_t> difference;
+    std::set_symmetric_difference(expected.begin(), expected.end(), got.begin(), got.end(), std::back_inserter(difference));
+    EXPECT_LE(difference.size(), 1U);
+  }
+  EXPECT_GT(samples, 100);
+}
+
+}  // namespace
+}  // namespace skyquilt::render

@@ -1,3 +1,5 @@
 #include "coordinator/commands/cli.h"
 
-int main(int argc, char** argv) { return skyquilt::coordinator::RunCommandLine(argc, argv); }
+int main(int argc, char** argv) {
+  return skyquilt::coordinator::RunCommandLine(argc, argv);
+}

@@ -175,8 +175,8 @@ void PartitionStage(Pipeline& pipeline) {
         spdlog::info("  {}: empty, {}", block.name, block.empty_reason);
       } else {
         const Eigen::Vector3d size = block.max_enu - block.min_enu;
-        spdlog::info("  {}: {:.0f} x {:.0f} m, {:.1f} m high, {} photos from {:.0f} m, GSD {:.3f} m, table 2^{}", block.name, size.x(), size.y(), size.z(),
-                     block.photos.size(), block.altitude_agl_m, block.gsd_m, block.log2_table_size);
+        spdlog::info("  {}: {:.0f} x {:.0f} m, {:.1f} m high, {} photos from {:.0f} m, GSD {:.3f} m, table 2^{}", block.name, size.x(), size.y(),
+                     size.z(), block.photos.size(), block.altitude_agl_m, block.gsd_m, block.log2_table_size);
       }
     }
     return kDone;
@@ -192,8 +192,7 @@ std::vector<std::string> TrainStage(Pipeline& pipeline) {
   RunStage(pipeline, {.name = "train", .inputs = inputs, .on_new_inputs = OnNewInputs::kRefuse}, [&](const StageStamp& stamp) {
     const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
     const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
-    const TrainInput input{
-        .survey = &survey, .blocks = &blocks, .config_hash = stamp.Hash(), .verbose = pipeline.verbose, .quiet = pipeline.quiet};
+    const TrainInput input{.survey = &survey, .blocks = &blocks, .config_hash = stamp.Hash(), .verbose = pipeline.verbose, .quiet = pipeline.quiet};
     summary = TrainAll(pipeline.comm, input, pipeline.settings, project);
     return summary.failed.empty() ? kDone : kFailed;
   });
@@ -235,7 +234,7 @@ void ProductsStage(Pipeline& pipeline) {
   RequireFile(project.SceneFile(), "merge", project);
   RunStage(pipeline, {.name = "products", .inputs = {{"scene", FileIdentity(project.StampFile("merge"))}}}, [&](const StageStamp&) {
     base::ThreadPool threads(pipeline.settings.run.threads);
-    MakeProjectProducts(project, pipeline.settings, threads);
+    MakeProjectProducts(project, pipeline.settings.products, threads);
     return kDone;
   });
 }
@@ -261,8 +260,8 @@ void EvaluateStage(Pipeline& pipeline) {
                                       .config_text = pipeline.settings.Toml(),
                                       .options = pipeline.settings.evaluate};
     const report::Metrics metrics = report::Evaluate(input, threads);
-    spdlog::info("PSNR {:.2f} dB, SSIM {:.3f} over the {:.0f} % covered pixels of {} held-out photos; full frame {:.2f} dB", metrics.psnr, metrics.ssim,
-                 100.0 * metrics.coverage, metrics.n_test, metrics.psnr_full_frame);
+    spdlog::info("PSNR {:.2f} dB, SSIM {:.3f} over the {:.0f} % covered pixels of {} held-out photos; full frame {:.2f} dB", metrics.psnr,
+                 metrics.ssim, 100.0 * metrics.coverage, metrics.n_test, metrics.psnr_full_frame);
     if (metrics.has_truth) {
       spdlog::info("depth: median error {:.2f} m, RMSE {:.2f} m", metrics.depth_median_abs_m, metrics.depth_rmse_m);
     }

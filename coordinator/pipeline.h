@@ -33,7 +33,7 @@ void PartitionStage(Pipeline& pipeline);
 // The blocks that failed after all their tries ("name: reason"); the rest is finished and saved.
 std::vector<std::string> TrainStage(Pipeline& pipeline);
 void MergeStage(Pipeline& pipeline);
-// Orthophoto, surface model and the held-out views, as [products] says.
+// Orthophoto, surface model and video, as [products] says.
 void ProductsStage(Pipeline& pipeline);
 void EvaluateStage(Pipeline& pipeline);
 

@@ -17,7 +17,7 @@ struct StageStamp {
   std::string state;    // "running", "done" or "failed" (finished, with blocks that failed)
   FlatOptions options;  // "section.key" = value of everything the stage's result depends on
   FlatOptions inputs;   // name = hash or description of what it read
-  std::string finished_utc;
+  std::string finished_utc = {};
   double seconds = 0.0;
 
   // Identity of the configuration and the inputs; not of the time.

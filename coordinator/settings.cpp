@@ -118,6 +118,7 @@ void Settings::Validate() const {
   partition.Check();
   context.Check("context");
   train.Check("train");
+  products.Check();
   if (brightness.correction != "exif" && brightness.correction != "none") {
     throw base::UsageError("brightness.correction must be \"exif\" or \"none\", got \"" + brightness.correction + "\"");
   }

@@ -26,7 +26,11 @@ Pipeline CommandState::Begin(const Project& project, Settings settings, bool res
 
 void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help) {
   command.add_option_function<std::string>(
-      flag, [overrides, key](const std::string& value) { overrides->push_back({key, value}); }, help + " [" + key + "]");
+      flag,
+      [overrides, key](const std::string& value) {
+        overrides->push_back({key, value});
+      },
+      help + " [" + key + "]");
 }
 
 void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {

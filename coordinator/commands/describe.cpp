@@ -79,7 +79,8 @@ Json DescribeBlocks(const std::filesystem::path& file) {
                       {"cost", Round(block.cost, 4)},
                       {"empty", block.empty ? block.empty_reason : ""}});
   }
-  Json json = {{"what", "blocks"}, {"rows", set.rows}, {"columns", set.columns}, {"image_width", set.image_width}, {"georeferenced", set.georeferenced}};
+  Json json = {
+      {"what", "blocks"}, {"rows", set.rows}, {"columns", set.columns}, {"image_width", set.image_width}, {"georeferenced", set.georeferenced}};
   if (set.georeferenced) json["origin"] = Origin(set.origin);
   json["blocks"] = blocks;
   return json;

@@ -12,6 +12,9 @@ nlohmann::ordered_json Describe(const std::filesystem::path& path);
 // HDF5 checkpoints and scenes: kind, version, attributes, arrays with shape, type, range.
 nlohmann::ordered_json DescribeArchive(const std::filesystem::path& file);
 
+// GeoTIFFs and float TIFFs: size, bands, ranges.
+nlohmann::ordered_json DescribeRaster(const std::filesystem::path& file);
+
 // Indented "key: value" lines; lists of records become tables.
 std::string Readable(const nlohmann::ordered_json& json);
 

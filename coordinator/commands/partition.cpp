@@ -14,7 +14,8 @@ void AddPartition(CLI::App& app, CommandState& state) {
   CLI::App* command = app.add_subcommand("partition", "cut the survey's area into geo-referenced blocks at altitudes");
   command->add_option("project", flags->project, "project folder with a survey")->required()->type_name("FOLDER");
   AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns as 2x2, size:<metres>, or auto");
-  AddOverride(*command, overrides, "--altitudes", "partition.altitudes", "metres above ground, one per block from the south-west, separated by commas");
+  AddOverride(*command, overrides, "--altitudes", "partition.altitudes",
+              "metres above ground, one per block from the south-west, separated by commas");
   AddOverride(*command, overrides, "--image-width", "run.image_width", "width in pixels that photos are trained at; 0: full size");
   command->add_flag("--restart", flags->restart, "remove the blocks and everything made from them first");
   command->footer(

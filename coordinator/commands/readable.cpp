@@ -17,7 +17,8 @@ std::string Scalar(const Json& value) {
 }
 
 bool IsFlat(const Json& value) {
-  return !value.is_structured() || (value.is_array() && std::none_of(value.begin(), value.end(), [](const Json& entry) { return entry.is_structured(); }));
+  return !value.is_structured() ||
+         (value.is_array() && std::none_of(value.begin(), value.end(), [](const Json& entry) { return entry.is_structured(); }));
 }
 
 std::string FlatText(const Json& value) {
@@ -31,8 +32,8 @@ std::string FlatText(const Json& value) {
 // Records with the same simple fields line up in columns.
 bool IsTable(const Json& value) {
   return value.is_array() && !value.empty() && std::all_of(value.begin(), value.end(), [](const Json& row) {
-    return row.is_object() && std::all_of(row.begin(), row.end(), [](const Json& cell) { return IsFlat(cell); });
-  });
+           return row.is_object() && std::all_of(row.begin(), row.end(), [](const Json& cell) { return IsFlat(cell); });
+         });
 }
 
 void WriteTable(const Json& rows, const std::string& indent, std::ostream& out) {

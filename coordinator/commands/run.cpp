@@ -61,7 +61,8 @@ void AddRun(CLI::App& app, CommandState& state) {
       "simulate a place instead: " + presets);
   command->add_option("--model", flags->model, "COLMAP model of the photos (text or binary); without it COLMAP is run")->type_name("FOLDER");
   AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns as 2x2, size:<metres>, or auto");
-  AddOverride(*command, overrides, "--altitudes", "partition.altitudes", "metres above ground, one per block from the south-west, separated by commas");
+  AddOverride(*command, overrides, "--altitudes", "partition.altitudes",
+              "metres above ground, one per block from the south-west, separated by commas");
   AddOverride(*command, overrides, "--image-width", "run.image_width", "width in pixels that photos are trained and scored at; 0: full size");
   AddOverride(*command, overrides, "--holdout", "prepare.holdout", "which photos are never trained on");
   AddTrainingFlags(*command, overrides);

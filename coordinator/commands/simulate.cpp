@@ -1,7 +1,8 @@
+#include "coordinator/simulate/simulate.h"
+
 #include <CLI/CLI.hpp>
 
 #include "coordinator/commands/command.h"
-#include "coordinator/simulate/simulate.h"
 
 namespace skyquilt::coordinator {
 
@@ -16,7 +17,10 @@ void AddSimulate(CLI::App& app, CommandState& state) {
   for (const std::string& name : simulate::PresetNames()) presets += (presets.empty() ? "" : ", ") + name;
   CLI::App* command = app.add_subcommand("simulate", "make a survey with ground truth: photos, poses, depth, masks, buildings");
   command->add_option_function<std::string>(
-      "preset,--preset", [overrides](const std::string& name) { overrides->push_back({"simulate.preset", name}); },
+      "preset,--preset",
+      [overrides](const std::string& name) {
+        overrides->push_back({"simulate.preset", name});
+      },
       "which place: " + presets + " [simulate.preset]");
   command->add_option("-o,--out", flags->out, "folder for the survey; made if needed")->required()->type_name("FOLDER");
   AddOverride(*command, overrides, "--seed", "simulate.seed", "another place of the same kind");

@@ -43,6 +43,12 @@ std::optional<FfmpegPipe> FfmpegPipe::Start(const std::string& program, const st
 
 FfmpegPipe::FfmpegPipe(FfmpegPipe&& other) noexcept : process_(std::exchange(other.process_, -1)), socket_(std::exchange(other.socket_, -1)) {}
 
+FfmpegPipe& FfmpegPipe::operator=(FfmpegPipe&& other) noexcept {
+  std::swap(process_, other.process_);
+  std::swap(socket_, other.socket_);
+  return *this;
+}
+
 FfmpegPipe::~FfmpegPipe() {
   if (socket_ >= 0) close(socket_);
   if (process_ <= 0) return;

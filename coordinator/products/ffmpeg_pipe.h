@@ -16,7 +16,7 @@ class FfmpegPipe {
   // Nothing when the program does not exist. Throws base::InputError for other failures to start.
   static std::optional<FfmpegPipe> Start(const std::string& program, const std::filesystem::path& file, int width, int height, int fps);
   FfmpegPipe(FfmpegPipe&& other) noexcept;
-  FfmpegPipe& operator=(FfmpegPipe&&) = delete;
+  FfmpegPipe& operator=(FfmpegPipe&& other) noexcept;
   ~FfmpegPipe();  // ends the program if it still runs
 
   // False when the program went away; Finish then tells why. Never raises SIGPIPE.

@@ -12,13 +12,15 @@ namespace skyquilt::report {
 namespace {
 
 std::string StatusCell(const FieldLog* log, const partition::Block* block) {
-  if (block != nullptr && block->empty) return fmt::format("<td><span class=\"state idle\">empty</span> {}</td>", EscapeHtml(block->empty_reason));
-  if (log == nullptr) return "<td><span class=\"state idle\">no log</span></td>";
-  if (!log->ok) return fmt::format("<td><span class=\"state bad\">failed</span> {}</td>", EscapeHtml(log->reason));
+  if (block != nullptr && block->empty)
+    return fmt::format("<td class=\"status\"><span class=\"state idle\">empty</span> {}</td>", EscapeHtml(block->empty_reason));
+  if (log == nullptr) return "<td class=\"status\"><span class=\"state idle\">no log</span></td>";
+  if (!log->ok) return fmt::format("<td class=\"status\"><span class=\"state bad\">failed</span> {}</td>", EscapeHtml(log->reason));
   if (log->dropped_steps > 0) {
-    return fmt::format("<td><span class=\"state warn\">done</span> {} non-finite steps dropped</td>", FormatInteger(log->dropped_steps));
+    return fmt::format("<td class=\"status\"><span class=\"state warn\">done</span> {} non-finite steps dropped</td>",
+                       FormatInteger(log->dropped_steps));
   }
-  return "<td><span class=\"state good\">done</span></td>";
+  return "<td class=\"status\"><span class=\"state good\">done</span></td>";
 }
 
 std::string TrainingCells(const FieldLog* log) {
@@ -34,18 +36,19 @@ std::string TrainingCells(const FieldLog* log) {
 
 std::string BlockTable(const ReportInput& input) {
   std::string html =
-      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Field</th><th class=\"num\">Held-out PSNR</th><th class=\"num\">Scored "
+      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Field</th><th>State</th><th class=\"num\">Held-out PSNR</th><th "
+      "class=\"num\">Scored "
       "pixels</th>"
       "<th class=\"num\">Training PSNR</th><th class=\"num\">Steps</th><th class=\"num\">Time</th><th class=\"num\">Rays</th><th "
       "class=\"num\">Samples</th>"
       "<th class=\"num\">Parameters</th><th class=\"num\">Size</th><th class=\"num\">Heights</th><th class=\"num\">Flown above ground</th><th "
       "class=\"num\">GSD</th>"
-      "<th class=\"num\">Photos</th><th>State</th></tr></thead><tbody>";
+      "<th class=\"num\">Photos</th></tr></thead><tbody>";
   if (const FieldLog* context = input.log->Find("context")) {
-    html += "<tr><td><b>context</b></td><td class=\"num\" data-v=\"\">\xE2\x80\x93</td><td class=\"num\" data-v=\"\">\xE2\x80\x93</td>" +
-            TrainingCells(context);
+    html += "<tr><td><b>context</b></td>" + StatusCell(context, nullptr) +
+            "<td class=\"num\" data-v=\"\">\xE2\x80\x93</td><td class=\"num\" data-v=\"\">\xE2\x80\x93</td>" + TrainingCells(context);
     for (int i = 0; i < 5; ++i) html += "<td class=\"num\" data-v=\"\">\xE2\x80\x93</td>";
-    html += StatusCell(context, nullptr) + "</tr>";
+    html += "</tr>";
   }
   for (const partition::Block& block : input.blocks->blocks) {
     const auto& scores = input.metrics->blocks;
@@ -54,7 +57,7 @@ std::string BlockTable(const ReportInput& input) {
     const double pixels = score == scores.end() ? kNotMeasured : static_cast<double>(score->pixels);
     const FieldLog* log = input.log->Find(block.name);
     const Eigen::Vector3d size = block.max_enu - block.min_enu;
-    html += fmt::format("<tr id=\"block-{0}\"><td><b>{0}</b></td>", EscapeHtml(block.name));
+    html += fmt::format("<tr id=\"block-{0}\"><td><b>{0}</b></td>", EscapeHtml(block.name)) + StatusCell(log, &block);
     html += NumberCell(psnr_db, FormatFixed(psnr_db, 2, "dB")) + NumberCell(pixels, FormatLarge(pixels)) + TrainingCells(log);
     html += NumberCell(size.x() * size.y(), fmt::format("{:.0f} \xC3\x97 {:.0f}\xE2\x80\xAFm", size.x(), size.y()));
     html +=
@@ -62,7 +65,7 @@ std::string BlockTable(const ReportInput& input) {
     html += NumberCell(block.altitude_agl_m, FormatFixed(block.altitude_agl_m, 1, "m"));
     html += NumberCell(block.gsd_m, FormatFixed(block.gsd_m * 100.0, 1, "cm"));
     html += NumberCell(static_cast<double>(block.photos.size()), FormatInteger(static_cast<int64_t>(block.photos.size())));
-    html += StatusCell(log, &block) + "</tr>";
+    html += "</tr>";
   }
   return html + "</tbody></table></div>\n";
 }

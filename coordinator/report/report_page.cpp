@@ -94,6 +94,39 @@ std::string BlockBars(const ReportInput& input) {
   return html + fmt::format("</div><p class=\"note\">Bars start at {}.</p></div>", FormatFixed(base, 0, "dB"));
 }
 
+// One figure for equal values, otherwise the range.
+std::string RangeOf(const std::vector<double>& values, int decimals, const char* unit) {
+  if (values.empty()) return FormatFixed(kNotMeasured, decimals);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const std::string low_text = FormatFixed(*low, decimals), high_text = FormatFixed(*high, decimals, unit);
+  return FormatFixed(*low, decimals, unit) == high_text ? high_text : low_text + " \xE2\x80\x93 " + high_text;
+}
+
+std::string BlockFacts(const ReportInput& input) {
+  std::vector<double> gsd_cm, margin_m, altitude_m;
+  size_t n_empty = 0;
+  for (const partition::Block& block : input.blocks->blocks) {
+    if (block.empty) {
+      ++n_empty;
+      continue;
+    }
+    gsd_cm.push_back(100.0 * block.gsd_m);
+    margin_m.push_back(block.margin_m);
+    altitude_m.push_back(block.altitude_agl_m);
+  }
+  const Metrics& metrics = *input.metrics;
+  std::string html = "<dl class=\"card facts small\">";
+  const auto fact = [&](const char* name, const std::string& value) { html += fmt::format("<dt>{}</dt><dd>{}</dd>", name, value); };
+  fact("Blocks", fmt::format("{} \xC3\x97 {}{}", input.blocks->rows, input.blocks->columns, n_empty > 0 ? fmt::format(", {} empty", n_empty) : ""));
+  fact("Flown at", RangeOf(altitude_m, 0, "m above ground"));
+  fact("GSD", RangeOf(gsd_cm, 1, "cm"));
+  fact("Margin", RangeOf(margin_m, 1, "m"));
+  fact("Inside blocks", FormatFixed(metrics.psnr_interior_db, 2, "dB"));
+  fact("In seams", FormatFixed(metrics.psnr_seam_db, 2, "dB"));
+  fact("Seam gap", FormatFixed(metrics.seam_psnr_gap_db, 2, "dB"));
+  return html + "</dl>";
+}
+
 std::string MapSection(const ReportInput& input) {
   std::string html = "<section id=\"map-section\"><div class=\"heading\"><h2>Blocks</h2></div><div class=\"map-grid\"><div class=\"card map-card\">" +
                      BlockMapSvg(input);
@@ -102,7 +135,7 @@ std::string MapSection(const ReportInput& input) {
   html += Toggle("blocks", "Blocks and margins", "k-block") + Toggle("cameras", "Training photos", "k-camera") +
           Toggle("tests", "Held-out photos", "k-test");
   if (input.survey->georeferenced) html += Toggle("gps", "GPS tracks", "k-gps");
-  return html + "</div></div>" + BlockBars(input) + "</div>" + BlockTable(input) + "</section>\n";
+  return html + "</div></div>" + "<div class=\"side\">" + BlockBars(input) + BlockFacts(input) + "</div></div>" + BlockTable(input) + "</section>\n";
 }
 
 std::string TrainingSection(const ReportInput& input) {

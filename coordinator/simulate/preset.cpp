@@ -42,7 +42,7 @@ Preset Hamlet() {
   preset.city.tower_share = 0.0;
   preset.city.flats_share = 0.0;
   preset.city.park_share = 0.0;
-  preset.city.lot_use = 0.8;
+  preset.city.lot_use = 0.6;
   preset.city.tree_detail = 1;
   preset.altitudes_agl_m.assign(4, 45.0);
   preset.flight_inset_m = 6.0;
@@ -102,7 +102,7 @@ Preset TidalFlat() {
   preset.surround_m = 90.0;
   preset.terrain_step_m = 1.0;
   preset.terrain_amplitude_m = 0.5;
-  preset.altitudes_agl_m.assign(4, 70.0);
+  preset.altitudes_agl_m.assign(4, 80.0);
   preset.flight_inset_m = 10.0;
   preset.oblique_lines = 2;
   preset.camera = MakeCamera(camera::CameraModel::kOpencv, 640, 480, 68.0, {-0.03, 0.008, 0.0004, -0.0003});

@@ -5,8 +5,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "core/image/image.h"
 
@@ -27,8 +25,5 @@ class Lpips {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-// Names of the inputs of an ONNX model's graph, weights excluded; empty if the bytes are no ONNX model. (OpenCV does not tell them.)
-std::vector<std::string> OnnxInputNames(const std::string& model_bytes);
 
 }  // namespace skyquilt::metrics

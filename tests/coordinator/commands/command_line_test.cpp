@@ -93,7 +93,9 @@ TEST(Describe, ForeignFilesAreRefusedByName) {
 }
 
 TEST(Readable, ShowsValuesTablesAndText) {
-  const nlohmann::ordered_json json = {{"what", "blocks"}, {"rows", 2}, {"none", nullptr}, {"list", {1, 2}}, {"text", "a\nb"}, {"table", {{{"name", "r0c0"}, {"cost", 0.5}}, {{"name", "r0c1"}, {"cost", 0.25}}}}};
+  const nlohmann::ordered_json json = {{"what", "blocks"}, {"rows", 2},
+                                       {"none", nullptr},  {"list", {1, 2}},
+                                       {"text", "a\nb"},   {"table", {{{"name", "r0c0"}, {"cost", 0.5}}, {{"name", "r0c1"}, {"cost", 0.25}}}}};
   const std::string text = Readable(json);
   EXPECT_NE(text.find("rows: 2\n"), std::string::npos) << text;
   EXPECT_NE(text.find("none: -\n"), std::string::npos) << text;

@@ -21,8 +21,9 @@ TEST(Duration, ReadsWhatPeopleWrite) {
 }
 
 TEST(Duration, RefusesNonsense) {
-  for (const char* text : {"", " ", "ten", "10 minuten", "-5min", "0", "0s", "1h30", "30m1h", "5m5m", "1e9", "nan", "inf", "10min!", "1:75", "1:2:3:4", ":",
-                           "5.5.5s", ".", "s", "99999999999999999999s"}) {
+  for (const char* text : {"",     " ",       "ten",  "10 minuten", "-5min", "0",   "0s",
+                           "1h30", "30m1h",   "5m5m", "1e9",        "nan",   "inf", "10min!",
+                           "1:75", "1:2:3:4", ":",    "5.5.5s",     ".",     "s",   "99999999999999999999s"}) {
     EXPECT_THROW(ParseDurationSeconds(text), base::UsageError) << "'" << text << "'";
   }
 }

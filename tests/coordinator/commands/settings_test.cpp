@@ -32,7 +32,8 @@ TEST(Settings, FlagsWinOverTheFileAndTheFileOverDefaults) {
 }
 
 TEST(Settings, TomlOfAnySettingsReadsBackTheSame) {
-  Settings settings = LoadSettings({}, {{"train.learning_rate", "0.0123"}, {"partition.blocks", "3x2"}, {"run.time_budget_s", "90.5"}, {"evaluate.exif_gain", "false"}});
+  Settings settings = LoadSettings(
+      {}, {{"train.learning_rate", "0.0123"}, {"partition.blocks", "3x2"}, {"run.time_budget_s", "90.5"}, {"evaluate.exif_gain", "false"}});
   const std::filesystem::path file = std::filesystem::temp_directory_path() / ("skyquilt_settings_back_" + std::to_string(getpid()) + ".toml");
   base::WriteFileAtomically(file, settings.Toml());
   Settings back = LoadSettings({file}, {});
@@ -49,19 +50,19 @@ TEST(Settings, UnknownNamesSuggestTheNearest) {
 
 TEST(Settings, ValuesOfTheWrongTypeOrRangeAreNamed) {
   for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"train.levels", "many"},
-                                                                                    {"train.levels", "4.5"},
-                                                                                    {"train.levels", ""},
-                                                                                    {"train.learning_rate", "1e-2x"},
-                                                                                    {"train.learning_rate", "nan"},
-                                                                                    {"evaluate.exif_gain", "maybe"},
-                                                                                    {"partition.altitudes", "150,,300"},
-                                                                                    {"partition.altitudes", "150,-300"},
-                                                                                    {"run.context_share", "1.5"},
-                                                                                    {"run.image_width", "-1"},
-                                                                                    {"run.seed", "-1"},
-                                                                                    {"run.threads", "-2"},
-                                                                                    {"brightness.correction", "exfi"},
-                                                                                    {"train.steps", "-5"}}) {
+                                                                                   {"train.levels", "4.5"},
+                                                                                   {"train.levels", ""},
+                                                                                   {"train.learning_rate", "1e-2x"},
+                                                                                   {"train.learning_rate", "nan"},
+                                                                                   {"evaluate.exif_gain", "maybe"},
+                                                                                   {"partition.altitudes", "150,,300"},
+                                                                                   {"partition.altitudes", "150,-300"},
+                                                                                   {"run.context_share", "1.5"},
+                                                                                   {"run.image_width", "-1"},
+                                                                                   {"run.seed", "-1"},
+                                                                                   {"run.threads", "-2"},
+                                                                                   {"brightness.correction", "exfi"},
+                                                                                   {"train.steps", "-5"}}) {
     const std::string message = MessageOf([&key = key, &value = value] { LoadSettings({}, {{key, value}}); });
     EXPECT_NE(message.find(key.substr(key.find('.') + 1)), std::string::npos) << key << " = " << value << ": " << message;
   }

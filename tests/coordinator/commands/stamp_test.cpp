@@ -1,10 +1,9 @@
-#include "coordinator/pipeline_stamp.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 
+#include "coordinator/pipeline_stamp.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 

@@ -128,7 +128,7 @@ TEST(BlockQueue, OverdrawnBudgetStillTrainsALittle) {
 
 TEST(ListSchedule, EndsAsByHand) {
   const std::vector<double> jobs = {5.0, 4.0, 3.0, 3.0};
-  EXPECT_DOUBLE_EQ(ListScheduleEnd(jobs, 0.0, {}, 2), 8.0);   // 5+3 and 4+3
+  EXPECT_DOUBLE_EQ(ListScheduleEnd(jobs, 0.0, {}, 2), 8.0);  // 5+3 and 4+3
   EXPECT_DOUBLE_EQ(ListScheduleEnd(jobs, 10.0, {}, 1), 25.0);
   EXPECT_DOUBLE_EQ(ListScheduleEnd({}, 3.0, {}, 4), 3.0);
   const std::vector<double> busy = {6.0};

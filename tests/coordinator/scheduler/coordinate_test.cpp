@@ -18,12 +18,14 @@ namespace {
 
 struct Played {
   std::vector<FieldOutcome> outcomes;
-  std::vector<std::string> order;             // names as handed out
-  std::map<std::string, int> rank_of;         // who trained it last
+  std::vector<std::string> order;      // names as handed out
+  std::map<std::string, int> rank_of;  // who trained it last
   int n_status = 0;
 };
 
-QueueBlock Named(int block, double cost) { return {block, "block_" + std::to_string(block), cost, 0.0}; }
+QueueBlock Named(int block, double cost) {
+  return {block, "block_" + std::to_string(block), cost, 0.0};
+}
 
 // Rank 0 coordinates in this thread, the other ranks serve in theirs.
 Played Play(int n_ranks, const std::vector<QueueBlock>& blocks, const FieldTrainer& trainer) {
@@ -164,7 +166,9 @@ TEST_F(Coordinate, BadInputOfAnyRankEndsTheCommandWithItsMessage) {
 }
 
 TEST_F(Coordinate, AWrongCheckpointIsAUsageError) {
-  const FieldTrainer trainer = [](const FieldJob&, const worker::Reporter&) -> worker::TrainResult { throw base::UsageError("another configuration"); };
+  const FieldTrainer trainer = [](const FieldJob&, const worker::Reporter&) -> worker::TrainResult {
+    throw base::UsageError("another configuration");
+  };
   EXPECT_THROW(Play(1, {Named(0, 1.0)}, trainer), base::UsageError);
   EXPECT_THROW(Play(2, {Named(0, 1.0)}, trainer), base::UsageError);
 }

@@ -13,7 +13,8 @@ namespace {
 const worker::Reporter kSilent = [](const worker::TrainStatus&) {};
 
 TEST(FieldJob, TravelsUnchanged) {
-  const FieldJob job{.block = 3, .name = "block_r1c0", .attempt = 2, .steps = 0, .seconds = 1.0 / 3.0, .rate_factor = 0.25, .seed = 0xFFFFFFFFFFFFFFF1ULL};
+  const FieldJob job{
+      .block = 3, .name = "block_r1c0", .attempt = 2, .steps = 0, .seconds = 1.0 / 3.0, .rate_factor = 0.25, .seed = 0xFFFFFFFFFFFFFFF1ULL};
   const FieldJob back = JobFromText(ToText(job));
   EXPECT_EQ(back.block, job.block);
   EXPECT_EQ(back.name, job.name);

@@ -87,7 +87,7 @@ TEST_F(Replacement, NewestUsableFallsBack) {
   EXPECT_NE(why.find("block.h5.prev: is damaged"), std::string::npos) << why;
 }
 
-TEST_F(Replacement, ADamagedFileDoesNotCostTheGoodOneBeforeUntilTheNewOneIsThere) {
+TEST_F(Replacement, WorksOverADamagedFile) {
   Commit(file_, 1);
   Commit(file_, 2);
   Damage(file_);

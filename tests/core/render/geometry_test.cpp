@@ -15,7 +15,7 @@ const Eigen::Vector3d kMin(-1.0, -2.0, 0.0), kMax(3.0, 2.0, 5.0);
 TEST(RayBox, StretchEndsLieOnTheBox) {
   base::Random random(37);
   int hits = 0;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 5000; ++i) {
     const Eigen::Vector3d origin(random.Uniform(-10, 10), random.Uniform(-10, 10), random.Uniform(-10, 10));
     const Eigen::Vector3d direction = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
     const Stretch s = RayBox(origin, direction, kMin, kMax);

@@ -1,0 +1,28 @@
+#include "coordinator/pipeline_products.h"
+
+#include "coordinator/products/camera_path.h"
+#include "coordinator/products/map_products.h"
+#include "coordinator/products/render_views.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/render/scene.h"
+
+namespace skyquilt::coordinator {
+
+void MakeProjectProducts(const Project& project, const products::ProductOptions& options, base::ThreadPool& threads) {
+  const render::Scene scene = render::Scene::Load(project.SceneFile());
+  std::filesystem::create_directories(project.ProductsFolder());
+  if (options.ortho || options.dsm) {
+    const products::MapProducts maps = products::MakeMapProducts(scene, options, project.ProductsFolder(), threads);
+    spdlog::info("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", maps.grid.width, maps.grid.height, maps.grid.resolution_m,
+                 100.0 * maps.filled, project.ProductsFolder().string());
+  }
+  if (options.video_seconds > 0.0) {
+    const std::filesystem::path file = project.ProductsFolder() / (options.video_path + ".mp4");
+    const products::RenderStats stats = products::RenderVideo(products::RendererOf(scene, options.exposure_ev, threads),
+                                                              products::BuiltInPath(scene.info(), options), options.video_fps, file);
+    spdlog::info("video of {} frames, {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), file.string());
+  }
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# The whole way on a simulated town: set-up, build, simulate, train, merge, map products, report.
+#   scripts/demo.sh [FOLDER]             default folder: out/demo in the repository
+#   SKYQUILT_DEMO_BUDGET=10min scripts/demo.sh    another time for training (default 5min)
+# The same command again continues where it stopped and does nothing twice.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+out=$(realpath -m "${1:-$root/out/demo}")
+budget=${SKYQUILT_DEMO_BUDGET:-5min}
+cd "$root"
+
+times=()
+stage() {
+  local name=$1 start=$SECONDS
+  shift
+  echo "== $name"
+  "$@"
+  times+=("$(printf '%-28s %5d s' "$name" $((SECONDS - start)))")
+}
+
+build() {
+  cmake --preset release
+  cmake --build --preset release --target skyquilt
+}
+
+scores() {
+  python3 - "$out/report/metrics.json" <<'PYTHON'
+import json
+import sys
+
+with open(sys.argv[1], encoding="utf-8") as file:
+    metrics = json.load(file)
+
+
+def line(label, key, unit, digits):
+    value = metrics.get(key)
+    print(f"{label:<28} " + ("not measured" if value is None else f"{value:.{digits}f}{unit}"))
+
+
+line("PSNR, held-out views", "psnr", " dB", 2)
+line("SSIM, held-out views", "ssim", "", 3)
+line("median depth error", "depth_median_abs_m", " m", 3)
+PYTHON
+}
+
+skyquilt=build/release/coordinator/skyquilt
+stage "set-up" scripts/setup.sh --run
+stage "build" build
+stage "simulate" "$skyquilt" simulate town -o "$out/simulated"
+stage "run ($budget of training)" "$skyquilt" run --preset town -o "$out" --blocks 2x2 --time-budget "$budget"
+
+echo "== done"
+printf '%s\n' "${times[@]}"
+printf '%-28s %5d s\n' "all" "$SECONDS"
+scores
+echo "report: $out/report/index.html"

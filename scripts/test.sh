@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Sets up, builds everything with warnings as errors, and runs all tests. Ends with ctest's own summary and exit status.
+#   scripts/test.sh [ctest options]      for instance: scripts/test.sh -R core_geo
+# SKYQUILT_TEST_JOBS: unit tests at a time (default 2). Tests of the whole program always run alone.
+set -euo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+if (( EUID == 0 )); then
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+fi
+
+scripts/setup.sh
+cmake --preset ci
+cmake --build --preset ci
+echo "build finished after ${SECONDS} s"
+exec ctest --preset ci --parallel "${SKYQUILT_TEST_JOBS:-2}" "$@"

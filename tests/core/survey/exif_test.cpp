@@ -1,0 +1,197 @@
+#include "core/survey/exif.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <exiv2/exiv2.hpp>
+#include <fstream>
+
+#include "core/base/errors.h"
+#include "core/image/image.h"
+#include "tests/core/survey/temp_folder.h"
+
+namespace skyquilt::survey {
+namespace {
+
+std::filesystem::path MakeJpeg(const test::TempFolder& folder) {
+  const std::filesystem::path file = folder / "photo.jpg";
+  image::SaveJpeg(image::Image8(16, 8, 3, 128), file, 90);
+  return file;
+}
+
+PhotoTags RoundTrip(const PhotoTags& tags) {
+  const test::TempFolder folder;
+  const auto file = MakeJpeg(folder);
+  WritePhotoTags(tags, file);
+  return ReadPhotoTags(file);
+}
+
+// Sets raw tags as some other program would have left them.
+template <typename Edit>
+PhotoTags ReadForged(const Edit& edit) {
+  const test::TempFolder folder;
+  const auto file = MakeJpeg(folder);
+  WritePhotoTags({}, file);
+  const auto image = Exiv2::ImageFactory::open(file.string());
+  image->readMetadata();
+  edit(image->exifData(), image->xmpData());
+  image->writeMetadata();
+  return ReadPhotoTags(file);
+}
+
+void SetExifPosition(Exiv2::ExifData& exif) {
+  exif["Exif.GPSInfo.GPSLatitude"] = "46/1 50/1 3000/100";
+  exif["Exif.GPSInfo.GPSLatitudeRef"] = "N";
+  exif["Exif.GPSInfo.GPSLongitude"] = "91/1 30/1 0/1";
+  exif["Exif.GPSInfo.GPSLongitudeRef"] = "W";
+}
+
+TEST(Exif, PositionsSurviveTheRoundTripEverywhereOnEarth) {
+  const geo::Geodetic positions[] = {{90.0, 0.0, 2835.0},          {-90.0, 12.0, 2835.0},         {0.0, -180.0, 10.0},      {12.5, 179.999999999, 10.0},
+                                     {-33.8567844, 151.2152967, 5}, {46.8427, -91.994, 198.31},    {31.5, 35.47, -430.25},   {-0.00001, -0.00001, -0.004},
+                                     {59.99999999999, 10.0, 1.0},   {-54.801944, -68.303056, 9000}};
+  for (const geo::Geodetic& position : positions) {
+    PhotoTags tags;
+    tags.gps = position;
+    const PhotoTags read = RoundTrip(tags);
+    ASSERT_TRUE(read.gps) << position.latitude_deg << " " << position.longitude_deg;
+    EXPECT_NEAR(read.gps->latitude_deg, position.latitude_deg, 2e-9);
+    EXPECT_NEAR(geo::WrapLongitudeDeg(read.gps->longitude_deg - position.longitude_deg), 0.0, 2e-9);
+    EXPECT_GE(read.gps->longitude_deg, -180.0);
+    EXPECT_LT(read.gps->longitude_deg, 180.0);
+    EXPECT_NEAR(read.gps->height_m, position.height_m, 1e-3);
+  }
+}
+
+TEST(Exif, EveryTagSurvivesTheRoundTrip) {
+  PhotoTags tags;
+  tags.gps = geo::Geodetic{-12.0, 130.0, 77.5};
+  tags.absolute_altitude_m = 77.5;
+  tags.relative_altitude_m = -3.25;
+  tags.rtk = true;
+  tags.gimbal_yaw_deg = -170.5;
+  tags.gimbal_pitch_deg = -89.9;
+  tags.gimbal_roll_deg = 0.1;
+  tags.exposure = {1.0 / 546.0, 2.8, 100.0};
+  tags.focal_length_mm = 3.61;
+  tags.focal_length_35mm = 20.0;
+  tags.capture_time_s = 1466699519.9996;  // rounds up into the next second
+  tags.make = "DJI";
+  tags.model = "FC300S";
+  const PhotoTags read = RoundTrip(tags);
+  EXPECT_NEAR(*read.absolute_altitude_m, 77.5, 1e-3);
+  EXPECT_NEAR(*read.relative_altitude_m, -3.25, 1e-3);
+  EXPECT_TRUE(read.rtk);
+  EXPECT_NEAR(*read.gimbal_yaw_deg, -170.5, 0.01);
+  EXPECT_NEAR(*read.gimbal_pitch_deg, -89.9, 0.01);
+  EXPECT_NEAR(*read.gimbal_roll_deg, 0.1, 0.01);
+  EXPECT_NEAR(*read.exposure.time_s, 1.0 / 546.0, 1e-8);
+  EXPECT_NEAR(*read.exposure.f_number, 2.8, 1e-3);
+  EXPECT_EQ(*read.exposure.iso, 100.0);
+  EXPECT_NEAR(*read.focal_length_mm, 3.61, 1e-4);
+  EXPECT_EQ(*read.focal_length_35mm, 20.0);
+  EXPECT_NEAR(*read.capture_time_s, 1466699520.0, 1e-3);
+  EXPECT_EQ(read.make, "DJI");
+  EXPECT_EQ(read.model, "FC300S");
+}
+
+TEST(Exif, AnUntaggedPhotoHasNoTags) {
+  const PhotoTags read = RoundTrip({});
+  EXPECT_FALSE(read.gps);
+  EXPECT_FALSE(read.relative_altitude_m);
+  EXPECT_FALSE(read.exposure.time_s);
+  EXPECT_FALSE(read.capture_time_s);
+  EXPECT_FALSE(read.rtk);
+}
+
+TEST(Exif, XmpAltitudeWithoutLatitudeIsNoPosition) {
+  const PhotoTags read = ReadForged([](Exiv2::ExifData&, Exiv2::XmpData& xmp) { xmp["Xmp.drone-dji.AbsoluteAltitude"] = "+198.31"; });
+  EXPECT_FALSE(read.gps);
+  EXPECT_NEAR(*read.absolute_altitude_m, 198.31, 1e-9);
+}
+
+TEST(Exif, XmpAltitudeCompletesExifLatitude) {
+  const PhotoTags read = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData& xmp) {
+    SetExifPosition(exif);
+    exif["Exif.GPSInfo.GPSAltitude"] = "198/1";  // rounded by some rewriting program
+    xmp["Xmp.drone-dji.AbsoluteAltitude"] = "+198.31";
+  });
+  ASSERT_TRUE(read.gps);
+  EXPECT_NEAR(read.gps->latitude_deg, 46.0 + 50.0 / 60.0 + 30.0 / 3600.0, 1e-12);
+  EXPECT_NEAR(read.gps->longitude_deg, -91.5, 1e-12);
+  EXPECT_NEAR(read.gps->height_m, 198.31, 1e-9);
+}
+
+TEST(Exif, XmpPositionWinsOverTruncatedExifAlsoWithDjisSpelling) {
+  const PhotoTags read = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData& xmp) {
+    SetExifPosition(exif);
+    xmp["Xmp.drone-dji.GpsLatitude"] = "46.84171234";
+    xmp["Xmp.drone-dji.GpsLongtitude"] = "-91.50001234";
+  });
+  EXPECT_DOUBLE_EQ(read.gps->latitude_deg, 46.84171234);
+  EXPECT_DOUBLE_EQ(read.gps->longitude_deg, -91.50001234);
+  EXPECT_TRUE(std::isnan(read.gps->height_m));
+}
+
+TEST(Exif, AltitudeReferenceOneIsBelowSeaLevel) {
+  const PhotoTags read = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData&) {
+    SetExifPosition(exif);
+    exif["Exif.GPSInfo.GPSAltitude"] = "4305/10";
+    Exiv2::DataValue below(Exiv2::unsignedByte);
+    below.read("1");
+    exif["Exif.GPSInfo.GPSAltitudeRef"].setValue(&below);
+  });
+  EXPECT_DOUBLE_EQ(read.gps->height_m, -430.5);
+}
+
+TEST(Exif, ZeroZeroIsNoFixAndBrokenRationalsAreAbsent) {
+  const PhotoTags no_fix = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData&) {
+    SetExifPosition(exif);
+    exif["Exif.GPSInfo.GPSLatitude"] = "0/1 0/1 0/1";
+    exif["Exif.GPSInfo.GPSLongitude"] = "0/1 0/1 0/1";
+  });
+  EXPECT_FALSE(no_fix.gps);
+  const PhotoTags broken = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData&) {
+    SetExifPosition(exif);
+    exif["Exif.GPSInfo.GPSLatitude"] = "46/0 0/0 0/0";
+    exif["Exif.Photo.ExposureTime"] = "1/0";
+    exif["Exif.Photo.DateTimeOriginal"] = "0000:00:00 00:00:00";
+  });
+  EXPECT_FALSE(broken.gps);
+  EXPECT_FALSE(broken.exposure.time_s);
+  EXPECT_FALSE(broken.capture_time_s);
+}
+
+TEST(Exif, AFileThatIsNoImageIsRefusedByName) {
+  const test::TempFolder folder;
+  std::ofstream(folder / "notes.jpg") << "these are notes, not a photo";
+  try {
+    ReadPhotoTags(folder / "notes.jpg");
+    FAIL() << "no error";
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("notes.jpg"), std::string::npos);
+  }
+  EXPECT_THROW(ReadPhotoTags(folder / "absent.jpg"), base::InputError);
+}
+
+TEST(Exif, RealDjiTagsAreRead) {
+  const char* data = std::getenv("SKYQUILT_DATA");
+  const auto file = std::filesystem::path(data == nullptr ? "../shared/data" : data) / "brighton_beach/images/DJI_0018.JPG";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real photos at " << file;
+  const PhotoTags tags = ReadPhotoTags(file);
+  ASSERT_TRUE(tags.gps);
+  EXPECT_NEAR(tags.gps->latitude_deg, 46.8427, 0.002);
+  EXPECT_NEAR(tags.gps->longitude_deg, -91.994, 0.002);
+  EXPECT_NEAR(tags.gps->height_m, 198.31, 1e-6);
+  EXPECT_NEAR(*tags.relative_altitude_m, 39.8, 1e-6);
+  EXPECT_NEAR(*tags.gimbal_pitch_deg, -89.9, 1e-6);
+  EXPECT_NEAR(*tags.exposure.time_s, 0.002702, 1e-6);
+  EXPECT_NEAR(*tags.exposure.f_number, 2.8, 1e-6);
+  EXPECT_EQ(*tags.exposure.iso, 100.0);
+  EXPECT_EQ(*tags.capture_time_s, 1466699519.0);  // 2016-06-23 16:31:59
+  EXPECT_EQ(tags.model, "FC300S");
+}
+
+}  // namespace
+}  // namespace skyquilt::survey

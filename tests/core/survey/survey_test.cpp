@@ -1,0 +1,136 @@
+#include "core/survey/survey.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "tests/core/survey/temp_folder.h"
+
+namespace skyquilt::survey {
+namespace {
+
+Survey SmallSurvey() {
+  Survey survey;
+  survey.origin = {46.84271234567, -91.99412345678, 158.5};
+  survey.georeferenced = true;
+  survey.photo_root = "/some/where";
+  survey.cameras.push_back({camera::CameraModel::kPinhole, 100, 80, {90.0, 91.0, 50.0, 40.0}});
+  for (int i = 0; i < 3; ++i) {
+    Photo photo;
+    photo.name = "p" + std::to_string(i) + ".jpg";
+    photo.cam_from_enu.rotation = Eigen::Quaterniond(0.3, 0.4 + i, -0.1, 0.7).normalized();
+    photo.cam_from_enu.translation = Eigen::Vector3d(1.0 / 3.0, 1e5 + i, -7.0);
+    photo.agl_m = i == 2 ? std::numeric_limits<double>::quiet_NaN() : 40.0 + 10.0 * i;
+    photo.gps_residual_m = std::numeric_limits<double>::quiet_NaN();
+    if (i == 1) {
+      photo.gps = geo::Geodetic{46.8, -91.9, 198.0};
+      photo.relative_altitude_m = 39.8;
+      photo.time_s = 12.25;
+      photo.exposure = {1.0 / 546.0, 2.8, 100.0};
+      photo.gps_residual_m = 0.123456789;
+      photo.gps_inlier = true;
+      photo.flight = 1;
+      photo.is_test = true;
+      photo.mask = "/some/where/masks/p1.jpg.png";
+    }
+    survey.photos.push_back(photo);
+  }
+  survey.unregistered = {"lost.jpg"};
+  for (int i = 0; i < 5; ++i) survey.points.push_back({Eigen::Vector3d(0.1 * i, 1.0 / 7.0, -1e4), {1, 2, 250}, 0.25F, 3 + i});
+  survey.fit = {3, 2, 0.6, 0.5, 0.3, 12.5, {0.0, 15.5}};
+  survey.truth = Truth{"/t/depth", "/t/buildings.json", "/t/exposure.json"};
+  return survey;
+}
+
+// Replaces a value in survey.json and expects the load to fail with `word` in its message.
+template <typename Edit>
+void ExpectRefused(const std::string& word, const Edit& edit) {
+  const test::TempFolder folder;
+  SaveSurvey(SmallSurvey(), folder.path());
+  nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
+  edit(json);
+  base::WriteFileAtomically(folder / "survey.json", json.dump());
+  try {
+    LoadSurvey(folder.path());
+    ADD_FAILURE() << "accepted: " << word;
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+  }
+}
+
+TEST(Survey, SavingAndLoadingKeepsEveryBit) {
+  const test::TempFolder folder;
+  const Survey before = SmallSurvey();
+  SaveSurvey(before, folder.path());
+  const Survey after = LoadSurvey(folder.path());
+  EXPECT_EQ(after.origin.latitude_deg, before.origin.latitude_deg);
+  EXPECT_EQ(after.origin.height_m, before.origin.height_m);
+  EXPECT_EQ(after.georeferenced, true);
+  EXPECT_EQ(after.photo_root, before.photo_root);
+  EXPECT_EQ(after.unregistered, before.unregistered);
+  EXPECT_EQ(after.cameras[0].params, before.cameras[0].params);
+  ASSERT_EQ(after.photos.size(), before.photos.size());
+  for (size_t i = 0; i < before.photos.size(); ++i) {
+    EXPECT_EQ(after.photos[i].cam_from_enu.rotation.coeffs(), before.photos[i].cam_from_enu.rotation.coeffs());
+    EXPECT_EQ(after.photos[i].cam_from_enu.translation, before.photos[i].cam_from_enu.translation);
+    EXPECT_EQ(after.photos[i].gps.has_value(), before.photos[i].gps.has_value());
+    EXPECT_EQ(after.photos[i].time_s, before.photos[i].time_s);
+    EXPECT_EQ(after.photos[i].exposure.time_s, before.photos[i].exposure.time_s);
+    EXPECT_EQ(after.photos[i].mask, before.photos[i].mask);
+    EXPECT_EQ(after.photos[i].is_test, before.photos[i].is_test);
+    EXPECT_EQ(after.photos[i].flight, before.photos[i].flight);
+    EXPECT_EQ(std::isnan(after.photos[i].agl_m), std::isnan(before.photos[i].agl_m));
+  }
+  EXPECT_EQ(after.photos[1].gps_residual_m, before.photos[1].gps_residual_m);
+  EXPECT_TRUE(std::isnan(after.photos[0].gps_residual_m));
+  ASSERT_EQ(after.points.size(), before.points.size());
+  EXPECT_EQ(after.points[3].x_in_enu, before.points[3].x_in_enu);
+  EXPECT_EQ(after.points[3].rgb, before.points[3].rgb);
+  EXPECT_EQ(after.points[3].track_length, 6);
+  EXPECT_EQ(after.fit.flight_vertical_offset_m, before.fit.flight_vertical_offset_m);
+  EXPECT_EQ(after.truth->depth_folder, before.truth->depth_folder);
+}
+
+TEST(Survey, MedianAglIgnoresUnknownOnes) {
+  EXPECT_DOUBLE_EQ(SmallSurvey().MedianAgl(), 45.0);
+  EXPECT_TRUE(std::isnan(Survey().MedianAgl()));
+}
+
+TEST(Survey, AnEmptySurveyIsSavedAndLoaded) {
+  const test::TempFolder folder;
+  SaveSurvey({}, folder.path());
+  const Survey survey = LoadSurvey(folder.path());
+  EXPECT_TRUE(survey.photos.empty());
+  EXPECT_TRUE(survey.points.empty());
+  EXPECT_FALSE(survey.truth);
+}
+
+TEST(Survey, DamagedDescriptionsAreRefusedWithTheReason) {
+  ExpectRefused("p1.jpg", [](nlohmann::json& json) { json["photos"][1]["translation_m"][0] = nullptr; });
+  ExpectRefused("p2.jpg", [](nlohmann::json& json) { json["photos"][2]["rotation_wxyz"] = {1.0, 1.0, 0.0, 0.0}; });
+  ExpectRefused("camera 4", [](nlohmann::json& json) { json["photos"][0]["camera"] = 4; });
+  ExpectRefused("twice", [](nlohmann::json& json) { json["photos"][0]["name"] = "p1.jpg"; });
+  ExpectRefused("origin", [](nlohmann::json& json) { json["origin"]["latitude_deg"] = 91.0; });
+  ExpectRefused("another version", [](nlohmann::json& json) { json["version"] = 99; });
+  ExpectRefused("damaged", [](nlohmann::json& json) { json.erase("fit"); });
+  ExpectRefused("announces", [](nlohmann::json& json) { json["n_points"] = 6; });
+}
+
+TEST(Survey, DamagedPointFilesAreRefused) {
+  const test::TempFolder folder;
+  EXPECT_THROW(LoadSurvey(folder.path()), base::InputError);
+  SaveSurvey(SmallSurvey(), folder.path());
+  const std::string whole = base::ReadFile(folder / "points.ply");
+  for (const size_t length : {size_t{0}, size_t{10}, whole.size() / 2, whole.size() - 1}) {
+    std::ofstream(folder / "points.ply", std::ios::binary | std::ios::trunc) << whole.substr(0, length);
+    EXPECT_THROW(LoadSurvey(folder.path()), base::InputError) << "cut to " << length;
+  }
+}
+
+}  // namespace
+}  // namespace skyquilt::survey

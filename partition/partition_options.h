@@ -12,7 +12,7 @@ struct PartitionOptions {
   std::string blocks = "auto";    // "auto", "RxC" (rows x columns) or "size:<metres>"
   std::vector<double> altitudes;  // metres above ground, one per block, row-major from the south-west; empty: from the flight
   std::string area = "covered";   // "covered": ground that min_views training photos see well; "points": bounds of the sparse points
-  int min_views = 3;              // training photos that must see a place for it to count as covered
+  int min_views = 2;              // training photos that must see a place for it to count as covered
   double margin_fraction = 0.06;  // overlap on each side as a share of the shorter block side, [0, 0.25]
   double min_margin_m = 2.0;      // overlap at least this wide, but never above a quarter of the side
   double z_margin_below_m = 1.5;  // air under the lowest ground; held between 8 and 40 GSD so that it fits any scale

@@ -47,7 +47,9 @@ std::vector<std::string> Environment(const std::vector<std::string>& additions) 
   return environment;
 }
 
-int ExitStatus(int status) { return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status); }
+int ExitStatus(int status) {
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
 
 int WaitFor(pid_t pid) {
   int status = 0;
@@ -138,11 +140,13 @@ int RunChild(const ChildProcess& child) {
   log << std::endl;
 
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw base::InputError(child.program, std::string("no pipe: ") + std::strerror(errno), "Close other programs");
+  if (pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw base::InputError(child.program, std::string("no pipe: ") + std::strerror(errno), "Close other programs");
   PipeEnd read_end(ends[0]);
   PipeEnd write_end(ends[1]);
   const pid_t pid = Start(child, write_end.get());
-  if (pid < 0) throw base::InputError(child.program, std::string("cannot be started: ") + std::strerror(errno), "Close other programs or free memory");
+  if (pid < 0)
+    throw base::InputError(child.program, std::string("cannot be started: ") + std::strerror(errno), "Close other programs or free memory");
   write_end.Close();
 
   std::string line;

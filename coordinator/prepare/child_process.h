@@ -13,9 +13,9 @@ std::filesystem::path FindProgram(const std::string& program);
 
 struct ChildProcess {
   std::filesystem::path program;
-  std::vector<std::string> arguments;                  // without the program's own name
-  std::vector<std::string> environment;                // "NAME=value", in addition to our own
-  std::filesystem::path log;                           // stdout and stderr are appended
+  std::vector<std::string> arguments;                    // without the program's own name
+  std::vector<std::string> environment;                  // "NAME=value", in addition to our own
+  std::filesystem::path log;                             // stdout and stderr are appended
   std::function<void(const std::string& line)> on_line;  // may be empty
 };
 

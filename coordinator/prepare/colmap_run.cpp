@@ -22,9 +22,9 @@ constexpr size_t kMaxNeighbors = 24;
 constexpr size_t kBlockSize = 10;  // photos per side of an exhaustive block: small, so that progress is seen
 
 struct Step {
-  std::string name;       // of the stamp
-  std::string label;      // of the progress bar
-  std::string command;    // COLMAP's
+  std::string name;     // of the stamp
+  std::string label;    // of the progress bar
+  std::string command;  // COLMAP's
   std::vector<std::string> arguments;
 };
 
@@ -57,7 +57,9 @@ std::string InputHash(const ColmapJob& job, const std::vector<PhotoFile>& photos
   return base::HashHex(text);
 }
 
-fs::path StampFile(const ColmapJob& job, const std::string& step) { return job.folder / (step + ".done"); }
+fs::path StampFile(const ColmapJob& job, const std::string& step) {
+  return job.folder / (step + ".done");
+}
 
 bool IsDone(const ColmapJob& job, const std::string& step, const std::string& hash) {
   const fs::path stamp = StampFile(job, step);
@@ -109,11 +111,26 @@ void ExtractFeatures(const ColmapJob& job, const fs::path& program, const std::v
     for (const PhotoFile* photo : group) names += photo->name + "\n";
     base::WriteFileAtomically(list, names);
     Step step{"features", "find features", "feature_extractor", {}};
-    step.arguments = {"--database_path", database.string(), "--image_path", job.photo_root.string(), "--image_list_path", list.string(),
-                      "--ImageReader.camera_model", options.camera_model, "--ImageReader.single_camera", "1",
-                      "--SiftExtraction.use_gpu", options.use_gpu ? "1" : "0", "--SiftExtraction.num_threads", std::to_string(job.n_threads),
-                      "--SiftExtraction.max_image_size", std::to_string(options.max_image_size),
-                      "--SiftExtraction.max_num_features", std::to_string(options.max_features), "--random_seed", std::to_string(options.seed)};
+    step.arguments = {"--database_path",
+                      database.string(),
+                      "--image_path",
+                      job.photo_root.string(),
+                      "--image_list_path",
+                      list.string(),
+                      "--ImageReader.camera_model",
+                      options.camera_model,
+                      "--ImageReader.single_camera",
+                      "1",
+                      "--SiftExtraction.use_gpu",
+                      options.use_gpu ? "1" : "0",
+                      "--SiftExtraction.num_threads",
+                      std::to_string(job.n_threads),
+                      "--SiftExtraction.max_image_size",
+                      std::to_string(options.max_image_size),
+                      "--SiftExtraction.max_num_features",
+                      std::to_string(options.max_features),
+                      "--random_seed",
+                      std::to_string(options.seed)};
     if (!job.masks.empty()) step.arguments.insert(step.arguments.end(), {"--ImageReader.mask_path", job.masks.string()});
     RunStep(job, program, step, group.size());
     ++index;
@@ -121,15 +138,22 @@ void ExtractFeatures(const ColmapJob& job, const fs::path& program, const std::v
 }
 
 void Match(const ColmapJob& job, const fs::path& program, const std::vector<PhotoFile>& photos, const PrepareOptions& options) {
-  const auto n_tagged = static_cast<size_t>(std::count_if(photos.begin(), photos.end(), [](const PhotoFile& photo) { return photo.tags.gps.has_value(); }));
+  const auto n_tagged =
+      static_cast<size_t>(std::count_if(photos.begin(), photos.end(), [](const PhotoFile& photo) { return photo.tags.gps.has_value(); }));
   const bool spatial = photos.size() >= kMinSpatialPhotos && 10 * n_tagged >= 9 * photos.size();
   Step step{"matches", "match features", spatial ? "spatial_matcher" : "exhaustive_matcher", {}};
-  step.arguments = {"--database_path", (job.folder / "database.db").string(), "--SiftMatching.use_gpu", options.use_gpu ? "1" : "0",
-                    "--SiftMatching.num_threads", std::to_string(job.n_threads), "--random_seed", std::to_string(options.seed)};
+  step.arguments = {"--database_path",
+                    (job.folder / "database.db").string(),
+                    "--SiftMatching.use_gpu",
+                    options.use_gpu ? "1" : "0",
+                    "--SiftMatching.num_threads",
+                    std::to_string(job.n_threads),
+                    "--random_seed",
+                    std::to_string(options.seed)};
   if (spatial) {
     // Neighbours are limited by their number alone: high flights are more than COLMAP's 100 m between photos.
-    step.arguments.insert(step.arguments.end(), {"--SpatialMatching.is_gps", "1", "--SpatialMatching.max_num_neighbors", std::to_string(kMaxNeighbors),
-                                                 "--SpatialMatching.max_distance", "100000"});
+    step.arguments.insert(step.arguments.end(), {"--SpatialMatching.is_gps", "1", "--SpatialMatching.max_num_neighbors",
+                                                 std::to_string(kMaxNeighbors), "--SpatialMatching.max_distance", "100000"});
   } else {
     step.arguments.insert(step.arguments.end(), {"--ExhaustiveMatching.block_size", std::to_string(photos.size() < 100 ? kBlockSize : 50)});
     if (photos.size() > 300) {
@@ -144,8 +168,9 @@ void Map(const ColmapJob& job, const fs::path& program, const std::vector<PhotoF
   fs::remove_all(models);
   base::RequireWritableFolder(models);
   Step step{"model", "find poses", "mapper", {}};
-  step.arguments = {"--database_path", (job.folder / "database.db").string(), "--image_path", job.photo_root.string(), "--output_path", models.string(),
-                    "--Mapper.num_threads", std::to_string(job.n_threads), "--random_seed", std::to_string(options.seed)};
+  step.arguments = {
+      "--database_path",      (job.folder / "database.db").string(), "--image_path",  job.photo_root.string(),     "--output_path", models.string(),
+      "--Mapper.num_threads", std::to_string(job.n_threads),         "--random_seed", std::to_string(options.seed)};
   RunStep(job, program, step, photos.size());
 }
 
@@ -166,7 +191,8 @@ fs::path LargestModel(const fs::path& models, const fs::path& log) {
       best = folder;
     }
   }
-  if (best.empty()) throw base::InputError(log, "COLMAP found no model", "Photos may overlap too little or be blurred: read the log, or give a model with --model");
+  if (best.empty())
+    throw base::InputError(log, "COLMAP found no model", "Photos may overlap too little or be blurred: read the log, or give a model with --model");
   if (n_models > 1) spdlog::warn("COLMAP left {} separate models; the largest, with {} photos, is used ({})", n_models, best_images, best.string());
   return best;
 }
@@ -198,7 +224,8 @@ double ColmapLineProgress(const std::string& line, size_t n_photos) {
 fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PrepareOptions& options) {
   const fs::path program = FindProgram(options.colmap);
   if (program.empty()) {
-    throw base::InputError(options.colmap, "no such program", "Install COLMAP (Debian: apt install colmap), name it with prepare.colmap, or give a model with --model");
+    throw base::InputError(options.colmap, "no such program",
+                           "Install COLMAP (Debian: apt install colmap), name it with prepare.colmap, or give a model with --model");
   }
   base::RequireWritableFolder(job.folder);
   const std::string hash = InputHash(job, photos, options);

@@ -66,8 +66,8 @@ std::vector<Eigen::Vector3d> WithOffsets(const Matches& matches, const std::vect
 }
 
 // Median of (fitted - tagged) height per flight over tags that fit horizontally; NaN where a flight has none.
-std::vector<double> FlightHeightDifference(const Matches& matches, const geo::Similarity3d& enu_from_model, const std::vector<int>& flight, int n_flights,
-                                           double threshold_m) {
+std::vector<double> FlightHeightDifference(const Matches& matches, const geo::Similarity3d& enu_from_model, const std::vector<int>& flight,
+                                           int n_flights, double threshold_m) {
   std::vector<std::vector<double>> differences(static_cast<size_t>(n_flights));
   for (size_t m = 0; m < matches.station.size(); ++m) {
     const Eigen::Vector3d residual = enu_from_model * matches.in_model[m] - matches.in_enu[m];
@@ -119,11 +119,13 @@ void Evaluate(const std::vector<Station>& stations, const Matches& matches, doub
   fit.scale = result.enu_from_model.scale;
 }
 
-int CountFlights(const std::vector<int>& flight) { return flight.empty() ? 0 : *std::max_element(flight.begin(), flight.end()) + 1; }
+int CountFlights(const std::vector<int>& flight) {
+  return flight.empty() ? 0 : *std::max_element(flight.begin(), flight.end()) + 1;
+}
 
 // One vertical offset per flight, alternating with the fit until neither moves. Leaves everything alone when flights agree.
-void FitFlightOffsets(const std::vector<Station>& stations, const Matches& matches, const PrepareOptions& options, const geo::RobustSimilarityOptions& robust,
-                      Georeference& result) {
+void FitFlightOffsets(const std::vector<Station>& stations, const Matches& matches, const PrepareOptions& options,
+                      const geo::RobustSimilarityOptions& robust, Georeference& result) {
   const int n_flights = CountFlights(result.flight);
   if (n_flights < 2 || options.flight_offsets == "off") return;
   std::vector<double> offset_m(static_cast<size_t>(n_flights), 0.0);
@@ -184,12 +186,14 @@ Georeference FitToGps(const std::vector<Station>& stations, const PrepareOptions
   const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
   result.fit.n_matches = static_cast<int>(n_tagged);
   if (n_tagged < 3) {
-    result.reason = n_tagged == 0 ? "no photo with a pose has a GPS tag" : "only " + std::to_string(n_tagged) + " photos with a pose have a GPS tag, 3 are needed";
+    result.reason = n_tagged == 0 ? "no photo with a pose has a GPS tag"
+                                  : "only " + std::to_string(n_tagged) + " photos with a pose have a GPS tag, 3 are needed";
     return result;
   }
   result.origin = MedianPosition(stations);
   const Matches matches = CollectMatches(stations, result.origin);
-  const geo::RobustSimilarityOptions robust{.inlier_threshold_m = options.ransac_threshold_m, .iterations = 2000, .seed = static_cast<uint64_t>(options.seed)};
+  const geo::RobustSimilarityOptions robust{
+      .inlier_threshold_m = options.ransac_threshold_m, .iterations = 2000, .seed = static_cast<uint64_t>(options.seed)};
   const geo::RobustSimilarityFit first = geo::FitSimilarityRobustly(matches.in_model, matches.in_enu, robust);
   if (!first.ok) {
     result.reason = std::string("GPS tags do not determine position, scale and rotation: ") + first.reason;

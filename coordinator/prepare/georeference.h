@@ -23,15 +23,15 @@ struct Station {
 };
 
 struct Georeference {
-  bool ok = false;      // false: local frame, unknown scale
-  std::string reason;   // why not, for people
+  bool ok = false;     // false: local frame, unknown scale
+  std::string reason;  // why not, for people
   geo::Geodetic origin;
   geo::Similarity3d enu_from_model;
   survey::GeoFit fit;
-  std::vector<int> flight;          // per station
-  std::vector<double> residual_m;   // per station, NaN without GPS
+  std::vector<int> flight;         // per station
+  std::vector<double> residual_m;  // per station, NaN without GPS
   std::vector<double> residual_up_m;
-  std::vector<char> inlier;         // per station
+  std::vector<char> inlier;  // per station
 };
 
 // Flights are numbered by time: a pause longer than `gap_s` starts another one. Stations without time join the one before them in name order.

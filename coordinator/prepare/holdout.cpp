@@ -38,7 +38,8 @@ void MarkList(const std::filesystem::path& file, survey::Survey& survey) {
     } else if (std::find(survey.unregistered.begin(), survey.unregistered.end(), name) != survey.unregistered.end()) {
       spdlog::warn("{}: '{}' has no pose and cannot be a test photo", file.string(), name);
     } else {
-      throw base::InputError(file, "names '" + name + "', which is not among the photos", "Write names as in survey.json, relative to the photo folder");
+      throw base::InputError(file, "names '" + name + "', which is not among the photos",
+                             "Write names as in survey.json, relative to the photo folder");
     }
   }
 }

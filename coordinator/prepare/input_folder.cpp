@@ -32,7 +32,8 @@ void ReadSimulated(const fs::path& folder, bool own_model, InputFolder& found) {
     const nlohmann::json json = nlohmann::json::parse(base::ReadFile(file));
     if (own_model && json.value("exact_frame", false)) {
       const nlohmann::json& origin = json.at("origin");
-      found.exact_origin = geo::Geodetic{origin.at("latitude_deg").get<double>(), origin.at("longitude_deg").get<double>(), origin.at("height_m").get<double>()};
+      found.exact_origin =
+          geo::Geodetic{origin.at("latitude_deg").get<double>(), origin.at("longitude_deg").get<double>(), origin.at("height_m").get<double>()};
       if (!geo::IsValid(*found.exact_origin)) throw base::InputError(file, "has an origin that is not on Earth", mend);
     }
   } catch (const nlohmann::json::exception& error) {

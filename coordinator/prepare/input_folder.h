@@ -10,11 +10,11 @@
 namespace skyquilt::coordinator {
 
 struct InputFolder {
-  std::filesystem::path photo_root;             // absolute
-  std::filesystem::path model;                  // empty: COLMAP has to be run
-  std::filesystem::path masks;                  // empty: none
-  std::optional<geo::Geodetic> exact_origin;    // simulated survey whose model already is in ENU about this origin
-  std::optional<survey::Truth> truth;           // simulated survey
+  std::filesystem::path photo_root;           // absolute
+  std::filesystem::path model;                // empty: COLMAP has to be run
+  std::filesystem::path masks;                // empty: none
+  std::optional<geo::Geodetic> exact_origin;  // simulated survey whose model already is in ENU about this origin
+  std::optional<survey::Truth> truth;         // simulated survey
 };
 
 // `photos` may be a folder of photos, one with the photos in images/, or a simulate folder (simulate.json). `model` and `masks` are what the

@@ -17,7 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool IsHidden(const fs::path& path) { return path.filename().string().starts_with("."); }
+bool IsHidden(const fs::path& path) {
+  return path.filename().string().starts_with(".");
+}
 
 // The header says the size; whether the rest is there only the end of the data tells.
 void CheckComplete(const fs::path& file) {
@@ -44,7 +46,8 @@ std::vector<std::string> ListPhotos(const fs::path& root, const std::vector<fs::
     if (entry.depth() > 32) throw base::InputError(root, "folders nest deeper than 32 levels (a link to a parent?)", "Remove the link");
     std::error_code ignored;
     if (entry->is_directory(ignored)) {
-      const bool skipped = std::any_of(skip.begin(), skip.end(), [&](const fs::path& folder) { return fs::equivalent(entry->path(), folder, ignored); });
+      const bool skipped =
+          std::any_of(skip.begin(), skip.end(), [&](const fs::path& folder) { return fs::equivalent(entry->path(), folder, ignored); });
       if (skipped || IsHidden(entry->path())) entry.disable_recursion_pending();
     } else if (entry->is_regular_file(ignored) && LooksLikePhoto(entry->path())) {
       names.push_back(entry->path().lexically_relative(root).generic_string());
@@ -136,8 +139,8 @@ std::vector<std::string> FindMasks(const fs::path& masks, const std::vector<Phot
     image::ReadImageSize(mask, &width, &height);
     if (width != photos[i].width || height != photos[i].height) {
       throw base::InputError(mask,
-                             "is " + std::to_string(width) + "x" + std::to_string(height) + " pixels, its photo " + std::to_string(photos[i].width) + "x" +
-                                 std::to_string(photos[i].height),
+                             "is " + std::to_string(width) + "x" + std::to_string(height) + " pixels, its photo " + std::to_string(photos[i].width) +
+                                 "x" + std::to_string(photos[i].height),
                              "Make masks in the size of their photos");
     }
     found[i] = mask.string();

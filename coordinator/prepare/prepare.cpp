@@ -97,14 +97,17 @@ std::vector<Registered> MatchPhotos(const survey::ColmapModel& model, const std:
                  model.images.size(), photo_root.string(), Joined(missing));
   }
   if (!other_size.empty()) {
-    spdlog::warn("{} photos have another size than their camera in the model and are left out: {} ({})", other_size.size(), Joined(other_size), size_example);
+    spdlog::warn("{} photos have another size than their camera in the model and are left out: {} ({})", other_size.size(), Joined(other_size),
+                 size_example);
   }
   if (registered.size() < kMinPhotos) {
-    std::string found = "only " + std::to_string(registered.size()) + " photos of the model can be used, at least " + std::to_string(kMinPhotos) + " are needed";
+    std::string found =
+        "only " + std::to_string(registered.size()) + " photos of the model can be used, at least " + std::to_string(kMinPhotos) + " are needed";
     if (!missing.empty()) found += "; " + std::to_string(missing.size()) + " are not in " + photo_root.string() + " (" + Joined(missing) + ")";
     if (!other_size.empty()) found += "; " + std::to_string(other_size.size()) + " have another size: " + size_example;
-    throw base::InputError(model_folder, found,
-                           other_size.empty() ? "Give the folder with the photos the model was made from" : "Give the photos in the size the model was made from");
+    throw base::InputError(
+        model_folder, found,
+        other_size.empty() ? "Give the folder with the photos the model was made from" : "Give the photos in the size the model was made from");
   }
   std::sort(registered.begin(), registered.end(), [&](const Registered& a, const Registered& b) { return files[a.file].name < files[b.file].name; });
   return registered;
@@ -168,7 +171,8 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   InputFolder folders = FindInputs(input.photos, input.model, options.masks);
   base::RequireWritableFolder(input.out_folder);
 
-  const std::vector<std::string> names = ListPhotos(folders.photo_root, {folders.masks, input.out_folder, fs::absolute(input.out_folder).parent_path()});
+  const std::vector<std::string> names =
+      ListPhotos(folders.photo_root, {folders.masks, input.out_folder, fs::absolute(input.out_folder).parent_path()});
   PhotoSet photos = ReadPhotos(folders.photo_root, names, threads);
   ResolveHeights(photos.usable);
   const std::vector<std::string> masks = FindMasks(folders.masks, photos.usable);
@@ -210,7 +214,8 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   base::ThrowIfCancelled();
 
   LogSummary(survey, georeference);
-  if (!survey.unregistered.empty()) spdlog::warn("{} photos without a pose are not used: {}", survey.unregistered.size(), Joined(survey.unregistered));
+  if (!survey.unregistered.empty())
+    spdlog::warn("{} photos without a pose are not used: {}", survey.unregistered.size(), Joined(survey.unregistered));
   WriteResidualTable(survey, georeference, input.out_folder / "geo_residuals.csv");
   if (survey.georeferenced) {
     WriteCameraMap(survey, input.out_folder / "cameras.geojson");

@@ -25,7 +25,8 @@ void PrepareOptions::Validate() const {
     if (!condition) throw base::UsageError(message);
   };
   ParseHoldout(holdout);
-  require(ransac_threshold_m > 0.0 && ransac_threshold_m < 1e6, "prepare.ransac_threshold_m must be above 0, not " + std::to_string(ransac_threshold_m));
+  require(ransac_threshold_m > 0.0 && ransac_threshold_m < 1e6,
+          "prepare.ransac_threshold_m must be above 0, not " + std::to_string(ransac_threshold_m));
   require(camera::ModelFromName(camera_model).has_value(),
           "prepare.camera_model '" + camera_model +
               "' is not known: use SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV or OPENCV_FISHEYE");

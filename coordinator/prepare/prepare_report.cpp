@@ -34,7 +34,8 @@ void LogFlights(const survey::Survey& survey) {
   if (n_flights < 2) return;
   const std::vector<double>& offset = survey.fit.flight_vertical_offset_m;
   for (int flight = 0; flight < n_flights; ++flight) {
-    const auto n_photos = std::count_if(survey.photos.begin(), survey.photos.end(), [flight](const survey::Photo& photo) { return photo.flight == flight; });
+    const auto n_photos =
+        std::count_if(survey.photos.begin(), survey.photos.end(), [flight](const survey::Photo& photo) { return photo.flight == flight; });
     const double offset_m = offset.empty() ? 0.0 : offset[static_cast<size_t>(flight)];
     spdlog::info("flight {}: {} photos, {:+.2f} m added to its tagged heights", flight, n_photos, offset_m);
   }
@@ -51,15 +52,18 @@ void LogSummary(const survey::Survey& survey, const Georeference& georeference) 
   }
   const double agl = survey.MedianAgl();
   if (!survey.georeferenced) {
-    spdlog::warn("no geo-reference: {}. Going on in a local frame of unknown scale (1 unit = 1 made-up metre, median depth {:.0f}); maps and heights are not on Earth",
-                 georeference.reason, kLocalDepth);
+    spdlog::warn(
+        "no geo-reference: {}. Going on in a local frame of unknown scale (1 unit = 1 made-up metre, median depth {:.0f}); maps and heights are not "
+        "on Earth",
+        georeference.reason, kLocalDepth);
     return;
   }
   const survey::GeoFit& fit = survey.fit;
-  spdlog::info("origin: {:.7f} deg latitude, {:.7f} deg longitude, {:.2f} m (height as tagged; without RTK usually above sea level, not the ellipsoid)",
-               survey.origin.latitude_deg, survey.origin.longitude_deg, survey.origin.height_m);
-  spdlog::info("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {:.2f} m vertical), {:.6g} m per model unit", fit.n_inliers, fit.n_matches, fit.rmse_m,
-               fit.rmse_horizontal_m, fit.rmse_vertical_m, fit.scale);
+  spdlog::info(
+      "origin: {:.7f} deg latitude, {:.7f} deg longitude, {:.2f} m (height as tagged; without RTK usually above sea level, not the ellipsoid)",
+      survey.origin.latitude_deg, survey.origin.longitude_deg, survey.origin.height_m);
+  spdlog::info("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {:.2f} m vertical), {:.6g} m per model unit", fit.n_inliers,
+               fit.n_matches, fit.rmse_m, fit.rmse_horizontal_m, fit.rmse_vertical_m, fit.scale);
   for (size_t i = 0, n_named = 0; i < survey.photos.size() && n_named < 5; ++i) {
     if (!survey.photos[i].gps || survey.photos[i].gps_inlier) continue;
     spdlog::warn("GPS tag of {} is off by {:.1f} m and was not used", survey.photos[i].name, survey.photos[i].gps_residual_m);
@@ -70,7 +74,8 @@ void LogSummary(const survey::Survey& survey, const Georeference& georeference) 
   for (const survey::Photo& photo : survey.photos) {
     if (photo.relative_altitude_m) relative.push_back(*photo.relative_altitude_m);
   }
-  const std::string tagged = relative.empty() ? "no RelativeAltitude to compare with" : "RelativeAltitude says " + Field(Median(relative), 1) + " m above take-off";
+  const std::string tagged =
+      relative.empty() ? "no RelativeAltitude to compare with" : "RelativeAltitude says " + Field(Median(relative), 1) + " m above take-off";
   spdlog::info("height above ground: median {} m; {}", std::isfinite(agl) ? Field(agl, 1) : "unknown", tagged);
 }
 
@@ -89,10 +94,12 @@ void WriteResidualTable(const survey::Survey& survey, const Georeference& georef
     } else {
       text += ",,,";
     }
-    text += photo.gps ? Field(photo.gps->latitude_deg, 9) + "," + Field(photo.gps->longitude_deg, 9) + "," + Field(photo.gps->height_m, 3) + "," : ",,,";
+    text +=
+        photo.gps ? Field(photo.gps->latitude_deg, 9) + "," + Field(photo.gps->longitude_deg, 9) + "," + Field(photo.gps->height_m, 3) + "," : ",,,";
     const std::vector<double>& offset = survey.fit.flight_vertical_offset_m;
     text += Field(photo.gps_residual_m, 3) + "," + Field(georeference.residual_up_m[i], 3) + "," + (photo.gps_inlier ? "1" : "0") + "," +
-            std::to_string(photo.flight) + "," + Field(offset.empty() ? 0.0 : offset[static_cast<size_t>(photo.flight)], 3) + "," + Field(photo.agl_m, 2) + ",";
+            std::to_string(photo.flight) + "," + Field(offset.empty() ? 0.0 : offset[static_cast<size_t>(photo.flight)], 3) + "," +
+            Field(photo.agl_m, 2) + ",";
     text += (photo.relative_altitude_m ? Field(*photo.relative_altitude_m, 2) : "") + "," + (photo.is_test ? "1" : "0") + "\n";
   }
   base::WriteFileAtomically(file, text);

@@ -124,13 +124,13 @@ std::vector<View> BuiltInPath(const render::SceneInfo& info, const ProductOption
     view.camera = camera;
     if (options.video_path == "orbit") {
       const double clearance = (info.max_enu.z() - centre.z()) / std::sin(kDownDeg * kRadPerDeg);
-      const double distance = std::max(1.3 * reach, 1.3 * clearance);
+      const double distance = std::max(1.8 * reach, 1.3 * clearance);
       const double azimuth = 2.0 * std::numbers::pi * share;
       const double flat = distance * std::cos(kDownDeg * kRadPerDeg);
       const Eigen::Vector3d offset(-flat * std::sin(azimuth), -flat * std::cos(azimuth), distance * std::sin(kDownDeg * kRadPerDeg));
       view.cam_from_enu = PoseLookingAt(centre + offset, centre);
     } else {
-      const double height = std::max(0.8 * reach, 1.5 * (info.max_enu.z() - centre.z()));
+      const double height = std::max(reach, 1.5 * (info.max_enu.z() - centre.z()));
       const Eigen::Vector3d ahead = Eigen::Vector3d(extent.x(), extent.y(), 0.0).normalized();
       const Eigen::Vector3d eye = centre + ahead * (-1.1 + 1.6 * share) * reach + Eigen::Vector3d(0.0, 0.0, height);
       view.cam_from_enu = PoseLookingAt(eye, eye + ahead * 0.7 * height - Eigen::Vector3d(0.0, 0.0, height));

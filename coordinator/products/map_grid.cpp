@@ -74,7 +74,7 @@ MapGrid PlanMapGrid(const render::SceneInfo& info, const ProductOptions& options
                              " million cells, more than products.max_pixels = " + std::to_string(options.max_pixels / 1e6) +
                              " million; use at least " + std::to_string(fits) + " m or raise the limit");
     }
-    spdlog::warn("map products at {} m would have {:.0f} million cells, more than products.max_pixels; made at {} m instead", grid.resolution_m,
+    spdlog::warn("map products at {} m would have {:.3g} million cells, more than products.max_pixels; made at {} m instead", grid.resolution_m,
                  cells / 1e6, fits);
     grid.resolution_m = fits;
   }
@@ -138,8 +138,12 @@ void MapRayMaker::MakeRow(int row, MapRays* out) const {
     // Where the line passes the middle of the scene: plumb lines lean over kilometres, and the scene's box is upright.
     const double middle_z = 0.5 * (info_.min_enu.z() + info_.max_enu.z());
     const Eigen::Vector3d place = start + down * ((middle_z - start.z()) / down.z());
-    if ((place.head<2>().array() < info_.min_enu.head<2>().array()).any() || (place.head<2>().array() > info_.max_enu.head<2>().array()).any())
+    // Cells that the box's rim crosses belong to it too.
+    const double rim = 0.75 * grid_.resolution_m;
+    if ((place.head<2>().array() < info_.min_enu.head<2>().array() - rim).any() ||
+        (place.head<2>().array() > info_.max_enu.head<2>().array() + rim).any()) {
       continue;
+    }
     // Only the boxes over this place: the air between a low block's roof and a tall neighbour's is nobody's.
     double top = -std::numeric_limits<double>::infinity();
     double bottom = std::numeric_limits<double>::infinity();

@@ -65,12 +65,27 @@ image::Image8 OrthophotoPreview(const ReducedRaster& raster, const CellLookup& l
   return preview;
 }
 
+// Between the four nearest heights; a slope sampled pixel by pixel would show the raster's grid in the relief. NaN where the nearest is NaN.
+float SmoothSample(const ReducedRaster& raster, const Eigen::Vector2d& cell) {
+  const float* nearest = Sample(raster, cell);
+  if (nearest == nullptr) return std::numeric_limits<float>::quiet_NaN();
+  const double x = std::clamp((cell.x() + 0.5) / raster.scale - 0.5, 0.0, raster.image.width - 1.0);
+  const double y = std::clamp((cell.y() + 0.5) / raster.scale_down - 0.5, 0.0, raster.image.height - 1.0);
+  const int x0 = static_cast<int>(x);
+  const int y0 = static_cast<int>(y);
+  const int x1 = std::min(x0 + 1, raster.image.width - 1);
+  const int y1 = std::min(y0 + 1, raster.image.height - 1);
+  const auto u = static_cast<float>(x - x0);
+  const auto v = static_cast<float>(y - y0);
+  const float smooth = (1 - v) * ((1 - u) * *raster.image.At(x0, y0) + u * *raster.image.At(x1, y0)) +
+                       v * ((1 - u) * *raster.image.At(x0, y1) + u * *raster.image.At(x1, y1));
+  return std::isfinite(*nearest) && std::isfinite(smooth) ? smooth : *nearest;
+}
+
 image::ImageF HeightPreview(const ReducedRaster& raster, const CellLookup& lookup, int width, int height) {
-  image::ImageF preview(width, height, 1, std::numeric_limits<float>::quiet_NaN());
+  image::ImageF preview(width, height, 1);
   for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (const float* value = Sample(raster, lookup.At(x, y))) *preview.At(x, y) = *value;
-    }
+    for (int x = 0; x < width; ++x) *preview.At(x, y) = SmoothSample(raster, lookup.At(x, y));
   }
   return preview;
 }

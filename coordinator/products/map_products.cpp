@@ -128,6 +128,7 @@ MapProducts MakeMapProducts(const render::SceneInfo& info, const RayCaster& cast
     if (ortho) ortho->WriteRows(band.first_row, band.n_rows, std::span<const uint8_t>(band.rgba));
     if (dsm) dsm->WriteRows(band.first_row, band.n_rows, std::span<const float>(band.height));
   }
+  progress.Update(static_cast<double>(grid.width) * grid.height);
   if (ortho) ortho->Close();
   if (dsm) dsm->Close();
   progress.Finish();

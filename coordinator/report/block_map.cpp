@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
-#include "coordinator/report/curve_chart.h"
 #include "coordinator/report/html.h"
 #include "coordinator/report/report_page.h"
 #include "core/geo/enu_frame.h"
@@ -156,17 +156,16 @@ std::string Cameras(const ReportInput& input, const MapFrame& frame) {
 }
 
 std::string ScaleBarAndNorth(const ReportInput& input, const MapFrame& frame) {
-  const std::vector<double> lengths = RoundTicks(0.0, 0.25 * frame.width_px() / frame.scale(), 1);
-  std::string svg;
-  if (!lengths.empty() && lengths.back() > 0.0) {
-    const double length_px = lengths.back() * frame.scale();
-    const double x = 18.0, y = frame.height_px() - 20.0;
-    const std::string label = !input.survey->georeferenced ? fmt::format("{:g} units (scale unknown)", lengths.back())
-                              : lengths.back() >= 1000.0   ? fmt::format("{:g} km", lengths.back() / 1000.0)
-                                                           : fmt::format("{:g} m", lengths.back());
-    svg += fmt::format("<g class=\"scale\"><path d=\"M{0:.1f} {1:.1f}v6h{2:.1f}v-6\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\">{4}</text></g>", x, y,
-                       length_px, y - 5.0, label);
-  }
+  // The longest of 1, 2, 5 times a power of ten that fits a quarter of the map.
+  const double room_m = 0.25 * frame.width_px() / frame.scale();
+  const double magnitude = std::pow(10.0, std::floor(std::log10(room_m)));
+  const double length_m = magnitude * (5.0 * magnitude <= room_m ? 5.0 : 2.0 * magnitude <= room_m ? 2.0 : 1.0);
+  const std::string label = !input.survey->georeferenced ? fmt::format("{:g} units (scale unknown)", length_m)
+                            : length_m >= 1000.0         ? fmt::format("{:g} km", length_m / 1000.0)
+                                                         : fmt::format("{:g} m", length_m);
+  const double x = 18.0, y = frame.height_px() - 20.0;
+  std::string svg = fmt::format("<g class=\"scale\"><path d=\"M{0:.1f} {1:.1f}v6h{2:.1f}v-6\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\">{4}</text></g>", x,
+                                y, length_m * frame.scale(), y - 5.0, label);
   if (input.survey->georeferenced) {
     svg += fmt::format("<g class=\"north\" transform=\"translate({:.1f} 30)\"><path d=\"M0 -16L7 8L0 3L-7 8Z\"/><text y=\"22\">N</text></g>",
                        frame.width_px() - 26.0);

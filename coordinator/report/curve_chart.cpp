@@ -53,7 +53,8 @@ std::vector<double> RoundTicks(double low, double high, int count) {
     }
   }
   std::vector<double> ticks;
-  for (double index = std::ceil(low / step - 1e-9); index * step <= high + 1e-9 * step; index += 1.0) ticks.push_back(index * step);
+  for (double index = std::ceil(low / step - 1e-9); index * step <= high + 1e-9 * step; index += 1.0)
+    ticks.push_back(index * step + 0.0);  // + 0.0 turns -0 into 0
   return ticks;
 }
 

@@ -13,11 +13,11 @@ namespace {
 
 std::string StatusCell(const FieldLog* log, const partition::Block* block) {
   if (block != nullptr && block->empty)
-    return fmt::format("<td class=\"status\"><span class=\"state idle\">empty</span> {}</td>", EscapeHtml(block->empty_reason));
+    return fmt::format("<td class=\"status\"><span class=\"state idle\">empty</span><small>{}</small></td>", EscapeHtml(block->empty_reason));
   if (log == nullptr) return "<td class=\"status\"><span class=\"state idle\">no log</span></td>";
-  if (!log->ok) return fmt::format("<td class=\"status\"><span class=\"state bad\">failed</span> {}</td>", EscapeHtml(log->reason));
+  if (!log->ok) return fmt::format("<td class=\"status\"><span class=\"state bad\">failed</span><small>{}</small></td>", EscapeHtml(log->reason));
   if (log->dropped_steps > 0) {
-    return fmt::format("<td class=\"status\"><span class=\"state warn\">done</span> {} non-finite steps dropped</td>",
+    return fmt::format("<td class=\"status\"><span class=\"state warn\">done</span><small>{} non-finite steps dropped</small></td>",
                        FormatInteger(log->dropped_steps));
   }
   return "<td class=\"status\"><span class=\"state good\">done</span></td>";

@@ -16,10 +16,18 @@ namespace {
 
 constexpr int kJpegQuality = 88;
 constexpr int kLargestMapWidth = 1600;
+constexpr int kLargestColorsWidth = 640;
 
 image::Image8 Fit(const image::Image8& picture, int max_width) {
   if (picture.width <= max_width) return picture;
   return image::Resize(picture, max_width, image::ScaledHeight(picture.width, picture.height, max_width));
+}
+
+// Thin bright lines in a colour map would lose their colour to JPEG's chroma subsampling.
+std::string WriteColors(const image::Image8& picture, const std::filesystem::path& report_folder, const std::string& name, int max_width) {
+  const std::string relative = "images/" + name;
+  image::SavePng(Fit(picture, std::min(max_width, kLargestColorsWidth)), report_folder / relative);
+  return relative;
 }
 
 std::string Write(const image::Image8& picture, const std::filesystem::path& report_folder, const std::string& name, int max_width) {
@@ -80,10 +88,10 @@ PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::p
       images.width < pixels.photo->width ? image::ScaledHeight(pixels.photo->width, pixels.photo->height, images.width) : pixels.photo->height;
   images.photo = Write(*pixels.photo, report_folder, prefix + "_photo.jpg", max_width);
   images.render = Write(*pixels.render, report_folder, prefix + "_render.jpg", max_width);
-  images.error = Write(ErrorPicture(pixels, error_high), report_folder, prefix + "_error.jpg", max_width);
+  images.error = WriteColors(ErrorPicture(pixels, error_high), report_folder, prefix + "_error.png", max_width);
   float low = 0.0F, high = 1.0F;
   if (pixels.depth != nullptr && PercentileRange(*pixels.depth, 0.02, 0.98, &low, &high)) {
-    images.depth = Write(image::Colorize(*pixels.depth, low, high), report_folder, prefix + "_depth.jpg", max_width);
+    images.depth = WriteColors(image::Colorize(*pixels.depth, low, high), report_folder, prefix + "_depth.png", max_width);
     images.depth_low_m = static_cast<double>(low);
     images.depth_high_m = static_cast<double>(high);
   }

@@ -26,7 +26,7 @@ image::Image8 ErrorPicture(const PhotoPixels& pixels, float error_high);
 // Values below which `low` and `high` shares of the finite values lie; false when there is none.
 bool PercentileRange(const image::ImageF& image, double low, double high, float* low_value, float* high_value);
 
-// Writes <prefix>_photo.jpg, _render.jpg, _error.jpg, _depth.jpg under report_folder/images, at most max_width pixels wide.
+// Writes <prefix>_photo.jpg, _render.jpg, _error.png, _depth.png under report_folder/images, at most max_width pixels wide.
 // Throws base::InputError.
 PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::path& report_folder, const std::string& prefix, int max_width,
                              float error_high);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "coordinator/report/curve_chart.h"
 #include "coordinator/report/html.h"

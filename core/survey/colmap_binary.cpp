@@ -77,8 +77,9 @@ void ReadCameras(const std::filesystem::path& file, ColmapModel& model) {
     const auto height = in.Read<uint64_t>("a camera");
     const auto camera_model = camera::ModelFromId(model_id);
     if (!camera_model) {
-      throw base::InputError(file, "camera " + std::to_string(id) + " has COLMAP's camera model number " + std::to_string(model_id) + ", which is not supported",
-                             "Use SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV or OPENCV_FISHEYE");
+      throw base::InputError(
+          file, "camera " + std::to_string(id) + " has COLMAP's camera model number " + std::to_string(model_id) + ", which is not supported",
+          "Use SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV or OPENCV_FISHEYE");
     }
     constexpr uint64_t kMaxSidePx = 1U << 20U;
     if (width > kMaxSidePx || height > kMaxSidePx) {

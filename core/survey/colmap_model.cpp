@@ -22,7 +22,8 @@ void CheckCameras(const std::filesystem::path& folder, const ColmapModel& model)
   for (const auto& [id, camera] : model.cameras) {
     const std::string problem = camera.Problem();
     if (!problem.empty()) {
-      throw base::InputError(folder, "camera " + std::to_string(id) + " cannot be used: " + problem, "Run the reconstruction again or leave that camera out");
+      throw base::InputError(folder, "camera " + std::to_string(id) + " cannot be used: " + problem,
+                             "Run the reconstruction again or leave that camera out");
     }
   }
 }
@@ -41,7 +42,8 @@ void CheckImages(const std::filesystem::path& folder, ColmapModel& model) {
     pose.rotation.normalize();
     if (image.name.empty()) throw base::InputError(folder, "image " + std::to_string(image.id) + " has no name", "Export the model again");
     if (!names.insert(image.name).second) throw base::InputError(folder, "photo '" + image.name + "' appears twice", "Export the model again");
-    if (!ids.insert(image.id).second) throw base::InputError(folder, "image id " + std::to_string(image.id) + " appears twice", "Export the model again");
+    if (!ids.insert(image.id).second)
+      throw base::InputError(folder, "image id " + std::to_string(image.id) + " appears twice", "Export the model again");
     if (!model.cameras.contains(image.camera_id)) {
       throw base::InputError(folder, "photo '" + image.name + "' names camera " + std::to_string(image.camera_id) + ", which the model does not have",
                              "Take cameras, images and points from the same model");
@@ -55,7 +57,8 @@ ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder)) throw base::InputError(folder, "no such folder", "Give the folder with cameras, images and points3D");
   const bool binary = HasAll(folder, ".bin");
   if (!binary && !HasAll(folder, ".txt")) {
-    throw base::InputError(folder, "does not hold cameras, images and points3D as .bin or .txt", "Give the folder of one COLMAP model, usually sparse/0");
+    throw base::InputError(folder, "does not hold cameras, images and points3D as .bin or .txt",
+                           "Give the folder of one COLMAP model, usually sparse/0");
   }
   ColmapModel model = binary ? ReadColmapBinary(folder) : ReadColmapTextFiles(folder);
   CheckCameras(folder, model);

@@ -65,7 +65,8 @@ class Lines {
   }
 
   [[noreturn]] void Fail(const std::string& found) const {
-    throw base::InputError(file_, "line " + std::to_string(number_) + " " + found, "The file is truncated or not a COLMAP text model; export the model again");
+    throw base::InputError(file_, "line " + std::to_string(number_) + " " + found,
+                           "The file is truncated or not a COLMAP text model; export the model again");
   }
   const std::filesystem::path& file() const { return file_; }
 

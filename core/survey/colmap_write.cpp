@@ -36,7 +36,8 @@ void WriteColmapText(const ColmapModel& model, const std::filesystem::path& fold
   for (size_t i = 0; i < model.images.size(); ++i) image_index.emplace(model.images[i].id, i);
   std::vector<std::vector<Observation>> observations(model.images.size());
 
-  std::string points = "# 3D point list with one line of data per point:\n#   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n";
+  std::string points =
+      "# 3D point list with one line of data per point:\n#   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n";
   for (const ColmapPoint& point : model.points) {
     points += std::to_string(point.id);
     for (int axis = 0; axis < 3; ++axis) points += " " + Text(point.x_in_world[axis]);
@@ -54,7 +55,8 @@ void WriteColmapText(const ColmapModel& model, const std::filesystem::path& fold
   }
 
   std::string images =
-      "# Image list with two lines of data per image:\n#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n#   POINTS2D[] as (X, Y, POINT3D_ID)\n";
+      "# Image list with two lines of data per image:\n#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n#   POINTS2D[] as (X, Y, "
+      "POINT3D_ID)\n";
   for (size_t i = 0; i < model.images.size(); ++i) {
     const ColmapImage& image = model.images[i];
     const Eigen::Quaterniond& q = image.cam_from_world.rotation;

@@ -16,7 +16,9 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::optional<double> Finite(double value) { return std::isfinite(value) ? std::optional<double>(value) : std::nullopt; }
+std::optional<double> Finite(double value) {
+  return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
+}
 
 // Component `index` of a rational or integer tag; nothing for 0/0, n/0, a wrong type or a short array.
 std::optional<double> ExifNumber(const Exiv2::ExifData& exif, const char* key, long index = 0) {
@@ -193,7 +195,8 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
     tags.model = ExifText(exif, "Exif.Image.Model");
     return tags;
   } catch (const Exiv2::AnyError& error) {
-    throw base::InputError(file, std::string("is not an image that can be read (") + error.what() + ")", "Copy the photo again or remove it from the folder");
+    throw base::InputError(file, std::string("is not an image that can be read (") + error.what() + ")",
+                           "Copy the photo again or remove it from the folder");
   }
 }
 

@@ -109,7 +109,8 @@ void WritePhotoTags(const PhotoTags& tags, const std::filesystem::path& file) {
     if (tags.capture_time_s) SetCaptureTime(exif, *tags.capture_time_s);
     image->writeMetadata();
   } catch (const Exiv2::AnyError& error) {
-    throw base::InputError(file, std::string("photo tags cannot be written (") + error.what() + ")", "Check that the file is a JPEG and the disk has room");
+    throw base::InputError(file, std::string("photo tags cannot be written (") + error.what() + ")",
+                           "Check that the file is a JPEG and the disk has room");
   }
 }
 

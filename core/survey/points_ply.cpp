@@ -55,7 +55,8 @@ std::vector<SparsePoint> ReadPointsPly(const std::filesystem::path& file) {
   }
   const std::string_view body = content.substr(header_end + kAfter.size());
   if (body.size() != n_points * kRecordBytes) {
-    throw base::InputError(file, "holds " + std::to_string(body.size()) + " bytes of points where " + std::to_string(n_points * kRecordBytes) + " are announced", mend);
+    throw base::InputError(
+        file, "holds " + std::to_string(body.size()) + " bytes of points where " + std::to_string(n_points * kRecordBytes) + " are announced", mend);
   }
   std::vector<SparsePoint> points(n_points);
   const char* at = body.data();

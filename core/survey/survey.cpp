@@ -20,10 +20,18 @@ constexpr const char* kFormat = "skyquilt survey";
 constexpr int kVersion = 1;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-ordered_json NumberOrNull(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
-ordered_json NumberOrNull(const std::optional<double>& value) { return NumberOrNull(value.value_or(kNan)); }
-double NanIfNull(const json& value) { return value.is_null() ? kNan : value.get<double>(); }
-std::optional<double> OptionalNumber(const json& value) { return value.is_null() ? std::nullopt : std::optional<double>(value.get<double>()); }
+ordered_json NumberOrNull(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+ordered_json NumberOrNull(const std::optional<double>& value) {
+  return NumberOrNull(value.value_or(kNan));
+}
+double NanIfNull(const json& value) {
+  return value.is_null() ? kNan : value.get<double>();
+}
+std::optional<double> OptionalNumber(const json& value) {
+  return value.is_null() ? std::nullopt : std::optional<double>(value.get<double>());
+}
 
 ordered_json ToJson(const geo::Geodetic& position) {
   return {{"latitude_deg", position.latitude_deg}, {"longitude_deg", position.longitude_deg}, {"height_m", NumberOrNull(position.height_m)}};
@@ -133,7 +141,8 @@ Survey SurveyFromJson(const json& value) {
   for (const json& entry : value.at("photos")) {
     Photo photo = PhotoFromJson(entry);
     if (photo.camera < 0 || static_cast<size_t>(photo.camera) >= survey.cameras.size()) {
-      throw std::invalid_argument("photo '" + photo.name + "' names camera " + std::to_string(photo.camera) + " of " + std::to_string(survey.cameras.size()));
+      throw std::invalid_argument("photo '" + photo.name + "' names camera " + std::to_string(photo.camera) + " of " +
+                                  std::to_string(survey.cameras.size()));
     }
     if (!names.insert(photo.name).second) throw std::invalid_argument("photo '" + photo.name + "' appears twice");
     survey.photos.push_back(std::move(photo));
@@ -142,7 +151,8 @@ Survey SurveyFromJson(const json& value) {
   survey.fit = GeoFitFromJson(value.at("fit"));
   const json& truth = value.at("truth");
   if (!truth.is_null()) {
-    survey.truth = Truth{truth.at("depth_folder").get<std::string>(), truth.at("buildings_json").get<std::string>(), truth.at("exposure_json").get<std::string>()};
+    survey.truth = Truth{truth.at("depth_folder").get<std::string>(), truth.at("buildings_json").get<std::string>(),
+                         truth.at("exposure_json").get<std::string>()};
   }
   return survey;
 }
@@ -205,7 +215,8 @@ Survey LoadSurvey(const std::filesystem::path& folder) {
   }
   survey.points = ReadPointsPly(folder / "points.ply");
   if (survey.points.size() != n_points) {
-    throw base::InputError(folder / "points.ply", "holds " + std::to_string(survey.points.size()) + " points, survey.json announces " + std::to_string(n_points),
+    throw base::InputError(folder / "points.ply",
+                           "holds " + std::to_string(survey.points.size()) + " points, survey.json announces " + std::to_string(n_points),
                            "The two files are from different runs: run 'skyquilt prepare' again");
   }
   return survey;

@@ -23,19 +23,19 @@ struct ExposureSettings {
 };
 
 struct Photo {
-  std::string name;                // path relative to Survey::photo_root, '/' separated; unique
-  std::string mask;                // absolute path of the mask or empty
-  int camera = 0;                  // index into Survey::cameras
-  geo::Rigid3d cam_from_enu;       // camera looks along +z, y down; metres
-  std::optional<geo::Geodetic> gps;            // as tagged (XMP preferred), height as tagged
-  std::optional<double> relative_altitude_m;   // XMP, above take-off: a cross-check, not truth
-  std::optional<double> time_s;                // seconds since the first photo's capture
+  std::string name;                           // path relative to Survey::photo_root, '/' separated; unique
+  std::string mask;                           // absolute path of the mask or empty
+  int camera = 0;                             // index into Survey::cameras
+  geo::Rigid3d cam_from_enu;                  // camera looks along +z, y down; metres
+  std::optional<geo::Geodetic> gps;           // as tagged (XMP preferred), height as tagged
+  std::optional<double> relative_altitude_m;  // XMP, above take-off: a cross-check, not truth
+  std::optional<double> time_s;               // seconds since the first photo's capture
   ExposureSettings exposure;
-  double agl_m = 0.0;              // camera height above the sparse points below it; NaN when unknown
-  double gps_residual_m = 0.0;     // |fitted - tagged| camera centre; NaN without GPS
+  double agl_m = 0.0;           // camera height above the sparse points below it; NaN when unknown
+  double gps_residual_m = 0.0;  // |fitted - tagged| camera centre; NaN without GPS
   bool gps_inlier = false;
-  int flight = 0;                  // index of the flight the photo belongs to
-  bool is_test = false;            // held out: never trained on
+  int flight = 0;        // index of the flight the photo belongs to
+  bool is_test = false;  // held out: never trained on
 };
 
 struct SparsePoint {
@@ -46,34 +46,34 @@ struct SparsePoint {
 };
 
 struct GeoFit {
-  int n_matches = 0;          // photos with GPS and pose
+  int n_matches = 0;  // photos with GPS and pose
   int n_inliers = 0;
-  double rmse_m = 0.0;        // 3-D, over the inliers
+  double rmse_m = 0.0;  // 3-D, over the inliers
   double rmse_horizontal_m = 0.0;
   double rmse_vertical_m = 0.0;
-  double scale = 1.0;         // metres per model unit
+  double scale = 1.0;                            // metres per model unit
   std::vector<double> flight_vertical_offset_m;  // added to the tags of flight i before the fit; empty: one flight, none needed
 };
 
 // Where a simulated survey keeps its ground truth; folders relative to nothing (absolute).
 struct Truth {
-  std::filesystem::path depth_folder;    // <photo stem>.tiff, metres along z of the camera ("z_depth"), NaN = sky
+  std::filesystem::path depth_folder;  // <photo stem>.tiff, metres along z of the camera ("z_depth"), NaN = sky
   std::filesystem::path buildings_json;
   std::filesystem::path exposure_json;
 };
 
 struct Survey {
-  geo::Geodetic origin;            // of the ENU frame
-  bool georeferenced = false;      // false: local frame, unknown scale, origin meaningless
+  geo::Geodetic origin;              // of the ENU frame
+  bool georeferenced = false;        // false: local frame, unknown scale, origin meaningless
   std::filesystem::path photo_root;  // absolute
   std::vector<camera::Camera> cameras;
-  std::vector<Photo> photos;       // registered photos only, in name order
+  std::vector<Photo> photos;              // registered photos only, in name order
   std::vector<std::string> unregistered;  // names of photos without a pose
   std::vector<SparsePoint> points;
   GeoFit fit;
   std::optional<Truth> truth;
 
-  double MedianAgl() const;        // metres; NaN when no photo has one
+  double MedianAgl() const;  // metres; NaN when no photo has one
 };
 
 // Throws base::InputError if the folder cannot be written / read or the content is damaged (NaN pose included).

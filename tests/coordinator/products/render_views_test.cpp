@@ -60,8 +60,9 @@ TEST(RenderViews, DepthRunsAlongTheRay) {
   const image::Image8 picture = image::LoadRgb8(folder.path() / "nadir.png");
   EXPECT_EQ(picture.At(0, 24)[1], 255) << "green in the west";
   EXPECT_EQ(picture.At(63, 0)[0], 255) << "red in the east";
-  // Seen from x = -40 and 100 m above the ground, the house begins at 50 / 80 of the focal length of the roof.
-  EXPECT_EQ(picture.At(32 + static_cast<int>(f * 50.0 / 80.0) + 2 > 63 ? 63 : 32 + static_cast<int>(f * 50.0 / 80.0) + 2, 24)[0], 255);
+  // 50 m east of the camera and 100 m below it the house's west wall begins: 27.7 px right of the centre.
+  EXPECT_EQ(picture.At(58, 24)[0], 255) << "ground";
+  EXPECT_EQ(picture.At(61, 24)[2], 255) << "wall";
 }
 
 TEST(RenderViews, SkyIsBlackWithoutDepth) {

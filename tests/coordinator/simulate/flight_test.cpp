@@ -113,7 +113,7 @@ TEST(Flight, BlocksAreFlownAtTheirOwnAltitudes) {
     const Eigen::Vector2d cell = (p.head<2>() - preset.area_min).cwiseQuotient(block);
     // Lines may stand just outside their block; look only at photos well inside.
     const Eigen::Vector2d inside = cell - Eigen::Vector2d(std::floor(cell.x()), std::floor(cell.y()));
-    if (inside.minCoeff() < 0.2 || inside.maxCoeff() > 0.8) continue;
+    if (inside.minCoeff() < 0.14 || inside.maxCoeff() > 0.86) continue;
     const auto index = static_cast<size_t>(std::floor(cell.y()) * preset.columns + std::floor(cell.x()));
     ASSERT_LT(index, seen.size());
     EXPECT_NEAR(p.z(), preset.altitudes_agl_m[index], 2.0);

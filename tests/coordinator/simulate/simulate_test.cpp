@@ -159,7 +159,8 @@ TEST_F(HamletSurvey, DepthShowsTheBuildingsAtTheirHeights) {
   const survey::ColmapModel model = survey::ReadColmapModel(root_ / "two/sparse/0");
   int n_checked = 0;
   int n_agree = 0;
-  for (const auto& b : Json("truth/buildings.json")["buildings"]) {
+  const nlohmann::json truth = Json("truth/buildings.json");
+  for (const nlohmann::json& b : truth["buildings"]) {
     const double yaw = b["yaw_deg"].get<double>() * M_PI / 180.0;
     // On the ridge, or on the deck, off the centre.
     const double along = -0.1 * b["length_m"].get<double>();

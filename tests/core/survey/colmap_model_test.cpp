@@ -140,8 +140,9 @@ TEST(ColmapModel, TextAndBinaryGiveTheSameModel) {
 TEST(ColmapModel, TextWithCommentsBlankLinesAndWindowsEndsIsRead) {
   const test::TempFolder folder;
   base::WriteFileAtomically(folder / "cameras.txt", "# a comment\r\n\r\n  # another\r\n1 PINHOLE 10 8 9 9 5 4\r\n");
-  base::WriteFileAtomically(folder / "images.txt",
-                            "# comment\n1 1 0 0 0 0 0 0 1 a.jpg\n\n# between\n2 1 0 0 0 +1.5 0 0 1 sub\\b.jpg\n1.0 2.0 -1 3.0 4.0 5\n\n3 1 0 0 0 0 0 0 1 c.jpg");
+  base::WriteFileAtomically(
+      folder / "images.txt",
+      "# comment\n1 1 0 0 0 0 0 0 1 a.jpg\n\n# between\n2 1 0 0 0 +1.5 0 0 1 sub\\b.jpg\n1.0 2.0 -1 3.0 4.0 5\n\n3 1 0 0 0 0 0 0 1 c.jpg");
   base::WriteFileAtomically(folder / "points3D.txt", "\n# none\n5 1 2 3 10 20 30 0.5 1 0 2 1\n6 1 2 nan 10 20 30 0.5\n");
   const ColmapModel model = ReadColmapModel(folder.path());
   ASSERT_EQ(model.images.size(), 3U);

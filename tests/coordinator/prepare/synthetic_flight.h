@@ -1,0 +1,51 @@
+// A small nadir flight over gently rolling ground, as photos with tags and a COLMAP model in a frame of its own.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/geo/geodetic.h"
+#include "core/geo/transform.h"
+#include "core/survey/colmap_model.h"
+#include "core/survey/exif.h"
+
+namespace skyquilt::test {
+
+class TempFolder {
+ public:
+  TempFolder();
+  ~TempFolder();
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+constexpr double kFlightHeight_m = 50.0;  // above the mean ground, which lies at ENU z = 0
+
+struct FlightPhoto {
+  std::string name;
+  Eigen::Vector3d centre_in_enu;
+  survey::PhotoTags tags;
+};
+
+struct Flight {
+  geo::Geodetic origin;  // ground level at the middle
+  geo::Similarity3d model_from_enu;
+  std::vector<FlightPhoto> photos;  // 5 x 4, in name order
+  survey::ColmapModel model;        // in the model's frame
+};
+
+// `origin` may be anywhere on Earth.
+Flight MakeFlight(const geo::Geodetic& origin);
+// ENU positions of the tags become `tag(photo index, true centre)`.
+void SetTags(Flight& flight, const std::function<Eigen::Vector3d(size_t, const Eigen::Vector3d&)>& tag);
+// photos into `folder`/images, the model as text into `folder`/sparse/0.
+void WriteFlight(const Flight& flight, const std::filesystem::path& folder);
+
+}  // namespace skyquilt::test

@@ -10,7 +10,8 @@
 namespace skyquilt::partition {
 namespace {
 
-constexpr int kRasterCells = 96;  // along the longer side
+constexpr int kRasterCells = 96;             // along the longer side
+constexpr double kSearchBeyondPoints = 0.1;  // of the points' extent, on each side
 constexpr int kGroundCells = 16;
 constexpr double kMaxSlantPerAgl = 3.0;
 
@@ -115,9 +116,11 @@ SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen:
     const std::vector<double> values = Coordinate(points, axis);
     const double low = Percentile(values, 0.01);
     const double high = Percentile(values, 0.99);
-    // What the percentiles cut off an even spread comes back.
-    area.min_enu[axis] = low - 0.02 * (high - low);
-    area.max_enu[axis] = high + 0.02 * (high - low);
+    // What the percentiles cut off an even spread comes back. Points thin out towards the rim, where few photos overlap; where coverage
+    // decides, the search goes a little farther.
+    const double widening = rule == "covered" ? kSearchBeyondPoints : 0.02;
+    area.min_enu[axis] = low - widening * (high - low);
+    area.max_enu[axis] = high + widening * (high - low);
   }
   const Eigen::Vector2d extent = area.max_enu - area.min_enu;
   if (!(extent.minCoeff() > 0.0)) {

@@ -31,7 +31,7 @@ struct SurveyArea {
   Eigen::Vector2d min_enu = Eigen::Vector2d::Zero();  // the rectangle to cut into blocks, metres
   Eigen::Vector2d max_enu = Eigen::Vector2d::Zero();
   double ground_m = 0.0;  // median height of the points
-  // Coverage raster over the bounds of the points, row-major from the south-west.
+  // Coverage raster over the bounds of the points, somewhat widened; row-major from the south-west.
   Eigen::Vector2d raster_min = Eigen::Vector2d::Zero();
   Eigen::Vector2d raster_cell = Eigen::Vector2d::Ones();
   int raster_columns = 0;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "coordinator/report/photo_scorer.h"
 #include "coordinator/report/report_images.h"
@@ -143,6 +144,19 @@ void FillSurveyFacts(const EvaluateInput& input, const render::SceneInfo& info, 
   metrics->date = base::UtcTimestamp();
 }
 
+// Pictures of an earlier evaluation with other options would only take room.
+void RemoveStalePictures(const std::filesystem::path& report_folder, const std::vector<PhotoImages>& images) {
+  std::set<std::string> kept;
+  for (const PhotoImages& one : images) kept.insert({one.photo, one.render, one.error, one.depth});
+  std::vector<std::filesystem::path> stale;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("photo_") && !kept.contains("images/" + name)) stale.push_back(entry.path());
+  }
+  for (const std::filesystem::path& file : stale) std::filesystem::remove(file, ignored);
+}
+
 // Sums over the photos that the means over photos cannot give.
 struct Pools {
   std::vector<metrics::SquaredError> per_block;
@@ -203,7 +217,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   const std::filesystem::path report_folder = input.project_folder / "report";
   base::RequireWritableFolder(report_folder / "images");
   const std::filesystem::path checkpoints = input.project_folder / "checkpoints";
-  const TrainLog log = ReadTrainLog(input.train_json.empty() ? checkpoints / "train.json" : input.train_json, checkpoints);
+  const TrainLog log = ReadTrainLog(input.train_json.empty() ? input.project_folder / "train.json" : input.train_json, checkpoints);
   const render::Scene scene = render::Scene::Load(input.scene_h5);
   const render::SceneInfo& info = scene.info();
   const SceneArea area = AreaOf(info);
@@ -273,6 +287,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   page.color_ramp = WriteColorRamp(report_folder);
   page.error_high = static_cast<double>(kErrorHigh);
   base::WriteFileAtomically(report_folder / "index.html", BuildReportPage(page));
+  RemoveStalePictures(report_folder, page.images);
   // Last, because its presence says that the evaluation is complete.
   base::WriteFileAtomically(report_folder / "metrics.json", MetricsJson(metrics));
   return metrics;

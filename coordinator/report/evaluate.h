@@ -30,7 +30,7 @@ struct EvaluateInput {
   const partition::BlockSet* blocks = nullptr;
   const image::PixelCache* pixels = nullptr;  // entry i belongs to survey->photos[i]
   std::filesystem::path project_folder;       // report/ is written here; checkpoints/ and products/ are read
-  std::filesystem::path train_json;           // empty: checkpoints/train.json of the project
+  std::filesystem::path train_json;           // empty: train.json of the project
   int ranks = 0;                              // 0: as train.json says, else 1
   std::string config_text;                    // TOML; empty: what the scene was trained with
   EvaluateOptions options;

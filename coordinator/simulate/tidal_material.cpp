@@ -13,7 +13,8 @@ namespace {
 using Eigen::Vector3f;
 
 Vector3f DrySand(float x, float y, float w, uint32_t seed) {
-  const float tone = 1.0F + 0.14F * FractalNoise(x, y, {26.0F, 3, 0.5F}, seed + 100U, w) + 0.12F * FractalNoise(x, y, {3.1F, 3, 0.6F}, seed + 200U, w);
+  const float tone =
+      1.0F + 0.14F * FractalNoise(x, y, {26.0F, 3, 0.5F}, seed + 100U, w) + 0.12F * FractalNoise(x, y, {3.1F, 3, 0.6F}, seed + 200U, w);
   Vector3f sand = Vector3f(0.250F, 0.208F, 0.155F) * tone;
   // Films of algae and beds of shells.
   const float algae = Smoothstep(0.30F, 1.0F, FractalNoise(x, y, {38.0F, 4, 0.55F}, seed + 300U, w));

@@ -11,6 +11,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/checkpoint/archive.h"
+#include "core/checkpoint/guarded_driver.h"
 #include "core/checkpoint/hdf5_handle.h"
 #include "core/checkpoint/user_block.h"
 
@@ -109,11 +110,13 @@ std::set<std::string> GroupsOf(const std::string& name) {
   return groups;
 }
 
-// Removes the unfinished file unless it was renamed away.
+// Removes the unfinished file unless it was renamed away. Emptied first: after a failed write HDF5 may still hold it open, and with it the disk
+// space.
 struct RemoveOnExit {
   std::filesystem::path file;
   ~RemoveOnExit() {
     std::error_code ignored;
+    if (std::filesystem::exists(file, ignored)) std::filesystem::resize_file(file, 0, ignored);
     std::filesystem::remove(file, ignored);
   }
 };
@@ -174,10 +177,22 @@ struct ArchiveWriter::Impl {
 
   void Write(const std::filesystem::path& path) const {
     const HdfLock lock;
+    WriteOutcome outcome;
+    try {
+      WriteAll(path, &outcome);
+    } catch (const InputError&) {
+      // The system's own reason says more than what HDF5 made of it.
+      if (outcome.error == 0) throw;
+    }
+    if (outcome.error != 0) base::ThrowFileError(path, "cannot be written", outcome.error);
+  }
+
+  void WriteAll(const std::filesystem::path& path, WriteOutcome* outcome) const {
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     SKYQUILT_CHECK(creation.Valid() && H5Pset_userblock(creation.id(), kUserBlockBytes) >= 0, HdfErrorText());
     SKYQUILT_CHECK(H5Pset_obj_track_times(creation.id(), false) >= 0, HdfErrorText());
     const Handle access = FileAccess();
+    UseGuardedDriver(access, outcome);
     Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
     if (!file.Valid()) Fail(path, "cannot be created");
     WriteAttribute(file.id(), "skyquilt.kind", kind, path);
@@ -186,8 +201,11 @@ struct ArchiveWriter::Impl {
     std::set<std::string> groups;
     for (const auto& [name, unused] : arrays) groups.merge(GroupsOf(name));
     WriteGroups(file.id(), groups, path);
-    for (const auto& [name, array] : arrays) WriteArray(file.id(), name, array, path);
-    if (H5Fflush(file.id(), H5F_SCOPE_GLOBAL) < 0 || !file.Close()) Fail(path, "cannot be written");
+    for (const auto& [name, array] : arrays) {
+      WriteArray(file.id(), name, array, path);
+      if (outcome->error != 0) break;
+    }
+    if (!file.Close()) Fail(path, "cannot be written");
   }
 
   // Reopens through the public reader and compares every byte with memory.

@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <regex>
 
 #include "coordinator/report/report_images.h"
@@ -14,22 +15,25 @@
 namespace skyquilt::report {
 namespace {
 
-// SKYQUILT_SAMPLE_REPORT=<folder> keeps the page for a look at it.
+// One sample for all tests; SKYQUILT_SAMPLE_REPORT=<folder> keeps its page for a look at it.
 class ReportPage : public testing::Test {
  protected:
-  void SetUp() override {
+  static void SetUpTestSuite() {
     const char* kept = std::getenv("SKYQUILT_SAMPLE_REPORT");
     keep_ = kept != nullptr;
-    folder_ = keep_ ? std::filesystem::path(kept)
-                    : std::filesystem::temp_directory_path() /
-                          ("skyquilt_report_" + std::to_string(::getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_ / "images");
+    folder_ = keep_ ? std::filesystem::path(kept) : std::filesystem::temp_directory_path() / ("skyquilt_report_" + std::to_string(::getpid()));
+    sample_ = std::make_unique<SampleReport>(folder_);
+    html_ = BuildReportPage(sample_->input);
+    if (keep_) base::WriteFileAtomically(folder_ / "index.html", html_);
   }
-  void TearDown() override {
+  static void TearDownTestSuite() {
+    sample_.reset();
     if (!keep_) std::filesystem::remove_all(folder_);
   }
-  std::filesystem::path folder_;
-  bool keep_ = false;
+  static inline std::filesystem::path folder_;
+  static inline bool keep_ = false;
+  static inline std::unique_ptr<SampleReport> sample_;
+  static inline std::string html_;
 };
 
 size_t CountOf(const std::string& text, const std::string& part) {
@@ -39,50 +43,55 @@ size_t CountOf(const std::string& text, const std::string& part) {
 }
 
 TEST_F(ReportPage, OpensOfflineAndEveryPictureExists) {
-  const SampleReport sample(folder_);
-  const std::string html = BuildReportPage(sample.input);
-  base::WriteFileAtomically(folder_ / "index.html", html);
-  EXPECT_EQ(html.find("http://"), std::string::npos);
-  EXPECT_EQ(html.find("https://"), std::string::npos);
-  EXPECT_EQ(html.find("@import"), std::string::npos);
+  EXPECT_EQ(html_.find("http://"), std::string::npos);
+  EXPECT_EQ(html_.find("https://"), std::string::npos);
+  EXPECT_EQ(html_.find("@import"), std::string::npos);
   const std::regex source("(?:src|href)=\"(images/[^\"]+)\"");
   size_t n_pictures = 0;
-  for (std::sregex_iterator it(html.begin(), html.end(), source), end; it != end; ++it, ++n_pictures) {
+  for (std::sregex_iterator it(html_.begin(), html_.end(), source), end; it != end; ++it, ++n_pictures) {
     EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / (*it)[1].str())) << (*it)[1];
   }
-  EXPECT_GE(n_pictures, 4 * sample.metrics.photos.size());
+  EXPECT_GE(n_pictures, 4 * sample_->metrics.photos.size());
+}
+
+TEST_F(ReportPage, LinksWithinThePageArrive) {
+  const std::regex link("href=\"#([^\"]+)\"");
+  size_t n_links = 0;
+  for (std::sregex_iterator it(html_.begin(), html_.end(), link), end; it != end; ++it, ++n_links) {
+    EXPECT_EQ(CountOf(html_, "id=\"" + (*it)[1].str() + "\""), 1U) << (*it)[1];
+  }
+  EXPECT_GT(n_links, 10U);
 }
 
 TEST_F(ReportPage, FileNamesNeverBecomeMarkup) {
-  const SampleReport sample(folder_);
-  const std::string html = BuildReportPage(sample.input);
-  EXPECT_EQ(html.find("<b>DJI"), std::string::npos);
-  EXPECT_NE(html.find("&lt;b&gt;DJI &amp; &quot;co&quot;&lt;/b&gt;.jpg"), std::string::npos);
-  EXPECT_EQ(html.find("town <sample>"), std::string::npos);
+  EXPECT_EQ(html_.find("<b>DJI"), std::string::npos);
+  EXPECT_NE(html_.find("&lt;b&gt;DJI &amp; &quot;co&quot;&lt;/b&gt;.jpg"), std::string::npos);
+  EXPECT_EQ(html_.find("town <sample>"), std::string::npos);
 }
 
 TEST_F(ReportPage, TagsAreBalancedAndNoNumberIsNan) {
-  const SampleReport sample(folder_);
-  const std::string html = BuildReportPage(sample.input);
-  for (const char* tag : {"section", "table", "tbody", "tr", "svg", "figure", "article", "details", "div", "span", "a"}) {
+  for (const char* tag : {"section", "table", "tbody", "tr", "svg", "figure", "article", "details", "div", "span", "dl", "a"}) {
     const std::string name(tag);
-    const size_t opened = CountOf(html, "<" + name + " ") + CountOf(html, "<" + name + ">");
-    EXPECT_EQ(opened, CountOf(html, "</" + name + ">")) << name;
+    const size_t opened = CountOf(html_, "<" + name + " ") + CountOf(html_, "<" + name + ">");
+    EXPECT_EQ(opened, CountOf(html_, "</" + name + ">")) << name;
   }
-  EXPECT_EQ(CountOf(html, "\"nan\"") + CountOf(html, ">nan") + CountOf(html, "inf\""), 0U);
+  EXPECT_EQ(CountOf(html_, "\"nan\"") + CountOf(html_, ">nan") + CountOf(html_, "inf\""), 0U);
 }
 
-TEST_F(ReportPage, SurvivesASurveyWithNothingToShow) {
-  SampleReport sample(folder_);
-  sample.metrics = Metrics{};
-  sample.survey = survey::Survey{};
-  sample.blocks = partition::BlockSet{};
-  sample.log = TrainLog{};
-  sample.input.images.clear();
-  sample.input.background.reset();
-  const std::string html = BuildReportPage(sample.input);
+TEST(ReportPageOfNothing, SaysWhatIsMissing) {
+  const Metrics metrics;
+  const survey::Survey survey;
+  const partition::BlockSet blocks;
+  const TrainLog log;
+  ReportInput input;
+  input.metrics = &metrics;
+  input.survey = &survey;
+  input.blocks = &blocks;
+  input.log = &log;
+  const std::string html = BuildReportPage(input);
   EXPECT_NE(html.find("No photo was scored"), std::string::npos);
   EXPECT_NE(html.find("no usable GPS"), std::string::npos);
+  EXPECT_NE(html.find("No training log"), std::string::npos);
   EXPECT_EQ(CountOf(html, "\"nan\"") + CountOf(html, ">nan") + CountOf(html, ">inf"), 0U);
 }
 

@@ -1,6 +1,7 @@
 #include "worker/field_trainer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/brightness/exposure.h"
@@ -24,6 +25,14 @@ uint64_t Mix(uint64_t seed, uint64_t step, uint64_t index) {
   v ^= v >> 31U;
   v *= 0xD6E8FEB86659FD93ULL;
   return v ^ (v >> 32U);
+}
+
+// All exponents below the one of infinity and NaN; integer form, so that it runs at memory speed.
+bool AllFinite(const float* values, int64_t n) {
+  constexpr uint32_t kExponent = 0x7F800000U;
+  uint32_t bad = 0;
+  for (int64_t i = 0; i < n; ++i) bad |= (std::bit_cast<uint32_t>(values[i]) & kExponent) == kExponent ? 1U : 0U;
+  return bad == 0;
 }
 
 template <typename T>
@@ -83,7 +92,7 @@ void FieldTrainer::DrawRays() {
     }
     n_samples_ += static_cast<int64_t>(group.x.size());
   }
-  stride_ = static_cast<size_t>(kernel::Padded(n_samples_));
+  stride_ = kernel::StrideFor(n_samples_);
   for (auto* v : {&x_, &y_, &z_, &t_, &unit_length_}) Grow(*v, stride_);
   int64_t at = 0;
   for (const RayGroup& group : groups_) {
@@ -106,7 +115,7 @@ void FieldTrainer::EvaluateDensity() {
     std::fill(features_.begin() + static_cast<ptrdiff_t>(row * stride_ + static_cast<size_t>(n_samples_)),
               features_.begin() + static_cast<ptrdiff_t>((row + 1) * stride_), 0.0F);
   }
-  const auto padded = static_cast<int64_t>(stride_);
+  const int64_t padded = kernel::Padded(n_samples_);
   threads_.ParallelFor((padded + field::kChunk - 1) / field::kChunk, [&](int64_t task, int thread) {
     const int64_t begin = task * field::kChunk;
     field_.Density(weights_, features_.data() + begin, stride_, std::min<int64_t>(field::kChunk, padded - begin), scratch_[static_cast<size_t>(thread)],
@@ -131,7 +140,7 @@ void FieldTrainer::SelectLive() {
     r.live_count = i;
     n_live_ += i;
   }
-  live_stride_ = static_cast<size_t>(kernel::Padded(n_live_));
+  live_stride_ = kernel::StrideFor(n_live_);
   for (auto* v : {&live_x_, &live_y_, &live_z_, &live_t_, &live_tau_, &live_weight_, &tau_gradient_}) Grow(*v, live_stride_);
   for (auto* v : {&live_direction_, &live_rgb_}) Grow(*v, 3 * live_stride_);
   for (auto* v : {&live_color_, &color_gradient_}) Grow(*v, static_cast<size_t>(field::kColorRows) * live_stride_);
@@ -175,7 +184,7 @@ void FieldTrainer::SelectLive() {
 }
 
 void FieldTrainer::EvaluateColor() {
-  const auto padded = static_cast<int64_t>(live_stride_);
+  const int64_t padded = kernel::Padded(n_live_);
   const auto range = static_cast<float>(target_.config.color_range);
   threads_.ParallelFor((padded + field::kChunk - 1) / field::kChunk, [&](int64_t task, int thread) {
     const int64_t begin = task * field::kChunk;
@@ -316,10 +325,12 @@ StepResult FieldTrainer::ComposeAndLoss() {
 }
 
 bool FieldTrainer::BackwardAndUpdate(double learning_rate) {
-  const auto padded = static_cast<int64_t>(live_stride_);
+  const int64_t padded = kernel::Padded(n_live_);
   const int64_t chunks = (padded + field::kChunk - 1) / field::kChunk;
   const auto network_size = static_cast<size_t>(field_.NetworkParameters());
   slot_gradients_.assign(network_size * kGradientSlots, 0.0F);
+  const auto rows = static_cast<size_t>(field_.FeatureRows());
+  std::vector<uint8_t> slot_finite(kGradientSlots, 1);
   threads_.ParallelFor(kGradientSlots, [&](int64_t slot, int thread) {
     for (int64_t chunk = slot; chunk < chunks; chunk += kGradientSlots) {
       const int64_t begin = chunk * field::kChunk;
@@ -327,16 +338,22 @@ bool FieldTrainer::BackwardAndUpdate(double learning_rate) {
                       std::min<int64_t>(field::kChunk, padded - begin), color_gradient_.data() + begin, live_stride_, tau_gradient_.data() + begin,
                       scratch_[static_cast<size_t>(thread)], feature_gradient_.data() + begin, live_stride_,
                       slot_gradients_.data() + static_cast<size_t>(slot) * network_size);
+      for (size_t row = 0; row < rows; ++row) {
+        const int64_t n = std::min<int64_t>(field::kChunk, padded - begin);
+        if (!AllFinite(feature_gradient_.data() + row * live_stride_ + begin, n)) slot_finite[static_cast<size_t>(slot)] = 0;
+      }
     }
   });
   for (size_t slot = 0; slot < kGradientSlots; ++slot) {
     for (size_t i = 0; i < network_size; ++i) state_.network_gradient[i] += slot_gradients_[slot * network_size + i];
   }
-  field::AccumulateGrid(field_, live_x_.data(), live_y_.data(), live_z_.data(), n_live_, feature_gradient_.data(), live_stride_, state_, threads_);
-  if (!field::GradientsFinite(field_, state_)) {
+  const bool finite = AllFinite(state_.network_gradient.data(), static_cast<int64_t>(network_size)) &&
+                      std::find(slot_finite.begin(), slot_finite.end(), 0) == slot_finite.end();
+  if (!finite) {
     field::DropGradients(state_);
     return false;
   }
+  field::AccumulateGrid(field_, live_x_.data(), live_y_.data(), live_z_.data(), n_live_, feature_gradient_.data(), live_stride_, state_, threads_);
   field::ApplyAdam(field_, learning_rate, options_.network_l2, state_, threads_);
   return true;
 }
@@ -375,12 +392,12 @@ void FieldTrainer::StepDepths(const std::vector<float>& x, const std::vector<flo
   threads_.ParallelFor((n + kStretch - 1) / kStretch, [&](int64_t task, int thread) {
     const int64_t begin = task * kStretch;
     const int64_t count = std::min(kStretch, n - begin);
-    const auto stride = static_cast<size_t>(kernel::Padded(count));
-    std::vector<float> features(rows * stride, 0.0F), geometry(static_cast<size_t>(field::kGeometryRows) * field::kChunk);
+    const size_t stride = kernel::StrideFor(count);
+    std::vector<float> features(rows * stride, 0.0F), geometry(static_cast<size_t>(field::kGeometryRows) * field::kChunkStride);
     field_.EncodeSerial(state_.grid, x.data() + begin, y.data() + begin, z.data() + begin, count, features.data(), stride);
-    for (int64_t s = 0; s < static_cast<int64_t>(stride); s += field::kChunk) {
-      const int64_t size = std::min<int64_t>(field::kChunk, static_cast<int64_t>(stride) - s);
-      field_.Density(weights_, features.data() + s, stride, size, scratch_[static_cast<size_t>(thread)], geometry.data(), field::kChunk);
+    for (int64_t s = 0; s < count; s += field::kChunk) {
+      const int64_t size = std::min<int64_t>(field::kChunk, kernel::Padded(count) - s);
+      field_.Density(weights_, features.data() + s, stride, size, scratch_[static_cast<size_t>(thread)], geometry.data(), field::kChunkStride);
       for (int64_t i = 0; i < std::min(size, count - s); ++i) {
         (*depth)[static_cast<size_t>(begin + s + i)] =
             std::exp(std::min(15.0F, geometry[static_cast<size_t>(i)] + static_cast<float>(target_.config.density_bias)));

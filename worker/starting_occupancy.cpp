@@ -60,7 +60,7 @@ void StartFromContext(const survey::Survey& survey, const render::TrainedField& 
     const auto rows = static_cast<size_t>(context.field->FeatureRows());
     const int64_t plane = static_cast<int64_t>(grid.size[0]) * grid.size[1];
     std::vector<float> x(field::kChunk), y(field::kChunk), h(field::kChunk);
-    std::vector<float> features(rows * field::kChunk), geometry(static_cast<size_t>(field::kGeometryRows) * field::kChunk);
+    std::vector<float> features(rows * field::kChunkStride), geometry(static_cast<size_t>(field::kGeometryRows) * field::kChunkStride);
     for (int64_t begin = 0; begin < plane; begin += field::kChunk) {
       const int64_t n = std::min<int64_t>(field::kChunk, plane - begin);
       for (int64_t i = 0; i < n; ++i) {
@@ -74,8 +74,8 @@ void StartFromContext(const survey::Survey& survey, const render::TrainedField& 
         h[static_cast<size_t>(i)] = p.z();
       }
       std::fill(features.begin(), features.end(), 0.0F);
-      context.field->EncodeSerial(context.grid, x.data(), y.data(), h.data(), n, features.data(), field::kChunk);
-      context.field->Density(context.weights, features.data(), field::kChunk, kernel::Padded(n), scratch, geometry.data(), field::kChunk);
+      context.field->EncodeSerial(context.grid, x.data(), y.data(), h.data(), n, features.data(), field::kChunkStride);
+      context.field->Density(context.weights, features.data(), field::kChunkStride, kernel::Padded(n), scratch, geometry.data(), field::kChunkStride);
       for (int64_t i = 0; i < n; ++i) {
         const auto k = static_cast<size_t>(i);
         const bool open = context.occupancy.occupied[static_cast<size_t>(context.occupancy.IndexAt(x[k], y[k], h[k]))] == 0;

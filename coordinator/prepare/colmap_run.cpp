@@ -87,6 +87,7 @@ void RunStep(const ColmapJob& job, const fs::path& program, const Step& step, si
   };
   const int status = RunChild(child);
   if (status == 0) {
+    progress.Update(static_cast<double>(n_photos));
     progress.Finish();
     return;
   }

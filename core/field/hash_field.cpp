@@ -67,7 +67,7 @@ NetworkWeights HashField::Prepare(std::span<const float> networks) const {
 
 ChunkScratch HashField::MakeScratch() const {
   ChunkScratch scratch;
-  const auto rows = [](int n) { return static_cast<size_t>(n) * kChunk; };
+  const auto rows = [](int n) { return static_cast<size_t>(n) * kChunkStride; };
   for (auto& hidden : scratch.hidden) hidden.resize(rows(config_.hidden));
   for (auto& gradient : scratch.gradient) gradient.resize(rows(std::max(config_.hidden, kGeometryRows)));
   scratch.color_in.resize(rows(color_inputs_));
@@ -98,23 +98,23 @@ void HashField::EncodeSerial(std::span<const float> grid, const float* x, const 
 
 void HashField::Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, ChunkScratch& scratch, float* geometry,
                         size_t geometry_stride) const {
-  kernel::Dense(weights.layer[0].data(), config_.hidden, layers_[0].inputs, features, feature_stride, n, true, scratch.hidden[0].data(), kChunk);
-  kernel::Dense(weights.layer[1].data(), kGeometryRows, config_.hidden, scratch.hidden[0].data(), kChunk, n, false, geometry, geometry_stride);
+  kernel::Dense(weights.layer[0].data(), config_.hidden, layers_[0].inputs, features, feature_stride, n, true, scratch.hidden[0].data(), kChunkStride);
+  kernel::Dense(weights.layer[1].data(), kGeometryRows, config_.hidden, scratch.hidden[0].data(), kChunkStride, n, false, geometry, geometry_stride);
 }
 
 void HashField::FillColorInput(const float* geometry, size_t geometry_stride, const float* direction, size_t direction_stride, int64_t n,
                                ChunkScratch& scratch) const {
   for (int r = 0; r < kGeometryRows; ++r) {
-    std::memcpy(scratch.color_in.data() + static_cast<size_t>(r) * kChunk, geometry + static_cast<size_t>(r) * geometry_stride,
+    std::memcpy(scratch.color_in.data() + static_cast<size_t>(r) * kChunkStride, geometry + static_cast<size_t>(r) * geometry_stride,
                 static_cast<size_t>(n) * sizeof(float));
   }
-  float* sh_rows = scratch.color_in.data() + static_cast<size_t>(kGeometryRows) * kChunk;
+  float* sh_rows = scratch.color_in.data() + static_cast<size_t>(kGeometryRows) * kChunkStride;
   const int sh_count = config_.sh_degree * config_.sh_degree;
   float sh[16];
   for (int64_t s = 0; s < n; ++s) {
     encoding::SphericalHarmonics(direction[s], direction[direction_stride + static_cast<size_t>(s)], direction[2 * direction_stride + static_cast<size_t>(s)],
                                  config_.sh_degree, sh);
-    for (int k = 0; k < sh_count; ++k) sh_rows[static_cast<size_t>(k) * kChunk + static_cast<size_t>(s)] = sh[k];
+    for (int k = 0; k < sh_count; ++k) sh_rows[static_cast<size_t>(k) * kChunkStride + static_cast<size_t>(s)] = sh[k];
   }
 }
 
@@ -125,53 +125,53 @@ void HashField::Color(const NetworkWeights& weights, const float* geometry, size
   int inputs = color_inputs_;
   for (int l = 0; l < config_.color_hidden_layers; ++l) {
     float* out = scratch.hidden[1 + l].data();
-    kernel::Dense(weights.layer[static_cast<size_t>(2 + l)].data(), config_.hidden, inputs, in, kChunk, n, true, out, kChunk);
+    kernel::Dense(weights.layer[static_cast<size_t>(2 + l)].data(), config_.hidden, inputs, in, kChunkStride, n, true, out, kChunkStride);
     in = out;
     inputs = config_.hidden;
   }
-  kernel::Dense(weights.layer.back().data(), kColorRows, config_.hidden, in, kChunk, n, false, color_raw, color_stride);
+  kernel::Dense(weights.layer.back().data(), kColorRows, config_.hidden, in, kChunkStride, n, false, color_raw, color_stride);
 }
 
 void HashField::Backward(const NetworkWeights& weights, const float* features, size_t feature_stride, const float* direction, size_t direction_stride,
                          int64_t n, const float* color_gradient, size_t color_stride, const float* log_density_gradient, ChunkScratch& scratch,
                          float* feature_gradient, size_t feature_gradient_stride, float* network_gradient) const {
   const size_t last = layers_.size() - 1;
-  float geometry[static_cast<size_t>(kGeometryRows) * kChunk];
-  float color_raw[static_cast<size_t>(kColorRows) * kChunk];
-  Density(weights, features, feature_stride, n, scratch, geometry, kChunk);
-  Color(weights, geometry, kChunk, direction, direction_stride, n, scratch, color_raw, kChunk);
+  float geometry[static_cast<size_t>(kGeometryRows) * kChunkStride];
+  float color_raw[static_cast<size_t>(kColorRows) * kChunkStride];
+  Density(weights, features, feature_stride, n, scratch, geometry, kChunkStride);
+  Color(weights, geometry, kChunkStride, direction, direction_stride, n, scratch, color_raw, kChunkStride);
 
   const auto gradient_of = [&](size_t layer) { return network_gradient + network_offsets_[layer]; };
   // Colour network, from its output to [geometry, SH].
   const int hidden_layers = config_.color_hidden_layers;
   const float* top = scratch.hidden[hidden_layers].data();
-  kernel::DenseWeightGradient(color_gradient, color_stride, kColorRows, top, kChunk, config_.hidden, n, gradient_of(last));
+  kernel::DenseWeightGradient(color_gradient, color_stride, kColorRows, top, kChunkStride, config_.hidden, n, gradient_of(last));
   float* current = scratch.gradient[0].data();
   float* next = scratch.gradient[1].data();
-  kernel::Dense(weights.transposed[last].data(), config_.hidden, kColorRows, color_gradient, color_stride, n, false, current, kChunk);
+  kernel::Dense(weights.transposed[last].data(), config_.hidden, kColorRows, color_gradient, color_stride, n, false, current, kChunkStride);
   for (int l = hidden_layers - 1; l >= 0; --l) {
-    kernel::ReluBackward(scratch.hidden[1 + l].data(), kChunk, config_.hidden, n, current, kChunk);
+    kernel::ReluBackward(scratch.hidden[1 + l].data(), kChunkStride, config_.hidden, n, current, kChunkStride);
     const bool first = l == 0;
     const float* in = first ? scratch.color_in.data() : scratch.hidden[l].data();
     const int inputs = first ? color_inputs_ : config_.hidden;
     const auto layer = static_cast<size_t>(2 + l);
-    kernel::DenseWeightGradient(current, kChunk, config_.hidden, in, kChunk, inputs, n, gradient_of(layer));
+    kernel::DenseWeightGradient(current, kChunkStride, config_.hidden, in, kChunkStride, inputs, n, gradient_of(layer));
     if (first) {
       // Only the geometry rows go on: the direction has no parameters.
-      kernel::Dense(weights.transposed[layer].data(), kGeometryRows, config_.hidden, current, kChunk, n, false, scratch.color_in_gradient.data(), kChunk);
+      kernel::Dense(weights.transposed[layer].data(), kGeometryRows, config_.hidden, current, kChunkStride, n, false, scratch.color_in_gradient.data(), kChunkStride);
     } else {
-      kernel::Dense(weights.transposed[layer].data(), config_.hidden, config_.hidden, current, kChunk, n, false, next, kChunk);
+      kernel::Dense(weights.transposed[layer].data(), config_.hidden, config_.hidden, current, kChunkStride, n, false, next, kChunkStride);
       std::swap(current, next);
     }
   }
   float* geometry_gradient = scratch.color_in_gradient.data();
   for (int64_t s = 0; s < n; ++s) geometry_gradient[s] += log_density_gradient[s];
   // Density network.
-  kernel::DenseWeightGradient(geometry_gradient, kChunk, kGeometryRows, scratch.hidden[0].data(), kChunk, config_.hidden, n, gradient_of(1));
-  kernel::Dense(weights.transposed[1].data(), config_.hidden, kGeometryRows, geometry_gradient, kChunk, n, false, current, kChunk);
-  kernel::ReluBackward(scratch.hidden[0].data(), kChunk, config_.hidden, n, current, kChunk);
-  kernel::DenseWeightGradient(current, kChunk, config_.hidden, features, feature_stride, layers_[0].inputs, n, gradient_of(0));
-  kernel::Dense(weights.transposed[0].data(), layers_[0].inputs, config_.hidden, current, kChunk, n, false, feature_gradient, feature_gradient_stride);
+  kernel::DenseWeightGradient(geometry_gradient, kChunkStride, kGeometryRows, scratch.hidden[0].data(), kChunkStride, config_.hidden, n, gradient_of(1));
+  kernel::Dense(weights.transposed[1].data(), config_.hidden, kGeometryRows, geometry_gradient, kChunkStride, n, false, current, kChunkStride);
+  kernel::ReluBackward(scratch.hidden[0].data(), kChunkStride, config_.hidden, n, current, kChunkStride);
+  kernel::DenseWeightGradient(current, kChunkStride, config_.hidden, features, feature_stride, layers_[0].inputs, n, gradient_of(0));
+  kernel::Dense(weights.transposed[0].data(), layers_[0].inputs, config_.hidden, current, kChunkStride, n, false, feature_gradient, feature_gradient_stride);
 }
 
 }  // namespace skyquilt::field

@@ -21,6 +21,8 @@ constexpr int kGeometryRows = 16;
 constexpr int kColorRows = 4;  // 3 used; padded to the kernels' row multiple
 // Samples handled by one task; activations of one chunk stay in the second-level cache.
 constexpr int kChunk = 512;
+// Row stride of a chunk's own buffers: an odd number of cache lines, so that rows do not fall on the same cache sets.
+constexpr int kChunkStride = kChunk + kernel::kStridePad;
 
 struct FieldConfig {
   encoding::HashGridConfig grid;

@@ -58,22 +58,4 @@ void DropGradients(TrainableState& state) {
   std::fill(state.listed.begin(), state.listed.end(), 0U);
 }
 
-bool GradientsFinite(const HashField& field, const TrainableState& state) {
-  for (const float value : state.network_gradient) {
-    if (!std::isfinite(value)) return false;
-  }
-  const encoding::HashGrid& grid = field.grid();
-  const auto features = static_cast<size_t>(grid.features());
-  for (int l = 0; l < grid.levels(); ++l) {
-    const uint32_t* list = state.list.data() + grid.EntryOffset(l);
-    const float* gradient = state.grid_gradient.data() + grid.Offset(l);
-    for (uint32_t k = 0; k < state.listed[static_cast<size_t>(l)]; ++k) {
-      for (size_t f = 0; f < features; ++f) {
-        if (!std::isfinite(gradient[list[k] * features + f])) return false;
-      }
-    }
-  }
-  return true;
-}
-
 }  // namespace skyquilt::field

@@ -32,7 +32,5 @@ void AccumulateGrid(const HashField& field, const float* x, const float* y, cons
 void ApplyAdam(const HashField& field, double learning_rate, double network_l2, TrainableState& state, base::ThreadPool& threads);
 // Forgets this step's gradients without an update.
 void DropGradients(TrainableState& state);
-// True when every gradient is finite.
-bool GradientsFinite(const HashField& field, const TrainableState& state);
 
 }  // namespace skyquilt::field

@@ -1,6 +1,6 @@
 // The inner loops of the field, one source for every instruction set, chosen at run time (Highway).
 // All matrices are structures of arrays: row r of a batch starts at data + r * stride; a batch of n samples is padded with zeros to a
-// multiple of kPad samples (stride >= padded n, stride a multiple of kPad). Scalar twins of every kernel: core/kernel/reference.h.
+// multiple of kPad samples (stride >= padded n). Scalar twins of every kernel: core/kernel/reference.h.
 // Every kernel is single-threaded and gives the same bits on every call on one instruction set.
 #pragma once
 
@@ -14,8 +14,12 @@ namespace skyquilt::kernel {
 constexpr int kPad = 64;
 // Rows of a weight matrix are padded to a multiple of this with zero rows.
 constexpr int kRowPad = 4;
+// One cache line of floats. Row strides that are multiples of a page put all rows on the same few cache sets and cost a factor of five;
+// StrideFor avoids them.
+constexpr int kStridePad = 16;
 
 constexpr int64_t Padded(int64_t n) { return (n + kPad - 1) / kPad * kPad; }
+constexpr size_t StrideFor(int64_t n) { return static_cast<size_t>(Padded(n) + kStridePad); }
 constexpr int PaddedRows(int n) { return (n + kRowPad - 1) / kRowPad * kRowPad; }
 
 // Name of the instruction set in use ("AVX3_ZEN4", "AVX2", "SSE4", ...).

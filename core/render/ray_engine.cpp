@@ -111,7 +111,7 @@ class Group {
     if (n == 0) return;
     const field::HashField& f = *all_[k]->field;
     const int64_t padded = kernel::Padded(n);
-    batch.stride = static_cast<size_t>(padded);
+    batch.stride = kernel::StrideFor(n);
     batch.features.assign(static_cast<size_t>(f.FeatureRows()) * batch.stride, 0.0F);
     batch.geometry.resize(static_cast<size_t>(field::kGeometryRows) * batch.stride);
     f.EncodeSerial(all_[k]->grid, batch.x.data(), batch.y.data(), batch.z.data(), n, batch.features.data(), batch.stride);
@@ -155,7 +155,7 @@ class Group {
     if (n == 0) return;
     const field::HashField& f = *all_[k]->field;
     const int64_t padded = kernel::Padded(n);
-    batch.visible_stride = static_cast<size_t>(padded);
+    batch.visible_stride = kernel::StrideFor(n);
     batch.direction.assign(3 * batch.visible_stride, 0.0F);
     batch.visible_geometry.assign(static_cast<size_t>(field::kGeometryRows) * batch.visible_stride, 0.0F);
     batch.color.resize(static_cast<size_t>(field::kColorRows) * batch.visible_stride);

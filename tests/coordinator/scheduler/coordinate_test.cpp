@@ -126,7 +126,9 @@ TEST_F(Coordinate, AFailingBlockCostsOnlyItself) {
     ASSERT_EQ(played.outcomes.size(), 3U);
     for (const FieldOutcome& outcome : played.outcomes) {
       EXPECT_EQ(outcome.failure, outcome.job.block == 1 ? Failure::kBlock : Failure::kNone);
-      if (outcome.job.block == 1) EXPECT_EQ(outcome.reason, "loss is not finite");
+      if (outcome.job.block == 1) {
+        EXPECT_EQ(outcome.reason, "loss is not finite");
+      }
     }
   }
 }

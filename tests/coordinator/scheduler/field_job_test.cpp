@@ -49,7 +49,7 @@ TEST(FieldJob, StatusWithANonFiniteLossStillTravels) {
 TEST(RunField, EveryWayToFailBecomesAnOutcome) {
   const auto failure = [](const FieldTrainer& trainer) { return RunField(trainer, {}, kSilent, 1, 2).failure; };
   using Result = worker::TrainResult;
-  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) { return Result{.ok = true}; }), Failure::kNone);
+  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) { return Result{.ok = true, .reason = ""}; }), Failure::kNone);
   EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) { return Result{.ok = false, .reason = "x"}; }), Failure::kBlock);
   EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) -> Result { throw std::bad_alloc(); }), Failure::kBlock);
   EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) -> Result { throw std::logic_error("x"); }), Failure::kBlock);

@@ -43,7 +43,7 @@ struct Stage {
   std::string name;
   FlatOptions inputs;
   OnNewInputs on_new_inputs = OnNewInputs::kAgain;
-  bool dated = true;
+  bool dated = true;  // false for results that must be the same bytes each time: no dates, no copy of the configuration
 };
 
 // Runs the body unless its results are fresh; the body returns the state to remember. Returns false when there was nothing to do.
@@ -68,7 +68,7 @@ bool RunStage(Pipeline& pipeline, const Stage& stage, const std::function<std::s
     spdlog::info("{}: made again, because its input is new", stage.name);
   }
   SaveStamp(project, stamp);
-  base::WriteFileAtomically(project.ConfigFile(), pipeline.settings.Toml());
+  if (stage.dated) base::WriteFileAtomically(project.ConfigFile(), pipeline.settings.Toml());
   spdlog::info("{}", stage.name);
   const auto start = std::chrono::steady_clock::now();
   stamp.state = body(stamp);

@@ -90,7 +90,7 @@ void RequireFile(const std::filesystem::path& file, const std::string& stage, co
   throw base::InputError(file, "is not there yet", "Run 'skyquilt " + stage + " " + project.folder.string() + "' first");
 }
 
-// Names of the fields that train.json says are good, and its digest.
+// The blocks that train.json says are good, and "context".
 std::set<std::string> FinishedFields(const Project& project) {
   RequireFile(project.TrainReport(), "train", project);
   try {
@@ -102,19 +102,6 @@ std::set<std::string> FinishedFields(const Project& project) {
     return names;
   } catch (const nlohmann::json::exception& error) {
     throw base::InputError(project.TrainReport(), std::string("is damaged: ") + error.what(), "Run 'skyquilt train' again");
-  }
-}
-
-void LogSurvey(const survey::Survey& survey) {
-  const auto n_test = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.is_test; });
-  const size_t n_all = survey.photos.size() + survey.unregistered.size();
-  spdlog::info("{} of {} photos have a pose, {} held out, {} sparse points", survey.photos.size(), n_all, n_test, survey.points.size());
-  if (survey.georeferenced) {
-    spdlog::info("geo-reference: {} of {} GPS tags fit, RMSE {:.2f} m ({:.2f} m horizontal, {:.2f} m vertical); median {:.1f} m above ground",
-                 survey.fit.n_inliers, survey.fit.n_matches, survey.fit.rmse_m, survey.fit.rmse_horizontal_m, survey.fit.rmse_vertical_m,
-                 survey.MedianAgl());
-  } else {
-    spdlog::warn("no usable GPS: the scene is in a local frame of unknown scale");
   }
 }
 
@@ -154,7 +141,7 @@ void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const
       {"photos", input.photos.string()}, {"model", input.model.string()}, {"images", PhotosIdentity(input.photos, pipeline.project.folder)}};
   RunStage(pipeline, {.name = "prepare", .inputs = inputs, .on_new_inputs = OnNewInputs::kRefuse}, [&](const StageStamp&) {
     base::ThreadPool threads(pipeline.settings.run.threads);
-    LogSurvey(Prepare(input, pipeline.settings.prepare, threads));
+    Prepare(input, pipeline.settings.prepare, threads);
     RequireFile(pipeline.project.SurveyFolder() / "survey.json", "prepare", pipeline.project);
     return kDone;
   });
@@ -217,7 +204,7 @@ void MergeStage(Pipeline& pipeline) {
                      .scene = project.SceneFile()};
     for (const partition::Block& block : blocks.blocks) {
       if (block.empty) continue;
-      if (finished.contains("block_" + block.name)) {
+      if (finished.contains(block.name)) {
         input.blocks.emplace_back(block, project.BlockCheckpoint(block.name));
       } else {
         spdlog::warn("block {} has no finished checkpoint: the context stands in for it", block.name);

@@ -118,8 +118,8 @@ void FieldTrainer::EvaluateDensity() {
   const int64_t padded = kernel::Padded(n_samples_);
   threads_.ParallelFor((padded + field::kChunk - 1) / field::kChunk, [&](int64_t task, int thread) {
     const int64_t begin = task * field::kChunk;
-    field_.Density(weights_, features_.data() + begin, stride_, std::min<int64_t>(field::kChunk, padded - begin), scratch_[static_cast<size_t>(thread)],
-                   geometry_.data() + begin, stride_);
+    field_.Density(weights_, features_.data() + begin, stride_, std::min<int64_t>(field::kChunk, padded - begin),
+                   scratch_[static_cast<size_t>(thread)], geometry_.data() + begin, stride_);
   });
 }
 
@@ -166,10 +166,12 @@ void FieldTrainer::SelectLive() {
         for (size_t axis = 0; axis < 3; ++axis) live_direction_[axis * live_stride_ + to + i] = direction[static_cast<int>(axis)];
       }
       for (size_t row = 0; row < rows; ++row) {
-        std::copy_n(features_.begin() + static_cast<ptrdiff_t>(row * stride_ + from), n, live_features_.begin() + static_cast<ptrdiff_t>(row * live_stride_ + to));
+        std::copy_n(features_.begin() + static_cast<ptrdiff_t>(row * stride_ + from), n,
+                    live_features_.begin() + static_cast<ptrdiff_t>(row * live_stride_ + to));
       }
       for (size_t row = 0; row < field::kGeometryRows; ++row) {
-        std::copy_n(geometry_.begin() + static_cast<ptrdiff_t>(row * stride_ + from), n, live_geometry_.begin() + static_cast<ptrdiff_t>(row * live_stride_ + to));
+        std::copy_n(geometry_.begin() + static_cast<ptrdiff_t>(row * stride_ + from), n,
+                    live_geometry_.begin() + static_cast<ptrdiff_t>(row * live_stride_ + to));
       }
     }
   });

@@ -18,11 +18,11 @@ namespace skyquilt::worker {
 
 struct StepResult {
   int n_rays = 0;
-  int64_t n_samples = 0;   // evaluated for density
-  int64_t n_live = 0;      // with colour and gradient
-  double loss = 0.0;       // mean over rays
+  int64_t n_samples = 0;       // evaluated for density
+  int64_t n_live = 0;          // with colour and gradient
+  double loss = 0.0;           // mean over rays
   double squared_error = 0.0;  // mean over colour rays and channels, display values
-  bool finite = true;      // false: the step was dropped
+  bool finite = true;          // false: the step was dropped
 };
 
 class FieldTrainer {

@@ -17,8 +17,8 @@ struct PixelRay {
   Eigen::Vector3d origin_enu;
   Eigen::Vector3d direction_enu;  // length 1
   float target_srgb[3] = {0, 0, 0};
-  float gain = 1.0F;              // recorded light over light at reference exposure
-  bool empty = false;             // the surface lies behind the field: it must be transparent here
+  float gain = 1.0F;   // recorded light over light at reference exposure
+  bool empty = false;  // the surface lies behind the field: it must be transparent here
 };
 
 constexpr int kTileColumns = 48;
@@ -50,8 +50,8 @@ class RaySource {
   const survey::Survey& survey_;
   const image::PixelCache& pixels_;
   std::vector<float> gains_;
-  std::vector<camera::Camera> cameras_;      // per photo, at cached size
-  std::vector<geo::Rigid3d> enu_from_cam_;   // per photo
+  std::vector<camera::Camera> cameras_;     // per photo, at cached size
+  std::vector<geo::Rigid3d> enu_from_cam_;  // per photo
   std::vector<Tile> inside_, empty_;
   double empty_share_ = 0.0;
 };

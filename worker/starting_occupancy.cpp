@@ -19,7 +19,8 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
   threads.ParallelFor(groups[2], [&](int64_t gz, int) {
     for (int gy = 0; gy < groups[1]; ++gy) {
       for (int gx = 0; gx < groups[0]; ++gx) {
-        const Eigen::Vector3d centre_unit = Eigen::Vector3d(gx + 0.5, gy + 0.5, static_cast<double>(gz) + 0.5) * kGroup * static_cast<double>(grid.cell);
+        const Eigen::Vector3d centre_unit =
+            Eigen::Vector3d(gx + 0.5, gy + 0.5, static_cast<double>(gz) + 0.5) * kGroup * static_cast<double>(grid.cell);
         const Eigen::Vector3d centre = target.map.EnuFromUnit(centre_unit.cwiseMin(target.map.extent()));
         const double radius_m =
             0.87 * kGroup * static_cast<double>(grid.cell) / (target.map.units_per_metre() * std::max(1e-6, target.map.LocalScale(centre)));

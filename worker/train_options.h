@@ -8,9 +8,9 @@
 namespace skyquilt::worker {
 
 struct TrainOptions {
-  int steps = 0;                    // > 0: exactly this many
-  double seconds = 0.0;             // time budget of this field when steps = 0; both 0: kDefaultSteps
-  int batch_samples = 32768;        // samples per step; the number of rays adapts to it
+  int steps = 0;              // > 0: exactly this many
+  double seconds = 0.0;       // time budget of this field when steps = 0; both 0: kDefaultSteps
+  int batch_samples = 32768;  // samples per step; the number of rays adapts to it
   int levels = 8;
   int features = 4;
   int base_resolution = 16;

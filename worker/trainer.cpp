@@ -24,7 +24,9 @@ constexpr double kCellPerVoxel = 3.0;
 // A step of two finest voxels: interpolation is smooth across cells, and half the samples buy more rays.
 constexpr double kStepPerVoxel = 2.0;
 
-double Now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is_context) {
   const TrainOptions& options = job.options;
@@ -87,7 +89,8 @@ void ChooseTiles(const TrainJob& job, const BoxView& box, const render::TrainedF
   const Eigen::Vector3d high = target.map.max_enu();
   const std::vector<Tile> tiles = TrainingTiles(*job.survey, box.photos);
   const auto depth_at = [&](const Tile& tile, int row, int column) {
-    return static_cast<double>(context->tile_depth[(static_cast<size_t>(tile.photo) * kTileRows + static_cast<size_t>(row)) * kTileColumns + static_cast<size_t>(column)]);
+    return static_cast<double>(
+        context->tile_depth[(static_cast<size_t>(tile.photo) * kTileRows + static_cast<size_t>(row)) * kTileColumns + static_cast<size_t>(column)]);
   };
   const bool know_depth = context != nullptr && context->tile_depth.size() == job.survey->photos.size() * kTileRows * kTileColumns;
   for (const Tile& tile : tiles) {

@@ -17,11 +17,11 @@ namespace skyquilt::worker {
 
 struct TrainStatus {
   int64_t step = 0;
-  int64_t total_steps = 0;      // expected; a time budget refines it
-  double fraction = 0.0;        // of the budget, 0..1
-  double seconds = 0.0;         // trained so far, earlier runs included
+  int64_t total_steps = 0;  // expected; a time budget refines it
+  double fraction = 0.0;    // of the budget, 0..1
+  double seconds = 0.0;     // trained so far, earlier runs included
   double loss = 0.0;
-  double psnr_db = 0.0;         // of recent training rays
+  double psnr_db = 0.0;  // of recent training rays
   double rays_per_second = 0.0;
   double samples_per_second = 0.0;
   double samples_per_ray = 0.0;
@@ -29,28 +29,28 @@ struct TrainStatus {
 
 struct TrainResult {
   bool ok = false;
-  std::string reason;           // when not ok
+  std::string reason;  // when not ok
   int64_t steps = 0;
   double seconds = 0.0;
   int64_t samples = 0;
   int64_t rays = 0;
   int64_t parameters = 0;
-  double final_psnr_db = 0.0;   // of recent training rays
-  int dropped_steps = 0;        // non-finite steps that never reached the parameters
+  double final_psnr_db = 0.0;  // of recent training rays
+  int dropped_steps = 0;       // non-finite steps that never reached the parameters
 };
 
 using Reporter = std::function<void(const TrainStatus&)>;
 
 struct TrainJob {
   const survey::Survey* survey = nullptr;
-  const image::PixelCache* pixels = nullptr;   // entry i belongs to survey->photos[i]
-  std::vector<float> gains;                    // per photo: recorded light over light at reference exposure
-  double reference_exposure = 0.0;             // stored with the context; 0 when unknown
-  TrainOptions options;                        // steps or seconds budget of this field inside
-  double learning_rate_scale = 1.0;            // below 1 on retries
-  std::string config_hash;                     // stored; a checkpoint with another hash is refused
+  const image::PixelCache* pixels = nullptr;  // entry i belongs to survey->photos[i]
+  std::vector<float> gains;                   // per photo: recorded light over light at reference exposure
+  double reference_exposure = 0.0;            // stored with the context; 0 when unknown
+  TrainOptions options;                       // steps or seconds budget of this field inside
+  double learning_rate_scale = 1.0;           // below 1 on retries
+  std::string config_hash;                    // stored; a checkpoint with another hash is refused
   uint64_t seed = 1;
-  std::filesystem::path checkpoint;            // context.h5 or block_<name>.h5
+  std::filesystem::path checkpoint;  // context.h5 or block_<name>.h5
 };
 
 // Both continue from job.checkpoint when it holds this configuration, write it every options.checkpoint_every_s and at the end, and

@@ -16,10 +16,10 @@ struct MergeInput {
   std::vector<std::pair<partition::Block, std::filesystem::path>> blocks;  // trained ones; empty or failed blocks left out
   geo::Geodetic origin;
   bool georeferenced = false;
-  bool use_context = true;     // false: the context does not fill what no block covers (independent blocks)
-  std::string config_toml;     // stored in the scene
+  bool use_context = true;  // false: the context does not fill what no block covers (independent blocks)
+  std::string config_toml;  // stored in the scene
   std::string config_hash;
-  std::filesystem::path scene; // out
+  std::filesystem::path scene;  // out
 };
 
 // Throws base::InputError: a checkpoint missing, damaged, unfinished, or of another survey origin; disk full.

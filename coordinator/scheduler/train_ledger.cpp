@@ -81,7 +81,9 @@ void TrainLedger::WriteReport(int ranks, int threads) const {
     peak = std::max(peak, outcome.peak_rss_bytes);
     samples += r.samples;
     parameters += r.parameters;
-    fields.push_back({{"name", outcome.job.name},
+    // By the block's own name, as everywhere outside the scheduler.
+    const std::string name = outcome.job.block < 0 ? outcome.job.name : outcome.job.name.substr(outcome.job.name.find('_') + 1);
+    fields.push_back({{"name", name},
                       {"block", outcome.job.block},
                       {"ok", outcome.failure == Failure::kNone},
                       {"reason", outcome.reason},

@@ -17,9 +17,11 @@ void Require(bool ok, const std::string& what) {
 HashGrid::HashGrid(const HashGridConfig& config) : config_(config) {
   Require(config.levels >= 1 && config.levels <= 16, "levels must be 1..16, got " + std::to_string(config.levels));
   Require(config.features == 2 || config.features == 4, "features must be 2 or 4, got " + std::to_string(config.features));
-  Require(config.log2_table_size >= 1 && config.log2_table_size <= 24, "log2_table_size must be 1..24, got " + std::to_string(config.log2_table_size));
+  Require(config.log2_table_size >= 1 && config.log2_table_size <= 24,
+          "log2_table_size must be 1..24, got " + std::to_string(config.log2_table_size));
   Require(config.base_resolution >= 1.0 && std::isfinite(config.base_resolution), "base_resolution must be at least 1");
-  Require(config.finest_resolution >= config.base_resolution && config.finest_resolution <= 1e6, "finest_resolution must lie in base_resolution..1e6");
+  Require(config.finest_resolution >= config.base_resolution && config.finest_resolution <= 1e6,
+          "finest_resolution must lie in base_resolution..1e6");
   for (const double edge : config.extent) Require(edge > 0.0 && edge <= 1.0, "extent must lie in (0, 1]");
 
   const double growth =

@@ -10,11 +10,11 @@
 namespace skyquilt::encoding {
 
 struct HashGridConfig {
-  int levels = 8;              // 1..16
-  int features = 4;            // per entry: 2 or 4
-  int log2_table_size = 17;    // 1..24; entries per hashed level
-  double base_resolution = 16; // cells per unit length of the coarsest level, >= 1
-  double finest_resolution = 512;  // of the finest, >= base
+  int levels = 8;                      // 1..16
+  int features = 4;                    // per entry: 2 or 4
+  int log2_table_size = 17;            // 1..24; entries per hashed level
+  double base_resolution = 16;         // cells per unit length of the coarsest level, >= 1
+  double finest_resolution = 512;      // of the finest, >= base
   double extent[3] = {1.0, 1.0, 1.0};  // box edges in (0, 1], the longest is 1
 };
 

@@ -96,9 +96,10 @@ void HashField::EncodeSerial(std::span<const float> grid, const float* x, const 
   }
 }
 
-void HashField::Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, ChunkScratch& scratch, float* geometry,
-                        size_t geometry_stride) const {
-  kernel::Dense(weights.layer[0].data(), config_.hidden, layers_[0].inputs, features, feature_stride, n, true, scratch.hidden[0].data(), kChunkStride);
+void HashField::Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, ChunkScratch& scratch,
+                        float* geometry, size_t geometry_stride) const {
+  kernel::Dense(weights.layer[0].data(), config_.hidden, layers_[0].inputs, features, feature_stride, n, true, scratch.hidden[0].data(),
+                kChunkStride);
   kernel::Dense(weights.layer[1].data(), kGeometryRows, config_.hidden, scratch.hidden[0].data(), kChunkStride, n, false, geometry, geometry_stride);
 }
 
@@ -112,8 +113,8 @@ void HashField::FillColorInput(const float* geometry, size_t geometry_stride, co
   const int sh_count = config_.sh_degree * config_.sh_degree;
   float sh[16];
   for (int64_t s = 0; s < n; ++s) {
-    encoding::SphericalHarmonics(direction[s], direction[direction_stride + static_cast<size_t>(s)], direction[2 * direction_stride + static_cast<size_t>(s)],
-                                 config_.sh_degree, sh);
+    encoding::SphericalHarmonics(direction[s], direction[direction_stride + static_cast<size_t>(s)],
+                                 direction[2 * direction_stride + static_cast<size_t>(s)], config_.sh_degree, sh);
     for (int k = 0; k < sh_count; ++k) sh_rows[static_cast<size_t>(k) * kChunkStride + static_cast<size_t>(s)] = sh[k];
   }
 }
@@ -158,7 +159,8 @@ void HashField::Backward(const NetworkWeights& weights, const float* features, s
     kernel::DenseWeightGradient(current, kChunkStride, config_.hidden, in, kChunkStride, inputs, n, gradient_of(layer));
     if (first) {
       // Only the geometry rows go on: the direction has no parameters.
-      kernel::Dense(weights.transposed[layer].data(), kGeometryRows, config_.hidden, current, kChunkStride, n, false, scratch.color_in_gradient.data(), kChunkStride);
+      kernel::Dense(weights.transposed[layer].data(), kGeometryRows, config_.hidden, current, kChunkStride, n, false,
+                    scratch.color_in_gradient.data(), kChunkStride);
     } else {
       kernel::Dense(weights.transposed[layer].data(), config_.hidden, config_.hidden, current, kChunkStride, n, false, next, kChunkStride);
       std::swap(current, next);
@@ -167,11 +169,13 @@ void HashField::Backward(const NetworkWeights& weights, const float* features, s
   float* geometry_gradient = scratch.color_in_gradient.data();
   for (int64_t s = 0; s < n; ++s) geometry_gradient[s] += log_density_gradient[s];
   // Density network.
-  kernel::DenseWeightGradient(geometry_gradient, kChunkStride, kGeometryRows, scratch.hidden[0].data(), kChunkStride, config_.hidden, n, gradient_of(1));
+  kernel::DenseWeightGradient(geometry_gradient, kChunkStride, kGeometryRows, scratch.hidden[0].data(), kChunkStride, config_.hidden, n,
+                              gradient_of(1));
   kernel::Dense(weights.transposed[1].data(), config_.hidden, kGeometryRows, geometry_gradient, kChunkStride, n, false, current, kChunkStride);
   kernel::ReluBackward(scratch.hidden[0].data(), kChunkStride, config_.hidden, n, current, kChunkStride);
   kernel::DenseWeightGradient(current, kChunkStride, config_.hidden, features, feature_stride, layers_[0].inputs, n, gradient_of(0));
-  kernel::Dense(weights.transposed[0].data(), layers_[0].inputs, config_.hidden, current, kChunkStride, n, false, feature_gradient, feature_gradient_stride);
+  kernel::Dense(weights.transposed[0].data(), layers_[0].inputs, config_.hidden, current, kChunkStride, n, false, feature_gradient,
+                feature_gradient_stride);
 }
 
 }  // namespace skyquilt::field

@@ -78,9 +78,9 @@ class HashField {
   // Backward of Color and Density for the same chunk (activations are computed again: cheaper than keeping them).
   // In: color_gradient w.r.t. color_raw, log_density_gradient w.r.t. geometry row 0 from rendering (row of n).
   // Out: feature_gradient rows (overwritten), network_gradient (added to).
-  void Backward(const NetworkWeights& weights, const float* features, size_t feature_stride, const float* direction, size_t direction_stride, int64_t n,
-                const float* color_gradient, size_t color_stride, const float* log_density_gradient, ChunkScratch& scratch, float* feature_gradient,
-                size_t feature_gradient_stride, float* network_gradient) const;
+  void Backward(const NetworkWeights& weights, const float* features, size_t feature_stride, const float* direction, size_t direction_stride,
+                int64_t n, const float* color_gradient, size_t color_stride, const float* log_density_gradient, ChunkScratch& scratch,
+                float* feature_gradient, size_t feature_gradient_stride, float* network_gradient) const;
 
  private:
   void FillColorInput(const float* geometry, size_t geometry_stride, const float* direction, size_t direction_stride, int64_t n,

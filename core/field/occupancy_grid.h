@@ -10,10 +10,10 @@
 namespace skyquilt::field {
 
 struct OccupancyGrid {
-  int size[3] = {0, 0, 0};          // cells per axis
-  float cell = 1.0F;                // edge, unit lengths; the same on all axes
-  std::vector<float> depth;         // decaying maximum per cell; negative: never seen, never sampled
-  std::vector<uint8_t> occupied;    // 0 or 1 per cell
+  int size[3] = {0, 0, 0};        // cells per axis
+  float cell = 1.0F;              // edge, unit lengths; the same on all axes
+  std::vector<float> depth;       // decaying maximum per cell; negative: never seen, never sampled
+  std::vector<uint8_t> occupied;  // 0 or 1 per cell
 
   // Covers [0, extent] with cells of about `wanted_cell`; everything occupied. At most max_cells cells (cells grow instead).
   static OccupancyGrid Make(const double extent[3], double wanted_cell, int64_t max_cells);

@@ -44,9 +44,9 @@ void ApplyAdam(const HashField& field, double learning_rate, double network_l2, 
     }
     const int l = grid.levels() - 1 - static_cast<int>(task);
     const int64_t offset = grid.Offset(l);
-    kernel::AdamListed(step, grid.features(), state.list.data() + grid.EntryOffset(l), state.listed[static_cast<size_t>(l)], state.grid.data() + offset,
-                       state.grid_gradient.data() + offset, state.grid_moment1.data() + offset, state.grid_moment2.data() + offset,
-                       state.touched.data() + grid.EntryOffset(l));
+    kernel::AdamListed(step, grid.features(), state.list.data() + grid.EntryOffset(l), state.listed[static_cast<size_t>(l)],
+                       state.grid.data() + offset, state.grid_gradient.data() + offset, state.grid_moment1.data() + offset,
+                       state.grid_moment2.data() + offset, state.touched.data() + grid.EntryOffset(l));
     state.listed[static_cast<size_t>(l)] = 0;
   });
 }

@@ -18,9 +18,9 @@ struct TrainableState {
 
   // Not saved: zero between steps.
   std::vector<float> grid_gradient, network_gradient;
-  std::vector<uint8_t> touched;         // per grid entry
-  std::vector<uint32_t> list;           // per level, at EntryOffset(level)
-  std::vector<uint32_t> listed;         // per level
+  std::vector<uint8_t> touched;  // per grid entry
+  std::vector<uint32_t> list;    // per level, at EntryOffset(level)
+  std::vector<uint32_t> listed;  // per level
 
   void Allocate(const HashField& field);
 };

@@ -23,8 +23,8 @@ using FloatVector = hn::Vec<FloatTag>;
 constexpr int kTileVectors = (HWY_TARGET <= HWY_AVX3) ? 4 : 2;
 
 template <int kVectors>
-HWY_INLINE void DenseTile(const float* HWY_RESTRICT weights, int n_in, const float* HWY_RESTRICT in, size_t in_stride, bool relu, float* HWY_RESTRICT out,
-                          size_t out_stride) {
+HWY_INLINE void DenseTile(const float* HWY_RESTRICT weights, int n_in, const float* HWY_RESTRICT in, size_t in_stride, bool relu,
+                          float* HWY_RESTRICT out, size_t out_stride) {
   const FloatTag d;
   const size_t lanes = hn::Lanes(d);
   FloatVector sum[4][kVectors];
@@ -52,8 +52,8 @@ void DenseImpl(const float* weights, int n_out, int n_in, const float* in, size_
   const int64_t lanes = static_cast<int64_t>(hn::Lanes(d));
   for (int64_t s = 0; s < n; s += lanes * kTileVectors) {
     for (int o = 0; o < n_out; o += 4) {
-      DenseTile<kTileVectors>(weights + static_cast<ptrdiff_t>(o) * n_in, n_in, in + s, in_stride, relu, out + static_cast<size_t>(o) * out_stride + s,
-                              out_stride);
+      DenseTile<kTileVectors>(weights + static_cast<ptrdiff_t>(o) * n_in, n_in, in + s, in_stride, relu,
+                              out + static_cast<size_t>(o) * out_stride + s, out_stride);
     }
   }
 }
@@ -165,8 +165,7 @@ void FindCorners(const HashLevel& level, const float* x, const float* y, const f
       const int bx = c & 1;
       const int by = (c >> 1) & 1;
       const int bz = c >> 2;
-      const auto index =
-          level.dense ? hn::Add(hn::Add(ix[bx], iy[by]), iz[bz]) : hn::And(hn::Xor(hn::Xor(ix[bx], iy[by]), iz[bz]), mask);
+      const auto index = level.dense ? hn::Add(hn::Add(ix[bx], iy[by]), iz[bz]) : hn::And(hn::Xor(hn::Xor(ix[bx], iy[by]), iz[bz]), mask);
       hn::Store(index, du, corners.index + c * kHashBlock + s);
       hn::Store(hn::Mul(hn::Mul(wx[bx], wy[by]), wz[bz]), d, corners.weight + c * kHashBlock + s);
     }
@@ -207,8 +206,8 @@ void HashForwardFeatures(const HashLevel& level, const float* table, const float
 }
 
 template <int kFeatures>
-void HashBackwardFeatures(const HashLevel& level, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient, size_t out_stride,
-                          float* table_gradient, uint8_t* touched, uint32_t* list, uint32_t* count) {
+void HashBackwardFeatures(const HashLevel& level, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
+                          size_t out_stride, float* table_gradient, uint8_t* touched, uint32_t* list, uint32_t* count) {
   const EntryTag<kFeatures> d;
   constexpr int kLanes = kEntryLanes<kFeatures>;
   Corners corners;
@@ -262,8 +261,7 @@ void HashBackwardImpl(const HashLevel& level, int features, const float* x, cons
 template <class D>
 HWY_INLINE void AdamVector(D d, const AdamStep& step, float* parameter, hn::Vec<D> gradient, float* moment1, float* moment2) {
   const auto m = hn::MulAdd(hn::Set(d, 1.0F - step.beta1), gradient, hn::Mul(hn::Set(d, step.beta1), hn::LoadU(d, moment1)));
-  const auto v =
-      hn::MulAdd(hn::Set(d, 1.0F - step.beta2), hn::Mul(gradient, gradient), hn::Mul(hn::Set(d, step.beta2), hn::LoadU(d, moment2)));
+  const auto v = hn::MulAdd(hn::Set(d, 1.0F - step.beta2), hn::Mul(gradient, gradient), hn::Mul(hn::Set(d, step.beta2), hn::LoadU(d, moment2)));
   hn::StoreU(m, d, moment1);
   hn::StoreU(v, d, moment2);
   const auto denominator = hn::Add(hn::Sqrt(hn::Mul(v, hn::Set(d, 1.0F / step.correction2))), hn::Set(d, step.epsilon));
@@ -272,8 +270,8 @@ HWY_INLINE void AdamVector(D d, const AdamStep& step, float* parameter, hn::Vec<
 }
 
 template <int kFeatures>
-void AdamListedFeatures(const AdamStep& step, const uint32_t* list, uint32_t count, float* table, float* table_gradient, float* moment1, float* moment2,
-                        uint8_t* touched) {
+void AdamListedFeatures(const AdamStep& step, const uint32_t* list, uint32_t count, float* table, float* table_gradient, float* moment1,
+                        float* moment2, uint8_t* touched) {
   const EntryTag<kFeatures> d;
   constexpr int kLanes = kEntryLanes<kFeatures>;
   for (uint32_t k = 0; k < count; ++k) {
@@ -300,7 +298,8 @@ void AdamDenseImpl(const AdamStep& step, float l2, int64_t n, float* parameters,
   const int64_t lanes = static_cast<int64_t>(hn::Lanes(d));
   int64_t i = 0;
   for (; i + lanes <= n; i += lanes) {
-    AdamVector(d, step, parameters + i, hn::MulAdd(hn::Set(d, l2), hn::LoadU(d, parameters + i), hn::LoadU(d, gradient + i)), moment1 + i, moment2 + i);
+    AdamVector(d, step, parameters + i, hn::MulAdd(hn::Set(d, l2), hn::LoadU(d, parameters + i), hn::LoadU(d, gradient + i)), moment1 + i,
+               moment2 + i);
     hn::StoreU(hn::Zero(d), d, gradient + i);
   }
   const hn::CappedTag<float, 1> d1;
@@ -310,7 +309,9 @@ void AdamDenseImpl(const AdamStep& step, float l2, int64_t n, float* parameters,
   }
 }
 
-const char* TargetNameImpl() { return hwy::TargetName(HWY_TARGET); }
+const char* TargetNameImpl() {
+  return hwy::TargetName(HWY_TARGET);
+}
 
 }  // namespace skyquilt::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -338,7 +339,9 @@ void RequirePadded(int rows, int64_t n) {
 }
 }  // namespace
 
-std::string ActiveInstructionSet() { return HWY_DYNAMIC_DISPATCH(TargetNameImpl)(); }
+std::string ActiveInstructionSet() {
+  return HWY_DYNAMIC_DISPATCH(TargetNameImpl)();
+}
 
 uint32_t HashIndex(const HashLevel& level, uint32_t x, uint32_t y, uint32_t z) {
   if (level.dense) return x + y * static_cast<uint32_t>(level.size[0]) + z * static_cast<uint32_t>(level.size[0] * level.size[1]);

@@ -18,9 +18,15 @@ constexpr int kRowPad = 4;
 // StrideFor avoids them.
 constexpr int kStridePad = 16;
 
-constexpr int64_t Padded(int64_t n) { return (n + kPad - 1) / kPad * kPad; }
-constexpr size_t StrideFor(int64_t n) { return static_cast<size_t>(Padded(n) + kStridePad); }
-constexpr int PaddedRows(int n) { return (n + kRowPad - 1) / kRowPad * kRowPad; }
+constexpr int64_t Padded(int64_t n) {
+  return (n + kPad - 1) / kPad * kPad;
+}
+constexpr size_t StrideFor(int64_t n) {
+  return static_cast<size_t>(Padded(n) + kStridePad);
+}
+constexpr int PaddedRows(int n) {
+  return (n + kRowPad - 1) / kRowPad * kRowPad;
+}
 
 // Name of the instruction set in use ("AVX3_ZEN4", "AVX2", "SSE4", ...).
 std::string ActiveInstructionSet();
@@ -38,10 +44,10 @@ void ReluBackward(const float* activation, size_t activation_stride, int rows, i
 
 // One level of the multi-resolution hash grid (Mueller et al. 2022, eq. 2-4), with its own size per axis.
 struct HashLevel {
-  float cells_per_unit = 1.0F;         // resolution: cells along an axis of length 1
-  int32_t size[3] = {2, 2, 2};         // lattice points per axis
-  bool dense = true;                   // every corner has its own entry
-  uint32_t entries = 8;                // rows of the table; a power of two when hashed
+  float cells_per_unit = 1.0F;  // resolution: cells along an axis of length 1
+  int32_t size[3] = {2, 2, 2};  // lattice points per axis
+  bool dense = true;            // every corner has its own entry
+  uint32_t entries = 8;         // rows of the table; a power of two when hashed
 };
 
 // Entry of a lattice point: x + y * size0 + z * size0 * size1 when dense, else (x ^ y * 2654435761 ^ z * 805459861) mod entries.

@@ -26,8 +26,8 @@ T CompositeForward(int n, const T* tau, const T* color, size_t stride, T* weight
 // weights and final_transmittance from CompositeForward. weight_gradient (dL/dw_i) may be null.
 // Writes tau_gradient (n) and color_gradient (3 rows).
 template <typename T>
-void CompositeBackward(int n, const T* color, size_t stride, const T* weights, T final_transmittance, const T rgb_gradient[3], T transmittance_gradient,
-                       const T* weight_gradient, T* tau_gradient, T* color_gradient, size_t gradient_stride) {
+void CompositeBackward(int n, const T* color, size_t stride, const T* weights, T final_transmittance, const T rgb_gradient[3],
+                       T transmittance_gradient, const T* weight_gradient, T* tau_gradient, T* color_gradient, size_t gradient_stride) {
   T behind = final_transmittance * transmittance_gradient;  // sum over everything behind of w_j g_j, background included
   T after = final_transmittance;
   for (int i = n - 1; i >= 0; --i) {

@@ -26,7 +26,7 @@ struct FieldBatch {
   std::vector<float> x, y, z, unit_length;
   std::vector<float> features, geometry;  // rows, stride
   size_t stride = 0;
-  std::vector<int> visible;               // local indices that need colour
+  std::vector<int> visible;  // local indices that need colour
   std::vector<float> direction, visible_geometry, color;
   size_t visible_stride = 0;
 };

@@ -26,7 +26,9 @@ Scene::Scene() : impl_(std::make_unique<Impl>()) {}
 Scene::Scene(Scene&&) noexcept = default;
 Scene::~Scene() = default;
 
-const SceneInfo& Scene::info() const { return impl_->info; }
+const SceneInfo& Scene::info() const {
+  return impl_->info;
+}
 
 Scene Scene::Load(const std::filesystem::path& scene_h5) {
   const checkpoint::ArchiveReader reader(scene_h5);
@@ -36,7 +38,8 @@ Scene Scene::Load(const std::filesystem::path& scene_h5) {
   Scene scene;
   Impl& impl = *scene.impl_;
   SceneInfo& info = impl.info;
-  info.origin = {reader.DoubleAttribute("origin_latitude_deg"), reader.DoubleAttribute("origin_longitude_deg"), reader.DoubleAttribute("origin_height_m")};
+  info.origin = {reader.DoubleAttribute("origin_latitude_deg"), reader.DoubleAttribute("origin_longitude_deg"),
+                 reader.DoubleAttribute("origin_height_m")};
   info.georeferenced = reader.IntAttribute("georeferenced") != 0;
   info.reference_exposure = reader.DoubleAttribute("reference_exposure");
   info.config = reader.StringAttribute("config");

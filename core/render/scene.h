@@ -25,7 +25,7 @@ struct SceneBlock {
   int64_t parameters = 0;
   int64_t steps = 0;
   double train_seconds = 0.0;
-  int64_t samples = 0;               // trained
+  int64_t samples = 0;  // trained
 };
 
 struct SceneInfo {
@@ -37,8 +37,8 @@ struct SceneInfo {
   int64_t parameters = 0;            // of all fields, context included
   double context_seconds = 0.0;
   int64_t context_samples = 0;
-  double gsd_m = 0.0;                // finest of the blocks
-  std::string config;                // TOML text it was trained with
+  double gsd_m = 0.0;  // finest of the blocks
+  std::string config;  // TOML text it was trained with
 };
 
 // One ray. Direction of length 1. The stretch outside [t_near, t_far] is not evaluated (0 and infinity for all).
@@ -69,7 +69,8 @@ class Scene {
   // Throws base::Interrupted when cancelled.
   void RenderRays(std::span<const Ray> rays, std::span<RayColor> out, float exposure_gain, base::ThreadPool& threads) const;
   // All pixels of a camera, row-major, width * height results.
-  std::vector<RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, float exposure_gain, base::ThreadPool& threads) const;
+  std::vector<RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, float exposure_gain,
+                                     base::ThreadPool& threads) const;
 
  private:
   Scene();

@@ -9,6 +9,8 @@ namespace skyquilt::render {
 constexpr const char* kSceneKind = "scene";
 constexpr int kSceneVersion = 1;
 constexpr const char* kContextPrefix = "context/";
-inline std::string BlockPrefix(int64_t i) { return "blocks/" + std::to_string(i) + "/"; }
+inline std::string BlockPrefix(int64_t i) {
+  return "blocks/" + std::to_string(i) + "/";
+}
 
 }  // namespace skyquilt::render

@@ -1,6 +1,5 @@
 // Trains real fields on a small synthetic survey: a checkered ground with a box on it, seen straight down and from the side.
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <cmath>
@@ -36,8 +35,8 @@ class TrainBlockTest : public ::testing::Test {
  protected:
   void SetUp() override {
     base::ClearCancel();
-    folder_ = fs::temp_directory_path() / ("skyquilt_worker_" + std::to_string(getpid()) + "_" +
-                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = fs::temp_directory_path() /
+              ("skyquilt_worker_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
     survey_.origin = {46.0, 7.0, 400.0};
     survey_.georeferenced = true;

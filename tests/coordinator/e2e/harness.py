@@ -12,7 +12,7 @@ import time
 STEPS = "300"
 # Small fields: the test is about the way, not about the picture.
 SMALL = ["--steps", STEPS, "--blocks", "1x2", "--image-width", "240", "--set", "train.batch_samples=8192", "--set", "context.batch_samples=8192",
-         "--set", "partition.max_log2_table_size=15"]
+         "--set", "partition.max_log2_table_size=15", "--set", "products.video_seconds=0"]
 
 
 class Failure(Exception):

@@ -113,6 +113,7 @@ TEST_F(TrainingFiles, ReportKeepsTheFiguresOfFieldsThatWereAlreadyComplete) {
   ASSERT_EQ(report.at("fields").size(), 2U);
   EXPECT_EQ(report.at("fields")[0].at("name"), "context");
   EXPECT_DOUBLE_EQ(report.at("fields")[0].at("wall_seconds").get<double>(), 30.0);
+  EXPECT_EQ(report.at("fields")[1].at("name"), "r0c0");
   EXPECT_FALSE(report.at("fields")[1].at("ok").get<bool>());
   EXPECT_EQ(report.at("fields")[1].at("reason"), "diverged");
 }

@@ -46,7 +46,8 @@ struct Reference {
     std::vector<double> in = geometry;
     double sh[16] = {};
     encoding::SphericalHarmonics(d[0], d[1], d[2], field.config().sh_degree, sh);
-    for (int k = 0; k < field.ColorInputRows() - kGeometryRows; ++k) in.push_back(k < field.config().sh_degree * field.config().sh_degree ? sh[k] : 0.0);
+    for (int k = 0; k < field.ColorInputRows() - kGeometryRows; ++k)
+      in.push_back(k < field.config().sh_degree * field.config().sh_degree ? sh[k] : 0.0);
     for (int l = 0; l < field.config().color_hidden_layers; ++l) in = dense(hidden, in, true);
     const std::vector<double> color = dense(kColorRows, in, false);
     return {color[0], color[1], color[2], geometry[0]};
@@ -92,7 +93,8 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
     double sum = 0.0;
     for (size_t s = 0; s < static_cast<size_t>(n); ++s) {
       const double position[3] = {static_cast<double>(x[s]), static_cast<double>(y[s]), static_cast<double>(z[s])};
-      const double d[3] = {static_cast<double>(direction[s]), static_cast<double>(direction[stride + s]), static_cast<double>(direction[2 * stride + s])};
+      const double d[3] = {static_cast<double>(direction[s]), static_cast<double>(direction[stride + s]),
+                           static_cast<double>(direction[2 * stride + s])};
       const auto out = reference.Forward(grid, networks, position, d);
       for (size_t c = 0; c < 3; ++c) sum += static_cast<double>(color_gradient[c * stride + s]) * out[c];
       sum += static_cast<double>(density_gradient[s]) * out[3];

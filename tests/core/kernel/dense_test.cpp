@@ -39,7 +39,8 @@ TEST(Dense, AgreesWithReference) {
     for (const int n_out : {4, 16, 64}) {
       for (const int64_t n : {0, 64, 192, 512}) {
         const size_t stride = static_cast<size_t>(n) + 64;
-        std::vector<float> weights(static_cast<size_t>(n_out * n_in)), in(static_cast<size_t>(n_in) * stride), out(static_cast<size_t>(n_out) * stride, -7.0F);
+        std::vector<float> weights(static_cast<size_t>(n_out * n_in)), in(static_cast<size_t>(n_in) * stride),
+            out(static_cast<size_t>(n_out) * stride, -7.0F);
         for (float& w : weights) w = random.Uniform() - 0.5F;
         for (float& x : in) x = random.Uniform() - 0.5F;
         Dense(weights.data(), n_out, n_in, in.data(), stride, n, true, out.data(), stride);
@@ -62,7 +63,8 @@ TEST(DenseWeightGradient, AgreesWithReferenceAndAdds) {
   const int n_in = 28, n_out = 16;
   const int64_t n = 128;
   const size_t stride = 128;
-  std::vector<float> in(static_cast<size_t>(n_in) * stride), gradient(static_cast<size_t>(n_out) * stride), sum(static_cast<size_t>(n_in * n_out), 1.0F);
+  std::vector<float> in(static_cast<size_t>(n_in) * stride), gradient(static_cast<size_t>(n_out) * stride),
+      sum(static_cast<size_t>(n_in * n_out), 1.0F);
   for (float& x : in) x = random.Uniform() - 0.5F;
   for (float& g : gradient) g = random.Uniform() - 0.5F;
   DenseWeightGradient(gradient.data(), stride, n_out, in.data(), stride, n_in, n, sum.data());

@@ -111,7 +111,8 @@ TEST(HashBackward, AgreesWithReferenceAndListsEachEntryOnce) {
   std::vector<uint8_t> touched(level.entries, 0);
   std::vector<uint32_t> list(level.entries);
   uint32_t count = 0;
-  HashBackward(level, 4, x.data(), y.data(), z.data(), static_cast<int64_t>(n), out_gradient.data(), n, gradient.data(), touched.data(), list.data(), &count);
+  HashBackward(level, 4, x.data(), y.data(), z.data(), static_cast<int64_t>(n), out_gradient.data(), n, gradient.data(), touched.data(), list.data(),
+               &count);
   for (size_t s = 0; s < n; ++s) {
     const double position[3] = {static_cast<double>(x[s]), static_cast<double>(y[s]), static_cast<double>(z[s])};
     std::vector<double> g;

@@ -50,7 +50,8 @@ TEST(Composite, DistortionGradientMatchesFiniteDifferencesAndItsDefinition) {
   }
   std::vector<double> gradient(5, 0.0), ignored(5);
   EXPECT_NEAR(DistortionLoss(n, weights.data(), mid.data(), width.data(), 2.0, gradient.data()), 2.0 * expected, 1e-12);
-  testing::ExpectGradient([&](const auto& w) { return DistortionLoss(n, w.data(), mid.data(), width.data(), 2.0, ignored.data()); }, weights, gradient);
+  testing::ExpectGradient([&](const auto& w) { return DistortionLoss(n, w.data(), mid.data(), width.data(), 2.0, ignored.data()); }, weights,
+                          gradient);
 }
 
 TEST(Composite, ClosedWhiteRoomIsWhite) {
@@ -63,7 +64,8 @@ TEST(Composite, ClosedWhiteRoomIsWhite) {
     for (const float value : rgb) EXPECT_FLOAT_EQ(value, 1.0F);
     float tau_gradient[3], color_gradient[9];
     const float rgb_gradient[3] = {1, 1, 1};
-    CompositeBackward(3, color.data(), 3, weights.data(), 0.0F, rgb_gradient, 1.0F, static_cast<const float*>(nullptr), tau_gradient, color_gradient, 3);
+    CompositeBackward(3, color.data(), 3, weights.data(), 0.0F, rgb_gradient, 1.0F, static_cast<const float*>(nullptr), tau_gradient, color_gradient,
+                      3);
     for (const float g : tau_gradient) EXPECT_TRUE(std::isfinite(g));
   }
 }

@@ -37,10 +37,10 @@ TEST(RayBox, StretchEndsLieOnTheBox) {
 }
 
 TEST(RayBox, EdgesAreLegal) {
-  EXPECT_DOUBLE_EQ(RayBox({0, 0, 1}, {0, 0, 1}, kMin, kMax).t_far, 4.0);       // starts inside
-  EXPECT_FALSE(RayBox({-5, -2, 1}, {1, 0, 0}, kMin, kMax).Empty());            // runs along a face
-  EXPECT_TRUE(RayBox({-5, -2.001, 1}, {1, 0, 0}, kMin, kMax).Empty());         // just misses it
-  EXPECT_TRUE(RayBox({0, 0, 9}, {0, 0, 1}, kMin, kMax).Empty());               // behind the origin
+  EXPECT_DOUBLE_EQ(RayBox({0, 0, 1}, {0, 0, 1}, kMin, kMax).t_far, 4.0);  // starts inside
+  EXPECT_FALSE(RayBox({-5, -2, 1}, {1, 0, 0}, kMin, kMax).Empty());       // runs along a face
+  EXPECT_TRUE(RayBox({-5, -2.001, 1}, {1, 0, 0}, kMin, kMax).Empty());    // just misses it
+  EXPECT_TRUE(RayBox({0, 0, 9}, {0, 0, 1}, kMin, kMax).Empty());          // behind the origin
   EXPECT_TRUE(RayBox({NAN, 0, 1}, {0, 0, 1}, kMin, kMax).Empty());
   EXPECT_TRUE(RayBox({0, 0, 1}, {NAN, NAN, NAN}, kMin, kMax).Empty() || !std::isnan(RayBox({0, 0, 1}, {NAN, NAN, NAN}, kMin, kMax).t_near));
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "worker/field_trainer.h"
+#include "worker/surface_band.h"
 #include "worker/trainer.h"
 
 namespace skyquilt::worker {
@@ -22,20 +23,15 @@ struct SessionRecord {
   bool complete = false;
 };
 
-// kind: "context" or "block". Extra arrays (the context's tile depths) may be empty. Throws base::InputError.
+// kind: "context" or "block". bands: the context's, empty for blocks. Throws base::InputError.
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
-                 const std::vector<float>& tile_depth);
+                 const std::vector<SurfaceBand>& bands);
 
 // True when a usable checkpoint was found and loaded. Damaged files fall back to the previous one with a warning; when both are damaged
 // training starts anew with a warning. Throws base::UsageError when the file belongs to another configuration.
 bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record);
 
-// The trained context with the depth (metres along the ray, NaN where open) seen at every tile's centre:
-// [photo][row][column], kTileRows x kTileColumns per photo.
-struct LoadedContext {
-  render::TrainedField field;
-  std::vector<float> tile_depth;
-};
+// Throws base::InputError when neither the file nor its predecessor can be read.
 LoadedContext LoadContext(const std::filesystem::path& checkpoint);
 
 }  // namespace skyquilt::worker

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include <spdlog/spdlog.h>
 #include "core/brightness/exposure.h"
 #include "core/render/composite.h"
 #include "core/render/march.h"
@@ -14,8 +15,9 @@ namespace {
 constexpr int kGroupRays = 64;
 constexpr int kMaxRaySamples = 1024;
 constexpr int kGradientSlots = 16;
+// Matter is drawn together once photos have said roughly where it is; sooner, it would settle in the wrong place.
+constexpr double kDistortionFrom = 0.05, kDistortionTo = 0.5;
 constexpr float kLiveTransmittance = 1e-3F;
-constexpr double kOccupancyDecay = 0.95;
 constexpr float kOccupancyLimit = 0.01F;
 // Streams of the random generator, so that rays and cells never share numbers.
 constexpr uint64_t kRayStream = 1, kCellStream = 2, kInitStream = 3;
@@ -109,6 +111,7 @@ void FieldTrainer::DrawRays() {
 void FieldTrainer::EvaluateDensity() {
   const auto rows = static_cast<size_t>(field_.FeatureRows());
   Grow(features_, rows * stride_);
+  Grow(step_depth_, stride_);
   Grow(geometry_, static_cast<size_t>(field::kGeometryRows) * stride_);
   field_.Encode(state_.grid, x_.data(), y_.data(), z_.data(), n_samples_, features_.data(), stride_, threads_);
   for (size_t row = 0; row < rows; ++row) {
@@ -118,27 +121,31 @@ void FieldTrainer::EvaluateDensity() {
   const int64_t padded = kernel::Padded(n_samples_);
   threads_.ParallelFor((padded + field::kChunk - 1) / field::kChunk, [&](int64_t task, int thread) {
     const int64_t begin = task * field::kChunk;
-    field_.Density(weights_, features_.data() + begin, stride_, std::min<int64_t>(field::kChunk, padded - begin),
-                   scratch_[static_cast<size_t>(thread)], geometry_.data() + begin, stride_);
+    const int64_t n = std::min<int64_t>(field::kChunk, padded - begin);
+    field_.Density(weights_, features_.data() + begin, stride_, n, scratch_[static_cast<size_t>(thread)], geometry_.data() + begin, stride_);
+    for (int64_t s = begin; s < begin + n; ++s) step_depth_[static_cast<size_t>(s)] = StepDepth(geometry_[static_cast<size_t>(s)]);
   });
 }
 
 // Keeps the samples that light still reaches; what lies behind an opaque surface gets neither colour nor gradient.
 void FieldTrainer::SelectLive() {
   n_live_ = 0;
-  const double bias = target_.config.density_bias;
+  field::OccupancyGrid& grid = target_.occupancy;
+  const float limit = -std::log(kLiveTransmittance);
   for (RayState& r : rays_) {
-    double depth = 0.0;
-    int64_t i = 0;
-    const double limit = -std::log(static_cast<double>(kLiveTransmittance));
-    while (i < r.count && depth < limit) {
-      const auto s = static_cast<size_t>(r.begin + i);
-      depth += std::exp(std::min(15.0, static_cast<double>(geometry_[s]) + bias)) * static_cast<double>(unit_length_[s]);
-      ++i;
-    }
+    float depth = 0.0F;
     r.live_begin = n_live_;
-    r.live_count = i;
-    n_live_ += i;
+    for (int64_t i = 0; i < r.count; ++i) {
+      const auto s = static_cast<size_t>(r.begin + i);
+      const bool live = depth < limit;
+      if (live) {
+        depth += step_depth_[s] * unit_length_[s];
+        ++n_live_;
+      }
+      // A cell that only ever lies behind surfaces is let go like an empty one.
+      grid.Observe(grid.IndexAt(x_[s], y_[s], z_[s]), live ? step_depth_[s] : 0.0F);
+    }
+    r.live_count = n_live_ - r.live_begin;
   }
   live_stride_ = kernel::StrideFor(n_live_);
   for (auto* v : {&live_x_, &live_y_, &live_z_, &live_t_, &live_tau_, &live_weight_, &tau_gradient_}) Grow(*v, live_stride_);
@@ -162,7 +169,7 @@ void FieldTrainer::SelectLive() {
         live_y_[to + i] = y_[from + i];
         live_z_[to + i] = z_[from + i];
         live_t_[to + i] = t_[from + i];
-        live_tau_[to + i] = std::exp(std::min(15.0F, geometry_[from + i] + static_cast<float>(bias))) * unit_length_[from + i];
+        live_tau_[to + i] = step_depth_[from + i] * unit_length_[from + i];
         for (size_t axis = 0; axis < 3; ++axis) live_direction_[axis * live_stride_ + to + i] = direction[static_cast<int>(axis)];
       }
       for (size_t row = 0; row < rows; ++row) {
@@ -223,6 +230,7 @@ void FieldTrainer::FrozenContext() {
     }
   }
   std::vector<render::RayColor> colors(pieces.size());
+  dbg_pieces_ = pieces.size();
   render::FieldSet set;
   set.context = context_;
   render::RenderRays(set, pieces, colors, render::EngineOptions{}, threads_);
@@ -289,7 +297,7 @@ StepResult FieldTrainer::ComposeAndLoss() {
           transmittance_gradient += gradient * behind;
         }
         ++color_rays[static_cast<size_t>(task)];
-        if (options_.distortion > 0.0 && n > 0) {
+        if (distortion_ > 0.0 && n > 0) {
           mid.resize(n);
           width.resize(n);
           for (size_t i = 0; i < n; ++i) {
@@ -297,7 +305,7 @@ StepResult FieldTrainer::ComposeAndLoss() {
             width[i] = static_cast<float>(target_.step_m) * distance_unit;
           }
           ray_loss += static_cast<double>(render::DistortionLoss(static_cast<int>(n), weights, mid.data(), width.data(),
-                                                                 static_cast<float>(options_.distortion) * ray_share, weight_gradient.data())) /
+                                                                 static_cast<float>(distortion_) * ray_share, weight_gradient.data())) /
                       static_cast<double>(ray_share);
         }
       }
@@ -362,6 +370,7 @@ bool FieldTrainer::BackwardAndUpdate(double learning_rate) {
 
 StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   weights_ = field_.Prepare(state_.networks);
+  distortion_ = options_.distortion * std::clamp((progress - kDistortionFrom) / (kDistortionTo - kDistortionFrom), 0.0, 1.0);
   DrawRays();
   EvaluateDensity();
   SelectLive();
@@ -401,8 +410,7 @@ void FieldTrainer::StepDepths(const std::vector<float>& x, const std::vector<flo
       const int64_t size = std::min<int64_t>(field::kChunk, kernel::Padded(count) - s);
       field_.Density(weights_, features.data() + s, stride, size, scratch_[static_cast<size_t>(thread)], geometry.data(), field::kChunkStride);
       for (int64_t i = 0; i < std::min(size, count - s); ++i) {
-        (*depth)[static_cast<size_t>(begin + s + i)] =
-            std::exp(std::min(15.0F, geometry[static_cast<size_t>(i)] + static_cast<float>(target_.config.density_bias)));
+        (*depth)[static_cast<size_t>(begin + s + i)] = StepDepth(geometry[static_cast<size_t>(i)]);
       }
     }
   });
@@ -415,35 +423,38 @@ void FieldTrainer::UpdateOccupancy() {
   base::Random random(Mix(seed_, static_cast<uint64_t>(state_.step), 0), kCellStream);
   std::vector<int64_t> chosen;
   std::vector<float> x, y, z, depth;
-  // A quarter of the batch in random cells, the rest among occupied ones.
-  const int64_t budget = 2 * static_cast<int64_t>(options_.batch_samples);
-  const auto add = [&](int64_t index) {
-    if (grid.depth[static_cast<size_t>(index)] < 0.0F) return;
+  // Training samples tell about occupied cells; a few random ones look whether matter has come up in the others.
+  const int64_t budget = options_.batch_samples / 2;
+  for (int64_t i = 0; i < budget; ++i) {
+    const int64_t index = random.Below(static_cast<uint32_t>(cells));
+    if (grid.depth[static_cast<size_t>(index)] < 0.0F || grid.occupied[static_cast<size_t>(index)] != 0) continue;
     const int64_t plane = static_cast<int64_t>(grid.size[0]) * grid.size[1];
     chosen.push_back(index);
     x.push_back((static_cast<float>(index % grid.size[0]) + random.Uniform()) * grid.cell);
     y.push_back((static_cast<float>((index % plane) / grid.size[0]) + random.Uniform()) * grid.cell);
     z.push_back((static_cast<float>(index / plane) + random.Uniform()) * grid.cell);
-  };
-  for (int64_t i = 0; i < budget / 4; ++i) add(random.Below(static_cast<uint32_t>(cells)));
-  int64_t n_occupied = 0;
-  for (const uint8_t value : grid.occupied) n_occupied += value;
-  const double share = std::min(1.0, 0.75 * static_cast<double>(budget) / static_cast<double>(std::max<int64_t>(1, n_occupied)));
-  std::vector<uint8_t> visited(static_cast<size_t>(cells), 0);
-  for (int64_t index = 0; index < cells; ++index) {
-    if (grid.occupied[static_cast<size_t>(index)] != 0 && (share >= 1.0 || random.UniformDouble() < share)) add(index);
   }
   StepDepths(x, y, z, &depth);
-  for (const int64_t index : chosen) visited[static_cast<size_t>(index)] = 1;
-  // Decay once per visited cell, then the maximum over its samples.
-  for (size_t i = 0; i < visited.size(); ++i) {
-    if (visited[i] != 0) grid.depth[i] *= static_cast<float>(kOccupancyDecay);
+  for (size_t i = 0; i < chosen.size(); ++i) grid.Observe(chosen[i], depth[i]);
+  const double share_now = grid.Refresh(kOccupancyLimit);
+  if (state_.step % 256 == 0) {
+    const float edges[8] = {1e-4F, 1e-3F, 3e-3F, 1e-2F, 3e-2F, 0.1F, 0.5F, 1e30F};
+    double n[8] = {}, w[8] = {};
+    for (const RayState& r : rays_)
+      for (int64_t i = 0; i < r.live_count; ++i) {
+        const auto q = static_cast<size_t>(r.live_begin + i);
+        int b = 0;
+        while (live_tau_[q] > edges[b]) ++b;
+        n[b] += 1;
+        w[b] += live_weight_[q];
+      }
+    std::string text;
+    for (int b = 0; b < 8; ++b) text += fmt::format(" <{:.0e}: {:.3f} w {:.3f};", edges[b], n[b] / n_live_, w[b] / rays_.size());
+    double open = 0;
+    for (const RayState& r : rays_) open += r.transmittance;
+    spdlog::info("HIST {} open {:.4f}", text, open / rays_.size());
   }
-  for (size_t i = 0; i < chosen.size(); ++i) {
-    float& cell = grid.depth[static_cast<size_t>(chosen[i])];
-    cell = std::max(cell, depth[i]);
-  }
-  grid.Refresh(kOccupancyLimit);
+  if (state_.step % 128 == 0) spdlog::info("DBG step {} occ {:.4f} of {} cells; samples {} live {} rays {} pieces {}", state_.step, share_now, cells, n_samples_, n_live_, rays_.size(), dbg_pieces_);
 }
 
 }  // namespace skyquilt::worker

@@ -37,7 +37,7 @@ class FieldTrainer {
 
   // progress in [0, 1] of the budget sets the learning rate.
   StepResult Step(double progress, double learning_rate_scale);
-  // Samples densities in seen cells and refreshes the occupancy.
+  // Looks for matter in cells that are not sampled, then decides which cells are.
   void UpdateOccupancy();
   // Optical depth of one marching step at unit positions (SoA, n).
   void StepDepths(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth);
@@ -65,6 +65,8 @@ class FieldTrainer {
   void FrozenContext();
   StepResult ComposeAndLoss();
   bool BackwardAndUpdate(double learning_rate);
+  // Optical depth of one marching step at a raw density.
+  float StepDepth(float raw) const { return std::exp(std::min(15.0F, raw + static_cast<float>(target_.config.density_bias))); }
 
   render::TrainedField& target_;
   const RaySource& source_;
@@ -77,13 +79,14 @@ class FieldTrainer {
   field::NetworkWeights weights_;
   std::vector<field::ChunkScratch> scratch_;
   int rays_per_step_ = 1024;
+  double distortion_ = 0.0;  // weight in this step
 
   // Rays of the current step.
   std::vector<RayGroup> groups_;
   std::vector<RayState> rays_;
   // Samples, then live samples; structures of arrays.
   std::vector<float> x_, y_, z_, t_, unit_length_;
-  std::vector<float> features_, geometry_;
+  std::vector<float> features_, geometry_, step_depth_;
   size_t stride_ = 0;
   std::vector<float> live_x_, live_y_, live_z_, live_t_, live_tau_, live_direction_;
   std::vector<float> live_features_, live_geometry_, live_color_, live_rgb_, live_weight_;
@@ -91,6 +94,7 @@ class FieldTrainer {
   std::vector<float> slot_gradients_;
   int64_t n_samples_ = 0, n_live_ = 0;
   size_t live_stride_ = 0;
+  size_t dbg_pieces_ = 0;
 };
 
 }  // namespace skyquilt::worker

@@ -2,13 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "core/render/march.h"
+#include "core/render/scene.h"
 
 namespace skyquilt::worker {
 namespace {
 
 constexpr int kGroup = 4;
-constexpr float kStartDepth = 0.1F;         // above every threshold for some dozens of refreshes
-constexpr float kContextThreshold = 0.02F;  // optical depth of one context step that counts as matter
+// A column with its neighbours holds nine times as many.
+constexpr double kPointsPerColumn = 3.0;
+constexpr int kEnoughPoints = 8;
+constexpr double kPadVoxels = 3.0;
+constexpr float kStartDepth = 0.1F;  // above every threshold for some dozens of samples
 
 }  // namespace
 
@@ -52,51 +59,81 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
   });
 }
 
-void StartFromContext(const survey::Survey& survey, const render::TrainedField& context, render::TrainedField& target, base::ThreadPool& threads) {
+void StartFromPoints(const survey::Survey& survey, render::TrainedField& target) {
+  const Eigen::Vector3d low = target.map.min_enu(), high = target.map.max_enu();
+  std::vector<Eigen::Vector3d> points;
+  for (const survey::SparsePoint& point : survey.points) {
+    if ((point.x_in_enu.array() >= low.array()).all() && (point.x_in_enu.array() <= high.array()).all()) points.push_back(point.x_in_enu);
+  }
+  if (points.empty()) return;
+  field::OccupancyGrid& grid = target.occupancy;
+  const double cell_m = static_cast<double>(grid.cell) / target.map.units_per_metre();
+  const Eigen::Vector2d size = (high - low).head<2>();
+  const double column_m = std::max(4.0 * cell_m, std::sqrt(kPointsPerColumn * size.prod() / static_cast<double>(points.size())));
+  const int columns = static_cast<int>(size.x() / column_m) + 1, rows = static_cast<int>(size.y() / column_m) + 1;
+  struct Column {
+    int count = 0;
+    double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
+  };
+  std::vector<Column> around(static_cast<size_t>(columns) * static_cast<size_t>(rows));
+  for (const Eigen::Vector3d& point : points) {
+    const int cx = static_cast<int>((point.x() - low.x()) / column_m), cy = static_cast<int>((point.y() - low.y()) / column_m);
+    for (int y = std::max(0, cy - 1); y <= std::min(rows - 1, cy + 1); ++y) {
+      for (int x = std::max(0, cx - 1); x <= std::min(columns - 1, cx + 1); ++x) {
+        Column& column = around[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)];
+        ++column.count;
+        column.lowest = std::min(column.lowest, point.z());
+        column.highest = std::max(column.highest, point.z());
+      }
+    }
+  }
+  const double pad_m = kPadVoxels * cell_m / 3.0;
+  for (int z = 0; z < grid.size[2]; ++z) {
+    for (int y = 0; y < grid.size[1]; ++y) {
+      for (int x = 0; x < grid.size[0]; ++x) {
+        const auto index = static_cast<size_t>(grid.Index(x, y, z));
+        if (grid.occupied[index] == 0) continue;
+        const Eigen::Vector3d p = target.map.EnuFromUnit((Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5) * static_cast<double>(grid.cell)).cwiseMin(target.map.extent()));
+        if ((p.array() < low.array()).any() || (p.array() > high.array()).any()) continue;
+        const Column& column = around[static_cast<size_t>((p.y() - low.y()) / column_m) * static_cast<size_t>(columns) +
+                                      static_cast<size_t>((p.x() - low.x()) / column_m)];
+        if (column.count < kEnoughPoints) continue;
+        if (p.z() < column.lowest - pad_m || p.z() > column.highest + pad_m) grid.occupied[index] = 0;
+      }
+    }
+  }
+  for (size_t i = 0; i < grid.depth.size(); ++i) {
+    if (grid.depth[i] >= 0.0F) grid.depth[i] = grid.occupied[i] != 0 ? kStartDepth : 0.0F;
+  }
+}
+
+void StartFromBands(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const LoadedContext& context,
+                    render::TrainedField& target) {
+  if (!context.KnowsBands(survey)) return;
   field::OccupancyGrid& grid = target.occupancy;
   const std::vector<uint8_t> seen = grid.occupied;
   std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
-  threads.ParallelFor(grid.size[2], [&](int64_t z, int) {
-    field::ChunkScratch scratch = context.field->MakeScratch();
-    const auto rows = static_cast<size_t>(context.field->FeatureRows());
-    const int64_t plane = static_cast<int64_t>(grid.size[0]) * grid.size[1];
-    std::vector<float> x(field::kChunk), y(field::kChunk), h(field::kChunk);
-    std::vector<float> features(rows * field::kChunkStride), geometry(static_cast<size_t>(field::kGeometryRows) * field::kChunkStride);
-    for (int64_t begin = 0; begin < plane; begin += field::kChunk) {
-      const int64_t n = std::min<int64_t>(field::kChunk, plane - begin);
-      for (int64_t i = 0; i < n; ++i) {
-        const int64_t cell = begin + i;
-        const Eigen::Vector3d unit = Eigen::Vector3d(static_cast<double>(cell % grid.size[0]) + 0.5, static_cast<double>(cell / grid.size[0]) + 0.5,
-                                                     static_cast<double>(z) + 0.5) *
-                                     static_cast<double>(grid.cell);
-        const Eigen::Vector3f p = context.map.UnitFromEnu(target.map.EnuFromUnit(unit));
-        x[static_cast<size_t>(i)] = p.x();
-        y[static_cast<size_t>(i)] = p.y();
-        h[static_cast<size_t>(i)] = p.z();
-      }
-      std::fill(features.begin(), features.end(), 0.0F);
-      context.field->EncodeSerial(context.grid, x.data(), y.data(), h.data(), n, features.data(), field::kChunkStride);
-      context.field->Density(context.weights, features.data(), field::kChunkStride, kernel::Padded(n), scratch, geometry.data(), field::kChunkStride);
-      for (int64_t i = 0; i < n; ++i) {
-        const auto k = static_cast<size_t>(i);
-        const bool open = context.occupancy.occupied[static_cast<size_t>(context.occupancy.IndexAt(x[k], y[k], h[k]))] == 0;
-        const float depth = std::exp(geometry[k] + static_cast<float>(context.config.density_bias));
-        if (!open && depth > kContextThreshold) grid.occupied[static_cast<size_t>(z * plane + begin + i)] = 1;
-      }
-    }
-  });
-  for (const survey::SparsePoint& point : survey.points) {
-    if ((point.x_in_enu.array() < target.map.min_enu().array()).any() || (point.x_in_enu.array() > target.map.max_enu().array()).any()) continue;
-    const Eigen::Vector3f unit = target.map.UnitFromEnu(point.x_in_enu);
-    grid.occupied[static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()))] = 1;
-  }
-  if (grid.OccupiedShare() <= 0.0) grid.occupied = seen;
-  // The context is blurred by about one of its own steps.
   const double cell_m = static_cast<double>(grid.cell) / target.map.units_per_metre();
-  grid.Dilate(std::clamp(static_cast<int>(std::ceil(context.step_m / cell_m)), 1, 4));
-  for (size_t i = 0; i < grid.depth.size(); ++i) {
-    if (grid.occupied[i] != 0) grid.depth[i] = kStartDepth;
+  // The context is blurred by about one of its own steps.
+  const double pad_m = context.field.step_m;
+  for (const Tile& tile : TrainingTiles(survey, photos)) {
+    const SurfaceBand& band = context.Band(tile.photo, tile.row, tile.column);
+    render::Ray ray;
+    source.RayThrough(tile.photo, source.TileCentre(tile), &ray.origin_enu, &ray.direction_enu);
+    const render::Stretch box = render::FieldStretch(target.map, ray.origin_enu, ray.direction_enu);
+    const double near = std::isfinite(band.front) ? std::max(box.t_near, static_cast<double>(band.front) - pad_m) : box.t_near;
+    const double far = std::isfinite(band.back) ? std::min(box.t_far, static_cast<double>(band.back) + pad_m) : box.t_far;
+    for (double t = near; t < far; t += 0.5 * cell_m) {
+      const Eigen::Vector3f unit = target.map.UnitFromEnu(ray.origin_enu + t * ray.direction_enu);
+      grid.occupied[static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()))] = 1;
+    }
   }
+  if (grid.OccupiedShare() <= 0.0) {
+    grid.occupied = seen;
+    return;
+  }
+  grid.Dilate(1);  // between tile centres
+  for (size_t i = 0; i < grid.depth.size(); ++i) grid.depth[i] = grid.occupied[i] != 0 ? kStartDepth : std::min(grid.depth[i], 0.0F);
 }
 
 }  // namespace skyquilt::worker

@@ -13,6 +13,7 @@
 #include "worker/block_session.h"
 #include "worker/field_trainer.h"
 #include "worker/starting_occupancy.h"
+#include "worker/surface_band.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -53,84 +54,6 @@ render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is
   return f;
 }
 
-// Depth the context sees at every tile centre.
-std::vector<float> TileDepths(const RaySource& source, const survey::Survey& survey, render::TrainedField& context, FieldTrainer& trainer,
-                              base::ThreadPool& threads) {
-  std::vector<Tile> tiles;
-  std::vector<render::Ray> rays;
-  for (size_t photo = 0; photo < survey.photos.size(); ++photo) {
-    for (int row = 0; row < kTileRows; ++row) {
-      for (int column = 0; column < kTileColumns; ++column) {
-        const Tile tile{static_cast<int>(photo), static_cast<int16_t>(column), static_cast<int16_t>(row)};
-        render::Ray ray;
-        source.RayThrough(tile.photo, source.TileCentre(tile), &ray.origin_enu, &ray.direction_enu);
-        rays.push_back(ray);
-      }
-    }
-  }
-  std::vector<render::RayColor> seen(rays.size());
-  context.grid = trainer.state().grid;
-  context.networks = trainer.state().networks;
-  context.Finish();
-  render::FieldSet set;
-  set.context = &context;
-  render::EngineOptions options;
-  options.colour_threshold = 2.0F;  // depth only
-  render::RenderRays(set, rays, seen, options, threads);
-  std::vector<float> depth(seen.size());
-  for (size_t i = 0; i < seen.size(); ++i) depth[i] = seen[i].depth_median;
-  return depth;
-}
-
-// Sorts a block's tiles by where the context says their surface is.
-void ChooseTiles(const TrainJob& job, const BoxView& box, const render::TrainedField& target, const LoadedContext* context, RaySource& source) {
-  std::vector<Tile> inside, empty;
-  const Eigen::Vector3d low = target.map.min_enu();
-  const Eigen::Vector3d high = target.map.max_enu();
-  const std::vector<Tile> tiles = TrainingTiles(*job.survey, box.photos);
-  const auto depth_at = [&](const Tile& tile, int row, int column) {
-    return static_cast<double>(
-        context->tile_depth[(static_cast<size_t>(tile.photo) * kTileRows + static_cast<size_t>(row)) * kTileColumns + static_cast<size_t>(column)]);
-  };
-  const bool know_depth = context != nullptr && context->tile_depth.size() == job.survey->photos.size() * kTileRows * kTileColumns;
-  for (const Tile& tile : tiles) {
-    Eigen::Vector3d origin, direction;
-    source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
-    if (!know_depth) {
-      if (!render::FieldStretch(target.map, origin, direction).Empty()) inside.push_back(tile);
-      continue;
-    }
-    // A tile counts when its own or a neighbouring tile's surface lies above the block's ground plan.
-    bool any_inside = false, all_behind = true;
-    for (int row = std::max(0, tile.row - 1); row <= std::min(kTileRows - 1, tile.row + 1); ++row) {
-      for (int column = std::max(0, tile.column - 1); column <= std::min(kTileColumns - 1, tile.column + 1); ++column) {
-        const Tile neighbour{tile.photo, static_cast<int16_t>(column), static_cast<int16_t>(row)};
-        Eigen::Vector3d o, d;
-        source.RayThrough(neighbour.photo, source.TileCentre(neighbour), &o, &d);
-        const double depth = depth_at(tile, row, column);
-        const render::Stretch stretch = render::FieldStretch(target.map, o, d);
-        if (!std::isfinite(depth)) {
-          // Nothing known: as good as inside when the ray leaves through the ground.
-          const double out_z = o.z() + stretch.t_far * d.z();
-          if (!stretch.Empty() && out_z <= low.z() + 1e-6) any_inside = true;
-          all_behind = false;
-          continue;
-        }
-        const Eigen::Vector3d p = o + depth * d;
-        const bool above = p.x() >= low.x() && p.x() <= high.x() && p.y() >= low.y() && p.y() <= high.y();
-        any_inside = any_inside || above;
-        all_behind = all_behind && !stretch.Empty() && depth > stretch.t_far + 2.0 * context->field.step_m;
-      }
-    }
-    if (any_inside) {
-      inside.push_back(tile);
-    } else if (all_behind) {
-      empty.push_back(tile);
-    }
-  }
-  source.SetTiles(std::move(inside), std::move(empty), job.options.empty_ray_share);
-}
-
 TrainResult Summarise(const SessionRecord& record, const field::TrainableState& state) {
   TrainResult result;
   result.ok = true;
@@ -150,7 +73,7 @@ class Loop {
   Loop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const Reporter& report)
       : kind_(kind), job_(job), target_(target), trainer_(trainer), report_(report) {}
 
-  TrainResult Run(SessionRecord record, const std::function<std::vector<float>()>& final_arrays) {
+  TrainResult Run(SessionRecord record, const std::function<std::vector<SurfaceBand>()>& final_bands) {
     const TrainOptions& options = job_.options;
     const int64_t total_steps = options.steps > 0 ? options.steps : options.seconds > 0.0 ? 0 : kDefaultSteps;
     double last = Now(), last_save = last, last_report = last;
@@ -201,8 +124,8 @@ class Loop {
     }
     record.complete = true;
     if (since > 0.0) Report(record, 1.0, total_steps, loss, rays_since, samples_since, since);
-    const std::vector<float> arrays = final_arrays();
-    SaveSession(kind_, job_, target_, trainer_, record, arrays);
+    const std::vector<SurfaceBand> bands = final_bands();
+    SaveSession(kind_, job_, target_, trainer_, record, bands);
     return Summarise(record, state);
   }
 
@@ -252,10 +175,15 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   if (!LoadSession("context", job, target, trainer, &record)) {
     trainer.InitializeParameters();
     MarkUnseen(source, *job.survey, area.photos, target, threads);
+    StartFromPoints(*job.survey, target);
   }
   if (record.complete) return Summarise(record, trainer.state());
   Loop loop("context", job, target, trainer, report);
-  return loop.Run(record, [&] { return TileDepths(source, *job.survey, target, trainer, threads); });
+  return loop.Run(record, [&] {
+    target.grid = trainer.state().grid;
+    target.networks = trainer.state().networks;
+    return SurfaceBands(source, *job.survey, target, threads);
+  });
 }
 
 TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
@@ -265,7 +193,7 @@ TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::fil
   if (job.options.coupling == "guided") context = LoadContext(context_checkpoint);
   render::TrainedField target = MakeTarget(job, block, false);
   RaySource source(*job.survey, *job.pixels, job.gains);
-  ChooseTiles(job, block, target, context ? &*context : nullptr, source);
+  ChooseTiles(*job.survey, block, target, context ? &*context : nullptr, job.options.empty_ray_share, source);
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo shows a surface inside block " + block.name;
@@ -276,11 +204,12 @@ TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::fil
   if (!LoadSession("block", job, target, trainer, &record)) {
     trainer.InitializeParameters();
     MarkUnseen(source, *job.survey, block.photos, target, threads);
-    if (context) StartFromContext(*job.survey, context->field, target, threads);
+    StartFromPoints(*job.survey, target);
+    if (context) StartFromBands(source, *job.survey, block.photos, *context, target);
   }
   if (record.complete) return Summarise(record, trainer.state());
   Loop loop("block", job, target, trainer, report);
-  return loop.Run(record, [] { return std::vector<float>(); });
+  return loop.Run(record, [] { return std::vector<SurfaceBand>(); });
 }
 
 }  // namespace skyquilt::worker

@@ -3,6 +3,7 @@
 // Unit frame of the field; x fastest.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +11,9 @@
 namespace skyquilt::field {
 
 struct OccupancyGrid {
+  // Per sample: some dozens of samples that find nothing free a cell, yet a surface that fills a tenth of a cell keeps it.
+  static constexpr float kDecay = 0.9F;
+
   int size[3] = {0, 0, 0};        // cells per axis
   float cell = 1.0F;              // edge, unit lengths; the same on all axes
   std::vector<float> depth;       // decaying maximum per cell; negative: never seen, never sampled
@@ -21,6 +25,11 @@ struct OccupancyGrid {
   int64_t Index(int x, int y, int z) const { return (static_cast<int64_t>(z) * size[1] + y) * size[0] + x; }
   // Cell of a position, clamped into the grid.
   int64_t IndexAt(float x, float y, float z) const;
+  // A sample of the optical depth of one step at a position of a seen cell.
+  void Observe(int64_t index, float step_depth) {
+    float& cell_depth = depth[static_cast<size_t>(index)];
+    if (cell_depth >= 0.0F) cell_depth = std::max(kDecay * cell_depth, step_depth);
+  }
   // Marks cells with depth above the threshold: min(limit, mean over seen cells). Returns the share occupied.
   double Refresh(float limit);
   double OccupiedShare() const;

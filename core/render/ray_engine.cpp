@@ -125,7 +125,9 @@ class Group {
     double transmittance = 1.0;
     double depth = 0.0;
     out = RayColor{};
-    out.depth_median = std::numeric_limits<float>::quiet_NaN();
+    constexpr double kPassed[3] = {0.85, 0.5, 0.15};
+    float* const passed_at[3] = {&out.depth_front, &out.depth_median, &out.depth_back};
+    for (float* distance : passed_at) *distance = std::numeric_limits<float>::quiet_NaN();
     for (size_t s = ray_begin_[r]; s < ray_begin_[r + 1]; ++s) {
       const Sample& sample = samples_[s];
       FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
@@ -136,10 +138,11 @@ class Group {
       const double after = transmittance * std::exp(-tau);
       const double weight = transmittance - after;
       depth += weight * static_cast<double>(sample.t);
-      if (transmittance > 0.5 && after <= 0.5) {
-        // Inside the interval, where the transmittance passes one half.
-        const double share = tau > 0.0 ? std::clamp(std::log(transmittance / 0.5) / tau, 0.0, 1.0) : 0.5;
-        out.depth_median = sample.t + sample.length * static_cast<float>(share - 0.5);
+      for (size_t i = 0; i < 3; ++i) {
+        if (!(transmittance > kPassed[i] && after <= kPassed[i])) continue;
+        // Inside the interval, where the transmittance passes the mark.
+        const double share = tau > 0.0 ? std::clamp(std::log(transmittance / kPassed[i]) / tau, 0.0, 1.0) : 0.5;
+        *passed_at[i] = sample.t + sample.length * static_cast<float>(share - 0.5);
       }
       weight_[s] = static_cast<float>(weight);
       if (weight_[s] > options_.colour_threshold) batch.visible.push_back(sample.local);

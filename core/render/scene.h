@@ -55,6 +55,8 @@ struct RayColor {
   float opacity = 0.0F;           // 1 - final transmittance
   float depth = 0.0F;             // metres along the ray, mean weighted; NaN where opacity is 0
   float depth_median = 0.0F;      // metres along the ray where transmittance passes 0.5; NaN if it never does
+  float depth_front = 0.0F;       // the same for 0.85, the first sign of a surface,
+  float depth_back = 0.0F;        // and for 0.15, where nearly all light has ended
 };
 
 class Scene {

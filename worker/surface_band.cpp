@@ -1,0 +1,80 @@
+#include "worker/surface_band.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/render/march.h"
+#include "core/render/ray_engine.h"
+
+namespace skyquilt::worker {
+
+std::vector<SurfaceBand> SurfaceBands(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
+                                      base::ThreadPool& threads) {
+  std::vector<render::Ray> rays;
+  for (size_t photo = 0; photo < survey.photos.size(); ++photo) {
+    for (int row = 0; row < kTileRows; ++row) {
+      for (int column = 0; column < kTileColumns; ++column) {
+        const Tile tile{static_cast<int>(photo), static_cast<int16_t>(column), static_cast<int16_t>(row)};
+        render::Ray ray;
+        source.RayThrough(tile.photo, source.TileCentre(tile), &ray.origin_enu, &ray.direction_enu);
+        rays.push_back(ray);
+      }
+    }
+  }
+  std::vector<render::RayColor> seen(rays.size());
+  context.Finish();
+  render::FieldSet set;
+  set.context = &context;
+  render::EngineOptions options;
+  options.colour_threshold = 2.0F;  // depth only
+  render::RenderRays(set, rays, seen, options, threads);
+  std::vector<SurfaceBand> bands(seen.size());
+  for (size_t i = 0; i < seen.size(); ++i) bands[i] = {seen[i].depth_front, seen[i].depth_median, seen[i].depth_back};
+  return bands;
+}
+
+void ChooseTiles(const survey::Survey& survey, const BoxView& box, const render::TrainedField& target, const LoadedContext* context,
+                 double empty_ray_share, RaySource& source) {
+  std::vector<Tile> inside, empty;
+  const Eigen::Vector3d low = target.map.min_enu();
+  const Eigen::Vector3d high = target.map.max_enu();
+  const bool know_depth = context != nullptr && context->KnowsBands(survey);
+  for (const Tile& tile : TrainingTiles(survey, box.photos)) {
+    Eigen::Vector3d origin, direction;
+    source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
+    if (!know_depth) {
+      if (!render::FieldStretch(target.map, origin, direction).Empty()) inside.push_back(tile);
+      continue;
+    }
+    // A tile counts when its own or a neighbouring tile's surface lies above the block's ground plan.
+    bool any_inside = false, all_behind = true;
+    for (int row = std::max(0, tile.row - 1); row <= std::min(kTileRows - 1, tile.row + 1); ++row) {
+      for (int column = std::max(0, tile.column - 1); column <= std::min(kTileColumns - 1, tile.column + 1); ++column) {
+        const Tile neighbour{tile.photo, static_cast<int16_t>(column), static_cast<int16_t>(row)};
+        Eigen::Vector3d o, d;
+        source.RayThrough(neighbour.photo, source.TileCentre(neighbour), &o, &d);
+        const auto depth = static_cast<double>(context->Band(tile.photo, row, column).median);
+        const render::Stretch stretch = render::FieldStretch(target.map, o, d);
+        if (!std::isfinite(depth)) {
+          // Nothing known: as good as inside when the ray leaves through the ground.
+          const double out_z = o.z() + stretch.t_far * d.z();
+          if (!stretch.Empty() && out_z <= low.z() + 1e-6) any_inside = true;
+          all_behind = false;
+          continue;
+        }
+        const Eigen::Vector3d p = o + depth * d;
+        const bool above = p.x() >= low.x() && p.x() <= high.x() && p.y() >= low.y() && p.y() <= high.y();
+        any_inside = any_inside || above;
+        all_behind = all_behind && !stretch.Empty() && depth > stretch.t_far + 2.0 * context->field.step_m;
+      }
+    }
+    if (any_inside) {
+      inside.push_back(tile);
+    } else if (all_behind) {
+      empty.push_back(tile);
+    }
+  }
+  source.SetTiles(std::move(inside), std::move(empty), empty_ray_share);
+}
+
+}  // namespace skyquilt::worker

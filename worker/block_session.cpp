@@ -57,7 +57,7 @@ bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedFi
     return false;
   }
   const checkpoint::ArchiveReader reader(usable);
-  if (reader.StringAttribute("config_hash") != job.config_hash && getenv("SKQ_ANY") == nullptr) {
+  if (reader.StringAttribute("config_hash") != job.config_hash) {
     throw base::UsageError(usable.string() +
                            ": was trained with another configuration. Use the configuration it was trained with, or --restart to train anew");
   }

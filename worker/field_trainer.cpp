@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include <spdlog/spdlog.h>
 #include "core/brightness/exposure.h"
 #include "core/render/composite.h"
 #include "core/render/march.h"
@@ -230,7 +229,6 @@ void FieldTrainer::FrozenContext() {
     }
   }
   std::vector<render::RayColor> colors(pieces.size());
-  dbg_pieces_ = pieces.size();
   render::FieldSet set;
   set.context = context_;
   render::RenderRays(set, pieces, colors, render::EngineOptions{}, threads_);
@@ -436,25 +434,7 @@ void FieldTrainer::UpdateOccupancy() {
   }
   StepDepths(x, y, z, &depth);
   for (size_t i = 0; i < chosen.size(); ++i) grid.Observe(chosen[i], depth[i]);
-  const double share_now = grid.Refresh(kOccupancyLimit);
-  if (state_.step % 256 == 0) {
-    const float edges[8] = {1e-4F, 1e-3F, 3e-3F, 1e-2F, 3e-2F, 0.1F, 0.5F, 1e30F};
-    double n[8] = {}, w[8] = {};
-    for (const RayState& r : rays_)
-      for (int64_t i = 0; i < r.live_count; ++i) {
-        const auto q = static_cast<size_t>(r.live_begin + i);
-        int b = 0;
-        while (live_tau_[q] > edges[b]) ++b;
-        n[b] += 1;
-        w[b] += live_weight_[q];
-      }
-    std::string text;
-    for (int b = 0; b < 8; ++b) text += fmt::format(" <{:.0e}: {:.3f} w {:.3f};", edges[b], n[b] / n_live_, w[b] / rays_.size());
-    double open = 0;
-    for (const RayState& r : rays_) open += r.transmittance;
-    spdlog::info("HIST {} open {:.4f}", text, open / rays_.size());
-  }
-  if (state_.step % 128 == 0) spdlog::info("DBG step {} occ {:.4f} of {} cells; samples {} live {} rays {} pieces {}", state_.step, share_now, cells, n_samples_, n_live_, rays_.size(), dbg_pieces_);
+  grid.Refresh(kOccupancyLimit);
 }
 
 }  // namespace skyquilt::worker

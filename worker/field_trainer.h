@@ -94,7 +94,6 @@ class FieldTrainer {
   std::vector<float> slot_gradients_;
   int64_t n_samples_ = 0, n_live_ = 0;
   size_t live_stride_ = 0;
-  size_t dbg_pieces_ = 0;
 };
 
 }  // namespace skyquilt::worker

@@ -14,7 +14,6 @@ constexpr int kGroup = 4;
 // A column with its neighbours holds nine times as many.
 constexpr double kPointsPerColumn = 3.0;
 constexpr int kEnoughPoints = 8;
-constexpr double kPadVoxels = 3.0;
 constexpr float kStartDepth = 0.1F;  // above every threshold for some dozens of samples
 
 }  // namespace
@@ -87,18 +86,18 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
       }
     }
   }
-  const double pad_m = kPadVoxels * cell_m / 3.0;
   for (int z = 0; z < grid.size[2]; ++z) {
     for (int y = 0; y < grid.size[1]; ++y) {
       for (int x = 0; x < grid.size[0]; ++x) {
         const auto index = static_cast<size_t>(grid.Index(x, y, z));
         if (grid.occupied[index] == 0) continue;
-        const Eigen::Vector3d p = target.map.EnuFromUnit((Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5) * static_cast<double>(grid.cell)).cwiseMin(target.map.extent()));
+        const Eigen::Vector3d p =
+            target.map.EnuFromUnit((Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5) * static_cast<double>(grid.cell)).cwiseMin(target.map.extent()));
         if ((p.array() < low.array()).any() || (p.array() > high.array()).any()) continue;
         const Column& column = around[static_cast<size_t>((p.y() - low.y()) / column_m) * static_cast<size_t>(columns) +
                                       static_cast<size_t>((p.x() - low.x()) / column_m)];
         if (column.count < kEnoughPoints) continue;
-        if (p.z() < column.lowest - pad_m || p.z() > column.highest + pad_m) grid.occupied[index] = 0;
+        if (p.z() < column.lowest - cell_m || p.z() > column.highest + cell_m) grid.occupied[index] = 0;
       }
     }
   }

@@ -17,10 +17,10 @@ struct TrainOptions {
   int hidden = 64;
   int color_hidden_layers = 1;
   int sh_degree = 3;
-  double learning_rate = 1e-2;
+  double learning_rate = 3e-2;
   double final_learning_rate_share = 0.03;
   double network_l2 = 1e-6;
-  double distortion = 2e-3;
+  double distortion = 1e-2;
   double empty_ray_share = 0.05;
   double checkpoint_every_s = 60.0;
   std::string coupling = "guided";

@@ -103,7 +103,7 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   block.min_enu.head<2>() = grid.Min(row, column);
   block.max_enu.head<2>() = grid.Max(row, column);
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(block.margin_m);
-  const auto range = VerticalRange(in.points, grid.Min(row, column) - margin, grid.Max(row, column) + margin, block.gsd_m, in.options);
+  const auto range = VerticalRange(in.points, grid.Min(row, column) - margin, grid.Max(row, column) + margin, block.gsd_m, block.altitude_agl_m, in.options);
   const double air = 40.0 * block.gsd_m;
   block.min_enu.z() = range ? range->first : in.area.ground_m - air;
   block.max_enu.z() = range ? range->second : in.area.ground_m + air;

@@ -28,6 +28,8 @@ void PartitionOptions::Visit(config::OptionVisitor& v) {
   v.Field("min_margin_m", min_margin_m, "overlap at least this wide, metres; never above a quarter of the side");
   v.Field("z_margin_below_m", z_margin_below_m, "metres of box below the lowest ground; held between 8 and 40 ground pixels");
   v.Field("z_margin_above_m", z_margin_above_m, "metres of box above the highest roof; held between 8 and 40 ground pixels");
+  v.Field("headroom", headroom,
+          "share of the flying height added to the top of blocks of which a tenth or more has no sparse points, as under canopy; 0..1");
   v.Field("voxel_per_gsd", voxel_per_gsd, "finest voxel as a multiple of the ground sampling distance, 0.1..100");
   v.Field("min_log2_table_size", min_log2_table_size, "smallest hash table of a level, log2 of its entries, 1..24");
   v.Field("max_log2_table_size", max_log2_table_size, "largest hash table of a level, log2 of its entries, 1..24");
@@ -46,6 +48,7 @@ void PartitionOptions::Check() const {
   RequireRange("min_margin_m", min_margin_m, 0.0, 1e5);
   RequireRange("z_margin_below_m", z_margin_below_m, 0.0, 1e5);
   RequireRange("z_margin_above_m", z_margin_above_m, 0.0, 1e5);
+  RequireRange("headroom", headroom, 0.0, 1.0);
   RequireRange("voxel_per_gsd", voxel_per_gsd, 0.1, 100.0);
   RequireRange("min_log2_table_size", min_log2_table_size, 1, 24);
   RequireRange("max_log2_table_size", max_log2_table_size, 1, 24);

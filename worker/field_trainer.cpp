@@ -18,6 +18,8 @@ constexpr int kGradientSlots = 16;
 constexpr double kDistortionFrom = 0.05, kDistortionTo = 0.5;
 constexpr float kLiveTransmittance = 1e-3F;
 constexpr float kOccupancyLimit = 0.01F;
+// A surface stops a third of the light in a step; a woken cell falls asleep again after a dozen samples that find nothing.
+constexpr float kSolidDepth = 0.4F, kWakeDepth = 0.03F;
 // Streams of the random generator, so that rays and cells never share numbers.
 constexpr uint64_t kRayStream = 1, kCellStream = 2, kInitStream = 3;
 
@@ -414,7 +416,7 @@ void FieldTrainer::StepDepths(const std::vector<float>& x, const std::vector<flo
   });
 }
 
-void FieldTrainer::UpdateOccupancy() {
+void FieldTrainer::UpdateOccupancy(bool grow) {
   weights_ = field_.Prepare(state_.networks);
   field::OccupancyGrid& grid = target_.occupancy;
   const int64_t cells = grid.CellCount();
@@ -434,6 +436,7 @@ void FieldTrainer::UpdateOccupancy() {
   }
   StepDepths(x, y, z, &depth);
   for (size_t i = 0; i < chosen.size(); ++i) grid.Observe(chosen[i], depth[i]);
+  if (grow) grid.WakeNeighbours(kSolidDepth, kWakeDepth);
   grid.Refresh(kOccupancyLimit);
 }
 

@@ -37,8 +37,8 @@ class FieldTrainer {
 
   // progress in [0, 1] of the budget sets the learning rate.
   StepResult Step(double progress, double learning_rate_scale);
-  // Looks for matter in cells that are not sampled, then decides which cells are.
-  void UpdateOccupancy();
+  // Looks for matter in cells that are not sampled, then decides which cells are. `grow` also wakes the cells around surfaces.
+  void UpdateOccupancy(bool grow);
   // Optical depth of one marching step at unit positions (SoA, n).
   void StepDepths(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth);
 

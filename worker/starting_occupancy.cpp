@@ -11,9 +11,11 @@ namespace skyquilt::worker {
 namespace {
 
 constexpr int kGroup = 4;
-// A column with its neighbours holds nine times as many.
-constexpr double kPointsPerColumn = 3.0;
-constexpr int kEnoughPoints = 8;
+// Columns are wide enough to hold some points on average. One without its own may hold what has no features to match, such as foliage.
+constexpr double kPointsPerColumn = 4.0;
+constexpr int kEnoughPoints = 1;
+// Columns over which the lowest point counts: at the edge of a survey only roofs may have points.
+constexpr int kGroundReach = 6;
 constexpr float kStartDepth = 0.1F;  // above every threshold for some dozens of samples
 
 }  // namespace
@@ -68,7 +70,7 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
   field::OccupancyGrid& grid = target.occupancy;
   const double cell_m = static_cast<double>(grid.cell) / target.map.units_per_metre();
   const Eigen::Vector2d size = (high - low).head<2>();
-  const double column_m = std::max(4.0 * cell_m, std::sqrt(kPointsPerColumn * size.prod() / static_cast<double>(points.size())));
+  const double column_m = std::max(2.0 * cell_m, std::sqrt(kPointsPerColumn * size.prod() / static_cast<double>(points.size())));
   const int columns = static_cast<int>(size.x() / column_m) + 1, rows = static_cast<int>(size.y() / column_m) + 1;
   struct Column {
     int count = 0;
@@ -77,11 +79,12 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
   std::vector<Column> around(static_cast<size_t>(columns) * static_cast<size_t>(rows));
   for (const Eigen::Vector3d& point : points) {
     const int cx = static_cast<int>((point.x() - low.x()) / column_m), cy = static_cast<int>((point.y() - low.y()) / column_m);
-    for (int y = std::max(0, cy - 1); y <= std::min(rows - 1, cy + 1); ++y) {
-      for (int x = std::max(0, cx - 1); x <= std::min(columns - 1, cx + 1); ++x) {
+    for (int y = std::max(0, cy - kGroundReach); y <= std::min(rows - 1, cy + kGroundReach); ++y) {
+      for (int x = std::max(0, cx - kGroundReach); x <= std::min(columns - 1, cx + kGroundReach); ++x) {
         Column& column = around[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)];
-        ++column.count;
         column.lowest = std::min(column.lowest, point.z());
+        if (std::abs(x - cx) > 1 || std::abs(y - cy) > 1) continue;
+        if (x == cx && y == cy) ++column.count;
         column.highest = std::max(column.highest, point.z());
       }
     }

@@ -19,6 +19,8 @@ namespace skyquilt::worker {
 namespace {
 
 constexpr int kOccupancyEvery = 16;
+constexpr int kGrowEvery = 128;
+constexpr double kGrowUntil = 0.6;  // of the budget; later, cells that hold nothing only cost samples
 constexpr int kMaxDroppedInARow = 20;
 constexpr int64_t kMaxOccupancyCells = 4'000'000;
 constexpr double kCellPerVoxel = 3.0;
@@ -89,7 +91,7 @@ class Loop {
         throw base::Interrupted();
       }
       const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
-      if (state.step % kOccupancyEvery == 0) trainer_.UpdateOccupancy();
+      if (state.step % kOccupancyEvery == 0) trainer_.UpdateOccupancy(state.step % kGrowEvery == 0 && fraction < kGrowUntil);
       if (step.finite) {
         dropped_in_a_row = 0;
         const double keep = state.step <= 1 ? 0.0 : std::min(0.98, 1.0 - 1.0 / static_cast<double>(state.step));

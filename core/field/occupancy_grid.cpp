@@ -22,6 +22,27 @@ int64_t OccupancyGrid::IndexAt(float x, float y, float z) const {
   return Index(along(x, 0), along(y, 1), along(z, 2));
 }
 
+void OccupancyGrid::WakeNeighbours(float solid, float wake) {
+  const int64_t strides[3] = {1, size[0], static_cast<int64_t>(size[0]) * size[1]};
+  // A woken cell is not solid, so waking in place wakes nobody twice.
+  for (int z = 0; z < size[2]; ++z) {
+    for (int y = 0; y < size[1]; ++y) {
+      for (int x = 0; x < size[0]; ++x) {
+        const int64_t index = Index(x, y, z);
+        if (!(depth[static_cast<size_t>(index)] > solid)) continue;
+        const int at[3] = {x, y, z};
+        for (int axis = 0; axis < 3; ++axis) {
+          for (const int side : {-1, 1}) {
+            if (at[axis] + side < 0 || at[axis] + side >= size[axis]) continue;
+            float& neighbour = depth[static_cast<size_t>(index + side * strides[axis])];
+            if (neighbour >= 0.0F) neighbour = std::max(neighbour, wake);
+          }
+        }
+      }
+    }
+  }
+}
+
 double OccupancyGrid::Refresh(float limit) {
   double sum = 0.0;
   int64_t seen = 0;

@@ -30,6 +30,8 @@ struct OccupancyGrid {
     float& cell_depth = depth[static_cast<size_t>(index)];
     if (cell_depth >= 0.0F) cell_depth = std::max(kDecay * cell_depth, step_depth);
   }
+  // The six neighbours of every cell deeper than `solid` get at least `wake`, so that a surface can grow into them. Never seen ones do not.
+  void WakeNeighbours(float solid, float wake);
   // Marks cells with depth above the threshold: min(limit, mean over seen cells). Returns the share occupied.
   double Refresh(float limit);
   double OccupiedShare() const;

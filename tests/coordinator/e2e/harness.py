@@ -46,6 +46,12 @@ class Skyquilt:
                                 errors="replace", start_new_session=True)
 
 
+def replaced(words, flag, value):
+    changed = list(words)
+    changed[changed.index(flag) + 1] = value
+    return changed
+
+
 def metrics_of(project):
     return json.loads((project / "report" / "metrics.json").read_text())
 
@@ -56,7 +62,7 @@ def wait_for(condition, what, process, seconds=300):
         if condition():
             return
         expect(process.poll() is None, f"the program ended before {what}:\n{process.stdout.read() if process.stdout else ''}")
-        time.sleep(0.05)
+        time.sleep(0.01)
     raise Failure(f"no {what} within {seconds} s")
 
 

@@ -1,5 +1,5 @@
 """The whole way on 1, 2 and 3 ranks gives the same quality; stage by stage gives what `run` gives; running again does nothing twice."""
-from harness import SMALL, digest, expect, main, metrics_of
+from harness import SMALL, digest, expect, main, metrics_of, replaced
 
 
 def test(skyquilt, folder):
@@ -55,12 +55,6 @@ def pick(words, *flags):
         if flag in flags:
             chosen += [flag, value]
     return chosen
-
-
-def replaced(words, flag, value):
-    changed = list(words)
-    changed[changed.index(flag) + 1] = value
-    return changed
 
 
 main(test)

@@ -2,13 +2,14 @@
 import os
 import signal
 
-from harness import SMALL, expect, kill_group, main, metrics_of, wait_for
+from harness import SMALL, expect, kill_group, main, metrics_of, replaced, wait_for
 
 
 def test(skyquilt, folder):
     survey = folder / "hamlet"
     skyquilt.call("simulate", "hamlet", "-o", survey)
-    options = SMALL + ["--set", "train.checkpoint_every_s=0.5", "--set", "context.checkpoint_every_s=0.5"]
+    # Blocks that take long enough to be stopped half-way.
+    options = replaced(SMALL, "--steps", "1500") + ["--set", "train.checkpoint_every_s=0.3", "--set", "context.checkpoint_every_s=0.3"]
     whole = folder / "whole"
     skyquilt.call("run", survey, "-o", whole, *options)
 

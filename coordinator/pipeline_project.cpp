@@ -1,6 +1,7 @@
 #include "coordinator/pipeline_project.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -47,11 +48,27 @@ std::vector<std::filesystem::path> StageFiles(const Project& project, const std:
   return {project.ReportFolder()};
 }
 
+namespace {
+
+// The context and every block that train.json calls trained. A damaged train.json proves nothing, not even the blocks.
+std::vector<std::filesystem::path> TrainProof(const Project& project) {
+  std::vector<std::filesystem::path> proof = {project.ContextCheckpoint(), project.TrainReport()};
+  if (!std::filesystem::exists(project.TrainReport())) return proof;
+  const nlohmann::json report = nlohmann::json::parse(base::ReadFile(project.TrainReport()), nullptr, false);
+  if (!report.is_object() || !report.contains("fields")) return proof;
+  for (const nlohmann::json& field : report["fields"]) {
+    if (field.value("ok", false) && field.value("block", -1) >= 0) proof.push_back(project.BlockCheckpoint(field.value("name", "")));
+  }
+  return proof;
+}
+
+}  // namespace
+
 std::vector<std::filesystem::path> StageProof(const Project& project, const std::string& stage) {
   if (stage == "simulate") return {project.folder / "simulate.json"};
   if (stage == "prepare") return {project.SurveyFolder() / "survey.json"};
   if (stage == "partition") return {project.BlocksFile()};
-  if (stage == "train") return {project.ContextCheckpoint(), project.TrainReport()};
+  if (stage == "train") return TrainProof(project);
   if (stage == "merge") return {project.SceneFile()};
   if (stage == "products") return {project.ProductsFolder()};
   SKYQUILT_CHECK(stage == "evaluate", stage);

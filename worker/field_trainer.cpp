@@ -209,7 +209,7 @@ void FieldTrainer::EvaluateColor() {
   });
 }
 
-// What the frozen context shows in front of the box and, where light passes through, behind it.
+// What the frozen context shows in front of the box's ground plan and, where light passes through, behind it.
 void FieldTrainer::FrozenContext() {
   if (context_ == nullptr) return;
   std::vector<render::Ray> pieces;
@@ -219,14 +219,15 @@ void FieldTrainer::FrozenContext() {
     if (r.ray.empty) continue;
     const render::Stretch all = render::FieldStretch(context_->map, r.ray.origin_enu, r.ray.direction_enu);
     if (all.Empty()) continue;
-    if (r.stretch.t_near > all.t_near + context_->step_m) {
-      pieces.push_back({r.ray.origin_enu, r.ray.direction_enu, all.t_near, r.stretch.t_near, 0.0F});
+    const render::Stretch plan = render::PlanStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
+    if (plan.t_near > all.t_near + context_->step_m) {
+      pieces.push_back({r.ray.origin_enu, r.ray.direction_enu, all.t_near, plan.t_near, 0.0F});
       owner.emplace_back(k, false);
     }
     float depth = 0.0F;
     for (int64_t i = 0; i < r.live_count; ++i) depth += live_tau_[static_cast<size_t>(r.live_begin + i)];
-    if (depth < 4.0F && all.t_far > r.stretch.t_far) {
-      pieces.push_back({r.ray.origin_enu, r.ray.direction_enu, r.stretch.t_far, all.t_far, 0.0F});
+    if (depth < 4.0F && all.t_far > plan.t_far) {
+      pieces.push_back({r.ray.origin_enu, r.ray.direction_enu, plan.t_far, all.t_far, 0.0F});
       owner.emplace_back(k, true);
     }
   }

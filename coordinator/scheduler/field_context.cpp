@@ -46,11 +46,13 @@ worker::BoxView ViewOfSurvey(const partition::BlockSet& blocks, const survey::Su
     if (block.empty) continue;
     view.min_enu = any ? view.min_enu.cwiseMin(block.min_enu).eval() : block.min_enu;
     view.max_enu = any ? view.max_enu.cwiseMax(block.max_enu).eval() : block.max_enu;
+    view.log2_table_size = any ? std::max(view.log2_table_size, block.log2_table_size - 1) : block.log2_table_size - 1;
     finest_block_voxel_m = any ? std::min(finest_block_voxel_m, block.finest_voxel_m) : block.finest_voxel_m;
     any = true;
   }
   if (!any)
     throw base::InputError(blocks_file, "every block is empty, so there is nothing to train", "Check the photos' positions or choose larger blocks");
+  view.log2_table_size = std::max(view.log2_table_size, 1);
   // A thousandth of the survey: what stands behind a block is seen from afar.
   const Eigen::Vector3d extent = view.max_enu - view.min_enu;
   view.finest_voxel_m = std::max(2.0 * finest_block_voxel_m, std::max(extent.x(), extent.y()) / 1024.0);

@@ -30,7 +30,7 @@ struct FieldConfig {
   int color_hidden_layers = 1;  // 1..3
   int sh_degree = 3;            // 1..4
   double color_range = 1.0;     // largest display value a colour can take; > 1 leaves headroom for photos darker than the reference
-  double density_bias = -5.0;   // log optical depth of one finest voxel at start
+  double density_bias = -5.0;   // log optical depth of one marching step at start
 };
 
 // Weights of one moment, with the transposed copies that backward reads.

@@ -21,6 +21,13 @@ inline Stretch FieldStretch(const encoding::SpaceMap& map, const Eigen::Vector3d
                 Eigen::Vector3d(centre.x() + reach, centre.y() + reach, map.max_enu().z()));
 }
 
+// The part of a ray over (or under) the ground plan of an uncontracted field. Inside it only the field itself, never the context, has matter.
+inline Stretch PlanStretch(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  constexpr double kEver = std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d low = map.min_enu(), high = map.max_enu();
+  return RayBox(origin, direction, Eigen::Vector3d(low.x(), low.y(), -kEver), Eigen::Vector3d(high.x(), high.y(), kEver));
+}
+
 namespace internal {
 
 // Walks the cells of an uncontracted field in ray order (Amanatides and Woo 1987) and emits the lattice points of occupied ones.

@@ -68,7 +68,8 @@ class Group {
   void MarchRay(const Ray& ray) {
     candidates_.clear();
     for (int k = 0; k < static_cast<int>(all_.size()); ++k) {
-      if (!Clip(ray, *all_[static_cast<size_t>(k)]).Empty() && k != context_index_) candidates_.push_back(k);
+      // Over its plan a block has its say even above its box: there is nothing there.
+      if (k != context_index_ && !PlanStretch(all_[static_cast<size_t>(k)]->map, ray.origin_enu, ray.direction_enu).Empty()) candidates_.push_back(k);
     }
     block_weights_.assign(candidates_.size(), 0.0);
     const size_t begin = samples_.size();

@@ -1,6 +1,6 @@
 // The merged result: the context field and every block's field, ready to answer rays.
 // A sample's density is the sum of its blocks' densities times partition-of-unity weights (smooth across margins); outside all
-// boxes the context answers. Frame: rays in survey ENU, metres, double; each field converts once into its own box.
+// ground plans the context answers. Frame: rays in survey ENU, metres, double; each field converts once into its own box.
 #pragma once
 
 #include <Eigen/Core>

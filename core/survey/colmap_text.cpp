@@ -78,7 +78,7 @@ class Lines {
   int number_ = 0;
 };
 
-void ReadCameras(const std::filesystem::path& file, ColmapModel& model) {
+void ParseCameras(const std::filesystem::path& file, ColmapModel& model) {
   Lines in(file);
   while (in.NextRecord()) {
     const auto id = in.Number<uint32_t>("a camera id");
@@ -97,7 +97,7 @@ void ReadCameras(const std::filesystem::path& file, ColmapModel& model) {
   }
 }
 
-void ReadImages(const std::filesystem::path& file, ColmapModel& model) {
+void ParseImages(const std::filesystem::path& file, ColmapModel& model) {
   Lines in(file);
   while (in.NextRecord()) {
     ColmapImage image;
@@ -114,7 +114,7 @@ void ReadImages(const std::filesystem::path& file, ColmapModel& model) {
   }
 }
 
-void ReadPoints(const std::filesystem::path& file, ColmapModel& model) {
+void ParsePoints(const std::filesystem::path& file, ColmapModel& model) {
   Lines in(file);
   while (in.NextRecord()) {
     ColmapPoint point;
@@ -134,9 +134,9 @@ void ReadPoints(const std::filesystem::path& file, ColmapModel& model) {
 
 ColmapModel ReadColmapTextFiles(const std::filesystem::path& folder) {
   ColmapModel model;
-  ReadCameras(folder / "cameras.txt", model);
-  ReadImages(folder / "images.txt", model);
-  ReadPoints(folder / "points3D.txt", model);
+  ParseCameras(folder / "cameras.txt", model);
+  ParseImages(folder / "images.txt", model);
+  ParsePoints(folder / "points3D.txt", model);
   return model;
 }
 

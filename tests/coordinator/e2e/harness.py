@@ -61,7 +61,8 @@ def wait_for(condition, what, process, seconds=300):
     while time.monotonic() < end:
         if condition():
             return
-        expect(process.poll() is None, f"the program ended before {what}:\n{process.stdout.read() if process.stdout else ''}")
+        if process.poll() is not None:
+            raise Failure(f"the program ended before {what}:\n{process.stdout.read()}")
         time.sleep(0.01)
     raise Failure(f"no {what} within {seconds} s")
 

@@ -15,6 +15,9 @@
 namespace skyquilt::partition {
 namespace {
 
+// Share of a block without sparse points from which on it gets headroom.
+constexpr double kGap = 0.3;
+
 // What every step needs and nobody changes.
 struct Inputs {
   const survey::Survey& survey;
@@ -103,10 +106,14 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   block.min_enu.head<2>() = grid.Min(row, column);
   block.max_enu.head<2>() = grid.Max(row, column);
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(block.margin_m);
-  const auto range = VerticalRange(in.points, grid.Min(row, column) - margin, grid.Max(row, column) + margin, block.gsd_m, block.altitude_agl_m, in.options);
+  const auto range = VerticalRange(in.points, grid.Min(row, column) - margin, grid.Max(row, column) + margin, block.gsd_m, in.options);
   const double air = 40.0 * block.gsd_m;
   block.min_enu.z() = range ? range->first : in.area.ground_m - air;
   block.max_enu.z() = range ? range->second : in.area.ground_m + air;
+  // Away from points the block may be far higher than they are.
+  if (ShareWithoutPoints(in.points, grid.Min(row, column), grid.Max(row, column)) >= kGap) {
+    block.max_enu.z() += in.options.headroom * block.altitude_agl_m;
+  }
   const bool has_points =
       std::any_of(in.points.begin(), in.points.end(), [&](const Eigen::Vector3d& x) { return grid.CellOf(x.x(), x.y()) == index; });
   if (!range || !has_points) {

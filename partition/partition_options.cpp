@@ -29,7 +29,7 @@ void PartitionOptions::Visit(config::OptionVisitor& v) {
   v.Field("z_margin_below_m", z_margin_below_m, "metres of box below the lowest ground; held between 8 and 40 ground pixels");
   v.Field("z_margin_above_m", z_margin_above_m, "metres of box above the highest roof; held between 8 and 40 ground pixels");
   v.Field("headroom", headroom,
-          "share of the flying height added to the top of blocks of which a tenth or more has no sparse points, as under canopy; 0..1");
+          "share of the flying height added to the top of blocks of which three tenths or more have no sparse points, as under canopy; 0..1");
   v.Field("voxel_per_gsd", voxel_per_gsd, "finest voxel as a multiple of the ground sampling distance, 0.1..100");
   v.Field("min_log2_table_size", min_log2_table_size, "smallest hash table of a level, log2 of its entries, 1..24");
   v.Field("max_log2_table_size", max_log2_table_size, "largest hash table of a level, log2 of its entries, 1..24");

@@ -18,27 +18,12 @@ std::vector<double> HeightsInside(const std::vector<Eigen::Vector3d>& points, co
   return heights;
 }
 
-// Share of cells without points, of a raster on which the n points inside would put eight into each cell if they were spread evenly.
-double ShareWithoutPoints(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& low, const Eigen::Vector2d& high, size_t n) {
-  const int side = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(n) / 8.0)), 1, 32);
-  std::vector<uint8_t> filled(static_cast<size_t>(side) * static_cast<size_t>(side), 0);
-  for (const Eigen::Vector3d& x : points) {
-    const Eigen::Vector2d at = (x.head<2>() - low).cwiseQuotient(high - low);
-    if ((at.array() < 0.0).any() || (at.array() > 1.0).any()) continue;
-    const auto cell = [side](double share) { return static_cast<size_t>(std::min(side - 1, static_cast<int>(share * side))); };
-    filled[cell(at.y()) * static_cast<size_t>(side) + cell(at.x())] = 1;
-  }
-  return static_cast<double>(std::count(filled.begin(), filled.end(), 0)) / static_cast<double>(filled.size());
-}
-
 }  // namespace
 
 std::optional<std::pair<double, double>> VerticalRange(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& low,
-                                                       const Eigen::Vector2d& high, double gsd_m, double altitude_m,
-                                                       const PartitionOptions& options) {
+                                                       const Eigen::Vector2d& high, double gsd_m, const PartitionOptions& options) {
   SKYQUILT_CHECK(gsd_m > 0.0, std::to_string(gsd_m));
   constexpr size_t kEnough = 50;
-  constexpr double kGap = 0.1;
   const std::vector<double> heights = HeightsInside(points, low, high);
   if (heights.empty()) return std::nullopt;
   double bottom = Percentile(heights, 0.005);
@@ -51,8 +36,29 @@ std::optional<std::pair<double, double>> VerticalRange(const std::vector<Eigen::
   }
   bottom -= std::clamp(options.z_margin_below_m, 8.0 * gsd_m, 40.0 * gsd_m);
   top += std::clamp(options.z_margin_above_m, 8.0 * gsd_m, 40.0 * gsd_m);
-  if (ShareWithoutPoints(points, low, high, heights.size()) >= kGap) top += options.headroom * altitude_m;
   return std::make_pair(bottom, top);
+}
+
+double ShareWithoutPoints(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
+  if (points.empty()) return 1.0;
+  Eigen::Vector2d first = points.front().head<2>(), last = first;
+  for (const Eigen::Vector3d& x : points) {
+    first = first.cwiseMin(x.head<2>());
+    last = last.cwiseMax(x.head<2>());
+  }
+  first = first.cwiseMax(low);
+  last = last.cwiseMin(high);
+  if (!(last.array() > first.array()).all()) return 1.0;
+  const auto n = static_cast<double>(HeightsInside(points, first, last).size());
+  const int side = std::clamp(static_cast<int>(std::sqrt(n / 8.0)), 1, 32);
+  std::vector<uint8_t> filled(static_cast<size_t>(side) * static_cast<size_t>(side), 0);
+  for (const Eigen::Vector3d& x : points) {
+    const Eigen::Vector2d at = (x.head<2>() - first).cwiseQuotient(last - first);
+    if ((at.array() < 0.0).any() || (at.array() > 1.0).any()) continue;
+    const auto cell = [side](double share) { return static_cast<size_t>(std::min(side - 1, static_cast<int>(share * side))); };
+    filled[cell(at.y()) * static_cast<size_t>(side) + cell(at.x())] = 1;
+  }
+  return static_cast<double>(std::count(filled.begin(), filled.end(), 0)) / static_cast<double>(filled.size());
 }
 
 }  // namespace skyquilt::partition

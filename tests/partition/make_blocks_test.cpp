@@ -63,6 +63,20 @@ TEST(MakeBlocks, GroundThatFewPhotosSeeIsLeftOut) {
   EXPECT_GT(MakeBlocks(survey, by_points, 0).blocks[0].max_enu.x(), 195.0);
 }
 
+TEST(MakeBlocks, BlocksWithGapsInThePointsGetHeadroom) {
+  survey::Survey survey = FlySurvey({});
+  const double without = MakeBlocks(survey, Request("1x1"), 0).blocks[0].max_enu.z();
+  // A wood without features over a good part of the survey.
+  std::erase_if(survey.points, [](const survey::SparsePoint& point) {
+    return std::abs(point.x_in_enu.x() - 100.0) < 70.0 && std::abs(point.x_in_enu.y() - 100.0) < 90.0;
+  });
+  PartitionOptions options = Request("1x1");
+  const BlockSet set = MakeBlocks(survey, options, 0);
+  EXPECT_NEAR(set.blocks[0].max_enu.z() - without, options.headroom * set.blocks[0].altitude_agl_m, 0.5);
+  options.headroom = 0.0;
+  EXPECT_NEAR(MakeBlocks(survey, options, 0).blocks[0].max_enu.z(), without, 0.5);
+}
+
 TEST(MakeBlocks, LowBlocksAreNotAsTallAsTheTowers) {
   FlownSurveyOptions flown;
   flown.roof_m = 52.0;

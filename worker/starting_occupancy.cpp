@@ -13,7 +13,6 @@ namespace {
 constexpr int kGroup = 4;
 // Columns are wide enough to hold some points on average. One without its own may hold what has no features to match, such as foliage.
 constexpr double kPointsPerColumn = 4.0;
-constexpr int kEnoughPoints = 1;
 // Columns over which the lowest point counts: at the edge of a survey only roofs may have points.
 constexpr int kGroundReach = 6;
 constexpr float kStartDepth = 0.1F;  // above every threshold for some dozens of samples
@@ -99,7 +98,7 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
         if ((p.array() < low.array()).any() || (p.array() > high.array()).any()) continue;
         const Column& column = around[static_cast<size_t>((p.y() - low.y()) / column_m) * static_cast<size_t>(columns) +
                                       static_cast<size_t>((p.x() - low.x()) / column_m)];
-        if (column.count < kEnoughPoints) continue;
+        if (column.count == 0) continue;
         if (p.z() < column.lowest - cell_m || p.z() > column.highest + cell_m) grid.occupied[index] = 0;
       }
     }
@@ -113,7 +112,7 @@ void StartFromBands(const RaySource& source, const survey::Survey& survey, const
                     render::TrainedField& target) {
   if (!context.KnowsBands(survey)) return;
   field::OccupancyGrid& grid = target.occupancy;
-  const std::vector<uint8_t> seen = grid.occupied;
+  const std::vector<uint8_t> before = grid.occupied;
   std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
   const double cell_m = static_cast<double>(grid.cell) / target.map.units_per_metre();
   // The context is blurred by about one of its own steps.
@@ -131,10 +130,16 @@ void StartFromBands(const RaySource& source, const survey::Survey& survey, const
     }
   }
   if (grid.OccupiedShare() <= 0.0) {
-    grid.occupied = seen;
+    grid.occupied = before;
     return;
   }
   grid.Dilate(1);  // between tile centres
+  for (const survey::SparsePoint& point : survey.points) {
+    if ((point.x_in_enu.array() < target.map.min_enu().array()).any() || (point.x_in_enu.array() > target.map.max_enu().array()).any()) continue;
+    const Eigen::Vector3f unit = target.map.UnitFromEnu(point.x_in_enu);
+    const auto index = static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()));
+    if (grid.depth[index] >= 0.0F) grid.occupied[index] = 1;
+  }
   for (size_t i = 0; i < grid.depth.size(); ++i) grid.depth[i] = grid.occupied[i] != 0 ? kStartDepth : std::min(grid.depth[i], 0.0F);
 }
 

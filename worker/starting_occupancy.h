@@ -1,4 +1,5 @@
-// Where a field may look for matter when it starts: cells that cameras see, near the sparse points and in the bands where the context sees surfaces.
+// Where a field looks for matter when it starts: cells that cameras see, between the sparse points or in the bands where the context sees
+// surfaces.
 #pragma once
 
 #include <vector>
@@ -12,10 +13,12 @@ namespace skyquilt::worker {
 // Cells in view of none of the photos become "never seen". Tested per group of 4 x 4 x 4 cells, generously.
 void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, render::TrainedField& target,
                 base::ThreadPool& threads);
-// Leaves only cells in the bands where the context's light ends, as the photos' tiles see them. Does nothing for a context without bands.
+// Leaves only cells between the sparse points: in each column of the ground from the lowest point near it to one cell above the highest point
+// next to it. Columns without points of their own keep their whole height, and what lies outside the field's box stays as it is.
+void StartFromPoints(const survey::Survey& survey, render::TrainedField& target);
+// Leaves only cells in the bands where the context's light ends, as the photos' tiles see them, and those of sparse points. Cells outside
+// sleep until surfaces grow into them. Does nothing for a context without bands.
 void StartFromBands(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const LoadedContext& context,
                     render::TrainedField& target);
-// Sparse points are matter.
-void StartFromPoints(const survey::Survey& survey, render::TrainedField& target);
 
 }  // namespace skyquilt::worker

@@ -139,12 +139,15 @@ nlohmann::ordered_json Describe(const std::filesystem::path& path) {
   }
   const std::string name = path.filename().string();
   const std::string extension = path.extension().string();
-  if (name == "survey.json") return DescribeSurvey(path.parent_path());
+  if (name == "survey.json" || name == "points.ply") return DescribeSurvey(path.parent_path());
+  if (name == "cameras.geojson") return DescribeCameras(path);
   if (extension == ".geojson") return DescribeBlocks(path);
+  if (extension == ".csv") return DescribeTable(path);
+  if (extension == ".toml") return DescribeConfiguration(path);
   if (extension == ".h5" || extension == ".prev") return DescribeArchive(path);
   if (extension == ".tif" || extension == ".tiff") return DescribeRaster(path);
   if (extension == ".json") return DescribeJson(path);
-  throw base::InputError(path, "is of no kind that skyquilt knows", "It reads survey folders, .geojson, .h5, .json and .tif");
+  throw base::InputError(path, "is of no kind that skyquilt knows", "It reads project and survey folders, .geojson, .h5, .json, .csv, .toml, points.ply and .tif");
 }
 
 }  // namespace skyquilt::coordinator

@@ -14,6 +14,10 @@ nlohmann::ordered_json DescribeArchive(const std::filesystem::path& file);
 
 // GeoTIFFs and float TIFFs: size, bands, ranges.
 nlohmann::ordered_json DescribeRaster(const std::filesystem::path& file);
+// cameras.geojson, tables (.csv) and configurations (.toml).
+nlohmann::ordered_json DescribeCameras(const std::filesystem::path& file);
+nlohmann::ordered_json DescribeTable(const std::filesystem::path& file);
+nlohmann::ordered_json DescribeConfiguration(const std::filesystem::path& file);
 
 // Indented "key: value" lines; lists of records become tables.
 std::string Readable(const nlohmann::ordered_json& json);

@@ -11,6 +11,7 @@
 #include "core/checkpoint/archive.h"
 #include "core/image/image.h"
 #include "worker/block_session.h"
+#include "worker/starting_occupancy.h"
 #include "worker/trainer.h"
 
 namespace skyquilt::worker {
@@ -200,6 +201,44 @@ TEST(TrainOptions, RefusesImpossibleValuesByName) {
   options.coupling = "joint";
   EXPECT_THROW(options.Check("train"), base::UsageError);
   EXPECT_NO_THROW(TrainOptions{}.Check("train"));
+}
+
+TEST_F(TrainBlockTest, BandsOfTheContextAreWhereABlockStarts) {
+  std::vector<float> gains(survey_.photos.size(), 1.0F);
+  RaySource source(survey_, *pixels_, gains);
+  LoadedContext context;
+  context.field.step_m = 1.0;
+  // All photos look straight down from about 30 m; light ends between 2 m and 1 m of height at the ray's foot point.
+  std::vector<int> photos;
+  for (size_t photo = 0; photo < survey_.photos.size(); ++photo) {
+    photos.push_back(static_cast<int>(photo));
+    for (int row = 0; row < kTileRows; ++row) {
+      for (int column = 0; column < kTileColumns; ++column) {
+        Eigen::Vector3d origin, direction;
+        const Tile tile{static_cast<int>(photo), static_cast<int16_t>(column), static_cast<int16_t>(row)};
+        source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
+        const auto at_height = [&](double z) { return static_cast<float>((z - origin.z()) / direction.z()); };
+        context.bands.push_back({at_height(2.0), at_height(1.5), at_height(1.0)});
+      }
+    }
+  }
+  render::TrainedField target;
+  target.map = encoding::SpaceMap::Box({-10.0, -10.0, -5.0}, {10.0, 10.0, 15.0});
+  const double extent[3] = {target.map.extent().x(), target.map.extent().y(), target.map.extent().z()};
+  target.occupancy = field::OccupancyGrid::Make(extent, 0.5 * target.map.units_per_metre(), 4'000'000);
+  survey_.points.emplace_back();
+  survey_.points.back().x_in_enu = {4.2, 4.2, 12.2};
+  StartFromBands(source, survey_, photos, context, target);
+  const auto awake = [&](double x, double y, double z) {
+    const Eigen::Vector3f unit = target.map.UnitFromEnu({x, y, z});
+    return target.occupancy.occupied[static_cast<size_t>(target.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] != 0;
+  };
+  for (double x = -9.0; x < 9.5; x += 1.5) {
+    EXPECT_TRUE(awake(x, 2.0, 1.5)) << x;
+    EXPECT_FALSE(awake(x, 2.0, 6.0)) << x;
+    EXPECT_FALSE(awake(x, 2.0, -3.0)) << x;
+  }
+  EXPECT_TRUE(awake(4.2, 4.2, 12.2)) << "a sparse point";
 }
 
 }  // namespace

@@ -39,8 +39,9 @@ def test(skyquilt, folder):
     difference = abs(metrics_of(stages)["psnr"] - psnr[1])
     expect(difference < 1e-6, f"stage by stage differs from run by {difference} dB")
 
-    for path in (alone, alone / "survey", alone / "blocks.geojson", alone / "scene.h5", alone / "checkpoints" / "context.h5",
-                 alone / "report" / "metrics.json", survey / "simulate.json"):
+    for path in (alone, alone / "survey", alone / "survey" / "points.ply", alone / "survey" / "cameras.geojson", alone / "blocks.geojson",
+                 alone / "scene.h5", alone / "checkpoints" / "context.h5", alone / "checkpoints" / "context.log.csv", alone / "train.json",
+                 alone / "products" / "orthophoto.tif", alone / "report" / "metrics.json", alone / "config.toml", survey / "simulate.json"):
         expect(skyquilt.call("info", path).strip(), f"info says nothing of {path}")
         expect(skyquilt.call("info", path, "--json").lstrip().startswith("{"), f"info --json is no JSON for {path}")
 

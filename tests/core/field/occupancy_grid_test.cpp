@@ -35,6 +35,40 @@ TEST(OccupancyGrid, RefreshKeepsDenseCellsAndNeverUnseenOnes) {
   for (size_t i = 0; i < 8; ++i) EXPECT_EQ(grid.occupied[i], i == 2 ? 0 : 1);
 }
 
+TEST(OccupancyGrid, EmptySamplesFreeACellAndDenseOnesKeepIt) {
+  const double extent[3] = {1.0, 1.0, 1.0};
+  OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 1000);
+  grid.depth.assign(8, 0.1F);
+  grid.depth[5] = -1.0F;
+  for (int i = 0; i < 60; ++i) {
+    grid.Observe(0, 0.001F);
+    grid.Observe(1, i % 10 == 0 ? 3.0F : 0.0F);  // a thin surface that one sample in ten meets
+    grid.Observe(5, 3.0F);
+  }
+  grid.Refresh(0.01F);
+  EXPECT_EQ(grid.occupied[0], 0);
+  EXPECT_EQ(grid.occupied[1], 1);
+  EXPECT_EQ(grid.occupied[2], 1) << "no sample, no news";
+  EXPECT_EQ(grid.occupied[5], 0) << "never seen cells stay so";
+  EXPECT_FLOAT_EQ(grid.depth[5], -1.0F);
+}
+
+TEST(OccupancyGrid, SurfacesWakeTheirSixNeighbours) {
+  const double extent[3] = {1.0, 1.0, 1.0};
+  OccupancyGrid grid = OccupancyGrid::Make(extent, 0.2, 1000);
+  grid.depth.assign(grid.depth.size(), 0.0F);
+  grid.depth[static_cast<size_t>(grid.Index(2, 2, 2))] = 2.0F;
+  grid.depth[static_cast<size_t>(grid.Index(0, 4, 4))] = 2.0F;  // at the rim
+  grid.depth[static_cast<size_t>(grid.Index(2, 2, 3))] = -1.0F;
+  grid.WakeNeighbours(0.4F, 0.03F);
+  int awake = 0;
+  for (const float depth : grid.depth) awake += depth == 0.03F ? 1 : 0;
+  EXPECT_EQ(awake, 5 + 3);
+  EXPECT_FLOAT_EQ(grid.depth[static_cast<size_t>(grid.Index(3, 2, 2))], 0.03F);
+  EXPECT_FLOAT_EQ(grid.depth[static_cast<size_t>(grid.Index(2, 2, 3))], -1.0F);
+  EXPECT_FLOAT_EQ(grid.depth[static_cast<size_t>(grid.Index(4, 2, 2))], 0.0F);
+}
+
 TEST(OccupancyGrid, DilateReachesExactlyItsDistance) {
   const double extent[3] = {1.0, 1.0, 1.0};
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.1, 2000);

@@ -147,7 +147,8 @@ nlohmann::ordered_json Describe(const std::filesystem::path& path) {
   if (extension == ".h5" || extension == ".prev") return DescribeArchive(path);
   if (extension == ".tif" || extension == ".tiff") return DescribeRaster(path);
   if (extension == ".json") return DescribeJson(path);
-  throw base::InputError(path, "is of no kind that skyquilt knows", "It reads project and survey folders, .geojson, .h5, .json, .csv, .toml, points.ply and .tif");
+  throw base::InputError(path, "is of no kind that skyquilt knows",
+                         "It reads project and survey folders, .geojson, .h5, .json, .csv, .toml, points.ply and .tif");
 }
 
 }  // namespace skyquilt::coordinator

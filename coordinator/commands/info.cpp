@@ -16,7 +16,8 @@ void AddInfo(CLI::App& app, CommandState& state) {
   };
   const auto flags = std::make_shared<Flags>();
   CLI::App* command = app.add_subcommand("info", "what a file or folder of skyquilt holds");
-  command->add_option("path", flags->path, "project, survey folder, or any file in them: .geojson, .h5, .json, .csv, .toml, .ply, .tif")->type_name("PATH");
+  command->add_option("path", flags->path, "project, survey folder, or any file in them: .geojson, .h5, .json, .csv, .toml, .ply, .tif")
+      ->type_name("PATH");
   command->add_flag("--json", flags->json, "as JSON");
   command->add_flag("--defaults", flags->defaults, "every option with its value (after --config and --set) as TOML, explained line by line");
   command->footer(

@@ -5,6 +5,10 @@ add_library(skyquilt_warnings INTERFACE)
 target_compile_options(skyquilt_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Wold-style-cast
   # g++ 12 reports overlaps that cannot be in "literal" + std::string (GCC bug 105329).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+if(SKYQUILT_UNITY)
+  # A joined file looks like a header full of anonymous namespaces.
+  target_compile_options(skyquilt_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 if(SKYQUILT_WERROR)
   target_compile_options(skyquilt_warnings INTERFACE -Werror)
 endif()
@@ -17,6 +21,7 @@ function(skyquilt_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ${SKYQUILT_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   # Third-party headers are not held to our warnings.
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE skyquilt_warnings ${ARG_PRIVATE})
 endfunction()

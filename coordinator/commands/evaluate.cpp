@@ -5,11 +5,11 @@
 namespace skyquilt::coordinator {
 
 void AddEvaluate(CLI::App& app, CommandState& state) {
-  struct Flags {
+  struct EvaluateFlags {
     std::string project;
     bool restart = false;
   };
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<EvaluateFlags>();
   const auto overrides = std::make_shared<std::vector<Override>>();
   CLI::App* command = app.add_subcommand("evaluate", "score the scene on the held-out photos and write the report");
   command->add_option("project", flags->project, "project folder with a scene")->required()->type_name("FOLDER");

@@ -9,12 +9,12 @@
 namespace skyquilt::coordinator {
 
 void AddInfo(CLI::App& app, CommandState& state) {
-  struct Flags {
+  struct InfoFlags {
     std::string path;
     bool json = false;
     bool defaults = false;
   };
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<InfoFlags>();
   CLI::App* command = app.add_subcommand("info", "what a file or folder of skyquilt holds");
   command->add_option("path", flags->path, "project, survey folder, or any file in them: .geojson, .h5, .json, .csv, .toml, .ply, .tif")
       ->type_name("PATH");

@@ -5,11 +5,11 @@
 namespace skyquilt::coordinator {
 
 void AddMerge(CLI::App& app, CommandState& state) {
-  struct Flags {
+  struct MergeFlags {
     std::string project;
     bool restart = false;
   };
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<MergeFlags>();
   CLI::App* command = app.add_subcommand("merge", "join the checkpoints into one scene without seams");
   command->add_option("project", flags->project, "project folder with checkpoints")->required()->type_name("FOLDER");
   command->add_flag("--restart", flags->restart, "remove the scene and everything made from it first");

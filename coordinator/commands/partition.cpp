@@ -5,11 +5,11 @@
 namespace skyquilt::coordinator {
 
 void AddPartition(CLI::App& app, CommandState& state) {
-  struct Flags {
+  struct PartitionFlags {
     std::string project;
     bool restart = false;
   };
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<PartitionFlags>();
   const auto overrides = std::make_shared<std::vector<Override>>();
   CLI::App* command = app.add_subcommand("partition", "cut the survey's area into geo-referenced blocks at altitudes");
   command->add_option("project", flags->project, "project folder with a survey")->required()->type_name("FOLDER");

@@ -5,13 +5,13 @@
 namespace skyquilt::coordinator {
 
 void AddPrepare(CLI::App& app, CommandState& state) {
-  struct Flags {
+  struct PrepareFlags {
     std::string photos;
     std::string model;
     std::string out;
     bool restart = false;
   };
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<PrepareFlags>();
   const auto overrides = std::make_shared<std::vector<Override>>();
   CLI::App* command = app.add_subcommand("prepare", "photos (and their COLMAP model, if at hand) to a geo-referenced survey");
   command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->required()->type_name("FOLDER");

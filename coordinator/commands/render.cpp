@@ -14,7 +14,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-struct Flags {
+struct RenderFlags {
   std::string target;
   std::vector<std::string> photos;
   std::string path;
@@ -50,7 +50,7 @@ void LogStats(const products::RenderStats& stats, const std::filesystem::path& w
   spdlog::info("{} picture(s), {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), where.string());
 }
 
-void RenderAsked(const Flags& flags, const Target& target, const Settings& settings, const std::filesystem::path& renders,
+void RenderAsked(const RenderFlags& flags, const Target& target, const Settings& settings, const std::filesystem::path& renders,
                  const std::filesystem::path& maps) {
   const products::ProductOptions& options = settings.products;
   base::ThreadPool threads(settings.run.threads);
@@ -99,7 +99,7 @@ void RenderAsked(const Flags& flags, const Target& target, const Settings& setti
   }
 }
 
-void Render(const CommandState& state, const Flags& flags, const std::vector<Override>& overrides) {
+void Render(const CommandState& state, const RenderFlags& flags, const std::vector<Override>& overrides) {
   if (flags.width < 0) throw base::UsageError("--width " + std::to_string(flags.width) + " cannot be: a number of pixels is needed");
   const Target target = FindTarget(flags.target);
   Settings settings = state.Load(target.project ? ProjectConfig(*target.project) : std::vector<std::filesystem::path>{}, overrides);
@@ -119,7 +119,7 @@ void Render(const CommandState& state, const Flags& flags, const std::vector<Ove
 }  // namespace
 
 void AddRender(CLI::App& app, CommandState& state) {
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<RenderFlags>();
   const auto overrides = std::make_shared<std::vector<Override>>();
   CLI::App* command = app.add_subcommand("render", "pictures, depth, video, orthophoto and surface model of a scene");
   command->add_option("scene", flags->target, "project folder or scene.h5")->required()->type_name("PATH");

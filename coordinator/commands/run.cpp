@@ -9,7 +9,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-struct Flags {
+struct RunFlags {
   std::string photos;
   std::string preset;
   std::string model;
@@ -17,7 +17,7 @@ struct Flags {
   bool restart = false;
 };
 
-void Run(const CommandState& state, const Flags& flags, const std::vector<Override>& overrides) {
+void Run(const CommandState& state, const RunFlags& flags, const std::vector<Override>& overrides) {
   if (flags.photos.empty() == flags.preset.empty()) {
     throw base::UsageError("skyquilt run needs either a folder with photos or --preset NAME, and not both");
   }
@@ -45,7 +45,7 @@ void Run(const CommandState& state, const Flags& flags, const std::vector<Overri
 }  // namespace
 
 void AddRun(CLI::App& app, CommandState& state) {
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<RunFlags>();
   const auto overrides = std::make_shared<std::vector<Override>>();
   std::string presets;
   for (const std::string& name : simulate::PresetNames()) presets += (presets.empty() ? "" : ", ") + name;

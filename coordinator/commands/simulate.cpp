@@ -7,11 +7,11 @@
 namespace skyquilt::coordinator {
 
 void AddSimulate(CLI::App& app, CommandState& state) {
-  struct Flags {
+  struct SimulateFlags {
     std::string out;
     bool restart = false;
   };
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<SimulateFlags>();
   const auto overrides = std::make_shared<std::vector<Override>>();
   std::string presets;
   for (const std::string& name : simulate::PresetNames()) presets += (presets.empty() ? "" : ", ") + name;

@@ -5,11 +5,11 @@
 namespace skyquilt::coordinator {
 
 void AddTrain(CLI::App& app, CommandState& state) {
-  struct Flags {
+  struct TrainFlags {
     std::string project;
     bool restart = false;
   };
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<TrainFlags>();
   const auto overrides = std::make_shared<std::vector<Override>>();
   CLI::App* command = app.add_subcommand("train", "train the context, then every block; continues where it stopped");
   command->add_option("project", flags->project, "project folder with blocks")->required()->type_name("FOLDER");

@@ -13,7 +13,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-ChildProcess Shell(const test::TempFolder& folder, const std::string& script) {
+ChildProcess Shell(const TemporaryFolder& folder, const std::string& script) {
   ChildProcess child;
   child.program = FindProgram("sh");
   child.arguments = {"-c", script};
@@ -22,7 +22,7 @@ ChildProcess Shell(const test::TempFolder& folder, const std::string& script) {
 }
 
 TEST(ChildProcess, ReportsStatusLinesAndLog) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   std::vector<std::string> lines;
   ChildProcess child = Shell(folder, "echo one; echo \"$SKYQUILT_X\" >&2; printf three; exit 7");
   child.environment = {"SKYQUILT_X=two words"};
@@ -34,7 +34,7 @@ TEST(ChildProcess, ReportsStatusLinesAndLog) {
 }
 
 TEST(ChildProcess, CancellingEndsTheChildAndWhatItStarted) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   ChildProcess child = Shell(folder, "sleep 600 & echo $!; wait");
   std::string grandchild;
   child.on_line = [&](const std::string& line) {
@@ -72,7 +72,7 @@ TEST(ColmapProgress, IsReadFromItsOutput) {
 
 // A stand-in for COLMAP that notes its calls: what matters is which steps are run again.
 TEST(ColmapRun, FinishedStepsAreSkippedAndFailuresNameTheLog) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
   test::WriteFlight(flight, folder.path());
   std::vector<PhotoFile> photos;

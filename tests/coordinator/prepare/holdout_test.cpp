@@ -45,7 +45,7 @@ TEST(Holdout, NonsenseIsAUsageError) {
 }
 
 TEST(Holdout, AListNamesPhotos) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   base::WriteFileAtomically(folder / "list.txt", "# comment\n\n p1.jpg \r\nlost.jpg\np3.jpg");
   EXPECT_EQ(TestIndices("list:" + (folder / "list.txt").string(), 5), (std::vector<int>{1, 3}));
   base::WriteFileAtomically(folder / "list.txt", "p1.jpg\nnever_seen.jpg\n");

@@ -34,7 +34,7 @@ class PrepareTest : public ::testing::Test {
     EXPECT_NE(message.find(word), std::string::npos) << "message: " << message;
   }
 
-  test::TempFolder folder_;
+  TemporaryFolder folder_;
   test::Flight flight_ = test::MakeFlight({47.0, 8.0, 400.0});
   PrepareOptions options_;
   base::ThreadPool threads_{2};

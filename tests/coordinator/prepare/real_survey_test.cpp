@@ -16,7 +16,7 @@ std::filesystem::path Data() {
 }
 
 survey::Survey PrepareReal(const std::string& name) {
-  const test::TempFolder out;
+  const TemporaryFolder out;
   base::ThreadPool threads(2);
   return Prepare({Data() / name / "images", Data() / name / "sparse/0", out / "survey"}, {}, threads);
 }

@@ -1,25 +1,11 @@
 #include "tests/coordinator/prepare/synthetic_flight.h"
 
-#include <unistd.h>
-
 #include <cmath>
 
 #include "core/geo/enu_frame.h"
 #include "core/image/image.h"
 
 namespace skyquilt::test {
-
-TempFolder::TempFolder() {
-  static int count = 0;
-  path_ = std::filesystem::temp_directory_path() / ("skyquilt_prepare_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-  std::filesystem::create_directories(path_);
-  path_ = std::filesystem::canonical(path_);
-}
-
-TempFolder::~TempFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
 
 Flight MakeFlight(const geo::Geodetic& origin) {
   Flight flight;

@@ -10,21 +10,9 @@
 #include "core/geo/transform.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/exif.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::test {
-
-class TempFolder {
- public:
-  TempFolder();
-  ~TempFolder();
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 constexpr double kFlightHeight_m = 50.0;  // above the mean ground, which lies at ENU z = 0
 

@@ -7,7 +7,7 @@
 #include "core/base/errors.h"
 #include "core/geo/enu_frame.h"
 #include "tests/coordinator/products/analytic_scene.h"
-#include "tests/coordinator/products/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::products {
 namespace {
@@ -100,7 +100,7 @@ class CameraPathFile : public testing::Test {
     std::ofstream(file) << text;
     return LoadCameraPath(file, AnalyticScene{}.Info({41.0, 2.0, 100.0}, georeferenced), 320, 180);
   }
-  TempFolder folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(CameraPathFile, ReadsBothKindsOfPlaces) {

@@ -14,7 +14,7 @@
 #include "core/geo/enu_frame.h"
 #include "core/image/image.h"
 #include "tests/coordinator/products/analytic_scene.h"
-#include "tests/coordinator/products/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::products {
 namespace {
@@ -66,7 +66,7 @@ class OtherProgram {
 class AnywhereOnEarth : public testing::TestWithParam<geo::Geodetic> {};
 
 TEST_P(AnywhereOnEarth, PlacesAndHeightsAreRight) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const AnalyticScene scene;
   const render::SceneInfo info = scene.Info(GetParam(), true);
   const MapProducts products = MakeMapProducts(info, scene.Caster(), ProductOptions{}, folder.path());
@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(Places, AnywhereOnEarth,
                                          geo::Geodetic{-54.8, -68.3, 5.0}, geo::Geodetic{89.9999, 10.0, 0.0}, geo::Geodetic{-90.0, 0.0, 2800.0}));
 
 TEST(MapProducts, StayRightOverTensOfKilometres) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   AnalyticScene scene;
   scene.house_min = {2000.0, -9000.0};
   scene.house_max = {12000.0, 3000.0};
@@ -163,7 +163,7 @@ TEST(MapProducts, StayRightOverTensOfKilometres) {
 }
 
 TEST(MapProducts, PlacesWithoutSurfaceHaveNoData) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   AnalyticScene scene;
   scene.open_west = -30.0;
   const MapProducts products = MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path());
@@ -180,7 +180,7 @@ TEST(MapProducts, PlacesWithoutSurfaceHaveNoData) {
 }
 
 TEST(MapProducts, WithoutGeoReferenceTheyAreLocal) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const AnalyticScene scene;
   const MapProducts products = MakeMapProducts(scene.Info({}, false), scene.Caster(), ProductOptions{}, folder.path());
   const OtherProgram dsm(products.dsm);
@@ -195,7 +195,7 @@ TEST(MapProducts, WithoutGeoReferenceTheyAreLocal) {
 }
 
 TEST(MapProducts, LargeMapsHaveOverviewsAndTiles) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const AnalyticScene scene;
   ProductOptions options;
   options.resolution_m = 0.1;
@@ -214,7 +214,7 @@ TEST(MapProducts, LargeMapsHaveOverviewsAndTiles) {
 }
 
 TEST(MapProducts, PreviewsLieInTheLocalFrame) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const AnalyticScene scene;
   // Far from the zone's central meridian north of the map and of the frame differ by two degrees.
   MakeMapProducts(scene.Info({50.0, 5.9, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path());
@@ -281,7 +281,7 @@ TEST(MapProducts, RaysStayInTheBoxesAboveTheirCell) {
 }
 
 TEST(MapProducts, CancellingLeavesNoFileBehind) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const AnalyticScene scene;
   base::RequestCancel();
   EXPECT_THROW(MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path()), base::Interrupted);

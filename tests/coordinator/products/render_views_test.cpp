@@ -11,7 +11,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "tests/coordinator/products/analytic_scene.h"
-#include "tests/coordinator/products/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::products {
 namespace {
@@ -41,7 +41,7 @@ VideoFacts Inspect(const std::filesystem::path& file) {
 }
 
 TEST(RenderViews, DepthRunsAlongTheRay) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const AnalyticScene scene;
   View view;
   view.name = "nadir";
@@ -66,7 +66,7 @@ TEST(RenderViews, DepthRunsAlongTheRay) {
 }
 
 TEST(RenderViews, SkyIsBlackWithoutDepth) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   View view;
   view.name = "up";
   view.camera = PinholeCamera(8, 6, 60.0);
@@ -77,7 +77,7 @@ TEST(RenderViews, SkyIsBlackWithoutDepth) {
 }
 
 TEST(RenderVideo, HasOneFramePerView) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const AnalyticScene scene;
   ProductOptions options;
   options.video_seconds = 1.0;
@@ -96,7 +96,7 @@ TEST(RenderVideo, HasOneFramePerView) {
 }
 
 TEST(VideoWriter, FallsBackToOpenCv) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "video.mp4";
   VideoWriter video(file, 64, 48, 10, "a-program-that-is-not-there");
   EXPECT_EQ(video.encoder(), "OpenCV mp4v");
@@ -112,7 +112,7 @@ TEST(VideoWriter, FallsBackToOpenCv) {
 }
 
 TEST(VideoWriter, FfmpegWritesH264) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "with space 'quote.mp4";
   VideoWriter video(file, 64, 48, 10);
   if (video.encoder() != "ffmpeg libx264") GTEST_SKIP() << "the program ffmpeg is not installed";
@@ -127,7 +127,7 @@ TEST(VideoWriter, FfmpegWritesH264) {
 }
 
 TEST(VideoWriter, AProgramThatDiesIsReported) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "video.mp4";
   EXPECT_THROW(
       {
@@ -141,7 +141,7 @@ TEST(VideoWriter, AProgramThatDiesIsReported) {
 }
 
 TEST(VideoWriter, LeavesNothingWhenAbandoned) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   {
     VideoWriter video(folder.path() / "video.mp4", 64, 48, 10);
     video.Write(image::Image8(64, 48, 3, 100));
@@ -150,7 +150,7 @@ TEST(VideoWriter, LeavesNothingWhenAbandoned) {
 }
 
 TEST(RenderViews, StopsWhenCancelled) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   View view;
   view.name = "x";
   view.camera = PinholeCamera(8, 6, 60.0);

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "core/base/errors.h"
-#include "tests/core/base/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::base {
 namespace {

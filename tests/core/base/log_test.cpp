@@ -4,7 +4,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "tests/core/base/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::base {
 namespace {

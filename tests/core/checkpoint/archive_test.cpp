@@ -13,7 +13,7 @@
 #include "core/base/random.h"
 #include "core/checkpoint/digest.h"
 #include "core/checkpoint/user_block.h"
-#include "tests/core/base/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #ifdef __SANITIZE_ADDRESS__
 // HDF5 1.10 forgets some of its own memory when it meets damaged metadata.

@@ -15,7 +15,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/checkpoint/archive.h"
-#include "tests/core/base/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::checkpoint {
 namespace {

@@ -5,8 +5,8 @@
 #include "core/base/errors.h"
 #include "core/image/image.h"
 #include "core/image/srgb.h"
-#include "tests/core/base/temporary_folder.h"
 #include "tests/core/image/raw_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::image {
 namespace {

@@ -15,8 +15,8 @@
 #include "core/base/file.h"
 #include "core/base/progress.h"
 #include "core/image/image.h"
-#include "tests/core/base/temporary_folder.h"
 #include "tests/core/image/raw_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::image {
 namespace {

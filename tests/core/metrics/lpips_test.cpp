@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "core/base/errors.h"
-#include "tests/core/base/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::metrics {
 namespace {

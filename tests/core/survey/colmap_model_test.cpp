@@ -7,7 +7,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "tests/core/survey/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::survey {
 namespace {
@@ -128,8 +128,8 @@ std::string MessageOf(const std::filesystem::path& folder) {
 TEST(ColmapModel, TextAndBinaryGiveTheSameModel) {
   const ColmapModel model = SmallModel();
   for (const bool with_observations : {true, false}) {
-    const test::TempFolder text;
-    const test::TempFolder binary;
+    const TemporaryFolder text;
+    const TemporaryFolder binary;
     WriteColmapText(model, text.path());
     WriteBinary(model, binary.path(), with_observations);
     ExpectEqual(model, ReadColmapModel(text.path()));
@@ -138,7 +138,7 @@ TEST(ColmapModel, TextAndBinaryGiveTheSameModel) {
 }
 
 TEST(ColmapModel, TextWithCommentsBlankLinesAndWindowsEndsIsRead) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   base::WriteFileAtomically(folder / "cameras.txt", "# a comment\r\n\r\n  # another\r\n1 PINHOLE 10 8 9 9 5 4\r\n");
   base::WriteFileAtomically(
       folder / "images.txt",
@@ -154,7 +154,7 @@ TEST(ColmapModel, TextWithCommentsBlankLinesAndWindowsEndsIsRead) {
 }
 
 TEST(ColmapModel, EveryTruncationOfABinaryFileIsRefused) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const ColmapModel model = SmallModel();
   for (const char* name : {"cameras.bin", "images.bin", "points3D.bin"}) {
     WriteBinary(model, folder.path());
@@ -169,7 +169,7 @@ TEST(ColmapModel, EveryTruncationOfABinaryFileIsRefused) {
 }
 
 TEST(ColmapModel, HugeCountsAreRefusedBeforeAllocating) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   for (const char* name : {"cameras.bin", "images.bin", "points3D.bin"}) {
     WriteBinary(SmallModel(), folder.path());
     std::string content = base::ReadFile(folder / name);
@@ -182,7 +182,7 @@ TEST(ColmapModel, HugeCountsAreRefusedBeforeAllocating) {
 
 TEST(ColmapModel, NanInAPoseNamesThePhoto) {
   for (const bool binary : {true, false}) {
-    const test::TempFolder folder;
+    const TemporaryFolder folder;
     ColmapModel model = SmallModel();
     model.images[1].cam_from_world.translation.y() = std::numeric_limits<double>::quiet_NaN();
     binary ? WriteBinary(model, folder.path()) : WriteColmapText(model, folder.path());
@@ -195,7 +195,7 @@ TEST(ColmapModel, NanInAPoseNamesThePhoto) {
 }
 
 TEST(ColmapModel, ContradictionsAreRefused) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   EXPECT_THROW(ReadColmapModel(folder / "absent"), base::InputError);
   EXPECT_THROW(ReadColmapModel(folder.path()), base::InputError);
   ColmapModel model = SmallModel();
@@ -213,7 +213,7 @@ TEST(ColmapModel, ContradictionsAreRefused) {
 }
 
 TEST(ColmapModel, UnknownCameraModelsAreNamed) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   WriteColmapText(SmallModel(), folder.path());
   base::WriteFileAtomically(folder / "cameras.txt", "1 THIN_PRISM_FISHEYE 10 10 1 1 1 1 1 1 1 1 1 1 1 1\n");
   EXPECT_NE(MessageOf(folder.path()).find("THIN_PRISM_FISHEYE"), std::string::npos);

@@ -9,19 +9,19 @@
 
 #include "core/base/errors.h"
 #include "core/image/image.h"
-#include "tests/core/survey/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::survey {
 namespace {
 
-std::filesystem::path MakeJpeg(const test::TempFolder& folder) {
+std::filesystem::path MakeJpeg(const TemporaryFolder& folder) {
   const std::filesystem::path file = folder / "photo.jpg";
   image::SaveJpeg(image::Image8(16, 8, 3, 128), file, 90);
   return file;
 }
 
 PhotoTags RoundTrip(const PhotoTags& tags) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = MakeJpeg(folder);
   WritePhotoTags(tags, file);
   return ReadPhotoTags(file);
@@ -30,7 +30,7 @@ PhotoTags RoundTrip(const PhotoTags& tags) {
 // Sets raw tags as some other program would have left them.
 template <typename Edit>
 PhotoTags ReadForged(const Edit& edit) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = MakeJpeg(folder);
   WritePhotoTags({}, file);
   const auto image = Exiv2::ImageFactory::open(file.string());
@@ -164,7 +164,7 @@ TEST(Exif, ZeroZeroIsNoFixAndBrokenRationalsAreAbsent) {
 }
 
 TEST(Exif, AFileThatIsNoImageIsRefusedByName) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   std::ofstream(folder / "notes.jpg") << "these are notes, not a photo";
   try {
     ReadPhotoTags(folder / "notes.jpg");

@@ -9,7 +9,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "tests/core/survey/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::survey {
 namespace {
@@ -50,7 +50,7 @@ Survey SmallSurvey() {
 // Replaces a value in survey.json and expects the load to fail with `word` in its message.
 template <typename Edit>
 void ExpectRefused(const std::string& word, const Edit& edit) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   SaveSurvey(SmallSurvey(), folder.path());
   nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
   edit(json);
@@ -64,7 +64,7 @@ void ExpectRefused(const std::string& word, const Edit& edit) {
 }
 
 TEST(Survey, SavingAndLoadingKeepsEveryBit) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   const Survey before = SmallSurvey();
   SaveSurvey(before, folder.path());
   const Survey after = LoadSurvey(folder.path());
@@ -102,7 +102,7 @@ TEST(Survey, MedianAglIgnoresUnknownOnes) {
 }
 
 TEST(Survey, AnEmptySurveyIsSavedAndLoaded) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   SaveSurvey({}, folder.path());
   const Survey survey = LoadSurvey(folder.path());
   EXPECT_TRUE(survey.photos.empty());
@@ -122,7 +122,7 @@ TEST(Survey, DamagedDescriptionsAreRefusedWithTheReason) {
 }
 
 TEST(Survey, DamagedPointFilesAreRefused) {
-  const test::TempFolder folder;
+  const TemporaryFolder folder;
   EXPECT_THROW(LoadSurvey(folder.path()), base::InputError);
   SaveSurvey(SmallSurvey(), folder.path());
   const std::string whole = base::ReadFile(folder / "points.ply");

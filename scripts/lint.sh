@@ -1,14 +1,13 @@
 #!/usr/bin/env bash
-# clang-tidy with the checks of .clang-tidy over every compiled file. Needs a configured build (default: build/ci, as scripts/test.sh makes).
+# clang-tidy with the checks of .clang-tidy over every compiled file. Needs a configured build without joined files (default: build/debug).
 #   scripts/lint.sh [FILE...]             only these files
-#   SKYQUILT_BUILD=build/debug scripts/lint.sh
+#   SKYQUILT_BUILD=build/asan scripts/lint.sh
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-build=${SKYQUILT_BUILD:-build/ci}
+build=${SKYQUILT_BUILD:-build/debug}
 if [[ ! -f "$build/compile_commands.json" ]]; then
-  echo "lint: $build has no compile_commands.json; run 'cmake --preset ci' first" >&2
-  exit 2
+  cmake --preset "$(basename "$build")" >/dev/null
 fi
 if (( $# > 0 )); then
   printf '%s\0' "$@"

@@ -24,7 +24,8 @@ inline Stretch FieldStretch(const encoding::SpaceMap& map, const Eigen::Vector3d
 // The part of a ray over (or under) the ground plan of an uncontracted field. Inside it only the field itself, never the context, has matter.
 inline Stretch PlanStretch(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   constexpr double kEver = std::numeric_limits<double>::infinity();
-  const Eigen::Vector3d low = map.min_enu(), high = map.max_enu();
+  const Eigen::Vector3d& low = map.min_enu();
+  const Eigen::Vector3d& high = map.max_enu();
   return RayBox(origin, direction, Eigen::Vector3d(low.x(), low.y(), -kEver), Eigen::Vector3d(high.x(), high.y(), kEver));
 }
 

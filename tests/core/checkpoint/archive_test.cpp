@@ -13,6 +13,7 @@
 #include "core/base/random.h"
 #include "core/checkpoint/digest.h"
 #include "core/checkpoint/user_block.h"
+#include "tests/core/checkpoint/input_error_of.h"
 #include "tests/support/temporary_folder.h"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -24,15 +25,6 @@ extern "C" const char* __lsan_default_suppressions() {
 
 namespace skyquilt::checkpoint {
 namespace {
-
-std::string InputErrorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 void WriteBytes(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;

@@ -15,19 +15,11 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/checkpoint/archive.h"
+#include "tests/core/checkpoint/input_error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::checkpoint {
 namespace {
-
-std::string InputErrorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 void Commit(const std::filesystem::path& file, int64_t step, size_t n_values = 1000) {
   const std::vector<float> values(n_values, static_cast<float>(step));

@@ -90,6 +90,7 @@ void AddCommands(CLI::App& app, CommandState& state) {
   AddRender(app, state);
   AddEvaluate(app, state);
   AddInfo(app, state);
+  AddBench(app, state);
 }
 
 int Guarded(const std::function<void()>& body) {

@@ -50,6 +50,7 @@ void AddMerge(CLI::App& app, CommandState& state);
 void AddRender(CLI::App& app, CommandState& state);
 void AddEvaluate(CLI::App& app, CommandState& state);
 void AddInfo(CLI::App& app, CommandState& state);
+void AddBench(CLI::App& app, CommandState& state);
 void AddRun(CLI::App& app, CommandState& state);
 
 }  // namespace skyquilt::coordinator

@@ -1,6 +1,7 @@
 #include "core/base/system.h"
 
 #include <sched.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
@@ -128,6 +129,15 @@ int64_t TotalMemoryBytes() {
   const int64_t physical = static_cast<int64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<int64_t>(sysconf(_SC_PAGESIZE));
   const std::optional<int64_t> limit = CgroupMemoryBytes();
   return limit ? std::min(physical, *limit) : physical;
+}
+
+void AdviseHugePages(void* begin, size_t bytes) {
+  constexpr uintptr_t kPage = 4096;
+  constexpr size_t kWorthwhile = size_t{4} << 20U;
+  if (bytes < kWorthwhile) return;
+  const auto first = (reinterpret_cast<uintptr_t>(begin) + kPage - 1) / kPage * kPage;
+  const auto last = (reinterpret_cast<uintptr_t>(begin) + bytes) / kPage * kPage;
+  madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
 }
 
 int64_t PeakRssBytes() {

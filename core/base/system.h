@@ -1,6 +1,7 @@
 // What this process runs on.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -12,6 +13,8 @@ int UsableCores();
 void ReleaseAffinity();
 int64_t TotalMemoryBytes();
 int64_t PeakRssBytes();
+// Asks for large pages behind this range, before it is first written. Only a hint.
+void AdviseHugePages(void* begin, size_t bytes);
 // "AMD EPYC, 2 cores, 24 GiB, Linux 6.1": for reports.
 std::string MachineDescription();
 // "2026-01-31T12:00:00Z"

@@ -40,7 +40,9 @@ HashGrid::HashGrid(const HashGridConfig& config) : config_(config) {
     level.dense = points <= static_cast<double>(table);
     level.entries = level.dense ? static_cast<uint32_t>(points) : table;
     levels_.push_back(level);
-    offsets_.push_back(offsets_.back() + static_cast<int64_t>(level.entries) * config.features);
+    // Whole cache lines per level, so that optimiser and gradients work line by line.
+    const int64_t floats = static_cast<int64_t>(level.entries) * config.features;
+    offsets_.push_back(offsets_.back() + (floats + kernel::kLineFloats - 1) / kernel::kLineFloats * kernel::kLineFloats);
   }
 }
 

@@ -28,12 +28,9 @@ class HashGrid {
   int features() const { return config_.features; }
   int OutputRows() const { return config_.levels * config_.features; }
   const kernel::HashLevel& level(int l) const { return levels_[static_cast<size_t>(l)]; }
-  // Start of a level in the flat parameter buffer, in floats.
+  // Start of a level in the flat parameter buffer, in floats: a multiple of kernel::kLineFloats, the gap before it is never used.
   int64_t Offset(int l) const { return offsets_[static_cast<size_t>(l)]; }
-  // Start of a level in arrays with one element per entry.
-  int64_t EntryOffset(int l) const { return offsets_[static_cast<size_t>(l)] / config_.features; }
   int64_t ParameterCount() const { return offsets_.back(); }
-  int64_t EntryCount() const { return offsets_.back() / config_.features; }
 
  private:
   HashGridConfig config_;

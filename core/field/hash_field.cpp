@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "core/encoding/spherical_harmonics.h"
 
@@ -65,16 +65,6 @@ NetworkWeights HashField::Prepare(std::span<const float> networks) const {
   return weights;
 }
 
-ChunkScratch HashField::MakeScratch() const {
-  ChunkScratch scratch;
-  const auto rows = [](int n) { return static_cast<size_t>(n) * kChunkStride; };
-  for (auto& hidden : scratch.hidden) hidden.resize(rows(config_.hidden));
-  for (auto& gradient : scratch.gradient) gradient.resize(rows(std::max(config_.hidden, kGeometryRows)));
-  scratch.color_in.resize(rows(color_inputs_));
-  scratch.color_in_gradient.resize(rows(color_inputs_));
-  return scratch;
-}
-
 void HashField::Encode(std::span<const float> grid, const float* x, const float* y, const float* z, int64_t n, float* features, size_t stride,
                        base::ThreadPool& threads) const {
   const int64_t stretches = (n + kEncodeStretch - 1) / kEncodeStretch;
@@ -96,86 +86,91 @@ void HashField::EncodeSerial(std::span<const float> grid, const float* x, const 
   }
 }
 
-void HashField::Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, ChunkScratch& scratch,
+void HashField::Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, float* hidden, size_t hidden_stride,
                         float* geometry, size_t geometry_stride) const {
-  kernel::Dense(weights.layer[0].data(), config_.hidden, layers_[0].inputs, features, feature_stride, n, true, scratch.hidden[0].data(),
-                kChunkStride);
-  kernel::Dense(weights.layer[1].data(), kGeometryRows, config_.hidden, scratch.hidden[0].data(), kChunkStride, n, false, geometry, geometry_stride);
+  kernel::Dense(weights.layer[0].data(), config_.hidden, layers_[0].inputs, features, feature_stride, n, true, hidden, hidden_stride);
+  kernel::Dense(weights.layer[1].data(), kGeometryRows, config_.hidden, hidden, hidden_stride, n, false, geometry, geometry_stride);
 }
 
-void HashField::FillColorInput(const float* geometry, size_t geometry_stride, const float* direction, size_t direction_stride, int64_t n,
-                               ChunkScratch& scratch) const {
-  for (int r = 0; r < kGeometryRows; ++r) {
-    std::memcpy(scratch.color_in.data() + static_cast<size_t>(r) * kChunkStride, geometry + static_cast<size_t>(r) * geometry_stride,
-                static_cast<size_t>(n) * sizeof(float));
-  }
-  float* sh_rows = scratch.color_in.data() + static_cast<size_t>(kGeometryRows) * kChunkStride;
-  const int sh_count = config_.sh_degree * config_.sh_degree;
-  float sh[16];
-  for (int64_t s = 0; s < n; ++s) {
-    encoding::SphericalHarmonics(direction[s], direction[direction_stride + static_cast<size_t>(s)],
-                                 direction[2 * direction_stride + static_cast<size_t>(s)], config_.sh_degree, sh);
-    for (int k = 0; k < sh_count; ++k) sh_rows[static_cast<size_t>(k) * kChunkStride + static_cast<size_t>(s)] = sh[k];
-  }
+void HashField::FillDirection(const float direction[3], int64_t count, float* rows, size_t stride) const {
+  float sh[16] = {};
+  encoding::SphericalHarmonics(direction[0], direction[1], direction[2], config_.sh_degree, sh);
+  for (int k = 0; k < color_inputs_ - kGeometryRows; ++k) std::fill_n(rows + static_cast<size_t>(k) * stride, count, sh[k]);
 }
 
-void HashField::Color(const NetworkWeights& weights, const float* geometry, size_t geometry_stride, const float* direction, size_t direction_stride,
-                      int64_t n, ChunkScratch& scratch, float* color_raw, size_t color_stride) const {
-  FillColorInput(geometry, geometry_stride, direction, direction_stride, n, scratch);
-  const float* in = scratch.color_in.data();
+void HashField::Color(const NetworkWeights& weights, const float* color_in, size_t in_stride, int64_t n, float* const hidden[3], size_t hidden_stride,
+                      float* color_raw, size_t color_stride) const {
+  const float* in = color_in;
   int inputs = color_inputs_;
   for (int l = 0; l < config_.color_hidden_layers; ++l) {
-    float* out = scratch.hidden[1 + l].data();
-    kernel::Dense(weights.layer[static_cast<size_t>(2 + l)].data(), config_.hidden, inputs, in, kChunkStride, n, true, out, kChunkStride);
-    in = out;
+    kernel::Dense(weights.layer[static_cast<size_t>(2 + l)].data(), config_.hidden, inputs, in, in_stride, n, true, hidden[l], hidden_stride);
+    in = hidden[l];
+    in_stride = hidden_stride;
     inputs = config_.hidden;
   }
-  kernel::Dense(weights.layer.back().data(), kColorRows, config_.hidden, in, kChunkStride, n, false, color_raw, color_stride);
+  kernel::Dense(weights.layer.back().data(), kColorRows, config_.hidden, in, in_stride, n, false, color_raw, color_stride);
 }
 
-void HashField::Backward(const NetworkWeights& weights, const float* features, size_t feature_stride, const float* direction, size_t direction_stride,
-                         int64_t n, const float* color_gradient, size_t color_stride, const float* log_density_gradient, ChunkScratch& scratch,
-                         float* feature_gradient, size_t feature_gradient_stride, float* network_gradient) const {
+void HashField::Backward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n,
+                         float* network_gradient) const {
   const size_t last = layers_.size() - 1;
-  float geometry[static_cast<size_t>(kGeometryRows) * kChunkStride];
-  float color_raw[static_cast<size_t>(kColorRows) * kChunkStride];
-  Density(weights, features, feature_stride, n, scratch, geometry, kChunkStride);
-  Color(weights, geometry, kChunkStride, direction, direction_stride, n, scratch, color_raw, kChunkStride);
-
+  const size_t stride = a.stride;
+  const int hidden = config_.hidden;
   const auto gradient_of = [&](size_t layer) { return network_gradient + network_offsets_[layer]; };
   // Colour network, from its output to [geometry, SH].
-  const int hidden_layers = config_.color_hidden_layers;
-  const float* top = scratch.hidden[hidden_layers].data();
-  kernel::DenseWeightGradient(color_gradient, color_stride, kColorRows, top, kChunkStride, config_.hidden, n, gradient_of(last));
-  float* current = scratch.gradient[0].data();
-  float* next = scratch.gradient[1].data();
-  kernel::Dense(weights.transposed[last].data(), config_.hidden, kColorRows, color_gradient, color_stride, n, false, current, kChunkStride);
-  for (int l = hidden_layers - 1; l >= 0; --l) {
-    kernel::ReluBackward(scratch.hidden[1 + l].data(), kChunkStride, config_.hidden, n, current, kChunkStride);
-    const bool first = l == 0;
-    const float* in = first ? scratch.color_in.data() : scratch.hidden[l].data();
-    const int inputs = first ? color_inputs_ : config_.hidden;
+  const int top = config_.color_hidden_layers - 1;
+  float* current = a.hidden_gradient[0];
+  float* next = a.hidden_gradient[1];
+  kernel::DenseWeightGradient(a.color_gradient, stride, kColorRows, a.color_hidden[top], stride, hidden, n, gradient_of(last));
+  kernel::DenseGated(weights.transposed[last].data(), hidden, kColorRows, a.color_gradient, stride, n, a.color_hidden[top], stride, current, stride);
+  for (int l = top; l > 0; --l) {
     const auto layer = static_cast<size_t>(2 + l);
-    kernel::DenseWeightGradient(current, kChunkStride, config_.hidden, in, kChunkStride, inputs, n, gradient_of(layer));
-    if (first) {
-      // Only the geometry rows go on: the direction has no parameters.
-      kernel::Dense(weights.transposed[layer].data(), kGeometryRows, config_.hidden, current, kChunkStride, n, false,
-                    scratch.color_in_gradient.data(), kChunkStride);
-    } else {
-      kernel::Dense(weights.transposed[layer].data(), config_.hidden, config_.hidden, current, kChunkStride, n, false, next, kChunkStride);
-      std::swap(current, next);
-    }
+    kernel::DenseWeightGradient(current, stride, hidden, a.color_hidden[l - 1], stride, hidden, n, gradient_of(layer));
+    kernel::DenseGated(weights.transposed[layer].data(), hidden, hidden, current, stride, n, a.color_hidden[l - 1], stride, next, stride);
+    std::swap(current, next);
   }
-  float* geometry_gradient = scratch.color_in_gradient.data();
-  for (int64_t s = 0; s < n; ++s) geometry_gradient[s] += log_density_gradient[s];
+  kernel::DenseWeightGradient(current, stride, hidden, a.color_in, stride, color_inputs_, n, gradient_of(2));
+  // Only the geometry rows go on: the direction has no parameters.
+  kernel::Dense(weights.transposed[2].data(), kGeometryRows, hidden, current, stride, n, false, a.geometry_gradient, stride);
+  for (int64_t s = 0; s < n; ++s) a.geometry_gradient[s] += a.log_density_gradient[s];
   // Density network.
-  kernel::DenseWeightGradient(geometry_gradient, kChunkStride, kGeometryRows, scratch.hidden[0].data(), kChunkStride, config_.hidden, n,
-                              gradient_of(1));
-  kernel::Dense(weights.transposed[1].data(), config_.hidden, kGeometryRows, geometry_gradient, kChunkStride, n, false, current, kChunkStride);
-  kernel::ReluBackward(scratch.hidden[0].data(), kChunkStride, config_.hidden, n, current, kChunkStride);
-  kernel::DenseWeightGradient(current, kChunkStride, config_.hidden, features, feature_stride, layers_[0].inputs, n, gradient_of(0));
-  kernel::Dense(weights.transposed[0].data(), layers_[0].inputs, config_.hidden, current, kChunkStride, n, false, feature_gradient,
-                feature_gradient_stride);
+  kernel::DenseWeightGradient(a.geometry_gradient, stride, kGeometryRows, a.density_hidden, stride, hidden, n, gradient_of(1));
+  kernel::DenseGated(weights.transposed[1].data(), hidden, kGeometryRows, a.geometry_gradient, stride, n, a.density_hidden, stride, current, stride);
+  kernel::DenseWeightGradient(current, stride, hidden, features, feature_stride, layers_[0].inputs, n, gradient_of(0));
+  kernel::Dense(weights.transposed[0].data(), layers_[0].inputs, hidden, current, stride, n, false, features, feature_stride);
+}
+
+double HashField::ForwardFlops() const {
+  const int hidden = config_.hidden;
+  const int color_inputs = kGeometryRows + config_.sh_degree * config_.sh_degree;
+  return 2.0 *
+         (FeatureRows() * hidden + hidden * kGeometryRows + color_inputs * hidden + (config_.color_hidden_layers - 1) * hidden * hidden + hidden * 3);
+}
+
+double HashField::TrainFlops() const {
+  // Twice more for the gradients of weights and inputs; the direction's input needs none.
+  return 3.0 * ForwardFlops() - 2.0 * config_.sh_degree * config_.sh_degree * config_.hidden;
+}
+
+void Activations::Reserve(const HashField& field, int64_t n) {
+  const size_t wanted = std::max<size_t>(kChunkStride, kernel::StrideFor(n));
+  if (wanted <= stride) return;
+  stride = wanted;
+  const auto hidden = static_cast<size_t>(field.config().hidden);
+  const auto color_rows = static_cast<size_t>(field.ColorInputRows());
+  const auto color_layers = static_cast<size_t>(field.config().color_hidden_layers);
+  kept_rows = static_cast<int>(hidden) + kGeometryRows;
+  buffer_.assign(stride * (hidden + color_rows + color_layers * hidden + 2 * kColorRows + 1 + kGeometryRows + 2 * hidden), 0.0F);
+  float* next = buffer_.data();
+  const auto take = [&](size_t rows) { return std::exchange(next, next + rows * stride); };
+  density_hidden = take(hidden);
+  color_in = take(color_rows);
+  for (size_t l = 0; l < color_layers; ++l) color_hidden[l] = take(hidden);
+  color_raw = take(kColorRows);
+  color_gradient = take(kColorRows);
+  log_density_gradient = take(1);
+  geometry_gradient = take(kGeometryRows);
+  for (float*& gradient : hidden_gradient) gradient = take(hidden);
 }
 
 }  // namespace skyquilt::field

@@ -19,7 +19,7 @@ namespace skyquilt::field {
 
 constexpr int kGeometryRows = 16;
 constexpr int kColorRows = 4;  // 3 used; padded to the kernels' row multiple
-// Samples handled by one task; activations of one chunk stay in the second-level cache.
+// Samples whose activations stay in the second-level cache: what one task should hand over at a time.
 constexpr int kChunk = 512;
 // Row stride of a chunk's own buffers: an odd number of cache lines, so that rows do not fall on the same cache sets.
 constexpr int kChunkStride = kChunk + kernel::kStridePad;
@@ -39,12 +39,28 @@ struct NetworkWeights {
   std::vector<std::vector<float>> transposed;  // same order
 };
 
-// Activations of one chunk. Allocate once per thread.
-struct ChunkScratch {
-  std::vector<float> hidden[4];
-  std::vector<float> gradient[2];
-  std::vector<float> color_in;
-  std::vector<float> color_in_gradient;
+// Activations and gradients of one packet of samples, kept between forward and backward. One per thread.
+// Rows of `stride` floats; `density_hidden` and `geometry` follow each other, so that samples can be dropped from both at once.
+class Activations {
+ public:
+  // Makes room for n samples (any n). What was in it is lost when the stride grows.
+  void Reserve(const class HashField& field, int64_t n);
+
+  size_t stride = 0;
+  int kept_rows = 0;  // of density_hidden and geometry together
+  float* density_hidden = nullptr;
+  float* color_in = nullptr;  // geometry, then spherical harmonics of the direction
+  float* color_hidden[3] = {nullptr, nullptr, nullptr};
+  float* color_raw = nullptr;  // before the sigmoid
+  // Gradients with respect to the rows of the same name; the log density is row 0 of geometry.
+  float* color_gradient = nullptr;
+  float* log_density_gradient = nullptr;
+  float* geometry_gradient = nullptr;
+  float* hidden_gradient[2] = {nullptr, nullptr};
+  float* geometry() const { return color_in; }
+
+ private:
+  std::vector<float> buffer_;
 };
 
 class HashField {
@@ -62,30 +78,28 @@ class HashField {
   // Grid uniform in +-1e-4, networks Xavier uniform; padding rows zero.
   void Initialize(base::Random& random, std::span<float> grid, std::span<float> networks) const;
   NetworkWeights Prepare(std::span<const float> networks) const;
-  ChunkScratch MakeScratch() const;
 
   // features[row][s], row stride `stride`, for n positions. Parallel over levels and stretches of samples.
   void Encode(std::span<const float> grid, const float* x, const float* y, const float* z, int64_t n, float* features, size_t stride,
               base::ThreadPool& threads) const;
   // The same on the calling thread, for callers that are parallel themselves.
   void EncodeSerial(std::span<const float> grid, const float* x, const float* y, const float* z, int64_t n, float* features, size_t stride) const;
-  // One chunk, n <= kChunk a multiple of kernel::kPad. geometry: kGeometryRows rows.
-  void Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, ChunkScratch& scratch, float* geometry,
-               size_t geometry_stride) const;
-  // color_raw: kColorRows rows, before the sigmoid. direction: x, y, z rows of length n.
-  void Color(const NetworkWeights& weights, const float* geometry, size_t geometry_stride, const float* direction, size_t direction_stride, int64_t n,
-             ChunkScratch& scratch, float* color_raw, size_t color_stride) const;
-  // Backward of Color and Density for the same chunk (activations are computed again: cheaper than keeping them).
-  // In: color_gradient w.r.t. color_raw, log_density_gradient w.r.t. geometry row 0 from rendering (row of n).
-  // Out: feature_gradient rows (overwritten), network_gradient (added to).
-  void Backward(const NetworkWeights& weights, const float* features, size_t feature_stride, const float* direction, size_t direction_stride,
-                int64_t n, const float* color_gradient, size_t color_stride, const float* log_density_gradient, ChunkScratch& scratch,
-                float* feature_gradient, size_t feature_gradient_stride, float* network_gradient) const;
+  // n a multiple of kernel::kPad. hidden: room for config().hidden rows; geometry: kGeometryRows rows.
+  void Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, float* hidden, size_t hidden_stride,
+               float* geometry, size_t geometry_stride) const;
+  // Spherical harmonics of one direction for `count` samples: ColorInputRows() - kGeometryRows rows.
+  void FillDirection(const float direction[3], int64_t count, float* rows, size_t stride) const;
+  // color_in: ColorInputRows() rows, geometry first. hidden: one buffer of config().hidden rows per hidden layer.
+  void Color(const NetworkWeights& weights, const float* color_in, size_t in_stride, int64_t n, float* const hidden[3], size_t hidden_stride,
+             float* color_raw, size_t color_stride) const;
+  // Backward of Density and Color on what they left in `a`. In: a.color_gradient, a.log_density_gradient, features; the features'
+  // gradient takes their place. network_gradient is added to.
+  void Backward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n, float* network_gradient) const;
+  // Multiplications and additions of the networks for one sample, forward and in all of training, without padding.
+  double ForwardFlops() const;
+  double TrainFlops() const;
 
  private:
-  void FillColorInput(const float* geometry, size_t geometry_stride, const float* direction, size_t direction_stride, int64_t n,
-                      ChunkScratch& scratch) const;
-
   struct Layer {
     int outputs, inputs;
   };

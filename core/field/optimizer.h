@@ -2,7 +2,10 @@
 // (tiny-cuda-nn's rule); the networks carry a small L2 term.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "core/base/thread_pool.h"
@@ -18,18 +21,26 @@ struct TrainableState {
 
   // Not saved: zero between steps.
   std::vector<float> grid_gradient, network_gradient;
-  std::vector<uint8_t> touched;  // per grid entry
-  std::vector<uint32_t> list;    // per level, at EntryOffset(level)
-  std::vector<uint32_t> listed;  // per level
+  std::vector<uint8_t> touched;  // per line of kernel::kLineFloats grid parameters
 
   void Allocate(const HashField& field);
 };
 
-// Adds the gradient of n samples' features to the grid. Each level belongs to one task, so bits do not depend on the thread count.
-void AccumulateGrid(const HashField& field, const float* x, const float* y, const float* z, int64_t n, const float* feature_gradient, size_t stride,
-                    TrainableState& state, base::ThreadPool& threads);
+// Told at the end of every task which thread did it and when it began; may be empty.
+using TaskClock = std::function<void(int thread, std::chrono::steady_clock::time_point began)>;
+
+// Samples of one batch in stretches, as packets leave them.
+struct GridGradient {
+  int64_t begin = 0, count = 0;     // in x, y, z
+  const float* gradient = nullptr;  // FeatureRows() rows
+  size_t stride = 0;
+};
+// Adds the gradient of the samples' features to the grid. Each level belongs to one task, so bits do not depend on the thread count.
+void AccumulateGrid(const HashField& field, const float* x, const float* y, const float* z, std::span<const GridGradient> stretches,
+                    TrainableState& state, base::ThreadPool& threads, const TaskClock& clock = {});
 // One update; clears the gradients. network_l2 is the weight decay of the networks.
-void ApplyAdam(const HashField& field, double learning_rate, double network_l2, TrainableState& state, base::ThreadPool& threads);
+void ApplyAdam(const HashField& field, double learning_rate, double network_l2, TrainableState& state, base::ThreadPool& threads,
+               const TaskClock& clock = {});
 // Forgets this step's gradients without an update.
 void DropGradients(TrainableState& state);
 

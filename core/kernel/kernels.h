@@ -7,11 +7,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace skyquilt::kernel {
 
 // Samples per vector group: a multiple of every supported vector width.
-constexpr int kPad = 64;
+constexpr int kPad = 16;
 // Rows of a weight matrix are padded to a multiple of this with zero rows.
 constexpr int kRowPad = 4;
 // One cache line of floats. Row strides that are multiples of a page put all rows on the same few cache sets and cost a factor of five;
@@ -22,25 +23,37 @@ constexpr int64_t Padded(int64_t n) {
   return (n + kPad - 1) / kPad * kPad;
 }
 constexpr size_t StrideFor(int64_t n) {
-  return static_cast<size_t>(Padded(n) + kStridePad);
+  return static_cast<size_t>((Padded(n) / kStridePad + 1) | 1) * kStridePad;  // an odd number of lines
 }
 constexpr int PaddedRows(int n) {
   return (n + kRowPad - 1) / kRowPad * kRowPad;
 }
 
-// Name of the instruction set in use ("AVX3_ZEN4", "AVX2", "SSE4", ...).
+// One cache line of table parameters: the unit in which touched entries are remembered. Tables are whole numbers of lines.
+constexpr int kLineFloats = 16;
+
+// Name of the instruction set in use: "avx3_zen4", "avx3", "avx2", "sse4", ...
 std::string ActiveInstructionSet();
+// All that this processor can run, best first; the last is the portable one.
+std::vector<std::string> InstructionSets();
+// Runs every kernel on one of them from now on: a name of InstructionSets(), or "avx512", "avx2", "portable".
+// Throws std::invalid_argument naming the choices. Not while kernels run.
+void ForceInstructionSet(const std::string& name);
 
 // out[o][s] = sum_i weights[o * n_in + i] * in[i][s], then max(0, .) when relu.
 // n_out a multiple of kRowPad, n a multiple of kPad; weights n_out x n_in row-major.
 void Dense(const float* weights, int n_out, int n_in, const float* in, size_t in_stride, int64_t n, bool relu, float* out, size_t out_stride);
 
+// The same without relu, with out[o][s] = 0 where gate[o][s] <= 0: the gradient that passes back through a relu of result `gate`.
+void DenseGated(const float* weights, int n_out, int n_in, const float* in, size_t in_stride, int64_t n, const float* gate, size_t gate_stride,
+                float* out, size_t out_stride);
+
 // weight_gradient[o * n_in + i] += sum_s out_gradient[o][s] * in[i][s]. n_out and n_in multiples of kRowPad, n of kPad.
 void DenseWeightGradient(const float* out_gradient, size_t out_stride, int n_out, const float* in, size_t in_stride, int n_in, int64_t n,
                          float* weight_gradient);
 
-// gradient[r][s] = 0 where activation[r][s] <= 0: backward of ReLU.
-void ReluBackward(const float* activation, size_t activation_stride, int rows, int64_t n, float* gradient, size_t gradient_stride);
+// No infinity and no NaN among n values (any n).
+bool AllFinite(const float* values, int64_t n);
 
 // One level of the multi-resolution hash grid (Mueller et al. 2022, eq. 2-4), with its own size per axis.
 struct HashLevel {
@@ -58,10 +71,18 @@ uint32_t HashIndex(const HashLevel& level, uint32_t x, uint32_t y, uint32_t z);
 void HashForward(const HashLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
                  size_t out_stride);
 
-// Adds the gradient of the lookup to table_gradient and lists every entry that becomes non-zero for the first time:
-// touched[entry] is set to 1 and the entry appended to list at *count. Samples with an all-zero gradient are skipped.
+// Adds the gradient of the lookup to table_gradient and sets touched[line] = 1 for every line of kLineFloats that it writes to.
+// Samples with an all-zero gradient are skipped.
 void HashBackward(const HashLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
-                  size_t out_stride, float* table_gradient, uint8_t* touched, uint32_t* list, uint32_t* count);
+                  size_t out_stride, float* table_gradient, uint8_t* touched);
+
+// out = exp(min(limit, x + bias)), n a multiple of kPad.
+void ExpShifted(const float* x, int64_t n, float bias, float limit, float* out);
+// out = range / (1 + exp(-x)), n a multiple of kPad.
+void Sigmoid(const float* x, int64_t n, float range, float* out);
+// Moves the columns s with keep[s] > 0 of every row to the front, in order; returns how many. n a multiple of kPad; in may be out.
+// Up to kPad columns behind the kept ones are overwritten.
+int64_t Compact(const float* keep, int64_t n, int rows, const float* in, size_t in_stride, float* out, size_t out_stride);
 
 struct AdamStep {
   float learning_rate = 1e-2F;
@@ -72,9 +93,9 @@ struct AdamStep {
   float correction2 = 1.0F;  // 1 - beta2^t
 };
 
-// Adam on the listed entries only (entries without a gradient keep parameters and moments); clears their gradient and mark.
-void AdamListed(const AdamStep& step, int features, const uint32_t* list, uint32_t count, float* table, float* table_gradient, float* moment1,
-                float* moment2, uint8_t* touched);
+// Adam on the parameters of touched lines whose gradient is not zero; the others keep value and moments (tiny-cuda-nn's rule).
+// Clears gradients and marks. Arrays of lines * kLineFloats.
+void AdamTouched(const AdamStep& step, int64_t lines, uint8_t* touched, float* table, float* table_gradient, float* moment1, float* moment2);
 // Adam on n consecutive parameters with L2 decay; clears the gradient.
 void AdamDense(const AdamStep& step, float l2, int64_t n, float* parameters, float* gradient, float* moment1, float* moment2);
 

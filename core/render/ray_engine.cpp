@@ -27,19 +27,22 @@ struct FieldBatch {
   std::vector<float> features, geometry;  // rows, stride
   size_t stride = 0;
   std::vector<int> visible;  // local indices that need colour
-  std::vector<float> direction, visible_geometry, color;
+  std::vector<float> color_in, color;
   size_t visible_stride = 0;
 };
 
-class Group {
+}  // namespace
+
+class RayRenderer::Group {
  public:
   Group(const FieldSet& fields, const EngineOptions& options) : options_(options) {
     for (const TrainedField* f : fields.blocks) all_.push_back(f);
     context_index_ = static_cast<int>(all_.size());
     if (fields.context != nullptr) all_.push_back(fields.context);
     batches_.resize(all_.size());
-    fields_ = &fields;
-    for (const TrainedField* f : all_) scratch_.push_back(f->field->MakeScratch());
+    fields_ = fields;
+    scratch_.resize(all_.size());
+    for (size_t k = 0; k < all_.size(); ++k) scratch_[k].Reserve(*all_[k]->field, field::kChunk);
   }
 
   int64_t Render(std::span<const Ray> rays, std::span<RayColor> out) {
@@ -92,7 +95,7 @@ class Group {
     int count = 0;
     March(f, ray.origin_enu, ray.direction_enu, Clip(ray, f), f.step_m * options_.step_scale, 0.5F, [&](double t, double length, double unit_length) {
       const Eigen::Vector3d p = ray.origin_enu + t * ray.direction_enu;
-      const double context_weight = BlendWeights(*fields_, candidates_, p.x(), p.y(), block_weights_);
+      const double context_weight = BlendWeights(fields_, candidates_, p.x(), p.y(), block_weights_);
       const double weight = candidate < 0 ? context_weight : block_weights_[static_cast<size_t>(candidate)];
       if (weight > 1e-4) {
         const Eigen::Vector3f unit = f.map.UnitFromEnu(p);
@@ -117,8 +120,8 @@ class Group {
     batch.geometry.resize(static_cast<size_t>(field::kGeometryRows) * batch.stride);
     f.EncodeSerial(all_[k]->grid, batch.x.data(), batch.y.data(), batch.z.data(), n, batch.features.data(), batch.stride);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {
-      f.Density(all_[k]->weights, batch.features.data() + begin, batch.stride, std::min<int64_t>(field::kChunk, padded - begin), scratch_[k],
-                batch.geometry.data() + begin, batch.stride);
+      f.Density(all_[k]->weights, batch.features.data() + begin, batch.stride, std::min<int64_t>(field::kChunk, padded - begin),
+                scratch_[k].density_hidden, scratch_[k].stride, batch.geometry.data() + begin, batch.stride);
     }
   }
 
@@ -160,34 +163,37 @@ class Group {
     const field::HashField& f = *all_[k]->field;
     const int64_t padded = kernel::Padded(n);
     batch.visible_stride = kernel::StrideFor(n);
-    batch.direction.assign(3 * batch.visible_stride, 0.0F);
-    batch.visible_geometry.assign(static_cast<size_t>(field::kGeometryRows) * batch.visible_stride, 0.0F);
+    batch.color_in.assign(static_cast<size_t>(f.ColorInputRows()) * batch.visible_stride, 0.0F);
     batch.color.resize(static_cast<size_t>(field::kColorRows) * batch.visible_stride);
     FillDirections(k, rays);
     for (int row = 0; row < field::kGeometryRows; ++row) {
       const float* from = batch.geometry.data() + static_cast<size_t>(row) * batch.stride;
-      float* to = batch.visible_geometry.data() + static_cast<size_t>(row) * batch.visible_stride;
+      float* to = batch.color_in.data() + static_cast<size_t>(row) * batch.visible_stride;
       for (size_t i = 0; i < batch.visible.size(); ++i) to[i] = from[batch.visible[i]];
     }
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {
-      f.Color(all_[k]->weights, batch.visible_geometry.data() + begin, batch.visible_stride, batch.direction.data() + begin, batch.visible_stride,
-              std::min<int64_t>(field::kChunk, padded - begin), scratch_[k], batch.color.data() + begin, batch.visible_stride);
+      const int64_t count = std::min<int64_t>(field::kChunk, padded - begin);
+      f.Color(all_[k]->weights, batch.color_in.data() + begin, batch.visible_stride, count, scratch_[k].color_hidden, scratch_[k].stride,
+              batch.color.data() + begin, batch.visible_stride);
+    }
+    for (size_t c = 0; c < 3; ++c) {
+      float* row = batch.color.data() + c * batch.visible_stride;
+      kernel::Sigmoid(row, padded, static_cast<float>(all_[k]->config.color_range), row);
     }
   }
 
   // Visible samples were listed in ray order, so the same walk finds each one's ray.
   void FillDirections(size_t k, std::span<const Ray> rays) {
     FieldBatch& batch = batches_[k];
+    float* sh = batch.color_in.data() + static_cast<size_t>(field::kGeometryRows) * batch.visible_stride;
     size_t next = 0;
     for (size_t r = 0; r < rays.size(); ++r) {
-      const Eigen::Vector3f d = rays[r].direction_enu.cast<float>();
+      const size_t first = next;
       for (size_t s = ray_begin_[r]; s < ray_begin_[r + 1]; ++s) {
-        if (samples_[s].field != static_cast<int>(k) || !(weight_[s] > options_.colour_threshold)) continue;
-        batch.direction[next] = d.x();
-        batch.direction[batch.visible_stride + next] = d.y();
-        batch.direction[2 * batch.visible_stride + next] = d.z();
-        samples_[s].local = static_cast<int>(next++);
+        if (samples_[s].field == static_cast<int>(k) && weight_[s] > options_.colour_threshold) samples_[s].local = static_cast<int>(next++);
       }
+      const Eigen::Vector3f d = rays[r].direction_enu.cast<float>();
+      all_[k]->field->FillDirection(d.data(), static_cast<int64_t>(next - first), sh + first, batch.visible_stride);
     }
   }
 
@@ -196,20 +202,16 @@ class Group {
       if (!(weight_[s] > options_.colour_threshold)) continue;
       const auto k = static_cast<size_t>(samples_[s].field);
       const FieldBatch& batch = batches_[k];
-      const auto range = static_cast<float>(all_[k]->config.color_range);
-      for (size_t c = 0; c < 3; ++c) {
-        const float raw = batch.color[c * batch.visible_stride + static_cast<size_t>(samples_[s].local)];
-        out.rgb_srgb[c] += weight_[s] * range / (1.0F + std::exp(-raw));
-      }
+      for (size_t c = 0; c < 3; ++c) out.rgb_srgb[c] += weight_[s] * batch.color[c * batch.visible_stride + static_cast<size_t>(samples_[s].local)];
     }
   }
 
-  const EngineOptions& options_;
-  const FieldSet* fields_ = nullptr;
+  EngineOptions options_;
+  FieldSet fields_;
   std::vector<const TrainedField*> all_;
   int context_index_ = 0;
   std::vector<FieldBatch> batches_;
-  std::vector<field::ChunkScratch> scratch_;
+  std::vector<field::Activations> scratch_;
   std::vector<Sample> samples_;
   std::vector<size_t> ray_begin_;
   std::vector<float> weight_;
@@ -217,7 +219,13 @@ class Group {
   std::vector<double> block_weights_;
 };
 
-}  // namespace
+RayRenderer::RayRenderer(const FieldSet& fields, const EngineOptions& options) : group_(std::make_unique<Group>(fields, options)) {}
+
+RayRenderer::~RayRenderer() = default;
+
+int64_t RayRenderer::Render(std::span<const Ray> rays, std::span<RayColor> out) {
+  return group_->Render(rays, out);
+}
 
 double BlendWeights(const FieldSet& fields, std::span<const int> candidates, double x, double y, std::span<double> weights) {
   double sum = 0.0;
@@ -236,16 +244,16 @@ double BlendWeights(const FieldSet& fields, std::span<const int> candidates, dou
 void RenderRays(const FieldSet& fields, std::span<const Ray> rays, std::span<RayColor> out, const EngineOptions& options, base::ThreadPool& threads,
                 int64_t* samples) {
   if (rays.empty()) return;
-  std::vector<std::unique_ptr<Group>> groups(static_cast<size_t>(threads.size()));
+  std::vector<std::unique_ptr<RayRenderer>> renderers(static_cast<size_t>(threads.size()));
   const auto n = static_cast<int64_t>(rays.size());
   std::atomic<int64_t> evaluated{0};
   threads.ParallelFor((n + kGroupRays - 1) / kGroupRays, [&](int64_t task, int thread) {
     base::ThrowIfCancelled();
-    auto& group = groups[static_cast<size_t>(thread)];
-    if (!group) group = std::make_unique<Group>(fields, options);
+    auto& renderer = renderers[static_cast<size_t>(thread)];
+    if (!renderer) renderer = std::make_unique<RayRenderer>(fields, options);
     const auto begin = static_cast<size_t>(task * kGroupRays);
     const size_t count = std::min(static_cast<size_t>(kGroupRays), rays.size() - begin);
-    evaluated += group->Render(rays.subspan(begin, count), out.subspan(begin, count));
+    evaluated += renderer->Render(rays.subspan(begin, count), out.subspan(begin, count));
   });
   if (samples != nullptr) *samples += evaluated;
 }

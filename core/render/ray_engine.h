@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,19 @@ struct EngineOptions {
 
 // Blend weights of the set at a place: one per block, and the context's share in the return value. Sums to 1 inside any core box.
 double BlendWeights(const FieldSet& fields, std::span<const int> candidates, double x, double y, std::span<double> weights);
+
+// Renders on the calling thread; keeps its workspace between calls. The fields must outlive it. Not for two threads at once.
+class RayRenderer {
+ public:
+  RayRenderer(const FieldSet& fields, const EngineOptions& options);
+  ~RayRenderer();
+  // As RenderRays; returns the samples evaluated. Best with some hundreds of rays at a time.
+  int64_t Render(std::span<const Ray> rays, std::span<RayColor> out);
+
+ private:
+  class Group;
+  std::unique_ptr<Group> group_;
+};
 
 // rays and out have the same length. Colours are display values at the reference exposure, premultiplied, over black. Samples evaluated are
 // added to *samples when not null. Deterministic for any number of threads. Throws base::Interrupted when cancelled.

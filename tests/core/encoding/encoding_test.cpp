@@ -55,7 +55,11 @@ TEST(HashGrid, LevelsGrowFromBaseToFinestAndAreDenseWhereTheyFit) {
   EXPECT_FALSE(grid.level(7).dense);
   EXPECT_EQ(grid.level(7).entries, 1U << 17U);
   EXPECT_EQ(grid.level(0).entries, 17U * 17U * 17U);
-  for (int l = 0; l < 8; ++l) EXPECT_EQ(grid.Offset(l + 1) - grid.Offset(l), static_cast<int64_t>(grid.level(l).entries) * 4);
+  for (int l = 0; l < 8; ++l) {
+    const int64_t padding = grid.Offset(l + 1) - grid.Offset(l) - static_cast<int64_t>(grid.level(l).entries) * 4;
+    EXPECT_TRUE(padding >= 0 && padding < kernel::kLineFloats) << l;
+    EXPECT_EQ(grid.Offset(l + 1) % kernel::kLineFloats, 0) << l;
+  }
 }
 
 TEST(HashGrid, SmallestAndLargestTablesAreLegal) {

@@ -32,7 +32,7 @@ struct Reference {
   std::vector<double> Forward(const std::vector<double>& grid, const std::vector<double>& networks, const double x[3], const double d[3]) const {
     std::vector<double> features;
     for (int l = 0; l < field.grid().levels(); ++l) {
-      const std::vector<double> table(grid.begin() + field.grid().Offset(l), grid.begin() + field.grid().Offset(l + 1));
+      const std::vector<double> table(grid.begin() + field.grid().Offset(l), grid.begin() + field.grid().Offset(l + 1));  // padding included
       for (const double f : kernel::reference::HashForward(field.grid().level(l), field.grid().features(), table, x)) features.push_back(f);
     }
     auto next = networks.begin();
@@ -79,13 +79,24 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
     density_gradient[s] = random.Uniform() - 0.5F;
   }
   const auto rows = static_cast<size_t>(field.FeatureRows());
-  std::vector<float> features(rows * stride, 0.0F), feature_gradient(rows * stride, 0.0F);
+  std::vector<float> features(rows * stride, 0.0F);
   field.Encode(state.grid, x.data(), y.data(), z.data(), n, features.data(), stride, threads);
-  ChunkScratch scratch = field.MakeScratch();
   const NetworkWeights weights = field.Prepare(state.networks);
-  field.Backward(weights, features.data(), stride, direction.data(), stride, static_cast<int64_t>(stride), color_gradient.data(), stride,
-                 density_gradient.data(), scratch, feature_gradient.data(), stride, state.network_gradient.data());
-  AccumulateGrid(field, x.data(), y.data(), z.data(), n, feature_gradient.data(), stride, state, threads);
+  Activations a;
+  a.Reserve(field, n);
+  const auto padded = static_cast<int64_t>(stride);
+  field.Density(weights, features.data(), stride, padded, a.density_hidden, a.stride, a.geometry(), a.stride);
+  for (size_t s = 0; s < stride; ++s) {
+    const float d[3] = {direction[s], direction[stride + s], direction[2 * stride + s]};
+    field.FillDirection(d, 1, a.color_in + static_cast<size_t>(kGeometryRows) * a.stride + s, a.stride);
+    a.log_density_gradient[s] = density_gradient[s];
+    for (size_t c = 0; c < 4; ++c) a.color_gradient[c * a.stride + s] = color_gradient[c * stride + s];
+  }
+  field.Color(weights, a.color_in, a.stride, padded, a.color_hidden, a.stride, a.color_raw, a.stride);
+  field.Backward(weights, a, features.data(), stride, padded, state.network_gradient.data());
+  // Two stretches, as two packets leave them.
+  const GridGradient stretches[2] = {{0, 2, features.data(), stride}, {2, n - 2, features.data() + 2, stride}};
+  AccumulateGrid(field, x.data(), y.data(), z.data(), stretches, state, threads);
 
   std::vector<double> grid(state.grid.begin(), state.grid.end()), networks(state.networks.begin(), state.networks.end());
   const Reference reference{field};
@@ -146,8 +157,6 @@ TEST(TrainableState, DroppedGradientsLeaveNoTrace) {
   TrainableState state;
   state.Allocate(field);
   state.grid_gradient[3] = std::nanf("");
-  state.list[0] = 0;
-  state.listed[0] = 1;
   state.touched[0] = 1;
   DropGradients(state);
   EXPECT_EQ(state.grid_gradient[3], 0.0F);

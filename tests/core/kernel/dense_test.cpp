@@ -3,10 +3,14 @@
 #include "core/base/random.h"
 #include "core/kernel/kernels.h"
 #include "core/kernel/reference.h"
+#include "tests/support/each_instruction_set.h"
 #include "tests/support/gradient_check.h"
 
 namespace skyquilt::kernel {
 namespace {
+
+using DenseKernels = testing::EachInstructionSet;
+SKYQUILT_EACH_INSTRUCTION_SET(DenseKernels);
 
 std::vector<double> RandomVector(base::Random& random, size_t n) {
   std::vector<double> v(n);
@@ -33,18 +37,18 @@ TEST(DenseReference, GradientsMatchFiniteDifferences) {
   }
 }
 
-TEST(Dense, AgreesWithReference) {
+TEST_P(DenseKernels, AgreesWithReference) {
   base::Random random(5);
   for (const int n_in : {4, 12, 28, 32, 64}) {
     for (const int n_out : {4, 16, 64}) {
-      for (const int64_t n : {0, 64, 192, 512}) {
+      for (const int64_t n : {0, 16, 48, 80, 112, 512}) {
         const size_t stride = static_cast<size_t>(n) + 64;
         std::vector<float> weights(static_cast<size_t>(n_out * n_in)), in(static_cast<size_t>(n_in) * stride),
             out(static_cast<size_t>(n_out) * stride, -7.0F);
         for (float& w : weights) w = random.Uniform() - 0.5F;
         for (float& x : in) x = random.Uniform() - 0.5F;
         Dense(weights.data(), n_out, n_in, in.data(), stride, n, true, out.data(), stride);
-        for (size_t s = 0; s < static_cast<size_t>(n); s += 37) {
+        for (size_t s = 0; s < static_cast<size_t>(n); s += 13) {
           std::vector<float> column;
           for (int i = 0; i < n_in; ++i) column.push_back(in[static_cast<size_t>(i) * stride + s]);
           const auto expected = reference::Dense(weights, n_out, column, true);
@@ -58,7 +62,7 @@ TEST(Dense, AgreesWithReference) {
   }
 }
 
-TEST(DenseWeightGradient, AgreesWithReferenceAndAdds) {
+TEST_P(DenseKernels, WeightGradientAgreesWithReferenceAndAdds) {
   base::Random random(7);
   const int n_in = 28, n_out = 16;
   const int64_t n = 128;
@@ -85,14 +89,19 @@ TEST(Dense, RefusesUnpaddedShapes) {
   EXPECT_THROW(Dense(buffer, 4, 4, buffer, 64, 63, false, buffer, 64), std::logic_error);
 }
 
-TEST(ReluBackward, ZeroesWhereTheUnitSlept) {
-  std::vector<float> activation(64, 1.0F), gradient(64, 2.0F);
-  activation[3] = 0.0F;
-  activation[63] = 0.0F;
-  ReluBackward(activation.data(), 64, 1, 64, gradient.data(), 64);
-  EXPECT_EQ(gradient[3], 0.0F);
-  EXPECT_EQ(gradient[63], 0.0F);
-  EXPECT_EQ(gradient[4], 2.0F);
+TEST_P(DenseKernels, GateStopsWhatTheUnitStopped) {
+  constexpr size_t kN = 48;
+  std::vector<float> weights(16), in(4 * kN, 1.0F), gate(4 * kN, 1.0F), out(4 * kN);
+  for (size_t i = 0; i < 16; ++i) weights[i] = static_cast<float>(i + 1);
+  gate[3] = 0.0F;
+  gate[2 * kN + 47] = -1.0F;
+  DenseGated(weights.data(), 4, 4, in.data(), kN, kN, gate.data(), kN, out.data(), kN);
+  for (size_t o = 0; o < 4; ++o) {
+    for (size_t s = 0; s < kN; ++s) {
+      const float sum = static_cast<float>(4 * (4 * o + 1) + 6);
+      EXPECT_EQ(out[o * kN + s], gate[o * kN + s] > 0.0F ? sum : 0.0F);
+    }
+  }
 }
 
 }  // namespace

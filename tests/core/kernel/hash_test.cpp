@@ -5,10 +5,14 @@
 #include "core/base/random.h"
 #include "core/kernel/kernels.h"
 #include "core/kernel/reference.h"
+#include "tests/support/each_instruction_set.h"
 #include "tests/support/gradient_check.h"
 
 namespace skyquilt::kernel {
 namespace {
+
+using HashKernels = testing::EachInstructionSet;
+SKYQUILT_EACH_INSTRUCTION_SET(HashKernels);
 
 HashLevel Hashed() {
   HashLevel level;
@@ -59,7 +63,7 @@ TEST(HashReference, TableGradientMatchesFiniteDifferences) {
   }
 }
 
-TEST(HashForward, AgreesWithReferenceAtEveryLength) {
+TEST_P(HashKernels, ForwardAgreesWithReferenceAtEveryLength) {
   base::Random random(13);
   for (const HashLevel& level : {Hashed(), DenseLevel()}) {
     for (const int features : {2, 4}) {
@@ -85,7 +89,7 @@ TEST(HashForward, AgreesWithReferenceAtEveryLength) {
   }
 }
 
-TEST(HashForward, NanPositionGivesFiniteFeatures) {
+TEST_P(HashKernels, NanPositionGivesFiniteFeatures) {
   const HashLevel level = DenseLevel();
   std::vector<float> table(level.entries * 2, 0.25F);
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -94,57 +98,67 @@ TEST(HashForward, NanPositionGivesFiniteFeatures) {
   EXPECT_FLOAT_EQ(out[0], 0.25F);
 }
 
-TEST(HashBackward, AgreesWithReferenceAndListsEachEntryOnce) {
+TEST_P(HashKernels, BackwardAgreesWithReferenceAndMarksExactlyTheLinesItWrote) {
   base::Random random(17);
   const HashLevel level = Hashed();
-  const size_t n = 500;
-  std::vector<float> x, y, z, out_gradient(4 * n);
-  for (size_t i = 0; i < n; ++i) {
-    x.push_back(random.Uniform());
-    y.push_back(random.Uniform());
-    z.push_back(0.3F * random.Uniform());
+  for (const size_t features : {2, 4}) {
+    const size_t n = 23;  // few enough to leave lines untouched
+    std::vector<float> x, y, z, out_gradient(features * n);
+    for (size_t i = 0; i < n; ++i) {
+      x.push_back(random.Uniform());
+      y.push_back(random.Uniform());
+      z.push_back(0.3F * random.Uniform());
+    }
+    for (float& g : out_gradient) g = random.Uniform() - 0.5F;
+    for (size_t f = 0; f < features; ++f) out_gradient[f * n + 10] = 0.0F;  // a sample without gradient is skipped
+    std::vector<float> gradient(level.entries * features, 0.0F);
+    std::vector<double> expected(gradient.size(), 0.0);
+    std::vector<uint8_t> touched(gradient.size() / kLineFloats, 0);
+    HashBackward(level, static_cast<int>(features), x.data(), y.data(), z.data(), static_cast<int64_t>(n), out_gradient.data(), n, gradient.data(),
+                 touched.data());
+    for (size_t s = 0; s < n; ++s) {
+      const double position[3] = {static_cast<double>(x[s]), static_cast<double>(y[s]), static_cast<double>(z[s])};
+      std::vector<double> g;
+      for (size_t f = 0; f < features; ++f) g.push_back(static_cast<double>(out_gradient[f * n + s]));
+      reference::HashBackward(level, position, g, &expected);
+    }
+    for (size_t i = 0; i < gradient.size(); ++i) EXPECT_NEAR(static_cast<double>(gradient[i]), expected[i], 1e-4);
+    size_t resting = 0;
+    for (size_t line = 0; line < touched.size(); ++line) {
+      bool written = false;
+      for (size_t i = line * kLineFloats; i < (line + 1) * kLineFloats; ++i) written = written || gradient[i] != 0.0F;
+      EXPECT_EQ(touched[line] != 0, written) << line;
+      resting += written ? 0U : 1U;
+    }
+    EXPECT_GT(resting, 0U);
   }
-  for (float& g : out_gradient) g = random.Uniform() - 0.5F;
-  for (size_t f = 0; f < 4; ++f) out_gradient[f * n + 100] = 0.0F;  // a sample without gradient is skipped
-  std::vector<float> gradient(level.entries * 4, 0.0F);
-  std::vector<double> expected(gradient.size(), 0.0);
-  std::vector<uint8_t> touched(level.entries, 0);
-  std::vector<uint32_t> list(level.entries);
-  uint32_t count = 0;
-  HashBackward(level, 4, x.data(), y.data(), z.data(), static_cast<int64_t>(n), out_gradient.data(), n, gradient.data(), touched.data(), list.data(),
-               &count);
-  for (size_t s = 0; s < n; ++s) {
-    const double position[3] = {static_cast<double>(x[s]), static_cast<double>(y[s]), static_cast<double>(z[s])};
-    std::vector<double> g;
-    for (size_t f = 0; f < 4; ++f) g.push_back(static_cast<double>(out_gradient[f * n + s]));
-    reference::HashBackward(level, position, g, &expected);
-  }
-  for (size_t i = 0; i < gradient.size(); ++i) EXPECT_NEAR(static_cast<double>(gradient[i]), expected[i], 1e-3);
-  std::vector<int> seen(level.entries, 0);
-  for (uint32_t k = 0; k < count; ++k) ++seen[list[k]];
-  for (uint32_t e = 0; e < level.entries; ++e) EXPECT_EQ(seen[e], touched[e]);
 }
 
-TEST(AdamListed, MovesOnlyListedEntriesAgainstTheGradient) {
-  std::vector<float> table(8, 1.0F), gradient(8, 0.0F), m(8, 0.0F), v(8, 0.0F);
-  std::vector<uint8_t> touched(2, 0);
-  gradient[4] = 3.0F;
-  gradient[5] = -0.001F;
-  touched[1] = 1;
-  const uint32_t list[1] = {1};
+TEST_P(HashKernels, AdamMovesOnlyParametersWithAGradient) {
+  constexpr size_t kLines = 11;  // more than one look at eight marks
+  std::vector<float> table(kLines * kLineFloats, 1.0F), gradient(table.size(), 0.0F), m(table.size(), 0.0F), v(table.size(), 0.0F);
+  std::vector<uint8_t> touched(kLines, 0);
+  constexpr size_t kUp = 9 * kLineFloats + 4, kDown = 9 * kLineFloats + 5, kUnmarked = 3 * kLineFloats;
+  gradient[kUp] = 3.0F;
+  gradient[kDown] = -0.001F;
+  gradient[kUnmarked] = 1.0F;
+  touched[9] = 1;
   AdamStep step;
   step.correction1 = 1.0F - step.beta1;
   step.correction2 = 1.0F - step.beta2;
-  AdamListed(step, 4, list, 1, table.data(), gradient.data(), m.data(), v.data(), touched.data());
-  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(table[i], 1.0F);
+  AdamTouched(step, kLines, touched.data(), table.data(), gradient.data(), m.data(), v.data());
   // The first step of Adam has the size of the learning rate whatever the gradient (Kingma and Ba 2015, section 2.1).
-  EXPECT_NEAR(table[4], 1.0F - step.learning_rate, 1e-6F);
-  EXPECT_NEAR(table[5], 1.0F + step.learning_rate, 1e-6F);
-  EXPECT_EQ(gradient[4], 0.0F);
-  EXPECT_EQ(touched[1], 0);
+  for (size_t i = 0; i < table.size(); ++i) {
+    const float moved = i == kUp ? -step.learning_rate : i == kDown ? step.learning_rate : 0.0F;
+    EXPECT_NEAR(table[i], 1.0F + moved, 1e-6F) << i;
+    EXPECT_EQ(m[i] != 0.0F, moved != 0.0F) << i;
+    EXPECT_EQ(v[i] != 0.0F, moved != 0.0F) << i;
+    EXPECT_EQ(gradient[i], i == kUnmarked ? 1.0F : 0.0F) << i;
+  }
+  EXPECT_EQ(touched[9], 0);
 }
 
-TEST(HashKernels, RefuseOtherFeatureCounts) {
+TEST(HashKernelShapes, RefuseOtherFeatureCounts) {
   float value = 0.0F;
   EXPECT_THROW(HashForward(DenseLevel(), 3, &value, &value, &value, &value, 1, &value, 1), std::logic_error);
 }

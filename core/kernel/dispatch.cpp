@@ -1,0 +1,64 @@
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+
+#include "core/kernel/kernels.h"
+
+namespace skyquilt::kernel {
+namespace {
+
+std::string Lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// Names of CPU features as users know them, for Highway's own.
+std::string CommonName(int64_t target) {
+  if (target <= HWY_AVX3) return "avx512";
+  if (target == HWY_AVX2) return "avx2";
+  return Lower(hwy::TargetName(target));
+}
+
+// Sets of instructions the program was built for and this processor has, best first.
+std::vector<int64_t> UsableTargets() {
+  hwy::SetSupportedTargetsForTest(0);
+  std::vector<int64_t> usable;
+  for (int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1) usable.push_back(rest & -rest);
+  return usable;
+}
+
+}  // namespace
+
+std::string ActiveInstructionSet() {
+  const int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
+  return Lower(hwy::TargetName(usable & -usable));
+}
+
+std::vector<std::string> InstructionSets() {
+  const std::string active = ActiveInstructionSet();
+  std::vector<std::string> names;
+  for (const int64_t target : UsableTargets()) names.push_back(Lower(hwy::TargetName(target)));
+  ForceInstructionSet(active);
+  return names;
+}
+
+void ForceInstructionSet(const std::string& name) {
+  const std::vector<int64_t> usable = UsableTargets();
+  std::string known;
+  for (const int64_t target : usable) {
+    const std::string own = Lower(hwy::TargetName(target));
+    const bool portable = name == "portable" && target == usable.back();
+    if (name == own || name == CommonName(target) || portable) {
+      // A target's bit and those of all that are worse: the lowest set bit is the one chosen.
+      hwy::SetSupportedTargetsForTest(target);
+      hwy::GetChosenTarget().Update(target);
+      return;
+    }
+    known += (known.empty() ? "" : ", ") + own;
+  }
+  throw std::invalid_argument("instruction set '" + name + "' is not one of " + known + ", avx512, avx2 or portable that this processor has");
+}
+
+}  // namespace skyquilt::kernel

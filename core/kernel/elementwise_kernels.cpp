@@ -1,0 +1,100 @@
+#include "core/kernel/kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/kernel/elementwise_kernels.cpp"
+#include <hwy/foreach_target.h>  // re-includes this file once per instruction set
+// clang-format off
+#include <hwy/highway.h>
+#include <hwy/contrib/math/math-inl.h>
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace skyquilt::kernel::HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using FloatTag = hn::ScalableTag<float>;
+using FloatVector = hn::Vec<FloatTag>;
+
+// exp(min(limit, x + bias)) for whole vectors.
+void ExpShiftedImpl(const float* x, int64_t n, float bias, float limit, float* out) {
+  const FloatTag d;
+  const auto lanes = static_cast<int64_t>(hn::Lanes(d));
+  for (int64_t s = 0; s < n; s += lanes) {
+    hn::StoreU(hn::Exp(d, hn::Min(hn::Set(d, limit), hn::Add(hn::LoadU(d, x + s), hn::Set(d, bias)))), d, out + s);
+  }
+}
+
+void SigmoidImpl(const float* x, int64_t n, float range, float* out) {
+  const FloatTag d;
+  const auto lanes = static_cast<int64_t>(hn::Lanes(d));
+  const auto one = hn::Set(d, 1.0F);
+  for (int64_t s = 0; s < n; s += lanes) {
+    // exp(80) is finite in float, and 1 / (1 + exp(80)) is zero to the last bit of any colour.
+    const auto exponent = hn::Min(hn::Set(d, 80.0F), hn::Neg(hn::LoadU(d, x + s)));
+    hn::StoreU(hn::Div(hn::Set(d, range), hn::Add(one, hn::Exp(d, exponent))), d, out + s);
+  }
+}
+
+bool AllFiniteImpl(const float* values, int64_t n) {
+  const FloatTag d;
+  const auto lanes = static_cast<int64_t>(hn::Lanes(d));
+  // x - x is zero for finite x only, and NaN stays NaN in a sum.
+  auto sum = hn::Zero(d);
+  int64_t i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    const auto value = hn::LoadU(d, values + i);
+    sum = hn::Add(sum, hn::Sub(value, value));
+  }
+  float rest = hn::GetLane(hn::SumOfLanes(d, sum));
+  for (; i < n; ++i) rest += values[i] - values[i];
+  return rest == 0.0F;
+}
+
+int64_t CompactImpl(const float* keep, int64_t n, int rows, const float* in, size_t in_stride, float* out, size_t out_stride) {
+  const FloatTag d;
+  const auto lanes = static_cast<int64_t>(hn::Lanes(d));
+  int64_t kept = 0;
+  for (int64_t s = 0; s < n; s += lanes) {
+    const auto mask = hn::Gt(hn::LoadU(d, keep + s), hn::Zero(d));
+    const auto count = static_cast<int64_t>(hn::CountTrue(d, mask));
+    if (count == 0) continue;
+    for (int row = 0; row < rows; ++row) {
+      const auto value = hn::LoadU(d, in + static_cast<size_t>(row) * in_stride + s);
+      hn::StoreU(hn::Compress(value, mask), d, out + static_cast<size_t>(row) * out_stride + kept);
+    }
+    kept += count;
+  }
+  return kept;
+}
+
+}  // namespace
+}  // namespace skyquilt::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace skyquilt::kernel {
+
+HWY_EXPORT(ExpShiftedImpl);
+HWY_EXPORT(SigmoidImpl);
+HWY_EXPORT(AllFiniteImpl);
+HWY_EXPORT(CompactImpl);
+
+void ExpShifted(const float* x, int64_t n, float bias, float limit, float* out) {
+  HWY_DYNAMIC_DISPATCH(ExpShiftedImpl)(x, n, bias, limit, out);
+}
+
+void Sigmoid(const float* x, int64_t n, float range, float* out) {
+  HWY_DYNAMIC_DISPATCH(SigmoidImpl)(x, n, range, out);
+}
+
+bool AllFinite(const float* values, int64_t n) {
+  return HWY_DYNAMIC_DISPATCH(AllFiniteImpl)(values, n);
+}
+
+int64_t Compact(const float* keep, int64_t n, int rows, const float* in, size_t in_stride, float* out, size_t out_stride) {
+  return HWY_DYNAMIC_DISPATCH(CompactImpl)(keep, n, rows, in, in_stride, out, out_stride);
+}
+
+}  // namespace skyquilt::kernel
+#endif  // HWY_ONCE

@@ -1,0 +1,259 @@
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "core/kernel/kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/kernel/hash_kernels.cpp"
+#include <hwy/foreach_target.h>  // re-includes this file once per instruction set
+// clang-format off
+#include <hwy/highway.h>
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace skyquilt::kernel::HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using FloatTag = hn::ScalableTag<float>;
+using FloatVector = hn::Vec<FloatTag>;
+
+constexpr int kHashBlock = 256;
+
+// Entries and weights of the eight corners for up to kHashBlock positions; corner c of position s at [c * kHashBlock + s].
+struct Corners {
+  HWY_ALIGN uint32_t index[8 * kHashBlock];
+  HWY_ALIGN float weight[8 * kHashBlock];
+};
+
+// Lowest lattice coordinate and fraction along one axis. NaN compares false and lands at 0.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void SplitAxis(D d, V position, float cells_per_unit, int32_t size, hn::Vec<hn::Rebind<int32_t, D>>& cell, V& fraction) {
+  const hn::Rebind<int32_t, D> di;
+  const V top = hn::Set(d, static_cast<float>(size - 1));
+  V scaled = hn::Mul(position, hn::Set(d, cells_per_unit));
+  scaled = hn::IfThenElseZero(hn::Gt(scaled, hn::Zero(d)), scaled);
+  scaled = hn::Min(scaled, top);
+  cell = hn::Min(hn::ConvertTo(di, scaled), hn::Set(di, size - 2));
+  fraction = hn::Sub(scaled, hn::ConvertTo(d, cell));
+}
+
+void FindCorners(const HashLevel& level, const float* x, const float* y, const float* z, int n, Corners& corners) {
+  const FloatTag d;
+  const hn::Rebind<int32_t, FloatTag> di;
+  const hn::Rebind<uint32_t, FloatTag> du;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto mask = hn::Set(du, level.entries - 1U);
+  HWY_ALIGN float tail[3][hn::MaxLanes(FloatTag())];
+  for (int s = 0; s < n; s += lanes) {
+    const float* px = x + s;
+    const float* py = y + s;
+    const float* pz = z + s;
+    if (s + lanes > n) {
+      for (int k = 0; k < lanes; ++k) {
+        const int from = std::min(k, n - s - 1);
+        tail[0][k] = px[from];
+        tail[1][k] = py[from];
+        tail[2][k] = pz[from];
+      }
+      px = tail[0];
+      py = tail[1];
+      pz = tail[2];
+    }
+    auto cx = hn::Zero(di);
+    auto cy = hn::Zero(di);
+    auto cz = hn::Zero(di);
+    FloatVector fx, fy, fz;
+    SplitAxis(d, hn::LoadU(d, px), level.cells_per_unit, level.size[0], cx, fx);
+    SplitAxis(d, hn::LoadU(d, py), level.cells_per_unit, level.size[1], cy, fy);
+    SplitAxis(d, hn::LoadU(d, pz), level.cells_per_unit, level.size[2], cz, fz);
+    const FloatVector one = hn::Set(d, 1.0F);
+    const FloatVector wx[2] = {hn::Sub(one, fx), fx};
+    const FloatVector wy[2] = {hn::Sub(one, fy), fy};
+    const FloatVector wz[2] = {hn::Sub(one, fz), fz};
+    const auto ux = hn::BitCast(du, cx);
+    const auto uy = hn::BitCast(du, cy);
+    const auto uz = hn::BitCast(du, cz);
+    const auto step = hn::Set(du, 1U);
+    const auto stride_y = hn::Set(du, level.dense ? static_cast<uint32_t>(level.size[0]) : 2654435761U);
+    const auto stride_z = hn::Set(du, level.dense ? static_cast<uint32_t>(level.size[0] * level.size[1]) : 805459861U);
+    const decltype(ux) ix[2] = {ux, hn::Add(ux, step)};
+    const auto iy0 = hn::Mul(uy, stride_y);
+    const auto iz0 = hn::Mul(uz, stride_z);
+    const decltype(ux) iy[2] = {iy0, hn::Add(iy0, stride_y)};
+    const decltype(ux) iz[2] = {iz0, hn::Add(iz0, stride_z)};
+    for (int c = 0; c < 8; ++c) {
+      const int bx = c & 1;
+      const int by = (c >> 1) & 1;
+      const int bz = c >> 2;
+      const auto index = level.dense ? hn::Add(hn::Add(ix[bx], iy[by]), iz[bz]) : hn::And(hn::Xor(hn::Xor(ix[bx], iy[by]), iz[bz]), mask);
+      hn::Store(index, du, corners.index + c * kHashBlock + s);
+      hn::Store(hn::Mul(hn::Mul(wx[bx], wy[by]), wz[bz]), d, corners.weight + c * kHashBlock + s);
+    }
+  }
+}
+
+// One table entry as one vector where the instruction set has that width, as single lanes on the scalar path.
+template <int kFeatures>
+using EntryTag = hn::CappedTag<float, kFeatures>;
+template <int kFeatures>
+constexpr int kEntryLanes = static_cast<int>(hn::MaxLanes(EntryTag<kFeatures>()));
+
+// A block's features sample by sample, as table entries are: gathering writes whole entries, and rows come out by whole vectors.
+// (Two four-byte stores read back as one of eight would stall every sample.)
+template <int kFeatures>
+void UnpackRows(const float* packed, int n, float* out, size_t out_stride) {
+  const FloatTag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  int s = 0;
+  for (; s + lanes <= n; s += lanes) {
+    FloatVector row[4];
+    if constexpr (kFeatures == 2) {
+      hn::LoadInterleaved2(d, packed + s * 2, row[0], row[1]);
+    } else {
+      hn::LoadInterleaved4(d, packed + s * 4, row[0], row[1], row[2], row[3]);
+    }
+    for (int f = 0; f < kFeatures; ++f) hn::StoreU(row[f], d, out + static_cast<size_t>(f) * out_stride + s);
+  }
+  for (; s < n; ++s) {
+    for (int f = 0; f < kFeatures; ++f) out[static_cast<size_t>(f) * out_stride + static_cast<size_t>(s)] = packed[s * kFeatures + f];
+  }
+}
+
+// The way back; size[s] is 0 exactly where all features are.
+template <int kFeatures>
+void PackRows(const float* in, size_t in_stride, int n, float* packed, float* size) {
+  const FloatTag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  int s = 0;
+  for (; s + lanes <= n; s += lanes) {
+    FloatVector row[4];
+    FloatVector sum = hn::Zero(d);
+    for (int f = 0; f < kFeatures; ++f) {
+      row[f] = hn::LoadU(d, in + static_cast<size_t>(f) * in_stride + s);
+      sum = hn::Add(sum, hn::Abs(row[f]));
+    }
+    if constexpr (kFeatures == 2) {
+      hn::StoreInterleaved2(row[0], row[1], d, packed + s * 2);
+    } else {
+      hn::StoreInterleaved4(row[0], row[1], row[2], row[3], d, packed + s * 4);
+    }
+    hn::StoreU(sum, d, size + s);
+  }
+  for (; s < n; ++s) {
+    size[s] = 0.0F;
+    for (int f = 0; f < kFeatures; ++f) {
+      packed[s * kFeatures + f] = in[static_cast<size_t>(f) * in_stride + static_cast<size_t>(s)];
+      size[s] += packed[s * kFeatures + f] < 0.0F ? -packed[s * kFeatures + f] : packed[s * kFeatures + f];
+    }
+  }
+}
+
+template <int kFeatures>
+void HashForwardFeatures(const HashLevel& level, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
+                         size_t out_stride) {
+  const EntryTag<kFeatures> d;
+  constexpr int kLanes = kEntryLanes<kFeatures>;
+  Corners corners;
+  HWY_ALIGN float packed[kHashBlock * kFeatures];
+  for (int64_t begin = 0; begin < n; begin += kHashBlock) {
+    const int count = static_cast<int>(std::min<int64_t>(kHashBlock, n - begin));
+    FindCorners(level, x + begin, y + begin, z + begin, count, corners);
+    for (int s = 0; s < count; ++s) {
+      for (int f = 0; f < kFeatures; f += kLanes) {
+        auto even = hn::Zero(d);
+        auto odd = hn::Zero(d);
+        for (int c = 0; c < 8; c += 2) {
+          const float* entry0 = table + static_cast<size_t>(corners.index[c * kHashBlock + s]) * kFeatures + f;
+          const float* entry1 = table + static_cast<size_t>(corners.index[(c + 1) * kHashBlock + s]) * kFeatures + f;
+          even = hn::MulAdd(hn::Set(d, corners.weight[c * kHashBlock + s]), hn::LoadU(d, entry0), even);
+          odd = hn::MulAdd(hn::Set(d, corners.weight[(c + 1) * kHashBlock + s]), hn::LoadU(d, entry1), odd);
+        }
+        hn::StoreU(hn::Add(even, odd), d, packed + s * kFeatures + f);
+      }
+    }
+    UnpackRows<kFeatures>(packed, count, out + begin, out_stride);
+  }
+}
+
+template <int kFeatures>
+void HashBackwardFeatures(const HashLevel& level, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
+                          size_t out_stride, float* table_gradient, uint8_t* touched) {
+  const EntryTag<kFeatures> d;
+  constexpr int kLanes = kEntryLanes<kFeatures>;
+  Corners corners;
+  HWY_ALIGN float packed[kHashBlock * kFeatures];
+  HWY_ALIGN float size[kHashBlock];
+  for (int64_t begin = 0; begin < n; begin += kHashBlock) {
+    const int samples = static_cast<int>(std::min<int64_t>(kHashBlock, n - begin));
+    FindCorners(level, x + begin, y + begin, z + begin, samples, corners);
+    PackRows<kFeatures>(out_gradient + begin, out_stride, samples, packed, size);
+    for (int s = 0; s < samples; ++s) {
+      if (size[s] == 0.0F) continue;
+      for (int c = 0; c < 8; ++c) {
+        const uint32_t index = corners.index[c * kHashBlock + s];
+        const auto weight = hn::Set(d, corners.weight[c * kHashBlock + s]);
+        for (int f = 0; f < kFeatures; f += kLanes) {
+          float* entry = table_gradient + static_cast<size_t>(index) * kFeatures + f;
+          hn::StoreU(hn::MulAdd(weight, hn::LoadU(d, packed + s * kFeatures + f), hn::LoadU(d, entry)), d, entry);
+        }
+        touched[index / (kLineFloats / kFeatures)] = 1;
+      }
+    }
+  }
+}
+
+void HashForwardImpl(const HashLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
+                     size_t out_stride) {
+  if (features == 4) {
+    HashForwardFeatures<4>(level, table, x, y, z, n, out, out_stride);
+  } else {
+    HashForwardFeatures<2>(level, table, x, y, z, n, out, out_stride);
+  }
+}
+
+void HashBackwardImpl(const HashLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
+                      size_t out_stride, float* table_gradient, uint8_t* touched) {
+  if (features == 4) {
+    HashBackwardFeatures<4>(level, x, y, z, n, out_gradient, out_stride, table_gradient, touched);
+  } else {
+    HashBackwardFeatures<2>(level, x, y, z, n, out_gradient, out_stride, table_gradient, touched);
+  }
+}
+
+}  // namespace
+}  // namespace skyquilt::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace skyquilt::kernel {
+
+HWY_EXPORT(HashForwardImpl);
+HWY_EXPORT(HashBackwardImpl);
+
+namespace {
+void RequireFeatures(int features) {
+  if (features != 2 && features != 4) throw std::logic_error("hash grid: features per entry must be 2 or 4, got " + std::to_string(features));
+}
+}  // namespace
+
+uint32_t HashIndex(const HashLevel& level, uint32_t x, uint32_t y, uint32_t z) {
+  if (level.dense) return x + y * static_cast<uint32_t>(level.size[0]) + z * static_cast<uint32_t>(level.size[0] * level.size[1]);
+  return (x ^ (y * 2654435761U) ^ (z * 805459861U)) & (level.entries - 1U);
+}
+
+void HashForward(const HashLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
+                 size_t out_stride) {
+  RequireFeatures(features);
+  HWY_DYNAMIC_DISPATCH(HashForwardImpl)(level, features, table, x, y, z, n, out, out_stride);
+}
+
+void HashBackward(const HashLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
+                  size_t out_stride, float* table_gradient, uint8_t* touched) {
+  RequireFeatures(features);
+  HWY_DYNAMIC_DISPATCH(HashBackwardImpl)(level, features, x, y, z, n, out_gradient, out_stride, table_gradient, touched);
+}
+
+}  // namespace skyquilt::kernel
+#endif  // HWY_ONCE

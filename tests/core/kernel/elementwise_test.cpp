@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "core/base/random.h"
+#include "core/kernel/kernels.h"
+#include "tests/support/each_instruction_set.h"
+
+namespace skyquilt::kernel {
+namespace {
+
+using ElementwiseKernels = testing::EachInstructionSet;
+SKYQUILT_EACH_INSTRUCTION_SET(ElementwiseKernels);
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+TEST_P(ElementwiseKernels, ExpIsCutAtItsLimit) {
+  std::vector<float> x(48), out(48);
+  for (size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>(i) - 24.0F;
+  x[0] = -1e4F;
+  x[1] = 1e30F;
+  ExpShifted(x.data(), 48, -5.0F, 15.0F, out.data());
+  for (size_t i = 0; i < x.size(); ++i) {
+    const double expected = std::exp(std::min(15.0, static_cast<double>(x[i]) - 5.0));
+    EXPECT_NEAR(static_cast<double>(out[i]), expected, 1e-6 * expected + 1e-30) << x[i];
+  }
+}
+
+TEST_P(ElementwiseKernels, SigmoidStaysInItsRange) {
+  std::vector<float> x(32), out(32);
+  for (size_t i = 0; i < x.size(); ++i) x[i] = 0.7F * (static_cast<float>(i) - 16.0F);
+  x[0] = -kInfinity;
+  x[1] = kInfinity;
+  x[2] = -1e30F;
+  x[3] = 1e30F;
+  Sigmoid(x.data(), 32, 1.5F, out.data());
+  for (size_t i = 0; i < x.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(out[i]), 1.5 / (1.0 + std::exp(-static_cast<double>(x[i]))), 1e-6) << x[i];
+    EXPECT_TRUE(out[i] >= 0.0F && out[i] <= 1.5F);
+  }
+}
+
+TEST_P(ElementwiseKernels, CompactKeepsOrderInPlaceAndElsewhere) {
+  base::Random random(5);
+  constexpr size_t kN = 112, kRows = 3, kStride = 128;
+  std::vector<float> keep(kN), in(kRows * kStride), out(kRows * kStride, -1.0F);
+  for (float& k : keep) k = random.Uniform() < 0.4F ? 1.0F : 0.0F;
+  for (size_t i = 32; i < 64; ++i) keep[i] = 0.0F;
+  for (size_t i = 0; i < in.size(); ++i) in[i] = static_cast<float>(i);
+  std::vector<float> expected;
+  for (size_t s = 0; s < kN; ++s) {
+    if (keep[s] > 0.0F) expected.push_back(static_cast<float>(s));
+  }
+  ASSERT_EQ(Compact(keep.data(), kN, kRows, in.data(), kStride, out.data(), kStride), static_cast<int64_t>(expected.size()));
+  ASSERT_EQ(Compact(keep.data(), kN, kRows, in.data(), kStride, in.data(), kStride), static_cast<int64_t>(expected.size()));
+  for (size_t row = 0; row < kRows; ++row) {
+    for (size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(out[row * kStride + i], expected[i] + static_cast<float>(row * kStride));
+      EXPECT_EQ(in[row * kStride + i], expected[i] + static_cast<float>(row * kStride));
+    }
+  }
+}
+
+TEST_P(ElementwiseKernels, AllFiniteFindsOneBadValueAnywhere) {
+  std::vector<float> values(77, 3e38F);
+  EXPECT_TRUE(AllFinite(values.data(), 77));
+  EXPECT_TRUE(AllFinite(values.data(), 0));
+  for (const float bad : {kInfinity, -kInfinity, std::nanf("")}) {
+    for (const size_t at : {0, 31, 63, 64, 76}) {
+      std::vector<float> copy = values;
+      copy[at] = bad;
+      EXPECT_FALSE(AllFinite(copy.data(), 77)) << at;
+    }
+  }
+}
+
+TEST(InstructionSets, EndWithThePortableOneAndRefuseOthers) {
+  const std::vector<std::string> names = InstructionSets();
+  ASSERT_FALSE(names.empty());
+  EXPECT_EQ(ActiveInstructionSet(), names.front());
+  ForceInstructionSet("portable");
+  EXPECT_EQ(ActiveInstructionSet(), names.back());
+  EXPECT_THROW(ForceInstructionSet("quantum"), std::invalid_argument);
+  ForceInstructionSet(names.front());
+}
+
+}  // namespace
+}  // namespace skyquilt::kernel

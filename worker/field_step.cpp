@@ -1,0 +1,360 @@
+#include "worker/field_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/brightness/exposure.h"
+#include "core/render/composite.h"
+#include "core/render/march.h"
+
+namespace skyquilt::worker {
+namespace {
+
+constexpr int kGradientSlots = 16;
+constexpr int64_t kEncodePackets = 16;  // one task: enough work, and a level's table stays in cache meanwhile
+// Where less light than this arrives, a sample gets neither colour nor gradient.
+const float kHiddenDepth = -std::log(1e-3F);
+// Behind this optical depth the context is not looked at: it would show through at less than 2 %.
+constexpr float kOpaqueDepth = 4.0F;
+
+template <typename T>
+void Grow(std::vector<T>& v, size_t n) {
+  if (v.size() < n) v.resize(n + n / 4);
+}
+
+}  // namespace
+
+struct FieldStep::Worker {
+  field::Activations a;
+  std::vector<float> depth, keep, tau, weight, rgb, weight_gradient, mid, width;
+  // Rays of the packet: live samples, and what the context shows in front and behind.
+  struct View {
+    int64_t begin = 0, count = 0;
+    float front_rgb[3] = {0, 0, 0}, front_transmittance = 1.0F;
+    float behind_rgb[3] = {0, 0, 0};
+    float background_share = 1.0F;
+  };
+  std::vector<View> views;
+  std::unique_ptr<render::RayRenderer> context;
+  std::vector<render::Ray> pieces;
+  std::vector<render::RayColor> colors;
+  std::vector<std::pair<size_t, bool>> owner;  // view, is it the piece behind
+
+  void Reserve(const field::HashField& field, int64_t n) {
+    a.Reserve(field, n);
+    for (auto* v : {&depth, &keep, &tau, &weight}) Grow(*v, a.stride);
+    Grow(rgb, 3 * a.stride);
+  }
+};
+
+FieldStep::FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context,
+                     base::ThreadPool& threads, StageTimes& times)
+    : target_(target), field_(field), context_(context), threads_(threads), times_(times) {
+  for (int i = 0; i < threads.size(); ++i) {
+    workers_.push_back(std::make_unique<Worker>());
+    if (context == nullptr) continue;
+    render::FieldSet set;
+    set.context = context;
+    workers_.back()->context = std::make_unique<render::RayRenderer>(set, render::EngineOptions{});
+  }
+}
+
+FieldStep::~FieldStep() = default;
+
+void FieldStep::Encode(const RayBatch& batch, const field::TrainableState& state) {
+  if (batch.packets.empty()) return;
+  const Packet& last = batch.packets.back();
+  Grow(features_, last.features + last.stride * static_cast<size_t>(field_.FeatureRows()));
+  const auto packets = static_cast<int64_t>(batch.packets.size());
+  const int64_t stretches = (packets + kEncodePackets - 1) / kEncodePackets;
+  const encoding::HashGrid& grid = field_.grid();
+  threads_.ParallelFor(stretches * grid.levels(), [&](int64_t task, int thread) {
+    const auto start = StageTimes::Clock::now();
+    const int l = static_cast<int>(task / stretches);
+    const auto first = static_cast<size_t>((task % stretches) * kEncodePackets);
+    const auto end = std::min(first + static_cast<size_t>(kEncodePackets), batch.packets.size());
+    for (size_t k = first; k < end; ++k) {
+      const Packet& p = batch.packets[k];
+      kernel::HashForward(grid.level(l), grid.features(), state.grid.data() + grid.Offset(l), batch.x.data() + p.begin, batch.y.data() + p.begin,
+                          batch.z.data() + p.begin, p.count, features_.data() + p.features + static_cast<size_t>(l * grid.features()) * p.stride,
+                          p.stride);
+    }
+    times_.Add(thread, Stage::kEncode, start);
+  });
+}
+
+void FieldStep::Density(const Packet& packet, Worker& w) {
+  const int64_t padded = kernel::Padded(packet.count);
+  w.Reserve(field_, padded);
+  float* features = features_.data() + packet.features;
+  const auto rows = static_cast<size_t>(field_.FeatureRows());
+  for (size_t row = 0; row < rows; ++row) std::fill(features + row * packet.stride + packet.count, features + row * packet.stride + padded, 0.0F);
+  field_.Density(weights_, features, packet.stride, padded, w.a.density_hidden, w.a.stride, w.a.geometry(), w.a.stride);
+  kernel::ExpShifted(w.a.geometry(), padded, static_cast<float>(target_.config.density_bias), kMaxLogDepth, w.depth.data());
+}
+
+// Keeps the samples that light still reaches; what lies behind an opaque surface gets neither colour nor gradient.
+int64_t FieldStep::DropHidden(RayBatch& batch, const Packet& packet, Worker& w) {
+  const int64_t padded = kernel::Padded(packet.count);
+  w.views.assign(static_cast<size_t>(packet.n_rays), {});
+  int64_t live = 0;
+  for (int64_t k = 0; k < packet.n_rays; ++k) {
+    const BatchRay& r = batch.rays[static_cast<size_t>(packet.first_ray + k)];
+    Worker::View& view = w.views[static_cast<size_t>(k)];
+    view.begin = live;
+    float passed = 0.0F;
+    int64_t i = 0;
+    for (; i < r.count && passed < kHiddenDepth; ++i) {
+      const auto s = static_cast<size_t>(r.begin + i);
+      const auto local = static_cast<size_t>(r.begin + i - packet.begin);
+      const float tau = w.depth[local] * batch.unit_length[s];
+      passed += tau;
+      w.keep[local] = 1.0F;
+      w.tau[static_cast<size_t>(live++)] = tau;
+      observed_[s] = w.depth[local];
+    }
+    view.count = i;
+    for (; i < r.count; ++i) {
+      w.keep[static_cast<size_t>(r.begin + i - packet.begin)] = 0.0F;
+      observed_[static_cast<size_t>(r.begin + i)] = 0.0F;
+    }
+  }
+  if (live == packet.count) return live;
+  std::fill(w.keep.begin() + packet.count, w.keep.begin() + padded, 0.0F);
+  float* features = features_.data() + packet.features;
+  kernel::Compact(w.keep.data(), padded, field_.FeatureRows(), features, packet.stride, features, packet.stride);
+  kernel::Compact(w.keep.data(), padded, w.a.kept_rows, w.a.density_hidden, w.a.stride, w.a.density_hidden, w.a.stride);
+  for (auto* v : {&batch.x, &batch.y, &batch.z, &batch.t}) {
+    kernel::Compact(w.keep.data(), padded, 1, v->data() + packet.begin, 0, v->data() + packet.begin, 0);
+  }
+  // Padding takes part in the networks' sums: it must be finite.
+  const int64_t end = kernel::Padded(live);
+  for (int row = 0; row < field_.FeatureRows(); ++row) {
+    float* values = features + static_cast<size_t>(row) * packet.stride;
+    std::fill(values + live, values + end, 0.0F);
+  }
+  for (int row = 0; row < w.a.kept_rows; ++row) {
+    float* values = w.a.density_hidden + static_cast<size_t>(row) * w.a.stride;
+    std::fill(values + live, values + end, 0.0F);
+  }
+  return live;
+}
+
+void FieldStep::Color(const RayBatch& batch, const Packet& packet, int64_t n, Worker& w) const {
+  const int64_t padded = kernel::Padded(n);
+  float* sh = w.a.color_in + static_cast<size_t>(field::kGeometryRows) * w.a.stride;
+  for (int64_t k = 0; k < packet.n_rays; ++k) {
+    const Worker::View& view = w.views[static_cast<size_t>(k)];
+    const Eigen::Vector3f direction = batch.rays[static_cast<size_t>(packet.first_ray + k)].ray.direction_enu.cast<float>();
+    field_.FillDirection(direction.data(), view.count, sh + view.begin, w.a.stride);
+  }
+  for (int row = 0; row < field_.ColorInputRows() - field::kGeometryRows; ++row) {
+    float* values = sh + static_cast<size_t>(row) * w.a.stride;
+    std::fill(values + n, values + padded, 0.0F);
+  }
+  field_.Color(weights_, w.a.color_in, w.a.stride, padded, w.a.color_hidden, w.a.stride, w.a.color_raw, w.a.stride);
+  for (size_t c = 0; c < 3; ++c) {
+    kernel::Sigmoid(w.a.color_raw + c * w.a.stride, padded, static_cast<float>(target_.config.color_range), w.rgb.data() + c * w.a.stride);
+  }
+}
+
+// What the frozen context shows in front of the box's ground plan and, where light passes through, behind it.
+void FieldStep::LookThroughContext(const RayBatch& batch, const Packet& packet, Worker& w) const {
+  if (context_ == nullptr) return;
+  w.pieces.clear();
+  w.owner.clear();
+  for (size_t k = 0; k < w.views.size(); ++k) {
+    const BatchRay& r = batch.rays[static_cast<size_t>(packet.first_ray) + k];
+    if (r.ray.empty) continue;
+    const render::Stretch all = render::FieldStretch(context_->map, r.ray.origin_enu, r.ray.direction_enu);
+    if (all.Empty()) continue;
+    const render::Stretch plan = render::PlanStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
+    if (plan.t_near > all.t_near + context_->step_m) {
+      w.pieces.push_back({r.ray.origin_enu, r.ray.direction_enu, all.t_near, plan.t_near, 0.0F});
+      w.owner.emplace_back(k, false);
+    }
+    const Worker::View& view = w.views[k];
+    float depth = 0.0F;
+    for (int64_t i = 0; i < view.count; ++i) depth += w.tau[static_cast<size_t>(view.begin + i)];
+    if (depth < kOpaqueDepth && all.t_far > plan.t_far) {
+      w.pieces.push_back({r.ray.origin_enu, r.ray.direction_enu, plan.t_far, all.t_far, 0.0F});
+      w.owner.emplace_back(k, true);
+    }
+  }
+  w.colors.resize(w.pieces.size());
+  w.context->Render(w.pieces, w.colors);
+  for (size_t i = 0; i < w.pieces.size(); ++i) {
+    Worker::View& view = w.views[w.owner[i].first];
+    const bool behind = w.owner[i].second;
+    for (size_t c = 0; c < 3; ++c) (behind ? view.behind_rgb : view.front_rgb)[c] = w.colors[i].rgb_srgb[c];
+    // Whatever the context leaves open behind shows the random background.
+    (behind ? view.background_share : view.front_transmittance) = 1.0F - w.colors[i].opacity;
+  }
+}
+
+FieldStep::PacketResult FieldStep::ComposeAndLoss(const RayBatch& batch, const Packet& packet, int64_t n, float ray_share, double distortion,
+                                                  Worker& w) const {
+  PacketResult result;
+  field::Activations& a = w.a;
+  const auto range = static_cast<float>(target_.config.color_range);
+  const auto distance_unit = static_cast<float>(1.0 / std::max(1.0, target_.map.max_enu().z() - target_.map.min_enu().z()));
+  for (size_t k = 0; k < w.views.size(); ++k) {
+    const BatchRay& r = batch.rays[static_cast<size_t>(packet.first_ray) + k];
+    const Worker::View& view = w.views[k];
+    const auto begin = static_cast<size_t>(view.begin);
+    const auto count = static_cast<size_t>(view.count);
+    float rgb[3];
+    float* weights = w.weight.data() + begin;
+    const float transmittance = render::CompositeForward(static_cast<int>(count), w.tau.data() + begin, w.rgb.data() + begin, a.stride, weights, rgb);
+    float rgb_gradient[3] = {0, 0, 0};
+    float transmittance_gradient = 0.0F;
+    const float* weight_gradient = nullptr;
+    if (r.ray.empty) {
+      const float opacity = 1.0F - transmittance;
+      result.loss += static_cast<double>(opacity * opacity);
+      transmittance_gradient = -2.0F * opacity * ray_share;
+    } else {
+      for (size_t c = 0; c < 3; ++c) {
+        const float behind = view.behind_rgb[c] + view.background_share * r.background[c];
+        const float shown = view.front_rgb[c] + view.front_transmittance * (rgb[c] + transmittance * behind);
+        const auto [value, slope] = brightness::Expose(shown, r.ray.gain);
+        const float target = r.ray.target_srgb[c];
+        const float residual = value - target;
+        const double squared = static_cast<double>(residual) * static_cast<double>(residual);
+        result.squared_error += squared;
+        // A saturated pixel says only "at least this bright", a black one "at most".
+        const bool satisfied = (target >= 254.5F / 255.0F && residual > 0.0F) || (target <= 0.5F / 255.0F && residual < 0.0F);
+        if (satisfied) continue;
+        result.loss += squared;
+        const float gradient = 2.0F * residual * slope * view.front_transmittance * ray_share;
+        rgb_gradient[c] = gradient;
+        transmittance_gradient += gradient * behind;
+      }
+      ++result.color_rays;
+      if (distortion > 0.0 && count > 0) {
+        w.weight_gradient.assign(count, 0.0F);
+        w.mid.resize(count);
+        w.width.assign(count, static_cast<float>(target_.step_m) * distance_unit);
+        const float* t = batch.t.data() + packet.begin + view.begin;
+        for (size_t i = 0; i < count; ++i) w.mid[i] = (t[i] - t[0]) * distance_unit;
+        result.loss += static_cast<double>(render::DistortionLoss(static_cast<int>(count), weights, w.mid.data(), w.width.data(),
+                                                                  static_cast<float>(distortion) * ray_share, w.weight_gradient.data())) /
+                       static_cast<double>(ray_share);
+        weight_gradient = w.weight_gradient.data();
+      }
+    }
+    render::CompositeBackward(static_cast<int>(count), w.rgb.data() + begin, a.stride, weights, transmittance, rgb_gradient, transmittance_gradient,
+                              weight_gradient, a.log_density_gradient + begin, a.color_gradient + begin, a.stride);
+  }
+  const auto live = static_cast<size_t>(n);
+  const auto padded = static_cast<size_t>(kernel::Padded(n));
+  // d tau / d log density = tau; d rgb / d raw = rgb (1 - rgb / range).
+  for (size_t i = 0; i < live; ++i) a.log_density_gradient[i] *= w.tau[i];
+  std::fill(a.log_density_gradient + live, a.log_density_gradient + padded, 0.0F);
+  for (size_t c = 0; c < 3; ++c) {
+    float* gradient = a.color_gradient + c * a.stride;
+    const float* color = w.rgb.data() + c * a.stride;
+    for (size_t i = 0; i < live; ++i) gradient[i] *= color[i] * (1.0F - color[i] / range);
+    std::fill(gradient + live, gradient + padded, 0.0F);
+  }
+  std::fill_n(a.color_gradient + 3 * a.stride, padded, 0.0F);
+  return result;
+}
+
+FieldStep::PacketResult FieldStep::TrainPacket(RayBatch& batch, const Packet& packet, float ray_share, double distortion, float* network_gradient,
+                                               Worker& w, int thread) {
+  auto at = StageTimes::Clock::now();
+  Density(packet, w);
+  const int64_t n = DropHidden(batch, packet, w);
+  at = times_.Add(thread, Stage::kDensity, at);
+  Color(batch, packet, n, w);
+  at = times_.Add(thread, Stage::kColor, at);
+  LookThroughContext(batch, packet, w);
+  at = times_.Add(thread, Stage::kContext, at);
+  PacketResult result = ComposeAndLoss(batch, packet, n, ray_share, distortion, w);
+  at = times_.Add(thread, Stage::kCompose, at);
+  result.live = n;
+  if (n > 0) {
+    const int64_t padded = kernel::Padded(n);
+    float* features = features_.data() + packet.features;
+    field_.Backward(weights_, w.a, features, packet.stride, padded, network_gradient);
+    for (int row = 0; row < field_.FeatureRows(); ++row) {
+      result.finite = result.finite && kernel::AllFinite(features + static_cast<size_t>(row) * packet.stride, n);
+    }
+  }
+  times_.Add(thread, Stage::kBackward, at);
+  return result;
+}
+
+StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state) {
+  StepResult result;
+  result.n_rays = static_cast<int>(batch.rays.size());
+  result.n_samples = batch.n_samples;
+  weights_ = field_.Prepare(state.networks);
+  Encode(batch, state);
+  Grow(observed_, static_cast<size_t>(batch.Size()));
+  const size_t n_packets = batch.packets.size();
+  results_.assign(n_packets, {});
+  const auto network_size = static_cast<size_t>(field_.NetworkParameters());
+  slot_gradients_.assign(network_size * kGradientSlots, 0.0F);
+  const float ray_share = 1.0F / static_cast<float>(std::max(1, result.n_rays));
+  threads_.ParallelFor(kGradientSlots, [&](int64_t slot, int thread) {
+    for (size_t k = static_cast<size_t>(slot); k < n_packets; k += kGradientSlots) {
+      results_[k] = TrainPacket(batch, batch.packets[k], ray_share, options.distortion,
+                                slot_gradients_.data() + static_cast<size_t>(slot) * network_size, *workers_[static_cast<size_t>(thread)], thread);
+    }
+  });
+  auto at = StageTimes::Clock::now();
+  int64_t color_rays = 0;
+  stretches_.clear();
+  for (size_t k = 0; k < n_packets; ++k) {
+    const PacketResult& p = results_[k];
+    result.loss += p.loss;
+    result.squared_error += p.squared_error;
+    result.n_live += p.live;
+    result.finite = result.finite && p.finite;
+    color_rays += p.color_rays;
+    const Packet& packet = batch.packets[k];
+    stretches_.push_back({packet.begin, p.live, features_.data() + packet.features, packet.stride});
+  }
+  result.loss *= static_cast<double>(ray_share);
+  result.squared_error /= 3.0 * static_cast<double>(std::max<int64_t>(1, color_rays));
+  for (size_t slot = 0; slot < kGradientSlots; ++slot) {
+    for (size_t i = 0; i < network_size; ++i) state.network_gradient[i] += slot_gradients_[slot * network_size + i];
+  }
+  result.finite = result.finite && std::isfinite(result.loss) && kernel::AllFinite(state.network_gradient.data(), static_cast<int64_t>(network_size));
+  if (!result.finite) {
+    field::DropGradients(state);
+    ++state.step;  // the same rays would fail the same way
+    return result;
+  }
+  times_.Add(0, Stage::kBackward, at);
+  field::AccumulateGrid(field_, batch.x.data(), batch.y.data(), batch.z.data(), stretches_, state, threads_,
+                        [&](int thread, StageTimes::Clock::time_point start) { times_.Add(thread, Stage::kScatter, start); });
+  field::ApplyAdam(field_, options.learning_rate, options.network_l2, state, threads_,
+                   [&](int thread, StageTimes::Clock::time_point start) { times_.Add(thread, Stage::kOptimise, start); });
+  return result;
+}
+
+void FieldStep::Infer(RayBatch& batch, const field::TrainableState& state) {
+  weights_ = field_.Prepare(state.networks);
+  Encode(batch, state);
+  threads_.ParallelFor(static_cast<int64_t>(batch.packets.size()), [&](int64_t k, int thread) {
+    const Packet& packet = batch.packets[static_cast<size_t>(k)];
+    Worker& w = *workers_[static_cast<size_t>(thread)];
+    auto at = StageTimes::Clock::now();
+    Density(packet, w);
+    w.views.assign(static_cast<size_t>(packet.n_rays), {});
+    for (size_t i = 0; i < w.views.size(); ++i) {
+      const BatchRay& r = batch.rays[static_cast<size_t>(packet.first_ray) + i];
+      w.views[i].begin = r.begin - packet.begin;
+      w.views[i].count = r.count;
+    }
+    at = times_.Add(thread, Stage::kDensity, at);
+    Color(batch, packet, packet.count, w);
+    times_.Add(thread, Stage::kColor, at);
+  });
+}
+
+}  // namespace skyquilt::worker

@@ -1,0 +1,81 @@
+// One optimiser step of one field on a drawn batch: hash encoding level by level over the whole batch, then every packet from density to
+// gradient while its activations are in cache, then the gradient's way back into the tables and Adam.
+// Bits do not depend on the number of threads: grid levels have one writer each and network gradients are summed in fixed slots.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/base/thread_pool.h"
+#include "core/field/optimizer.h"
+#include "core/render/ray_engine.h"
+#include "core/render/trained_field.h"
+#include "worker/ray_batch.h"
+#include "worker/stage_times.h"
+
+namespace skyquilt::worker {
+
+// Densities are exp of at most this, so that they and their gradients stay finite.
+constexpr float kMaxLogDepth = 15.0F;
+
+struct StepOptions {
+  double learning_rate = 0.0;
+  double network_l2 = 0.0;
+  double distortion = 0.0;  // weight of the distortion loss (Barron et al. 2022, eq. 15), distances in units of the box height
+};
+
+struct StepResult {
+  int n_rays = 0;
+  int64_t n_samples = 0;       // evaluated for density
+  int64_t n_live = 0;          // with colour and gradient
+  double loss = 0.0;           // mean over rays
+  double squared_error = 0.0;  // mean over colour rays and channels, display values
+  bool finite = true;          // false: the step was dropped
+};
+
+class FieldStep {
+ public:
+  // target's map, step and colour range are read, its grid and networks are not. context may be null; it is frozen.
+  FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context, base::ThreadPool& threads,
+            StageTimes& times);
+  ~FieldStep();
+
+  // Learns from the batch; positions of its dropped samples are lost. Non-finite gradients leave the state as it was.
+  StepResult Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state);
+  // Density and colour of every sample, for timing: the forward half alone.
+  void Infer(RayBatch& batch, const field::TrainableState& state);
+  // Optical depth of one marching step per sample of the last Train, 0 where no light arrived.
+  const std::vector<float>& ObservedDepths() const { return observed_; }
+
+ private:
+  struct Worker;  // one thread's workspace
+  struct PacketResult {
+    double loss = 0.0, squared_error = 0.0;
+    int64_t color_rays = 0, live = 0;
+    bool finite = true;
+  };
+  void Encode(const RayBatch& batch, const field::TrainableState& state);
+  void Density(const Packet& packet, Worker& w);
+  int64_t DropHidden(RayBatch& batch, const Packet& packet, Worker& w);
+  void Color(const RayBatch& batch, const Packet& packet, int64_t n, Worker& w) const;
+  void LookThroughContext(const RayBatch& batch, const Packet& packet, Worker& w) const;
+  PacketResult ComposeAndLoss(const RayBatch& batch, const Packet& packet, int64_t n, float ray_share, double distortion, Worker& w) const;
+  PacketResult TrainPacket(RayBatch& batch, const Packet& packet, float ray_share, double distortion, float* network_gradient, Worker& w, int thread);
+
+  const render::TrainedField& target_;
+  const field::HashField& field_;
+  const render::TrainedField* context_;
+  base::ThreadPool& threads_;
+  StageTimes& times_;
+  field::NetworkWeights weights_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+  std::vector<float> features_;  // per packet, then the gradient in its place
+  std::vector<float> observed_;
+  std::vector<int64_t> live_;  // per packet
+  std::vector<PacketResult> results_;
+  std::vector<float> slot_gradients_;
+  std::vector<field::GridGradient> stretches_;
+};
+
+}  // namespace skyquilt::worker

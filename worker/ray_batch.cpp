@@ -1,0 +1,112 @@
+#include "worker/ray_batch.h"
+
+#include <algorithm>
+
+#include "core/field/hash_field.h"
+#include "core/render/march.h"
+
+namespace skyquilt::worker {
+namespace {
+
+constexpr int kGroupRays = 64;
+constexpr int kMaxRaySamples = 1024;
+constexpr uint64_t kRayStream = 1;
+
+}  // namespace
+
+uint64_t MixSeed(uint64_t seed, uint64_t step, uint64_t index) {
+  uint64_t v = seed * 0x9E3779B97F4A7C15ULL + step * 0xBF58476D1CE4E5B9ULL + index * 0x94D049BB133111EBULL;
+  v ^= v >> 31U;
+  v *= 0xD6E8FEB86659FD93ULL;
+  return v ^ (v >> 32U);
+}
+
+void RayBatch::Clear() {
+  rays.clear();
+  packets.clear();
+  for (auto* v : {&x, &y, &z, &t, &unit_length}) v->clear();
+  cell.clear();
+  n_samples = 0;
+}
+
+void RayBatch::Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* t_in, const float* unit_length_in,
+                      const int32_t* cell_in) {
+  if (packets.empty() || packets.back().count + ray.count > field::kChunk) {
+    const auto begin = static_cast<size_t>(kernel::Padded(Size()));
+    for (auto* v : {&x, &y, &z, &t, &unit_length}) v->resize(begin, 0.0F);
+    cell.resize(begin, 0);
+    packets.push_back({static_cast<int64_t>(rays.size()), 0, static_cast<int64_t>(begin), 0, 0, 0});
+  }
+  Packet& packet = packets.back();
+  ray.begin = Size();
+  packet.count += ray.count;
+  ++packet.n_rays;
+  n_samples += ray.count;
+  const auto add = [&](auto& to, const auto* from) { to.insert(to.end(), from, from + ray.count); };
+  add(x, x_in);
+  add(y, y_in);
+  add(z, z_in);
+  add(t, t_in);
+  add(unit_length, unit_length_in);
+  add(cell, cell_in);
+  rays.push_back(ray);
+}
+
+void RayBatch::Finish(int rows) {
+  const auto end = static_cast<size_t>(kernel::Padded(Size()));
+  for (auto* v : {&x, &y, &z, &t, &unit_length}) v->resize(end, 0.0F);
+  cell.resize(end, 0);
+  size_t at = 0;
+  for (Packet& packet : packets) {
+    packet.stride = kernel::StrideFor(packet.count);
+    packet.features = at;
+    at += packet.stride * static_cast<size_t>(rows);
+  }
+}
+
+void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch) {
+  const int n_groups = (n_rays + kGroupRays - 1) / kGroupRays;
+  groups_.resize(static_cast<size_t>(n_groups));
+  threads_.ParallelFor(n_groups, [&](int64_t task, int thread) {
+    const auto start = StageTimes::Clock::now();
+    Group& group = groups_[static_cast<size_t>(task)];
+    group.rays.clear();
+    for (auto* v : {&group.x, &group.y, &group.z, &group.t, &group.unit_length}) v->clear();
+    group.cell.clear();
+    base::Random random(MixSeed(seed_, static_cast<uint64_t>(step), static_cast<uint64_t>(task)), kRayStream);
+    for (int i = 0; i < kGroupRays; ++i) {
+      BatchRay r;
+      if (!source_.Draw(random, &r.ray)) continue;
+      const float jitter = random.Uniform();
+      for (float& channel : r.background) channel = random.Uniform();
+      const render::Stretch stretch = render::FieldStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
+      if (stretch.Empty()) continue;
+      render::March(target_, r.ray.origin_enu, r.ray.direction_enu, stretch, target_.step_m, jitter, [&](double t, double, double unit_length) {
+        const Eigen::Vector3f p = target_.map.UnitFromEnu(r.ray.origin_enu + t * r.ray.direction_enu);
+        group.x.push_back(p.x());
+        group.y.push_back(p.y());
+        group.z.push_back(p.z());
+        group.t.push_back(static_cast<float>(t));
+        group.unit_length.push_back(static_cast<float>(unit_length / target_.step_m));
+        group.cell.push_back(static_cast<int32_t>(target_.occupancy.IndexAt(p.x(), p.y(), p.z())));
+        return ++r.count < kMaxRaySamples;
+      });
+      group.rays.push_back(r);
+    }
+    times_.Add(thread, Stage::kDraw, start);
+  });
+  const auto start = StageTimes::Clock::now();
+  batch->Clear();
+  for (const Group& group : groups_) {
+    size_t at = 0;
+    for (const BatchRay& r : group.rays) {
+      batch->Append(r, group.x.data() + at, group.y.data() + at, group.z.data() + at, group.t.data() + at, group.unit_length.data() + at,
+                    group.cell.data() + at);
+      at += static_cast<size_t>(r.count);
+    }
+  }
+  batch->Finish(feature_rows);
+  times_.Add(0, Stage::kDraw, start);
+}
+
+}  // namespace skyquilt::worker

@@ -15,7 +15,9 @@ void RunOptions::Visit(config::OptionVisitor& v) {
   v.Field("seed", seed, "start of every random sequence of the training, 0 or more");
   v.Field("threads", threads, "threads per machine; 0 = every core this process may use");
   v.Field("memory_gb", memory_gb,
-          "memory per machine that training may use, in GiB; 0 = all of it. Training refuses to start with blocks that do not fit");
+          "memory per machine that training may use, in GiB, shared by the ranks on it; 0 = half of the machine. Training refuses to start with "
+          "blocks that do not "
+          "fit, and lets go of photos' pixels it can read again");
 }
 
 void RunOptions::Validate() const {

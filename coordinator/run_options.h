@@ -11,7 +11,7 @@ struct RunOptions {
   double context_share = 0.15;  // of the time budget
   int seed = 1;
   int threads = 0;         // per machine; 0: every core this process may use
-  double memory_gb = 0.0;  // per machine; 0: all of it
+  double memory_gb = 0.0;  // per machine; 0: half of it
 
   void Visit(config::OptionVisitor& v);
   // Throws base::UsageError naming the option, its value and what is allowed.

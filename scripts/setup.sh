@@ -11,7 +11,7 @@ run_packages=(
   libgdal-dev gdal-bin libexiv2-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libspdlog-dev libembree-dev
   ffmpeg python3
 )
-test_packages=(libgtest-dev librapidcheck-dev git clang-format clang-tidy)
+test_packages=(libgtest-dev librapidcheck-dev libbenchmark-dev git clang-format clang-tidy)
 
 case "${1:-}" in
   --run) wanted=("${run_packages[@]}") ;;

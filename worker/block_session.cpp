@@ -1,12 +1,15 @@
 #include "worker/block_session.h"
 
+#include <algorithm>
+
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "core/render/scene_file.h"
 
 namespace skyquilt::worker {
 
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
-                 const std::vector<SurfaceBand>& bands) {
+                 const ContextFindings* findings) {
   field::TrainableState& state = trainer.state();
   target.steps = state.step;
   target.seconds = record.seconds;
@@ -41,8 +44,9 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   writer.SetAttribute("origin_longitude_deg", job.survey->origin.longitude_deg);
   writer.SetAttribute("origin_height_m", job.survey->origin.height_m);
   std::vector<float> numbers;  // the writer reads it when it commits
-  if (!bands.empty()) {
-    for (const SurfaceBand& band : bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
+  if (findings != nullptr) {
+    for (size_t c = 0; c < 3; ++c) writer.SetAttribute(render::kBackground[c], static_cast<double>(findings->background_srgb[c]));
+    for (const SurfaceBand& band : findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
     writer.Put("surface_bands", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
   }
   writer.Commit(job.checkpoint);
@@ -67,7 +71,7 @@ bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedFi
     if (from.size() != to.size()) {
       throw base::InputError(usable, std::string("array '") + name + "' has another size than this configuration", "Train again with --restart");
     }
-    to = std::move(from);
+    std::copy(from.begin(), from.end(), to.begin());  // the buffers were laid out for random access
   };
   take(state.grid, std::move(loaded.grid), "grid");
   take(state.networks, std::move(loaded.networks), "networks");

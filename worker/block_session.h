@@ -23,9 +23,9 @@ struct SessionRecord {
   bool complete = false;
 };
 
-// kind: "context" or "block". bands: the context's, empty for blocks. Throws base::InputError.
+// kind: "context" or "block". findings: the finished context's, null otherwise. Throws base::InputError.
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
-                 const std::vector<SurfaceBand>& bands);
+                 const ContextFindings* findings);
 
 // True when a usable checkpoint was found and loaded. Damaged files fall back to the previous one with a warning; when both are damaged
 // training starts anew with a warning. Throws base::UsageError when the file belongs to another configuration.

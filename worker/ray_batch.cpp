@@ -81,8 +81,9 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch
       for (float& channel : r.background) channel = random.Uniform();
       const render::Stretch stretch = render::FieldStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
       if (stretch.Empty()) continue;
+      const render::UnitRay unit(target_.map, r.ray.origin_enu, r.ray.direction_enu);
       render::March(target_, r.ray.origin_enu, r.ray.direction_enu, stretch, target_.step_m, jitter, [&](double t, double, double unit_length) {
-        const Eigen::Vector3f p = target_.map.UnitFromEnu(r.ray.origin_enu + t * r.ray.direction_enu);
+        const Eigen::Vector3f p = unit.At(t);
         group.x.push_back(p.x());
         group.y.push_back(p.y());
         group.z.push_back(p.z());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -36,6 +37,10 @@ class RaySource {
 
   // Rays come from `inside` tiles, a share of them from `empty` tiles as emptiness rays. Tiles count by their number of pixels.
   void SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, double empty_share);
+  // From these tiles rays bring the tiles' mean colours, blended from tile to tile, instead of the pixels'.
+  void BlurTiles(const std::vector<Tile>& tiles);
+  // Mean display value of all training rays at the reference exposure.
+  std::array<float, 3> MeanColor(uint64_t seed) const;
   bool HasRays() const { return !inside_.empty(); }
   // False when an ignored (masked) pixel was drawn several times in a row.
   bool Draw(base::Random& random, PixelRay* ray) const;
@@ -52,6 +57,12 @@ class RaySource {
   std::vector<float> gains_;
   std::vector<camera::Camera> cameras_;     // per photo, at cached size
   std::vector<geo::Rigid3d> enu_from_cam_;  // per photo
+  // Mean display value of a tile's pixels that count.
+  Eigen::Vector3f TileMean(int photo, int row, int column) const;
+  Eigen::Vector3f BlurredColor(size_t photo, double x, double y) const;
+
+  std::vector<std::vector<Eigen::Vector3f>> tile_means_;  // per photo with blurred tiles, row-major; otherwise empty
+  std::vector<std::vector<uint8_t>> blurred_;             // the same
   std::vector<Tile> inside_, empty_;
   double empty_share_ = 0.0;
 };

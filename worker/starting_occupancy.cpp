@@ -15,7 +15,6 @@ constexpr int kGroup = 4;
 constexpr double kPointsPerColumn = 4.0;
 // Columns over which the lowest point counts: at the edge of a survey only roofs may have points.
 constexpr int kGroundReach = 6;
-constexpr float kStartDepth = 0.1F;  // above every threshold for some dozens of samples
 
 }  // namespace
 

@@ -10,6 +10,9 @@
 
 namespace skyquilt::worker {
 
+// Depth of a cell that has not been sampled yet: above every threshold for some dozens of samples.
+constexpr float kStartDepth = 0.1F;
+
 // Cells in view of none of the photos become "never seen". Tested per group of 4 x 4 x 4 cells, generously.
 void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, render::TrainedField& target,
                 base::ThreadPool& threads);

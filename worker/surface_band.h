@@ -2,6 +2,7 @@
 // Blocks choose their pixels by it and start their occupancy from it.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/base/thread_pool.h"
@@ -17,6 +18,12 @@ struct SurfaceBand {
   float front = 0.0F;   // transmittance passes 0.85
   float median = 0.0F;  // 0.5
   float back = 0.0F;    // 0.15
+};
+
+// What the context stage finds out beside its field.
+struct ContextFindings {
+  std::vector<SurfaceBand> bands;                             // [photo][row][column], kTileRows x kTileColumns per photo
+  std::array<float, 3> background_srgb = {0.0F, 0.0F, 0.0F};  // the survey's mean colour
 };
 
 struct LoadedContext {

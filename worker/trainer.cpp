@@ -12,6 +12,7 @@
 #include "core/render/march.h"
 #include "worker/block_session.h"
 #include "worker/field_trainer.h"
+#include "worker/lonely_tiles.h"
 #include "worker/starting_occupancy.h"
 #include "worker/surface_band.h"
 
@@ -20,7 +21,8 @@ namespace {
 
 constexpr int kOccupancyEvery = 16;
 constexpr int kGrowEvery = 128;
-constexpr double kGrowUntil = 0.6;  // of the budget; later, cells that hold nothing only cost samples
+constexpr double kGrowUntil = 0.6;       // of the budget; later, cells that hold nothing only cost samples
+constexpr double kVisitsToJudge = 16.0;  // samples per occupied cell: fewer, and chance alone leaves cells out
 constexpr int kMaxDroppedInARow = 20;
 constexpr int64_t kMaxOccupancyCells = 4'000'000;
 constexpr double kCellPerVoxel = 3.0;
@@ -56,7 +58,8 @@ render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is
   return f;
 }
 
-TrainResult Summarise(const SessionRecord& record, const field::TrainableState& state) {
+TrainResult Summarise(const SessionRecord& record, FieldTrainer& trainer) {
+  const field::TrainableState& state = trainer.state();
   TrainResult result;
   result.ok = true;
   result.steps = state.step;
@@ -66,6 +69,7 @@ TrainResult Summarise(const SessionRecord& record, const field::TrainableState& 
   result.parameters = static_cast<int64_t>(state.grid.size() + state.networks.size());
   result.final_psnr_db = -10.0 * std::log10(std::max(1e-10, record.mean_squared_error));
   result.dropped_steps = record.dropped_steps;
+  result.stage_seconds = trainer.StageSeconds();
   return result;
 }
 
@@ -75,7 +79,7 @@ class Loop {
   Loop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const Reporter& report)
       : kind_(kind), job_(job), target_(target), trainer_(trainer), report_(report) {}
 
-  TrainResult Run(SessionRecord record, const std::function<std::vector<SurfaceBand>()>& final_bands) {
+  TrainResult Run(SessionRecord record, const std::function<ContextFindings()>& find_out) {
     const TrainOptions& options = job_.options;
     const int64_t total_steps = options.steps > 0 ? options.steps : options.seconds > 0.0 ? 0 : kDefaultSteps;
     double last = Now(), last_save = last, last_report = last;
@@ -87,7 +91,7 @@ class Loop {
           total_steps > 0 ? static_cast<double>(state.step) / static_cast<double>(total_steps) : record.seconds / std::max(1e-3, options.seconds);
       if (fraction >= 1.0) break;
       if (base::CancelRequested()) {
-        SaveSession(kind_, job_, target_, trainer_, record, {});
+        SaveSession(kind_, job_, target_, trainer_, record, nullptr);
         throw base::Interrupted();
       }
       const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
@@ -99,7 +103,7 @@ class Loop {
       } else {
         ++record.dropped_steps;
         if (++dropped_in_a_row >= kMaxDroppedInARow) {
-          TrainResult failed = Summarise(record, state);
+          TrainResult failed = Summarise(record, trainer_);
           failed.ok = false;
           failed.reason = std::to_string(dropped_in_a_row) + " steps in a row were not finite";
           return failed;
@@ -120,15 +124,24 @@ class Loop {
         last_report = now;
       }
       if (now - last_save >= options.checkpoint_every_s) {
-        SaveSession(kind_, job_, target_, trainer_, record, {});
+        SaveSession(kind_, job_, target_, trainer_, record, nullptr);
         last = last_save = Now();  // saving is not training
       }
     }
     record.complete = true;
+    // Cells at the edge of view that no ray happened to cross would show whatever the tables hold there.
+    field::OccupancyGrid& cells = target_.occupancy;
+    if (static_cast<double>(record.samples) > kVisitsToJudge * cells.OccupiedShare() * static_cast<double>(cells.CellCount())) {
+      cells.ForgetUnsampled(kStartDepth);
+    }
     if (since > 0.0) Report(record, 1.0, total_steps, loss, rays_since, samples_since, since);
-    const std::vector<SurfaceBand> bands = final_bands();
-    SaveSession(kind_, job_, target_, trainer_, record, bands);
-    return Summarise(record, state);
+    if (find_out) {
+      const ContextFindings findings = find_out();
+      SaveSession(kind_, job_, target_, trainer_, record, &findings);
+    } else {
+      SaveSession(kind_, job_, target_, trainer_, record, nullptr);
+    }
+    return Summarise(record, trainer_);
   }
 
  private:
@@ -167,6 +180,7 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   render::TrainedField target = MakeTarget(job, area, true);
   RaySource source(*job.survey, *job.pixels, job.gains);
   source.SetTiles(TrainingTiles(*job.survey, area.photos), {}, 0.0);
+  source.BlurTiles(LonelyTiles(source, *job.survey, area.photos));
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo sees the survey area";
@@ -179,12 +193,12 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
     MarkUnseen(source, *job.survey, area.photos, target, threads);
     StartFromPoints(*job.survey, target);
   }
-  if (record.complete) return Summarise(record, trainer.state());
+  if (record.complete) return Summarise(record, trainer);
   Loop loop("context", job, target, trainer, report);
   return loop.Run(record, [&] {
     target.grid = trainer.state().grid;
     target.networks = trainer.state().networks;
-    return SurfaceBands(source, *job.survey, target, threads);
+    return ContextFindings{SurfaceBands(source, *job.survey, target, threads), source.MeanColor(job.seed)};
   });
 }
 
@@ -209,9 +223,9 @@ TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::fil
     StartFromPoints(*job.survey, target);
     if (context) StartFromBands(source, *job.survey, block.photos, *context, target);
   }
-  if (record.complete) return Summarise(record, trainer.state());
+  if (record.complete) return Summarise(record, trainer);
   Loop loop("block", job, target, trainer, report);
-  return loop.Run(record, [] { return std::vector<SurfaceBand>(); });
+  return loop.Run(record, {});
 }
 
 }  // namespace skyquilt::worker

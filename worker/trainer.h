@@ -1,6 +1,7 @@
 // Trains one field (the context or one block) from pixels to checkpoint. Knows nothing of other blocks or of ranks.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -11,6 +12,7 @@
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
 #include "worker/box_view.h"
+#include "worker/stage_times.h"
 #include "worker/train_options.h"
 
 namespace skyquilt::worker {
@@ -37,6 +39,8 @@ struct TrainResult {
   int64_t parameters = 0;
   double final_psnr_db = 0.0;  // of recent training rays
   int dropped_steps = 0;       // non-finite steps that never reached the parameters
+  // Seconds of work per stage (kStageNames), summed over threads; of this run alone when training was resumed.
+  std::array<double, kStages> stage_seconds = {};
 };
 
 using Reporter = std::function<void(const TrainStatus&)>;

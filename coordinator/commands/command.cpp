@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "coordinator/duration.h"
+#include "coordinator/memory_size.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 
@@ -43,6 +44,12 @@ void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
       },
       "time for all training together, as 90s, 10min or 1h30m [run.time_budget_s]");
   AddOverride(command, overrides, "--steps", "train.steps", "train every block for exactly so many steps, instead of a time budget");
+  command.add_option_function<std::string>(
+      "--memory",
+      [overrides](const std::string& text) {
+        overrides->push_back({"run.memory_gb", FormatGib(ParseBytes(text))});
+      },
+      "memory this machine's ranks may use together, as 2GiB or 1500MB; half of the machine when not given [run.memory_gb]");
   AddOverride(command, overrides, "--seed", "run.seed", "start of every random sequence of the training");
   command.add_option_function<std::string>(
       "--brightness",

@@ -15,6 +15,7 @@ namespace {
 struct Loaded {
   render::TrainedField field;
   double reference_exposure = 0.0;
+  double background_srgb[3] = {0.0, 0.0, 0.0};
 };
 
 Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, const geo::Geodetic& origin) {
@@ -26,7 +27,11 @@ Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, c
                           reader.DoubleAttribute("origin_longitude_deg") == origin.longitude_deg &&
                           reader.DoubleAttribute("origin_height_m") == origin.height_m;
   if (!same_place) throw base::InputError(file, "belongs to a survey with another origin", "Train this survey again with --restart");
-  return {render::GetField(reader, file, ""), reader.DoubleAttribute("reference_exposure")};
+  Loaded loaded{render::GetField(reader, file, ""), reader.DoubleAttribute("reference_exposure"), {}};
+  for (size_t c = 0; c < 3; ++c) {
+    if (reader.HasAttribute(render::kBackground[c])) loaded.background_srgb[c] = reader.DoubleAttribute(render::kBackground[c]);
+  }
+  return loaded;
 }
 
 }  // namespace
@@ -47,6 +52,7 @@ void MergeScene(const MergeInput& input) {
   writer.SetAttribute("origin_height_m", input.origin.height_m);
   writer.SetAttribute("georeferenced", static_cast<int64_t>(input.georeferenced ? 1 : 0));
   writer.SetAttribute("reference_exposure", context.reference_exposure);
+  for (size_t c = 0; c < 3; ++c) writer.SetAttribute(render::kBackground[c], context.background_srgb[c]);
   writer.SetAttribute("gsd_m", std::isfinite(gsd_m) ? gsd_m : 0.0);
   writer.SetAttribute("config", input.config_toml);
   writer.SetAttribute("config_hash", input.config_hash);

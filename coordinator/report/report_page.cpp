@@ -139,6 +139,30 @@ std::string MapSection(const ReportInput& input) {
   return html + "</div></div>" + "<div class=\"side\">" + BlockBars(input) + BlockFacts(input) + "</div></div>" + BlockTable(input) + "</section>\n";
 }
 
+// Where the time of all training steps went.
+std::string StageBars(const ReportInput& input) {
+  std::vector<std::pair<std::string, double>> stages;
+  double total = 0.0;
+  for (const FieldLog& field : input.log->fields) {
+    for (const auto& [stage, seconds] : field.stage_seconds) {
+      auto known = std::find_if(stages.begin(), stages.end(), [&, &name = stage](const auto& s) { return s.first == name; });
+      if (known == stages.end()) known = stages.insert(stages.end(), {stage, 0.0});
+      known->second += seconds;
+      total += seconds;
+    }
+  }
+  if (total <= 0.0) return "";
+  std::stable_sort(stages.begin(), stages.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string html = "<div class=\"card bars\"><h3>Where training time goes</h3><div class=\"rows\">";
+  for (const auto& [stage, seconds] : stages) {
+    html +=
+        fmt::format("<div class=\"row\"><span class=\"name\">{}</span><span><i style=\"width:{:.1f}%\"></i></span><b>{:.1f}\xE2\x80\xAF%</b></div>",
+                    EscapeHtml(stage), 100.0 * seconds / stages.front().second, 100.0 * seconds / total);
+  }
+  return html + fmt::format("</div><p class=\"note\">{} of work on all threads, {} samples per ray.</p></div>", base::FormatDuration(total),
+                            FormatFixed(input.log->SamplesPerRay(), 1));
+}
+
 std::string TrainingSection(const ReportInput& input) {
   std::vector<Curve> loss, psnr;
   for (const FieldLog& field : input.log->fields) {
@@ -154,7 +178,7 @@ std::string TrainingSection(const ReportInput& input) {
   return "<section id=\"training\"><div class=\"heading\"><h2>Training</h2></div><div class=\"chart-grid\">" +
          CurveChart(loss, {.title = "Loss", .x_label = "training time of the field (s)", .y_label = "loss", .log_y = true}) +
          CurveChart(psnr, {.title = "PSNR of the training batches", .x_label = "training time of the field (s)", .y_label = "PSNR (dB)"}) +
-         "</div></section>\n";
+         StageBars(input) + "</div></section>\n";
 }
 
 std::string GeoSection(const ReportInput& input) {

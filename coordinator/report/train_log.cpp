@@ -62,6 +62,15 @@ double TrainLog::TrainSeconds() const {
   return seconds > 0.0 ? seconds : kUnknown;
 }
 
+double TrainLog::SamplesPerRay() const {
+  int64_t samples = 0, rays = 0;
+  for (const FieldLog& field : fields) {
+    samples += field.samples;
+    rays += field.rays;
+  }
+  return rays > 0 ? static_cast<double>(samples) / static_cast<double>(rays) : kUnknown;
+}
+
 double TrainLog::SamplesPerSecond() const {
   int64_t samples = 0;
   for (const FieldLog& field : fields) samples += field.samples;
@@ -119,6 +128,11 @@ TrainLog ReadTrainLog(const std::filesystem::path& train_json, const std::filesy
     field.parameters = Integer(entry, "parameters");
     field.psnr_db = Number(entry, "psnr_db", kUnknown);
     field.dropped_steps = Integer(entry, "dropped_steps");
+    if (const auto stages = entry.find("stage_seconds"); stages != entry.end() && stages->is_object()) {
+      for (const auto& [stage, seconds] : stages->items()) {
+        if (seconds.is_number()) field.stage_seconds.emplace_back(stage, seconds.get<double>());
+      }
+    }
     for (const std::string& stem : {field.name, "block_" + field.name}) {
       const std::filesystem::path csv = checkpoint_folder / (stem + ".log.csv");
       if (!std::filesystem::is_regular_file(csv, ignored)) continue;

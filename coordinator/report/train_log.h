@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace skyquilt::report {
@@ -26,6 +27,7 @@ struct FieldLog {
   int64_t parameters = 0;
   double psnr_db = 0.0;  // NaN when unknown
   int64_t dropped_steps = 0;
+  std::vector<std::pair<std::string, double>> stage_seconds;  // work per stage of a step, summed over threads
   std::vector<CurvePoint> curve;
 };
 
@@ -40,6 +42,7 @@ struct TrainLog {
   const FieldLog* Find(const std::string& name) const;  // nullptr when absent
   // Wall time, at least the fields' own time shared by the ranks: a resumed run's last session alone would flatter. NaN when unknown.
   double TrainSeconds() const;
+  double SamplesPerRay() const;     // of all fields together; NaN when unknown
   double SamplesPerSecond() const;  // of all ranks together; NaN when unknown
 };
 

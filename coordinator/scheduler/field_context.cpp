@@ -7,6 +7,7 @@
 
 #include "coordinator/scheduler/training_log.h"
 #include "core/base/errors.h"
+#include "core/base/system.h"
 
 namespace skyquilt::coordinator {
 
@@ -66,11 +67,26 @@ int ContextSteps(const Settings& settings) {
   return settings.train.steps > 0 ? std::max(200, settings.train.steps / 2) : 0;
 }
 
+double MemoryLimitBytes(const Settings& settings) {
+  return settings.run.memory_gb > 0.0 ? settings.run.memory_gb * 1073741824.0 : 0.5 * static_cast<double>(base::TotalMemoryBytes());
+}
+
 double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads) {
   const double entries = std::ldexp(1.0, block.log2_table_size);
   const double table = entries * options.levels * options.features * 16.0;
   const double per_sample = 4.0 * (2.0 * options.levels * options.features + 6.0 * options.hidden + 64.0);
   return table + per_sample * options.batch_samples + 64e6 * threads;
+}
+
+bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& blocks, const Settings& settings, int threads, int ranks_on_machine) {
+  constexpr double kProgramBytes = 256e6;
+  double largest = 0.0;
+  for (const partition::Block& block : blocks.blocks) {
+    if (!block.empty) largest = std::max(largest, ExpectedTrainingBytes(block, settings.train, threads));
+  }
+  // Photos' pixels are mapped by every rank, and count for each.
+  const double share = MemoryLimitBytes(settings) / std::max(1, ranks_on_machine);
+  return static_cast<double>(pixels.FileBytes()) + largest + kProgramBytes > share;
 }
 
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,

@@ -1,5 +1,6 @@
 #include "coordinator/scheduler/field_job.h"
 
+#include <array>
 #include <chrono>
 #include <exception>
 #include <new>
@@ -90,7 +91,8 @@ std::string ToText(const FieldOutcome& outcome) {
                   {"rays", r.rays},
                   {"parameters", r.parameters},
                   {"psnr", r.final_psnr_db},
-                  {"dropped", r.dropped_steps}};
+                  {"dropped", r.dropped_steps},
+                  {"stages", r.stage_seconds}};
   return j.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -124,6 +126,7 @@ FieldOutcome OutcomeFromText(const std::string& text) {
   outcome.result.parameters = j.at("parameters").get<int64_t>();
   outcome.result.final_psnr_db = Number(j, "psnr");
   outcome.result.dropped_steps = j.at("dropped").get<int>();
+  if (j.contains("stages")) outcome.result.stage_seconds = j.at("stages").get<std::array<double, worker::kStages>>();
   return outcome;
 }
 

@@ -88,7 +88,7 @@ class Crew {
 };
 
 void RequireMemory(const partition::BlockSet& blocks, const Settings& settings, int threads, int per_host) {
-  const double limit = settings.run.memory_gb > 0.0 ? settings.run.memory_gb * 1073741824.0 : static_cast<double>(base::TotalMemoryBytes());
+  const double limit = MemoryLimitBytes(settings);
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) continue;
     const double bytes = ExpectedTrainingBytes(block, settings.train, threads);
@@ -112,8 +112,12 @@ class Training {
     TrainSummary summary;
     const int all_threads = UsableThreads(settings_);
     base::ThreadPool pool(all_threads);
-    const image::PixelCache pixels =
-        image::PixelCache::Open(project_.PixelCacheFile(), PixelSources(*input_.survey), settings_.run.image_width, pool);
+    image::PixelCache pixels = image::PixelCache::Open(project_.PixelCacheFile(), PixelSources(*input_.survey), settings_.run.image_width, pool);
+    pixels.Stream(MustStream(pixels, *input_.blocks, settings_, all_threads, comm_.local_size()));
+    if (pixels.streaming()) {
+      spdlog::info("photos' pixels ({}B) are read by need: they do not fit beside a block in {}B of memory",
+                   base::FormatCount(static_cast<double>(pixels.FileBytes())), base::FormatCount(MemoryLimitBytes(settings_)));
+    }
     // Decoding is not training: the budget starts here.
     start_ = std::chrono::steady_clock::now();
     Crew crew(comm_, project_, settings_, input_);
@@ -256,7 +260,8 @@ void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
     const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
     const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
     base::ThreadPool one(1);
-    const image::PixelCache pixels = image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), settings.run.image_width, one);
+    image::PixelCache pixels = image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), settings.run.image_width, one);
+    pixels.Stream(MustStream(pixels, blocks, settings, UsableThreads(settings), comm.local_size()));
     hello["threads"] = UsableThreads(settings);
     comm.Send(0, kTagHello, hello.dump());
     comm::Message message = WaitForMessage(comm);

@@ -83,6 +83,8 @@ void TrainLedger::WriteReport(int ranks, int threads) const {
     parameters += r.parameters;
     // By the block's own name, as everywhere outside the scheduler.
     const std::string name = outcome.job.block < 0 ? outcome.job.name : outcome.job.name.substr(outcome.job.name.find('_') + 1);
+    json stages = json::object();
+    for (size_t i = 0; i < worker::kStages; ++i) stages[worker::kStageNames[i]] = r.stage_seconds[i];
     fields.push_back({{"name", name},
                       {"block", outcome.job.block},
                       {"ok", outcome.failure == Failure::kNone},
@@ -98,7 +100,8 @@ void TrainLedger::WriteReport(int ranks, int threads) const {
                       {"attempts", outcome.job.attempt + 1},
                       {"rank", outcome.rank},
                       {"threads", outcome.threads},
-                      {"peak_rss_bytes", outcome.peak_rss_bytes}});
+                      {"peak_rss_bytes", outcome.peak_rss_bytes},
+                      {"stage_seconds", stages}});
   }
   const json report = {{"ranks", ranks},     {"threads", threads},       {"wall_seconds", spent_s_},    {"peak_rss_bytes", peak},
                        {"samples", samples}, {"parameters", parameters}, {"config_hash", config_hash_}, {"fields", fields}};

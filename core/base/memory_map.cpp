@@ -33,18 +33,36 @@ MemoryMap::MemoryMap(const std::filesystem::path& file) {
     data_ = static_cast<const uint8_t*>(address);
     size_ = size;
   }
-  close(descriptor);
+  descriptor_ = descriptor;
+  file_ = file;
 }
 
 MemoryMap::~MemoryMap() {
   if (data_ != nullptr) munmap(const_cast<uint8_t*>(data_), size_);
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
-MemoryMap::MemoryMap(MemoryMap&& other) noexcept : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+void MemoryMap::ReadAt(size_t offset, std::span<uint8_t> to) const {
+  for (size_t done = 0; done < to.size();) {
+    const ssize_t n = pread(descriptor_, to.data() + done, to.size() - done, static_cast<off_t>(offset + done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) ThrowFileError(file_, "cannot read", errno);
+    if (n == 0) throw InputError(file_, "became shorter while it was in use", "Run the command again");
+    done += static_cast<size_t>(n);
+  }
+}
+
+MemoryMap::MemoryMap(MemoryMap&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)),
+      size_(std::exchange(other.size_, 0)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      file_(std::move(other.file_)) {}
 
 MemoryMap& MemoryMap::operator=(MemoryMap&& other) noexcept {
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(file_, other.file_);
   return *this;
 }
 

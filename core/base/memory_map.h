@@ -20,10 +20,14 @@ class MemoryMap {
   MemoryMap& operator=(const MemoryMap&) = delete;
 
   std::span<const uint8_t> bytes() const { return {data_, size_}; }
+  // Copies bytes without keeping their pages in this process: slower than bytes(), but costs no memory. Throws InputError.
+  void ReadAt(size_t offset, std::span<uint8_t> to) const;
 
  private:
   const uint8_t* data_ = nullptr;
   size_t size_ = 0;
+  int descriptor_ = -1;
+  std::filesystem::path file_;
 };
 
 }  // namespace skyquilt::base

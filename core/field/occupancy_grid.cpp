@@ -57,6 +57,14 @@ double OccupancyGrid::Refresh(float limit) {
   return OccupiedShare();
 }
 
+void OccupancyGrid::ForgetUnsampled(float start) {
+  for (size_t i = 0; i < depth.size(); ++i) {
+    if (depth[i] != start) continue;
+    depth[i] = -1.0F;
+    occupied[i] = 0;
+  }
+}
+
 double OccupancyGrid::OccupiedShare() const {
   if (occupied.empty()) return 0.0;
   int64_t count = 0;

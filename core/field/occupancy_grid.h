@@ -34,6 +34,8 @@ struct OccupancyGrid {
   void WakeNeighbours(float solid, float wake);
   // Marks cells with depth above the threshold: min(limit, mean over seen cells). Returns the share occupied.
   double Refresh(float limit);
+  // Cells whose depth is still exactly `start` were never sampled: nothing is known about them, so they count as never seen.
+  void ForgetUnsampled(float start);
   double OccupiedShare() const;
   // Every cell within `cells` (max norm) of an occupied one becomes occupied, unless never seen.
   void Dilate(int cells);

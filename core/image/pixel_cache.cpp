@@ -136,4 +136,18 @@ std::span<const uint8_t> PixelCache::Mask(size_t photo) const {
   return map_.bytes().subspan(entry.mask_offset, static_cast<size_t>(entry.width) * static_cast<size_t>(entry.height));
 }
 
+bool PixelCache::Pixel(size_t photo, size_t pixel, uint8_t rgb[3]) const {
+  const Entry& entry = entries_[photo];
+  if (streaming_) {
+    uint8_t counts = 1;
+    if (entry.mask_offset != 0) map_.ReadAt(entry.mask_offset + pixel, {&counts, 1});
+    if (counts != 0) map_.ReadAt(entry.rgb_offset + 3 * pixel, {rgb, 3});
+    return counts != 0;
+  }
+  const uint8_t* bytes = map_.bytes().data();
+  if (entry.mask_offset != 0 && bytes[entry.mask_offset + pixel] == 0) return false;
+  std::copy_n(bytes + entry.rgb_offset + 3 * pixel, 3, rgb);
+  return true;
+}
+
 }  // namespace skyquilt::image

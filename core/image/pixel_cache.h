@@ -35,6 +35,12 @@ class PixelCache {
   size_t size() const { return entries_.size(); }
   int Width(size_t photo) const { return entries_[photo].width; }
   int Height(size_t photo) const { return entries_[photo].height; }
+  size_t FileBytes() const { return map_.bytes().size(); }
+  // One pixel (row-major index), as three display values; false where it is to be ignored. For random access: see Stream.
+  bool Pixel(size_t photo, size_t pixel, uint8_t rgb[3]) const;
+  // Reads single pixels from the file instead of through mapped pages, so that their number costs no memory.
+  void Stream(bool on) { streaming_ = on; }
+  bool streaming() const { return streaming_; }
   // Row-major RGB, width * height * 3 bytes, sRGB display values.
   std::span<const uint8_t> Rgb(size_t photo) const;
   // Row-major, width * height bytes, 0 = ignore; empty when the photo has no mask.
@@ -43,6 +49,7 @@ class PixelCache {
  private:
   base::MemoryMap map_;
   std::vector<Entry> entries_;
+  bool streaming_ = false;
 };
 
 }  // namespace skyquilt::image

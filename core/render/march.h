@@ -29,12 +29,29 @@ inline Stretch PlanStretch(const encoding::SpaceMap& map, const Eigen::Vector3d&
   return RayBox(origin, direction, Eigen::Vector3d(low.x(), low.y(), -kEver), Eigen::Vector3d(high.x(), high.y(), kEver));
 }
 
+// Positions along a ray in a field's unit frame, computed in double: a line where the frame is not contracted.
+class UnitRay {
+ public:
+  UnitRay(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction)
+      : map_(map),
+        origin_(map.contracted() ? origin : Eigen::Vector3d((origin - map.min_enu()) * map.units_per_metre())),
+        direction_(map.contracted() ? direction : Eigen::Vector3d(direction * map.units_per_metre())) {}
+  Eigen::Vector3f At(double t) const {
+    const Eigen::Vector3d p = origin_ + t * direction_;
+    return map_.contracted() ? map_.UnitFromEnu(p) : Eigen::Vector3f(p.cast<float>());
+  }
+
+ private:
+  const encoding::SpaceMap& map_;
+  Eigen::Vector3d origin_, direction_;
+};
+
 namespace internal {
 
-// Walks the cells of an uncontracted field in ray order (Amanatides and Woo 1987) and emits the lattice points of occupied ones.
-template <typename Emit>
-void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m, float jitter,
-                Emit&& emit) {
+// Walks the cells of an uncontracted field in ray order (Amanatides and Woo 1987): visit(at, leave) -> bool for every occupied one, distances from
+// the stretch's near end. False ends the walk.
+template <typename Visit>
+void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, Visit&& visit) {
   const field::OccupancyGrid& grid = f.occupancy;
   const double cell_m = static_cast<double>(grid.cell) / f.map.units_per_metre();
   const Eigen::Vector3d entry = origin + stretch.t_near * direction - f.map.min_enu();
@@ -56,21 +73,52 @@ void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eige
   while (at < length) {
     const int axis = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
     const double leave = std::max(at, std::min(next[axis], length));
-    if (grid.occupied[static_cast<size_t>(grid.Index(cell[0], cell[1], cell[2]))] != 0) {
-      // Lattice midpoints (k + jitter) * step inside [at, leave).
-      auto k = static_cast<int64_t>(std::ceil(at / step_m - static_cast<double>(jitter)));
-      for (;; ++k) {
-        const double t = (static_cast<double>(k) + static_cast<double>(jitter)) * step_m;
-        if (!(t < leave)) break;
-        if (t < at) continue;
-        if (!emit(stretch.t_near + t, step_m, step_m)) return;
-      }
-    }
+    if (grid.occupied[static_cast<size_t>(grid.Index(cell[0], cell[1], cell[2]))] != 0 && !visit(at, leave)) return;
     at = leave;
     cell[axis] += increment[axis];
     if (cell[axis] < 0 || cell[axis] >= grid.size[axis]) return;
     next[axis] += delta[axis];
   }
+}
+
+// Emits the lattice points (k + jitter) * step inside occupied cells.
+template <typename Emit>
+void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m, float jitter,
+                Emit&& emit) {
+  WalkCells(f, origin, direction, stretch, [&](double at, double leave) {
+    auto k = static_cast<int64_t>(std::ceil(at / step_m - static_cast<double>(jitter)));
+    for (;; ++k) {
+      const double t = (static_cast<double>(k) + static_cast<double>(jitter)) * step_m;
+      if (!(t < leave)) return true;
+      if (t >= at && !emit(stretch.t_near + t, step_m, step_m)) return false;
+    }
+  });
+}
+
+// The same walk with one sample for every stretch of at most `step_m` inside occupied cells, at its middle: with steps longer than a cell
+// a lattice would pass over thin surfaces.
+template <typename Emit>
+void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m,
+                   Emit&& emit) {
+  double run_begin = 0.0, run_end = -1.0;  // empty
+  bool more = true;
+  const auto flush = [&] {
+    const double length = run_end - run_begin;
+    if (more && length > 0.0) more = emit(stretch.t_near + 0.5 * (run_begin + run_end), length, length);
+    run_end = -1.0;
+  };
+  WalkCells(f, origin, direction, stretch, [&](double at, double leave) {
+    // Cells follow each other without gaps only while rounding agrees: compare with a tolerance.
+    if (run_end >= 0.0 && at > run_end + 1e-9 * step_m) flush();
+    if (run_end < 0.0) run_begin = at;
+    run_end = leave;
+    while (more && run_end - run_begin > step_m) {
+      more = emit(stretch.t_near + run_begin + 0.5 * step_m, step_m, step_m);
+      run_begin += step_m;
+    }
+    return more;
+  });
+  if (run_end >= 0.0) flush();
 }
 
 template <typename Emit>
@@ -90,6 +138,18 @@ void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const
 }
 
 }  // namespace internal
+
+// Steps longer than the field's own: for pixels that cover more than the field's finest detail.
+template <typename Emit>
+void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m,
+                 Emit&& emit) {
+  if (stretch.Empty()) return;
+  if (f.map.contracted()) {
+    internal::MarchContracted(f, origin, direction, stretch, step_m, 0.5F, emit);
+  } else {
+    internal::MarchCellRuns(f, origin, direction, stretch, step_m, emit);
+  }
+}
 
 // emit(t, length_m, unit_length_m) -> bool: distance along the ray, length of the interval, and that length measured in the
 // uncontracted part's metres (what the log density refers to). Return false to stop.

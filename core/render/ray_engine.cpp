@@ -13,22 +13,41 @@
 namespace skyquilt::render {
 namespace {
 
-constexpr int64_t kGroupRays = 256;   // one task
+constexpr int64_t kGroupRays = 1024;  // one task: enough samples that a level's table stays in cache
 constexpr int kMaxRaySamples = 2048;  // per ray and field; beyond, the ray ends
+// Samples of a ray that are evaluated together. Later rounds are for the rays that light still passes, so surfaces hide what lies behind.
+constexpr size_t kRoundSamples = 8;
+constexpr float kMaxLogDepth = 30.0F;  // exp of it times any length is finite
+// A ray with less light than this ends, and what it has gathered is taken for all: about one step of an 8-bit colour (Mueller et al. 2022 stop at
+// 0.01).
+constexpr double kDarkTransmittance = 5e-3;
+// A marching step in widths of a pixel, where that is longer than the field's own.
+constexpr double kPixelsPerStep = 4.5;
 
 struct Sample {
-  float t, length, weight;
-  int field, local;
+  float t, length, unit_length, blend;
+  float x, y, z;  // unit frame of its field
+  int field;
+  float weight;  // of its colour in the pixel
+  int local;     // in its field's batch
 };
 
-// Samples of one field within a group.
+// What a ray has gathered so far.
+struct Progress {
+  size_t begin = 0, next = 0, end = 0;  // samples: first, next to be evaluated, one past the last
+  double transmittance = 1.0, depth = 0.0;
+  double gain = 1.0;  // of the colour, when the ray was ended early
+};
+
+// Samples of one field in one round, and those of all rounds that need colour.
 struct FieldBatch {
-  std::vector<float> x, y, z, unit_length;
-  std::vector<float> features, geometry;  // rows, stride
+  std::vector<float> x, y, z;
+  std::vector<float> features, geometry;  // rows of `stride`
+  std::vector<float> step_depth;          // optical depth of one marching step
   size_t stride = 0;
-  std::vector<int> visible;  // local indices that need colour
+  std::vector<float> visible_geometry;  // kGeometryRows values per visible sample
   std::vector<float> color_in, color;
-  size_t visible_stride = 0;
+  size_t visible = 0, visible_stride = 0;
 };
 
 }  // namespace
@@ -47,37 +66,56 @@ class RayRenderer::Group {
 
   int64_t Render(std::span<const Ray> rays, std::span<RayColor> out) {
     samples_.clear();
-    ray_begin_.assign(1, 0);
+    progress_.assign(rays.size(), {});
     for (FieldBatch& batch : batches_) {
-      batch.x.clear();
-      batch.y.clear();
-      batch.z.clear();
-      batch.unit_length.clear();
-      batch.visible.clear();
+      batch.visible_geometry.clear();
+      batch.visible = 0;
     }
-    for (const Ray& ray : rays) {
-      MarchRay(ray);
-      ray_begin_.push_back(samples_.size());
+    alive_.clear();
+    for (size_t r = 0; r < rays.size(); ++r) {
+      progress_[r].begin = progress_[r].next = samples_.size();
+      MarchRay(rays[r]);
+      progress_[r].end = samples_.size();
+      out[r] = RayColor{};
+      for (float* distance : {&out[r].depth_front, &out[r].depth_median, &out[r].depth_back}) *distance = std::numeric_limits<float>::quiet_NaN();
+      if (progress_[r].end > progress_[r].begin) alive_.push_back(r);
     }
-    weight_.assign(samples_.size(), 0.0F);
-    for (size_t k = 0; k < all_.size(); ++k) EvaluateDensity(k);
-    for (size_t r = 0; r < rays.size(); ++r) ComposeOpacity(r, out[r]);
+    int64_t evaluated = 0;
+    while (!alive_.empty()) {
+      evaluated += EvaluateRound();
+      size_t kept = 0;
+      for (const size_t r : alive_) {
+        if (ComposeRound(progress_[r], out[r])) alive_[kept++] = r;
+      }
+      alive_.resize(kept);
+    }
     for (size_t k = 0; k < all_.size(); ++k) EvaluateColor(k, rays);
-    for (size_t r = 0; r < rays.size(); ++r) ComposeColor(r, out[r]);
-    return static_cast<int64_t>(samples_.size());
+    for (size_t r = 0; r < rays.size(); ++r) ComposeColor(progress_[r], out[r]);
+    return evaluated;
   }
 
  private:
   void MarchRay(const Ray& ray) {
     candidates_.clear();
-    for (int k = 0; k < static_cast<int>(all_.size()); ++k) {
+    gaps_.clear();
+    const bool with_context = context_index_ < static_cast<int>(all_.size());
+    if (with_context) gaps_.push_back(Clip(ray, *all_.back()));
+    for (int k = 0; k < context_index_; ++k) {
+      const TrainedField& f = *all_[static_cast<size_t>(k)];
       // Over its plan a block has its say even above its box: there is nothing there.
-      if (k != context_index_ && !PlanStretch(all_[static_cast<size_t>(k)]->map, ray.origin_enu, ray.direction_enu).Empty()) candidates_.push_back(k);
+      if (PlanStretch(f.map, ray.origin_enu, ray.direction_enu).Empty()) continue;
+      candidates_.push_back(k);
+      if (with_context) CutCore(f, ray);
     }
     block_weights_.assign(candidates_.size(), 0.0);
     const size_t begin = samples_.size();
-    for (size_t c = 0; c < candidates_.size(); ++c) MarchField(ray, candidates_[c], static_cast<int>(c));
-    if (context_index_ < static_cast<int>(all_.size())) MarchField(ray, context_index_, -1);
+    int marched = 0;
+    for (size_t c = 0; c < candidates_.size(); ++c) {
+      const int k = candidates_[c];
+      marched += MarchField(ray, k, static_cast<int>(c), Clip(ray, *all_[static_cast<size_t>(k)])) ? 1 : 0;
+    }
+    for (const Stretch& gap : gaps_) marched += MarchField(ray, context_index_, -1, gap) ? 1 : 0;
+    if (marched < 2) return;  // in order already
     const auto first = samples_.begin() + static_cast<ptrdiff_t>(begin);
     std::stable_sort(first, samples_.end(), [](const Sample& a, const Sample& b) { return a.t < b.t; });
   }
@@ -89,24 +127,86 @@ class RayRenderer::Group {
     return stretch;
   }
 
-  void MarchField(const Ray& ray, int k, int candidate) {
+  // Where a block alone has all the weight.
+  static Stretch CoreStretch(const TrainedField& f, const Ray& ray) {
+    constexpr double kEver = std::numeric_limits<double>::infinity();
+    const double m = f.margin_m;
+    return RayBox(ray.origin_enu, ray.direction_enu, {f.core_min_enu.x() + m, f.core_min_enu.y() + m, -kEver},
+                  {f.core_max_enu.x() - m, f.core_max_enu.y() - m, kEver});
+  }
+
+  // There the context need not be marched.
+  void CutCore(const TrainedField& f, const Ray& ray) {
+    const Stretch core = CoreStretch(f, ray);
+    if (core.Empty()) return;
+    const size_t n = gaps_.size();
+    for (size_t i = 0; i < n; ++i) {
+      const Stretch gap = gaps_[i];
+      if (core.t_far <= gap.t_near || core.t_near >= gap.t_far) continue;
+      gaps_[i].t_far = std::min(gap.t_far, core.t_near);
+      if (gap.t_far > core.t_far) gaps_.push_back({core.t_far, gap.t_far});
+    }
+  }
+
+  // Steps grow with the pixel: what is finer than it cannot be seen.
+  double StepScale(const Ray& ray, const TrainedField& f, const Stretch& stretch) const {
+    const double pixel_m = 2.0 * static_cast<double>(ray.pixel_radius) * stretch.t_near;
+    return std::max(options_.step_scale, kPixelsPerStep * pixel_m / f.step_m);
+  }
+
+  // True when samples were added.
+  bool MarchField(const Ray& ray, int k, int candidate, const Stretch& stretch) {
     const TrainedField& f = *all_[static_cast<size_t>(k)];
-    FieldBatch& batch = batches_[static_cast<size_t>(k)];
+    const size_t before = samples_.size();
+    const UnitRay unit(f.map, ray.origin_enu, ray.direction_enu);
+    // Where this block alone has all the weight nothing needs blending.
+    const Stretch alone = candidate < 0 ? Stretch{} : CoreStretch(f, ray);
     int count = 0;
-    March(f, ray.origin_enu, ray.direction_enu, Clip(ray, f), f.step_m * options_.step_scale, 0.5F, [&](double t, double length, double unit_length) {
-      const Eigen::Vector3d p = ray.origin_enu + t * ray.direction_enu;
-      const double context_weight = BlendWeights(fields_, candidates_, p.x(), p.y(), block_weights_);
-      const double weight = candidate < 0 ? context_weight : block_weights_[static_cast<size_t>(candidate)];
+    const auto emit = [&](double t, double length, double unit_length) {
+      double weight = 1.0;
+      if (!(t > alone.t_near && t < alone.t_far)) {
+        const double context_weight = BlendWeights(fields_, candidates_, ray.origin_enu.x() + t * ray.direction_enu.x(),
+                                                   ray.origin_enu.y() + t * ray.direction_enu.y(), block_weights_);
+        weight = candidate < 0 ? context_weight : block_weights_[static_cast<size_t>(candidate)];
+      }
       if (weight > 1e-4) {
-        const Eigen::Vector3f unit = f.map.UnitFromEnu(p);
-        samples_.push_back({static_cast<float>(t), static_cast<float>(length), static_cast<float>(weight), k, static_cast<int>(batch.x.size())});
-        batch.x.push_back(unit.x());
-        batch.y.push_back(unit.y());
-        batch.z.push_back(unit.z());
-        batch.unit_length.push_back(static_cast<float>(unit_length / f.step_m));
+        const Eigen::Vector3f p = unit.At(t);
+        samples_.push_back({static_cast<float>(t), static_cast<float>(length), static_cast<float>(unit_length / f.step_m), static_cast<float>(weight),
+                            p.x(), p.y(), p.z(), k, 0.0F, 0});
       }
       return ++count < kMaxRaySamples;
-    });
+    };
+    const double step_m = f.step_m * StepScale(ray, f, stretch);
+    if (step_m > 1.01 * f.step_m) {
+      MarchCoarse(f, ray.origin_enu, ray.direction_enu, stretch, step_m, emit);
+    } else {
+      March(f, ray.origin_enu, ray.direction_enu, stretch, step_m, 0.5F, emit);
+    }
+    return samples_.size() > before;
+  }
+
+  // Densities of the next samples of every ray that light still passes.
+  int64_t EvaluateRound() {
+    for (FieldBatch& batch : batches_) {
+      batch.x.clear();
+      batch.y.clear();
+      batch.z.clear();
+    }
+    int64_t evaluated = 0;
+    for (const size_t r : alive_) {
+      const Progress& p = progress_[r];
+      const size_t end = std::min(p.end, p.next + kRoundSamples);
+      for (size_t s = p.next; s < end; ++s) {
+        FieldBatch& batch = batches_[static_cast<size_t>(samples_[s].field)];
+        samples_[s].local = static_cast<int>(batch.x.size());
+        batch.x.push_back(samples_[s].x);
+        batch.y.push_back(samples_[s].y);
+        batch.z.push_back(samples_[s].z);
+      }
+      evaluated += static_cast<int64_t>(end - p.next);
+    }
+    for (size_t k = 0; k < all_.size(); ++k) EvaluateDensity(k);
+    return evaluated;
   }
 
   void EvaluateDensity(size_t k) {
@@ -116,61 +216,69 @@ class RayRenderer::Group {
     const field::HashField& f = *all_[k]->field;
     const int64_t padded = kernel::Padded(n);
     batch.stride = kernel::StrideFor(n);
-    batch.features.assign(static_cast<size_t>(f.FeatureRows()) * batch.stride, 0.0F);
-    batch.geometry.resize(static_cast<size_t>(field::kGeometryRows) * batch.stride);
+    const auto rows = static_cast<size_t>(f.FeatureRows());
+    batch.features.resize(std::max(batch.features.size(), rows * batch.stride));
+    batch.geometry.resize(std::max(batch.geometry.size(), static_cast<size_t>(field::kGeometryRows) * batch.stride));
     f.EncodeSerial(all_[k]->grid, batch.x.data(), batch.y.data(), batch.z.data(), n, batch.features.data(), batch.stride);
+    for (size_t row = 0; row < rows; ++row) std::fill_n(batch.features.data() + row * batch.stride + n, padded - n, 0.0F);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {
       f.Density(all_[k]->weights, batch.features.data() + begin, batch.stride, std::min<int64_t>(field::kChunk, padded - begin),
                 scratch_[k].density_hidden, scratch_[k].stride, batch.geometry.data() + begin, batch.stride);
     }
+    batch.step_depth.resize(std::max(batch.step_depth.size(), batch.stride));
+    kernel::ExpShifted(batch.geometry.data(), padded, static_cast<float>(all_[k]->config.density_bias), kMaxLogDepth, batch.step_depth.data());
   }
 
-  void ComposeOpacity(size_t r, RayColor& out) {
-    double transmittance = 1.0;
-    double depth = 0.0;
-    out = RayColor{};
+  // Takes in the round's samples in order of distance; false when the ray is done.
+  bool ComposeRound(Progress& p, RayColor& out) {
     constexpr double kPassed[3] = {0.85, 0.5, 0.15};
     float* const passed_at[3] = {&out.depth_front, &out.depth_median, &out.depth_back};
-    for (float* distance : passed_at) *distance = std::numeric_limits<float>::quiet_NaN();
-    for (size_t s = ray_begin_[r]; s < ray_begin_[r + 1]; ++s) {
-      const Sample& sample = samples_[s];
+    const size_t end = std::min(p.end, p.next + kRoundSamples);
+    for (; p.next < end; ++p.next) {
+      Sample& sample = samples_[p.next];
       FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
-      const double bias = all_[static_cast<size_t>(sample.field)]->config.density_bias;
-      const double log_density = std::min(30.0, static_cast<double>(batch.geometry[static_cast<size_t>(sample.local)]) + bias);
-      const double tau =
-          std::exp(log_density) * static_cast<double>(batch.unit_length[static_cast<size_t>(sample.local)]) * static_cast<double>(sample.weight);
-      const double after = transmittance * std::exp(-tau);
-      const double weight = transmittance - after;
-      depth += weight * static_cast<double>(sample.t);
+      const auto local = static_cast<size_t>(sample.local);
+      const double tau = static_cast<double>(batch.step_depth[local] * sample.unit_length * sample.blend);
+      const double after = p.transmittance * std::exp(-tau);
+      const double weight = p.transmittance - after;
+      p.depth += weight * static_cast<double>(sample.t);
       for (size_t i = 0; i < 3; ++i) {
-        if (!(transmittance > kPassed[i] && after <= kPassed[i])) continue;
+        if (!(p.transmittance > kPassed[i] && after <= kPassed[i])) continue;
         // Inside the interval, where the transmittance passes the mark.
-        const double share = tau > 0.0 ? std::clamp(std::log(transmittance / kPassed[i]) / tau, 0.0, 1.0) : 0.5;
+        const double share = tau > 0.0 ? std::clamp(std::log(p.transmittance / kPassed[i]) / tau, 0.0, 1.0) : 0.5;
         *passed_at[i] = sample.t + sample.length * static_cast<float>(share - 0.5);
       }
-      weight_[s] = static_cast<float>(weight);
-      if (weight_[s] > options_.colour_threshold) batch.visible.push_back(sample.local);
-      transmittance = after;
+      sample.weight = static_cast<float>(weight);
+      if (sample.weight > options_.colour_threshold) {
+        sample.local = static_cast<int>(batch.visible++);
+        for (size_t row = 0; row < field::kGeometryRows; ++row) batch.visible_geometry.push_back(batch.geometry[row * batch.stride + local]);
+      }
+      p.transmittance = after;
+      if (after < kDarkTransmittance) {
+        p.end = ++p.next;
+        p.gain = 1.0 / (1.0 - after);
+        p.depth *= p.gain;
+        p.transmittance = 0.0;
+        break;
+      }
     }
-    out.opacity = static_cast<float>(1.0 - transmittance);
-    out.depth = out.opacity > 1e-6F ? static_cast<float>(depth / (1.0 - transmittance)) : std::numeric_limits<float>::quiet_NaN();
+    out.opacity = static_cast<float>(1.0 - p.transmittance);
+    out.depth = out.opacity > 1e-6F ? static_cast<float>(p.depth / (1.0 - p.transmittance)) : std::numeric_limits<float>::quiet_NaN();
+    return p.next < p.end;
   }
 
   void EvaluateColor(size_t k, std::span<const Ray> rays) {
     FieldBatch& batch = batches_[k];
-    const auto n = static_cast<int64_t>(batch.visible.size());
+    const auto n = static_cast<int64_t>(batch.visible);
     if (n == 0) return;
     const field::HashField& f = *all_[k]->field;
     const int64_t padded = kernel::Padded(n);
     batch.visible_stride = kernel::StrideFor(n);
-    batch.color_in.assign(static_cast<size_t>(f.ColorInputRows()) * batch.visible_stride, 0.0F);
-    batch.color.resize(static_cast<size_t>(field::kColorRows) * batch.visible_stride);
-    FillDirections(k, rays);
-    for (int row = 0; row < field::kGeometryRows; ++row) {
-      const float* from = batch.geometry.data() + static_cast<size_t>(row) * batch.stride;
-      float* to = batch.color_in.data() + static_cast<size_t>(row) * batch.visible_stride;
-      for (size_t i = 0; i < batch.visible.size(); ++i) to[i] = from[batch.visible[i]];
-    }
+    const auto inputs = static_cast<size_t>(f.ColorInputRows());
+    batch.color_in.resize(std::max(batch.color_in.size(), inputs * batch.visible_stride));
+    batch.color.resize(std::max(batch.color.size(), static_cast<size_t>(field::kColorRows) * batch.visible_stride));
+    FillColorInput(k, rays);
+    for (size_t row = 0; row < inputs; ++row) std::fill_n(batch.color_in.data() + row * batch.visible_stride + n, padded - n, 0.0F);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {
       const int64_t count = std::min<int64_t>(field::kChunk, padded - begin);
       f.Color(all_[k]->weights, batch.color_in.data() + begin, batch.visible_stride, count, scratch_[k].color_hidden, scratch_[k].stride,
@@ -182,27 +290,33 @@ class RayRenderer::Group {
     }
   }
 
-  // Visible samples were listed in ray order, so the same walk finds each one's ray.
-  void FillDirections(size_t k, std::span<const Ray> rays) {
+  // Visible samples get their places ray by ray, so that a ray's direction is encoded once.
+  void FillColorInput(size_t k, std::span<const Ray> rays) {
     FieldBatch& batch = batches_[k];
     float* sh = batch.color_in.data() + static_cast<size_t>(field::kGeometryRows) * batch.visible_stride;
     size_t next = 0;
     for (size_t r = 0; r < rays.size(); ++r) {
       const size_t first = next;
-      for (size_t s = ray_begin_[r]; s < ray_begin_[r + 1]; ++s) {
-        if (samples_[s].field == static_cast<int>(k) && weight_[s] > options_.colour_threshold) samples_[s].local = static_cast<int>(next++);
+      for (size_t s = progress_[r].begin; s < progress_[r].next; ++s) {
+        if (samples_[s].field != static_cast<int>(k) || !(samples_[s].weight > options_.colour_threshold)) continue;
+        const float* geometry = batch.visible_geometry.data() + static_cast<size_t>(samples_[s].local) * field::kGeometryRows;
+        for (size_t row = 0; row < field::kGeometryRows; ++row) batch.color_in[row * batch.visible_stride + next] = geometry[row];
+        samples_[s].local = static_cast<int>(next++);
       }
+      if (next == first) continue;
       const Eigen::Vector3f d = rays[r].direction_enu.cast<float>();
       all_[k]->field->FillDirection(d.data(), static_cast<int64_t>(next - first), sh + first, batch.visible_stride);
     }
   }
 
-  void ComposeColor(size_t r, RayColor& out) {
-    for (size_t s = ray_begin_[r]; s < ray_begin_[r + 1]; ++s) {
-      if (!(weight_[s] > options_.colour_threshold)) continue;
-      const auto k = static_cast<size_t>(samples_[s].field);
-      const FieldBatch& batch = batches_[k];
-      for (size_t c = 0; c < 3; ++c) out.rgb_srgb[c] += weight_[s] * batch.color[c * batch.visible_stride + static_cast<size_t>(samples_[s].local)];
+  void ComposeColor(const Progress& p, RayColor& out) {
+    const auto gain = static_cast<float>(p.gain);
+    for (size_t s = p.begin; s < p.next; ++s) {
+      const Sample& sample = samples_[s];
+      if (!(sample.weight > options_.colour_threshold)) continue;
+      const FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
+      for (size_t c = 0; c < 3; ++c)
+        out.rgb_srgb[c] += gain * sample.weight * batch.color[c * batch.visible_stride + static_cast<size_t>(sample.local)];
     }
   }
 
@@ -213,8 +327,9 @@ class RayRenderer::Group {
   std::vector<FieldBatch> batches_;
   std::vector<field::Activations> scratch_;
   std::vector<Sample> samples_;
-  std::vector<size_t> ray_begin_;
-  std::vector<float> weight_;
+  std::vector<Progress> progress_;
+  std::vector<size_t> alive_;
+  std::vector<Stretch> gaps_;  // where the context counts
   std::vector<int> candidates_;
   std::vector<double> block_weights_;
 };

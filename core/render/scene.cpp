@@ -11,7 +11,15 @@
 namespace skyquilt::render {
 namespace {
 
-constexpr size_t kBandRays = 1 << 16;  // rays built at a time: memory does not grow with the image
+constexpr int kTile = 32;        // pixels
+constexpr int kBandTiles = 128;  // rays built at a time: memory does not grow with the image
+
+void Expose(float gain, std::span<RayColor> colors) {
+  if (gain == 1.0F) return;
+  for (RayColor& color : colors) {
+    for (float& value : color.rgb_srgb) value = image::SrgbFromLinear(gain * image::LinearFromSrgb(value));
+  }
+}
 
 }  // namespace
 
@@ -44,6 +52,9 @@ Scene Scene::Load(const std::filesystem::path& scene_h5) {
   info.reference_exposure = reader.DoubleAttribute("reference_exposure");
   info.config = reader.StringAttribute("config");
   info.gsd_m = reader.DoubleAttribute("gsd_m");
+  for (size_t c = 0; c < 3; ++c) {
+    if (reader.HasAttribute(kBackground[c])) info.background_srgb[c] = static_cast<float>(reader.DoubleAttribute(kBackground[c]));
+  }
   const int64_t n_blocks = reader.IntAttribute("blocks");
   info.min_enu = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   info.max_enu = -info.min_enu;
@@ -70,34 +81,48 @@ Scene Scene::Load(const std::filesystem::path& scene_h5) {
 void Scene::RenderRays(std::span<const Ray> rays, std::span<RayColor> out, float exposure_gain, base::ThreadPool& threads) const {
   SKYQUILT_CHECK(rays.size() == out.size(), std::to_string(rays.size()) + " rays, " + std::to_string(out.size()) + " results");
   render::RenderRays(impl_->set, rays, out, EngineOptions{}, threads);
-  if (exposure_gain == 1.0F) return;
-  for (RayColor& color : out) {
-    for (float& value : color.rgb_srgb) value = image::SrgbFromLinear(exposure_gain * image::LinearFromSrgb(value));
-  }
+  Expose(exposure_gain, out);
 }
 
 std::vector<RayColor> Scene::RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, float exposure_gain,
                                           base::ThreadPool& threads) const {
-  const auto width = static_cast<size_t>(camera.width);
-  const size_t total = width * static_cast<size_t>(camera.height);
-  std::vector<RayColor> out(total);
+  std::vector<RayColor> out(static_cast<size_t>(camera.width) * static_cast<size_t>(camera.height));
   const geo::Rigid3d enu_from_cam = cam_from_enu.Inverse();
   const float radius = static_cast<float>(0.5 / std::max(1e-9, camera.FocalX()));
+  // Square tiles: rays that are rendered together look at the same places, so table entries are in cache.
+  const int tile_columns = (camera.width + kTile - 1) / kTile;
+  const int n_tiles = tile_columns * ((camera.height + kTile - 1) / kTile);
+  std::vector<size_t> pixels;
   std::vector<Ray> rays;
-  for (size_t begin = 0; begin < total; begin += kBandRays) {
-    const size_t count = std::min(kBandRays, total - begin);
-    rays.assign(count, Ray{});
-    threads.ParallelFor(static_cast<int64_t>((count + 255) / 256), [&](int64_t task, int) {
-      const size_t first = static_cast<size_t>(task) * 256;
-      for (size_t i = first; i < std::min(first + 256, count); ++i) {
-        const size_t pixel = begin + i;
-        const Eigen::Vector2d img(static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5);
+  std::vector<RayColor> colors;
+  for (int first = 0; first < n_tiles; first += kBandTiles) {
+    pixels.clear();
+    for (int tile = first; tile < std::min(first + kBandTiles, n_tiles); ++tile) {
+      const int x0 = tile % tile_columns * kTile, y0 = tile / tile_columns * kTile;
+      for (int y = y0; y < std::min(y0 + kTile, camera.height); ++y) {
+        for (int x = x0; x < std::min(x0 + kTile, camera.width); ++x) {
+          pixels.push_back(static_cast<size_t>(y) * static_cast<size_t>(camera.width) + static_cast<size_t>(x));
+        }
+      }
+    }
+    rays.assign(pixels.size(), Ray{});
+    colors.resize(pixels.size());
+    threads.ParallelFor(static_cast<int64_t>((pixels.size() + 255) / 256), [&](int64_t task, int) {
+      const size_t begin = static_cast<size_t>(task) * 256;
+      for (size_t i = begin; i < std::min(begin + 256, pixels.size()); ++i) {
+        const auto width = static_cast<size_t>(camera.width);
+        const Eigen::Vector2d img(static_cast<double>(pixels[i] % width) + 0.5, static_cast<double>(pixels[i] / width) + 0.5);
         rays[i].origin_enu = enu_from_cam.translation;
         rays[i].direction_enu = (enu_from_cam.rotation * camera.RayFromImg(img)).normalized();
         rays[i].pixel_radius = radius;
       }
     });
-    RenderRays(rays, std::span<RayColor>(out).subspan(begin, count), exposure_gain, threads);
+    render::RenderRays(impl_->set, rays, colors, EngineOptions{}, threads);
+    for (RayColor& color : colors) {
+      for (size_t c = 0; c < 3; ++c) color.rgb_srgb[c] += (1.0F - color.opacity) * impl_->info.background_srgb[c];
+    }
+    Expose(exposure_gain, colors);
+    for (size_t i = 0; i < pixels.size(); ++i) out[pixels[i]] = colors[i];
   }
   return out;
 }

@@ -35,10 +35,13 @@ def test(skyquilt, folder):
     expect("wrong.toml" in text, text)
 
     for words in (["--altitudes=-5,10", "--blocks", "1x2"], ["--blocks", "0x2"], ["--blocks", "many"], ["--time-budget", "soon"], ["--time-budget", "-5min"],
-                  ["--time-budget", "1min", "--steps", "5"], ["--steps", "-1"], ["--brightness", "sunny"], ["--holdout", "every:0"]):
+                  ["--time-budget", "1min", "--steps", "5"], ["--steps", "-1"], ["--brightness", "sunny"], ["--memory", "lots"], ["--holdout", "every:0"]):
         skyquilt.call("run", survey, "-o", folder / "out_usage", *words, status=2)
     text = skyquilt.call("run", survey, "-o", folder / "out_altitudes", "--blocks", "2x2", "--altitudes", "50,60", status=2)
     expect("2" in text and "4" in text, f"counts of altitudes and blocks are not named:\n{text}")
+    skyquilt.call("bench", "kernel", "--isa", "quantum", status=2)
+    skyquilt.call("bench", "kernel", "--levels", "3", "--features", "2", status=2)
+    skyquilt.call("bench", status=2)
     skyquilt.call("simulate", "atlantis", "-o", folder / "atlantis", status=2)
     skyquilt.call("train", survey, status=3)
 

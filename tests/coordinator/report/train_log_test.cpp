@@ -48,7 +48,8 @@ TEST_F(TrainLogFiles, MissingOrDamagedFilesGiveAnEmptyLog) {
 
 TEST_F(TrainLogFiles, ReadsFieldsAndTheirCurves) {
   Write("train.json", R"({"ranks":2,"threads":4,"wall_seconds":50,"peak_rss_bytes":1000,"fields":[
-    {"name":"context","ok":true,"reason":"","steps":10,"seconds":20,"samples":1000,"rays":100,"parameters":7,"psnr_db":21.5,"dropped_steps":0},
+    {"name":"context","ok":true,"reason":"","steps":10,"seconds":20,"samples":1000,"rays":100,"parameters":7,"psnr_db":21.5,"dropped_steps":0,
+     "stage_seconds":{"hash forward":1.5,"compose":null}},
     {"name":"r0c0","ok":false,"reason":"loss not finite","steps":5,"seconds":30,"samples":3000,"psnr_db":null}]})");
   Write("context.log.csv", "step,seconds,loss,psnr\n1,1,0.5,10\n");
   Write("block_r0c0.log.csv", "step,seconds,loss,psnr\n1,1,0.5,10\n2,2,0.4,11\n");
@@ -58,6 +59,9 @@ TEST_F(TrainLogFiles, ReadsFieldsAndTheirCurves) {
   EXPECT_EQ(log.ranks, 2);
   EXPECT_EQ(log.Find("context")->parameters, 7);
   EXPECT_EQ(log.Find("context")->curve.size(), 1U);
+  ASSERT_EQ(log.Find("context")->stage_seconds.size(), 1U);
+  EXPECT_EQ(log.Find("context")->stage_seconds.front().first, "hash forward");
+  EXPECT_DOUBLE_EQ(log.SamplesPerRay(), 40.0);
   EXPECT_EQ(log.Find("r0c0")->curve.size(), 2U);
   EXPECT_FALSE(log.Find("r0c0")->ok);
   EXPECT_TRUE(std::isnan(log.Find("r0c0")->psnr_db));

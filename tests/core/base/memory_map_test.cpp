@@ -43,6 +43,16 @@ TEST(MemoryMap, MovesItsView) {
   EXPECT_EQ(Text(last), "1");
 }
 
+TEST(MemoryMap, ReadsBytesWithoutMappingThem) {
+  const TemporaryFolder folder;
+  WriteFileAtomically(folder / "file", "abcdef");
+  const MemoryMap map(folder / "file");
+  uint8_t bytes[3];
+  map.ReadAt(2, bytes);
+  EXPECT_EQ(std::string(bytes, bytes + 3), "cde");
+  EXPECT_THROW(map.ReadAt(4, bytes), InputError);
+}
+
 TEST(MemoryMap, EmptyFileIsAnEmptySpan) {
   const TemporaryFolder folder;
   WriteFileAtomically(folder.path() / "empty", "");

@@ -80,5 +80,18 @@ TEST(OccupancyGrid, DilateReachesExactlyItsDistance) {
   EXPECT_EQ(count, 125);
 }
 
+TEST(OccupancyGrid, ForgetsCellsThatWereNeverSampled) {
+  const double extent[3] = {1.0, 1.0, 1.0};
+  OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 8);
+  std::fill(grid.depth.begin(), grid.depth.end(), 0.1F);
+  grid.Observe(3, 0.5F);
+  grid.Observe(4, 0.0F);
+  grid.ForgetUnsampled(0.1F);
+  for (int64_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(grid.depth[static_cast<size_t>(i)] < 0.0F, i != 3 && i != 4) << i;
+    EXPECT_EQ(grid.occupied[static_cast<size_t>(i)], i == 3 || i == 4 ? 1 : 0) << i;
+  }
+}
+
 }  // namespace
 }  // namespace skyquilt::field

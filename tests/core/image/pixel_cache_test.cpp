@@ -69,6 +69,27 @@ TEST_F(PixelCacheTest, HoldsWhatLoadingAndResizingGives) {
   EXPECT_FALSE(PartialLeft());
 }
 
+TEST_F(PixelCacheTest, SinglePixelsAreTheSameMappedAndStreamed) {
+  base::ThreadPool threads(2);
+  PixelCache cache = PixelCache::Open(folder_.path() / "cache.bin", sources_, 40, threads);
+  for (const bool streaming : {false, true}) {
+    cache.Stream(streaming);
+    int ignored = 0;
+    for (const size_t photo : {size_t{0}, size_t{2}, size_t{7}}) {
+      const auto rgb = cache.Rgb(photo);
+      const auto mask = cache.Mask(photo);
+      for (size_t pixel = 0; pixel < rgb.size() / 3; ++pixel) {
+        uint8_t one[3] = {1, 2, 3};
+        const bool counts = cache.Pixel(photo, pixel, one);
+        EXPECT_EQ(counts, mask.empty() || mask[pixel] != 0);
+        ignored += counts ? 0 : 1;
+        for (size_t c = 0; c < 3 && counts; ++c) EXPECT_EQ(one[c], rgb[3 * pixel + c]);
+      }
+    }
+    EXPECT_GT(ignored, 0);
+  }
+}
+
 TEST_F(PixelCacheTest, NeverEnlarges) {
   for (const int width : {0, -1, 60, 5000}) {
     const PixelCache cache = Open(width);

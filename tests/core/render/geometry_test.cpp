@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <set>
 
@@ -81,6 +82,36 @@ TEST(March, FullOccupancyGivesEveryLatticePointOnce) {
     EXPECT_NEAR(static_cast<double>(ts.size()), (s.t_far - s.t_near) / f.step_m, 1.01);
     for (size_t k = 1; k < ts.size(); ++k) EXPECT_NEAR(ts[k] - ts[k - 1], f.step_m, 1e-9);
   }
+}
+
+// Whatever the step, the samples' lengths add up to the way through occupied cells: nothing thin is passed over.
+RC_GTEST_PROP(March, LongStepsMissNothing, ()) {
+  TrainedField f;
+  f.map = encoding::SpaceMap::Box({0.0, 0.0, 0.0}, {10.0, 10.0, 10.0});
+  const double extent[3] = {1.0, 1.0, 1.0};
+  f.occupancy = field::OccupancyGrid::Make(extent, 0.05, 8000);
+  f.step_m = 0.2;
+  std::fill(f.occupancy.occupied.begin(), f.occupancy.occupied.end(), uint8_t{0});
+  const int layer = *rc::gen::inRange(0, 20);
+  const int thick = *rc::gen::inRange(1, 4);
+  for (int z = layer; z < std::min(20, layer + thick); ++z) {
+    for (int i = 0; i < 400; ++i) f.occupancy.occupied[static_cast<size_t>(400 * z + i)] = 1;
+  }
+  const double x = *rc::gen::inRange(100, 900) / 100.0, y = *rc::gen::inRange(100, 900) / 100.0;
+  const double slope = *rc::gen::inRange(-5, 6) / 100.0;
+  const Eigen::Vector3d origin(x, y, 12.0), direction = Eigen::Vector3d(slope, 0.0, -1.0).normalized();
+  const double step_m = *rc::gen::inRange(1, 40) / 10.0;
+  const Stretch s = RayBox(origin, direction, f.map.min_enu(), f.map.max_enu());
+  double length = 0.0, last = 0.0;
+  MarchCoarse(f, origin, direction, s, step_m, [&](double t, double sample_m, double) {
+    RC_ASSERT(sample_m <= step_m * 1.000001);
+    RC_ASSERT(t > last);
+    last = t;
+    length += sample_m;
+    return true;
+  });
+  const double expected = 0.5 * (std::min(20, layer + thick) - layer) / -direction.z();
+  RC_ASSERT(std::abs(length - expected) < 1e-6);
 }
 
 TEST(March, SamplesLieInOccupiedCellsOnly) {

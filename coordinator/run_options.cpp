@@ -17,7 +17,7 @@ void RunOptions::Visit(config::OptionVisitor& v) {
   v.Field("memory_gb", memory_gb,
           "memory per machine that training may use, in GiB, shared by the ranks on it; 0 = half of the machine. Training refuses to start with "
           "blocks that do not "
-          "fit, and lets go of photos' pixels it can read again");
+          "fit, and reads photos' pixels by need when they do not");
 }
 
 void RunOptions::Validate() const {

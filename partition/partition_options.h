@@ -20,7 +20,7 @@ struct PartitionOptions {
   double headroom = 0.25;         // share of the flying height added above where sparse points leave gaps, as over canopy
   double voxel_per_gsd = 1.5;     // finest voxel as a multiple of the ground sampling distance
   int min_log2_table_size = 14;
-  int max_log2_table_size = 19;
+  int max_log2_table_size = 17;
   double parameter_budget = 0.0;  // hash entries (of the finest level) over the whole survey that "auto" may use; 0: no limit
 
   void Visit(config::OptionVisitor& v);

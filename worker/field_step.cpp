@@ -18,6 +18,14 @@ const float kHiddenDepth = -std::log(1e-3F);
 // Behind this optical depth the context is not looked at: it would show through at less than 2 %.
 constexpr float kOpaqueDepth = 4.0F;
 
+// Reads a level's table once in order. Corners read it at random, and memory is several times slower at that than at one pass in front of it.
+// The sum only keeps the compiler from leaving it out.
+float ReadAhead(const float* table, int64_t floats) {
+  float sum = 0.0F;
+  for (int64_t i = 0; i < floats; i += kernel::kLineFloats) sum += table[i];
+  return sum;
+}
+
 template <typename T>
 void Grow(std::vector<T>& v, size_t n) {
   if (v.size() < n) v.resize(n + n / 4);
@@ -40,6 +48,7 @@ struct FieldStep::Worker {
   std::vector<render::Ray> pieces;
   std::vector<render::RayColor> colors;
   std::vector<std::pair<size_t, bool>> owner;  // view, is it the piece behind
+  float read_ahead = 0.0F;
 
   void Reserve(const field::HashField& field, int64_t n) {
     a.Reserve(field, n);
@@ -50,7 +59,7 @@ struct FieldStep::Worker {
 
 FieldStep::FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context,
                      base::ThreadPool& threads, StageTimes& times)
-    : target_(target), field_(field), context_(context), threads_(threads), times_(times) {
+    : target_(target), field_(field), context_(context), threads_(threads), times_(times), optimizer_(field, threads) {
   for (int i = 0; i < threads.size(); ++i) {
     workers_.push_back(std::make_unique<Worker>());
     if (context == nullptr) continue;
@@ -72,7 +81,15 @@ void FieldStep::Encode(const RayBatch& batch, const field::TrainableState& state
   threads_.ParallelFor(stretches * grid.levels(), [&](int64_t task, int thread) {
     const auto start = StageTimes::Clock::now();
     const int l = static_cast<int>(task / stretches);
-    const auto first = static_cast<size_t>((task % stretches) * kEncodePackets);
+    const int64_t stretch = task % stretches;
+    const int64_t floats = grid.Offset(l + 1) - grid.Offset(l);
+    const int64_t readers = std::min<int64_t>(threads_.size(), stretches);
+    // Worth it when the samples will want most of the table.
+    if (stretch < readers && 4 * batch.n_samples > floats / kernel::kLineFloats) {
+      const int64_t share = floats / readers / kernel::kLineFloats * kernel::kLineFloats;
+      workers_[static_cast<size_t>(thread)]->read_ahead = ReadAhead(state.grid.data() + grid.Offset(l) + stretch * share, share);
+    }
+    const auto first = static_cast<size_t>(stretch * kEncodePackets);
     const auto end = std::min(first + static_cast<size_t>(kEncodePackets), batch.packets.size());
     for (size_t k = first; k < end; ++k) {
       const Packet& p = batch.packets[k];
@@ -325,15 +342,15 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   }
   result.finite = result.finite && std::isfinite(result.loss) && kernel::AllFinite(state.network_gradient.data(), static_cast<int64_t>(network_size));
   if (!result.finite) {
-    field::DropGradients(state);
+    std::fill(state.network_gradient.begin(), state.network_gradient.end(), 0.0F);
     ++state.step;  // the same rays would fail the same way
     return result;
   }
   times_.Add(0, Stage::kBackward, at);
-  field::AccumulateGrid(field_, batch.x.data(), batch.y.data(), batch.z.data(), stretches_, state, threads_,
-                        [&](int thread, StageTimes::Clock::time_point start) { times_.Add(thread, Stage::kScatter, start); });
-  field::ApplyAdam(field_, options.learning_rate, options.network_l2, state, threads_,
-                   [&](int thread, StageTimes::Clock::time_point start) { times_.Add(thread, Stage::kOptimise, start); });
+  optimizer_.Update(
+      batch.x.data(), batch.y.data(), batch.z.data(), stretches_, options.learning_rate, options.network_l2, state,
+      [&](int thread, StageTimes::Clock::time_point began) { times_.Add(thread, Stage::kScatter, began); },
+      [&](int thread, StageTimes::Clock::time_point began) { times_.Add(thread, Stage::kOptimise, began); });
   return result;
 }
 

@@ -68,6 +68,7 @@ class FieldStep {
   const render::TrainedField* context_;
   base::ThreadPool& threads_;
   StageTimes& times_;
+  field::Optimizer optimizer_;
   field::NetworkWeights weights_;
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<float> features_;  // per packet, then the gradient in its place

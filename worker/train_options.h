@@ -18,7 +18,7 @@ struct TrainOptions {
   int color_hidden_layers = 1;
   int sh_degree = 3;
   double learning_rate = 3e-2;
-  double final_learning_rate_share = 0.03;
+  double final_learning_rate_share = 0.1;
   double network_l2 = 1e-6;
   double distortion = 1e-2;
   double empty_ray_share = 0.05;

@@ -19,15 +19,10 @@ struct TrainableState {
   std::vector<float> grid_moment1, grid_moment2, network_moment1, network_moment2;
   int64_t step = 0;  // updates done
 
-  // Not saved: zero between steps.
-  std::vector<float> grid_gradient, network_gradient;
-  std::vector<uint8_t> touched;  // per line of kernel::kLineFloats grid parameters
+  std::vector<float> network_gradient;  // not saved: zero between steps
 
   void Allocate(const HashField& field);
 };
-
-// Told at the end of every task which thread did it and when it began; may be empty.
-using TaskClock = std::function<void(int thread, std::chrono::steady_clock::time_point began)>;
 
 // Samples of one batch in stretches, as packets leave them.
 struct GridGradient {
@@ -35,13 +30,31 @@ struct GridGradient {
   const float* gradient = nullptr;  // FeatureRows() rows
   size_t stride = 0;
 };
-// Adds the gradient of the samples' features to the grid. Each level belongs to one task, so bits do not depend on the thread count.
-void AccumulateGrid(const HashField& field, const float* x, const float* y, const float* z, std::span<const GridGradient> stretches,
-                    TrainableState& state, base::ThreadPool& threads, const TaskClock& clock = {});
-// One update; clears the gradients. network_l2 is the weight decay of the networks.
-void ApplyAdam(const HashField& field, double learning_rate, double network_l2, TrainableState& state, base::ThreadPool& threads,
-               const TaskClock& clock = {});
-// Forgets this step's gradients without an update.
-void DropGradients(TrainableState& state);
+// Adds the gradient of the samples' features to one level's table gradient and marks the lines written to (kernel::HashBackward).
+void AddLevelGradient(const HashField& field, int level, const float* x, const float* y, const float* z, std::span<const GridGradient> stretches,
+                      float* table_gradient, uint8_t* touched);
+
+// Told at the end of a piece of work which thread did it and when it began; may be empty.
+using TaskClock = std::function<void(int thread, std::chrono::steady_clock::time_point began)>;
+
+// Updates a field from a batch. A level's gradient lives only from its samples to its parameters, in one buffer per thread that stays in
+// cache from level to level. Each level belongs to one thread, so bits do not depend on their number.
+class Optimizer {
+ public:
+  Optimizer(const HashField& field, base::ThreadPool& threads);
+  // One step of Adam with state.network_gradient, which is cleared, and the grid gradient of the stretches. network_l2 is the weight decay of
+  // the networks.
+  void Update(const float* x, const float* y, const float* z, std::span<const GridGradient> stretches, double learning_rate, double network_l2,
+              TrainableState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
+
+ private:
+  struct LevelScratch {
+    std::vector<float> gradient;   // of the largest level
+    std::vector<uint8_t> touched;  // per line of it
+  };
+  const HashField& field_;
+  base::ThreadPool& threads_;
+  std::vector<LevelScratch> scratch_;  // per thread, allocated when first needed; zero between levels
+};
 
 }  // namespace skyquilt::field

@@ -42,6 +42,14 @@ size_t CountOf(const std::string& text, const std::string& part) {
   return n;
 }
 
+TEST_F(ReportPage, TellsWhereTrainingTimeWent) {
+  const size_t at = html_.find("Where training time goes");
+  ASSERT_NE(at, std::string::npos);
+  // Longest first: 0.9 of 1.5.
+  EXPECT_LT(html_.find("network backward", at), html_.find("hash forward", at));
+  EXPECT_NE(html_.find("60.0\xE2\x80\xAF%", at), std::string::npos);
+}
+
 TEST_F(ReportPage, OpensOfflineAndEveryPictureExists) {
   EXPECT_EQ(html_.find("http://"), std::string::npos);
   EXPECT_EQ(html_.find("https://"), std::string::npos);

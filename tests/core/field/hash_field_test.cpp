@@ -96,7 +96,12 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   field.Backward(weights, a, features.data(), stride, padded, state.network_gradient.data());
   // Two stretches, as two packets leave them.
   const GridGradient stretches[2] = {{0, 2, features.data(), stride}, {2, n - 2, features.data() + 2, stride}};
-  AccumulateGrid(field, x.data(), y.data(), z.data(), stretches, state, threads);
+  std::vector<float> grid_gradient(state.grid.size(), 0.0F);
+  std::vector<uint8_t> touched(state.grid.size() / kernel::kLineFloats, 0);
+  for (int l = 0; l < field.grid().levels(); ++l) {
+    const int64_t offset = field.grid().Offset(l);
+    AddLevelGradient(field, l, x.data(), y.data(), z.data(), stretches, grid_gradient.data() + offset, touched.data() + offset / kernel::kLineFloats);
+  }
 
   std::vector<double> grid(state.grid.begin(), state.grid.end()), networks(state.networks.begin(), state.networks.end());
   const Reference reference{field};
@@ -134,7 +139,7 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
     }
     EXPECT_GT(nonzero, 20U) << name;
   };
-  check(grid, state.grid_gradient, "grid", grid.size());
+  check(grid, grid_gradient, "grid", grid.size());
   // The last row of the last layer is padding.
   check(networks, state.network_gradient, "networks", networks.size() - static_cast<size_t>(field.config().hidden));
 }
@@ -152,15 +157,37 @@ TEST(HashField, RefusesImpossibleSettings) {
   EXPECT_THROW(HashField{config}, std::invalid_argument);
 }
 
-TEST(TrainableState, DroppedGradientsLeaveNoTrace) {
+// The first step of Adam moves every parameter with a gradient by the learning rate, whatever the number of threads.
+TEST(Optimizer, MovesWhatSamplesTouchedOnAnyNumberOfThreads) {
   const HashField field(SmallConfig(1));
-  TrainableState state;
-  state.Allocate(field);
-  state.grid_gradient[3] = std::nanf("");
-  state.touched[0] = 1;
-  DropGradients(state);
-  EXPECT_EQ(state.grid_gradient[3], 0.0F);
-  EXPECT_EQ(state.touched[0], 0);
+  std::vector<std::vector<float>> moved;
+  for (const int n_threads : {1, 3}) {
+    base::ThreadPool threads(n_threads);
+    TrainableState state;
+    state.Allocate(field);
+    Optimizer optimizer(field, threads);
+    const float x[2] = {0.1F, 0.6F}, y[2] = {0.2F, 0.7F}, z[2] = {0.05F, 0.3F};
+    std::vector<float> gradient(static_cast<size_t>(field.FeatureRows()) * 2, 0.0F);
+    for (size_t row = 0; row < static_cast<size_t>(field.FeatureRows()); ++row) gradient[2 * row] = 1.0F;  // the second sample has none
+    state.network_gradient[5] = 1.0F;
+    const GridGradient stretch{0, 2, gradient.data(), 2};
+    optimizer.Update(x, y, z, {&stretch, 1}, 0.01, 0.0, state);
+    EXPECT_EQ(state.step, 1);
+    EXPECT_NEAR(state.networks[5], -0.01F, 1e-6F);
+    EXPECT_EQ(state.network_gradient[5], 0.0F);
+    int n_moved = 0;
+    for (const float value : state.grid) {
+      if (value == 0.0F) continue;
+      EXPECT_NEAR(value, -0.01F, 1e-6F);
+      ++n_moved;
+    }
+    // Eight corners of at most four features in three levels; some corners may share an entry.
+    EXPECT_GT(n_moved, 48);
+    EXPECT_LE(n_moved, 96);
+    optimizer.Update(x, y, z, {}, 0.01, 0.0, state);
+    moved.push_back(state.grid);
+  }
+  EXPECT_EQ(moved[0], moved[1]);
 }
 
 }  // namespace

@@ -1,0 +1,192 @@
+// Fields with random parameters: what the engine composes in rounds is what a plain walk along the ray gives.
+#include "core/render/ray_engine.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/random.h"
+#include "core/render/march.h"
+
+namespace skyquilt::render {
+namespace {
+
+TrainedField RandomField(uint64_t seed, const Eigen::Vector3d& low, const Eigen::Vector3d& high, double margin_m, double density_bias) {
+  TrainedField f;
+  f.core_min_enu = low;
+  f.core_max_enu = high;
+  f.margin_m = margin_m;
+  const Eigen::Vector3d margin(margin_m, margin_m, 0.0);
+  f.map = encoding::SpaceMap::Box(low - margin, high + margin);
+  f.step_m = 0.25;
+  f.config.grid.levels = 4;
+  f.config.grid.log2_table_size = 10;
+  f.config.grid.base_resolution = 4;
+  f.config.grid.finest_resolution = 32;
+  for (int axis = 0; axis < 3; ++axis) f.config.grid.extent[axis] = std::min(1.0, f.map.extent()[axis]);
+  f.config.hidden = 16;
+  f.config.density_bias = density_bias;
+  f.occupancy = field::OccupancyGrid::Make(f.config.grid.extent, 0.5 * f.map.units_per_metre(), 100'000);
+  base::Random random(seed);
+  const field::HashField shape(f.config);
+  f.grid.resize(static_cast<size_t>(shape.GridParameters()));
+  f.networks.resize(static_cast<size_t>(shape.NetworkParameters()));
+  shape.Initialize(random, f.grid, f.networks);
+  for (float& value : f.grid) value = 4.0F * (random.Uniform() - 0.5F);
+  for (uint8_t& cell : f.occupancy.occupied) cell = random.Uniform() < 0.7F ? 1 : 0;
+  f.Finish();
+  return f;
+}
+
+struct Plain {
+  double rgb[3] = {0, 0, 0};
+  double transmittance = 1.0;
+};
+
+// One sample after the other, in order of distance.
+Plain WalkPlainly(const FieldSet& set, const Ray& ray) {
+  struct Point {
+    double t, length, weight;
+    const TrainedField* f;
+  };
+  std::vector<Point> points;
+  std::vector<int> all(set.blocks.size());
+  for (size_t k = 0; k < all.size(); ++k) all[k] = static_cast<int>(k);
+  std::vector<double> weights(all.size());
+  for (size_t k = 0; k < all.size(); ++k) {
+    const TrainedField& f = *set.blocks[k];
+    March(f, ray.origin_enu, ray.direction_enu, FieldStretch(f.map, ray.origin_enu, ray.direction_enu), f.step_m, 0.5F,
+          [&](double t, double length, double) {
+            const Eigen::Vector3d p = ray.origin_enu + t * ray.direction_enu;
+            BlendWeights(set, all, p.x(), p.y(), weights);
+            points.push_back({t, length / f.step_m, weights[k], &f});
+            return true;
+          });
+  }
+  std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.t < b.t; });
+  Plain result;
+  for (const Point& point : points) {
+    const TrainedField& f = *point.f;
+    const Eigen::Vector3f x = f.map.UnitFromEnu(ray.origin_enu + point.t * ray.direction_enu);
+    field::Activations a;
+    a.Reserve(*f.field, kernel::kPad);
+    std::vector<float> features(static_cast<size_t>(f.field->FeatureRows()) * kernel::kPad, 0.0F);
+    f.field->EncodeSerial(f.grid, &x.x(), &x.y(), &x.z(), 1, features.data(), kernel::kPad);
+    f.field->Density(f.weights, features.data(), kernel::kPad, kernel::kPad, a.density_hidden, a.stride, a.geometry(), a.stride);
+    const Eigen::Vector3f d = ray.direction_enu.cast<float>();
+    f.field->FillDirection(d.data(), 1, a.color_in + static_cast<size_t>(field::kGeometryRows) * a.stride, a.stride);
+    f.field->Color(f.weights, a.color_in, a.stride, kernel::kPad, a.color_hidden, a.stride, a.color_raw, a.stride);
+    const double tau = std::exp(static_cast<double>(a.geometry()[0]) + f.config.density_bias) * point.length * point.weight;
+    const double after = result.transmittance * std::exp(-tau);
+    for (size_t c = 0; c < 3; ++c) {
+      const double raw = static_cast<double>(a.color_raw[c * a.stride]);
+      result.rgb[c] += (result.transmittance - after) * f.config.color_range / (1.0 + std::exp(-raw));
+    }
+    result.transmittance = after;
+  }
+  return result;
+}
+
+std::vector<Ray> RaysFromAbove(int n) {
+  base::Random random(3);
+  std::vector<Ray> rays;
+  for (int i = 0; i < n; ++i) {
+    Ray ray;
+    ray.origin_enu = {random.Uniform(-3.0, 13.0), random.Uniform(-3.0, 7.0), 12.0};
+    ray.direction_enu = Eigen::Vector3d(random.Uniform(-0.6, 0.6), random.Uniform(-0.6, 0.6), -1.0).normalized();
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+class RayEngine : public ::testing::TestWithParam<double> {};
+
+TEST_P(RayEngine, AgreesWithAPlainWalkThroughBlendedBlocks) {
+  const TrainedField west = RandomField(1, {0, 0, 0}, {5, 5, 4}, 0.8, GetParam());
+  const TrainedField east = RandomField(2, {5, 0, 0}, {10, 5, 6}, 0.8, GetParam());
+  FieldSet set;
+  set.blocks = {&west, &east};
+  const std::vector<Ray> rays = RaysFromAbove(150);
+  std::vector<RayColor> out(rays.size());
+  base::ThreadPool threads(2);
+  int64_t samples = 0;
+  RenderRays(set, rays, out, {}, threads, &samples);
+  int dark = 0, clear = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Plain plain = WalkPlainly(set, rays[i]);
+    // A ray that ends early leaves at most 0.5 % of its light out, and counts as opaque.
+    const bool ended = plain.transmittance < 5e-3;
+    const double tolerance = ended ? 6e-3 : 5e-4;
+    EXPECT_NEAR(static_cast<double>(out[i].opacity), ended ? 1.0 : 1.0 - plain.transmittance, tolerance) << i;
+    for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(static_cast<double>(out[i].rgb_srgb[c]), plain.rgb[c], tolerance) << i;
+    dark += ended ? 1 : 0;
+    clear += plain.transmittance > 0.5 ? 1 : 0;
+  }
+  if (GetParam() > -1.0) {
+    EXPECT_GT(dark, 20);
+  } else {
+    EXPECT_GT(clear, 20);
+  }
+  EXPECT_GT(samples, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(ThinAndDense, RayEngine, ::testing::Values(-4.0, 0.0));
+
+TEST(RayEngineWork, SurfacesHideWhatLiesBehind) {
+  base::ThreadPool threads(1);
+  const std::vector<Ray> rays = RaysFromAbove(300);
+  std::vector<RayColor> out(rays.size());
+  int64_t thin = 0, dense = 0;
+  for (const bool opaque : {false, true}) {
+    const TrainedField f = RandomField(1, {0, 0, 0}, {10, 5, 6}, 0.5, opaque ? 4.0 : -9.0);
+    FieldSet set;
+    set.blocks = {&f};
+    RenderRays(set, rays, out, {}, threads, opaque ? &dense : &thin);
+  }
+  EXPECT_LT(3 * dense, 2 * thin);
+}
+
+TEST(RayEngineWork, WiderPixelsTakeFewerSamplesOfTheSameMatter) {
+  base::ThreadPool threads(1);
+  const TrainedField f = RandomField(4, {0, 0, 0}, {10, 5, 6}, 0.5, -2.0);
+  FieldSet set;
+  set.blocks = {&f};
+  std::vector<Ray> rays = RaysFromAbove(300);
+  std::vector<RayColor> fine(rays.size()), coarse(rays.size());
+  int64_t fine_samples = 0, coarse_samples = 0;
+  RenderRays(set, rays, fine, {}, threads, &fine_samples);
+  for (Ray& ray : rays) ray.pixel_radius = 0.02F;  // 0.3 m wide at 8 m: steps of 1.4 m
+  RenderRays(set, rays, coarse, {}, threads, &coarse_samples);
+  EXPECT_LT(2 * coarse_samples, fine_samples);
+  double difference = 0.0;
+  for (size_t i = 0; i < rays.size(); ++i) difference += std::abs(static_cast<double>(fine[i].opacity - coarse[i].opacity));
+  EXPECT_LT(difference / static_cast<double>(rays.size()), 0.1);
+}
+
+TEST(RayEngineWork, ContextAloneAnswersOutsideAllBlocks) {
+  base::ThreadPool threads(1);
+  const TrainedField block = RandomField(1, {0, 0, 0}, {5, 5, 4}, 0.5, -1.0);
+  const TrainedField context = RandomField(5, {-10, -10, 0}, {20, 20, 6}, 0.0, -2.0);
+  FieldSet both, alone, only_block;
+  both.blocks = only_block.blocks = {&block};
+  both.context = alone.context = &context;
+  Ray outside, inside;
+  outside.origin_enu = {15.0, 15.0, 20.0};
+  inside.origin_enu = {2.5, 2.5, 20.0};
+  outside.direction_enu = inside.direction_enu = {0.0, 0.0, -1.0};
+  const std::vector<Ray> rays = {outside, inside};
+  std::vector<RayColor> with(2), without(2), plain(2);
+  RenderRays(both, rays, with, {}, threads);
+  RenderRays(alone, rays, without, {}, threads);
+  RenderRays(only_block, rays, plain, {}, threads);
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(with[0].rgb_srgb[c], without[0].rgb_srgb[c]);
+    EXPECT_EQ(with[1].rgb_srgb[c], plain[1].rgb_srgb[c]) << "over a block's core the context shows nothing";
+  }
+  EXPECT_GT(with[0].opacity, 0.01F);
+  EXPECT_EQ(plain[0].opacity, 0.0F);
+}
+
+}  // namespace
+}  // namespace skyquilt::render

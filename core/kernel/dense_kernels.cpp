@@ -1,5 +1,6 @@
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "core/kernel/kernels.h"
 
@@ -18,8 +19,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using FloatTag = hn::ScalableTag<float>;
 using FloatVector = hn::Vec<FloatTag>;
 
-// Vectors of samples per register tile: 4 x 4 accumulators need 32 registers, 4 x 2 fit 16.
-constexpr int kTileVectors = (HWY_TARGET <= HWY_AVX3) ? 4 : 2;
+// Vectors of samples per register tile: 4 x 4 accumulators need 32 registers, 4 x 3 with their operands fill 16.
+constexpr int kTileVectors = (HWY_TARGET <= HWY_AVX3) ? 4 : 3;
 
 // What becomes of a sum before it is stored: as it is, cut at zero, or kept where `gate` is positive (the backward of cutting at zero).
 struct Store {
@@ -102,35 +103,53 @@ HWY_INLINE void AddLaneSums(const FloatVector* v, float* to) {
   hn::StoreU(hn::Add(hn::LoadU(quarter, to), sums), quarter, to);
 }
 #else
-constexpr int kColumns = 2;
-HWY_INLINE void AddLaneSums(const FloatVector* v, float* to) {
-  const FloatTag d;
-  for (int c = 0; c < kColumns; ++c) to[c] += hn::GetLane(hn::SumOfLanes(d, v[c]));
-}
+constexpr int kColumns = 3;  // 4 x 3 sums and their operands fill 16 registers
 #endif
+
+template <int kCount>
+HWY_INLINE void AddSums(const FloatVector* v, float* to) {
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (kCount == 4) {
+    AddLaneSums(v, to);
+    return;
+  }
+#endif
+  const FloatTag d;
+  for (int c = 0; c < kCount; ++c) to[c] += hn::GetLane(hn::SumOfLanes(d, v[c]));
+}
+
+template <int kCount>
+HWY_INLINE void WeightTile(const float* HWY_RESTRICT out_gradient, size_t out_stride, const float* HWY_RESTRICT in, size_t in_stride, int64_t n,
+                           float* HWY_RESTRICT weight_gradient, int n_in) {
+  const FloatTag d;
+  const auto lanes = static_cast<int64_t>(hn::Lanes(d));
+  FloatVector sum[4][kCount];
+  for (auto& row : sum) {
+    for (auto& vector : row) vector = hn::Zero(d);
+  }
+  for (int64_t s = 0; s < n; s += lanes) {
+    FloatVector value[kCount];
+    for (int c = 0; c < kCount; ++c) value[c] = hn::LoadU(d, in + static_cast<size_t>(c) * in_stride + s);
+    for (int r = 0; r < 4; ++r) {
+      const FloatVector gradient = hn::LoadU(d, out_gradient + static_cast<size_t>(r) * out_stride + s);
+      for (int c = 0; c < kCount; ++c) sum[r][c] = hn::MulAdd(gradient, value[c], sum[r][c]);
+    }
+  }
+  for (int r = 0; r < 4; ++r) AddSums<kCount>(sum[r], weight_gradient + static_cast<ptrdiff_t>(r) * n_in);
+}
 
 void DenseWeightGradientImpl(const float* out_gradient, size_t out_stride, int n_out, const float* in, size_t in_stride, int n_in, int64_t n,
                              float* weight_gradient) {
-  const FloatTag d;
-  const auto lanes = static_cast<int64_t>(hn::Lanes(d));
-  // Four input rows stay in the first-level cache while all output rows pass.
-  for (int i = 0; i < n_in; i += kColumns) {
+  // A few input rows stay in the first-level cache while all output rows pass.
+  const auto columns = [&](auto count, int i) {
     for (int o = 0; o < n_out; o += 4) {
-      FloatVector sum[4][kColumns];
-      for (auto& row : sum) {
-        for (auto& vector : row) vector = hn::Zero(d);
-      }
-      for (int64_t s = 0; s < n; s += lanes) {
-        FloatVector value[kColumns];
-        for (int c = 0; c < kColumns; ++c) value[c] = hn::LoadU(d, in + static_cast<size_t>(i + c) * in_stride + s);
-        for (int r = 0; r < 4; ++r) {
-          const FloatVector gradient = hn::LoadU(d, out_gradient + static_cast<size_t>(o + r) * out_stride + s);
-          for (int c = 0; c < kColumns; ++c) sum[r][c] = hn::MulAdd(gradient, value[c], sum[r][c]);
-        }
-      }
-      for (int r = 0; r < 4; ++r) AddLaneSums(sum[r], weight_gradient + static_cast<ptrdiff_t>(o + r) * n_in + i);
+      WeightTile<decltype(count)::value>(out_gradient + static_cast<size_t>(o) * out_stride, out_stride, in + static_cast<size_t>(i) * in_stride,
+                                         in_stride, n, weight_gradient + static_cast<ptrdiff_t>(o) * n_in + i, n_in);
     }
-  }
+  };
+  int i = 0;
+  for (; i + kColumns <= n_in; i += kColumns) columns(std::integral_constant<int, kColumns>(), i);
+  for (; i < n_in; ++i) columns(std::integral_constant<int, 1>(), i);
 }
 
 }  // namespace

@@ -86,17 +86,17 @@ bool RaySource::Draw(base::Random& random, PixelRay* ray) const {
   return false;
 }
 
-Eigen::Vector3f RaySource::TileMean(int photo, int row, int column) const {
-  const auto p = static_cast<size_t>(photo);
-  const int width = pixels_.Width(p), height = pixels_.Height(p);
+Eigen::Vector3f RaySource::TileMean(const image::PixelCache::Photo& pixels, int width, int height, int row, int column) {
   const auto begin = [](int index, int count, int size) { return index * size / count; };
+  const int y0 = begin(row, kTileRows, height), y1 = std::min(height, std::max(y0 + 1, begin(row + 1, kTileRows, height)));
+  const int x0 = begin(column, kTileColumns, width), x1 = std::min(width, std::max(x0 + 1, begin(column + 1, kTileColumns, width)));
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float n = 0.0F;
-  uint8_t rgb[3];
-  for (int y = begin(row, kTileRows, height); y < std::max(begin(row, kTileRows, height) + 1, begin(row + 1, kTileRows, height)); ++y) {
-    for (int x = begin(column, kTileColumns, width); x < std::max(begin(column, kTileColumns, width) + 1, begin(column + 1, kTileColumns, width));
-         ++x) {
-      if (x >= width || y >= height || !pixels_.Pixel(p, static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x), rgb)) continue;
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) {
+      const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+      if (!pixels.mask.empty() && pixels.mask[pixel] == 0) continue;
+      const uint8_t* rgb = pixels.rgb.data() + 3 * pixel;
       sum += Eigen::Vector3f(rgb[0], rgb[1], rgb[2]) / 255.0F;
       n += 1.0F;
     }
@@ -111,8 +111,11 @@ void RaySource::BlurTiles(const std::vector<Tile>& tiles) {
     const auto photo = static_cast<size_t>(tile.photo);
     if (blurred_[photo].empty()) {
       blurred_[photo].assign(static_cast<size_t>(kTileRows) * kTileColumns, 0);
+      const image::PixelCache::Photo pixels = pixels_.Copy(photo);
       for (int row = 0; row < kTileRows; ++row) {
-        for (int column = 0; column < kTileColumns; ++column) tile_means_[photo].push_back(TileMean(tile.photo, row, column));
+        for (int column = 0; column < kTileColumns; ++column) {
+          tile_means_[photo].push_back(TileMean(pixels, pixels_.Width(photo), pixels_.Height(photo), row, column));
+        }
       }
       tile_means_[photo] = MeanOfNeighbours(tile_means_[photo]);
     }

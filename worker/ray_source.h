@@ -58,7 +58,7 @@ class RaySource {
   std::vector<camera::Camera> cameras_;     // per photo, at cached size
   std::vector<geo::Rigid3d> enu_from_cam_;  // per photo
   // Mean display value of a tile's pixels that count.
-  Eigen::Vector3f TileMean(int photo, int row, int column) const;
+  static Eigen::Vector3f TileMean(const image::PixelCache::Photo& pixels, int width, int height, int row, int column);
   Eigen::Vector3f BlurredColor(size_t photo, double x, double y) const;
 
   std::vector<std::vector<Eigen::Vector3f>> tile_means_;  // per photo with blurred tiles, row-major; otherwise empty

@@ -136,6 +136,19 @@ std::span<const uint8_t> PixelCache::Mask(size_t photo) const {
   return map_.bytes().subspan(entry.mask_offset, static_cast<size_t>(entry.width) * static_cast<size_t>(entry.height));
 }
 
+PixelCache::Photo PixelCache::Copy(size_t photo) const {
+  const Entry& entry = entries_[photo];
+  const size_t n = static_cast<size_t>(entry.width) * static_cast<size_t>(entry.height);
+  Photo copy;
+  copy.rgb.resize(3 * n);
+  map_.ReadAt(entry.rgb_offset, copy.rgb);
+  if (entry.mask_offset != 0) {
+    copy.mask.resize(n);
+    map_.ReadAt(entry.mask_offset, copy.mask);
+  }
+  return copy;
+}
+
 bool PixelCache::Pixel(size_t photo, size_t pixel, uint8_t rgb[3]) const {
   const Entry& entry = entries_[photo];
   if (streaming_) {

@@ -41,6 +41,11 @@ class PixelCache {
   // Reads single pixels from the file instead of through mapped pages, so that their number costs no memory.
   void Stream(bool on) { streaming_ = on; }
   bool streaming() const { return streaming_; }
+  // A whole photo as a copy, which never stays mapped: row-major RGB, and its mask (empty when it has none).
+  struct Photo {
+    std::vector<uint8_t> rgb, mask;
+  };
+  Photo Copy(size_t photo) const;
   // Row-major RGB, width * height * 3 bytes, sRGB display values.
   std::span<const uint8_t> Rgb(size_t photo) const;
   // Row-major, width * height bytes, 0 = ignore; empty when the photo has no mask.

@@ -78,6 +78,9 @@ TEST_F(PixelCacheTest, SinglePixelsAreTheSameMappedAndStreamed) {
     for (const size_t photo : {size_t{0}, size_t{2}, size_t{7}}) {
       const auto rgb = cache.Rgb(photo);
       const auto mask = cache.Mask(photo);
+      const PixelCache::Photo copy = cache.Copy(photo);
+      EXPECT_TRUE(std::equal(copy.rgb.begin(), copy.rgb.end(), rgb.begin(), rgb.end()));
+      EXPECT_TRUE(std::equal(copy.mask.begin(), copy.mask.end(), mask.begin(), mask.end()));
       for (size_t pixel = 0; pixel < rgb.size() / 3; ++pixel) {
         uint8_t one[3] = {1, 2, 3};
         const bool counts = cache.Pixel(photo, pixel, one);

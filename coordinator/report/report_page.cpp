@@ -155,9 +155,8 @@ std::string StageBars(const ReportInput& input) {
   std::stable_sort(stages.begin(), stages.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string html = "<div class=\"card bars\"><h3>Where training time goes</h3><div class=\"rows\">";
   for (const auto& [stage, seconds] : stages) {
-    html +=
-        fmt::format("<div class=\"row\"><em>{}</em><span><i style=\"width:{:.1f}%\"></i></span><b>{:.1f}\xE2\x80\xAF%</b></div>",
-                    EscapeHtml(stage), 100.0 * seconds / stages.front().second, 100.0 * seconds / total);
+    html += fmt::format("<div class=\"row\"><em>{}</em><span><i style=\"width:{:.1f}%\"></i></span><b>{:.1f}\xE2\x80\xAF%</b></div>",
+                        EscapeHtml(stage), 100.0 * seconds / stages.front().second, 100.0 * seconds / total);
   }
   return html + fmt::format("</div><p class=\"note\">{} of work on all threads, {} samples per ray.</p></div>", base::FormatDuration(total),
                             FormatFixed(input.log->SamplesPerRay(), 1));

@@ -129,9 +129,12 @@ AccessTimes MeasureAccess(uint32_t entries, int features, double seconds) {
   size_t next = 0;
   const auto list = [&] { return index.data() + kIndices * (next++ % lists); };
   AccessTimes times;
-  times.gather_s =
-      SecondsPerCall(0.5 * seconds, [&] { HWY_DYNAMIC_DISPATCH(GatherImpl)
-                                          (features, table.data(), list(), kIndices, &sink); }) / kIndices;
+  times.gather_s = SecondsPerCall(0.5 * seconds,
+                                  [&] {
+                                    HWY_DYNAMIC_DISPATCH(GatherImpl)
+                                    (features, table.data(), list(), kIndices, &sink);
+                                  }) /
+                   kIndices;
   times.scatter_s = SecondsPerCall(0.5 * seconds, [&] { HWY_DYNAMIC_DISPATCH(ScatterImpl)(features, table.data(), list(), kIndices); }) / kIndices;
   kept_result = sink;
   return times;

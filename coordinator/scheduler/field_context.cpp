@@ -73,7 +73,8 @@ double MemoryLimitBytes(const Settings& settings) {
 
 double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads) {
   const double entries = std::ldexp(1.0, block.log2_table_size);
-  const double table = entries * options.levels * options.features * 16.0;
+  // Parameters and two moments of every level, the gradient of one level per thread.
+  const double table = entries * options.features * 4.0 * (3.0 * options.levels + std::min(threads, options.levels));
   const double per_sample = 4.0 * (2.0 * options.levels * options.features + 6.0 * options.hidden + 64.0);
   return table + per_sample * options.batch_samples + 64e6 * threads;
 }

@@ -11,8 +11,6 @@
 namespace skyquilt::field {
 namespace {
 
-constexpr int64_t kEncodeStretch = 4096;
-
 void Require(bool ok, const std::string& what) {
   if (!ok) throw std::invalid_argument("field: " + what);
 }
@@ -63,19 +61,6 @@ NetworkWeights HashField::Prepare(std::span<const float> networks) const {
     weights.transposed.push_back(std::move(transposed));
   }
   return weights;
-}
-
-void HashField::Encode(std::span<const float> grid, const float* x, const float* y, const float* z, int64_t n, float* features, size_t stride,
-                       base::ThreadPool& threads) const {
-  const int64_t stretches = (n + kEncodeStretch - 1) / kEncodeStretch;
-  // Level by level, so that one level's table stays in cache while all samples pass.
-  threads.ParallelFor(stretches * grid_.levels(), [&](int64_t task, int) {
-    const int l = static_cast<int>(task / stretches);
-    const int64_t begin = (task % stretches) * kEncodeStretch;
-    const int64_t count = std::min(kEncodeStretch, n - begin);
-    kernel::HashForward(grid_.level(l), grid_.features(), grid.data() + grid_.Offset(l), x + begin, y + begin, z + begin, count,
-                        features + static_cast<size_t>(l * grid_.features()) * stride + begin, stride);
-  });
 }
 
 void HashField::EncodeSerial(std::span<const float> grid, const float* x, const float* y, const float* z, int64_t n, float* features,

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/base/thread_pool.h"
 #include "core/encoding/hash_grid.h"
 
 namespace skyquilt::field {
@@ -79,10 +78,7 @@ class HashField {
   void Initialize(base::Random& random, std::span<float> grid, std::span<float> networks) const;
   NetworkWeights Prepare(std::span<const float> networks) const;
 
-  // features[row][s], row stride `stride`, for n positions. Parallel over levels and stretches of samples.
-  void Encode(std::span<const float> grid, const float* x, const float* y, const float* z, int64_t n, float* features, size_t stride,
-              base::ThreadPool& threads) const;
-  // The same on the calling thread, for callers that are parallel themselves.
+  // features[row][s], row stride `stride`, for n positions, level by level on the calling thread.
   void EncodeSerial(std::span<const float> grid, const float* x, const float* y, const float* z, int64_t n, float* features, size_t stride) const;
   // n a multiple of kernel::kPad. hidden: room for config().hidden rows; geometry: kGeometryRows rows.
   void Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, float* hidden, size_t hidden_stride,

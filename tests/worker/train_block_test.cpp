@@ -141,8 +141,8 @@ TEST_F(TrainBlockTest, LearnsTheSceneThroughContextAndBlock) {
   const std::vector<render::Ray> rays = {{{0, 0, 30}, {0, 0, -1}}, {{8, 7, 30}, {0, 0, -1}}};
   std::vector<render::RayColor> out(2);
   render::RenderRays(set, rays, out, {}, threads);
-  EXPECT_NEAR(out[0].depth_median, 26.0F, 1.5F);
-  EXPECT_NEAR(out[1].depth_median, 30.0F, 1.5F);
+  EXPECT_NEAR(out[0].depth_median, 26.0F, 1.0F);
+  EXPECT_NEAR(out[1].depth_median, 30.0F, 1.0F);
   EXPECT_GT(out[0].rgb_srgb[0], out[0].rgb_srgb[1] + 0.3F);
 }
 

@@ -63,7 +63,6 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   state.Allocate(field);
   field.Initialize(random, state.grid, state.networks);
   for (float& value : state.grid) value = random.Uniform() - 0.5F;  // large enough to matter
-  base::ThreadPool threads(2);
 
   const int64_t n = 5;
   const auto stride = static_cast<size_t>(kernel::Padded(n));
@@ -80,7 +79,7 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   }
   const auto rows = static_cast<size_t>(field.FeatureRows());
   std::vector<float> features(rows * stride, 0.0F);
-  field.Encode(state.grid, x.data(), y.data(), z.data(), n, features.data(), stride, threads);
+  field.EncodeSerial(state.grid, x.data(), y.data(), z.data(), n, features.data(), stride);
   const NetworkWeights weights = field.Prepare(state.networks);
   Activations a;
   a.Reserve(field, n);

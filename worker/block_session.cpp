@@ -45,7 +45,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   writer.SetAttribute("origin_height_m", job.survey->origin.height_m);
   std::vector<float> numbers;  // the writer reads it when it commits
   if (findings != nullptr) {
-    for (size_t c = 0; c < 3; ++c) writer.SetAttribute(render::kBackground[c], static_cast<double>(findings->background_srgb[c]));
+    render::PutBackdrop(findings->backdrop, writer);
     for (const SurfaceBand& band : findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
     writer.Put("surface_bands", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
   }

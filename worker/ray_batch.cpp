@@ -64,6 +64,13 @@ void RayBatch::Finish(int rows) {
   }
 }
 
+void RayDrawer::Group::MakeRoom(size_t samples) {
+  if (x.size() >= count + samples) return;
+  const size_t size = 2 * (count + samples);
+  for (auto* v : {&x, &y, &z, &t, &unit_length}) v->resize(size);
+  cell.resize(size);
+}
+
 void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch) {
   const int n_groups = (n_rays + kGroupRays - 1) / kGroupRays;
   groups_.resize(static_cast<size_t>(n_groups));
@@ -71,8 +78,7 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch
     const auto start = StageTimes::Clock::now();
     Group& group = groups_[static_cast<size_t>(task)];
     group.rays.clear();
-    for (auto* v : {&group.x, &group.y, &group.z, &group.t, &group.unit_length}) v->clear();
-    group.cell.clear();
+    group.count = 0;
     base::Random random(MixSeed(seed_, static_cast<uint64_t>(step), static_cast<uint64_t>(task)), kRayStream);
     for (int i = 0; i < kGroupRays; ++i) {
       BatchRay r;
@@ -82,16 +88,23 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch
       const render::Stretch stretch = render::FieldStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
       if (stretch.Empty()) continue;
       const render::UnitRay unit(target_.map, r.ray.origin_enu, r.ray.direction_enu);
-      render::March(target_, r.ray.origin_enu, r.ray.direction_enu, stretch, target_.step_m, jitter, [&](double t, double, double unit_length) {
-        const Eigen::Vector3f p = unit.At(t);
-        group.x.push_back(p.x());
-        group.y.push_back(p.y());
-        group.z.push_back(p.z());
-        group.t.push_back(static_cast<float>(t));
-        group.unit_length.push_back(static_cast<float>(unit_length / target_.step_m));
-        group.cell.push_back(static_cast<int32_t>(target_.occupancy.IndexAt(p.x(), p.y(), p.z())));
-        return ++r.count < kMaxRaySamples;
-      });
+      group.MakeRoom(kMaxRaySamples);
+      size_t at = group.count;
+      const size_t end = at + kMaxRaySamples;
+      const double per_step = 1.0 / target_.step_m;
+      render::March(target_, r.ray.origin_enu, r.ray.direction_enu, stretch, target_.step_m, jitter,
+                    [&](double t, double, double unit_length, int64_t cell) {
+                      const Eigen::Vector3f p = unit.At(t);
+                      group.x[at] = p.x();
+                      group.y[at] = p.y();
+                      group.z[at] = p.z();
+                      group.t[at] = static_cast<float>(t);
+                      group.unit_length[at] = static_cast<float>(unit_length * per_step);
+                      group.cell[at] = static_cast<int32_t>(cell);
+                      return ++at < end;
+                    });
+      r.count = static_cast<int64_t>(at - group.count);
+      group.count = at;
       group.rays.push_back(r);
     }
     times_.Add(thread, Stage::kDraw, start);

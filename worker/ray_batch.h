@@ -52,11 +52,13 @@ class RayDrawer {
   void Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch);
 
  private:
-  // What one task draws.
+  // What one task draws; the first `count` places of the arrays are filled.
   struct Group {
     std::vector<BatchRay> rays;
     std::vector<float> x, y, z, t, unit_length;
     std::vector<int32_t> cell;
+    size_t count = 0;
+    void MakeRoom(size_t samples);
   };
   const render::TrainedField& target_;
   const RaySource& source_;

@@ -7,26 +7,8 @@
 namespace skyquilt::worker {
 namespace {
 
-// Tiles on each side: a neighbouring photo sees unknown heights shifted by about so much.
-constexpr int kBlurTiles = 2;
-
-std::vector<Eigen::Vector3f> MeanOfNeighbours(const std::vector<Eigen::Vector3f>& tiles) {
-  std::vector<Eigen::Vector3f> means;
-  for (int row = 0; row < kTileRows; ++row) {
-    for (int column = 0; column < kTileColumns; ++column) {
-      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-      float n = 0.0F;
-      for (int r = std::max(0, row - kBlurTiles); r <= std::min(kTileRows - 1, row + kBlurTiles); ++r) {
-        for (int c = std::max(0, column - kBlurTiles); c <= std::min(kTileColumns - 1, column + kBlurTiles); ++c) {
-          sum += tiles[static_cast<size_t>(r * kTileColumns + c)];
-          n += 1.0F;
-        }
-      }
-      means.emplace_back(sum / n);
-    }
-  }
-  return means;
-}
+// Pixels of a tile that its mean colour is taken from, along each axis.
+constexpr int kColorPixels = 4;
 
 }  // namespace
 
@@ -76,9 +58,6 @@ bool RaySource::Draw(base::Random& random, PixelRay* ray) const {
     if (!pixels_.Pixel(photo, pixel, rgb)) continue;
     RayThrough(tile.photo, Eigen::Vector2d(x + 0.5, y + 0.5), &ray->origin_enu, &ray->direction_enu);
     for (size_t c = 0; c < 3; ++c) ray->target_srgb[c] = static_cast<float>(rgb[c]) / 255.0F;
-    if (!blurred_.empty() && !blurred_[photo].empty() && blurred_[photo][static_cast<size_t>(tile.row * kTileColumns + tile.column)] != 0) {
-      Eigen::Map<Eigen::Vector3f>(ray->target_srgb) = BlurredColor(photo, x + 0.5, y + 0.5);
-    }
     ray->gain = gains_[photo];
     ray->empty = empty;
     return true;
@@ -86,55 +65,28 @@ bool RaySource::Draw(base::Random& random, PixelRay* ray) const {
   return false;
 }
 
-Eigen::Vector3f RaySource::TileMean(const image::PixelCache::Photo& pixels, int width, int height, int row, int column) {
-  const auto begin = [](int index, int count, int size) { return index * size / count; };
-  const int y0 = begin(row, kTileRows, height), y1 = std::min(height, std::max(y0 + 1, begin(row + 1, kTileRows, height)));
-  const int x0 = begin(column, kTileColumns, width), x1 = std::min(width, std::max(x0 + 1, begin(column + 1, kTileColumns, width)));
+bool RaySource::TileColor(const Tile& tile, Eigen::Vector3f* srgb) const {
+  const auto photo = static_cast<size_t>(tile.photo);
+  const auto along = [](int index, int count, int step, int size) {
+    return std::min(size - 1, (index * kColorPixels + step) * size / (count * kColorPixels));
+  };
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float n = 0.0F;
-  for (int y = y0; y < y1; ++y) {
-    for (int x = x0; x < x1; ++x) {
-      const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
-      if (!pixels.mask.empty() && pixels.mask[pixel] == 0) continue;
-      const uint8_t* rgb = pixels.rgb.data() + 3 * pixel;
-      sum += Eigen::Vector3f(rgb[0], rgb[1], rgb[2]) / 255.0F;
+  for (int v = 0; v < kColorPixels; ++v) {
+    for (int u = 0; u < kColorPixels; ++u) {
+      const auto y = static_cast<size_t>(along(tile.row, kTileRows, v, pixels_.Height(photo)));
+      const auto x = static_cast<size_t>(along(tile.column, kTileColumns, u, pixels_.Width(photo)));
+      uint8_t rgb[3];
+      if (!pixels_.Pixel(photo, y * static_cast<size_t>(pixels_.Width(photo)) + x, rgb)) continue;
+      for (int c = 0; c < 3; ++c) {
+        sum[c] += image::SrgbFromLinear(image::LinearFromSrgb(static_cast<float>(rgb[c]) / 255.0F) / gains_[photo]);
+      }
       n += 1.0F;
     }
   }
-  return n > 0.0F ? Eigen::Vector3f(sum / n) : Eigen::Vector3f::Constant(0.5F);
-}
-
-void RaySource::BlurTiles(const std::vector<Tile>& tiles) {
-  blurred_.assign(cameras_.size(), {});
-  tile_means_.assign(cameras_.size(), {});
-  for (const Tile& tile : tiles) {
-    const auto photo = static_cast<size_t>(tile.photo);
-    if (blurred_[photo].empty()) {
-      blurred_[photo].assign(static_cast<size_t>(kTileRows) * kTileColumns, 0);
-      const image::PixelCache::Photo pixels = pixels_.Copy(photo);
-      for (int row = 0; row < kTileRows; ++row) {
-        for (int column = 0; column < kTileColumns; ++column) {
-          tile_means_[photo].push_back(TileMean(pixels, pixels_.Width(photo), pixels_.Height(photo), row, column));
-        }
-      }
-      tile_means_[photo] = MeanOfNeighbours(tile_means_[photo]);
-    }
-    blurred_[photo][static_cast<size_t>(tile.row * kTileColumns + tile.column)] = 1;
-  }
-}
-
-// Between the centres of the four tiles around a pixel position.
-Eigen::Vector3f RaySource::BlurredColor(size_t photo, double x, double y) const {
-  const auto at = [](double position, int size, int count, int* first) {
-    const double t = std::clamp(position * count / size - 0.5, 0.0, static_cast<double>(count - 1));
-    *first = std::min(static_cast<int>(t), count - 2);
-    return static_cast<float>(t - *first);
-  };
-  int column = 0, row = 0;
-  const float u = at(x, pixels_.Width(photo), kTileColumns, &column);
-  const float v = at(y, pixels_.Height(photo), kTileRows, &row);
-  const Eigen::Vector3f* mean = tile_means_[photo].data() + row * kTileColumns + column;
-  return (1.0F - v) * ((1.0F - u) * mean[0] + u * mean[1]) + v * ((1.0F - u) * mean[kTileColumns] + u * mean[kTileColumns + 1]);
+  if (n == 0.0F) return false;
+  *srgb = sum / n;
+  return true;
 }
 
 std::array<float, 3> RaySource::MeanColor(uint64_t seed) const {

@@ -37,8 +37,6 @@ class RaySource {
 
   // Rays come from `inside` tiles, a share of them from `empty` tiles as emptiness rays. Tiles count by their number of pixels.
   void SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, double empty_share);
-  // From these tiles rays bring the tiles' mean colours, blended from tile to tile, instead of the pixels'.
-  void BlurTiles(const std::vector<Tile>& tiles);
   // Mean display value of all training rays at the reference exposure.
   std::array<float, 3> MeanColor(uint64_t seed) const;
   bool HasRays() const { return !inside_.empty(); }
@@ -48,6 +46,8 @@ class RaySource {
   // Camera reduced to the cached size, and the ray through a pixel position.
   const camera::Camera& CameraOf(int photo) const { return cameras_[static_cast<size_t>(photo)]; }
   void RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vector3d* origin_enu, Eigen::Vector3d* direction_enu) const;
+  // Mean display value of a tile at the reference exposure, from a few of its pixels; false when all of them are ignored (masked).
+  bool TileColor(const Tile& tile, Eigen::Vector3f* srgb) const;
   // Pixel position of a tile's centre.
   Eigen::Vector2d TileCentre(const Tile& tile) const;
 
@@ -57,12 +57,6 @@ class RaySource {
   std::vector<float> gains_;
   std::vector<camera::Camera> cameras_;     // per photo, at cached size
   std::vector<geo::Rigid3d> enu_from_cam_;  // per photo
-  // Mean display value of a tile's pixels that count.
-  static Eigen::Vector3f TileMean(const image::PixelCache::Photo& pixels, int width, int height, int row, int column);
-  Eigen::Vector3f BlurredColor(size_t photo, double x, double y) const;
-
-  std::vector<std::vector<Eigen::Vector3f>> tile_means_;  // per photo with blurred tiles, row-major; otherwise empty
-  std::vector<std::vector<uint8_t>> blurred_;             // the same
   std::vector<Tile> inside_, empty_;
   double empty_share_ = 0.0;
 };

@@ -6,45 +6,51 @@
 
 #include "core/render/march.h"
 #include "core/render/scene.h"
+#include "worker/lonely_tiles.h"
 
 namespace skyquilt::worker {
 namespace {
 
 constexpr int kGroup = 4;
-// Columns are wide enough to hold some points on average. One without its own may hold what has no features to match, such as foliage.
+// Columns are wide enough to hold some points on average.
 constexpr double kPointsPerColumn = 4.0;
-// Columns over which the lowest point counts: at the edge of a survey only roofs may have points.
+// Columns over which the lowest point counts (at the edge of a survey only roofs may have points), and the highest one for a column without its
+// own: foliage and smooth ground have few features to match, and matter put too high or too low there is what unseen views suffer from most.
 constexpr int kGroundReach = 6;
 
 }  // namespace
 
-void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, render::TrainedField& target,
-                base::ThreadPool& threads) {
+void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const render::PlanSurface& surface,
+                int min_views, render::TrainedField& target, base::ThreadPool& threads) {
   field::OccupancyGrid& grid = target.occupancy;
   const int groups[3] = {(grid.size[0] + kGroup - 1) / kGroup, (grid.size[1] + kGroup - 1) / kGroup, (grid.size[2] + kGroup - 1) / kGroup};
+  const auto centre_of = [&](int gx, int gy, int gz) {
+    const Eigen::Vector3d unit = (Eigen::Vector3d(gx, gy, gz).array() + 0.5) * kGroup * static_cast<double>(grid.cell);
+    return target.map.EnuFromUnit(unit.cwiseMin(target.map.extent()));
+  };
+  const auto radius_at = [&](const Eigen::Vector3d& x) {
+    return 0.87 * kGroup * static_cast<double>(grid.cell) / (target.map.units_per_metre() * std::max(1e-6, target.map.LocalScale(x)));
+  };
+  // Columns of groups whose ground enough photos see.
+  std::vector<uint8_t> in_company(static_cast<size_t>(groups[0]) * static_cast<size_t>(groups[1]), 1);
+  if (!surface.Empty() && min_views > 1) {
+    threads.ParallelFor(groups[1], [&](int64_t gy, int) {
+      for (int gx = 0; gx < groups[0]; ++gx) {
+        Eigen::Vector3d ground = centre_of(gx, static_cast<int>(gy), groups[2] / 2);
+        ground.z() = surface.At(ground.x(), ground.y());
+        in_company[static_cast<size_t>(gy) * static_cast<size_t>(groups[0]) + static_cast<size_t>(gx)] =
+            CountViews(source, survey, photos, ground, 0.5 * radius_at(ground), min_views) >= min_views ? 1 : 0;
+      }
+    });
+    if (std::ranges::count(in_company, 1) == 0) std::ranges::fill(in_company, uint8_t{1});
+  }
   threads.ParallelFor(groups[2], [&](int64_t gz, int) {
     for (int gy = 0; gy < groups[1]; ++gy) {
       for (int gx = 0; gx < groups[0]; ++gx) {
-        const Eigen::Vector3d centre_unit =
-            Eigen::Vector3d(gx + 0.5, gy + 0.5, static_cast<double>(gz) + 0.5) * kGroup * static_cast<double>(grid.cell);
-        const Eigen::Vector3d centre = target.map.EnuFromUnit(centre_unit.cwiseMin(target.map.extent()));
-        const double radius_m =
-            0.87 * kGroup * static_cast<double>(grid.cell) / (target.map.units_per_metre() * std::max(1e-6, target.map.LocalScale(centre)));
-        bool seen = false;
-        for (const int photo : photos) {
-          if (survey.photos[static_cast<size_t>(photo)].is_test) continue;
-          const camera::Camera& camera = source.CameraOf(photo);
-          const Eigen::Vector3d in_cam = survey.photos[static_cast<size_t>(photo)].cam_from_enu * centre;
-          if (in_cam.z() < -radius_m) continue;
-          if (in_cam.z() <= radius_m) {
-            seen = in_cam.norm() < 4.0 * radius_m;  // the group surrounds the camera or nearly so
-          } else if (const auto pixel = camera.ImgFromCam(in_cam)) {
-            const double slack = camera.FocalX() * radius_m / in_cam.z();
-            seen = pixel->x() > -slack && pixel->x() < camera.width + slack && pixel->y() > -slack && pixel->y() < camera.height + slack;
-          }
-          if (seen) break;
+        if (in_company[static_cast<size_t>(gy) * static_cast<size_t>(groups[0]) + static_cast<size_t>(gx)] != 0) {
+          const Eigen::Vector3d centre = centre_of(gx, gy, static_cast<int>(gz));
+          if (CountViews(source, survey, photos, centre, radius_at(centre), 1) > 0) continue;
         }
-        if (seen) continue;
         for (int z = static_cast<int>(gz) * kGroup; z < std::min(grid.size[2], (static_cast<int>(gz) + 1) * kGroup); ++z) {
           for (int y = gy * kGroup; y < std::min(grid.size[1], (gy + 1) * kGroup); ++y) {
             for (int x = gx * kGroup; x < std::min(grid.size[0], (gx + 1) * kGroup); ++x) {
@@ -72,7 +78,8 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
   const int columns = static_cast<int>(size.x() / column_m) + 1, rows = static_cast<int>(size.y() / column_m) + 1;
   struct Column {
     int count = 0;
-    double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
+    double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity(),
+           highest_around = -std::numeric_limits<double>::infinity();
   };
   std::vector<Column> around(static_cast<size_t>(columns) * static_cast<size_t>(rows));
   for (const Eigen::Vector3d& point : points) {
@@ -81,6 +88,7 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
       for (int x = std::max(0, cx - kGroundReach); x <= std::min(columns - 1, cx + kGroundReach); ++x) {
         Column& column = around[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)];
         column.lowest = std::min(column.lowest, point.z());
+        column.highest_around = std::max(column.highest_around, point.z());
         if (std::abs(x - cx) > 1 || std::abs(y - cy) > 1) continue;
         if (x == cx && y == cy) ++column.count;
         column.highest = std::max(column.highest, point.z());
@@ -97,8 +105,9 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
         if ((p.array() < low.array()).any() || (p.array() > high.array()).any()) continue;
         const Column& column = around[static_cast<size_t>((p.y() - low.y()) / column_m) * static_cast<size_t>(columns) +
                                       static_cast<size_t>((p.x() - low.x()) / column_m)];
-        if (column.count == 0) continue;
-        if (p.z() < column.lowest - cell_m || p.z() > column.highest + cell_m) grid.occupied[index] = 0;
+        const double highest = column.count == 0 ? column.highest_around : column.highest;
+        if (!std::isfinite(highest)) continue;
+        if (p.z() < column.lowest - cell_m || p.z() > highest + cell_m) grid.occupied[index] = 0;
       }
     }
   }
@@ -107,7 +116,7 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
   }
 }
 
-void StartFromBands(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const LoadedContext& context,
+void StartFromBands(const RaySource& source, const survey::Survey& survey, const std::vector<Tile>& tiles, const LoadedContext& context,
                     render::TrainedField& target) {
   if (!context.KnowsBands(survey)) return;
   field::OccupancyGrid& grid = target.occupancy;
@@ -116,7 +125,7 @@ void StartFromBands(const RaySource& source, const survey::Survey& survey, const
   const double cell_m = static_cast<double>(grid.cell) / target.map.units_per_metre();
   // The context is blurred by about one of its own steps.
   const double pad_m = context.field.step_m;
-  for (const Tile& tile : TrainingTiles(survey, photos)) {
+  for (const Tile& tile : tiles) {
     const SurfaceBand& band = context.Band(tile.photo, tile.row, tile.column);
     render::Ray ray;
     source.RayThrough(tile.photo, source.TileCentre(tile), &ray.origin_enu, &ray.direction_enu);
@@ -125,7 +134,8 @@ void StartFromBands(const RaySource& source, const survey::Survey& survey, const
     const double far = std::isfinite(band.back) ? std::min(box.t_far, static_cast<double>(band.back) + pad_m) : box.t_far;
     for (double t = near; t < far; t += 0.5 * cell_m) {
       const Eigen::Vector3f unit = target.map.UnitFromEnu(ray.origin_enu + t * ray.direction_enu);
-      grid.occupied[static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()))] = 1;
+      const auto index = static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()));
+      if (grid.depth[index] >= 0.0F) grid.occupied[index] = 1;
     }
   }
   if (grid.OccupiedShare() <= 0.0) {

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/render/plan_surface.h"
 #include "core/render/trained_field.h"
 #include "worker/ray_source.h"
 #include "worker/surface_band.h"
@@ -13,15 +14,16 @@ namespace skyquilt::worker {
 // Depth of a cell that has not been sampled yet: above every threshold for some dozens of samples.
 constexpr float kStartDepth = 0.1F;
 
-// Cells in view of none of the photos become "never seen". Tested per group of 4 x 4 x 4 cells, generously.
-void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, render::TrainedField& target,
-                base::ThreadPool& threads);
+// Cells in view of none of the photos become "never seen", and so do all cells above and below ground that fewer than min_views training photos
+// show (unless that would leave none; empty surface: nothing is known of the ground). Tested per group of 4 x 4 x 4 cells, generously.
+void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const render::PlanSurface& surface,
+                int min_views, render::TrainedField& target, base::ThreadPool& threads);
 // Leaves only cells between the sparse points: in each column of the ground from the lowest point near it to one cell above the highest point
 // next to it. Columns without points of their own keep their whole height, and what lies outside the field's box stays as it is.
 void StartFromPoints(const survey::Survey& survey, render::TrainedField& target);
-// Leaves only cells in the bands where the context's light ends, as the photos' tiles see them, and those of sparse points. Cells outside
+// Leaves only cells in the bands where the context's light ends, as the tiles see them, and those of sparse points. Cells outside
 // sleep until surfaces grow into them. Does nothing for a context without bands.
-void StartFromBands(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const LoadedContext& context,
+void StartFromBands(const RaySource& source, const survey::Survey& survey, const std::vector<Tile>& tiles, const LoadedContext& context,
                     render::TrainedField& target);
 
 }  // namespace skyquilt::worker

@@ -33,13 +33,13 @@ std::vector<SurfaceBand> SurfaceBands(const RaySource& source, const survey::Sur
   return bands;
 }
 
-void ChooseTiles(const survey::Survey& survey, const BoxView& box, const render::TrainedField& target, const LoadedContext* context,
+void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, const render::TrainedField& target, const LoadedContext* context,
                  double empty_ray_share, RaySource& source) {
   std::vector<Tile> inside, empty;
   const Eigen::Vector3d low = target.map.min_enu();
   const Eigen::Vector3d high = target.map.max_enu();
   const bool know_depth = context != nullptr && context->KnowsBands(survey);
-  for (const Tile& tile : TrainingTiles(survey, box.photos)) {
+  for (const Tile& tile : tiles) {
     Eigen::Vector3d origin, direction;
     source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
     if (!know_depth) {

@@ -2,13 +2,12 @@
 // Blocks choose their pixels by it and start their occupancy from it.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "core/base/thread_pool.h"
+#include "core/render/backdrop.h"
 #include "core/render/trained_field.h"
 #include "core/survey/survey.h"
-#include "worker/box_view.h"
 #include "worker/ray_source.h"
 
 namespace skyquilt::worker {
@@ -22,8 +21,8 @@ struct SurfaceBand {
 
 // What the context stage finds out beside its field.
 struct ContextFindings {
-  std::vector<SurfaceBand> bands;                             // [photo][row][column], kTileRows x kTileColumns per photo
-  std::array<float, 3> background_srgb = {0.0F, 0.0F, 0.0F};  // the survey's mean colour
+  std::vector<SurfaceBand> bands;  // [photo][row][column], kTileRows x kTileColumns per photo
+  render::Backdrop backdrop;
 };
 
 struct LoadedContext {
@@ -40,9 +39,9 @@ struct LoadedContext {
 std::vector<SurfaceBand> SurfaceBands(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
                                       base::ThreadPool& threads);
 
-// Gives the source the block's tiles: those whose surface lies over the block's ground plan, and those that end behind the block and
+// Gives the source the block's part of `tiles`: those whose surface lies over the block's ground plan, and those that end behind the block and
 // teach emptiness only. Without a context (null) every tile whose ray crosses the box.
-void ChooseTiles(const survey::Survey& survey, const BoxView& box, const render::TrainedField& target, const LoadedContext* context,
+void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, const render::TrainedField& target, const LoadedContext* context,
                  double empty_ray_share, RaySource& source);
 
 }  // namespace skyquilt::worker

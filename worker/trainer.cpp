@@ -13,6 +13,7 @@
 #include "worker/block_session.h"
 #include "worker/field_trainer.h"
 #include "worker/lonely_tiles.h"
+#include "worker/make_backdrop.h"
 #include "worker/starting_occupancy.h"
 #include "worker/surface_band.h"
 
@@ -21,7 +22,9 @@ namespace {
 
 constexpr int kOccupancyEvery = 16;
 constexpr int kGrowEvery = 128;
-constexpr double kGrowUntil = 0.6;       // of the budget; later, cells that hold nothing only cost samples
+constexpr double kGrowUntil = 0.6;  // of the budget; later, cells that hold nothing only cost samples
+// Growths at most, spread evenly: a longer training must not grow farther, into air that few photos see through.
+constexpr double kMostGrowths = 24.0;
 constexpr double kVisitsToJudge = 16.0;  // samples per occupied cell: fewer, and chance alone leaves cells out
 constexpr int kMaxDroppedInARow = 20;
 constexpr int64_t kMaxOccupancyCells = 4'000'000;
@@ -95,7 +98,7 @@ class Loop {
         throw base::Interrupted();
       }
       const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
-      if (state.step % kOccupancyEvery == 0) trainer_.UpdateOccupancy(state.step % kGrowEvery == 0 && fraction < kGrowUntil);
+      if (state.step % kOccupancyEvery == 0) trainer_.UpdateOccupancy(MayGrow(fraction, total_steps));
       if (step.finite) {
         dropped_in_a_row = 0;
         const double keep = state.step <= 1 ? 0.0 : std::min(0.98, 1.0 - 1.0 / static_cast<double>(state.step));
@@ -145,6 +148,16 @@ class Loop {
   }
 
  private:
+  // With a number of steps this depends on the step alone, so that a resumed training grows at the same ones.
+  bool MayGrow(double fraction, int64_t total_steps) {
+    const int64_t step = trainer_.state().step;
+    if (step % kGrowEvery != 0 || fraction >= kGrowUntil) return false;
+    const double before = total_steps > 0 ? static_cast<double>(step - kGrowEvery) / static_cast<double>(total_steps) : grown_at_;
+    grown_at_ = fraction;
+    const auto growths = [](double f) { return std::floor(kMostGrowths * f / kGrowUntil); };
+    return growths(fraction) > growths(before);
+  }
+
   void Report(const SessionRecord& record, double fraction, int64_t total_steps, double loss, double rays, double samples, double seconds) const {
     if (!report_) return;
     TrainStatus status;
@@ -165,6 +178,7 @@ class Loop {
   render::TrainedField& target_;
   FieldTrainer& trainer_;
   const Reporter& report_;
+  double grown_at_ = 0.0;  // fraction of the budget at the last look
 };
 
 void RequireJob(const TrainJob& job) {
@@ -179,8 +193,8 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   RequireJob(job);
   render::TrainedField target = MakeTarget(job, area, true);
   RaySource source(*job.survey, *job.pixels, job.gains);
-  source.SetTiles(TrainingTiles(*job.survey, area.photos), {}, 0.0);
-  source.BlurTiles(LonelyTiles(source, *job.survey, area.photos));
+  const render::PlanSurface surface = SurfaceOfPoints(*job.survey);
+  source.SetTiles(TilesInCompany(source, *job.survey, area.photos, surface, job.min_views), {}, 0.0);
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo sees the survey area";
@@ -190,7 +204,7 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   SessionRecord record;
   if (!LoadSession("context", job, target, trainer, &record)) {
     trainer.InitializeParameters();
-    MarkUnseen(source, *job.survey, area.photos, target, threads);
+    MarkUnseen(source, *job.survey, area.photos, surface, job.min_views, target, threads);
     StartFromPoints(*job.survey, target);
   }
   if (record.complete) return Summarise(record, trainer);
@@ -198,7 +212,7 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   return loop.Run(record, [&] {
     target.grid = trainer.state().grid;
     target.networks = trainer.state().networks;
-    return ContextFindings{SurfaceBands(source, *job.survey, target, threads), source.MeanColor(job.seed)};
+    return ContextFindings{SurfaceBands(source, *job.survey, target, threads), MakeBackdrop(source, *job.survey, surface, job.seed)};
   });
 }
 
@@ -209,7 +223,9 @@ TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::fil
   if (job.options.coupling == "guided") context = LoadContext(context_checkpoint);
   render::TrainedField target = MakeTarget(job, block, false);
   RaySource source(*job.survey, *job.pixels, job.gains);
-  ChooseTiles(*job.survey, block, target, context ? &*context : nullptr, job.options.empty_ray_share, source);
+  const render::PlanSurface surface = SurfaceOfPoints(*job.survey);
+  const std::vector<Tile> tiles = TilesInCompany(source, *job.survey, block.photos, surface, job.min_views);
+  ChooseTiles(*job.survey, tiles, target, context ? &*context : nullptr, job.options.empty_ray_share, source);
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo shows a surface inside block " + block.name;
@@ -219,9 +235,9 @@ TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::fil
   SessionRecord record;
   if (!LoadSession("block", job, target, trainer, &record)) {
     trainer.InitializeParameters();
-    MarkUnseen(source, *job.survey, block.photos, target, threads);
+    MarkUnseen(source, *job.survey, block.photos, surface, job.min_views, target, threads);
     StartFromPoints(*job.survey, target);
-    if (context) StartFromBands(source, *job.survey, block.photos, *context, target);
+    if (context) StartFromBands(source, *job.survey, tiles, *context, target);
   }
   if (record.complete) return Summarise(record, trainer);
   Loop loop("block", job, target, trainer, report);

@@ -51,6 +51,7 @@ struct TrainJob {
   std::vector<float> gains;                   // per photo: recorded light over light at reference exposure
   double reference_exposure = 0.0;            // stored with the context; 0 when unknown
   TrainOptions options;                       // steps or seconds budget of this field inside
+  int min_views = 2;                          // training photos that must see a place for fields to learn it
   double learning_rate_scale = 1.0;           // below 1 on retries
   std::string config_hash;                    // stored; a checkpoint with another hash is refused
   uint64_t seed = 1;

@@ -6,6 +6,7 @@
 
 #include "core/base/errors.h"
 #include "core/checkpoint/archive.h"
+#include "core/render/backdrop.h"
 #include "core/render/scene_file.h"
 #include "core/render/trained_field.h"
 
@@ -15,7 +16,7 @@ namespace {
 struct Loaded {
   render::TrainedField field;
   double reference_exposure = 0.0;
-  double background_srgb[3] = {0.0, 0.0, 0.0};
+  render::Backdrop backdrop;  // of the context
 };
 
 Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, const geo::Geodetic& origin) {
@@ -27,10 +28,7 @@ Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, c
                           reader.DoubleAttribute("origin_longitude_deg") == origin.longitude_deg &&
                           reader.DoubleAttribute("origin_height_m") == origin.height_m;
   if (!same_place) throw base::InputError(file, "belongs to a survey with another origin", "Train this survey again with --restart");
-  Loaded loaded{render::GetField(reader, file, ""), reader.DoubleAttribute("reference_exposure"), {}};
-  for (size_t c = 0; c < 3; ++c) {
-    if (reader.HasAttribute(render::kBackground[c])) loaded.background_srgb[c] = reader.DoubleAttribute(render::kBackground[c]);
-  }
+  Loaded loaded{render::GetField(reader, file, ""), reader.DoubleAttribute("reference_exposure"), render::GetBackdrop(reader, file)};
   return loaded;
 }
 
@@ -52,7 +50,7 @@ void MergeScene(const MergeInput& input) {
   writer.SetAttribute("origin_height_m", input.origin.height_m);
   writer.SetAttribute("georeferenced", static_cast<int64_t>(input.georeferenced ? 1 : 0));
   writer.SetAttribute("reference_exposure", context.reference_exposure);
-  for (size_t c = 0; c < 3; ++c) writer.SetAttribute(render::kBackground[c], context.background_srgb[c]);
+  render::PutBackdrop(context.backdrop, writer);
   writer.SetAttribute("gsd_m", std::isfinite(gsd_m) ? gsd_m : 0.0);
   writer.SetAttribute("config", input.config_toml);
   writer.SetAttribute("config_hash", input.config_hash);

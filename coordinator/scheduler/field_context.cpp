@@ -102,6 +102,7 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
     train.options.seconds = job.seconds;
     train.gains = gains.gain;
     train.reference_exposure = gains.reference_exposure;
+    train.min_views = settings.partition.min_views;
     train.learning_rate_scale = job.rate_factor;
     train.config_hash = config_hash;
     train.seed = job.seed;

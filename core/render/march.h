@@ -48,8 +48,8 @@ class UnitRay {
 
 namespace internal {
 
-// Walks the cells of an uncontracted field in ray order (Amanatides and Woo 1987): visit(at, leave) -> bool for every occupied one, distances from
-// the stretch's near end. False ends the walk.
+// Walks the cells of an uncontracted field in ray order (Amanatides and Woo 1987): visit(at, leave, cell) -> bool for every occupied one,
+// distances from the stretch's near end. False ends the walk.
 template <typename Visit>
 void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, Visit&& visit) {
   const field::OccupancyGrid& grid = f.occupancy;
@@ -57,11 +57,13 @@ void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen
   const Eigen::Vector3d entry = origin + stretch.t_near * direction - f.map.min_enu();
   const double length = stretch.t_far - stretch.t_near;
   int cell[3], increment[3];
+  int64_t index_increment[3] = {1, grid.size[0], static_cast<int64_t>(grid.size[0]) * grid.size[1]};
   double next[3], delta[3];
   for (int axis = 0; axis < 3; ++axis) {
     cell[axis] = std::clamp(static_cast<int>(std::floor(entry[axis] / cell_m)), 0, grid.size[axis] - 1);
     const double d = direction[axis];
     increment[axis] = d > 0.0 ? 1 : -1;
+    index_increment[axis] *= increment[axis];
     if (d == 0.0) {
       next[axis] = delta[axis] = std::numeric_limits<double>::infinity();
     } else {
@@ -70,13 +72,15 @@ void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen
     }
   }
   double at = 0.0;
+  int64_t index = grid.Index(cell[0], cell[1], cell[2]);
   while (at < length) {
     const int axis = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
     const double leave = std::max(at, std::min(next[axis], length));
-    if (grid.occupied[static_cast<size_t>(grid.Index(cell[0], cell[1], cell[2]))] != 0 && !visit(at, leave)) return;
+    if (grid.occupied[static_cast<size_t>(index)] != 0 && !visit(at, leave, index)) return;
     at = leave;
     cell[axis] += increment[axis];
     if (cell[axis] < 0 || cell[axis] >= grid.size[axis]) return;
+    index += index_increment[axis];
     next[axis] += delta[axis];
   }
 }
@@ -85,12 +89,12 @@ void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen
 template <typename Emit>
 void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m, float jitter,
                 Emit&& emit) {
-  WalkCells(f, origin, direction, stretch, [&](double at, double leave) {
+  WalkCells(f, origin, direction, stretch, [&](double at, double leave, int64_t cell) {
     auto k = static_cast<int64_t>(std::ceil(at / step_m - static_cast<double>(jitter)));
     for (;; ++k) {
       const double t = (static_cast<double>(k) + static_cast<double>(jitter)) * step_m;
       if (!(t < leave)) return true;
-      if (t >= at && !emit(stretch.t_near + t, step_m, step_m)) return false;
+      if (t >= at && !emit(stretch.t_near + t, step_m, step_m, cell)) return false;
     }
   });
 }
@@ -107,7 +111,7 @@ void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const E
     if (more && length > 0.0) more = emit(stretch.t_near + 0.5 * (run_begin + run_end), length, length);
     run_end = -1.0;
   };
-  WalkCells(f, origin, direction, stretch, [&](double at, double leave) {
+  WalkCells(f, origin, direction, stretch, [&](double at, double leave, int64_t) {
     // Cells follow each other without gaps only while rounding agrees: compare with a tolerance.
     if (run_end >= 0.0 && at > run_end + 1e-9 * step_m) flush();
     if (run_end < 0.0) run_begin = at;
@@ -131,7 +135,8 @@ void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const
     const double t = at + static_cast<double>(jitter) * step;
     if (t < stretch.t_far) {
       const Eigen::Vector3f x = f.map.UnitFromEnu(origin + t * direction);
-      if (f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(x.x(), x.y(), x.z()))] != 0 && !emit(t, step, step_m)) return;
+      const int64_t cell = f.occupancy.IndexAt(x.x(), x.y(), x.z());
+      if (f.occupancy.occupied[static_cast<size_t>(cell)] != 0 && !emit(t, step, step_m, cell)) return;
     }
     at += step;
   }
@@ -139,20 +144,21 @@ void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const
 
 }  // namespace internal
 
-// Steps longer than the field's own: for pixels that cover more than the field's finest detail.
+// Steps longer than the field's own: for pixels that cover more than the field's finest detail. emit(t, length_m, unit_length_m) as below.
 template <typename Emit>
 void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m,
                  Emit&& emit) {
   if (stretch.Empty()) return;
   if (f.map.contracted()) {
-    internal::MarchContracted(f, origin, direction, stretch, step_m, 0.5F, emit);
+    internal::MarchContracted(f, origin, direction, stretch, step_m, 0.5F,
+                              [&](double t, double length_m, double unit_length_m, int64_t) { return emit(t, length_m, unit_length_m); });
   } else {
     internal::MarchCellRuns(f, origin, direction, stretch, step_m, emit);
   }
 }
 
-// emit(t, length_m, unit_length_m) -> bool: distance along the ray, length of the interval, and that length measured in the
-// uncontracted part's metres (what the log density refers to). Return false to stop.
+// emit(t, length_m, unit_length_m, cell) -> bool: distance along the ray, length of the interval, that length measured in the uncontracted
+// part's metres (what the log density refers to), and the occupancy cell. Return false to stop.
 template <typename Emit>
 void March(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m, float jitter,
            Emit&& emit) {

@@ -180,7 +180,8 @@ class RayRenderer::Group {
     if (step_m > 1.01 * f.step_m) {
       MarchCoarse(f, ray.origin_enu, ray.direction_enu, stretch, step_m, emit);
     } else {
-      March(f, ray.origin_enu, ray.direction_enu, stretch, step_m, 0.5F, emit);
+      March(f, ray.origin_enu, ray.direction_enu, stretch, step_m, 0.5F,
+            [&](double t, double length, double unit_length, int64_t) { return emit(t, length, unit_length); });
     }
     return samples_.size() > before;
   }

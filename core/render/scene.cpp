@@ -5,6 +5,7 @@
 #include "core/base/errors.h"
 #include "core/checkpoint/archive.h"
 #include "core/image/srgb.h"
+#include "core/render/backdrop.h"
 #include "core/render/ray_engine.h"
 #include "core/render/scene_file.h"
 
@@ -27,6 +28,7 @@ struct Scene::Impl {
   SceneInfo info;
   std::vector<TrainedField> blocks;
   std::unique_ptr<TrainedField> context;
+  Backdrop backdrop;
   FieldSet set;
 };
 
@@ -52,9 +54,7 @@ Scene Scene::Load(const std::filesystem::path& scene_h5) {
   info.reference_exposure = reader.DoubleAttribute("reference_exposure");
   info.config = reader.StringAttribute("config");
   info.gsd_m = reader.DoubleAttribute("gsd_m");
-  for (size_t c = 0; c < 3; ++c) {
-    if (reader.HasAttribute(kBackground[c])) info.background_srgb[c] = static_cast<float>(reader.DoubleAttribute(kBackground[c]));
-  }
+  impl.backdrop = GetBackdrop(reader, scene_h5);
   const int64_t n_blocks = reader.IntAttribute("blocks");
   info.min_enu = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   info.max_enu = -info.min_enu;
@@ -118,8 +118,10 @@ std::vector<RayColor> Scene::RenderCamera(const camera::Camera& camera, const ge
       }
     });
     render::RenderRays(impl_->set, rays, colors, EngineOptions{}, threads);
-    for (RayColor& color : colors) {
-      for (size_t c = 0; c < 3; ++c) color.rgb_srgb[c] += (1.0F - color.opacity) * impl_->info.background_srgb[c];
+    for (size_t i = 0; i < colors.size(); ++i) {
+      if (colors[i].opacity >= 1.0F) continue;
+      const std::array<float, 3> behind = impl_->backdrop.Color(rays[i].origin_enu, rays[i].direction_enu);
+      for (size_t c = 0; c < 3; ++c) colors[i].rgb_srgb[c] += (1.0F - colors[i].opacity) * behind[c];
     }
     Expose(exposure_gain, colors);
     for (size_t i = 0; i < pixels.size(); ++i) out[pixels[i]] = colors[i];

@@ -37,9 +37,8 @@ struct SceneInfo {
   int64_t parameters = 0;            // of all fields, context included
   double context_seconds = 0.0;
   int64_t context_samples = 0;
-  double gsd_m = 0.0;                    // finest of the blocks
-  float background_srgb[3] = {0, 0, 0};  // the survey's mean colour, at reference exposure
-  std::string config;                    // TOML text it was trained with
+  double gsd_m = 0.0;  // finest of the blocks
+  std::string config;  // TOML text it was trained with
 };
 
 // One ray. Direction of length 1. The stretch outside [t_near, t_far] is not evaluated (0 and infinity for all).
@@ -71,8 +70,7 @@ class Scene {
   // Any number of rays, 0 included; out has the same length. exposure_gain multiplies linear light. Deterministic.
   // Throws base::Interrupted when cancelled.
   void RenderRays(std::span<const Ray> rays, std::span<RayColor> out, float exposure_gain, base::ThreadPool& threads) const;
-  // All pixels of a camera, row-major, width * height results, colours over the scene's background: where no photo looked, the survey's mean
-  // colour shows. Opacity tells where that is.
+  // All pixels of a camera, row-major, width * height results, colours over the scene's backdrop. Opacity tells where that shows.
   std::vector<RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, float exposure_gain,
                                      base::ThreadPool& threads) const;
 

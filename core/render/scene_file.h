@@ -9,7 +9,6 @@ namespace skyquilt::render {
 constexpr const char* kSceneKind = "scene";
 constexpr int kSceneVersion = 1;
 constexpr const char* kContextPrefix = "context/";
-constexpr const char* kBackground[3] = {"background_r", "background_g", "background_b"};  // in the context's checkpoint too
 inline std::string BlockPrefix(int64_t i) {
   return "blocks/" + std::to_string(i) + "/";
 }

@@ -1,4 +1,4 @@
-// Photos that look straight down from 50 m onto flat ground at 2 m: which tiles only one of them sees, and what rays bring from there.
+// Photos that look straight down from 50 m onto flat ground at 2 m: which tiles and cells too few of them see, and what shows there instead.
 #include "worker/lonely_tiles.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +8,8 @@
 
 #include "core/image/image.h"
 #include "tests/support/temporary_folder.h"
+#include "worker/make_backdrop.h"
+#include "worker/starting_occupancy.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -15,7 +17,7 @@ namespace {
 constexpr int kWidth = 96, kHeight = 72;
 constexpr double kGround = 2.0;
 
-class LonelyTilesTest : public ::testing::Test {
+class FewViewsTest : public ::testing::Test {
  protected:
   // Photos at x = 0 and x = shift; focal length 48 pixels: each shows 96 x 72 m of ground.
   void Photograph(double shift_m) {
@@ -34,7 +36,11 @@ class LonelyTilesTest : public ::testing::Test {
       photo.cam_from_enu.translation = -(photo.cam_from_enu.rotation * Eigen::Vector3d(i * shift_m, 0.0, 50.0));
       image::Image8 picture(kWidth, kHeight, 3);
       for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) picture.At(x, y)[0] = static_cast<uint8_t>((x + y) % 2 == 0 ? 200 : 100);  // a fine check
+        // A fine check in red; green where the first photo looks west and the second one east.
+        for (int x = 0; x < kWidth; ++x) {
+          picture.At(x, y)[0] = static_cast<uint8_t>((x + y) % 2 == 0 ? 200 : 100);
+          picture.At(x, y)[1] = (x < kWidth / 2) == (i == 0) ? 80 : 0;
+        }
       }
       image::SavePng(picture, folder_ / photo.name);
       sources.push_back({folder_ / photo.name, {}});
@@ -57,64 +63,84 @@ class LonelyTilesTest : public ::testing::Test {
   std::unique_ptr<RaySource> source_;
 };
 
-TEST_F(LonelyTilesTest, AreThoseNoOtherPhotoSees) {
+TEST_F(FewViewsTest, TilesThatOtherPhotosSeeAreInCompany) {
   Photograph(48.0);
-  const std::vector<Tile> lonely = LonelyTiles(*source_, survey_, {0, 1});
+  const std::vector<Tile> tiles = TilesInCompany(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2);
   std::set<std::pair<int, int>> columns;
-  for (const Tile& tile : lonely) columns.insert({tile.photo, tile.column});
+  for (const Tile& tile : tiles) columns.insert({tile.photo, tile.column});
   // The second photo begins at x = 0 m, the first photo's middle.
   for (int column = 0; column < kTileColumns; ++column) {
-    EXPECT_EQ(columns.count({0, column}), column < kTileColumns / 2 ? 1U : 0U) << column;
-    EXPECT_EQ(columns.count({1, column}), column >= kTileColumns / 2 ? 1U : 0U) << column;
+    EXPECT_EQ(columns.count({0, column}), column < kTileColumns / 2 ? 0U : 1U) << column;
+    EXPECT_EQ(columns.count({1, column}), column >= kTileColumns / 2 ? 0U : 1U) << column;
   }
-  EXPECT_EQ(lonely.size(), static_cast<size_t>(kTileColumns * kTileRows));
+  EXPECT_EQ(tiles.size(), static_cast<size_t>(kTileColumns * kTileRows));
 }
 
-TEST_F(LonelyTilesTest, AHeldOutPhotoIsNoCompany) {
+TEST_F(FewViewsTest, OneViewIsEnoughWhenAskedFor) {
+  Photograph(48.0);
+  EXPECT_EQ(TilesInCompany(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 1).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
+}
+
+TEST_F(FewViewsTest, AHeldOutPhotoIsNoCompanyAndNothingBesideItIsBetterThanNothing) {
   Photograph(48.0);
   survey_.photos[1].is_test = true;
-  EXPECT_EQ(LonelyTiles(*source_, survey_, {0, 1}).size(), static_cast<size_t>(kTileColumns * kTileRows));
+  const std::vector<Tile> tiles = TilesInCompany(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2);
+  EXPECT_EQ(tiles.size(), static_cast<size_t>(kTileColumns * kTileRows)) << "all tiles of the only training photo";
 }
 
-TEST_F(LonelyTilesTest, WithoutPointsNothingIsKnownToBeLonely) {
+TEST_F(FewViewsTest, WithoutPointsEveryTileCounts) {
   Photograph(48.0);
   survey_.points.clear();
-  EXPECT_TRUE(LonelyTiles(*source_, survey_, {0, 1}).empty());
+  EXPECT_TRUE(SurfaceOfPoints(survey_).Empty());
+  EXPECT_EQ(TilesInCompany(*source_, survey_, {0, 1}, {}, 2).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
 }
 
-TEST_F(LonelyTilesTest, RaysBringTheirMeanColourAndOthersTheirPixel) {
+TEST_F(FewViewsTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
   Photograph(48.0);
-  source_->BlurTiles(LonelyTiles(*source_, survey_, {0, 1}));
-  base::Random random(3);
-  int blurred = 0, sharp = 0;
-  PixelRay ray;
-  for (int i = 0; i < 2000; ++i) {
-    ASSERT_TRUE(source_->Draw(random, &ray));
-    const float red = 255.0F * ray.target_srgb[0];
-    const Eigen::Vector3d ground = ray.origin_enu + (kGround - ray.origin_enu.z()) / ray.direction_enu.z() * ray.direction_enu;
-    const bool lonely = ground.x() < 0.0 || ground.x() > 48.0;
-    if (lonely) {
-      EXPECT_NEAR(red, 150.0F, 1.0F);
-      ++blurred;
-    } else {
-      EXPECT_NEAR(std::abs(red - 150.0F), 50.0F, 0.5F);
-      ++sharp;
-    }
-  }
-  EXPECT_GT(blurred, 500);
-  EXPECT_GT(sharp, 500);
+  base::ThreadPool threads(2);
+  const auto seen = [&](int min_views, double x, double z) {
+    render::TrainedField f;
+    f.map = encoding::SpaceMap::Box({-60.0, -40.0, 0.0}, {110.0, 40.0, 30.0});
+    double extent[3];
+    for (int axis = 0; axis < 3; ++axis) extent[axis] = f.map.extent()[axis];
+    f.occupancy = field::OccupancyGrid::Make(extent, 0.5 * f.map.units_per_metre(), 4'000'000);
+    MarkUnseen(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), min_views, f, threads);
+    const Eigen::Vector3f unit = f.map.UnitFromEnu({x, 0.0, z});
+    return f.occupancy.depth[static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] >= 0.0F;
+  };
+  EXPECT_TRUE(seen(2, 24.0, 3.0)) << "in both photos";
+  EXPECT_TRUE(seen(2, 24.0, 15.0));
+  EXPECT_FALSE(seen(2, -24.0, 3.0)) << "in the first photo alone";
+  EXPECT_FALSE(seen(2, 72.0, 3.0)) << "in the second photo alone";
+  EXPECT_TRUE(seen(1, -24.0, 3.0));
+  EXPECT_FALSE(seen(1, -58.0, 3.0)) << "in none";
+  survey_.photos[1].is_test = true;
+  EXPECT_TRUE(seen(2, -24.0, 3.0)) << "a lone photo still shows what it sees";
 }
 
-TEST_F(LonelyTilesTest, MeanColourIsTakenInLinearLight) {
+TEST_F(FewViewsTest, TheBackdropShowsCoarseColoursWhereOnePhotoLookedAndNearOnesWhereNoneDid) {
+  Photograph(48.0);
+  const render::Backdrop backdrop = MakeBackdrop(*source_, survey_, SurfaceOfPoints(survey_), 1);
+  const auto down_at = [&](double x) { return backdrop.Color({x, 0.0, 50.0}, {0.0, 0.0, -1.0}); };
+  EXPECT_NEAR(down_at(-24.0)[0], 150.0F / 255.0F, 0.01F) << "the check is blurred";
+  EXPECT_NEAR(down_at(-24.0)[1], 80.0F / 255.0F, 0.01F);
+  EXPECT_NEAR(down_at(24.0)[1], 0.0F, 0.01F);
+  EXPECT_NEAR(down_at(80.0)[1], 80.0F / 255.0F, 0.01F);
+  EXPECT_NEAR(down_at(-300.0)[1], 80.0F / 255.0F, 0.02F) << "beyond the photos their edge goes on";
+  EXPECT_EQ(backdrop.Color({0.0, 0.0, 50.0}, {1.0, 0.0, 0.1}), backdrop.mean_srgb) << "the sky";
+  const render::Backdrop flat = MakeBackdrop(*source_, survey_, {}, 1);
+  EXPECT_EQ(flat.Color({0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}), flat.mean_srgb) << "without points";
+}
+
+TEST_F(FewViewsTest, MeanColourIsTakenInLinearLight) {
   Photograph(48.0);
   const std::array<float, 3> mean = source_->MeanColor(1);
   const auto linear = [](double v) { return std::pow((v / 255.0 + 0.055) / 1.055, 2.4); };
   const double expected = 1.055 * std::pow(0.5 * (linear(200.0) + linear(100.0)), 1.0 / 2.4) - 0.055;
   EXPECT_NEAR(static_cast<double>(mean[0]), expected, 0.01);
-  EXPECT_EQ(mean[1], 0.0F);
 }
 
-TEST(PointHeights, FollowTheGroundAndReachBeyondThePoints) {
+TEST(SurfaceOfPoints, FollowsTheGroundAndReachesBeyondThePoints) {
   survey::Survey survey;
   for (int i = 0; i < 4000; ++i) {
     const double x = (i % 80) * 1.0, y = (i / 80) * 1.0;
@@ -122,15 +148,11 @@ TEST(PointHeights, FollowTheGroundAndReachBeyondThePoints) {
     point.x_in_enu = {x, y, x < 40.0 ? 5.0 : 25.0};
     survey.points.push_back(point);
   }
-  const PointHeights heights(survey);
-  EXPECT_DOUBLE_EQ(heights.At(10.0, 20.0), 5.0);
-  EXPECT_DOUBLE_EQ(heights.At(70.0, 20.0), 25.0);
-  EXPECT_DOUBLE_EQ(heights.At(-500.0, 900.0), 5.0);
-  Eigen::Vector3d x;
-  ASSERT_TRUE(heights.Meet({10.0, 10.0, 60.0}, Eigen::Vector3d(1.0, 0.2, -1.0).normalized(), &x));
-  EXPECT_NEAR(x.z(), 25.0, 1e-6) << "beyond the step, 35 m further east";
-  EXPECT_FALSE(heights.Meet({10.0, 10.0, 60.0}, Eigen::Vector3d(1.0, 0.0, 0.0), &x)) << "a level ray";
-  EXPECT_TRUE(PointHeights(survey::Survey()).Empty());
+  const render::PlanSurface surface = SurfaceOfPoints(survey);
+  EXPECT_DOUBLE_EQ(surface.At(10.0, 20.0), 5.0);
+  EXPECT_DOUBLE_EQ(surface.At(70.0, 20.0), 25.0);
+  EXPECT_DOUBLE_EQ(surface.At(-500.0, 900.0), 5.0);
+  EXPECT_TRUE(SurfaceOfPoints(survey::Survey()).Empty());
 }
 
 }  // namespace

@@ -53,7 +53,9 @@ TEST(StartingOccupancy, PointsBoundTheSurface) {
   EXPECT_TRUE(Awake(f, 20.0, 20.0, 9.0)) << "walls";
   EXPECT_TRUE(Awake(f, 17.5, 20.0, 9.0)) << "beside the tower, where its points reach";
   EXPECT_FALSE(Awake(f, 20.0, 20.0, 17.0)) << "air over the roof";
-  EXPECT_TRUE(Awake(f, 37.0, 20.0, 17.0)) << "nothing is known where there are no points";
+  EXPECT_FALSE(Awake(f, 32.5, 30.0, 10.0)) << "a few columns beyond the points the ground is taken to go on";
+  EXPECT_TRUE(Awake(f, 32.5, 30.0, 3.0));
+  EXPECT_TRUE(Awake(f, 38.0, 20.0, 17.0)) << "nothing is known far from points";
 }
 
 TEST(StartingOccupancy, WithoutPointsEverythingSeenStays) {

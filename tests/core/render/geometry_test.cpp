@@ -75,7 +75,7 @@ TEST(March, FullOccupancyGivesEveryLatticePointOnce) {
     const Stretch s = FieldStretch(f.map, origin, direction);
     if (s.Empty()) continue;
     std::vector<double> ts;
-    March(f, origin, direction, s, f.step_m, 0.5F, [&](double t, double, double) {
+    March(f, origin, direction, s, f.step_m, 0.5F, [&](double t, double, double, int64_t) {
       ts.push_back(t);
       return true;
     });
@@ -130,7 +130,7 @@ TEST(March, SamplesLieInOccupiedCellsOnly) {
       const Eigen::Vector3f p = f.map.UnitFromEnu(origin + t * direction);
       if (f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(p.x(), p.y(), p.z()))] != 0) expected.insert(k);
     }
-    March(f, origin, direction, s, f.step_m, 0.5F, [&](double t, double, double) {
+    March(f, origin, direction, s, f.step_m, 0.5F, [&](double t, double, double, int64_t) {
       got.insert(static_cast<int64_t>(std::lround((t - s.t_near - 0.05) / f.step_m)));
       ++samples;
       return true;

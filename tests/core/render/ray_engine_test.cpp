@@ -57,7 +57,7 @@ Plain WalkPlainly(const FieldSet& set, const Ray& ray) {
   for (size_t k = 0; k < all.size(); ++k) {
     const TrainedField& f = *set.blocks[k];
     March(f, ray.origin_enu, ray.direction_enu, FieldStretch(f.map, ray.origin_enu, ray.direction_enu), f.step_m, 0.5F,
-          [&](double t, double length, double) {
+          [&](double t, double length, double, int64_t) {
             const Eigen::Vector3d p = ray.origin_enu + t * ray.direction_enu;
             BlendWeights(set, all, p.x(), p.y(), weights);
             points.push_back({t, length / f.step_m, weights[k], &f});

@@ -1,0 +1,81 @@
+#include "worker/make_backdrop.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace skyquilt::worker {
+namespace {
+
+constexpr double kTilesPerCell = 1.0;
+constexpr int kMostBackdropCells = 384;  // along an axis
+constexpr int kReach = 1;                // cells on each side that colours are averaged over
+constexpr double kSteepEnough = 0.35;    // rays nearer to the horizon carry one colour over hundreds of metres
+
+struct Splat {
+  Eigen::Vector3d x;
+  Eigen::Vector3f srgb;
+};
+
+double MiddleOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+render::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& survey, const render::PlanSurface& points, uint64_t seed) {
+  render::Backdrop backdrop;
+  backdrop.mean_srgb = source.MeanColor(seed);
+  std::vector<int> photos;
+  for (size_t i = 0; i < survey.photos.size(); ++i) photos.push_back(static_cast<int>(i));
+  std::vector<Splat> splats;
+  std::vector<double> spacing;
+  for (const Tile& tile : TrainingTiles(survey, photos)) {
+    Eigen::Vector3d origin, direction;
+    source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
+    Splat splat;
+    if (direction.z() > -kSteepEnough || !points.Meet(origin, direction, &splat.x) || !source.TileColor(tile, &splat.srgb)) continue;
+    if (tile.column > 0 && !splats.empty()) spacing.push_back((splat.x - splats.back().x).head<2>().norm());
+    splats.push_back(splat);
+  }
+  if (spacing.empty()) return backdrop;
+  Eigen::Vector2d low = splats.front().x.head<2>(), high = low;
+  for (const Splat& splat : splats) {
+    low = low.cwiseMin(splat.x.head<2>());
+    high = high.cwiseMax(splat.x.head<2>());
+  }
+  const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
+  const double cell_m = std::max(kTilesPerCell * MiddleOf(std::move(spacing)), size.maxCoeff() / kMostBackdropCells);
+  if (!(cell_m > 0.0)) return backdrop;
+  const int columns = static_cast<int>(size.x() / cell_m) + 1, rows = static_cast<int>(size.y() / cell_m) + 1;
+  const size_t cells = static_cast<size_t>(columns) * static_cast<size_t>(rows);
+  std::vector<double> sum(3 * cells, 0.0), count(cells, 0.0);
+  for (const Splat& splat : splats) {
+    const int column = std::min(columns - 1, static_cast<int>((splat.x.x() - low.x()) / cell_m));
+    const int row = std::min(rows - 1, static_cast<int>((splat.x.y() - low.y()) / cell_m));
+    for (int v = std::max(0, row - kReach); v <= std::min(rows - 1, row + kReach); ++v) {
+      for (int u = std::max(0, column - kReach); u <= std::min(columns - 1, column + kReach); ++u) {
+        const size_t cell = static_cast<size_t>(v) * static_cast<size_t>(columns) + static_cast<size_t>(u);
+        for (size_t c = 0; c < 3; ++c) sum[3 * cell + c] += static_cast<double>(splat.srgb[static_cast<Eigen::Index>(c)]);
+        count[cell] += 1.0;
+      }
+    }
+  }
+  std::vector<double> heights;
+  for (size_t cell = 0; cell < cells; ++cell) {
+    for (size_t c = 0; c < 3 && count[cell] > 0.0; ++c) sum[3 * cell + c] /= count[cell];
+    const auto width = static_cast<size_t>(columns);
+    heights.push_back(
+        points.At(low.x() + (static_cast<double>(cell % width) + 0.5) * cell_m, low.y() + (static_cast<double>(cell / width) + 0.5) * cell_m));
+  }
+  render::FillFromSurroundings(columns, rows, 3, &sum, std::move(count));
+  backdrop.surface = render::PlanSurface(low.x(), low.y(), cell_m, columns, rows, std::move(heights));
+  backdrop.rgb_srgb.assign(sum.begin(), sum.end());
+  return backdrop;
+}
+
+}  // namespace skyquilt::worker

@@ -7,24 +7,34 @@ namespace skyquilt::worker {
 namespace {
 
 constexpr double kPointsPerCell = 16.0;
-constexpr int kMostCells = 256;  // along an axis
+constexpr int kMostCells = 256;    // along an axis
+constexpr double kStrays = 0.002;  // share of points on each side that does not stretch the grid
+
+double QuantileOf(const std::vector<survey::SparsePoint>& points, int axis, double share) {
+  std::vector<double> values;
+  for (const survey::SparsePoint& point : points) values.push_back(point.x_in_enu[axis]);
+  const auto at = values.begin() + static_cast<ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
 
 }  // namespace
 
 render::PlanSurface SurfaceOfPoints(const survey::Survey& survey) {
   if (survey.points.empty()) return {};
-  Eigen::Vector2d low = survey.points.front().x_in_enu.head<2>(), high = low;
-  for (const survey::SparsePoint& point : survey.points) {
-    low = low.cwiseMin(point.x_in_enu.head<2>());
-    high = high.cwiseMax(point.x_in_enu.head<2>());
+  Eigen::Vector2d low, high;
+  for (int axis = 0; axis < 2; ++axis) {
+    low[axis] = QuantileOf(survey.points, axis, kStrays);
+    high[axis] = QuantileOf(survey.points, axis, 1.0 - kStrays);
   }
   const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
   const double cell_m = std::max(std::sqrt(kPointsPerCell * size.prod() / static_cast<double>(survey.points.size())), size.maxCoeff() / kMostCells);
   const int columns = static_cast<int>(size.x() / cell_m) + 1, rows = static_cast<int>(size.y() / cell_m) + 1;
   std::vector<std::vector<double>> in_cell(static_cast<size_t>(columns) * static_cast<size_t>(rows));
   for (const survey::SparsePoint& point : survey.points) {
-    const int x = std::min(columns - 1, static_cast<int>((point.x_in_enu.x() - low.x()) / cell_m));
-    const int y = std::min(rows - 1, static_cast<int>((point.x_in_enu.y() - low.y()) / cell_m));
+    const Eigen::Vector2d at = (point.x_in_enu.head<2>() - low) / cell_m;
+    if (!(at.minCoeff() >= 0.0 && at.x() < columns && at.y() < rows)) continue;
+    const int x = static_cast<int>(at.x()), y = static_cast<int>(at.y());
     in_cell[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)].push_back(point.x_in_enu.z());
   }
   std::vector<double> heights(in_cell.size(), 0.0), known(in_cell.size(), 0.0);

@@ -34,11 +34,16 @@ render::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& sur
   for (size_t i = 0; i < survey.photos.size(); ++i) photos.push_back(static_cast<int>(i));
   std::vector<Splat> splats;
   std::vector<double> spacing;
+  std::vector<Eigen::Vector3f> colors;
+  int colors_of = -1;
   for (const Tile& tile : TrainingTiles(survey, photos)) {
+    if (tile.photo != colors_of) colors = source.TileColors(colors_of = tile.photo);
     Eigen::Vector3d origin, direction;
     source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
     Splat splat;
-    if (direction.z() > -kSteepEnough || !points.Meet(origin, direction, &splat.x) || !source.TileColor(tile, &splat.srgb)) continue;
+    const auto place = static_cast<size_t>(tile.row * kTileColumns + tile.column);
+    if (direction.z() > -kSteepEnough || !points.Meet(origin, direction, &splat.x) || !colors[place].allFinite()) continue;
+    splat.srgb = colors[place];
     if (tile.column > 0 && !splats.empty()) spacing.push_back((splat.x - splats.back().x).head<2>().norm());
     splats.push_back(splat);
   }

@@ -65,28 +65,33 @@ bool RaySource::Draw(base::Random& random, PixelRay* ray) const {
   return false;
 }
 
-bool RaySource::TileColor(const Tile& tile, Eigen::Vector3f* srgb) const {
-  const auto photo = static_cast<size_t>(tile.photo);
-  const auto along = [](int index, int count, int step, int size) {
-    return std::min(size - 1, (index * kColorPixels + step) * size / (count * kColorPixels));
+std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
+  const auto index = static_cast<size_t>(photo);
+  const int width = pixels_.Width(index), height = pixels_.Height(index);
+  const image::PixelCache::Photo pixels = pixels_.Copy(index);
+  const auto along = [](int tile, int count, int step, int size) {
+    return static_cast<size_t>(std::min(size - 1, (tile * kColorPixels + step) * size / (count * kColorPixels)));
   };
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  float n = 0.0F;
-  for (int v = 0; v < kColorPixels; ++v) {
-    for (int u = 0; u < kColorPixels; ++u) {
-      const auto y = static_cast<size_t>(along(tile.row, kTileRows, v, pixels_.Height(photo)));
-      const auto x = static_cast<size_t>(along(tile.column, kTileColumns, u, pixels_.Width(photo)));
-      uint8_t rgb[3];
-      if (!pixels_.Pixel(photo, y * static_cast<size_t>(pixels_.Width(photo)) + x, rgb)) continue;
-      for (int c = 0; c < 3; ++c) {
-        sum[c] += image::SrgbFromLinear(image::LinearFromSrgb(static_cast<float>(rgb[c]) / 255.0F) / gains_[photo]);
+  std::vector<Eigen::Vector3f> colors;
+  for (int row = 0; row < kTileRows; ++row) {
+    for (int column = 0; column < kTileColumns; ++column) {
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      float n = 0.0F;
+      for (int v = 0; v < kColorPixels; ++v) {
+        for (int u = 0; u < kColorPixels; ++u) {
+          const size_t pixel = along(row, kTileRows, v, height) * static_cast<size_t>(width) + along(column, kTileColumns, u, width);
+          if (!pixels.mask.empty() && pixels.mask[pixel] == 0) continue;
+          for (size_t c = 0; c < 3; ++c) {
+            const float light = image::LinearFromSrgb(static_cast<float>(pixels.rgb[3 * pixel + c]) / 255.0F);
+            sum[static_cast<Eigen::Index>(c)] += image::SrgbFromLinear(light / gains_[index]);
+          }
+          n += 1.0F;
+        }
       }
-      n += 1.0F;
+      colors.emplace_back(sum / n);
     }
   }
-  if (n == 0.0F) return false;
-  *srgb = sum / n;
-  return true;
+  return colors;
 }
 
 std::array<float, 3> RaySource::MeanColor(uint64_t seed) const {

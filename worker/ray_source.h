@@ -46,8 +46,9 @@ class RaySource {
   // Camera reduced to the cached size, and the ray through a pixel position.
   const camera::Camera& CameraOf(int photo) const { return cameras_[static_cast<size_t>(photo)]; }
   void RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vector3d* origin_enu, Eigen::Vector3d* direction_enu) const;
-  // Mean display value of a tile at the reference exposure, from a few of its pixels; false when all of them are ignored (masked).
-  bool TileColor(const Tile& tile, Eigen::Vector3f* srgb) const;
+  // Mean display values of a photo's tiles at the reference exposure, each from a few of its pixels; NaN where all of them are ignored (masked).
+  // [row][column].
+  std::vector<Eigen::Vector3f> TileColors(int photo) const;
   // Pixel position of a tile's centre.
   Eigen::Vector2d TileCentre(const Tile& tile) const;
 

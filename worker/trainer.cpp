@@ -22,9 +22,7 @@ namespace {
 
 constexpr int kOccupancyEvery = 16;
 constexpr int kGrowEvery = 128;
-constexpr double kGrowUntil = 0.6;  // of the budget; later, cells that hold nothing only cost samples
-// Growths at most, spread evenly: a longer training must not grow farther, into air that few photos see through.
-constexpr double kMostGrowths = 24.0;
+constexpr double kGrowUntil = 0.6;       // of the budget; later, cells that hold nothing only cost samples
 constexpr double kVisitsToJudge = 16.0;  // samples per occupied cell: fewer, and chance alone leaves cells out
 constexpr int kMaxDroppedInARow = 20;
 constexpr int64_t kMaxOccupancyCells = 4'000'000;
@@ -98,7 +96,7 @@ class Loop {
         throw base::Interrupted();
       }
       const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
-      if (state.step % kOccupancyEvery == 0) trainer_.UpdateOccupancy(MayGrow(fraction, total_steps));
+      if (state.step % kOccupancyEvery == 0) trainer_.UpdateOccupancy(state.step % kGrowEvery == 0 && fraction < kGrowUntil);
       if (step.finite) {
         dropped_in_a_row = 0;
         const double keep = state.step <= 1 ? 0.0 : std::min(0.98, 1.0 - 1.0 / static_cast<double>(state.step));
@@ -148,16 +146,6 @@ class Loop {
   }
 
  private:
-  // With a number of steps this depends on the step alone, so that a resumed training grows at the same ones.
-  bool MayGrow(double fraction, int64_t total_steps) {
-    const int64_t step = trainer_.state().step;
-    if (step % kGrowEvery != 0 || fraction >= kGrowUntil) return false;
-    const double before = total_steps > 0 ? static_cast<double>(step - kGrowEvery) / static_cast<double>(total_steps) : grown_at_;
-    grown_at_ = fraction;
-    const auto growths = [](double f) { return std::floor(kMostGrowths * f / kGrowUntil); };
-    return growths(fraction) > growths(before);
-  }
-
   void Report(const SessionRecord& record, double fraction, int64_t total_steps, double loss, double rays, double samples, double seconds) const {
     if (!report_) return;
     TrainStatus status;
@@ -178,7 +166,6 @@ class Loop {
   render::TrainedField& target_;
   FieldTrainer& trainer_;
   const Reporter& report_;
-  double grown_at_ = 0.0;  // fraction of the budget at the last look
 };
 
 void RequireJob(const TrainJob& job) {

@@ -153,6 +153,14 @@ TEST(SurfaceOfPoints, FollowsTheGroundAndReachesBeyondThePoints) {
   EXPECT_DOUBLE_EQ(surface.At(70.0, 20.0), 25.0);
   EXPECT_DOUBLE_EQ(surface.At(-500.0, 900.0), 5.0);
   EXPECT_TRUE(SurfaceOfPoints(survey::Survey()).Empty());
+  // Two points that a matcher got wrong do not make the grid coarse.
+  for (const double far : {-1e6, 1e6}) {
+    survey::SparsePoint stray;
+    stray.x_in_enu = {far, far, 1e4};
+    survey.points.push_back(stray);
+  }
+  EXPECT_DOUBLE_EQ(SurfaceOfPoints(survey).At(10.0, 20.0), 5.0);
+  EXPECT_DOUBLE_EQ(SurfaceOfPoints(survey).At(70.0, 20.0), 25.0);
 }
 
 }  // namespace

@@ -112,11 +112,11 @@ void FieldTrainer::UpdateOccupancy(bool grow) {
   for (int64_t i = 0; i < budget; ++i) {
     const int64_t index = random.Below(static_cast<uint32_t>(grid.CellCount()));
     if (grid.depth[static_cast<size_t>(index)] < 0.0F || grid.occupied[static_cast<size_t>(index)] != 0) continue;
-    const int64_t plane = static_cast<int64_t>(grid.size[0]) * grid.size[1];
+    const int64_t cell_x = index % grid.size[0], cell_y = index / grid.size[0] % grid.size[1], cell_z = index / grid.size[0] / grid.size[1];
     chosen.push_back(index);
-    x.push_back((static_cast<float>(index % grid.size[0]) + random.Uniform()) * grid.cell);
-    y.push_back((static_cast<float>((index % plane) / grid.size[0]) + random.Uniform()) * grid.cell);
-    z.push_back((static_cast<float>(index / plane) + random.Uniform()) * grid.cell);
+    x.push_back((static_cast<float>(cell_x) + random.Uniform()) * grid.cell);
+    y.push_back((static_cast<float>(cell_y) + random.Uniform()) * grid.cell);
+    z.push_back((static_cast<float>(cell_z) + random.Uniform()) * grid.cell);
   }
   StepDepths(x, y, z, &depth);
   const auto start = StageTimes::Clock::now();

@@ -41,7 +41,7 @@ render::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& sur
     Eigen::Vector3d origin, direction;
     source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
     Splat splat;
-    const auto place = static_cast<size_t>(tile.row * kTileColumns + tile.column);
+    const auto place = static_cast<size_t>(tile.row) * kTileColumns + static_cast<size_t>(tile.column);
     if (direction.z() > -kSteepEnough || !points.Meet(origin, direction, &splat.x) || !colors[place].allFinite()) continue;
     splat.srgb = colors[place];
     if (tile.column > 0 && !splats.empty()) spacing.push_back((splat.x - splats.back().x).head<2>().norm());
@@ -71,11 +71,9 @@ render::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& sur
     }
   }
   std::vector<double> heights;
-  for (size_t cell = 0; cell < cells; ++cell) {
-    for (size_t c = 0; c < 3 && count[cell] > 0.0; ++c) sum[3 * cell + c] /= count[cell];
-    const auto width = static_cast<size_t>(columns);
-    heights.push_back(
-        points.At(low.x() + (static_cast<double>(cell % width) + 0.5) * cell_m, low.y() + (static_cast<double>(cell / width) + 0.5) * cell_m));
+  for (size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(1.0, count[i / 3]);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) heights.push_back(points.At(low.x() + (column + 0.5) * cell_m, low.y() + (row + 0.5) * cell_m));
   }
   render::FillFromSurroundings(columns, rows, 3, &sum, std::move(count));
   backdrop.surface = render::PlanSurface(low.x(), low.y(), cell_m, columns, rows, std::move(heights));

@@ -6,7 +6,7 @@
 
 #include "core/render/march.h"
 #include "core/render/scene.h"
-#include "worker/lonely_tiles.h"
+#include "worker/few_views.h"
 
 namespace skyquilt::worker {
 namespace {

@@ -11,9 +11,10 @@
 #include "core/brightness/exposure.h"
 #include "core/render/march.h"
 #include "worker/block_session.h"
+#include "worker/few_views.h"
 #include "worker/field_trainer.h"
-#include "worker/lonely_tiles.h"
 #include "worker/make_backdrop.h"
+#include "worker/point_surface.h"
 #include "worker/starting_occupancy.h"
 #include "worker/surface_band.h"
 

@@ -56,7 +56,8 @@ NetworkWeights HashField::Prepare(std::span<const float> networks) const {
     weights.layer.emplace_back(source, source + static_cast<ptrdiff_t>(outputs) * inputs);
     std::vector<float> transposed(static_cast<size_t>(outputs) * static_cast<size_t>(inputs));
     for (int o = 0; o < outputs; ++o) {
-      for (int i = 0; i < inputs; ++i) transposed[static_cast<size_t>(i * outputs + o)] = source[o * inputs + i];
+      for (int i = 0; i < inputs; ++i)
+        transposed[static_cast<size_t>(i) * static_cast<size_t>(outputs) + static_cast<size_t>(o)] = source[o * inputs + i];
     }
     weights.transposed.push_back(std::move(transposed));
   }
@@ -88,7 +89,7 @@ void HashField::Color(const NetworkWeights& weights, const float* color_in, size
   const float* in = color_in;
   int inputs = color_inputs_;
   for (int l = 0; l < config_.color_hidden_layers; ++l) {
-    kernel::Dense(weights.layer[static_cast<size_t>(2 + l)].data(), config_.hidden, inputs, in, in_stride, n, true, hidden[l], hidden_stride);
+    kernel::Dense(weights.layer[static_cast<size_t>(l) + 2].data(), config_.hidden, inputs, in, in_stride, n, true, hidden[l], hidden_stride);
     in = hidden[l];
     in_stride = hidden_stride;
     inputs = config_.hidden;
@@ -109,7 +110,7 @@ void HashField::Backward(const NetworkWeights& weights, Activations& a, float* f
   kernel::DenseWeightGradient(a.color_gradient, stride, kColorRows, a.color_hidden[top], stride, hidden, n, gradient_of(last));
   kernel::DenseGated(weights.transposed[last].data(), hidden, kColorRows, a.color_gradient, stride, n, a.color_hidden[top], stride, current, stride);
   for (int l = top; l > 0; --l) {
-    const auto layer = static_cast<size_t>(2 + l);
+    const auto layer = static_cast<size_t>(l) + 2;
     kernel::DenseWeightGradient(current, stride, hidden, a.color_hidden[l - 1], stride, hidden, n, gradient_of(layer));
     kernel::DenseGated(weights.transposed[layer].data(), hidden, hidden, current, stride, n, a.color_hidden[l - 1], stride, next, stride);
     std::swap(current, next);

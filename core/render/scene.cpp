@@ -111,7 +111,8 @@ std::vector<RayColor> Scene::RenderCamera(const camera::Camera& camera, const ge
       const size_t begin = static_cast<size_t>(task) * 256;
       for (size_t i = begin; i < std::min(begin + 256, pixels.size()); ++i) {
         const auto width = static_cast<size_t>(camera.width);
-        const Eigen::Vector2d img(static_cast<double>(pixels[i] % width) + 0.5, static_cast<double>(pixels[i] / width) + 0.5);
+        const size_t row = pixels[i] / width, column = pixels[i] % width;
+        const Eigen::Vector2d img(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
         rays[i].origin_enu = enu_from_cam.translation;
         rays[i].direction_enu = (enu_from_cam.rotation * camera.RayFromImg(img)).normalized();
         rays[i].pixel_radius = radius;

@@ -1,5 +1,5 @@
 // Photos that look straight down from 50 m onto flat ground at 2 m: which tiles and cells too few of them see, and what shows there instead.
-#include "worker/lonely_tiles.h"
+#include "worker/few_views.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include "core/image/image.h"
 #include "tests/support/temporary_folder.h"
 #include "worker/make_backdrop.h"
+#include "worker/point_surface.h"
 #include "worker/starting_occupancy.h"
 
 namespace skyquilt::worker {

@@ -10,9 +10,6 @@
 
 namespace skyquilt::worker {
 
-// Median heights of the sparse points on a coarse grid, continued smoothly to where there are none. Empty without points.
-render::PlanSurface SurfaceOfPoints(const survey::Survey& survey);
-
 // Training photos among `photos` whose frame shows the ball of radius_m around a place; counting stops at `enough`.
 int CountViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const Eigen::Vector3d& x_in_enu,
                double radius_m, int enough);

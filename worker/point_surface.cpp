@@ -1,7 +1,9 @@
-#include "worker/lonely_tiles.h"
+#include "worker/point_surface.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace skyquilt::worker {
 namespace {
@@ -12,8 +14,9 @@ constexpr double kStrays = 0.002;  // share of points on each side that does not
 
 double QuantileOf(const std::vector<survey::SparsePoint>& points, int axis, double share) {
   std::vector<double> values;
+  values.reserve(points.size());
   for (const survey::SparsePoint& point : points) values.push_back(point.x_in_enu[axis]);
-  const auto at = values.begin() + static_cast<ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const auto at = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -48,38 +51,6 @@ render::PlanSurface SurfaceOfPoints(const survey::Survey& survey) {
   }
   render::FillFromSurroundings(columns, rows, 1, &heights, std::move(known));
   return {low.x(), low.y(), cell_m, columns, rows, std::move(heights)};
-}
-
-int CountViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const Eigen::Vector3d& x_in_enu,
-               double radius_m, int enough) {
-  int views = 0;
-  for (const int photo : photos) {
-    if (views >= enough) break;
-    if (survey.photos[static_cast<size_t>(photo)].is_test) continue;
-    const camera::Camera& camera = source.CameraOf(photo);
-    const Eigen::Vector3d in_cam = survey.photos[static_cast<size_t>(photo)].cam_from_enu * x_in_enu;
-    if (in_cam.z() < -radius_m || (radius_m <= 0.0 && in_cam.z() <= 0.0)) continue;
-    if (in_cam.z() <= radius_m) {
-      views += in_cam.norm() < 4.0 * radius_m ? 1 : 0;  // the ball surrounds the camera or nearly so
-    } else if (const auto pixel = camera.ImgFromCam(in_cam)) {
-      const double slack = camera.FocalX() * radius_m / in_cam.z();
-      views += pixel->x() >= -slack && pixel->x() < camera.width + slack && pixel->y() >= -slack && pixel->y() < camera.height + slack ? 1 : 0;
-    }
-  }
-  return views;
-}
-
-std::vector<Tile> TilesInCompany(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
-                                 const render::PlanSurface& surface, int min_views) {
-  std::vector<Tile> all = TrainingTiles(survey, photos);
-  if (surface.Empty() || min_views < 2) return all;
-  std::vector<Tile> kept;
-  for (const Tile& tile : all) {
-    Eigen::Vector3d origin, direction, x;
-    source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
-    if (!surface.Meet(origin, direction, &x) || CountViews(source, survey, photos, x, 0.0, min_views) >= min_views) kept.push_back(tile);
-  }
-  return kept.empty() ? all : kept;
 }
 
 }  // namespace skyquilt::worker

@@ -1,7 +1,6 @@
 #include "worker/make_backdrop.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -9,7 +8,6 @@
 namespace skyquilt::worker {
 namespace {
 
-constexpr double kTilesPerCell = 1.0;
 constexpr int kMostBackdropCells = 384;  // along an axis
 constexpr int kReach = 1;                // cells on each side that colours are averaged over
 constexpr double kSteepEnough = 0.35;    // rays nearer to the horizon carry one colour over hundreds of metres
@@ -30,6 +28,7 @@ double MiddleOf(std::vector<double> values) {
 render::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& survey, const render::PlanSurface& points, uint64_t seed) {
   render::Backdrop backdrop;
   backdrop.mean_srgb = source.MeanColor(seed);
+  if (points.Empty()) return backdrop;
   std::vector<int> photos;
   for (size_t i = 0; i < survey.photos.size(); ++i) photos.push_back(static_cast<int>(i));
   std::vector<Splat> splats;
@@ -54,7 +53,7 @@ render::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& sur
     high = high.cwiseMax(splat.x.head<2>());
   }
   const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
-  const double cell_m = std::max(kTilesPerCell * MiddleOf(std::move(spacing)), size.maxCoeff() / kMostBackdropCells);
+  const double cell_m = std::max(MiddleOf(std::move(spacing)), size.maxCoeff() / kMostBackdropCells);
   if (!(cell_m > 0.0)) return backdrop;
   const int columns = static_cast<int>(size.x() / cell_m) + 1, rows = static_cast<int>(size.y() / cell_m) + 1;
   const size_t cells = static_cast<size_t>(columns) * static_cast<size_t>(rows);
@@ -70,8 +69,9 @@ render::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& sur
       }
     }
   }
-  std::vector<double> heights;
   for (size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(1.0, count[i / 3]);
+  std::vector<double> heights;
+  heights.reserve(cells);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) heights.push_back(points.At(low.x() + (column + 0.5) * cell_m, low.y() + (row + 0.5) * cell_m));
   }

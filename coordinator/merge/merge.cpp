@@ -28,8 +28,7 @@ Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, c
                           reader.DoubleAttribute("origin_longitude_deg") == origin.longitude_deg &&
                           reader.DoubleAttribute("origin_height_m") == origin.height_m;
   if (!same_place) throw base::InputError(file, "belongs to a survey with another origin", "Train this survey again with --restart");
-  Loaded loaded{render::GetField(reader, file, ""), reader.DoubleAttribute("reference_exposure"), render::GetBackdrop(reader, file)};
-  return loaded;
+  return {render::GetField(reader, file, ""), reader.DoubleAttribute("reference_exposure"), render::GetBackdrop(reader, file)};
 }
 
 }  // namespace

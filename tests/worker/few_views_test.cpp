@@ -137,8 +137,10 @@ TEST_F(FewViewsTest, MeanColourIsTakenInLinearLight) {
   Photograph(48.0);
   const std::array<float, 3> mean = source_->MeanColor(1);
   const auto linear = [](double v) { return std::pow((v / 255.0 + 0.055) / 1.055, 2.4); };
-  const double expected = 1.055 * std::pow(0.5 * (linear(200.0) + linear(100.0)), 1.0 / 2.4) - 0.055;
-  EXPECT_NEAR(static_cast<double>(mean[0]), expected, 0.01);
+  const auto display = [](double light) { return 1.055 * std::pow(light, 1.0 / 2.4) - 0.055; };
+  EXPECT_NEAR(static_cast<double>(mean[0]), display(0.5 * (linear(200.0) + linear(100.0))), 0.01);
+  EXPECT_NEAR(static_cast<double>(mean[1]), display(0.5 * linear(80.0)), 0.01);
+  EXPECT_EQ(mean[2], 0.0F);
 }
 
 TEST(SurfaceOfPoints, FollowsTheGroundAndReachesBeyondThePoints) {

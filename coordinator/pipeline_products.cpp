@@ -19,8 +19,9 @@ void MakeProjectProducts(const Project& project, const products::ProductOptions&
   }
   if (options.video_seconds > 0.0) {
     const std::filesystem::path file = project.ProductsFolder() / (options.video_path + ".mp4");
-    const products::RenderStats stats = products::RenderVideo(products::RendererOf(scene, options.exposure_ev, threads),
-                                                              products::BuiltInPath(scene.info(), options), options.video_fps, file);
+    const products::RenderStats stats =
+        products::RenderVideo(products::RendererOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads),
+                              products::BuiltInPath(scene.info(), options), options.video_fps, file);
     spdlog::info("video of {} frames, {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), file.string());
   }
 }

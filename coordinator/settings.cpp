@@ -119,9 +119,7 @@ void Settings::Validate() const {
   context.Check("context");
   train.Check("train");
   products.Check();
-  if (brightness.correction != "exif" && brightness.correction != "none") {
-    throw base::UsageError("brightness.correction must be \"exif\" or \"none\", got \"" + brightness.correction + "\"");
-  }
+  brightness.Check();
   if (run.time_budget_s > 0.0 && train.steps > 0) {
     throw base::UsageError("both a time budget (run.time_budget_s = " + std::to_string(run.time_budget_s) +
                            ") and a number of steps (train.steps = " + std::to_string(train.steps) + ") are given: choose one, the other must be 0");

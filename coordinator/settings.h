@@ -13,7 +13,7 @@
 #include "coordinator/report/evaluate.h"
 #include "coordinator/run_options.h"
 #include "coordinator/simulate/simulate_options.h"
-#include "core/brightness/exposure.h"
+#include "core/brightness/options.h"
 #include "core/config/options.h"
 #include "partition/partition_options.h"
 #include "worker/train_options.h"

@@ -9,7 +9,7 @@
 namespace skyquilt::worker {
 
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
-                 const ContextFindings* findings) {
+                 const ContextExtras* extras) {
   field::TrainableState& state = trainer.state();
   target.steps = state.step;
   target.seconds = record.seconds;
@@ -39,20 +39,25 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   writer.SetAttribute("dropped_steps", static_cast<int64_t>(record.dropped_steps));
   writer.SetAttribute("mean_squared_error", record.mean_squared_error);
   writer.SetAttribute("complete", static_cast<int64_t>(record.complete ? 1 : 0));
-  writer.SetAttribute("reference_exposure", job.reference_exposure);
   writer.SetAttribute("origin_latitude_deg", job.survey->origin.latitude_deg);
   writer.SetAttribute("origin_longitude_deg", job.survey->origin.longitude_deg);
   writer.SetAttribute("origin_height_m", job.survey->origin.height_m);
   std::vector<float> numbers;  // the writer reads it when it commits
-  if (findings != nullptr) {
-    render::PutBackdrop(findings->backdrop, writer);
-    for (const SurfaceBand& band : findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
+  if (extras != nullptr) {
+    brightness::PutResponse(*extras->response, writer);
+    extras->learner->Put(writer);
+    brightness::PutLuminance(job.luminance, trainer.luminance_state(), writer);
+  }
+  if (extras != nullptr && extras->findings != nullptr) {
+    render::PutBackdrop(extras->findings->backdrop, writer);
+    for (const SurfaceBand& band : extras->findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
     writer.Put("surface_bands", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
   }
   writer.Commit(job.checkpoint);
 }
 
-bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record) {
+bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
+                 const ContextExtras* extras) {
   if (!std::filesystem::exists(job.checkpoint) && !std::filesystem::exists(job.checkpoint.string() + ".prev")) return false;
   std::string why;
   const std::filesystem::path usable = checkpoint::NewestUsable(job.checkpoint, kind, &why);
@@ -79,6 +84,12 @@ bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   take(state.grid_moment2, reader.Floats("grid_moment2"), "grid_moment2");
   take(state.network_moment1, reader.Floats("network_moment1"), "network_moment1");
   take(state.network_moment2, reader.Floats("network_moment2"), "network_moment2");
+  if (extras != nullptr) {
+    *extras->response = brightness::GetResponse(reader, usable);
+    extras->learner->Get(reader, usable);
+    brightness::Luminance as_configured;
+    brightness::GetLuminance(reader, &as_configured, &trainer.luminance_state());
+  }
   target.occupancy = std::move(loaded.occupancy);
   state.step = loaded.steps;
   trainer.rays_per_step() = static_cast<int>(reader.IntAttribute("rays_per_step"));
@@ -96,7 +107,8 @@ LoadedContext LoadContext(const std::filesystem::path& checkpoint) {
   const std::filesystem::path usable = checkpoint::NewestUsable(checkpoint, "context", &why);
   if (usable.empty()) throw base::InputError(checkpoint, "the context cannot be read (" + why + ")", "Train it again with --restart");
   const checkpoint::ArchiveReader reader(usable);
-  LoadedContext context{render::GetField(reader, usable, ""), {}};
+  LoadedContext context{render::GetField(reader, usable, ""), brightness::GetResponse(reader, usable), {}, {}, {}};
+  brightness::GetLuminance(reader, &context.luminance, &context.luminance_state);
   if (reader.Has("surface_bands")) {
     const std::vector<float> numbers = reader.Floats("surface_bands");
     for (size_t i = 0; i + 2 < numbers.size(); i += 3) context.bands.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/brightness/response_learner.h"
 #include "worker/field_trainer.h"
 #include "worker/surface_band.h"
 #include "worker/trainer.h"
@@ -23,13 +24,21 @@ struct SessionRecord {
   bool complete = false;
 };
 
-// kind: "context" or "block". findings: the finished context's, null otherwise. Throws base::InputError.
+// What the context has beside its field.
+struct ContextExtras {
+  brightness::Response* response = nullptr;
+  brightness::ResponseLearner* learner = nullptr;
+  const ContextFindings* findings = nullptr;  // null until it is finished
+};
+
+// kind: "context" or "block". extras: the context's, null for blocks. Throws base::InputError.
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
-                 const ContextFindings* findings);
+                 const ContextExtras* extras);
 
 // True when a usable checkpoint was found and loaded. Damaged files fall back to the previous one with a warning; when both are damaged
 // training starts anew with a warning. Throws base::UsageError when the file belongs to another configuration.
-bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record);
+bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
+                 const ContextExtras* extras);
 
 // Throws base::InputError when neither the file nor its predecessor can be read.
 LoadedContext LoadContext(const std::filesystem::path& checkpoint);

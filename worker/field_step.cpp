@@ -4,9 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/brightness/exposure.h"
-#include "core/render/composite.h"
 #include "core/render/march.h"
+#include "worker/field_step_worker.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -17,6 +16,7 @@ constexpr int64_t kEncodePackets = 16;  // one task: enough work, and a level's 
 const float kHiddenDepth = -std::log(1e-3F);
 // Behind this optical depth the context is not looked at: it would show through at less than 2 %.
 constexpr float kOpaqueDepth = 4.0F;
+constexpr double kMeansFollow = 0.1;  // share of a new batch in the running means
 
 // Reads a level's table once in order. Corners read it at random, and memory is several times slower at that than at one pass in front of it.
 // The sum only keeps the compiler from leaving it out.
@@ -26,46 +26,25 @@ float ReadAhead(const float* table, int64_t floats) {
   return sum;
 }
 
-template <typename T>
-void Grow(std::vector<T>& v, size_t n) {
-  if (v.size() < n) v.resize(n + n / 4);
-}
-
 }  // namespace
 
-struct FieldStep::Worker {
-  field::Activations a;
-  std::vector<float> depth, keep, tau, weight, rgb, weight_gradient, mid, width;
-  // Rays of the packet: live samples, and what the context shows in front and behind.
-  struct View {
-    int64_t begin = 0, count = 0;
-    float front_rgb[3] = {0, 0, 0}, front_transmittance = 1.0F;
-    float behind_rgb[3] = {0, 0, 0};
-    float background_share = 1.0F;
-  };
-  std::vector<View> views;
-  std::unique_ptr<render::RayRenderer> context;
-  std::vector<render::Ray> pieces;
-  std::vector<render::RayColor> colors;
-  std::vector<std::pair<size_t, bool>> owner;  // view, is it the piece behind
-  float read_ahead = 0.0F;
-
-  void Reserve(const field::HashField& field, int64_t n) {
-    a.Reserve(field, n);
-    for (auto* v : {&depth, &keep, &tau, &weight}) Grow(*v, a.stride);
-    Grow(rgb, 3 * a.stride);
-  }
-};
-
 FieldStep::FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context,
-                     base::ThreadPool& threads, StageTimes& times)
-    : target_(target), field_(field), context_(context), threads_(threads), times_(times), optimizer_(field, threads) {
+                     const LuminancePlan& luminance, base::ThreadPool& threads, StageTimes& times)
+    : target_(target),
+      field_(field),
+      context_(context),
+      luminance_(luminance.luminance),
+      state_(luminance.start),
+      controls_mean_(luminance.controls_mean),
+      threads_(threads),
+      times_(times),
+      optimizer_(field, threads) {
   for (int i = 0; i < threads.size(); ++i) {
     workers_.push_back(std::make_unique<Worker>());
     if (context == nullptr) continue;
     render::FieldSet set;
     set.context = context;
-    workers_.back()->context = std::make_unique<render::RayRenderer>(set, render::EngineOptions{});
+    workers_.back()->context = std::make_unique<render::RayRenderer>(set, render::EngineOptions::For(luminance_));
   }
 }
 
@@ -204,79 +183,13 @@ void FieldStep::LookThroughContext(const RayBatch& batch, const Packet& packet, 
   for (size_t i = 0; i < w.pieces.size(); ++i) {
     Worker::View& view = w.views[w.owner[i].first];
     const bool behind = w.owner[i].second;
-    for (size_t c = 0; c < 3; ++c) (behind ? view.behind_rgb : view.front_rgb)[c] = w.colors[i].rgb_srgb[c];
+    for (size_t c = 0; c < 3; ++c) {
+      (behind ? view.behind_rgb : view.front_rgb)[c] = w.colors[i].rgb_srgb[c];
+      (behind ? view.behind_light : view.front_light)[c] = w.colors[i].concealed_light[c];
+    }
     // Whatever the context leaves open behind shows the random background.
     (behind ? view.background_share : view.front_transmittance) = 1.0F - w.colors[i].opacity;
   }
-}
-
-FieldStep::PacketResult FieldStep::ComposeAndLoss(const RayBatch& batch, const Packet& packet, int64_t n, float ray_share, double distortion,
-                                                  Worker& w) const {
-  PacketResult result;
-  field::Activations& a = w.a;
-  const auto range = static_cast<float>(target_.config.color_range);
-  const auto distance_unit = static_cast<float>(1.0 / std::max(1.0, target_.map.max_enu().z() - target_.map.min_enu().z()));
-  for (size_t k = 0; k < w.views.size(); ++k) {
-    const BatchRay& r = batch.rays[static_cast<size_t>(packet.first_ray) + k];
-    const Worker::View& view = w.views[k];
-    const auto begin = static_cast<size_t>(view.begin);
-    const auto count = static_cast<size_t>(view.count);
-    float rgb[3];
-    float* weights = w.weight.data() + begin;
-    const float transmittance = render::CompositeForward(static_cast<int>(count), w.tau.data() + begin, w.rgb.data() + begin, a.stride, weights, rgb);
-    float rgb_gradient[3] = {0, 0, 0};
-    float transmittance_gradient = 0.0F;
-    const float* weight_gradient = nullptr;
-    if (r.ray.empty) {
-      const float opacity = 1.0F - transmittance;
-      result.loss += static_cast<double>(opacity * opacity);
-      transmittance_gradient = -2.0F * opacity * ray_share;
-    } else {
-      for (size_t c = 0; c < 3; ++c) {
-        const float behind = view.behind_rgb[c] + view.background_share * r.background[c];
-        const float shown = view.front_rgb[c] + view.front_transmittance * (rgb[c] + transmittance * behind);
-        const auto [value, slope] = brightness::Expose(shown, r.ray.gain);
-        const float target = r.ray.target_srgb[c];
-        const float residual = value - target;
-        const double squared = static_cast<double>(residual) * static_cast<double>(residual);
-        result.squared_error += squared;
-        // A saturated pixel says only "at least this bright", a black one "at most".
-        const bool satisfied = (target >= 254.5F / 255.0F && residual > 0.0F) || (target <= 0.5F / 255.0F && residual < 0.0F);
-        if (satisfied) continue;
-        result.loss += squared;
-        const float gradient = 2.0F * residual * slope * view.front_transmittance * ray_share;
-        rgb_gradient[c] = gradient;
-        transmittance_gradient += gradient * behind;
-      }
-      ++result.color_rays;
-      if (distortion > 0.0 && count > 0) {
-        w.weight_gradient.assign(count, 0.0F);
-        w.mid.resize(count);
-        w.width.assign(count, static_cast<float>(target_.step_m) * distance_unit);
-        const float* t = batch.t.data() + packet.begin + view.begin;
-        for (size_t i = 0; i < count; ++i) w.mid[i] = (t[i] - t[0]) * distance_unit;
-        result.loss += static_cast<double>(render::DistortionLoss(static_cast<int>(count), weights, w.mid.data(), w.width.data(),
-                                                                  static_cast<float>(distortion) * ray_share, w.weight_gradient.data())) /
-                       static_cast<double>(ray_share);
-        weight_gradient = w.weight_gradient.data();
-      }
-    }
-    render::CompositeBackward(static_cast<int>(count), w.rgb.data() + begin, a.stride, weights, transmittance, rgb_gradient, transmittance_gradient,
-                              weight_gradient, a.log_density_gradient + begin, a.color_gradient + begin, a.stride);
-  }
-  const auto live = static_cast<size_t>(n);
-  const auto padded = static_cast<size_t>(kernel::Padded(n));
-  // d tau / d log density = tau; d rgb / d raw = rgb (1 - rgb / range).
-  for (size_t i = 0; i < live; ++i) a.log_density_gradient[i] *= w.tau[i];
-  std::fill(a.log_density_gradient + live, a.log_density_gradient + padded, 0.0F);
-  for (size_t c = 0; c < 3; ++c) {
-    float* gradient = a.color_gradient + c * a.stride;
-    const float* color = w.rgb.data() + c * a.stride;
-    for (size_t i = 0; i < live; ++i) gradient[i] *= color[i] * (1.0F - color[i] / range);
-    std::fill(gradient + live, gradient + padded, 0.0F);
-  }
-  std::fill_n(a.color_gradient + 3 * a.stride, padded, 0.0F);
-  return result;
 }
 
 FieldStep::PacketResult FieldStep::TrainPacket(RayBatch& batch, const Packet& packet, float ray_share, double distortion, float* network_gradient,
@@ -289,7 +202,8 @@ FieldStep::PacketResult FieldStep::TrainPacket(RayBatch& batch, const Packet& pa
   at = times_.Add(thread, Stage::kColor, at);
   LookThroughContext(batch, packet, w);
   at = times_.Add(thread, Stage::kContext, at);
-  PacketResult result = ComposeAndLoss(batch, packet, n, ray_share, distortion, w);
+  PacketResult result = luminance_.On() ? ConcealAndLoss(batch, packet, n, ray_share, distortion, network_gradient, w)
+                                        : ComposeAndLoss(batch, packet, n, ray_share, distortion, w);
   at = times_.Add(thread, Stage::kCompose, at);
   result.live = n;
   if (n > 0) {
@@ -304,7 +218,7 @@ FieldStep::PacketResult FieldStep::TrainPacket(RayBatch& batch, const Packet& pa
   return result;
 }
 
-StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state) {
+StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state, brightness::ResponseLearner* learner) {
   StepResult result;
   result.n_rays = static_cast<int>(batch.rays.size());
   result.n_samples = batch.n_samples;
@@ -315,6 +229,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   results_.assign(n_packets, {});
   const auto network_size = static_cast<size_t>(field_.NetworkParameters());
   slot_gradients_.assign(network_size * kGradientSlots, 0.0F);
+  gain_gradients_.assign(learner != nullptr ? batch.rays.size() : 0, {0.0F, 0.0F, 0.0F});
   const float ray_share = 1.0F / static_cast<float>(std::max(1, result.n_rays));
   threads_.ParallelFor(kGradientSlots, [&](int64_t slot, int thread) {
     for (size_t k = static_cast<size_t>(slot); k < n_packets; k += kGradientSlots) {
@@ -323,7 +238,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
     }
   });
   auto at = StageTimes::Clock::now();
-  int64_t color_rays = 0;
+  PacketResult sums;
   stretches_.clear();
   for (size_t k = 0; k < n_packets; ++k) {
     const PacketResult& p = results_[k];
@@ -331,12 +246,15 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
     result.squared_error += p.squared_error;
     result.n_live += p.live;
     result.finite = result.finite && p.finite;
-    color_rays += p.color_rays;
+    sums.color_rays += p.color_rays;
+    sums.solid_rays += p.solid_rays;
+    sums.shown += p.shown;
+    sums.log_share += p.log_share;
     const Packet& packet = batch.packets[k];
     stretches_.push_back({packet.begin, p.live, features_.data() + packet.features, packet.stride});
   }
   result.loss *= static_cast<double>(ray_share);
-  result.squared_error /= 3.0 * static_cast<double>(std::max<int64_t>(1, color_rays));
+  result.squared_error /= 3.0 * static_cast<double>(std::max<int64_t>(1, sums.color_rays));
   for (size_t slot = 0; slot < kGradientSlots; ++slot) {
     for (size_t i = 0; i < network_size; ++i) state.network_gradient[i] += slot_gradients_[slot * network_size + i];
   }
@@ -346,12 +264,26 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
     ++state.step;  // the same rays would fail the same way
     return result;
   }
+  FollowMeans(sums);
+  for (size_t k = 0; k < gain_gradients_.size(); ++k) {
+    const PixelRay& ray = batch.rays[k].ray;
+    if (!ray.empty) learner->Add(static_cast<size_t>(ray.photo), ray.radius2, gain_gradients_[k].data(), ray_share);
+  }
   times_.Add(0, Stage::kBackward, at);
   optimizer_.Update(
       batch.x.data(), batch.y.data(), batch.z.data(), stretches_, options.learning_rate, options.network_l2, state,
       [&](int thread, StageTimes::Clock::time_point began) { times_.Add(thread, Stage::kScatter, began); },
       [&](int thread, StageTimes::Clock::time_point began) { times_.Add(thread, Stage::kOptimise, began); });
   return result;
+}
+
+void FieldStep::FollowMeans(const PacketResult& sums) {
+  if (!luminance_.On() || !controls_mean_) return;
+  if (sums.color_rays > 0) {
+    const double shown = sums.shown / (3.0 * static_cast<double>(sums.color_rays));
+    state_.mean_shown += kMeansFollow * (shown - state_.mean_shown);
+  }
+  if (sums.solid_rays > 0) state_.mean_log_gain += kMeansFollow * (sums.log_share / static_cast<double>(sums.solid_rays) - state_.mean_log_gain);
 }
 
 void FieldStep::Infer(RayBatch& batch, const field::TrainableState& state) {

@@ -3,11 +3,14 @@
 // Bits do not depend on the number of threads: grid levels have one writer each and network gradients are summed in fixed slots.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "core/base/thread_pool.h"
+#include "core/brightness/luminance.h"
+#include "core/brightness/response_learner.h"
 #include "core/field/optimizer.h"
 #include "core/render/ray_engine.h"
 #include "core/render/trained_field.h"
@@ -15,6 +18,13 @@
 #include "worker/stage_times.h"
 
 namespace skyquilt::worker {
+
+// What the photos' brightness asks of a field beside its colours.
+struct LuminancePlan {
+  brightness::Luminance luminance;
+  brightness::LuminanceState start;  // what the context found, for blocks; where the context starts
+  bool controls_mean = false;        // brings the mean brightness of what is shown to the target; else keeps to start.mean_log_gain
+};
 
 // Densities are exp of at most this, so that they and their gradients stay finite.
 constexpr float kMaxLogDepth = 15.0F;
@@ -37,14 +47,17 @@ struct StepResult {
 class FieldStep {
  public:
   // target's map, step and colour range are read, its grid and networks are not. context may be null; it is frozen.
-  FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context, base::ThreadPool& threads,
-            StageTimes& times);
+  FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context, const LuminancePlan& luminance,
+            base::ThreadPool& threads, StageTimes& times);
   ~FieldStep();
 
-  // Learns from the batch; positions of its dropped samples are lost. Non-finite gradients leave the state as it was.
-  StepResult Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state);
+  // Learns from the batch; positions of its dropped samples are lost. Non-finite gradients leave the state as it was. What the rays say about
+  // their photos' brightness is added to the learner, when there is one; its step is the caller's.
+  StepResult Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state, brightness::ResponseLearner* learner);
   // Density and colour of every sample, for timing: the forward half alone.
   void Infer(RayBatch& batch, const field::TrainableState& state);
+  // Running means of a field with luminance; part of what a checkpoint holds.
+  brightness::LuminanceState& luminance_state() { return state_; }
   // Optical depth of one marching step per sample of the last Train, 0 where no light arrived.
   const std::vector<float>& ObservedDepths() const { return observed_; }
 
@@ -53,6 +66,8 @@ class FieldStep {
   struct PacketResult {
     double loss = 0.0, squared_error = 0.0;
     int64_t color_rays = 0, live = 0;
+    double shown = 0.0, log_share = 0.0;  // sums over rays (and colours) of fields with luminance
+    int64_t solid_rays = 0;
     bool finite = true;
   };
   void Encode(const RayBatch& batch, const field::TrainableState& state);
@@ -60,12 +75,26 @@ class FieldStep {
   int64_t DropHidden(RayBatch& batch, const Packet& packet, Worker& w);
   void Color(const RayBatch& batch, const Packet& packet, int64_t n, Worker& w) const;
   void LookThroughContext(const RayBatch& batch, const Packet& packet, Worker& w) const;
-  PacketResult ComposeAndLoss(const RayBatch& batch, const Packet& packet, int64_t n, float ray_share, double distortion, Worker& w) const;
+  PacketResult ComposeAndLoss(const RayBatch& batch, const Packet& packet, int64_t n, float ray_share, double distortion, Worker& w);
+  // The same for fields with luminance.
+  PacketResult ConcealAndLoss(const RayBatch& batch, const Packet& packet, int64_t n, float ray_share, double distortion, float* network_gradient,
+                              Worker& w);
+  void PlanConcealed(const RayBatch& batch, const Packet& packet, int64_t n, Worker& w) const;
+  float SmoothnessGradient(const Worker& w, size_t k, double* loss) const;
+  // Distortion loss of one ray times ray_share; its gradient is added to w.weight_gradient.
+  double AddDistortion(const RayBatch& batch, const Packet& packet, int64_t begin, int64_t count, float ray_share, double distortion,
+                       Worker& w) const;
+  // From gradients of optical depths and colours to those of the networks' outputs.
+  void FinishGradients(int64_t n, Worker& w) const;
+  void FollowMeans(const PacketResult& sums);
   PacketResult TrainPacket(RayBatch& batch, const Packet& packet, float ray_share, double distortion, float* network_gradient, Worker& w, int thread);
 
   const render::TrainedField& target_;
   const field::HashField& field_;
   const render::TrainedField* context_;
+  brightness::Luminance luminance_;
+  brightness::LuminanceState state_;
+  bool controls_mean_;
   base::ThreadPool& threads_;
   StageTimes& times_;
   field::Optimizer optimizer_;
@@ -73,9 +102,9 @@ class FieldStep {
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<float> features_;  // per packet, then the gradient in its place
   std::vector<float> observed_;
-  std::vector<int64_t> live_;  // per packet
   std::vector<PacketResult> results_;
   std::vector<float> slot_gradients_;
+  std::vector<std::array<float, 3>> gain_gradients_;  // per ray, by the logarithm of its gains; empty: nobody learns from them
   std::vector<field::GridGradient> stretches_;
 };
 

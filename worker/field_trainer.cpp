@@ -17,18 +17,25 @@ constexpr int kFewestRays = 64;
 // Streams of the random generator, so that cells and parameters never share numbers with each other or with rays.
 constexpr uint64_t kCellStream = 2, kInitStream = 3;
 
+Neighbours NeighboursOf(const brightness::Luminance& luminance) {
+  if (!luminance.On()) return Neighbours::kNone;
+  return luminance.patches ? Neighbours::kPatch : Neighbours::kBatch;
+}
+
 }  // namespace
 
 FieldTrainer::FieldTrainer(render::TrainedField& target, const RaySource& source, const render::TrainedField* context, const TrainOptions& options,
-                           uint64_t seed, base::ThreadPool& threads)
+                           uint64_t seed, const LuminancePlan& luminance, brightness::ResponseLearner* learner, base::ThreadPool& threads)
     : target_(target),
       options_(options),
+      start_log_gain_(luminance.start.mean_log_gain),
       seed_(seed),
       threads_(threads),
       times_(threads.size()),
       field_(target.config),
-      drawer_(target, source, seed, threads, times_),
-      step_(target, field_, context, threads, times_),
+      drawer_(target, source, seed, NeighboursOf(luminance.luminance), threads, times_),
+      step_(target, field_, context, luminance, threads, times_),
+      learner_(learner != nullptr && learner->active() ? learner : nullptr),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / 24)) {
   state_.Allocate(field_);
 }
@@ -36,6 +43,9 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, const RaySource& source
 void FieldTrainer::InitializeParameters() {
   base::Random random(seed_, kInitStream);
   field_.Initialize(random, state_.grid, state_.networks);
+  if (!target_.config.luminance) return;
+  const double omega = std::clamp(std::exp(start_log_gain_), 1e-4, 1.0 - 1e-4);
+  state_.networks[static_cast<size_t>(field_.LuminanceOffset() + field::kLuminanceTaps)] = static_cast<float>(std::log(omega / (1.0 - omega)));
 }
 
 StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
@@ -46,7 +56,8 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   step.learning_rate = options_.learning_rate * learning_rate_scale * warm_up * decay;
   step.network_l2 = options_.network_l2;
   step.distortion = options_.distortion * std::clamp((progress - kDistortionFrom) / (kDistortionTo - kDistortionFrom), 0.0, 1.0);
-  const StepResult result = step_.Train(batch_, step, state_);
+  const StepResult result = step_.Train(batch_, step, state_, learner_);
+  if (learner_ != nullptr && result.finite) learner_->Step(progress);
   ObserveSamples();
   // The next step's rays fill the batch at this step's samples per ray, changing slowly.
   if (result.n_rays > 0 && result.n_samples > 0) {

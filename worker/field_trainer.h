@@ -18,12 +18,14 @@ namespace skyquilt::worker {
 
 class FieldTrainer {
  public:
-  // target.grid and target.networks are not used here: parameters live in state(). context may be null.
+  // target.grid and target.networks are not used here: parameters live in state(). context may be null, and so may learner: the photos'
+  // brightness then stays as it is.
   FieldTrainer(render::TrainedField& target, const RaySource& source, const render::TrainedField* context, const TrainOptions& options, uint64_t seed,
-               base::ThreadPool& threads);
+               const LuminancePlan& luminance, brightness::ResponseLearner* learner, base::ThreadPool& threads);
 
   field::TrainableState& state() { return state_; }
   int& rays_per_step() { return rays_per_step_; }
+  brightness::LuminanceState& luminance_state() { return step_.luminance_state(); }
   void InitializeParameters();
 
   // progress in [0, 1] of the budget sets learning rate and distortion loss.
@@ -40,6 +42,7 @@ class FieldTrainer {
 
   render::TrainedField& target_;
   TrainOptions options_;
+  double start_log_gain_;  // of Omega
   uint64_t seed_;
   base::ThreadPool& threads_;
   StageTimes times_;
@@ -47,6 +50,7 @@ class FieldTrainer {
   field::TrainableState state_;
   RayDrawer drawer_;
   FieldStep step_;
+  brightness::ResponseLearner* learner_;
   RayBatch batch_;
   int rays_per_step_ = 1024;
 };

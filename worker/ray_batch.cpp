@@ -71,6 +71,32 @@ void RayDrawer::Group::MakeRoom(size_t samples) {
   cell.resize(size);
 }
 
+void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
+  const float jitter = random.Uniform();
+  for (float& channel : r.background) channel = random.Uniform();
+  const render::Stretch stretch = render::FieldStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
+  if (stretch.Empty()) return;
+  const render::UnitRay unit(target_.map, r.ray.origin_enu, r.ray.direction_enu);
+  group.MakeRoom(kMaxRaySamples);
+  size_t at = group.count;
+  const size_t end = at + kMaxRaySamples;
+  const double per_step = 1.0 / target_.step_m;
+  render::March(target_, r.ray.origin_enu, r.ray.direction_enu, stretch, target_.step_m, jitter,
+                [&](double t, double, double unit_length, int64_t cell) {
+                  const Eigen::Vector3f p = unit.At(t);
+                  group.x[at] = p.x();
+                  group.y[at] = p.y();
+                  group.z[at] = p.z();
+                  group.t[at] = static_cast<float>(t);
+                  group.unit_length[at] = static_cast<float>(unit_length * per_step);
+                  group.cell[at] = static_cast<int32_t>(cell);
+                  return ++at < end;
+                });
+  r.count = static_cast<int64_t>(at - group.count);
+  group.count = at;
+  group.rays.push_back(r);
+}
+
 void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch) {
   const int n_groups = (n_rays + kGroupRays - 1) / kGroupRays;
   groups_.resize(static_cast<size_t>(n_groups));
@@ -80,32 +106,16 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch
     group.rays.clear();
     group.count = 0;
     base::Random random(MixSeed(seed_, static_cast<uint64_t>(step), static_cast<uint64_t>(task)), kRayStream);
-    for (int i = 0; i < kGroupRays; ++i) {
-      BatchRay r;
-      if (!source_.Draw(random, &r.ray)) continue;
-      const float jitter = random.Uniform();
-      for (float& channel : r.background) channel = random.Uniform();
-      const render::Stretch stretch = render::FieldStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
-      if (stretch.Empty()) continue;
-      const render::UnitRay unit(target_.map, r.ray.origin_enu, r.ray.direction_enu);
-      group.MakeRoom(kMaxRaySamples);
-      size_t at = group.count;
-      const size_t end = at + kMaxRaySamples;
-      const double per_step = 1.0 / target_.step_m;
-      render::March(target_, r.ray.origin_enu, r.ray.direction_enu, stretch, target_.step_m, jitter,
-                    [&](double t, double, double unit_length, int64_t cell) {
-                      const Eigen::Vector3f p = unit.At(t);
-                      group.x[at] = p.x();
-                      group.y[at] = p.y();
-                      group.z[at] = p.z();
-                      group.t[at] = static_cast<float>(t);
-                      group.unit_length[at] = static_cast<float>(unit_length * per_step);
-                      group.cell[at] = static_cast<int32_t>(cell);
-                      return ++at < end;
-                    });
-      r.count = static_cast<int64_t>(at - group.count);
-      group.count = at;
-      group.rays.push_back(r);
+    PixelRay patch[kPatchPixels];
+    const int per_patch = neighbours_ == Neighbours::kPatch ? kPatchPixels : 1;
+    for (int i = 0; i < kGroupRays; i += per_patch) {
+      const int n = per_patch > 1 ? source_.DrawPatch(random, per_patch, patch) : source_.Draw(random, patch) ? 1 : 0;
+      for (int k = 0; k < n; ++k) {
+        BatchRay r;
+        r.ray = patch[k];
+        r.patch = task * kGroupRays + (neighbours_ == Neighbours::kBatch ? 0 : i);
+        AddRay(r, random, group);
+      }
     }
     times_.Add(thread, Stage::kDraw, start);
   });

@@ -16,6 +16,7 @@ struct BatchRay {
   PixelRay ray;
   int64_t begin = 0, count = 0;     // samples
   float background[3] = {0, 0, 0};  // random colour behind everything
+  int64_t patch = 0;                // rays of one patch stand together
 };
 
 struct Packet {
@@ -44,11 +45,20 @@ struct RayBatch {
   void Finish(int rows);
 };
 
+// Which rays count as neighbours in BatchRay::patch.
+enum class Neighbours {
+  kNone,   // every ray is alone
+  kPatch,  // pixels are drawn in rows of kPatchPixels
+  kBatch,  // unrelated rays that happen to be drawn one after the other
+};
+constexpr int kPatchPixels = 8;
+
 // Draws n_rays pixels and marches them through the occupied cells. A pure function of (seed, step), whatever the threads.
 class RayDrawer {
  public:
-  RayDrawer(const render::TrainedField& target, const RaySource& source, uint64_t seed, base::ThreadPool& threads, StageTimes& times)
-      : target_(target), source_(source), seed_(seed), threads_(threads), times_(times) {}
+  RayDrawer(const render::TrainedField& target, const RaySource& source, uint64_t seed, Neighbours neighbours, base::ThreadPool& threads,
+            StageTimes& times)
+      : target_(target), source_(source), seed_(seed), neighbours_(neighbours), threads_(threads), times_(times) {}
   void Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch);
 
  private:
@@ -60,9 +70,11 @@ class RayDrawer {
     size_t count = 0;
     void MakeRoom(size_t samples);
   };
+  void AddRay(BatchRay r, base::Random& random, Group& group) const;
   const render::TrainedField& target_;
   const RaySource& source_;
   uint64_t seed_;
+  Neighbours neighbours_;
   base::ThreadPool& threads_;
   StageTimes& times_;
   std::vector<Group> groups_;

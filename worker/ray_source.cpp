@@ -12,12 +12,13 @@ constexpr int kColorPixels = 4;
 
 }  // namespace
 
-RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixels, const std::vector<float>& gains)
-    : survey_(survey), pixels_(pixels), gains_(gains) {
+RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixels, const brightness::Response& response)
+    : survey_(survey), pixels_(pixels), response_(response) {
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
     cameras_.push_back(survey.cameras[static_cast<size_t>(photo.camera)].Resized(pixels.Width(i), pixels.Height(i)));
     enu_from_cam_.push_back(photo.cam_from_enu.Inverse());
+    per_radius2_.push_back(1.0 / (cameras_.back().FarthestCorner() * cameras_.back().FarthestCorner()));
   }
 }
 
@@ -33,6 +34,11 @@ void RaySource::RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vecto
   *direction_enu = (pose.rotation * cameras_[static_cast<size_t>(photo)].RayFromImg(pixel)).normalized();
 }
 
+float RaySource::Radius2(int photo, const Eigen::Vector2d& pixel) const {
+  const auto i = static_cast<size_t>(photo);
+  return static_cast<float>((pixel - cameras_[i].PrincipalPoint()).squaredNorm() * per_radius2_[i]);
+}
+
 Eigen::Vector2d RaySource::TileCentre(const Tile& tile) const {
   const auto photo = static_cast<size_t>(tile.photo);
   return {(tile.column + 0.5) * pixels_.Width(photo) / kTileColumns, (tile.row + 0.5) * pixels_.Height(photo) / kTileRows};
@@ -40,29 +46,46 @@ Eigen::Vector2d RaySource::TileCentre(const Tile& tile) const {
 
 bool RaySource::Draw(base::Random& random, PixelRay* ray) const {
   for (int attempt = 0; attempt < 8; ++attempt) {
-    const bool empty = static_cast<double>(random.Uniform()) < empty_share_;
-    const std::vector<Tile>& tiles = empty ? empty_ : inside_;
-    const Tile& tile = tiles[random.Below(static_cast<uint32_t>(tiles.size()))];
-    const auto photo = static_cast<size_t>(tile.photo);
-    const int width = pixels_.Width(photo);
-    const int height = pixels_.Height(photo);
-    const auto along = [&](int index, int count, int size) {
-      const int begin = index * size / count;
-      const int end = std::max(begin + 1, (index + 1) * size / count);
-      return std::min(size - 1, begin + static_cast<int>(random.Below(static_cast<uint32_t>(end - begin))));
-    };
-    const int x = along(tile.column, kTileColumns, width);
-    const int y = along(tile.row, kTileRows, height);
-    const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
-    uint8_t rgb[3];
-    if (!pixels_.Pixel(photo, pixel, rgb)) continue;
-    RayThrough(tile.photo, Eigen::Vector2d(x + 0.5, y + 0.5), &ray->origin_enu, &ray->direction_enu);
-    for (size_t c = 0; c < 3; ++c) ray->target_srgb[c] = static_cast<float>(rgb[c]) / 255.0F;
-    ray->gain = gains_[photo];
-    ray->empty = empty;
-    return true;
+    if (DrawPatch(random, 1, ray) == 1) return true;
   }
   return false;
+}
+
+int RaySource::DrawPatch(base::Random& random, int n, PixelRay* rays) const {
+  const bool empty = static_cast<double>(random.Uniform()) < empty_share_;
+  const std::vector<Tile>& tiles = empty ? empty_ : inside_;
+  const Tile& tile = tiles[random.Below(static_cast<uint32_t>(tiles.size()))];
+  const auto photo = static_cast<size_t>(tile.photo);
+  // First of `run` pixels in a row of them that stay inside the tile.
+  const auto along = [&](int index, int count, int size, int* run) {
+    const int begin = index * size / count;
+    const int end = std::max(begin + 1, (index + 1) * size / count);
+    *run = std::min(*run, end - begin);
+    return std::min(size - 1, begin + static_cast<int>(random.Below(static_cast<uint32_t>(end - begin - *run + 1))));
+  };
+  int columns = n, rows = 1;
+  const int x = along(tile.column, kTileColumns, pixels_.Width(photo), &columns);
+  const int y = along(tile.row, kTileRows, pixels_.Height(photo), &rows);
+  int drawn = 0;
+  for (int i = 0; i < columns && x + i < pixels_.Width(photo); ++i) {
+    if (RayOf(tile.photo, x + i, y, empty, rays + drawn)) ++drawn;
+  }
+  return drawn;
+}
+
+bool RaySource::RayOf(int photo, int x, int y, bool empty, PixelRay* ray) const {
+  const auto index = static_cast<size_t>(photo);
+  const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(pixels_.Width(index)) + static_cast<size_t>(x);
+  uint8_t rgb[3];
+  if (!pixels_.Pixel(index, pixel, rgb)) return false;
+  const Eigen::Vector2d position(x + 0.5, y + 0.5);
+  RayThrough(photo, position, &ray->origin_enu, &ray->direction_enu);
+  for (size_t c = 0; c < 3; ++c) ray->target_srgb[c] = static_cast<float>(rgb[c]) / 255.0F;
+  ray->photo = photo;
+  ray->radius2 = Radius2(photo, position);
+  ray->exposure = response_.ExposureOf(index, ray->radius2);
+  ray->empty = empty;
+  return true;
 }
 
 std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
@@ -75,6 +98,9 @@ std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
   std::vector<Eigen::Vector3f> colors;
   for (int row = 0; row < kTileRows; ++row) {
     for (int column = 0; column < kTileColumns; ++column) {
+      const Tile tile{photo, static_cast<int16_t>(column), static_cast<int16_t>(row)};
+      const std::array<brightness::Exposure, 3> exposure = response_.ExposureOf(index, Radius2(photo, TileCentre(tile)));
+      const float gain[3] = {exposure[0].gain, exposure[1].gain, exposure[2].gain};
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       float n = 0.0F;
       for (int v = 0; v < kColorPixels; ++v) {
@@ -83,7 +109,7 @@ std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
           if (!pixels.mask.empty() && pixels.mask[pixel] == 0) continue;
           for (size_t c = 0; c < 3; ++c) {
             const float light = image::LinearFromSrgb(static_cast<float>(pixels.rgb[3 * pixel + c]) / 255.0F);
-            sum[static_cast<Eigen::Index>(c)] += image::SrgbFromLinear(light / gains_[index]);
+            sum[static_cast<Eigen::Index>(c)] += image::SrgbFromLinear(light / gain[c]);
           }
           n += 1.0F;
         }
@@ -102,7 +128,9 @@ std::array<float, 3> RaySource::MeanColor(uint64_t seed) const {
   PixelRay ray;
   for (int i = 0; i < kRays; ++i) {
     if (!Draw(random, &ray) || ray.empty) continue;
-    for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(image::LinearFromSrgb(ray.target_srgb[c]) / ray.gain);
+    for (size_t c = 0; c < 3; ++c) {
+      sum[static_cast<Eigen::Index>(c)] += static_cast<double>(image::LinearFromSrgb(ray.target_srgb[c]) / ray.exposure[c].gain);
+    }
     ++n;
   }
   std::array<float, 3> mean = {0.0F, 0.0F, 0.0F};

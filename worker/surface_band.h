@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
+#include "core/brightness/luminance.h"
+#include "core/brightness/response.h"
 #include "core/render/backdrop.h"
 #include "core/render/trained_field.h"
 #include "core/survey/survey.h"
@@ -27,6 +29,9 @@ struct ContextFindings {
 
 struct LoadedContext {
   render::TrainedField field;
+  brightness::Response response;
+  brightness::Luminance luminance;
+  brightness::LuminanceState luminance_state;
   std::vector<SurfaceBand> bands;  // [photo][row][column], kTileRows x kTileColumns per photo; empty in old files
 
   const SurfaceBand& Band(int photo, int row, int column) const {

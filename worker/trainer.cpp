@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <optional>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
-#include "core/brightness/exposure.h"
+#include "core/brightness/predict_gains.h"
 #include "core/render/march.h"
 #include "worker/block_session.h"
 #include "worker/few_views.h"
@@ -17,6 +16,7 @@
 #include "worker/point_surface.h"
 #include "worker/starting_occupancy.h"
 #include "worker/surface_band.h"
+#include "worker/tie_point_gains.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -30,12 +30,15 @@ constexpr int64_t kMaxOccupancyCells = 4'000'000;
 constexpr double kCellPerVoxel = 3.0;
 // A step of two finest voxels: interpolation is smooth across cells, and half the samples buy more rays.
 constexpr double kStepPerVoxel = 2.0;
+// Largest display value of a field whose photos' gains are learned: white in a photo of a stop less.
+constexpr double kLearnedRange = 1.4;
+constexpr double kLuminanceRange = 2.0;
 
 double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is_context) {
+render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is_context, const brightness::Luminance& luminance) {
   const TrainOptions& options = job.options;
   render::TrainedField f;
   f.name = box.name;
@@ -55,7 +58,12 @@ render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is
   f.config.hidden = options.hidden;
   f.config.color_hidden_layers = options.color_hidden_layers;
   f.config.sh_degree = options.sh_degree;
-  f.config.color_range = brightness::ColorRange(job.gains);
+  f.config.color_range = brightness::ColorRange(job.response.exif_gain);
+  // How dark photos without tags are is not known yet.
+  if (job.learn.Gains()) f.config.color_range = std::max(f.config.color_range, kLearnedRange);
+  f.config.luminance = luminance.On();
+  // What is shown brighter than the photos, or was brighter than they could say.
+  if (luminance.On()) f.config.color_range = std::max(f.config.color_range, kLuminanceRange);
   f.occupancy = field::OccupancyGrid::Make(grid.extent, kCellPerVoxel * box.finest_voxel_m * f.map.units_per_metre(), kMaxOccupancyCells);
   return f;
 }
@@ -78,8 +86,10 @@ TrainResult Summarise(const SessionRecord& record, FieldTrainer& trainer) {
 // The loop both kinds share. Returns with record.complete = false only when steps kept failing.
 class Loop {
  public:
-  Loop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const Reporter& report)
-      : kind_(kind), job_(job), target_(target), trainer_(trainer), report_(report) {}
+  // extras: the context's, null for blocks.
+  Loop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, ContextExtras* extras,
+       const Reporter& report)
+      : kind_(kind), job_(job), target_(target), trainer_(trainer), extras_(extras), report_(report) {}
 
   TrainResult Run(SessionRecord record, const std::function<ContextFindings()>& find_out) {
     const TrainOptions& options = job_.options;
@@ -93,7 +103,7 @@ class Loop {
           total_steps > 0 ? static_cast<double>(state.step) / static_cast<double>(total_steps) : record.seconds / std::max(1e-3, options.seconds);
       if (fraction >= 1.0) break;
       if (base::CancelRequested()) {
-        SaveSession(kind_, job_, target_, trainer_, record, nullptr);
+        SaveSession(kind_, job_, target_, trainer_, record, extras_);
         throw base::Interrupted();
       }
       const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
@@ -126,7 +136,7 @@ class Loop {
         last_report = now;
       }
       if (now - last_save >= options.checkpoint_every_s) {
-        SaveSession(kind_, job_, target_, trainer_, record, nullptr);
+        SaveSession(kind_, job_, target_, trainer_, record, extras_);
         last = last_save = Now();  // saving is not training
       }
     }
@@ -137,12 +147,13 @@ class Loop {
       cells.ForgetUnsampled(kStartDepth);
     }
     if (since > 0.0) Report(record, 1.0, total_steps, loss, rays_since, samples_since, since);
-    if (find_out) {
-      const ContextFindings findings = find_out();
-      SaveSession(kind_, job_, target_, trainer_, record, &findings);
-    } else {
-      SaveSession(kind_, job_, target_, trainer_, record, nullptr);
+    ContextFindings findings;
+    if (extras_ != nullptr) {
+      findings = find_out();
+      extras_->findings = &findings;
     }
+    SaveSession(kind_, job_, target_, trainer_, record, extras_);
+    if (extras_ != nullptr) extras_->findings = nullptr;
     return Summarise(record, trainer_);
   }
 
@@ -166,12 +177,25 @@ class Loop {
   const TrainJob& job_;
   render::TrainedField& target_;
   FieldTrainer& trainer_;
+  ContextExtras* extras_;
   const Reporter& report_;
 };
 
+// The survey's photos in order of capture; by name where times are missing.
+std::vector<brightness::CapturedPhoto> CapturedPhotos(const TrainJob& job) {
+  const std::vector<survey::Photo>& photos = job.survey->photos;
+  const bool timed = std::all_of(photos.begin(), photos.end(), [](const survey::Photo& p) { return p.time_s.has_value(); });
+  std::vector<brightness::CapturedPhoto> captured;
+  for (size_t i = 0; i < photos.size(); ++i) {
+    const int group = photos[i].flight * static_cast<int>(job.survey->cameras.size()) + photos[i].camera;
+    captured.push_back({timed ? *photos[i].time_s : static_cast<double>(i), group, !photos[i].is_test});
+  }
+  return captured;
+}
+
 void RequireJob(const TrainJob& job) {
   SKYQUILT_CHECK(job.survey != nullptr && job.pixels != nullptr, "a job needs a survey and its pixels");
-  SKYQUILT_CHECK(job.gains.size() == job.survey->photos.size() && job.pixels->size() == job.survey->photos.size(),
+  SKYQUILT_CHECK(job.response.photos() == job.survey->photos.size() && job.pixels->size() == job.survey->photos.size(),
                  "one gain and one cache entry per photo");
 }
 
@@ -179,8 +203,11 @@ void RequireJob(const TrainJob& job) {
 
 TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadPool& threads, const Reporter& report) {
   RequireJob(job);
-  render::TrainedField target = MakeTarget(job, area, true);
-  RaySource source(*job.survey, *job.pixels, job.gains);
+  render::TrainedField target = MakeTarget(job, area, true, job.luminance);
+  brightness::Response response = job.response;
+  brightness::ResponseLearner learner(response, job.learn);
+  ContextExtras extras{&response, &learner, nullptr};
+  RaySource source(*job.survey, *job.pixels, response);
   const render::PlanSurface surface = SurfaceOfPoints(*job.survey);
   source.SetTiles(TilesInCompany(source, *job.survey, area.photos, surface, job.min_views), {}, 0.0);
   if (!source.HasRays()) {
@@ -188,18 +215,21 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
     none.reason = "no training photo sees the survey area";
     return none;
   }
-  FieldTrainer trainer(target, source, nullptr, job.options, job.seed, threads);
+  const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};
+  FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, threads);
   SessionRecord record;
-  if (!LoadSession("context", job, target, trainer, &record)) {
+  if (!LoadSession("context", job, target, trainer, &record, &extras)) {
     trainer.InitializeParameters();
+    GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads);
     MarkUnseen(source, *job.survey, area.photos, surface, job.min_views, target, threads);
     StartFromPoints(*job.survey, target);
   }
   if (record.complete) return Summarise(record, trainer);
-  Loop loop("context", job, target, trainer, report);
+  Loop loop("context", job, target, trainer, &extras, report);
   return loop.Run(record, [&] {
     target.grid = trainer.state().grid;
     target.networks = trainer.state().networks;
+    if (job.learn.Gains()) brightness::PredictGains(CapturedPhotos(job), response);
     return ContextFindings{SurfaceBands(source, *job.survey, target, threads), MakeBackdrop(source, *job.survey, surface, job.seed)};
   });
 }
@@ -207,28 +237,33 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
 TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
                        const Reporter& report) {
   RequireJob(job);
-  std::optional<LoadedContext> context;
-  if (job.options.coupling == "guided") context = LoadContext(context_checkpoint);
-  render::TrainedField target = MakeTarget(job, block, false);
-  RaySource source(*job.survey, *job.pixels, job.gains);
+  // Even blocks that do not look at the context share its brightness.
+  LoadedContext loaded = LoadContext(context_checkpoint);
+  const LoadedContext* context = job.options.coupling == "guided" ? &loaded : nullptr;
+  render::TrainedField target = MakeTarget(job, block, false, loaded.luminance);
+  if (loaded.response.photos() != job.survey->photos.size()) {
+    throw base::InputError(context_checkpoint, "belongs to a survey of another number of photos", "Train it again with --restart");
+  }
+  RaySource source(*job.survey, *job.pixels, loaded.response);
   const render::PlanSurface surface = SurfaceOfPoints(*job.survey);
   const std::vector<Tile> tiles = TilesInCompany(source, *job.survey, block.photos, surface, job.min_views);
-  ChooseTiles(*job.survey, tiles, target, context ? &*context : nullptr, job.options.empty_ray_share, source);
+  ChooseTiles(*job.survey, tiles, target, context, job.options.empty_ray_share, source);
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo shows a surface inside block " + block.name;
     return none;
   }
-  FieldTrainer trainer(target, source, context ? &context->field : nullptr, job.options, job.seed, threads);
+  const LuminancePlan luminance{loaded.luminance, loaded.luminance_state, false};
+  FieldTrainer trainer(target, source, context != nullptr ? &context->field : nullptr, job.options, job.seed, luminance, nullptr, threads);
   SessionRecord record;
-  if (!LoadSession("block", job, target, trainer, &record)) {
+  if (!LoadSession("block", job, target, trainer, &record, nullptr)) {
     trainer.InitializeParameters();
     MarkUnseen(source, *job.survey, block.photos, surface, job.min_views, target, threads);
     StartFromPoints(*job.survey, target);
-    if (context) StartFromBands(source, *job.survey, tiles, *context, target);
+    if (context != nullptr) StartFromBands(source, *job.survey, tiles, *context, target);
   }
   if (record.complete) return Summarise(record, trainer);
-  Loop loop("block", job, target, trainer, report);
+  Loop loop("block", job, target, trainer, nullptr, report);
   return loop.Run(record, {});
 }
 

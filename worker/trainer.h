@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
+#include "core/brightness/luminance.h"
+#include "core/brightness/response_learner.h"
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
 #include "worker/box_view.h"
@@ -48,12 +50,14 @@ using Reporter = std::function<void(const TrainStatus&)>;
 struct TrainJob {
   const survey::Survey* survey = nullptr;
   const image::PixelCache* pixels = nullptr;  // entry i belongs to survey->photos[i]
-  std::vector<float> gains;                   // per photo: recorded light over light at reference exposure
-  double reference_exposure = 0.0;            // stored with the context; 0 when unknown
-  TrainOptions options;                       // steps or seconds budget of this field inside
-  int min_views = 2;                          // training photos that must see a place for fields to learn it
-  double learning_rate_scale = 1.0;           // below 1 on retries
-  std::string config_hash;                    // stored; a checkpoint with another hash is refused
+  // What tags say of the photos' brightness, and what is to be learned beside that. The context learns; blocks take over what it found.
+  brightness::Response response;
+  brightness::LearnerOptions learn;
+  brightness::Luminance luminance;   // of the context; blocks take over its own
+  TrainOptions options;              // steps or seconds budget of this field inside
+  int min_views = 2;                 // training photos that must see a place for fields to learn it
+  double learning_rate_scale = 1.0;  // below 1 on retries
+  std::string config_hash;           // stored; a checkpoint with another hash is refused
   uint64_t seed = 1;
   std::filesystem::path checkpoint;  // context.h5 or block_<name>.h5
 };

@@ -127,7 +127,7 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
   base::Random random(11);
   field.Initialize(random, state.grid, state.networks);
   worker::StageTimes times(threads.size());
-  worker::FieldStep step(target, field, nullptr, threads, times);
+  worker::FieldStep step(target, field, nullptr, worker::LuminancePlan{}, threads, times);
   worker::RayBatch batch = MakeBatch(options, field.FeatureRows());
   worker::StepOptions learning;
   learning.learning_rate = 1e-4;  // densities stay low, so that every sample takes part in everything
@@ -135,14 +135,14 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
 
   std::vector<KernelSpeed> rounds;
   std::vector<double> train, infer, roof_train, roof_infer;
-  step.Train(batch, learning, state);
+  step.Train(batch, learning, state, nullptr);
   for (int round = 0; round < options.rounds; ++round) {
     KernelSpeed speed;
     MeasureLimits(options, field, threads, &speed);
     progress.Advance();
     times.Clear();
     const Clock::time_point start = Clock::now();
-    speed.train_samples_per_second = Rate(samples, options.seconds, [&] { step.Train(batch, learning, state); });
+    speed.train_samples_per_second = Rate(samples, options.seconds, [&] { step.Train(batch, learning, state, nullptr); });
     const double thread_seconds = Since(start) * n_threads;
     const auto stages = times.Seconds();
     double busy = 0.0;

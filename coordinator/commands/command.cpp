@@ -51,13 +51,8 @@ void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
       },
       "memory this machine's ranks may use together, as 2GiB or 1500MB; half of the machine when not given [run.memory_gb]");
   AddOverride(command, overrides, "--seed", "run.seed", "start of every random sequence of the training");
-  command.add_option_function<std::string>(
-      "--brightness",
-      [overrides](const std::string& value) {
-        overrides->push_back({"brightness.correction", value});
-        overrides->push_back({"evaluate.exif_gain", value == "none" ? "false" : "true"});
-      },
-      "exif: divide out each photo's exposure; none: colours as photographed [brightness.correction]");
+  AddOverride(command, overrides, "--brightness", "brightness.correction",
+              "none, or any of exif,gain,vignette,luminance: what is done about exposure differences");
 }
 
 std::vector<std::filesystem::path> ProjectConfig(const Project& project) {

@@ -55,7 +55,7 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const Settings&
   const products::ProductOptions& options = settings.products;
   base::ThreadPool threads(settings.run.threads);
   const render::Scene scene = render::Scene::Load(target.scene);
-  const products::ViewRenderer renderer = products::RendererOf(scene, options.exposure_ev, threads);
+  const products::ViewRenderer renderer = products::RendererOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads);
   const int path_width = flags.width > 0 ? flags.width / 2 * 2 : options.video_width;
   const int path_height = std::max(2, path_width * options.video_height / options.video_width / 2 * 2);
   if (!flags.photos.empty() || flags.test) {
@@ -130,7 +130,7 @@ void AddRender(CLI::App& app, CommandState& state) {
   command->add_flag("--ortho", flags->ortho, "the orthophoto as GeoTIFF");
   command->add_flag("--dsm", flags->dsm, "the surface model as GeoTIFF");
   command->add_flag("--no-depth", flags->no_depth, "pictures without their depth images");
-  AddOverride(*command, overrides, "--exposure", "products.exposure_ev", "stops above the survey's own exposure");
+  AddOverride(*command, overrides, "--exposure", "products.exposure", "normal, stops above it, or the name of a photo to look like");
   AddOverride(*command, overrides, "--resolution", "products.resolution_m", "metres per cell of orthophoto and surface model");
   command->add_option("--width", flags->width, "pixels of the pictures; 0: the photos' own size")->type_name("N");
   command->add_option("-o,--out", flags->out, "folder for the files; default: renders/ and products/ beside the scene")->type_name("FOLDER");

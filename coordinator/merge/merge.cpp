@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "core/base/errors.h"
+#include "core/brightness/luminance.h"
+#include "core/brightness/response.h"
 #include "core/checkpoint/archive.h"
 #include "core/render/backdrop.h"
 #include "core/render/scene_file.h"
@@ -15,8 +17,10 @@ namespace {
 
 struct Loaded {
   render::TrainedField field;
-  double reference_exposure = 0.0;
-  render::Backdrop backdrop;  // of the context
+  brightness::Response response;  // this and what follows: of the context
+  brightness::Luminance luminance;
+  brightness::LuminanceState luminance_state;
+  render::Backdrop backdrop;
 };
 
 Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, const geo::Geodetic& origin) {
@@ -28,7 +32,12 @@ Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, c
                           reader.DoubleAttribute("origin_longitude_deg") == origin.longitude_deg &&
                           reader.DoubleAttribute("origin_height_m") == origin.height_m;
   if (!same_place) throw base::InputError(file, "belongs to a survey with another origin", "Train this survey again with --restart");
-  return {render::GetField(reader, file, ""), reader.DoubleAttribute("reference_exposure"), render::GetBackdrop(reader, file)};
+  Loaded loaded{render::GetField(reader, file, ""), {}, {}, {}, {}};
+  if (kind != "context") return loaded;
+  loaded.response = brightness::GetResponse(reader, file);
+  brightness::GetLuminance(reader, &loaded.luminance, &loaded.luminance_state);
+  loaded.backdrop = render::GetBackdrop(reader, file);
+  return loaded;
 }
 
 }  // namespace
@@ -48,7 +57,8 @@ void MergeScene(const MergeInput& input) {
   writer.SetAttribute("origin_longitude_deg", input.origin.longitude_deg);
   writer.SetAttribute("origin_height_m", input.origin.height_m);
   writer.SetAttribute("georeferenced", static_cast<int64_t>(input.georeferenced ? 1 : 0));
-  writer.SetAttribute("reference_exposure", context.reference_exposure);
+  brightness::PutResponse(context.response, writer);
+  brightness::PutLuminance(context.luminance, context.luminance_state, writer);
   render::PutBackdrop(context.backdrop, writer);
   writer.SetAttribute("gsd_m", std::isfinite(gsd_m) ? gsd_m : 0.0);
   writer.SetAttribute("config", input.config_toml);

@@ -140,7 +140,7 @@ MapProducts MakeMapProducts(const render::SceneInfo& info, const RayCaster& cast
 
 MapProducts MakeMapProducts(const render::Scene& scene, const ProductOptions& options, const std::filesystem::path& folder,
                             base::ThreadPool& threads) {
-  return MakeMapProducts(scene.info(), CasterOf(scene, options.exposure_ev, threads), options, folder);
+  return MakeMapProducts(scene.info(), CasterOf(scene, AppearanceOf(options.exposure, scene.info()), threads), options, folder);
 }
 
 }  // namespace skyquilt::products

@@ -27,7 +27,7 @@ void ProductOptions::Visit(config::OptionVisitor& v) {
   v.Field("max_pixels", max_pixels, "largest map in cells; maps of automatic resolution are coarsened to fit");
   v.Field("min_opacity", min_opacity, "cells whose ray stays more transparent than this have no data, 0.01..0.99");
   v.Field("preview_width", preview_width, "pixels of the PNG previews, 16..16384");
-  v.Field("exposure_ev", exposure_ev, "stops above the survey's own exposure, -10..10");
+  v.Field("exposure", exposure, "normal (one brightness everywhere), stops above it, -10..10, or the name of a photo to look like");
   v.Field("video_path", video_path, "orbit or flyover");
   v.Field("video_seconds", video_seconds, "length of the video; 0: none");
   v.Field("video_fps", video_fps, "frames per second, 1..120");
@@ -40,7 +40,6 @@ void ProductOptions::Check() const {
   RequireRange("max_pixels", max_pixels, 1.0, 1e11);
   RequireRange("min_opacity", min_opacity, 0.01, 0.99);
   RequireRange("preview_width", preview_width, 16, 16384);
-  RequireRange("exposure_ev", exposure_ev, -10.0, 10.0);
   RequireRange("video_seconds", video_seconds, 0.0, 3600.0);
   RequireRange("video_fps", video_fps, 1, 120);
   RequireEven("video_width", video_width);

@@ -1,24 +1,51 @@
 #include "coordinator/products/ray_caster.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <utility>
+
+#include "core/base/errors.h"
 
 namespace skyquilt::products {
 namespace {
 
 constexpr int64_t kBandRays = 1 << 16;
+constexpr double kMostStops = 10.0;
 
 }  // namespace
 
-RayCaster CasterOf(const render::Scene& scene, double exposure_ev, base::ThreadPool& threads) {
-  const auto gain = static_cast<float>(std::exp2(exposure_ev));
-  return [&scene, &threads, gain](std::span<const render::Ray> rays, std::span<render::RayColor> out) { scene.RenderRays(rays, out, gain, threads); };
+render::Appearance AppearanceOf(const std::string& exposure, const render::SceneInfo& info) {
+  render::Appearance appearance;
+  if (exposure == "normal") return appearance;
+  double stops = 0.0;
+  const char* first = exposure.data() + (exposure.starts_with('+') ? 1 : 0);
+  const auto parsed = std::from_chars(first, exposure.data() + exposure.size(), stops);
+  if (parsed.ec == std::errc() && parsed.ptr == exposure.data() + exposure.size()) {
+    if (!(std::abs(stops) <= kMostStops)) {
+      throw base::UsageError("an exposure of " + exposure + " stops cannot be: give a number from -10 to 10");
+    }
+    appearance.log_gain.fill(static_cast<float>(stops * std::numbers::ln2));
+    return appearance;
+  }
+  const std::optional<size_t> photo = info.response.Find(exposure);
+  if (!photo) {
+    throw base::UsageError("the exposure '" + exposure + "' is neither 'normal' nor a number of stops nor the name of one photo of this survey" +
+                           (info.response.photos() == 0 ? " (this scene knows no photos: merge it again)" : ""));
+  }
+  return {render::Look::kRecorded, info.response.LogGain(*photo)};
 }
 
-ViewRenderer RendererOf(const render::Scene& scene, double exposure_ev, base::ThreadPool& threads) {
-  const auto gain = static_cast<float>(std::exp2(exposure_ev));
-  return [&scene, &threads, gain](const View& view) { return scene.RenderCamera(view.camera, view.cam_from_enu, gain, threads); };
+RayCaster CasterOf(const render::Scene& scene, const render::Appearance& appearance, base::ThreadPool& threads) {
+  return [&scene, &threads, appearance](std::span<const render::Ray> rays, std::span<render::RayColor> out) {
+    scene.RenderRays(rays, out, appearance, threads);
+  };
+}
+
+ViewRenderer RendererOf(const render::Scene& scene, const render::Appearance& appearance, base::ThreadPool& threads) {
+  return [&scene, &threads, appearance](const View& view) { return scene.RenderCamera(view.camera, view.cam_from_enu, appearance, threads); };
 }
 
 ViewRenderer RendererOf(RayCaster caster) {

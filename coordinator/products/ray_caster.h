@@ -25,9 +25,12 @@ struct View {
 // All pixels of a view, row-major.
 using ViewRenderer = std::function<std::vector<render::RayColor>(const View&)>;
 
-// Both keep references to their arguments. exposure_ev in stops: linear light times 2^ev.
-RayCaster CasterOf(const render::Scene& scene, double exposure_ev, base::ThreadPool& threads);
-ViewRenderer RendererOf(const render::Scene& scene, double exposure_ev, base::ThreadPool& threads);
+// `exposure` as products.exposure: "normal", stops above it (linear light times 2^stops), or the name of a photo whose brightness and white
+// balance renderings take. Throws base::UsageError for anything else.
+render::Appearance AppearanceOf(const std::string& exposure, const render::SceneInfo& info);
+// Both keep references to their arguments.
+RayCaster CasterOf(const render::Scene& scene, const render::Appearance& appearance, base::ThreadPool& threads);
+ViewRenderer RendererOf(const render::Scene& scene, const render::Appearance& appearance, base::ThreadPool& threads);
 // One ray through each pixel centre, in bands.
 ViewRenderer RendererOf(RayCaster caster);
 

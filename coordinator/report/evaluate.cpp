@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <set>
 
+#include "coordinator/report/brightness_report.h"
+#include "coordinator/report/footprint_steps.h"
+#include "coordinator/report/load_task.h"
+#include "coordinator/report/photo_recording.h"
 #include "coordinator/report/photo_scorer.h"
 #include "coordinator/report/report_images.h"
 #include "coordinator/report/report_page.h"
@@ -17,7 +22,6 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/base/system.h"
-#include "core/brightness/exposure.h"
 #include "core/metrics/depth_errors.h"
 #include "core/metrics/lpips.h"
 #include "core/metrics/psnr.h"
@@ -61,52 +65,15 @@ TrainingViews ViewsOf(const EvaluateInput& input) {
   return TrainingViews(std::move(views));
 }
 
-// The photo at the scored size: from the cache when that is large enough, else decoded again.
-PhotoTask LoadTask(const EvaluateInput& input, int index) {
-  const auto i = static_cast<size_t>(index);
-  const survey::Photo& photo = input.survey->photos[i];
-  const camera::Camera& camera = input.survey->cameras[static_cast<size_t>(photo.camera)];
-  const int cached_width = input.pixels->Width(i);
-  const int width = input.options.image_width > 0 ? std::min(input.options.image_width, camera.width) : cached_width;
-  PhotoTask task;
-  task.cam_from_enu = photo.cam_from_enu;
-  image::Image8 mask;
-  if (width <= cached_width) {
-    task.photo = image::Image8(cached_width, input.pixels->Height(i), 3);
-    const auto rgb = input.pixels->Rgb(i);
-    std::copy(rgb.begin(), rgb.end(), task.photo.data.begin());
-    if (const auto cached_mask = input.pixels->Mask(i); !cached_mask.empty()) {
-      mask = image::Image8(cached_width, input.pixels->Height(i), 1);
-      std::copy(cached_mask.begin(), cached_mask.end(), mask.data.begin());
-    }
-  } else {
-    task.photo = image::LoadRgb8(input.survey->photo_root / photo.name);
-    if (!photo.mask.empty()) mask = image::LoadMask(photo.mask);
+std::vector<FootprintView> FootprintsOf(const EvaluateInput& input) {
+  std::vector<FootprintView> views;
+  for (size_t i = 0; i < input.survey->photos.size(); ++i) {
+    const survey::Photo& photo = input.survey->photos[i];
+    if (photo.is_test) continue;
+    views.push_back(
+        {input.survey->cameras[static_cast<size_t>(photo.camera)].Resized(input.pixels->Width(i), input.pixels->Height(i)), photo.cam_from_enu});
   }
-  if (task.photo.width != width) {
-    task.photo = image::Resize(task.photo, width, image::ScaledHeight(task.photo.width, task.photo.height, width));
-  }
-  if (!mask.Empty()) {
-    if (mask.width != task.photo.width || mask.height != task.photo.height) mask = image::ResizeMask(mask, task.photo.width, task.photo.height);
-    task.mask = std::move(mask.data);
-  }
-  task.camera = camera.Resized(task.photo.width, task.photo.height);
-  if (input.survey->truth) {
-    const std::filesystem::path stem = std::filesystem::path(photo.name).replace_extension(".tiff");
-    for (const std::filesystem::path& file : {input.survey->truth->depth_folder / stem, input.survey->truth->depth_folder / stem.filename()}) {
-      if (!std::filesystem::is_regular_file(file)) continue;
-      task.true_depth = image::LoadFloatTiff(file);
-      break;
-    }
-  }
-  return task;
-}
-
-double GainOf(const survey::Photo& photo, double reference_exposure, bool exif_gain) {
-  if (!exif_gain || !(reference_exposure > 0.0)) return 1.0;
-  const auto exposure = brightness::ExifExposure(photo.exposure.time_s, photo.exposure.f_number, photo.exposure.iso);
-  // Beyond ten stops a tag is wrong; training limits gains in the same way.
-  return exposure ? std::clamp(*exposure / reference_exposure, 0x1.0p-10, 0x1.0p10) : 1.0;
+  return views;
 }
 
 double LpipsOf(metrics::Lpips& network, const PhotoTask& task, const image::Image8& render) {
@@ -165,21 +132,31 @@ struct Pools {
 };
 
 void FillMeans(const render::SceneInfo& info, const Pools& pools, Metrics* metrics) {
-  std::vector<double> psnr, ssim, psnr_full, ssim_full, lpips;
+  std::vector<double> psnr, psnr_exif_gain, psnr_normal, ssim_normal, ssim, psnr_full, ssim_full, right, right_fitted, lpips;
   int64_t used = 0, covered = 0;
   for (const PhotoScore& score : metrics->photos) {
     psnr.push_back(score.psnr_db);
+    psnr_exif_gain.push_back(score.psnr_exif_gain_db);
+    psnr_normal.push_back(score.psnr_normal_db);
+    ssim_normal.push_back(score.ssim_normal);
     ssim.push_back(score.ssim);
     psnr_full.push_back(score.psnr_full_db);
     ssim_full.push_back(score.ssim_full);
+    right.push_back(score.right_half_db);
+    right_fitted.push_back(score.right_half_fitted_db);
     lpips.push_back(score.lpips);
     used += score.used_pixels;
     covered += score.covered_pixels;
   }
   metrics->psnr = MeanOfMeasured(psnr);
+  metrics->psnr_normal = MeanOfMeasured(psnr_normal);
+  metrics->ssim_normal = MeanOfMeasured(ssim_normal);
+  metrics->psnr_exif_gain = MeanOfMeasured(psnr_exif_gain);
   metrics->ssim = MeanOfMeasured(ssim);
   metrics->psnr_full_frame = MeanOfMeasured(psnr_full);
   metrics->ssim_full_frame = MeanOfMeasured(ssim_full);
+  metrics->psnr_right_half = MeanOfMeasured(right);
+  metrics->psnr_right_half_fitted = MeanOfMeasured(right_fitted);
   metrics->lpips = MeanOfMeasured(lpips);
   metrics->coverage = used > 0 ? static_cast<double>(covered) / static_cast<double>(used) : kNotMeasured;
   for (size_t b = 0; b < info.blocks.size(); ++b) {
@@ -202,6 +179,10 @@ void EvaluateOptions::Visit(config::OptionVisitor& v) {
   v.Field("lpips_network", lpips_network, "ONNX file of an LPIPS network; empty: LPIPS is not measured");
   v.Field("max_photos", max_photos, "score at most so many held-out photos, evenly spread; 0: all");
   v.Field("exif_gain", exif_gain, "render each held-out photo at the exposure its EXIF states");
+  v.Field("predicted_gain", predicted_gain, "and with what the photos taken before and after it needed beside theirs, where gains were learned");
+  v.Field("normal_photos", normal_photos,
+          "folder of the same photos, normally exposed: what is shown at normal brightness is scored against them too; empty: none");
+  v.Field("normal_stops", normal_stops, "stops by which normal brightness is raised for that, -10..10");
   v.Field("report_photos", report_photos, "held-out photos with pictures in the report, evenly spread; all are in its tables");
   v.Field("report_image_width", report_image_width, "largest width in pixels of the report's pictures");
 }
@@ -210,8 +191,10 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   SKYQUILT_CHECK(input.survey != nullptr && input.blocks != nullptr && input.pixels != nullptr, "survey, blocks and pixels");
   SKYQUILT_CHECK(input.pixels->size() == input.survey->photos.size(), "one cached photo per photo of the survey");
   const EvaluateOptions& options = input.options;
-  if (options.image_width < 0 || options.max_photos < 0 || options.report_photos < 0 || options.report_image_width < 16) {
-    throw base::UsageError("evaluate: image_width, max_photos and report_photos must not be negative, report_image_width at least 16");
+  if (options.image_width < 0 || options.max_photos < 0 || options.report_photos < 0 || options.report_image_width < 16 ||
+      !(std::abs(options.normal_stops) <= 10.0)) {
+    throw base::UsageError(
+        "evaluate: image_width, max_photos and report_photos must not be negative, report_image_width at least 16, normal_stops from -10 to 10");
   }
   const auto start = std::chrono::steady_clock::now();
   const std::filesystem::path report_folder = input.project_folder / "report";
@@ -236,6 +219,10 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   held_out = EvenlySpread(held_out, options.max_photos);
   const std::vector<int> pictured = options.report_photos == 0 ? std::vector<int>() : EvenlySpread(held_out, options.report_photos);
 
+  BrightnessReport brightness = CollectBrightness(info, *input.survey, *input.pixels);
+  const std::vector<int> contrasted = options.report_photos == 0 ? std::vector<int>() : ChooseViews(info, *input.survey, held_out);
+  brightness.views.resize(contrasted.size());
+
   Pools pools;
   pools.per_block.resize(area.boxes.size());
   std::vector<PhotoImages> images;
@@ -243,16 +230,23 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   for (const int index : held_out) {
     base::ThrowIfCancelled();
     const survey::Photo& photo = input.survey->photos[static_cast<size_t>(index)];
-    const PhotoTask task = LoadTask(input, index);
-    const double gain = GainOf(photo, info.reference_exposure, options.exif_gain);
+    const PhotoTask task = LoadTask(*input.survey, *input.pixels, index, options.image_width);
+    const double gain = TaggedGain(photo, info.response.reference_exposure, options.exif_gain);
     const auto render_start = std::chrono::steady_clock::now();
-    const std::vector<render::RayColor> rendered = scene.RenderCamera(task.camera, task.cam_from_enu, static_cast<float>(gain), threads);
+    std::vector<render::RayColor> rendered = scene.RenderCamera(task.camera, task.cam_from_enu, {render::Look::kRecorded, {}}, threads);
+    const Recording tagged = TaggedRecording(info.response, photo.camera, gain);
+    const Recording predicted = options.predicted_gain ? PredictedRecording(info.response, static_cast<size_t>(index), tagged) : tagged;
+    const std::vector<render::RayColor> as_reference = rendered;
+    Record(task.camera, predicted, rendered, threads);
     const double render_seconds = SecondsSince(render_start);
     PhotoFindings findings = ScorePhoto(task, rendered, views, area, threads);
     PhotoScore& score = findings.score;
     score.photo = index;
     score.name = photo.name;
     score.exposure_gain = gain;
+    for (size_t c = 0; c < 3; ++c) score.predicted_stops[c] = static_cast<double>(predicted.log_gain[c] - tagged.log_gain[c]) / std::numbers::ln2;
+    score.psnr_exif_gain_db =
+        predicted.log_gain == tagged.log_gain ? score.psnr_db : PsnrRecorded(task, tagged, as_reference, findings.scored, threads);
     score.render_seconds = render_seconds;
     if (lpips) score.lpips = LpipsOf(*lpips, task, findings.render);
     for (size_t b = 0; b < pools.per_block.size(); ++b) pools.per_block[b] += findings.per_block[b];
@@ -264,11 +258,33 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
       images.back() = WritePhotoImages({&task.photo, &findings.render, &findings.z_depth, findings.scored.data}, report_folder,
                                        fmt::format("photo_{:05d}", index), options.report_image_width, kErrorHigh);
     }
+    const auto place = std::find(contrasted.begin(), contrasted.end(), index);
+    if (place != contrasted.end() || !options.normal_photos.empty()) {
+      render::Appearance appearance;
+      appearance.log_gain.fill(static_cast<float>(options.normal_stops * std::numbers::ln2));
+      const std::vector<render::RayColor> normal = scene.RenderCamera(task.camera, task.cam_from_enu, appearance, threads);
+      if (place != contrasted.end()) {
+        const auto nth = static_cast<size_t>(place - contrasted.begin());
+        BrightnessView& view = brightness.views[nth];
+        view = WriteBrightnessView(task.photo, findings.render, PictureOf(normal, task.camera.width, task.camera.height), report_folder,
+                                   fmt::format("brightness_{}", nth), options.report_image_width);
+        view.name = photo.name;
+        view.stops = ExposureStops(info.response, static_cast<size_t>(index));
+      }
+      if (!options.normal_photos.empty()) {
+        const NormalScore against = ScoreNormal(std::filesystem::path(options.normal_photos) / photo.name, normal, findings.scored);
+        score.psnr_normal_db = against.psnr_db;
+        score.ssim_normal = against.ssim;
+      }
+    }
     if (metrics.image_width == 0) metrics.image_width = score.width;
     metrics.photos.push_back(score);
     progress.Advance(1.0, fmt::format("{} {:.2f} dB", photo.name, score.psnr_db));
   }
   FillMeans(info, pools, &metrics);
+  const FootprintSteps steps = MeasureFootprintSteps(scene, FootprintsOf(input), threads);
+  metrics.footprint_step = steps.border;
+  metrics.footprint_step_control = steps.control;
   progress.Finish(fmt::format("PSNR {:.2f} dB, coverage {:.1f} %", metrics.psnr, 100.0 * metrics.coverage));
   metrics.evaluate_seconds = SecondsSince(start);
   metrics.evaluate_peak_rss_bytes = base::PeakRssBytes();
@@ -282,11 +298,13 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   page.survey = input.survey;
   page.blocks = input.blocks;
   page.log = &log;
+  page.brightness = &brightness;
   page.images = std::move(images);
   page.background = CopyMapBackground(input.project_folder / "products", report_folder);
   page.color_ramp = WriteColorRamp(report_folder);
   page.error_high = static_cast<double>(kErrorHigh);
   base::WriteFileAtomically(report_folder / "index.html", BuildReportPage(page));
+  if (!brightness.Empty()) base::WriteFileAtomically(report_folder / "brightness.json", BrightnessJson(brightness));
   RemoveStalePictures(report_folder, page.images);
   // Last, because its presence says that the evaluation is complete.
   base::WriteFileAtomically(report_folder / "metrics.json", MetricsJson(metrics));

@@ -1,4 +1,4 @@
-// Scores the merged scene on the held-out photos and writes report/metrics.json and report/index.html.
+// Scores the merged scene on the held-out photos and writes report/metrics.json, report/brightness.json and report/index.html.
 #pragma once
 
 #include <filesystem>
@@ -18,6 +18,9 @@ struct EvaluateOptions {
   std::string lpips_network;     // ONNX file; empty: LPIPS is not measured
   int max_photos = 0;            // score at most so many held-out photos, evenly spread; 0: all
   bool exif_gain = true;         // render each photo at its EXIF exposure
+  bool predicted_gain = true;    // and with the residual gain predicted for it
+  std::string normal_photos;     // folder of the same photos at normal exposure; empty: none
+  double normal_stops = 0.0;     // -10..10, by which what is shown is raised before that comparison
   int report_photos = 40;        // photos with pictures in the report, evenly spread
   int report_image_width = 960;  // pixels
 

@@ -30,6 +30,11 @@ Json PhotoJson(const PhotoScore& score, bool has_truth) {
   json["ssim_full_frame"] = NumberOrNull(score.ssim_full);
   json["lpips"] = NumberOrNull(score.lpips);
   json["exposure_gain"] = NumberOrNull(score.exposure_gain);
+  json["predicted_stops"] = score.predicted_stops;
+  json["psnr_exif_gain"] = NumberOrNull(score.psnr_exif_gain_db);
+  json["psnr_right_half"] = NumberOrNull(score.right_half_db);
+  json["psnr_right_half_fitted"] = NumberOrNull(score.right_half_fitted_db);
+  json["fitted_stops"] = score.fitted_stops;
   json["render_seconds"] = NumberOrNull(score.render_seconds);
   if (has_truth) {
     json["depth_rmse_m"] = NumberOrNull(score.depth_rmse_m);
@@ -67,6 +72,10 @@ const char* const kPsnrDefinition =
 const char* const kSeamDefinition =
     "seam_psnr_gap_db = PSNR of covered pixels whose surface point lies deeper than the margin inside a block, minus PSNR of those where the "
     "grown boxes of two or more blocks overlap. Pixels near the survey's outer rim belong to neither. Null with a single block.";
+const char* const kRightHalfDefinition =
+    "psnr_right_half: mean over photos of the PSNR over the covered pixels of the right half, rendered as psnr is. psnr_right_half_fitted: the same "
+    "pixels after three gains in linear light, one per colour, were fitted to the left half of the photo; the difference is what tags and training "
+    "do not know of the photo's brightness.";
 
 double PhotoScore::Coverage() const {
   return used_pixels > 0 ? static_cast<double>(covered_pixels) / static_cast<double>(used_pixels) : kNotMeasured;
@@ -99,6 +108,13 @@ std::string MetricsJson(const Metrics& metrics) {
   json["coverage"] = NumberOrNull(metrics.coverage);
   json["psnr_full_frame"] = NumberOrNull(metrics.psnr_full_frame);
   json["ssim_full_frame"] = NumberOrNull(metrics.ssim_full_frame);
+  json["psnr_exif_gain"] = NumberOrNull(metrics.psnr_exif_gain);
+  json["footprint_step"] = NumberOrNull(metrics.footprint_step);
+  json["footprint_step_control"] = NumberOrNull(metrics.footprint_step_control);
+  json["psnr_normal"] = NumberOrNull(metrics.psnr_normal);
+  json["ssim_normal"] = NumberOrNull(metrics.ssim_normal);
+  json["psnr_right_half"] = NumberOrNull(metrics.psnr_right_half);
+  json["psnr_right_half_fitted"] = NumberOrNull(metrics.psnr_right_half_fitted);
   json["lpips"] = NumberOrNull(metrics.lpips);
   json["lpips_note"] = metrics.lpips_note;
   json["psnr_per_image"] = Json::object();
@@ -133,7 +149,8 @@ std::string MetricsJson(const Metrics& metrics) {
   for (const PhotoScore& photo : metrics.photos) json["images"].push_back(PhotoJson(photo, metrics.has_truth));
   json["pixels_per_block"] = Json::object();
   for (const BlockScore& block : metrics.blocks) json["pixels_per_block"][block.name] = block.pixels;
-  json["definitions"] = {{"coverage", kCoverageDefinition}, {"psnr", kPsnrDefinition}, {"seam", kSeamDefinition}};
+  json["definitions"] = {
+      {"coverage", kCoverageDefinition}, {"psnr", kPsnrDefinition}, {"seam", kSeamDefinition}, {"right_half", kRightHalfDefinition}};
   json["warnings"] = metrics.warnings;
   json["machine"] = metrics.machine;
   json["date"] = metrics.date;

@@ -3,6 +3,7 @@
 // PSNR in dB with display values in [0,1] (MAX = 1), higher better; SSIM at most 1, higher better; LPIPS a distance, lower better.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -19,15 +20,22 @@ struct PhotoScore {
   std::string name;
   int width = 0;  // scored size, pixels
   int height = 0;
-  int64_t used_pixels = 0;        // not masked
-  int64_t covered_pixels = 0;     // used and covered (see kCoverageDefinition)
-  double exposure_gain = 1.0;     // linear light, applied to the render
-  double psnr_db = kNotMeasured;  // over the covered pixels
+  int64_t used_pixels = 0;                                  // not masked
+  int64_t covered_pixels = 0;                               // used and covered (see kCoverageDefinition)
+  double exposure_gain = 1.0;                               // linear light, from the tags
+  std::array<double, 3> predicted_stops = {0.0, 0.0, 0.0};  // applied beside it, per colour
+  double psnr_db = kNotMeasured;                            // over the covered pixels
+  double psnr_exif_gain_db = kNotMeasured;                  // over the covered pixels, with exposure_gain alone
+  double psnr_normal_db = kNotMeasured;  // at normal brightness against a normally exposed photo (evaluate.normal_photos), covered pixels
+  double ssim_normal = kNotMeasured;
   double ssim = kNotMeasured;
   double psnr_full_db = kNotMeasured;  // over all pixels that are not masked
   double ssim_full = kNotMeasured;
-  double lpips = kNotMeasured;         // full frame
-  double depth_rmse_m = kNotMeasured;  // simulated surveys only: z-depth over covered pixels where both depths exist
+  double lpips = kNotMeasured;                           // full frame
+  double right_half_db = kNotMeasured;                   // PSNR over the covered pixels of the right half,
+  double right_half_fitted_db = kNotMeasured;            // and with gains per colour fitted to the left half
+  std::array<double, 3> fitted_stops = {0.0, 0.0, 0.0};  // those gains, on top of exposure_gain
+  double depth_rmse_m = kNotMeasured;                    // simulated surveys only: z-depth over covered pixels where both depths exist
   double depth_median_abs_m = kNotMeasured;
   double render_seconds = 0.0;
 
@@ -43,10 +51,15 @@ struct BlockScore {
 struct Metrics {
   // Means over the test photos of the per-photo values, the convention of the field; photos without the value do not count.
   double psnr = kNotMeasured;
+  double psnr_exif_gain = kNotMeasured;
+  double psnr_normal = kNotMeasured;
+  double ssim_normal = kNotMeasured;
   double ssim = kNotMeasured;
   double coverage = kNotMeasured;  // pooled: all covered pixels / all used pixels
   double psnr_full_frame = kNotMeasured;
   double ssim_full_frame = kNotMeasured;
+  double psnr_right_half = kNotMeasured;
+  double psnr_right_half_fitted = kNotMeasured;
   double lpips = kNotMeasured;
   std::string lpips_note;  // why lpips is null, or which network measured it
   std::vector<PhotoScore> photos;
@@ -54,7 +67,9 @@ struct Metrics {
   double psnr_interior_db = kNotMeasured;  // covered pixels deeper than the margin inside a block, pooled
   double psnr_seam_db = kNotMeasured;      // covered pixels where two or more blocks blend, pooled
   double seam_psnr_gap_db = kNotMeasured;  // interior minus seam; NaN with a single block
-  double depth_rmse_m = kNotMeasured;      // pooled over the pixels of all test photos
+  double footprint_step = kNotMeasured;    // brightness steps across the borders of photos' footprints, display values (footprint_steps.h)
+  double footprint_step_control = kNotMeasured;
+  double depth_rmse_m = kNotMeasured;  // pooled over the pixels of all test photos
   double depth_median_abs_m = kNotMeasured;
   bool has_truth = false;
 
@@ -85,6 +100,7 @@ struct Metrics {
 extern const char* const kCoverageDefinition;
 extern const char* const kPsnrDefinition;
 extern const char* const kSeamDefinition;
+extern const char* const kRightHalfDefinition;
 
 // Mean of the finite values; NaN when there is none. An infinite value makes the mean infinite.
 double MeanOfMeasured(const std::vector<double>& values);

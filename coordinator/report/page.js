@@ -84,7 +84,7 @@
     }
     shown.style.width = "min(100%, calc(88vh * " + (img.naturalWidth / img.naturalHeight || 1.5) + "))";
     stage.replaceChildren(shown);
-    const what = compared ? "drag to compare photo and render" : kind === "error-pic" ? "error" : "depth";
+    const what = compared ? "drag to compare photo and render" : img.alt.toLowerCase();
     viewer.querySelector("p").textContent = card.querySelector("h3").textContent + " \u00b7 " + what;
     viewer.showModal();
   });

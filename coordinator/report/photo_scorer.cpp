@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "coordinator/report/recorded.h"
 #include "core/base/errors.h"
 #include "core/metrics/depth_errors.h"
 #include "core/metrics/psnr.h"
@@ -42,6 +44,7 @@ PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor
 
   const image::ImageF photo = image::ToImageF(task.photo);
   image::ImageF render(width, height, 3);
+  image::ImageF unclamped(width, height, 3);
   PhotoFindings findings;
   findings.scored = image::Image8(width, height, 1, 0);
   findings.z_depth = image::ImageF(width, height, 1, std::numeric_limits<float>::quiet_NaN());
@@ -58,7 +61,11 @@ PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor
       const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
       const render::RayColor& ray = rendered[i];
       float* rgb = render.At(x, y);
-      for (int c = 0; c < 3; ++c) rgb[c] = std::isfinite(ray.rgb_srgb[c]) ? std::clamp(ray.rgb_srgb[c], 0.0F, 1.0F) : 0.0F;
+      for (int c = 0; c < 3; ++c) {
+        const float value = std::isfinite(ray.rgb_srgb[c]) ? std::max(ray.rgb_srgb[c], 0.0F) : 0.0F;
+        unclamped.At(x, y)[c] = value;
+        rgb[c] = std::min(value, 1.0F);
+      }
       const Eigen::Vector3d direction_in_cam = task.camera.RayFromImg({x + 0.5, y + 0.5});
       const double median_m = static_cast<double>(ray.depth_median);
       *findings.z_depth.At(x, y) = static_cast<float>(median_m * direction_in_cam.z());
@@ -100,10 +107,15 @@ PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor
     used = image::Image8(width, height, 1);
     used.data = task.mask;
   }
-  threads.ParallelFor(2, [&](int64_t which, int) {
+  HalfScores halves;
+  threads.ParallelFor(3, [&](int64_t which, int) {
     if (which == 0) score.ssim = metrics::Ssim(render, photo, &findings.scored);
     if (which == 1) score.ssim_full = metrics::Ssim(render, photo, used.Empty() ? nullptr : &used);
+    if (which == 2) halves = ScoreHalves(unclamped, photo, findings.scored);
   });
+  score.right_half_db = metrics::PsnrOf(halves.right);
+  score.right_half_fitted_db = metrics::PsnrOf(halves.right_fitted);
+  for (size_t c = 0; c < 3; ++c) score.fitted_stops[c] = static_cast<double>(halves.log_gain[c]) / std::numbers::ln2;
 
   if (!task.true_depth.Empty()) {
     findings.true_depth = ResizeNearest(task.true_depth, width, height);

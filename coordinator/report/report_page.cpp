@@ -31,6 +31,13 @@ std::string Headline(const ReportInput& input) {
   const Metrics& metrics = *input.metrics;
   std::string html = "<section id=\"summary\" class=\"kpis\">";
   html += Figure("PSNR, held-out photos", FormatFixed(metrics.psnr, 2, "dB"), "full frame " + FormatFixed(metrics.psnr_full_frame, 2, "dB"), "hero");
+  if (!std::isnan(metrics.psnr_exif_gain)) {
+    html += Figure("PSNR with the EXIF gain alone", FormatFixed(metrics.psnr_exif_gain, 2, "dB"), "brightness as the tags state it");
+  }
+  if (!std::isnan(metrics.psnr_right_half)) {
+    html += Figure("PSNR of right halves, as rendered", FormatFixed(metrics.psnr_right_half, 2, "dB"),
+                   FormatFixed(metrics.psnr_right_half_fitted, 2, "dB") + " with gains fitted to the left halves");
+  }
   html += Figure("SSIM", FormatFixed(metrics.ssim, 3), "full frame " + FormatFixed(metrics.ssim_full_frame, 3));
   html += Figure("Coverage", FormatPercent(metrics.coverage), fmt::format("of the pixels of {} held-out photos", metrics.photos.size()));
   html += Figure("LPIPS", FormatFixed(metrics.lpips, 3), EscapeHtml(metrics.lpips_note));
@@ -212,7 +219,10 @@ std::string Facts(const ReportInput& input) {
   fact("Evaluation", fmt::format("{}, peak memory {}", Duration(metrics.evaluate_seconds), FormatBytes(metrics.evaluate_peak_rss_bytes)));
   html += "</dl><div class=\"card prose\"><h3>Definitions</h3><p>";
   html += EscapeHtml(kPsnrDefinition) + "</p><p>" + EscapeHtml(kCoverageDefinition) + "</p><p>" + EscapeHtml(kSeamDefinition) + "</p>";
-  html += "<p>Renders are shown at the exposure of each photo as its EXIF states it; nothing is fitted to the held-out photo.</p></div></div>";
+  html += "<p>" + EscapeHtml(kRightHalfDefinition) + "</p>";
+  html +=
+      "<p>Renders are shown at the exposure of each photo as its EXIF states it and, where gains were learned, with what the photos before and after "
+      "it needed beside theirs; nothing is fitted to the held-out photo.</p></div></div>";
   if (!metrics.config.empty())
     html += "<details class=\"card config\"><summary>Configuration</summary><pre>" + EscapeHtml(metrics.config) + "</pre></details>";
   return html + "</section>\n";
@@ -228,18 +238,19 @@ std::string BuildReportPage(const ReportInput& input) {
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">";
   html += "<meta name=\"color-scheme\" content=\"light dark\"><title>" + title + " \xC2\xB7 Skyquilt report</title><style>" + PageStyle() +
           "</style></head><body>\n";
+  const std::string brightness = BrightnessSection(input);
   html += fmt::format(
       "<div class=\"topbar\"><div class=\"inner\"><a class=\"brand\" href=\"#top\">{}<b>Skyquilt</b></a><nav><a href=\"#summary\">Summary</a>"
-      "<a href=\"#map-section\">Blocks</a><a href=\"#photos\">Photos</a><a href=\"#training\">Training</a><a href=\"#geo\">Geo-reference</a>"
+      "<a href=\"#map-section\">Blocks</a><a href=\"#photos\">Photos</a>{}<a href=\"#training\">Training</a><a href=\"#geo\">Geo-reference</a>"
       "<a href=\"#details\">Details</a></nav><button id=\"theme\" title=\"Switch between light and dark\" aria-label=\"Switch between light and "
       "dark\">"
       "<svg viewBox=\"0 0 24 24\"><path d=\"M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z\"/></svg></button></div></div><main id=\"top\">\n",
-      kLogo);
+      kLogo, brightness.empty() ? "" : "<a href=\"#brightness\">Brightness</a>");
   html += fmt::format("<header class=\"title\"><h1>{}</h1><p>{} photos, {} blocks \xC2\xB7 {} \xC2\xB7 {}</p></header>\n", title,
                       FormatInteger(input.metrics->n_photos), input.blocks->blocks.size(), EscapeHtml(input.metrics->date),
                       EscapeHtml(input.metrics->machine));
-  html += Headline(input) + Warnings(*input.metrics) + MapSection(input) + PhotoSection(input) + TrainingSection(input) + GeoSection(input) +
-          Facts(input);
+  html += Headline(input) + Warnings(*input.metrics) + MapSection(input) + PhotoSection(input) + brightness + TrainingSection(input) +
+          GeoSection(input) + Facts(input);
   html += "</main><dialog id=\"viewer\"><button aria-label=\"Close\">\xC3\x97</button><div></div><p></p></dialog><script>" + PageScript() +
           "</script></body></html>\n";
   return html;

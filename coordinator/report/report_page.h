@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/report/brightness_report.h"
 #include "coordinator/report/metrics.h"
 #include "coordinator/report/train_log.h"
 #include "core/survey/survey.h"
@@ -35,7 +36,8 @@ struct ReportInput {
   const survey::Survey* survey = nullptr;
   const partition::BlockSet* blocks = nullptr;
   const TrainLog* log = nullptr;
-  std::vector<PhotoImages> images;  // entry i belongs to metrics->photos[i]
+  const BrightnessReport* brightness = nullptr;  // nothing or empty: no such section
+  std::vector<PhotoImages> images;               // entry i belongs to metrics->photos[i]
   std::optional<MapBackground> background;
   std::string color_ramp;    // picture of the colour map from low to high, relative to the page; empty: no legend
   double error_high = 0.25;  // display values at the top of the error colours
@@ -46,6 +48,7 @@ std::string BuildReportPage(const ReportInput& input);
 // Parts of the page, each a <section> or a piece of one.
 std::string BlockMapSvg(const ReportInput& input);
 std::string PhotoSection(const ReportInput& input);
+std::string BrightnessSection(const ReportInput& input);  // empty without brightness
 std::string BlockTable(const ReportInput& input);
 std::string ResidualTable(const ReportInput& input);
 std::string PageStyle();   // CSS

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
+#include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/training_log.h"
 #include "core/base/errors.h"
+#include "core/base/log.h"
 #include "core/base/system.h"
 
 namespace skyquilt::coordinator {
@@ -15,15 +16,6 @@ std::vector<image::PixelSource> PixelSources(const survey::Survey& survey) {
   std::vector<image::PixelSource> sources;
   for (const survey::Photo& photo : survey.photos) sources.push_back({survey.photo_root / photo.name, photo.mask});
   return sources;
-}
-
-brightness::PhotoGains GainsOf(const survey::Survey& survey, const std::string& correction) {
-  if (correction == "none") return {0.0, std::vector<float>(survey.photos.size(), 1.0F)};
-  std::vector<std::optional<double>> exposures;
-  for (const survey::Photo& photo : survey.photos) {
-    exposures.push_back(brightness::ExifExposure(photo.exposure.time_s, photo.exposure.f_number, photo.exposure.iso));
-  }
-  return brightness::GainsFromExif(exposures);
 }
 
 worker::BoxView ViewOfBlock(const partition::Block& block) {
@@ -92,16 +84,16 @@ bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& bloc
 
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,
                               const Settings& settings, const Project& project, const std::string& config_hash, base::ThreadPool& threads) {
-  const brightness::PhotoGains gains = GainsOf(survey, settings.brightness.correction);
-  return [&survey, &blocks, &pixels, &settings, project, config_hash, gains, &threads](const FieldJob& job, const worker::Reporter& report) {
+  const BrightnessPlan plan = PlanBrightness(survey, settings.brightness);
+  return [&survey, &blocks, &pixels, &settings, project, config_hash, plan, &threads](const FieldJob& job, const worker::Reporter& report) {
     worker::TrainJob train;
     train.survey = &survey;
     train.pixels = &pixels;
     train.options = job.block < 0 ? settings.context : settings.train;
     train.options.steps = job.steps;
     train.options.seconds = job.seconds;
-    train.gains = gains.gain;
-    train.reference_exposure = gains.reference_exposure;
+    train.response = plan.response;
+    train.learn = plan.learn;
     train.min_views = settings.partition.min_views;
     train.learning_rate_scale = job.rate_factor;
     train.config_hash = config_hash;
@@ -112,6 +104,11 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
       report(status);
     };
     if (job.block < 0) {
+      if (settings.brightness.Luminance()) {
+        const brightness::BrightnessStatistics statistics = MeasureBrightness(survey, pixels);
+        train.luminance = brightness::PlanLuminance(settings.brightness, statistics);
+        spdlog::info("{}", LuminanceRemark(train.luminance, statistics));
+      }
       train.checkpoint = project.ContextCheckpoint();
       return worker::TrainContext(train, ViewOfSurvey(blocks, survey, project.BlocksFile()), threads, both);
     }

@@ -9,7 +9,6 @@
 #include "coordinator/scheduler/field_job.h"
 #include "coordinator/settings.h"
 #include "core/base/thread_pool.h"
-#include "core/brightness/exposure.h"
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
 #include "partition/block.h"
@@ -19,8 +18,6 @@ namespace skyquilt::coordinator {
 
 // Photos and masks in the order of Survey::photos.
 std::vector<image::PixelSource> PixelSources(const survey::Survey& survey);
-// What each photo recorded over the light at reference exposure; all 1 when `correction` is "none".
-brightness::PhotoGains GainsOf(const survey::Survey& survey, const std::string& correction);
 
 // One block as the trainer wants it.
 worker::BoxView ViewOfBlock(const partition::Block& block);

@@ -10,6 +10,7 @@
 #include "coordinator/scheduler/block_queue.h"
 #include "coordinator/scheduler/coordinate.h"
 #include "coordinator/scheduler/field_context.h"
+#include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/train_ledger.h"
 #include "coordinator/scheduler/train_progress.h"
 #include "core/base/cancel.h"
@@ -121,6 +122,7 @@ class Training {
     // Decoding is not training: the budget starts here.
     start_ = std::chrono::steady_clock::now();
     Crew crew(comm_, project_, settings_, input_);
+    if (const std::string remark = PlanBrightness(*input_.survey, settings_.brightness).remark; !remark.empty()) spdlog::info("{}", remark);
     const FieldTrainer trainer = MakeFieldTrainer(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
     summary.fields.push_back(TrainContext(trainer, all_threads));
     int per_host = 1;

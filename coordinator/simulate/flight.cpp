@@ -96,7 +96,13 @@ std::vector<Station> PlanStations(const Preset& preset) {
   return stations;
 }
 
-// Stops relative to normal for every photo: a slow wander and steps now and then.
+// In [-1, 1], over some ten photos from one side to the other.
+double Wander(size_t photo, uint32_t noise_seed) {
+  const auto noise = static_cast<double>(ValueNoise(static_cast<float>(photo) / 9.0F, 0.5F, noise_seed));
+  return std::clamp(1.5 * noise, -1.0, 1.0);
+}
+
+// Stops relative to the survey's exposure for every photo: a slow wander and steps now and then.
 std::vector<double> ExposureStops(const Preset& preset, size_t n_photos) {
   base::Random random(preset.seed, 51);
   const auto noise_seed = random.NextU32();
@@ -108,8 +114,7 @@ std::vector<double> ExposureStops(const Preset& preset, size_t n_photos) {
       jump = random.Uniform(-1.0, 1.0);
       until_jump = 6 + static_cast<int>(random.Below(10));
     }
-    const auto wander = static_cast<double>(ValueNoise(static_cast<float>(i) / 9.0F, 0.5F, noise_seed));
-    stops.push_back(preset.exposure_drift_stops * std::clamp(1.5 * wander, -1.0, 1.0) + preset.exposure_jumps_stops * jump);
+    stops.push_back(preset.exposure_drift_stops * Wander(i, noise_seed) + preset.exposure_jumps_stops * jump);
   }
   return stops;
 }
@@ -118,15 +123,43 @@ void SetExposure(double stops, PhotoPlan& photo) {
   constexpr double kNormalTime_s = 1.0 / 800.0;
   photo.iso = stops > 1.0 ? 200.0 : 100.0;
   const double wanted = kNormalTime_s * std::exp2(stops) * 100.0 / photo.iso;
-  // Cameras tag exposure times as 1/n: the tag is then exact.
-  photo.exposure_time_s = 1.0 / std::round(1.0 / wanted);
+  // Cameras tag exposure times as 1/n, long ones in hundredths of a second: the tag is then exact.
+  const double n = std::round(1.0 / wanted);
+  photo.exposure_time_s = n >= 10.0 ? 1.0 / n : std::round(100.0 * wanted) / 100.0;
 }
 
 double Exposure(const PhotoPlan& photo) {
   return photo.exposure_time_s * photo.iso / (100.0 * photo.f_number * photo.f_number);
 }
 
+double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+// Gains from the settings, and what changes the light without the tags knowing.
+void SetLight(const Preset& preset, std::vector<PhotoPlan>& photos) {
+  std::vector<double> exposure;
+  for (const PhotoPlan& photo : photos) exposure.push_back(Exposure(photo));
+  const double median = Median(exposure);
+  base::Random random(preset.seed, 52);
+  const uint32_t color_seed = base::Random(preset.seed, 53).NextU32();
+  for (size_t i = 0; i < photos.size(); ++i) {
+    PhotoPlan& photo = photos[i];
+    photo.gain = exposure[i] / median;
+    // Normal exposure is the median photo's without the offset.
+    photo.development_gain = photo.gain * std::exp2(preset.exposure_offset_stops + preset.exposure_error_stops * random.Normal());
+    photo.color_drift_stops = preset.color_drift_stops * Wander(i, color_seed);
+  }
+}
+
 }  // namespace
+
+std::array<double, 3> LightRgb(const PhotoPlan& photo) {
+  return {photo.development_gain * std::exp2(photo.color_drift_stops), photo.development_gain,
+          photo.development_gain * std::exp2(-photo.color_drift_stops)};
+}
 
 geo::Rigid3d PoseFromGimbal(const Vector3d& position, double yaw_deg, double pitch_deg, double roll_deg) {
   const double yaw = Radians(yaw_deg);
@@ -169,16 +202,11 @@ std::vector<PhotoPlan> PlanFlight(const Preset& preset, double takeoff_z_m) {
     const Vector3d gps_error(noise * random.Normal(), noise * random.Normal(), 1.5 * noise * random.Normal());
     photo.tagged_position = position + gps_error;
     photo.relative_altitude_m = position.z() - takeoff_z_m + 0.15 * random.Normal();
-    SetExposure(stops[i], photo);
+    SetExposure(preset.exposure_offset_stops + stops[i], photo);
+    photo.exposure_tagged = preset.exposure_tags == ExposureTags::kAll || (preset.exposure_tags == ExposureTags::kHalf && i % 2 == 0);
     photos.push_back(photo);
   }
-  std::vector<double> exposure;
-  for (const PhotoPlan& photo : photos) exposure.push_back(Exposure(photo));
-  std::vector<double> sorted = exposure;
-  std::sort(sorted.begin(), sorted.end());
-  const size_t middle = sorted.size() / 2;
-  const double median = sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
-  for (size_t i = 0; i < photos.size(); ++i) photos[i].gain = exposure[i] / median;
+  SetLight(preset, photos);
   return photos;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -25,12 +26,18 @@ struct PhotoPlan {
   double exposure_time_s = 0.0;
   double f_number = 2.8;
   double iso = 100.0;
-  double gain = 1.0;  // of linear light, relative to the median photo
+  bool exposure_tagged = true;     // the three above stand in its tags
+  double gain = 1.0;               // of linear light by the three above, relative to the median photo
+  double development_gain = 1.0;   // of linear light as it really was, relative to normal exposure
+  double color_drift_stops = 0.0;  // of the white balance: red gets so much more, blue so much less
 };
 
 // Nadir lines run north and south with the wide side of the photo across them: one flight over the whole area when all altitudes agree,
 // otherwise one per block. Oblique lines follow. takeoff_z_m: ENU height of the ground the drone started from.
 std::vector<PhotoPlan> PlanFlight(const Preset& preset, double takeoff_z_m);
+
+// Factors on linear light that the photo really gets, relative to normal exposure: red, green, blue.
+std::array<double, 3> LightRgb(const PhotoPlan& photo);
 
 // cam_from_enu of a camera at `position` whose optical axis has this yaw (clockwise from north) and pitch; roll turns it about that axis.
 geo::Rigid3d PoseFromGimbal(const Eigen::Vector3d& position, double yaw_deg, double pitch_deg, double roll_deg);

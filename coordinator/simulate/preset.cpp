@@ -10,6 +10,9 @@
 namespace skyquilt::simulate {
 namespace {
 
+// At 13 stops below normal exposure the shutter time is 15 units of 1e-8 s, in which the tags are written.
+constexpr double kMaxStops = 13.0;
+
 camera::Camera MakeCamera(camera::CameraModel model, int width, int height, double horizontal_fov_deg, const std::vector<double>& distortion) {
   camera::Camera camera;
   camera.model = model;
@@ -151,6 +154,33 @@ void ApplyAltitudes(const std::vector<double>& altitudes, Preset& preset) {
   preset.altitudes_agl_m.resize(n_blocks, altitudes.front());
 }
 
+void ApplyExposure(const SimulateOptions& options, Preset& preset) {
+  Overlay("exposure_drift_stops", options.exposure_drift_stops, 0.0, 10.0, preset.exposure_drift_stops);
+  Overlay("exposure_jumps_stops", options.exposure_jumps_stops, 0.0, 10.0, preset.exposure_jumps_stops);
+  RequireRange("exposure_offset_stops", options.exposure_offset_stops, -10.0, 10.0);
+  preset.exposure_offset_stops = options.exposure_offset_stops;
+  if (std::abs(preset.exposure_offset_stops) + preset.exposure_drift_stops + preset.exposure_jumps_stops > kMaxStops) {
+    Refuse("exposure_offset_stops", Text(preset.exposure_offset_stops),
+           "with exposure_drift_stops = " + Text(preset.exposure_drift_stops) + " and exposure_jumps_stops = " + Text(preset.exposure_jumps_stops) +
+               " photos would be more than " + Text(kMaxStops) + " stops from normal; give less of one of them");
+  }
+  RequireRange("exposure_error_stops", options.exposure_error_stops, 0.0, 3.0);
+  preset.exposure_error_stops = options.exposure_error_stops;
+  RequireRange("color_drift_stops", options.color_drift_stops, 0.0, 3.0);
+  preset.color_drift_stops = options.color_drift_stops;
+  RequireRange("vignetting", options.vignetting, 0.0, 0.9);
+  preset.vignetting = options.vignetting;
+  if (options.exposure_tags == "all") {
+    preset.exposure_tags = ExposureTags::kAll;
+  } else if (options.exposure_tags == "none") {
+    preset.exposure_tags = ExposureTags::kNone;
+  } else if (options.exposure_tags == "half") {
+    preset.exposure_tags = ExposureTags::kHalf;
+  } else {
+    Refuse("exposure_tags", "'" + options.exposure_tags + "'", "choose one of all, none, half");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> PresetNames() {
@@ -184,8 +214,7 @@ Preset ResolvePreset(const SimulateOptions& options) {
   ApplyAltitudes(options.altitudes, preset);
   if (!options.oblique) preset.oblique_lines = 0;
   Overlay("gps_noise_m", options.gps_noise_m, 0.0, 1000.0, preset.gps_noise_m);
-  Overlay("exposure_drift_stops", options.exposure_drift_stops, 0.0, 10.0, preset.exposure_drift_stops);
-  Overlay("exposure_jumps_stops", options.exposure_jumps_stops, 0.0, 10.0, preset.exposure_jumps_stops);
+  ApplyExposure(options, preset);
   RequireRange("latitude_deg", options.latitude_deg, -90.0, 90.0);
   RequireRange("longitude_deg", options.longitude_deg, -180.0, 180.0);
   RequireRange("height_m", options.height_m, -500.0, 9000.0);

@@ -12,6 +12,7 @@
 namespace skyquilt::simulate {
 
 enum class Landscape { kCity, kTidalFlat };
+enum class ExposureTags { kAll, kNone, kHalf };  // kHalf: the first photo has them, the second has not, and so on
 
 struct CityPlan {
   Eigen::Vector2d min = Eigen::Vector2d::Zero();  // built-up rectangle, ENU metres; fields beyond
@@ -49,6 +50,11 @@ struct Preset {
   double gps_noise_m = 0.5;
   double exposure_drift_stops = 0.2;
   double exposure_jumps_stops = 0.0;
+  double exposure_offset_stops = 0.0;
+  double exposure_error_stops = 0.0;
+  double color_drift_stops = 0.0;
+  double vignetting = 0.0;
+  ExposureTags exposure_tags = ExposureTags::kAll;
   int moving_cars = 3;
   double sun_azimuth_deg = 140.0;
   double sun_elevation_deg = 48.0;

@@ -63,7 +63,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
     const PhotoPlan& photo = photos[i];
     const MovingScene moving = world.MovingAt(photo.time_s);
     const Rendering rendering = renderer.Render(photo.cam_from_enu, moving, threads);
-    const image::Image8 pixels = Develop(rendering.rgb_linear, photo.gain);
+    const image::Image8 pixels = Develop(rendering.rgb_linear, {LightRgb(photo), preset.vignetting, preset.camera.PrincipalPoint()});
     WritePhoto(folder, photo, pixels, preset.camera, frame, options.jpeg_quality);
     if (!rendering.usable.Empty()) {
       image::SavePng(rendering.usable, folder / "truth" / "masks" / (photo.name + ".png"));
@@ -85,7 +85,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   std::vector<survey::ColmapPoint> points = MakeSparsePoints(world, preset.camera, photos, seeds, preset.seed, threads);
   summary.n_points = static_cast<int>(points.size());
   WriteModel(folder, preset.camera, photos, std::move(points));
-  WriteExposureTruth(folder, photos);
+  WriteExposureTruth(folder, photos, preset);
   WriteBuildingTruth(folder, world.buildings(), preset, frame);
   base::ThrowIfCancelled();
   WriteSummary(folder, preset, options, frame, photos.size());

@@ -14,6 +14,12 @@ void SimulateOptions::Visit(config::OptionVisitor& v) {
   v.Field("gps_noise_m", gps_noise_m, "standard deviation of the tagged position per horizontal axis, metres; negative: the preset's");
   v.Field("exposure_drift_stops", exposure_drift_stops, "slow change of exposure over the flight, +- stops; negative: the preset's");
   v.Field("exposure_jumps_stops", exposure_jumps_stops, "sudden changes of exposure, +- stops; negative: the preset's");
+  v.Field("exposure_offset_stops", exposure_offset_stops, "exposure of every photo, stops above normal, -10..10; the tags follow");
+  v.Field("exposure_error_stops", exposure_error_stops, "standard deviation of brightness per photo that its tags do not tell, stops, 0..3");
+  v.Field("color_drift_stops", color_drift_stops,
+          "slow wander of the white balance that no tag tells: red up and blue down by at most this, stops, 0..3");
+  v.Field("vignetting", vignetting, "share of light that the lens loses in the corners, 0..0.9");
+  v.Field("exposure_tags", exposure_tags, "photos tagged with exposure time, aperture and ISO: all, none, or half (every second one)");
   v.Field("latitude_deg", latitude_deg, "latitude of the survey's origin, degrees");
   v.Field("longitude_deg", longitude_deg, "longitude of the survey's origin, degrees");
   v.Field("height_m", height_m, "ellipsoidal height of the origin, metres");

@@ -19,6 +19,11 @@ struct SimulateOptions {
   double gps_noise_m = -1.0;           // standard deviation per horizontal axis; the vertical one is 1.5 times that
   double exposure_drift_stops = -1.0;  // slow change over the flight, +- this much
   double exposure_jumps_stops = -1.0;  // sudden changes, +- this much
+  double exposure_offset_stops = 0.0;  // -10..10, of every photo; the shutter times in the tags follow
+  double exposure_error_stops = 0.0;   // 0..3, standard deviation of brightness per photo that the tags do not know of
+  double color_drift_stops = 0.0;      // 0..3, slow wander of the white balance, red against blue; not in the tags
+  double vignetting = 0.0;             // 0..0.9, share of light lost in the farthest corner
+  std::string exposure_tags = "all";   // all, none, or half: every second photo has no exposure time, aperture and ISO
   double latitude_deg = 47.3769;       // of the ENU origin
   double longitude_deg = 8.5417;
   double height_m = 408.0;          // ellipsoidal height of the ENU origin, about the mean ground

@@ -37,7 +37,7 @@ double Rounded(double value, double unit) {
 
 }  // namespace
 
-image::Image8 Develop(const image::ImageF& rgb_linear, double gain) {
+image::Image8 Develop(const image::ImageF& rgb_linear, const Development& development) {
   // 8-bit values by table: finer than one step of sRGB at its steepest.
   constexpr size_t kTableSize = 1U << 15U;
   static const std::array<uint8_t, kTableSize + 1> table = [] {
@@ -48,10 +48,23 @@ image::Image8 Develop(const image::ImageF& rgb_linear, double gain) {
     return made;
   }();
   image::Image8 out(rgb_linear.width, rgb_linear.height, 3);
-  const float scale = static_cast<float>(gain) * kNormalExposure;
-  for (size_t i = 0; i < out.data.size(); ++i) {
-    const float value = std::clamp(rgb_linear.data[i] * scale, 0.0F, 1.0F);
-    out.data[i] = table[static_cast<size_t>(value * static_cast<float>(kTableSize) + 0.5F)];
+  std::array<float, 3> scale{};
+  for (size_t c = 0; c < scale.size(); ++c) scale[c] = static_cast<float>(development.gain[c]) * kNormalExposure;
+  const Eigen::Vector2d& centre = development.principal_point;
+  const Eigen::Vector2d farthest = centre.cwiseAbs().cwiseMax((Eigen::Vector2d(out.width, out.height) - centre).cwiseAbs());
+  const double log_per_px2 = std::log1p(-development.vignetting) / farthest.squaredNorm();
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
+      const double distance2 = (Eigen::Vector2d(x + 0.5, y + 0.5) - centre).squaredNorm();
+      // Exactly 1 without vignetting.
+      const auto falloff = static_cast<float>(std::exp(log_per_px2 * distance2));
+      const float* light = rgb_linear.At(x, y);
+      uint8_t* stored = out.At(x, y);
+      for (size_t c = 0; c < scale.size(); ++c) {
+        const float value = std::clamp(light[c] * (falloff * scale[c]), 0.0F, 1.0F);
+        stored[c] = table[static_cast<size_t>(value * static_cast<float>(kTableSize) + 0.5F)];
+      }
+    }
   }
   return out;
 }
@@ -67,7 +80,7 @@ void WritePhoto(const std::filesystem::path& folder, const PhotoPlan& photo, con
   tags.gimbal_yaw_deg = Rounded(std::remainder(photo.yaw_deg, 360.0), 0.01);
   tags.gimbal_pitch_deg = Rounded(photo.pitch_deg, 0.01);
   tags.gimbal_roll_deg = Rounded(photo.roll_deg, 0.01);
-  tags.exposure = {photo.exposure_time_s, photo.f_number, photo.iso};
+  if (photo.exposure_tagged) tags.exposure = {photo.exposure_time_s, photo.f_number, photo.iso};
   // A sensor 13.2 mm wide, as on common survey drones.
   tags.focal_length_mm = Rounded(13.2 * camera.FocalX() / camera.width, 0.01);
   tags.focal_length_35mm = std::round(36.0 * camera.FocalX() / camera.width);
@@ -87,13 +100,24 @@ void WriteModel(const std::filesystem::path& folder, const camera::Camera& camer
   survey::WriteColmapText(model, folder / "sparse" / "0");
 }
 
-void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos) {
+void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const Preset& preset) {
   Json list = Json::array();
   for (const PhotoPlan& photo : photos) {
-    list.push_back(
-        {{"name", photo.name}, {"gain", photo.gain}, {"exposure_time_s", photo.exposure_time_s}, {"f_number", photo.f_number}, {"iso", photo.iso}});
+    list.push_back({{"name", photo.name},
+                    {"gain", photo.gain},
+                    {"light_rgb", LightRgb(photo)},
+                    {"exposure_time_s", photo.exposure_time_s},
+                    {"f_number", photo.f_number},
+                    {"iso", photo.iso}});
   }
-  const Json json = {{"about", "gain: factor on linear light relative to the median photo, t * ISO / (100 N^2)"}, {"photos", list}};
+  const Json json = {
+      {"about",
+       "gain: factor on linear light by the photo's settings relative to the median photo, t * ISO / (100 N^2); light_rgb: factors on linear red, "
+       "green and blue light that the photo really got relative to normal exposure, with the survey's exposure offset and what no tag tells, "
+       "brightness errors and colour drift; vignetting: share of light lost in the corner farthest from the principal point, elsewhere the factor "
+       "is exp(log(1 - vignetting) r^2), r the distance from the principal point over that corner's"},
+      {"vignetting", preset.vignetting},
+      {"photos", list}};
   base::WriteFileAtomically(folder / "truth" / "exposure.json", json.dump(1) + "\n");
 }
 

@@ -6,6 +6,14 @@
 #include "core/image/srgb.h"
 
 namespace skyquilt::brightness {
+namespace {
+
+constexpr float kSrgbOffset = 0.055F;
+constexpr float kSrgbPower = 2.4F;
+// Display values at and below this lie in sRGB's linear toe.
+constexpr float kToe = 0.04045F;
+
+}  // namespace
 
 std::optional<double> ExifExposure(std::optional<double> time_s, std::optional<double> f_number, std::optional<double> iso) {
   const auto usable = [](std::optional<double> v) { return v && std::isfinite(*v) && *v > 0.0; };
@@ -18,15 +26,19 @@ std::optional<double> ExifExposure(std::optional<double> time_s, std::optional<d
 PhotoGains GainsFromExif(const std::vector<std::optional<double>>& exposures) {
   PhotoGains result;
   result.gain.assign(exposures.size(), 1.0F);
+  result.known.assign(exposures.size(), false);
   std::vector<double> known;
   for (const auto& exposure : exposures) {
     if (exposure) known.push_back(*exposure);
   }
-  if (known.empty() || known.size() * 2 < exposures.size()) return result;
+  if (known.empty()) return result;
   std::nth_element(known.begin(), known.begin() + static_cast<ptrdiff_t>(known.size() / 2), known.end());
   result.reference_exposure = known[known.size() / 2];
+  const double limit = std::exp(static_cast<double>(kMaxLogGain));
   for (size_t i = 0; i < exposures.size(); ++i) {
-    if (exposures[i]) result.gain[i] = static_cast<float>(std::clamp(*exposures[i] / result.reference_exposure, 1.0 / 1024.0, 1024.0));
+    if (!exposures[i]) continue;
+    result.known[i] = true;
+    result.gain[i] = static_cast<float>(std::clamp(*exposures[i] / result.reference_exposure, 1.0 / limit, limit));
   }
   return result;
 }
@@ -38,11 +50,19 @@ double ColorRange(const std::vector<float>& gains) {
   return std::clamp(1.02 * static_cast<double>(image::SrgbFromLinear(1.0F / darkest)), 1.02, 4.0);
 }
 
-Exposed Expose(float srgb_reference, float gain) {
-  if (gain == 1.0F) return {srgb_reference, 1.0F};
+Exposure Exposure::FromLogGain(float log_gain) {
+  if (log_gain == 0.0F) return {};
+  return {log_gain, std::exp(log_gain), std::exp(log_gain / kSrgbPower)};
+}
+
+Exposed Expose(float srgb_reference, const Exposure& exposure) {
   const float safe = std::max(srgb_reference, 0.0F);
-  const float linear = gain * image::LinearFromSrgb(safe);
-  return {image::SrgbFromLinear(linear), image::SrgbSlope(linear) * gain * image::LinearSlope(safe)};
+  const float lifted = exposure.root * (safe + kSrgbOffset);
+  // Above the toe on both sides sRGB is a pure power law, and the gain a factor on the value plus its offset.
+  if (safe > kToe && lifted > kToe + kSrgbOffset) return {lifted - kSrgbOffset, exposure.root, lifted / kSrgbPower};
+  const float linear = exposure.gain * image::LinearFromSrgb(safe);
+  const float encode_slope = image::SrgbSlope(linear);
+  return {image::SrgbFromLinear(linear), encode_slope * exposure.gain * image::LinearSlope(safe), encode_slope * linear};
 }
 
 }  // namespace skyquilt::brightness

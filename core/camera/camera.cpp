@@ -138,6 +138,11 @@ Eigen::Vector2d Camera::PrincipalPoint() const {
   return {params[first], params[first + 1]};
 }
 
+double Camera::FarthestCorner() const {
+  const Eigen::Vector2d middle = PrincipalPoint();
+  return middle.cwiseAbs().cwiseMax((Eigen::Vector2d(width, height) - middle).cwiseAbs()).norm();
+}
+
 std::optional<Eigen::Vector2d> Camera::ImgFromCam(const Eigen::Vector3d& x_in_cam) const {
   if (!x_in_cam.allFinite() || !(x_in_cam.z() > 0.0)) return std::nullopt;
   const Eigen::Vector2d focal(FocalX(), FocalY());

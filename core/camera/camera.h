@@ -31,6 +31,8 @@ struct Camera {
   double FocalX() const;
   double FocalY() const;
   Eigen::Vector2d PrincipalPoint() const;
+  // Pixels from the principal point to the farthest corner of the image.
+  double FarthestCorner() const;
 
   // Pixel of a point in the camera frame; nothing when it is not in front of the camera (fisheye: also none at the centre), nor when it
   // lies beyond the first fold of the distortion, where its polynomial would mirror far-off points back into the image.

@@ -41,11 +41,15 @@ void HashField::Initialize(base::Random& random, std::span<float> grid, std::spa
     float* weights = networks.data() + network_offsets_[l];
     for (int o = 0; o < layer.outputs; ++o) {
       for (int i = 0; i < layer.inputs; ++i) {
-        const bool padding = l + 1 == layers_.size() && o >= 3;
-        weights[o * layer.inputs + i] = padding ? 0.0F : static_cast<float>(random.Uniform(-limit, limit));
+        const bool luminance = l + 1 == layers_.size() && o >= 3;
+        weights[o * layer.inputs + i] = luminance ? 0.0F : static_cast<float>(random.Uniform(-limit, limit));
       }
     }
   }
+  if (!config_.luminance) return;
+  float* taps = networks.data() + LuminanceOffset();
+  std::fill_n(taps, kLuminanceTaps, 1.0F / kLuminanceTaps);
+  taps[kLuminanceTaps] = 0.0F;
 }
 
 NetworkWeights HashField::Prepare(std::span<const float> networks) const {
@@ -61,6 +65,7 @@ NetworkWeights HashField::Prepare(std::span<const float> networks) const {
     }
     weights.transposed.push_back(std::move(transposed));
   }
+  if (config_.luminance) std::copy_n(networks.data() + LuminanceOffset(), weights.luminance.size(), weights.luminance.begin());
   return weights;
 }
 

@@ -2,11 +2,14 @@
 //   features = grid(x)                                    levels * features rows
 //   geometry = W2 relu(W1 features)                       kGeometryRows rows, row 0 is the log density
 //   rgb      = range * sigmoid(W4 relu(W3 [geometry, SH(direction)]))
+// W4 has a fourth row. With `luminance` it gives the samples' log luminance, from which a convolution of width 7 over neighbouring pixels makes
+// Omega (core/brightness/luminance.h); its taps and bias are the last parameters. Without, the row stays zero.
 // The field owns no parameters: it works on flat buffers it is handed (grid, then networks), so optimiser and checkpoint see plain arrays.
 // All batches are structures of arrays padded as core/kernel/kernels.h asks. Functions are const and safe to call from many threads
 // with separate scratch. Source: Mueller et al. 2022; network sizes are configuration.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,7 +20,8 @@
 namespace skyquilt::field {
 
 constexpr int kGeometryRows = 16;
-constexpr int kColorRows = 4;  // 3 used; padded to the kernels' row multiple
+constexpr int kColorRows = 4;      // red, green, blue, luminance
+constexpr int kLuminanceTaps = 7;  // of the convolution
 // Samples whose activations stay in the second-level cache: what one task should hand over at a time.
 constexpr int kChunk = 512;
 // Row stride of a chunk's own buffers: an odd number of cache lines, so that rows do not fall on the same cache sets.
@@ -30,12 +34,14 @@ struct FieldConfig {
   int sh_degree = 3;            // 1..4
   double color_range = 1.0;     // largest display value a colour can take; > 1 leaves headroom for photos darker than the reference
   double density_bias = -5.0;   // log optical depth of one marching step at start
+  bool luminance = false;
 };
 
 // Weights of one moment, with the transposed copies that backward reads.
 struct NetworkWeights {
-  std::vector<std::vector<float>> layer;       // density 2, then colour
-  std::vector<std::vector<float>> transposed;  // same order
+  std::vector<std::vector<float>> layer;                 // density 2, then colour
+  std::vector<std::vector<float>> transposed;            // same order
+  std::array<float, kLuminanceTaps + 1> luminance = {};  // taps, then bias
 };
 
 // Activations and gradients of one packet of samples, kept between forward and backward. One per thread.
@@ -70,11 +76,13 @@ class HashField {
   const FieldConfig& config() const { return config_; }
   const encoding::HashGrid& grid() const { return grid_; }
   int64_t GridParameters() const { return grid_.ParameterCount(); }
-  int64_t NetworkParameters() const { return network_offsets_.back(); }
+  int64_t NetworkParameters() const { return LuminanceOffset() + (config_.luminance ? kLuminanceTaps + 1 : 0); }
+  // Where the luminance's taps and bias begin among the network parameters.
+  int64_t LuminanceOffset() const { return network_offsets_.back(); }
   int FeatureRows() const { return grid_.OutputRows(); }
   int ColorInputRows() const { return color_inputs_; }
 
-  // Grid uniform in +-1e-4, networks Xavier uniform; padding rows zero.
+  // Grid uniform in +-1e-4, networks Xavier uniform; luminance zero everywhere, with even taps.
   void Initialize(base::Random& random, std::span<float> grid, std::span<float> networks) const;
   NetworkWeights Prepare(std::span<const float> networks) const;
 

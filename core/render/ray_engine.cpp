@@ -4,8 +4,10 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/base/cancel.h"
+#include "core/image/srgb.h"
 #include "core/render/blend.h"
 #include "core/render/composite.h"
 #include "core/render/march.h"
@@ -51,6 +53,15 @@ struct FieldBatch {
 };
 
 }  // namespace
+
+EngineOptions EngineOptions::For(const brightness::Luminance& luminance) {
+  EngineOptions options;
+  if (!luminance.On()) return options;
+  options.concealing = luminance.product ? Concealing::kProduct : Concealing::kGain;
+  // Along a product even what is hardly seen holds light back.
+  if (luminance.product) options.colour_threshold = -1.0F;
+  return options;
+}
 
 class RayRenderer::Group {
  public:
@@ -318,6 +329,27 @@ class RayRenderer::Group {
       const FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
       for (size_t c = 0; c < 3; ++c)
         out.rgb_srgb[c] += gain * sample.weight * batch.color[c * batch.visible_stride + static_cast<size_t>(sample.local)];
+    }
+    if (options_.concealing != Concealing::kNone) ComposeConcealed(p, out);
+  }
+
+  // A ray on its own is its own neighbour on both sides: the convolution sees seven times the same luminance.
+  void ComposeConcealed(const Progress& p, RayColor& out) const {
+    const auto gain = static_cast<float>(p.gain);
+    float passed = 1.0F;
+    for (size_t s = p.begin; s < p.next; ++s) {
+      const Sample& sample = samples_[s];
+      if (!(sample.weight > options_.colour_threshold)) continue;
+      const FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
+      const float* color = batch.color.data() + static_cast<size_t>(sample.local);
+      const auto& taps = all_[static_cast<size_t>(sample.field)]->weights.luminance;
+      const float sum = std::accumulate(taps.begin(), taps.end() - 1, 0.0F);
+      const float omega = 1.0F / (1.0F + std::exp(-(sum * color[3 * batch.visible_stride] + taps.back())));
+      const float share = options_.concealing == Concealing::kProduct ? passed : omega;
+      passed *= omega;
+      for (size_t c = 0; c < 3; ++c) {
+        out.concealed_light[c] += gain * sample.weight * share * image::LinearFromSrgb(color[c * batch.visible_stride]);
+      }
     }
   }
 

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
+#include "core/brightness/luminance.h"
+#include "core/render/concealed.h"
 #include "core/render/scene.h"
 #include "core/render/trained_field.h"
 
@@ -19,8 +21,12 @@ struct FieldSet {
 };
 
 struct EngineOptions {
-  double step_scale = 1.0;         // marching step as a multiple of the field's own
-  float colour_threshold = 1e-4F;  // samples of smaller weight get no colour
+  // What fields with this hidden light need.
+  static EngineOptions For(const brightness::Luminance& luminance);
+
+  double step_scale = 1.0;                    // marching step as a multiple of the field's own
+  float colour_threshold = 1e-4F;             // samples of smaller weight get no colour
+  Concealing concealing = Concealing::kNone;  // fields with luminance: fill RayColor::concealed_light
 };
 
 // Blend weights of the set at a place: one per block, and the context's share in the return value. Sums to 1 inside any core box.

@@ -1,6 +1,7 @@
 #include "core/render/scene.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/errors.h"
 #include "core/checkpoint/archive.h"
@@ -15,16 +16,38 @@ namespace {
 constexpr int kTile = 32;        // pixels
 constexpr int kBandTiles = 128;  // rays built at a time: memory does not grow with the image
 
-void Expose(float gain, std::span<RayColor> colors) {
-  if (gain == 1.0F) return;
+void Expose(const std::array<float, 3>& log_gain, std::span<RayColor> colors) {
+  for (size_t c = 0; c < 3; ++c) {
+    if (log_gain[c] == 0.0F) continue;
+    const brightness::Exposure exposure = brightness::Exposure::FromLogGain(log_gain[c]);
+    for (RayColor& color : colors) color.rgb_srgb[c] = brightness::Expose(color.rgb_srgb[c], exposure).value;
+  }
+}
+
+// Display values from the light that fields with luminance show; premultiplied as before.
+void ShowConcealed(std::span<RayColor> colors) {
   for (RayColor& color : colors) {
-    for (float& value : color.rgb_srgb) value = image::SrgbFromLinear(gain * image::LinearFromSrgb(value));
+    for (size_t c = 0; c < 3; ++c) {
+      color.rgb_srgb[c] = color.opacity > 0.0F ? color.opacity * image::SrgbFromLinear(color.concealed_light[c] / color.opacity) : 0.0F;
+    }
   }
 }
 
 }  // namespace
 
 struct Scene::Impl {
+  // Whether a look is the rendering with held-back light.
+  bool Conceals(Look look) const {
+    return look == Look::kNormal ? info.luminance.mode == brightness::LuminanceMode::kOver : info.luminance.mode == brightness::LuminanceMode::kUnder;
+  }
+  EngineOptions Options(Look look) const { return Conceals(look) ? EngineOptions::For(info.luminance) : EngineOptions{}; }
+  // Light of the backdrop, which has the photos' colours, over what a look shows of it.
+  float BackdropGain(Look look) const {
+    if (look == Look::kRecorded || !info.luminance.On()) return 1.0F;
+    const double sign = info.luminance.mode == brightness::LuminanceMode::kUnder ? -1.0 : 1.0;
+    return static_cast<float>(std::exp(sign * info.luminance_state.mean_log_gain));
+  }
+
   SceneInfo info;
   std::vector<TrainedField> blocks;
   std::unique_ptr<TrainedField> context;
@@ -51,7 +74,8 @@ Scene Scene::Load(const std::filesystem::path& scene_h5) {
   info.origin = {reader.DoubleAttribute("origin_latitude_deg"), reader.DoubleAttribute("origin_longitude_deg"),
                  reader.DoubleAttribute("origin_height_m")};
   info.georeferenced = reader.IntAttribute("georeferenced") != 0;
-  info.reference_exposure = reader.DoubleAttribute("reference_exposure");
+  info.response = brightness::GetResponse(reader, scene_h5);
+  brightness::GetLuminance(reader, &info.luminance, &info.luminance_state);
   info.config = reader.StringAttribute("config");
   info.gsd_m = reader.DoubleAttribute("gsd_m");
   impl.backdrop = GetBackdrop(reader, scene_h5);
@@ -78,20 +102,23 @@ Scene Scene::Load(const std::filesystem::path& scene_h5) {
   return scene;
 }
 
-void Scene::RenderRays(std::span<const Ray> rays, std::span<RayColor> out, float exposure_gain, base::ThreadPool& threads) const {
+void Scene::RenderRays(std::span<const Ray> rays, std::span<RayColor> out, const Appearance& appearance, base::ThreadPool& threads) const {
   SKYQUILT_CHECK(rays.size() == out.size(), std::to_string(rays.size()) + " rays, " + std::to_string(out.size()) + " results");
-  render::RenderRays(impl_->set, rays, out, EngineOptions{}, threads);
-  Expose(exposure_gain, out);
+  render::RenderRays(impl_->set, rays, out, impl_->Options(appearance.look), threads);
+  if (impl_->Conceals(appearance.look)) ShowConcealed(out);
+  Expose(appearance.log_gain, out);
 }
 
-std::vector<RayColor> Scene::RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, float exposure_gain,
+std::vector<RayColor> Scene::RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, const Appearance& appearance,
                                           base::ThreadPool& threads) const {
+  const Look look = appearance.look;
   std::vector<RayColor> out(static_cast<size_t>(camera.width) * static_cast<size_t>(camera.height));
   const geo::Rigid3d enu_from_cam = cam_from_enu.Inverse();
   const float radius = static_cast<float>(0.5 / std::max(1e-9, camera.FocalX()));
   // Square tiles: rays that are rendered together look at the same places, so table entries are in cache.
   const int tile_columns = (camera.width + kTile - 1) / kTile;
   const int n_tiles = tile_columns * ((camera.height + kTile - 1) / kTile);
+  const float backdrop_gain = impl_->BackdropGain(look);
   std::vector<size_t> pixels;
   std::vector<Ray> rays;
   std::vector<RayColor> colors;
@@ -118,13 +145,17 @@ std::vector<RayColor> Scene::RenderCamera(const camera::Camera& camera, const ge
         rays[i].pixel_radius = radius;
       }
     });
-    render::RenderRays(impl_->set, rays, colors, EngineOptions{}, threads);
+    render::RenderRays(impl_->set, rays, colors, impl_->Options(look), threads);
+    if (impl_->Conceals(look)) ShowConcealed(colors);
     for (size_t i = 0; i < colors.size(); ++i) {
       if (colors[i].opacity >= 1.0F) continue;
-      const std::array<float, 3> behind = impl_->backdrop.Color(rays[i].origin_enu, rays[i].direction_enu);
+      std::array<float, 3> behind = impl_->backdrop.Color(rays[i].origin_enu, rays[i].direction_enu);
+      if (backdrop_gain != 1.0F) {
+        for (float& value : behind) value = image::SrgbFromLinear(backdrop_gain * image::LinearFromSrgb(value));
+      }
       for (size_t c = 0; c < 3; ++c) colors[i].rgb_srgb[c] += (1.0F - colors[i].opacity) * behind[c];
     }
-    Expose(exposure_gain, colors);
+    Expose(appearance.log_gain, colors);
     for (size_t i = 0; i < pixels.size(); ++i) out[pixels[i]] = colors[i];
   }
   return out;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,8 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
+#include "core/brightness/luminance.h"
+#include "core/brightness/response.h"
 #include "core/camera/camera.h"
 #include "core/geo/geodetic.h"
 #include "core/geo/transform.h"
@@ -33,8 +36,10 @@ struct SceneInfo {
   bool georeferenced = false;
   std::vector<SceneBlock> blocks;    // non-empty ones
   Eigen::Vector3d min_enu, max_enu;  // union of the core boxes
-  double reference_exposure = 0.0;   // EXIF E = t ISO / (100 N^2) that "normal" renders show; 0 when unknown
-  int64_t parameters = 0;            // of all fields, context included
+  brightness::Response response;     // of the photos, relative to light at reference exposure
+  brightness::Luminance luminance;   // hidden light, for badly exposed surveys
+  brightness::LuminanceState luminance_state;
+  int64_t parameters = 0;  // of all fields, context included
   double context_seconds = 0.0;
   int64_t context_samples = 0;
   double gsd_m = 0.0;  // finest of the blocks
@@ -51,12 +56,25 @@ struct Ray {
 };
 
 struct RayColor {
-  float rgb_srgb[3] = {0, 0, 0};  // premultiplied by opacity over black, at reference exposure times gain, display values
-  float opacity = 0.0F;           // 1 - final transmittance
-  float depth = 0.0F;             // metres along the ray, mean weighted; NaN where opacity is 0
-  float depth_median = 0.0F;      // metres along the ray where transmittance passes 0.5; NaN if it never does
-  float depth_front = 0.0F;       // the same for 0.85, the first sign of a surface,
-  float depth_back = 0.0F;        // and for 0.15, where nearly all light has ended
+  float rgb_srgb[3] = {0, 0, 0};         // premultiplied by opacity over black, at reference exposure times gain, display values
+  float concealed_light[3] = {0, 0, 0};  // with held-back light (core/brightness/luminance.h): premultiplied linear light; 0 without luminance
+  float opacity = 0.0F;                  // 1 - final transmittance
+  float depth = 0.0F;                    // metres along the ray, mean weighted; NaN where opacity is 0
+  float depth_median = 0.0F;             // metres along the ray where transmittance passes 0.5; NaN if it never does
+  float depth_front = 0.0F;              // the same for 0.85, the first sign of a surface,
+  float depth_back = 0.0F;               // and for 0.15, where nearly all light has ended
+};
+
+// The two renderings of a scene with hidden light; of any other scene they are the same.
+enum class Look {
+  kNormal,    // what is shown to people
+  kRecorded,  // what a photo at reference exposure would have recorded
+};
+
+// How a rendering is to look: which of the two, and the change of exposure on top, natural logarithm in linear light per colour.
+struct Appearance {
+  Look look = Look::kNormal;
+  std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};
 };
 
 class Scene {
@@ -67,11 +85,11 @@ class Scene {
   ~Scene();
 
   const SceneInfo& info() const;
-  // Any number of rays, 0 included; out has the same length. exposure_gain multiplies linear light. Deterministic.
+  // Any number of rays, 0 included; out has the same length. Deterministic.
   // Throws base::Interrupted when cancelled.
-  void RenderRays(std::span<const Ray> rays, std::span<RayColor> out, float exposure_gain, base::ThreadPool& threads) const;
+  void RenderRays(std::span<const Ray> rays, std::span<RayColor> out, const Appearance& appearance, base::ThreadPool& threads) const;
   // All pixels of a camera, row-major, width * height results, colours over the scene's backdrop. Opacity tells where that shows.
-  std::vector<RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, float exposure_gain,
+  std::vector<RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, const Appearance& appearance,
                                      base::ThreadPool& threads) const;
 
  private:

@@ -47,6 +47,7 @@ void PutField(const TrainedField& f, const std::string& prefix, checkpoint::Arch
   writer.SetAttribute(prefix + "samples", f.samples);
   const std::vector<double> numbers = Describe(f);
   for (size_t i = 0; i < numbers.size(); ++i) writer.SetAttribute(prefix + "describe" + std::to_string(i), numbers[i]);
+  writer.SetAttribute(prefix + "luminance", f.config.luminance ? 1 : 0);
   writer.Put(prefix + "grid", f.grid);
   writer.Put(prefix + "networks", f.networks);
   writer.SetAttribute(prefix + "occupancy_cell", static_cast<double>(f.occupancy.cell));
@@ -83,6 +84,7 @@ TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesy
   }
   f.margin_m = number();
   f.step_m = number();
+  f.config.luminance = reader.HasAttribute(prefix + "luminance") && reader.IntAttribute(prefix + "luminance") != 0;
   const std::string mend = "Train it again with --restart";
   try {
     f.map = contracted ? encoding::SpaceMap::Slab(min_enu, max_enu) : encoding::SpaceMap::Box(min_enu, max_enu);

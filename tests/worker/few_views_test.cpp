@@ -54,13 +54,14 @@ class FewViewsTest : public ::testing::Test {
     }
     base::ThreadPool threads(1);
     pixels_ = image::PixelCache::Open(folder_ / "pixels.bin", sources, 0, threads);
-    source_ = std::make_unique<RaySource>(survey_, pixels_, std::vector<float>{1.0F, 1.0F});
+    source_ = std::make_unique<RaySource>(survey_, pixels_, response_);
     source_->SetTiles(TrainingTiles(survey_, {0, 1}), {}, 0.0);
   }
 
   TemporaryFolder folder_;
   survey::Survey survey_;
   image::PixelCache pixels_;
+  brightness::Response response_ = brightness::Response::Plain(2, 1);
   std::unique_ptr<RaySource> source_;
 };
 

@@ -168,7 +168,7 @@ TEST(ProductOptions, RefuseWhatCannotBe) {
   options.video_path = "dive";
   EXPECT_THROW(options.Check(), base::UsageError);
   options = {};
-  options.exposure_ev = std::nan("");
+  options.min_opacity = std::nan("");
   EXPECT_THROW(options.Check(), base::UsageError);
 }
 

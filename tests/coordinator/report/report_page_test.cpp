@@ -86,6 +86,75 @@ TEST_F(ReportPage, TagsAreBalancedAndNoNumberIsNan) {
   EXPECT_EQ(CountOf(html_, "\"nan\"") + CountOf(html_, ">nan") + CountOf(html_, "inf\""), 0U);
 }
 
+TEST_F(ReportPage, SummaryTellsWhatPredictedGainsAreWorth) {
+  const size_t summary = html_.find("id=\"summary\""), end = html_.find("</section>", summary);
+  EXPECT_LT(html_.find("PSNR with the EXIF gain alone", summary), end);
+  EXPECT_LT(html_.find("PSNR of right halves, as rendered", summary), end);
+  EXPECT_LT(html_.find("with gains fitted to the left halves", summary), end);
+}
+
+TEST_F(ReportPage, BrightnessHasChartsPicturesAndATooltipPerPhoto) {
+  const std::string section = BrightnessSection(sample_->input);
+  EXPECT_NE(html_.find(section), std::string::npos);
+  EXPECT_EQ(CountOf(html_, "href=\"#brightness\""), 1U);
+  EXPECT_EQ(CountOf(section, "<svg"), 3U);
+  EXPECT_EQ(CountOf(section, "<title>flight"), sample_->survey.photos.size());
+  EXPECT_EQ(CountOf(section, " (held out)\n"), sample_->metrics.photos.size());
+  EXPECT_EQ(CountOf(section, "dot c7"), sample_->survey.photos.size());
+  EXPECT_EQ(CountOf(section, "dot c7 hollow"), sample_->metrics.photos.size());
+  EXPECT_EQ(CountOf(section, "<img src=\"images/brightness_"), 6U);
+  EXPECT_NE(section.find("87\xE2\x80\xAF%"), std::string::npos);
+  EXPECT_NE(section.find("0.62 \xE2\x86\x92 0.21\xE2\x80\xAFstops"), std::string::npos);
+  EXPECT_NE(section.find("<b>+1.23\xE2\x80\xAFstops</b>"), std::string::npos);
+}
+
+TEST_F(ReportPage, BrightnessEscapesNamesAndSentences) {
+  const std::string section = BrightnessSection(sample_->input);
+  EXPECT_EQ(section.find("<b>DJI"), std::string::npos);
+  // In a tooltip and over the pictures.
+  EXPECT_EQ(CountOf(section, "&lt;b&gt;DJI &amp; &quot;co&quot;&lt;/b&gt;.jpg"), 2U);
+  EXPECT_NE(section.find("Hidden light &lt;none&gt;."), std::string::npos);
+}
+
+TEST_F(ReportPage, ThereIsNoBrightnessWithoutFindings) {
+  const BrightnessReport nothing;
+  ReportInput input = sample_->input;
+  input.brightness = &nothing;
+  EXPECT_EQ(BrightnessSection(input), "");
+  EXPECT_EQ(BuildReportPage(input).find("#brightness"), std::string::npos);
+  input.brightness = nullptr;
+  EXPECT_EQ(BrightnessSection(input), "");
+}
+
+TEST_F(ReportPage, BrightnessOfOnePhotoThatLearnedNothing) {
+  BrightnessReport one;
+  one.photos.push_back({"only.jpg", 0, 0.0, false, 0.0, {}});
+  ReportInput input = sample_->input;
+  input.brightness = &one;
+  const std::string section = BrightnessSection(input);
+  EXPECT_EQ(CountOf(section, "<svg"), 1U);
+  EXPECT_EQ(CountOf(section, "<circle"), 1U);
+  EXPECT_NE(section.find("Nothing beyond the tags was learned"), std::string::npos);
+  EXPECT_EQ(section.find("nan"), std::string::npos);
+}
+
+TEST_F(ReportPage, LongPausesDoNotSqueezeTheFlights) {
+  BrightnessReport two_days;
+  two_days.timed = true;
+  for (const double time_s : {0.0, 60.0, 86400.0, 86460.0}) {
+    two_days.photos.push_back({"p.jpg", time_s < 3600.0 ? 0 : 1, time_s, false, time_s < 3600.0 ? 0.0 : 0.5, {}});
+  }
+  ReportInput input = sample_->input;
+  input.brightness = &two_days;
+  const std::string section = BrightnessSection(input);
+  EXPECT_NE(section.find("pauses of more than 10 min"), std::string::npos);
+  // Three minutes are left, and each flight has a line of its own.
+  EXPECT_EQ(section.find(">1440<"), std::string::npos);
+  const size_t line = section.find("<path class=\"curve c8\"");
+  ASSERT_NE(line, std::string::npos);
+  EXPECT_EQ(CountOf(section.substr(line, section.find("<title>", line) - line), "M"), 2U);
+}
+
 TEST(ReportPageOfNothing, SaysWhatIsMissing) {
   const Metrics metrics;
   const survey::Survey survey;

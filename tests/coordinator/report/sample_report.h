@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "coordinator/report/brightness_report.h"
 #include "coordinator/report/metrics.h"
 #include "coordinator/report/report_page.h"
 #include "coordinator/report/train_log.h"
@@ -14,6 +15,7 @@ struct SampleReport {
   survey::Survey survey;
   partition::BlockSet blocks;
   TrainLog log;
+  BrightnessReport brightness;
   ReportInput input;  // points into the above: do not copy
 
   // Writes the pictures under folder/images.

@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 
 namespace skyquilt::simulate {
@@ -87,6 +89,116 @@ TEST(Flight, GainsAreRelativeToTheMedianAndMatchTheTags) {
   EXPECT_NEAR(gains[gains.size() / 2], 1.0, 0.1);
   EXPECT_GT(std::log2(gains.back() / gains.front()), 1.5);  // drifts
   EXPECT_GT(largest_step, 0.4);                             // and jumps
+}
+
+std::vector<PhotoPlan> TownFlight(const std::function<void(SimulateOptions&)>& change) {
+  SimulateOptions options;
+  options.preset = "town";
+  change(options);
+  return PlanFlight(ResolvePreset(options), 0.0);
+}
+
+double TaggedExposure(const PhotoPlan& photo) {
+  return photo.exposure_time_s * photo.iso / (100.0 * photo.f_number * photo.f_number);
+}
+
+void ExpectSameTags(const std::vector<PhotoPlan>& a, const std::vector<PhotoPlan>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].exposure_time_s, b[i].exposure_time_s);
+    EXPECT_EQ(a[i].iso, b[i].iso);
+    EXPECT_EQ(a[i].f_number, b[i].f_number);
+    EXPECT_EQ(a[i].gain, b[i].gain);
+    EXPECT_TRUE(a[i].tagged_position == b[i].tagged_position);
+  }
+}
+
+TEST(Flight, LightIsTheGainUnlessAskedFor) {
+  for (const char* name : {"town", "tidalflat"}) {
+    for (const PhotoPlan& photo : PlanFlight(Resolve(name, -1.0, -1.0), 0.0)) {
+      EXPECT_EQ(photo.development_gain, photo.gain);
+      EXPECT_EQ(LightRgb(photo), (std::array<double, 3>{photo.gain, photo.gain, photo.gain}));
+      EXPECT_TRUE(photo.exposure_tagged);
+    }
+  }
+}
+
+// Exposure times are 1/n with n above 400: rounded by up to 0.13 %, and so is the median.
+TEST(Flight, OffsetChangesLightAndTagsAlike) {
+  const std::vector<PhotoPlan> normal = TownFlight([](SimulateOptions&) {});
+  for (const double stops : {-2.0, 1.5}) {
+    const std::vector<PhotoPlan> photos = TownFlight([&](SimulateOptions& o) { o.exposure_offset_stops = stops; });
+    ASSERT_EQ(photos.size(), normal.size());
+    const double factor = std::exp2(stops);
+    for (size_t i = 0; i < photos.size(); ++i) {
+      EXPECT_NEAR(TaggedExposure(photos[i]) / TaggedExposure(normal[i]), factor, 0.003 * factor);
+      EXPECT_NEAR(photos[i].development_gain / normal[i].development_gain, factor, 0.006 * factor);
+      EXPECT_NEAR(photos[i].development_gain, factor * photos[i].gain, 1e-12 * factor);
+    }
+  }
+}
+
+TEST(Flight, LongExposuresAreTaggedToo) {
+  const std::vector<PhotoPlan> normal = TownFlight([](SimulateOptions&) {});
+  const std::vector<PhotoPlan> photos = TownFlight([](SimulateOptions& o) { o.exposure_offset_stops = 10.0; });
+  for (size_t i = 0; i < photos.size(); ++i) {
+    // About 0.64 s, in hundredths.
+    EXPECT_NEAR(photos[i].exposure_time_s * 100.0, std::round(photos[i].exposure_time_s * 100.0), 1e-9);
+    EXPECT_NEAR(TaggedExposure(photos[i]) / TaggedExposure(normal[i]), 1024.0, 15.0);
+  }
+}
+
+TEST(Flight, BrightnessErrorsAreNotInTheTags) {
+  const std::vector<PhotoPlan> exact = TownFlight([](SimulateOptions&) {});
+  const auto erring = [](SimulateOptions& o) { o.exposure_error_stops = 0.5; };
+  const std::vector<PhotoPlan> photos = TownFlight(erring);
+  ExpectSameTags(photos, exact);
+  const std::vector<PhotoPlan> again = TownFlight(erring);
+  const auto n = static_cast<double>(photos.size());
+  double sum = 0.0;
+  double squares = 0.0;
+  for (size_t i = 0; i < photos.size(); ++i) {
+    EXPECT_EQ(photos[i].development_gain, again[i].development_gain);
+    const double stops = std::log2(photos[i].development_gain / photos[i].gain);
+    sum += stops;
+    squares += stops * stops;
+  }
+  // Of 110 samples: the mean is good to 0.05 stops, the standard deviation to 7 %.
+  EXPECT_NEAR(sum / n, 0.0, 0.2);
+  EXPECT_NEAR(std::sqrt(squares / n), 0.5, 0.14);
+}
+
+TEST(Flight, ColorDriftsSlowlyAndTurnsRedAgainstBlue) {
+  const double most = 0.8;
+  const std::vector<PhotoPlan> photos = TownFlight([&](SimulateOptions& o) { o.color_drift_stops = most; });
+  ExpectSameTags(photos, TownFlight([](SimulateOptions&) {}));
+  double reddest = 0.0;
+  double bluest = 0.0;
+  double previous = photos[0].color_drift_stops;
+  for (const PhotoPlan& photo : photos) {
+    const std::array<double, 3> light = LightRgb(photo);
+    EXPECT_EQ(light[1], photo.gain);
+    EXPECT_NEAR(light[0] * light[2], light[1] * light[1], 1e-12);
+    const double drift = std::log2(light[0] / light[1]);
+    EXPECT_LE(std::abs(drift), most + 1e-12);
+    // The steepest that the noise can be, see ValueNoise.
+    EXPECT_LE(std::abs(drift - previous), 0.5 * most + 1e-6);
+    previous = drift;
+    reddest = std::max(reddest, drift);
+    bluest = std::min(bluest, drift);
+  }
+  EXPECT_GT(reddest, 0.25 * most);
+  EXPECT_LT(bluest, -0.25 * most);
+}
+
+TEST(Flight, ExposureTagsAreLeftOutAsAsked) {
+  const std::vector<PhotoPlan> none = TownFlight([](SimulateOptions& o) { o.exposure_tags = "none"; });
+  const std::vector<PhotoPlan> half = TownFlight([](SimulateOptions& o) { o.exposure_tags = "half"; });
+  ExpectSameTags(none, half);
+  for (size_t i = 0; i < none.size(); ++i) {
+    EXPECT_FALSE(none[i].exposure_tagged);
+    EXPECT_EQ(half[i].exposure_tagged, i % 2 == 0) << i;
+  }
 }
 
 TEST(Flight, GpsNoiseHasTheStatedSize) {

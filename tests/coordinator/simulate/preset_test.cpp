@@ -48,6 +48,29 @@ TEST(Presets, OptionsAreLaidOver) {
   EXPECT_EQ(preset.oblique_lines, 0);
 }
 
+TEST(Presets, LightIsAsTheTagsTellUnlessAskedFor) {
+  SimulateOptions options;
+  const Preset plain = ResolvePreset(options);
+  EXPECT_EQ(plain.exposure_offset_stops, 0.0);
+  EXPECT_EQ(plain.exposure_error_stops, 0.0);
+  EXPECT_EQ(plain.color_drift_stops, 0.0);
+  EXPECT_EQ(plain.vignetting, 0.0);
+  EXPECT_EQ(plain.exposure_tags, ExposureTags::kAll);
+  options.exposure_offset_stops = -10.0;
+  options.exposure_error_stops = 3.0;
+  options.color_drift_stops = 0.5;
+  options.vignetting = 0.9;
+  options.exposure_tags = "half";
+  const Preset changed = ResolvePreset(options);
+  EXPECT_EQ(changed.exposure_offset_stops, -10.0);
+  EXPECT_EQ(changed.exposure_error_stops, 3.0);
+  EXPECT_EQ(changed.color_drift_stops, 0.5);
+  EXPECT_EQ(changed.vignetting, 0.9);
+  EXPECT_EQ(changed.exposure_tags, ExposureTags::kHalf);
+  options.exposure_tags = "none";
+  EXPECT_EQ(ResolvePreset(options).exposure_tags, ExposureTags::kNone);
+}
+
 void ExpectRefused(const std::string& named, const std::function<void(SimulateOptions&)>& change) {
   SimulateOptions options;
   options.preset = "town";
@@ -72,6 +95,22 @@ TEST(Presets, BadOptionsAreRefusedByName) {
   ExpectRefused("altitudes", [](SimulateOptions& o) { o.altitudes = {80.0, 90.0}; });
   ExpectRefused("altitudes", [](SimulateOptions& o) { o.altitudes = {-80.0}; });
   ExpectRefused("altitudes", [&](SimulateOptions& o) { o.altitudes = {nan}; });
+  ExpectRefused("exposure_offset_stops", [](SimulateOptions& o) { o.exposure_offset_stops = -10.1; });
+  ExpectRefused("exposure_offset_stops", [](SimulateOptions& o) { o.exposure_offset_stops = 11.0; });
+  ExpectRefused("exposure_offset_stops", [&](SimulateOptions& o) { o.exposure_offset_stops = nan; });
+  // Each is possible alone.
+  ExpectRefused("exposure_offset_stops", [](SimulateOptions& o) {
+    o.exposure_offset_stops = -10.0;
+    o.exposure_drift_stops = 4.0;
+  });
+  ExpectRefused("exposure_error_stops", [](SimulateOptions& o) { o.exposure_error_stops = -0.1; });
+  ExpectRefused("exposure_error_stops", [](SimulateOptions& o) { o.exposure_error_stops = 3.1; });
+  ExpectRefused("color_drift_stops", [](SimulateOptions& o) { o.color_drift_stops = -0.1; });
+  ExpectRefused("color_drift_stops", [&](SimulateOptions& o) { o.color_drift_stops = nan; });
+  ExpectRefused("vignetting", [](SimulateOptions& o) { o.vignetting = 0.95; });
+  ExpectRefused("vignetting", [](SimulateOptions& o) { o.vignetting = -0.1; });
+  ExpectRefused("exposure_tags", [](SimulateOptions& o) { o.exposure_tags = "some"; });
+  ExpectRefused("all, none, half", [](SimulateOptions& o) { o.exposure_tags = ""; });
   ExpectRefused("latitude_deg", [](SimulateOptions& o) { o.latitude_deg = 91.0; });
   ExpectRefused("test_every", [](SimulateOptions& o) { o.test_every = 0; });
   ExpectRefused("samples_per_pixel", [](SimulateOptions& o) { o.samples_per_pixel = 5; });

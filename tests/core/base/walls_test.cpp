@@ -29,9 +29,9 @@ const std::map<std::string, std::set<std::string>>& CoreArrows() {
       {"kernel", {"base"}},
       {"encoding", {"kernel", "base"}},
       {"field", {"encoding", "kernel", "base"}},
-      {"render", {"field", "encoding", "kernel", "camera", "geo", "checkpoint", "image", "base"}},
+      {"render", {"field", "encoding", "kernel", "camera", "geo", "checkpoint", "brightness", "image", "base"}},
       {"metrics", {"image", "base"}},
-      {"brightness", {"image", "config", "base"}},
+      {"brightness", {"image", "config", "checkpoint", "base"}},
   };
   return arrows;
 }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/support/gradient_check.h"
+#include "core/image/srgb.h"
 
 namespace skyquilt::brightness {
 namespace {
@@ -25,8 +25,14 @@ TEST(GainsFromExif, AreRelativeToTheMedian) {
   EXPECT_FLOAT_EQ(gains.gain[3], 1.0F);
 }
 
-TEST(GainsFromExif, MostlyUntaggedSurveysKeepTheirColours) {
-  const PhotoGains gains = GainsFromExif({0.01, std::nullopt, std::nullopt});
+TEST(GainsFromExif, SaysWhichPhotosHaveNoTags) {
+  const PhotoGains gains = GainsFromExif({0.01, std::nullopt, 0.02});
+  EXPECT_EQ(gains.known, (std::vector<bool>{true, false, true}));
+  EXPECT_EQ(gains.gain[1], 1.0F);
+}
+
+TEST(GainsFromExif, UntaggedSurveysKeepTheirColours) {
+  const PhotoGains gains = GainsFromExif({std::nullopt, std::nullopt});
   EXPECT_EQ(gains.reference_exposure, 0.0);
   for (const float g : gains.gain) EXPECT_EQ(g, 1.0F);
   EXPECT_TRUE(GainsFromExif({}).gain.empty());
@@ -38,22 +44,37 @@ TEST(GainsFromExif, LimitsImpossibleTags) {
   EXPECT_FLOAT_EQ(gains.gain[3], 1024.0F);
 }
 
-TEST(Expose, SlopeMatchesFiniteDifferencesOverTenStops) {
+TEST(Expose, SlopesMatchFiniteDifferencesOverTenStops) {
   for (const float gain : {1.0F / 1024.0F, 0.3F, 1.0F, 2.5F, 1024.0F}) {
+    const auto with = [](float log_gain) { return Exposure::FromLogGain(log_gain); };
+    const float log_gain = std::log(gain);
     for (const float value : {0.01F, 0.2F, 0.5F, 0.99F, 1.4F}) {
       const float h = 1e-3F;
-      const float numeric = (Expose(value + h, gain).value - Expose(value - h, gain).value) / (2.0F * h);
-      EXPECT_NEAR(Expose(value, gain).slope, numeric, 0.02F * std::max(1.0F, std::abs(numeric))) << gain << " " << value;
-      EXPECT_TRUE(std::isfinite(Expose(value, gain).slope));
+      const Exposed exposed = Expose(value, with(log_gain));
+      const float numeric = (Expose(value + h, with(log_gain)).value - Expose(value - h, with(log_gain)).value) / (2.0F * h);
+      EXPECT_NEAR(exposed.slope, numeric, 0.02F * std::max(1.0F, std::abs(numeric))) << gain << " " << value;
+      const float by_gain = (Expose(value, with(log_gain + h)).value - Expose(value, with(log_gain - h)).value) / (2.0F * h);
+      EXPECT_NEAR(exposed.log_gain_slope, by_gain, 0.02F * std::max(1.0F, std::abs(by_gain))) << gain << " " << value;
+      EXPECT_TRUE(std::isfinite(exposed.slope));
     }
   }
-  EXPECT_TRUE(std::isfinite(Expose(-0.5F, 3.0F).value));
+  EXPECT_TRUE(std::isfinite(Expose(-0.5F, Exposure::FromLogGain(1.1F)).value));
+}
+
+// The short cut above the toe against the two transfer functions.
+TEST(Expose, IsAGainInLinearLight) {
+  for (const float gain : {1.0F / 1024.0F, 0.1F, 1.0F, 3.0F, 1024.0F}) {
+    for (float value = 0.0F; value <= 2.0F; value += 0.01F) {
+      const float wanted = image::SrgbFromLinear(gain * image::LinearFromSrgb(value));
+      EXPECT_NEAR(Expose(value, Exposure::FromLogGain(std::log(gain))).value, wanted, 2e-4F * std::max(1.0F, wanted)) << gain << " " << value;
+    }
+  }
 }
 
 TEST(ColorRange, LeavesRoomForTheDarkestPhoto) {
   EXPECT_NEAR(ColorRange({1.0F, 1.0F}), 1.02, 1e-6);
   const double range = ColorRange({0.25F, 1.0F, 4.0F});
-  EXPECT_GE(Expose(static_cast<float>(range), 0.25F).value, 1.0F);
+  EXPECT_GE(Expose(static_cast<float>(range), Exposure::FromLogGain(std::log(0.25F))).value, 1.0F);
   EXPECT_LE(ColorRange({1e-6F}), 4.0);
 }
 

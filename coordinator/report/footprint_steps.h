@@ -1,0 +1,29 @@
+// Do the photos' footprints show on the map? Seen from above at normal brightness, the ground just inside the border of a photo's footprint is
+// compared with the ground just outside. Where exposure differences were taken into the scene's colours, a step stands there.
+#pragma once
+
+#include "coordinator/report/metrics.h"
+#include "core/base/thread_pool.h"
+#include "core/camera/camera.h"
+#include "core/geo/transform.h"
+#include "core/render/scene.h"
+
+namespace skyquilt::report {
+
+struct FootprintSteps {
+  // Medians over photos of |mean outside - mean inside| in display values (1 = white), colours averaged; NaN without photos.
+  double border = kNotMeasured;
+  double control = kNotMeasured;  // the same across lines a little further inside, where no border runs: what texture alone gives
+  int photos = 0;
+};
+
+struct FootprintView {
+  camera::Camera camera;
+  geo::Rigid3d cam_from_enu;
+};
+
+// At most kFootprints of the views, evenly spread.
+constexpr int kFootprints = 96;
+FootprintSteps MeasureFootprintSteps(const render::Scene& scene, const std::vector<FootprintView>& views, base::ThreadPool& threads);
+
+}  // namespace skyquilt::report

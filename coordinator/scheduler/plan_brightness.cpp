@@ -1,0 +1,100 @@
+#include "coordinator/scheduler/plan_brightness.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/image/srgb.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+constexpr float kBelief = 0.02F;
+
+}  // namespace
+
+BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::BrightnessOptions& options) {
+  BrightnessPlan plan;
+  const size_t n = survey.photos.size();
+  plan.response = brightness::Response::Plain(n, survey.cameras.size());
+  plan.learn.learns_gain.assign(n, 0);
+  plan.learn.falloff = options.Vignette();
+  std::vector<std::optional<double>> exposures;
+  for (size_t i = 0; i < n; ++i) {
+    const survey::Photo& photo = survey.photos[i];
+    plan.response.camera[i] = photo.camera;
+    plan.response.names.insert(plan.response.names.end(), photo.name.begin(), photo.name.end());
+    plan.response.names.push_back('\n');
+    exposures.push_back(brightness::ExifExposure(photo.exposure.time_s, photo.exposure.f_number, photo.exposure.iso));
+  }
+  std::vector<bool> known(n, false);
+  if (options.Exif()) {
+    brightness::PhotoGains gains = brightness::GainsFromExif(exposures);
+    plan.response.reference_exposure = gains.reference_exposure;
+    plan.response.exif_gain = std::move(gains.gain);
+    known = std::move(gains.known);
+  }
+  // Only what the tags know can be believed.
+  plan.learn.belief.assign(n, 0.0F);
+  for (size_t i = 0; i < n; ++i) plan.learn.belief[i] = known[i] ? kBelief : 0.0F;
+  size_t untagged = 0;
+  for (size_t i = 0; i < n; ++i) {
+    if (options.Exif() && !known[i]) ++untagged;
+    if (survey.photos[i].is_test) continue;
+    const bool learns = options.Gain() || (options.Exif() && !known[i]);
+    plan.learn.learns_gain[i] = learns ? 1 : 0;
+    plan.learn.anchored = plan.learn.anchored || !learns;
+  }
+  if (options.Exif() && n > 0) {
+    const auto [darkest, brightest] = std::minmax_element(plan.response.exif_gain.begin(), plan.response.exif_gain.end());
+    const double stops = std::log2(static_cast<double>(*brightest) / static_cast<double>(*darkest));
+    if (untagged == n) {
+      plan.remark = "no photo has an exposure time in its tags: gains are learned from the pictures";
+    } else if (untagged > 0) {
+      plan.remark = fmt::format("{} of {} photos have no exposure time in their tags: their gains are learned from the pictures", untagged, n);
+    } else if (stops >= 0.1) {
+      plan.remark = fmt::format("exposures differ by {:.1f} stops over the survey, as the photos' tags say; they are brought to their median", stops);
+    }
+  }
+  return plan;
+}
+
+brightness::BrightnessStatistics MeasureBrightness(const survey::Survey& survey, const image::PixelCache& pixels) {
+  constexpr int kGrid = 64;  // pixels looked at along each side of a photo
+  double srgb = 0.0, light = 0.0, clipped = 0.0, n = 0.0;
+  for (size_t i = 0; i < survey.photos.size(); ++i) {
+    if (survey.photos[i].is_test) continue;
+    const auto width = static_cast<size_t>(pixels.Width(i)), height = static_cast<size_t>(pixels.Height(i));
+    for (size_t v = 0; v < kGrid; ++v) {
+      for (size_t u = 0; u < kGrid; ++u) {
+        uint8_t rgb[3];
+        if (!pixels.Pixel(i, (2 * v + 1) * height / (2 * kGrid) * width + (2 * u + 1) * width / (2 * kGrid), rgb)) continue;
+        for (const uint8_t value : rgb) {
+          srgb += value / (3.0 * 255.0);
+          light += static_cast<double>(image::LinearFromSrgb(static_cast<float>(value) / 255.0F)) / 3.0;
+        }
+        clipped += std::max({rgb[0], rgb[1], rgb[2]}) == 255 ? 1.0 : 0.0;
+        n += 1.0;
+      }
+    }
+  }
+  if (n == 0.0) return {};
+  return {srgb / n, light / n, clipped / n};
+}
+
+std::string LuminanceRemark(const brightness::Luminance& luminance, const brightness::BrightnessStatistics& statistics) {
+  const std::string seen =
+      fmt::format("the photos' mean brightness is {:.2f}, {:.0f} % of the pixels are clipped", statistics.mean_srgb, 100.0 * statistics.clipped);
+  switch (luminance.mode) {
+    case brightness::LuminanceMode::kUnder:
+      return seen + fmt::format(": taken as under-exposed and shown at a mean of {:.2f}", luminance.target);
+    case brightness::LuminanceMode::kOver:
+      return seen + fmt::format(": taken as over-exposed and shown at a mean of {:.2f}", luminance.target);
+    case brightness::LuminanceMode::kNone:
+      break;
+  }
+  return seen + ": normally exposed, so no hidden light is looked for (brightness.luminance_mode decides otherwise)";
+}
+
+}  // namespace skyquilt::coordinator

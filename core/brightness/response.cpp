@@ -1,0 +1,91 @@
+#include "core/brightness/response.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/errors.h"
+
+namespace skyquilt::brightness {
+namespace {
+
+constexpr const char* kReference = "reference_exposure";
+constexpr const char* kExif = "response/exif_gain";
+constexpr const char* kGain = "response/log_gain";
+constexpr const char* kCamera = "response/camera";
+constexpr const char* kFalloff = "response/falloff";
+constexpr const char* kNames = "response/names";
+
+}  // namespace
+
+Response Response::Plain(size_t photos, size_t cameras) {
+  Response response;
+  response.exif_gain.assign(photos, 1.0F);
+  response.log_gain.assign(3 * photos, 0.0F);
+  response.camera.assign(photos, 0);
+  response.falloff.assign(3 * cameras, 0.0F);
+  return response;
+}
+
+float Response::LogFalloff(size_t photo, float radius2) const {
+  const float* f = falloff.data() + 3 * static_cast<size_t>(camera[photo]);
+  return radius2 * (f[0] + radius2 * (f[1] + radius2 * f[2]));
+}
+
+std::array<float, 3> Response::LogGain(size_t photo, float radius2) const {
+  const float common = (exif_gain[photo] == 1.0F ? 0.0F : std::log(exif_gain[photo])) + LogFalloff(photo, radius2);
+  std::array<float, 3> sum{};
+  for (size_t c = 0; c < 3; ++c) sum[c] = common + log_gain[3 * photo + c];
+  return sum;
+}
+
+std::array<Exposure, 3> Response::ExposureOf(size_t photo, float radius2) const {
+  const std::array<float, 3> log = LogGain(photo, radius2);
+  const Exposure red = Exposure::FromLogGain(log[0]);
+  if (log[1] == log[0] && log[2] == log[0]) return {red, red, red};
+  return {red, Exposure::FromLogGain(log[1]), Exposure::FromLogGain(log[2])};
+}
+
+std::optional<size_t> Response::Find(const std::string& name) const {
+  std::optional<size_t> by_file_name;
+  bool ambiguous = false;
+  size_t photo = 0;
+  for (auto begin = names.begin(); begin != names.end(); ++photo) {
+    const auto end = std::find(begin, names.end(), static_cast<uint8_t>('\n'));
+    const std::string listed(begin, end);
+    if (listed == name) return photo;
+    if (listed.substr(listed.find_last_of('/') + 1) == name) {
+      ambiguous = by_file_name.has_value();
+      by_file_name = photo;
+    }
+    begin = end == names.end() ? end : end + 1;
+  }
+  return ambiguous ? std::nullopt : by_file_name;
+}
+
+void PutResponse(const Response& response, checkpoint::ArchiveWriter& writer) {
+  const auto photos = static_cast<int64_t>(response.photos());
+  writer.SetAttribute(kReference, response.reference_exposure);
+  writer.Put(kExif, response.exif_gain);
+  writer.Put(kGain, response.log_gain, {photos, 3});
+  writer.Put(kCamera, response.camera);
+  writer.Put(kFalloff, response.falloff, {static_cast<int64_t>(response.falloff.size() / 3), 3});
+  writer.Put(kNames, response.names);
+}
+
+Response GetResponse(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
+  Response response;
+  response.reference_exposure = reader.DoubleAttribute(kReference);
+  if (!reader.Has(kExif)) return response;
+  response.exif_gain = reader.Floats(kExif);
+  response.log_gain = reader.Floats(kGain);
+  response.camera = reader.Ints(kCamera);
+  response.falloff = reader.Floats(kFalloff);
+  response.names = reader.Bytes(kNames);
+  const auto cameras = static_cast<int64_t>(response.falloff.size() / 3);
+  const bool fits = response.log_gain.size() == 3 * response.photos() && response.camera.size() == response.photos() &&
+                    std::all_of(response.camera.begin(), response.camera.end(), [&](int64_t c) { return c >= 0 && c < cameras; });
+  if (!fits) throw base::InputError(file, "what it says about the photos' brightness disagrees with itself", "Train it again with --restart");
+  return response;
+}
+
+}  // namespace skyquilt::brightness

@@ -1,0 +1,242 @@
+#!/usr/bin/env python3
+"""Measures what brightness correction recovers, on simulated surveys whose truth is known, and writes tables and pictures.
+
+  scripts/brightness_study.py -o study
+  scripts/brightness_study.py -o study --study exposure --seconds 120
+  scripts/brightness_study.py -o study --skyquilt build/release/coordinator/skyquilt --quick
+
+Studies: exposure (drift, jumps, wrong tags, no tags), hidden (under- and over-exposed surveys), light (brighter, darker and moved sun).
+Simulations and finished runs in the output folder are used again, so a stopped study goes on. Writes study.md, study.json and pictures.
+Needs python3-numpy and python3-pil. Leave the machine alone meanwhile: every run has the same seconds of training.
+Exit status: 0 done, 1 skyquilt failed, 2 wrong usage or a missing module.
+"""
+import argparse
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+try:
+    import numpy as np
+    from PIL import Image
+except ImportError:
+    sys.exit("brightness_study: needs numpy and PIL (apt-get install python3-numpy python3-pil)")
+
+STEADY = {"exposure_drift_stops": 0, "exposure_jumps_stops": 0}
+DRIFT = {"exposure_drift_stops": 1.5, "exposure_jumps_stops": 1.5}
+ROUGH = {"exposure_drift_stops": 1.0, "exposure_jumps_stops": 1.0, "exposure_error_stops": 0.3, "color_drift_stops": 0.2, "vignetting": 0.4}
+UNDER = {**STEADY, "exposure_offset_stops": -5.4}
+OVER = {**STEADY, "exposure_offset_stops": 1.08}
+
+
+def settings(section, options):
+    return [word for key, value in options.items() for word in ("--set", f"{section}.{key}={value}")]
+
+
+class Study:
+    def __init__(self, args):
+        self.args = args
+        self.out = Path(args.out).resolve()
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.results = {}
+        self.lines = []
+
+    def call(self, *command):
+        done = subprocess.run([self.args.skyquilt, *map(str, command)], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            sys.exit(f"brightness_study: skyquilt {' '.join(map(str, command))}\n{done.stderr[-2000:]}")
+        return done.stdout
+
+    def simulate(self, name, preset, options):
+        folder = self.out / "sim" / name
+        if not (folder / "simulate.json").exists():
+            print(f"simulate {name}", flush=True)
+            self.call("simulate", preset, "-o", folder, "--quiet", *settings("simulate", options))
+        return folder
+
+    def run(self, name, survey, brightness, *extra):
+        """Trains and scores; returns metrics.json."""
+        folder = self.out / "run" / name
+        if not (folder / "report" / "metrics.json").exists():
+            print(f"run {name}", flush=True)
+            shutil.rmtree(folder, ignore_errors=True)
+            self.call("run", survey, "-o", folder, "--blocks", "2x2", "--time-budget", f"{self.args.seconds}s", "--quiet", "--brightness", brightness,
+                      "--set", "products.video_seconds=0", "--set", "products.dsm=false", "--set", "products.ortho=false", *extra)
+        metrics = json.loads((folder / "report" / "metrics.json").read_text())
+        self.results[name] = {key: metrics[key] for key in
+                              ("psnr", "ssim", "psnr_exif_gain", "psnr_right_half", "psnr_right_half_fitted", "psnr_normal", "ssim_normal",
+                               "samples_per_second", "train_seconds")}
+        return metrics
+
+    def gain_error_stops(self, name, survey):
+        """Root mean square over photos and colours of recovered against true gains, common factor taken off; training photos, held-out ones."""
+        truth = {p["name"]: np.log2(p["light_rgb"]) for p in json.loads((survey / "truth" / "exposure.json").read_text())["photos"]}
+        found = json.loads((self.out / "run" / name / "report" / "brightness.json").read_text())["photos"]
+        rows = {False: [], True: []}
+        for photo in found:
+            key = Path(photo["name"]).name
+            rows[photo["held_out"]].append(photo["exif_stops"] + np.array(photo["learned_stops"]) - truth[key])
+        trained, held_out = np.array(rows[False]), np.array(rows[True])
+        middle = trained.mean(axis=0)
+        rms = lambda e: float(np.sqrt(np.mean((e - middle) ** 2)))
+        self.results[name]["gain_rms_stops"], self.results[name]["gain_rms_stops_held_out"] = rms(trained), rms(held_out)
+        return rms(trained), rms(held_out)
+
+    def title(self, text):
+        self.lines += ["", f"### {text}", ""]
+
+    def table(self, head, rows):
+        self.lines += ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+        self.lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
+
+    # Pictures of one held-out view, side by side.
+    def panel(self, file, pictures, width=480):
+        tiles = []
+        for picture in pictures:
+            image = Image.open(picture).convert("RGB")
+            tiles.append(image.resize((width, round(image.height * width / image.width)), Image.LANCZOS))
+        sheet = Image.new("RGB", (sum(t.width for t in tiles) + 6 * (len(tiles) - 1), max(t.height for t in tiles)), "white")
+        x = 0
+        for tile in tiles:
+            sheet.paste(tile, (x, 0))
+            x += tile.width + 6
+        sheet.save(self.out / file, quality=88)
+
+    def view(self, name, photo, exposure="normal"):
+        """Picture of a photo's view as the scene shows it."""
+        folder = self.out / "view" / name / exposure.replace("/", "_")
+        file = folder / (Path(photo).stem + ".png")
+        if not file.exists():
+            self.call("render", self.out / "run" / name, "--photo", photo, "--no-depth", "--exposure", exposure, "-o", folder, "--quiet")
+        return file
+
+    def exposure(self):
+        fixed = self.simulate("fixed", "tidalflat", STEADY)
+        drift = self.simulate("drift", "tidalflat", DRIFT)
+        untagged = self.simulate("untagged", "tidalflat", {**DRIFT, "exposure_tags": "none"})
+        half = self.simulate("half", "tidalflat", {**DRIFT, "exposure_tags": "half"})
+        rough = self.simulate("rough", "tidalflat", ROUGH)
+        self.title("Exposure")
+        rows = []
+        for what, name, survey, brightness in [
+            ("fixed exposure", "fixed", fixed, "exif"), ("fixed exposure", "fixed_gain", fixed, "exif,gain"),
+            ("drift and jumps, tags right", "drift_none", drift, "none"), ("", "drift_exif", drift, "exif"), ("", "drift_gain", drift, "gain"),
+            ("", "drift_exif_gain", drift, "exif,gain"), ("", "drift_all", drift, "exif,gain,vignette"),
+            ("the same, every second photo without tags", "half_exif", half, "exif"),
+            ("the same, no photo with tags", "untagged_none", untagged, "none"), ("", "untagged_exif", untagged, "exif"),
+            ("tags off by 0.3 stops, white balance +-0.2, corners -40 %", "rough_none", rough, "none"), ("", "rough_exif", rough, "exif"),
+            ("", "rough_exif_gain", rough, "exif,gain"), ("", "rough_all", rough, "exif,gain,vignette"),
+        ]:
+            m = self.run(name, survey, brightness)
+            trained, held_out = self.gain_error_stops(name, survey)
+            rows.append([what, brightness, f"{m['psnr']:.2f}", f"{m['psnr_exif_gain']:.2f}",
+                         f"{m['psnr_right_half']:.2f} / {m['psnr_right_half_fitted']:.2f}", f"{trained:.3f}", f"{held_out:.3f}"])
+        self.table(["survey", "brightness", "held-out PSNR (dB)", "with the EXIF gain alone", "right half / fitted on the left", "gain error (stops RMS)",
+                    "held-out gains"], rows)
+        extreme = max(json.loads((drift / "truth" / "exposure.json").read_text())["photos"][::8], key=lambda p: abs(math.log2(p["gain"])))["name"]
+        self.panel("exposure.jpg", [drift / "images" / extreme, self.view("drift_none", extreme), self.view("drift_all", extreme),
+                                    fixed / "images" / extreme])
+
+    def equalised(self, survey, name):
+        """The same survey with every photo's histogram equalised, as people do before photogrammetry."""
+        folder = self.out / "sim" / name
+        if (folder / "simulate.json").exists():
+            return folder
+        shutil.copytree(survey, folder, dirs_exist_ok=True)
+        for file in sorted((folder / "images").glob("*.jpg")):
+            with Image.open(file) as image:
+                exif, rgb = image.info.get("exif"), np.asarray(image.convert("YCbCr")).copy()
+            luma = rgb[..., 0]
+            share = np.cumsum(np.bincount(luma.ravel(), minlength=256)) / luma.size
+            rgb[..., 0] = np.round(255 * share[luma]).astype(np.uint8)
+            Image.fromarray(rgb, "YCbCr").convert("RGB").save(file, quality=95, exif=exif)
+        return folder
+
+    def hidden(self):
+        truth = self.simulate("fixed", "tidalflat", STEADY) / "images"
+        rows = []
+        for kind, options in [("under", UNDER), ("over", OVER)]:
+            survey = self.simulate(kind, "tidalflat", options)
+            equal = self.equalised(survey, kind + "_equalised")
+            offset = options["exposure_offset_stops"]
+            normal = ["--set", f"evaluate.normal_photos={truth}"]
+            forms = [("no correction", "none", survey, "none", []), ("histogram equalisation", "equalised", equal, "none", []),
+                     ("EXIF gain", "exif", survey, "exif", []),
+                     ("EXIF gain, raised by the true offset", "raised", survey, "exif", ["--set", f"evaluate.normal_stops={-offset}"]),
+                     ("luminance, patches, gain", "luminance", survey, "exif,luminance", []),
+                     ("luminance, random batch, gain", "luminance_batch", survey, "exif,luminance", ["--set", "brightness.luminance_neighbours=batch"]),
+                     ("luminance, patches, product (eq. 13)", "luminance_product", survey, "exif,luminance",
+                      ["--set", "brightness.luminance_form=product"])]
+            for what, name, photos, brightness, extra in forms:
+                m = self.run(f"{kind}_{name}", photos, brightness, *normal, *extra)
+                rows.append([f"{kind}-exposed", what, f"{m['psnr_normal']:.2f}", f"{m['ssim_normal']:.3f}", f"{m['psnr']:.2f}"])
+            photo = sorted(p.name for p in (survey / "images").glob("*.jpg"))[8]
+            self.panel(f"hidden_{kind}.jpg", [survey / "images" / photo, self.view(f"{kind}_equalised", photo), self.view(f"{kind}_luminance", photo),
+                                              truth / photo])
+        self.title("Hidden light")
+        self.table(["survey", "method", "PSNR against the normal photo (dB)", "SSIM", "PSNR against the photo as taken"], rows)
+
+    def mixed(self, name, first, second):
+        """Every second flight line of one light, the others of another; photos are the only difference."""
+        folder = self.out / "sim" / name
+        if (folder / "simulate.json").exists():
+            return folder
+        shutil.copytree(first, folder, dirs_exist_ok=True)
+        names = sorted(p.name for p in (second / "images").glob("*.jpg"))
+        for photo in names[len(names) // 2:]:
+            shutil.copy(second / "images" / photo, folder / "images" / photo)
+        return folder
+
+    def light(self):
+        common = {**STEADY, "moving_cars": 0, "image_width": 480}
+        day = self.simulate("day", "town", common)
+        rows = []
+        truth = ["--set", f"evaluate.normal_photos={day / 'images'}"]
+        for factor in (1.0 / 3.0, 0.5, 1.0, 2.0, 3.0):
+            other = self.simulate(f"light_{factor:.2f}", "town", {**common, "light_intensity": factor})
+            survey = self.mixed(f"mixed_light_{factor:.2f}", day, other)
+            for brightness in ("exif", "exif,gain"):
+                m = self.run(f"light_{factor:.2f}_{brightness.replace(',', '_')}", survey, brightness, *truth)
+                rows.append([f"second half of the flight: light x {factor:.2f}", brightness, f"{m['psnr']:.2f}", f"{m['psnr_right_half_fitted']:.2f}",
+                             f"{m['psnr_normal']:.2f}"])
+        for elevation in (10, 25, 48, 70, 90):
+            other = self.simulate(f"sun_{elevation}", "town", {**common, "sun_elevation_deg": elevation})
+            survey = self.mixed(f"mixed_sun_{elevation}", day, other)
+            for brightness in ("exif", "exif,gain"):
+                m = self.run(f"sun_{elevation}_{brightness.replace(',', '_')}", survey, brightness, *truth)
+                rows.append([f"second half of the flight: sun at {elevation} degrees", brightness, f"{m['psnr']:.2f}",
+                             f"{m['psnr_right_half_fitted']:.2f}", f"{m['psnr_normal']:.2f}"])
+        self.title("Light that changes during the flight")
+        self.table(["survey (first half: light x 1, sun at 48 degrees)", "brightness", "held-out PSNR (dB)", "right half, gains fitted on the left",
+                    "shown against photos of the first light"], rows)
+        photo = sorted(p.name for p in (day / "images").glob("*.jpg"))[8]
+        self.panel("light_sun.jpg", [self.out / "sim" / "sun_10" / "images" / photo, day / "images" / photo, self.view("sun_48_exif_gain", photo),
+                                     self.view("sun_10_exif_gain", photo)])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--out", required=True, help="folder for surveys, runs, tables and pictures")
+    parser.add_argument("--skyquilt", default=shutil.which("skyquilt") or "build/release/coordinator/skyquilt", help="the program")
+    parser.add_argument("--study", choices=["exposure", "hidden", "light", "all"], default="all")
+    parser.add_argument("--seconds", type=int, default=60, help="training of each run")
+    parser.add_argument("--quick", action="store_true", help="ten seconds each: shows that everything works, not how well")
+    args = parser.parse_args()
+    if args.quick:
+        args.seconds = 10
+    if not os.access(args.skyquilt, os.X_OK):
+        sys.exit(f"brightness_study: {args.skyquilt} cannot be run: build it (scripts/demo.sh does) or give --skyquilt")
+    study = Study(args)
+    for name in ["exposure", "hidden", "light"] if args.study == "all" else [args.study]:
+        getattr(study, name)()
+    text = "\n".join(study.lines).strip() + "\n"
+    (study.out / f"study_{args.study}.md").write_text(text)
+    (study.out / f"study_{args.study}.json").write_text(json.dumps(study.results, indent=1) + "\n")
+    print(text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+#include "core/brightness/predict_gains.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace skyquilt::brightness {
+namespace {
+
+// Eight photos; every fourth held out; tags jump by a stop.
+struct Flight {
+  Response response = Response::Plain(8, 1);
+  std::vector<CapturedPhoto> photos;
+  Flight() {
+    for (size_t i = 0; i < 8; ++i) {
+      response.exif_gain[i] = i % 3 == 0 ? 2.0F : 1.0F;
+      photos.push_back({static_cast<double>(i), 0, i % 4 != 1});
+    }
+  }
+  void Learn(size_t photo, double log_gain) {
+    for (size_t c = 0; c < 3; ++c) response.log_gain[3 * photo + c] = static_cast<float>(log_gain);
+  }
+  double Total(size_t photo) const { return static_cast<double>(response.LogGain(photo)[1]); }
+};
+
+TEST(PredictGains, TrustsTagsThatExplainTheBrightness) {
+  Flight flight;
+  for (size_t i = 0; i < 8; ++i) {
+    if (flight.photos[i].learned) flight.Learn(i, 0.1 * static_cast<double>(i));  // light rises slowly, tags are right
+  }
+  EXPECT_GT(TrustInTags(flight.response, flight.photos), 0.9);
+  PredictGains(flight.photos, flight.response);
+  EXPECT_NEAR(flight.response.log_gain[3 * 1 + 1], 0.1, 0.05);
+  EXPECT_NEAR(flight.response.log_gain[3 * 5 + 1], 0.5, 0.05);
+}
+
+TEST(PredictGains, SetsTagsAsideWhereTheShutterFollowedTheLight) {
+  Flight flight;
+  for (size_t i = 0; i < 8; ++i) {
+    if (flight.photos[i].learned) flight.Learn(i, -std::log(static_cast<double>(flight.response.exif_gain[i])));  // all equally bright
+  }
+  EXPECT_LT(TrustInTags(flight.response, flight.photos), 0.05);
+  PredictGains(flight.photos, flight.response);
+  for (size_t i = 0; i < 8; ++i) EXPECT_NEAR(flight.Total(i), 0.0, 0.05) << i;
+}
+
+TEST(PredictGains, KeepsGroupsApartAndLonelyPhotosAsTheyAre) {
+  Flight flight;
+  for (size_t i = 0; i < 8; ++i) flight.response.exif_gain[i] = 1.0F;
+  flight.Learn(0, 0.8);
+  flight.photos[1].group = 1;  // alone in its group
+  flight.photos[5].group = 2;
+  flight.photos[6].group = 2;
+  flight.Learn(6, -0.4);
+  PredictGains(flight.photos, flight.response);
+  EXPECT_EQ(flight.response.log_gain[3], 0.0F);
+  EXPECT_NEAR(flight.response.log_gain[15], -0.4F, 1e-6F);
+}
+
+TEST(PredictGains, LearnedPhotosKeepTheirGains) {
+  Flight flight;
+  flight.Learn(2, 0.3);
+  const std::vector<float> before = flight.response.log_gain;
+  PredictGains(flight.photos, flight.response);
+  for (size_t i = 0; i < 8; ++i) {
+    if (flight.photos[i].learned) {
+      EXPECT_EQ(flight.response.log_gain[3 * i], before[3 * i]);
+    }
+  }
+}
+
+TEST(PredictGains, OnePhotoOrNone) {
+  Response one = Response::Plain(1, 1);
+  PredictGains({{0.0, 0, false}}, one);
+  EXPECT_EQ(one.log_gain[0], 0.0F);
+  Response none = Response::Plain(0, 0);
+  PredictGains({}, none);
+  EXPECT_EQ(TrustInTags(none, {}), 1.0);
+}
+
+}  // namespace
+}  // namespace skyquilt::brightness

@@ -1,0 +1,140 @@
+// A small synthetic survey on disk: a patterned ground with a box on it, seen by sixteen photos from straight above. What the photos record of
+// its light can be chosen.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/cancel.h"
+#include "core/base/file.h"
+#include "core/checkpoint/archive.h"
+#include "core/image/image.h"
+#include "core/image/srgb.h"
+#include "core/render/ray_box.h"
+#include "worker/trainer.h"
+
+namespace skyquilt::worker {
+
+constexpr int kSmallWidth = 64, kSmallHeight = 48;
+
+struct SmallWorld {
+  // Colour of the surface a ray meets: ground z = 0 with a smooth pattern; a 6 x 6 x 4 m red box in the middle, patterned too: a roof of one
+  // colour could hang at any height inside the silhouettes.
+  static Eigen::Vector3d Shade(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+    const render::Stretch box = render::RayBox(origin, direction, {-3, -3, 0}, {3, 3, 4});
+    if (!box.Empty()) {
+      const Eigen::Vector3d p = origin + box.t_near * direction;
+      return {0.75 + 0.2 * std::sin(1.8 * p.x() + p.z()) * std::cos(1.6 * p.y()), 0.2, 0.15 + 0.1 * std::sin(1.5 * p.y())};
+    }
+    const Eigen::Vector3d p = origin - origin.z() / direction.z() * direction;
+    const double wave = 0.5 + 0.25 * std::sin(0.5 * p.x()) * std::cos(0.4 * p.y());
+    return {0.6 * wave, wave, 0.5 * wave};
+  }
+};
+
+class SmallSurvey : public ::testing::Test {
+ protected:
+  // Display values of the world to what photo i records at a pixel, r2 = squared distance from the centre, 1 in the corners.
+  using Recording = std::function<double(int photo, int channel, double value, double r2)>;
+
+  void SetUp() override {
+    Photograph([](int, int, double value, double) { return value; });
+  }
+  void Photograph(const Recording& recording) {
+    survey_ = {};
+    base::ClearCancel();
+    folder_ = std::filesystem::temp_directory_path() /
+              ("skyquilt_worker_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    survey_.origin = {46.0, 7.0, 400.0};
+    survey_.georeferenced = true;
+    survey_.photo_root = folder_;
+    camera::Camera camera;
+    camera.width = kSmallWidth;
+    camera.height = kSmallHeight;
+    camera.params = {50.0, 50.0, kSmallWidth / 2.0, kSmallHeight / 2.0};
+    survey_.cameras = {camera};
+    std::vector<image::PixelSource> sources;
+    for (int i = 0; i < 16; ++i) {
+      survey::Photo photo;
+      photo.name = "p" + std::to_string(10 + i) + ".png";
+      const Eigen::Vector3d centre(-15.0 + 10.0 * (i % 4), -15.0 + 10.0 * (i / 4), 30.0 + (i % 3));
+      // Looks down: camera x = east, y = south, z = down.
+      Eigen::Matrix3d rotation;
+      rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+      photo.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
+      photo.cam_from_enu.translation = -(rotation * centre);
+      photo.is_test = i % 8 == 0;
+      image::Image8 picture(kSmallWidth, kSmallHeight, 3);
+      for (int y = 0; y < kSmallHeight; ++y) {
+        for (int x = 0; x < kSmallWidth; ++x) {
+          const Eigen::Vector3d direction = rotation.transpose() * camera.RayFromImg({x + 0.5, y + 0.5});
+          const Eigen::Vector3d color = SmallWorld::Shade(centre, direction);
+          const double u = (x + 0.5) / kSmallWidth - 0.5, v = (y + 0.5) / kSmallHeight - 0.5;
+          const double aspect = static_cast<double>(kSmallHeight) / kSmallWidth;
+          const double r2 = (u * u + aspect * aspect * v * v) / (0.25 + 0.25 * aspect * aspect);
+          for (int c = 0; c < 3; ++c) {
+            picture.At(x, y)[c] = static_cast<uint8_t>(std::lround(255.0 * std::clamp(recording(i, c, color[c], r2), 0.0, 1.0)));
+          }
+        }
+      }
+      image::SavePng(picture, folder_ / photo.name);
+      sources.push_back({folder_ / photo.name, {}});
+      survey_.photos.push_back(photo);
+    }
+    base::ThreadPool threads(1);
+    pixels_ = std::make_unique<image::PixelCache>(image::PixelCache::Open(folder_ / "pixels.bin", sources, 0, threads));
+  }
+  void TearDown() override {
+    base::ClearCancel();
+    std::filesystem::remove_all(folder_);
+  }
+
+  TrainJob Job(const std::string& name, int steps) const {
+    TrainJob job;
+    job.survey = &survey_;
+    job.pixels = pixels_.get();
+    job.response = brightness::Response::Plain(survey_.photos.size(), 1);
+    job.learn.learns_gain.assign(survey_.photos.size(), 0);
+    job.options.steps = steps;
+    job.options.batch_samples = 4096;
+    job.options.hidden = 32;
+    job.config_hash = "abc";
+    job.seed = 7;
+    job.checkpoint = folder_ / name;
+    return job;
+  }
+  BoxView Box(double half, double margin) const {
+    BoxView box;
+    box.name = "r0c0";
+    box.min_enu = {-half, -half, -1.0};
+    box.max_enu = {half, half, 6.0};
+    box.margin_m = margin;
+    box.finest_voxel_m = 0.5;
+    box.log2_table_size = 14;
+    for (int i = 0; i < 16; ++i) box.photos.push_back(i);
+    return box;
+  }
+  std::string Bytes(const std::string& name) const {
+    const checkpoint::ArchiveReader reader(folder_ / name);
+    std::string bytes;
+    for (const char* array : {"grid", "networks", "grid_moment2"}) {
+      const std::vector<float> values = reader.Floats(array);
+      bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+    }
+    return base::HashHex(bytes);
+  }
+
+  std::filesystem::path folder_;
+  survey::Survey survey_;
+  std::unique_ptr<image::PixelCache> pixels_;
+};
+
+}  // namespace skyquilt::worker

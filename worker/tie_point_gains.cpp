@@ -1,0 +1,231 @@
+#include "worker/tie_point_gains.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "core/image/srgb.h"
+
+namespace skyquilt::worker {
+namespace {
+
+constexpr size_t kMostPoints = 20'000;
+constexpr int kPointReach = 1;         // pixels around a point's that are averaged
+constexpr int kFewestSightings = 8;    // a photo's shared points: fewer say nothing
+constexpr int kRounds = 8;             // of reweighting
+constexpr double kScatter = 0.15;      // log light beyond which a sighting counts less
+constexpr double kFalloffRidge = 1.0;  // in sightings
+constexpr double kTrace = 1e-3;        // in sightings
+
+// One point in one photo: logarithm of recorded light without what tags explain.
+struct Sighting {
+  int point = 0, photo = 0;
+  float radius2 = 0.0F;
+  std::array<double, 3> log_light{};
+};
+
+Eigen::Vector3d Powers(float radius2) {
+  const auto r2 = static_cast<double>(radius2);
+  return {r2, r2 * r2, r2 * r2 * r2};
+}
+
+// Mean recorded light of the pixels around a position; false where they leave the photo, are masked, or at an end of the scale.
+bool LightAround(const image::PixelCache& pixels, size_t photo, const Eigen::Vector2d& position, std::array<double, 3>* light) {
+  const int x = static_cast<int>(position.x()), y = static_cast<int>(position.y());
+  const int width = pixels.Width(photo), height = pixels.Height(photo);
+  if (x < kPointReach || y < kPointReach || x >= width - kPointReach || y >= height - kPointReach) return false;
+  *light = {0.0, 0.0, 0.0};
+  for (int v = y - kPointReach; v <= y + kPointReach; ++v) {
+    for (int u = x - kPointReach; u <= x + kPointReach; ++u) {
+      uint8_t rgb[3];
+      if (!pixels.Pixel(photo, static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(u), rgb)) return false;
+      for (size_t c = 0; c < 3; ++c) {
+        if (rgb[c] < 3 || rgb[c] > 252) return false;
+        (*light)[c] += static_cast<double>(image::LinearFromSrgb(static_cast<float>(rgb[c]) / 255.0F));
+      }
+    }
+  }
+  constexpr double kPixels = (2 * kPointReach + 1) * (2 * kPointReach + 1);
+  for (double& value : *light) value /= kPixels;
+  return true;
+}
+
+std::vector<Sighting> Look(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
+                           const brightness::Response& response, base::ThreadPool& threads) {
+  const size_t stride = std::max<size_t>(1, survey.points.size() / kMostPoints);
+  std::vector<std::vector<Sighting>> per_photo(survey.photos.size());
+  threads.ParallelFor(static_cast<int64_t>(survey.photos.size()), [&](int64_t task, int) {
+    const auto photo = static_cast<size_t>(task);
+    const survey::Photo& p = survey.photos[photo];
+    if (p.is_test) return;
+    const camera::Camera& camera = source.CameraOf(static_cast<int>(photo));
+    for (size_t i = 0; i < survey.points.size(); i += stride) {
+      const auto position = camera.ImgFromCam(p.cam_from_enu * survey.points[i].x_in_enu);
+      std::array<double, 3> light{};
+      if (!position || !(position->x() >= 0.0 && position->y() >= 0.0 && position->x() < camera.width && position->y() < camera.height)) continue;
+      if (!LightAround(pixels, photo, *position, &light)) continue;
+      Sighting sighting{static_cast<int>(i / stride), static_cast<int>(photo), source.Radius2(static_cast<int>(photo), *position), {}};
+      const double known = std::log(static_cast<double>(response.exif_gain[photo]));
+      for (size_t c = 0; c < 3; ++c) sighting.log_light[c] = std::log(light[c]) - known;
+      per_photo[photo].push_back(sighting);
+    }
+  });
+  std::vector<Sighting> all;
+  for (const auto& some : per_photo) all.insert(all.end(), some.begin(), some.end());
+  std::stable_sort(all.begin(), all.end(), [](const Sighting& a, const Sighting& b) { return a.point < b.point; });
+  return all;
+}
+
+// One colour: gains that minimise the weighted squares, points eliminated. Photos that do not learn stand still.
+Eigen::VectorXd Solve(std::span<const Sighting> sightings, const std::vector<double>& weight, size_t colour, const brightness::LearnerOptions& learn,
+                      const Eigen::VectorXd& before) {
+  const std::vector<uint8_t>& learns = learn.learns_gain;
+  const Eigen::Index n = before.size();
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(n), sightings_of = Eigen::VectorXd::Zero(n);
+  for (size_t first = 0, last = 0; first < sightings.size(); first = last) {
+    double sum = 0.0, mean = 0.0;
+    for (last = first; last < sightings.size() && sightings[last].point == sightings[first].point; ++last) {
+      sum += weight[last];
+      mean += weight[last] * sightings[last].log_light[colour];
+    }
+    if (last - first < 2 || !(sum > 0.0)) continue;
+    mean /= sum;
+    for (size_t a = first; a < last; ++a) {
+      const int i = sightings[a].photo;
+      right[i] += weight[a] * (sightings[a].log_light[colour] - mean);
+      entries.emplace_back(i, i, weight[a]);
+      sightings_of[i] += weight[a];
+      for (size_t b = first; b < last; ++b) entries.emplace_back(i, sightings[b].photo, -weight[a] * weight[b] / sum);
+    }
+  }
+  // Photos that stand still leave the unknowns: their columns go to the right side.
+  std::vector<Eigen::Triplet<double>> kept;
+  for (const Eigen::Triplet<double>& e : entries) {
+    if (learns[static_cast<size_t>(e.row())] == 0) continue;
+    if (learns[static_cast<size_t>(e.col())] == 0) {
+      right[e.row()] -= e.value() * before[e.col()];
+    } else {
+      kept.push_back(e);
+    }
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const bool moves = learns[static_cast<size_t>(i)] != 0;
+    // Towards what tags say; a trace even without, because all photos together have no place of their own.
+    const double belief = learn.belief.empty() ? 0.0 : static_cast<double>(learn.belief[static_cast<size_t>(i)]);
+    kept.emplace_back(static_cast<int>(i), static_cast<int>(i), moves ? kTrace + belief * sightings_of[i] : 1.0);
+    if (!moves) right[i] = before[i];
+  }
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(kept.begin(), kept.end());
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver(matrix);
+  solver.setTolerance(1e-8);
+  return solver.solveWithGuess(right, before);
+}
+
+// Weighted means of a quantity over the sightings of each point, handed to `each` with the point's range.
+template <typename Value, typename Each>
+void ForEachPoint(std::span<const Sighting> sightings, const std::vector<double>& weight, const Value& value, const Each& each) {
+  for (size_t first = 0, last = 0; first < sightings.size(); first = last) {
+    double sum = 0.0;
+    auto total = value(first);
+    total *= 0.0;
+    for (last = first; last < sightings.size() && sightings[last].point == sightings[first].point; ++last) {
+      sum += weight[last];
+      total += weight[last] * value(last);
+    }
+    total /= sum;
+    each(first, last, total);
+  }
+}
+
+// Falloff of every camera that explains best what the gains leave, all colours together; a little is taken off it for safety.
+void SolveFalloff(std::span<const Sighting> sightings, const std::array<std::vector<double>, 3>& weight, const std::array<Eigen::VectorXd, 3>& gains,
+                  brightness::Response& response) {
+  const size_t cameras = response.falloff.size() / 3;
+  std::vector<Eigen::Matrix3d> left(cameras, Eigen::Matrix3d::Identity() * kFalloffRidge);
+  std::vector<Eigen::Vector3d> right(cameras, Eigen::Vector3d::Zero());
+  for (size_t c = 0; c < 3; ++c) {
+    // Light and powers of the radius together, about their means over each point.
+    const auto row = [&](size_t s) {
+      Eigen::Vector4d values;
+      values << Powers(sightings[s].radius2), sightings[s].log_light[c] - gains[c][sightings[s].photo];
+      return values;
+    };
+    ForEachPoint(sightings, weight[c], row, [&](size_t first, size_t last, const Eigen::Vector4d& mean) {
+      for (size_t s = first; s < last; ++s) {
+        const auto camera = static_cast<size_t>(response.camera[static_cast<size_t>(sightings[s].photo)]);
+        const Eigen::Vector4d off = row(s) - mean;
+        left[camera] += weight[c][s] * off.head<3>() * off.head<3>().transpose();
+        right[camera] += weight[c][s] * off[3] * off.head<3>();
+      }
+    });
+  }
+  for (size_t camera = 0; camera < cameras; ++camera) {
+    const Eigen::Vector3d solved = left[camera].ldlt().solve(right[camera]);
+    for (size_t k = 0; k < 3; ++k) response.falloff[3 * camera + k] = static_cast<float>(solved[static_cast<Eigen::Index>(k)]);
+  }
+}
+
+// Takes over the gains of photos that share enough points; what all have in common goes where nothing anchors it.
+void KeepGains(const std::array<Eigen::VectorXd, 3>& gains, std::span<const Sighting> sightings, const brightness::LearnerOptions& learn,
+               brightness::Response& response) {
+  std::vector<int> count(response.photos(), 0);
+  for (const Sighting& s : sightings) ++count[static_cast<size_t>(s.photo)];
+  for (size_t c = 0; c < 3; ++c) {
+    double mean = 0.0, learning = 0.0;
+    for (size_t i = 0; i < response.photos(); ++i) {
+      if (learn.learns_gain[i] == 0) continue;
+      float& gain = response.log_gain[3 * i + c];
+      const auto limit = static_cast<double>(brightness::kMaxLogGain);
+      if (count[i] >= kFewestSightings) gain = static_cast<float>(std::clamp(gains[c][static_cast<Eigen::Index>(i)], -limit, limit));
+      mean += static_cast<double>(gain);
+      learning += 1.0;
+    }
+    if (learn.anchored || learning == 0.0) continue;
+    for (size_t i = 0; i < response.photos(); ++i) {
+      if (learn.learns_gain[i] != 0) response.log_gain[3 * i + c] -= static_cast<float>(mean / learning);
+    }
+  }
+}
+
+}  // namespace
+
+void GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
+                        const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads) {
+  if (!learn.Gains() && !learn.falloff) return;
+  const std::vector<Sighting> sightings = Look(survey, pixels, source, response, threads);
+  const auto n = static_cast<Eigen::Index>(survey.photos.size());
+  std::array<Eigen::VectorXd, 3> gains;
+  std::array<std::vector<double>, 3> weight;
+  for (size_t c = 0; c < 3; ++c) {
+    gains[c].resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) gains[c][i] = static_cast<double>(response.log_gain[3 * static_cast<size_t>(i) + c]);
+    weight[c].assign(sightings.size(), 1.0);
+  }
+  std::vector<Sighting> flat = sightings;  // without falloff
+  for (int round = 0; round < kRounds; ++round) {
+    for (size_t s = 0; s < flat.size(); ++s) {
+      const auto falloff = static_cast<double>(response.LogFalloff(static_cast<size_t>(flat[s].photo), flat[s].radius2));
+      for (size_t c = 0; c < 3; ++c) flat[s].log_light[c] = sightings[s].log_light[c] - falloff;
+    }
+    for (size_t c = 0; c < 3; ++c) {
+      gains[c] = Solve(flat, weight[c], c, learn, gains[c]);
+      const auto light = [&](size_t s) { return flat[s].log_light[c] - gains[c][flat[s].photo]; };
+      // Cauchy weights about each point's own mean.
+      ForEachPoint(flat, weight[c], light, [&](size_t first, size_t last, double mean) {
+        for (size_t s = first; s < last; ++s) {
+          const double off = (light(s) - mean) / kScatter;
+          weight[c][s] = 1.0 / (1.0 + off * off);
+        }
+      });
+    }
+    if (learn.falloff) SolveFalloff(sightings, weight, gains, response);
+  }
+  KeepGains(gains, sightings, learn, response);
+}
+
+}  // namespace skyquilt::worker

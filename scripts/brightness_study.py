@@ -28,6 +28,8 @@ except ImportError:
 STEADY = {"exposure_drift_stops": 0, "exposure_jumps_stops": 0}
 DRIFT = {"exposure_drift_stops": 1.5, "exposure_jumps_stops": 1.5}
 ROUGH = {"exposure_drift_stops": 1.0, "exposure_jumps_stops": 1.0, "exposure_error_stops": 0.3, "color_drift_stops": 0.2, "vignetting": 0.4}
+# The mean display value of the photos is then 0.40, what cameras aim at and what brightness.target_brightness has by default.
+NORMAL = {**STEADY, "exposure_offset_stops": -1.25}
 UNDER = {**STEADY, "exposure_offset_stops": -5.4}
 OVER = {**STEADY, "exposure_offset_stops": 1.08}
 
@@ -156,12 +158,12 @@ class Study:
         return folder
 
     def hidden(self):
-        truth = self.simulate("fixed", "tidalflat", STEADY) / "images"
+        truth = self.simulate("normal", "tidalflat", NORMAL) / "images"
         rows = []
         for kind, options in [("under", UNDER), ("over", OVER)]:
             survey = self.simulate(kind, "tidalflat", options)
             equal = self.equalised(survey, kind + "_equalised")
-            offset = options["exposure_offset_stops"]
+            offset = options["exposure_offset_stops"] - NORMAL["exposure_offset_stops"]
             normal = ["--set", f"evaluate.normal_photos={truth}"]
             forms = [("no correction", "none", survey, "none", []), ("histogram equalisation", "equalised", equal, "none", []),
                      ("EXIF gain", "exif", survey, "exif", []),

@@ -35,7 +35,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, const RaySource& source
       field_(target.config),
       drawer_(target, source, seed, NeighboursOf(luminance.luminance), threads, times_),
       step_(target, field_, context, luminance, threads, times_),
-      learner_(learner != nullptr && learner->active() ? learner : nullptr),
+      learner_(learner),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / 24)) {
   state_.Allocate(field_);
 }
@@ -56,8 +56,9 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   step.learning_rate = options_.learning_rate * learning_rate_scale * warm_up * decay;
   step.network_l2 = options_.network_l2;
   step.distortion = options_.distortion * std::clamp((progress - kDistortionFrom) / (kDistortionTo - kDistortionFrom), 0.0, 1.0);
-  const StepResult result = step_.Train(batch_, step, state_, learner_);
-  if (learner_ != nullptr && result.finite) learner_->Step(progress);
+  brightness::ResponseLearner* learner = learner_ != nullptr && learner_->active() ? learner_ : nullptr;
+  const StepResult result = step_.Train(batch_, step, state_, learner);
+  if (learner != nullptr && result.finite) learner->Step(progress);
   ObserveSamples();
   // The next step's rays fill the batch at this step's samples per ray, changing slowly.
   if (result.n_rays > 0 && result.n_samples > 0) {

@@ -17,6 +17,7 @@ constexpr int kPointReach = 1;         // pixels around a point's that are avera
 constexpr int kFewestSightings = 8;    // a photo's shared points: fewer say nothing
 constexpr int kRounds = 8;             // of reweighting
 constexpr double kScatter = 0.15;      // log light beyond which a sighting counts less
+constexpr double kNearlyAll = 0.95;    // of the photos
 constexpr double kFalloffRidge = 1.0;  // in sightings
 constexpr double kTrace = 1e-3;        // in sightings
 
@@ -171,10 +172,16 @@ void SolveFalloff(std::span<const Sighting> sightings, const std::array<std::vec
 }
 
 // Takes over the gains of photos that share enough points; what all have in common goes where nothing anchors it.
-void KeepGains(const std::array<Eigen::VectorXd, 3>& gains, std::span<const Sighting> sightings, const brightness::LearnerOptions& learn,
+bool KeepGains(const std::array<Eigen::VectorXd, 3>& gains, std::span<const Sighting> sightings, const brightness::LearnerOptions& learn,
                brightness::Response& response) {
   std::vector<int> count(response.photos(), 0);
   for (const Sighting& s : sightings) ++count[static_cast<size_t>(s.photo)];
+  int wanted = 0, known = 0;
+  for (size_t i = 0; i < response.photos(); ++i) {
+    if (learn.learns_gain[i] == 0) continue;
+    ++wanted;
+    if (count[i] >= kFewestSightings) ++known;
+  }
   for (size_t c = 0; c < 3; ++c) {
     double mean = 0.0, learning = 0.0;
     for (size_t i = 0; i < response.photos(); ++i) {
@@ -190,13 +197,14 @@ void KeepGains(const std::array<Eigen::VectorXd, 3>& gains, std::span<const Sigh
       if (learn.learns_gain[i] != 0) response.log_gain[3 * i + c] -= static_cast<float>(mean / learning);
     }
   }
+  return !sightings.empty() && known >= kNearlyAll * wanted;
 }
 
 }  // namespace
 
-void GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
+bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
                         const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads) {
-  if (!learn.Gains() && !learn.falloff) return;
+  if (!learn.Gains() && !learn.falloff) return false;
   const std::vector<Sighting> sightings = Look(survey, pixels, source, response, threads);
   const auto n = static_cast<Eigen::Index>(survey.photos.size());
   std::array<Eigen::VectorXd, 3> gains;
@@ -225,7 +233,7 @@ void GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& p
     }
     if (learn.falloff) SolveFalloff(sightings, weight, gains, response);
   }
-  KeepGains(gains, sightings, learn, response);
+  return KeepGains(gains, sightings, learn, response);
 }
 
 }  // namespace skyquilt::worker

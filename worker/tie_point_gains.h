@@ -12,9 +12,10 @@
 
 namespace skyquilt::worker {
 
-// Sets response.log_gain of the photos that learn, and response.falloff when that is learned; other photos' gains stay and anchor them. Without
-// photos that stay, the mean is zero. Photos that share fewer than a few points with others keep what they have.
-void GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
+// True when nearly all photos that learn share enough points, so that little is left to learn. Sets response.log_gain of the photos that learn, and
+// response.falloff when that is learned; other photos' gains stay and anchor them. Without photos that stay, the mean is zero. Photos that share
+// fewer than a few points with others keep what they have.
+bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
                         const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads);
 
 }  // namespace skyquilt::worker

@@ -220,7 +220,7 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   SessionRecord record;
   if (!LoadSession("context", job, target, trainer, &record, &extras)) {
     trainer.InitializeParameters();
-    GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads);
+    if (GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads)) learner.Rest();
     MarkUnseen(source, *job.survey, area.photos, surface, job.min_views, target, threads);
     StartFromPoints(*job.survey, target);
   }

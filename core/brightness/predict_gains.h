@@ -18,7 +18,8 @@ struct CapturedPhoto {
 double TrustInTags(const Response& response, const std::vector<CapturedPhoto>& photos);
 
 // Sets log_gain of the photos that are not learned: what remains beyond the trusted part of the tags, interpolated over time between the
-// learned photos of the group. Groups without learned photos keep theirs. One entry per photo of the response.
+// learned photos of the group, and drawn towards the mean as far as neighbours fail to predict learned photos. Groups without learned photos keep
+// theirs. One entry per photo of the response.
 void PredictGains(const std::vector<CapturedPhoto>& photos, Response& response);
 
 }  // namespace skyquilt::brightness

@@ -105,6 +105,7 @@ void ResponseLearner::TakeOffMean() {
 }
 
 void ResponseLearner::Put(checkpoint::ArchiveWriter& writer) const {
+  writer.SetAttribute("learner_rests", resting_ ? 1 : 0);
   writer.Put("learner/gain_moment1", gain_.moment1);
   writer.Put("learner/gain_moment2", gain_.moment2);
   writer.Put("learner/gain_steps", gain_.steps);
@@ -120,6 +121,7 @@ void ResponseLearner::Get(const checkpoint::ArchiveReader& reader, const std::fi
     }
     to = std::move(from);
   };
+  resting_ = reader.IntAttribute("learner_rests") != 0;
   take(gain_.moment1, reader.Floats("learner/gain_moment1"), "learner/gain_moment1");
   take(gain_.moment2, reader.Floats("learner/gain_moment2"), "learner/gain_moment2");
   take(gain_.steps, reader.Ints("learner/gain_steps"), "learner/gain_steps");

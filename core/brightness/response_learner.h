@@ -30,11 +30,13 @@ class ResponseLearner {
   // Writes into `response`, which must outlive it.
   ResponseLearner(Response& response, const LearnerOptions& options);
 
-  bool active() const { return active_; }
+  bool active() const { return active_ && !resting_; }
   // One more pixel: d loss / d log gain per colour, radius2 as in Response, weight: the pixel's share of the loss.
   void Add(size_t photo, float radius2, const float gradient[3], float weight);
   // One step with what was added since the last; progress in [0, 1] of the training sets the rate. Not finite: nothing changes.
   void Step(double progress);
+  // What is to be learned is known already, and better than a field that is still learning could tell: nothing changes any more.
+  void Rest() { resting_ = true; }
 
   // Moments and counts under "learner/"; with the response they are all of the state.
   void Put(checkpoint::ArchiveWriter& writer) const;
@@ -55,7 +57,7 @@ class ResponseLearner {
 
   Response& response_;
   LearnerOptions options_;
-  bool active_ = false;
+  bool active_ = false, resting_ = false;
   Group gain_, falloff_;
   std::vector<double> weight_;  // per photo, of this step's pixels
 };

@@ -90,7 +90,7 @@ TEST_F(BrightnessTest, TiePointsKnowTheGains) {
   brightness::Response response = job.response;
   const RaySource source(survey_, *pixels_, response);
   base::ThreadPool threads(2);
-  GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads);
+  EXPECT_TRUE(GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads));
   EXPECT_LT(RmsStops(response, stops), 0.05);
   for (size_t c = 0; c < 3; ++c) {
     double mean = 0.0;
@@ -109,6 +109,15 @@ TEST_F(BrightnessTest, TiePointsKnowTheFalloff) {
   GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads);
   EXPECT_LT(RmsStops(response, [](int photo, int) { return Stops(photo); }), 0.05);
   for (const float r2 : {0.2F, 0.5F, 0.9F}) EXPECT_NEAR(response.LogFalloff(0, r2), -0.5F * r2, 0.05F) << r2;
+}
+
+TEST_F(BrightnessTest, WithoutPointsNothingIsKnown) {
+  const TrainJob job = Learning("context.h5", 1, true);
+  brightness::Response response = job.response;
+  const RaySource source(survey_, *pixels_, response);
+  base::ThreadPool threads(1);
+  EXPECT_FALSE(GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads));
+  for (const float gain : response.log_gain) EXPECT_EQ(gain, 0.0F);
 }
 
 TEST_F(BrightnessTest, TiePointsKeepToAnchors) {

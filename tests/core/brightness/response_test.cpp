@@ -106,6 +106,14 @@ TEST(ResponseLearner, ABeliefInTagsHoldsWhatNothingSupports) {
   EXPECT_EQ(response.log_gain[3], -0.5F);
 }
 
+TEST(ResponseLearner, RestsOnceAllIsKnown) {
+  Response response = Response::Plain(1, 1);
+  ResponseLearner learner(response, {{1}, {}, true, true});
+  EXPECT_TRUE(learner.active());
+  learner.Rest();
+  EXPECT_FALSE(learner.active());
+}
+
 TEST(ResponseLearner, LeavesAnchorsAndUnseenPhotosAlone) {
   Response response = Response::Plain(3, 1);
   ResponseLearner learner(response, {{0, 1, 1}, {}, true, false});

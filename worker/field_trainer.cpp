@@ -24,7 +24,7 @@ Neighbours NeighboursOf(const brightness::Luminance& luminance) {
 
 }  // namespace
 
-FieldTrainer::FieldTrainer(render::TrainedField& target, const RaySource& source, const render::TrainedField* context, const TrainOptions& options,
+FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options,
                            uint64_t seed, const LuminancePlan& luminance, brightness::ResponseLearner* learner, base::ThreadPool& threads)
     : target_(target),
       options_(options),
@@ -36,6 +36,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, const RaySource& source
       drawer_(target, source, seed, NeighboursOf(luminance.luminance), threads, times_),
       step_(target, field_, context, luminance, threads, times_),
       learner_(learner),
+      source_(source),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / 24)) {
   state_.Allocate(field_);
 }
@@ -58,7 +59,10 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   step.distortion = options_.distortion * std::clamp((progress - kDistortionFrom) / (kDistortionTo - kDistortionFrom), 0.0, 1.0);
   brightness::ResponseLearner* learner = learner_ != nullptr && learner_->active() ? learner_ : nullptr;
   const StepResult result = step_.Train(batch_, step, state_, learner);
-  if (learner != nullptr && result.finite) learner->Step(progress);
+  if (learner != nullptr && result.finite) {
+    learner->Step(progress);
+    source_.UpdateExposures();
+  }
   ObserveSamples();
   // The next step's rays fill the batch at this step's samples per ray, changing slowly.
   if (result.n_rays > 0 && result.n_samples > 0) {

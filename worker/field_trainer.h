@@ -20,7 +20,7 @@ class FieldTrainer {
  public:
   // target.grid and target.networks are not used here: parameters live in state(). context may be null, and so may learner: the photos'
   // brightness then stays as it is.
-  FieldTrainer(render::TrainedField& target, const RaySource& source, const render::TrainedField* context, const TrainOptions& options, uint64_t seed,
+  FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options, uint64_t seed,
                const LuminancePlan& luminance, brightness::ResponseLearner* learner, base::ThreadPool& threads);
 
   field::TrainableState& state() { return state_; }
@@ -51,6 +51,7 @@ class FieldTrainer {
   RayDrawer drawer_;
   FieldStep step_;
   brightness::ResponseLearner* learner_;
+  RaySource& source_;
   RayBatch batch_;
   int rays_per_step_ = 1024;
 };

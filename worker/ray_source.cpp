@@ -20,6 +20,12 @@ RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixe
     enu_from_cam_.push_back(photo.cam_from_enu.Inverse());
     per_radius2_.push_back(1.0 / (cameras_.back().FarthestCorner() * cameras_.back().FarthestCorner()));
   }
+  UpdateExposures();
+}
+
+void RaySource::UpdateExposures() {
+  exposures_.clear();
+  for (size_t i = 0; i < response_.photos(); ++i) exposures_.push_back(response_.ExposureOf(i));
 }
 
 void RaySource::SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, double empty_share) {
@@ -83,7 +89,7 @@ bool RaySource::RayOf(int photo, int x, int y, bool empty, PixelRay* ray) const 
   for (size_t c = 0; c < 3; ++c) ray->target_srgb[c] = static_cast<float>(rgb[c]) / 255.0F;
   ray->photo = photo;
   ray->radius2 = Radius2(photo, position);
-  ray->exposure = response_.ExposureOf(index, ray->radius2);
+  ray->exposure = brightness::Response::FallenOff(exposures_[index], response_.LogFalloff(index, ray->radius2));
   ray->empty = empty;
   return true;
 }

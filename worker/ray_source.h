@@ -35,8 +35,11 @@ struct Tile {
 
 class RaySource {
  public:
-  // response: of the survey's photos; it may change between draws and must outlive the source. The cache's image sizes decide the pixel grid.
+  // response: of the survey's photos; must outlive the source. The cache's image sizes decide the pixel grid.
   RaySource(const survey::Survey& survey, const image::PixelCache& pixels, const brightness::Response& response);
+
+  // Takes over what the response says by now.
+  void UpdateExposures();
 
   // Rays come from `inside` tiles, a share of them from `empty` tiles as emptiness rays. Tiles count by their number of pixels.
   void SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, double empty_share);
@@ -68,6 +71,7 @@ class RaySource {
   const brightness::Response& response_;
   std::vector<camera::Camera> cameras_;     // per photo, at cached size
   std::vector<geo::Rigid3d> enu_from_cam_;  // per photo
+  std::vector<std::array<brightness::Exposure, 3>> exposures_;  // per photo, on the axis
   std::vector<double> per_radius2_;         // per photo: 1 / squared pixels from the principal point to the farthest corner
   std::vector<Tile> inside_, empty_;
   double empty_share_ = 0.0;

@@ -1,7 +1,6 @@
 #include "worker/tie_point_gains.h"
 
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/SparseCore>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,14 +11,16 @@
 namespace skyquilt::worker {
 namespace {
 
-constexpr size_t kMostPoints = 20'000;
-constexpr int kPointReach = 1;         // pixels around a point's that are averaged
-constexpr int kFewestSightings = 8;    // a photo's shared points: fewer say nothing
-constexpr int kRounds = 8;             // of reweighting
-constexpr double kScatter = 0.15;      // log light beyond which a sighting counts less
-constexpr double kNearlyAll = 0.95;    // of the photos
-constexpr double kFalloffRidge = 1.0;  // in sightings
-constexpr double kTrace = 1e-3;        // in sightings
+constexpr size_t kMostPoints = 12'000;
+constexpr int kPointReach = 1;            // pixels around a point's that are averaged
+constexpr int kFewestSightings = 8;       // a photo's shared points: fewer say nothing
+constexpr int kRounds = 6;                // of reweighting
+constexpr int kMostSteps = 200;           // of conjugate gradients
+constexpr double kScatter = 0.15;         // log light beyond which a sighting counts less
+constexpr double kFalloffExplains = 0.1;  // of the squares
+constexpr double kNearlyAll = 0.95;       // of the photos
+constexpr double kFalloffRidge = 1.0;     // in sightings
+constexpr double kTrace = 1e-3;           // in sightings
 
 // One point in one photo: logarithm of recorded light without what tags explain.
 struct Sighting {
@@ -80,53 +81,6 @@ std::vector<Sighting> Look(const survey::Survey& survey, const image::PixelCache
   return all;
 }
 
-// One colour: gains that minimise the weighted squares, points eliminated. Photos that do not learn stand still.
-Eigen::VectorXd Solve(std::span<const Sighting> sightings, const std::vector<double>& weight, size_t colour, const brightness::LearnerOptions& learn,
-                      const Eigen::VectorXd& before) {
-  const std::vector<uint8_t>& learns = learn.learns_gain;
-  const Eigen::Index n = before.size();
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n), sightings_of = Eigen::VectorXd::Zero(n);
-  for (size_t first = 0, last = 0; first < sightings.size(); first = last) {
-    double sum = 0.0, mean = 0.0;
-    for (last = first; last < sightings.size() && sightings[last].point == sightings[first].point; ++last) {
-      sum += weight[last];
-      mean += weight[last] * sightings[last].log_light[colour];
-    }
-    if (last - first < 2 || !(sum > 0.0)) continue;
-    mean /= sum;
-    for (size_t a = first; a < last; ++a) {
-      const int i = sightings[a].photo;
-      right[i] += weight[a] * (sightings[a].log_light[colour] - mean);
-      entries.emplace_back(i, i, weight[a]);
-      sightings_of[i] += weight[a];
-      for (size_t b = first; b < last; ++b) entries.emplace_back(i, sightings[b].photo, -weight[a] * weight[b] / sum);
-    }
-  }
-  // Photos that stand still leave the unknowns: their columns go to the right side.
-  std::vector<Eigen::Triplet<double>> kept;
-  for (const Eigen::Triplet<double>& e : entries) {
-    if (learns[static_cast<size_t>(e.row())] == 0) continue;
-    if (learns[static_cast<size_t>(e.col())] == 0) {
-      right[e.row()] -= e.value() * before[e.col()];
-    } else {
-      kept.push_back(e);
-    }
-  }
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const bool moves = learns[static_cast<size_t>(i)] != 0;
-    // Towards what tags say; a trace even without, because all photos together have no place of their own.
-    const double belief = learn.belief.empty() ? 0.0 : static_cast<double>(learn.belief[static_cast<size_t>(i)]);
-    kept.emplace_back(static_cast<int>(i), static_cast<int>(i), moves ? kTrace + belief * sightings_of[i] : 1.0);
-    if (!moves) right[i] = before[i];
-  }
-  Eigen::SparseMatrix<double> matrix(n, n);
-  matrix.setFromTriplets(kept.begin(), kept.end());
-  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver(matrix);
-  solver.setTolerance(1e-8);
-  return solver.solveWithGuess(right, before);
-}
-
 // Weighted means of a quantity over the sightings of each point, handed to `each` with the point's range.
 template <typename Value, typename Each>
 void ForEachPoint(std::span<const Sighting> sightings, const std::vector<double>& weight, const Value& value, const Each& each) {
@@ -143,12 +97,56 @@ void ForEachPoint(std::span<const Sighting> sightings, const std::vector<double>
   }
 }
 
-// Falloff of every camera that explains best what the gains leave, all colours together; a little is taken off it for safety.
+// One colour: gains that minimise the weighted squares, points eliminated, by conjugate gradients without ever writing the matrix down: it has an
+// entry for every two photos that share a point. Photos that do not learn stand still.
+Eigen::VectorXd Solve(std::span<const Sighting> sightings, const std::vector<double>& weight, size_t colour, const brightness::LearnerOptions& learn,
+                      const Eigen::VectorXd& before) {
+  const Eigen::Index n = before.size();
+  Eigen::VectorXd moves(n), damping(n), diagonal = Eigen::VectorXd::Zero(n);
+  for (size_t s = 0; s < sightings.size(); ++s) diagonal[sightings[s].photo] += weight[s];
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto photo = static_cast<size_t>(i);
+    moves[i] = learn.learns_gain[photo] != 0 ? 1.0 : 0.0;
+    // Towards what tags say; a trace even without, because all photos together have no place of their own.
+    damping[i] = kTrace + (learn.belief.empty() ? 0.0 : static_cast<double>(learn.belief[photo])) * diagonal[i];
+  }
+  // Sum over a photo's sightings of a quantity's distance from its mean over each point.
+  const auto about_points = [&](const auto& value) {
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(n);
+    ForEachPoint(sightings, weight, value, [&](size_t first, size_t last, double mean) {
+      for (size_t s = first; s < last; ++s) sums[sightings[s].photo] += weight[s] * (value(s) - mean);
+    });
+    return sums;
+  };
+  const auto apply = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    return about_points([&](size_t s) { return x[sightings[s].photo]; }) + damping.cwiseProduct(x);
+  };
+  Eigen::VectorXd gains = before;
+  Eigen::VectorXd rest = moves.cwiseProduct(about_points([&](size_t s) { return sightings[s].log_light[colour]; }) - apply(gains));
+  const Eigen::VectorXd precondition = (diagonal + damping).cwiseInverse();
+  Eigen::VectorXd scaled = precondition.cwiseProduct(rest), direction = scaled;
+  const double enough = 1e-16 * std::max(1e-300, rest.dot(scaled));
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double size = rest.dot(scaled);
+    if (!(size > enough)) break;
+    const Eigen::VectorXd image = moves.cwiseProduct(apply(direction));
+    const double stride = size / direction.dot(image);
+    gains += stride * direction;
+    rest -= stride * image;
+    scaled = precondition.cwiseProduct(rest);
+    direction = scaled + rest.dot(scaled) / size * direction;
+  }
+  return gains;
+}
+
+// Falloff of every camera that explains best what the gains leave, all colours together; none where it hardly explains any of that, for light
+// that depends on the angle of view looks a little like it.
 void SolveFalloff(std::span<const Sighting> sightings, const std::array<std::vector<double>, 3>& weight, const std::array<Eigen::VectorXd, 3>& gains,
                   brightness::Response& response) {
   const size_t cameras = response.falloff.size() / 3;
   std::vector<Eigen::Matrix3d> left(cameras, Eigen::Matrix3d::Identity() * kFalloffRidge);
   std::vector<Eigen::Vector3d> right(cameras, Eigen::Vector3d::Zero());
+  std::vector<double> squares(cameras, 0.0);
   for (size_t c = 0; c < 3; ++c) {
     // Light and powers of the radius together, about their means over each point.
     const auto row = [&](size_t s) {
@@ -162,11 +160,13 @@ void SolveFalloff(std::span<const Sighting> sightings, const std::array<std::vec
         const Eigen::Vector4d off = row(s) - mean;
         left[camera] += weight[c][s] * off.head<3>() * off.head<3>().transpose();
         right[camera] += weight[c][s] * off[3] * off.head<3>();
+        squares[camera] += weight[c][s] * off[3] * off[3];
       }
     });
   }
   for (size_t camera = 0; camera < cameras; ++camera) {
-    const Eigen::Vector3d solved = left[camera].ldlt().solve(right[camera]);
+    Eigen::Vector3d solved = left[camera].ldlt().solve(right[camera]);
+    if (!(solved.dot(right[camera]) > kFalloffExplains * squares[camera])) solved.setZero();
     for (size_t k = 0; k < 3; ++k) response.falloff[3 * camera + k] = static_cast<float>(solved[static_cast<Eigen::Index>(k)]);
   }
 }
@@ -220,7 +220,8 @@ bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& p
       const auto falloff = static_cast<double>(response.LogFalloff(static_cast<size_t>(flat[s].photo), flat[s].radius2));
       for (size_t c = 0; c < 3; ++c) flat[s].log_light[c] = sightings[s].log_light[c] - falloff;
     }
-    for (size_t c = 0; c < 3; ++c) {
+    threads.ParallelFor(3, [&](int64_t colour, int) {
+      const auto c = static_cast<size_t>(colour);
       gains[c] = Solve(flat, weight[c], c, learn, gains[c]);
       const auto light = [&](size_t s) { return flat[s].log_light[c] - gains[c][flat[s].photo]; };
       // Cauchy weights about each point's own mean.
@@ -230,7 +231,7 @@ bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& p
           weight[c][s] = 1.0 / (1.0 + off * off);
         }
       });
-    }
+    });
     if (learn.falloff) SolveFalloff(sightings, weight, gains, response);
   }
   return KeepGains(gains, sightings, learn, response);

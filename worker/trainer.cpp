@@ -224,6 +224,7 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
     MarkUnseen(source, *job.survey, area.photos, surface, job.min_views, target, threads);
     StartFromPoints(*job.survey, target);
   }
+  source.UpdateExposures();
   if (record.complete) return Summarise(record, trainer);
   Loop loop("context", job, target, trainer, &extras, report);
   return loop.Run(record, [&] {

@@ -8,7 +8,7 @@
 namespace skyquilt::brightness {
 
 struct BrightnessOptions {
-  std::string correction = "exif,gain";
+  std::string correction = "exif,gain,vignette";
   std::string luminance_mode = "auto";
   double target_brightness = 0.4;
   std::string luminance_form = "gain";

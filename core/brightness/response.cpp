@@ -38,11 +38,16 @@ std::array<float, 3> Response::LogGain(size_t photo, float radius2) const {
   return sum;
 }
 
-std::array<Exposure, 3> Response::ExposureOf(size_t photo, float radius2) const {
-  const std::array<float, 3> log = LogGain(photo, radius2);
-  const Exposure red = Exposure::FromLogGain(log[0]);
-  if (log[1] == log[0] && log[2] == log[0]) return {red, red, red};
-  return {red, Exposure::FromLogGain(log[1]), Exposure::FromLogGain(log[2])};
+std::array<Exposure, 3> Response::ExposureOf(size_t photo) const {
+  const std::array<float, 3> log = LogGain(photo);
+  return {Exposure::FromLogGain(log[0]), Exposure::FromLogGain(log[1]), Exposure::FromLogGain(log[2])};
+}
+
+std::array<Exposure, 3> Response::FallenOff(std::array<Exposure, 3> exposure, float log_falloff) {
+  if (log_falloff == 0.0F) return exposure;
+  const Exposure falloff = Exposure::FromLogGain(log_falloff);
+  for (Exposure& one : exposure) one = {one.log_gain + log_falloff, one.gain * falloff.gain, one.root * falloff.root};
+  return exposure;
 }
 
 std::optional<size_t> Response::Find(const std::string& name) const {

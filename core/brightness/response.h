@@ -30,7 +30,10 @@ struct Response {
   float LogFalloff(size_t photo, float radius2) const;
   // Natural logarithms of all three factors together; on the axis by default.
   std::array<float, 3> LogGain(size_t photo, float radius2 = 0.0F) const;
-  std::array<Exposure, 3> ExposureOf(size_t photo, float radius2 = 0.0F) const;
+  std::array<Exposure, 3> ExposureOf(size_t photo) const;
+  // The same at a pixel away from the axis.
+  std::array<Exposure, 3> ExposureOf(size_t photo, float radius2) const { return FallenOff(ExposureOf(photo), LogFalloff(photo, radius2)); }
+  static std::array<Exposure, 3> FallenOff(std::array<Exposure, 3> exposure, float log_falloff);
   // The photo of this name: as it is listed, or the only one whose file name it is.
   std::optional<size_t> Find(const std::string& name) const;
 };

@@ -69,10 +69,10 @@ class RaySource {
   const survey::Survey& survey_;
   const image::PixelCache& pixels_;
   const brightness::Response& response_;
-  std::vector<camera::Camera> cameras_;     // per photo, at cached size
-  std::vector<geo::Rigid3d> enu_from_cam_;  // per photo
+  std::vector<camera::Camera> cameras_;                         // per photo, at cached size
+  std::vector<geo::Rigid3d> enu_from_cam_;                      // per photo
   std::vector<std::array<brightness::Exposure, 3>> exposures_;  // per photo, on the axis
-  std::vector<double> per_radius2_;         // per photo: 1 / squared pixels from the principal point to the farthest corner
+  std::vector<double> per_radius2_;                             // per photo: 1 / squared pixels from the principal point to the farthest corner
   std::vector<Tile> inside_, empty_;
   double empty_share_ = 0.0;
 };

@@ -7,9 +7,11 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "core/brightness/exposure.h"
 #include "core/brightness/predict_gains.h"
 #include "core/render/march.h"
 #include "worker/block_session.h"
+#include "worker/captured_photos.h"
 #include "worker/few_views.h"
 #include "worker/field_trainer.h"
 #include "worker/make_backdrop.h"
@@ -38,7 +40,20 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is_context, const brightness::Luminance& luminance) {
+// Largest display value that the training photos, brought to reference exposure, can ask for.
+double ColorRange(const survey::Survey& survey, const brightness::Response& response) {
+  std::vector<float> gains;
+  for (size_t i = 0; i < survey.photos.size(); ++i) {
+    if (survey.photos[i].is_test) continue;
+    const std::array<float, 3> log = response.LogGain(i);
+    gains.push_back(std::exp(std::min({log[0], log[1], log[2]})));
+  }
+  return brightness::ColorRange(gains);
+}
+
+// response: as far as it is known; `learning` when more is to be found out while the field trains.
+render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is_context, const brightness::Luminance& luminance,
+                                const brightness::Response& response, bool learning) {
   const TrainOptions& options = job.options;
   render::TrainedField f;
   f.name = box.name;
@@ -58,9 +73,8 @@ render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is
   f.config.hidden = options.hidden;
   f.config.color_hidden_layers = options.color_hidden_layers;
   f.config.sh_degree = options.sh_degree;
-  f.config.color_range = brightness::ColorRange(job.response.exif_gain);
-  // How dark photos without tags are is not known yet.
-  if (job.learn.Gains()) f.config.color_range = std::max(f.config.color_range, kLearnedRange);
+  f.config.color_range = ColorRange(*job.survey, response);
+  if (learning) f.config.color_range = std::max(f.config.color_range, kLearnedRange);
   f.config.luminance = luminance.On();
   // What is shown brighter than the photos, or was brighter than they could say.
   if (luminance.On()) f.config.color_range = std::max(f.config.color_range, kLuminanceRange);
@@ -181,18 +195,6 @@ class Loop {
   const Reporter& report_;
 };
 
-// The survey's photos in order of capture; by name where times are missing.
-std::vector<brightness::CapturedPhoto> CapturedPhotos(const TrainJob& job) {
-  const std::vector<survey::Photo>& photos = job.survey->photos;
-  const bool timed = std::all_of(photos.begin(), photos.end(), [](const survey::Photo& p) { return p.time_s.has_value(); });
-  std::vector<brightness::CapturedPhoto> captured;
-  for (size_t i = 0; i < photos.size(); ++i) {
-    const int group = photos[i].flight * static_cast<int>(job.survey->cameras.size()) + photos[i].camera;
-    captured.push_back({timed ? *photos[i].time_s : static_cast<double>(i), group, !photos[i].is_test});
-  }
-  return captured;
-}
-
 void RequireJob(const TrainJob& job) {
   SKYQUILT_CHECK(job.survey != nullptr && job.pixels != nullptr, "a job needs a survey and its pixels");
   SKYQUILT_CHECK(job.response.photos() == job.survey->photos.size() && job.pixels->size() == job.survey->photos.size(),
@@ -203,7 +205,6 @@ void RequireJob(const TrainJob& job) {
 
 TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadPool& threads, const Reporter& report) {
   RequireJob(job);
-  render::TrainedField target = MakeTarget(job, area, true, job.luminance);
   brightness::Response response = job.response;
   brightness::ResponseLearner learner(response, job.learn);
   ContextExtras extras{&response, &learner, nullptr};
@@ -215,12 +216,14 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
     none.reason = "no training photo sees the survey area";
     return none;
   }
+  if (GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads)) learner.Rest();
+  source.UpdateExposures();
+  render::TrainedField target = MakeTarget(job, area, true, job.luminance, response, learner.active());
   const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};
   FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, threads);
   SessionRecord record;
   if (!LoadSession("context", job, target, trainer, &record, &extras)) {
     trainer.InitializeParameters();
-    if (GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads)) learner.Rest();
     MarkUnseen(source, *job.survey, area.photos, surface, job.min_views, target, threads);
     StartFromPoints(*job.survey, target);
   }
@@ -230,7 +233,7 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   return loop.Run(record, [&] {
     target.grid = trainer.state().grid;
     target.networks = trainer.state().networks;
-    if (job.learn.Gains()) brightness::PredictGains(CapturedPhotos(job), response);
+    if (job.learn.Gains()) brightness::PredictGains(CapturedPhotos(*job.survey), response);
     return ContextFindings{SurfaceBands(source, *job.survey, target, threads), MakeBackdrop(source, *job.survey, surface, job.seed)};
   });
 }
@@ -241,10 +244,10 @@ TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::fil
   // Even blocks that do not look at the context share its brightness.
   LoadedContext loaded = LoadContext(context_checkpoint);
   const LoadedContext* context = job.options.coupling == "guided" ? &loaded : nullptr;
-  render::TrainedField target = MakeTarget(job, block, false, loaded.luminance);
   if (loaded.response.photos() != job.survey->photos.size()) {
     throw base::InputError(context_checkpoint, "belongs to a survey of another number of photos", "Train it again with --restart");
   }
+  render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false);
   RaySource source(*job.survey, *job.pixels, loaded.response);
   const render::PlanSurface surface = SurfaceOfPoints(*job.survey);
   const std::vector<Tile> tiles = TilesInCompany(source, *job.survey, block.photos, surface, job.min_views);

@@ -12,6 +12,7 @@
 #include "core/base/errors.h"
 #include "core/brightness/predict_gains.h"
 #include "core/image/srgb.h"
+#include "worker/captured_photos.h"
 
 namespace skyquilt::report {
 
@@ -20,17 +21,6 @@ namespace {
 constexpr int kGrid = 48;           // pixels each way that stand for a photo
 constexpr double kOffStops = 0.15;  // less is hard to see
 constexpr int kViewJpegQuality = 88;
-
-// As training orders them (worker/trainer.cpp), so that trust in tags is what the predictions used.
-std::vector<brightness::CapturedPhoto> OrderOfCapture(const survey::Survey& survey, bool timed) {
-  std::vector<brightness::CapturedPhoto> captured;
-  for (size_t i = 0; i < survey.photos.size(); ++i) {
-    const survey::Photo& photo = survey.photos[i];
-    const int group = photo.flight * static_cast<int>(survey.cameras.size()) + photo.camera;
-    captured.push_back({timed ? *photo.time_s : static_cast<double>(i), group, !photo.is_test});
-  }
-  return captured;
-}
 
 struct LightOfPhotos {
   std::vector<double> before_stops, after_stops;  // log2 of the mean light of each photo
@@ -140,8 +130,8 @@ BrightnessReport CollectBrightness(const render::SceneInfo& info, const survey::
   const brightness::Response& response = info.response;
   if (response.photos() != survey.photos.size() || survey.photos.empty()) return report;
   SKYQUILT_CHECK(pixels.size() == survey.photos.size(), "one cached photo per photo of the survey");
-  report.timed = std::all_of(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.time_s.has_value(); });
-  const std::vector<brightness::CapturedPhoto> captured = OrderOfCapture(survey, report.timed);
+  report.timed = worker::AllTimed(survey);
+  const std::vector<brightness::CapturedPhoto> captured = worker::CapturedPhotos(survey);
   std::vector<size_t> order(captured.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return captured[a].order < captured[b].order; });

@@ -38,7 +38,7 @@ double TrustInTags(const Response& response, const std::vector<CapturedPhoto>& p
     const size_t none = photos.size();
     size_t before = none;
     for (const size_t i : sequence) {
-      if (!photos[i].learned) continue;
+      if (!photos[i].learned || !photos[i].tagged) continue;
       if (before != none) {
         const double tag_step = LogExif(response, i) - LogExif(response, before);
         double step = 0.0;
@@ -55,23 +55,25 @@ double TrustInTags(const Response& response, const std::vector<CapturedPhoto>& p
 
 namespace {
 
-// What the trusted part of the tags leaves of the learned photos' gains, over time.
+// What tags leave unexplained of the learned photos' gains, over time. Of tagged photos (tags = true) beyond the trusted part of their tags, and
+// between tagged ones; else of all photos, tags included.
 class RestOverTime {
  public:
-  RestOverTime(const Response& response, const std::vector<CapturedPhoto>& photos, double trust)
-      : response_(response), photos_(photos), trust_(trust) {}
+  RestOverTime(const Response& response, const std::vector<CapturedPhoto>& photos, bool tags, double trust)
+      : response_(response), photos_(photos), tags_(tags), explained_(tags ? trust : 0.0) {}
 
-  double Of(size_t photo, size_t c) const {
-    return static_cast<double>(response_.log_gain[3 * photo + c]) + (1.0 - trust_) * LogExif(response_, photo);
-  }
+  bool Counts(size_t photo) const { return photos_[photo].learned && (!tags_ || photos_[photo].tagged); }
+  double Of(size_t photo, size_t c) const { return static_cast<double>(response_.log_gain[3 * photo + c]) + Unexplained(photo); }
+  // The part of the tags that is not taken to explain anything.
+  double Unexplained(size_t photo) const { return (1.0 - explained_) * LogExif(response_, photo); }
   // Interpolated at place k of a sequence between the nearest learned photos before and after it; its own is not used.
   std::optional<std::array<double, 3>> At(const std::vector<size_t>& sequence, size_t k) const {
     std::optional<size_t> before, after;
     for (size_t i = k; i > 0 && !before; --i) {
-      if (photos_[sequence[i - 1]].learned) before = sequence[i - 1];
+      if (Counts(sequence[i - 1])) before = sequence[i - 1];
     }
     for (size_t i = k + 1; i < sequence.size() && !after; ++i) {
-      if (photos_[sequence[i]].learned) after = sequence[i];
+      if (Counts(sequence[i])) after = sequence[i];
     }
     if (!before && !after) return std::nullopt;
     const size_t a = before.value_or(after.value_or(0)), b = after.value_or(a);
@@ -85,20 +87,17 @@ class RestOverTime {
  private:
   const Response& response_;
   const std::vector<CapturedPhoto>& photos_;
-  double trust_;
+  bool tags_;
+  double explained_;
 };
 
-}  // namespace
-
-void PredictGains(const std::vector<CapturedPhoto>& photos, Response& response) {
-  SKYQUILT_CHECK(photos.size() == response.photos(), "one entry per photo");
-  const double trust = TrustInTags(response, photos);
-  const RestOverTime rest(response, photos, trust);
+void Predict(const std::vector<CapturedPhoto>& photos, bool tags, double trust, Response& response) {
+  const RestOverTime rest(response, photos, tags, trust);
   const std::vector<std::vector<size_t>> sequences = Sequences(photos);
   std::array<double, 3> mean = {0.0, 0.0, 0.0};
   double n = 0.0;
   for (size_t i = 0; i < photos.size(); ++i) {
-    if (!photos[i].learned) continue;
+    if (!rest.Counts(i)) continue;
     for (size_t c = 0; c < 3; ++c) mean[c] += rest.Of(i, c);
     n += 1.0;
   }
@@ -108,7 +107,7 @@ void PredictGains(const std::vector<CapturedPhoto>& photos, Response& response) 
   double both = 0.0, neighbours = 0.0;
   for (const std::vector<size_t>& sequence : sequences) {
     for (size_t k = 0; k < sequence.size(); ++k) {
-      if (!photos[sequence[k]].learned) continue;
+      if (!rest.Counts(sequence[k])) continue;
       const auto between = rest.At(sequence, k);
       for (size_t c = 0; between && c < 3; ++c) {
         both += (rest.Of(sequence[k], c) - mean[c]) * ((*between)[c] - mean[c]);
@@ -120,13 +119,22 @@ void PredictGains(const std::vector<CapturedPhoto>& photos, Response& response) 
   for (const std::vector<size_t>& sequence : sequences) {
     for (size_t k = 0; k < sequence.size(); ++k) {
       const size_t photo = sequence[k];
-      const auto between = photos[photo].learned ? std::nullopt : rest.At(sequence, k);
+      if (photos[photo].learned || photos[photo].tagged != tags) continue;
+      const auto between = rest.At(sequence, k);
       for (size_t c = 0; between && c < 3; ++c) {
         const double predicted = mean[c] + memory * ((*between)[c] - mean[c]);
-        response.log_gain[3 * photo + c] = static_cast<float>(predicted - (1.0 - trust) * LogExif(response, photo));
+        response.log_gain[3 * photo + c] = static_cast<float>(predicted - rest.Unexplained(photo));
       }
     }
   }
+}
+
+}  // namespace
+
+void PredictGains(const std::vector<CapturedPhoto>& photos, Response& response) {
+  SKYQUILT_CHECK(photos.size() == response.photos(), "one entry per photo");
+  const double trust = TrustInTags(response, photos);
+  for (const bool tags : {true, false}) Predict(photos, tags, trust, response);
 }
 
 }  // namespace skyquilt::brightness

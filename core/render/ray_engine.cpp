@@ -8,7 +8,6 @@
 
 #include "core/base/cancel.h"
 #include "core/image/srgb.h"
-#include "core/render/blend.h"
 #include "core/render/composite.h"
 #include "core/render/march.h"
 
@@ -53,15 +52,6 @@ struct FieldBatch {
 };
 
 }  // namespace
-
-EngineOptions EngineOptions::For(const brightness::Luminance& luminance) {
-  EngineOptions options;
-  if (!luminance.On()) return options;
-  options.concealing = luminance.product ? Concealing::kProduct : Concealing::kGain;
-  // Along a product even what is hardly seen holds light back.
-  if (luminance.product) options.colour_threshold = -1.0F;
-  return options;
-}
 
 class RayRenderer::Group {
  public:
@@ -373,20 +363,6 @@ RayRenderer::~RayRenderer() = default;
 
 int64_t RayRenderer::Render(std::span<const Ray> rays, std::span<RayColor> out) {
   return group_->Render(rays, out);
-}
-
-double BlendWeights(const FieldSet& fields, std::span<const int> candidates, double x, double y, std::span<double> weights) {
-  double sum = 0.0;
-  for (size_t c = 0; c < candidates.size(); ++c) {
-    const TrainedField& f = *fields.blocks[static_cast<size_t>(candidates[c])];
-    weights[c] = BlockRamp(f.core_min_enu, f.core_max_enu, f.margin_m, x, y);
-    sum += weights[c];
-  }
-  if (sum > 1.0) {
-    for (double& weight : weights) weight /= sum;
-    sum = 1.0;
-  }
-  return 1.0 - sum;
 }
 
 void RenderRays(const FieldSet& fields, std::span<const Ray> rays, std::span<RayColor> out, const EngineOptions& options, base::ThreadPool& threads,

@@ -14,7 +14,7 @@ struct Flight {
   Flight() {
     for (size_t i = 0; i < 8; ++i) {
       response.exif_gain[i] = i % 3 == 0 ? 2.0F : 1.0F;
-      photos.push_back({static_cast<double>(i), 0, i % 4 != 1});
+      photos.push_back({static_cast<double>(i), 0, i % 4 != 1, true});
     }
   }
   void Learn(size_t photo, double log_gain) {
@@ -48,12 +48,28 @@ TEST(PredictGains, DoesNotPassOnWhatHasNoMemory) {
   Response response = Response::Plain(40, 1);
   std::vector<CapturedPhoto> photos;
   for (size_t i = 0; i < 40; ++i) {
-    photos.push_back({static_cast<double>(i), 0, i % 8 != 3});
+    photos.push_back({static_cast<double>(i), 0, i % 8 != 3, true});
     const float off = (i * 7919U) % 2 == 0 ? 0.5F : -0.5F;  // up, down, up, down
     for (size_t c = 0; c < 3; ++c) response.log_gain[3 * i + c] = photos[i].learned ? off : 0.0F;
   }
   PredictGains(photos, response);
   for (size_t i = 3; i < 40; i += 8) EXPECT_NEAR(response.log_gain[3 * i], 0.0F, 0.1F) << i;
+}
+
+TEST(PredictGains, TaggedPhotosDoNotTakeOverTheGainsOfUntaggedOnes) {
+  // Every second photo without tags; the survey rises by a tenth of a stop per photo and the tags are right.
+  Response response = Response::Plain(16, 1);
+  std::vector<CapturedPhoto> photos;
+  for (size_t i = 0; i < 16; ++i) {
+    const bool tagged = i % 2 == 0, learned = i != 6 && i != 9;
+    photos.push_back({static_cast<double>(i), 0, learned, tagged});
+    const float light = 0.1F * static_cast<float>(i);
+    if (tagged) response.exif_gain[i] = std::exp(light);
+    for (size_t c = 0; c < 3; ++c) response.log_gain[3 * i + c] = tagged || !learned ? 0.0F : light;
+  }
+  PredictGains(photos, response);
+  EXPECT_NEAR(response.LogGain(6)[0], 0.6F, 0.02F);  // tagged
+  EXPECT_NEAR(response.LogGain(9)[0], 0.9F, 0.05F);  // not
 }
 
 TEST(PredictGains, KeepsGroupsApartAndLonelyPhotosAsTheyAre) {
@@ -82,7 +98,7 @@ TEST(PredictGains, LearnedPhotosKeepTheirGains) {
 
 TEST(PredictGains, OnePhotoOrNone) {
   Response one = Response::Plain(1, 1);
-  PredictGains({{0.0, 0, false}}, one);
+  PredictGains({{0.0, 0, false, true}}, one);
   EXPECT_EQ(one.log_gain[0], 0.0F);
   Response none = Response::Plain(0, 0);
   PredictGains({}, none);

@@ -40,9 +40,9 @@ def test(skyquilt, folder):
         expect(wrong in text, text)
 
     # Against normally exposed photos of the same places; a folder without them is bad input.
-    skyquilt.call("evaluate", project, "--set", f"evaluate.normal_photos={photos / 'images'}")
+    skyquilt.call("evaluate", project, "--restart", "--set", f"evaluate.normal_photos={photos / 'images'}")
     expect(isinstance(metrics_of(project)["psnr_normal"], float), "normal brightness was not compared")
-    skyquilt.call("evaluate", project, "--set", f"evaluate.normal_photos={folder}", status=3)
+    skyquilt.call("evaluate", project, "--restart", "--set", f"evaluate.normal_photos={folder}", status=3)
 
 
 if __name__ == "__main__":

@@ -93,6 +93,7 @@ TEST(CollectBrightness, PhotosComeInOrderOfCapture) {
   small.survey.photos[1].time_s = 15.0;
   small.survey.photos[2].time_s = 45.0;
   // The tags of one state half the light, and its picture shows none of that.
+  for (const size_t i : {0U, 1U, 2U}) small.survey.photos[i].exposure.time_s = i == 1 ? 0.005 : 0.01;
   small.info.response.exif_gain[1] = 0.5F;
   for (size_t c = 0; c < 3; ++c) small.info.response.log_gain[3 + c] = std::log(2.0F);
   const BrightnessReport report = small.Collect();

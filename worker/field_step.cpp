@@ -267,7 +267,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   FollowMeans(sums);
   for (size_t k = 0; k < gain_gradients_.size(); ++k) {
     const PixelRay& ray = batch.rays[k].ray;
-    if (!ray.empty) learner->Add(static_cast<size_t>(ray.photo), ray.radius2, gain_gradients_[k].data(), ray_share);
+    if (!ray.empty) learner->Add(static_cast<size_t>(ray.photo), gain_gradients_[k].data(), ray_share);
   }
   times_.Add(0, Stage::kBackward, at);
   optimizer_.Update(

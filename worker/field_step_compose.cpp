@@ -7,6 +7,12 @@
 
 namespace skyquilt::worker {
 
+namespace {
+
+constexpr float kLeastColorSlope = 0.02F;
+
+}  // namespace
+
 bool SaysLittle(float target_srgb, float residual) {
   return (target_srgb >= 254.5F / 255.0F && residual > 0.0F) || (target_srgb <= 0.5F / 255.0F && residual < 0.0F);
 }
@@ -80,13 +86,14 @@ void FieldStep::FinishGradients(int64_t n, Worker& w) const {
   const auto range = static_cast<float>(target_.config.color_range);
   const auto live = static_cast<size_t>(n);
   const auto padded = static_cast<size_t>(kernel::Padded(n));
-  // d tau / d log density = tau; d rgb / d raw = rgb (1 - rgb / range).
+  // d tau / d log density = tau; d rgb / d raw = rgb (1 - rgb / range), and never nothing: colours of a dark or bright survey that overshoot the end
+  // of the scale in the first steps would never come back.
   for (size_t i = 0; i < live; ++i) a.log_density_gradient[i] *= w.tau[i];
   std::fill(a.log_density_gradient + live, a.log_density_gradient + padded, 0.0F);
   for (size_t c = 0; c < 3; ++c) {
     float* gradient = a.color_gradient + c * a.stride;
     const float* color = w.rgb.data() + c * a.stride;
-    for (size_t i = 0; i < live; ++i) gradient[i] *= color[i] * (1.0F - color[i] / range);
+    for (size_t i = 0; i < live; ++i) gradient[i] *= std::max(color[i] * (1.0F - color[i] / range), kLeastColorSlope);
   }
   for (size_t row = 0; row < field::kColorRows; ++row) {
     float* gradient = a.color_gradient + row * a.stride;

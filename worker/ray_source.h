@@ -21,8 +21,7 @@ struct PixelRay {
   float target_srgb[3] = {0, 0, 0};
   std::array<brightness::Exposure, 3> exposure;  // recorded light over light at reference exposure, per colour
   int photo = 0;
-  float radius2 = 0.0F;  // as in brightness::Response
-  bool empty = false;    // the surface lies behind the field: it must be transparent here
+  bool empty = false;  // the surface lies behind the field: it must be transparent here
 };
 
 constexpr int kTileColumns = 48;

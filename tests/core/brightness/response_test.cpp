@@ -72,7 +72,7 @@ void Learn(const std::vector<float>& truth, int steps, ResponseLearner& learner,
     for (size_t i = 0; i < response.photos(); ++i) {
       float gradient[3];
       for (size_t c = 0; c < 3; ++c) gradient[c] = response.log_gain[3 * i + c] - truth[3 * i + c];
-      learner.Add(i, 0.3F, gradient, 0.01F);
+      learner.Add(i, gradient, 0.01F);
     }
     learner.Step(static_cast<double>(step) / steps);
   }
@@ -99,7 +99,7 @@ TEST(ResponseLearner, ABeliefInTagsHoldsWhatNothingSupports) {
   ResponseLearner learner(response, {{1, 1}, {0.02F, 0.0F}, true, false});
   const float nothing[3] = {0.0F, 0.0F, 0.0F};
   for (int step = 0; step < 500; ++step) {
-    for (const size_t photo : {0U, 1U}) learner.Add(photo, 0.0F, nothing, 0.01F);
+    for (const size_t photo : {0U, 1U}) learner.Add(photo, nothing, 0.01F);
     learner.Step(step / 500.0);
   }
   EXPECT_NEAR(response.log_gain[0], 0.0F, 0.02F);
@@ -119,8 +119,8 @@ TEST(ResponseLearner, LeavesAnchorsAndUnseenPhotosAlone) {
   ResponseLearner learner(response, {{0, 1, 1}, {}, true, false});
   const float gradient[3] = {-1.0F, -1.0F, -1.0F};
   for (int step = 0; step < 10; ++step) {
-    learner.Add(0, 0.0F, gradient, 0.01F);
-    learner.Add(1, 0.0F, gradient, 0.01F);
+    learner.Add(0, gradient, 0.01F);
+    learner.Add(1, gradient, 0.01F);
     learner.Step(0.0);
   }
   EXPECT_EQ(response.log_gain[0], 0.0F);
@@ -134,29 +134,13 @@ TEST(ResponseLearner, StaysFiniteAndWithinTenStops) {
   ResponseLearner learner(response, {{1, 1}, {}, true, true});
   const float huge[3] = {-1e30F, 1e30F, -1e30F}, broken[3] = {std::nanf(""), 0.0F, 0.0F};
   for (int step = 0; step < 2000; ++step) {
-    learner.Add(0, 1.0F, huge, 0.01F);
-    learner.Add(1, 1.0F, broken, 0.01F);
+    learner.Add(0, huge, 0.01F);
+    learner.Add(1, broken, 0.01F);
     learner.Step(0.0);
   }
   for (const float gain : response.log_gain) EXPECT_LE(std::abs(gain), kMaxLogGain);
   for (const float a : response.falloff) EXPECT_TRUE(std::isfinite(a));
   EXPECT_EQ(response.log_gain[3], 0.0F);
-}
-
-TEST(ResponseLearner, FindsAFalloffAndForgetsItWithoutOne) {
-  Response response = Response::Plain(1, 1);
-  response.falloff = {0.2F, 0.0F, 0.0F};
-  ResponseLearner learner(response, {{0}, {}, true, true});
-  for (int step = 0; step < 2000; ++step) {
-    for (const float radius2 : {0.1F, 0.4F, 0.7F, 1.0F}) {
-      const float off = response.LogFalloff(0, radius2) - -0.6F * radius2;
-      const float gradient[3] = {off, off, off};
-      learner.Add(0, radius2, gradient, 0.01F);
-    }
-    learner.Step(step / 2000.0);
-  }
-  EXPECT_NEAR(response.LogFalloff(0, 1.0F), -0.6F, 0.03F);
-  EXPECT_NEAR(response.LogFalloff(0, 0.25F), -0.15F, 0.03F);
 }
 
 TEST(ResponseLearner, GoesOnFromItsFileAsIfNothingHappened) {

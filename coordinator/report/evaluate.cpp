@@ -54,24 +54,13 @@ SceneArea AreaOf(const render::SceneInfo& info) {
   return area;
 }
 
-TrainingViews ViewsOf(const EvaluateInput& input) {
+std::vector<TrainingView> ViewsOf(const EvaluateInput& input) {
   std::vector<TrainingView> views;
   for (size_t i = 0; i < input.survey->photos.size(); ++i) {
     const survey::Photo& photo = input.survey->photos[i];
     if (photo.is_test) continue;
     const camera::Camera& camera = input.survey->cameras[static_cast<size_t>(photo.camera)];
     views.push_back({camera.Resized(input.pixels->Width(i), input.pixels->Height(i)), photo.cam_from_enu, input.pixels->Mask(i)});
-  }
-  return TrainingViews(std::move(views));
-}
-
-std::vector<FootprintView> FootprintsOf(const EvaluateInput& input) {
-  std::vector<FootprintView> views;
-  for (size_t i = 0; i < input.survey->photos.size(); ++i) {
-    const survey::Photo& photo = input.survey->photos[i];
-    if (photo.is_test) continue;
-    views.push_back(
-        {input.survey->cameras[static_cast<size_t>(photo.camera)].Resized(input.pixels->Width(i), input.pixels->Height(i)), photo.cam_from_enu});
   }
   return views;
 }
@@ -204,7 +193,8 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   const render::Scene scene = render::Scene::Load(input.scene_h5);
   const render::SceneInfo& info = scene.info();
   const SceneArea area = AreaOf(info);
-  const TrainingViews views = ViewsOf(input);
+  const std::vector<TrainingView> training = ViewsOf(input);
+  const TrainingViews views(training);
   std::optional<metrics::Lpips> lpips;
   if (!options.lpips_network.empty()) lpips.emplace(options.lpips_network);
 
@@ -236,7 +226,8 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
     std::vector<render::RayColor> rendered = scene.RenderCamera(task.camera, task.cam_from_enu, {render::Look::kRecorded, {}}, threads);
     const Recording tagged = TaggedRecording(info.response, photo.camera, gain);
     const Recording predicted = options.predicted_gain ? PredictedRecording(info.response, static_cast<size_t>(index), tagged) : tagged;
-    const std::vector<render::RayColor> as_reference = rendered;
+    const bool differs = predicted.log_gain != tagged.log_gain;
+    const std::vector<render::RayColor> as_reference = differs ? rendered : std::vector<render::RayColor>();
     Record(task.camera, predicted, rendered, threads);
     const double render_seconds = SecondsSince(render_start);
     PhotoFindings findings = ScorePhoto(task, rendered, views, area, threads);
@@ -245,8 +236,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
     score.name = photo.name;
     score.exposure_gain = gain;
     for (size_t c = 0; c < 3; ++c) score.predicted_stops[c] = static_cast<double>(predicted.log_gain[c] - tagged.log_gain[c]) / std::numbers::ln2;
-    score.psnr_exif_gain_db =
-        predicted.log_gain == tagged.log_gain ? score.psnr_db : PsnrRecorded(task, tagged, as_reference, findings.scored, threads);
+    score.psnr_exif_gain_db = differs ? PsnrRecorded(task, tagged, as_reference, findings.scored, threads) : score.psnr_db;
     score.render_seconds = render_seconds;
     if (lpips) score.lpips = LpipsOf(*lpips, task, findings.render);
     for (size_t b = 0; b < pools.per_block.size(); ++b) pools.per_block[b] += findings.per_block[b];
@@ -282,7 +272,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
     progress.Advance(1.0, fmt::format("{} {:.2f} dB", photo.name, score.psnr_db));
   }
   FillMeans(info, pools, &metrics);
-  const FootprintSteps steps = MeasureFootprintSteps(scene, FootprintsOf(input), threads);
+  const FootprintSteps steps = MeasureFootprintSteps(scene, training, threads);
   metrics.footprint_step = steps.border;
   metrics.footprint_step_control = steps.control;
   progress.Finish(fmt::format("PSNR {:.2f} dB, coverage {:.1f} %", metrics.psnr, 100.0 * metrics.coverage));

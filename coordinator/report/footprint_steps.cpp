@@ -32,7 +32,7 @@ std::vector<Place> PlacesAlong(const camera::Camera& camera, double inset) {
 }
 
 // Mean over a line's places of what lies outside minus what lies inside, seen from straight above.
-std::optional<double> StepAcross(const render::Scene& scene, const FootprintView& view, double inset, base::ThreadPool& threads) {
+std::optional<double> StepAcross(const render::Scene& scene, const TrainingView& view, double inset, base::ThreadPool& threads) {
   const geo::Rigid3d enu_from_cam = view.cam_from_enu.Inverse();
   const std::vector<Place> places = PlacesAlong(view.camera, inset);
   std::vector<render::Ray> rays;
@@ -76,11 +76,11 @@ std::optional<double> StepAcross(const render::Scene& scene, const FootprintView
 
 }  // namespace
 
-FootprintSteps MeasureFootprintSteps(const render::Scene& scene, const std::vector<FootprintView>& views, base::ThreadPool& threads) {
+FootprintSteps MeasureFootprintSteps(const render::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads) {
   std::vector<double> border, control;
   const size_t count = std::min(views.size(), static_cast<size_t>(kFootprints));
   for (size_t i = 0; i < count; ++i) {
-    const FootprintView& view = views[(2 * i + 1) * views.size() / (2 * count)];
+    const TrainingView& view = views[(2 * i + 1) * views.size() / (2 * count)];
     const std::optional<double> across = StepAcross(scene, view, 0.5, threads), beside = StepAcross(scene, view, kControlPixels, threads);
     if (!across || !beside) continue;
     border.push_back(*across);

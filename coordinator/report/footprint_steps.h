@@ -2,10 +2,9 @@
 // compared with the ground just outside. Where exposure differences were taken into the scene's colours, a step stands there.
 #pragma once
 
+#include "coordinator/report/coverage.h"
 #include "coordinator/report/metrics.h"
 #include "core/base/thread_pool.h"
-#include "core/camera/camera.h"
-#include "core/geo/transform.h"
 #include "core/render/scene.h"
 
 namespace skyquilt::report {
@@ -17,13 +16,8 @@ struct FootprintSteps {
   int photos = 0;
 };
 
-struct FootprintView {
-  camera::Camera camera;
-  geo::Rigid3d cam_from_enu;
-};
-
 // At most kFootprints of the views, evenly spread.
 constexpr int kFootprints = 96;
-FootprintSteps MeasureFootprintSteps(const render::Scene& scene, const std::vector<FootprintView>& views, base::ThreadPool& threads);
+FootprintSteps MeasureFootprintSteps(const render::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads);
 
 }  // namespace skyquilt::report

@@ -1,11 +1,9 @@
 #include "coordinator/scheduler/plan_brightness.h"
 
-#include <fmt/format.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/image/srgb.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -62,7 +60,7 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
 
 brightness::BrightnessStatistics MeasureBrightness(const survey::Survey& survey, const image::PixelCache& pixels) {
   constexpr int kGrid = 64;  // pixels looked at along each side of a photo
-  double srgb = 0.0, light = 0.0, clipped = 0.0, n = 0.0;
+  double srgb = 0.0, clipped = 0.0, n = 0.0;
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     if (survey.photos[i].is_test) continue;
     const auto width = static_cast<size_t>(pixels.Width(i)), height = static_cast<size_t>(pixels.Height(i));
@@ -70,17 +68,14 @@ brightness::BrightnessStatistics MeasureBrightness(const survey::Survey& survey,
       for (size_t u = 0; u < kGrid; ++u) {
         uint8_t rgb[3];
         if (!pixels.Pixel(i, (2 * v + 1) * height / (2 * kGrid) * width + (2 * u + 1) * width / (2 * kGrid), rgb)) continue;
-        for (const uint8_t value : rgb) {
-          srgb += value / (3.0 * 255.0);
-          light += static_cast<double>(image::LinearFromSrgb(static_cast<float>(value) / 255.0F)) / 3.0;
-        }
+        for (const uint8_t value : rgb) srgb += value / (3.0 * 255.0);
         clipped += std::max({rgb[0], rgb[1], rgb[2]}) == 255 ? 1.0 : 0.0;
         n += 1.0;
       }
     }
   }
   if (n == 0.0) return {};
-  return {srgb / n, light / n, clipped / n};
+  return {srgb / n, clipped / n};
 }
 
 std::string LuminanceRemark(const brightness::Luminance& luminance, const brightness::BrightnessStatistics& statistics) {

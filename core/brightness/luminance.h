@@ -26,9 +26,8 @@ struct Luminance {
 
 // What a survey's photos look like.
 struct BrightnessStatistics {
-  double mean_srgb = 0.0;   // display values at reference exposure
-  double mean_light = 0.0;  // linear
-  double clipped = 0.0;     // share of pixels with a colour at the top of the scale
+  double mean_srgb = 0.0;  // display values as recorded
+  double clipped = 0.0;    // share of pixels with a colour at the top of the scale
 };
 
 // Mode as the options ask; "auto" takes under below a mean of 0.2 and over where the mean is above 0.75 or a tenth of the pixels is clipped.

@@ -242,9 +242,24 @@ TEST_F(BrightnessTest, BlocksKeepToTheContextsLight) {
   ASSERT_TRUE(TrainContext(job, Box(20.0, 0.0), threads, {}).ok);
   const TrainResult block = TrainBlock(Job("block.h5", 400), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
   ASSERT_TRUE(block.ok) << block.reason;
+  const LoadedContext context = LoadContext(folder_ / "context.h5");
   const checkpoint::ArchiveReader reader(folder_ / "block.h5");
-  LoadedContext as_context{render::GetField(reader, folder_ / "block.h5", ""), {}, LoadContext(folder_ / "context.h5").luminance, {}, {}};
-  EXPECT_TRUE(as_context.field.config.luminance);
+  const render::TrainedField field = render::GetField(reader, folder_ / "block.h5", "");
+  render::FieldSet coarse, fine;
+  coarse.context = &context.field;
+  fine.blocks = {&field};
+  std::vector<render::Ray> rays;
+  for (double x = -10.0; x <= 10.0; x += 1.0) {
+    for (double y = -10.0; y <= 10.0; y += 1.0) rays.push_back({{x, y, 30.0}, {0.0, 0.0, -1.0}});
+  }
+  const auto mean_shown = [&](const render::FieldSet& fields) {
+    std::vector<render::RayColor> out(rays.size());
+    render::RenderRays(fields, rays, out, {}, threads);
+    double sum = 0.0;
+    for (const render::RayColor& color : out) sum += static_cast<double>(color.rgb_srgb[0] + color.rgb_srgb[1] + color.rgb_srgb[2]);
+    return sum / (3.0 * static_cast<double>(out.size()));
+  };
+  EXPECT_NEAR(mean_shown(fine), mean_shown(coarse), 0.05);
 }
 
 // Photos that say next to nothing, or too much: training must end, finite.

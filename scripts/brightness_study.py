@@ -182,7 +182,7 @@ class Study:
         self.table(["survey", "method", "PSNR against the normal photo (dB)", "SSIM", "PSNR against the photo as taken"], rows)
 
     def mixed(self, name, first, second):
-        """Every second flight line of one light, the others of another; photos are the only difference."""
+        """The first half of the flight in one light, the second in another; poses are the same."""
         folder = self.out / "sim" / name
         if (folder / "simulate.json").exists():
             return folder
@@ -200,8 +200,10 @@ class Study:
         for factor in (1.0 / 3.0, 3.0):
             other = self.simulate(f"light_{factor:.2f}", "town", {**common, "light_intensity": factor})
             survey = self.mixed(f"mixed_light_{factor:.2f}", day, other)
+            # Gains have zero mean, so normal brightness lies halfway between the two lights.
+            halfway = ["--set", f"evaluate.normal_stops={-0.5 * np.log2(factor):.3f}"]
             for brightness in ("exif", "exif,gain"):
-                m = self.run(f"light_{factor:.2f}_{brightness.replace(',', '_')}", survey, brightness, *truth)
+                m = self.run(f"light_{factor:.2f}_{brightness.replace(',', '_')}", survey, brightness, *truth, *halfway)
                 rows.append([f"second half of the flight: light x {factor:.2f}", brightness, f"{m['psnr']:.2f}", f"{m['psnr_right_half_fitted']:.2f}",
                              f"{m['psnr_normal']:.2f}"])
         for elevation in (10, 48, 90):

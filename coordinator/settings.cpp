@@ -145,8 +145,9 @@ void ApplyOverride(Settings& settings, const Override& entry) {
     SetVisitor visitor(entry, entry.key.substr(dot + 1));
     candidate.visit(visitor);
     if (visitor.found()) return;
-    const std::string nearest = config::Nearest(entry.key.substr(dot + 1), visitor.known());
-    throw base::UsageError("unknown option '" + entry.key + "'" + DidYouMean(nearest.empty() ? "" : section + "." + nearest));
+    std::string nearest = config::Nearest(entry.key.substr(dot + 1), visitor.known());
+    if (!nearest.empty()) nearest.insert(0, section + ".");
+    throw base::UsageError("unknown option '" + entry.key + "'" + DidYouMean(nearest));
   }
   throw base::UsageError("unknown section in '" + entry.key + "'" + DidYouMean(config::Nearest(section, section_names)));
 }

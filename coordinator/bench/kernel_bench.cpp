@@ -160,6 +160,7 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
   result.threads = n_threads;
   const auto median = [&](auto member) {
     std::vector<double> values;
+    values.reserve(rounds.size());
     for (const KernelSpeed& r : rounds) values.push_back(r.*member);
     result.*member = Median(values);
   };
@@ -174,6 +175,7 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
   median(&KernelSpeed::waiting_share);
   for (size_t i = 0; i < worker::kStages; ++i) {
     std::vector<double> values;
+    values.reserve(rounds.size());
     for (const KernelSpeed& r : rounds) values.push_back(r.train_share[i]);
     result.train_share[i] = Median(values);
   }

@@ -59,7 +59,8 @@ ViewRenderer RendererOf(RayCaster caster) {
       const int64_t count = std::min(kBandRays, n_pixels - first);
       rays.clear();
       for (int64_t i = first; i < first + count; ++i) {
-        const Eigen::Vector2d pixel(static_cast<double>(i % view.camera.width) + 0.5, static_cast<double>(i / view.camera.width) + 0.5);
+        const int64_t row = i / view.camera.width;
+        const Eigen::Vector2d pixel(static_cast<double>(i % view.camera.width) + 0.5, static_cast<double>(row) + 0.5);
         const Eigen::Vector3d direction = view.cam_from_enu.rotation.conjugate() * view.camera.RayFromImg(pixel);
         rays.push_back({.origin_enu = eye, .direction_enu = direction.normalized(), .pixel_radius = radius});
       }

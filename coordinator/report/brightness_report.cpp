@@ -113,7 +113,7 @@ std::string LuminanceSentence(const render::SceneInfo& info) {
 }
 
 std::string WriteViewPicture(const image::Image8& picture, const std::filesystem::path& report_folder, const std::string& name, int max_width) {
-  const std::string relative = "images/" + name;
+  std::string relative = "images/" + name;
   if (picture.width <= max_width) {
     image::SaveJpeg(picture, report_folder / relative, kViewJpegQuality);
   } else {

@@ -172,7 +172,8 @@ std::string StageBars(const ReportInput& input) {
 std::string TrainingSection(const ReportInput& input) {
   std::vector<Curve> loss, psnr;
   for (const FieldLog& field : input.log->fields) {
-    Curve loss_curve{field.name, {}, field.name == "context"}, psnr_curve = loss_curve;
+    Curve loss_curve{field.name, {}, field.name == "context"};
+    Curve psnr_curve = loss_curve;
     for (const CurvePoint& point : field.curve) {
       const double x = std::isfinite(point.seconds) ? point.seconds : point.step;
       loss_curve.points.emplace_back(x, point.loss);

@@ -35,6 +35,7 @@ struct Station {
 std::vector<double> Spread(double low, double high, double spacing) {
   const int n = std::max(1, static_cast<int>(std::lround((high - low) / spacing)) + 1);
   std::vector<double> at;
+  at.reserve(static_cast<size_t>(n));
   for (int i = 0; i < n; ++i) at.push_back(0.5 * (low + high) + (i - 0.5 * (n - 1)) * spacing);
   return at;
 }
@@ -86,7 +87,8 @@ std::vector<Station> PlanStations(const Preset& preset) {
     for (int row = 0; row < preset.rows; ++row) {
       for (int column = 0; column < preset.columns; ++column) {
         const Vector2d min = preset.area_min + block.cwiseProduct(Vector2d(column, row));
-        AddNadirLines(preset, min, min + block, altitudes[static_cast<size_t>(row * preset.columns + column)], &line, &stations);
+        AddNadirLines(preset, min, min + block,
+                      altitudes[static_cast<size_t>(row) * static_cast<size_t>(preset.columns) + static_cast<size_t>(column)], &line, &stations);
       }
     }
   }
@@ -141,6 +143,7 @@ double Median(std::vector<double> values) {
 // Gains from the settings, and what changes the light without the tags knowing.
 void SetLight(const Preset& preset, std::vector<PhotoPlan>& photos) {
   std::vector<double> exposure;
+  exposure.reserve(photos.size());
   for (const PhotoPlan& photo : photos) exposure.push_back(Exposure(photo));
   const double median = Median(exposure);
   base::Random random(preset.seed, 52);

@@ -62,7 +62,7 @@ image::Image8 Develop(const image::ImageF& rgb_linear, const Development& develo
       uint8_t* stored = out.At(x, y);
       for (size_t c = 0; c < scale.size(); ++c) {
         const float value = std::clamp(light[c] * (falloff * scale[c]), 0.0F, 1.0F);
-        stored[c] = table[static_cast<size_t>(value * static_cast<float>(kTableSize) + 0.5F)];
+        stored[c] = table[static_cast<size_t>(std::lrint(value * static_cast<float>(kTableSize)))];
       }
     }
   }

@@ -38,7 +38,7 @@ bool Fits(const PixelCache::Entry& entry, size_t offset, size_t channels, size_t
 
 void ThrowPhotoErrors(const std::vector<base::InputError>& errors, size_t n_photos) {
   if (errors.empty()) return;
-  if (errors.size() == 1) throw errors.front();
+  if (errors.size() == 1) throw base::InputError(errors.front());
   std::string all = std::to_string(errors.size()) + " of " + std::to_string(n_photos) + " photos cannot be used:";
   for (const base::InputError& error : errors) all += std::string("\n  ") + error.what();
   throw base::InputError(errors.front().file().parent_path(), all, "");

@@ -48,8 +48,9 @@ class FewViewsTest : public ::testing::Test {
       survey_.photos.push_back(photo);
     }
     for (int i = 0; i < 900; ++i) {
+      const int row = i / 30;
       survey::SparsePoint point;
-      point.x_in_enu = {-50.0 + (i % 30) * 6.0, -40.0 + (i / 30) * 3.0, kGround};
+      point.x_in_enu = {-50.0 + (i % 30) * 6.0, -40.0 + row * 3.0, kGround};
       survey_.points.push_back(point);
     }
     base::ThreadPool threads(1);
@@ -147,7 +148,8 @@ TEST_F(FewViewsTest, MeanColourIsTakenInLinearLight) {
 TEST(SurfaceOfPoints, FollowsTheGroundAndReachesBeyondThePoints) {
   survey::Survey survey;
   for (int i = 0; i < 4000; ++i) {
-    const double x = (i % 80) * 1.0, y = (i / 80) * 1.0;
+    const int column = i % 80, row = i / 80;
+    const double x = column, y = row;
     survey::SparsePoint point;
     point.x_in_enu = {x, y, x < 40.0 ? 5.0 : 25.0};
     survey.points.push_back(point);

@@ -36,6 +36,7 @@ TEST(LuminanceConvolution, PairsByDistanceAndStaysInItsPatch) {
   Weights weights{};
   weights[kTaps / 2 + 1] = 1.0F;
   std::vector<float> luminance;
+  luminance.reserve(12);
   for (int i = 0; i < 12; ++i) luminance.push_back(0.1F * static_cast<float>(i));
   convolution.Forward(luminance.data(), weights);
   const auto logit = [&](size_t s) { return std::log(convolution.omega()[s] / (1.0F - convolution.omega()[s])); };
@@ -49,8 +50,10 @@ TEST(LuminanceConvolution, PairsByDistanceAndStaysInItsPatch) {
 TEST(LuminanceConvolution, GradientsMatchFiniteDifferences) {
   base::Random random(3);
   std::vector<double> x;
+  x.reserve(12 + 8);
   for (int i = 0; i < 12 + 8; ++i) x.push_back(static_cast<double>(random.Uniform()) - 0.5);
   std::vector<float> wanted;
+  wanted.reserve(12);
   for (int i = 0; i < 12; ++i) wanted.push_back(random.Uniform());
   LuminanceConvolution convolution;
   convolution.Pair(kRays, kDistances.data(), 12);

@@ -65,7 +65,8 @@ class SmallSurvey : public ::testing::Test {
     for (int i = 0; i < 16; ++i) {
       survey::Photo photo;
       photo.name = "p" + std::to_string(10 + i) + ".png";
-      const Eigen::Vector3d centre(-15.0 + 10.0 * (i % 4), -15.0 + 10.0 * (i / 4), 30.0 + (i % 3));
+      const int row = i / 4;
+      const Eigen::Vector3d centre(-15.0 + 10.0 * (i % 4), -15.0 + 10.0 * row, 30.0 + (i % 3));
       // Looks down: camera x = east, y = south, z = down.
       Eigen::Matrix3d rotation;
       rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;

@@ -17,8 +17,9 @@ Flight MakeFlight(const geo::Geodetic& origin) {
   const Eigen::Quaterniond model_from_enu = flight.model_from_enu.rotation;
   for (int i = 0; i < 20; ++i) {
     FlightPhoto photo;
+    const int row = i / 5;
     photo.name = "photo_" + std::string(i < 10 ? "0" : "") + std::to_string(i) + ".jpg";
-    photo.centre_in_enu = Eigen::Vector3d(20.0 * (i % 5 - 2), 25.0 * (i / 5 - 1.5), kFlightHeight_m + 3.0 * std::sin(i));
+    photo.centre_in_enu = Eigen::Vector3d(20.0 * (i % 5 - 2), 25.0 * (row - 1.5), kFlightHeight_m + 3.0 * std::sin(i));
     photo.tags.relative_altitude_m = kFlightHeight_m;
     photo.tags.capture_time_s = 1466699519.0 + 5.0 * i;
     photo.tags.exposure = {0.002, 2.8, 100.0};

@@ -166,7 +166,7 @@ SampleReport::SampleReport(const std::filesystem::path& folder) {
       block.margin_m = 10.0;
       block.altitude_agl_m = 118.0;
       block.gsd_m = 0.061;
-      block.photos.resize(static_cast<size_t>(30 + 7 * column));
+      block.photos.resize(30 + 7 * static_cast<size_t>(column));
       if (row == 1 && column == 2) {
         block.empty = true;
         block.empty_reason = "no sparse point and no photo inside";

@@ -50,6 +50,7 @@ TEST_P(DenseKernels, AgreesWithReference) {
         Dense(weights.data(), n_out, n_in, in.data(), stride, n, true, out.data(), stride);
         for (size_t s = 0; s < static_cast<size_t>(n); s += 13) {
           std::vector<float> column;
+          column.reserve(static_cast<size_t>(n_in));
           for (int i = 0; i < n_in; ++i) column.push_back(in[static_cast<size_t>(i) * stride + s]);
           const auto expected = reference::Dense(weights, n_out, column, true);
           // Sums of at most 64 products below 1/4: float rounding stays under 1e-5.

@@ -80,7 +80,7 @@ std::string InputErrorOf(const std::function<void()>& action) {
 class LpipsTest : public testing::Test {
  protected:
   std::filesystem::path Write(const std::string& bytes) const {
-    const std::filesystem::path file = folder_.path() / "network.onnx";
+    std::filesystem::path file = folder_.path() / "network.onnx";
     std::ofstream(file, std::ios::binary) << bytes;
     return file;
   }

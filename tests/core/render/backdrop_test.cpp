@@ -45,7 +45,7 @@ TEST(PlanSurface, RefusesNumbersThatDoNotFit) {
 
 RC_GTEST_PROP(FillFromSurroundings, KeepsWhatIsKnownAndStaysBetweenIt, ()) {
   const int columns = *rc::gen::inRange(1, 20), rows = *rc::gen::inRange(1, 20);
-  const auto cells = static_cast<size_t>(columns * rows);
+  const auto cells = static_cast<size_t>(columns) * static_cast<size_t>(rows);
   std::vector<double> values(2 * cells, 1e9), weights(cells, 0.0);
   bool any = false;
   for (size_t i = 0; i < cells; ++i) {

@@ -95,7 +95,7 @@ RC_GTEST_PROP(March, LongStepsMissNothing, ()) {
   const int layer = *rc::gen::inRange(0, 20);
   const int thick = *rc::gen::inRange(1, 4);
   for (int z = layer; z < std::min(20, layer + thick); ++z) {
-    for (int i = 0; i < 400; ++i) f.occupancy.occupied[static_cast<size_t>(400 * z + i)] = 1;
+    for (int i = 0; i < 400; ++i) f.occupancy.occupied[400 * static_cast<size_t>(z) + static_cast<size_t>(i)] = 1;
   }
   const double x = *rc::gen::inRange(100, 900) / 100.0, y = *rc::gen::inRange(100, 900) / 100.0;
   const double slope = *rc::gen::inRange(-5, 6) / 100.0;

@@ -15,7 +15,7 @@ namespace skyquilt::survey {
 namespace {
 
 std::filesystem::path MakeJpeg(const TemporaryFolder& folder) {
-  const std::filesystem::path file = folder / "photo.jpg";
+  std::filesystem::path file = folder / "photo.jpg";
   image::SaveJpeg(image::Image8(16, 8, 3, 128), file, 90);
   return file;
 }

@@ -1,9 +1,6 @@
 #include "coordinator/scheduler/train_all.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
@@ -25,11 +22,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kMaxTries = 3;
-
-std::string HostName() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
 
 int UsableThreads(const Settings& settings) {
   return settings.run.threads > 0 ? settings.run.threads : base::UsableCores();
@@ -163,7 +155,7 @@ class Training {
     }
     progress.FieldDone(queue.outcomes().front().job, 1.0);
     progress.Finish();
-    const FieldOutcome outcome = queue.outcomes().front();
+    FieldOutcome outcome = queue.outcomes().front();
     ledger_.AddOutcome(outcome);
     if (outcome.failure != Failure::kNone) throw base::BlockError("the context failed " + std::to_string(kMaxTries) + " times: " + outcome.reason);
     LogField(outcome);
@@ -249,7 +241,7 @@ class Training {
 
 // One training as a worker rank sees it.
 void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
-  json hello = {{"host", HostName()}};
+  json hello = {{"host", base::HostName()}};
   try {
     const json setup = json::parse(setup_text);
     base::InitLog(setup.at("verbose").get<bool>(), "rank " + std::to_string(comm.rank()));

@@ -15,6 +15,7 @@ int64_t TotalMemoryBytes();
 int64_t PeakRssBytes();
 // Asks for large pages behind this range, before it is first written. Only a hint.
 void AdviseHugePages(void* begin, size_t bytes);
+std::string HostName();
 // "AMD EPYC, 2 cores, 24 GiB, Linux 6.1": for reports.
 std::string MachineDescription();
 // "2026-01-31T12:00:00Z"

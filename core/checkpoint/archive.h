@@ -1,9 +1,9 @@
 // Named arrays and attributes in one HDF5 file that is complete or absent.
-// Writing: everything to <file>.tmp, flush, close, fsync, reopened and compared with memory, previous file kept as <file>.prev, rename, fsync of the
-// folder. At every moment at least one complete file is there. Same content gives the same bytes.
-// Every dataset is chunked with fletcher32 (so any HDF5 tool notices damage); the first 512 bytes, an HDF5 user block, say in plain text what the
-// file is, its length and the XXH64 digest of all bytes after them, so that a flipped bit anywhere is found before HDF5 sees the file.
-// Calls are serialised by one lock, for HDF5 is not thread-safe.
+// Writing: everything to <file>.tmp.<host>.<process>, flush, close, fsync, reopened and compared with memory, previous file kept as <file>.prev,
+// rename, fsync of the folder. At every moment at least one complete file is there. Same content gives the same bytes. Every dataset is chunked with
+// fletcher32 (so any HDF5 tool notices damage); the first 512 bytes, an HDF5 user block, say in plain text what the file is, its length and the XXH64
+// digest of all bytes after them, so that a flipped bit anywhere is found before HDF5 sees the file. Calls are serialised by one lock, for HDF5 is
+// not thread-safe.
 #pragma once
 
 #include <cstdint>

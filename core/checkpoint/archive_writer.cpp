@@ -1,8 +1,11 @@
 #include <hdf5.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <set>
@@ -10,6 +13,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/system.h"
 #include "core/checkpoint/archive.h"
 #include "core/checkpoint/guarded_driver.h"
 #include "core/checkpoint/hdf5_handle.h"
@@ -20,6 +24,7 @@ namespace {
 
 using base::InputError;
 
+constexpr std::chrono::hours kAbandonedAfter{1};
 constexpr size_t kMaxChunkBytes = size_t{1} << 20U;
 constexpr const char* kMendDisk = "Free disk space or choose an output folder that can be written, then run the same command again";
 
@@ -125,10 +130,32 @@ void Rename(const std::filesystem::path& from, const std::filesystem::path& to) 
   if (std::rename(from.c_str(), to.c_str()) != 0) throw InputError(to, "cannot be replaced (" + std::string(std::strerror(errno)) + ")", kMendDisk);
 }
 
+// Another process may write the same file at this moment: a rank on a host that was cut off does not know that its job was started again.
+std::filesystem::path TemporaryOf(const std::filesystem::path& file) {
+  return file.string() + ".tmp." + base::HostName() + "." + std::to_string(getpid());
+}
+
+// Temporary files of writers that were killed: of this host and no longer running, or older than any write takes.
+void RemoveAbandoned(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const std::string start = file.filename().string() + ".tmp.";
+  const std::string here = start + base::HostName() + ".";
+  std::error_code ignored;
+  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(start)) continue;
+    const long pid = name.starts_with(here) ? std::strtol(name.c_str() + here.size(), nullptr, 10) : 0;
+    const bool dead = pid > 0 && pid != getpid() && kill(static_cast<pid_t>(pid), 0) != 0 && errno == ESRCH;
+    const bool old = std::filesystem::file_time_type::clock::now() - entry.last_write_time(ignored) > kAbandonedAfter;
+    if (dead || old) std::filesystem::remove(entry.path(), ignored);
+  }
+}
+
 // The old file gets a second name before the new one takes the first, so that a kill at any point leaves a complete file.
 void ReplaceKeepingPrevious(const std::filesystem::path& temporary, const std::filesystem::path& file) {
   const std::filesystem::path previous = file.string() + ".prev";
-  const std::filesystem::path new_previous = file.string() + ".prev.tmp";
+  std::filesystem::path new_previous = temporary;
+  new_previous += ".prev";
   std::error_code ignored;
   std::filesystem::remove(new_previous, ignored);
   if (!std::filesystem::exists(file)) {
@@ -270,7 +297,8 @@ void ArchiveWriter::SetAttribute(const std::string& name, int64_t value) {
 }
 
 void ArchiveWriter::Commit(const std::filesystem::path& file) const {
-  const RemoveOnExit temporary{file.string() + ".tmp"};
+  RemoveAbandoned(file);
+  const RemoveOnExit temporary{TemporaryOf(file)};
   impl_->Write(temporary.file);
   WriteUserBlock(temporary.file, UserBlockText(impl_->kind, impl_->version, MeasureFile(temporary.file)));
   base::SyncPath(temporary.file);

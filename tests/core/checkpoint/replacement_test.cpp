@@ -14,6 +14,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/system.h"
 #include "core/checkpoint/archive.h"
 #include "tests/core/checkpoint/input_error_of.h"
 #include "tests/support/temporary_folder.h"
@@ -91,11 +92,21 @@ TEST_F(Replacement, WorksOverADamagedFile) {
 
 TEST_F(Replacement, LeftoversOfAKilledWriterDoNoHarm) {
   Commit(file_, 1);
-  std::ofstream(file_.string() + ".tmp") << "half a file";
-  std::ofstream(file_.string() + ".prev.tmp") << "half a file";
+  const pid_t killed = fork();
+  if (killed == 0) _exit(0);
+  waitpid(killed, nullptr, 0);
+  const std::string left = file_.string() + ".tmp." + base::HostName() + "." + std::to_string(killed);
+  std::ofstream(left) << "half a file";
+  std::ofstream(left + ".prev") << "half a file";
+  const std::string at_work = file_.string() + ".tmp.another-host.1";
+  std::ofstream(at_work) << "half a file";
   Commit(file_, 2);
   EXPECT_EQ(StepOf(file_), 2);
   EXPECT_EQ(StepOf(previous_), 1);
+  EXPECT_EQ(FilesInFolder(), 3U);
+  // A host that fell silent long ago.
+  std::filesystem::last_write_time(at_work, std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
+  Commit(file_, 3);
   EXPECT_EQ(FilesInFolder(), 2U);
 }
 

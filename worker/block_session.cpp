@@ -1,6 +1,8 @@
 #include "worker/block_session.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "core/base/errors.h"
 #include "core/base/log.h"
@@ -56,20 +58,64 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   writer.Commit(job.checkpoint);
 }
 
-bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
-                 const ContextExtras* extras) {
-  if (!std::filesystem::exists(job.checkpoint) && !std::filesystem::exists(job.checkpoint.string() + ".prev")) return false;
+std::optional<SavedSession> OpenSession(const std::string& kind, const TrainJob& job) {
+  if (!std::filesystem::exists(job.checkpoint) && !std::filesystem::exists(job.checkpoint.string() + ".prev")) return std::nullopt;
   std::string why;
   const std::filesystem::path usable = checkpoint::NewestUsable(job.checkpoint, kind, &why);
   if (usable.empty()) {
     spdlog::warn("{}: cannot be used ({}); training this field from the start", job.checkpoint.string(), why);
-    return false;
+    return std::nullopt;
   }
-  const checkpoint::ArchiveReader reader(usable);
+  checkpoint::ArchiveReader reader(usable);
   if (reader.StringAttribute("config_hash") != job.config_hash) {
     throw base::UsageError(usable.string() +
                            ": was trained with another configuration. Use the configuration it was trained with, or --restart to train anew");
   }
+  return SavedSession{usable, std::move(reader)};
+}
+
+namespace {
+
+SessionRecord RecordOf(const checkpoint::ArchiveReader& reader) {
+  SessionRecord record;
+  record.seconds = reader.DoubleAttribute("seconds");
+  record.samples = reader.IntAttribute("samples");
+  record.rays = reader.IntAttribute("rays");
+  record.dropped_steps = static_cast<int>(reader.IntAttribute("dropped_steps"));
+  record.mean_squared_error = reader.DoubleAttribute("mean_squared_error");
+  record.complete = reader.IntAttribute("complete") != 0;
+  return record;
+}
+
+}  // namespace
+
+double RunningPsnr(const SessionRecord& record) {
+  return -10.0 * std::log10(std::max(1e-10, record.mean_squared_error));
+}
+
+std::optional<TrainResult> FinishedResult(const SavedSession& session) {
+  const SessionRecord record = RecordOf(session.reader);
+  if (!record.complete) return std::nullopt;
+  TrainResult result;
+  result.ok = true;
+  result.steps = session.reader.IntAttribute("steps");
+  result.seconds = record.seconds;
+  result.samples = record.samples;
+  result.rays = record.rays;
+  for (const char* array : {"grid", "networks"}) {
+    int64_t count = 1;
+    for (const int64_t n : session.reader.Shape(array)) count *= n;
+    result.parameters += count;
+  }
+  result.final_psnr_db = RunningPsnr(record);
+  result.dropped_steps = record.dropped_steps;
+  return result;
+}
+
+void LoadSession(const SavedSession& session, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
+                 const ContextExtras* extras) {
+  const std::filesystem::path& usable = session.file;
+  const checkpoint::ArchiveReader& reader = session.reader;
   render::TrainedField loaded = render::GetField(reader, usable, "");
   field::TrainableState& state = trainer.state();
   const auto take = [&](std::vector<float>& to, std::vector<float> from, const char* name) {
@@ -93,13 +139,7 @@ bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   target.occupancy = std::move(loaded.occupancy);
   state.step = loaded.steps;
   trainer.rays_per_step() = static_cast<int>(reader.IntAttribute("rays_per_step"));
-  record->seconds = loaded.seconds;
-  record->samples = loaded.samples;
-  record->rays = reader.IntAttribute("rays");
-  record->dropped_steps = static_cast<int>(reader.IntAttribute("dropped_steps"));
-  record->mean_squared_error = reader.DoubleAttribute("mean_squared_error");
-  record->complete = reader.IntAttribute("complete") != 0;
-  return true;
+  *record = RecordOf(reader);
 }
 
 LoadedContext LoadContext(const std::filesystem::path& checkpoint) {

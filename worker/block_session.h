@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/brightness/response_learner.h"
+#include "core/checkpoint/archive.h"
 #include "worker/field_trainer.h"
 #include "worker/surface_band.h"
 #include "worker/trainer.h"
@@ -35,9 +37,24 @@ struct ContextExtras {
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
                  const ContextExtras* extras);
 
-// True when a usable checkpoint was found and loaded. Damaged files fall back to the previous one with a warning; when both are damaged
-// training starts anew with a warning. Throws base::UsageError when the file belongs to another configuration.
-bool LoadSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
+// PSNR of recent training rays.
+double RunningPsnr(const SessionRecord& record);
+
+// A whole checkpoint of this configuration.
+struct SavedSession {
+  std::filesystem::path file;
+  checkpoint::ArchiveReader reader;
+};
+
+// Damaged files fall back to the previous one with a warning; nothing when there is none, or (with a warning) when both are damaged: training
+// starts anew then. Throws base::UsageError when the file belongs to another configuration.
+std::optional<SavedSession> OpenSession(const std::string& kind, const TrainJob& job);
+
+// What it came to, when it is of a finished field: asked before anything else is loaded, so that a resumed training passes over those quickly.
+std::optional<TrainResult> FinishedResult(const SavedSession& session);
+
+// Throws base::InputError when it does not fit the field.
+void LoadSession(const SavedSession& session, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
                  const ContextExtras* extras);
 
 // Throws base::InputError when neither the file nor its predecessor can be read.

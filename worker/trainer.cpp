@@ -91,7 +91,7 @@ TrainResult Summarise(const SessionRecord& record, FieldTrainer& trainer) {
   result.samples = record.samples;
   result.rays = record.rays;
   result.parameters = static_cast<int64_t>(state.grid.size() + state.networks.size());
-  result.final_psnr_db = -10.0 * std::log10(std::max(1e-10, record.mean_squared_error));
+  result.final_psnr_db = RunningPsnr(record);
   result.dropped_steps = record.dropped_steps;
   result.stage_seconds = trainer.StageSeconds();
   return result;
@@ -180,7 +180,7 @@ class Loop {
     status.total_steps = total_steps > 0 ? total_steps : static_cast<int64_t>(static_cast<double>(status.step) / std::max(1e-3, fraction));
     status.seconds = record.seconds;
     status.loss = loss;
-    status.psnr_db = -10.0 * std::log10(std::max(1e-10, record.mean_squared_error));
+    status.psnr_db = RunningPsnr(record);
     status.rays_per_second = rays / std::max(1e-6, seconds);
     status.samples_per_second = samples / std::max(1e-6, seconds);
     status.samples_per_ray = samples / std::max(1.0, rays);
@@ -205,6 +205,10 @@ void RequireJob(const TrainJob& job) {
 
 TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadPool& threads, const Reporter& report) {
   RequireJob(job);
+  std::optional<SavedSession> saved = OpenSession("context", job);
+  if (saved) {
+    if (const std::optional<TrainResult> finished = FinishedResult(*saved)) return *finished;
+  }
   brightness::Response response = job.response;
   brightness::ResponseLearner learner(response, job.learn);
   ContextExtras extras{&response, &learner, nullptr};
@@ -222,13 +226,15 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};
   FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, threads);
   SessionRecord record;
-  if (!LoadSession("context", job, target, trainer, &record, &extras)) {
+  if (saved) {
+    LoadSession(*saved, target, trainer, &record, &extras);
+    saved.reset();
+  } else {
     trainer.InitializeParameters();
     MarkUnseen(source, *job.survey, area.photos, surface, job.min_views, target, threads);
     StartFromPoints(*job.survey, target);
   }
   source.UpdateExposures();
-  if (record.complete) return Summarise(record, trainer);
   Loop loop("context", job, target, trainer, &extras, report);
   return loop.Run(record, [&] {
     target.grid = trainer.state().grid;
@@ -241,6 +247,10 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
 TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
                        const Reporter& report) {
   RequireJob(job);
+  std::optional<SavedSession> saved = OpenSession("block", job);
+  if (saved) {
+    if (const std::optional<TrainResult> finished = FinishedResult(*saved)) return *finished;
+  }
   // Even blocks that do not look at the context share its brightness.
   LoadedContext loaded = LoadContext(context_checkpoint);
   const LoadedContext* context = job.options.coupling == "guided" ? &loaded : nullptr;
@@ -260,13 +270,15 @@ TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::fil
   const LuminancePlan luminance{loaded.luminance, loaded.luminance_state, false};
   FieldTrainer trainer(target, source, context != nullptr ? &context->field : nullptr, job.options, job.seed, luminance, nullptr, threads);
   SessionRecord record;
-  if (!LoadSession("block", job, target, trainer, &record, nullptr)) {
+  if (saved) {
+    LoadSession(*saved, target, trainer, &record, nullptr);
+    saved.reset();
+  } else {
     trainer.InitializeParameters();
     MarkUnseen(source, *job.survey, block.photos, surface, job.min_views, target, threads);
     StartFromPoints(*job.survey, target);
     if (context != nullptr) StartFromBands(source, *job.survey, tiles, *context, target);
   }
-  if (record.complete) return Summarise(record, trainer);
   Loop loop("block", job, target, trainer, nullptr, report);
   return loop.Run(record, {});
 }

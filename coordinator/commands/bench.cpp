@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "coordinator/bench/kernel_bench.h"
+#include "coordinator/bench/schedule_bench.h"
 #include "coordinator/commands/command.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -66,12 +67,56 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
   });
 }
 
+void AddScheduleBench(CLI::App& bench, CommandState& state) {
+  struct Flags {
+    ScheduleBenchOptions options;
+    std::string out, measured;
+    bool json = false;
+  };
+  const auto flags = std::make_shared<Flags>();
+  ScheduleBenchOptions& o = flags->options;
+  CLI::App* command = bench.add_subcommand("schedule", "how well a cluster would be used: the scheduler against simulated ranks");
+  command->add_option("-o,--output", flags->out, "folder for schedule.json")->type_name("DIR");
+  command->add_option("--blocks", o.blocks, "blocks to train")->type_name("N")->capture_default_str();
+  command->add_option("--ranks", o.ranks, "ranks, the one that hands out included")->type_name("N")->capture_default_str();
+  command->add_option("--block-seconds", o.block_seconds, "mean training time of a block on one rank")->type_name("S")->capture_default_str();
+  command->add_option("--measured", flags->measured, "train.json of a project: blocks differ in time as its blocks do")->type_name("FILE");
+  command->add_option("--cost-spread", o.cost_spread, "without --measured: deviation of log seconds")->type_name("X")->capture_default_str();
+  command->add_option("--cost-error", o.cost_error, "deviation of log estimated over real cost")->type_name("X")->capture_default_str();
+  command->add_option("--speed-spread", o.speed_spread, "deviation of the ranks' log speed")->type_name("X")->capture_default_str();
+  command->add_option("--stragglers", o.stragglers, "share of ranks at half speed")->type_name("SHARE")->capture_default_str();
+  command->add_option("--failing", o.failing, "share of ranks lost during the job")->type_name("SHARE")->capture_default_str();
+  command->add_option("--checkpoint-every", o.checkpoint_every_s, "seconds between checkpoints")->type_name("S")->capture_default_str();
+  command->add_option("--restart-seconds", o.restart_s, "from a loss until all train again")->type_name("S")->capture_default_str();
+  command->add_option("--skip-seconds", o.skip_s, "after a restart, to pass over a finished block")->type_name("S")->capture_default_str();
+  command->add_option("--status-every", o.status_every_s, "seconds between a rank's reports")->type_name("S")->capture_default_str();
+  command->add_option("--seed", o.seed, "of all that is drawn")->type_name("N")->capture_default_str();
+  command->add_flag("--json", flags->json, "print JSON instead of the table");
+  command->footer(
+      "Examples:\n"
+      "  skyquilt bench schedule\n"
+      "  skyquilt bench schedule --blocks 400 --ranks 64 --block-seconds 1800 --measured out/train.json\n"
+      "Twice in simulated time: undisturbed, and with ranks that are lost and the job started again from its checkpoints.");
+  command->callback([&state, flags] {
+    state.chosen = [&state, flags] {
+      if (state.comm != nullptr && state.comm->rank() != 0) return;
+      if (!flags->measured.empty()) flags->options.measured_seconds = MeasuredBlockSeconds(flags->measured);
+      if (!flags->out.empty()) base::RequireWritableFolder(flags->out);
+      const ScheduleBenchResult result = RunScheduleBench(flags->options);
+      const std::string json = ScheduleBenchJson(result);
+      std::cout << (flags->json ? json : ScheduleBenchTable(result));
+      if (!flags->out.empty()) base::WriteFileAtomically(std::filesystem::path(flags->out) / "schedule.json", json);
+    };
+  });
+}
+
 }  // namespace
 
 void AddBench(CLI::App& app, CommandState& state) {
-  CLI::App* bench = app.add_subcommand("bench", "measure speed on this machine");
+  CLI::App* bench = app.add_subcommand("bench", "measure speed");
   bench->require_subcommand(1);
   AddKernelBench(*bench, state);
+  AddScheduleBench(*bench, state);
 }
 
 }  // namespace skyquilt::coordinator

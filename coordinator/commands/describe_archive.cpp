@@ -1,3 +1,5 @@
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -6,6 +8,7 @@
 #include "coordinator/commands/describe.h"
 #include "core/base/errors.h"
 #include "core/checkpoint/archive.h"
+#include "core/checkpoint/digest.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -13,7 +16,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 template <typename T>
-void AddRange(const std::vector<T>& values, Json* entry) {
+void AddContent(const std::vector<T>& values, Json* entry) {
+  checkpoint::Digest digest;
+  digest.Update({reinterpret_cast<const uint8_t*>(values.data()), values.size() * sizeof(T)});
+  (*entry)["xxh64"] = fmt::format("{:016x}", digest.Value());
   T low = std::numeric_limits<T>::max();
   T high = std::numeric_limits<T>::lowest();
   size_t n_bad = 0;
@@ -62,10 +68,10 @@ nlohmann::ordered_json DescribeArchive(const std::filesystem::path& file) {
   for (const std::string& name : archive.Names()) {
     const std::string type = archive.TypeName(name);
     Json entry = {{"name", name}, {"type", type}, {"shape", archive.Shape(name)}};
-    if (type == "float32") AddRange(archive.Floats(name), &entry);
-    if (type == "float64") AddRange(archive.Doubles(name), &entry);
-    if (type == "int64") AddRange(archive.Ints(name), &entry);
-    if (type == "uint8") AddRange(archive.Bytes(name), &entry);
+    if (type == "float32") AddContent(archive.Floats(name), &entry);
+    if (type == "float64") AddContent(archive.Doubles(name), &entry);
+    if (type == "int64") AddContent(archive.Ints(name), &entry);
+    if (type == "uint8") AddContent(archive.Bytes(name), &entry);
     arrays.push_back(entry);
   }
   json["arrays"] = arrays;

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Searches for inputs that break the readers: libFuzzer with address and undefined-behaviour sanitizers, memory and time per input bounded.
+#   scripts/fuzz.sh [SECONDS] [TARGET...]      default: 60 seconds for each of colmap config blocks archive exif
+# Findings are kept as build/fuzz/findings/TARGET-*; one that is mended belongs into tests/fuzz/corpus/TARGET, where the tests feed it for ever.
+set -euo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+seconds=${1:-60}
+[[ "$seconds" =~ ^[1-9][0-9]*$ ]] || { echo "usage: scripts/fuzz.sh [SECONDS] [TARGET...]" >&2; exit 2; }
+targets=("${@:2}")
+(( ${#targets[@]} > 0 )) || targets=(colmap config blocks archive exif)
+scripts/setup.sh
+if ! command -v clang++ >/dev/null; then
+  echo "fuzz: clang is needed: apt-get install clang" >&2
+  exit 2
+fi
+cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DSKYQUILT_FUZZ=ON \
+  -DSKYQUILT_SANITIZE=address,undefined,fuzzer-no-link >/dev/null
+cmake --build build/fuzz --target "${targets[@]/#/fuzz_}" "${targets[@]/#/libfuzz_}"
+failed=0
+for target in "${targets[@]}"; do
+  corpus=build/fuzz/corpus/$target
+  mkdir -p "$corpus" build/fuzz/findings
+  ASAN_OPTIONS=detect_leaks=0 "build/fuzz/tests/fuzz/fuzz_$target" --seeds "$corpus"
+  kept=()
+  [[ -d "tests/fuzz/corpus/$target" ]] && kept=("tests/fuzz/corpus/$target")
+  echo "== $target: $seconds s"
+  "build/fuzz/tests/fuzz/libfuzz_$target" "$corpus" "${kept[@]}" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=3072 -max_len=65536 \
+    -artifact_prefix="build/fuzz/findings/$target-" -print_final_stats=1 2>"build/fuzz/$target.log" || failed=1
+  tail -n 8 "build/fuzz/$target.log"
+done
+exit "$failed"

@@ -1,0 +1,40 @@
+// Checkpoints: what stands before HDF5 (the plain header, length and digest), and HDF5 itself for what happens to pass. The digest is no defence
+// against forgers, so content with a forged digest is not tried.
+#include <fstream>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/checkpoint/archive.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skyquilt::fuzz {
+
+std::vector<std::string> Seeds() {
+  const TemporaryFolder folder;
+  const std::vector<float> floats(300, 0.5F);
+  const std::vector<uint8_t> bytes(7, 3);
+  checkpoint::ArchiveWriter writer("block", 1);
+  writer.Put("grid", floats, {100, 3});
+  writer.Put("group/bytes", bytes);
+  writer.SetAttribute("name", std::string("r0c0"));
+  writer.SetAttribute("steps", 12);
+  writer.Commit(folder / "block.h5");
+  return {base::ReadFile(folder / "block.h5")};
+}
+
+void Feed(const std::string& bytes) {
+  static const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "block.h5";
+  std::ofstream(file, std::ios::binary) << bytes;
+  try {
+    const checkpoint::ArchiveReader reader(file);
+    for (const std::string& name : reader.Names()) {
+      reader.Shape(name);
+      if (reader.TypeName(name) == "float32") reader.Floats(name);
+    }
+  } catch (const base::InputError&) {
+  }
+}
+
+}  // namespace skyquilt::fuzz

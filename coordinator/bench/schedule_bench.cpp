@@ -58,7 +58,7 @@ Cluster MakeCluster(const ScheduleBenchOptions& o) {
 ScheduleRun Simulate(const ScheduleBenchOptions& o, const Cluster& cluster, const std::vector<double>& fails_at_s, base::Progress& progress) {
   ScheduleRun run;
   std::vector<double> left_s = cluster.work_s;
-  std::vector<bool> complete(left_s.size(), false);
+  std::vector<bool> counted(left_s.size(), false);
   const double cpu_before = CpuSeconds();
   double now_s = 0.0;
   int64_t messages = 0, bytes = 0;
@@ -66,28 +66,24 @@ ScheduleRun Simulate(const ScheduleBenchOptions& o, const Cluster& cluster, cons
   for (int i = 0; i < o.blocks; ++i) blocks.push_back({i, "block_" + std::to_string(i), cluster.cost[static_cast<size_t>(i)], 0.0});
   for (bool done = false; !done;) {
     const std::vector<double> ahead(fails_at_s.begin() + std::min<ptrdiff_t>(run.restarts, std::ssize(fails_at_s)), fails_at_s.end());
-    SimulatedRanks ranks(
-        cluster.speed, [&](int block) { return complete[static_cast<size_t>(block)] ? o.skip_s : left_s[static_cast<size_t>(block)]; }, ahead,
-        o.status_every_s, now_s);
+    SimulatedRanks ranks(cluster.speed, cluster.work_s, left_s, ahead, o.skip_s, o.move_s, o.status_every_s, now_s);
     BlockQueue queue(blocks, {.steps = 1, .n_workers = o.ranks - 1, .seed = o.seed});
     CoordinateHooks hooks;
     hooks.now_s = [&ranks] { return ranks.now_s(); };
     hooks.handed_out = [](const FieldJob&, int) {};
     hooks.status = [](const FieldJob&, const worker::TrainStatus&) {};
+    hooks.moved = [&run](const FieldJob&, int, int) { ++run.moves; };
     hooks.finished = [&](const FieldOutcome& outcome, bool) {
       const auto block = static_cast<size_t>(outcome.job.block);
-      if (!complete[block]) progress.Advance();
-      complete[block] = true;
+      if (!counted[block]) progress.Advance();
+      counted[block] = true;
     };
     try {
       CoordinateBlocks(ranks, queue, {}, 1, hooks);
       done = true;
     } catch (const RankLost&) {
       ++run.restarts;
-      for (const auto& [block, done_s] : ranks.InTraining()) {
-        if (complete[static_cast<size_t>(block)]) continue;
-        left_s[static_cast<size_t>(block)] -= std::floor(done_s / o.checkpoint_every_s) * o.checkpoint_every_s;
-      }
+      left_s = ranks.LeftAfterLoss(o.checkpoint_every_s);
     }
     now_s = ranks.now_s() + (done ? 0.0 : o.restart_s);
     messages += ranks.messages();
@@ -109,8 +105,8 @@ void ScheduleBenchOptions::Check() const {
   if (!(block_seconds > 0.0) || !(checkpoint_every_s > 0.0) || !(status_every_s > 0.0)) {
     throw base::UsageError("--block-seconds, --checkpoint-every and --status-every must be positive");
   }
-  if (!(cost_spread >= 0.0) || !(cost_error >= 0.0) || !(speed_spread >= 0.0) || !(restart_s >= 0.0) || !(skip_s >= 0.0)) {
-    throw base::UsageError("--cost-spread, --cost-error, --speed-spread, --restart-seconds and --skip-seconds must not be negative");
+  if (!(cost_spread >= 0.0) || !(cost_error >= 0.0) || !(speed_spread >= 0.0) || !(restart_s >= 0.0) || !(skip_s >= 0.0) || !(move_s >= 0.0)) {
+    throw base::UsageError("--cost-spread, --cost-error, --speed-spread, --restart-seconds, --skip-seconds and --move-seconds must not be negative");
   }
   if (!(stragglers >= 0.0 && stragglers <= 1.0) || !(failing >= 0.0 && failing <= 1.0)) {
     throw base::UsageError("--stragglers and --failing are shares from 0 to 1");
@@ -124,6 +120,7 @@ ScheduleBenchResult RunScheduleBench(const ScheduleBenchOptions& options) {
   result.options = options;
   const Cluster cluster = MakeCluster(options);
   result.work_s = cluster.Work();
+  result.longest_s = *std::max_element(cluster.work_s.begin(), cluster.work_s.end());
   base::Progress progress("schedule", 2.0 * options.blocks, "blocks");
   result.undisturbed = Simulate(options, cluster, {}, progress);
   result.failing = Simulate(options, cluster, cluster.fails_at_s, progress);

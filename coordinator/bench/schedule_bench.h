@@ -21,6 +21,7 @@ struct ScheduleBenchOptions {
   double checkpoint_every_s = 60.0;      // work since the last one is lost with the job
   double restart_s = 30.0;               // until all ranks train again: waiting, launching, loading
   double skip_s = 0.2;                   // to find that a block is complete already, after a restart
+  double move_s = 5.0;                   // to save a slow rank's block, and again to go on with it on another
   double status_every_s = 0.5;
   uint64_t seed = 1;
 
@@ -32,6 +33,7 @@ struct ScheduleRun {
   double wall_s = 0.0;      // simulated
   double efficiency = 0.0;  // work over (ranks x wall), rank 0 counted as a rank
   int restarts = 0;
+  int moves = 0;  // blocks taken from slow ranks
   double messages_per_second = 0.0;
   double bytes_per_second = 0.0;
   double coordinator_load = 0.0;  // CPU seconds of rank 0 (and of the simulation) per simulated second
@@ -40,6 +42,7 @@ struct ScheduleRun {
 struct ScheduleBenchResult {
   ScheduleBenchOptions options;
   double work_s = 0.0;
+  double longest_s = 0.0;  // the largest block's seconds at speed 1: no schedule ends before
   ScheduleRun undisturbed, failing;
   int64_t coordinator_bytes = 0;  // growth of this process by queue, jobs and simulation together
 };

@@ -13,6 +13,7 @@ nlohmann::ordered_json RunJson(const ScheduleRun& run) {
   return {{"efficiency", run.efficiency},
           {"wall_s", run.wall_s},
           {"restarts", run.restarts},
+          {"moves", run.moves},
           {"messages_per_second", run.messages_per_second},
           {"bytes_per_second", run.bytes_per_second},
           {"coordinator_load", run.coordinator_load}};
@@ -24,6 +25,7 @@ std::string ScheduleBenchJson(const ScheduleBenchResult& r) {
   const ScheduleBenchOptions& o = r.options;
   const nlohmann::ordered_json json = {{"bench", "schedule"},
                                        {"work_s", r.work_s},
+                                       {"longest_s", r.longest_s},
                                        {"undisturbed", RunJson(r.undisturbed)},
                                        {"failing", RunJson(r.failing)},
                                        {"coordinator_bytes", r.coordinator_bytes},
@@ -40,6 +42,7 @@ std::string ScheduleBenchJson(const ScheduleBenchResult& r) {
                                          {"checkpoint_every_s", o.checkpoint_every_s},
                                          {"restart_s", o.restart_s},
                                          {"skip_s", o.skip_s},
+                                         {"move_s", o.move_s},
                                          {"status_every_s", o.status_every_s},
                                          {"seed", o.seed}}},
                                        {"machine", base::MachineDescription()},
@@ -49,16 +52,17 @@ std::string ScheduleBenchJson(const ScheduleBenchResult& r) {
 
 std::string ScheduleBenchTable(const ScheduleBenchResult& r) {
   const ScheduleBenchOptions& o = r.options;
-  std::string text = fmt::format("{} blocks of {} each on {} ranks ({} of work for each), ranks' speed +-{:.0f} %, {:.1f} % at half speed\n",
-                                 o.blocks, base::FormatDuration(o.block_seconds), o.ranks, base::FormatDuration(r.work_s / o.ranks),
-                                 100.0 * o.speed_spread, 100.0 * o.stragglers);
+  std::string text = fmt::format(
+      "{} blocks of {} each on {} ranks ({} of work for each; the longest block takes {}), ranks' speed +-{:.0f} %, {:.1f} % at half speed\n",
+      o.blocks, base::FormatDuration(o.block_seconds), o.ranks, base::FormatDuration(r.work_s / o.ranks), base::FormatDuration(r.longest_s),
+      100.0 * o.speed_spread, 100.0 * o.stragglers);
   const auto row = [&text](const std::string& what, const ScheduleRun& run) {
-    text += fmt::format("  {:<28}{:>6.1f} %  {:>9}  {:>8}  {:>11.0f}/s  {:>8}B/s  {:>7.1f} %\n", what, 100.0 * run.efficiency,
-                        base::FormatDuration(run.wall_s), run.restarts, run.messages_per_second, base::FormatCount(run.bytes_per_second),
+    text += fmt::format("  {:<28}{:>6.1f} %  {:>9}  {:>8}  {:>6}  {:>11.0f}/s  {:>8}B/s  {:>7.1f} %\n", what, 100.0 * run.efficiency,
+                        base::FormatDuration(run.wall_s), run.restarts, run.moves, run.messages_per_second, base::FormatCount(run.bytes_per_second),
                         100.0 * run.coordinator_load);
   };
-  text +=
-      fmt::format("  {:<28}{:>8}  {:>9}  {:>8}  {:>13}  {:>12}  {:>9}\n", "", "efficient", "time", "restarts", "messages", "traffic", "rank 0 CPU");
+  text += fmt::format("  {:<28}{:>8}  {:>9}  {:>8}  {:>6}  {:>13}  {:>12}  {:>9}\n", "", "efficient", "time", "restarts", "moves", "messages",
+                      "traffic", "rank 0 CPU");
   row("nothing fails", r.undisturbed);
   row(fmt::format("{:.1f} % of ranks lost", 100.0 * o.failing), r.failing);
   text += fmt::format(

@@ -1,6 +1,7 @@
 #include "coordinator/bench/simulated_ranks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <utility>
 
@@ -9,24 +10,50 @@
 
 namespace skyquilt::coordinator {
 
-SimulatedRanks::SimulatedRanks(std::vector<double> speed, std::function<double(int block)> work_s, std::vector<double> fails_at_s,
-                               double status_every_s, double start_s)
-    : speed_(std::move(speed)), work_s_(std::move(work_s)), fails_at_s_(std::move(fails_at_s)), status_every_s_(status_every_s), now_s_(start_s) {
+SimulatedRanks::SimulatedRanks(std::vector<double> speed, std::vector<double> work_s, std::vector<double> left_s, std::vector<double> fails_at_s,
+                               double skip_s, double save_s, double status_every_s, double start_s)
+    : speed_(std::move(speed)),
+      work_s_(std::move(work_s)),
+      left_s_(std::move(left_s)),
+      fails_at_s_(std::move(fails_at_s)),
+      skip_s_(skip_s),
+      save_s_(save_s),
+      status_every_s_(status_every_s),
+      now_s_(start_s) {
   std::reverse(fails_at_s_.begin(), fails_at_s_.end());
+}
+
+double SimulatedRanks::DoneWork(int rank, const Training& training) const {
+  const double left = left_s_[static_cast<size_t>(training.job.block)];
+  return std::clamp((now_s_ - training.from_s) * speed_[static_cast<size_t>(rank)], 0.0, left);
 }
 
 void SimulatedRanks::Send(int destination, int tag, const std::string& bytes) {
   ++messages_;
   bytes_ += static_cast<int64_t>(bytes.size());
-  if (tag != kTagJob) return;
-  Training training{JobFromText(bytes), now_s_, 0.0, ++serial_};
-  training.until_s = now_s_ + work_s_(training.job.block) / speed_[static_cast<size_t>(destination)];
-  SKYQUILT_CHECK(!training_.contains(destination), "a rank trains one block at a time");
-  training_[destination] = training;
-  events_.push({std::min(now_s_ + status_every_s_, training.until_s), destination, serial_});
+  if (tag == kTagJob) {
+    SKYQUILT_CHECK(!training_.contains(destination), "a rank trains one block at a time");
+    Training training{JobFromText(bytes), now_s_, 0.0, ++serial_, false};
+    const double left = left_s_[static_cast<size_t>(training.job.block)];
+    if (moved_.contains(training.job.block)) training.from_s += save_s_;
+    training.until_s = training.from_s + (left > 0.0 ? left / speed_[static_cast<size_t>(destination)] : skip_s_);
+    training_[destination] = training;
+    events_.push({std::min(now_s_ + status_every_s_, training.until_s), destination, serial_});
+  } else if (tag == kTagYield) {
+    const auto found = training_.find(destination);
+    if (found == training_.end() || ToText(found->second.job) != bytes) return;
+    Training& training = found->second;
+    left_s_[static_cast<size_t>(training.job.block)] -= DoneWork(destination, training);
+    moved_.insert(training.job.block);
+    training.yields = true;
+    training.from_s = training.until_s = now_s_ + save_s_;
+    training.serial = ++serial_;
+    events_.push({training.until_s, destination, serial_});
+  }
 }
 
 std::optional<comm::Message> SimulatedRanks::TryReceive() {
+  while (!events_.empty() && events_.top().serial != SerialOf(events_.top().rank)) events_.pop();
   if (events_.empty()) return std::nullopt;
   const Event event = events_.top();
   if (!fails_at_s_.empty() && fails_at_s_.back() <= event.at_s) {
@@ -36,20 +63,26 @@ std::optional<comm::Message> SimulatedRanks::TryReceive() {
   events_.pop();
   now_s_ = event.at_s;
   const Training& training = training_.at(event.rank);
+  const auto block = static_cast<size_t>(training.job.block);
   ++messages_;
   comm::Message message{event.rank, kTagStatus, ""};
   if (now_s_ < training.until_s) {
     worker::TrainStatus status;
-    status.fraction = (now_s_ - training.from_s) / (training.until_s - training.from_s);
+    status.fraction = 1.0 - (left_s_[block] - DoneWork(event.rank, training)) / work_s_[block];
     status.seconds = now_s_ - training.from_s;
     message.bytes = ToText(training.job) + "\n" + ToText(status);
     events_.push({std::min(now_s_ + status_every_s_, training.until_s), event.rank, event.serial});
   } else {
     FieldOutcome outcome;
     outcome.job = training.job;
-    outcome.result.ok = true;
     outcome.rank = event.rank;
     outcome.wall_s = training.until_s - training.from_s;
+    outcome.result.ok = !training.yields;
+    if (training.yields) {
+      outcome.failure = Failure::kInterrupted;
+    } else {
+      left_s_[block] = 0.0;
+    }
     message.tag = kTagOutcome;
     message.bytes = ToText(outcome);
     training_.erase(event.rank);
@@ -62,12 +95,18 @@ void SimulatedRanks::Abort(int exit_status) {
   std::_Exit(exit_status);
 }
 
-std::map<int, double> SimulatedRanks::InTraining() const {
-  std::map<int, double> done_s;
+int64_t SimulatedRanks::SerialOf(int rank) const {
+  const auto found = training_.find(rank);
+  return found == training_.end() ? -1 : found->second.serial;
+}
+
+std::vector<double> SimulatedRanks::LeftAfterLoss(double checkpoint_every_s) const {
+  std::vector<double> left = left_s_;
   for (const auto& [rank, training] : training_) {
-    done_s[training.job.block] = (now_s_ - training.from_s) * speed_[static_cast<size_t>(rank)];
+    if (training.yields) continue;
+    left[static_cast<size_t>(training.job.block)] -= std::floor(DoneWork(rank, training) / checkpoint_every_s) * checkpoint_every_s;
   }
-  return done_s;
+  return left;
 }
 
 }  // namespace skyquilt::coordinator

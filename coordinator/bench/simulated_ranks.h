@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <queue>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,11 @@ struct RankLost {
 
 class SimulatedRanks : public comm::Communicator {
  public:
-  // work_s: seconds that a block still needs on a rank of speed 1. speed: of every rank; the first entry is rank 0, which does not train.
+  // work_s, left_s: seconds that every block needs, and still needs, on a rank of speed 1. speed: of every rank; the first entry is rank 0, which
+  // does not train. skip_s: to find that a block has nothing left. save_s: to give one back, and again to go on with it elsewhere.
   // fails_at_s: on the same clock, ascending; at each a rank is lost.
-  SimulatedRanks(std::vector<double> speed, std::function<double(int block)> work_s, std::vector<double> fails_at_s, double status_every_s,
-                 double start_s);
+  SimulatedRanks(std::vector<double> speed, std::vector<double> work_s, std::vector<double> left_s, std::vector<double> fails_at_s, double skip_s,
+                 double save_s, double status_every_s, double start_s);
 
   int rank() const override { return 0; }
   int size() const override { return static_cast<int>(speed_.size()); }
@@ -38,14 +40,15 @@ class SimulatedRanks : public comm::Communicator {
 
   double now_s() const { return now_s_; }
   int64_t messages() const { return messages_; }  // both ways
-  // Blocks now in training, with the seconds of work done on them since they were handed out.
-  std::map<int, double> InTraining() const;
+  // What is left of every block when all ranks are lost now and only whole checkpoint intervals count.
+  std::vector<double> LeftAfterLoss(double checkpoint_every_s) const;
 
  private:
   struct Training {
     FieldJob job;
     double from_s = 0.0, until_s = 0.0;
-    int64_t serial = 0;  // tells events of an earlier job
+    int64_t serial = 0;  // tells events that are void by now
+    bool yields = false;
   };
   struct Event {
     double at_s = 0.0;
@@ -54,14 +57,16 @@ class SimulatedRanks : public comm::Communicator {
     bool operator>(const Event& other) const { return at_s != other.at_s ? at_s > other.at_s : rank > other.rank; }
   };
 
-  std::vector<double> speed_;
-  std::function<double(int)> work_s_;
-  std::vector<double> fails_at_s_;
-  double status_every_s_;
+  int64_t SerialOf(int rank) const;
+  double DoneWork(int rank, const Training& training) const;
+
+  std::vector<double> speed_, work_s_, left_s_, fails_at_s_;
+  double skip_s_, save_s_, status_every_s_;
   double now_s_;
   int64_t messages_ = 0;
   int64_t bytes_ = 0;
   int64_t serial_ = 0;
+  std::set<int> moved_;  // blocks that were given back
   std::map<int, Training> training_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
 };

@@ -89,6 +89,7 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
   command->add_option("--checkpoint-every", o.checkpoint_every_s, "seconds between checkpoints")->type_name("S")->capture_default_str();
   command->add_option("--restart-seconds", o.restart_s, "from a loss until all train again")->type_name("S")->capture_default_str();
   command->add_option("--skip-seconds", o.skip_s, "after a restart, to pass over a finished block")->type_name("S")->capture_default_str();
+  command->add_option("--move-seconds", o.move_s, "to save a slow rank's block, and again to go on with it")->type_name("S")->capture_default_str();
   command->add_option("--status-every", o.status_every_s, "seconds between a rank's reports")->type_name("S")->capture_default_str();
   command->add_option("--seed", o.seed, "of all that is drawn")->type_name("N")->capture_default_str();
   command->add_flag("--json", flags->json, "print JSON instead of the table");

@@ -44,6 +44,7 @@ void BlockQueue::Insert(const Waiting& entry) {
     return entry.block.cost > other.block.cost || (entry.block.cost == other.block.cost && entry.block.block < other.block.block);
   });
   waiting_.insert(position, entry);
+  waiting_cost_ += entry.block.cost;
 }
 
 double BlockQueue::SecondsPerCost(double now_s, std::span<const double> busy_until_s) const {
@@ -84,6 +85,7 @@ FieldJob BlockQueue::Take(double now_s, std::span<const double> busy_until_s) {
     job.seconds = options_.seconds;
   }
   waiting_.erase(waiting_.begin());
+  waiting_cost_ = waiting_.empty() ? 0.0 : waiting_cost_ - next.block.cost;
   return job;
 }
 

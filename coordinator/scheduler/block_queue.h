@@ -43,6 +43,10 @@ class BlockQueue {
   const std::vector<FieldOutcome>& outcomes() const { return outcomes_; }
   double Cost(int block) const;
   double TotalCost() const { return total_cost_; }
+  // Of the blocks that wait.
+  double WaitingCost() const { return waiting_cost_; }
+  // Blocks have fixed work rather than a share of the time, so a faster rank ends them earlier.
+  bool FixedWork() const { return options_.steps > 0; }
   static uint64_t Seed(uint64_t seed, int block, int attempt);
 
  private:
@@ -58,6 +62,7 @@ class BlockQueue {
   std::vector<Waiting> waiting_;  // dearest first
   std::vector<FieldOutcome> outcomes_;
   double total_cost_ = 0.0;
+  double waiting_cost_ = 0.0;
 };
 
 // When the last of n_workers is done if each free one takes the next job in order; `free_at_s` are the ranks' first free moments

@@ -6,7 +6,10 @@
 #include <optional>
 #include <set>
 #include <thread>
+#include <utility>
+#include <vector>
 
+#include "coordinator/scheduler/rank_speeds.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
@@ -48,6 +51,9 @@ void CoordinateAlone(BlockQueue& queue, const FieldTrainer& trainer, int threads
 
 // State of one training spread over ranks.
 class Coordination {
+  static constexpr double kRelieveEvery_s = 1.0;
+  static constexpr int kMostMoves = 3;
+
  public:
   Coordination(comm::Communicator& comm, BlockQueue& queue, const CoordinateHooks& hooks) : comm_(comm), queue_(queue), hooks_(hooks) {
     for (int rank = 1; rank < comm.size(); ++rank) idle_.insert(rank);
@@ -59,8 +65,11 @@ class Coordination {
         interrupted_ = true;
         Stop();
       }
+      if (!stopping_) RelieveSlowRanks();
+      while (!stopping_ && !idle_.empty() && GoOnWithReturned()) {
+      }
       while (!stopping_ && queue_.HasWaiting() && !idle_.empty()) HandOut();
-      if (busy_.empty() && (stopping_ || !queue_.HasWaiting())) break;
+      if (busy_.empty() && (stopping_ || (!queue_.HasWaiting() && returned_.empty()))) break;
       const std::optional<comm::Message> message = comm_.TryReceive();
       if (!message) {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -86,9 +95,49 @@ class Coordination {
     const int rank = *idle_.begin();
     const FieldJob job = queue_.Take(now, busy_until);
     idle_.erase(rank);
-    busy_[rank] = {job, now + job.seconds};
-    comm_.Send(rank, kTagJob, ToText(job));
+    Begin(rank, job, now);
     hooks_.handed_out(job, rank);
+  }
+
+  void Begin(int rank, const FieldJob& job, double now) {
+    busy_[rank] = {job, now + job.seconds};
+    speeds_.HandedOut(rank, queue_.Cost(job.block), now);
+    comm_.Send(rank, kTagJob, ToText(job));
+  }
+
+  // Asks slow ranks for their blocks while others are idle. Looked into once a second at most.
+  void RelieveSlowRanks() {
+    if (idle_.empty() || busy_.empty() || !queue_.FixedWork()) return;
+    const double now = hooks_.now_s();
+    if (now < relieve_again_s_) return;
+    relieve_again_s_ = now + kRelieveEvery_s;
+    while (asked_.size() < idle_.size()) {
+      // Of those with nothing to do, the fastest.
+      const int to = *std::max_element(idle_.begin(), idle_.end(), [this](int a, int b) { return speeds_.Speed(a) < speeds_.Speed(b); });
+      const std::optional<int> from = speeds_.SlowRank(to, queue_.WaitingCost(), comm_.size() - 1, now);
+      if (!from) return;
+      asked_.insert(*from);
+      speeds_.Keep(*from);
+      comm_.Send(*from, kTagYield, ToText(busy_.at(*from).job));
+    }
+  }
+
+  // A block that a slow rank gave back goes to the fastest idle rank; to the slow one itself only if nobody else is there and nothing else waits.
+  bool GoOnWithReturned() {
+    if (returned_.empty()) return false;
+    const auto [job, from] = returned_.back();
+    std::optional<int> to;
+    for (const int rank : idle_) {
+      if (rank != from && (!to || speeds_.Speed(rank) > speeds_.Speed(*to))) to = rank;
+    }
+    if (!to && !queue_.HasWaiting()) to = *idle_.begin();
+    if (!to) return false;
+    returned_.pop_back();
+    idle_.erase(*to);
+    Begin(*to, job, hooks_.now_s());
+    if (++moves_[job.block] >= kMostMoves) speeds_.Keep(*to);
+    if (hooks_.moved) hooks_.moved(job, from, *to);
+    return true;
   }
 
   void Stop() {
@@ -101,6 +150,7 @@ class Coordination {
     if (busy == busy_.end()) return;
     const size_t newline = message.bytes.find('\n');
     const worker::TrainStatus status = StatusFromText(message.bytes.substr(newline + 1));
+    speeds_.Progress(message.source, status.fraction, hooks_.now_s());
     if (busy->second.job.seconds > 0.0) busy->second.until_s = hooks_.now_s() + std::max(0.0, busy->second.job.seconds - status.seconds);
     hooks_.status(busy->second.job, status);
   }
@@ -109,6 +159,17 @@ class Coordination {
     FieldOutcome outcome = OutcomeFromText(message.bytes);
     busy_.erase(message.source);
     idle_.insert(message.source);
+    const bool finished = outcome.failure == Failure::kNone;
+    if (finished) {
+      speeds_.Finished(message.source, hooks_.now_s());
+    } else {
+      speeds_.GivenUp(message.source, hooks_.now_s());
+    }
+    const bool was_asked = asked_.erase(message.source) > 0;
+    if (was_asked && outcome.failure == Failure::kInterrupted && !stopping_) {
+      returned_.emplace_back(outcome.job, message.source);
+      return;
+    }
     switch (outcome.failure) {
       case Failure::kInterrupted:
         // Also when the signal reached only that rank: the batch system wants its machines back.
@@ -132,6 +193,11 @@ class Coordination {
   const CoordinateHooks& hooks_;
   std::set<int> idle_;
   std::map<int, Busy> busy_;
+  RankSpeeds speeds_;
+  std::set<int> asked_;                             // slow ranks that were asked for their block
+  std::vector<std::pair<FieldJob, int>> returned_;  // and what they gave back
+  std::map<int, int> moves_;                        // of each block so far
+  double relieve_again_s_ = 0.0;
   std::optional<FieldOutcome> fatal_;
   bool stopping_ = false;
   bool interrupted_ = false;
@@ -146,7 +212,10 @@ class RankReporter {
     if (SecondsSince(last_poll_) > 0.05) {
       last_poll_ = Clock::now();
       while (const std::optional<comm::Message> message = comm_.TryReceive()) {
-        if (message->tag == kTagStop) base::RequestCancel();
+        if (message->tag == kTagStop) stop_ = true;
+        // One that crossed the outcome of another job is not meant for this one.
+        if (message->tag == kTagYield && message->bytes == job_text_) yield_ = true;
+        if (stop_ || yield_) base::RequestCancel();
       }
     }
     if (!sent_ || SecondsSince(last_sent_) > 0.5) {
@@ -155,9 +224,13 @@ class RankReporter {
       comm_.Send(0, kTagStatus, job_text_ + "\n" + ToText(status));
     }
   }
+  // Only the block was asked for: the rank stays.
+  bool only_yielded() const { return yield_ && !stop_; }
 
  private:
   comm::Communicator& comm_;
+  bool stop_ = false;
+  bool yield_ = false;
   std::string job_text_;
   Clock::time_point last_poll_{};
   Clock::time_point last_sent_{};
@@ -183,6 +256,7 @@ void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int thre
     RankReporter reporter(comm, job);
     const FieldOutcome outcome = RunField(
         trainer, job, [&reporter](const worker::TrainStatus& status) { reporter(status); }, comm.rank(), threads);
+    if (reporter.only_yielded()) base::WithdrawRequest();
     comm.Send(0, kTagOutcome, ToText(outcome));
   }
 }

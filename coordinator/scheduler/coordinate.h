@@ -21,6 +21,7 @@ enum Tag : int {
   kTagStop = 107,     // 0 -> worker: save and stop
   kTagDone = 108,     // 0 -> worker: no more jobs of this command
   kTagQuit = 109,     // 0 -> worker: the program ends
+  kTagYield = 110,    // 0 -> worker: save and give the block back, another rank goes on with it
 };
 
 struct CoordinateHooks {
@@ -28,9 +29,11 @@ struct CoordinateHooks {
   std::function<void(const FieldJob&, int rank)> handed_out;
   std::function<void(const FieldJob&, const worker::TrainStatus&)> status;
   std::function<void(const FieldOutcome&, bool retried)> finished;
+  std::function<void(const FieldJob&, int from_rank, int to_rank)> moved = nullptr;
 };
 
-// Works the queue off: over the other ranks, or with `alone` in this process when there are none.
+// Works the queue off: over the other ranks, or with `alone` in this process when there are none. A rank with nothing better to do takes over
+// the block of a slow one, from its checkpoint (blocks of fixed work only).
 // Throws base::Interrupted (all ranks have saved and stopped), base::InputError or base::UsageError of a worker (likewise).
 // Blocks that failed are in queue.outcomes() with their reason.
 void CoordinateBlocks(comm::Communicator& comm, BlockQueue& queue, const FieldTrainer& alone, int alone_threads, const CoordinateHooks& hooks);

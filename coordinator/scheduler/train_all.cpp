@@ -207,6 +207,9 @@ class Training {
         summary->failed.push_back(outcome.job.name + ": " + outcome.reason);
       }
     };
+    hooks.moved = [](const FieldJob& job, int from_rank, int to_rank) {
+      spdlog::info("{} goes on on rank {}: rank {} is slow", job.name, to_rank, from_rank);
+    };
     try {
       CoordinateBlocks(comm_, queue, trainer, threads, hooks);
     } catch (...) {

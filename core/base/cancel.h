@@ -7,6 +7,9 @@ namespace skyquilt::base {
 void InstallSignalHandlers();
 bool CancelRequested();
 void RequestCancel();
+// Takes RequestCancel back, but no signal.
+void WithdrawRequest();
+// Forgets both.
 void ClearCancel();
 // Throws Interrupted when the flag is set.
 void ThrowIfCancelled();

@@ -21,6 +21,20 @@ TEST(Cancel, FlagIsSetSeenAndCleared) {
   EXPECT_FALSE(CancelRequested());
 }
 
+TEST(Cancel, ARequestCanBeTakenBackButNoSignal) {
+  ClearCancel();
+  RequestCancel();
+  WithdrawRequest();
+  EXPECT_FALSE(CancelRequested());
+  InstallSignalHandlers();
+  raise(SIGTERM);
+  RequestCancel();
+  WithdrawRequest();
+  EXPECT_TRUE(CancelRequested());
+  ClearCancel();
+  EXPECT_FALSE(CancelRequested());
+}
+
 // Exit status 0 proves that the process survived every signal before it and saw each of them.
 void SurviveEachSignalOnce() {
   InstallSignalHandlers();

@@ -1,0 +1,68 @@
+"""scripts/skyquilt-mpirun: starts again after a lost rank, gives up in the end, leaves what is final alone and passes signals on."""
+import os
+import pathlib
+import signal
+import subprocess
+
+from fault_drill import TRAIN, children, state_of
+from harness import expect, main, wait_for
+
+LAUNCHER = str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "skyquilt-mpirun")
+
+
+def test(skyquilt, folder):
+    survey = folder / "hamlet"
+    skyquilt.call("simulate", "hamlet", "-o", survey, "--set", "simulate.image_width=160")
+    survey_made = folder / "whole"
+    skyquilt.call("prepare", survey, "-o", survey_made)
+    skyquilt.call("partition", survey_made, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
+    for name in ("lost", "stopped"):
+        subprocess.run(["cp", "-a", str(survey_made), str(folder / name)], check=True)
+    skyquilt.call("train", survey_made, *TRAIN)
+
+    def start(name, *words):
+        log = folder / f"{name}.log"
+        command = [LAUNCHER, "--restarts", "2", "--wait", "0", *words]
+        process = subprocess.Popen(command, env=skyquilt.environment, stdout=open(log, "w"), stderr=subprocess.STDOUT, start_new_session=True)
+        process.stdout = open(log)
+        return process, log
+
+    ranks = ["-n", "2", "--oversubscribe", skyquilt.program]
+
+    def ranks_of(launcher):
+        return [rank for mpirun in children(launcher) for rank in children(mpirun)]
+
+    # A rank is killed in mid-training; --restart is heeded once, not again at the new start.
+    project = folder / "lost"
+    process, log = start("lost", *ranks, "train", str(project), *TRAIN, "--restart")
+    wait_for(lambda: any(project.glob("checkpoints/block_*.h5")), "first checkpoint of a block", process)
+    os.kill(ranks_of(process.pid)[-1], signal.SIGKILL)
+    expect(process.wait(timeout=300) == 0, log.read_text())
+    text = log.read_text()
+    expect("new start 1 of 2" in text and "ended with status 0 after 1 new start" in text, text)
+    expect(state_of(skyquilt, project) == state_of(skyquilt, survey_made), "killed and started again differs from undisturbed")
+
+    # A signal for the launcher makes the ranks save and leave.
+    project = folder / "stopped"
+    process, log = start("stopped", *ranks, "train", str(project), *TRAIN)
+    wait_for(lambda: any(project.glob("checkpoints/block_*.h5")), "first checkpoint of a block", process)
+    os.kill(process.pid, signal.SIGTERM)
+    status = process.wait(timeout=120)
+    expect(status == 130 and "new start" not in log.read_text(), f"ended with {status}:\n{log.read_text()}")
+    skyquilt.call("train", project, *TRAIN)
+    expect(state_of(skyquilt, project) == state_of(skyquilt, survey_made), "stopped and continued differs from undisturbed")
+
+    # What always dies is given up with its own status; what is final is not tried again.
+    process, log = start("dies", "-n", "1", "sh", "-c", "kill -9 $$")
+    status = process.wait(timeout=120)
+    expect(status == 137 and "given up after 2 new starts" in log.read_text(), f"ended with {status}:\n{log.read_text()}")
+    process, log = start("wrong", *ranks, "train", str(folder / "nowhere"))
+    status = process.wait(timeout=120)
+    expect(status in (2, 3) and "new start" not in log.read_text(), f"ended with {status}:\n{log.read_text()}")
+    for words in (["--restarts", "many"], []):
+        done = subprocess.run([LAUNCHER, *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        expect(done.returncode == 2, f"{words}: ended with {done.returncode}")
+
+
+if __name__ == "__main__":
+    main(test)

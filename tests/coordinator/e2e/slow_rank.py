@@ -1,0 +1,62 @@
+"""A rank that becomes very slow loses its block to one that has nothing to do, which goes on from the checkpoint: same bits, no lost work."""
+import os
+import pathlib
+import signal
+import subprocess
+import time
+
+from fault_drill import children, state_of
+from harness import expect, main
+
+TRAIN = ["--steps", "3000", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096", "--set", "context.steps=300"]
+
+
+def rank_of(pid):
+    try:
+        words = pathlib.Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")
+    except OSError:
+        return None
+    found = [word for word in words if word.startswith(b"OMPI_COMM_WORLD_RANK=")]
+    return int(found[0].split(b"=")[1]) if found else None
+
+
+def test(skyquilt, folder):
+    survey = folder / "hamlet"
+    skyquilt.call("simulate", "hamlet", "-o", survey, "--set", "simulate.image_width=160")
+
+    def project(name):
+        skyquilt.call("prepare", survey, "-o", folder / name)
+        skyquilt.call("partition", folder / name, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
+        return folder / name
+
+    whole = project("whole")
+    skyquilt.call("train", whole, *TRAIN)
+
+    slowed = project("slowed")
+    log = folder / "slowed.log"
+    with open(log, "w") as stream:
+        process = subprocess.Popen(skyquilt.command(["train", slowed, *TRAIN], 3), env=skyquilt.environment, stdout=stream, stderr=subprocess.STDOUT,
+                                   start_new_session=True)
+    end = time.monotonic() + 400
+    slow = None
+    while process.poll() is None and "goes on on rank" not in log.read_text():
+        expect(time.monotonic() < end, f"nobody took over the slow rank's block:\n{log.read_text()}")
+        if not any(slowed.glob("checkpoints/block_*")):
+            time.sleep(0.05)
+            continue
+        if slow is None:
+            slow = next((pid for pid in children(process.pid) if rank_of(pid) == 1), None)
+            expect(slow is not None, "rank 1 is not there")
+        os.kill(slow, signal.SIGSTOP)
+        time.sleep(0.45)
+        os.kill(slow, signal.SIGCONT)
+        time.sleep(0.05)
+    status = process.wait(timeout=300)
+    text = log.read_text()
+    expect(status == 0, f"ended with {status}:\n{text}")
+    expect("goes on on rank 2: rank 1 is slow" in text, text)
+    expect(state_of(skyquilt, slowed) == state_of(skyquilt, whole), "the moved block differs from one that stayed where it was")
+
+
+if __name__ == "__main__":
+    main(test)

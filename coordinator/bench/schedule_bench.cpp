@@ -63,6 +63,7 @@ ScheduleRun Simulate(const ScheduleBenchOptions& o, const Cluster& cluster, cons
   double now_s = 0.0;
   int64_t messages = 0, bytes = 0;
   std::vector<QueueBlock> blocks;
+  blocks.reserve(static_cast<size_t>(o.blocks));
   for (int i = 0; i < o.blocks; ++i) blocks.push_back({i, "block_" + std::to_string(i), cluster.cost[static_cast<size_t>(i)], 0.0});
   for (bool done = false; !done;) {
     const std::vector<double> ahead(fails_at_s.begin() + std::min<ptrdiff_t>(run.restarts, std::ssize(fails_at_s)), fails_at_s.end());

@@ -182,7 +182,8 @@ struct ArchiveWriter::Impl {
     SKYQUILT_CHECK(!name.empty() && name.front() != '/' && name.back() != '/' && name.find("//") == std::string::npos, "array name '" + name + "'");
     SKYQUILT_CHECK(!arrays.contains(name), "array " + name + " is put twice");
     for (const auto& [other, unused] : arrays) {
-      SKYQUILT_CHECK(!GroupsOf(other).contains(name) && !GroupsOf(name).contains(other), "array " + name + " clashes with array " + other);
+      const bool clash = GroupsOf(other).contains(name) || GroupsOf(name).contains(other);
+      SKYQUILT_CHECK(!clash, other);
     }
     Array array{type, data, {}, n * ElementBytes(type)};
     size_t n_shape = 1;
@@ -242,7 +243,9 @@ struct ArchiveWriter::Impl {
                 reader.AttributeNames().size() == attributes.size();
     for (const auto& [name, array] : arrays) {
       if (!same) break;
-      const auto matches = [&](const auto& values) { return array.n_bytes == 0 || std::memcmp(values.data(), array.data, array.n_bytes) == 0; };
+      const auto matches = [&array = array](const auto& values) {
+        return array.n_bytes == 0 || std::memcmp(values.data(), array.data, array.n_bytes) == 0;
+      };
       const std::vector<int64_t> shape = reader.Shape(name);
       same = reader.TypeName(name) == ElementName(array.type) && std::equal(shape.begin(), shape.end(), array.shape.begin(), array.shape.end(),
                                                                             [](int64_t a, hsize_t b) { return static_cast<hsize_t>(a) == b; });

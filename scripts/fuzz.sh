@@ -9,11 +9,7 @@ seconds=${1:-60}
 [[ "$seconds" =~ ^[1-9][0-9]*$ ]] || { echo "usage: scripts/fuzz.sh [SECONDS] [TARGET...]" >&2; exit 2; }
 targets=("${@:2}")
 (( ${#targets[@]} > 0 )) || targets=(colmap config blocks archive exif)
-scripts/setup.sh
-if ! command -v clang++ >/dev/null; then
-  echo "fuzz: clang is needed: apt-get install clang" >&2
-  exit 2
-fi
+scripts/setup.sh --fuzz
 cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DSKYQUILT_FUZZ=ON \
   -DSKYQUILT_SANITIZE=address,undefined,fuzzer-no-link >/dev/null
 cmake --build build/fuzz --target "${targets[@]/#/fuzz_}" "${targets[@]/#/libfuzz_}"

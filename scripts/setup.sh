@@ -2,6 +2,7 @@
 # Installs what building and running needs on Debian 12, and nothing that is there already.
 #   scripts/setup.sh         everything, tests and checks included
 #   scripts/setup.sh --run   only what the program itself needs
+#   scripts/setup.sh --fuzz  everything and clang, for scripts/fuzz.sh
 # SKYQUILT_SKIP_SETUP=1 skips it, for systems where the libraries come from elsewhere.
 set -euo pipefail
 
@@ -11,12 +12,13 @@ run_packages=(
   libgdal-dev gdal-bin libexiv2-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libspdlog-dev libembree-dev
   ffmpeg python3
 )
-test_packages=(libgtest-dev librapidcheck-dev libbenchmark-dev git clang-format clang-tidy)
+test_packages=(libgtest-dev librapidcheck-dev libbenchmark-dev git clang-format clang-tidy procps iproute2)
 
 case "${1:-}" in
   --run) wanted=("${run_packages[@]}") ;;
   "") wanted=("${run_packages[@]}" "${test_packages[@]}") ;;
-  *) echo "usage: scripts/setup.sh [--run]" >&2; exit 2 ;;
+  --fuzz) wanted=("${run_packages[@]}" "${test_packages[@]}" clang) ;;
+  *) echo "usage: scripts/setup.sh [--run|--fuzz]" >&2; exit 2 ;;
 esac
 
 if [[ "${SKYQUILT_SKIP_SETUP:-0}" == 1 ]]; then

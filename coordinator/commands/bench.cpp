@@ -20,6 +20,12 @@ int ThreadsFrom(const std::string& text) {
   return threads;
 }
 
+// Prints one of both, and keeps the JSON when a folder was given.
+void Deliver(const std::string& json, const std::string& table, bool as_json, const std::string& folder, const std::string& file) {
+  std::cout << (as_json ? json : table);
+  if (!folder.empty()) base::WriteFileAtomically(std::filesystem::path(folder) / file, json);
+}
+
 void AddKernelBench(CLI::App& bench, CommandState& state) {
   struct Flags {
     KernelBenchOptions options;
@@ -60,9 +66,7 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
       }
       if (!flags->out.empty()) base::RequireWritableFolder(flags->out);
       const KernelBenchResult result = RunKernelBench(flags->options);
-      const std::string json = KernelBenchJson(result);
-      std::cout << (flags->json ? json : KernelBenchTable(result));
-      if (!flags->out.empty()) base::WriteFileAtomically(std::filesystem::path(flags->out) / "kernel.json", json);
+      Deliver(KernelBenchJson(result), KernelBenchTable(result), flags->json, flags->out, "kernel.json");
     };
   });
 }
@@ -104,9 +108,7 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
       if (!flags->measured.empty()) flags->options.measured_seconds = MeasuredBlockSeconds(flags->measured);
       if (!flags->out.empty()) base::RequireWritableFolder(flags->out);
       const ScheduleBenchResult result = RunScheduleBench(flags->options);
-      const std::string json = ScheduleBenchJson(result);
-      std::cout << (flags->json ? json : ScheduleBenchTable(result));
-      if (!flags->out.empty()) base::WriteFileAtomically(std::filesystem::path(flags->out) / "schedule.json", json);
+      Deliver(ScheduleBenchJson(result), ScheduleBenchTable(result), flags->json, flags->out, "schedule.json");
     };
   });
 }

@@ -44,7 +44,6 @@ void BlockQueue::Insert(const Waiting& entry) {
     return entry.block.cost > other.block.cost || (entry.block.cost == other.block.cost && entry.block.block < other.block.block);
   });
   waiting_.insert(position, entry);
-  waiting_cost_ += entry.block.cost;
 }
 
 double BlockQueue::SecondsPerCost(double now_s, std::span<const double> busy_until_s) const {
@@ -85,7 +84,6 @@ FieldJob BlockQueue::Take(double now_s, std::span<const double> busy_until_s) {
     job.seconds = options_.seconds;
   }
   waiting_.erase(waiting_.begin());
-  waiting_cost_ = waiting_.empty() ? 0.0 : waiting_cost_ - next.block.cost;
   return job;
 }
 
@@ -107,6 +105,12 @@ double BlockQueue::Cost(int block) const {
     if (entry.block == block) return entry.cost;
   }
   return 0.0;
+}
+
+double BlockQueue::WaitingCost() const {
+  double cost = 0.0;
+  for (const Waiting& entry : waiting_) cost += entry.block.cost;
+  return cost;
 }
 
 uint64_t BlockQueue::Seed(uint64_t seed, int block, int attempt) {

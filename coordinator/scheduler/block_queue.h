@@ -44,9 +44,9 @@ class BlockQueue {
   double Cost(int block) const;
   double TotalCost() const { return total_cost_; }
   // Of the blocks that wait.
-  double WaitingCost() const { return waiting_cost_; }
+  double WaitingCost() const;
   // Blocks have fixed work rather than a share of the time, so a faster rank ends them earlier.
-  bool FixedWork() const { return options_.steps > 0; }
+  bool FixedWork() const { return options_.steps > 0 || (!options_.has_deadline && options_.seconds <= 0.0); }
   static uint64_t Seed(uint64_t seed, int block, int attempt);
 
  private:
@@ -62,7 +62,6 @@ class BlockQueue {
   std::vector<Waiting> waiting_;  // dearest first
   std::vector<FieldOutcome> outcomes_;
   double total_cost_ = 0.0;
-  double waiting_cost_ = 0.0;
 };
 
 // When the last of n_workers is done if each free one takes the next job in order; `free_at_s` are the ranks' first free moments

@@ -183,7 +183,7 @@ struct ArchiveWriter::Impl {
     SKYQUILT_CHECK(!arrays.contains(name), "array " + name + " is put twice");
     for (const auto& [other, unused] : arrays) {
       const bool clash = GroupsOf(other).contains(name) || GroupsOf(name).contains(other);
-      SKYQUILT_CHECK(!clash, other);
+      SKYQUILT_CHECK(!clash, std::string("array ").append(name).append(" clashes with array ").append(other));
     }
     Array array{type, data, {}, n * ElementBytes(type)};
     size_t n_shape = 1;

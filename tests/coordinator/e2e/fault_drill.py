@@ -3,7 +3,6 @@
 Usage: fault_drill.py SKYQUILT [--kills 200] [--truncations 20] [--flips 100] [--seed 1]
 """
 import argparse
-import json
 import os
 import pathlib
 import random
@@ -13,29 +12,10 @@ import subprocess
 import sys
 import time
 
-from harness import Failure, expect, main
+from harness import QUICK_TRAIN, Failure, children, expect, main, small_project, small_survey, state_of
 
 LAYOUTS = (0, 2, 3)  # ranks; 0: without a launcher
-TRAIN = ["--steps", "700", "--set", "train.checkpoint_every_s=0.1", "--set", "context.checkpoint_every_s=0.1", "--set", "train.batch_samples=4096",
-         "--set", "context.batch_samples=4096"]
 WAYS = ("anywhere", "while a checkpoint is written", "just after one")
-
-
-def arrays_of(skyquilt, file):
-    """Digest of every array: seconds and the like are attributes and may differ."""
-    described = json.loads(skyquilt.call("info", file, "--json"))
-    return {array["name"]: array["xxh64"] for array in described["arrays"]}
-
-
-def state_of(skyquilt, project):
-    files = sorted(p for p in (project / "checkpoints").glob("*.h5"))
-    expect(len(files) == 3, f"{project} holds {[p.name for p in files]}, not the context and two blocks")
-    return {p.name: arrays_of(skyquilt, p) for p in files}
-
-
-def children(pid):
-    found = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], stdout=subprocess.PIPE, text=True).stdout.split()
-    return [int(word) for word in found]
 
 
 class Drill:
@@ -47,15 +27,11 @@ class Drill:
         self.projects = 0
         self.kills = dict.fromkeys(WAYS, 0)
         self.unreadable = 0
-        survey = folder / "hamlet"
-        skyquilt.call("simulate", "hamlet", "-o", survey, "--set", "simulate.image_width=160")
-        self.template = folder / "template"
-        skyquilt.call("prepare", survey, "-o", self.template)
-        skyquilt.call("partition", self.template, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
+        self.template = small_project(skyquilt, small_survey(skyquilt, folder), folder / "template")
         self.wanted = {}
         for ranks in LAYOUTS:
             project = self.fresh()
-            skyquilt.call("train", project, *TRAIN, ranks=ranks)
+            skyquilt.call("train", project, *QUICK_TRAIN, ranks=ranks)
             self.wanted[ranks] = state_of(skyquilt, project)
 
     def fresh(self, parent=None):
@@ -134,7 +110,7 @@ class Drill:
             project = self.fresh()
             while True:
                 way = self.random.choice(WAYS)
-                process = self.skyquilt.start("train", project, *TRAIN, ranks=ranks)
+                process = self.skyquilt.start("train", project, *QUICK_TRAIN, ranks=ranks)
                 if sum(self.kills.values()) < wanted_kills and self.wait_for_moment(process, project, way, time.monotonic()):
                     self.kill_one(process, ranks)
                     self.kills[way] += 1
@@ -159,18 +135,18 @@ class Drill:
             return
         try:
             project = self.fresh(disk)
-            text = self.skyquilt.call("train", project, *TRAIN, status=3)
+            text = self.skyquilt.call("train", project, *QUICK_TRAIN, status=3)
             expect("No space left" in text or "disk" in text.lower(), f"a full disk is not named:\n{text}")
             expect(str(disk) in text or "checkpoints" in text, f"the file that could not be written is not named:\n{text}")
             subprocess.run(["mount", "-o", "remount,size=200000000", str(disk)], check=True)
-            self.skyquilt.call("train", project, *TRAIN)
+            self.skyquilt.call("train", project, *QUICK_TRAIN)
             self.compare(project, 0, "resumed after a full disk")
             shutil.rmtree(project / "checkpoints")
             subprocess.run(["mount", "-o", "remount,ro", str(disk)], check=True)
-            text = self.skyquilt.call("train", project, *TRAIN, status=3)
+            text = self.skyquilt.call("train", project, *QUICK_TRAIN, status=3)
             expect("ead-only" in text or "write" in text, f"a read-only folder is not named:\n{text}")
             subprocess.run(["mount", "-o", "remount,rw", str(disk)], check=True)
-            self.skyquilt.call("train", project, *TRAIN)
+            self.skyquilt.call("train", project, *QUICK_TRAIN)
             self.compare(project, 0, "resumed after a read-only folder")
         finally:
             subprocess.run(["umount", "-l", str(disk)])
@@ -180,7 +156,7 @@ class Drill:
         """A training killed when a block had a checkpoint and a previous one."""
         while True:
             project = self.fresh()
-            process = self.skyquilt.start("train", project, *TRAIN)
+            process = self.skyquilt.start("train", project, *QUICK_TRAIN)
             while process.poll() is None:
                 if any(project.glob("checkpoints/block_*.prev")):
                     time.sleep(self.random.uniform(0.0, 0.2))
@@ -214,7 +190,7 @@ class Drill:
             copy = self.folder / "damaged"
             shutil.copytree(project, copy, symlinks=True)
             (copy / "checkpoints" / file.name).write_bytes(bytes_)
-            text = self.skyquilt.call("train", copy, *TRAIN)
+            text = self.skyquilt.call("train", copy, *QUICK_TRAIN)
             expect(file.name in text, f"a file {kind} was passed over in silence:\n{text}")
             self.compare(copy, 0, f"resumed with a file {kind}")
             shutil.rmtree(copy)

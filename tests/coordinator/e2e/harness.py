@@ -14,6 +14,10 @@ STEPS = "300"
 SMALL = ["--steps", STEPS, "--blocks", "1x2", "--image-width", "240", "--set", "train.batch_samples=8192", "--set", "context.batch_samples=8192",
          "--set", "partition.max_log2_table_size=15", "--set", "products.video_seconds=0"]
 
+# Two blocks of some seconds each, for small_project; saved so often that any moment is near a checkpoint.
+QUICK_TRAIN = ["--steps", "700", "--set", "train.checkpoint_every_s=0.1", "--set", "context.checkpoint_every_s=0.1", "--set", "train.batch_samples=4096",
+               "--set", "context.batch_samples=4096"]
+
 
 class Failure(Exception):
     pass
@@ -80,6 +84,35 @@ def digest(folder, but=()):
 def kill_group(process):
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
+
+
+def small_survey(skyquilt, folder):
+    skyquilt.call("simulate", "hamlet", "-o", folder / "hamlet", "--set", "simulate.image_width=160")
+    return folder / "hamlet"
+
+
+def small_project(skyquilt, survey, project):
+    """Prepared and cut into two blocks, ready to be trained."""
+    skyquilt.call("prepare", survey, "-o", project)
+    skyquilt.call("partition", project, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
+    return project
+
+
+def arrays_of(skyquilt, file):
+    """Digest of every array: seconds and the like are attributes and may differ."""
+    described = json.loads(skyquilt.call("info", file, "--json"))
+    return {array["name"]: array["xxh64"] for array in described["arrays"]}
+
+
+def state_of(skyquilt, project):
+    files = sorted(p for p in (project / "checkpoints").glob("*.h5"))
+    expect(len(files) == 3, f"{project} holds {[p.name for p in files]}, not the context and two blocks")
+    return {p.name: arrays_of(skyquilt, p) for p in files}
+
+
+def children(pid):
+    found = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], stdout=subprocess.PIPE, text=True).stdout.split()
+    return [int(word) for word in found]
 
 
 def main(test):

@@ -4,21 +4,15 @@ import pathlib
 import signal
 import subprocess
 
-from fault_drill import TRAIN, children, state_of
-from harness import expect, main, wait_for
+from harness import QUICK_TRAIN, children, expect, main, small_project, small_survey, state_of, wait_for
 
 LAUNCHER = str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "skyquilt-mpirun")
 
 
 def test(skyquilt, folder):
-    survey = folder / "hamlet"
-    skyquilt.call("simulate", "hamlet", "-o", survey, "--set", "simulate.image_width=160")
-    survey_made = folder / "whole"
-    skyquilt.call("prepare", survey, "-o", survey_made)
-    skyquilt.call("partition", survey_made, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
-    for name in ("lost", "stopped"):
-        subprocess.run(["cp", "-a", str(survey_made), str(folder / name)], check=True)
-    skyquilt.call("train", survey_made, *TRAIN)
+    survey = small_survey(skyquilt, folder)
+    whole = small_project(skyquilt, survey, folder / "whole")
+    skyquilt.call("train", whole, *QUICK_TRAIN)
 
     def start(name, *words):
         log = folder / f"{name}.log"
@@ -33,24 +27,24 @@ def test(skyquilt, folder):
         return [rank for mpirun in children(launcher) for rank in children(mpirun)]
 
     # A rank is killed in mid-training; --restart is heeded once, not again at the new start.
-    project = folder / "lost"
-    process, log = start("lost", *ranks, "train", str(project), *TRAIN, "--restart")
+    project = small_project(skyquilt, survey, folder / "lost")
+    process, log = start("lost", *ranks, "train", str(project), *QUICK_TRAIN, "--restart")
     wait_for(lambda: any(project.glob("checkpoints/block_*.h5")), "first checkpoint of a block", process)
     os.kill(ranks_of(process.pid)[-1], signal.SIGKILL)
     expect(process.wait(timeout=300) == 0, log.read_text())
     text = log.read_text()
     expect("new start 1 of 2" in text and "ended with status 0 after 1 new start" in text, text)
-    expect(state_of(skyquilt, project) == state_of(skyquilt, survey_made), "killed and started again differs from undisturbed")
+    expect(state_of(skyquilt, project) == state_of(skyquilt, whole), "killed and started again differs from undisturbed")
 
     # A signal for the launcher makes the ranks save and leave.
-    project = folder / "stopped"
-    process, log = start("stopped", *ranks, "train", str(project), *TRAIN)
+    project = small_project(skyquilt, survey, folder / "stopped")
+    process, log = start("stopped", *ranks, "train", str(project), *QUICK_TRAIN)
     wait_for(lambda: any(project.glob("checkpoints/block_*.h5")), "first checkpoint of a block", process)
     os.kill(process.pid, signal.SIGTERM)
     status = process.wait(timeout=120)
     expect(status == 130 and "new start" not in log.read_text(), f"ended with {status}:\n{log.read_text()}")
-    skyquilt.call("train", project, *TRAIN)
-    expect(state_of(skyquilt, project) == state_of(skyquilt, survey_made), "stopped and continued differs from undisturbed")
+    skyquilt.call("train", project, *QUICK_TRAIN)
+    expect(state_of(skyquilt, project) == state_of(skyquilt, whole), "stopped and continued differs from undisturbed")
 
     # What always dies is given up with its own status; what is final is not tried again.
     process, log = start("dies", "-n", "1", "sh", "-c", "kill -9 $$")

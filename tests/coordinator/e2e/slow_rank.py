@@ -5,8 +5,7 @@ import signal
 import subprocess
 import time
 
-from fault_drill import children, state_of
-from harness import expect, main
+from harness import children, expect, main, small_project, small_survey, state_of
 
 TRAIN = ["--steps", "3000", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096", "--set", "context.steps=300"]
 
@@ -21,18 +20,11 @@ def rank_of(pid):
 
 
 def test(skyquilt, folder):
-    survey = folder / "hamlet"
-    skyquilt.call("simulate", "hamlet", "-o", survey, "--set", "simulate.image_width=160")
-
-    def project(name):
-        skyquilt.call("prepare", survey, "-o", folder / name)
-        skyquilt.call("partition", folder / name, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
-        return folder / name
-
-    whole = project("whole")
+    survey = small_survey(skyquilt, folder)
+    whole = small_project(skyquilt, survey, folder / "whole")
     skyquilt.call("train", whole, *TRAIN)
 
-    slowed = project("slowed")
+    slowed = small_project(skyquilt, survey, folder / "slowed")
     log = folder / "slowed.log"
     with open(log, "w") as stream:
         process = subprocess.Popen(skyquilt.command(["train", slowed, *TRAIN], 3), env=skyquilt.environment, stdout=stream, stderr=subprocess.STDOUT,

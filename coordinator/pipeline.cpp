@@ -10,6 +10,7 @@
 #include "coordinator/pipeline_products.h"
 #include "coordinator/pipeline_stamp.h"
 #include "coordinator/prepare/prepare.h"
+#include "coordinator/rendering/scene_session.h"
 #include "coordinator/report/evaluate.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/train_all.h"
@@ -198,6 +199,7 @@ void MergeStage(Pipeline& pipeline) {
                      .blocks = {},
                      .origin = blocks.origin,
                      .georeferenced = blocks.georeferenced,
+                     .borders = pipeline.settings.merge.Borders(),
                      .use_context = pipeline.settings.train.coupling != "independent",
                      .config_toml = pipeline.settings.Toml(),
                      .config_hash = train ? train->Hash() : "",
@@ -220,8 +222,8 @@ void ProductsStage(Pipeline& pipeline) {
   const Project& project = pipeline.project;
   RequireFile(project.SceneFile(), "merge", project);
   RunStage(pipeline, {.name = "products", .inputs = {{"scene", FileIdentity(project.StampFile("merge"))}}}, [&](const StageStamp&) {
-    base::ThreadPool threads(pipeline.settings.run.threads);
-    MakeProjectProducts(project, pipeline.settings.products, threads);
+    SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
+    MakeProjectProducts(project, pipeline.settings.products, session);
     return kDone;
   });
 }
@@ -231,13 +233,14 @@ void EvaluateStage(Pipeline& pipeline) {
   RequireFile(project.SceneFile(), "merge", project);
   const FlatOptions inputs = {{"scene", FileIdentity(project.StampFile("merge"))}, {"products", FileIdentity(project.StampFile("products"))}};
   RunStage(pipeline, {.name = "evaluate", .inputs = inputs}, [&](const StageStamp&) {
-    base::ThreadPool threads(pipeline.settings.run.threads);
+    SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
+    base::ThreadPool& threads = session.threads();
     const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
     const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
     std::filesystem::create_directories(project.PixelCacheFile().parent_path());
     const image::PixelCache pixels =
         image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), pipeline.settings.run.image_width, threads);
-    const report::EvaluateInput input{.scene_h5 = project.SceneFile(),
+    const report::EvaluateInput input{.scene = &session.scene(),
                                       .survey = &survey,
                                       .blocks = &blocks,
                                       .pixels = &pixels,

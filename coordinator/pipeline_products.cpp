@@ -9,8 +9,9 @@
 
 namespace skyquilt::coordinator {
 
-void MakeProjectProducts(const Project& project, const products::ProductOptions& options, base::ThreadPool& threads) {
-  const render::Scene scene = render::Scene::Load(project.SceneFile());
+void MakeProjectProducts(const Project& project, const products::ProductOptions& options, SceneSession& session) {
+  const render::Scene& scene = session.scene();
+  base::ThreadPool& threads = session.threads();
   std::filesystem::create_directories(project.ProductsFolder());
   if (options.ortho || options.dsm) {
     const products::MapProducts maps = products::MakeMapProducts(scene, options, project.ProductsFolder(), threads);

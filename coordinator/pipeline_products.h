@@ -3,11 +3,11 @@
 
 #include "coordinator/pipeline_project.h"
 #include "coordinator/products/product_options.h"
-#include "core/base/thread_pool.h"
+#include "coordinator/rendering/scene_session.h"
 
 namespace skyquilt::coordinator {
 
 // Throws base::InputError, base::UsageError, base::Interrupted.
-void MakeProjectProducts(const Project& project, const products::ProductOptions& options, base::ThreadPool& threads);
+void MakeProjectProducts(const Project& project, const products::ProductOptions& options, SceneSession& session);
 
 }  // namespace skyquilt::coordinator

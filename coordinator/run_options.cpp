@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/base/errors.h"
+#include "core/base/system.h"
 
 namespace skyquilt::coordinator {
 
@@ -15,9 +16,16 @@ void RunOptions::Visit(config::OptionVisitor& v) {
   v.Field("seed", seed, "start of every random sequence of the training, 0 or more");
   v.Field("threads", threads, "threads per machine; 0 = every core this process may use");
   v.Field("memory_gb", memory_gb,
-          "memory per machine that training may use, in GiB, shared by the ranks on it; 0 = half of the machine. Training refuses to start with "
-          "blocks that do not "
-          "fit, and reads photos' pixels by need when they do not");
+          "memory per machine that fields and photos may take, in GiB, shared by the ranks on it; 0 = half of the machine. Training refuses to start "
+          "with blocks that do not fit, and reads photos' pixels by need when they do not; rendering loads blocks by need");
+}
+
+int RunOptions::UsableThreads() const {
+  return threads > 0 ? threads : base::UsableCores();
+}
+
+double RunOptions::MemoryLimitBytes() const {
+  return memory_gb > 0.0 ? memory_gb * 1073741824.0 : 0.5 * static_cast<double>(base::TotalMemoryBytes());
 }
 
 void RunOptions::Validate() const {

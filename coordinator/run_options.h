@@ -13,6 +13,10 @@ struct RunOptions {
   int threads = 0;         // per machine; 0: every core this process may use
   double memory_gb = 0.0;  // per machine; 0: half of it
 
+  // Of this machine, for all its ranks together.
+  int UsableThreads() const;
+  double MemoryLimitBytes() const;
+
   void Visit(config::OptionVisitor& v);
   // Throws base::UsageError naming the option, its value and what is allowed.
   void Validate() const;

@@ -97,6 +97,7 @@ config::Sections Settings::AllSections() {
   sections.Add("brightness", brightness, "what is done about exposure differences between photos");
   sections.Add("context", context, "the coarse field of the whole survey");
   sections.Add("train", train, "the fine field of each block");
+  sections.Add("merge", merge, "how blocks are joined to one scene");
   sections.Add("products", products, "orthophoto, surface model, pictures, video");
   sections.Add("evaluate", evaluate, "scores and report");
   return sections;
@@ -118,6 +119,7 @@ void Settings::Validate() const {
   partition.Check();
   context.Check("context");
   train.Check("train");
+  merge.Check();
   products.Check();
   brightness.Check();
   if (run.time_budget_s > 0.0 && train.steps > 0) {
@@ -174,7 +176,7 @@ FlatOptions StageOptions(Settings& settings, const std::string& stage) {
     selected.erase("train.checkpoint_every_s");
     return selected;
   }
-  if (stage == "merge") return {};
+  if (stage == "merge") return Select(all, {"merge."});
   if (stage == "products") return Select(all, {"products."});
   SKYQUILT_CHECK(stage == "evaluate", stage);
   return Select(all, {"evaluate.", "run.image_width"});

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/merge/merge_options.h"
 #include "coordinator/pipeline_stamp.h"
 #include "coordinator/prepare/prepare_options.h"
 #include "coordinator/products/product_options.h"
@@ -28,6 +29,7 @@ struct Settings {
   brightness::BrightnessOptions brightness;
   worker::TrainOptions context;
   worker::TrainOptions train;
+  MergeOptions merge;
   products::ProductOptions products;
   report::EvaluateOptions evaluate;
 

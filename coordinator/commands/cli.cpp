@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "coordinator/commands/command.h"
-#include "coordinator/scheduler/train_all.h"
+#include "coordinator/ranks.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"

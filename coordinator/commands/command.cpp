@@ -34,6 +34,15 @@ void AddOverride(CLI::App& command, const Overrides& overrides, const std::strin
       help + " [" + key + "]");
 }
 
+void AddMemoryFlag(CLI::App& command, const Overrides& overrides) {
+  command.add_option_function<std::string>(
+      "--memory",
+      [overrides](const std::string& text) {
+        overrides->push_back({"run.memory_gb", FormatGib(ParseBytes(text))});
+      },
+      "memory this machine's ranks may use together, as 2GiB or 1500MB; half of the machine when not given [run.memory_gb]");
+}
+
 void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
   command.add_option_function<std::string>(
       "--time-budget",
@@ -44,12 +53,7 @@ void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
       },
       "time for all training together, as 90s, 10min or 1h30m [run.time_budget_s]");
   AddOverride(command, overrides, "--steps", "train.steps", "train every block for exactly so many steps, instead of a time budget");
-  command.add_option_function<std::string>(
-      "--memory",
-      [overrides](const std::string& text) {
-        overrides->push_back({"run.memory_gb", FormatGib(ParseBytes(text))});
-      },
-      "memory this machine's ranks may use together, as 2GiB or 1500MB; half of the machine when not given [run.memory_gb]");
+  AddMemoryFlag(command, overrides);
   AddOverride(command, overrides, "--seed", "run.seed", "start of every random sequence of the training");
   AddOverride(command, overrides, "--brightness", "brightness.correction",
               "none, or any of exif,gain,vignette,luminance: what is done about exposure differences");

@@ -37,7 +37,9 @@ using Overrides = std::shared_ptr<std::vector<Override>>;
 
 // A flag with a value that sets one option, "section.key".
 void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help);
-// --time-budget, --steps, --seed, --brightness.
+// --memory.
+void AddMemoryFlag(CLI::App& command, const Overrides& overrides);
+// --time-budget, --steps, --memory, --seed, --brightness.
 void AddTrainingFlags(CLI::App& command, const Overrides& overrides);
 // The project's own configuration as the lowest layer; empty when there is none yet.
 std::vector<std::filesystem::path> ProjectConfig(const Project& project);

@@ -15,6 +15,7 @@ void AddEvaluate(CLI::App& app, CommandState& state) {
   command->add_option("project", flags->project, "project folder with a scene")->required()->type_name("FOLDER");
   AddOverride(*command, overrides, "--lpips", "evaluate.lpips_network", "ONNX network for LPIPS; without it LPIPS is not measured");
   AddOverride(*command, overrides, "--max-photos", "evaluate.max_photos", "score at most so many, evenly spread");
+  AddMemoryFlag(*command, overrides);
   command->add_flag("--restart", flags->restart, "remove the report first");
   command->footer(
       "Examples:\n"

@@ -5,6 +5,7 @@
 #include "coordinator/products/camera_path.h"
 #include "coordinator/products/map_products.h"
 #include "coordinator/products/render_views.h"
+#include "coordinator/rendering/scene_session.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
@@ -50,11 +51,11 @@ void LogStats(const products::RenderStats& stats, const std::filesystem::path& w
   spdlog::info("{} picture(s), {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), where.string());
 }
 
-void RenderAsked(const RenderFlags& flags, const Target& target, const Settings& settings, const std::filesystem::path& renders,
-                 const std::filesystem::path& maps) {
+void RenderAsked(const RenderFlags& flags, const Target& target, const Settings& settings, SceneSession& session,
+                 const std::filesystem::path& renders, const std::filesystem::path& maps) {
   const products::ProductOptions& options = settings.products;
-  base::ThreadPool threads(settings.run.threads);
-  const render::Scene scene = render::Scene::Load(target.scene);
+  base::ThreadPool& threads = session.threads();
+  const render::Scene& scene = session.scene();
   const products::ViewRenderer renderer = products::RendererOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads);
   const int path_width = flags.width > 0 ? flags.width / 2 * 2 : options.video_width;
   const int path_height = std::max(2, path_width * options.video_height / options.video_width / 2 * 2);
@@ -113,7 +114,8 @@ void Render(const CommandState& state, const RenderFlags& flags, const std::vect
   const std::filesystem::path renders = flags.out.empty() ? folder / "renders" : std::filesystem::path(flags.out);
   const std::filesystem::path maps = flags.out.empty() ? folder / "products" : std::filesystem::path(flags.out);
   base::RequireWritableFolder(flags.ortho || flags.dsm ? maps : renders);
-  RenderAsked(flags, target, settings, renders, maps);
+  SceneSession session(*state.comm, target.scene, settings.run, state.verbose, state.quiet);
+  RenderAsked(flags, target, settings, session, renders, maps);
 }
 
 }  // namespace
@@ -132,6 +134,7 @@ void AddRender(CLI::App& app, CommandState& state) {
   command->add_flag("--no-depth", flags->no_depth, "pictures without their depth images");
   AddOverride(*command, overrides, "--exposure", "products.exposure", "normal, stops above it, or the name of a photo to look like");
   AddOverride(*command, overrides, "--resolution", "products.resolution_m", "metres per cell of orthophoto and surface model");
+  AddMemoryFlag(*command, overrides);
   command->add_option("--width", flags->width, "pixels of the pictures; 0: the photos' own size")->type_name("N");
   command->add_option("-o,--out", flags->out, "folder for the files; default: renders/ and products/ beside the scene")->type_name("FOLDER");
   command->add_flag("--restart", flags->restart, "remove products, renders and report first (without a selection)");

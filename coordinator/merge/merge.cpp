@@ -61,6 +61,7 @@ void MergeScene(const MergeInput& input) {
   brightness::PutLuminance(context.luminance, context.luminance_state, writer);
   render::PutBackdrop(context.backdrop, writer);
   writer.SetAttribute("gsd_m", std::isfinite(gsd_m) ? gsd_m : 0.0);
+  writer.SetAttribute(render::kBordersAttribute, render::NameOf(input.borders));
   writer.SetAttribute("config", input.config_toml);
   writer.SetAttribute("config_hash", input.config_hash);
   writer.SetAttribute("blocks", static_cast<int64_t>(blocks.size()));

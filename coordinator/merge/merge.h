@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geo/geodetic.h"
+#include "core/render/scene.h"
 #include "partition/block.h"
 
 namespace skyquilt::coordinator {
@@ -16,6 +17,7 @@ struct MergeInput {
   std::vector<std::pair<partition::Block, std::filesystem::path>> blocks;  // trained ones; empty or failed blocks left out
   geo::Geodetic origin;
   bool georeferenced = false;
+  render::Borders borders = render::Borders::kSmooth;
   bool use_context = true;  // false: the context does not fill what no block covers (independent blocks)
   std::string config_toml;  // stored in the scene
   std::string config_hash;

@@ -116,7 +116,7 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const std::
 // Sums over the photos that the means over photos cannot give.
 struct Pools {
   std::vector<metrics::SquaredError> per_block;
-  metrics::SquaredError interior, seam;
+  SeamErrors seams;
   metrics::DepthErrorCollector depth;
 };
 
@@ -151,9 +151,10 @@ void FillMeans(const render::SceneInfo& info, const Pools& pools, Metrics* metri
   for (size_t b = 0; b < info.blocks.size(); ++b) {
     metrics->blocks.push_back({info.blocks[b].name, metrics::PsnrOf(pools.per_block[b]), PixelsOf(pools.per_block[b])});
   }
-  metrics->psnr_interior_db = metrics::PsnrOf(pools.interior);
-  metrics->psnr_seam_db = metrics::PsnrOf(pools.seam);
-  metrics->seam_psnr_gap_db = metrics->psnr_interior_db - metrics->psnr_seam_db;  // NaN when either is
+  metrics->psnr_interior_db = metrics::PsnrOf(pools.seams.AllInterior());
+  metrics->psnr_matched_interior_db = pools.seams.MatchedInterior_db();
+  metrics->psnr_seam_db = metrics::PsnrOf(pools.seams.AllSeam());
+  metrics->seam_psnr_gap_db = pools.seams.Gap_db();
   if (metrics->has_truth) {
     const metrics::DepthErrors errors = pools.depth.Result();
     metrics->depth_rmse_m = errors.rmse_m;
@@ -177,7 +178,8 @@ void EvaluateOptions::Visit(config::OptionVisitor& v) {
 }
 
 Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
-  SKYQUILT_CHECK(input.survey != nullptr && input.blocks != nullptr && input.pixels != nullptr, "survey, blocks and pixels");
+  SKYQUILT_CHECK(input.scene != nullptr && input.survey != nullptr && input.blocks != nullptr && input.pixels != nullptr,
+                 "scene, survey, blocks and pixels");
   SKYQUILT_CHECK(input.pixels->size() == input.survey->photos.size(), "one cached photo per photo of the survey");
   const EvaluateOptions& options = input.options;
   if (options.image_width < 0 || options.max_photos < 0 || options.report_photos < 0 || options.report_image_width < 16 ||
@@ -190,7 +192,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   base::RequireWritableFolder(report_folder / "images");
   const std::filesystem::path checkpoints = input.project_folder / "checkpoints";
   const TrainLog log = ReadTrainLog(input.train_json.empty() ? input.project_folder / "train.json" : input.train_json, checkpoints);
-  const render::Scene scene = render::Scene::Load(input.scene_h5);
+  const render::Scene& scene = *input.scene;
   const render::SceneInfo& info = scene.info();
   const SceneArea area = AreaOf(info);
   const std::vector<TrainingView> training = ViewsOf(input);
@@ -240,8 +242,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
     score.render_seconds = render_seconds;
     if (lpips) score.lpips = LpipsOf(*lpips, task, findings.render);
     for (size_t b = 0; b < pools.per_block.size(); ++b) pools.per_block[b] += findings.per_block[b];
-    pools.interior += findings.interior;
-    pools.seam += findings.seam;
+    pools.seams += findings.seams;
     if (!findings.true_depth.Empty()) pools.depth.Add(findings.z_depth, findings.true_depth, &findings.scored);
     images.emplace_back();
     if (std::find(pictured.begin(), pictured.end(), index) != pictured.end()) {

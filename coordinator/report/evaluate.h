@@ -8,6 +8,7 @@
 #include "core/base/thread_pool.h"
 #include "core/config/options.h"
 #include "core/image/pixel_cache.h"
+#include "core/render/scene.h"
 #include "core/survey/survey.h"
 #include "partition/block.h"
 
@@ -28,7 +29,7 @@ struct EvaluateOptions {
 };
 
 struct EvaluateInput {
-  std::filesystem::path scene_h5;
+  const render::Scene* scene = nullptr;
   const survey::Survey* survey = nullptr;
   const partition::BlockSet* blocks = nullptr;
   const image::PixelCache* pixels = nullptr;  // entry i belongs to survey->photos[i]

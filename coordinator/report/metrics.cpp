@@ -71,7 +71,9 @@ const char* const kPsnrDefinition =
     "photos whose surface point lies in the block's core box, seen from above.";
 const char* const kSeamDefinition =
     "seam_psnr_gap_db = PSNR of covered pixels whose surface point lies deeper than the margin inside a block, minus PSNR of those where the "
-    "grown boxes of two or more blocks overlap. Pixels near the survey's outer rim belong to neither. Null with a single block.";
+    "grown boxes of two or more blocks overlap. Textures differ from place to place, so the interior's squared errors are taken by class of the "
+    "photo's gradient (eight classes, each twice the one before) and weighted to the seams' share of each class. Pixels near the survey's outer rim "
+    "belong to neither. Null with a single block.";
 const char* const kRightHalfDefinition =
     "psnr_right_half: mean over photos of the PSNR over the covered pixels of the right half, rendered as psnr is. psnr_right_half_fitted: the same "
     "pixels after three gains in linear light, one per colour, were fitted to the left half of the photo; the difference is what tags and training "
@@ -123,6 +125,7 @@ std::string MetricsJson(const Metrics& metrics) {
   for (const BlockScore& block : metrics.blocks) json["psnr_per_block"][block.name] = NumberOrNull(block.psnr_db);
   json["seam_psnr_gap_db"] = NumberOrNull(metrics.seam_psnr_gap_db);
   json["psnr_block_interior"] = NumberOrNull(metrics.psnr_interior_db);
+  json["psnr_block_interior_matched"] = NumberOrNull(metrics.psnr_matched_interior_db);
   json["psnr_seam"] = NumberOrNull(metrics.psnr_seam_db);
   if (metrics.has_truth) {
     json["depth_rmse_m"] = NumberOrNull(metrics.depth_rmse_m);

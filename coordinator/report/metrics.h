@@ -64,10 +64,11 @@ struct Metrics {
   std::string lpips_note;  // why lpips is null, or which network measured it
   std::vector<PhotoScore> photos;
   std::vector<BlockScore> blocks;
-  double psnr_interior_db = kNotMeasured;  // covered pixels deeper than the margin inside a block, pooled
-  double psnr_seam_db = kNotMeasured;      // covered pixels where two or more blocks blend, pooled
-  double seam_psnr_gap_db = kNotMeasured;  // interior minus seam; NaN with a single block
-  double footprint_step = kNotMeasured;    // brightness steps across the borders of photos' footprints, display values (footprint_steps.h)
+  double psnr_interior_db = kNotMeasured;          // covered pixels deeper than the margin inside a block, pooled
+  double psnr_seam_db = kNotMeasured;              // covered pixels where two or more blocks blend, pooled
+  double psnr_matched_interior_db = kNotMeasured;  // the interior weighted to the seams' textures
+  double seam_psnr_gap_db = kNotMeasured;          // matched interior minus seam; NaN with a single block
+  double footprint_step = kNotMeasured;            // brightness steps across the borders of photos' footprints, display values (footprint_steps.h)
   double footprint_step_control = kNotMeasured;
   double depth_rmse_m = kNotMeasured;  // pooled over the pixels of all test photos
   double depth_median_abs_m = kNotMeasured;

@@ -16,7 +16,8 @@ namespace skyquilt::report {
 namespace {
 
 struct RowSums {
-  metrics::SquaredError full, covered, interior, seam;
+  metrics::SquaredError full, covered;
+  SeamErrors seams;
   std::vector<metrics::SquaredError> per_block;
   int64_t used = 0;
 };
@@ -80,8 +81,9 @@ PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor
       AddPixel(rgb, photo.At(x, y), &sums.covered);
       AddPixel(rgb, photo.At(x, y), &sums.per_block[static_cast<size_t>(block)]);
       const Zone zone = ZoneAt(*surface, block, area.boxes);
-      if (zone == Zone::kInterior) AddPixel(rgb, photo.At(x, y), &sums.interior);
-      if (zone == Zone::kSeam) AddPixel(rgb, photo.At(x, y), &sums.seam);
+      if (zone != Zone::kInterior && zone != Zone::kSeam) continue;
+      auto& group = zone == Zone::kSeam ? sums.seams.seam : sums.seams.interior;
+      AddPixel(rgb, photo.At(x, y), &group[static_cast<size_t>(TextureClass(photo, x, y))]);
     }
   });
 
@@ -91,8 +93,7 @@ PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor
   for (const RowSums& sums : rows) {
     full += sums.full;
     covered += sums.covered;
-    findings.interior += sums.interior;
-    findings.seam += sums.seam;
+    findings.seams += sums.seams;
     for (size_t b = 0; b < area.boxes.size(); ++b) findings.per_block[b] += sums.per_block[b];
     score.used_pixels += sums.used;
   }

@@ -8,6 +8,7 @@
 #include "coordinator/report/coverage.h"
 #include "coordinator/report/metrics.h"
 #include "coordinator/report/pixel_groups.h"
+#include "coordinator/report/seam_errors.h"
 #include "core/base/thread_pool.h"
 #include "core/camera/camera.h"
 #include "core/geo/transform.h"
@@ -31,7 +32,7 @@ struct SceneArea {
 
 struct PhotoFindings {
   PhotoScore score;  // sizes, pixel counts, PSNR, SSIM and depth; the caller fills the rest
-  metrics::SquaredError interior, seam;
+  SeamErrors seams;
   std::vector<metrics::SquaredError> per_block;  // one per box of the area, covered pixels
   image::Image8 scored;                          // one channel, 1 = unmasked and covered
   image::Image8 render;                          // what the report shows

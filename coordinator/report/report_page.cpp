@@ -45,9 +45,9 @@ std::string Headline(const ReportInput& input) {
     html += Figure("Median depth error", FormatFixed(metrics.depth_median_abs_m, 2, "m"), "RMSE " + FormatFixed(metrics.depth_rmse_m, 2, "m"));
   }
   html += Figure("Seam gap", FormatFixed(metrics.seam_psnr_gap_db, 2, "dB"),
-                 std::isfinite(metrics.seam_psnr_gap_db)
-                     ? "inside " + FormatFixed(metrics.psnr_interior_db, 2) + ", in seams " + FormatFixed(metrics.psnr_seam_db, 2, "dB")
-                     : "no seams were scored");
+                 std::isfinite(metrics.seam_psnr_gap_db) ? "same textures inside " + FormatFixed(metrics.psnr_matched_interior_db, 2) +
+                                                               ", in seams " + FormatFixed(metrics.psnr_seam_db, 2, "dB")
+                                                         : "no seams were scored");
   html += Figure("Training time", Duration(metrics.train_seconds),
                  fmt::format("{} {}{}", metrics.ranks, metrics.ranks == 1 ? "process" : "ranks",
                              metrics.threads > 0 ? fmt::format(", {} threads", metrics.threads) : ""));

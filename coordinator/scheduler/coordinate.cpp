@@ -270,7 +270,7 @@ comm::Message WaitForMessage(comm::Communicator& comm) {
       if (!cancelled) cancelled = Clock::now();
       if (SecondsSince(*cancelled) > 60.0) throw base::Interrupted();
     }
-    std::this_thread::sleep_for(pause);
+    std::this_thread::sleep_for(std::min(pause, comm.Nap() * 20));
     pause = std::min(pause * 2, std::chrono::microseconds(20000));
   }
 }

@@ -8,7 +8,6 @@
 #include "coordinator/scheduler/training_log.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
-#include "core/base/system.h"
 
 namespace skyquilt::coordinator {
 
@@ -59,10 +58,6 @@ int ContextSteps(const Settings& settings) {
   return settings.train.steps > 0 ? std::max(200, settings.train.steps / 2) : 0;
 }
 
-double MemoryLimitBytes(const Settings& settings) {
-  return settings.run.memory_gb > 0.0 ? settings.run.memory_gb * 1073741824.0 : 0.5 * static_cast<double>(base::TotalMemoryBytes());
-}
-
 double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads) {
   const double entries = std::ldexp(1.0, block.log2_table_size);
   // Parameters and two moments of every level, the gradient of one level per thread.
@@ -78,7 +73,7 @@ bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& bloc
     if (!block.empty) largest = std::max(largest, ExpectedTrainingBytes(block, settings.train, threads));
   }
   // Photos' pixels are mapped by every rank, and count for each.
-  const double share = MemoryLimitBytes(settings) / std::max(1, ranks_on_machine);
+  const double share = settings.run.MemoryLimitBytes() / std::max(1, ranks_on_machine);
   return static_cast<double>(pixels.FileBytes()) + largest + kProgramBytes > share;
 }
 

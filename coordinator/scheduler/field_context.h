@@ -30,8 +30,6 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
 
 // Steps of the context: its own, or half of the blocks' (at least 200); 0 when the blocks have none either.
 int ContextSteps(const Settings& settings);
-// What training on this machine may use, all its ranks together.
-double MemoryLimitBytes(const Settings& settings);
 // Whether single pixels are to be read from the file, because the cache and the largest block together exceed a rank's share of the memory.
 bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& blocks, const Settings& settings, int threads, int ranks_on_machine);
 // Rough peak memory of training one block: tables with gradient and two moments, and the workspace of a batch per thread.

@@ -6,6 +6,7 @@
 
 #include "coordinator/scheduler/block_queue.h"
 #include "coordinator/scheduler/coordinate.h"
+#include "coordinator/scheduler/crew.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/train_ledger.h"
@@ -23,65 +24,8 @@ using nlohmann::json;
 
 constexpr int kMaxTries = 3;
 
-int UsableThreads(const Settings& settings) {
-  return settings.run.threads > 0 ? settings.run.threads : base::UsableCores();
-}
-
-// The other ranks during one training; leaving it, by whatever way, sends them back to waiting.
-class Crew {
- public:
-  Crew(comm::Communicator& comm, const Project& project, Settings settings, const TrainInput& input) : comm_(comm) {
-    const json setup = {{"project", project.folder.string()},
-                        {"settings", settings.Toml()},
-                        {"config_hash", input.config_hash},
-                        {"verbose", input.verbose},
-                        {"quiet", input.quiet}};
-    for (int rank = 1; rank < comm.size(); ++rank) comm.Send(rank, kTagSetup, setup.dump());
-  }
-  ~Crew() {
-    for (int rank = 1; rank < comm_.size(); ++rank) comm_.Send(rank, kTagDone, "");
-  }
-  Crew(const Crew&) = delete;
-  Crew& operator=(const Crew&) = delete;
-
-  // Waits until all have loaded the survey and tells each how many threads it has. Returns the smallest number, and in *per_host the
-  // largest number of training ranks that share a machine.
-  int AssignThreads(int* per_host) {
-    std::vector<json> hello(static_cast<size_t>(comm_.size()));
-    std::map<std::string, int> workers_on;
-    for (int n = 1; n < comm_.size();) {
-      const comm::Message message = comm_.Receive();
-      if (message.tag != kTagHello) continue;
-      json one = json::parse(message.bytes);
-      if (one.contains("error")) {
-        const std::string text =
-            "rank " + std::to_string(message.source) + " on " + one.at("host").get<std::string>() + ": " + one.at("error").get<std::string>();
-        if (one.at("kind") == "usage") throw base::UsageError(text);
-        throw base::InputError(one.at("file").get<std::string>(), text, "All ranks must see the same project folder");
-      }
-      ++workers_on[one.at("host").get<std::string>()];
-      hello[static_cast<size_t>(message.source)] = std::move(one);
-      ++n;
-    }
-    int fewest = 1 << 20;
-    *per_host = 1;
-    for (int rank = 1; rank < comm_.size(); ++rank) {
-      const json& one = hello[static_cast<size_t>(rank)];
-      const int sharing = workers_on[one.at("host").get<std::string>()];
-      const int threads = std::max(1, one.at("threads").get<int>() / sharing);
-      comm_.Send(rank, kTagThreads, std::to_string(threads));
-      fewest = std::min(fewest, threads);
-      *per_host = std::max(*per_host, sharing);
-    }
-    return fewest;
-  }
-
- private:
-  comm::Communicator& comm_;
-};
-
 void RequireMemory(const partition::BlockSet& blocks, const Settings& settings, int threads, int per_host) {
-  const double limit = MemoryLimitBytes(settings);
+  const double limit = settings.run.MemoryLimitBytes();
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) continue;
     const double bytes = ExpectedTrainingBytes(block, settings.train, threads);
@@ -103,22 +47,27 @@ class Training {
     std::filesystem::create_directories(project_.CheckpointFolder());
     std::filesystem::create_directories(project_.PixelCacheFile().parent_path());
     TrainSummary summary;
-    const int all_threads = UsableThreads(settings_);
+    const int all_threads = settings_.run.UsableThreads();
     base::ThreadPool pool(all_threads);
     image::PixelCache pixels = image::PixelCache::Open(project_.PixelCacheFile(), PixelSources(*input_.survey), settings_.run.image_width, pool);
     pixels.Stream(MustStream(pixels, *input_.blocks, settings_, all_threads, comm_.local_size()));
     if (pixels.streaming()) {
       spdlog::info("photos' pixels ({}B) are read by need: they do not fit beside a block in {}B of memory",
-                   base::FormatCount(static_cast<double>(pixels.FileBytes())), base::FormatCount(MemoryLimitBytes(settings_)));
+                   base::FormatCount(static_cast<double>(pixels.FileBytes())), base::FormatCount(settings_.run.MemoryLimitBytes()));
     }
     // Decoding is not training: the budget starts here.
     start_ = std::chrono::steady_clock::now();
-    Crew crew(comm_, project_, settings_, input_);
+    const json setup = {{"project", project_.folder.string()},
+                        {"settings", Settings(settings_).Toml()},
+                        {"config_hash", input_.config_hash},
+                        {"verbose", input_.verbose},
+                        {"quiet", input_.quiet}};
+    Crew crew(comm_, kTagSetup, setup.dump());
     if (const std::string remark = PlanBrightness(*input_.survey, settings_.brightness).remark; !remark.empty()) spdlog::info("{}", remark);
     const FieldTrainer trainer = MakeFieldTrainer(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
     summary.fields.push_back(TrainContext(trainer, all_threads));
     int per_host = 1;
-    const int threads = comm_.size() > 1 ? crew.AssignThreads(&per_host) : all_threads;
+    const int threads = comm_.size() > 1 ? AssignThreads(crew, &per_host) : all_threads;
     RequireMemory(*input_.blocks, settings_, threads, per_host);
     TrainBlocks(trainer, threads, &summary);
     ledger_.SetSpent(Now(), true);
@@ -129,6 +78,18 @@ class Training {
  private:
   // Seconds of this configuration's training, earlier runs included.
   double Now() const { return spent_before_s_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+  // Tells each rank how many threads it has. Returns the smallest number, and in *per_host the largest number of ranks that share a machine.
+  int AssignThreads(Crew& crew, int* per_host) {
+    int fewest = 1 << 20;
+    *per_host = 1;
+    for (const CrewMember& member : crew.Muster()) {
+      comm_.Send(member.rank, kTagThreads, std::to_string(member.threads));
+      fewest = std::min(fewest, member.threads);
+      *per_host = std::max(*per_host, member.sharing);
+    }
+    return fewest;
+  }
 
   FieldOutcome TrainContext(const FieldTrainer& trainer, int threads) {
     QueueOptions options;
@@ -242,10 +203,15 @@ class Training {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// One training as a worker rank sees it.
+}  // namespace
+
+TrainSummary TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project) {
+  SKYQUILT_CHECK(comm.rank() == 0, "rank 0 coordinates");
+  return Training(comm, input, settings, project).Run();
+}
+
 void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
-  json hello = {{"host", base::HostName()}};
-  try {
+  ServeCrew(comm, [&](json& hello) {
     const json setup = json::parse(setup_text);
     base::InitLog(setup.at("verbose").get<bool>(), "rank " + std::to_string(comm.rank()));
     if (setup.at("quiet").get<bool>()) spdlog::set_level(spdlog::level::warn);
@@ -258,52 +224,12 @@ void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
     const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
     base::ThreadPool one(1);
     image::PixelCache pixels = image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), settings.run.image_width, one);
-    pixels.Stream(MustStream(pixels, blocks, settings, UsableThreads(settings), comm.local_size()));
-    hello["threads"] = UsableThreads(settings);
-    comm.Send(0, kTagHello, hello.dump());
-    comm::Message message = WaitForMessage(comm);
-    while (message.tag != kTagThreads && message.tag != kTagDone) message = WaitForMessage(comm);
-    if (message.tag == kTagDone) return;
-    const int threads = std::stoi(message.bytes);
+    pixels.Stream(MustStream(pixels, blocks, settings, settings.run.UsableThreads(), comm.local_size()));
+    hello["threads"] = settings.run.UsableThreads();
+    const int threads = std::stoi(Enlist(comm, hello, kTagThreads));
     base::ThreadPool pool(threads);
     ServeBlocks(comm, MakeFieldTrainer(survey, blocks, pixels, settings, project, setup.at("config_hash").get<std::string>(), pool), threads);
-    return;
-  } catch (const base::UsageError& error) {
-    hello["kind"] = "usage";
-    hello["error"] = error.what();
-  } catch (const base::InputError& error) {
-    hello["kind"] = "input";
-    hello["file"] = error.file().string();
-    hello["error"] = error.what();
-  } catch (const base::Interrupted&) {
-    return;  // rank 0 is gone
-  } catch (const std::exception& error) {
-    hello["kind"] = "input";
-    hello["file"] = "";
-    hello["error"] = error.what();
-  }
-  comm.Send(0, kTagHello, hello.dump(-1, ' ', false, json::error_handler_t::replace));
-  while (WaitForMessage(comm).tag != kTagDone) {
-  }
-}
-
-}  // namespace
-
-TrainSummary TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project) {
-  SKYQUILT_CHECK(comm.rank() == 0, "rank 0 coordinates");
-  return Training(comm, input, settings, project).Run();
-}
-
-void ServeRank(comm::Communicator& comm) {
-  while (true) {
-    const comm::Message message = WaitForMessage(comm);
-    if (message.tag == kTagQuit) return;
-    if (message.tag == kTagSetup) ServeTraining(comm, message.bytes);
-  }
-}
-
-void ReleaseRanks(comm::Communicator& comm) {
-  for (int rank = 1; rank < comm.size(); ++rank) comm.Send(rank, kTagQuit, "");
+  });
 }
 
 }  // namespace skyquilt::coordinator

@@ -32,9 +32,8 @@ struct TrainSummary {
 // Throws base::Interrupted (everything saved), base::InputError, base::UsageError, base::BlockError when the context itself failed.
 TrainSummary TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project);
 
-// What every other rank does from start to end: serves rank 0's trainings until ReleaseRanks. Never throws for what a training met.
-void ServeRank(comm::Communicator& comm);
-// Called on rank 0 before it ends, whatever happened.
-void ReleaseRanks(comm::Communicator& comm);
+// One training as every other rank sees it, begun by kTagSetup with this text: trains blocks for rank 0 until kTagDone.
+// Never throws for what a training met.
+void ServeTraining(comm::Communicator& comm, const std::string& setup);
 
 }  // namespace skyquilt::coordinator

@@ -4,6 +4,7 @@
 // Destroying it is the orderly end, which every rank must reach: what was sent and not yet received is thrown away. A rank that fails calls Abort.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -29,6 +30,10 @@ class Communicator {
   virtual void Send(int destination, int tag, const std::string& bytes) = 0;
   // The next message from anyone, if one has arrived.
   virtual std::optional<Message> TryReceive() = 0;
+  // How long somebody who waits for a message may sleep between two looks: not at all while one is arriving, for it comes piece by piece.
+  virtual std::chrono::microseconds Nap() const { return std::chrono::milliseconds(1); }
+  // Waits until everything sent so far has left; what arrives meanwhile is kept. For a rank that will not look here for a while.
+  virtual void Flush() {}
   // Waits for a message; throws base::Interrupted when a cancel is requested and nothing arrives.
   Message Receive();
   // Collective: everybody gets rank 0's bytes. Neither this nor Barrier heeds a cancel: all ranks must come.

@@ -27,7 +27,7 @@ void Check(int status, const char* what) {
   throw std::runtime_error(std::string("MPI: ") + what + " failed (" + text + ")");
 }
 
-void Nap() {
+void SleepShortly() {
   std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
@@ -77,7 +77,7 @@ class MpiCommunicator : public Communicator {
       // Receiving while waiting lets ranks that still send to each other end together.
       while (!outgoing_.empty()) {
         Discard();
-        Nap();
+        SleepShortly();
       }
       MPI_Request request = MPI_REQUEST_NULL;
       Check(MPI_Ibarrier(comm_, &request), "end");
@@ -85,12 +85,12 @@ class MpiCommunicator : public Communicator {
         Check(MPI_Test(&request, &done, MPI_STATUS_IGNORE), "end");
         if (done == 0) {
           Discard();
-          Nap();
+          SleepShortly();
         }
       }
       while (!incoming_.empty()) {
         Discard();
-        Nap();
+        SleepShortly();
       }
       MPI_Comm_free(&comm_);
       MPI_Finalize();
@@ -128,6 +128,15 @@ class MpiCommunicator : public Communicator {
       held_up.insert(stream);
     }
     return std::nullopt;
+  }
+
+  std::chrono::microseconds Nap() const override {
+    if (!incoming_.empty()) return std::chrono::microseconds(0);
+    return std::chrono::microseconds(outgoing_.empty() ? 1000 : 100);
+  }
+
+  void Flush() override {
+    for (Progress(); !outgoing_.empty(); Progress()) std::this_thread::sleep_for(std::min(Nap(), std::chrono::microseconds(20)));
   }
 
   std::string Broadcast(const std::string& bytes_on_root) override {
@@ -189,7 +198,7 @@ class MpiCommunicator : public Communicator {
       Check(MPI_Test(request, &done, MPI_STATUS_IGNORE), what);
       if (done != 0) return;
       Progress();
-      Nap();
+      SleepShortly();
     }
   }
 

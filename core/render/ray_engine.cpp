@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/base/cancel.h"
+#include "core/base/errors.h"
 #include "core/image/srgb.h"
 #include "core/render/composite.h"
 #include "core/render/march.h"
@@ -26,18 +27,17 @@ constexpr double kDarkTransmittance = 5e-3;
 constexpr double kPixelsPerStep = 4.5;
 
 struct Sample {
-  float t, length, unit_length, blend;
+  double t;
+  float length, unit_length, blend;
   float x, y, z;  // unit frame of its field
   int field;
   float weight;  // of its colour in the pixel
   int local;     // in its field's batch
 };
 
-// What a ray has gathered so far.
+// Samples of a ray: first, next to be evaluated, one past the last.
 struct Progress {
-  size_t begin = 0, next = 0, end = 0;  // samples: first, next to be evaluated, one past the last
-  double transmittance = 1.0, depth = 0.0;
-  double gain = 1.0;  // of the colour, when the ray was ended early
+  size_t begin = 0, next = 0, end = 0;
 };
 
 // Samples of one field in one round, and those of all rounds that need colour.
@@ -62,10 +62,12 @@ class RayRenderer::Group {
     batches_.resize(all_.size());
     fields_ = fields;
     scratch_.resize(all_.size());
-    for (size_t k = 0; k < all_.size(); ++k) scratch_[k].Reserve(*all_[k]->field, field::kChunk);
+    for (size_t k = 0; k < all_.size(); ++k) {
+      if (all_[k]->field) scratch_[k].Reserve(*all_[k]->field, field::kChunk);
+    }
   }
 
-  int64_t Render(std::span<const Ray> rays, std::span<RayColor> out) {
+  int64_t Continue(std::span<const Ray> rays, std::span<const Window> windows, std::span<RayState> states) {
     samples_.clear();
     progress_.assign(rays.size(), {});
     for (FieldBatch& batch : batches_) {
@@ -75,10 +77,8 @@ class RayRenderer::Group {
     alive_.clear();
     for (size_t r = 0; r < rays.size(); ++r) {
       progress_[r].begin = progress_[r].next = samples_.size();
-      MarchRay(rays[r]);
+      if (!states[r].ended) MarchRay(rays[r], windows.empty() ? Window{} : windows[r]);
       progress_[r].end = samples_.size();
-      out[r] = RayColor{};
-      for (float* distance : {&out[r].depth_front, &out[r].depth_median, &out[r].depth_back}) *distance = std::numeric_limits<float>::quiet_NaN();
       if (progress_[r].end > progress_[r].begin) alive_.push_back(r);
     }
     int64_t evaluated = 0;
@@ -86,17 +86,17 @@ class RayRenderer::Group {
       evaluated += EvaluateRound();
       size_t kept = 0;
       for (const size_t r : alive_) {
-        if (ComposeRound(progress_[r], out[r])) alive_[kept++] = r;
+        if (ComposeRound(progress_[r], states[r])) alive_[kept++] = r;
       }
       alive_.resize(kept);
     }
     for (size_t k = 0; k < all_.size(); ++k) EvaluateColor(k, rays);
-    for (size_t r = 0; r < rays.size(); ++r) ComposeColor(progress_[r], out[r]);
+    for (size_t r = 0; r < rays.size(); ++r) ComposeColor(progress_[r], states[r]);
     return evaluated;
   }
 
  private:
-  void MarchRay(const Ray& ray) {
+  void MarchRay(const Ray& ray, const Window& window) {
     candidates_.clear();
     gaps_.clear();
     const bool with_context = context_index_ < static_cast<int>(all_.size());
@@ -113,9 +113,13 @@ class RayRenderer::Group {
     int marched = 0;
     for (size_t c = 0; c < candidates_.size(); ++c) {
       const int k = candidates_[c];
-      marched += MarchField(ray, k, static_cast<int>(c), Clip(ray, *all_[static_cast<size_t>(k)])) ? 1 : 0;
+      const TrainedField& f = *all_[static_cast<size_t>(k)];
+      if (!window.Meets(BlendStretch(f, ray))) continue;
+      marched += MarchField(ray, window, k, static_cast<int>(c), Clip(ray, f)) ? 1 : 0;
     }
-    for (const Stretch& gap : gaps_) marched += MarchField(ray, context_index_, -1, gap) ? 1 : 0;
+    for (const Stretch& gap : gaps_) {
+      if (window.Meets(gap)) marched += MarchField(ray, window, context_index_, -1, gap) ? 1 : 0;
+    }
     if (marched < 2) return;  // in order already
     const auto first = samples_.begin() + static_cast<ptrdiff_t>(begin);
     std::stable_sort(first, samples_.end(), [](const Sample& a, const Sample& b) { return a.t < b.t; });
@@ -131,7 +135,7 @@ class RayRenderer::Group {
   // Where a block alone has all the weight.
   static Stretch CoreStretch(const TrainedField& f, const Ray& ray) {
     constexpr double kEver = std::numeric_limits<double>::infinity();
-    const double m = f.margin_m;
+    const double m = f.blend_m;
     return RayBox(ray.origin_enu, ray.direction_enu, {f.core_min_enu.x() + m, f.core_min_enu.y() + m, -kEver},
                   {f.core_max_enu.x() - m, f.core_max_enu.y() - m, kEver});
   }
@@ -156,14 +160,18 @@ class RayRenderer::Group {
   }
 
   // True when samples were added.
-  bool MarchField(const Ray& ray, int k, int candidate, const Stretch& stretch) {
+  bool MarchField(const Ray& ray, const Window& window, int k, int candidate, const Stretch& stretch) {
     const TrainedField& f = *all_[static_cast<size_t>(k)];
+    SKYQUILT_CHECK(f.field != nullptr, "field '" + f.name + "' is not loaded");
     const size_t before = samples_.size();
     const UnitRay unit(f.map, ray.origin_enu, ray.direction_enu);
     // Where this block alone has all the weight nothing needs blending.
     const Stretch alone = candidate < 0 ? Stretch{} : CoreStretch(f, ray);
     int count = 0;
+    // Samples lie where they would lie without a window, so that it does not matter how a ray is cut.
     const auto emit = [&](double t, double length, double unit_length) {
+      if (!(t < window.to)) return false;
+      if (t < window.from) return ++count < kMaxRaySamples;
       double weight = 1.0;
       if (!(t > alone.t_near && t < alone.t_far)) {
         const double context_weight = BlendWeights(fields_, candidates_, ray.origin_enu.x() + t * ray.direction_enu.x(),
@@ -172,8 +180,8 @@ class RayRenderer::Group {
       }
       if (weight > 1e-4) {
         const Eigen::Vector3f p = unit.At(t);
-        samples_.push_back({static_cast<float>(t), static_cast<float>(length), static_cast<float>(unit_length / f.step_m), static_cast<float>(weight),
-                            p.x(), p.y(), p.z(), k, 0.0F, 0});
+        samples_.push_back(
+            {t, static_cast<float>(length), static_cast<float>(unit_length / f.step_m), static_cast<float>(weight), p.x(), p.y(), p.z(), k, 0.0F, 0});
       }
       return ++count < kMaxRaySamples;
     };
@@ -232,40 +240,36 @@ class RayRenderer::Group {
   }
 
   // Takes in the round's samples in order of distance; false when the ray is done.
-  bool ComposeRound(Progress& p, RayColor& out) {
+  bool ComposeRound(Progress& p, RayState& state) {
     constexpr double kPassed[3] = {0.85, 0.5, 0.15};
-    float* const passed_at[3] = {&out.depth_front, &out.depth_median, &out.depth_back};
+    float* const passed_at[3] = {&state.depth_front, &state.depth_median, &state.depth_back};
     const size_t end = std::min(p.end, p.next + kRoundSamples);
     for (; p.next < end; ++p.next) {
       Sample& sample = samples_[p.next];
       FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
       const auto local = static_cast<size_t>(sample.local);
       const double tau = static_cast<double>(batch.step_depth[local] * sample.unit_length * sample.blend);
-      const double after = p.transmittance * std::exp(-tau);
-      const double weight = p.transmittance - after;
-      p.depth += weight * static_cast<double>(sample.t);
+      const double after = state.transmittance * std::exp(-tau);
+      const double weight = state.transmittance - after;
+      state.depth_moment += weight * sample.t;
       for (size_t i = 0; i < 3; ++i) {
-        if (!(p.transmittance > kPassed[i] && after <= kPassed[i])) continue;
+        if (!(state.transmittance > kPassed[i] && after <= kPassed[i])) continue;
         // Inside the interval, where the transmittance passes the mark.
-        const double share = tau > 0.0 ? std::clamp(std::log(p.transmittance / kPassed[i]) / tau, 0.0, 1.0) : 0.5;
-        *passed_at[i] = sample.t + sample.length * static_cast<float>(share - 0.5);
+        const double share = tau > 0.0 ? std::clamp(std::log(state.transmittance / kPassed[i]) / tau, 0.0, 1.0) : 0.5;
+        *passed_at[i] = static_cast<float>(sample.t + static_cast<double>(sample.length) * (share - 0.5));
       }
       sample.weight = static_cast<float>(weight);
       if (sample.weight > options_.colour_threshold) {
         sample.local = static_cast<int>(batch.visible++);
         for (size_t row = 0; row < field::kGeometryRows; ++row) batch.visible_geometry.push_back(batch.geometry[row * batch.stride + local]);
       }
-      p.transmittance = after;
+      state.transmittance = after;
       if (after < kDarkTransmittance) {
         p.end = ++p.next;
-        p.gain = 1.0 / (1.0 - after);
-        p.depth *= p.gain;
-        p.transmittance = 0.0;
+        state.ended = true;
         break;
       }
     }
-    out.opacity = static_cast<float>(1.0 - p.transmittance);
-    out.depth = out.opacity > 1e-6F ? static_cast<float>(p.depth / (1.0 - p.transmittance)) : std::numeric_limits<float>::quiet_NaN();
     return p.next < p.end;
   }
 
@@ -311,22 +315,18 @@ class RayRenderer::Group {
     }
   }
 
-  void ComposeColor(const Progress& p, RayColor& out) {
-    const auto gain = static_cast<float>(p.gain);
+  void ComposeColor(const Progress& p, RayState& state) {
     for (size_t s = p.begin; s < p.next; ++s) {
       const Sample& sample = samples_[s];
       if (!(sample.weight > options_.colour_threshold)) continue;
       const FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
-      for (size_t c = 0; c < 3; ++c)
-        out.rgb_srgb[c] += gain * sample.weight * batch.color[c * batch.visible_stride + static_cast<size_t>(sample.local)];
+      for (size_t c = 0; c < 3; ++c) state.rgb_srgb[c] += sample.weight * batch.color[c * batch.visible_stride + static_cast<size_t>(sample.local)];
     }
-    if (options_.concealing != Concealing::kNone) ComposeConcealed(p, out);
+    if (options_.concealing != Concealing::kNone) ComposeConcealed(p, state);
   }
 
   // A ray on its own is its own neighbour on both sides: the convolution sees seven times the same luminance.
-  void ComposeConcealed(const Progress& p, RayColor& out) const {
-    const auto gain = static_cast<float>(p.gain);
-    float passed = 1.0F;
+  void ComposeConcealed(const Progress& p, RayState& state) const {
     for (size_t s = p.begin; s < p.next; ++s) {
       const Sample& sample = samples_[s];
       if (!(sample.weight > options_.colour_threshold)) continue;
@@ -335,10 +335,10 @@ class RayRenderer::Group {
       const auto& taps = all_[static_cast<size_t>(sample.field)]->weights.luminance;
       const float sum = std::accumulate(taps.begin(), taps.end() - 1, 0.0F);
       const float omega = 1.0F / (1.0F + std::exp(-(sum * color[3 * batch.visible_stride] + taps.back())));
-      const float share = options_.concealing == Concealing::kProduct ? passed : omega;
-      passed *= omega;
+      const float share = options_.concealing == Concealing::kProduct ? state.light_passed : omega;
+      state.light_passed *= omega;
       for (size_t c = 0; c < 3; ++c) {
-        out.concealed_light[c] += gain * sample.weight * share * image::LinearFromSrgb(color[c * batch.visible_stride]);
+        state.concealed_light[c] += sample.weight * share * image::LinearFromSrgb(color[c * batch.visible_stride]);
       }
     }
   }
@@ -361,8 +361,16 @@ RayRenderer::RayRenderer(const FieldSet& fields, const EngineOptions& options) :
 
 RayRenderer::~RayRenderer() = default;
 
+int64_t RayRenderer::Continue(std::span<const Ray> rays, std::span<const Window> windows, std::span<RayState> states) {
+  SKYQUILT_CHECK(states.size() == rays.size() && (windows.empty() || windows.size() == rays.size()), "one state and window per ray");
+  return group_->Continue(rays, windows, states);
+}
+
 int64_t RayRenderer::Render(std::span<const Ray> rays, std::span<RayColor> out) {
-  return group_->Render(rays, out);
+  states_.assign(rays.size(), {});
+  const int64_t samples = group_->Continue(rays, {}, states_);
+  for (size_t r = 0; r < rays.size(); ++r) out[r] = Finished(states_[r]);
+  return samples;
 }
 
 void RenderRays(const FieldSet& fields, std::span<const Ray> rays, std::span<RayColor> out, const EngineOptions& options, base::ThreadPool& threads,

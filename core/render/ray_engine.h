@@ -10,13 +10,15 @@
 #include "core/base/thread_pool.h"
 #include "core/brightness/luminance.h"
 #include "core/render/concealed.h"
+#include "core/render/ray_box.h"
+#include "core/render/ray_state.h"
 #include "core/render/scene.h"
 #include "core/render/trained_field.h"
 
 namespace skyquilt::render {
 
 struct FieldSet {
-  std::vector<const TrainedField*> blocks;  // boxes; may be empty
+  std::vector<const TrainedField*> blocks;  // boxes; may be empty. Those a ray's window does not touch need no arrays
   const TrainedField* context = nullptr;    // fills what no block covers; may be null
 };
 
@@ -29,6 +31,9 @@ struct EngineOptions {
   Concealing concealing = Concealing::kNone;  // fields with luminance: fill RayColor::concealed_light
 };
 
+// Where a block has weight along a ray: its core box widened by the ramp, of any height.
+Stretch BlendStretch(const TrainedField& block, const Ray& ray);
+
 // Blend weights of the set at a place: one per block, and the context's share in the return value. Sums to 1 inside any core box.
 double BlendWeights(const FieldSet& fields, std::span<const int> candidates, double x, double y, std::span<double> weights);
 
@@ -39,10 +44,14 @@ class RayRenderer {
   ~RayRenderer();
   // As RenderRays; returns the samples evaluated. Best with some hundreds of rays at a time.
   int64_t Render(std::span<const Ray> rays, std::span<RayColor> out);
+  // Goes on with rays through their windows (empty: through everything), front to back: cut into windows at any places, a ray gathers the same
+  // bits. Returns the samples evaluated. Throws std::logic_error when a window needs a field that has no arrays.
+  int64_t Continue(std::span<const Ray> rays, std::span<const Window> windows, std::span<RayState> states);
 
  private:
   class Group;
   std::unique_ptr<Group> group_;
+  std::vector<RayState> states_;
 };
 
 // rays and out have the same length. Colours are display values at the reference exposure, premultiplied, over black. Samples evaluated are

@@ -7,7 +7,11 @@
 #include "core/checkpoint/archive.h"
 #include "core/image/srgb.h"
 #include "core/render/backdrop.h"
+#include "core/render/field_store.h"
+#include "core/render/paged_rays.h"
 #include "core/render/ray_engine.h"
+#include "core/render/ray_segments.h"
+#include "core/render/ray_service.h"
 #include "core/render/scene_file.h"
 
 namespace skyquilt::render {
@@ -48,11 +52,23 @@ struct Scene::Impl {
     return static_cast<float>(std::exp(sign * info.luminance_state.mean_log_gain));
   }
 
+  void Answer(std::span<const Ray> rays, std::span<RayColor> out, Look look, base::ThreadPool& threads) {
+    const EngineOptions options = Options(look);
+    if (service != nullptr) {
+      service->Render(rays, out, options);
+    } else {
+      std::vector<Traveller> travellers(rays.size());
+      PagedRays(*store, *segments, threads).Continue(rays, travellers, options, 0, {});
+      for (size_t i = 0; i < rays.size(); ++i) out[i] = Finished(travellers[i].state);
+    }
+    if (Conceals(look)) ShowConcealed(out);
+  }
+
   SceneInfo info;
-  std::vector<TrainedField> blocks;
-  std::unique_ptr<TrainedField> context;
   Backdrop backdrop;
-  FieldSet set;
+  std::unique_ptr<FieldStore> store;
+  std::unique_ptr<RaySegments> segments;
+  RayService* service = nullptr;
 };
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {}
@@ -63,13 +79,15 @@ const SceneInfo& Scene::info() const {
   return impl_->info;
 }
 
-Scene Scene::Load(const std::filesystem::path& scene_h5) {
-  const checkpoint::ArchiveReader reader(scene_h5);
-  if (reader.kind() != kSceneKind) {
-    throw base::InputError(scene_h5, "is a " + reader.kind() + " file, not a scene", "Give the scene.h5 that `skyquilt merge` wrote");
-  }
+int64_t Scene::field_loads() const {
+  return impl_->store->loads();
+}
+
+Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& options) {
+  checkpoint::ArchiveReader reader = OpenScene(scene_h5);
   Scene scene;
   Impl& impl = *scene.impl_;
+  impl.service = options.service;
   SceneInfo& info = impl.info;
   info.origin = {reader.DoubleAttribute("origin_latitude_deg"), reader.DoubleAttribute("origin_longitude_deg"),
                  reader.DoubleAttribute("origin_height_m")};
@@ -78,34 +96,37 @@ Scene Scene::Load(const std::filesystem::path& scene_h5) {
   brightness::GetLuminance(reader, &info.luminance, &info.luminance_state);
   info.config = reader.StringAttribute("config");
   info.gsd_m = reader.DoubleAttribute("gsd_m");
+  info.borders = BordersOf(reader);
   impl.backdrop = GetBackdrop(reader, scene_h5);
-  const int64_t n_blocks = reader.IntAttribute("blocks");
+  impl.store = std::make_unique<FieldStore>(std::move(reader), scene_h5, options.memory_bytes, info.borders == Borders::kHard);
+  const FieldStore& store = *impl.store;
+  if (store.size() == 0) throw base::InputError(scene_h5, "holds no blocks", "Train at least one block, then merge again");
   info.min_enu = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   info.max_enu = -info.min_enu;
-  for (int64_t i = 0; i < n_blocks; ++i) {
-    impl.blocks.push_back(GetField(reader, scene_h5, BlockPrefix(i)));
-    const TrainedField& f = impl.blocks.back();
-    info.blocks.push_back({f.name, f.core_min_enu, f.core_max_enu, f.margin_m, f.ParameterCount(), f.steps, f.seconds, f.samples});
-    info.parameters += f.ParameterCount();
+  std::vector<const TrainedField*> blocks;
+  for (int k = 0; k < store.size(); ++k) {
+    const TrainedField& f = store.block(k);
+    blocks.push_back(&f);
+    info.blocks.push_back({f.name, f.core_min_enu, f.core_max_enu, f.margin_m, store.Parameters(k), f.steps, f.seconds, f.samples});
+    info.parameters += store.Parameters(k);
     info.min_enu = info.min_enu.cwiseMin(f.core_min_enu);
     info.max_enu = info.max_enu.cwiseMax(f.core_max_enu);
   }
-  if (n_blocks == 0) throw base::InputError(scene_h5, "holds no blocks", "Train at least one block, then merge again");
-  for (const TrainedField& f : impl.blocks) impl.set.blocks.push_back(&f);
-  if (reader.HasAttribute(std::string(kContextPrefix) + "name")) {
-    impl.context = std::make_unique<TrainedField>(GetField(reader, scene_h5, kContextPrefix));
-    info.parameters += impl.context->ParameterCount();
-    info.context_seconds = impl.context->seconds;
-    info.context_samples = impl.context->samples;
-    impl.set.context = impl.context.get();
+  impl.segments = std::make_unique<RaySegments>(std::move(blocks));
+  if (store.HasContext()) {
+    info.parameters += store.ContextParameters();
+    info.context_seconds = store.context().seconds;
+    info.context_samples = store.context().samples;
   }
+  if (impl.service != nullptr) impl.service->Begin(store, *impl.segments);
+  // What is damaged is to be found now, not in the middle of a rendering.
+  if (impl.service == nullptr && store.AllFit()) impl.store->NeedAll();
   return scene;
 }
 
 void Scene::RenderRays(std::span<const Ray> rays, std::span<RayColor> out, const Appearance& appearance, base::ThreadPool& threads) const {
   SKYQUILT_CHECK(rays.size() == out.size(), std::to_string(rays.size()) + " rays, " + std::to_string(out.size()) + " results");
-  render::RenderRays(impl_->set, rays, out, impl_->Options(appearance.look), threads);
-  if (impl_->Conceals(appearance.look)) ShowConcealed(out);
+  impl_->Answer(rays, out, appearance.look, threads);
   Expose(appearance.log_gain, out);
 }
 
@@ -145,8 +166,7 @@ std::vector<RayColor> Scene::RenderCamera(const camera::Camera& camera, const ge
         rays[i].pixel_radius = radius;
       }
     });
-    render::RenderRays(impl_->set, rays, colors, impl_->Options(look), threads);
-    if (impl_->Conceals(look)) ShowConcealed(colors);
+    impl_->Answer(rays, colors, look, threads);
     for (size_t i = 0; i < colors.size(); ++i) {
       if (colors[i].opacity >= 1.0F) continue;
       std::array<float, 3> behind = impl_->backdrop.Color(rays[i].origin_enu, rays[i].direction_enu);

@@ -31,6 +31,15 @@ struct SceneBlock {
   int64_t samples = 0;  // trained
 };
 
+// How blocks meet.
+enum class Borders {
+  kSmooth,  // blended by weights that sum to one across [face - margin, face + margin]
+  kHard,    // a block ends at its core box's face, where the next one or the context begins
+};
+inline std::string NameOf(Borders borders) {
+  return borders == Borders::kHard ? "hard" : "smooth";
+}
+
 struct SceneInfo {
   geo::Geodetic origin;
   bool georeferenced = false;
@@ -43,6 +52,7 @@ struct SceneInfo {
   double context_seconds = 0.0;
   int64_t context_samples = 0;
   double gsd_m = 0.0;  // finest of the blocks
+  Borders borders = Borders::kSmooth;
   std::string config;  // TOML text it was trained with
 };
 
@@ -77,16 +87,26 @@ struct Appearance {
   std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};
 };
 
+class RayService;
+
+struct SceneOptions {
+  double memory_bytes = 0.0;      // fields that do not fit are loaded by need; 0: all are loaded
+  RayService* service = nullptr;  // who answers rays instead of this process, which then loads no field; must outlive the scene
+};
+
+// Not for two threads at once.
 class Scene {
  public:
   // Throws base::InputError.
-  static Scene Load(const std::filesystem::path& scene_h5);
+  static Scene Load(const std::filesystem::path& scene_h5, const SceneOptions& options = {});
   Scene(Scene&&) noexcept;
   ~Scene();
 
   const SceneInfo& info() const;
-  // Any number of rays, 0 included; out has the same length. Deterministic.
-  // Throws base::Interrupted when cancelled.
+  // Fields loaded so far; more than there are where memory is short.
+  int64_t field_loads() const;
+  // Any number of rays, 0 included; out has the same length. Deterministic, for any memory and service.
+  // Throws base::Interrupted when cancelled, base::UsageError when not even the blocks that meet at one place fit in memory.
   void RenderRays(std::span<const Ray> rays, std::span<RayColor> out, const Appearance& appearance, base::ThreadPool& threads) const;
   // All pixels of a camera, row-major, width * height results, colours over the scene's backdrop. Opacity tells where that shows.
   std::vector<RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, const Appearance& appearance,

@@ -2,15 +2,24 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
+
+#include "core/checkpoint/archive.h"
+#include "core/render/scene.h"
 
 namespace skyquilt::render {
 
 constexpr const char* kSceneKind = "scene";
 constexpr int kSceneVersion = 1;
+constexpr const char* kBordersAttribute = "borders";  // of render::Borders; absent: smooth
 constexpr const char* kContextPrefix = "context/";
 inline std::string BlockPrefix(int64_t i) {
   return "blocks/" + std::to_string(i) + "/";
 }
+
+// Throws base::InputError for a file that is not a scene, or damaged.
+checkpoint::ArchiveReader OpenScene(const std::filesystem::path& scene_h5);
+Borders BordersOf(const checkpoint::ArchiveReader& scene);
 
 }  // namespace skyquilt::render

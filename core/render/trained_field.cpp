@@ -1,12 +1,16 @@
 #include "core/render/trained_field.h"
 
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <stdexcept>
 
 #include "core/base/errors.h"
 
 namespace skyquilt::render {
 namespace {
+
+constexpr const char* kMend = "Train it again with --restart";
 
 // Fixed order of the numbers that rebuild a field.
 std::vector<double> Describe(const TrainedField& f) {
@@ -38,9 +42,10 @@ std::vector<double> Describe(const TrainedField& f) {
 void TrainedField::Finish() {
   field = std::make_unique<field::HashField>(config);
   weights = field->Prepare(networks);
+  blend_m = margin_m;
 }
 
-void PutField(const TrainedField& f, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
+void PutOutline(const TrainedField& f, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
   writer.SetAttribute(prefix + "name", f.name);
   writer.SetAttribute(prefix + "steps", f.steps);
   writer.SetAttribute(prefix + "seconds", f.seconds);
@@ -48,15 +53,19 @@ void PutField(const TrainedField& f, const std::string& prefix, checkpoint::Arch
   const std::vector<double> numbers = Describe(f);
   for (size_t i = 0; i < numbers.size(); ++i) writer.SetAttribute(prefix + "describe" + std::to_string(i), numbers[i]);
   writer.SetAttribute(prefix + "luminance", f.config.luminance ? 1 : 0);
+  writer.SetAttribute(prefix + "occupancy_cell", static_cast<double>(f.occupancy.cell));
+}
+
+void PutField(const TrainedField& f, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
+  PutOutline(f, prefix, writer);
   writer.Put(prefix + "grid", f.grid);
   writer.Put(prefix + "networks", f.networks);
-  writer.SetAttribute(prefix + "occupancy_cell", static_cast<double>(f.occupancy.cell));
   const std::vector<int64_t> shape = {f.occupancy.size[2], f.occupancy.size[1], f.occupancy.size[0]};
   writer.Put(prefix + "occupied", f.occupancy.occupied, shape);
   writer.Put(prefix + "occupancy_depth", f.occupancy.depth, shape);
 }
 
-TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
+TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
   TrainedField f;
   f.name = reader.StringAttribute(prefix + "name");
   f.steps = reader.IntAttribute(prefix + "steps");
@@ -85,26 +94,44 @@ TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesy
   f.margin_m = number();
   f.step_m = number();
   f.config.luminance = reader.HasAttribute(prefix + "luminance") && reader.IntAttribute(prefix + "luminance") != 0;
-  const std::string mend = "Train it again with --restart";
+  f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
+  f.blend_m = f.margin_m;
   try {
     f.map = contracted ? encoding::SpaceMap::Slab(min_enu, max_enu) : encoding::SpaceMap::Box(min_enu, max_enu);
+  } catch (const std::invalid_argument& error) {
+    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);
+  }
+  return f;
+}
+
+int64_t StoredParameters(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
+  return reader.Shape(prefix + "grid").at(0) + reader.Shape(prefix + "networks").at(0);
+}
+
+int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
+  const std::vector<int64_t> shape = reader.Shape(prefix + "occupied");
+  return std::accumulate(shape.begin(), shape.end(), int64_t{1}, std::multiplies<>());
+}
+
+TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
+  TrainedField f = GetOutline(reader, file, prefix);
+  try {
     f.grid = reader.Floats(prefix + "grid");
     f.networks = reader.Floats(prefix + "networks");
     f.Finish();
   } catch (const std::invalid_argument& error) {
-    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), mend);
+    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);
   }
   const std::vector<int64_t> shape = reader.Shape(prefix + "occupied");
   f.occupancy.occupied = reader.Bytes(prefix + "occupied");
   f.occupancy.depth = reader.Floats(prefix + "occupancy_depth");
-  f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
   if (shape.size() == 3) {
     for (int axis = 0; axis < 3; ++axis) f.occupancy.size[axis] = static_cast<int>(shape[static_cast<size_t>(2 - axis)]);
   }
   const auto cells = static_cast<size_t>(f.occupancy.CellCount());
   if (static_cast<int64_t>(f.grid.size()) != f.field->GridParameters() || static_cast<int64_t>(f.networks.size()) != f.field->NetworkParameters() ||
       cells == 0 || f.occupancy.occupied.size() != cells || f.occupancy.depth.size() != cells || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {
-    throw base::InputError(file, "arrays and configuration of field '" + f.name + "' disagree", mend);
+    throw base::InputError(file, "arrays and configuration of field '" + f.name + "' disagree", kMend);
   }
   return f;
 }

@@ -19,8 +19,9 @@ struct TrainedField {
   encoding::SpaceMap map;
   Eigen::Vector3d core_min_enu = Eigen::Vector3d::Zero();  // without margin
   Eigen::Vector3d core_max_enu = Eigen::Vector3d::Zero();
-  double margin_m = 0.0;
-  double step_m = 0.1;  // marching step inside the uncontracted part = the length that log density refers to
+  double margin_m = 0.0;  // trained beyond the core box, horizontally
+  double blend_m = 0.0;   // half width of the ramp at its faces; Finish() makes it the margin, 0 is a hard border
+  double step_m = 0.1;    // marching step inside the uncontracted part = the length that log density refers to
   std::vector<float> grid, networks;
   field::OccupancyGrid occupancy;
   // Training record.
@@ -37,6 +38,13 @@ struct TrainedField {
 
 // Arrays under `prefix` ("" or "fields/r0c0/"). The field must outlive the writer's Commit.
 void PutField(const TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
+// The same without the arrays.
+void PutOutline(const TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
+// Place and shape of a field, without its arrays. Throws base::InputError for one that cannot be.
+TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix);
+// Of a field in a file, without reading its arrays.
+int64_t StoredParameters(const checkpoint::ArchiveReader& reader, const std::string& prefix);
+int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& prefix);
 // Throws base::InputError when arrays and configuration disagree.
 TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix);
 

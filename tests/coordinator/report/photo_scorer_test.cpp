@@ -77,8 +77,8 @@ TEST(ScorePhoto, BlocksAndSeamsGetTheirOwnPixels) {
   EXPECT_EQ(PixelsOf(findings.per_block[1]), 50 * kHeight);
   EXPECT_NEAR(metrics::PsnrOf(findings.per_block[0]), Psnr(10.0), 1e-3);
   EXPECT_NEAR(metrics::PsnrOf(findings.per_block[1]), Psnr(20.0), 1e-3);
-  EXPECT_EQ(PixelsOf(findings.seam), 10 * kHeight);                 // 5 m on either side
-  EXPECT_EQ(PixelsOf(findings.interior), 2 * 40 * (kHeight - 10));  // less seam and rim
+  EXPECT_EQ(PixelsOf(findings.seams.AllSeam()), 10 * kHeight);                 // 5 m on either side
+  EXPECT_EQ(PixelsOf(findings.seams.AllInterior()), 2 * 40 * (kHeight - 10));  // less seam and rim
 }
 
 TEST(ScorePhoto, PixelsSeenByOneViewOnlyAreNotCovered) {
@@ -131,7 +131,7 @@ TEST(ScorePhoto, SameResultForAnyNumberOfThreads) {
   const PhotoFindings a = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
   const PhotoFindings b = ScorePhoto(flat.task, flat.rendered, views, flat.area, one);
   EXPECT_EQ(a.score.psnr_db, b.score.psnr_db);
-  EXPECT_EQ(a.interior.sum, b.interior.sum);
+  EXPECT_EQ(a.seams.AllInterior().sum, b.seams.AllInterior().sum);
   EXPECT_EQ(a.scored.data, b.scored.data);
 }
 

@@ -1,0 +1,68 @@
+// Rays answered by the other ranks, as rank 0 sees it. Ranks whose memory holds the whole scene work side by side; otherwise groups of ranks hold
+// it together, and a ray goes from rank to rank, front to back, with what it has gathered (render::Traveller). So the picture is the one that a
+// single process makes, to the bit.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coordinator/rendering/block_shares.h"
+#include "coordinator/rendering/ray_parcel.h"
+#include "coordinator/scheduler/crew.h"
+#include "core/comm/communicator.h"
+#include "core/render/ray_service.h"
+
+namespace skyquilt::coordinator {
+
+struct FarmStatistics {
+  int ranks = 0;   // that render
+  int groups = 0;  // each holding the scene
+  int64_t rays = 0;
+  int64_t handovers = 0;  // rays that went on to another rank
+  int64_t samples = 0;
+  int64_t field_loads = 0;
+  int64_t bytes_sent = 0;      // by rank 0
+  int64_t bytes_received = 0;  // by rank 0
+};
+
+class RayFarm : public render::RayService {
+ public:
+  // Calls the other ranks together (at least one); they open the scene file. Its destructor sends them back.
+  // `setup` is for ServeRays, see serve_rays.h.
+  RayFarm(comm::Communicator& comm, const std::string& setup);
+
+  void Begin(const render::FieldStore& store, const render::RaySegments& segments) override;
+  void Render(std::span<const render::Ray> rays, std::span<render::RayColor> out, const render::EngineOptions& options) override;
+
+  const FarmStatistics& statistics() const { return statistics_; }
+
+ private:
+  // Rays that wait for a rank, or are with one.
+  struct Parcel {
+    size_t group = 0;
+    std::vector<size_t> rays;  // indices into the call's rays
+  };
+  struct Work;
+
+  void HandOut(Work& work);
+  void AddChunk(Work& work, size_t group);
+  void Queue(Work& work, int rank, Parcel parcel);
+  void Send(Work& work, int rank);
+  void TakeBack(Work& work, const comm::Message& message);
+
+  comm::Communicator& comm_;
+  Crew crew_;
+  const render::FieldStore* store_ = nullptr;
+  const render::RaySegments* segments_ = nullptr;
+  std::vector<RankGroup> groups_;
+  uint64_t next_id_ = 1;
+  std::map<int, int64_t> loads_;  // per rank
+  FarmStatistics statistics_;
+};
+
+}  // namespace skyquilt::coordinator

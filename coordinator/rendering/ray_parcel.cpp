@@ -1,0 +1,225 @@
+#include "coordinator/rendering/ray_parcel.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <type_traits>
+
+namespace skyquilt::coordinator {
+namespace {
+
+static_assert(std::is_trivially_copyable_v<render::Traveller> && std::is_trivially_copyable_v<render::RayColor> &&
+              std::is_trivially_copyable_v<render::EngineOptions>);
+
+class Packer {
+ public:
+  template <typename T>
+  void Add(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void AddText(const std::string& text) {
+    Add(static_cast<uint64_t>(text.size()));
+    bytes_ += text;
+  }
+  std::string Take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+class Unpacker {
+ public:
+  explicit Unpacker(const std::string& bytes) : bytes_(bytes) {}
+  template <typename T>
+  T Take() {
+    Require(sizeof(T));
+    T value;
+    std::memcpy(&value, bytes_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+  std::string TakeText() {
+    const auto n = Take<uint64_t>();
+    Require(n);
+    at_ += n;
+    return bytes_.substr(at_ - n, n);
+  }
+  // A count of things that take at least so many bytes each.
+  size_t TakeCount(size_t bytes_each) {
+    const auto n = Take<uint64_t>();
+    if (n > (bytes_.size() - at_) / bytes_each) Fail();
+    return n;
+  }
+  void End() const {
+    if (at_ != bytes_.size()) Fail();
+  }
+  [[noreturn]] static void Fail() { throw std::runtime_error("a parcel of rays is not as it should be: do all ranks run the same program?"); }
+
+ private:
+  void Require(size_t n) const {
+    if (n > bytes_.size() - at_) Fail();
+  }
+
+  const std::string& bytes_;
+  size_t at_ = 0;
+};
+
+struct Common {
+  double origin[3];
+  double t_near, t_far;
+  float pixel_radius;
+};
+
+Common CommonOf(const render::Ray& ray) {
+  return {{ray.origin_enu.x(), ray.origin_enu.y(), ray.origin_enu.z()}, ray.t_near, ray.t_far, ray.pixel_radius};
+}
+
+bool Same(const render::Ray& a, const render::Ray& b) {
+  return a.origin_enu == b.origin_enu && a.t_near == b.t_near && a.t_far == b.t_far && a.pixel_radius == b.pixel_radius;
+}
+
+bool Fresh(const render::Traveller& traveller) {
+  return traveller.at == 0.0 && traveller.state.transmittance == 1.0 && !traveller.state.ended;
+}
+
+// Without the padding, whose bytes nobody set.
+void AddTraveller(const render::Traveller& traveller, Packer* packer) {
+  const render::RayState& s = traveller.state;
+  packer->Add(s.transmittance);
+  packer->Add(s.depth_moment);
+  packer->Add(s.rgb_srgb);
+  packer->Add(s.concealed_light);
+  packer->Add(s.light_passed);
+  packer->Add(s.depth_front);
+  packer->Add(s.depth_median);
+  packer->Add(s.depth_back);
+  packer->Add(s.ended);
+  packer->Add(traveller.at);
+  packer->Add(traveller.owner);
+}
+
+template <typename T, size_t kCount>
+void TakeArray(T (&values)[kCount], Unpacker* unpacker) {
+  for (T& value : values) value = unpacker->Take<T>();
+}
+
+render::Traveller TakeTraveller(Unpacker* unpacker) {
+  render::Traveller traveller;
+  render::RayState& s = traveller.state;
+  s.transmittance = unpacker->Take<double>();
+  s.depth_moment = unpacker->Take<double>();
+  TakeArray(s.rgb_srgb, unpacker);
+  TakeArray(s.concealed_light, unpacker);
+  s.light_passed = unpacker->Take<float>();
+  s.depth_front = unpacker->Take<float>();
+  s.depth_median = unpacker->Take<float>();
+  s.depth_back = unpacker->Take<float>();
+  s.ended = unpacker->Take<bool>();
+  traveller.at = unpacker->Take<double>();
+  traveller.owner = unpacker->Take<int>();
+  return traveller;
+}
+
+}  // namespace
+
+std::string ToBytes(const RayParcel& parcel) {
+  Packer packer;
+  packer.Add(parcel.id);
+  packer.Add(parcel.options.step_scale);
+  packer.Add(parcel.options.colour_threshold);
+  packer.Add(parcel.options.concealing);
+  const auto& rays = parcel.rays;
+  const bool shared = std::all_of(rays.begin(), rays.end(), [&](const render::Ray& ray) { return Same(ray, rays.front()); });
+  const bool fresh = std::all_of(parcel.travellers.begin(), parcel.travellers.end(), Fresh);
+  packer.Add(shared);
+  packer.Add(fresh);
+  packer.Add(static_cast<uint64_t>(rays.size()));
+  if (shared && !rays.empty()) packer.Add(CommonOf(rays.front()));
+  for (const render::Ray& ray : rays) {
+    for (int axis = 0; axis < 3; ++axis) packer.Add(ray.direction_enu[axis]);
+    if (!shared) packer.Add(CommonOf(ray));
+  }
+  if (!fresh) {
+    for (const render::Traveller& traveller : parcel.travellers) AddTraveller(traveller, &packer);
+  }
+  return packer.Take();
+}
+
+RayParcel RayParcelFromBytes(const std::string& bytes) {
+  Unpacker unpacker(bytes);
+  RayParcel parcel;
+  parcel.id = unpacker.Take<uint64_t>();
+  parcel.options.step_scale = unpacker.Take<double>();
+  parcel.options.colour_threshold = unpacker.Take<float>();
+  parcel.options.concealing = unpacker.Take<render::Concealing>();
+  const bool shared = unpacker.Take<bool>();
+  const bool fresh = unpacker.Take<bool>();
+  const size_t n = unpacker.TakeCount(3 * sizeof(double));
+  Common common{};
+  if (shared && n > 0) common = unpacker.Take<Common>();
+  for (size_t i = 0; i < n; ++i) {
+    render::Ray ray;
+    for (int axis = 0; axis < 3; ++axis) ray.direction_enu[axis] = unpacker.Take<double>();
+    if (!shared) common = unpacker.Take<Common>();
+    ray.origin_enu = {common.origin[0], common.origin[1], common.origin[2]};
+    ray.t_near = common.t_near;
+    ray.t_far = common.t_far;
+    ray.pixel_radius = common.pixel_radius;
+    parcel.rays.push_back(ray);
+  }
+  parcel.travellers.resize(n);
+  if (!fresh) {
+    for (render::Traveller& traveller : parcel.travellers) traveller = TakeTraveller(&unpacker);
+  }
+  unpacker.End();
+  return parcel;
+}
+
+std::string ToBytes(const CarriedParcel& parcel) {
+  Packer packer;
+  packer.Add(parcel.id);
+  packer.Add(parcel.samples);
+  packer.Add(parcel.field_loads);
+  packer.Add(parcel.failure);
+  packer.AddText(parcel.reason);
+  packer.AddText(parcel.file);
+  packer.Add(static_cast<uint64_t>(parcel.travellers.size()));
+  size_t color = 0;
+  for (const render::Traveller& traveller : parcel.travellers) {
+    const bool arrived = traveller.owner == render::kArrived;
+    packer.Add(arrived);
+    if (arrived) {
+      packer.Add(parcel.colors.at(color++));
+    } else {
+      AddTraveller(traveller, &packer);
+    }
+  }
+  return packer.Take();
+}
+
+CarriedParcel CarriedParcelFromBytes(const std::string& bytes) {
+  Unpacker unpacker(bytes);
+  CarriedParcel parcel;
+  parcel.id = unpacker.Take<uint64_t>();
+  parcel.samples = unpacker.Take<int64_t>();
+  parcel.field_loads = unpacker.Take<int64_t>();
+  parcel.failure = unpacker.Take<CarriedParcel::Failure>();
+  parcel.reason = unpacker.TakeText();
+  parcel.file = unpacker.TakeText();
+  const size_t n = unpacker.TakeCount(sizeof(bool));
+  for (size_t i = 0; i < n; ++i) {
+    render::Traveller traveller;
+    if (unpacker.Take<bool>()) {
+      traveller.owner = render::kArrived;
+      parcel.colors.push_back(unpacker.Take<render::RayColor>());
+    } else {
+      traveller = TakeTraveller(&unpacker);
+    }
+    parcel.travellers.push_back(traveller);
+  }
+  unpacker.End();
+  return parcel;
+}
+
+}  // namespace skyquilt::coordinator

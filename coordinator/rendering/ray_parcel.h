@@ -1,0 +1,41 @@
+// Rays on their way between ranks, as bytes. All ranks run the same program on machines of one byte order.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/render/paged_rays.h"
+
+namespace skyquilt::coordinator {
+
+// To a rank: take these rays on.
+struct RayParcel {
+  uint64_t id = 0;
+  render::EngineOptions options;
+  std::vector<render::Ray> rays;
+  std::vector<render::Traveller> travellers;  // one per ray
+};
+
+// Back from it: in the order of the parcel's rays.
+struct CarriedParcel {
+  enum class Failure : uint8_t { kNone, kUsage, kInput, kInterrupted };
+
+  uint64_t id = 0;
+  int64_t samples = 0;
+  int64_t field_loads = 0;                    // of the rank, so far
+  std::vector<render::Traveller> travellers;  // of arrived ones only `owner` counts
+  std::vector<render::RayColor> colors;       // of arrived ones, in order
+  Failure failure = Failure::kNone;           // with it no rays come back
+  std::string reason;
+  std::string file;  // that it concerns
+};
+
+// Rays of one camera share most numbers, and fresh travellers need none: 24 bytes per ray then, at most 152.
+std::string ToBytes(const RayParcel& parcel);
+std::string ToBytes(const CarriedParcel& parcel);
+// Throw std::runtime_error on bytes that are not theirs.
+RayParcel RayParcelFromBytes(const std::string& bytes);
+CarriedParcel CarriedParcelFromBytes(const std::string& bytes);
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,33 @@
+#include "coordinator/rendering/scene_session.h"
+
+#include "coordinator/rendering/serve_rays.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+
+namespace skyquilt::coordinator {
+
+SceneSession::SceneSession(comm::Communicator& comm, const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet)
+    : threads_(options.threads) {
+  if (comm.size() > 1) farm_ = std::make_unique<RayFarm>(comm, RenderingSetup(scene_h5, options, verbose, quiet));
+  scene_ = std::make_unique<render::Scene>(render::Scene::Load(scene_h5, {.memory_bytes = options.MemoryLimitBytes(), .service = farm_.get()}));
+}
+
+SceneSession::~SceneSession() {
+  const auto count = [](int64_t n) { return base::FormatCount(static_cast<double>(n)); };
+  const int64_t fields = static_cast<int64_t>(scene_->info().blocks.size()) + 1;
+  if (farm_ == nullptr) {
+    if (scene_->field_loads() > fields) {
+      spdlog::info("fields were loaded {} times, because not all fit in memory: --memory sets how much may be used", scene_->field_loads());
+    }
+    return;
+  }
+  const FarmStatistics& s = farm_->statistics();
+  if (s.rays == 0) return;
+  spdlog::info(
+      "{} rays rendered by {} rank(s) in {} group(s) that each hold the scene: {}B sent, {}B received, {:.0f} bytes per ray, {} handovers, "
+      "{} fields loaded",
+      count(s.rays), s.ranks, s.groups, count(s.bytes_sent), count(s.bytes_received),
+      static_cast<double>(s.bytes_sent + s.bytes_received) / static_cast<double>(s.rays), count(s.handovers), s.field_loads);
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,124 @@
+#include "coordinator/rendering/serve_rays.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "coordinator/rendering/block_shares.h"
+#include "coordinator/rendering/ray_parcel.h"
+#include "coordinator/scheduler/coordinate.h"
+#include "coordinator/scheduler/crew.h"
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/base/system.h"
+#include "core/base/thread_pool.h"
+#include "core/render/paged_rays.h"
+#include "core/render/scene_file.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+using nlohmann::json;
+
+// This rank's part of a scene.
+class RayServer {
+ public:
+  RayServer(const std::filesystem::path& scene_h5, const json& part)
+      : threads_(part.at("threads").get<int>()),
+        store_(OpenStore(scene_h5, part.at("memory_bytes").get<double>())),
+        segments_(Outlines()),
+        rays_(store_, segments_, threads_),
+        number_(part.at("number").get<int>()),
+        owner_(part.at("owner").get<std::vector<int>>()) {
+    SKYQUILT_CHECK(owner_.size() == static_cast<size_t>(store_.size()), "all ranks see the same scene");
+  }
+
+  CarriedParcel Carry(RayParcel parcel) {
+    CarriedParcel carried{.id = parcel.id, .travellers = {}, .colors = {}, .reason = {}, .file = {}};
+    try {
+      for (render::Traveller& traveller : parcel.travellers) traveller.owner = number_;
+      carried.samples = rays_.Continue(parcel.rays, parcel.travellers, parcel.options, number_, Owner());
+      for (const render::Traveller& traveller : parcel.travellers) {
+        if (traveller.owner == render::kArrived) carried.colors.push_back(render::Finished(traveller.state));
+      }
+      carried.travellers = std::move(parcel.travellers);
+    } catch (const base::Interrupted&) {
+      carried.failure = CarriedParcel::Failure::kInterrupted;
+    } catch (const base::UsageError& error) {
+      carried.failure = CarriedParcel::Failure::kUsage;
+      carried.reason = error.what();
+    } catch (const base::InputError& error) {
+      carried.failure = CarriedParcel::Failure::kInput;
+      carried.reason = error.what();
+      carried.file = error.file().string();
+    } catch (const std::exception& error) {
+      carried.failure = CarriedParcel::Failure::kInput;
+      carried.reason = error.what();
+    }
+    carried.field_loads = store_.loads();
+    return carried;
+  }
+
+ private:
+  render::PagedRays::Owner Owner() const {
+    const bool alone = std::all_of(owner_.begin(), owner_.end(), [this](int number) { return number == number_; });
+    if (alone) return {};
+    return [this](std::span<const int> blocks) { return OwnerOf(owner_, blocks, number_); };
+  }
+  static render::FieldStore OpenStore(const std::filesystem::path& scene_h5, double memory_bytes) {
+    checkpoint::ArchiveReader reader = render::OpenScene(scene_h5);
+    const bool hard = render::BordersOf(reader) == render::Borders::kHard;
+    return {std::move(reader), scene_h5, memory_bytes, hard};
+  }
+  std::vector<const render::TrainedField*> Outlines() const {
+    std::vector<const render::TrainedField*> blocks;
+    for (int k = 0; k < store_.size(); ++k) blocks.push_back(&store_.block(k));
+    return blocks;
+  }
+
+  base::ThreadPool threads_;
+  render::FieldStore store_;
+  render::RaySegments segments_;
+  render::PagedRays rays_;
+  int number_;
+  std::vector<int> owner_;
+};
+
+}  // namespace
+
+std::string RenderingSetup(const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet) {
+  const json setup = {{"scene", std::filesystem::absolute(scene_h5).string()},
+                      {"threads", options.threads},
+                      {"memory_gb", options.memory_gb},
+                      {"verbose", verbose},
+                      {"quiet", quiet}};
+  return setup.dump();
+}
+
+void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
+  ServeCrew(comm, [&](json& hello) {
+    const json setup = json::parse(setup_text);
+    base::InitLog(setup.at("verbose").get<bool>(), "rank " + std::to_string(comm.rank()));
+    if (setup.at("quiet").get<bool>()) spdlog::set_level(spdlog::level::warn);
+    base::Progress::SetQuiet(true);
+    RunOptions options;
+    options.threads = setup.at("threads").get<int>();
+    options.memory_gb = setup.at("memory_gb").get<double>();
+    const std::filesystem::path scene_h5 = setup.at("scene").get<std::string>();
+    // Found out before rank 0 counts on this rank.
+    if (!std::filesystem::exists(scene_h5)) throw base::InputError(scene_h5, "no such file", "All ranks must see the same project folder");
+    hello["threads"] = options.UsableThreads();
+    hello["memory_bytes"] = options.MemoryLimitBytes();
+    RayServer server(scene_h5, json::parse(Enlist(comm, hello, kTagPart)));
+    while (true) {
+      const comm::Message message = WaitForMessage(comm);
+      if (message.tag == kTagDone) return;
+      if (message.tag != kTagRays) continue;
+      comm.Send(0, kTagCarried, ToBytes(server.Carry(RayParcelFromBytes(message.bytes))));
+      // Nothing moves while this rank renders the next parcel.
+      comm.Flush();
+    }
+  });
+}
+
+}  // namespace skyquilt::coordinator

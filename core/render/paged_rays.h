@@ -1,0 +1,47 @@
+// Renders rays through more fields than fit in memory: as far as the loaded ones carry, then with others.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/base/thread_pool.h"
+#include "core/render/field_store.h"
+#include "core/render/ray_engine.h"
+#include "core/render/ray_segments.h"
+
+namespace skyquilt::render {
+
+// A ray on its way through a scene.
+struct Traveller {
+  RayState state;
+  double at = 0.0;  // metres along the ray: what lies before is gathered
+  int owner = 0;    // who goes on with it; kArrived when nobody needs to
+};
+constexpr int kArrived = -1;
+
+class PagedRays {
+ public:
+  // Who renders where these blocks meet (a set of RaySegments): any numbers from 0. Empty: everything is for `me`.
+  using Owner = std::function<int(std::span<const int> blocks)>;
+
+  // All must outlive this.
+  PagedRays(FieldStore& store, const RaySegments& segments, base::ThreadPool& threads);
+
+  // Takes every ray on until it arrives or comes to a place of another owner than `me`; rays of others are left as they are. The result does
+  // not depend on memory, owners or threads. Returns the samples evaluated. Throws base::UsageError (memory too small), base::Interrupted.
+  int64_t Continue(std::span<const Ray> rays, std::span<Traveller> travellers, const EngineOptions& options, int me, const Owner& owner);
+
+ private:
+  void ForGroups(size_t n, const std::function<void(size_t begin, size_t end, int thread)>& body);
+  int64_t Carry(std::span<const Ray> rays, std::span<Traveller> travellers, const EngineOptions& options, std::span<const size_t> going,
+                std::span<const Window> windows);
+  int64_t RunTogether(std::span<const Ray> rays, std::span<Traveller> travellers, const EngineOptions& options);
+
+  FieldStore& store_;
+  const RaySegments& segments_;
+  base::ThreadPool& threads_;
+};
+
+}  // namespace skyquilt::render

@@ -16,7 +16,7 @@ namespace skyquilt::coordinator {
 namespace {
 
 struct Loaded {
-  render::TrainedField field;
+  render::TrainedField outline;
   brightness::Response response;  // this and what follows: of the context
   brightness::Luminance luminance;
   brightness::LuminanceState luminance_state;
@@ -32,7 +32,7 @@ Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, c
                           reader.DoubleAttribute("origin_longitude_deg") == origin.longitude_deg &&
                           reader.DoubleAttribute("origin_height_m") == origin.height_m;
   if (!same_place) throw base::InputError(file, "belongs to a survey with another origin", "Train this survey again with --restart");
-  Loaded loaded{render::GetField(reader, file, ""), {}, {}, {}, {}};
+  Loaded loaded{render::GetOutline(reader, file, ""), {}, {}, {}, {}};
   if (kind != "context") return loaded;
   loaded.response = brightness::GetResponse(reader, file);
   brightness::GetLuminance(reader, &loaded.luminance, &loaded.luminance_state);
@@ -45,10 +45,10 @@ Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, c
 void MergeScene(const MergeInput& input) {
   if (input.blocks.empty()) throw base::InputError(input.scene, "there is no trained block to merge", "Run `skyquilt train` first");
   const Loaded context = LoadTrained(input.context, "context", input.origin);
-  std::vector<Loaded> blocks;
+  std::vector<render::TrainedField> blocks;
   double gsd_m = std::numeric_limits<double>::infinity();
   for (const auto& [block, file] : input.blocks) {
-    blocks.push_back(LoadTrained(file, "block", input.origin));
+    blocks.push_back(LoadTrained(file, "block", input.origin).outline);
     gsd_m = std::min(gsd_m, block.gsd_m);
   }
 
@@ -65,8 +65,9 @@ void MergeScene(const MergeInput& input) {
   writer.SetAttribute("config", input.config_toml);
   writer.SetAttribute("config_hash", input.config_hash);
   writer.SetAttribute("blocks", static_cast<int64_t>(blocks.size()));
-  if (input.use_context) render::PutField(context.field, render::kContextPrefix, writer);
-  for (size_t i = 0; i < blocks.size(); ++i) render::PutField(blocks[i].field, render::BlockPrefix(static_cast<int64_t>(i)), writer);
+  if (input.use_context) render::PutFieldOf(context.outline, input.context, render::kContextPrefix, writer);
+  for (size_t i = 0; i < blocks.size(); ++i)
+    render::PutFieldOf(blocks[i], input.blocks[i].second, render::BlockPrefix(static_cast<int64_t>(i)), writer);
   writer.Commit(input.scene);
 }
 

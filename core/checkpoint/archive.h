@@ -28,6 +28,9 @@ class ArchiveWriter {
   void Put(const std::string& name, std::span<const double> values, const std::vector<int64_t>& shape = {});
   void Put(const std::string& name, std::span<const uint8_t> values, const std::vector<int64_t>& shape = {});
   void Put(const std::string& name, std::span<const int64_t> values, const std::vector<int64_t>& shape = {});
+  // An array of another archive, read when it is needed and not kept: what is joined need not fit in memory. The other file must stay as it is
+  // until Commit. Throws base::InputError as ArchiveReader does; fastest when the names sort so that each file's arrays stand together.
+  void PutCopy(const std::string& name, const std::filesystem::path& file, const std::string& array);
   void SetAttribute(const std::string& name, const std::string& value);
   void SetAttribute(const std::string& name, double value);
   void SetAttribute(const std::string& name, int64_t value);

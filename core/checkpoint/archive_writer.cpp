@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <set>
 #include <variant>
 
@@ -33,12 +35,59 @@ struct Array {
   const void* data = nullptr;
   std::vector<hsize_t> shape;
   size_t n_bytes = 0;
+  std::filesystem::path copied_from;  // instead of data: an array of another archive
+  std::string copied_array;
+};
+
+// Arrays of other archives; one file is open and one array in memory at a time.
+class Copies {
+ public:
+  const ArchiveReader& Reader(const std::filesystem::path& file) {
+    if (!reader_ || file != file_) {
+      reader_.reset();
+      reader_ = std::make_unique<ArchiveReader>(file);
+      file_ = file;
+    }
+    return *reader_;
+  }
+  // Good until the next call.
+  const void* Data(const Array& array) {
+    if (array.copied_from.empty()) return array.data;
+    const ArchiveReader& reader = Reader(array.copied_from);
+    switch (array.type) {
+      case ElementType::kFloat32:
+        values_ = reader.Floats(array.copied_array);
+        break;
+      case ElementType::kFloat64:
+        values_ = reader.Doubles(array.copied_array);
+        break;
+      case ElementType::kUint8:
+        values_ = reader.Bytes(array.copied_array);
+        break;
+      case ElementType::kInt64:
+        values_ = reader.Ints(array.copied_array);
+        break;
+    }
+    return std::visit([](const auto& values) -> const void* { return values.data(); }, values_);
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::unique_ptr<ArchiveReader> reader_;
+  std::variant<std::vector<float>, std::vector<double>, std::vector<uint8_t>, std::vector<int64_t>> values_;
 };
 
 using Attribute = std::variant<std::string, double, int64_t>;
 
 [[noreturn]] void Fail(const std::filesystem::path& file, const std::string& what) {
   throw InputError(file, what + " (" + HdfErrorText() + ")", kMendDisk);
+}
+
+ElementType ElementOf(const std::string& name) {
+  for (const ElementType type : {ElementType::kFloat32, ElementType::kFloat64, ElementType::kInt64}) {
+    if (ElementName(type) == name) return type;
+  }
+  return ElementType::kUint8;
 }
 
 // Halves the slowest dimensions until a chunk holds at most kMaxChunkBytes.
@@ -55,7 +104,7 @@ std::vector<hsize_t> ChunkShape(const Array& array) {
   return chunk;
 }
 
-void WriteArray(hid_t file, const std::string& name, const Array& array, const std::filesystem::path& path) {
+void WriteArray(hid_t file, const std::string& name, const Array& array, const void* data, const std::filesystem::path& path) {
   const Handle space = SimpleSpace(array.shape);
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   SKYQUILT_CHECK(creation.Valid() && H5Pset_obj_track_times(creation.id(), false) >= 0, HdfErrorText());
@@ -68,7 +117,7 @@ void WriteArray(hid_t file, const std::string& name, const Array& array, const s
   }
   Handle dataset(H5Dcreate2(file, name.c_str(), FileType(array.type), space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
   if (!dataset.Valid()) Fail(path, "cannot be written at array " + name);
-  if (array.n_bytes > 0 && H5Dwrite(dataset.id(), MemoryType(array.type), H5S_ALL, H5S_ALL, H5P_DEFAULT, array.data) < 0) {
+  if (array.n_bytes > 0 && H5Dwrite(dataset.id(), MemoryType(array.type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
     Fail(path, "cannot be written at array " + name);
   }
   if (!dataset.Close()) Fail(path, "cannot be written at array " + name);
@@ -177,6 +226,7 @@ struct ArchiveWriter::Impl {
   int version = 0;
   std::map<std::string, Array> arrays;
   std::map<std::string, Attribute> attributes;
+  mutable Copies copies;
 
   void Put(const std::string& name, ElementType type, const void* data, size_t n, const std::vector<int64_t>& shape) {
     SKYQUILT_CHECK(!name.empty() && name.front() != '/' && name.back() != '/' && name.find("//") == std::string::npos, "array name '" + name + "'");
@@ -185,7 +235,10 @@ struct ArchiveWriter::Impl {
       const bool clash = GroupsOf(other).contains(name) || GroupsOf(name).contains(other);
       SKYQUILT_CHECK(!clash, std::string("array ").append(name).append(" clashes with array ").append(other));
     }
-    Array array{type, data, {}, n * ElementBytes(type)};
+    Array array;
+    array.type = type;
+    array.data = data;
+    array.n_bytes = n * ElementBytes(type);
     size_t n_shape = 1;
     for (const int64_t size : shape) {
       SKYQUILT_CHECK(size >= 0, "array " + name + " has a negative size");
@@ -230,21 +283,21 @@ struct ArchiveWriter::Impl {
     for (const auto& [name, unused] : arrays) groups.merge(GroupsOf(name));
     WriteGroups(file.id(), groups, path);
     for (const auto& [name, array] : arrays) {
-      WriteArray(file.id(), name, array, path);
+      WriteArray(file.id(), name, array, copies.Data(array), path);
       if (outcome->error != 0) break;
     }
     if (!file.Close()) Fail(path, "cannot be written");
   }
 
-  // Reopens through the public reader and compares every byte with memory.
+  // Reopens through the public reader and compares every byte with what was put.
   void Verify(const std::filesystem::path& path) const {
     const ArchiveReader reader(path);
     bool same = reader.kind() == kind && reader.version() == version && reader.Names().size() == arrays.size() &&
                 reader.AttributeNames().size() == attributes.size();
     for (const auto& [name, array] : arrays) {
       if (!same) break;
-      const auto matches = [&array = array](const auto& values) {
-        return array.n_bytes == 0 || std::memcmp(values.data(), array.data, array.n_bytes) == 0;
+      const auto matches = [&array = array, this](const auto& values) {
+        return array.n_bytes == 0 || std::memcmp(values.data(), copies.Data(array), array.n_bytes) == 0;
       };
       const std::vector<int64_t> shape = reader.Shape(name);
       same = reader.TypeName(name) == ElementName(array.type) && std::equal(shape.begin(), shape.end(), array.shape.begin(), array.shape.end(),
@@ -288,6 +341,14 @@ void ArchiveWriter::Put(const std::string& name, std::span<const uint8_t> values
 }
 void ArchiveWriter::Put(const std::string& name, std::span<const int64_t> values, const std::vector<int64_t>& shape) {
   impl_->Put(name, ElementType::kInt64, values.data(), values.size(), shape);
+}
+void ArchiveWriter::PutCopy(const std::string& name, const std::filesystem::path& file, const std::string& array) {
+  const ArchiveReader& reader = impl_->copies.Reader(file);
+  const std::vector<int64_t> shape = reader.Shape(array);
+  const auto n = static_cast<size_t>(std::accumulate(shape.begin(), shape.end(), int64_t{1}, std::multiplies<>()));
+  impl_->Put(name, ElementOf(reader.TypeName(array)), nullptr, n, shape);
+  impl_->arrays.at(name).copied_from = file;
+  impl_->arrays.at(name).copied_array = array;
 }
 void ArchiveWriter::SetAttribute(const std::string& name, const std::string& value) {
   impl_->SetAttribute(name, value);

@@ -11,8 +11,8 @@ namespace {
 
 static_assert(std::is_same_v<HdfId, hid_t> && std::is_same_v<HdfSize, hsize_t> && std::is_same_v<int, herr_t>);
 
-std::mutex& LibraryMutex() {
-  static std::mutex mutex;
+std::recursive_mutex& LibraryMutex() {
+  static std::recursive_mutex mutex;
   return mutex;
 }
 

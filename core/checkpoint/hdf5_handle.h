@@ -20,7 +20,7 @@ class HdfLock {
   HdfLock();
 
  private:
-  std::lock_guard<std::mutex> lock_;
+  std::lock_guard<std::recursive_mutex> lock_;
 };
 
 class Handle {

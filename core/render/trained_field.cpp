@@ -10,6 +10,7 @@
 namespace skyquilt::render {
 namespace {
 
+constexpr const char* kArrays[] = {"grid", "networks", "occupied", "occupancy_depth"};
 constexpr const char* kMend = "Train it again with --restart";
 
 // Fixed order of the numbers that rebuild a field.
@@ -63,6 +64,11 @@ void PutField(const TrainedField& f, const std::string& prefix, checkpoint::Arch
   const std::vector<int64_t> shape = {f.occupancy.size[2], f.occupancy.size[1], f.occupancy.size[0]};
   writer.Put(prefix + "occupied", f.occupancy.occupied, shape);
   writer.Put(prefix + "occupancy_depth", f.occupancy.depth, shape);
+}
+
+void PutFieldOf(const TrainedField& outline, const std::filesystem::path& checkpoint, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
+  PutOutline(outline, prefix, writer);
+  for (const char* array : kArrays) writer.PutCopy(prefix + array, checkpoint, array);
 }
 
 TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct TrainedField {
 
 // Arrays under `prefix` ("" or "fields/r0c0/"). The field must outlive the writer's Commit.
 void PutField(const TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
+// A field that a checkpoint holds (under no prefix): its arrays are copied from there at Commit.
+void PutFieldOf(const TrainedField& outline, const std::filesystem::path& checkpoint, const std::string& prefix, checkpoint::ArchiveWriter& writer);
 // The same without the arrays.
 void PutOutline(const TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
 // Place and shape of a field, without its arrays. Throws base::InputError for one that cannot be.

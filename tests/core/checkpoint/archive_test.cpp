@@ -226,5 +226,47 @@ TEST(ArchiveReader, SurvivesDamageBehindAValidDigest) {
   EXPECT_GT(n_refused, 50);
 }
 
+TEST(ArchiveCopies, ArraysOfOtherFilesAreAsIfTheyHadBeenPut) {
+  const TemporaryFolder folder;
+  const Content content(300'000);
+  content.Writer().Commit(folder / "part.h5");
+  const auto joined = [&](bool copied) {
+    ArchiveWriter writer("scene", 1);
+    writer.SetAttribute("parts", 1);
+    for (const char* name : {"table/level0", "table/moments/first", "occupancy", "random", "none"}) {
+      if (copied) writer.PutCopy("0/" + std::string(name), folder / "part.h5", name);
+    }
+    if (!copied) {
+      writer.Put("0/table/level0", content.table);
+      writer.Put("0/table/moments/first", content.matrix, {2, 3});
+      writer.Put("0/occupancy", content.bits, {1, 3, 1});
+      writer.Put("0/random", content.numbers);
+      writer.Put("0/none", content.none);
+    }
+    const std::filesystem::path file = folder / (copied ? "copied.h5" : "put.h5");
+    writer.Commit(file);
+    return base::ReadFile(file);
+  };
+  EXPECT_TRUE(joined(true) == joined(false));
+}
+
+TEST(ArchiveCopies, SaysWhatIsMissing) {
+  const TemporaryFolder folder;
+  Content(10).Writer().Commit(folder / "part.h5");
+  ArchiveWriter writer("scene", 1);
+  EXPECT_THROW(writer.PutCopy("a", folder / "absent.h5", "random"), base::InputError);
+  EXPECT_THROW(writer.PutCopy("a", folder / "part.h5", "absent"), base::InputError);
+  // Gone between being named and being needed: nothing is written.
+  writer.PutCopy("a", folder / "part.h5", "random");
+  writer.PutCopy("b", folder / "part.h5", "occupancy");
+  ArchiveWriter other("scene", 1);
+  Content(10).Writer().Commit(folder / "second.h5");
+  other.PutCopy("a", folder / "part.h5", "random");
+  other.PutCopy("b", folder / "second.h5", "random");
+  std::filesystem::remove(folder / "part.h5");
+  EXPECT_THROW(other.Commit(folder / "joined.h5"), base::InputError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "joined.h5"));
+}
+
 }  // namespace
 }  // namespace skyquilt::checkpoint

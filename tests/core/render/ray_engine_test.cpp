@@ -8,36 +8,10 @@
 
 #include "core/base/random.h"
 #include "core/render/march.h"
+#include "tests/support/random_field.h"
 
 namespace skyquilt::render {
 namespace {
-
-TrainedField RandomField(uint64_t seed, const Eigen::Vector3d& low, const Eigen::Vector3d& high, double margin_m, double density_bias) {
-  TrainedField f;
-  f.core_min_enu = low;
-  f.core_max_enu = high;
-  f.margin_m = margin_m;
-  const Eigen::Vector3d margin(margin_m, margin_m, 0.0);
-  f.map = encoding::SpaceMap::Box(low - margin, high + margin);
-  f.step_m = 0.25;
-  f.config.grid.levels = 4;
-  f.config.grid.log2_table_size = 10;
-  f.config.grid.base_resolution = 4;
-  f.config.grid.finest_resolution = 32;
-  for (int axis = 0; axis < 3; ++axis) f.config.grid.extent[axis] = std::min(1.0, f.map.extent()[axis]);
-  f.config.hidden = 16;
-  f.config.density_bias = density_bias;
-  f.occupancy = field::OccupancyGrid::Make(f.config.grid.extent, 0.5 * f.map.units_per_metre(), 100'000);
-  base::Random random(seed);
-  const field::HashField shape(f.config);
-  f.grid.resize(static_cast<size_t>(shape.GridParameters()));
-  f.networks.resize(static_cast<size_t>(shape.NetworkParameters()));
-  shape.Initialize(random, f.grid, f.networks);
-  for (float& value : f.grid) value = 4.0F * (random.Uniform() - 0.5F);
-  for (uint8_t& cell : f.occupancy.occupied) cell = random.Uniform() < 0.7F ? 1 : 0;
-  f.Finish();
-  return f;
-}
 
 struct Plain {
   double rgb[3] = {0, 0, 0};

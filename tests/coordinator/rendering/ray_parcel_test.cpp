@@ -1,0 +1,97 @@
+#include "coordinator/rendering/ray_parcel.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/random.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+using render::Ray;
+using render::Traveller;
+
+RayParcel Parcel(int n, bool one_camera, bool fresh, uint64_t seed) {
+  base::Random random(seed);
+  RayParcel parcel{.id = seed, .options = {.step_scale = 2.0, .concealing = render::Concealing::kGain}, .rays = {}, .travellers = {}};
+  for (int i = 0; i < n; ++i) {
+    Ray ray;
+    ray.origin_enu = one_camera ? Eigen::Vector3d(1.0, 2.0, 3.0) : Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal());
+    ray.direction_enu = {random.Normal(), random.Normal(), random.Normal()};
+    ray.pixel_radius = 0.001F;
+    parcel.rays.push_back(ray);
+    Traveller traveller;
+    if (!fresh) {
+      traveller.at = random.Uniform(0.1, 9.0);
+      traveller.state.transmittance = 0.5;
+      traveller.state.rgb_srgb[1] = 0.25F;
+      traveller.state.depth_front = 4.0F;
+      traveller.state.light_passed = 0.75F;
+      traveller.owner = i % 3;
+    }
+    parcel.travellers.push_back(traveller);
+  }
+  return parcel;
+}
+
+RC_GTEST_PROP(RayParcelProperty, TravelsUnchanged, ()) {
+  const RayParcel sent =
+      Parcel(*rc::gen::inRange(0, 20), *rc::gen::arbitrary<bool>(), *rc::gen::arbitrary<bool>(), *rc::gen::inRange<uint64_t>(1, 99));
+  const RayParcel got = RayParcelFromBytes(ToBytes(sent));
+  RC_ASSERT(got.id == sent.id);
+  RC_ASSERT(got.options.step_scale == sent.options.step_scale);
+  RC_ASSERT(got.options.colour_threshold == sent.options.colour_threshold);
+  RC_ASSERT(got.options.concealing == sent.options.concealing);
+  RC_ASSERT(got.rays.size() == sent.rays.size());
+  for (size_t i = 0; i < sent.rays.size(); ++i) {
+    RC_ASSERT(got.rays[i].origin_enu == sent.rays[i].origin_enu);
+    RC_ASSERT(got.rays[i].direction_enu == sent.rays[i].direction_enu);
+    RC_ASSERT(got.rays[i].t_near == sent.rays[i].t_near);
+    RC_ASSERT(got.rays[i].t_far == sent.rays[i].t_far);
+    RC_ASSERT(got.rays[i].pixel_radius == sent.rays[i].pixel_radius);
+    RC_ASSERT(got.travellers[i].at == sent.travellers[i].at);
+    RC_ASSERT(got.travellers[i].state.transmittance == sent.travellers[i].state.transmittance);
+    RC_ASSERT(got.travellers[i].state.rgb_srgb[1] == sent.travellers[i].state.rgb_srgb[1]);
+    RC_ASSERT(got.travellers[i].state.light_passed == sent.travellers[i].state.light_passed);
+    RC_ASSERT(std::isnan(sent.travellers[i].state.depth_front) || got.travellers[i].state.depth_front == sent.travellers[i].state.depth_front);
+  }
+}
+
+RC_GTEST_PROP(RayParcelProperty, ComesBackUnchanged, ()) {
+  CarriedParcel sent{.id = 7, .samples = 123, .field_loads = 4, .travellers = {}, .colors = {}, .reason = "why", .file = "scene.h5"};
+  const int n = *rc::gen::inRange(0, 20);
+  for (int i = 0; i < n; ++i) {
+    Traveller traveller;
+    traveller.owner = *rc::gen::inRange(-1, 3);
+    traveller.at = i;
+    sent.travellers.push_back(traveller);
+    if (traveller.owner == render::kArrived) sent.colors.push_back({.opacity = 0.01F * static_cast<float>(i)});
+  }
+  const CarriedParcel got = CarriedParcelFromBytes(ToBytes(sent));
+  RC_ASSERT(got.id == 7U && got.samples == 123 && got.field_loads == 4 && got.reason == "why" && got.file == "scene.h5");
+  RC_ASSERT(got.travellers.size() == sent.travellers.size() && got.colors.size() == sent.colors.size());
+  for (size_t i = 0; i < sent.travellers.size(); ++i) RC_ASSERT(got.travellers[i].owner == sent.travellers[i].owner);
+  for (size_t i = 0; i < sent.colors.size(); ++i) RC_ASSERT(got.colors[i].opacity == sent.colors[i].opacity);
+}
+
+TEST(RayParcel, RaysOfOneCameraAreSmall) {
+  const size_t of_camera = ToBytes(Parcel(1000, true, true, 1)).size();
+  EXPECT_LT(of_camera, 1000U * 24U + 200U);
+  EXPECT_GT(ToBytes(Parcel(1000, false, false, 1)).size(), 3 * of_camera);
+}
+
+TEST(RayParcel, RefusesWhatIsNone) {
+  const std::string good = ToBytes(Parcel(5, false, false, 2));
+  for (size_t n = 0; n < good.size(); ++n) EXPECT_THROW(RayParcelFromBytes(good.substr(0, n)), std::runtime_error) << n;
+  EXPECT_THROW(RayParcelFromBytes(good + "x"), std::runtime_error);
+  std::string many = good;
+  // The count of rays follows id, options and two flags.
+  for (size_t i = 0; i < 8; ++i) many[8 + 8 + 4 + sizeof(render::Concealing) + 2 + i] = '\x7f';
+  EXPECT_THROW(RayParcelFromBytes(many), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace skyquilt::coordinator

@@ -19,17 +19,6 @@
 
 namespace skyquilt::coordinator {
 
-struct FarmStatistics {
-  int ranks = 0;   // that render
-  int groups = 0;  // each holding the scene
-  int64_t rays = 0;
-  int64_t handovers = 0;  // rays that went on to another rank
-  int64_t samples = 0;
-  int64_t field_loads = 0;
-  int64_t bytes_sent = 0;      // by rank 0
-  int64_t bytes_received = 0;  // by rank 0
-};
-
 class RayFarm : public render::RayService {
  public:
   // Calls the other ranks together (at least one); they open the scene file. Its destructor sends them back.
@@ -39,7 +28,7 @@ class RayFarm : public render::RayService {
   void Begin(const render::FieldStore& store, const render::RaySegments& segments) override;
   void Render(std::span<const render::Ray> rays, std::span<render::RayColor> out, const render::EngineOptions& options) override;
 
-  const FarmStatistics& statistics() const { return statistics_; }
+  render::RenderStatistics statistics() const override { return statistics_; }
 
  private:
   // Rays that wait for a rank, or are with one.
@@ -62,7 +51,7 @@ class RayFarm : public render::RayService {
   std::vector<RankGroup> groups_;
   uint64_t next_id_ = 1;
   std::map<int, int64_t> loads_;  // per rank
-  FarmStatistics statistics_;
+  render::RenderStatistics statistics_;
 };
 
 }  // namespace skyquilt::coordinator

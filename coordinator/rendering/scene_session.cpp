@@ -15,13 +15,13 @@ SceneSession::SceneSession(comm::Communicator& comm, const std::filesystem::path
 SceneSession::~SceneSession() {
   const auto count = [](int64_t n) { return base::FormatCount(static_cast<double>(n)); };
   const int64_t fields = static_cast<int64_t>(scene_->info().blocks.size()) + 1;
+  const render::RenderStatistics s = scene_->statistics();
   if (farm_ == nullptr) {
-    if (scene_->field_loads() > fields) {
-      spdlog::info("fields were loaded {} times, because not all fit in memory: --memory sets how much may be used", scene_->field_loads());
+    if (s.field_loads > fields) {
+      spdlog::info("fields were loaded {} times, because not all fit in memory: --memory sets how much may be used", s.field_loads);
     }
     return;
   }
-  const FarmStatistics& s = farm_->statistics();
   if (s.rays == 0) return;
   spdlog::info(
       "{} rays rendered by {} rank(s) in {} group(s) that each hold the scene: {}B sent, {}B received, {:.0f} bytes per ray, {} handovers, "

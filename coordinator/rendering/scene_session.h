@@ -23,8 +23,6 @@ class SceneSession {
 
   const render::Scene& scene() const { return *scene_; }
   base::ThreadPool& threads() { return threads_; }
-  // Null for one process alone.
-  const FarmStatistics* farm() const { return farm_ ? &farm_->statistics() : nullptr; }
 
  private:
   base::ThreadPool threads_;

@@ -278,6 +278,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   metrics.footprint_step_control = steps.control;
   progress.Finish(fmt::format("PSNR {:.2f} dB, coverage {:.1f} %", metrics.psnr, 100.0 * metrics.coverage));
   metrics.evaluate_seconds = SecondsSince(start);
+  metrics.rendering = scene.statistics();
   metrics.evaluate_peak_rss_bytes = base::PeakRssBytes();
   metrics.warnings = CollectWarnings(*input.survey, *input.blocks, log, metrics);
   for (const std::string& warning : metrics.warnings) spdlog::warn("{}", warning);

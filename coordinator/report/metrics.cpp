@@ -139,6 +139,15 @@ std::string MetricsJson(const Metrics& metrics) {
   json["threads"] = metrics.threads;
   json["evaluate_seconds"] = NumberOrNull(metrics.evaluate_seconds);
   json["evaluate_peak_rss_bytes"] = BytesOrNull(metrics.evaluate_peak_rss_bytes);
+  const render::RenderStatistics& rendering = metrics.rendering;
+  json["rendering"] = {{"ranks", rendering.ranks},
+                       {"groups", rendering.groups},
+                       {"rays", rendering.rays},
+                       {"samples", rendering.samples},
+                       {"field_loads", rendering.field_loads},
+                       {"handovers", rendering.handovers},
+                       {"bytes_sent", rendering.bytes_sent},
+                       {"bytes_received", rendering.bytes_received}};
   json["image_width"] = metrics.image_width;
   json["photos_registered"] = metrics.n_photos;
   json["photos_unregistered"] = metrics.n_unregistered;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/render/scene.h"
 #include "core/survey/survey.h"
 
 namespace skyquilt::report {
@@ -83,6 +84,7 @@ struct Metrics {
   int ranks = 1;
   int threads = 0;
   std::string config;  // TOML text of the training
+  render::RenderStatistics rendering;
 
   bool georeferenced = false;
   survey::GeoFit geo_fit;

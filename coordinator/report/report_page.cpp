@@ -211,6 +211,11 @@ std::string Facts(const ReportInput& input) {
   std::string html =
       "<section id=\"details\"><div class=\"heading\"><h2>How this was measured</h2></div><div class=\"facts-grid\"><dl class=\"card facts\">";
   const auto fact = [&](const char* name, const std::string& value) { html += fmt::format("<dt>{}</dt><dd>{}</dd>", name, value); };
+  const render::RenderStatistics& rendering = metrics.rendering;
+  if (rendering.bytes_sent > 0) {
+    fact("Rendered by", fmt::format("{} rank(s), {}B on the wire", rendering.ranks,
+                                    base::FormatCount(static_cast<double>(rendering.bytes_sent + rendering.bytes_received))));
+  }
   fact("Machine", EscapeHtml(metrics.machine));
   fact("Date", EscapeHtml(metrics.date));
   fact("Photos", fmt::format("{} registered, {} not registered, {} held out, {} scored", FormatInteger(metrics.n_photos),

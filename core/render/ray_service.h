@@ -16,6 +16,7 @@ class RayService {
   virtual void Begin(const FieldStore& store, const RaySegments& segments) = 0;
   // As RenderRays of the whole scene, to the bit. Throws base::Interrupted, and what the others met as base::UsageError or base::InputError.
   virtual void Render(std::span<const Ray> rays, std::span<RayColor> out, const EngineOptions& options) = 0;
+  virtual RenderStatistics statistics() const = 0;
 };
 
 }  // namespace skyquilt::render

@@ -58,7 +58,8 @@ struct Scene::Impl {
       service->Render(rays, out, options);
     } else {
       std::vector<Traveller> travellers(rays.size());
-      PagedRays(*store, *segments, threads).Continue(rays, travellers, options, 0, {});
+      statistics.samples += PagedRays(*store, *segments, threads).Continue(rays, travellers, options, 0, {});
+      statistics.rays += static_cast<int64_t>(rays.size());
       for (size_t i = 0; i < rays.size(); ++i) out[i] = Finished(travellers[i].state);
     }
     if (Conceals(look)) ShowConcealed(out);
@@ -69,6 +70,7 @@ struct Scene::Impl {
   std::unique_ptr<FieldStore> store;
   std::unique_ptr<RaySegments> segments;
   RayService* service = nullptr;
+  RenderStatistics statistics;
 };
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {}
@@ -79,8 +81,11 @@ const SceneInfo& Scene::info() const {
   return impl_->info;
 }
 
-int64_t Scene::field_loads() const {
-  return impl_->store->loads();
+RenderStatistics Scene::statistics() const {
+  if (impl_->service != nullptr) return impl_->service->statistics();
+  RenderStatistics statistics = impl_->statistics;
+  statistics.field_loads = impl_->store->loads();
+  return statistics;
 }
 
 Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& options) {

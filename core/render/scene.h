@@ -87,6 +87,18 @@ struct Appearance {
   std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};
 };
 
+// What answering rays has taken so far.
+struct RenderStatistics {
+  int ranks = 1;   // that render
+  int groups = 1;  // of ranks, each holding the scene
+  int64_t rays = 0;
+  int64_t samples = 0;
+  int64_t field_loads = 0;     // more than there are fields where memory is short, or several ranks hold one
+  int64_t handovers = 0;       // rays that went on to another rank
+  int64_t bytes_sent = 0;      // by the rank that asks
+  int64_t bytes_received = 0;  // by it
+};
+
 class RayService;
 
 struct SceneOptions {
@@ -103,8 +115,7 @@ class Scene {
   ~Scene();
 
   const SceneInfo& info() const;
-  // Fields loaded so far; more than there are where memory is short.
-  int64_t field_loads() const;
+  RenderStatistics statistics() const;
   // Any number of rays, 0 included; out has the same length. Deterministic, for any memory and service.
   // Throws base::Interrupted when cancelled, base::UsageError when not even the blocks that meet at one place fit in memory.
   void RenderRays(std::span<const Ray> rays, std::span<RayColor> out, const Appearance& appearance, base::ThreadPool& threads) const;

@@ -1,0 +1,103 @@
+"""A finished scene gives the same pictures, maps and scores alone, in little memory and on any number of ranks."""
+import hashlib
+import json
+import math
+import re
+import shutil
+import signal
+
+from harness import expect, main, metrics_of, small_survey, wait_for
+
+# What an evaluation measures of itself, not of the scene.
+OWN = ("evaluate_seconds", "evaluate_peak_rss_bytes", "date", "render_seconds", "rendering")
+
+
+def scores_of(project):
+    def stripped(value):
+        if isinstance(value, dict):
+            return {key: stripped(inner) for key, inner in value.items() if key not in OWN}
+        return [stripped(inner) for inner in value] if isinstance(value, list) else value
+
+    return stripped(metrics_of(project))
+
+
+def pictures_of(folder):
+    files = sorted(path for path in folder.rglob("*") if path.suffix in (".png", ".tiff", ".tif"))
+    expect(len(files) >= 6, f"{folder} holds only {[path.name for path in files]}")
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
+
+
+def bytes_of_fields(described):
+    """In memory while rendering; the occupancy's depths are for training only."""
+    fields = {}
+    for array in described["arrays"]:
+        name, _, what = array["name"].rpartition("/")
+        if what in ("grid", "networks", "occupied"):
+            fields[name] = fields.get(name, 0) + math.prod(array["shape"]) * (1 if what == "occupied" else 4)
+    return fields
+
+
+def test(skyquilt, folder):
+    survey = small_survey(skyquilt, folder)
+    project = folder / "project"
+    skyquilt.call("prepare", survey, "-o", project)
+    skyquilt.call("partition", project, "--blocks", "1x3", "--set", "partition.max_log2_table_size=14")
+    skyquilt.call("train", project, "--steps", "60", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096")
+    skyquilt.call("merge", project)
+    fields = bytes_of_fields(json.loads(skyquilt.call("info", project / "scene.h5", "--json")))
+    # For each of two ranks: not the whole scene, but the context and any two blocks that meet.
+    little = str(2 * int(sum(fields.values()) - 0.5 * min(fields.values())))
+
+    asked = ("--test", "--width", "120", "--ortho", "--dsm")
+    skyquilt.call("render", project, *asked, "-o", folder / "alone")
+    alone = pictures_of(folder / "alone")
+
+    for ranks in (2, 3, 4):
+        out = folder / f"ranks{ranks}"
+        text = skyquilt.call("render", project, *asked, "-o", out, ranks=ranks)
+        expect(pictures_of(out) == alone, f"{ranks} ranks render other pictures")
+        expect(re.search(rf"rays rendered by {ranks - 1} rank.* bytes per ray", text), f"the bytes on the wire are not reported:\n{text}")
+    text = skyquilt.call("render", project, *asked, "-o", folder / "shared", "--memory", little, ranks=3)
+    expect(pictures_of(folder / "shared") == alone, "ranks that share a scene render other pictures")
+    handovers = re.search(r"([\d.]+ ?[kM]?) handovers", text)
+    expect("1 group(s)" in text and handovers and handovers.group(1) != "0", f"no ray went from rank to rank:\n{text}")
+
+    text = skyquilt.call("render", project, *asked, "-o", folder / "tiny", "--memory", "100kB", status=2)
+    expect("--memory" in text and not list((folder / "tiny").glob("*.png")), f"too little memory is not explained:\n{text}")
+    text = skyquilt.call("render", project, *asked, "-o", folder / "tiny", "--memory", "100kB", ranks=3, status=2)
+    expect("--memory" in text and "rank" in text, f"too little memory of a rank is not explained:\n{text}")
+
+    skyquilt.call("evaluate", project)
+    expected = scores_of(project)
+    expect(expected["psnr"] > 10.0, f"PSNR {expected['psnr']}")
+    for ranks in (2, 4):
+        shutil.rmtree(project / "report")
+        skyquilt.call("evaluate", project, "--restart", ranks=ranks)
+        expect(scores_of(project) == expected, f"{ranks} ranks score otherwise: {scores_of(project)['psnr']} dB, alone {expected['psnr']} dB")
+        expect(metrics_of(project)["rendering"]["ranks"] == ranks - 1, "the report does not say who rendered")
+        expect(metrics_of(project)["rendering"]["bytes_received"] > 0, "the report does not count bytes on the wire")
+
+    hard = folder / "hard"
+    shutil.copytree(project, hard)
+    skyquilt.call("merge", hard, "--restart", "--set", "merge.borders=hard")
+    skyquilt.call("render", hard, *asked, "-o", folder / "hard_alone")
+    expect(pictures_of(folder / "hard_alone") != alone, "hard borders change nothing")
+    skyquilt.call("render", hard, *asked, "-o", folder / "hard_shared", "--memory", little, ranks=3)
+    expect(pictures_of(folder / "hard_shared") == pictures_of(folder / "hard_alone"), "ranks that share a scene with hard borders render other pictures")
+
+    process = skyquilt.start("render", project, "--test", "--width", "1600", "-o", folder / "stopped")
+    wait_for(lambda: list((folder / "stopped").glob("*.png")), "first picture", process)
+    process.send_signal(signal.SIGTERM)
+    text, _ = process.communicate(timeout=120)
+    expect(process.returncode == 130, f"a stopped rendering ends with {process.returncode}:\n{text}")
+
+    broken = folder / "broken"
+    shutil.copytree(project, broken)
+    scene = bytearray((broken / "scene.h5").read_bytes())
+    scene[len(scene) // 2] ^= 1
+    (broken / "scene.h5").write_bytes(scene)
+    text = skyquilt.call("render", broken, *asked, ranks=3, status=3)
+    expect("scene.h5" in text and "damaged" in text, f"the damaged scene is not named:\n{text}")
+
+
+main(test)

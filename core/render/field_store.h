@@ -37,7 +37,7 @@ class FieldStore {
   void Need(std::span<const int> blocks);
   void NeedAll();
 
-  int64_t loads() const { return loads_; }         // of fields so far
+  int64_t loads() const { return loads_; }         // of fields so far; grows whenever what is loaded changes
   double loaded_bytes() const { return in_use_; }  // in memory now
   double most_bytes() const { return most_; }      // at any time so far
 

@@ -36,13 +36,18 @@ void PagedRays::ForGroups(size_t n, const std::function<void(size_t begin, size_
 // Takes these rays through their windows, with what is loaded.
 int64_t PagedRays::Carry(std::span<const Ray> rays, std::span<Traveller> travellers, const EngineOptions& options, std::span<const size_t> going,
                          std::span<const Window> windows) {
+  if (store_.loads() != renderers_loads_ || !(options == renderers_options_)) {
+    renderers_.clear();
+    renderers_.resize(static_cast<size_t>(threads_.size()));
+    renderers_loads_ = store_.loads();
+    renderers_options_ = options;
+  }
   FieldSet fields;
   for (int k = 0; k < store_.size(); ++k) fields.blocks.push_back(&store_.block(k));
   if (store_.HasContext()) fields.context = &store_.context();
-  std::vector<std::unique_ptr<RayRenderer>> renderers(static_cast<size_t>(threads_.size()));
   std::atomic<int64_t> evaluated{0};
   ForGroups(going.size(), [&](size_t begin, size_t end, int thread) {
-    auto& renderer = renderers[static_cast<size_t>(thread)];
+    auto& renderer = renderers_[static_cast<size_t>(thread)];
     if (!renderer) renderer = std::make_unique<RayRenderer>(fields, options);
     thread_local std::vector<Ray> some;
     thread_local std::vector<RayState> states;

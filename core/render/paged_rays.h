@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,10 @@ class PagedRays {
   FieldStore& store_;
   const RaySegments& segments_;
   base::ThreadPool& threads_;
+  // One per thread, kept while the loaded fields and the options stay the same.
+  std::vector<std::unique_ptr<RayRenderer>> renderers_;
+  int64_t renderers_loads_ = -1;
+  EngineOptions renderers_options_;
 };
 
 }  // namespace skyquilt::render

@@ -26,6 +26,8 @@ struct EngineOptions {
   // What fields with this hidden light need.
   static EngineOptions For(const brightness::Luminance& luminance);
 
+  bool operator==(const EngineOptions&) const = default;
+
   double step_scale = 1.0;                    // marching step as a multiple of the field's own
   float colour_threshold = 1e-4F;             // samples of smaller weight get no colour
   Concealing concealing = Concealing::kNone;  // fields with luminance: fill RayColor::concealed_light

@@ -17,8 +17,9 @@
 namespace skyquilt::render {
 namespace {
 
-constexpr int kTile = 32;        // pixels
-constexpr int kBandTiles = 128;  // rays built at a time: memory does not grow with the image
+constexpr int kTile = 32;                // pixels
+constexpr int kBandTiles = 128;          // rays built at a time: memory does not grow with the image
+constexpr int kServiceBandTiles = 1024;  // others want more at a time, for they wait for each other at the end
 
 void Expose(const std::array<float, 3>& log_gain, std::span<RayColor> colors) {
   for (size_t c = 0; c < 3; ++c) {
@@ -58,7 +59,11 @@ struct Scene::Impl {
       service->Render(rays, out, options);
     } else {
       std::vector<Traveller> travellers(rays.size());
-      statistics.samples += PagedRays(*store, *segments, threads).Continue(rays, travellers, options, 0, {});
+      if (pager == nullptr || pager_threads != &threads) {
+        pager = std::make_unique<PagedRays>(*store, *segments, threads);
+        pager_threads = &threads;
+      }
+      statistics.samples += pager->Continue(rays, travellers, options, 0, {});
       statistics.rays += static_cast<int64_t>(rays.size());
       for (size_t i = 0; i < rays.size(); ++i) out[i] = Finished(travellers[i].state);
     }
@@ -69,6 +74,8 @@ struct Scene::Impl {
   Backdrop backdrop;
   std::unique_ptr<FieldStore> store;
   std::unique_ptr<RaySegments> segments;
+  std::unique_ptr<PagedRays> pager;  // for pager_threads
+  const base::ThreadPool* pager_threads = nullptr;
   RayService* service = nullptr;
   RenderStatistics statistics;
 };
@@ -148,9 +155,10 @@ std::vector<RayColor> Scene::RenderCamera(const camera::Camera& camera, const ge
   std::vector<size_t> pixels;
   std::vector<Ray> rays;
   std::vector<RayColor> colors;
-  for (int first = 0; first < n_tiles; first += kBandTiles) {
+  const int band_tiles = impl_->service != nullptr ? kServiceBandTiles : kBandTiles;
+  for (int first = 0; first < n_tiles; first += band_tiles) {
     pixels.clear();
-    for (int tile = first; tile < std::min(first + kBandTiles, n_tiles); ++tile) {
+    for (int tile = first; tile < std::min(first + band_tiles, n_tiles); ++tile) {
       const int x0 = tile % tile_columns * kTile, y0 = tile / tile_columns * kTile;
       for (int y = y0; y < std::min(y0 + kTile, camera.height); ++y) {
         for (int x = x0; x < std::min(x0 + kTile, camera.width); ++x) {

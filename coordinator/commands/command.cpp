@@ -34,6 +34,25 @@ void AddOverride(CLI::App& command, const Overrides& overrides, const std::strin
       help + " [" + key + "]");
 }
 
+namespace {
+
+// A duration that sets options in seconds.
+void AddDurationFlag(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::vector<std::string>& keys,
+                     const std::string& help) {
+  std::string names;
+  for (const std::string& key : keys) names += (names.empty() ? "" : ", ") + key;
+  command.add_option_function<std::string>(
+      flag,
+      [overrides, keys](const std::string& text) {
+        // Whole milliseconds: the text form of the option must read back to the same number.
+        const double seconds = std::round(ParseDurationSeconds(text) * 1000.0) / 1000.0;
+        for (const std::string& key : keys) overrides->push_back({key, std::to_string(seconds)});
+      },
+      help + " [" + names + "]");
+}
+
+}  // namespace
+
 void AddMemoryFlag(CLI::App& command, const Overrides& overrides) {
   command.add_option_function<std::string>(
       "--memory",
@@ -44,15 +63,10 @@ void AddMemoryFlag(CLI::App& command, const Overrides& overrides) {
 }
 
 void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
-  command.add_option_function<std::string>(
-      "--time-budget",
-      [overrides](const std::string& text) {
-        // Whole milliseconds: the text form of the option must read back to the same number.
-        const double seconds = std::round(ParseDurationSeconds(text) * 1000.0) / 1000.0;
-        overrides->push_back({"run.time_budget_s", std::to_string(seconds)});
-      },
-      "time for all training together, as 90s, 10min or 1h30m [run.time_budget_s]");
+  AddDurationFlag(command, overrides, "--time-budget", {"run.time_budget_s"}, "time for all training together, as 90s, 10min or 1h30m");
   AddOverride(command, overrides, "--steps", "train.steps", "train every block for exactly so many steps, instead of a time budget");
+  AddDurationFlag(command, overrides, "--checkpoint-every", {"context.checkpoint_every_s", "train.checkpoint_every_s"},
+                  "time between two checkpoints of a field, as 20s or 5min");
   AddMemoryFlag(command, overrides);
   AddOverride(command, overrides, "--seed", "run.seed", "start of every random sequence of the training");
   AddOverride(command, overrides, "--brightness", "brightness.correction",

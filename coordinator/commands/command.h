@@ -39,7 +39,7 @@ using Overrides = std::shared_ptr<std::vector<Override>>;
 void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help);
 // --memory.
 void AddMemoryFlag(CLI::App& command, const Overrides& overrides);
-// --time-budget, --steps, --memory, --seed, --brightness.
+// --time-budget, --steps, --checkpoint-every, --memory, --seed, --brightness.
 void AddTrainingFlags(CLI::App& command, const Overrides& overrides);
 // The project's own configuration as the lowest layer; empty when there is none yet.
 std::vector<std::filesystem::path> ProjectConfig(const Project& project);

@@ -44,9 +44,11 @@ void BlockQueue::Insert(const Waiting& entry) {
     return entry.block.cost > other.block.cost || (entry.block.cost == other.block.cost && entry.block.block < other.block.block);
   });
   waiting_.insert(position, entry);
+  shared_out_s_ = -1.0;
 }
 
-double BlockQueue::SecondsPerCost(double now_s, std::span<const double> busy_until_s) const {
+double BlockQueue::SecondsPerCost(double now_s, std::span<const double> busy_until_s) {
+  if (shared_out_s_ >= 0.0 && now_s - shared_out_s_ < 0.002 * (options_.deadline_s - now_s)) return seconds_per_cost_;
   const auto end = [&](double seconds_per_cost) {
     std::vector<double> durations;
     for (const Waiting& entry : waiting_) {
@@ -62,6 +64,8 @@ double BlockQueue::SecondsPerCost(double now_s, std::span<const double> busy_unt
     const double middle = 0.5 * (low + high);
     (end(middle) <= options_.deadline_s ? low : high) = middle;
   }
+  seconds_per_cost_ = low;
+  shared_out_s_ = now_s;
   return low;
 }
 

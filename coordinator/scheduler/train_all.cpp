@@ -133,6 +133,10 @@ class Training {
         waiting.push_back({block.id, name, block.cost, ledger_.Promised(name)});
       }
     }
+    if (comm_.size() - 1 > static_cast<int>(waiting.size())) {
+      spdlog::info("{} ranks train {} blocks: {} of them can only take over from slow ones; more and smaller blocks would use them", comm_.size() - 1,
+                   waiting.size(), comm_.size() - 1 - static_cast<int>(waiting.size()));
+    }
     QueueOptions options;
     options.steps = settings_.run.time_budget_s > 0.0 ? 0 : settings_.train.steps;
     options.has_deadline = settings_.run.time_budget_s > 0.0;

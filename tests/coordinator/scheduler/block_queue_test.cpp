@@ -108,6 +108,19 @@ TEST(BlockQueue, TimeBudgetIsSpentAndNotOverdrawn) {
   }
 }
 
+TEST(BlockQueue, WhatIsHandedOutTogetherIsSharedByCost) {
+  base::Random random(5);
+  BlockQueue queue(RandomBlocks(random, 300), {.has_deadline = true, .deadline_s = 1000.0, .n_workers = 50});
+  std::vector<double> busy;
+  double per_cost = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    const FieldJob job = queue.Take(0.001 * i, busy);
+    if (i == 0) per_cost = job.seconds / queue.Cost(job.block);
+    EXPECT_NEAR(job.seconds, per_cost * queue.Cost(job.block), 1e-6 * job.seconds);
+    busy.push_back(0.001 * i + job.seconds);
+  }
+}
+
 TEST(BlockQueue, EarlyFinishersLeaveTheirTimeToTheOthers) {
   BlockQueue queue({{0, "a", 1.0, 0.0}, {1, "b", 1.0, 0.0}}, {.has_deadline = true, .deadline_s = 100.0});
   EXPECT_NEAR(queue.Take(0.0, {}).seconds, 50.0, 1e-6);

@@ -18,6 +18,7 @@
 #include "worker/point_surface.h"
 #include "worker/starting_occupancy.h"
 #include "worker/surface_band.h"
+#include "worker/team_steps.h"
 #include "worker/tie_point_gains.h"
 
 namespace skyquilt::worker {
@@ -103,7 +104,7 @@ class Loop {
   // extras: the context's, null for blocks.
   Loop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, ContextExtras* extras,
        const Reporter& report)
-      : kind_(kind), job_(job), target_(target), trainer_(trainer), extras_(extras), report_(report) {}
+      : kind_(kind), job_(job), target_(target), trainer_(trainer), extras_(extras), report_(report), team_(job.team) {}
 
   TrainResult Run(SessionRecord record, const std::function<ContextFindings()>& find_out) {
     const TrainOptions& options = job_.options;
@@ -112,15 +113,20 @@ class Loop {
     int dropped_in_a_row = 0;
     field::TrainableState& state = trainer_.state();
     double rays_since = 0.0, samples_since = 0.0, since = 0.0, loss = 0.0;
+    const auto fraction_at = [&](int64_t done) {
+      return total_steps > 0 ? static_cast<double>(done) / static_cast<double>(total_steps) : record.seconds / std::max(1e-3, options.seconds);
+    };
+    if (!team_.leads()) team_.Begin(0.0);
     while (true) {
-      const double fraction =
-          total_steps > 0 ? static_cast<double>(state.step) / static_cast<double>(total_steps) : record.seconds / std::max(1e-3, options.seconds);
+      // Members hear from who leads, whose clock it is, with each shared step.
+      const double fraction = team_.together() ? team_.fraction() : fraction_at(state.step);
       if (fraction >= 1.0) break;
-      if (base::CancelRequested()) {
-        SaveSession(kind_, job_, target_, trainer_, record, extras_);
+      if (team_.together() ? team_.stop() : base::CancelRequested()) {
+        if (team_.leads()) SaveSession(kind_, job_, target_, trainer_, record, extras_);
         throw base::Interrupted();
       }
-      const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
+      if (team_.together()) team_.Announce(fraction_at(state.step + 1), false);
+      const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale, team_.together() ? &team_.share() : nullptr);
       if (state.step % kOccupancyEvery == 0) trainer_.UpdateOccupancy(state.step % kGrowEvery == 0 && fraction < kGrowUntil);
       if (step.finite) {
         dropped_in_a_row = 0;
@@ -136,8 +142,9 @@ class Loop {
         }
       }
       const double now = Now();
-      record.seconds += now - last;
-      since += now - last;
+      const double step_s = now - last;
+      record.seconds += step_s;
+      since += step_s;
       last = now;
       record.samples += step.n_samples;
       record.rays += step.n_rays;
@@ -149,11 +156,20 @@ class Loop {
         rays_since = samples_since = since = 0.0;
         last_report = now;
       }
-      if (now - last_save >= options.checkpoint_every_s) {
+      if (team_.together()) {
+        if (team_.GoesHome(step_s) && !team_.leads()) return Summarise(record, trainer_);
+      } else if (team_.TimeToSummon(step_s)) {
+        SaveSession(kind_, job_, target_, trainer_, record, extras_);
+        job_.team.summon();
+        team_.Begin(fraction_at(state.step));
+        last = last_save = Now();
+      }
+      if (team_.leads() && now - last_save >= options.checkpoint_every_s) {
         SaveSession(kind_, job_, target_, trainer_, record, extras_);
         last = last_save = Now();  // saving is not training
       }
     }
+    if (!team_.leads()) return Summarise(record, trainer_);
     record.complete = true;
     // Cells at the edge of view that no ray happened to cross would show whatever the tables hold there.
     field::OccupancyGrid& cells = target_.occupancy;
@@ -193,6 +209,7 @@ class Loop {
   FieldTrainer& trainer_;
   ContextExtras* extras_;
   const Reporter& report_;
+  TeamSteps team_;
 };
 
 void RequireJob(const TrainJob& job) {
@@ -208,6 +225,10 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   std::optional<SavedSession> saved = OpenSession("context", job);
   if (saved) {
     if (const std::optional<TrainResult> finished = FinishedResult(*saved)) return *finished;
+  }
+  if (job.team.number > 0 && !saved) {
+    throw base::InputError(job.checkpoint, "was just saved by the rank that leads, but cannot be read here",
+                           "All ranks must see the same project folder");
   }
   brightness::Response response = job.response;
   brightness::ResponseLearner learner(response, job.learn);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "worker/trainer.h"
 
@@ -17,6 +18,7 @@ struct FieldJob {
   double seconds = 0.0;      // budget when steps = 0; 0: the trainer's default
   double rate_factor = 1.0;  // multiplies the learning rate; halved with each attempt
   uint64_t seed = 1;
+  std::vector<int> team = {};  // ranks that share its steps, 0 first; empty: one alone
 };
 
 enum class Failure {

@@ -11,6 +11,7 @@
 #include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/train_ledger.h"
 #include "coordinator/scheduler/train_progress.h"
+#include "coordinator/scheduler/training_team.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
@@ -64,10 +65,16 @@ class Training {
                         {"quiet", input_.quiet}};
     Crew crew(comm_, kTagSetup, setup.dump());
     if (const std::string remark = PlanBrightness(*input_.survey, settings_.brightness).remark; !remark.empty()) spdlog::info("{}", remark);
-    const FieldTrainer trainer = MakeFieldTrainer(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
-    summary.fields.push_back(TrainContext(trainer, all_threads));
+    const FieldTrainer trainer = MakeFieldTrainer(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, comm_, pool);
     int per_host = 1;
-    const int threads = comm_.size() > 1 ? AssignThreads(crew, &per_host) : all_threads;
+    int threads = all_threads;
+    std::vector<int> team;
+    if (comm_.size() > 1) {
+      const std::vector<CrewMember> members = crew.Muster();
+      threads = AssignThreads(members, &per_host);
+      team = ChooseTeam(members, base::HostName(), settings_.run.context_ranks);
+    }
+    summary.fields.push_back(TrainContext(trainer, all_threads, team));
     RequireMemory(*input_.blocks, settings_, threads, per_host);
     TrainBlocks(trainer, threads, &summary);
     ledger_.SetSpent(Now(), true);
@@ -80,10 +87,10 @@ class Training {
   double Now() const { return spent_before_s_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
   // Tells each rank how many threads it has. Returns the smallest number, and in *per_host the largest number of ranks that share a machine.
-  int AssignThreads(Crew& crew, int* per_host) {
+  int AssignThreads(const std::vector<CrewMember>& members, int* per_host) {
     int fewest = 1 << 20;
     *per_host = 1;
-    for (const CrewMember& member : crew.Muster()) {
+    for (const CrewMember& member : members) {
       comm_.Send(member.rank, kTagThreads, std::to_string(member.threads));
       fewest = std::min(fewest, member.threads);
       *per_host = std::max(*per_host, member.sharing);
@@ -91,7 +98,7 @@ class Training {
     return fewest;
   }
 
-  FieldOutcome TrainContext(const FieldTrainer& trainer, int threads) {
+  FieldOutcome TrainContext(const FieldTrainer& trainer, int threads, const std::vector<int>& team) {
     QueueOptions options;
     options.steps = ContextSteps(settings_);
     options.seconds = settings_.run.time_budget_s > 0.0 ? settings_.run.time_budget_s * settings_.run.context_share : settings_.context.seconds;
@@ -102,7 +109,8 @@ class Training {
     TrainProgress progress("context", 1.0, 1);
     while (queue.HasWaiting()) {
       base::ThrowIfCancelled();
-      const FieldJob job = queue.Take(Now(), {});
+      FieldJob job = queue.Take(Now(), {});
+      job.team = team;
       const auto report = [&](const worker::TrainStatus& status) {
         progress.Update(job, 1.0, status);
         ledger_.SetSpent(Now(), false);
@@ -232,7 +240,7 @@ void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
     hello["threads"] = settings.run.UsableThreads();
     const int threads = std::stoi(Enlist(comm, hello, kTagThreads));
     base::ThreadPool pool(threads);
-    ServeBlocks(comm, MakeFieldTrainer(survey, blocks, pixels, settings, project, setup.at("config_hash").get<std::string>(), pool), threads);
+    ServeBlocks(comm, MakeFieldTrainer(survey, blocks, pixels, settings, project, setup.at("config_hash").get<std::string>(), comm, pool), threads);
   });
 }
 

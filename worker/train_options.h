@@ -22,7 +22,7 @@ struct TrainOptions {
   double network_l2 = 1e-6;
   double distortion = 1e-2;
   double empty_ray_share = 0.05;
-  double checkpoint_every_s = 60.0;
+  double checkpoint_every_s = 20.0;
   std::string coupling = "guided";
 
   void Visit(config::OptionVisitor& v);

@@ -18,7 +18,7 @@ struct ScheduleBenchOptions {
   double speed_spread = 0.05;            // of the logarithm of ranks' speeds
   double stragglers = 0.01;              // share of ranks with half the speed
   double failing = 0.01;                 // share of ranks that are lost at some moment of the job
-  double checkpoint_every_s = 60.0;      // work since the last one is lost with the job
+  double checkpoint_every_s = 20.0;      // work since the last one is lost with the job
   double restart_s = 30.0;               // until all ranks train again: waiting, launching, loading
   double skip_s = 0.2;                   // to find that a block is complete already, after a restart
   double move_s = 5.0;                   // to save a slow rank's block, and again to go on with it on another

@@ -26,7 +26,7 @@ class RayServer {
   RayServer(const std::filesystem::path& scene_h5, const json& part)
       : threads_(part.at("threads").get<int>()),
         store_(OpenStore(scene_h5, part.at("memory_bytes").get<double>())),
-        segments_(Outlines()),
+        segments_(store_.Blocks()),
         rays_(store_, segments_, threads_),
         number_(part.at("number").get<int>()),
         owner_(part.at("owner").get<std::vector<int>>()) {
@@ -69,11 +69,6 @@ class RayServer {
     checkpoint::ArchiveReader reader = render::OpenScene(scene_h5);
     const bool hard = render::BordersOf(reader) == render::Borders::kHard;
     return {std::move(reader), scene_h5, memory_bytes, hard};
-  }
-  std::vector<const render::TrainedField*> Outlines() const {
-    std::vector<const render::TrainedField*> blocks;
-    for (int k = 0; k < store_.size(); ++k) blocks.push_back(&store_.block(k));
-    return blocks;
   }
 
   base::ThreadPool threads_;

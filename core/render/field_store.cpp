@@ -27,6 +27,12 @@ FieldStore::Entry FieldStore::Outline(const std::string& prefix) const {
   return entry;
 }
 
+std::vector<const TrainedField*> FieldStore::Blocks() const {
+  std::vector<const TrainedField*> blocks;
+  for (const Entry& entry : entries_) blocks.push_back(entry.field.get());
+  return blocks;
+}
+
 bool FieldStore::AllFit() const {
   double bytes = context_.bytes;
   for (const Entry& entry : entries_) bytes += entry.bytes;

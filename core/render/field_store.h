@@ -22,6 +22,7 @@ class FieldStore {
   bool HasContext() const { return has_context_; }
   // Blocks 0 to size() - 1. Without arrays unless IsLoaded. The reference stays good; what it refers to changes with Need.
   const TrainedField& block(int k) const { return *entries_[static_cast<size_t>(k)].field; }
+  std::vector<const TrainedField*> Blocks() const;
   const TrainedField& context() const { return *context_.field; }
   bool IsLoaded(int k) const { return entries_[static_cast<size_t>(k)].loaded; }
   int64_t Parameters(int k) const { return entries_[static_cast<size_t>(k)].parameters; }

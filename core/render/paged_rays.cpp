@@ -14,7 +14,7 @@ namespace {
 
 constexpr int64_t kPagedGroup = 1024;  // one task
 
-// Segments of many rays in one list.
+// One ray's way through the scene.
 struct Way {
   std::vector<RaySegment> segments;
   size_t at = 0;  // the segment where the ray is
@@ -43,7 +43,7 @@ int64_t PagedRays::Carry(std::span<const Ray> rays, std::span<Traveller> travell
     renderers_options_ = options;
   }
   FieldSet fields;
-  for (int k = 0; k < store_.size(); ++k) fields.blocks.push_back(&store_.block(k));
+  fields.blocks = store_.Blocks();
   if (store_.HasContext()) fields.context = &store_.context();
   std::atomic<int64_t> evaluated{0};
   ForGroups(going.size(), [&](size_t begin, size_t end, int thread) {
@@ -87,21 +87,17 @@ int64_t PagedRays::Continue(std::span<const Ray> rays, std::span<Traveller> trav
       while (ways[i].at + 1 < ways[i].segments.size() && ways[i].segments[ways[i].at].t_far <= travellers[i].at) ++ways[i].at;
     }
   });
-  std::map<int, bool> mine;  // per set
-  const auto is_mine = [&](int set) {
-    const auto at = mine.find(set);
-    if (at != mine.end()) return at->second;
-    return mine[set] = !owner || owner(segments_.Blocks(set)) == me;
+  std::map<int, int> owners;  // per set
+  const auto owner_of = [&](int set) {
+    const auto at = owners.find(set);
+    if (at != owners.end()) return at->second;
+    return owners[set] = owner ? owner(segments_.Blocks(set)) : me;
   };
   // Who goes on with a ray that stands at its next segment.
   const auto settle = [&](size_t i) {
-    Traveller& traveller = travellers[i];
     const Way& way = ways[i];
-    if (traveller.state.ended || way.at >= way.segments.size()) {
-      traveller.owner = kArrived;
-    } else {
-      traveller.owner = is_mine(way.segments[way.at].set) ? me : owner(segments_.Blocks(way.segments[way.at].set));
-    }
+    const bool arrived = travellers[i].state.ended || way.at >= way.segments.size();
+    travellers[i].owner = arrived ? kArrived : owner_of(way.segments[way.at].set);
   };
   for (size_t i = 0; i < n; ++i) {
     if (travellers[i].owner != kArrived) settle(i);
@@ -127,7 +123,7 @@ int64_t PagedRays::Continue(std::span<const Ray> rays, std::span<Traveller> trav
     const auto carries = [&](int set) {
       const auto at = carried.find(set);
       if (at != carried.end()) return at->second;
-      return carried[set] = is_mine(set) && loaded(set);
+      return carried[set] = owner_of(set) == me && loaded(set);
     };
     std::vector<size_t> going;
     std::vector<Window> windows;

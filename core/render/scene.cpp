@@ -115,16 +115,14 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
   if (store.size() == 0) throw base::InputError(scene_h5, "holds no blocks", "Train at least one block, then merge again");
   info.min_enu = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   info.max_enu = -info.min_enu;
-  std::vector<const TrainedField*> blocks;
   for (int k = 0; k < store.size(); ++k) {
     const TrainedField& f = store.block(k);
-    blocks.push_back(&f);
     info.blocks.push_back({f.name, f.core_min_enu, f.core_max_enu, f.margin_m, store.Parameters(k), f.steps, f.seconds, f.samples});
     info.parameters += store.Parameters(k);
     info.min_enu = info.min_enu.cwiseMin(f.core_min_enu);
     info.max_enu = info.max_enu.cwiseMax(f.core_max_enu);
   }
-  impl.segments = std::make_unique<RaySegments>(std::move(blocks));
+  impl.segments = std::make_unique<RaySegments>(store.Blocks());
   if (store.HasContext()) {
     info.parameters += store.ContextParameters();
     info.context_seconds = store.context().seconds;

@@ -52,16 +52,11 @@ class PagedRaysTest : public ::testing::TestWithParam<std::tuple<double, bool, d
     WriteRandomScene(folder_ / "scene.h5", kRows, kColumns, margin_m, bias, true);
     store_ = std::make_unique<FieldStore>(checkpoint::ArchiveReader(folder_ / "scene.h5"), folder_ / "scene.h5", 0.0, hard);
     store_->NeedAll();
-    for (int k = 0; k < store_->size(); ++k) fields_.blocks.push_back(&store_->block(k));
+    fields_.blocks = store_->Blocks();
     fields_.context = &store_->context();
   }
 
   FieldStore Small(double memory_bytes) const { return {checkpoint::ArchiveReader(folder_ / "scene.h5"), folder_ / "scene.h5", memory_bytes, hard_}; }
-  static std::vector<const TrainedField*> Outlines(const FieldStore& store) {
-    std::vector<const TrainedField*> blocks;
-    for (int k = 0; k < store.size(); ++k) blocks.push_back(&store.block(k));
-    return blocks;
-  }
   std::vector<RayColor> Whole(const std::vector<Ray>& rays) {
     std::vector<RayColor> out(rays.size());
     RenderRays(fields_, rays, out, {}, threads_);
@@ -102,7 +97,7 @@ TEST_P(PagedRaysTest, LittleMemoryGivesTheSameBits) {
   const double enough = store_->ContextBytes() + 4.2 * store_->Bytes(0);
   FieldStore small = Small(enough);
   ASSERT_FALSE(small.AllFit());
-  const RaySegments segments(Outlines(small));
+  const RaySegments segments(small.Blocks());
   std::vector<Traveller> travellers(rays.size());
   PagedRays(small, segments, threads_).Continue(rays, travellers, {}, 0, {});
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -121,7 +116,7 @@ TEST_P(PagedRaysTest, ManyOwnersGiveTheSameBits) {
   std::vector<std::unique_ptr<RaySegments>> segments;
   for (int i = 0; i < kOwners; ++i) {
     stores.push_back(std::make_unique<FieldStore>(Small(0.0)));
-    segments.push_back(std::make_unique<RaySegments>(Outlines(*stores.back())));
+    segments.push_back(std::make_unique<RaySegments>(stores.back()->Blocks()));
   }
   const auto owner_for = [](int me) { return [me](std::span<const int> blocks) { return blocks.empty() ? me : blocks.front() % kOwners; }; };
   std::vector<Traveller> travellers(rays.size());
@@ -158,7 +153,7 @@ TEST_P(PagedRaysTest, ManyOwnersGiveTheSameBits) {
 
 TEST_P(PagedRaysTest, TooLittleMemorySaysHowMuchIsNeeded) {
   FieldStore tiny = Small(0.5 * store_->Bytes(0));
-  const RaySegments segments(Outlines(tiny));
+  const RaySegments segments(tiny.Blocks());
   const std::vector<Ray> rays = SlantedRays(50, 6);
   std::vector<Traveller> travellers(rays.size());
   try {

@@ -1,4 +1,4 @@
-// Line charts as inline SVG, coloured by the page's style sheet (light and dark).
+// Line and point charts as inline SVG, coloured by the page's style sheet (light and dark).
 #pragma once
 
 #include <string>
@@ -11,6 +11,9 @@ struct Curve {
   std::string name;
   std::vector<std::pair<double, double>> points;  // x, y; non-finite points are left out
   bool emphasised = false;
+  bool line = true;
+  bool marks = false;                    // a mark on every point; all points are then drawn
+  std::vector<std::string> labels = {};  // of the marks, by point; may be empty
 };
 
 struct ChartOptions {
@@ -18,7 +21,8 @@ struct ChartOptions {
   std::string x_label;  // with unit
   std::string y_label;
   bool log_y = false;       // points with y <= 0 are left out
-  size_t max_points = 240;  // per curve; longer ones are thinned by averaging neighbours
+  size_t max_points = 240;  // per curve without marks; longer ones are thinned by averaging neighbours
+  bool log_x = false;       // points with x <= 0 are left out
 };
 
 // A <figure>; says "no data" inside when no curve has a point.

@@ -8,20 +8,13 @@
 
 #include "coordinator/report/curve_chart.h"
 #include "coordinator/report/html.h"
+#include "coordinator/report/page_frame.h"
 #include "core/base/errors.h"
 #include "core/base/progress.h"
 
 namespace skyquilt::report {
 
 namespace {
-
-constexpr const char* kLogo =
-    "<svg class=\"logo\" viewBox=\"0 0 24 24\" aria-hidden=\"true\"><path class=\"q1\" d=\"M2 2h9v9H2z\"/><path class=\"q2\" d=\"M13 2h9v9h-9z\"/>"
-    "<path class=\"q3\" d=\"M2 13h9v9H2z\"/><path class=\"q4\" d=\"M13 13h9v9h-9z\"/></svg>";
-
-std::string Figure(const std::string& label, const std::string& value, const std::string& note, const char* css_class = "") {
-  return fmt::format("<div class=\"kpi {}\"><span>{}</span><strong>{}</strong><small>{}</small></div>", css_class, label, value, note);
-}
 
 std::string Duration(double seconds) {
   return std::isfinite(seconds) ? base::FormatDuration(seconds) : FormatFixed(seconds, 0);
@@ -30,38 +23,38 @@ std::string Duration(double seconds) {
 std::string Headline(const ReportInput& input) {
   const Metrics& metrics = *input.metrics;
   std::string html = "<section id=\"summary\" class=\"kpis\">";
-  html += Figure("PSNR, held-out photos", FormatFixed(metrics.psnr, 2, "dB"), "full frame " + FormatFixed(metrics.psnr_full_frame, 2, "dB"), "hero");
+  html += KeyFigure("PSNR, held-out photos", FormatFixed(metrics.psnr, 2, "dB"), "full frame " + FormatFixed(metrics.psnr_full_frame, 2, "dB"), true);
   if (!std::isnan(metrics.psnr_exif_gain)) {
-    html += Figure("PSNR with the EXIF gain alone", FormatFixed(metrics.psnr_exif_gain, 2, "dB"), "brightness as the tags state it");
+    html += KeyFigure("PSNR with the EXIF gain alone", FormatFixed(metrics.psnr_exif_gain, 2, "dB"), "brightness as the tags state it");
   }
   if (!std::isnan(metrics.psnr_right_half)) {
-    html += Figure("PSNR of right halves, as rendered", FormatFixed(metrics.psnr_right_half, 2, "dB"),
-                   FormatFixed(metrics.psnr_right_half_fitted, 2, "dB") + " with gains fitted to the left halves");
+    html += KeyFigure("PSNR of right halves, as rendered", FormatFixed(metrics.psnr_right_half, 2, "dB"),
+                      FormatFixed(metrics.psnr_right_half_fitted, 2, "dB") + " with gains fitted to the left halves");
   }
-  html += Figure("SSIM", FormatFixed(metrics.ssim, 3), "full frame " + FormatFixed(metrics.ssim_full_frame, 3));
-  html += Figure("Coverage", FormatPercent(metrics.coverage), fmt::format("of the pixels of {} held-out photos", metrics.photos.size()));
-  html += Figure("LPIPS", FormatFixed(metrics.lpips, 3), EscapeHtml(metrics.lpips_note));
+  html += KeyFigure("SSIM", FormatFixed(metrics.ssim, 3), "full frame " + FormatFixed(metrics.ssim_full_frame, 3));
+  html += KeyFigure("Coverage", FormatPercent(metrics.coverage), fmt::format("of the pixels of {} held-out photos", metrics.photos.size()));
+  html += KeyFigure("LPIPS", FormatFixed(metrics.lpips, 3), EscapeHtml(metrics.lpips_note));
   if (metrics.has_truth) {
-    html += Figure("Median depth error", FormatFixed(metrics.depth_median_abs_m, 2, "m"), "RMSE " + FormatFixed(metrics.depth_rmse_m, 2, "m"));
+    html += KeyFigure("Median depth error", FormatFixed(metrics.depth_median_abs_m, 2, "m"), "RMSE " + FormatFixed(metrics.depth_rmse_m, 2, "m"));
   }
-  html += Figure("Seam gap", FormatFixed(metrics.seam_psnr_gap_db, 2, "dB"),
-                 std::isfinite(metrics.seam_psnr_gap_db) ? "same textures inside " + FormatFixed(metrics.psnr_matched_interior_db, 2) +
-                                                               ", in seams " + FormatFixed(metrics.psnr_seam_db, 2, "dB")
-                                                         : "no seams were scored");
-  html += Figure("Training time", Duration(metrics.train_seconds),
-                 fmt::format("{} {}{}", metrics.ranks, metrics.ranks == 1 ? "process" : "ranks",
-                             metrics.threads > 0 ? fmt::format(", {} threads", metrics.threads) : ""));
-  html += Figure("Training speed", FormatLarge(metrics.samples_per_second), "samples per second");
-  html += Figure("Peak memory", FormatBytes(metrics.peak_rss_bytes), metrics.ranks > 1 ? "training, largest rank" : "training");
-  html += Figure("Parameters", FormatLarge(static_cast<double>(metrics.parameters)), "all fields, context included");
+  html += KeyFigure("Seam gap", FormatFixed(metrics.seam_psnr_gap_db, 2, "dB"),
+                    std::isfinite(metrics.seam_psnr_gap_db) ? "same textures inside " + FormatFixed(metrics.psnr_matched_interior_db, 2) +
+                                                                  ", in seams " + FormatFixed(metrics.psnr_seam_db, 2, "dB")
+                                                            : "no seams were scored");
+  html += KeyFigure("Training time", Duration(metrics.train_seconds),
+                    fmt::format("{} {}{}", metrics.ranks, metrics.ranks == 1 ? "process" : "ranks",
+                                metrics.threads > 0 ? fmt::format(", {} threads", metrics.threads) : ""));
+  html += KeyFigure("Training speed", FormatLarge(metrics.samples_per_second), "samples per second");
+  html += KeyFigure("Peak memory", FormatBytes(metrics.peak_rss_bytes), metrics.ranks > 1 ? "training, largest rank" : "training");
+  html += KeyFigure("Parameters", FormatLarge(static_cast<double>(metrics.parameters)), "all fields, context included");
   const survey::GeoFit& fit = metrics.geo_fit;
-  html += Figure(
+  html += KeyFigure(
       "Geo-reference", metrics.georeferenced ? FormatFixed(fit.rmse_m, 2, "m") : "none",
       metrics.georeferenced ? fmt::format("RMSE to GPS, {} of {} photos", fit.n_inliers, fit.n_matches) : "no GPS: local frame, unknown scale");
-  html += Figure("Height above ground", FormatFixed(metrics.median_agl_m, 1, "m"),
-                 std::isfinite(metrics.median_relative_altitude_m)
-                     ? "median; drone's own figure " + FormatFixed(metrics.median_relative_altitude_m, 1, "m")
-                     : "median over photos");
+  html += KeyFigure("Height above ground", FormatFixed(metrics.median_agl_m, 1, "m"),
+                    std::isfinite(metrics.median_relative_altitude_m)
+                        ? "median; drone's own figure " + FormatFixed(metrics.median_relative_altitude_m, 1, "m")
+                        : "median over photos");
   return html + "</section>\n";
 }
 
@@ -239,27 +232,19 @@ std::string Facts(const ReportInput& input) {
 std::string BuildReportPage(const ReportInput& input) {
   SKYQUILT_CHECK(input.metrics != nullptr && input.survey != nullptr && input.blocks != nullptr && input.log != nullptr, "all parts of the input");
   SKYQUILT_CHECK(input.images.empty() || input.images.size() == input.metrics->photos.size(), "one entry of images per scored photo");
-  const std::string title = EscapeHtml(input.title);
-  std::string html =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">";
-  html += "<meta name=\"color-scheme\" content=\"light dark\"><title>" + title + " \xC2\xB7 Skyquilt report</title><style>" + PageStyle() +
-          "</style></head><body>\n";
   const std::string brightness = BrightnessSection(input);
-  html += fmt::format(
-      "<div class=\"topbar\"><div class=\"inner\"><a class=\"brand\" href=\"#top\">{}<b>Skyquilt</b></a><nav><a href=\"#summary\">Summary</a>"
-      "<a href=\"#map-section\">Blocks</a><a href=\"#photos\">Photos</a>{}<a href=\"#training\">Training</a><a href=\"#geo\">Geo-reference</a>"
-      "<a href=\"#details\">Details</a></nav><button id=\"theme\" title=\"Switch between light and dark\" aria-label=\"Switch between light and "
-      "dark\">"
-      "<svg viewBox=\"0 0 24 24\"><path d=\"M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z\"/></svg></button></div></div><main id=\"top\">\n",
-      kLogo, brightness.empty() ? "" : "<a href=\"#brightness\">Brightness</a>");
-  html += fmt::format("<header class=\"title\"><h1>{}</h1><p>{} photos, {} blocks \xC2\xB7 {} \xC2\xB7 {}</p></header>\n", title,
-                      FormatInteger(input.metrics->n_photos), input.blocks->blocks.size(), EscapeHtml(input.metrics->date),
-                      EscapeHtml(input.metrics->machine));
+  PageFrame frame{.title = input.title,
+                  .window_title = "Skyquilt report",
+                  .subtitle = fmt::format("{} photos, {} blocks \xC2\xB7 {} \xC2\xB7 {}", FormatInteger(input.metrics->n_photos),
+                                          input.blocks->blocks.size(), input.metrics->date, input.metrics->machine),
+                  .anchors = {{"summary", "Summary"}, {"map-section", "Blocks"}, {"photos", "Photos"}}};
+  if (!brightness.empty()) frame.anchors.emplace_back("brightness", "Brightness");
+  for (const auto& [id, name] : {std::pair{"training", "Training"}, {"geo", "Geo-reference"}, {"details", "Details"}})
+    frame.anchors.emplace_back(id, name);
+  std::string html = PageBegin(frame);
   html += Headline(input) + Warnings(*input.metrics) + MapSection(input) + PhotoSection(input) + brightness + TrainingSection(input) +
           GeoSection(input) + Facts(input);
-  html += "</main><dialog id=\"viewer\"><button aria-label=\"Close\">\xC3\x97</button><div></div><p></p></dialog><script>" + PageScript() +
-          "</script></body></html>\n";
-  return html;
+  return html + PageEnd();
 }
 
 }  // namespace skyquilt::report

@@ -51,7 +51,5 @@ std::string PhotoSection(const ReportInput& input);
 std::string BrightnessSection(const ReportInput& input);  // empty without brightness
 std::string BlockTable(const ReportInput& input);
 std::string ResidualTable(const ReportInput& input);
-std::string PageStyle();   // CSS
-std::string PageScript();  // JavaScript
 
 }  // namespace skyquilt::report

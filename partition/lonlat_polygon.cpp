@@ -82,7 +82,8 @@ LonLatOutline MakeOutline(const std::vector<Eigen::Vector2d>& corners) {
   std::vector<Eigen::Vector2d> ring = corners;
   for (size_t i = 1; i < ring.size(); ++i) ring[i].x() = UnwrapNear(ring[i].x(), ring[i - 1].x());
   const double turn = UnwrapNear(ring.front().x(), ring.back().x()) - ring.front().x();
-  if (std::abs(turn) > 180.0) return PolarCap(std::move(ring), ring.front().y() > 0.0 ? 90.0 : -90.0);
+  const double pole = ring.front().y() > 0.0 ? 90.0 : -90.0;
+  if (std::abs(turn) > 180.0) return PolarCap(std::move(ring), pole);
 
   LonLatOutline outline;
   double west = ring.front().x();

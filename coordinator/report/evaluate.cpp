@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "coordinator/report/air_opacity.h"
 #include "coordinator/report/brightness_report.h"
 #include "coordinator/report/footprint_steps.h"
 #include "coordinator/report/load_task.h"
@@ -118,6 +119,7 @@ struct Pools {
   std::vector<metrics::SquaredError> per_block;
   SeamErrors seams;
   metrics::DepthErrorCollector depth;
+  AirOpacity air;
 };
 
 void FillMeans(const render::SceneInfo& info, const Pools& pools, Metrics* metrics) {
@@ -159,6 +161,7 @@ void FillMeans(const render::SceneInfo& info, const Pools& pools, Metrics* metri
     const metrics::DepthErrors errors = pools.depth.Result();
     metrics->depth_rmse_m = errors.rmse_m;
     metrics->depth_median_abs_m = errors.median_abs_m;
+    metrics->air_opacity = pools.air.Mean();
   }
 }
 
@@ -243,7 +246,10 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
     if (lpips) score.lpips = LpipsOf(*lpips, task, findings.render);
     for (size_t b = 0; b < pools.per_block.size(); ++b) pools.per_block[b] += findings.per_block[b];
     pools.seams += findings.seams;
-    if (!findings.true_depth.Empty()) pools.depth.Add(findings.z_depth, findings.true_depth, &findings.scored);
+    if (!findings.true_depth.Empty()) {
+      pools.depth.Add(findings.z_depth, findings.true_depth, &findings.scored);
+      pools.air += MeasureAirOpacity(scene, task, findings, threads);
+    }
     images.emplace_back();
     if (std::find(pictured.begin(), pictured.end(), index) != pictured.end()) {
       images.back() = WritePhotoImages({&task.photo, &findings.render, &findings.z_depth, findings.scored.data}, report_folder,

@@ -130,6 +130,7 @@ std::string MetricsJson(const Metrics& metrics) {
   if (metrics.has_truth) {
     json["depth_rmse_m"] = NumberOrNull(metrics.depth_rmse_m);
     json["depth_median_abs_m"] = NumberOrNull(metrics.depth_median_abs_m);
+    json["air_opacity"] = NumberOrNull(metrics.air_opacity);
   }
   json["train_seconds"] = NumberOrNull(metrics.train_seconds);
   json["samples_per_second"] = NumberOrNull(metrics.samples_per_second);

@@ -151,6 +151,10 @@ int64_t PeakRssBytes() {
   return static_cast<int64_t>(usage.ru_maxrss) * 1024;
 }
 
+void ResetPeakRss() {
+  std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): sets the high-water mark to what is resident now
+}
+
 std::string HostName() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";

@@ -13,6 +13,8 @@ int UsableCores();
 void ReleaseAffinity();
 int64_t TotalMemoryBytes();
 int64_t PeakRssBytes();
+// From now on the peak is that of what follows, where the system can do that (Linux).
+void ResetPeakRss();
 // Asks for large pages behind this range, before it is first written. Only a hint.
 void AdviseHugePages(void* begin, size_t bytes);
 std::string HostName();

@@ -15,6 +15,9 @@
 
 namespace skyquilt::checkpoint {
 
+// How an array of floats is kept in a file (core/base/half.h). Read back, all are floats.
+enum class Precision { kFloat32, kBfloat16, kFloat16 };
+
 // Collects by copy-free reference: spans given to Put must live until Commit.
 class ArchiveWriter {
  public:
@@ -30,7 +33,8 @@ class ArchiveWriter {
   void Put(const std::string& name, std::span<const int64_t> values, const std::vector<int64_t>& shape = {});
   // An array of another archive, read when it is needed and not kept: what is joined need not fit in memory. The other file must stay as it is
   // until Commit. Throws base::InputError as ArchiveReader does; fastest when the names sort so that each file's arrays stand together.
-  void PutCopy(const std::string& name, const std::filesystem::path& file, const std::string& array);
+  // precision: floats are kept with this one; other arrays stay what they are.
+  void PutCopy(const std::string& name, const std::filesystem::path& file, const std::string& array, Precision precision = Precision::kFloat32);
   void SetAttribute(const std::string& name, const std::string& value);
   void SetAttribute(const std::string& name, double value);
   void SetAttribute(const std::string& name, int64_t value);
@@ -58,8 +62,8 @@ class ArchiveReader {
   bool Has(const std::string& name) const;
   bool HasAttribute(const std::string& name) const;
   std::vector<int64_t> Shape(const std::string& name) const;
-  std::string TypeName(const std::string& name) const;  // "float32", "float64", "uint8", "int64"
-  // Throw base::InputError when absent or of another type.
+  std::string TypeName(const std::string& name) const;  // "float32", "float64", "uint8", "int64", "bfloat16", "float16"
+  // Throw base::InputError when absent or of another type. Floats also gives those of 16 bits.
   std::vector<float> Floats(const std::string& name) const;
   std::vector<double> Doubles(const std::string& name) const;
   std::vector<uint8_t> Bytes(const std::string& name) const;

@@ -7,6 +7,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/checkpoint/archive.h"
+#include "core/checkpoint/archive_array.h"
 #include "core/checkpoint/hdf5_handle.h"
 #include "core/checkpoint/user_block.h"
 
@@ -125,7 +126,8 @@ struct ArchiveReader::Impl {
     if (!type.Valid() || !space.Valid()) Damaged("array " + name);
     ArrayInfo info;
     bool known = false;
-    for (const ElementType candidate : {ElementType::kFloat32, ElementType::kFloat64, ElementType::kUint8, ElementType::kInt64}) {
+    for (const ElementType candidate :
+         {ElementType::kFloat32, ElementType::kFloat64, ElementType::kUint8, ElementType::kInt64, ElementType::kBfloat16, ElementType::kFloat16}) {
       if (H5Tequal(type.id(), FileType(candidate)) > 0) {
         info.type = candidate;
         known = true;
@@ -215,6 +217,8 @@ std::string ArchiveReader::TypeName(const std::string& name) const {
 }
 
 std::vector<float> ArchiveReader::Floats(const std::string& name) const {
+  const ElementType stored = impl_->Info(name).type;
+  if (IsShortFloat(stored)) return FloatsOf(impl_->Read<uint16_t>(name, stored), stored);
   return impl_->Read<float>(name, ElementType::kFloat32);
 }
 std::vector<double> ArchiveReader::Doubles(const std::string& name) const {

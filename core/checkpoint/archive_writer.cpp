@@ -17,6 +17,7 @@
 #include "core/base/file.h"
 #include "core/base/system.h"
 #include "core/checkpoint/archive.h"
+#include "core/checkpoint/archive_array.h"
 #include "core/checkpoint/guarded_driver.h"
 #include "core/checkpoint/hdf5_handle.h"
 #include "core/checkpoint/user_block.h"
@@ -30,64 +31,10 @@ constexpr std::chrono::hours kAbandonedAfter{1};
 constexpr size_t kMaxChunkBytes = size_t{1} << 20U;
 constexpr const char* kMendDisk = "Free disk space or choose an output folder that can be written, then run the same command again";
 
-struct Array {
-  ElementType type = ElementType::kUint8;
-  const void* data = nullptr;
-  std::vector<hsize_t> shape;
-  size_t n_bytes = 0;
-  std::filesystem::path copied_from;  // instead of data: an array of another archive
-  std::string copied_array;
-};
-
-// Arrays of other archives; one file is open and one array in memory at a time.
-class Copies {
- public:
-  const ArchiveReader& Reader(const std::filesystem::path& file) {
-    if (!reader_ || file != file_) {
-      reader_.reset();
-      reader_ = std::make_unique<ArchiveReader>(file);
-      file_ = file;
-    }
-    return *reader_;
-  }
-  // Good until the next call.
-  const void* Data(const Array& array) {
-    if (array.copied_from.empty()) return array.data;
-    const ArchiveReader& reader = Reader(array.copied_from);
-    switch (array.type) {
-      case ElementType::kFloat32:
-        values_ = reader.Floats(array.copied_array);
-        break;
-      case ElementType::kFloat64:
-        values_ = reader.Doubles(array.copied_array);
-        break;
-      case ElementType::kUint8:
-        values_ = reader.Bytes(array.copied_array);
-        break;
-      case ElementType::kInt64:
-        values_ = reader.Ints(array.copied_array);
-        break;
-    }
-    return std::visit([](const auto& values) -> const void* { return values.data(); }, values_);
-  }
-
- private:
-  std::filesystem::path file_;
-  std::unique_ptr<ArchiveReader> reader_;
-  std::variant<std::vector<float>, std::vector<double>, std::vector<uint8_t>, std::vector<int64_t>> values_;
-};
-
 using Attribute = std::variant<std::string, double, int64_t>;
 
 [[noreturn]] void Fail(const std::filesystem::path& file, const std::string& what) {
   throw InputError(file, what + " (" + HdfErrorText() + ")", kMendDisk);
-}
-
-ElementType ElementOf(const std::string& name) {
-  for (const ElementType type : {ElementType::kFloat32, ElementType::kFloat64, ElementType::kInt64}) {
-    if (ElementName(type) == name) return type;
-  }
-  return ElementType::kUint8;
 }
 
 // Halves the slowest dimensions until a chunk holds at most kMaxChunkBytes.
@@ -296,27 +243,11 @@ struct ArchiveWriter::Impl {
                 reader.AttributeNames().size() == attributes.size();
     for (const auto& [name, array] : arrays) {
       if (!same) break;
-      const auto matches = [&array = array, this](const auto& values) {
-        return array.n_bytes == 0 || std::memcmp(values.data(), copies.Data(array), array.n_bytes) == 0;
-      };
       const std::vector<int64_t> shape = reader.Shape(name);
       same = reader.TypeName(name) == ElementName(array.type) && std::equal(shape.begin(), shape.end(), array.shape.begin(), array.shape.end(),
                                                                             [](int64_t a, hsize_t b) { return static_cast<hsize_t>(a) == b; });
       if (!same) break;
-      switch (array.type) {
-        case ElementType::kFloat32:
-          same = matches(reader.Floats(name));
-          break;
-        case ElementType::kFloat64:
-          same = matches(reader.Doubles(name));
-          break;
-        case ElementType::kUint8:
-          same = matches(reader.Bytes(name));
-          break;
-        case ElementType::kInt64:
-          same = matches(reader.Ints(name));
-          break;
-      }
+      same = array.n_bytes == 0 || std::memcmp(AsStored(reader, name, array.type).data(), copies.Data(array), array.n_bytes) == 0;
     }
     if (!same) throw InputError(path, "does not read back as it was written", "Check the disk");
   }
@@ -342,11 +273,11 @@ void ArchiveWriter::Put(const std::string& name, std::span<const uint8_t> values
 void ArchiveWriter::Put(const std::string& name, std::span<const int64_t> values, const std::vector<int64_t>& shape) {
   impl_->Put(name, ElementType::kInt64, values.data(), values.size(), shape);
 }
-void ArchiveWriter::PutCopy(const std::string& name, const std::filesystem::path& file, const std::string& array) {
+void ArchiveWriter::PutCopy(const std::string& name, const std::filesystem::path& file, const std::string& array, Precision precision) {
   const ArchiveReader& reader = impl_->copies.Reader(file);
   const std::vector<int64_t> shape = reader.Shape(array);
   const auto n = static_cast<size_t>(std::accumulate(shape.begin(), shape.end(), int64_t{1}, std::multiplies<>()));
-  impl_->Put(name, ElementOf(reader.TypeName(array)), nullptr, n, shape);
+  impl_->Put(name, StoredAs(ElementOf(reader.TypeName(array)), precision), nullptr, n, shape);
   impl_->arrays.at(name).copied_from = file;
   impl_->arrays.at(name).copied_array = array;
 }

@@ -21,6 +21,16 @@ herr_t KeepDescription(unsigned, const H5E_error2_t* error, void* text) {
   return 0;
 }
 
+// A float of 16 bits made from one of 32, in its byte order. Made once, under the library's lock, and kept.
+hid_t Float16Of(hid_t single, size_t exponent_bits, size_t bias) {
+  const hid_t type = H5Tcopy(single);
+  const size_t mantissa_bits = 15 - exponent_bits;
+  SKYQUILT_CHECK(
+      H5Tset_fields(type, 15, mantissa_bits, exponent_bits, 0, mantissa_bits) >= 0 && H5Tset_size(type, 2) >= 0 && H5Tset_ebias(type, bias) >= 0,
+      HdfErrorText());
+  return type;
+}
+
 }  // namespace
 
 HdfLock::HdfLock() : lock_(LibraryMutex()) {
@@ -39,6 +49,9 @@ size_t ElementBytes(ElementType type) {
       return 4;
     case ElementType::kUint8:
       return 1;
+    case ElementType::kBfloat16:
+    case ElementType::kFloat16:
+      return 2;
     case ElementType::kFloat64:
     case ElementType::kInt64:
       break;
@@ -54,6 +67,10 @@ const char* ElementName(ElementType type) {
       return "float64";
     case ElementType::kUint8:
       return "uint8";
+    case ElementType::kBfloat16:
+      return "bfloat16";
+    case ElementType::kFloat16:
+      return "float16";
     case ElementType::kInt64:
       break;
   }
@@ -61,6 +78,8 @@ const char* ElementName(ElementType type) {
 }
 
 hid_t FileType(ElementType type) {
+  static const hid_t kBfloat16 = Float16Of(H5T_IEEE_F32LE, 8, 127);
+  static const hid_t kFloat16 = Float16Of(H5T_IEEE_F32LE, 5, 15);
   switch (type) {
     case ElementType::kFloat32:
       return H5T_IEEE_F32LE;
@@ -68,6 +87,10 @@ hid_t FileType(ElementType type) {
       return H5T_IEEE_F64LE;
     case ElementType::kUint8:
       return H5T_STD_U8LE;
+    case ElementType::kBfloat16:
+      return kBfloat16;
+    case ElementType::kFloat16:
+      return kFloat16;
     case ElementType::kInt64:
       break;
   }
@@ -75,6 +98,8 @@ hid_t FileType(ElementType type) {
 }
 
 hid_t MemoryType(ElementType type) {
+  static const hid_t kBfloat16 = Float16Of(H5T_NATIVE_FLOAT, 8, 127);
+  static const hid_t kFloat16 = Float16Of(H5T_NATIVE_FLOAT, 5, 15);
   switch (type) {
     case ElementType::kFloat32:
       return H5T_NATIVE_FLOAT;
@@ -82,6 +107,10 @@ hid_t MemoryType(ElementType type) {
       return H5T_NATIVE_DOUBLE;
     case ElementType::kUint8:
       return H5T_NATIVE_UINT8;
+    case ElementType::kBfloat16:
+      return kBfloat16;
+    case ElementType::kFloat16:
+      return kFloat16;
     case ElementType::kInt64:
       break;
   }

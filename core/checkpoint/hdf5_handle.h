@@ -55,7 +55,7 @@ class Handle {
 std::string HdfErrorText();
 
 // The element types of an archive.
-enum class ElementType { kFloat32, kFloat64, kUint8, kInt64 };
+enum class ElementType { kFloat32, kFloat64, kUint8, kInt64, kBfloat16, kFloat16 };
 size_t ElementBytes(ElementType type);
 const char* ElementName(ElementType type);
 HdfId FileType(ElementType type);    // little-endian, never closed

@@ -1,10 +1,12 @@
 // Feeds the seeds, the inputs that once broke something (tests/fuzz/corpus/<target>) and fixed mutations of both, within bounded memory and time.
 //   fuzz_X CORPUS [MUTATIONS]     exit status 1 when an exception got out; a crash or a hang ends the process by signal
 //   fuzz_X --seeds FOLDER         writes the seeds for libFuzzer to start from
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -14,6 +16,10 @@
 #include "core/base/file.h"
 #include "core/base/random.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/support/sanitizer.h"
+#ifdef SKYQUILT_ADDRESS_SANITIZER
+#include <sanitizer/common_interface_defs.h>
+#endif
 
 namespace {
 
@@ -22,6 +28,37 @@ using skyquilt::base::Random;
 
 constexpr rlim_t kMemoryBytes = 3ULL << 30;
 constexpr unsigned kSecondsPerInput = 20;
+
+std::string current_input;
+std::string finding_file;  // where the current input is kept when it breaks something
+
+// Also called while the process is dying: only what may be called then.
+void KeepInput() {
+  const int file = open(finding_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (file < 0) return;
+  const bool kept = write(file, current_input.data(), current_input.size()) == static_cast<ssize_t>(current_input.size());
+  close(file);
+  for (const std::string_view text :
+       {std::string_view(kept ? "input kept in " : "input partly kept in "), std::string_view(finding_file), std::string_view("\n")}) {
+    if (write(STDERR_FILENO, text.data(), text.size()) < 0) return;
+  }
+}
+
+void KeepInputAndDie(int signal) {
+  KeepInput();
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+}
+
+void KeepInputOfCrashes() {
+  finding_file = (fs::temp_directory_path() / ("fuzz_finding_" + std::to_string(getpid()))).string();
+#ifdef SKYQUILT_ADDRESS_SANITIZER
+  __sanitizer_set_death_callback(KeepInput);
+  std::signal(SIGALRM, KeepInputAndDie);
+#else
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) std::signal(signal, KeepInputAndDie);
+#endif
+}
 
 std::string Mutated(std::string bytes, const std::vector<std::string>& pool, Random& random) {
   constexpr uint64_t kNumbers[] = {
@@ -76,7 +113,8 @@ int main(int argc, char** argv) {
     std::cerr << "usage: " << argv[0] << " CORPUS [MUTATIONS] | --seeds FOLDER\n";
     return 2;
   }
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  KeepInputOfCrashes();
+#if !defined(SKYQUILT_ADDRESS_SANITIZER) && !defined(SKYQUILT_THREAD_SANITIZER)
   const rlimit memory = {kMemoryBytes, kMemoryBytes};
   setrlimit(RLIMIT_AS, &memory);
 #endif
@@ -89,17 +127,15 @@ int main(int argc, char** argv) {
   }
   const size_t mutations = argc > 2 ? std::stoul(argv[2]) : 2000;
   Random random(7);
-  std::string input;
   try {
     for (size_t i = 0; i < pool.size() + mutations; ++i) {
-      input = i < pool.size() ? pool[i] : Mutated(pool[random.Below(static_cast<uint32_t>(pool.size()))], pool, random);
+      current_input = i < pool.size() ? pool[i] : Mutated(pool[random.Below(static_cast<uint32_t>(pool.size()))], pool, random);
       alarm(kSecondsPerInput);
-      skyquilt::fuzz::Feed(input);
+      skyquilt::fuzz::Feed(current_input);
     }
   } catch (const std::exception& error) {
-    const fs::path kept = fs::temp_directory_path() / "fuzz_finding";
-    std::ofstream(kept, std::ios::binary) << input;
-    std::cerr << "an exception got out: " << error.what() << "\ninput kept in " << kept.string() << '\n';
+    KeepInput();
+    std::cerr << "an exception got out: " << error.what() << '\n';
     return 1;
   }
   std::cout << pool.size() << " inputs and " << mutations << " mutations: no crash, no hang, nothing got out\n";

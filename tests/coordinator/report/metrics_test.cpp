@@ -32,6 +32,7 @@ TEST(MetricsJson, HasEveryPromisedKeyEvenWhenNothingWasMeasured) {
   }
   EXPECT_TRUE(json["psnr_per_image"].is_object());
   EXPECT_FALSE(json.contains("depth_rmse_m"));
+  EXPECT_FALSE(json.contains("air_opacity"));
 }
 
 TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
@@ -39,6 +40,7 @@ TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   metrics.psnr = 27.5;
   metrics.has_truth = true;
   metrics.depth_rmse_m = 0.75;
+  metrics.air_opacity = 0.02;
   PhotoScore good, blank, equal;
   good.name = "a/one.jpg";
   good.psnr_db = 27.5;
@@ -53,6 +55,7 @@ TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   EXPECT_DOUBLE_EQ(json["psnr"].get<double>(), 27.5);
   EXPECT_DOUBLE_EQ(json["depth_rmse_m"].get<double>(), 0.75);
   EXPECT_TRUE(json["depth_median_abs_m"].is_null());
+  EXPECT_DOUBLE_EQ(json["air_opacity"].get<double>(), 0.02);
   EXPECT_DOUBLE_EQ(json["psnr_per_image"]["a/one.jpg"].get<double>(), 27.5);
   EXPECT_TRUE(json["psnr_per_image"]["two.jpg"].is_null());
   EXPECT_TRUE(json["psnr_per_image"]["three.jpg"].is_null());

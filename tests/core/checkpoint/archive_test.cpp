@@ -14,9 +14,10 @@
 #include "core/checkpoint/digest.h"
 #include "core/checkpoint/user_block.h"
 #include "tests/core/checkpoint/input_error_of.h"
+#include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SKYQUILT_ADDRESS_SANITIZER
 // HDF5 1.10 forgets some of its own memory when it meets damaged metadata.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libhdf5";
@@ -248,6 +249,39 @@ TEST(ArchiveCopies, ArraysOfOtherFilesAreAsIfTheyHadBeenPut) {
     return base::ReadFile(file);
   };
   EXPECT_TRUE(joined(true) == joined(false));
+}
+
+TEST(ArchiveCopies, FloatsMayBeStoredShorter) {
+  const TemporaryFolder folder;
+  const Content content(300'000);
+  content.Writer().Commit(folder / "part.h5");
+  uintmax_t bytes[3] = {};
+  for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16, Precision::kFloat16}) {
+    const auto which = static_cast<size_t>(precision);
+    const std::filesystem::path file = folder / ("short" + std::to_string(which) + ".h5");
+    ArchiveWriter writer("scene", 1);
+    for (const char* name : {"table/level0", "table/moments/first", "occupancy", "none"}) writer.PutCopy(name, folder / "part.h5", name, precision);
+    writer.Commit(file);
+    bytes[which] = std::filesystem::file_size(file);
+    const ArchiveReader reader(file);
+    EXPECT_EQ(reader.TypeName("table/level0"), (std::vector<std::string>{"float32", "bfloat16", "float16"})[which]);
+    EXPECT_EQ(reader.TypeName("table/moments/first"), "float64");
+    EXPECT_EQ(reader.Bytes("occupancy"), content.bits);
+    EXPECT_TRUE(reader.Floats("none").empty());
+    const std::vector<float> table = reader.Floats("table/level0");
+    ASSERT_EQ(table.size(), content.table.size());
+    const float error = std::vector<float>{0.0F, 0x1p-8F, 0x1p-11F}[which];
+    EXPECT_TRUE(std::isnan(table[0]));
+    for (size_t i = 1; i < table.size(); ++i) ASSERT_NEAR(table[i], content.table[i], error * std::abs(content.table[i]) + 1e-7F) << i;
+    // Another archive takes them over as they are.
+    ArchiveWriter again("scene", 1);
+    again.PutCopy("t", file, "table/level0");
+    again.Commit(folder / "again.h5");
+    const std::vector<float> same = ArchiveReader(folder / "again.h5").Floats("t");
+    EXPECT_EQ(std::memcmp(same.data(), table.data(), table.size() * sizeof(float)), 0);
+  }
+  EXPECT_LT(static_cast<double>(bytes[1]), 0.55 * static_cast<double>(bytes[0]));
+  EXPECT_EQ(bytes[1], bytes[2]);
 }
 
 TEST(ArchiveCopies, SaysWhatIsMissing) {

@@ -1,0 +1,78 @@
+#include "core/checkpoint/archive_array.h"
+
+#include <cstring>
+
+#include "core/base/half.h"
+
+namespace skyquilt::checkpoint {
+namespace {
+
+template <typename T>
+std::vector<std::byte> BytesOf(const std::vector<T>& values) {
+  std::vector<std::byte> bytes(values.size() * sizeof(T));
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+}  // namespace
+
+ElementType ElementOf(const std::string& name) {
+  for (const ElementType type : {ElementType::kFloat32, ElementType::kFloat64, ElementType::kInt64, ElementType::kBfloat16, ElementType::kFloat16}) {
+    if (ElementName(type) == name) return type;
+  }
+  return ElementType::kUint8;
+}
+
+bool IsShortFloat(ElementType type) {
+  return type == ElementType::kBfloat16 || type == ElementType::kFloat16;
+}
+
+ElementType StoredAs(ElementType type, Precision precision) {
+  if (type != ElementType::kFloat32 || precision == Precision::kFloat32) return type;
+  return precision == Precision::kBfloat16 ? ElementType::kBfloat16 : ElementType::kFloat16;
+}
+
+std::vector<std::byte> AsStored(const ArchiveReader& reader, const std::string& name, ElementType type) {
+  switch (type) {
+    case ElementType::kFloat64:
+      return BytesOf(reader.Doubles(name));
+    case ElementType::kUint8:
+      return BytesOf(reader.Bytes(name));
+    case ElementType::kInt64:
+      return BytesOf(reader.Ints(name));
+    case ElementType::kFloat32:
+      return BytesOf(reader.Floats(name));
+    case ElementType::kBfloat16:
+    case ElementType::kFloat16:
+      break;
+  }
+  std::vector<uint16_t> stored;
+  for (const float value : reader.Floats(name)) {
+    stored.push_back(type == ElementType::kBfloat16 ? base::Bfloat16FromFloat(value) : base::Float16FromFloat(value));
+  }
+  return BytesOf(stored);
+}
+
+std::vector<float> FloatsOf(const std::vector<uint16_t>& stored, ElementType type) {
+  std::vector<float> values;
+  values.reserve(stored.size());
+  for (const uint16_t bits : stored) values.push_back(type == ElementType::kBfloat16 ? base::FloatFromBfloat16(bits) : base::FloatFromFloat16(bits));
+  return values;
+}
+
+const ArchiveReader& Copies::Reader(const std::filesystem::path& file) {
+  if (!reader_ || file != file_) {
+    reader_.reset();
+    reader_ = std::make_unique<ArchiveReader>(file);
+    file_ = file;
+  }
+  return *reader_;
+}
+
+const void* Copies::Data(const Array& array) {
+  if (array.copied_from.empty()) return array.data;
+  bytes_ = AsStored(Reader(array.copied_from), array.copied_array, array.type);
+  return bytes_.data();
+}
+
+}  // namespace skyquilt::checkpoint

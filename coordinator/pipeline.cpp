@@ -200,6 +200,7 @@ void MergeStage(Pipeline& pipeline) {
                      .origin = blocks.origin,
                      .georeferenced = blocks.georeferenced,
                      .borders = pipeline.settings.merge.Borders(),
+                     .storage = pipeline.settings.merge.Storage(),
                      .use_context = pipeline.settings.train.coupling != "independent",
                      .config_toml = pipeline.settings.Toml(),
                      .config_hash = train ? train->Hash() : "",

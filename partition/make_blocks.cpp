@@ -135,6 +135,21 @@ void AddViews(Block& block, BoxViews views, double surface_voxels, const Partiti
   block.cost = std::sqrt(views.training_pixels * surface_voxels);
 }
 
+void ShareHeights(std::vector<Block>& blocks) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const Block& block : blocks) {
+    if (block.empty) continue;
+    low = std::min(low, block.min_enu.z());
+    high = std::max(high, block.max_enu.z());
+  }
+  for (Block& block : blocks) {
+    if (block.empty) continue;
+    block.min_enu.z() = low;
+    block.max_enu.z() = high;
+  }
+}
+
 void ScaleCosts(std::vector<Block>& blocks) {
   double sum = 0.0;
   for (const Block& block : blocks) sum += block.cost;
@@ -186,11 +201,10 @@ BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& option
   set.columns = grid.columns();
   set.image_width = image_width;
   set.config_hash = ConfigHash(survey, options, image_width);
+  for (int index = 0; index < set.rows * set.columns; ++index) set.blocks.push_back(MakeBlock(in, grid, index));
+  if (options.heights == "survey") ShareHeights(set.blocks);
   std::vector<Box> boxes;
-  for (int index = 0; index < set.rows * set.columns; ++index) {
-    set.blocks.push_back(MakeBlock(in, grid, index));
-    boxes.push_back({set.blocks.back().TrainMin(), set.blocks.back().TrainMax()});
-  }
+  for (const Block& block : set.blocks) boxes.push_back({block.TrainMin(), block.TrainMax()});
   std::vector<BoxViews> views = FindViews(survey, boxes, image_width);
   for (size_t i = 0; i < set.blocks.size(); ++i) {
     Block& block = set.blocks[i];

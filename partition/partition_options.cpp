@@ -28,6 +28,8 @@ void PartitionOptions::Visit(config::OptionVisitor& v) {
   v.Field("min_margin_m", min_margin_m, "overlap at least this wide, metres; never above a quarter of the side");
   v.Field("z_margin_below_m", z_margin_below_m, "metres of box below the lowest ground; held between 8 and 40 ground pixels");
   v.Field("z_margin_above_m", z_margin_above_m, "metres of box above the highest roof; held between 8 and 40 ground pixels");
+  v.Field("heights", heights,
+          "block: every box is as high as what stands in it; survey: all are as high as the highest (dirt gathers in the air above low roofs)");
   v.Field("headroom", headroom,
           "share of the flying height added to the top of blocks of which three tenths or more have no sparse points, as under canopy; 0..1");
   v.Field("voxel_per_gsd", voxel_per_gsd, "finest voxel as a multiple of the ground sampling distance, 0.1..100");
@@ -48,6 +50,7 @@ void PartitionOptions::Check() const {
   RequireRange("min_margin_m", min_margin_m, 0.0, 1e5);
   RequireRange("z_margin_below_m", z_margin_below_m, 0.0, 1e5);
   RequireRange("z_margin_above_m", z_margin_above_m, 0.0, 1e5);
+  Require(heights == "block" || heights == "survey", "heights", heights, "must be block or survey");
   RequireRange("headroom", headroom, 0.0, 1.0);
   RequireRange("voxel_per_gsd", voxel_per_gsd, 0.1, 100.0);
   RequireRange("min_log2_table_size", min_log2_table_size, 1, 24);

@@ -17,6 +17,7 @@ struct PartitionOptions {
   double min_margin_m = 2.0;      // overlap at least this wide, but never above a quarter of the side
   double z_margin_below_m = 1.5;  // air under the lowest ground; held between 8 and 40 GSD so that it fits any scale
   double z_margin_above_m = 1.5;  // air over the highest roof; likewise
+  std::string heights = "block";  // "block": a box is as high as what stands in it; "survey": all share the lowest ground and the highest roof
   double headroom = 0.25;         // share of the flying height added above where sparse points leave gaps, as over canopy
   double voxel_per_gsd = 1.5;     // finest voxel as a multiple of the ground sampling distance
   int min_log2_table_size = 14;

@@ -33,7 +33,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
       threads_(threads),
       times_(threads.size()),
       field_(target.config),
-      drawer_(target, source, seed, NeighboursOf(luminance.luminance), threads, times_),
+      drawer_(target, source, seed, NeighboursOf(luminance.luminance), options.stratified, threads, times_),
       step_(target, field_, context, luminance, threads, times_),
       learner_(learner),
       source_(source),

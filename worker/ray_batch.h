@@ -56,9 +56,10 @@ constexpr int kPatchPixels = 8;
 // Draws n_rays pixels and marches them through the occupied cells. A pure function of (seed, step), whatever the threads.
 class RayDrawer {
  public:
-  RayDrawer(const render::TrainedField& target, const RaySource& source, uint64_t seed, Neighbours neighbours, base::ThreadPool& threads,
-            StageTimes& times)
-      : target_(target), source_(source), seed_(seed), neighbours_(neighbours), threads_(threads), times_(times) {}
+  // stratified: a ray's samples begin anywhere in its first step, else in the middle of it.
+  RayDrawer(const render::TrainedField& target, const RaySource& source, uint64_t seed, Neighbours neighbours, bool stratified,
+            base::ThreadPool& threads, StageTimes& times)
+      : target_(target), source_(source), seed_(seed), neighbours_(neighbours), stratified_(stratified), threads_(threads), times_(times) {}
   void Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch);
 
  private:
@@ -75,6 +76,7 @@ class RayDrawer {
   const RaySource& source_;
   uint64_t seed_;
   Neighbours neighbours_;
+  bool stratified_;
   base::ThreadPool& threads_;
   StageTimes& times_;
   std::vector<Group> groups_;

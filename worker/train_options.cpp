@@ -18,6 +18,8 @@ void TrainOptions::Visit(config::OptionVisitor& v) {
   v.Field("sh_degree", sh_degree, "spherical harmonics of the viewing direction: degree 1 (none) to 4");
   v.Field("learning_rate", learning_rate, "of Adam at the start");
   v.Field("final_learning_rate_share", final_learning_rate_share, "learning rate at the end as a share of the first");
+  v.Field("step_voxels", step_voxels, "distance between the samples of a ray as a multiple of the finest voxel, 0.25..16");
+  v.Field("stratified", stratified, "the first sample of a ray anywhere in its step (a new place every time), not always in the middle");
   v.Field("network_l2", network_l2, "weight decay of the networks");
   v.Field("distortion", distortion, "weight of the distortion loss that draws a ray's matter together; 0 turns it off");
   v.Field("empty_ray_share", empty_ray_share, "share of rays that end outside the block and teach emptiness only, 0..0.5");
@@ -41,6 +43,7 @@ void TrainOptions::Check(const std::string& section) const {
   require(sh_degree >= 1 && sh_degree <= 4, "sh_degree", "1..4", sh_degree);
   require(learning_rate > 0.0 && learning_rate < 1.0, "learning_rate", "in (0, 1)", learning_rate);
   require(final_learning_rate_share > 0.0 && final_learning_rate_share <= 1.0, "final_learning_rate_share", "in (0, 1]", final_learning_rate_share);
+  require(step_voxels >= 0.25 && step_voxels <= 16.0, "step_voxels", "0.25..16", step_voxels);
   require(network_l2 >= 0.0 && network_l2 < 1.0, "network_l2", "in [0, 1)", network_l2);
   require(distortion >= 0.0 && distortion < 100.0, "distortion", "0..100", distortion);
   require(empty_ray_share >= 0.0 && empty_ray_share <= 0.5, "empty_ray_share", "0..0.5", empty_ray_share);

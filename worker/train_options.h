@@ -19,6 +19,8 @@ struct TrainOptions {
   int sh_degree = 3;
   double learning_rate = 3e-2;
   double final_learning_rate_share = 0.1;
+  double step_voxels = 2.0;
+  bool stratified = true;
   double network_l2 = 1e-6;
   double distortion = 1e-2;
   double empty_ray_share = 0.05;

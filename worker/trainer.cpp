@@ -32,7 +32,6 @@ constexpr int kMaxDroppedInARow = 20;
 constexpr int64_t kMaxOccupancyCells = 4'000'000;
 constexpr double kCellPerVoxel = 3.0;
 // A step of two finest voxels: interpolation is smooth across cells, and half the samples buy more rays.
-constexpr double kStepPerVoxel = 2.0;
 // Largest display value of a field whose photos' gains are learned: white in a photo of a stop less.
 constexpr double kLearnedRange = 1.4;
 constexpr double kLuminanceRange = 2.0;
@@ -63,7 +62,7 @@ render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is
   f.margin_m = box.margin_m;
   const Eigen::Vector3d margin(box.margin_m, box.margin_m, 0.0);
   f.map = is_context ? encoding::SpaceMap::Slab(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu - margin, box.max_enu + margin);
-  f.step_m = kStepPerVoxel * box.finest_voxel_m;
+  f.step_m = options.step_voxels * box.finest_voxel_m;
   auto& grid = f.config.grid;
   grid.levels = options.levels;
   grid.features = options.features;

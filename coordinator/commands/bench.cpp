@@ -116,10 +116,11 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
 }  // namespace
 
 void AddBench(CLI::App& app, CommandState& state) {
-  CLI::App* bench = app.add_subcommand("bench", "measure speed");
+  CLI::App* bench = app.add_subcommand("bench", "measure: speed, and what it costs in accuracy");
   bench->require_subcommand(1);
   AddKernelBench(*bench, state);
   AddScheduleBench(*bench, state);
+  AddStudyBenches(*bench, state);
 }
 
 }  // namespace skyquilt::coordinator

@@ -137,6 +137,8 @@ int RunCommandLine(int argc, char** argv) {
   const RankRelease release(*comm);
   CommandState state;
   state.comm = comm.get();
+  state.command_line = "skyquilt";
+  for (int i = 1; i < argc; ++i) state.command_line += std::string(" ") + argv[i];
   CLI::App app{"Skyquilt turns a survey of drone photos into a geo-referenced radiance field, block by block, on CPUs.", "skyquilt"};
   AddCommands(app, state);
   int parse_status = kDone;

@@ -20,6 +20,15 @@ Settings CommandState::Load(const std::vector<std::filesystem::path>& files, con
   return LoadSettings(all_files, overrides);
 }
 
+Settings CommandState::LoadOver(Settings settings) const {
+  config::Sections sections = settings.AllSections();
+  if (!config.empty()) config::ReadToml(config, sections);
+  for (const std::string& text : set) ApplyOverride(settings, ParseOverride(text));
+  if (!threads.empty()) ApplyOverride(settings, {"run.threads", threads});
+  settings.Validate();
+  return settings;
+}
+
 Pipeline CommandState::Begin(const Project& project, Settings settings, bool restart) const {
   base::AddLogFile(project.LogFile());
   return Pipeline{.comm = *comm, .project = project, .settings = std::move(settings), .restart = restart, .quiet = quiet, .verbose = verbose};

@@ -23,12 +23,15 @@ struct CommandState {
   std::string config;            // --config
   std::vector<std::string> set;  // --set
   std::string threads;           // --threads
+  std::string command_line;      // as it was typed, for reports
   bool quiet = false;
   bool verbose = false;
   std::function<void()> chosen;  // the body of the command on the command line, set while parsing
 
   // Defaults, `files`, --config, --set, then the command's own flags.
   Settings Load(const std::vector<std::filesystem::path>& files, const std::vector<Override>& flags) const;
+  // --config and --set on top of these.
+  Settings LoadOver(Settings settings) const;
   // A project for a command: logging into it begins. `restart` as given on the command line.
   Pipeline Begin(const Project& project, Settings settings, bool restart) const;
 };
@@ -53,6 +56,8 @@ void AddRender(CLI::App& app, CommandState& state);
 void AddEvaluate(CLI::App& app, CommandState& state);
 void AddInfo(CLI::App& app, CommandState& state);
 void AddBench(CLI::App& app, CommandState& state);
+// Those that train.
+void AddStudyBenches(CLI::App& bench, CommandState& state);
 void AddRun(CLI::App& app, CommandState& state);
 
 }  // namespace skyquilt::coordinator

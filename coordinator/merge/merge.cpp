@@ -65,9 +65,9 @@ void MergeScene(const MergeInput& input) {
   writer.SetAttribute("config", input.config_toml);
   writer.SetAttribute("config_hash", input.config_hash);
   writer.SetAttribute("blocks", static_cast<int64_t>(blocks.size()));
-  if (input.use_context) render::PutFieldOf(context.outline, input.context, render::kContextPrefix, writer);
+  if (input.use_context) render::PutFieldOf(context.outline, input.context, render::kContextPrefix, writer, input.storage);
   for (size_t i = 0; i < blocks.size(); ++i)
-    render::PutFieldOf(blocks[i], input.blocks[i].second, render::BlockPrefix(static_cast<int64_t>(i)), writer);
+    render::PutFieldOf(blocks[i], input.blocks[i].second, render::BlockPrefix(static_cast<int64_t>(i)), writer, input.storage);
   writer.Commit(input.scene);
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/checkpoint/archive.h"
 #include "core/geo/geodetic.h"
 #include "core/render/scene.h"
 #include "partition/block.h"
@@ -18,8 +19,9 @@ struct MergeInput {
   geo::Geodetic origin;
   bool georeferenced = false;
   render::Borders borders = render::Borders::kSmooth;
-  bool use_context = true;  // false: the context does not fill what no block covers (independent blocks)
-  std::string config_toml;  // stored in the scene
+  checkpoint::Precision storage = checkpoint::Precision::kFloat32;  // of the hash tables
+  bool use_context = true;                                          // false: the context does not fill what no block covers (independent blocks)
+  std::string config_toml;                                          // stored in the scene
   std::string config_hash;
   std::filesystem::path scene;  // out
 };

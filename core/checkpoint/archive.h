@@ -31,6 +31,9 @@ class ArchiveWriter {
   void Put(const std::string& name, std::span<const double> values, const std::vector<int64_t>& shape = {});
   void Put(const std::string& name, std::span<const uint8_t> values, const std::vector<int64_t>& shape = {});
   void Put(const std::string& name, std::span<const int64_t> values, const std::vector<int64_t>& shape = {});
+  // The archive keeps these itself.
+  void PutOwned(const std::string& name, std::vector<uint8_t> values);
+  void PutOwned(const std::string& name, std::vector<int64_t> values);
   // An array of another archive, read when it is needed and not kept: what is joined need not fit in memory. The other file must stay as it is
   // until Commit. Throws base::InputError as ArchiveReader does; fastest when the names sort so that each file's arrays stand together.
   // precision: floats are kept with this one; other arrays stay what they are.

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <list>
 #include <map>
 #include <numeric>
 #include <set>
@@ -174,6 +175,7 @@ struct ArchiveWriter::Impl {
   std::map<std::string, Array> arrays;
   std::map<std::string, Attribute> attributes;
   mutable Copies copies;
+  std::list<std::variant<std::vector<uint8_t>, std::vector<int64_t>>> owned;
 
   void Put(const std::string& name, ElementType type, const void* data, size_t n, const std::vector<int64_t>& shape) {
     SKYQUILT_CHECK(!name.empty() && name.front() != '/' && name.back() != '/' && name.find("//") == std::string::npos, "array name '" + name + "'");
@@ -272,6 +274,12 @@ void ArchiveWriter::Put(const std::string& name, std::span<const uint8_t> values
 }
 void ArchiveWriter::Put(const std::string& name, std::span<const int64_t> values, const std::vector<int64_t>& shape) {
   impl_->Put(name, ElementType::kInt64, values.data(), values.size(), shape);
+}
+void ArchiveWriter::PutOwned(const std::string& name, std::vector<uint8_t> values) {
+  Put(name, std::get<std::vector<uint8_t>>(impl_->owned.emplace_back(std::move(values))));
+}
+void ArchiveWriter::PutOwned(const std::string& name, std::vector<int64_t> values) {
+  Put(name, std::get<std::vector<int64_t>>(impl_->owned.emplace_back(std::move(values))));
 }
 void ArchiveWriter::PutCopy(const std::string& name, const std::filesystem::path& file, const std::string& array, Precision precision) {
   const ArchiveReader& reader = impl_->copies.Reader(file);

@@ -1,5 +1,3 @@
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +6,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/config/checked_toml.h"
 #include "core/config/options.h"
 
 namespace skyquilt::config {
@@ -208,6 +207,9 @@ toml::table Parse(const std::string& text, const std::string& origin) {
     std::ostringstream finding;
     finding << "line " << error.source().begin.line << ", column " << error.source().begin.column << ": " << error.description();
     throw base::InputError(origin, finding.str(), "Correct the line; text values need quotes");
+  } catch (const FailedTomlCheck&) {
+    throw base::InputError(origin, "is not TOML: a key or a value begins with a character that cannot begin one",
+                           "Compare it with configs/default.toml");
   }
 }
 

@@ -10,8 +10,8 @@
 namespace skyquilt::render {
 namespace {
 
-constexpr const char* kArrays[] = {"grid", "networks", "occupied", "occupancy_depth"};
 constexpr const char* kMend = "Train it again with --restart";
+constexpr int64_t kMaxCellsPerAxis = int64_t{1} << 20;
 
 // Fixed order of the numbers that rebuild a field.
 std::vector<double> Describe(const TrainedField& f) {
@@ -36,6 +36,28 @@ std::vector<double> Describe(const TrainedField& f) {
   d.push_back(f.margin_m);
   d.push_back(f.step_m);
   return d;
+}
+
+// One bit per cell, the first in the lowest bit.
+std::vector<uint8_t> PackBits(const std::vector<uint8_t>& flags) {
+  std::vector<uint8_t> bits((flags.size() + 7) / 8, 0);
+  for (size_t i = 0; i < flags.size(); ++i) {
+    if (flags[i] != 0) bits[i / 8] = static_cast<uint8_t>(bits[i / 8] | 1U << i % 8);
+  }
+  return bits;
+}
+
+std::vector<uint8_t> UnpackBits(const std::vector<uint8_t>& bits, size_t n) {
+  std::vector<uint8_t> flags(n, 0);
+  for (size_t i = 0; i < n && i / 8 < bits.size(); ++i) flags[i] = bits[i / 8] >> i % 8 & 1U;
+  return flags;
+}
+
+// Cells per axis of a field in a file, x first. Throws base::InputError as the reader does.
+std::vector<int64_t> StoredSize(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
+  if (reader.Has(prefix + "occupancy_size")) return reader.Ints(prefix + "occupancy_size");
+  const std::vector<int64_t> shape = reader.Shape(prefix + "occupied");
+  return {shape.rbegin(), shape.rend()};
 }
 
 }  // namespace
@@ -66,9 +88,15 @@ void PutField(const TrainedField& f, const std::string& prefix, checkpoint::Arch
   writer.Put(prefix + "occupancy_depth", f.occupancy.depth, shape);
 }
 
-void PutFieldOf(const TrainedField& outline, const std::filesystem::path& checkpoint, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
+void PutFieldOf(const TrainedField& outline, const std::filesystem::path& checkpoint, const std::string& prefix, checkpoint::ArchiveWriter& writer,
+                checkpoint::Precision tables) {
   PutOutline(outline, prefix, writer);
-  for (const char* array : kArrays) writer.PutCopy(prefix + array, checkpoint, array);
+  writer.PutCopy(prefix + "grid", checkpoint, "grid", tables);
+  writer.PutCopy(prefix + "networks", checkpoint, "networks");
+  // Rendering asks only whether a cell is occupied.
+  const checkpoint::ArchiveReader reader(checkpoint);
+  writer.PutOwned(prefix + "occupied_bits", PackBits(reader.Bytes("occupied")));
+  writer.PutOwned(prefix + "occupancy_size", StoredSize(reader, ""));
 }
 
 TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
@@ -115,8 +143,8 @@ int64_t StoredParameters(const checkpoint::ArchiveReader& reader, const std::str
 }
 
 int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
-  const std::vector<int64_t> shape = reader.Shape(prefix + "occupied");
-  return std::accumulate(shape.begin(), shape.end(), int64_t{1}, std::multiplies<>());
+  const std::vector<int64_t> size = StoredSize(reader, prefix);
+  return std::accumulate(size.begin(), size.end(), int64_t{1}, std::multiplies<>());
 }
 
 TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
@@ -128,15 +156,24 @@ TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesy
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);
   }
-  const std::vector<int64_t> shape = reader.Shape(prefix + "occupied");
-  f.occupancy.occupied = reader.Bytes(prefix + "occupied");
-  f.occupancy.depth = reader.Floats(prefix + "occupancy_depth");
-  if (shape.size() == 3) {
-    for (int axis = 0; axis < 3; ++axis) f.occupancy.size[axis] = static_cast<int>(shape[static_cast<size_t>(2 - axis)]);
+  const std::vector<int64_t> size = StoredSize(reader, prefix);
+  bool fits = size.size() == 3;
+  for (size_t axis = 0; fits && axis < 3; ++axis) {
+    fits = size[axis] > 0 && size[axis] <= kMaxCellsPerAxis;
+    if (fits) f.occupancy.size[axis] = static_cast<int>(size[axis]);
   }
-  const auto cells = static_cast<size_t>(f.occupancy.CellCount());
-  if (static_cast<int64_t>(f.grid.size()) != f.field->GridParameters() || static_cast<int64_t>(f.networks.size()) != f.field->NetworkParameters() ||
-      cells == 0 || f.occupancy.occupied.size() != cells || f.occupancy.depth.size() != cells || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {
+  const auto cells = static_cast<size_t>(fits ? f.occupancy.CellCount() : 0);
+  if (reader.Has(prefix + "occupied_bits")) {
+    const std::vector<uint8_t> bits = reader.Bytes(prefix + "occupied_bits");
+    fits = fits && bits.size() == (cells + 7) / 8;
+    if (fits) f.occupancy.occupied = UnpackBits(bits, cells);
+  } else {
+    f.occupancy.occupied = reader.Bytes(prefix + "occupied");
+    f.occupancy.depth = reader.Floats(prefix + "occupancy_depth");
+    fits = fits && f.occupancy.occupied.size() == cells && f.occupancy.depth.size() == cells;
+  }
+  if (!fits || static_cast<int64_t>(f.grid.size()) != f.field->GridParameters() ||
+      static_cast<int64_t>(f.networks.size()) != f.field->NetworkParameters() || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {
     throw base::InputError(file, "arrays and configuration of field '" + f.name + "' disagree", kMend);
   }
   return f;

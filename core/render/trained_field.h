@@ -39,8 +39,10 @@ struct TrainedField {
 
 // Arrays under `prefix` ("" or "fields/r0c0/"). The field must outlive the writer's Commit.
 void PutField(const TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
-// A field that a checkpoint holds (under no prefix): its arrays are copied from there at Commit.
-void PutFieldOf(const TrainedField& outline, const std::filesystem::path& checkpoint, const std::string& prefix, checkpoint::ArchiveWriter& writer);
+// What rendering needs of a field that a checkpoint holds (under no prefix), for scenes: tables and networks are copied from there at Commit, the
+// tables with this precision; of the occupancy only which cells are occupied.
+void PutFieldOf(const TrainedField& outline, const std::filesystem::path& checkpoint, const std::string& prefix, checkpoint::ArchiveWriter& writer,
+                checkpoint::Precision tables = checkpoint::Precision::kFloat32);
 // The same without the arrays.
 void PutOutline(const TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
 // Place and shape of a field, without its arrays. Throws base::InputError for one that cannot be.
@@ -48,7 +50,7 @@ TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const std::file
 // Of a field in a file, without reading its arrays.
 int64_t StoredParameters(const checkpoint::ArchiveReader& reader, const std::string& prefix);
 int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& prefix);
-// Throws base::InputError when arrays and configuration disagree.
+// occupancy.depth is empty for a field from a scene. Throws base::InputError when arrays and configuration disagree.
 TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix);
 
 }  // namespace skyquilt::render

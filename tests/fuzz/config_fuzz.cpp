@@ -8,7 +8,7 @@ namespace skyquilt::fuzz {
 
 std::vector<std::string> Seeds() {
   coordinator::Settings settings;
-  return {settings.Toml(), "[train]\nsteps = 100\nlearning_rate = 1e-2\n", "[partition]\naltitudes = [150, 300.5]\n"};
+  return {settings.Toml(), "[train]\nsteps = 100\nlearning_rate = 1e-2\n", "[partition]\naltitudes = [150, 300.5]\n", "[|ate = 1e-2\n"};
 }
 
 void Feed(const std::string& bytes) {

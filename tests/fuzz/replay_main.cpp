@@ -53,11 +53,11 @@ void KeepInputAndDie(int signal) {
 void KeepInputOfCrashes() {
   finding_file = (fs::temp_directory_path() / ("fuzz_finding_" + std::to_string(getpid()))).string();
 #ifdef SKYQUILT_ADDRESS_SANITIZER
-  __sanitizer_set_death_callback(KeepInput);
-  std::signal(SIGALRM, KeepInputAndDie);
+  __sanitizer_set_death_callback(KeepInput);  // of what the sanitizer itself meets
 #else
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) std::signal(signal, KeepInputAndDie);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, KeepInputAndDie);
 #endif
+  for (const int signal : {SIGABRT, SIGALRM}) std::signal(signal, KeepInputAndDie);
 }
 
 std::string Mutated(std::string bytes, const std::vector<std::string>& pool, Random& random) {

@@ -61,6 +61,13 @@ std::vector<std::pair<double, double>> JoinedCurve(const report::TrainLog& log) 
   return curve;
 }
 
+// In the place of one that may be there.
+void MoveFolder(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::filesystem::remove_all(to);
+  std::filesystem::create_directories(to.parent_path());
+  std::filesystem::rename(from, to);
+}
+
 // Training photos of every n-th in name order, and all held-out ones.
 survey::Survey Thinned(survey::Survey survey, int keep_every) {
   std::vector<survey::Photo> kept;
@@ -107,39 +114,81 @@ std::string Study::Identity(const Variant& variant, Settings settings) const {
   return config::Hash(flat) + " " + FileIdentity(source_ / "survey" / "survey.json") + " " + std::to_string(variant.keep_every);
 }
 
-VariantResult Study::Run(const Variant& variant) {
+Settings Study::SettingsOf(const Variant& variant) const {
   const auto legal = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
   SKYQUILT_CHECK(!variant.name.empty() && std::all_of(variant.name.begin(), variant.name.end(), legal), variant.name);
   SKYQUILT_CHECK(variant.keep_every >= 1, variant.name);
   Settings settings = options_.settings;
   for (const Override& entry : variant.overrides) ApplyOverride(settings, entry);
   settings.Validate();
+  return settings;
+}
+
+VariantResult Study::Run(const Variant& variant) {
+  return RunMerged(variant, {}).front();
+}
+
+std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::vector<Variant>& merged) {
+  const Settings settings = SettingsOf(variant);
   const std::string identity = Identity(variant, settings);
-  if (std::optional<VariantResult> known = Load(variant, identity)) {
-    spdlog::info("{}: nothing to do, its result is there", variant.label);
-    return *known;
+  std::vector<VariantResult> results;
+  if (std::optional<VariantResult> known = Load(variant, identity)) results.push_back(std::move(*known));
+  for (const Variant& other : merged) {
+    if (results.empty()) break;
+    // Their training is the variant's.
+    const std::optional<VariantResult> known = Load(other, identity + " " + Identity(other, SettingsOf(other)));
+    if (!known) results.clear();
+    if (known) results.push_back(*known);
   }
+  if (results.size() == 1 + merged.size()) {
+    spdlog::info("{}: nothing to do, its result is there", variant.label);
+    return results;
+  }
+  results = {Measure(variant, settings, identity, !merged.empty())};
+  const Project project{RunFolder(variant)};
+  const std::filesystem::path own_report = project.folder / "report_of_itself";
+  if (!merged.empty() && results.front().failure.empty()) MoveFolder(project.ReportFolder(), own_report);
+  for (const Variant& other : merged) {
+    if (!results.front().failure.empty()) break;
+    spdlog::info("--- {}", other.label);
+    const Settings own = SettingsOf(other);
+    // Merging anew is what is wanted here: nothing is refused.
+    Pipeline pipeline{.comm = comm_, .project = project, .settings = own, .restart = true, .quiet = options_.quiet, .verbose = options_.verbose};
+    MergeStage(pipeline);
+    EvaluateStage(pipeline);
+    MoveFolder(project.ReportFolder(), Project{RunFolder(other)}.ReportFolder());
+    results.push_back(Collect(variant, other));
+    results.back().label = other.label;
+    base::WriteFileAtomically(RunFolder(other).string() + ".json", ResultJson(results.back(), identity + " " + Identity(other, own)));
+  }
+  if (std::filesystem::exists(own_report)) MoveFolder(own_report, project.ReportFolder());
+  if (!options_.keep && results.front().failure.empty()) RemoveLargeFiles(variant);
+  return results;
+}
+
+VariantResult Study::Measure(const Variant& variant, const Settings& settings, const std::string& identity, bool merge_anew) {
   spdlog::info("--- {}", variant.label);
   VariantResult result;
   result.name = variant.name;
   try {
-    Train(variant, settings);
-    result = Collect(variant);
+    Train(variant, settings, merge_anew);
+    result = Collect(variant, variant);
   } catch (const base::BlockError& error) {
     result.failure = error.what();
   }
   result.label = variant.label;
-  if (!result.failure.empty()) {
+  if (result.failure.empty()) {
+    base::WriteFileAtomically(RunFolder(variant).string() + ".json", ResultJson(result, identity));
+  } else {
     spdlog::error("{}: {}", variant.label, result.failure);
-    return result;
-  }
-  base::WriteFileAtomically(RunFolder(variant).string() + ".json", ResultJson(result, identity));
-  if (!options_.keep) {
-    std::error_code ignored;
-    for (const char* part : {"checkpoints", "cache", "scene.h5", "scene.h5.prev", "survey"})
-      std::filesystem::remove_all(RunFolder(variant) / part, ignored);
   }
   return result;
+}
+
+void Study::RemoveLargeFiles(const Variant& variant) const {
+  std::error_code ignored;
+  for (const char* part : {"checkpoints", "cache", "scene.h5", "scene.h5.prev", "survey"})
+    std::filesystem::remove_all(RunFolder(variant) / part, ignored);
 }
 
 // The decoded photos of one width are the same for all variants that use all photos: one file under several names.
@@ -154,13 +203,13 @@ void Study::LinkPixels(const std::filesystem::path& run_folder, int image_width,
   std::filesystem::create_hard_link(from, to, ignored);
 }
 
-void Study::Train(const Variant& variant, const Settings& settings) {
+void Study::Train(const Variant& variant, const Settings& settings, bool merge_anew) {
   const Project project = Project::Create(RunFolder(variant));
   if (!std::filesystem::exists(project.SurveyFolder() / "survey.json")) {
     survey::SaveSurvey(variant.keep_every > 1 ? Thinned(survey_, variant.keep_every) : survey_, project.SurveyFolder());
   }
   Pipeline pipeline{.comm = comm_, .project = project, .settings = settings, .quiet = options_.quiet, .verbose = options_.verbose};
-  RequireSameConfiguration(pipeline, "partition");
+  if (!merge_anew) RequireSameConfiguration(pipeline, "partition");
   PartitionStage(pipeline);
   if (variant.keep_every == 1) LinkPixels(project.folder, settings.run.image_width, false);
   base::ResetPeakRss();
@@ -172,16 +221,18 @@ void Study::Train(const Variant& variant, const Settings& settings) {
   }
   ThrowIfBlocksFailed(failed, project);
   if (variant.keep_every == 1) LinkPixels(project.folder, settings.run.image_width, true);
+  pipeline.restart = merge_anew;
   MergeStage(pipeline);
   EvaluateStage(pipeline);
 }
 
-VariantResult Study::Collect(const Variant& variant) const {
-  const Project project{RunFolder(variant)};
-  const nlohmann::json metrics = nlohmann::json::parse(base::ReadFile(project.ReportFolder() / "metrics.json"));
+VariantResult Study::Collect(const Variant& trained, const Variant& scored) const {
+  const Project project{RunFolder(trained)};
+  const std::filesystem::path report_folder = Project{RunFolder(scored)}.ReportFolder();
+  const nlohmann::json metrics = nlohmann::json::parse(base::ReadFile(report_folder / "metrics.json"));
   const report::TrainLog log = report::ReadTrainLog(project.TrainReport(), project.CheckpointFolder());
   VariantResult r;
-  r.name = variant.name;
+  r.name = scored.name;
   for (const auto& [key, value] : {std::pair{"psnr", &r.psnr_db},
                                    {"ssim", &r.ssim},
                                    {"lpips", &r.lpips},
@@ -209,11 +260,11 @@ VariantResult Study::Collect(const Variant& variant) const {
   r.curve = JoinedCurve(log);
   const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
   r.training_photos = static_cast<int>(std::count_if(survey.photos.begin(), survey.photos.end(), [](const auto& photo) { return !photo.is_test; }));
-  const std::filesystem::path relative = std::filesystem::path("runs") / variant.name / "report";
+  const std::filesystem::path relative = std::filesystem::path("runs") / scored.name / "report";
   r.report = (relative / "index.html").generic_string();
   std::vector<std::string> renders;
   std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(project.ReportFolder() / "images", ignored)) {
+  for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("photo_") && name.ends_with("_render.jpg")) renders.push_back(name);
   }

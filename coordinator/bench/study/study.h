@@ -71,16 +71,25 @@ class Study {
   Study(comm::Communicator& comm, Options options);
 
   const survey::Survey& survey() const { return survey_; }
+  const Settings& settings() const { return options_.settings; }
   // Trains and scores, unless that was done before. A variant that cannot be trained has its reason in `failure`.
   // Throws base::Interrupted (the same call continues), base::UsageError when the result that is there came from other settings.
   VariantResult Run(const Variant& variant);
+  // The same, and then what its training gives when only merging and scoring are done in other ways: the variant's result first. Retrains when
+  // the training's files were removed before all of them were scored.
+  std::vector<VariantResult> RunMerged(const Variant& variant, const std::vector<Variant>& merged);
 
  private:
+  Settings SettingsOf(const Variant& variant) const;
+  // merge_anew: what is merged and scored already came from other settings.
+  VariantResult Measure(const Variant& variant, const Settings& settings, const std::string& identity, bool merge_anew);
+  void RemoveLargeFiles(const Variant& variant) const;
   std::filesystem::path RunFolder(const Variant& variant) const { return options_.folder / "runs" / variant.name; }
   std::string Identity(const Variant& variant, Settings settings) const;
-  void Train(const Variant& variant, const Settings& settings);
+  void Train(const Variant& variant, const Settings& settings, bool merge_anew);
   void LinkPixels(const std::filesystem::path& run_folder, int image_width, bool share) const;
-  VariantResult Collect(const Variant& variant) const;
+  // What is in the project of one variant and in the report of another (or the same).
+  VariantResult Collect(const Variant& trained, const Variant& scored) const;
   std::optional<VariantResult> Load(const Variant& variant, const std::string& identity) const;
 
   comm::Communicator& comm_;

@@ -28,12 +28,12 @@ def pictures_of(folder):
 
 
 def bytes_of_fields(described):
-    """In memory while rendering; the occupancy's depths are for training only."""
+    """In memory while rendering: a byte for every cell, of which the file keeps a bit."""
     fields = {}
     for array in described["arrays"]:
         name, _, what = array["name"].rpartition("/")
-        if what in ("grid", "networks", "occupied"):
-            fields[name] = fields.get(name, 0) + math.prod(array["shape"]) * (1 if what == "occupied" else 4)
+        if what in ("grid", "networks", "occupied_bits"):
+            fields[name] = fields.get(name, 0) + math.prod(array["shape"]) * (8 if what == "occupied_bits" else 4)
     return fields
 
 

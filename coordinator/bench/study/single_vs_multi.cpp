@@ -1,0 +1,121 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "coordinator/bench/study/study_benches.h"
+#include "coordinator/bench/study/study_tables.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+const VariantResult* Find(const std::vector<VariantResult>& results, const std::string& name) {
+  const auto at = std::find_if(results.begin(), results.end(), [&](const VariantResult& r) { return r.name == name && r.failure.empty(); });
+  return at == results.end() ? nullptr : &*at;
+}
+
+// The table size of one field that has about as many parameters as `blocks` of 2^log2_table_size each.
+int JoinedTableSize(int log2_table_size, int blocks) {
+  return std::min(24, log2_table_size + static_cast<int>(std::lround(std::log2(std::max(1, blocks)))));
+}
+
+std::string Difference(const VariantResult& a, const VariantResult& b) {
+  return fmt::format("{:+.2f} dB ({:.2f} against {:.2f}), SSIM {:+.3f}", a.psnr_db - b.psnr_db, a.psnr_db, b.psnr_db, a.ssim - b.ssim);
+}
+
+std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
+  const VariantResult* guided = Find(results, "guided");
+  const VariantResult* small = Find(results, "single_small");
+  const VariantResult* large = Find(results, "single_large");
+  const VariantResult* independent = Find(results, "independent");
+  const VariantResult* shared = Find(results, "shared_height");
+  std::vector<std::string> verdicts;
+  if (guided == nullptr) return {"The divided model could not be trained: nothing can be compared."};
+  if (small != nullptr) verdicts.push_back("Blocks against one model with the tables of one block, equal time: " + Difference(*guided, *small) + ".");
+  if (large != nullptr) {
+    verdicts.push_back(fmt::format("Blocks against one model with as many parameters ({:.1f} M against {:.1f} M), equal time: {}.",
+                                   guided->parameters / 1e6, large->parameters / 1e6, Difference(*guided, *large)));
+    verdicts.push_back(
+        fmt::format("Why: in the same time the one large model sees {:.2f} times the samples per second ({:.2f} M/s against {:.2f} M/s), because its "
+                    "tables leave the "
+                    "caches, and its voxels are shared out over the whole survey.",
+                    large->samples_per_second / guided->samples_per_second, large->samples_per_second / 1e6, guided->samples_per_second / 1e6));
+  }
+  if (independent != nullptr) verdicts.push_back("Blocks guided by a context against blocks alone: " + Difference(*guided, *independent) + ".");
+  if (shared != nullptr) {
+    std::string verdict = "A box as high as what stands in it against boxes that share the survey's height: " + Difference(*guided, *shared);
+    if (std::isfinite(guided->air_opacity) && guided->air_opacity > 0.0) {
+      verdict += fmt::format("; dirt in the air {:.3f} % against {:.3f} %, a factor of {:.1f}", 100.0 * guided->air_opacity,
+                             100.0 * shared->air_opacity, shared->air_opacity / guided->air_opacity);
+    }
+    verdicts.push_back(verdict + ".");
+  }
+  for (const VariantResult* one : {small, large}) {
+    if (one == nullptr || !std::isfinite(one->air_opacity) || !(guided->air_opacity > 0.0)) continue;
+    verdicts.push_back(fmt::format("Dirt in the air of '{}': {:.3f} %, {:.1f} times that of the blocks.", one->label, 100.0 * one->air_opacity,
+                                   one->air_opacity / guided->air_opacity));
+  }
+  return verdicts;
+}
+
+}  // namespace
+
+StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
+  const std::string budget = fmt::format("{}", options.budget_s);
+  const auto variant = [&](const std::string& name, const std::string& label, std::vector<Override> overrides) {
+    overrides.push_back({"run.time_budget_s", budget});
+    return Variant{.name = name, .label = label, .overrides = std::move(overrides)};
+  };
+  StudyBench bench;
+  std::vector<VariantResult>& results = bench.results;
+  results.push_back(study.Run(variant("guided", "blocks, guided", {{"partition.blocks", options.blocks}})));
+  const int blocks = std::max(1, results.front().blocks);
+  const int tables = study.settings().partition.max_log2_table_size;
+  const std::string joined = std::to_string(JoinedTableSize(tables, blocks));
+  results.push_back(
+      study.Run(variant("independent", "blocks, independent", {{"partition.blocks", options.blocks}, {"train.coupling", "independent"}})));
+  results.push_back(
+      study.Run(variant("shared_height", "blocks, one height for all", {{"partition.blocks", options.blocks}, {"partition.heights", "survey"}})));
+  results.push_back(study.Run(variant("single_small", "single, tables of one block", {{"partition.blocks", "1x1"}})));
+  results.push_back(
+      study.Run(variant("single_large", "single, as many parameters",
+                        {{"partition.blocks", "1x1"}, {"partition.min_log2_table_size", joined}, {"partition.max_log2_table_size", joined}})));
+
+  BenchPage& page = bench.page;
+  page.name = "single-vs-multi";
+  page.title = "One model or many";
+  page.lead = fmt::format(
+      "The same survey, the same {:.0f} s of training for every variant (the context's time included): one field of the whole area against one per "
+      "block. "
+      "Blocks either know the context (guided) or nothing outside themselves (independent). Dirt in the air is what a scene swallows of a ray that "
+      "should "
+      "be free until 1 m in front of the true surface; only simulated surveys can tell.",
+      options.budget_s);
+  if (const VariantResult* guided = Find(results, "guided")) {
+    page.figures.push_back({"Blocks, guided", fmt::format("{:.2f} dB", guided->psnr_db), fmt::format("{} blocks", guided->blocks)});
+    if (const VariantResult* small = Find(results, "single_small")) {
+      page.figures.push_back({"against one such model", fmt::format("{:+.2f} dB", guided->psnr_db - small->psnr_db), "equal time"});
+    }
+    if (const VariantResult* large = Find(results, "single_large")) {
+      page.figures.push_back(
+          {"against one as large as all", fmt::format("{:+.2f} dB", guided->psnr_db - large->psnr_db), "equal time and parameters"});
+    }
+    if (const VariantResult* shared = Find(results, "shared_height"); shared != nullptr && guided->air_opacity > 0.0) {
+      page.figures.push_back(
+          {"Dirt in the air", fmt::format("{:.1f} x less", shared->air_opacity / guided->air_opacity), "boxes of their own height"});
+    }
+  }
+  page.verdicts = Verdicts(results);
+  page.sections.push_back(
+      {.id = "quality", .title = "Quality, time, memory", .lead = "", .charts = {}, .tables = {QualityTable(results)}, .pictures = {}});
+  page.sections.push_back({.id = "blocks",
+                           .title = "Block by block",
+                           .lead = "",
+                           .charts = {TrainingChart(results)},
+                           .tables = {BlockTable(results, "blocks")},
+                           .pictures = {}});
+  page.sections.push_back(PictureSection(results));
+  return bench;
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,44 @@
+// The benches that train: every one a list of variants of one survey, and what is to be read from their results.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coordinator/bench/bench_page.h"
+#include "coordinator/bench/study/study.h"
+
+namespace skyquilt::coordinator {
+
+struct StudyBench {
+  BenchPage page;
+  std::vector<VariantResult> results;
+};
+
+struct SingleVsMultiOptions {
+  std::string blocks = "3x3";  // of the divided variants
+  double budget_s = 300.0;     // training time of every variant, context included
+};
+// One model of the whole area against one per block: equal time, and equal parameters. Couplings guided and independent; boxes as high as what
+// stands in them against boxes that share the survey's height.
+// Source of the question: MatrixCity (Li et al. 2023), supplement, table 2.
+StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options);
+
+struct BlocksBenchOptions {
+  std::vector<int> per_side = {1, 2, 3, 4};
+  std::vector<int> log2_table_sizes = {15, 17, 19};
+  double budget_s = 180.0;
+};
+// Number of blocks against capacity of each. MatrixCity, supplement, table 3.
+StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options);
+
+struct TradeoffOptions {
+  std::vector<double> budgets_s = {45.0, 120.0, 360.0};
+  double middle_budget_s = 120.0;  // of the studies that vary one thing
+  std::vector<int> log2_table_sizes = {14, 15, 16, 17, 18, 19};
+  std::vector<double> steps_per_voxel = {1.0, 2.0, 4.0};  // marching step: how many samples a ray gets
+  std::vector<int> keep_every = {1, 2, 4};                // of the training photos
+};
+// Presets against time budgets, and one thing at a time: storage precision, tables, samples per ray, their placing, photos.
+StudyBench Tradeoff(Study& study, const TradeoffOptions& options);
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,24 @@
+// Tables, charts and pictures that all studies share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coordinator/bench/bench_page.h"
+#include "coordinator/bench/study/study.h"
+
+namespace skyquilt::coordinator {
+
+// One row per variant: quality, time, memory, size. Columns that no variant has a number for (depth without truth, LPIPS) are left out.
+BenchTable QualityTable(const std::vector<VariantResult>& results, const std::string& name = "");
+// Held-out PSNR per block, one row per block, one column per variant that has it.
+BenchTable BlockTable(const std::vector<VariantResult>& results, const std::string& name);
+// PSNR of the training batches over training time.
+std::string TrainingChart(const std::vector<VariantResult>& results);
+// One held-out photo and what every variant makes of it.
+BenchSection PictureSection(const std::vector<VariantResult>& results);
+
+// The part of a bench's JSON that all studies share: bench, results, machine, date, command, and `settings`.
+std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& results, const std::string& settings_toml);
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,175 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "coordinator/bench/study/pareto.h"
+#include "coordinator/bench/study/study_benches.h"
+#include "coordinator/bench/study/study_tables.h"
+#include "coordinator/presets.h"
+#include "coordinator/report/curve_chart.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+constexpr double kNearFront_db = 0.1;  // what two trainings of the same thing may differ by
+
+Override Budget(double seconds) {
+  return {"run.time_budget_s", fmt::format("{}", seconds)};
+}
+
+std::vector<Priced> Prices(const std::vector<VariantResult>& results) {
+  std::vector<Priced> points;
+  for (const VariantResult& r : results) points.push_back({r.train_seconds, r.psnr_db});
+  return points;
+}
+
+// Presets as curves over time, with the front through all of them.
+std::string ParetoChart(const std::vector<std::string>& presets, const std::vector<std::vector<VariantResult>>& by_preset) {
+  std::vector<report::Curve> curves;
+  std::vector<VariantResult> all;
+  for (size_t p = 0; p < presets.size(); ++p) {
+    report::Curve curve{.name = presets[p], .points = {}, .marks = true};
+    for (const VariantResult& r : by_preset[p]) {
+      curve.points.emplace_back(r.train_seconds, r.psnr_db);
+      all.push_back(r);
+    }
+    curves.push_back(std::move(curve));
+  }
+  const std::vector<Priced> points = Prices(all);
+  report::Curve front{.name = "best for its time", .points = {}, .emphasised = true};
+  for (const size_t i : ParetoFront(points)) front.points.emplace_back(points[i].cost, points[i].quality);
+  curves.push_back(std::move(front));
+  return report::CurveChart(curves, {.title = "Quality for time", .x_label = "training time (s)", .y_label = "PSNR (dB)", .log_x = true});
+}
+
+BenchSection OneThing(const std::string& id, const std::string& title, const std::string& lead, const std::vector<VariantResult>& results,
+                      const std::string& x_label, const std::vector<double>& x, bool log_x) {
+  report::Curve curve{.name = "PSNR", .points = {}, .marks = true};
+  for (size_t i = 0; i < results.size(); ++i) curve.points.emplace_back(x[i], results[i].psnr_db);
+  BenchSection section{.id = id, .title = title, .lead = lead, .charts = {}, .tables = {QualityTable(results, id)}, .pictures = {}};
+  if (!x_label.empty())
+    section.charts.push_back(report::CurveChart({curve}, {.title = title, .x_label = x_label, .y_label = "PSNR (dB)", .log_x = log_x}));
+  return section;
+}
+
+// How far under the front each preset's best place lies.
+std::string PresetVerdict(const std::string& preset, const std::vector<VariantResult>& own, const std::vector<VariantResult>& all) {
+  const std::vector<Priced> points = Prices(all);
+  double nearest = std::numeric_limits<double>::infinity();
+  std::string at;
+  for (const VariantResult& r : own) {
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (all[i].name != r.name || !r.failure.empty()) continue;
+      const double below = BelowFront(points, i);
+      if (below >= nearest) continue;
+      nearest = below;
+      at = r.label;
+    }
+  }
+  if (at.empty()) return "Preset '" + preset + "' could not be trained.";
+  return fmt::format("Preset '{}' {}: nearest at {}, {:.2f} dB under it.", preset,
+                     nearest <= kNearFront_db ? "lies on the front" : "does not lie on the front", at, nearest);
+}
+
+}  // namespace
+
+StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
+  StudyBench bench;
+  BenchPage& page = bench.page;
+  const auto keep = [&bench](const std::vector<VariantResult>& results) {
+    bench.results.insert(bench.results.end(), results.begin(), results.end());
+  };
+
+  std::vector<std::vector<VariantResult>> by_preset;
+  std::vector<VariantResult> presets;
+  for (const std::string& preset : PresetNames()) {
+    by_preset.emplace_back();
+    for (const double budget_s : options.budgets_s) {
+      std::vector<Override> overrides = PresetOverrides(preset);
+      overrides.push_back(Budget(budget_s));
+      by_preset.back().push_back(study.Run({.name = fmt::format("{}_{:.0f}s", preset, budget_s),
+                                            .label = fmt::format("{}, {:.0f} s", preset, budget_s),
+                                            .overrides = std::move(overrides)}));
+    }
+    presets.insert(presets.end(), by_preset.back().begin(), by_preset.back().end());
+  }
+  keep(presets);
+
+  const Override middle = Budget(options.middle_budget_s);
+  // The same training, written with fewer bits.
+  const std::vector<VariantResult> storage =
+      study.RunMerged({.name = "storage_fp32", .label = "fp32", .overrides = {middle}},
+                      {{.name = "storage_bf16", .label = "bf16", .overrides = {middle, {"merge.storage", "bf16"}}},
+                       {.name = "storage_fp16", .label = "fp16", .overrides = {middle, {"merge.storage", "fp16"}}}});
+  keep(storage);
+  std::vector<VariantResult> tables, samples, placing, photos;
+  std::vector<double> table_x, sample_x, photo_x;
+  for (const int log2 : options.log2_table_sizes) {
+    const std::string size = std::to_string(log2);
+    tables.push_back(study.Run({.name = "tables_" + size,
+                                .label = "2^" + size,
+                                .overrides = {middle, {"partition.min_log2_table_size", size}, {"partition.max_log2_table_size", size}}}));
+    table_x.push_back(tables.back().parameters);
+  }
+  for (const double step : options.steps_per_voxel) {
+    const std::string text = fmt::format("{:g}", step);
+    std::string name = text;
+    std::replace(name.begin(), name.end(), '.', '_');
+    samples.push_back(study.Run({.name = "step_" + name,
+                                 .label = "a step of " + text + " voxels",
+                                 .overrides = {middle, {"train.step_voxels", text}, {"context.step_voxels", text}}}));
+    sample_x.push_back(step);
+  }
+  for (const char* stratified : {"true", "false"}) {
+    const bool on = std::string(stratified) == "true";
+    placing.push_back(study.Run({.name = on ? "stratified" : "uniform",
+                                 .label = on ? "stratified: the first sample anywhere in its step" : "uniform: always in the middle of it",
+                                 .overrides = {middle, {"train.stratified", stratified}, {"context.stratified", stratified}}}));
+  }
+  for (const int every : options.keep_every) {
+    photos.push_back(study.Run({.name = "photos_" + std::to_string(every),
+                                .label = every == 1 ? "all photos" : fmt::format("every {}. photo", every),
+                                .overrides = {middle},
+                                .keep_every = every}));
+    photo_x.push_back(photos.back().training_photos);
+  }
+  for (const auto* group : {&tables, &samples, &placing, &photos}) keep(*group);
+
+  page.name = "tradeoff";
+  page.title = "Speed against accuracy";
+  page.lead = fmt::format(
+      "What more time, larger tables, more samples or more photos buy. Presets at several time budgets first; then one thing at a time, {:.0f} s "
+      "each.",
+      options.middle_budget_s);
+  const std::vector<std::string> names = PresetNames();
+  for (size_t p = 0; p < names.size(); ++p) page.verdicts.push_back(PresetVerdict(names[p], by_preset[p], presets));
+  if (storage.size() == 3 && storage[0].failure.empty()) {
+    for (const size_t k : {size_t{1}, size_t{2}}) {
+      page.verdicts.push_back(fmt::format("{} storage: {:+.3f} dB against fp32 at {:.0f} % of its bytes.", storage[k].label,
+                                          storage[k].psnr_db - storage[0].psnr_db, 100.0 * storage[k].scene_bytes / storage[0].scene_bytes));
+    }
+    page.figures.push_back({"bf16 storage", fmt::format("{:+.3f} dB", storage[1].psnr_db - storage[0].psnr_db),
+                            fmt::format("{:.0f} % of the bytes", 100.0 * storage[1].scene_bytes / storage[0].scene_bytes)});
+  }
+  page.sections.push_back({.id = "presets",
+                           .title = "Presets and time",
+                           .lead = "",
+                           .charts = {ParetoChart(names, by_preset), TrainingChart(presets)},
+                           .tables = {QualityTable(presets, "presets")},
+                           .pictures = {}});
+  page.sections.push_back(
+      OneThing("storage", "Storage of the parameters", "One training, its scene written with three precisions.", storage, "", {}, false));
+  page.sections.push_back(OneThing("tables", "Table sizes", "Entries per level of every block.", tables, "parameters", table_x, true));
+  page.sections.push_back(OneThing(
+      "samples", "Samples per ray",
+      "The marching step as a multiple of the finest voxel: half the step is twice the samples on a ray, and half the rays in the same time.",
+      samples, "marching step (voxels)", sample_x, false));
+  page.sections.push_back(OneThing("placing", "Stratified against uniform sampling", "", placing, "", {}, false));
+  page.sections.push_back(OneThing("photos", "Number of photos", "Training photos left out evenly; the held-out ones are always the same.", photos,
+                                   "training photos", photo_x, false));
+  page.sections.push_back(PictureSection(presets));
+  return bench;
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,66 @@
+"""Benches that train: interrupted they go on, their pages hold what they promise, and other settings are not mixed in."""
+import json
+import re
+import signal
+
+from harness import digest, expect, main, small_survey, wait_for
+
+SMALL = ["--quick", "--time-budget", "1s", "--set", "run.image_width=160", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096",
+         "--set", "evaluate.max_photos=2"]
+
+
+def check_page(folder, name):
+    html = (folder / f"{name}.html").read_text()
+    expect("http" not in re.sub(r'xmlns="[^"]*"', "", html), "the page asks for something from the net")
+    for link in re.findall(r'<img src="([^"]+)"', html):
+        expect((folder / link).is_file(), f"{name}.html shows {link}, which is not there")
+    expect("<img" in html and "<svg" in html, f"{name}.html has no picture or no plot")
+    expect(list(folder.glob(f"{name}*.csv")), "no CSV")
+    return json.loads((folder / f"{name}.json").read_text())
+
+
+def test(skyquilt, folder):
+    survey = small_survey(skyquilt, folder)
+    out = folder / "bench"
+    words = ["bench", "single-vs-multi", "--survey", survey, "-o", out, "--blocks", "1x2", *SMALL]
+    process = skyquilt.start(*words)
+    wait_for((out / "runs" / "guided.json").exists, "first result", process)
+    process.send_signal(signal.SIGINT)
+    process.wait(timeout=120)
+    expect(process.returncode == 130, f"ended with {process.returncode} when interrupted:\n{process.stdout.read()}")
+    before = digest(out / "runs" / "guided")
+
+    text = skyquilt.call(*words)
+    expect("dB" in text and "single" in text, text)
+    expect(digest(out / "runs" / "guided") == before, "a finished variant was run again")
+    result = check_page(out, "single-vs-multi")
+    names = [variant["name"] for variant in result["results"]]
+    expect(names == ["guided", "independent", "shared_height", "single_small", "single_large"], names)
+    for variant in result["results"]:
+        expect("failure" not in variant, variant)
+        expect(variant["psnr_db"] > 8.0 and variant["train_seconds"] > 0.0 and variant["parameters"] > 0 and variant["air_opacity"] is not None, variant)
+        expect(variant["blocks"] == (1 if variant["name"].startswith("single") else 2), variant)
+        expect(not (out / "runs" / variant["name"] / "checkpoints").exists(), "large files were kept")
+        expect((out / variant["report"]).is_file(), "the variant's report is gone")
+    large = {variant["name"]: variant for variant in result["results"]}
+    expect(large["single_large"]["parameters"] > large["single_small"]["parameters"], "the large model is not larger")
+
+    text = skyquilt.call(*words, "--set", "train.hidden=32", status=2)
+    expect("other settings" in text, text)
+    skyquilt.call("bench", "blocks", "--survey", folder / "nowhere", "-o", folder / "none", status=3)
+    skyquilt.call("bench", "blocks", "--survey", survey, "--preset", "town", "-o", folder / "none", status=2)
+
+    # One training, merged in three ways.
+    out = folder / "tradeoff"
+    skyquilt.call("bench", "tradeoff", "--survey", survey, "-o", out, *SMALL)
+    result = check_page(out, "tradeoff")
+    stored = {variant["name"]: variant for variant in result["results"] if variant["name"].startswith("storage")}
+    expect(len(stored) == 3, stored)
+    for name in ("storage_bf16", "storage_fp16"):
+        expect(stored[name]["scene_bytes"] < 0.65 * stored["storage_fp32"]["scene_bytes"], stored)
+        expect(abs(stored[name]["psnr_db"] - stored["storage_fp32"]["psnr_db"]) < 0.1, stored)
+        expect(stored[name]["train_seconds"] == stored["storage_fp32"]["train_seconds"], "it was trained again")
+
+
+if __name__ == "__main__":
+    main(test)

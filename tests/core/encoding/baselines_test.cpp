@@ -15,7 +15,7 @@ HashGridConfig SmallConfig() {
   HashGridConfig config;
   config.levels = 6;
   config.features = 4;
-  config.log2_table_size = 6;
+  config.log2_table_size = 7;
   config.base_resolution = 2;
   config.finest_resolution = 24;
   config.extent[1] = 0.8;
@@ -88,7 +88,7 @@ TEST_P(EveryEncoding, NanCountsAsZero) {
 }
 
 TEST_P(EveryEncoding, GradientMatchesFiniteDifferencesAndMarksExactlyTheLinesItWrote) {
-  const size_t n = 9, resting = 4, stride = 16;
+  const size_t n = 4, resting = 2, stride = 16;  // few enough to leave lines untouched
   Place(n);
   const auto rows = static_cast<size_t>(encoding_->OutputRows());
   base::Random random(7);
@@ -179,7 +179,7 @@ TEST_P(TableEncoding, HasAboutTheParametersOfAHashGridButNeverFinerCells) {
         EXPECT_LE(share, 1.02) << "lines are filled up";
         // Whole cells along three axes leave some of a small budget over.
         if (static_cast<double>(lattice.cells_per_unit) < finest) {
-          EXPECT_GT(share, log2_table_size < 14 ? 0.7 : 0.88) << log2_table_size << " " << levels;
+          EXPECT_GT(share, budget < 1e5 ? 0.7 : 0.9) << log2_table_size << " " << levels;
         }
       }
     }

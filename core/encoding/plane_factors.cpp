@@ -75,7 +75,10 @@ int64_t PlaneFactors::PlaneEntries(int part) const {
 }
 
 void PlaneFactors::Initialize(base::Random& random, std::span<float> parameters) const {
-  for (float& value : parameters) value = static_cast<float>(0.1 * random.Normal());
+  Encoding::Initialize(random, parameters);
+  for (int part = 0; part < parts(); ++part) {
+    std::fill_n(parameters.data() + Offset(part) + PlaneEntries(part) * kGroup, lattice_.size[AxesOf(part).w] * kGroup, 1.0F);
+  }
 }
 
 void PlaneFactors::FindEntries(int part, const float* const position[3], int64_t begin, int count, Block& block) const {

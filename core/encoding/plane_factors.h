@@ -26,7 +26,8 @@ class PlaneFactors : public Encoding {
   int64_t PlaneEntries(int part) const;
 
   Kind kind() const override { return Kind::kPlanes; }
-  // Normal with standard deviation 0.1, as the authors' code: at nothing times nothing no gradient would pass.
+  // Planes as other tables, lines one: features start as planes alone, and gradients pass whole. The authors' normal numbers of deviation 0.1 for
+  // both need their coarse start and many thousand steps: products of noise have to be unlearned, and small factors learn slowly.
   void Initialize(base::Random& random, std::span<float> parameters) const override;
   void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out, size_t out_stride) const override;
   void Backward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient, size_t out_stride,

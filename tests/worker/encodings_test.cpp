@@ -1,4 +1,4 @@
-// Fields with every encoding learn the small survey, in blocks and alone.
+// Fields with every encoding learn the small survey, as block and as context; shallow hash grids do so in train_block_test.cpp.
 #include <gtest/gtest.h>
 
 #include "core/encoding/encoding.h"
@@ -48,9 +48,8 @@ TEST_P(EncodingTest, IsGoodForAContextToo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EncodingTest,
-                         ::testing::Values(Baseline{encoding::Kind::kHash, 1, 3e-2}, Baseline{encoding::Kind::kHash, 2, 3e-2},
-                                           Baseline{encoding::Kind::kVoxels, 1, 3e-2}, Baseline{encoding::Kind::kPlanes, 1, 3e-2},
-                                           Baseline{encoding::Kind::kFrequency, 3, 3e-3}),
+                         ::testing::Values(Baseline{encoding::Kind::kHash, 2, 3e-2}, Baseline{encoding::Kind::kVoxels, 1, 3e-2},
+                                           Baseline{encoding::Kind::kPlanes, 1, 3e-2}, Baseline{encoding::Kind::kFrequency, 3, 3e-3}),
                          [](const auto& of) { return encoding::Name(of.param.encoding) + std::to_string(of.param.density_hidden_layers); });
 
 }  // namespace

@@ -10,14 +10,14 @@
 namespace skyquilt::worker {
 namespace {
 
-constexpr int64_t kEncodePackets = 16;  // one task: enough work, and a level's table stays in cache meanwhile
+constexpr int64_t kEncodePackets = 16;  // one task: enough work, and a part's table stays in cache meanwhile
 // Where less light than this arrives, a sample gets neither colour nor gradient.
 const float kHiddenDepth = -std::log(1e-3F);
 // Behind this optical depth the context is not looked at: it would show through at less than 2 %.
 constexpr float kOpaqueDepth = 4.0F;
 constexpr double kMeansFollow = 0.1;  // share of a new batch in the running means
 
-// Reads a level's table once in order. Corners read it at random, and memory is several times slower at that than at one pass in front of it.
+// Reads a part's table once in order. Corners read it at random, and memory is several times slower at that than at one pass in front of it.
 // The sum only keeps the compiler from leaving it out.
 float ReadAhead(const float* table, int64_t floats) {
   float sum = 0.0F;
@@ -55,26 +55,26 @@ void FieldStep::Encode(const RayBatch& batch, const field::TrainableState& state
   Grow(features_, last.features + last.stride * static_cast<size_t>(field_.FeatureRows()));
   const auto packets = static_cast<int64_t>(batch.packets.size());
   const int64_t stretches = (packets + kEncodePackets - 1) / kEncodePackets;
-  const encoding::HashGrid& grid = field_.grid();
-  threads_.ParallelFor(stretches * grid.levels(), [&](int64_t task, int thread) {
+  const encoding::Encoding& encoding = field_.encoding();
+  threads_.ParallelFor(stretches * encoding.parts(), [&](int64_t task, int thread) {
     const auto start = StageTimes::Clock::now();
-    const int l = static_cast<int>(task / stretches);
+    const int part = static_cast<int>(task / stretches);
+    const float* table = state.grid.data() + encoding.Offset(part);
     const int64_t stretch = task % stretches;
-    const int64_t floats = grid.Offset(l + 1) - grid.Offset(l);
+    const int64_t floats = encoding.Offset(part + 1) - encoding.Offset(part);
     const int64_t readers = std::min<int64_t>(threads_.size(), stretches);
     // Worth it when the samples will want most of the table.
     if (stretch < readers && 4 * batch.n_samples > floats / kernel::kLineFloats) {
-      const int64_t part = floats / readers / kernel::kLineFloats * kernel::kLineFloats;
-      workers_[static_cast<size_t>(thread)]->read_ahead = ReadAhead(state.grid.data() + grid.Offset(l) + stretch * part, part);
+      const int64_t length = floats / readers / kernel::kLineFloats * kernel::kLineFloats;
+      workers_[static_cast<size_t>(thread)]->read_ahead = ReadAhead(table + stretch * length, length);
     }
     const auto first = static_cast<size_t>(stretch * kEncodePackets);
     const auto end = std::min(first + static_cast<size_t>(kEncodePackets), batch.packets.size());
     for (size_t k = first; k < end; ++k) {
       if (share != nullptr && !share->Mine(k % kGradientSlots)) continue;
       const Packet& p = batch.packets[k];
-      kernel::HashForward(grid.level(l), grid.features(), state.grid.data() + grid.Offset(l), batch.x.data() + p.begin, batch.y.data() + p.begin,
-                          batch.z.data() + p.begin, p.count, features_.data() + p.features + static_cast<size_t>(l * grid.features()) * p.stride,
-                          p.stride);
+      encoding.Forward(part, table, batch.x.data() + p.begin, batch.y.data() + p.begin, batch.z.data() + p.begin, p.count,
+                       features_.data() + p.features + static_cast<size_t>(encoding.FirstRow(part)) * p.stride, p.stride);
     }
     times_.Add(thread, Stage::kEncode, start);
   });

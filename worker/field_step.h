@@ -1,6 +1,6 @@
-// One optimiser step of one field on a drawn batch: hash encoding level by level over the whole batch, then every packet from density to
-// gradient while its activations are in cache, then the gradient's way back into the tables and Adam.
-// Bits do not depend on the number of threads: grid levels have one writer each and network gradients are summed in fixed slots.
+// One optimiser step of one field on a drawn batch: encoding part by part (a hash grid's levels) over the whole batch, then every packet from density
+// to gradient while its activations are in cache, then the gradient's way back into the tables and Adam. Bits do not depend on the number of threads:
+// parts have one writer each and network gradients are summed in fixed slots.
 #pragma once
 
 #include <array>

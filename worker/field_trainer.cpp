@@ -106,7 +106,7 @@ void FieldTrainer::StepDepths(const std::vector<float>& x, const std::vector<flo
     const size_t stride = kernel::StrideFor(count);
     std::vector<float> features(static_cast<size_t>(field_.FeatureRows()) * stride, 0.0F);
     std::vector<float> geometry(static_cast<size_t>(field::kGeometryRows) * field::kChunkStride);
-    std::vector<float> hidden(static_cast<size_t>(field_.config().hidden) * field::kChunkStride);
+    std::vector<float> hidden(static_cast<size_t>(field_.DensityHiddenRows()) * field::kChunkStride);
     field_.EncodeSerial(state_.grid, x.data() + begin, y.data() + begin, z.data() + begin, count, features.data(), stride);
     for (int64_t s = 0; s < padded; s += field::kChunk) {
       const int64_t size = std::min<int64_t>(field::kChunk, padded - s);

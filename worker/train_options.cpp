@@ -1,8 +1,10 @@
 #include "worker/train_options.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "core/base/errors.h"
+#include "core/encoding/encoding.h"
 
 namespace skyquilt::worker {
 
@@ -10,10 +12,15 @@ void TrainOptions::Visit(config::OptionVisitor& v) {
   v.Field("steps", steps, "optimiser steps per field; 0: as many as the time budget allows");
   v.Field("seconds", seconds, "time budget of one field in seconds when steps = 0; 0: the run's budget is shared out");
   v.Field("batch_samples", batch_samples, "samples per step; the number of rays adapts to it");
+  v.Field(
+      "encoding", encoding,
+      "of positions: hash (a grid of many resolutions), or for comparison voxels (one dense grid), planes (planes times lines) or frequency (sines "
+      "and cosines); voxels and planes get about as many parameters as hash would have");
   v.Field("levels", levels, "resolutions of the hash grid, 1..16");
   v.Field("features", features, "numbers per grid entry, 2 or 4; levels * features must be a multiple of 4");
   v.Field("base_resolution", base_resolution, "cells along the longest edge at the coarsest level");
   v.Field("hidden", hidden, "width of the hidden layers, a multiple of 4 up to 256");
+  v.Field("density_hidden_layers", density_hidden_layers, "hidden layers of the density network, 1..8");
   v.Field("color_hidden_layers", color_hidden_layers, "hidden layers of the colour network, 1..3");
   v.Field("sh_degree", sh_degree, "spherical harmonics of the viewing direction: degree 1 (none) to 4");
   v.Field("learning_rate", learning_rate, "of Adam at the start");
@@ -34,11 +41,17 @@ void TrainOptions::Check(const std::string& section) const {
   require(steps >= 0, "steps", "0 or more", steps);
   require(std::isfinite(seconds) && seconds >= 0.0, "seconds", "0 or more", seconds);
   require(batch_samples >= 256 && batch_samples <= (1 << 22), "batch_samples", "256..4194304", batch_samples);
+  try {
+    encoding::KindNamed(encoding);
+  } catch (const std::invalid_argument& error) {
+    throw base::UsageError(section + "." + error.what());
+  }
   require(levels >= 1 && levels <= 16, "levels", "1..16", levels);
   require(features == 2 || features == 4, "features", "2 or 4", features);
   require(levels * features % 4 == 0, "levels", "such that levels * features is a multiple of 4", levels);
   require(base_resolution >= 1 && base_resolution <= 4096, "base_resolution", "1..4096", base_resolution);
   require(hidden >= 4 && hidden <= 256 && hidden % 4 == 0, "hidden", "a multiple of 4 in 4..256", hidden);
+  require(density_hidden_layers >= 1 && density_hidden_layers <= 8, "density_hidden_layers", "1..8", density_hidden_layers);
   require(color_hidden_layers >= 1 && color_hidden_layers <= 3, "color_hidden_layers", "1..3", color_hidden_layers);
   require(sh_degree >= 1 && sh_degree <= 4, "sh_degree", "1..4", sh_degree);
   require(learning_rate > 0.0 && learning_rate < 1.0, "learning_rate", "in (0, 1)", learning_rate);

@@ -11,10 +11,12 @@ struct TrainOptions {
   int steps = 0;              // > 0: exactly this many
   double seconds = 0.0;       // time budget of this field when steps = 0; both 0: kDefaultSteps
   int batch_samples = 32768;  // samples per step; the number of rays adapts to it
+  std::string encoding = "hash";
   int levels = 8;
   int features = 4;
   int base_resolution = 16;
   int hidden = 64;
+  int density_hidden_layers = 1;
   int color_hidden_layers = 1;
   int sh_degree = 3;
   double learning_rate = 3e-2;

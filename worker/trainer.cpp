@@ -70,7 +70,9 @@ render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is
   grid.base_resolution = options.base_resolution;
   grid.finest_resolution = std::max<double>(options.base_resolution, 1.0 / (box.finest_voxel_m * f.map.units_per_metre()));
   for (int axis = 0; axis < 3; ++axis) grid.extent[axis] = std::min(1.0, f.map.extent()[axis]);
+  f.config.encoding = encoding::KindNamed(options.encoding);
   f.config.hidden = options.hidden;
+  f.config.density_hidden_layers = options.density_hidden_layers;
   f.config.color_hidden_layers = options.color_hidden_layers;
   f.config.sh_degree = options.sh_degree;
   f.config.color_range = ColorRange(*job.survey, response);

@@ -10,6 +10,7 @@
 #include "core/base/progress.h"
 #include "core/base/random.h"
 #include "core/base/system.h"
+#include "core/encoding/hash_grid.h"
 #include "core/kernel/kernels.h"
 #include "core/kernel/machine_limits.h"
 #include "worker/field_step.h"
@@ -77,7 +78,8 @@ void MeasureLimits(const KernelBenchOptions& options, const field::HashField& fi
   const double seconds = 0.2 * options.seconds;
   threads.ParallelFor(threads.size(), [&](int64_t task, int) { flops[static_cast<size_t>(task)] = kernel::MeasureFlops(seconds); });
   std::map<uint32_t, int> levels_of_size;
-  for (int l = 0; l < field.grid().levels(); ++l) ++levels_of_size[field.grid().level(l).entries];
+  const encoding::HashGrid grid(field.config().grid);
+  for (int l = 0; l < grid.levels(); ++l) ++levels_of_size[grid.level(l).entries];
   double gather_s = 0.0, scatter_s = 0.0;
   for (const auto& [entries, count] : levels_of_size) {
     threads.ParallelFor(threads.size(), [&, entries = entries](int64_t task, int) {

@@ -10,6 +10,7 @@
 #include "coordinator/scheduler/training_team.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "core/encoding/encoding.h"
 
 namespace skyquilt::coordinator {
 
@@ -62,8 +63,9 @@ int ContextSteps(const Settings& settings) {
 
 double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads) {
   const double entries = std::ldexp(1.0, block.log2_table_size);
-  // Parameters and two moments of every level, the gradient of one level per thread.
-  const double table = entries * options.features * 4.0 * (3.0 * options.levels + std::min(threads, options.levels));
+  // Parameters and two moments of every level, the gradient of one level per thread; other encodings with tables take as much.
+  const bool tables = encoding::KindNamed(options.encoding) != encoding::Kind::kFrequency;
+  const double table = !tables ? 0.0 : entries * options.features * 4.0 * (3.0 * options.levels + std::min(threads, options.levels));
   const double per_sample = 4.0 * (2.0 * options.levels * options.features + 6.0 * options.hidden + 64.0);
   return table + per_sample * options.batch_samples + 64e6 * threads;
 }

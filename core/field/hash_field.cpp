@@ -17,24 +17,25 @@ void Require(bool ok, const std::string& what) {
 
 }  // namespace
 
-HashField::HashField(const FieldConfig& config) : config_(config), grid_(config.grid) {
+HashField::HashField(const FieldConfig& config) : config_(config), encoding_(encoding::MakeEncoding(config.encoding, config.grid)) {
   Require(config.hidden >= 4 && config.hidden <= 256 && config.hidden % 4 == 0, "hidden must be a multiple of 4 in 4..256");
+  Require(config.density_hidden_layers >= 1 && config.density_hidden_layers <= 8, "density_hidden_layers must be 1..8");
   Require(config.color_hidden_layers >= 1 && config.color_hidden_layers <= 3, "color_hidden_layers must be 1..3");
   Require(config.sh_degree >= 1 && config.sh_degree <= 4, "sh_degree must be 1..4");
   Require(config.color_range > 0.0 && std::isfinite(config.color_range), "color_range must be positive");
   color_inputs_ = kGeometryRows + kernel::PaddedRows(config.sh_degree * config.sh_degree);
-  layers_.push_back({config.hidden, kernel::PaddedRows(FeatureRows())});
+  layers_.push_back({config.hidden, FeatureRows()});
+  for (int l = 1; l < config.density_hidden_layers; ++l) layers_.push_back({config.hidden, config.hidden});
   layers_.push_back({kGeometryRows, config.hidden});
   layers_.push_back({config.hidden, color_inputs_});
   for (int l = 1; l < config.color_hidden_layers; ++l) layers_.push_back({config.hidden, config.hidden});
   layers_.push_back({kColorRows, config.hidden});
-  Require(FeatureRows() % kernel::kRowPad == 0, "levels * features must be a multiple of 4");
   network_offsets_.push_back(0);
   for (const Layer& layer : layers_) network_offsets_.push_back(network_offsets_.back() + static_cast<int64_t>(layer.outputs) * layer.inputs);
 }
 
 void HashField::Initialize(base::Random& random, std::span<float> grid, std::span<float> networks) const {
-  for (float& value : grid) value = static_cast<float>(random.Uniform(-1e-4, 1e-4));
+  encoding_->Initialize(random, grid);
   for (size_t l = 0; l < layers_.size(); ++l) {
     const Layer& layer = layers_[l];
     const double limit = std::sqrt(6.0 / (layer.outputs + layer.inputs));
@@ -71,16 +72,20 @@ NetworkWeights HashField::Prepare(std::span<const float> networks) const {
 
 void HashField::EncodeSerial(std::span<const float> grid, const float* x, const float* y, const float* z, int64_t n, float* features,
                              size_t stride) const {
-  for (int l = 0; l < grid_.levels(); ++l) {
-    kernel::HashForward(grid_.level(l), grid_.features(), grid.data() + grid_.Offset(l), x, y, z, n,
-                        features + static_cast<size_t>(l * grid_.features()) * stride, stride);
+  for (int part = 0; part < encoding_->parts(); ++part) {
+    encoding_->Forward(part, grid.data() + encoding_->Offset(part), x, y, z, n, features + static_cast<size_t>(encoding_->FirstRow(part)) * stride,
+                       stride);
   }
 }
 
 void HashField::Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, float* hidden, size_t hidden_stride,
                         float* geometry, size_t geometry_stride) const {
   kernel::Dense(weights.layer[0].data(), config_.hidden, layers_[0].inputs, features, feature_stride, n, true, hidden, hidden_stride);
-  kernel::Dense(weights.layer[1].data(), kGeometryRows, config_.hidden, hidden, hidden_stride, n, false, geometry, geometry_stride);
+  const size_t layer_size = static_cast<size_t>(config_.hidden) * hidden_stride;
+  for (size_t l = 1; l < DensityOutput(); ++l, hidden += layer_size) {
+    kernel::Dense(weights.layer[l].data(), config_.hidden, config_.hidden, hidden, hidden_stride, n, true, hidden + layer_size, hidden_stride);
+  }
+  kernel::Dense(weights.layer[DensityOutput()].data(), kGeometryRows, config_.hidden, hidden, hidden_stride, n, false, geometry, geometry_stride);
 }
 
 void HashField::FillDirection(const float direction[3], int64_t count, float* rows, size_t stride) const {
@@ -94,7 +99,8 @@ void HashField::Color(const NetworkWeights& weights, const float* color_in, size
   const float* in = color_in;
   int inputs = color_inputs_;
   for (int l = 0; l < config_.color_hidden_layers; ++l) {
-    kernel::Dense(weights.layer[static_cast<size_t>(l) + 2].data(), config_.hidden, inputs, in, in_stride, n, true, hidden[l], hidden_stride);
+    kernel::Dense(weights.layer[ColorInput() + static_cast<size_t>(l)].data(), config_.hidden, inputs, in, in_stride, n, true, hidden[l],
+                  hidden_stride);
     in = hidden[l];
     in_stride = hidden_stride;
     inputs = config_.hidden;
@@ -115,18 +121,26 @@ void HashField::Backward(const NetworkWeights& weights, Activations& a, float* f
   kernel::DenseWeightGradient(a.color_gradient, stride, kColorRows, a.color_hidden[top], stride, hidden, n, gradient_of(last));
   kernel::DenseGated(weights.transposed[last].data(), hidden, kColorRows, a.color_gradient, stride, n, a.color_hidden[top], stride, current, stride);
   for (int l = top; l > 0; --l) {
-    const auto layer = static_cast<size_t>(l) + 2;
+    const size_t layer = ColorInput() + static_cast<size_t>(l);
     kernel::DenseWeightGradient(current, stride, hidden, a.color_hidden[l - 1], stride, hidden, n, gradient_of(layer));
     kernel::DenseGated(weights.transposed[layer].data(), hidden, hidden, current, stride, n, a.color_hidden[l - 1], stride, next, stride);
     std::swap(current, next);
   }
-  kernel::DenseWeightGradient(current, stride, hidden, a.color_in, stride, color_inputs_, n, gradient_of(2));
+  kernel::DenseWeightGradient(current, stride, hidden, a.color_in, stride, color_inputs_, n, gradient_of(ColorInput()));
   // Only the geometry rows go on: the direction has no parameters.
-  kernel::Dense(weights.transposed[2].data(), kGeometryRows, hidden, current, stride, n, false, a.geometry_gradient, stride);
+  kernel::Dense(weights.transposed[ColorInput()].data(), kGeometryRows, hidden, current, stride, n, false, a.geometry_gradient, stride);
   for (int64_t s = 0; s < n; ++s) a.geometry_gradient[s] += a.log_density_gradient[s];
   // Density network.
-  kernel::DenseWeightGradient(a.geometry_gradient, stride, kGeometryRows, a.density_hidden, stride, hidden, n, gradient_of(1));
-  kernel::DenseGated(weights.transposed[1].data(), hidden, kGeometryRows, a.geometry_gradient, stride, n, a.density_hidden, stride, current, stride);
+  const auto density_hidden = [&](size_t layer) { return a.density_hidden + layer * static_cast<size_t>(hidden) * stride; };
+  size_t below = DensityOutput() - 1;
+  kernel::DenseWeightGradient(a.geometry_gradient, stride, kGeometryRows, density_hidden(below), stride, hidden, n, gradient_of(DensityOutput()));
+  kernel::DenseGated(weights.transposed[DensityOutput()].data(), hidden, kGeometryRows, a.geometry_gradient, stride, n, density_hidden(below), stride,
+                     current, stride);
+  for (; below > 0; --below) {
+    kernel::DenseWeightGradient(current, stride, hidden, density_hidden(below - 1), stride, hidden, n, gradient_of(below));
+    kernel::DenseGated(weights.transposed[below].data(), hidden, hidden, current, stride, n, density_hidden(below - 1), stride, next, stride);
+    std::swap(current, next);
+  }
   kernel::DenseWeightGradient(current, stride, hidden, features, feature_stride, layers_[0].inputs, n, gradient_of(0));
   kernel::Dense(weights.transposed[0].data(), layers_[0].inputs, hidden, current, stride, n, false, features, feature_stride);
 }
@@ -134,8 +148,8 @@ void HashField::Backward(const NetworkWeights& weights, Activations& a, float* f
 double HashField::ForwardFlops() const {
   const int hidden = config_.hidden;
   const int color_inputs = kGeometryRows + config_.sh_degree * config_.sh_degree;
-  return 2.0 *
-         (FeatureRows() * hidden + hidden * kGeometryRows + color_inputs * hidden + (config_.color_hidden_layers - 1) * hidden * hidden + hidden * 3);
+  return 2.0 * (FeatureRows() * hidden + (config_.density_hidden_layers - 1) * hidden * hidden + hidden * kGeometryRows + color_inputs * hidden +
+                (config_.color_hidden_layers - 1) * hidden * hidden + hidden * 3);
 }
 
 double HashField::TrainFlops() const {
@@ -150,11 +164,12 @@ void Activations::Reserve(const HashField& field, int64_t n) {
   const auto hidden = static_cast<size_t>(field.config().hidden);
   const auto color_rows = static_cast<size_t>(field.ColorInputRows());
   const auto color_layers = static_cast<size_t>(field.config().color_hidden_layers);
-  kept_rows = static_cast<int>(hidden) + kGeometryRows;
-  buffer_.assign(stride * (hidden + color_rows + color_layers * hidden + 2 * kColorRows + 1 + kGeometryRows + 2 * hidden), 0.0F);
+  const auto density_rows = static_cast<size_t>(field.DensityHiddenRows());
+  kept_rows = field.DensityHiddenRows() + kGeometryRows;
+  buffer_.assign(stride * (density_rows + color_rows + color_layers * hidden + 2 * kColorRows + 1 + kGeometryRows + 2 * hidden), 0.0F);
   float* next = buffer_.data();
   const auto take = [&](size_t rows) { return std::exchange(next, next + rows * stride); };
-  density_hidden = take(hidden);
+  density_hidden = take(density_rows);
   color_in = take(color_rows);
   for (size_t l = 0; l < color_layers; ++l) color_hidden[l] = take(hidden);
   color_raw = take(kColorRows);

@@ -26,12 +26,12 @@ void TrainableState::Allocate(const HashField& field) {
   step = 0;
 }
 
-void AddLevelGradient(const HashField& field, int level, const float* x, const float* y, const float* z, std::span<const GridGradient> stretches,
-                      float* table_gradient, uint8_t* touched) {
-  const encoding::HashGrid& grid = field.grid();
+void AddPartGradient(const HashField& field, int part, const float* table, const float* x, const float* y, const float* z,
+                     std::span<const GridGradient> stretches, float* table_gradient, uint8_t* touched) {
+  const auto first_row = static_cast<size_t>(field.encoding().FirstRow(part));
   for (const GridGradient& s : stretches) {
-    kernel::HashBackward(grid.level(level), grid.features(), x + s.begin, y + s.begin, z + s.begin, s.count,
-                         s.gradient + static_cast<size_t>(level * grid.features()) * s.stride, s.stride, table_gradient, touched);
+    field.encoding().Backward(part, table, x + s.begin, y + s.begin, z + s.begin, s.count, s.gradient + first_row * s.stride, s.stride,
+                              table_gradient, touched);
   }
 }
 
@@ -48,24 +48,26 @@ void Optimizer::Update(const float* x, const float* y, const float* z, std::span
   step.correction2 = static_cast<float>(1.0 - std::pow(static_cast<double>(step.beta2), t));
   kernel::AdamDense(step, static_cast<float>(network_l2), field_.NetworkParameters(), state.networks.data(), state.network_gradient.data(),
                     state.network_moment1.data(), state.network_moment2.data());
-  const encoding::HashGrid& grid = field_.grid();
+  const encoding::Encoding& encoding = field_.encoding();
+  if (encoding.ParameterCount() == 0) return;
   int64_t largest = 0;
-  for (int l = 0; l < grid.levels(); ++l) largest = std::max(largest, grid.Offset(l + 1) - grid.Offset(l));
-  threads_.ParallelFor(grid.levels(), [&](int64_t task, int thread) {
-    LevelScratch& scratch = scratch_[static_cast<size_t>(thread)];
+  for (int part = 0; part < encoding.parts(); ++part) largest = std::max(largest, encoding.Offset(part + 1) - encoding.Offset(part));
+  threads_.ParallelFor(encoding.parts(), [&](int64_t task, int thread) {
+    PartScratch& scratch = scratch_[static_cast<size_t>(thread)];
     if (scratch.gradient.empty()) {
       AssignTable(&scratch.gradient, static_cast<size_t>(largest));
       scratch.touched.assign(static_cast<size_t>(largest / kernel::kLineFloats), 0);
     }
-    // The finest levels cost most: start with them.
-    const int l = grid.levels() - 1 - static_cast<int>(task);
+    // A hash grid's finest levels, its last, cost most: start with them.
+    const int part = encoding.parts() - 1 - static_cast<int>(task);
+    const int64_t offset = encoding.Offset(part);
+    float* table = state.grid.data() + offset;
     const auto began = std::chrono::steady_clock::now();
-    AddLevelGradient(field_, l, x, y, z, stretches, scratch.gradient.data(), scratch.touched.data());
+    AddPartGradient(field_, part, table, x, y, z, stretches, scratch.gradient.data(), scratch.touched.data());
     if (scattered) scattered(thread, began);
     const auto then = std::chrono::steady_clock::now();
-    const int64_t offset = grid.Offset(l);
-    kernel::AdamTouched(step, (grid.Offset(l + 1) - offset) / kernel::kLineFloats, scratch.touched.data(), state.grid.data() + offset,
-                        scratch.gradient.data(), state.grid_moment1.data() + offset, state.grid_moment2.data() + offset);
+    kernel::AdamTouched(step, (encoding.Offset(part + 1) - offset) / kernel::kLineFloats, scratch.touched.data(), table, scratch.gradient.data(),
+                        state.grid_moment1.data() + offset, state.grid_moment2.data() + offset);
     if (applied) applied(thread, then);
   });
 }

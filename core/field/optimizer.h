@@ -30,15 +30,16 @@ struct GridGradient {
   const float* gradient = nullptr;  // FeatureRows() rows
   size_t stride = 0;
 };
-// Adds the gradient of the samples' features to one level's table gradient and marks the lines written to (kernel::HashBackward).
-void AddLevelGradient(const HashField& field, int level, const float* x, const float* y, const float* z, std::span<const GridGradient> stretches,
-                      float* table_gradient, uint8_t* touched);
+// Adds the gradient of the samples' features to the table gradient of one part of the encoding, whose parameters begin at `table`, and marks the
+// lines written to (encoding::Encoding::Backward).
+void AddPartGradient(const HashField& field, int part, const float* table, const float* x, const float* y, const float* z,
+                     std::span<const GridGradient> stretches, float* table_gradient, uint8_t* touched);
 
 // Told at the end of a piece of work which thread did it and when it began; may be empty.
 using TaskClock = std::function<void(int thread, std::chrono::steady_clock::time_point began)>;
 
-// Updates a field from a batch. A level's gradient lives only from its samples to its parameters, in one buffer per thread that stays in
-// cache from level to level. Each level belongs to one thread, so bits do not depend on their number.
+// Updates a field from a batch. The gradient of a part of the encoding (a level of a hash grid) lives only from its samples to its parameters, in one
+// buffer per thread that stays in cache from part to part. Each part belongs to one thread, so bits do not depend on their number.
 class Optimizer {
  public:
   Optimizer(const HashField& field, base::ThreadPool& threads);
@@ -48,13 +49,13 @@ class Optimizer {
               TrainableState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
 
  private:
-  struct LevelScratch {
-    std::vector<float> gradient;   // of the largest level
+  struct PartScratch {
+    std::vector<float> gradient;   // of the largest part
     std::vector<uint8_t> touched;  // per line of it
   };
   const HashField& field_;
   base::ThreadPool& threads_;
-  std::vector<LevelScratch> scratch_;  // per thread, allocated when first needed; zero between levels
+  std::vector<PartScratch> scratch_;  // per thread, allocated when first needed; zero between parts
 };
 
 }  // namespace skyquilt::field

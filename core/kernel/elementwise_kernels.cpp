@@ -36,6 +36,30 @@ void SigmoidImpl(const float* x, int64_t n, float range, float* out) {
   }
 }
 
+// sin(2 pi t) for |t| <= 1/4: the Taylor series to t^11, whose next term is below 6e-8.
+HWY_INLINE FloatVector SineOfQuarter(FloatTag d, FloatVector t) {
+  const auto t2 = hn::Mul(t, t);
+  auto sum = hn::Set(d, -15.0946426F);
+  for (const float coefficient : {42.0586939F, -76.7058598F, 81.6052493F, -41.3417022F, 6.28318531F}) {
+    sum = hn::MulAdd(sum, t2, hn::Set(d, coefficient));
+  }
+  return hn::Mul(sum, t);
+}
+
+void SineCosineImpl(const float* turns, int64_t n, float* sine, float* cosine) {
+  const FloatTag d;
+  const auto lanes = static_cast<int64_t>(hn::Lanes(d));
+  for (int64_t s = 0; s < n; s += lanes) {
+    const auto turn = hn::LoadU(d, turns + s);
+    const auto t = hn::Sub(turn, hn::Round(turn));  // exact, in [-1/2, 1/2]
+    const auto size = hn::Abs(t);
+    // The sine is even about a quarter turn.
+    const auto near_zero = hn::Min(size, hn::Sub(hn::Set(d, 0.5F), size));
+    hn::StoreU(SineOfQuarter(d, hn::CopySignToAbs(near_zero, t)), d, sine + s);
+    hn::StoreU(SineOfQuarter(d, hn::Sub(hn::Set(d, 0.25F), size)), d, cosine + s);
+  }
+}
+
 bool AllFiniteImpl(const float* values, int64_t n) {
   const FloatTag d;
   const auto lanes = static_cast<int64_t>(hn::Lanes(d));
@@ -77,6 +101,7 @@ namespace skyquilt::kernel {
 
 HWY_EXPORT(ExpShiftedImpl);
 HWY_EXPORT(SigmoidImpl);
+HWY_EXPORT(SineCosineImpl);
 HWY_EXPORT(AllFiniteImpl);
 HWY_EXPORT(CompactImpl);
 
@@ -86,6 +111,10 @@ void ExpShifted(const float* x, int64_t n, float bias, float limit, float* out) 
 
 void Sigmoid(const float* x, int64_t n, float range, float* out) {
   HWY_DYNAMIC_DISPATCH(SigmoidImpl)(x, n, range, out);
+}
+
+void SineCosine(const float* turns, int64_t n, float* sine, float* cosine) {
+  HWY_DYNAMIC_DISPATCH(SineCosineImpl)(turns, n, sine, cosine);
 }
 
 bool AllFinite(const float* values, int64_t n) {

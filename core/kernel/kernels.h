@@ -80,6 +80,8 @@ void HashBackward(const HashLevel& level, int features, const float* x, const fl
 void ExpShifted(const float* x, int64_t n, float bias, float limit, float* out);
 // out = range / (1 + exp(-x)), n a multiple of kPad.
 void Sigmoid(const float* x, int64_t n, float range, float* out);
+// Sine and cosine of 2 pi turns, off by at most 2e-7 for |turns| < 2^22; n a multiple of kPad.
+void SineCosine(const float* turns, int64_t n, float* sine, float* cosine);
 // Moves the columns s with keep[s] > 0 of every row to the front, in order; returns how many. n a multiple of kPad; in may be out.
 // Up to kPad columns behind the kept ones are overwritten.
 int64_t Compact(const float* keep, int64_t n, int rows, const float* in, size_t in_stride, float* out, size_t out_stride);

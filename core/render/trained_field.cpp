@@ -75,6 +75,8 @@ void PutOutline(const TrainedField& f, const std::string& prefix, checkpoint::Ar
   writer.SetAttribute(prefix + "samples", f.samples);
   const std::vector<double> numbers = Describe(f);
   for (size_t i = 0; i < numbers.size(); ++i) writer.SetAttribute(prefix + "describe" + std::to_string(i), numbers[i]);
+  writer.SetAttribute(prefix + "encoding", encoding::Name(f.config.encoding));
+  writer.SetAttribute(prefix + "density_hidden_layers", f.config.density_hidden_layers);
   writer.SetAttribute(prefix + "luminance", f.config.luminance ? 1 : 0);
   writer.SetAttribute(prefix + "occupancy_cell", static_cast<double>(f.occupancy.cell));
 }
@@ -131,6 +133,11 @@ TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const std::file
   f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
   f.blend_m = f.margin_m;
   try {
+    // Absent in files from before there was a choice.
+    if (reader.HasAttribute(prefix + "encoding")) f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));
+    if (reader.HasAttribute(prefix + "density_hidden_layers")) {
+      f.config.density_hidden_layers = static_cast<int>(reader.IntAttribute(prefix + "density_hidden_layers"));
+    }
     f.map = contracted ? encoding::SpaceMap::Slab(min_enu, max_enu) : encoding::SpaceMap::Box(min_enu, max_enu);
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);

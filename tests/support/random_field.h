@@ -11,7 +11,7 @@ namespace skyquilt::render {
 
 // A block with a core box [low, high], metres; larger density biases make denser matter. `contracted`: like a context.
 inline TrainedField RandomField(uint64_t seed, const Eigen::Vector3d& low, const Eigen::Vector3d& high, double margin_m, double density_bias,
-                                bool contracted = false) {
+                                bool contracted = false, encoding::Kind encoding = encoding::Kind::kHash, int density_hidden_layers = 1) {
   TrainedField f;
   f.core_min_enu = low;
   f.core_max_enu = high;
@@ -19,6 +19,8 @@ inline TrainedField RandomField(uint64_t seed, const Eigen::Vector3d& low, const
   const Eigen::Vector3d margin(margin_m, margin_m, 0.0);
   f.map = contracted ? encoding::SpaceMap::Slab(low - margin, high + margin) : encoding::SpaceMap::Box(low - margin, high + margin);
   f.step_m = 0.25;
+  f.config.encoding = encoding;
+  f.config.density_hidden_layers = density_hidden_layers;
   f.config.grid.levels = 4;
   f.config.grid.log2_table_size = 10;
   f.config.grid.base_resolution = 4;

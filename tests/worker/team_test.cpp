@@ -25,6 +25,12 @@ class TeamTest : public SmallSurvey {
     int helpers_ended = 0;
   };
 
+  TrainJob JobWith(const std::string& name, int steps) const {
+    TrainJob job = Job(name, steps);
+    job.options.encoding = encoding_;
+    return job;
+  }
+
   Outcome TrainTogether(int members, double worth_it, const std::string& checkpoint, int steps, const Reporter& report = {}) {
     Outcome outcome;
     std::vector<std::string> said(static_cast<size_t>(members));
@@ -33,7 +39,7 @@ class TeamTest : public SmallSurvey {
     const std::shared_future<bool> summoned = summons.get_future().share();
     bool called = false;
     const auto job_of = [&](int number) {
-      TrainJob job = Job(checkpoint, steps);
+      TrainJob job = JobWith(checkpoint, steps);
       job.options.checkpoint_every_s = 0.05;
       job.team = {.members = members, .number = number, .worth_it = worth_it, .summon = {}, .exchange = {}};
       job.team.exchange = [&, number](std::string own) {
@@ -73,6 +79,8 @@ class TeamTest : public SmallSurvey {
     for (const int one : ended) outcome.helpers_ended += one;
     return outcome;
   }
+
+  std::string encoding_ = "hash";
 };
 
 TEST_F(TeamTest, SharedStepsHaveTheBitsOfOneAlone) {
@@ -85,6 +93,19 @@ TEST_F(TeamTest, SharedStepsHaveTheBitsOfOneAlone) {
     EXPECT_EQ(Bytes(name), Bytes("alone.h5")) << members << " members";
     EXPECT_EQ(outcome.shared_steps, 160 - 48 + 1) << "all steps after the summons, and the first word";
     EXPECT_EQ(outcome.helpers_ended, members - 1);
+  }
+}
+
+TEST_F(TeamTest, SharedStepsHaveTheBitsOfOneAloneWithOtherEncodings) {
+  base::ThreadPool threads(2);
+  for (const char* encoding : {"planes", "frequency"}) {
+    encoding_ = encoding;
+    const std::string alone = encoding_ + "_alone.h5", together = encoding_ + "_together.h5";
+    ASSERT_TRUE(TrainContext(JobWith(alone, 90), Box(20.0, 0.0), threads, {}).ok);
+    const Outcome outcome = TrainTogether(2, kStay, together, 90);
+    ASSERT_TRUE(outcome.leader && outcome.leader->ok);
+    EXPECT_EQ(Bytes(together), Bytes(alone)) << encoding;
+    EXPECT_GT(outcome.shared_steps, 30);
   }
 }
 

@@ -99,6 +99,22 @@ TEST(TrainOptions, RefusesImpossibleValuesByName) {
   options = {};
   options.coupling = "joint";
   EXPECT_THROW(options.Check("train"), base::UsageError);
+  const auto refusal = [](const TrainOptions& refused) -> std::string {
+    try {
+      refused.Check("context");
+    } catch (const base::UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  options = {};
+  options.encoding = "cubes";
+  EXPECT_EQ(refusal(options), "context.encoding must be one of \"hash\", \"voxels\", \"planes\", \"frequency\", got \"cubes\"");
+  for (const int layers : {0, 9}) {
+    options = {};
+    options.density_hidden_layers = layers;
+    EXPECT_NE(refusal(options).find("context.density_hidden_layers must be 1..8"), std::string::npos) << refusal(options);
+  }
   EXPECT_NO_THROW(TrainOptions{}.Check("train"));
 }
 

@@ -8,6 +8,7 @@
 #include "core/encoding/spherical_harmonics.h"
 #include "core/field/optimizer.h"
 #include "core/kernel/reference.h"
+#include "tests/support/encoding_reference.h"
 
 namespace skyquilt::field {
 namespace {
@@ -30,11 +31,6 @@ FieldConfig SmallConfig(int color_hidden_layers) {
 struct Reference {
   const HashField& field;
   std::vector<double> Forward(const std::vector<double>& grid, const std::vector<double>& networks, const double x[3], const double d[3]) const {
-    std::vector<double> features;
-    for (int l = 0; l < field.grid().levels(); ++l) {
-      const std::vector<double> table(grid.begin() + field.grid().Offset(l), grid.begin() + field.grid().Offset(l + 1));  // padding included
-      for (const double f : kernel::reference::HashForward(field.grid().level(l), field.grid().features(), table, x)) features.push_back(f);
-    }
     auto next = networks.begin();
     const auto dense = [&](int n_out, const std::vector<double>& in, bool relu) {
       const std::vector<double> weights(next, next + n_out * static_cast<int>(in.size()));
@@ -42,8 +38,10 @@ struct Reference {
       return kernel::reference::Dense(weights, n_out, in, relu);
     };
     const int hidden = field.config().hidden;
-    std::vector<double> geometry = dense(kGeometryRows, dense(hidden, features, true), false);
-    std::vector<double> in = geometry;
+    std::vector<double> in = testing::EncodeInDouble(field.encoding(), field.config().grid, grid, x);
+    for (int l = 0; l < field.config().density_hidden_layers; ++l) in = dense(hidden, in, true);
+    const std::vector<double> geometry = dense(kGeometryRows, in, false);
+    in = geometry;
     double sh[16] = {};
     encoding::SphericalHarmonics(d[0], d[1], d[2], field.config().sh_degree, sh);
     for (int k = 0; k < field.ColorInputRows() - kGeometryRows; ++k)
@@ -54,10 +52,18 @@ struct Reference {
   }
 };
 
-class HashFieldGradient : public ::testing::TestWithParam<int> {};
+struct Shape {
+  encoding::Kind encoding;
+  int density_hidden_layers, color_hidden_layers;
+};
+
+class HashFieldGradient : public ::testing::TestWithParam<Shape> {};
 
 TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
-  const HashField field(SmallConfig(GetParam()));
+  FieldConfig config = SmallConfig(GetParam().color_hidden_layers);
+  config.encoding = GetParam().encoding;
+  config.density_hidden_layers = GetParam().density_hidden_layers;
+  const HashField field(config);
   base::Random random(19);
   TrainableState state;
   state.Allocate(field);
@@ -97,9 +103,10 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   const GridGradient stretches[2] = {{0, 2, features.data(), stride}, {2, n - 2, features.data() + 2, stride}};
   std::vector<float> grid_gradient(state.grid.size(), 0.0F);
   std::vector<uint8_t> touched(state.grid.size() / kernel::kLineFloats, 0);
-  for (int l = 0; l < field.grid().levels(); ++l) {
-    const int64_t offset = field.grid().Offset(l);
-    AddLevelGradient(field, l, x.data(), y.data(), z.data(), stretches, grid_gradient.data() + offset, touched.data() + offset / kernel::kLineFloats);
+  for (int part = 0; part < field.encoding().parts(); ++part) {
+    const int64_t offset = field.encoding().Offset(part);
+    AddPartGradient(field, part, state.grid.data() + offset, x.data(), y.data(), z.data(), stretches, grid_gradient.data() + offset,
+                    touched.data() + offset / kernel::kLineFloats);
   }
 
   std::vector<double> grid(state.grid.begin(), state.grid.end()), networks(state.networks.begin(), state.networks.end());
@@ -136,14 +143,41 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
       // Float arithmetic of a few dozen terms of size one.
       EXPECT_NEAR(static_cast<double>(gradient[i]), numeric, 2e-5 * std::max(1.0, std::abs(numeric))) << name << " " << i;
     }
-    EXPECT_GT(nonzero, 20U) << name;
+    if (!parameters.empty()) {
+      EXPECT_GT(nonzero, 20U) << name;
+    }
   };
   check(grid, grid_gradient, "grid", grid.size());
   // The last row of the last layer is padding.
   check(networks, state.network_gradient, "networks", networks.size() - static_cast<size_t>(field.config().hidden));
 }
 
-INSTANTIATE_TEST_SUITE_P(Depths, HashFieldGradient, ::testing::Values(1, 2, 3));
+INSTANTIATE_TEST_SUITE_P(Shapes, HashFieldGradient,
+                         ::testing::Values(Shape{encoding::Kind::kHash, 1, 1}, Shape{encoding::Kind::kHash, 1, 2}, Shape{encoding::Kind::kHash, 2, 3},
+                                           Shape{encoding::Kind::kHash, 3, 1}, Shape{encoding::Kind::kVoxels, 1, 1},
+                                           Shape{encoding::Kind::kPlanes, 2, 1}, Shape{encoding::Kind::kFrequency, 4, 2}),
+                         [](const auto& of) {
+                           return encoding::Name(of.param.encoding) + std::to_string(of.param.density_hidden_layers) +
+                                  std::to_string(of.param.color_hidden_layers);
+                         });
+
+// Eight layers are as deep as the authors of the frequency encoding went.
+TEST(HashField, DeepNetworksHaveAllTheirParametersAndOperations) {
+  FieldConfig config = SmallConfig(1);
+  config.encoding = encoding::Kind::kFrequency;
+  config.density_hidden_layers = 8;
+  config.hidden = 256;
+  const HashField deep(config);
+  config.density_hidden_layers = 1;
+  const HashField shallow(config);
+  EXPECT_EQ(deep.NetworkParameters() - shallow.NetworkParameters(), 7 * 256 * 256);
+  EXPECT_EQ(deep.ForwardFlops() - shallow.ForwardFlops(), 2.0 * 7 * 256 * 256);
+  EXPECT_EQ(deep.DensityHiddenRows(), 8 * 256);
+  Activations a;
+  a.Reserve(deep, 100);
+  EXPECT_EQ(a.geometry(), a.density_hidden + static_cast<size_t>(deep.DensityHiddenRows()) * a.stride) << "dropped together, so one after the other";
+  EXPECT_EQ(a.kept_rows, deep.DensityHiddenRows() + kGeometryRows);
+}
 
 TEST(HashField, RefusesImpossibleSettings) {
   FieldConfig config = SmallConfig(1);
@@ -153,6 +187,11 @@ TEST(HashField, RefusesImpossibleSettings) {
   EXPECT_THROW(HashField{config}, std::invalid_argument);
   config = SmallConfig(1);
   config.grid.log2_table_size = 25;
+  EXPECT_THROW(HashField{config}, std::invalid_argument);
+  config = SmallConfig(1);
+  config.density_hidden_layers = 9;
+  EXPECT_THROW(HashField{config}, std::invalid_argument);
+  config.density_hidden_layers = 0;
   EXPECT_THROW(HashField{config}, std::invalid_argument);
 }
 
@@ -187,6 +226,22 @@ TEST(Optimizer, MovesWhatSamplesTouchedOnAnyNumberOfThreads) {
     moved.push_back(state.grid);
   }
   EXPECT_EQ(moved[0], moved[1]);
+}
+
+TEST(Optimizer, TrainsNetworksWhereTheEncodingHasNoParameters) {
+  FieldConfig config = SmallConfig(1);
+  config.encoding = encoding::Kind::kFrequency;
+  const HashField field(config);
+  base::ThreadPool threads(2);
+  TrainableState state;
+  state.Allocate(field);
+  EXPECT_TRUE(state.grid.empty());
+  state.network_gradient[5] = 1.0F;
+  const float x[2] = {0.1F, 0.6F};
+  const std::vector<float> gradient(static_cast<size_t>(field.FeatureRows()) * 2, 1.0F);
+  const GridGradient stretch{0, 2, gradient.data(), 2};
+  Optimizer(field, threads).Update(x, x, x, {&stretch, 1}, 0.01, 0.0, state);
+  EXPECT_NEAR(state.networks[5], -0.01F, 1e-6F);
 }
 
 }  // namespace

@@ -42,6 +42,19 @@ TEST_P(ElementwiseKernels, SigmoidStaysInItsRange) {
   }
 }
 
+TEST_P(ElementwiseKernels, SineAndCosineOfWholeTurnsAndFractionsOfManyTurns) {
+  base::Random random(23);
+  std::vector<float> turns(4096), sine(turns.size()), cosine(turns.size());
+  for (size_t i = 0; i < turns.size(); ++i) turns[i] = (random.Uniform() - 0.5F) * static_cast<float>(1 << (i % 18));
+  for (size_t i = 0; i < 17; ++i) turns[i] = 0.125F * static_cast<float>(i) - 1.0F;  // zeros, extremes, and where branches of the series meet
+  SineCosine(turns.data(), static_cast<int64_t>(turns.size()), sine.data(), cosine.data());
+  for (size_t i = 0; i < turns.size(); ++i) {
+    const double angle = 2.0 * M_PI * std::fmod(static_cast<double>(turns[i]), 1.0);
+    EXPECT_NEAR(static_cast<double>(sine[i]), std::sin(angle), 2e-7) << turns[i];
+    EXPECT_NEAR(static_cast<double>(cosine[i]), std::cos(angle), 2e-7) << turns[i];
+  }
+}
+
 TEST_P(ElementwiseKernels, CompactKeepsOrderInPlaceAndElsewhere) {
   base::Random random(5);
   constexpr size_t kN = 112, kRows = 3, kStride = 128;

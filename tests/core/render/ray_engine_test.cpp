@@ -74,11 +74,18 @@ std::vector<Ray> RaysFromAbove(int n) {
   return rays;
 }
 
-class RayEngine : public ::testing::TestWithParam<double> {};
+struct Matter {
+  double density_bias;
+  encoding::Kind encoding;
+  int density_hidden_layers;
+};
+
+class RayEngine : public ::testing::TestWithParam<Matter> {};
 
 TEST_P(RayEngine, AgreesWithAPlainWalkThroughBlendedBlocks) {
-  const TrainedField west = RandomField(1, {0, 0, 0}, {5, 5, 4}, 0.8, GetParam());
-  const TrainedField east = RandomField(2, {5, 0, 0}, {10, 5, 6}, 0.8, GetParam());
+  const auto [density_bias, encoding, density_hidden_layers] = GetParam();
+  const TrainedField west = RandomField(1, {0, 0, 0}, {5, 5, 4}, 0.8, density_bias, false, encoding, density_hidden_layers);
+  const TrainedField east = RandomField(2, {5, 0, 0}, {10, 5, 6}, 0.8, density_bias);
   FieldSet set;
   set.blocks = {&west, &east};
   const std::vector<Ray> rays = RaysFromAbove(150);
@@ -97,7 +104,7 @@ TEST_P(RayEngine, AgreesWithAPlainWalkThroughBlendedBlocks) {
     dark += ended ? 1 : 0;
     clear += plain.transmittance > 0.5 ? 1 : 0;
   }
-  if (GetParam() > -1.0) {
+  if (density_bias > -1.0) {
     EXPECT_GT(dark, 20);
   } else {
     EXPECT_GT(clear, 20);
@@ -105,7 +112,10 @@ TEST_P(RayEngine, AgreesWithAPlainWalkThroughBlendedBlocks) {
   EXPECT_GT(samples, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(ThinAndDense, RayEngine, ::testing::Values(-4.0, 0.0));
+INSTANTIATE_TEST_SUITE_P(ThinAndDense, RayEngine,
+                         ::testing::Values(Matter{-4.0, encoding::Kind::kHash, 1}, Matter{0.0, encoding::Kind::kHash, 1},
+                                           Matter{0.0, encoding::Kind::kHash, 3}, Matter{0.0, encoding::Kind::kVoxels, 1},
+                                           Matter{0.0, encoding::Kind::kPlanes, 1}, Matter{0.0, encoding::Kind::kFrequency, 2}));
 
 TEST(RayEngineWork, SurfacesHideWhatLiesBehind) {
   base::ThreadPool threads(1);

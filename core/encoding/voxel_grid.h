@@ -1,0 +1,28 @@
+// One dense lattice with as many channels as a hash grid of the same configuration has features, looked up trilinearly (Sun et al. 2022, DVGO,
+// section 4). Its resolution is the largest that needs no more parameters than that hash grid, and never finer than the finest level.
+// A part holds `features` channels of every lattice point.
+#pragma once
+
+#include "core/encoding/encoding.h"
+
+namespace skyquilt::encoding {
+
+class VoxelGrid : public Encoding {
+ public:
+  // Throws std::invalid_argument naming the field that is out of range.
+  explicit VoxelGrid(const HashGridConfig& config);
+
+  // Of every part.
+  const kernel::HashLevel& lattice() const { return lattice_; }
+
+  Kind kind() const override { return Kind::kVoxels; }
+  void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out, size_t out_stride) const override;
+  void Backward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient, size_t out_stride,
+                float* table_gradient, uint8_t* touched) const override;
+
+ private:
+  int features_;
+  kernel::HashLevel lattice_;
+};
+
+}  // namespace skyquilt::encoding

@@ -20,7 +20,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-enum ExitStatus : int { kDone = 0, kBug = 1, kUsage = 2, kInput = 3, kBlockFailed = 4, kInterrupted = 130 };
+enum ExitStatus : int { kDone = 0, kBug = 1, kUsage = 2, kInput = 3, kBlockFailed = 4, kCheckFailed = 5, kInterrupted = 130 };
 
 // However rank 0 leaves, the others must hear of it.
 class RankRelease {
@@ -106,6 +106,9 @@ int Guarded(const std::function<void()>& body) {
   } catch (const base::BlockError& error) {
     spdlog::error("{}", error.what());
     return kBlockFailed;
+  } catch (const base::FailedCheck& error) {
+    spdlog::error("{}", error.what());
+    return kCheckFailed;
   } catch (const base::Interrupted& error) {
     spdlog::warn("{}", error.what());
     return kInterrupted;

@@ -57,7 +57,7 @@ void AddNumericsBench(CLI::App& bench, CommandState& state) {
       if (!flags->out.empty()) base::RequireWritableFolder(flags->out);
       const WorkFolder work(flags->out);
       const numerics::NumericsOptions options{
-          .quick = flags->quick, .threads = BenchThreads(state), .work_folder = fs::absolute(work.path()), .comm = state.comm};
+          .quick = flags->quick, .silent = state.quiet, .threads = BenchThreads(state), .work_folder = fs::absolute(work.path()), .comm = state.comm};
       const numerics::NumericsResult result = numerics::RunNumerics(numerics::AllGroups(options), options.quick);
       const std::string line = std::string("skyquilt bench numerics") + (flags->quick ? " --quick" : "");
       const BenchPage page = numerics::NumericsPage(result, line);

@@ -27,7 +27,7 @@ double PsnrAt(const Eigen::Vector3d& offset, bool naive, const AwayRun& run, boo
   for (int step = 0; step < run.steps; ++step) {
     worker::RayBatch batch = trainer.Draw({.rays = run.rays}, random);
     if (naive) RepositionInFloat(trainer.target(), &batch);
-    const double rate = 1e-2 * std::min(1.0, (step + 1) / 20.0) * std::pow(0.1, static_cast<double>(step) / run.steps);
+    const double rate = 3e-2 * std::min(1.0, (step + 1) / 20.0) * std::pow(0.1, static_cast<double>(step) / run.steps);
     *finite = trainer.Train(std::move(batch), {.learning_rate = rate}).finite && *finite;
   }
   worker::RayBatch test = trainer.Draw({.rays = 4096}, random);

@@ -174,9 +174,10 @@ Finding Elementwise() {
     const double exact_exp = std::exp(std::min(15.0, InDouble(x[i] + -3.0F)));
     const double exact_sigmoid = InDouble(1.4F) / (1.0 + std::exp(-InDouble(x[i])));
     finite = finite && std::isfinite(exp[i]) && std::isfinite(sigmoid[i]);
-    // Below the smallest normal number only the absolute error counts.
-    worst.Take(std::abs(InDouble(exp[i]) - exact_exp) / std::max(1e-30, exact_exp));
-    worst.Take(std::abs(InDouble(sigmoid[i]) - exact_sigmoid) / std::max(1e-30, exact_sigmoid));
+    // What is smaller adds nothing to any sum.
+    constexpr double kNothing = 1e-20;
+    worst.Take(std::abs(InDouble(exp[i]) - exact_exp) / std::max(kNothing, exact_exp));
+    worst.Take(std::abs(InDouble(sigmoid[i]) - exact_sigmoid) / std::max(kNothing, exact_sigmoid));
   }
   return {.worst = worst.value(), .holds = finite};
 }

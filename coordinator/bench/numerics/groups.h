@@ -10,6 +10,7 @@ namespace skyquilt::coordinator::numerics {
 
 struct NumericsOptions {
   bool quick = false;
+  bool silent = false;                 // no progress is shown, whatever runs
   int threads = 0;                     // 0: every core
   std::filesystem::path work_folder;   // for surveys that cases make; theirs alone
   comm::Communicator* comm = nullptr;  // of the whole pipeline's runs; null: those are left out

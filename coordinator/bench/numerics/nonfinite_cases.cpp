@@ -5,6 +5,7 @@
 
 #include "coordinator/bench/numerics/edge_survey.h"
 #include "coordinator/bench/numerics/groups.h"
+#include "coordinator/bench/numerics/quiet_stages.h"
 #include "coordinator/bench/numerics/synthetic_trainer.h"
 
 namespace skyquilt::coordinator::numerics {
@@ -56,6 +57,7 @@ Finding NanPositions() {
 
 // Every photo's gain is no number: a field that can only fail.
 Finding FailsWithReason(const NumericsOptions& options) {
+  const QuietStages quiet(options.silent);
   const EdgeSurvey survey(options.work_folder / "photos", 48, 36, [](int, int x, int y) {
     const auto value = static_cast<uint8_t>(100 + (x + y) % 50);
     return std::array<uint8_t, 3>{value, value, value};

@@ -23,6 +23,10 @@ constexpr double kMarginShare = 0.06;
 constexpr double kBlockHeight_m = 60.0;
 constexpr double kAllowed_mm = 1.0;
 
+std::string LengthText(double length_m) {
+  return length_m < 1e3 ? fmt::format("{:g} m", length_m) : fmt::format("{:g} km", length_m / 1e3);
+}
+
 // The box, with its margin, of the block of a regular grid that a place lies in.
 encoding::SpaceMap BlockAround(const Eigen::Vector3d& x_in_enu, double side_m) {
   const double margin = kMarginShare * side_m;
@@ -63,7 +67,7 @@ NumericCase PlaceCase(const std::string& name, const geo::Geodetic& origin, int 
             Worst over_all;
             for (const double extent : {1.0, 1e3, 1e5}) {
               const double worst = WorstRoundTrip_mm(origin, extent, places);
-              finding.seen += fmt::format("{}{:g} km: {}", finding.seen.empty() ? "" : ", ", extent / 1e3, FormatError(worst, "mm"));
+              finding.seen += fmt::format("{}{}: {}", finding.seen.empty() ? "" : ", ", LengthText(extent), FormatError(worst, "mm"));
               over_all.Take(worst);
             }
             finding.worst = over_all.value();
@@ -98,7 +102,7 @@ Finding RaySamples() {
 // A float in [0.5, 1) has steps of 2^-24, and rounds by at most half of one.
 NumericCase BoxStepCase(double edge_m) {
   const double half_step_mm = 1e3 * edge_m * std::exp2(-25.0);
-  return {.name = fmt::format("Block of {:g} km", edge_m / 1e3),
+  return {.name = "Block of " + LengthText(edge_m),
           .expected = fmt::format("half a float step per axis: {}{}", FormatError(half_step_mm, "mm"),
                                   half_step_mm > 0.5 ? "; blocks are never cut this large" : ""),
           .unit = "mm",

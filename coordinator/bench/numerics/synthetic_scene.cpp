@@ -14,7 +14,7 @@ constexpr double kCamera_m = 30.0;
 Eigen::Vector3d ShadeScene(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   const render::Stretch block = render::RayBox(origin, direction, {-1.25, -1.25, 0.0}, {1.25, 1.25, 2.0});
   const Eigen::Vector3d p = origin + (block.Empty() ? -origin.z() / direction.z() : block.t_near) * direction;
-  const double wave = 0.5 + 0.2 * std::sin(12.0 * p.x()) * std::cos(11.0 * p.y());
+  const double wave = 0.5 + 0.35 * std::sin(12.0 * p.x()) * std::cos(11.0 * p.y());
   if (block.Empty()) return {0.7 * wave, wave, 0.6 * wave};
   return {0.6 + 0.2 * std::sin(9.0 * p.x() + 7.0 * p.z()), 0.25, 0.3 + 0.15 * std::sin(8.0 * p.y())};
 }

@@ -3,7 +3,10 @@
 #include <iostream>
 #include <memory>
 #include <random>
+#include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "coordinator/bench/numerics/numerics_bench.h"
 #include "coordinator/commands/bench_commands.h"
@@ -33,23 +36,34 @@ class WorkFolder {
   fs::path path_;
 };
 
+std::string OnlyText(const std::vector<std::string>& only) {
+  std::string text;
+  for (const std::string& id : only) text += (text.empty() ? " --only " : ",") + id;
+  return text;
+}
+
 }  // namespace
 
 void AddNumericsBench(CLI::App& bench, CommandState& state) {
   struct Flags {
     std::string out;
+    std::vector<std::string> only;
     bool quick = false;
     bool json = false;
   };
   const auto flags = std::make_shared<Flags>();
   CLI::App* command = bench.add_subcommand("numerics", "numbers at the extremes: places, rays, fields and trainings against double precision");
   command->add_option("-o,--output", flags->out, "folder for numerics.json, .html and a .csv per group")->type_name("DIR");
+  command->add_option("--only", flags->only, "groups of cases, separated by commas: space, rays, compositing, field, trainer, away, brightness, ...")
+      ->delimiter(',')
+      ->type_name("GROUPS");
   command->add_flag("--quick", flags->quick, "fewer places and shorter trainings");
   command->add_flag("--json", flags->json, "print JSON instead of the tables");
   command->footer(
       "Examples:\n"
       "  skyquilt bench numerics\n"
       "  skyquilt bench numerics --quick -o out/bench\n"
+      "  skyquilt bench numerics --only space,earth\n"
       "Exit status 5 when a case fails.");
   command->callback([&state, flags] {
     state.chosen = [&state, flags] {
@@ -58,8 +72,10 @@ void AddNumericsBench(CLI::App& bench, CommandState& state) {
       const WorkFolder work(flags->out);
       const numerics::NumericsOptions options{
           .quick = flags->quick, .silent = state.quiet, .threads = BenchThreads(state), .work_folder = fs::absolute(work.path()), .comm = state.comm};
-      const numerics::NumericsResult result = numerics::RunNumerics(numerics::AllGroups(options), options.quick);
-      const std::string line = std::string("skyquilt bench numerics") + (flags->quick ? " --quick" : "");
+      std::vector<numerics::NumericGroup> groups = numerics::AllGroups(options);
+      if (!flags->only.empty()) groups = numerics::OnlyGroups(std::move(groups), flags->only);
+      const numerics::NumericsResult result = numerics::RunNumerics(groups, options.quick);
+      const std::string line = std::string("skyquilt bench numerics") + (flags->quick ? " --quick" : "") + OnlyText(flags->only);
       const BenchPage page = numerics::NumericsPage(result, line);
       const std::string json = numerics::NumericsJson(result, line);
       std::cout << (flags->json ? json : BenchText(page));

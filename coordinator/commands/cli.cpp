@@ -93,6 +93,8 @@ void AddCommands(CLI::App& app, CommandState& state) {
   AddBench(app, state);
 }
 
+}  // namespace
+
 int Guarded(const std::function<void()>& body) {
   try {
     body();
@@ -123,8 +125,6 @@ int Guarded(const std::function<void()>& body) {
     return kBug;
   }
 }
-
-}  // namespace
 
 int RunCommandLine(int argc, char** argv) {
   base::ReleaseAffinity();

@@ -51,6 +51,17 @@ std::vector<NumericGroup> AllGroups(const NumericsOptions& options) {
   return groups;
 }
 
+std::vector<NumericGroup> OnlyGroups(std::vector<NumericGroup> groups, const std::vector<std::string>& ids) {
+  std::string known;
+  for (const NumericGroup& group : groups) known += (known.empty() ? "" : ", ") + group.id;
+  for (const std::string& id : ids) {
+    const bool found = std::any_of(groups.begin(), groups.end(), [&id](const NumericGroup& group) { return group.id == id; });
+    if (!found) throw base::UsageError("there are no numeric cases called '" + id + "'; choose from " + known);
+  }
+  std::erase_if(groups, [&ids](const NumericGroup& group) { return std::find(ids.begin(), ids.end(), group.id) == ids.end(); });
+  return groups;
+}
+
 NumericsResult RunNumerics(const std::vector<NumericGroup>& groups, bool quick) {
   NumericsResult result;
   result.quick = quick;

@@ -28,6 +28,8 @@ struct NumericsResult {
 
 // Those of design: space, rays, compositing, kernels, trainer, distance, brightness, not-a-number, Earth.
 std::vector<NumericGroup> AllGroups(const NumericsOptions& options);
+// Those of the given ids, in their own order. Throws base::UsageError for an id that is not among them.
+std::vector<NumericGroup> OnlyGroups(std::vector<NumericGroup> groups, const std::vector<std::string>& ids);
 // Runs the groups one after the other. A case that fails or throws is a row; base::Interrupted passes through.
 NumericsResult RunNumerics(const std::vector<NumericGroup>& groups, bool quick);
 

@@ -114,7 +114,7 @@ BenchPage NumericsPage(const NumericsResult& result, const std::string& command)
                     FormatError(away, "dB"), FormatError(naive.low, "dB"), FormatError(naive.high, "dB")));
   }
   if (const double earth = result.WorstOf("earth", "dB"); !std::isnan(earth)) {
-    page.figures.push_back({"Anywhere on Earth", FormatError(earth, "dB"), "largest PSNR change when the survey is moved; 0.1 dB allowed"});
+    page.figures.push_back({"Anywhere on Earth", FormatError(earth, "dB"), "largest PSNR change of a moved survey, loss on the very poles; 0.1 dB allowed"});
     page.verdicts.push_back(
         fmt::format("Flown at the poles, across \xC2\xB1"
                     "180\xC2\xB0, below sea level and at 9 km, the survey's PSNR changes by at most {} "

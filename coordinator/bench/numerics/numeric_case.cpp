@@ -52,7 +52,8 @@ NumericRow RunCase(const std::string& group, const NumericCase& numeric_case) {
 
 std::string FormatError(double value, const std::string& unit) {
   if (std::isnan(value)) return "\xE2\x80\x93";
-  const std::string number = fmt::format("{:.2g}", value);
+  const bool plain = std::abs(value) >= 100.0 && std::abs(value) < 1e6;
+  const std::string number = plain ? fmt::format("{:.0f}", value) : fmt::format("{:.2g}", value);
   return unit.empty() ? number : number + " " + unit;
 }
 

@@ -51,7 +51,7 @@ double WorstPlace_mm(const NumericsResult& result) {
   return any ? worst.value() : kNoNumber;
 }
 
-std::string Verdict0(const NumericsResult& result) {
+std::string CasesSentence(const NumericsResult& result) {
   const int passed = result.Count(Verdict::kPassed), failed = result.Count(Verdict::kFailed);
   if (failed == 0) return fmt::format("All {} cases pass.", passed);
   std::string names;
@@ -61,11 +61,11 @@ std::string Verdict0(const NumericsResult& result) {
 
 BenchTable GroupTable(const GroupResult& group) {
   BenchTable table{
-      .name = group.id, .title = "", .note = "", .columns = {"case", "expected", "seen", "worst error", "allowed", "verdict"}, .rows = {}};
+      .name = group.id, .title = "", .note = "", .columns = {"case", "verdict", "worst error", "allowed", "expected", "seen"}, .rows = {}};
   for (const NumericRow& row : group.rows) {
-    table.rows.push_back({BenchCell::Text(row.name), BenchCell::Text(row.expected), BenchCell::Text(row.seen),
+    table.rows.push_back({BenchCell::Text(row.name), BenchCell::Text(VerdictName(row.verdict)),
                           BenchCell{FormatError(row.worst, row.unit), row.worst}, BenchCell{FormatError(row.limit, row.unit), row.limit},
-                          BenchCell::Text(VerdictName(row.verdict))});
+                          BenchCell::Text(row.expected), BenchCell::Text(row.seen)});
   }
   return table;
 }
@@ -81,7 +81,7 @@ BenchPage NumericsPage(const NumericsResult& result, const std::string& command)
                      "for comparison\xE2\x80\x9D show pipelines that are not ours and are not judged." +
                      std::string(result.quick ? " This was a quick run: fewer places, fewer steps." : ""),
                  .figures = {},
-                 .verdicts = {Verdict0(result)},
+                 .verdicts = {CasesSentence(result)},
                  .sections = {},
                  .command = command,
                  .machine = base::MachineDescription(),
@@ -114,7 +114,8 @@ BenchPage NumericsPage(const NumericsResult& result, const std::string& command)
                     FormatError(away, "dB"), FormatError(naive.low, "dB"), FormatError(naive.high, "dB")));
   }
   if (const double earth = result.WorstOf("earth", "dB"); !std::isnan(earth)) {
-    page.figures.push_back({"Anywhere on Earth", FormatError(earth, "dB"), "largest PSNR change of a moved survey, loss on the very poles; 0.1 dB allowed"});
+    page.figures.push_back(
+        {"Anywhere on Earth", FormatError(earth, "dB"), "largest PSNR change of a moved survey, loss on the very poles; 0.1 dB allowed"});
     page.verdicts.push_back(
         fmt::format("Flown at the poles, across \xC2\xB1"
                     "180\xC2\xB0, below sea level and at 9 km, the survey's PSNR changes by at most {} "

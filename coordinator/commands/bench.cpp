@@ -4,6 +4,7 @@
 
 #include "coordinator/bench/kernel_bench.h"
 #include "coordinator/bench/schedule_bench.h"
+#include "coordinator/commands/bench_commands.h"
 #include "coordinator/commands/command.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -11,14 +12,6 @@
 
 namespace skyquilt::coordinator {
 namespace {
-
-int ThreadsFrom(const std::string& text) {
-  if (text.empty()) return 0;
-  int threads = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), threads);
-  if (error != std::errc() || end != text.data() + text.size()) throw base::UsageError("--threads must be a whole number, got '" + text + "'");
-  return threads;
-}
 
 // Prints one of both, and keeps the JSON when a folder was given.
 void Deliver(const std::string& json, const std::string& table, bool as_json, const std::string& folder, const std::string& file) {
@@ -59,7 +52,7 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
   command->callback([&state, flags] {
     state.chosen = [&state, flags] {
       if (state.comm != nullptr && state.comm->rank() != 0) return;  // one process measures; others would disturb it
-      flags->options.threads = ThreadsFrom(state.threads);
+      flags->options.threads = BenchThreads(state);
       if (flags->quick) {
         flags->options.rounds = 1;
         flags->options.seconds = std::min(flags->options.seconds, 0.5);
@@ -115,11 +108,21 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
 
 }  // namespace
 
+int BenchThreads(const CommandState& state) {
+  const std::string& text = state.threads;
+  if (text.empty()) return 0;
+  int threads = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), threads);
+  if (error != std::errc() || end != text.data() + text.size()) throw base::UsageError("--threads must be a whole number, got '" + text + "'");
+  return threads;
+}
+
 void AddBench(CLI::App& app, CommandState& state) {
   CLI::App* bench = app.add_subcommand("bench", "measure: speed, and what it costs in accuracy");
   bench->require_subcommand(1);
   AddKernelBench(*bench, state);
   AddScheduleBench(*bench, state);
+  AddNumericsBench(*bench, state);
   AddStudyBenches(*bench, state);
 }
 

@@ -20,7 +20,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-enum ExitStatus : int { kDone = 0, kBug = 1, kUsage = 2, kInput = 3, kBlockFailed = 4, kInterrupted = 130 };
+enum ExitStatus : int { kDone = 0, kBug = 1, kUsage = 2, kInput = 3, kBlockFailed = 4, kCheckFailed = 5, kInterrupted = 130 };
 
 // However rank 0 leaves, the others must hear of it.
 class RankRelease {
@@ -93,6 +93,8 @@ void AddCommands(CLI::App& app, CommandState& state) {
   AddBench(app, state);
 }
 
+}  // namespace
+
 int Guarded(const std::function<void()>& body) {
   try {
     body();
@@ -106,6 +108,9 @@ int Guarded(const std::function<void()>& body) {
   } catch (const base::BlockError& error) {
     spdlog::error("{}", error.what());
     return kBlockFailed;
+  } catch (const base::FailedCheck& error) {
+    spdlog::error("{}", error.what());
+    return kCheckFailed;
   } catch (const base::Interrupted& error) {
     spdlog::warn("{}", error.what());
     return kInterrupted;
@@ -120,8 +125,6 @@ int Guarded(const std::function<void()>& body) {
     return kBug;
   }
 }
-
-}  // namespace
 
 int RunCommandLine(int argc, char** argv) {
   base::ReleaseAffinity();

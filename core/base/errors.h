@@ -2,6 +2,7 @@
 //   UsageError   2  wrong option or configuration
 //   InputError   3  a file or its content cannot be used; names file, finding and mend
 //   BlockError   4  a block failed after its retries
+//   FailedCheck  5  something that was put to the test does not hold
 //   Interrupted 130 a signal asked to stop; the work is saved and can be resumed
 // Wrong use of our own code throws std::logic_error through SKYQUILT_CHECK and is a bug, never a user's message.
 #pragma once
@@ -28,6 +29,11 @@ class InputError : public std::runtime_error {
 };
 
 class BlockError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class FailedCheck : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/bench/numerics/numerics_bench.h"
 #include "coordinator/commands/cli.h"
 #include "coordinator/commands/describe.h"
 #include "core/base/errors.h"
@@ -77,6 +78,32 @@ TEST(CommandLine, MissingThingsAreInputErrors) {
 TEST(CommandLine, RunNeedsPhotosOrAPresetAndNotBoth) {
   EXPECT_EQ(Call({"run", "-o", "x"}).status, 2);
   EXPECT_EQ(Call({"run", "photos", "--preset", "hamlet", "-o", "x"}).status, 2);
+}
+
+TEST(CommandLine, AFailedNumericCaseIsStatusFive) {
+  const auto status_of = [](double worst) {
+    numerics::NumericGroup group{.id = "space", .title = "Space"};
+    group.cases.push_back({.name = "one", .limit = 1.0, .run = [worst] { return numerics::Finding{.worst = worst}; }});
+    return Guarded([&] { numerics::ThrowIfFailed(numerics::RunNumerics({group}, true)); });
+  };
+  EXPECT_EQ(status_of(2.0), 5);
+  EXPECT_EQ(status_of(0.5), 0);
+}
+
+TEST(CommandLine, NumericsRunsTheGroupsAskedFor) {
+  const Result run = Call({"--quiet", "bench", "numerics", "--quick", "--only", "rays,compositing", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const nlohmann::json json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json.at("failed"), 0);
+  for (const nlohmann::json& row : json.at("rows")) {
+    EXPECT_TRUE(row.at("group") == "rays" || row.at("group") == "compositing") << row;
+    EXPECT_FALSE(row.at("expected").get<std::string>().empty());
+  }
+  EXPECT_EQ(json.at("rows").size(), json.at("passed").get<size_t>());
+  const Result unknown = Call({"bench", "numerics", "--only", "space,rain"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("rain"), std::string::npos);
+  EXPECT_NE(unknown.err.find("nonfinite"), std::string::npos);
 }
 
 TEST(Describe, ForeignFilesAreRefusedByName) {

@@ -1,0 +1,198 @@
+// One small survey, flown at many places of the Earth: the same photos with other tags, through the whole pipeline.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "coordinator/bench/numerics/geodesy.h"
+#include "coordinator/bench/numerics/groups.h"
+#include "coordinator/bench/numerics/quiet_stages.h"
+#include "coordinator/pipeline.h"
+#include "core/base/file.h"
+#include "core/geo/enu_frame.h"
+#include "core/survey/survey.h"
+
+namespace skyquilt::coordinator::numerics {
+namespace {
+
+struct EarthPlace {
+  std::string name;
+  geo::Geodetic origin;
+  bool fitted = true;  // flown in a frame from tags too
+  // Right on a pole the found origin's longitude is anyone's, and with it where east is: block and grid lie turned against the scene, which alone
+  // changes what they learn. There only a loss counts.
+  bool turned = false;
+  bool quick = false;
+};
+
+const std::vector<EarthPlace>& EarthPlaces() {
+  static const std::vector<EarthPlace> places = {
+      {.name = "at home, 47\xC2\xB0 N", .origin = {47.3769, 8.5417, 408.0}, .quick = true},
+      {.name = "around the north pole, 11 m beside it", .origin = {89.9999, 8.5417, 2.0}, .quick = true},
+      {.name = "on the north pole", .origin = {90.0, 0.0, 2.0}, .turned = true},
+      {.name = "on the south pole", .origin = {-90.0, 0.0, 2835.0}, .turned = true},
+      {.name = "across \xC2\xB1"
+               "180\xC2\xB0 on the equator",
+       .origin = {0.0, 180.0, 2.0},
+       .fitted = false},
+      {.name = "across \xC2\xB1"
+               "180\xC2\xB0 at 68.9\xC2\xB0 N",
+       .origin = {68.9, -180.0, 300.0}},
+      {.name = "below sea level, -430 m", .origin = {31.5, 35.5, -430.0}},
+      {.name = "at 9 km height", .origin = {27.9881, 86.925, 9000.0}},
+  };
+  return places;
+}
+
+// What the frame is: the simulation's own, so that all places train on the same numbers, or found from the photos' GPS tags, as with real photos.
+// There every place trains on numbers that differ by rounding (at a pole the axes point elsewhere, too), and trainings that differ by rounding end as
+// far apart as trainings with other random numbers: their mean counts.
+struct EarthFrame {
+  bool fitted = false;
+  int seeds = 1;
+  int context_steps = 100, train_steps = 200;
+};
+constexpr EarthFrame kKnownFrame{};
+constexpr EarthFrame kFittedFrame{.fitted = true, .seeds = 3, .context_steps = 300, .train_steps = 1000};
+
+struct EarthRun {
+  std::vector<double> psnr_db;  // by seed
+  int64_t dropped_steps = 0;
+  geo::Geodetic origin;
+  double fit_rmse_m = kNoNumber;
+  double worst_float_ecef_m = 0.0;  // of the cameras' positions
+
+  double MeanPsnr_db() const {
+    double sum = 0.0;
+    for (const double value : psnr_db) sum += value;
+    return sum / static_cast<double>(psnr_db.size());
+  }
+};
+
+Settings EarthSettings(const geo::Geodetic& origin, const EarthFrame& frame, int seed, const NumericsOptions& options) {
+  Settings settings;
+  settings.run.seed = seed;
+  settings.run.threads = options.threads;
+  settings.simulate.preset = "hamlet";
+  settings.simulate.latitude_deg = origin.latitude_deg;
+  settings.simulate.longitude_deg = origin.longitude_deg;
+  settings.simulate.height_m = origin.height_m;
+  settings.simulate.samples_per_pixel = 1;
+  settings.simulate.soft_shadows = false;
+  settings.prepare.holdout = "every:4";
+  settings.partition.blocks = "1x1";
+  settings.context.steps = frame.context_steps;
+  settings.train.steps = frame.train_steps;
+  settings.context.batch_samples = settings.train.batch_samples = 8192;
+  // Parameters come to rest: less is left to chance.
+  settings.context.final_learning_rate_share = settings.train.final_learning_rate_share = 0.02;
+  settings.Validate();
+  return settings;
+}
+
+// The whole way with one seed.
+void FlyOnce(const EarthPlace& place, const EarthFrame& frame, int seed, const NumericsOptions& options, EarthRun* run) {
+  const std::filesystem::path folder = options.work_folder / "earth";
+  std::filesystem::remove_all(folder);
+  Pipeline pipeline{
+      .comm = *options.comm, .project = Project::Create(folder), .settings = EarthSettings(place.origin, frame, seed, options), .quiet = true};
+  const std::filesystem::path photos = pipeline.project.SimulatedFolder();
+  SimulateStage(pipeline, photos);
+  if (frame.fitted) {
+    PrepareStage(pipeline, photos / "images", photos / "sparse" / "0");
+  } else {
+    PrepareStage(pipeline, photos, {});
+  }
+  PartitionStage(pipeline);
+  ThrowIfBlocksFailed(TrainStage(pipeline), pipeline.project);
+  MergeStage(pipeline);
+  EvaluateStage(pipeline);
+  const nlohmann::json metrics = nlohmann::json::parse(base::ReadFile(pipeline.project.ReportFolder() / "metrics.json"));
+  run->psnr_db.push_back(metrics.at("psnr").is_number() ? metrics.at("psnr").get<double>() : kNoNumber);
+  const nlohmann::json training = nlohmann::json::parse(base::ReadFile(pipeline.project.TrainReport()));
+  for (const nlohmann::json& field : training.at("fields")) run->dropped_steps += field.at("dropped_steps").get<int64_t>();
+  const survey::Survey survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
+  run->origin = survey.origin;
+  run->fit_rmse_m = survey.fit.rmse_m;
+  const geo::EnuFrame enu(survey.origin);
+  for (const survey::Photo& photo : survey.photos) {
+    const geo::Geodetic camera = enu.GeodeticFromEnu(photo.cam_from_enu.OriginInSource());
+    run->worst_float_ecef_m = std::max(run->worst_float_ecef_m, NaiveError_m(NaiveFrame::kEcef, survey.origin, camera));
+  }
+  std::filesystem::remove_all(folder);
+}
+
+EarthRun FlyAt(const EarthPlace& place, const EarthFrame& frame, const NumericsOptions& options) {
+  const QuietStages quiet(options.silent);
+  EarthRun run;
+  for (int seed = 1; seed <= frame.seeds; ++seed) FlyOnce(place, frame, seed, options, &run);
+  return run;
+}
+
+// Of one kind; the first is at home.
+using EarthRuns = std::vector<EarthRun>;
+
+NumericCase EarthCase(const EarthPlace& place, const EarthFrame& frame, const std::shared_ptr<EarthRuns>& runs, const NumericsOptions& options) {
+  constexpr double kAllowed_db = 0.1;
+  const bool loss_alone = frame.fitted && place.turned;
+  return {.name = (frame.fitted ? "Frame from GPS tags, " : "Known frame, ") + place.name,
+          .expected = fmt::format("finite, no step dropped, {} {} {:g} dB {} home{}", frame.seeds > 1 ? "mean PSNR" : "PSNR",
+                                  loss_alone ? "at most" : "within", kAllowed_db, loss_alone ? "below" : "of",
+                                  loss_alone ? " (the frame's axes are turned)" : ""),
+          .unit = "dB",
+          .limit = kAllowed_db,
+          .run = [place, frame, runs, loss_alone, options] {
+            runs->push_back(FlyAt(place, frame, options));
+            const EarthRun& run = runs->back();
+            std::string seen = fmt::format("{:.3f} dB", run.MeanPsnr_db());
+            if (frame.fitted) seen += fmt::format(" over {} seeds, fitted to the tags with {:.2f} m RMSE", frame.seeds, run.fit_rmse_m);
+            seen += fmt::format(", origin {:.6f}, {:.6f}, {:.1f} m", run.origin.latitude_deg, run.origin.longitude_deg, run.origin.height_m);
+            const double gain_db = run.MeanPsnr_db() - runs->front().MeanPsnr_db();
+            return Finding{.seen = seen,
+                           .worst = loss_alone ? std::max(0.0, -gain_db) : std::abs(gain_db),
+                           .holds = run.dropped_steps == 0 && Distance_m(run.origin, place.origin) < 100.0};
+          }};
+}
+
+}  // namespace
+
+NumericGroup EarthGroup(const NumericsOptions& options) {
+  NumericGroup group{
+      .id = "earth",
+      .title = "Anywhere on Earth",
+      .lead =
+          "The simulated hamlet flown at other places: the same 28 photos with other GPS tags through prepare, partition, train, merge and "
+          "evaluate, with a fixed number of steps. Once in the simulation's own frame, once in a frame found from the noisy tags, as with "
+          "real photos."};
+  if (options.comm == nullptr) return group;
+  const auto known = std::make_shared<EarthRuns>(), fitted = std::make_shared<EarthRuns>();
+  for (const bool by_tags : {false, true}) {
+    for (const EarthPlace& place : EarthPlaces()) {
+      if ((by_tags && !place.fitted) || (options.quick && !place.quick)) continue;
+      group.cases.push_back(EarthCase(place, by_tags ? kFittedFrame : kKnownFrame, by_tags ? fitted : known, options));
+    }
+  }
+  group.cases.push_back({.name = "Instead: other random numbers",
+                         .expected = "frame from GPS tags, at home: largest minus smallest PSNR by seed, what chance alone changes",
+                         .unit = "dB",
+                         .for_comparison = true,
+                         .run = [fitted] {
+                           const std::vector<double>& psnr_db = fitted->at(0).psnr_db;
+                           const auto [low, high] = std::minmax_element(psnr_db.begin(), psnr_db.end());
+                           return Finding{.seen = fmt::format("{:.3f} to {:.3f} dB", *low, *high), .worst = *high - *low};
+                         }});
+  group.cases.push_back({.name = "Instead: cameras in float ECEF",
+                         .expected = "how far the cameras of these surveys would be moved",
+                         .unit = "m",
+                         .for_comparison = true,
+                         .run = [known] {
+                           Worst worst;
+                           for (const EarthRun& run : *known) worst.Take(run.worst_float_ecef_m);
+                           return Finding{.seen = fmt::format("{:.0f} pixels of a GSD of 2 cm", worst.value() / 0.02), .worst = worst.value()};
+                         }});
+  return group;
+}
+
+}  // namespace skyquilt::coordinator::numerics

@@ -38,7 +38,9 @@ std::vector<double> ReferenceHarmonics(const std::array<double, 3>& direction, i
   return values;
 }
 
-ReferenceField::ReferenceField(const field::HashField& field) : field_(field) {
+ReferenceField::ReferenceField(const field::HashField& field) : field_(field), grid_(field.config().grid) {
+  if (field.config().encoding != encoding::Kind::kHash) throw std::invalid_argument("the reference knows hash grids only");
+  if (field.config().density_hidden_layers != 1) throw std::invalid_argument("the reference's density network has one hidden layer");
   if (field.config().luminance) throw std::invalid_argument("the reference has no luminance");
   const auto hidden = static_cast<size_t>(field.config().hidden);
   size_t offset = 0;
@@ -55,7 +57,7 @@ ReferenceField::ReferenceField(const field::HashField& field) : field_(field) {
 }
 
 std::array<ReferenceField::Corner, 8> ReferenceField::Corners(int level, const std::array<double, 3>& position) const {
-  const kernel::HashLevel& shape = field_.grid().level(level);
+  const kernel::HashLevel& shape = grid_.level(level);
   std::array<uint64_t, 3> cell = {};
   std::array<double, 3> fraction = {};
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -78,7 +80,7 @@ std::array<ReferenceField::Corner, 8> ReferenceField::Corners(int level, const s
     const uint64_t hash = (at[0] ^ at[1] * 2654435761ULL ^ at[2] * 805459861ULL) & 0xFFFFFFFFULL;
     const uint64_t in_order = at[0] + static_cast<uint64_t>(shape.size[0]) * (at[1] + static_cast<uint64_t>(shape.size[1]) * at[2]);
     const uint64_t entry = shape.dense ? in_order : hash % shape.entries;
-    corners[c] = {static_cast<size_t>(field_.grid().Offset(level)) + entry * static_cast<size_t>(field_.grid().features()), weight};
+    corners[c] = {static_cast<size_t>(grid_.Offset(level)) + entry * static_cast<size_t>(field_.config().grid.features), weight};
   }
   return corners;
 }
@@ -97,8 +99,8 @@ ReferenceField::Sample ReferenceField::ForwardDensity(std::span<const double> gr
   Sample sample;
   sample.position = position;
   std::vector<double> features;
-  const auto per_entry = static_cast<size_t>(field_.grid().features());
-  for (int level = 0; level < field_.grid().levels(); ++level) {
+  const auto per_entry = static_cast<size_t>(field_.config().grid.features);
+  for (int level = 0; level < grid_.levels(); ++level) {
     std::vector<double> sum(per_entry, 0.0);
     for (const Corner& corner : Corners(level, position)) {
       for (size_t f = 0; f < per_entry; ++f) sum[f] += corner.weight * grid[corner.first + f];
@@ -154,8 +156,8 @@ void ReferenceField::Backward(std::span<const double> networks, const Sample& sa
     }
     gradient = std::move(below);
   }
-  const auto per_entry = static_cast<size_t>(field_.grid().features());
-  for (int level = 0; level < field_.grid().levels(); ++level) {
+  const auto per_entry = static_cast<size_t>(field_.config().grid.features);
+  for (int level = 0; level < grid_.levels(); ++level) {
     for (const Corner& corner : Corners(level, sample.position)) {
       for (size_t f = 0; f < per_entry; ++f) {
         grid_gradient[corner.first + f] += corner.weight * gradient[static_cast<size_t>(level) * per_entry + f];

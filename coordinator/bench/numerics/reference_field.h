@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/encoding/hash_grid.h"
 #include "core/field/hash_field.h"
 
 namespace skyquilt::coordinator::numerics {
@@ -15,7 +16,7 @@ std::vector<double> ReferenceHarmonics(const std::array<double, 3>& direction, i
 
 class ReferenceField {
  public:
-  // The field must outlive this. Fields with luminance are not covered (std::invalid_argument).
+  // The field must outlive this. Fields with luminance, another encoding or a deeper density network are not covered (std::invalid_argument).
   explicit ReferenceField(const field::HashField& field);
 
   // What forward leaves for backward.
@@ -50,6 +51,7 @@ class ReferenceField {
   static std::vector<double> Apply(const Layer& layer, std::span<const double> networks, const std::vector<double>& in);
 
   const field::HashField& field_;
+  encoding::HashGrid grid_;
   std::vector<Layer> layers_;  // density 2, then colour
 };
 

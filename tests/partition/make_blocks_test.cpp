@@ -91,6 +91,22 @@ TEST(MakeBlocks, LowBlocksAreNotAsTallAsTheTowers) {
   EXPECT_NEAR(set.blocks[4].min_enu.z(), 11.8 - 1.5, 0.3);
 }
 
+TEST(MakeBlocks, HeightsCanBeShared) {
+  FlownSurveyOptions flown;
+  flown.roof_m = 52.0;
+  PartitionOptions options = Request("3x3");
+  options.heights = "survey";
+  const BlockSet set = MakeBlocks(FlySurvey(flown), options, 0);
+  for (const Block& block : set.blocks) {
+    EXPECT_EQ(block.min_enu.z(), set.blocks[0].min_enu.z()) << block.name;
+    EXPECT_EQ(block.max_enu.z(), set.blocks[0].max_enu.z()) << block.name;
+  }
+  EXPECT_NEAR(set.blocks[0].min_enu.z(), 11.8 - 1.5, 0.3);
+  EXPECT_NEAR(set.blocks[0].max_enu.z(), 52.2 + 1.5, 0.3);
+  options.heights = "roof";
+  EXPECT_THROW(MakeBlocks(FlySurvey(flown), options, 0), base::UsageError);
+}
+
 TEST(MakeBlocks, CapacityFollowsResolution) {
   const survey::Survey survey = FlySurvey({});
   const BlockSet full = MakeBlocks(survey, Request("2x2"), 0);

@@ -36,10 +36,9 @@ std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
     verdicts.push_back(fmt::format("Blocks against one model with as many parameters ({:.1f} M against {:.1f} M), equal time: {}.",
                                    guided->parameters / 1e6, large->parameters / 1e6, Difference(*guided, *large)));
     verdicts.push_back(
-        fmt::format("Why: in the same time the one large model sees {:.2f} times the samples per second ({:.2f} M/s against {:.2f} M/s), because its "
-                    "tables leave the "
-                    "caches, and its voxels are shared out over the whole survey.",
-                    large->samples_per_second / guided->samples_per_second, large->samples_per_second / 1e6, guided->samples_per_second / 1e6));
+        fmt::format("The large model was trained with {:.0f} M samples ({:.2f} M/s), the blocks with {:.0f} M together ({:.2f} M/s){}.",
+                    large->samples / 1e6, large->samples_per_second / 1e6, guided->samples / 1e6, guided->samples_per_second / 1e6,
+                    large->samples_per_second < 0.95 * guided->samples_per_second ? ": larger tables leave the caches" : ""));
   }
   if (independent != nullptr) verdicts.push_back("Blocks guided by a context against blocks alone: " + Difference(*guided, *independent) + ".");
   if (shared != nullptr) {

@@ -257,6 +257,8 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored) cons
                         metrics.contains("psnr_per_block") ? NumberAt(metrics["psnr_per_block"], field.name.c_str()) : VariantResult::kNone});
     if (field.name != "context") ++r.blocks;
   }
+  const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
+  r.layout = std::to_string(blocks.rows) + "x" + std::to_string(blocks.columns);
   r.curve = JoinedCurve(log);
   const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
   r.training_photos = static_cast<int>(std::count_if(survey.photos.begin(), survey.photos.end(), [](const auto& photo) { return !photo.is_test; }));

@@ -51,6 +51,7 @@ struct VariantResult {
   double train_seconds = kNone, samples_per_second = kNone, samples = kNone, peak_rss_bytes = kNone;
   double parameters = kNone, scene_bytes = kNone, evaluate_seconds = kNone;
   int blocks = 0, training_photos = 0;
+  std::string layout;                            // of the blocks, as "3x3": rows x columns
   std::vector<VariantField> fields;              // context first
   std::vector<std::pair<double, double>> curve;  // training seconds of all fields together against PSNR of their batches
   std::string photo, render, error;              // pictures of one held-out photo, relative to FOLDER; may be empty

@@ -47,6 +47,7 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
   if (!result.failure.empty()) json["failure"] = result.failure;
   EachNumber(result, [&](const char* key, double value) { json[key] = OrNull(value); });
   json["blocks"] = result.blocks;
+  json["layout"] = result.layout;
   json["training_photos"] = result.training_photos;
   json["fields"] = Json::array();
   for (const VariantField& field : result.fields) {
@@ -73,6 +74,7 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
   result.failure = json.value("failure", "");
   EachNumber(result, [&](const char* key, double& value) { value = OrNone(json.at(key)); });
   json.at("blocks").get_to(result.blocks);
+  json.at("layout").get_to(result.layout);
   json.at("training_photos").get_to(result.training_photos);
   for (const Json& field : json.at("fields")) {
     result.fields.push_back({field.at("name").get<std::string>(), field.at("parameters").get<int64_t>(), field.at("samples").get<int64_t>(),

@@ -43,13 +43,14 @@ std::string ParetoChart(const std::vector<std::string>& presets, const std::vect
   return report::CurveChart(curves, {.title = "Quality for time", .x_label = "training time (s)", .y_label = "PSNR (dB)", .log_x = true});
 }
 
+// x: where each result stands on the axis; empty: no plot.
 BenchSection OneThing(const std::string& id, const std::string& title, const std::string& lead, const std::vector<VariantResult>& results,
-                      const std::string& x_label, const std::vector<double>& x, bool log_x) {
-  report::Curve curve{.name = "PSNR", .points = {}, .marks = true};
-  for (size_t i = 0; i < results.size(); ++i) curve.points.emplace_back(x[i], results[i].psnr_db);
+                      const std::string& x_label = "", const std::vector<double>& x = {}, bool log_x = false) {
   BenchSection section{.id = id, .title = title, .lead = lead, .charts = {}, .tables = {QualityTable(results, id)}, .pictures = {}};
-  if (!x_label.empty())
-    section.charts.push_back(report::CurveChart({curve}, {.title = title, .x_label = x_label, .y_label = "PSNR (dB)", .log_x = log_x}));
+  if (x.empty()) return section;
+  report::Curve curve{.name = "PSNR", .points = {}, .marks = true};
+  for (size_t i = 0; i < results.size(); ++i) curve.points.emplace_back(x.at(i), results[i].psnr_db);
+  section.charts.push_back(report::CurveChart({curve}, {.title = title, .x_label = x_label, .y_label = "PSNR (dB)", .log_x = log_x}));
   return section;
 }
 
@@ -103,13 +104,15 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
                       {{.name = "storage_bf16", .label = "bf16", .overrides = {middle, {"merge.storage", "bf16"}}},
                        {.name = "storage_fp16", .label = "fp16", .overrides = {middle, {"merge.storage", "fp16"}}}});
   keep(storage);
+  // Other tables would make automatic partition cut other blocks: one thing at a time.
+  const Override layout = {"partition.blocks", storage.front().layout.empty() ? study.settings().partition.blocks : storage.front().layout};
   std::vector<VariantResult> tables, samples, placing, photos;
   std::vector<double> table_x, sample_x, photo_x;
   for (const int log2 : options.log2_table_sizes) {
     const std::string size = std::to_string(log2);
     tables.push_back(study.Run({.name = "tables_" + size,
                                 .label = "2^" + size,
-                                .overrides = {middle, {"partition.min_log2_table_size", size}, {"partition.max_log2_table_size", size}}}));
+                                .overrides = {middle, layout, {"partition.min_log2_table_size", size}, {"partition.max_log2_table_size", size}}}));
     table_x.push_back(tables.back().parameters);
   }
   for (const double step : options.steps_per_voxel) {
@@ -118,19 +121,19 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
     std::replace(name.begin(), name.end(), '.', '_');
     samples.push_back(study.Run({.name = "step_" + name,
                                  .label = "a step of " + text + " voxels",
-                                 .overrides = {middle, {"train.step_voxels", text}, {"context.step_voxels", text}}}));
+                                 .overrides = {middle, layout, {"train.step_voxels", text}, {"context.step_voxels", text}}}));
     sample_x.push_back(step);
   }
   for (const char* stratified : {"true", "false"}) {
     const bool on = std::string(stratified) == "true";
     placing.push_back(study.Run({.name = on ? "stratified" : "uniform",
                                  .label = on ? "stratified: the first sample anywhere in its step" : "uniform: always in the middle of it",
-                                 .overrides = {middle, {"train.stratified", stratified}, {"context.stratified", stratified}}}));
+                                 .overrides = {middle, layout, {"train.stratified", stratified}, {"context.stratified", stratified}}}));
   }
   for (const int every : options.keep_every) {
     photos.push_back(study.Run({.name = "photos_" + std::to_string(every),
                                 .label = every == 1 ? "all photos" : fmt::format("every {}. photo", every),
-                                .overrides = {middle},
+                                .overrides = {middle, layout},
                                 .keep_every = every}));
     photo_x.push_back(photos.back().training_photos);
   }
@@ -158,16 +161,15 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
                            .charts = {ParetoChart(names, by_preset), TrainingChart(presets)},
                            .tables = {QualityTable(presets, "presets")},
                            .pictures = {}});
-  page.sections.push_back(
-      OneThing("storage", "Storage of the parameters", "One training, its scene written with three precisions.", storage, "", {}, false));
+  page.sections.push_back(OneThing("storage", "Storage of the parameters", "One training, its scene written with three precisions.", storage));
   page.sections.push_back(OneThing("tables", "Table sizes", "Entries per level of every block.", tables, "parameters", table_x, true));
   page.sections.push_back(OneThing(
       "samples", "Samples per ray",
       "The marching step as a multiple of the finest voxel: half the step is twice the samples on a ray, and half the rays in the same time.",
-      samples, "marching step (voxels)", sample_x, false));
-  page.sections.push_back(OneThing("placing", "Stratified against uniform sampling", "", placing, "", {}, false));
+      samples, "marching step (voxels)", sample_x));
+  page.sections.push_back(OneThing("placing", "Stratified against uniform sampling", "", placing));
   page.sections.push_back(OneThing("photos", "Number of photos", "Training photos left out evenly; the held-out ones are always the same.", photos,
-                                   "training photos", photo_x, false));
+                                   "training photos", photo_x));
   page.sections.push_back(PictureSection(presets));
   return bench;
 }

@@ -18,6 +18,7 @@ VariantResult Example() {
   r.psnr_db = 27.5;
   r.train_seconds = 61.0;
   r.blocks = 2;
+  r.layout = "1x2";
   r.fields = {{"context", 10, 20, 1.0, VariantResult::kNone}, {"r0c0", 30, 40, 2.0, 28.0}, {"r0c1", 30, 40, 2.0, VariantResult::kNone}};
   r.curve = {{1.0, 20.0}, {2.0, 22.0}};
   r.render = "runs/guided/report/images/photo_00001_render.jpg";
@@ -30,6 +31,7 @@ TEST(ResultJson, ComesBackAsItWas) {
   const VariantResult back = ParseResult(ResultJson(r, "abc 1"), &identity);
   EXPECT_EQ(identity, "abc 1");
   EXPECT_EQ(back.label, r.label);
+  EXPECT_EQ(back.layout, "1x2");
   EXPECT_EQ(back.psnr_db, r.psnr_db);
   EXPECT_TRUE(std::isnan(back.ssim));
   ASSERT_EQ(back.fields.size(), 3U);

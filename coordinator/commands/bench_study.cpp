@@ -118,6 +118,22 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
   }
   {
     const auto flags = std::make_shared<StudyFlags>();
+    CLI::App* command = AddStudyCommand(bench, "encodings", "hash grid, voxels, planes and frequencies in the same field", flags, "town", "3min");
+    command->footer(
+        "Examples:\n"
+        "  skyquilt bench encodings -o out/bench\n"
+        "  skyquilt bench encodings --quick -o out/bench");
+    command->callback([&state, flags] {
+      state.chosen = [&state, flags] {
+        Study study = Begin(state, *flags, "town", {});
+        EncodingsOptions options;
+        options.budget_s = BudgetOf(*flags, options.budget_s, 20.0);
+        Finish(EncodingsBench(study, options), study, state, *flags);
+      };
+    });
+  }
+  {
+    const auto flags = std::make_shared<StudyFlags>();
     CLI::App* command =
         AddStudyCommand(bench, "tradeoff", "what time, tables, samples, photos and precision buy", flags, "town", "45s, 2min and 6min");
     command->footer(

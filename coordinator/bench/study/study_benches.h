@@ -31,6 +31,15 @@ struct BlocksBenchOptions {
 // Number of blocks against capacity of each. MatrixCity, supplement, table 3.
 StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options);
 
+struct EncodingsOptions {
+  double budget_s = 180.0;
+  int frequency_hidden = 128;  // networks of the encoding without tables
+  int frequency_layers = 6;
+  double frequency_learning_rate = 2e-3;
+};
+// Hash grid, dense voxels, planes and lines, sines and cosines: encodings of one and the same field.
+StudyBench EncodingsBench(Study& study, const EncodingsOptions& options);
+
 struct TradeoffOptions {
   std::vector<double> budgets_s = {45.0, 120.0, 360.0};
   double middle_budget_s = 120.0;  // of the studies that vary one thing

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "coordinator/bench/numerics/geodesy.h"
 #include "coordinator/bench/numerics/groups.h"
@@ -21,8 +22,8 @@ struct EarthPlace {
   std::string name;
   geo::Geodetic origin;
   bool fitted = true;  // flown in a frame from tags too
-  // Right on a pole the found origin's longitude is anyone's, and with it where east is: block and grid lie turned against the scene, which alone
-  // changes what they learn. There only a loss counts.
+  // Around a pole the found origin's longitude, and with it where east is, hangs on the last metre: block and grid lie turned against the scene. What
+  // that alone changes is found at home, with the survey turned by as much.
   bool turned = false;
   bool quick = false;
 };
@@ -30,9 +31,8 @@ struct EarthPlace {
 const std::vector<EarthPlace>& EarthPlaces() {
   static const std::vector<EarthPlace> places = {
       {.name = "at home, 47\xC2\xB0 N", .origin = {47.3769, 8.5417, 408.0}, .quick = true},
-      {.name = "around the north pole, 11 m beside it", .origin = {89.9999, 8.5417, 2.0}, .quick = true},
-      {.name = "on the north pole", .origin = {90.0, 0.0, 2.0}, .turned = true},
-      {.name = "on the south pole", .origin = {-90.0, 0.0, 2835.0}, .turned = true},
+      {.name = "at the north pole", .origin = {90.0, 0.0, 2.0}, .turned = true, .quick = true},
+      {.name = "at the south pole", .origin = {-90.0, 0.0, 2835.0}, .turned = true},
       {.name = "across \xC2\xB1"
                "180\xC2\xB0 on the equator",
        .origin = {0.0, 180.0, 2.0},
@@ -47,13 +47,15 @@ const std::vector<EarthPlace>& EarthPlaces() {
 }
 
 // What the frame is: the simulation's own, so that all places train on the same numbers, or found from the photos' GPS tags, as with real photos.
-// There every place trains on numbers that differ by rounding (at a pole the axes point elsewhere, too), and trainings that differ by rounding end as
-// far apart as trainings with other random numbers: their mean counts.
+// There every place trains on numbers that differ by rounding (near a pole the axes point elsewhere, too), and trainings that differ by rounding end
+// as far apart as trainings with other random numbers: their mean counts.
 struct EarthFrame {
   bool fitted = false;
+  double turn_deg = 0.0;  // of the prepared survey about the vertical
   int seeds = 1;
   int context_steps = 100, train_steps = 200;
 };
+constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr EarthFrame kKnownFrame{};
 constexpr EarthFrame kFittedFrame{.fitted = true, .seeds = 3, .context_steps = 300, .train_steps = 1000};
 
@@ -92,6 +94,15 @@ Settings EarthSettings(const geo::Geodetic& origin, const EarthFrame& frame, int
   return settings;
 }
 
+// The survey as if its frame's axes pointed elsewhere.
+void TurnSurvey(const std::filesystem::path& folder, double turn_deg) {
+  survey::Survey survey = survey::LoadSurvey(folder);
+  const Eigen::Quaterniond turned_from_enu(Eigen::AngleAxisd(turn_deg * kDegree, Eigen::Vector3d::UnitZ()));
+  for (survey::Photo& photo : survey.photos) photo.cam_from_enu.rotation = photo.cam_from_enu.rotation * turned_from_enu.conjugate();
+  for (survey::SparsePoint& point : survey.points) point.x_in_enu = turned_from_enu * point.x_in_enu;
+  survey::SaveSurvey(survey, folder);
+}
+
 // The whole way with one seed.
 void FlyOnce(const EarthPlace& place, const EarthFrame& frame, int seed, const NumericsOptions& options, EarthRun* run) {
   const std::filesystem::path folder = options.work_folder / "earth";
@@ -105,6 +116,7 @@ void FlyOnce(const EarthPlace& place, const EarthFrame& frame, int seed, const N
   } else {
     PrepareStage(pipeline, photos, {});
   }
+  if (frame.turn_deg != 0.0) TurnSurvey(pipeline.project.SurveyFolder(), frame.turn_deg);
   PartitionStage(pipeline);
   ThrowIfBlocksFailed(TrainStage(pipeline), pipeline.project);
   MergeStage(pipeline);
@@ -131,27 +143,39 @@ EarthRun FlyAt(const EarthPlace& place, const EarthFrame& frame, const NumericsO
   return run;
 }
 
+// The angle by which coordinates turn, counter-clockwise, from the frame about `made` to the one about `found` close to it: meridians meet at the
+// poles.
+double TurnDeg(const geo::Geodetic& made, const geo::Geodetic& found) {
+  return geo::WrapLongitudeDeg(made.longitude_deg - found.longitude_deg) * std::sin(found.latitude_deg * kDegree);
+}
+
 // Of one kind; the first is at home.
 using EarthRuns = std::vector<EarthRun>;
 
 NumericCase EarthCase(const EarthPlace& place, const EarthFrame& frame, const std::shared_ptr<EarthRuns>& runs, const NumericsOptions& options) {
   constexpr double kAllowed_db = 0.1;
-  const bool loss_alone = frame.fitted && place.turned;
+  const bool turned = frame.fitted && place.turned;
   return {.name = (frame.fitted ? "Frame from GPS tags, " : "Known frame, ") + place.name,
-          .expected = fmt::format("finite, no step dropped, {} {} {:g} dB {} home{}", frame.seeds > 1 ? "mean PSNR" : "PSNR",
-                                  loss_alone ? "at most" : "within", kAllowed_db, loss_alone ? "below" : "of",
-                                  loss_alone ? " (the frame's axes are turned)" : ""),
+          .expected = fmt::format("finite, no step dropped, {} within {:g} dB of home{}", frame.seeds > 1 ? "mean PSNR" : "PSNR", kAllowed_db,
+                                  turned ? " with axes turned as much" : ""),
           .unit = "dB",
           .limit = kAllowed_db,
-          .run = [place, frame, runs, loss_alone, options] {
+          .run = [place, frame, runs, turned, options] {
             runs->push_back(FlyAt(place, frame, options));
             const EarthRun& run = runs->back();
+            double wanted_db = runs->front().MeanPsnr_db();
             std::string seen = fmt::format("{:.3f} dB", run.MeanPsnr_db());
             if (frame.fitted) seen += fmt::format(" over {} seeds, fitted to the tags with {:.2f} m RMSE", frame.seeds, run.fit_rmse_m);
-            seen += fmt::format(", origin {:.6f}, {:.6f}, {:.1f} m", run.origin.latitude_deg, run.origin.longitude_deg, run.origin.height_m);
-            const double gain_db = run.MeanPsnr_db() - runs->front().MeanPsnr_db();
+            if (turned) {
+              EarthFrame control = frame;
+              control.turn_deg = TurnDeg(place.origin, run.origin);
+              const double straight_db = wanted_db;
+              wanted_db = FlyAt(EarthPlaces().front(), control, options).MeanPsnr_db();
+              seen += fmt::format("; home turned by {:.2f}\xC2\xB0 {:.3f} dB, home as it is {:.3f} dB", control.turn_deg, wanted_db, straight_db);
+            }
+            seen += fmt::format("; origin {:.6f}, {:.6f}, {:.1f} m", run.origin.latitude_deg, run.origin.longitude_deg, run.origin.height_m);
             return Finding{.seen = seen,
-                           .worst = loss_alone ? std::max(0.0, -gain_db) : std::abs(gain_db),
+                           .worst = std::abs(run.MeanPsnr_db() - wanted_db),
                            .holds = run.dropped_steps == 0 && Distance_m(run.origin, place.origin) < 100.0};
           }};
 }
@@ -165,7 +189,10 @@ NumericGroup EarthGroup(const NumericsOptions& options) {
       .lead =
           "The simulated hamlet flown at other places: the same 28 photos with other GPS tags through prepare, partition, train, merge and "
           "evaluate, with a fixed number of steps. Once in the simulation's own frame, once in a frame found from the noisy tags, as with "
-          "real photos."};
+          "real photos. Near a pole the found frame's axes are turned against the scene, which changes what grid and block can show: there home is "
+          "flown again with its survey turned by as much. Means of three seeds are known to about 0.05 dB each, so that chance alone can exceed 0.1 "
+          "dB "
+          "between two of them."};
   if (options.comm == nullptr) return group;
   const auto known = std::make_shared<EarthRuns>(), fitted = std::make_shared<EarthRuns>();
   for (const bool by_tags : {false, true}) {

@@ -77,16 +77,22 @@ const char* ElementName(ElementType type) {
   return "int64";
 }
 
-hid_t FileType(ElementType type) {
-  static const hid_t kBfloat16 = Float16Of(H5T_IEEE_F32LE, 8, 127);
-  static const hid_t kFloat16 = Float16Of(H5T_IEEE_F32LE, 5, 15);
+namespace {
+
+struct TypeIds {
+  hid_t file = -1, memory = -1;
+};
+
+TypeIds IdsOf(ElementType type) {
+  static const TypeIds kBfloat16 = {Float16Of(H5T_IEEE_F32LE, 8, 127), Float16Of(H5T_NATIVE_FLOAT, 8, 127)};
+  static const TypeIds kFloat16 = {Float16Of(H5T_IEEE_F32LE, 5, 15), Float16Of(H5T_NATIVE_FLOAT, 5, 15)};
   switch (type) {
     case ElementType::kFloat32:
-      return H5T_IEEE_F32LE;
+      return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT};
     case ElementType::kFloat64:
-      return H5T_IEEE_F64LE;
+      return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE};
     case ElementType::kUint8:
-      return H5T_STD_U8LE;
+      return {H5T_STD_U8LE, H5T_NATIVE_UINT8};
     case ElementType::kBfloat16:
       return kBfloat16;
     case ElementType::kFloat16:
@@ -94,27 +100,17 @@ hid_t FileType(ElementType type) {
     case ElementType::kInt64:
       break;
   }
-  return H5T_STD_I64LE;
+  return {H5T_STD_I64LE, H5T_NATIVE_INT64};
+}
+
+}  // namespace
+
+hid_t FileType(ElementType type) {
+  return IdsOf(type).file;
 }
 
 hid_t MemoryType(ElementType type) {
-  static const hid_t kBfloat16 = Float16Of(H5T_NATIVE_FLOAT, 8, 127);
-  static const hid_t kFloat16 = Float16Of(H5T_NATIVE_FLOAT, 5, 15);
-  switch (type) {
-    case ElementType::kFloat32:
-      return H5T_NATIVE_FLOAT;
-    case ElementType::kFloat64:
-      return H5T_NATIVE_DOUBLE;
-    case ElementType::kUint8:
-      return H5T_NATIVE_UINT8;
-    case ElementType::kBfloat16:
-      return kBfloat16;
-    case ElementType::kFloat16:
-      return kFloat16;
-    case ElementType::kInt64:
-      break;
-  }
-  return H5T_NATIVE_INT64;
+  return IdsOf(type).memory;
 }
 
 Handle FileAccess() {

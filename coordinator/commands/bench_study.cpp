@@ -41,10 +41,9 @@ double BudgetOf(const StudyFlags& flags, double otherwise_s, double quick_s) {
   return flags.quick ? quick_s : otherwise_s;
 }
 
-Study Begin(const CommandState& state, const StudyFlags& flags, const std::string& preset, const std::vector<Override>& lean) {
+Study Begin(const CommandState& state, const StudyFlags& flags, const std::string& preset) {
   std::vector<Override> own = kLean;
   if (flags.quick) own.insert(own.end(), kQuick.begin(), kQuick.end());
-  own.insert(own.end(), lean.begin(), lean.end());
   // --config and --set come last: what the user says counts.
   Settings settings;
   for (const Override& entry : own) ApplyOverride(settings, entry);
@@ -90,7 +89,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
         "Interrupted, the same command goes on with the variant it was at.");
     command->callback([&state, flags] {
       state.chosen = [&state, flags] {
-        Study study = Begin(state, *flags, "smallcity", {});
+        Study study = Begin(state, *flags, "smallcity");
         if (flags->quick && flags->blocks == "3x3") flags->blocks = "2x2";
         Finish(SingleVsMulti(study, {.blocks = flags->blocks, .budget_s = BudgetOf(*flags, 300.0, 20.0)}), study, state, *flags);
       };
@@ -105,7 +104,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
         "  skyquilt bench blocks --quick -o out/bench");
     command->callback([&state, flags] {
       state.chosen = [&state, flags] {
-        Study study = Begin(state, *flags, "town", {});
+        Study study = Begin(state, *flags, "town");
         BlocksBenchOptions options;
         options.budget_s = BudgetOf(*flags, options.budget_s, 10.0);
         if (flags->quick) {
@@ -125,7 +124,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
         "  skyquilt bench encodings --quick -o out/bench");
     command->callback([&state, flags] {
       state.chosen = [&state, flags] {
-        Study study = Begin(state, *flags, "town", {});
+        Study study = Begin(state, *flags, "town");
         EncodingsOptions options;
         options.budget_s = BudgetOf(*flags, options.budget_s, 20.0);
         Finish(EncodingsBench(study, options), study, state, *flags);
@@ -143,7 +142,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
         "--time-budget sets the middle one of three budgets; the others are a third and three times it.");
     command->callback([&state, flags] {
       state.chosen = [&state, flags] {
-        Study study = Begin(state, *flags, "town", {});
+        Study study = Begin(state, *flags, "town");
         TradeoffOptions options;
         options.middle_budget_s = BudgetOf(*flags, options.middle_budget_s, 8.0);
         if (flags->quick || !flags->budget.empty()) {

@@ -46,8 +46,10 @@ std::vector<std::byte> AsStored(const ArchiveReader& reader, const std::string& 
     case ElementType::kFloat16:
       break;
   }
+  const std::vector<float> values = reader.Floats(name);
   std::vector<uint16_t> stored;
-  for (const float value : reader.Floats(name)) {
+  stored.reserve(values.size());
+  for (const float value : values) {
     stored.push_back(type == ElementType::kBfloat16 ? base::Bfloat16FromFloat(value) : base::Float16FromFloat(value));
   }
   return BytesOf(stored);

@@ -12,7 +12,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-constexpr double kNearFront_db = 0.1;  // what two trainings of the same thing may differ by
+constexpr double kNearFront_db = 0.1;  // smaller differences are not told apart here; the verdict gives the figure
 
 Override Budget(double seconds) {
   return {"run.time_budget_s", fmt::format("{}", seconds)};

@@ -24,6 +24,7 @@ NumericGroup TrainerGroup(const NumericsOptions& options);
 NumericGroup AwayGroup(const NumericsOptions& options);
 NumericGroup BrightnessGroup(const NumericsOptions& options);
 NumericGroup NonFiniteGroup(const NumericsOptions& options);
+NumericGroup StorageGroup(const NumericsOptions& options);
 NumericGroup EarthGroup(const NumericsOptions& options);
 
 }  // namespace skyquilt::coordinator::numerics

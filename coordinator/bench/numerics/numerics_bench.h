@@ -26,7 +26,7 @@ struct NumericsResult {
   std::vector<NumericRow> Failed() const;
 };
 
-// Those of design: space, rays, compositing, kernels, trainer, distance, brightness, not-a-number, Earth.
+// Those of design: space, rays, compositing, kernels, trainer, distance, brightness, not-a-number, storage, Earth.
 std::vector<NumericGroup> AllGroups(const NumericsOptions& options);
 // Those of the given ids, in their own order. Throws base::UsageError for an id that is not among them.
 std::vector<NumericGroup> OnlyGroups(std::vector<NumericGroup> groups, const std::vector<std::string>& ids);

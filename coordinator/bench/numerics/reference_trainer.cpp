@@ -51,8 +51,7 @@ ReferenceState ReferenceState::From(const field::TrainableState& state) {
           state.step};
 }
 
-ReferenceTrainer::ReferenceTrainer(const render::TrainedField& target, const field::HashField& field)
-    : target_(target), field_(field), reference_(field) {}
+ReferenceTrainer::ReferenceTrainer(const render::TrainedField& target, const field::HashField& field) : target_(target), reference_(field) {}
 
 ReferenceResult ReferenceTrainer::Ray(const worker::RayBatch& batch, const worker::BatchRay& ray, const ReferenceState& state, double ray_share,
                                       double distortion, std::vector<double>* grid_gradient, std::vector<double>* network_gradient) const {

@@ -43,7 +43,6 @@ class ReferenceTrainer {
                       std::vector<double>* grid_gradient, std::vector<double>* network_gradient) const;
 
   const render::TrainedField& target_;
-  const field::HashField& field_;
   ReferenceField reference_;
 };
 

@@ -67,7 +67,8 @@ struct Span {
   long double t_near, t_far;
 };
 
-// Nothing when the ray misses. Crossings within `slack` of the box's rim count.
+// Nothing when the ray misses. Crossings within 1e-12 m of the box's rim count, for those on an edge are rounded to either side; on a ray that
+// grazes a face at an angle of 1e-4 that is 1e-8 m of its length, which is all that is asked of such rays.
 std::optional<Span> ReferenceSpan(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& low,
                                   const Eigen::Vector3d& high) {
   constexpr long double kSlack = 1e-12L;

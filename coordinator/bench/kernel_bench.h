@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/bench/bench_page.h"
 #include "worker/stage_times.h"
 
 namespace skyquilt::coordinator {
@@ -62,5 +63,7 @@ KernelBenchResult RunKernelBench(const KernelBenchOptions& options);
 // JSON with what a script needs, and a table for people.
 std::string KernelBenchJson(const KernelBenchResult& result);
 std::string KernelBenchTable(const KernelBenchResult& result);
+// `command`: as it was typed. What was not measured is an en dash.
+BenchPage KernelBenchPage(const KernelBenchResult& result, const std::string& command);
 
 }  // namespace skyquilt::coordinator

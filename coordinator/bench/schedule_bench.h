@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/bench/bench_page.h"
+
 namespace skyquilt::coordinator {
 
 struct ScheduleBenchOptions {
@@ -27,6 +29,7 @@ struct ScheduleBenchOptions {
 
   // Throws base::UsageError naming the option.
   void Check() const;
+  bool operator==(const ScheduleBenchOptions&) const = default;
 };
 
 struct ScheduleRun {
@@ -54,5 +57,8 @@ std::vector<double> MeasuredBlockSeconds(const std::string& train_json);
 
 std::string ScheduleBenchJson(const ScheduleBenchResult& result);
 std::string ScheduleBenchTable(const ScheduleBenchResult& result);
+// `command`: as it was typed. Holds the runs against the targets (95 % undisturbed, 90 % with ranks lost) only on the cluster that they are set for,
+// that of the defaults; measured seconds, the seed and how often ranks report may be given.
+BenchPage ScheduleBenchPage(const ScheduleBenchResult& result, const std::string& command);
 
 }  // namespace skyquilt::coordinator

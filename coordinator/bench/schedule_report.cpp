@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "coordinator/bench/schedule_bench.h"
+#include "coordinator/report/bar_chart.h"
+#include "coordinator/report/html.h"
 #include "core/base/progress.h"
 #include "core/base/system.h"
 
@@ -17,6 +19,91 @@ nlohmann::ordered_json RunJson(const ScheduleRun& run) {
           {"messages_per_second", run.messages_per_second},
           {"bytes_per_second", run.bytes_per_second},
           {"coordinator_load", run.coordinator_load}};
+}
+
+constexpr double kTargetUndisturbed = 0.95, kTargetFailing = 0.90;
+
+bool TargetsApply(ScheduleBenchOptions options) {
+  const ScheduleBenchOptions stated;
+  options.measured_seconds = stated.measured_seconds;
+  options.status_every_s = stated.status_every_s;
+  options.seed = stated.seed;
+  return options == stated;
+}
+
+std::string LostRanks(const ScheduleBenchOptions& o) {
+  return report::FormatPercent(o.failing) + " of ranks lost";
+}
+
+std::string TargetSentence(const std::string& what, double efficiency, double target) {
+  return fmt::format("{}: {} of all ranks' time was work that counted; the target of {} is {}.", what, report::FormatPercent(efficiency, 2),
+                     report::FormatPercent(target, 0), efficiency >= target ? "met" : "missed");
+}
+
+std::vector<BenchCell> RunRow(const std::string& what, const ScheduleRun& run) {
+  return {BenchCell::Text(what),
+          BenchCell::Percent(run.efficiency),
+          BenchCell::Seconds(run.wall_s),
+          BenchCell::Number(run.restarts, 0),
+          BenchCell::Number(run.moves, 0),
+          BenchCell::Count(run.messages_per_second),
+          BenchCell::Bytes(run.bytes_per_second),
+          BenchCell::Percent(run.coordinator_load)};
+}
+
+struct TimeShare {
+  std::string what;
+  double share = 0.0;  // of ranks x wall
+};
+
+std::vector<TimeShare> TimeShares(const ScheduleRun& run, const ScheduleBenchOptions& o) {
+  const double rank_0 = 1.0 / o.ranks;
+  const double restarting = (1.0 - rank_0) * run.restarts * o.restart_s / run.wall_s;
+  return {{"work that counted", run.efficiency},
+          {"rank 0, which does not train", rank_0},
+          {"starting again after losses", restarting},
+          {"idle, slow, moved or done twice", 1.0 - run.efficiency - rank_0 - restarting}};
+}
+
+BenchSection RunsSection(const ScheduleBenchResult& r) {
+  return {.id = "runs",
+          .title = "Undisturbed, and with ranks lost",
+          .lead = fmt::format("Messages and bytes are those to and from rank 0. The longest block alone takes {} on a rank of speed 1.",
+                              base::FormatDuration(r.longest_s)),
+          .charts = {},
+          .tables = {{.name = "",
+                      .title = "",
+                      .note = fmt::format("Memory of rank 0 for it, simulation included: {}.", report::FormatBytes(r.coordinator_bytes)),
+                      .columns = {"run", "efficiency", "time", "restarts", "moves", "messages per s", "bytes per s", "rank 0 CPU"},
+                      .rows = {RunRow("nothing fails", r.undisturbed), RunRow("ranks lost", r.failing)}}},
+          .pictures = {}};
+}
+
+BenchSection TimeSection(const ScheduleBenchResult& r) {
+  const ScheduleBenchOptions& o = r.options;
+  const std::vector<TimeShare> undisturbed = TimeShares(r.undisturbed, o), failing = TimeShares(r.failing, o);
+  BenchTable table{.name = "time",
+                   .title = "",
+                   .note = "Work counts as on a rank of speed 1, so the last row holds what slow ranks lose and fast ones gain.",
+                   .columns = {"where time goes", "nothing fails", "ranks lost"},
+                   .rows = {}};
+  for (size_t i = 0; i < undisturbed.size(); ++i) {
+    table.rows.push_back({BenchCell::Text(undisturbed[i].what), BenchCell::Percent(undisturbed[i].share), BenchCell::Percent(failing[i].share)});
+  }
+  const auto chart = [](const std::string& title, const std::vector<TimeShare>& shares) {
+    std::vector<report::Bar> bars;
+    for (const TimeShare& share : shares) {
+      bars.push_back({.label = share.what, .value = 100.0 * share.share, .shown = report::FormatPercent(share.share)});
+    }
+    return report::BarChart(bars, {.title = title, .x_label = "share of all ranks' time (%)"});
+  };
+  return {.id = "time",
+          .title = "Where the ranks' time goes",
+          .lead = fmt::format("A lost rank ends the job: {} to start again for all, and the work since the last checkpoint (every {}) is done twice.",
+                              base::FormatDuration(o.restart_s), base::FormatDuration(o.checkpoint_every_s)),
+          .charts = {chart("Nothing fails", undisturbed), chart(LostRanks(o), failing)},
+          .tables = {table},
+          .pictures = {}};
 }
 
 }  // namespace
@@ -70,6 +157,34 @@ std::string ScheduleBenchTable(const ScheduleBenchResult& r) {
       "(every {}) is done twice. Memory of rank 0 for it, simulation included: {}B\n",
       base::FormatDuration(o.restart_s), base::FormatDuration(o.checkpoint_every_s), base::FormatCount(static_cast<double>(r.coordinator_bytes)));
   return text;
+}
+
+BenchPage ScheduleBenchPage(const ScheduleBenchResult& r, const std::string& command) {
+  const ScheduleBenchOptions& o = r.options;
+  BenchPage page{
+      .name = "schedule",
+      .title = "How well a cluster would be used",
+      .lead = fmt::format(
+          "The scheduler's own code against ranks on a simulated clock: {} blocks of {} each on {} ranks, rank 0 among them; {} of work for each. "
+          "Ranks' speed \xC2\xB1{}, {} at half speed; estimates of cost wrong by {}.",
+          report::FormatInteger(o.blocks), base::FormatDuration(o.block_seconds), report::FormatInteger(o.ranks),
+          base::FormatDuration(r.work_s / o.ranks), report::FormatPercent(o.speed_spread, 0), report::FormatPercent(o.stragglers),
+          report::FormatPercent(o.cost_error, 0)),
+      .figures = {{"Efficiency, nothing fails", report::FormatPercent(r.undisturbed.efficiency), "of all ranks' time was work that counted"},
+                  {"Efficiency, " + LostRanks(o), report::FormatPercent(r.failing.efficiency),
+                   fmt::format("{} restart{} of the job", r.failing.restarts, r.failing.restarts == 1 ? "" : "s")},
+                  {"Messages", report::FormatLarge(r.undisturbed.messages_per_second, "/s"),
+                   "to and from rank 0, " + report::FormatPercent(r.undisturbed.coordinator_load) + " of one of its cores"}},
+      .verdicts = {},
+      .sections = {RunsSection(r), TimeSection(r)},
+      .command = command,
+      .machine = base::MachineDescription(),
+      .date = base::UtcTimestamp()};
+  if (TargetsApply(o)) {
+    page.verdicts = {TargetSentence("Nothing fails", r.undisturbed.efficiency, kTargetUndisturbed),
+                     TargetSentence(LostRanks(o), r.failing.efficiency, kTargetFailing)};
+  }
+  return page;
 }
 
 }  // namespace skyquilt::coordinator

@@ -1,7 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <iostream>
+#include <string>
 
+#include "coordinator/bench/bench_page.h"
 #include "coordinator/bench/kernel_bench.h"
 #include "coordinator/bench/schedule_bench.h"
 #include "coordinator/commands/bench_commands.h"
@@ -13,11 +15,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-// Prints one of both, and keeps the JSON when a folder was given.
-void Deliver(const std::string& json, const std::string& table, bool as_json, const std::string& folder, const std::string& file) {
-  std::cout << (as_json ? json : table);
-  if (!folder.empty()) base::WriteFileAtomically(std::filesystem::path(folder) / file, json);
-}
+constexpr int kQuickBlocks = 1000, kQuickRanks = 100;
 
 void AddKernelBench(CLI::App& bench, CommandState& state) {
   struct Flags {
@@ -29,7 +27,7 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
   const auto flags = std::make_shared<Flags>();
   KernelBenchOptions& o = flags->options;
   CLI::App* command = bench.add_subcommand("kernel", "samples per second of training and rendering a field, against this machine's own limit");
-  command->add_option("-o,--output", flags->out, "folder for kernel.json")->type_name("DIR");
+  command->add_option("-o,--output", flags->out, "folder for kernel.json, kernel.html and tables as CSV")->type_name("DIR");
   command->add_option("--isa", o.isa, "force an instruction set: avx512, avx2, portable or one by name")->type_name("NAME");
   command->add_option("--levels", o.levels, "resolutions of the hash grid")->type_name("N")->capture_default_str();
   command->add_option("--features", o.features, "numbers per grid entry, 2 or 4")->type_name("N")->capture_default_str();
@@ -59,7 +57,9 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
       }
       if (!flags->out.empty()) base::RequireWritableFolder(flags->out);
       const KernelBenchResult result = RunKernelBench(flags->options);
-      Deliver(KernelBenchJson(result), KernelBenchTable(result), flags->json, flags->out, "kernel.json");
+      const std::string json = KernelBenchJson(result);
+      std::cout << (flags->json ? json : KernelBenchTable(result));
+      if (!flags->out.empty()) WriteBench(flags->out, KernelBenchPage(result, state.command_line), json);
     };
   });
 }
@@ -68,14 +68,15 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
   struct Flags {
     ScheduleBenchOptions options;
     std::string out, measured;
+    bool quick = false;
     bool json = false;
   };
   const auto flags = std::make_shared<Flags>();
   ScheduleBenchOptions& o = flags->options;
   CLI::App* command = bench.add_subcommand("schedule", "how well a cluster would be used: the scheduler against simulated ranks");
-  command->add_option("-o,--output", flags->out, "folder for schedule.json")->type_name("DIR");
-  command->add_option("--blocks", o.blocks, "blocks to train")->type_name("N")->capture_default_str();
-  command->add_option("--ranks", o.ranks, "ranks, the one that hands out included")->type_name("N")->capture_default_str();
+  command->add_option("-o,--output", flags->out, "folder for schedule.json, schedule.html and tables as CSV")->type_name("DIR");
+  const CLI::Option* blocks = command->add_option("--blocks", o.blocks, "blocks to train")->type_name("N")->capture_default_str();
+  const CLI::Option* ranks = command->add_option("--ranks", o.ranks, "ranks, the one that hands out included")->type_name("N")->capture_default_str();
   command->add_option("--block-seconds", o.block_seconds, "mean training time of a block on one rank")->type_name("S")->capture_default_str();
   command->add_option("--measured", flags->measured, "train.json of a project: blocks differ in time as its blocks do")->type_name("FILE");
   command->add_option("--cost-spread", o.cost_spread, "without --measured: deviation of log seconds")->type_name("X")->capture_default_str();
@@ -89,19 +90,27 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
   command->add_option("--move-seconds", o.move_s, "to save a slow rank's block, and again to go on with it")->type_name("S")->capture_default_str();
   command->add_option("--status-every", o.status_every_s, "seconds between a rank's reports")->type_name("S")->capture_default_str();
   command->add_option("--seed", o.seed, "of all that is drawn")->type_name("N")->capture_default_str();
+  command->add_flag(
+      "--quick", flags->quick,
+      "a small cluster, " + std::to_string(kQuickBlocks) + " blocks on " + std::to_string(kQuickRanks) + " ranks, unless these are given");
   command->add_flag("--json", flags->json, "print JSON instead of the table");
   command->footer(
       "Examples:\n"
       "  skyquilt bench schedule\n"
+      "  skyquilt bench schedule --quick -o out/bench\n"
       "  skyquilt bench schedule --blocks 400 --ranks 64 --block-seconds 1800 --measured out/train.json\n"
       "Twice in simulated time: undisturbed, and with ranks that are lost and the job started again from its checkpoints.");
-  command->callback([&state, flags] {
-    state.chosen = [&state, flags] {
+  command->callback([&state, flags, blocks, ranks] {
+    state.chosen = [&state, flags, blocks, ranks] {
       if (state.comm != nullptr && state.comm->rank() != 0) return;
+      if (flags->quick && blocks->empty()) flags->options.blocks = kQuickBlocks;
+      if (flags->quick && ranks->empty()) flags->options.ranks = kQuickRanks;
       if (!flags->measured.empty()) flags->options.measured_seconds = MeasuredBlockSeconds(flags->measured);
       if (!flags->out.empty()) base::RequireWritableFolder(flags->out);
       const ScheduleBenchResult result = RunScheduleBench(flags->options);
-      Deliver(ScheduleBenchJson(result), ScheduleBenchTable(result), flags->json, flags->out, "schedule.json");
+      const std::string json = ScheduleBenchJson(result);
+      std::cout << (flags->json ? json : ScheduleBenchTable(result));
+      if (!flags->out.empty()) WriteBench(flags->out, ScheduleBenchPage(result, state.command_line), json);
     };
   });
 }

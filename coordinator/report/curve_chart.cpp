@@ -21,11 +21,6 @@ struct Axis {
   double Px(double value) const { return first_px + (value - low) / (high - low) * (last_px - first_px); }
 };
 
-// 10 for 1, 0.05 for 5 hundredths: as many digits as the number needs.
-std::string TickLabel(double value) {
-  return std::abs(value) >= 1e4 ? FormatLarge(value) : fmt::format("{:.4g}", value);
-}
-
 std::vector<double> LogTicks(double low_log10, double high_log10) {
   std::vector<double> ticks;
   const bool dense = high_log10 - low_log10 < 2.5;
@@ -123,6 +118,10 @@ std::vector<double> RoundTicks(double low, double high, int count) {
   for (double index = std::ceil(low / step - 1e-9); index * step <= high + 1e-9 * step; index += 1.0)
     ticks.push_back(index * step + 0.0);  // + 0.0 turns -0 into 0
   return ticks;
+}
+
+std::string TickLabel(double value) {
+  return std::abs(value) >= 1e4 ? FormatLarge(value) : fmt::format("{:.4g}", value);
 }
 
 std::vector<std::pair<double, double>> Thin(const std::vector<std::pair<double, double>>& points, size_t max_points) {

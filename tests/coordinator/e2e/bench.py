@@ -1,9 +1,37 @@
-"""`bench kernel` measures on any instruction set and says what it measured; how fast is no test's business. `bench numerics` leaves its page."""
+"""`bench kernel` measures on any instruction set and says what it measured; how fast is no test's business. Benches leave JSON, CSV and a page."""
+import csv
 import json
 
 from harness import expect, main
 
 SMALL = ["--seconds", "0.02", "--rounds", "1", "--log2-table-size", "10", "--batch", "2048"]
+
+
+def rows_of(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.reader(file))
+
+
+def check_page(path, *texts):
+    page = path.read_text(encoding="utf-8")
+    expect("http" not in page, f"{path.name} asks for something from the net")
+    for text in ("<svg", 'class="bar', *texts):
+        expect(text in page, f"{path.name} lacks {text}")
+
+
+def check_kernel_files(out, result):
+    threads = "one thread" if result["threads"] == 1 else f"{result['threads']} threads"
+    check_page(out / "kernel.html", "Against the limit", "skyquilt bench kernel", result["machine"])
+    rows = {row[0]: row[1:] for row in rows_of(out / "kernel_limit.csv")}
+    expect(float(rows[f"training, {threads}"][0]) == result["train_samples_per_second"], rows)
+    expect(float(rows[f"training, {threads}"][1]) == result["roofline_train_samples_per_second"], rows)
+    expect(float(rows[f"inference, {threads}"][0]) == result["infer_samples_per_second"], rows)
+    expect(("inference, one thread" in rows) == ("one_thread" in result or result["threads"] == 1), rows)
+    stages = {row[0]: float(row[1]) for row in rows_of(out / "kernel_stages.csv")[1:]}
+    stages["waiting"] = stages.pop("waiting, bookkeeping")
+    expect(stages == result["share"], f"{stages} in kernel_stages.csv, {result['share']} in kernel.json")
+    machine = [float(row[1]) for row in rows_of(out / "kernel_machine.csv")[1:4]]
+    expect(machine == list(result["limit_ns_per_sample_and_thread"].values()), machine)
 
 
 def test(skyquilt, folder):
@@ -19,10 +47,22 @@ def test(skyquilt, folder):
         expect(result["train_samples_per_second"] > 0.0 and result["roofline_train_samples_per_second"] > 0.0, result)
         expect(0.9 < sum(result["share"].values()) < 1.1, f"shares do not add up: {result['share']}")
         expect(result["config"]["log2_table_size"] == 10, result["config"])
+        check_kernel_files(out, result)
 
     # On several ranks one process measures, the others stay quiet.
     text = skyquilt.call("bench", "kernel", *SMALL, "--threads", "1", ranks=2)
     expect(text.count("Where training time goes") == 1, text)
+
+    # A small cluster, of which what was said on the command line stays.
+    text = skyquilt.call("bench", "schedule", "--quick", "--blocks", "300", "--status-every", "60", "-o", out)
+    expect("nothing fails" in text, text)
+    result = json.loads((out / "schedule.json").read_text())
+    expect(result["config"]["blocks"] == 300 and result["config"]["ranks"] == 100, result["config"])
+    check_page(out / "schedule.html", "skyquilt bench schedule --quick", result["machine"])
+    for row, run in zip(rows_of(out / "schedule.csv")[1:], ("undisturbed", "failing"), strict=True):
+        expect([float(cell) for cell in row[1:]] == list(result[run].values()), f"{row} in schedule.csv, {result[run]} in schedule.json")
+    shares = rows_of(out / "schedule_time.csv")[1:]
+    expect(float(shares[0][1]) == result["undisturbed"]["efficiency"] and abs(sum(float(row[2]) for row in shares) - 1.0) < 1e-9, shares)
 
     # Numbers at the extremes: tables on the page, every row in the files, nothing left of what cases made.
     text = skyquilt.call("bench", "numerics", "--quick", "--only", "space,nonfinite,brightness", "-o", out)

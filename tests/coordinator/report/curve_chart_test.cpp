@@ -19,6 +19,13 @@ TEST(RoundTicks, AreRoundNumbersInsideTheRange) {
   EXPECT_TRUE(RoundTicks(0.0, std::numeric_limits<double>::infinity(), 5).empty());
 }
 
+TEST(TickLabel, HasTheDigitsThatTheNumberNeeds) {
+  EXPECT_EQ(TickLabel(0.0), "0");
+  EXPECT_EQ(TickLabel(10.0), "10");
+  EXPECT_EQ(TickLabel(0.05), "0.05");
+  EXPECT_EQ(TickLabel(25000.0), "25.0\xE2\x80\xAFk");
+}
+
 TEST(Thin, KeepsTheEndsAndTheMean) {
   std::vector<std::pair<double, double>> points;
   for (int i = 0; i < 5000; ++i) points.emplace_back(i, i % 2 == 0 ? 1.0 : 3.0);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "coordinator/commands/describe.h"
@@ -7,16 +8,21 @@
 #include "core/base/file.h"
 
 namespace skyquilt::coordinator {
+namespace {
 
-nlohmann::ordered_json DescribeRaster(const std::filesystem::path& file) {
-  using Json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+Json DescribeRaster(const std::filesystem::path& file) {
   // Averages of a reduced copy: the ranges are those of the picture as a whole, found without reading every cell.
   const products::ReducedRaster raster = products::ReadReduced(file, 512);
   const image::ImageF& image = raster.image;
   Json bands = Json::array();
   for (int band = 0; band < image.channels; ++band) {
-    double low = INFINITY;
-    double high = -INFINITY;
+    double low = kInfinity;
+    double high = -kInfinity;
     size_t n_valid = 0;
     for (size_t i = static_cast<size_t>(band); i < image.data.size(); i += static_cast<size_t>(image.channels)) {
       const double value = static_cast<double>(image.data[i]);

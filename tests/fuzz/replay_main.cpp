@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using skyquilt::base::Random;
 
-constexpr rlim_t kMemoryBytes = 3ULL << 30;
+[[maybe_unused]] constexpr rlim_t kMemoryBytes = 3ULL << 30;  // not under sanitizers, which reserve far more
 constexpr unsigned kSecondsPerInput = 20;
 
 std::string current_input;

@@ -105,7 +105,7 @@ TEST(SpaceMap, SlabKeepsTheSurveyAndContractsTheRest) {
 
 TEST(SpaceMap, RefusesBoxesWithoutVolume) {
   EXPECT_THROW(SpaceMap::Box({0, 0, 0}, {1, 0, 1}), std::invalid_argument);
-  EXPECT_THROW(SpaceMap::Slab({0, 0, 0}, {1, 1, NAN}), std::invalid_argument);
+  EXPECT_THROW(SpaceMap::Slab({0, 0, 0}, {1, 1, std::nan("")}), std::invalid_argument);
 }
 
 }  // namespace

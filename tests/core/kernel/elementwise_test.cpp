@@ -81,7 +81,7 @@ TEST_P(ElementwiseKernels, AllFiniteFindsOneBadValueAnywhere) {
   EXPECT_TRUE(AllFinite(values.data(), 77));
   EXPECT_TRUE(AllFinite(values.data(), 0));
   for (const float bad : {kInfinity, -kInfinity, std::nanf("")}) {
-    for (const size_t at : {0, 31, 63, 64, 76}) {
+    for (const size_t at : {0U, 31U, 63U, 64U, 76U}) {
       std::vector<float> copy = values;
       copy[at] = bad;
       EXPECT_FALSE(AllFinite(copy.data(), 77)) << at;

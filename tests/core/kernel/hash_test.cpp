@@ -101,7 +101,7 @@ TEST_P(HashKernels, NanPositionGivesFiniteFeatures) {
 TEST_P(HashKernels, BackwardAgreesWithReferenceAndMarksExactlyTheLinesItWrote) {
   base::Random random(17);
   const HashLevel level = Hashed();
-  for (const size_t features : {2, 4}) {
+  for (const size_t features : {2U, 4U}) {
     const size_t n = 23;  // few enough to leave lines untouched
     std::vector<float> x, y, z, out_gradient(features * n);
     for (size_t i = 0; i < n; ++i) {

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "core/base/random.h"
@@ -11,6 +13,7 @@
 namespace skyquilt::render {
 namespace {
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Eigen::Vector3d kMin(-1.0, -2.0, 0.0), kMax(3.0, 2.0, 5.0);
 
 TEST(RayBox, StretchEndsLieOnTheBox) {
@@ -42,8 +45,8 @@ TEST(RayBox, EdgesAreLegal) {
   EXPECT_FALSE(RayBox({-5, -2, 1}, {1, 0, 0}, kMin, kMax).Empty());       // runs along a face
   EXPECT_TRUE(RayBox({-5, -2.001, 1}, {1, 0, 0}, kMin, kMax).Empty());    // just misses it
   EXPECT_TRUE(RayBox({0, 0, 9}, {0, 0, 1}, kMin, kMax).Empty());          // behind the origin
-  EXPECT_TRUE(RayBox({NAN, 0, 1}, {0, 0, 1}, kMin, kMax).Empty());
-  EXPECT_TRUE(RayBox({0, 0, 1}, {NAN, NAN, NAN}, kMin, kMax).Empty() || !std::isnan(RayBox({0, 0, 1}, {NAN, NAN, NAN}, kMin, kMax).t_near));
+  EXPECT_TRUE(RayBox({kNan, 0, 1}, {0, 0, 1}, kMin, kMax).Empty());
+  EXPECT_TRUE(RayBox({0, 0, 1}, {kNan, kNan, kNan}, kMin, kMax).Empty() || !std::isnan(RayBox({0, 0, 1}, {kNan, kNan, kNan}, kMin, kMax).t_near));
 }
 
 TEST(Blend, NeighboursSumToOneAcrossTheirBorder) {

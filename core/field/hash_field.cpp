@@ -54,6 +54,10 @@ void HashField::Initialize(base::Random& random, std::span<float> grid, std::spa
 }
 
 NetworkWeights HashField::Prepare(std::span<const float> networks) const {
+  if (static_cast<int64_t>(networks.size()) != NetworkParameters()) {
+    throw std::invalid_argument("networks of " + std::to_string(networks.size()) + " numbers disagree with a configuration that needs " +
+                                std::to_string(NetworkParameters()));
+  }
   NetworkWeights weights;
   for (size_t l = 0; l < layers_.size(); ++l) {
     const auto [outputs, inputs] = layers_[l];

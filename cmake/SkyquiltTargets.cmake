@@ -26,6 +26,14 @@ function(skyquilt_library name)
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE skyquilt_warnings ${ARG_PRIVATE})
 endfunction()
 
+# skyquilt_timeout(600 test...): seconds before a test counts as hung; sanitizers slow everything down.
+function(skyquilt_timeout seconds)
+  if(SKYQUILT_SANITIZE)
+    math(EXPR seconds "${seconds} * 6")
+  endif()
+  set_tests_properties(${ARGN} PROPERTIES TIMEOUT ${seconds})
+endfunction()
+
 function(skyquilt_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(test_${name} ${ARG_SOURCES})
@@ -35,6 +43,7 @@ function(skyquilt_test name)
     set(ARG_TIMEOUT 600)
   endif()
   add_test(NAME ${name} COMMAND test_${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT}
+  skyquilt_timeout(${ARG_TIMEOUT} ${name})
+  set_tests_properties(${name} PROPERTIES
     ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;${thread_options}")
 endfunction()

@@ -38,6 +38,10 @@ class ArchiveWriter {
   // until Commit. Throws base::InputError as ArchiveReader does; fastest when the names sort so that each file's arrays stand together.
   // precision: floats are kept with this one; other arrays stay what they are.
   void PutCopy(const std::string& name, const std::filesystem::path& file, const std::string& array, Precision precision = Precision::kFloat32);
+  // The same without what nobody needs: of every `group` numbers of a one-dimensional array of floats the first decides by its bit in `keep` (the
+  // first group in the lowest bit of the first byte). KeptFloats brings the array back; the bits are stored beside it.
+  void PutKept(const std::string& name, const std::filesystem::path& file, const std::string& array, std::vector<uint8_t> keep, int64_t group,
+               Precision precision = Precision::kFloat32);
   void SetAttribute(const std::string& name, const std::string& value);
   void SetAttribute(const std::string& name, double value);
   void SetAttribute(const std::string& name, int64_t value);
@@ -68,6 +72,8 @@ class ArchiveReader {
   std::string TypeName(const std::string& name) const;  // "float32", "float64", "uint8", "int64", "bfloat16", "float16"
   // Throw base::InputError when absent or of another type. Floats also gives those of 16 bits.
   std::vector<float> Floats(const std::string& name) const;
+  // An array stored by PutKept, zero where nothing was kept; any other as Floats gives it.
+  std::vector<float> KeptFloats(const std::string& name) const;
   std::vector<double> Doubles(const std::string& name) const;
   std::vector<uint8_t> Bytes(const std::string& name) const;
   std::vector<int64_t> Ints(const std::string& name) const;

@@ -1,5 +1,6 @@
 #include "core/checkpoint/archive_array.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "core/base/half.h"
@@ -14,7 +15,34 @@ std::vector<std::byte> BytesOf(const std::vector<T>& values) {
   return bytes;
 }
 
+void KeepOnly(std::span<const uint8_t> keep, size_t group_bytes, std::vector<std::byte>* bytes) {
+  size_t to = 0;
+  for (size_t group = 0, from = 0; from < bytes->size(); ++group, from += group_bytes) {
+    if (!IsKept(keep, static_cast<int64_t>(group))) continue;
+    std::memmove(bytes->data() + to, bytes->data() + from, group_bytes);
+    to += group_bytes;
+  }
+  bytes->resize(to);
+}
+
 }  // namespace
+
+int64_t CountKept(std::span<const uint8_t> keep, int64_t groups) {
+  int64_t count = 0;
+  for (int64_t group = 0; group < groups; ++group) count += IsKept(keep, group) ? 1 : 0;
+  return count;
+}
+
+std::vector<float> Spread(const std::vector<float>& kept, std::span<const uint8_t> keep, int64_t group, int64_t total) {
+  std::vector<float> values(static_cast<size_t>(total), 0.0F);
+  auto from = kept.begin();
+  for (int64_t g = 0; g * group < total; ++g) {
+    if (!IsKept(keep, g)) continue;
+    std::copy_n(from, group, values.begin() + g * group);
+    from += group;
+  }
+  return values;
+}
 
 ElementType ElementOf(const std::string& name) {
   for (const ElementType type : {ElementType::kFloat32, ElementType::kFloat64, ElementType::kInt64, ElementType::kBfloat16, ElementType::kFloat16}) {
@@ -74,6 +102,7 @@ const ArchiveReader& Copies::Reader(const std::filesystem::path& file) {
 const void* Copies::Data(const Array& array) {
   if (array.copied_from.empty()) return array.data;
   bytes_ = AsStored(Reader(array.copied_from), array.copied_array, array.type);
+  if (array.group > 0) KeepOnly(array.keep, ElementBytes(array.type) * static_cast<size_t>(array.group), &bytes_);
   return bytes_.data();
 }
 

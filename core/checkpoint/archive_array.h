@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,23 @@ struct Array {
   size_t n_bytes = 0;                 // in the file
   std::filesystem::path copied_from;  // instead of data: an array of another archive
   std::string copied_array;
+  std::span<const uint8_t> keep;  // of a copy: one bit for each `group` floats; group 0: all are kept
+  int64_t group = 0;
 };
+
+// Names of what PutKept stores beside an array.
+inline std::string KeepBitsName(const std::string& name) {
+  return name + "_keep";
+}
+inline std::string KeepSizesName(const std::string& name) {
+  return name + "_keep_sizes";
+}
+inline bool IsKept(std::span<const uint8_t> keep, int64_t group) {
+  return (keep[static_cast<size_t>(group / 8)] >> static_cast<unsigned>(group % 8) & 1U) != 0;
+}
+int64_t CountKept(std::span<const uint8_t> keep, int64_t groups);
+// Kept groups to their places among `total` numbers, zero elsewhere.
+std::vector<float> Spread(const std::vector<float>& kept, std::span<const uint8_t> keep, int64_t group, int64_t total);
 
 // ElementName and its inverse for what TypeName gave.
 ElementType ElementOf(const std::string& name);

@@ -289,6 +289,25 @@ void ArchiveWriter::PutCopy(const std::string& name, const std::filesystem::path
   impl_->arrays.at(name).copied_from = file;
   impl_->arrays.at(name).copied_array = array;
 }
+void ArchiveWriter::PutKept(const std::string& name, const std::filesystem::path& file, const std::string& array, std::vector<uint8_t> keep,
+                            int64_t group, Precision precision) {
+  const ArchiveReader& reader = impl_->copies.Reader(file);
+  const std::vector<int64_t> shape = reader.Shape(array);
+  const ElementType type = ElementOf(reader.TypeName(array));
+  SKYQUILT_CHECK(shape.size() == 1 && (type == ElementType::kFloat32 || IsShortFloat(type)), "array " + array + " is not one list of floats");
+  const int64_t total = shape[0];
+  SKYQUILT_CHECK(group > 0 && total % group == 0 && static_cast<int64_t>(keep.size()) == (total / group + 7) / 8,
+                 "array " + array + " of " + std::to_string(total) + " numbers has no groups of " + std::to_string(group));
+  const auto& bits = std::get<std::vector<uint8_t>>(impl_->owned.emplace_back(std::move(keep)));
+  impl_->Put(name, StoredAs(type, precision), nullptr, static_cast<size_t>(CountKept(bits, total / group) * group), {});
+  Array& kept = impl_->arrays.at(name);
+  kept.copied_from = file;
+  kept.copied_array = array;
+  kept.keep = bits;
+  kept.group = group;
+  Put(KeepBitsName(name), bits);
+  PutOwned(KeepSizesName(name), std::vector<int64_t>{group, total});
+}
 void ArchiveWriter::SetAttribute(const std::string& name, const std::string& value) {
   impl_->SetAttribute(name, value);
 }

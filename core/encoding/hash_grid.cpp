@@ -1,5 +1,6 @@
 #include "core/encoding/hash_grid.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/encoding/lattice.h"
@@ -18,6 +19,27 @@ HashGrid::HashGrid(const HashGridConfig& config) : features_(config.features) {
     level.entries = level.dense ? static_cast<uint32_t>(points) : table;
     levels_.push_back(level);
     AddPart(features_, static_cast<int64_t>(level.entries) * features_);
+  }
+}
+
+void HashGrid::MarkReached(const float low[3], const float high[3], std::span<uint8_t> reached) const {
+  for (int l = 0; l < levels(); ++l) {
+    const kernel::HashLevel& lattice = level(l);
+    uint32_t first[3], last[3];
+    for (size_t axis = 0; axis < 3; ++axis) {
+      // Of cells as Forward finds them, then their corners.
+      const float scale = lattice.cells_per_unit;
+      const int32_t cells = lattice.size[axis] - 1;
+      const auto cell = [&](float at) { return std::clamp(static_cast<int32_t>(std::floor(at * scale)), 0, cells - 1); };
+      first[axis] = static_cast<uint32_t>(cell(low[axis]));
+      last[axis] = static_cast<uint32_t>(cell(high[axis])) + 1;
+    }
+    const auto start = static_cast<size_t>(Offset(l) / features_);
+    for (uint32_t z = first[2]; z <= last[2]; ++z) {
+      for (uint32_t y = first[1]; y <= last[1]; ++y) {
+        for (uint32_t x = first[0]; x <= last[0]; ++x) reached[start + kernel::HashIndex(lattice, x, y, z)] = 1;
+      }
+    }
   }
 }
 

@@ -15,6 +15,9 @@ class HashGrid : public Encoding {
 
   int levels() const { return parts(); }
   const kernel::HashLevel& level(int l) const { return levels_[static_cast<size_t>(l)]; }
+  int features() const { return features_; }
+  // Sets reached[Offset(l) / features + e] = 1 for every entry e of every level l that Forward reads at some position in the box [low, high].
+  void MarkReached(const float low[3], const float high[3], std::span<uint8_t> reached) const;
 
   Kind kind() const override { return Kind::kHash; }
   void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out, size_t out_stride) const override;

@@ -23,7 +23,7 @@ FieldStore::Entry FieldStore::Outline(const std::string& prefix) const {
   entry.field = std::make_unique<TrainedField>(GetOutline(reader_, file_, prefix));
   if (hard_borders_) entry.field->blend_m = 0.0;
   entry.parameters = StoredParameters(reader_, prefix);
-  entry.bytes = 4.0 * static_cast<double>(entry.parameters) + static_cast<double>(StoredCells(reader_, prefix));
+  entry.bytes = 4.0 * static_cast<double>(HeldParameters(*entry.field)) + static_cast<double>(StoredCells(reader_, prefix));
   return entry;
 }
 

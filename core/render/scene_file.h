@@ -11,7 +11,7 @@
 namespace skyquilt::render {
 
 constexpr const char* kSceneKind = "scene";
-constexpr int kSceneVersion = 1;
+constexpr int kSceneVersion = 2;
 constexpr const char* kBordersAttribute = "borders";  // of render::Borders; absent: smooth
 constexpr const char* kContextPrefix = "context/";
 inline std::string BlockPrefix(int64_t i) {

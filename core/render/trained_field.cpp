@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "core/base/errors.h"
+#include "core/encoding/hash_grid.h"
+#include "core/field/reached_entries.h"
 
 namespace skyquilt::render {
 namespace {
@@ -60,6 +62,16 @@ std::vector<int64_t> StoredSize(const checkpoint::ArchiveReader& reader, const s
   return {shape.rbegin(), shape.rend()};
 }
 
+// False for what no grid can be.
+bool SetSize(const std::vector<int64_t>& size, field::OccupancyGrid* occupancy) {
+  if (size.size() != 3) return false;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if (size[axis] <= 0 || size[axis] > kMaxCellsPerAxis) return false;
+    occupancy->size[axis] = static_cast<int>(size[axis]);
+  }
+  return true;
+}
+
 }  // namespace
 
 void TrainedField::Finish() {
@@ -93,12 +105,25 @@ void PutField(const TrainedField& f, const std::string& prefix, checkpoint::Arch
 void PutFieldOf(const TrainedField& outline, const std::filesystem::path& checkpoint, const std::string& prefix, checkpoint::ArchiveWriter& writer,
                 checkpoint::Precision tables) {
   PutOutline(outline, prefix, writer);
-  writer.PutCopy(prefix + "grid", checkpoint, "grid", tables);
+  const checkpoint::ArchiveReader reader(checkpoint);
+  const std::vector<int64_t> size = StoredSize(reader, "");
+  field::OccupancyGrid occupancy = outline.occupancy;
+  occupancy.occupied = reader.Bytes("occupied");
+  if (!(occupancy.cell > 0.0F) || !SetSize(size, &occupancy) || occupancy.CellCount() != static_cast<int64_t>(occupancy.occupied.size()))
+    throw base::InputError(checkpoint, "its occupancy has no shape", kMend);
+  if (outline.config.encoding == encoding::Kind::kHash) {
+    const encoding::HashGrid grid(outline.config.grid);
+    if (reader.Shape("grid") != std::vector<int64_t>{grid.ParameterCount()}) {
+      throw base::InputError(checkpoint, "its tables and their configuration disagree", kMend);
+    }
+    writer.PutKept(prefix + "grid", checkpoint, "grid", field::ReachedEntries(grid, occupancy), grid.features(), tables);
+  } else {
+    writer.PutCopy(prefix + "grid", checkpoint, "grid", tables);
+  }
   writer.PutCopy(prefix + "networks", checkpoint, "networks");
   // Rendering asks only whether a cell is occupied.
-  const checkpoint::ArchiveReader reader(checkpoint);
-  writer.PutOwned(prefix + "occupied_bits", PackBits(reader.Bytes("occupied")));
-  writer.PutOwned(prefix + "occupancy_size", StoredSize(reader, ""));
+  writer.PutOwned(prefix + "occupied_bits", PackBits(occupancy.occupied));
+  writer.PutOwned(prefix + "occupancy_size", size);
 }
 
 TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
@@ -149,6 +174,11 @@ int64_t StoredParameters(const checkpoint::ArchiveReader& reader, const std::str
   return reader.Shape(prefix + "grid").at(0) + reader.Shape(prefix + "networks").at(0);
 }
 
+int64_t HeldParameters(const TrainedField& outline) {
+  const field::HashField field(outline.config);
+  return field.GridParameters() + field.NetworkParameters();
+}
+
 int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
   const std::vector<int64_t> size = StoredSize(reader, prefix);
   return std::accumulate(size.begin(), size.end(), int64_t{1}, std::multiplies<>());
@@ -157,18 +187,14 @@ int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& 
 TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
   TrainedField f = GetOutline(reader, file, prefix);
   try {
-    f.grid = reader.Floats(prefix + "grid");
+    f.grid = reader.KeptFloats(prefix + "grid");
     f.networks = reader.Floats(prefix + "networks");
     f.Finish();
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);
   }
   const std::vector<int64_t> size = StoredSize(reader, prefix);
-  bool fits = size.size() == 3;
-  for (size_t axis = 0; fits && axis < 3; ++axis) {
-    fits = size[axis] > 0 && size[axis] <= kMaxCellsPerAxis;
-    if (fits) f.occupancy.size[axis] = static_cast<int>(size[axis]);
-  }
+  bool fits = SetSize(size, &f.occupancy);
   const auto cells = static_cast<size_t>(fits ? f.occupancy.CellCount() : 0);
   if (reader.Has(prefix + "occupied_bits")) {
     const std::vector<uint8_t> bits = reader.Bytes(prefix + "occupied_bits");

@@ -40,13 +40,16 @@ struct TrainedField {
 // Arrays under `prefix` ("" or "fields/r0c0/"). The field must outlive the writer's Commit.
 void PutField(const TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
 // What rendering needs of a field that a checkpoint holds (under no prefix), for scenes: tables and networks are copied from there at Commit, the
-// tables with this precision; of the occupancy only which cells are occupied.
+// tables with this precision and without the entries that no occupied cell reads (field/reached_entries.h); of the occupancy only which cells are
+// occupied. Throws base::InputError when the checkpoint's arrays disagree.
 void PutFieldOf(const TrainedField& outline, const std::filesystem::path& checkpoint, const std::string& prefix, checkpoint::ArchiveWriter& writer,
                 checkpoint::Precision tables = checkpoint::Precision::kFloat32);
 // The same without the arrays.
 void PutOutline(const TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
 // Place and shape of a field, without its arrays. Throws base::InputError for one that cannot be.
 TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix);
+// In memory, of a field of this shape.
+int64_t HeldParameters(const TrainedField& outline);
 // Of a field in a file, without reading its arrays.
 int64_t StoredParameters(const checkpoint::ArchiveReader& reader, const std::string& prefix);
 int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& prefix);

@@ -101,6 +101,45 @@ TEST_F(TrainedFieldFile, FromBeforeThereWereOtherEncodingsAreHashGridsOfOneLayer
   EXPECT_EQ(after.networks, before.networks);
 }
 
+// What a scene leaves out may be anything: nothing looks at it.
+TEST_P(TrainedFieldOf, LooksTheSameWithoutWhatNothingReads) {
+  TrainedField before = Make(GetParam(), 1);
+  base::Random random(8);
+  for (uint8_t& cell : before.occupancy.occupied) cell = random.Uniform() < 0.05F ? 1 : 0;
+  checkpoint::ArchiveWriter block("block", 1);
+  PutField(before, "", block);
+  const fs::path checkpoint = folder_.path() / "block.h5", scene = folder_.path() / "scene.h5";
+  block.Commit(checkpoint);
+  checkpoint::ArchiveWriter writer("scene", 1);
+  PutFieldOf(before, checkpoint, "a/", writer);
+  writer.Commit(scene);
+  const checkpoint::ArchiveReader reader(scene);
+  TrainedField after = Read(scene);
+  EXPECT_EQ(HeldParameters(after), before.ParameterCount());
+  if (GetParam() == encoding::Kind::kHash) {
+    EXPECT_LT(StoredParameters(reader, "a/"), before.ParameterCount() * 9 / 10);
+  } else {
+    EXPECT_EQ(StoredParameters(reader, "a/"), before.ParameterCount());
+  }
+  // Zero was read back for what is not in the file: no entry of the random field is.
+  ASSERT_EQ(after.grid.size(), before.grid.size());
+  for (size_t i = 0; i < after.grid.size(); ++i) {
+    if (after.grid[i] == 0.0F) {
+      after.grid[i] = std::nanf("");
+    } else {
+      ASSERT_EQ(after.grid[i], before.grid[i]);
+    }
+  }
+  const std::vector<RayColor> seen_before = Look(before), seen_after = Look(after);
+  float most = 0.0F;
+  for (size_t i = 0; i < seen_before.size(); ++i) {
+    EXPECT_EQ(seen_after[i].opacity, seen_before[i].opacity);
+    for (size_t c = 0; c < 3; ++c) EXPECT_EQ(seen_after[i].rgb_srgb[c], seen_before[i].rgb_srgb[c]);
+    most = std::max(most, seen_before[i].opacity);
+  }
+  EXPECT_GT(most, 0.01F) << "there is something to see";
+}
+
 TEST_F(TrainedFieldFile, ThatCannotBeAreRefusedByName) {
   const auto refused = [&](const fs::path& file, const std::string& why) {
     try {

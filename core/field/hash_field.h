@@ -90,6 +90,7 @@ class HashField {
 
   // Grid as its encoding asks (Encoding::Initialize), networks Xavier uniform; luminance zero everywhere, with even taps.
   void Initialize(base::Random& random, std::span<float> grid, std::span<float> networks) const;
+  // Throws std::invalid_argument when there are not NetworkParameters() of them.
   NetworkWeights Prepare(std::span<const float> networks) const;
 
   // features[row][s], row stride `stride`, for n positions, part by part on the calling thread.

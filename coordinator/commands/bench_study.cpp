@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <iostream>
 
 #include "coordinator/bench/study/study_benches.h"
@@ -21,20 +22,14 @@ const std::vector<Override> kLean = {{"products.video_seconds", "0"}, {"evaluate
 // A small invented place, seen in small photos.
 const std::vector<Override> kQuick = {{"run.image_width", "320"}, {"evaluate.report_photos", "2"}, {"partition.max_log2_table_size", "15"}};
 
-CLI::App* AddStudyCommand(CLI::App& bench, const std::string& name, const std::string& help, const std::shared_ptr<StudyFlags>& flags,
-                          const std::string& preset, const std::string& budget) {
-  CLI::App* command = bench.add_subcommand(name, help);
-  command->add_option("-o,--output", flags->out, "folder for " + name + ".json, .csv, .html and the runs")->required()->type_name("DIR");
-  command->add_option("--survey", flags->survey, "folder with photos, a simulated survey, or a project that was prepared")->type_name("FOLDER");
-  command->add_option("--preset", flags->preset, "simulate a place instead; default: " + preset)->type_name("NAME");
-  command->add_option("--model", flags->model, "COLMAP model of the photos; without it COLMAP is run")->type_name("FOLDER");
-  command->add_option("--time-budget", flags->budget, "training time of every variant, as 90s or 10min; default: " + budget)->type_name("TIME");
-  command->add_flag("--quick", flags->quick, "a hamlet in small photos, seconds instead of minutes: shows that it works, decides nothing");
-  command->add_flag("--restart", flags->restart, "remove the earlier runs in the folder first");
-  command->add_flag("--keep", flags->keep, "keep checkpoints and scenes of finished variants");
-  command->add_flag("--json", flags->json, "print JSON instead of the tables");
-  return command;
-}
+struct StudyCommand {
+  std::string name, help;
+  std::string preset;  // simulated when no survey is given
+  std::string budget;  // the default, for people
+  std::string footer;
+  std::function<void(CLI::App*, StudyFlags*)> options = {};  // of this command alone
+  std::function<StudyBench(Study&, const StudyFlags&)> run;
+};
 
 double BudgetOf(const StudyFlags& flags, double otherwise_s, double quick_s) {
   if (!flags.budget.empty()) return ParseDurationSeconds(flags.budget);
@@ -74,90 +69,137 @@ void Finish(StudyBench bench, const Study& study, const CommandState& state, con
   if (!flags.json) std::cout << "\n" << (std::filesystem::path(flags.out) / (page.name + ".html")).string() << "\n";
 }
 
+void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& study_command) {
+  const auto flags = std::make_shared<StudyFlags>();
+  const std::string& name = study_command.name;
+  CLI::App* command = bench.add_subcommand(name, study_command.help);
+  command->add_option("-o,--output", flags->out, "folder for " + name + ".json, .csv, .html and the runs")->required()->type_name("DIR");
+  command->add_option("--survey", flags->survey, "folder with photos, a simulated survey, or a project that was prepared")->type_name("FOLDER");
+  command->add_option("--preset", flags->preset, "simulate a place instead; default: " + study_command.preset)->type_name("NAME");
+  command->add_option("--model", flags->model, "COLMAP model of the photos; without it COLMAP is run")->type_name("FOLDER");
+  command->add_option("--time-budget", flags->budget, "training time of every variant, as 90s or 10min; default: " + study_command.budget)
+      ->type_name("TIME");
+  command->add_flag("--quick", flags->quick, "a hamlet in small photos, seconds instead of minutes: shows that it works, decides nothing");
+  command->add_flag("--restart", flags->restart, "remove the earlier runs in the folder first");
+  command->add_flag("--keep", flags->keep, "keep checkpoints and scenes of finished variants");
+  command->add_flag("--json", flags->json, "print JSON instead of the tables");
+  if (study_command.options) study_command.options(command, flags.get());
+  command->footer(study_command.footer);
+  command->callback([&state, flags, study_command] {
+    state.chosen = [&state, flags, study_command] {
+      Study study = Begin(state, *flags, study_command.preset);
+      Finish(study_command.run(study, *flags), study, state, *flags);
+    };
+  });
+}
+
+StudyBench RunSingleVsMulti(Study& study, const StudyFlags& flags) {
+  const bool smaller = flags.quick && flags.blocks.empty();
+  SingleVsMultiOptions options;
+  options.budget_s = BudgetOf(flags, options.budget_s, 20.0);
+  if (smaller) options.blocks = "2x2";
+  if (!flags.blocks.empty()) options.blocks = flags.blocks;
+  return SingleVsMulti(study, options);
+}
+
+StudyBench RunBlocks(Study& study, const StudyFlags& flags) {
+  BlocksBenchOptions options;
+  options.budget_s = BudgetOf(flags, options.budget_s, 10.0);
+  if (flags.quick) {
+    options.per_side = {1, 2, 3};
+    options.log2_table_sizes = {12, 15};
+  }
+  return BlocksBench(study, options);
+}
+
+StudyBench RunCapacity(Study& study, const StudyFlags& flags) {
+  CapacityOptions options;
+  options.budget_s = BudgetOf(flags, options.budget_s, 15.0);
+  options.blocks = flags.blocks;
+  if (flags.quick) options.log2_table_sizes = {13, 15};
+  return CapacityBench(study, options);
+}
+
+StudyBench RunEncodings(Study& study, const StudyFlags& flags) {
+  EncodingsOptions options;
+  options.budget_s = BudgetOf(flags, options.budget_s, 20.0);
+  return EncodingsBench(study, options);
+}
+
+StudyBench RunTradeoff(Study& study, const StudyFlags& flags) {
+  TradeoffOptions options;
+  options.middle_budget_s = BudgetOf(flags, options.middle_budget_s, 8.0);
+  if (flags.quick || !flags.budget.empty()) {
+    options.budgets_s = {options.middle_budget_s / 3.0, options.middle_budget_s, 3.0 * options.middle_budget_s};
+  }
+  if (flags.quick) {
+    options.budgets_s.pop_back();
+    options.log2_table_sizes = {12, 15};
+    options.steps_per_voxel = {2.0, 4.0};
+    options.keep_every = {1, 2};
+  }
+  return Tradeoff(study, options);
+}
+
 }  // namespace
 
 void AddStudyBenches(CLI::App& bench, CommandState& state) {
-  {
-    const auto flags = std::make_shared<StudyFlags>();
-    CLI::App* command = AddStudyCommand(bench, "single-vs-multi", "one model of the whole area against one per block", flags, "smallcity", "5min");
-    flags->blocks = "3x3";
-    command->add_option("--blocks", flags->blocks, "of the divided variants, rows x columns")->type_name("RxC")->capture_default_str();
-    command->footer(
-        "Examples:\n"
-        "  skyquilt bench single-vs-multi -o out/bench\n"
-        "  skyquilt bench single-vs-multi --survey photos/ --model sparse/0 --time-budget 10min -o out/bench\n"
-        "Interrupted, the same command goes on with the variant it was at.");
-    command->callback([&state, flags] {
-      state.chosen = [&state, flags] {
-        Study study = Begin(state, *flags, "smallcity");
-        if (flags->quick && flags->blocks == "3x3") flags->blocks = "2x2";
-        Finish(SingleVsMulti(study, {.blocks = flags->blocks, .budget_s = BudgetOf(*flags, 300.0, 20.0)}), study, state, *flags);
-      };
-    });
-  }
-  {
-    const auto flags = std::make_shared<StudyFlags>();
-    CLI::App* command = AddStudyCommand(bench, "blocks", "number of blocks against the size of each", flags, "town", "3min");
-    command->footer(
-        "Examples:\n"
-        "  skyquilt bench blocks -o out/bench\n"
-        "  skyquilt bench blocks --quick -o out/bench");
-    command->callback([&state, flags] {
-      state.chosen = [&state, flags] {
-        Study study = Begin(state, *flags, "town");
-        BlocksBenchOptions options;
-        options.budget_s = BudgetOf(*flags, options.budget_s, 10.0);
-        if (flags->quick) {
-          options.per_side = {1, 2, 3};
-          options.log2_table_sizes = {12, 15};
-        }
-        Finish(BlocksBench(study, options), study, state, *flags);
-      };
-    });
-  }
-  {
-    const auto flags = std::make_shared<StudyFlags>();
-    CLI::App* command = AddStudyCommand(bench, "encodings", "hash grid, voxels, planes and frequencies in the same field", flags, "town", "3min");
-    command->footer(
-        "Examples:\n"
-        "  skyquilt bench encodings -o out/bench\n"
-        "  skyquilt bench encodings --quick -o out/bench");
-    command->callback([&state, flags] {
-      state.chosen = [&state, flags] {
-        Study study = Begin(state, *flags, "town");
-        EncodingsOptions options;
-        options.budget_s = BudgetOf(*flags, options.budget_s, 20.0);
-        Finish(EncodingsBench(study, options), study, state, *flags);
-      };
-    });
-  }
-  {
-    const auto flags = std::make_shared<StudyFlags>();
-    CLI::App* command =
-        AddStudyCommand(bench, "tradeoff", "what time, tables, samples, photos and precision buy", flags, "town", "45s, 2min and 6min");
-    command->footer(
-        "Examples:\n"
-        "  skyquilt bench tradeoff -o out/bench\n"
-        "  skyquilt bench tradeoff --survey out/brighton --time-budget 3min -o out/bench\n"
-        "--time-budget sets the middle one of three budgets; the others are a third and three times it.");
-    command->callback([&state, flags] {
-      state.chosen = [&state, flags] {
-        Study study = Begin(state, *flags, "town");
-        TradeoffOptions options;
-        options.middle_budget_s = BudgetOf(*flags, options.middle_budget_s, 8.0);
-        if (flags->quick || !flags->budget.empty()) {
-          options.budgets_s = {options.middle_budget_s / 3.0, options.middle_budget_s, 3.0 * options.middle_budget_s};
-        }
-        if (flags->quick) {
-          options.budgets_s.pop_back();
-          options.log2_table_sizes = {12, 15};
-          options.steps_per_voxel = {2.0, 4.0};
-          options.keep_every = {1, 2};
-        }
-        Finish(Tradeoff(study, options), study, state, *flags);
-      };
-    });
-  }
+  AddStudyCommand(bench, state,
+                  {.name = "single-vs-multi",
+                   .help = "one model of the whole area against one per block",
+                   .preset = "smallcity",
+                   .budget = "5min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench single-vs-multi -o out/bench\n"
+                             "  skyquilt bench single-vs-multi --survey photos/ --model sparse/0 --time-budget 10min -o out/bench\n"
+                             "Interrupted, the same command goes on with the variant it was at.",
+                   .options =
+                       [](CLI::App* command, StudyFlags* flags) {
+                         command->add_option("--blocks", flags->blocks, "of the divided variants, rows x columns; default: 3x3, with --quick 2x2")
+                             ->type_name("RxC");
+                       },
+                   .run = RunSingleVsMulti});
+  AddStudyCommand(bench, state,
+                  {.name = "blocks",
+                   .help = "number of blocks against the size of each",
+                   .preset = "town",
+                   .budget = "3min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench blocks -o out/bench\n"
+                             "  skyquilt bench blocks --quick -o out/bench",
+                   .run = RunBlocks});
+  AddStudyCommand(bench, state,
+                  {.name = "capacity",
+                   .help = "tables as large as a block's content asks for, against the same for all",
+                   .preset = "smallcity",
+                   .budget = "5min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench capacity -o out/bench\n"
+                             "  skyquilt bench capacity --survey photos/ --model sparse/0 --blocks 3x3 -o out/bench",
+                   .options =
+                       [](CLI::App* command, StudyFlags* flags) {
+                         command->add_option("--blocks", flags->blocks, "rows x columns; default: as `partition` chooses")->type_name("RxC");
+                       },
+                   .run = RunCapacity});
+  AddStudyCommand(bench, state,
+                  {.name = "encodings",
+                   .help = "hash grid, voxels, planes and frequencies in the same field",
+                   .preset = "town",
+                   .budget = "3min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench encodings -o out/bench\n"
+                             "  skyquilt bench encodings --quick -o out/bench",
+                   .run = RunEncodings});
+  AddStudyCommand(bench, state,
+                  {.name = "tradeoff",
+                   .help = "what time, tables, samples, photos and precision buy",
+                   .preset = "town",
+                   .budget = "45s, 2min and 6min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench tradeoff -o out/bench\n"
+                             "  skyquilt bench tradeoff --survey out/brighton --time-budget 3min -o out/bench\n"
+                             "--time-budget sets the middle one of three budgets; the others are a third and three times it.",
+                   .run = RunTradeoff});
 }
 
 }  // namespace skyquilt::coordinator

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "coordinator/pipeline.h"
@@ -10,6 +11,8 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/system.h"
+#include "core/render/scene_file.h"
+#include "core/render/trained_field.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -59,6 +62,18 @@ std::vector<std::pair<double, double>> JoinedCurve(const report::TrainLog& log) 
     if (counted == blocks) curve.emplace_back(share * seconds, sum / static_cast<double>(blocks));
   }
   return curve;
+}
+
+// Of every field in a scene, by name.
+std::map<std::string, int64_t> SceneParameters(const std::filesystem::path& file) {
+  const checkpoint::ArchiveReader reader = render::OpenScene(file);
+  std::vector<std::string> prefixes = {render::kContextPrefix};
+  for (int64_t i = 0; i < reader.IntAttribute("blocks"); ++i) prefixes.push_back(render::BlockPrefix(i));
+  std::map<std::string, int64_t> parameters;
+  for (const std::string& prefix : prefixes) {
+    if (reader.HasAttribute(prefix + "name")) parameters[reader.StringAttribute(prefix + "name")] = render::StoredParameters(reader, prefix);
+  }
+  return parameters;
 }
 
 // In the place of one that may be there.
@@ -245,19 +260,29 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored) cons
                                    {"train_seconds", &r.train_seconds},
                                    {"samples_per_second", &r.samples_per_second},
                                    {"peak_rss_bytes", &r.peak_rss_bytes},
-                                   {"parameters", &r.parameters},
+                                   {"parameters", &r.scene_parameters},
                                    {"evaluate_seconds", &r.evaluate_seconds}}) {
     *value = NumberAt(metrics, key);
   }
   r.scene_bytes = static_cast<double>(std::filesystem::file_size(project.SceneFile()));
-  r.samples = 0.0;
+  r.samples = r.parameters = 0.0;
+  const std::map<std::string, int64_t> kept = SceneParameters(project.SceneFile());
+  const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
   for (const report::FieldLog& field : log.fields) {
     r.samples += static_cast<double>(field.samples);
-    r.fields.push_back({field.name, field.parameters, field.samples, field.seconds,
-                        metrics.contains("psnr_per_block") ? NumberAt(metrics["psnr_per_block"], field.name.c_str()) : VariantResult::kNone});
+    r.parameters += static_cast<double>(field.parameters);
+    const auto block = std::find_if(blocks.blocks.begin(), blocks.blocks.end(), [&field](const partition::Block& b) { return b.name == field.name; });
+    const auto stored = kept.find(field.name);
+    r.fields.push_back(
+        {.name = field.name,
+         .parameters = field.parameters,
+         .samples = field.samples,
+         .scene_parameters = stored == kept.end() ? 0 : stored->second,
+         .log2_table_size = block == blocks.blocks.end() ? 0 : block->log2_table_size,
+         .seconds = field.seconds,
+         .psnr_db = metrics.contains("psnr_per_block") ? NumberAt(metrics["psnr_per_block"], field.name.c_str()) : VariantResult::kNone});
     if (field.name != "context") ++r.blocks;
   }
-  const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
   r.layout = std::to_string(blocks.rows) + "x" + std::to_string(blocks.columns);
   r.curve = JoinedCurve(log);
   const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());

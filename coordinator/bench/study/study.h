@@ -36,6 +36,8 @@ struct Variant {
 struct VariantField {
   std::string name;  // "context" or a block's
   int64_t parameters = 0, samples = 0;
+  int64_t scene_parameters = 0;  // those that the scene keeps
+  int log2_table_size = 0;       // 0: the context
   double seconds = 0.0;
   double psnr_db = std::numeric_limits<double>::quiet_NaN();  // held-out; NaN for the context
 };
@@ -49,7 +51,8 @@ struct VariantResult {
   double psnr_db = kNone, ssim = kNone, lpips = kNone, psnr_full_db = kNone, coverage = kNone, seam_gap_db = kNone;
   double depth_rmse_m = kNone, depth_median_abs_m = kNone, air_opacity = kNone;  // simulated surveys
   double train_seconds = kNone, samples_per_second = kNone, samples = kNone, peak_rss_bytes = kNone;
-  double parameters = kNone, scene_bytes = kNone, evaluate_seconds = kNone;
+  double parameters = kNone;  // trained, of all fields
+  double scene_parameters = kNone, scene_bytes = kNone, evaluate_seconds = kNone;
   int blocks = 0, training_photos = 0;
   std::string layout;                            // of the blocks, as "3x3": rows x columns
   std::vector<VariantField> fields;              // context first

@@ -31,6 +31,15 @@ struct BlocksBenchOptions {
 // Number of blocks against capacity of each. MatrixCity, supplement, table 3.
 StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options);
 
+struct CapacityOptions {
+  std::string blocks;                                        // empty: as partition chooses
+  std::vector<int> log2_table_sizes = {15, 16, 17, 18, 19};  // the same for all blocks
+  double budget_s = 300.0;
+};
+// Tables sized by what each block's ground sampling distance and surface ask for, against the same size for all blocks; what a scene leaves out of
+// both, and what all of it costs in quality.
+StudyBench CapacityBench(Study& study, const CapacityOptions& options);
+
 struct EncodingsOptions {
   double budget_s = 180.0;
   int frequency_hidden = 128;  // networks of the encoding without tables

@@ -25,6 +25,7 @@ void EachNumber(Result& r, const Each& each) {
   each("samples", r.samples);
   each("peak_rss_bytes", r.peak_rss_bytes);
   each("parameters", r.parameters);
+  each("scene_parameters", r.scene_parameters);
   each("scene_bytes", r.scene_bytes);
   each("evaluate_seconds", r.evaluate_seconds);
 }
@@ -53,6 +54,8 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
   for (const VariantField& field : result.fields) {
     json["fields"].push_back({{"name", field.name},
                               {"parameters", field.parameters},
+                              {"scene_parameters", field.scene_parameters},
+                              {"log2_table_size", field.log2_table_size},
                               {"samples", field.samples},
                               {"seconds", field.seconds},
                               {"psnr_db", OrNull(field.psnr_db)}});
@@ -77,8 +80,13 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
   json.at("layout").get_to(result.layout);
   json.at("training_photos").get_to(result.training_photos);
   for (const Json& field : json.at("fields")) {
-    result.fields.push_back({field.at("name").get<std::string>(), field.at("parameters").get<int64_t>(), field.at("samples").get<int64_t>(),
-                             field.at("seconds").get<double>(), OrNone(field.at("psnr_db"))});
+    result.fields.push_back({.name = field.at("name").get<std::string>(),
+                             .parameters = field.at("parameters").get<int64_t>(),
+                             .samples = field.at("samples").get<int64_t>(),
+                             .scene_parameters = field.at("scene_parameters").get<int64_t>(),
+                             .log2_table_size = field.at("log2_table_size").get<int>(),
+                             .seconds = field.at("seconds").get<double>(),
+                             .psnr_db = OrNone(field.at("psnr_db"))});
   }
   json.at("curve").get_to(result.curve);
   for (const auto& [key, value] :

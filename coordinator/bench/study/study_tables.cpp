@@ -29,6 +29,7 @@ const std::vector<Column>& Columns() {
       {"samples/s", [](const VariantResult& r) { return BenchCell::Count(r.samples_per_second); }},
       {"memory", [](const VariantResult& r) { return BenchCell::Bytes(r.peak_rss_bytes); }},
       {"parameters", [](const VariantResult& r) { return BenchCell::Count(r.parameters); }},
+      {"in the scene", [](const VariantResult& r) { return BenchCell::Count(r.scene_parameters); }},
       {"scene file", [](const VariantResult& r) { return BenchCell::Bytes(r.scene_bytes); }},
       {"evaluation", [](const VariantResult& r) { return BenchCell::Seconds(r.evaluate_seconds); }},
   };

@@ -19,7 +19,9 @@ VariantResult Example() {
   r.train_seconds = 61.0;
   r.blocks = 2;
   r.layout = "1x2";
-  r.fields = {{"context", 10, 20, 1.0, VariantResult::kNone}, {"r0c0", 30, 40, 2.0, 28.0}, {"r0c1", 30, 40, 2.0, VariantResult::kNone}};
+  r.fields = {{.name = "context", .parameters = 10, .samples = 20, .seconds = 1.0},
+              {.name = "r0c0", .parameters = 30, .samples = 40, .scene_parameters = 25, .log2_table_size = 17, .seconds = 2.0, .psnr_db = 28.0},
+              {.name = "r0c1", .parameters = 30, .samples = 40, .seconds = 2.0}};
   r.curve = {{1.0, 20.0}, {2.0, 22.0}};
   r.render = "runs/guided/report/images/photo_00001_render.jpg";
   return r;
@@ -36,6 +38,8 @@ TEST(ResultJson, ComesBackAsItWas) {
   EXPECT_TRUE(std::isnan(back.ssim));
   ASSERT_EQ(back.fields.size(), 3U);
   EXPECT_EQ(back.fields[1].psnr_db, 28.0);
+  EXPECT_EQ(back.fields[1].scene_parameters, 25);
+  EXPECT_EQ(back.fields[1].log2_table_size, 17);
   EXPECT_TRUE(std::isnan(back.fields[2].psnr_db));
   EXPECT_EQ(back.curve, r.curve);
   EXPECT_EQ(back.render, r.render);

@@ -50,6 +50,21 @@ def test(skyquilt, folder):
     skyquilt.call("bench", "blocks", "--survey", folder / "nowhere", "-o", folder / "none", status=3)
     skyquilt.call("bench", "blocks", "--survey", survey, "--preset", "town", "-o", folder / "none", status=2)
 
+    # What the scene keeps of what was trained.
+    out = folder / "capacity"
+    skyquilt.call("bench", "capacity", "--survey", survey, "-o", out, "--blocks", "1x2", *SMALL)
+    result = check_page(out, "capacity")
+    expect([variant["name"] for variant in result["results"]] == ["fitted", "uniform_13", "uniform_15"], result["results"])
+    for variant in result["results"]:
+        fields = variant["fields"]
+        expect([field["name"] for field in fields] == ["context", "r0c0", "r0c1"], fields)
+        for field in fields:
+            expect(0 < field["scene_parameters"] <= field["parameters"], field)
+        expect(sum(field["scene_parameters"] for field in fields) == variant["scene_parameters"], variant)
+        expect(sum(field["parameters"] for field in fields) == variant["parameters"], variant)
+        if variant["name"] == "uniform_13":
+            expect([field["log2_table_size"] for field in fields] == [0, 13, 13], fields)
+
     # One training, merged in three ways.
     out = folder / "tradeoff"
     skyquilt.call("bench", "tradeoff", "--survey", survey, "-o", out, *SMALL)

@@ -33,14 +33,18 @@ const std::vector<ShortFormat>& ShortFormats() {
   return formats;
 }
 
+double StoredError(const ShortFormat& format, float value) {
+  return static_cast<double>(format.to_float(format.from_float(value))) - static_cast<double>(value);
+}
+
 // Numbers of every size that the format has, both signs, uniform in their logarithm.
 Finding Rounding(const ShortFormat& format) {
   base::Random random(29);
   Worst worst;
   for (int i = 0; i < 1000000; ++i) {
-    const double size = std::exp2(random.Uniform(format.least_exponent, std::log2(format.largest) - 0.01));
+    const double size = std::exp2(random.Uniform(format.least_exponent, std::log2(static_cast<double>(format.largest)) - 0.01));
     const auto value = static_cast<float>(random.Uniform() < 0.5F ? -size : size);
-    worst.Take(std::abs(static_cast<double>(format.to_float(format.from_float(value))) - value) / std::abs(static_cast<double>(value)));
+    worst.Take(std::abs(StoredError(format, value)) / std::abs(static_cast<double>(value)));
   }
   return {.seen = fmt::format("10^6 numbers from 2^{} to {:g}", format.least_exponent, format.largest), .worst = worst.value()};
 }
@@ -53,7 +57,7 @@ Finding TinyNumbers(const ShortFormat& format) {
   Worst worst;
   for (int i = 0; i < 1000000; ++i) {
     const auto value = static_cast<float>(random.Uniform(-1.0, 1.0) * normal);
-    worst.Take(std::abs(static_cast<double>(format.to_float(format.from_float(value))) - value) / step);
+    worst.Take(std::abs(StoredError(format, value)) / step);
   }
   return {.seen = fmt::format("10^6 numbers within +-{:.2g}, steps of {:.2g}", normal, step), .worst = worst.value()};
 }

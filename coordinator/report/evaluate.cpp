@@ -154,9 +154,9 @@ void FillMeans(const render::SceneInfo& info, const Pools& pools, Metrics* metri
     metrics->blocks.push_back({info.blocks[b].name, metrics::PsnrOf(pools.per_block[b]), PixelsOf(pools.per_block[b])});
   }
   metrics->psnr_interior_db = metrics::PsnrOf(pools.seams.AllInterior());
-  metrics->psnr_matched_interior_db = pools.seams.MatchedInterior_db();
+  metrics->psnr_matched_interior_db = pools.seams.MatchedInteriorDb();
   metrics->psnr_seam_db = metrics::PsnrOf(pools.seams.AllSeam());
-  metrics->seam_psnr_gap_db = pools.seams.Gap_db();
+  metrics->seam_psnr_gap_db = pools.seams.GapDb();
   if (metrics->has_truth) {
     const metrics::DepthErrors errors = pools.depth.Result();
     metrics->depth_rmse_m = errors.rmse_m;

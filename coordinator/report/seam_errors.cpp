@@ -57,11 +57,11 @@ metrics::SquaredError SeamErrors::AllSeam() const {
   return Sum(seam);
 }
 
-double SeamErrors::MatchedInterior_db() const {
+double SeamErrors::MatchedInteriorDb() const {
   return metrics::PsnrOf(Matched(*this).interior);
 }
 
-double SeamErrors::Gap_db() const {
+double SeamErrors::GapDb() const {
   const Matched matched(*this);
   return metrics::PsnrOf(matched.interior) - metrics::PsnrOf(matched.seam);
 }

@@ -24,9 +24,9 @@ struct SeamErrors {
   metrics::SquaredError AllSeam() const;
   // PSNR inside blocks, dB, if the interior had the seams' textures; classes that are missing on one side are left out on both.
   // NaN when no class is on both sides.
-  double MatchedInterior_db() const;
+  double MatchedInteriorDb() const;
   // MatchedInterior_db less the PSNR of the seams over the same classes; NaN likewise.
-  double Gap_db() const;
+  double GapDb() const;
 };
 
 }  // namespace skyquilt::report

@@ -98,10 +98,9 @@ Finding RandomDepths(int rays) {
   Worst worst;
   bool finite = true;
   for (int k = 0; k < rays; ++k) {
-    std::vector<double> depths;
-    const int n = 1 + static_cast<int>(random.Below(200));
+    std::vector<double> depths(1 + random.Below(200));
     const double scale = random.Uniform(-8.0, 4.0);
-    for (int i = 0; i < n; ++i) depths.push_back(random.Uniform() < 0.2F ? 0.0 : std::pow(10.0, std::min(4.0, scale + random.Normal())));
+    for (double& depth : depths) depth = random.Uniform() < 0.2F ? 0.0 : std::pow(10.0, std::min(4.0, scale + random.Normal()));
     const CompositeErrors errors = Compare(RayOf(depths));
     worst.Take(errors.forward.value());
     worst.Take(errors.backward.value());

@@ -68,7 +68,7 @@ struct EarthRun {
   double fit_rmse_m = kNoNumber;
   double worst_float_ecef_m = 0.0;  // of the cameras' positions
 
-  double MeanPsnr_db() const {
+  double MeanPsnrDb() const {
     double sum = 0.0;
     for (const double value : psnr_db) sum += value;
     return sum / static_cast<double>(psnr_db.size());
@@ -111,7 +111,7 @@ void FlyOnce(const EarthPlace& place, const EarthFrame& frame, int seed, const N
   ThrowIfBlocksFailed(TrainStage(pipeline), pipeline.project);
   MergeStage(pipeline);
   EvaluateStage(pipeline);
-  run->psnr_db.push_back(ReportedPsnr_db(pipeline));
+  run->psnr_db.push_back(ReportedPsnrDb(pipeline));
   const nlohmann::json training = nlohmann::json::parse(base::ReadFile(pipeline.project.TrainReport()));
   for (const nlohmann::json& field : training.at("fields")) run->dropped_steps += field.at("dropped_steps").get<int64_t>();
   const survey::Survey survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
@@ -120,7 +120,7 @@ void FlyOnce(const EarthPlace& place, const EarthFrame& frame, int seed, const N
   const geo::EnuFrame enu(survey.origin);
   for (const survey::Photo& photo : survey.photos) {
     const geo::Geodetic camera = enu.GeodeticFromEnu(photo.cam_from_enu.OriginInSource());
-    run->worst_float_ecef_m = std::max(run->worst_float_ecef_m, NaiveError_m(NaiveFrame::kEcef, survey.origin, camera));
+    run->worst_float_ecef_m = std::max(run->worst_float_ecef_m, NaiveErrorMetres(NaiveFrame::kEcef, survey.origin, camera));
   }
   std::filesystem::remove_all(folder);
 }
@@ -152,20 +152,20 @@ NumericCase EarthCase(const EarthPlace& place, const EarthFrame& frame, const st
           .run = [place, frame, runs, turned, options] {
             runs->push_back(FlyAt(place, frame, options));
             const EarthRun& run = runs->back();
-            double wanted_db = runs->front().MeanPsnr_db();
-            std::string seen = fmt::format("{:.3f} dB", run.MeanPsnr_db());
+            double wanted_db = runs->front().MeanPsnrDb();
+            std::string seen = fmt::format("{:.3f} dB", run.MeanPsnrDb());
             if (frame.fitted) seen += fmt::format(" over {} seeds, fitted to the tags with {:.2f} m RMSE", frame.seeds, run.fit_rmse_m);
             if (turned) {
               EarthFrame control = frame;
               control.turn_deg = TurnDeg(place.origin, run.origin);
               const double straight_db = wanted_db;
-              wanted_db = FlyAt(EarthPlaces().front(), control, options).MeanPsnr_db();
+              wanted_db = FlyAt(EarthPlaces().front(), control, options).MeanPsnrDb();
               seen += fmt::format("; home turned by {:.2f}\xC2\xB0 {:.3f} dB, home as it is {:.3f} dB", control.turn_deg, wanted_db, straight_db);
             }
             seen += fmt::format("; origin {:.6f}, {:.6f}, {:.1f} m", run.origin.latitude_deg, run.origin.longitude_deg, run.origin.height_m);
             return Finding{.seen = seen,
-                           .worst = std::abs(run.MeanPsnr_db() - wanted_db),
-                           .holds = run.dropped_steps == 0 && Distance_m(run.origin, place.origin) < 100.0};
+                           .worst = std::abs(run.MeanPsnrDb() - wanted_db),
+                           .holds = run.dropped_steps == 0 && DistanceMetres(run.origin, place.origin) < 100.0};
           }};
 }
 

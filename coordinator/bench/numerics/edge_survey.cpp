@@ -29,7 +29,8 @@ survey::Survey WritePhotos(const std::filesystem::path& folder, int width, int h
     survey::Photo photo;
     photo.name = "photo" + std::to_string(i) + ".png";
     photo.cam_from_enu.rotation = Eigen::Quaterniond(down);
-    photo.cam_from_enu.translation = -(down * Eigen::Vector3d(-6.0 + 6.0 * (i % 3), -6.0 + 6.0 * (i / 3), 30.0));
+    const int column = i % 3, row = i / 3;
+    photo.cam_from_enu.translation = -(down * Eigen::Vector3d(-6.0 + 6.0 * column, -6.0 + 6.0 * row, 30.0));
     photo.agl_m = 30.0;
     image::Image8 picture(width, height, 3);
     for (int y = 0; y < height; ++y) {

@@ -30,7 +30,7 @@ Vector3L EcefOf(const geo::Geodetic& position) {
           (normal * (1.0L - kEccentricity2) + height) * std::sin(latitude)};
 }
 
-double Distance_m(const geo::Geodetic& a, const geo::Geodetic& b) {
+double DistanceMetres(const geo::Geodetic& a, const geo::Geodetic& b) {
   return static_cast<double>((EcefOf(a) - EcefOf(b)).norm());
 }
 
@@ -53,10 +53,10 @@ std::string NaiveName(NaiveFrame frame) {
   return "";
 }
 
-double NaiveError_m(NaiveFrame frame, const geo::Geodetic& origin, const geo::Geodetic& position) {
+double NaiveErrorMetres(NaiveFrame frame, const geo::Geodetic& origin, const geo::Geodetic& position) {
   switch (frame) {
     case NaiveFrame::kDegrees:
-      return Distance_m(position, {InFloat(position.latitude_deg), InFloat(position.longitude_deg), InFloat(position.height_m)});
+      return DistanceMetres(position, {InFloat(position.latitude_deg), InFloat(position.longitude_deg), InFloat(position.height_m)});
     case NaiveFrame::kEcef: {
       const Vector3L exact = EcefOf(position);
       return static_cast<double>((exact.cast<float>().cast<long double>() - exact).norm());

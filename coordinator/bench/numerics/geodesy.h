@@ -14,12 +14,12 @@ using Vector3L = Eigen::Matrix<long double, 3, 1>;
 
 // Earth-centred position on the WGS84 ellipsoid, metres.
 Vector3L EcefOf(const geo::Geodetic& position);
-double Distance_m(const geo::Geodetic& a, const geo::Geodetic& b);
+double DistanceMetres(const geo::Geodetic& a, const geo::Geodetic& b);
 
 enum class NaiveFrame { kDegrees, kEcef, kUtm, kEnu };
 const std::vector<NaiveFrame>& NaiveFrames();
 std::string NaiveName(NaiveFrame frame);
 // How far a place moves when its coordinates in that frame (UTM's zone and ENU's tangent plane are the origin's) are kept in single precision.
-double NaiveError_m(NaiveFrame frame, const geo::Geodetic& origin, const geo::Geodetic& position);
+double NaiveErrorMetres(NaiveFrame frame, const geo::Geodetic& origin, const geo::Geodetic& position);
 
 }  // namespace skyquilt::coordinator::numerics

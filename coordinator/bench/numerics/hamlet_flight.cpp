@@ -23,7 +23,7 @@ Settings HamletSettings(const HamletTraining& training, const NumericsOptions& o
   return settings;
 }
 
-double ReportedPsnr_db(const Pipeline& pipeline) {
+double ReportedPsnrDb(const Pipeline& pipeline) {
   const nlohmann::json metrics = nlohmann::json::parse(base::ReadFile(pipeline.project.ReportFolder() / "metrics.json"));
   return metrics.at("psnr").is_number() ? metrics.at("psnr").get<double>() : kNoNumber;
 }

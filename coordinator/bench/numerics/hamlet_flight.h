@@ -13,6 +13,6 @@ struct HamletTraining {
 Settings HamletSettings(const HamletTraining& training, const NumericsOptions& options);
 
 // Held-out PSNR from the report of a pipeline that has run; NaN when it could not be measured.
-double ReportedPsnr_db(const Pipeline& pipeline);
+double ReportedPsnrDb(const Pipeline& pipeline);
 
 }  // namespace skyquilt::coordinator::numerics

@@ -38,7 +38,7 @@ const NumericRow* FindRow(const NumericsResult& result, const std::string& group
 }
 
 // Places are judged in millimetres; boxes by their own float step.
-double WorstPlace_mm(const NumericsResult& result) {
+double WorstPlaceMm(const NumericsResult& result) {
   Worst worst;
   bool any = false;
   for (const GroupResult& group : result.groups) {
@@ -88,7 +88,7 @@ BenchPage NumericsPage(const NumericsResult& result, const std::string& command)
                  .date = base::UtcTimestamp()};
   const int passed = result.Count(Verdict::kPassed), failed = result.Count(Verdict::kFailed);
   page.figures.push_back({"Cases passed", fmt::format("{} of {}", passed, passed + failed), "in " + base::FormatDuration(result.seconds)});
-  if (const double worst = WorstPlace_mm(result); !std::isnan(worst)) {
+  if (const double worst = WorstPlaceMm(result); !std::isnan(worst)) {
     page.figures.push_back({"Places moved by at most", FormatError(worst, "mm"), "surveys of 1 m to 100 km, any latitude; 1 mm allowed"});
     const Range naive = ComparedRange(result, "space", "mm");
     page.verdicts.push_back(

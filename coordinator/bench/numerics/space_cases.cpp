@@ -44,7 +44,7 @@ geo::Geodetic ThroughThePipeline(const geo::EnuFrame& frame, const geo::Geodetic
 }
 
 // Worst error over random places of a survey of that extent.
-double WorstRoundTrip_mm(const geo::Geodetic& origin, double extent_m, int places) {
+double WorstRoundTripMm(const geo::Geodetic& origin, double extent_m, int places) {
   const geo::EnuFrame frame(origin);
   base::Random random(17);
   Worst worst;
@@ -52,7 +52,7 @@ double WorstRoundTrip_mm(const geo::Geodetic& origin, double extent_m, int place
     const double up = 0.5 * std::min(extent_m, 2.0 * kBlockHeight_m);
     const Eigen::Vector3d enu(random.Uniform(-0.5, 0.5) * extent_m, random.Uniform(-0.5, 0.5) * extent_m, random.Uniform(-up, up));
     const geo::Geodetic place = frame.GeodeticFromEnu(enu);
-    worst.Take(1e3 * Distance_m(place, ThroughThePipeline(frame, place, std::min(extent_m, kBlock_m))));
+    worst.Take(1e3 * DistanceMetres(place, ThroughThePipeline(frame, place, std::min(extent_m, kBlock_m))));
   }
   return worst.value();
 }
@@ -66,7 +66,7 @@ NumericCase PlaceCase(const std::string& name, const geo::Geodetic& origin, int 
             Finding finding;
             Worst over_all;
             for (const double extent : {1.0, 1e3, 1e5}) {
-              const double worst = WorstRoundTrip_mm(origin, extent, places);
+              const double worst = WorstRoundTripMm(origin, extent, places);
               finding.seen += fmt::format("{}{}: {}", finding.seen.empty() ? "" : ", ", LengthText(extent), FormatError(worst, "mm"));
               over_all.Take(worst);
             }
@@ -134,7 +134,7 @@ NumericCase NaiveCase(NaiveFrame frame) {
             constexpr int kPlaces = 2000;
             for (int i = 0; i < kPlaces; ++i) {
               const geo::Geodetic place = enu.GeodeticFromEnu({random.Uniform(-5e4, 5e4), random.Uniform(-5e4, 5e4), random.Uniform(-60.0, 60.0)});
-              const double error = 1e3 * NaiveError_m(frame, origin, place);
+              const double error = 1e3 * NaiveErrorMetres(frame, origin, place);
               worst.Take(error);
               sum += error;
             }
@@ -157,9 +157,9 @@ std::vector<std::string> ErrorAgainstDistance() {
     for (int i = 0; i < 300; ++i) {
       const double angle = random.Uniform(0.0, 2.0 * std::numbers::pi);
       const geo::Geodetic place = frame.GeodeticFromEnu({distance * std::cos(angle), distance * std::sin(angle), random.Uniform(0.0, 50.0)});
-      worst[0] = std::max(worst[0], 1e3 * Distance_m(place, ThroughThePipeline(frame, place, kBlock_m)));
+      worst[0] = std::max(worst[0], 1e3 * DistanceMetres(place, ThroughThePipeline(frame, place, kBlock_m)));
       for (size_t k = 0; k < NaiveFrames().size(); ++k) {
-        worst[k + 1] = std::max(worst[k + 1], 1e3 * NaiveError_m(NaiveFrames()[k], origin, place));
+        worst[k + 1] = std::max(worst[k + 1], 1e3 * NaiveErrorMetres(NaiveFrames()[k], origin, place));
       }
     }
     for (size_t k = 0; k < curves.size(); ++k) curves[k].points.emplace_back(distance, worst[k]);

@@ -99,7 +99,7 @@ StoredScene MergeAndScore(Pipeline& pipeline, const std::string& storage) {
   pipeline.restart = true;
   MergeStage(pipeline);
   EvaluateStage(pipeline);
-  return {.psnr_db = ReportedPsnr_db(pipeline), .bytes = static_cast<double>(std::filesystem::file_size(pipeline.project.SceneFile()))};
+  return {.psnr_db = ReportedPsnrDb(pipeline), .bytes = static_cast<double>(std::filesystem::file_size(pipeline.project.SceneFile()))};
 }
 
 std::vector<StoredScene> StoreHamlet(const NumericsOptions& options) {

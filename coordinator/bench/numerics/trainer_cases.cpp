@@ -18,7 +18,7 @@ constexpr uint64_t kTrainerSeed = 5;
 constexpr double kTrainerDistortion = 1e-2;
 const SyntheticRays kTrainerRays{.rays = 96, .empty_share = 0.05F, .most_stops = 1.0F};
 
-double Psnr_db(double squared_error) {
+double PsnrDb(double squared_error) {
   return -10.0 * std::log10(squared_error);
 }
 
@@ -120,11 +120,11 @@ Runs FreeRun(int steps, bool disturbed) {
   SyntheticRays held_out;
   held_out.rays = 500;
   const worker::RayBatch test = trainer.Draw(held_out, random);
-  runs.psnr_db = Psnr_db(reference.Gradient(test, exact, 0.0, nullptr, nullptr).squared_error);
+  runs.psnr_db = PsnrDb(reference.Gradient(test, exact, 0.0, nullptr, nullptr).squared_error);
   // The trainer's own forward judges its own parameters.
   const double other_error =
       disturbed ? reference.Gradient(test, other, 0.0, nullptr, nullptr).squared_error : trainer.GradientsOf(test, 0.0).result.squared_error;
-  runs.psnr_gap_db = std::abs(Psnr_db(other_error) - runs.psnr_db);
+  runs.psnr_gap_db = std::abs(PsnrDb(other_error) - runs.psnr_db);
   return runs;
 }
 

@@ -83,8 +83,8 @@ TEST_F(Numerics, LongDoubleGeodesyKnowsTheEllipsoid) {
   // Polar and equatorial radii of WGS84; 15 km north of the equator is 0.13565 degrees.
   EXPECT_NEAR(static_cast<double>(EcefOf({90.0, 0.0, 0.0}).z()), 6356752.314245, 1e-6);
   EXPECT_NEAR(static_cast<double>(EcefOf({0.0, 90.0, 10.0}).y()), 6378147.0, 1e-9);
-  EXPECT_LT(NaiveError_m(NaiveFrame::kEnu, {47.0, 8.0, 400.0}, {47.0, 8.0, 400.0}), 1e-9);
-  EXPECT_GT(NaiveError_m(NaiveFrame::kEcef, {47.0, 8.0, 400.0}, {47.1234567, 8.7654321, 412.3}), 1e-3);
+  EXPECT_LT(NaiveErrorMetres(NaiveFrame::kEnu, {47.0, 8.0, 400.0}, {47.0, 8.0, 400.0}), 1e-9);
+  EXPECT_GT(NaiveErrorMetres(NaiveFrame::kEcef, {47.0, 8.0, 400.0}, {47.1234567, 8.7654321, 412.3}), 1e-3);
 }
 
 TEST_F(Numerics, SpacePasses) {

@@ -18,7 +18,7 @@ TEST(SeamErrors, EqualQualityPerTextureIsNoGap) {
   errors.interior[5] = Errors(1e-3, 300);
   errors.seam[0] = Errors(1e-4, 30);
   errors.seam[5] = Errors(1e-3, 900);
-  EXPECT_NEAR(errors.Gap_db(), 0.0, 1e-9);
+  EXPECT_NEAR(errors.GapDb(), 0.0, 1e-9);
   EXPECT_GT(metrics::PsnrOf(errors.AllInterior()) - metrics::PsnrOf(errors.AllSeam()), 5.0);
 }
 
@@ -26,7 +26,7 @@ TEST(SeamErrors, SeesWorseSeams) {
   SeamErrors errors;
   errors.interior[2] = Errors(1e-3, 300);
   errors.seam[2] = Errors(2e-3, 30);
-  EXPECT_NEAR(errors.Gap_db(), 10.0 * std::log10(2.0), 1e-9);
+  EXPECT_NEAR(errors.GapDb(), 10.0 * std::log10(2.0), 1e-9);
 }
 
 TEST(SeamErrors, LeavesOutClassesOfOneSideOnly) {
@@ -34,8 +34,8 @@ TEST(SeamErrors, LeavesOutClassesOfOneSideOnly) {
   errors.interior[2] = Errors(1e-3, 300);
   errors.seam[2] = Errors(1e-3, 30);
   errors.seam[7] = Errors(1.0, 30);
-  EXPECT_NEAR(errors.Gap_db(), 0.0, 1e-9);
-  EXPECT_TRUE(std::isnan(SeamErrors().Gap_db()));
+  EXPECT_NEAR(errors.GapDb(), 0.0, 1e-9);
+  EXPECT_TRUE(std::isnan(SeamErrors().GapDb()));
 }
 
 TEST(SeamErrors, Adds) {

@@ -53,7 +53,7 @@ RC_GTEST_PROP(EnuFrame, PositionsComeBack, ()) {
   const EnuFrame frame(*AnyPosition());
   const Geodetic position = *AnyPosition();
   const Geodetic back = frame.GeodeticFromEnu(frame.EnuFromGeodetic(position));
-  RC_ASSERT(GroundDistance_m(position, back) < kTolerance_m);
+  RC_ASSERT(GroundDistanceMetres(position, back) < kTolerance_m);
   RC_ASSERT(std::abs(position.height_m - back.height_m) < kTolerance_m);
 }
 

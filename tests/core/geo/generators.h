@@ -30,7 +30,7 @@ inline rc::Gen<Geodetic> AnyPosition() {
 }
 
 // Distance on the ground between nearby positions, metres; longitudes compared on the circle.
-inline double GroundDistance_m(const Geodetic& a, const Geodetic& b) {
+inline double GroundDistanceMetres(const Geodetic& a, const Geodetic& b) {
   constexpr double kMetresPerDegree = 111320.0;
   const double north = (a.latitude_deg - b.latitude_deg) * kMetresPerDegree;
   const double east =

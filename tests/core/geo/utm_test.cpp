@@ -13,7 +13,7 @@ RC_GTEST_PROP(Utm, PositionsComeBack, ()) {
   const UtmZone zone = UtmZoneOf(position);
   const Eigen::Vector2d plane = UtmFromGeodetic(position, zone);
   const Geodetic back = GeodeticFromUtm(plane, position.height_m, zone);
-  RC_ASSERT(GroundDistance_m(position, back) < 1e-6);
+  RC_ASSERT(GroundDistanceMetres(position, back) < 1e-6);
   RC_ASSERT(back.height_m == position.height_m);
   RC_ASSERT((UtmFromGeodetic(back, zone) - plane).norm() < 1e-6);
 }
@@ -23,7 +23,7 @@ RC_GTEST_PROP(Utm, NeighbouringZonesAndTheOtherHemisphereComeBack, ()) {
   const UtmZone zone{*rc::gen::inRange(1, 61), *rc::gen::element(true, false)};
   const double latitude = *Between(-80.0, 80.0);
   const Geodetic position{latitude, WrapLongitudeDeg(6.0 * zone.zone - 183.0 + *Between(-6.0, 6.0)), 0.0};
-  RC_ASSERT(GroundDistance_m(position, GeodeticFromUtm(UtmFromGeodetic(position, zone), 0.0, zone)) < 1e-6);
+  RC_ASSERT(GroundDistanceMetres(position, GeodeticFromUtm(UtmFromGeodetic(position, zone), 0.0, zone)) < 1e-6);
 }
 
 TEST(Utm, MatchesPublishedCoordinates) {

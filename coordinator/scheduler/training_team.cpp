@@ -43,7 +43,10 @@ class Exchange {
         return bytes;
       }
       comm::Message message = WaitForMessage(comm_);
-      if (message.tag == kTagShare) early_.push_back(std::move(message));
+      if (message.tag == kTagShare) {
+        early_.push_back(std::move(message));
+        continue;
+      }
       if (message.tag == kTagDone || message.tag == kTagStop) throw base::Interrupted();
       // A member that leaves before the others has met something.
       if (message.tag == kTagOutcome) {

@@ -1,6 +1,7 @@
 #include "core/render/field_store.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/base/errors.h"
@@ -90,8 +91,8 @@ void FieldStore::Need(std::span<const int> blocks) {
 }
 
 void FieldStore::NeedAll() {
-  std::vector<int> all;
-  for (int k = 0; k < size(); ++k) all.push_back(k);
+  std::vector<int> all(entries_.size());
+  std::iota(all.begin(), all.end(), 0);
   Need(all);
 }
 

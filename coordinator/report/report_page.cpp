@@ -48,7 +48,7 @@ std::string Headline(const ReportInput& input) {
                                 metrics.threads > 0 ? fmt::format(", {} threads", metrics.threads) : ""));
   html += KeyFigure("Training speed", FormatLarge(metrics.samples_per_second), "samples per second");
   html += KeyFigure("Peak memory", FormatBytes(metrics.peak_rss_bytes), metrics.ranks > 1 ? "training, largest rank" : "training");
-  html += KeyFigure("Parameters", FormatLarge(static_cast<double>(metrics.parameters)), "all fields, context included");
+  html += KeyFigure("Parameters", FormatLarge(static_cast<double>(metrics.parameters)), "of all fields in the scene, context included");
   const survey::GeoFit& fit = metrics.geo_fit;
   html += KeyFigure(
       "Geo-reference", metrics.georeferenced ? FormatFixed(fit.rmse_m, 2, "m") : "none",

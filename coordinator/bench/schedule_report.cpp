@@ -92,6 +92,7 @@ BenchSection TimeSection(const ScheduleBenchResult& r) {
   }
   const auto chart = [](const std::string& title, const std::vector<TimeShare>& shares) {
     std::vector<report::Bar> bars;
+    bars.reserve(shares.size());
     for (const TimeShare& share : shares) {
       bars.push_back({.label = share.what, .value = 100.0 * share.share, .shown = report::FormatPercent(share.share)});
     }

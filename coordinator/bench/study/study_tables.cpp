@@ -79,6 +79,7 @@ BenchTable BlockTable(const std::vector<VariantResult>& results, const std::stri
 
 std::string TrainingChart(const std::vector<VariantResult>& results) {
   std::vector<report::Curve> curves;
+  curves.reserve(results.size());
   for (const VariantResult& r : results) curves.push_back({.name = r.label, .points = r.curve});
   return report::CurveChart(
       curves,

@@ -61,6 +61,18 @@ class TrainedFieldFile : public ::testing::Test {
     return out;
   }
 
+  // The same to the bit, and something to see: some ray is at least so opaque.
+  static void ExpectSameLook(const TrainedField& before, const TrainedField& after, float least) {
+    const std::vector<RayColor> seen_before = Look(before), seen_after = Look(after);
+    float most = 0.0F;
+    for (size_t i = 0; i < seen_before.size(); ++i) {
+      EXPECT_EQ(seen_after[i].opacity, seen_before[i].opacity);
+      for (size_t c = 0; c < 3; ++c) EXPECT_EQ(seen_after[i].rgb_srgb[c], seen_before[i].rgb_srgb[c]);
+      most = std::max(most, seen_before[i].opacity);
+    }
+    EXPECT_GT(most, least);
+  }
+
   TemporaryFolder folder_;
 };
 
@@ -77,14 +89,7 @@ TEST_P(TrainedFieldOf, ComesBackAsItWas) {
   EXPECT_EQ(after.networks, before.networks);
   const checkpoint::ArchiveReader reader(file);
   EXPECT_EQ(StoredParameters(reader, "a/"), before.ParameterCount());
-  const std::vector<RayColor> seen_before = Look(before), seen_after = Look(after);
-  float most = 0.0F;
-  for (size_t i = 0; i < seen_before.size(); ++i) {
-    EXPECT_EQ(seen_after[i].opacity, seen_before[i].opacity);
-    for (size_t c = 0; c < 3; ++c) EXPECT_EQ(seen_after[i].rgb_srgb[c], seen_before[i].rgb_srgb[c]);
-    most = std::max(most, seen_before[i].opacity);
-  }
-  EXPECT_GT(most, 0.1F) << "there is something to see";
+  ExpectSameLook(before, after, 0.1F);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, TrainedFieldOf,
@@ -130,14 +135,7 @@ TEST_P(TrainedFieldOf, LooksTheSameWithoutWhatNothingReads) {
       ASSERT_EQ(after.grid[i], before.grid[i]);
     }
   }
-  const std::vector<RayColor> seen_before = Look(before), seen_after = Look(after);
-  float most = 0.0F;
-  for (size_t i = 0; i < seen_before.size(); ++i) {
-    EXPECT_EQ(seen_after[i].opacity, seen_before[i].opacity);
-    for (size_t c = 0; c < 3; ++c) EXPECT_EQ(seen_after[i].rgb_srgb[c], seen_before[i].rgb_srgb[c]);
-    most = std::max(most, seen_before[i].opacity);
-  }
-  EXPECT_GT(most, 0.01F) << "there is something to see";
+  ExpectSameLook(before, after, 0.01F);
 }
 
 TEST_F(TrainedFieldFile, ThatCannotBeAreRefusedByName) {

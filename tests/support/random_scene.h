@@ -19,7 +19,7 @@ inline void WriteRandomScene(const std::filesystem::path& file, int rows, int co
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const Eigen::Vector3d low(kRandomBlock_m * column, kRandomBlock_m * row, 0.0);
-      const auto seed = static_cast<uint64_t>(10 + row * columns + column);
+      const auto seed = 10 + static_cast<uint64_t>(row) * static_cast<uint64_t>(columns) + static_cast<uint64_t>(column);
       blocks.push_back(RandomField(seed, low, low + Eigen::Vector3d(kRandomBlock_m, kRandomBlock_m, 4.0), margin_m, density_bias));
       blocks.back().name = "r" + std::to_string(row) + "c" + std::to_string(column);
     }

@@ -20,6 +20,7 @@ Override Budget(double seconds) {
 
 std::vector<Priced> Prices(const std::vector<VariantResult>& results) {
   std::vector<Priced> points;
+  points.reserve(results.size());
   for (const VariantResult& r : results) points.push_back({r.train_seconds, r.psnr_db});
   return points;
 }

@@ -11,6 +11,7 @@ namespace {
 
 std::vector<Priced> FromPairs(const std::vector<std::pair<int, int>>& pairs) {
   std::vector<Priced> points;
+  points.reserve(pairs.size());
   for (const auto& [cost, quality] : pairs) points.push_back({static_cast<double>(cost), static_cast<double>(quality)});
   return points;
 }

@@ -22,6 +22,7 @@ struct Result {
 Result Call(std::vector<std::string> words) {
   words.insert(words.begin(), "skyquilt");
   std::vector<char*> argv;
+  argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();

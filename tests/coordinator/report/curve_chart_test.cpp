@@ -28,6 +28,7 @@ TEST(TickLabel, HasTheDigitsThatTheNumberNeeds) {
 
 TEST(Thin, KeepsTheEndsAndTheMean) {
   std::vector<std::pair<double, double>> points;
+  points.reserve(5000);
   for (int i = 0; i < 5000; ++i) points.emplace_back(i, i % 2 == 0 ? 1.0 : 3.0);
   const auto thinned = Thin(points, 100);
   EXPECT_EQ(thinned.size(), 100U);

@@ -42,7 +42,7 @@ struct FlatGround {
     rendered.resize(static_cast<size_t>(kWidth) * kHeight);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
-        render::RayColor& ray = rendered[static_cast<size_t>(y * kWidth + x)];
+        render::RayColor& ray = rendered[static_cast<size_t>(y) * kWidth + static_cast<size_t>(x)];
         // The western half is rendered 10/255 too bright, the eastern 20/255.
         for (float& c : ray.rgb_srgb) c = (x < 50 ? 110.0F : 120.0F) / 255.0F;
         ray.opacity = 1.0F;
@@ -96,7 +96,7 @@ TEST(ScorePhoto, MaskedPixelsCountNowhere) {
   FlatGround flat;
   flat.task.mask.assign(static_cast<size_t>(kWidth) * kHeight, 1);
   for (int y = 0; y < kHeight; ++y) {
-    for (int x = 50; x < kWidth; ++x) flat.task.mask[static_cast<size_t>(y * kWidth + x)] = 0;
+    for (int x = 50; x < kWidth; ++x) flat.task.mask[static_cast<size_t>(y) * kWidth + static_cast<size_t>(x)] = 0;
   }
   const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
   EXPECT_EQ(findings.score.used_pixels, 50 * kHeight);

@@ -12,6 +12,7 @@ namespace {
 
 std::vector<QueueBlock> RandomBlocks(base::Random& random, int n) {
   std::vector<QueueBlock> blocks;
+  blocks.reserve(static_cast<size_t>(n));
   for (int i = 0; i < n; ++i) blocks.push_back({i, "block_" + std::to_string(i), random.Uniform(0.01, 1.0), 0.0});
   return blocks;
 }

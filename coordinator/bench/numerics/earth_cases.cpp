@@ -57,7 +57,7 @@ struct EarthFrame {
 };
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr EarthFrame kKnownFrame{};
-// Single trainings scatter by about 0.09 dB, so the difference of two means of twelve by 0.035 dB: 0.1 dB can be told from chance.
+// Fixed before any result was seen; means of twelve scatter half as much as means of three.
 constexpr EarthFrame kFittedFrame{.fitted = true, .seeds = 12, .context_steps = 300, .train_steps = 1000};
 constexpr int kQuickSeeds = 3;
 
@@ -179,7 +179,8 @@ NumericGroup EarthGroup(const NumericsOptions& options) {
           "The simulated hamlet flown at other places: the same 28 photos with other GPS tags through prepare, partition, train, merge and "
           "evaluate, with a fixed number of steps. Once in the simulation's own frame, once in a frame found from the noisy tags, as with "
           "real photos. Near a pole the found frame's axes are turned against the scene, which changes what grid and block can show: there home is "
-          "flown again with its survey turned by as much. Means over several seeds are compared, as many as it takes to tell 0.1 dB from chance."};
+          "flown again with its survey turned by as much. Means over a fixed number of seeds are compared; the last row but one says how far single "
+          "seeds are apart."};
   if (options.comm == nullptr) return group;
   const auto known = std::make_shared<EarthRuns>(), fitted = std::make_shared<EarthRuns>();
   for (const bool by_tags : {false, true}) {

@@ -64,6 +64,12 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
   });
 }
 
+void StartEverywhere(render::TrainedField& target) {
+  for (float& depth : target.occupancy.depth) {
+    if (depth >= 0.0F) depth = kStartDepth;
+  }
+}
+
 void StartFromPoints(const survey::Survey& survey, render::TrainedField& target) {
   const Eigen::Vector3d low = target.map.min_enu(), high = target.map.max_enu();
   std::vector<Eigen::Vector3d> points;

@@ -18,6 +18,8 @@ constexpr float kStartDepth = 0.1F;
 // show (unless that would leave none; empty surface: nothing is known of the ground). Tested per group of 4 x 4 x 4 cells, generously.
 void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const render::PlanSurface& surface,
                 int min_views, render::TrainedField& target, base::ThreadPool& threads);
+// Every cell that may be seen is looked at: what fields without any knowledge of the survey do, for comparison.
+void StartEverywhere(render::TrainedField& target);
 // Leaves only cells between the sparse points: in each column of the ground from the lowest point near it to one cell above the highest point
 // next to it. Columns without points of their own keep their whole height, and what lies outside the field's box stays as it is.
 void StartFromPoints(const survey::Survey& survey, render::TrainedField& target);

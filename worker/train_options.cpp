@@ -32,6 +32,9 @@ void TrainOptions::Visit(config::OptionVisitor& v) {
   v.Field("empty_ray_share", empty_ray_share, "share of rays that end outside the block and teach emptiness only, 0..0.5");
   v.Field("checkpoint_every_s", checkpoint_every_s, "seconds between checkpoints");
   v.Field("coupling", coupling, "guided: the context stands in for what lies outside the block; independent: blocks alone");
+  v.Field("start", start,
+          "where a field first looks for matter: surfaces (between the sparse points, blocks where the context sees surfaces) or everywhere (for "
+          "comparison)");
 }
 
 void TrainOptions::Check(const std::string& section) const {
@@ -63,6 +66,9 @@ void TrainOptions::Check(const std::string& section) const {
   require(checkpoint_every_s > 0.0, "checkpoint_every_s", "positive", checkpoint_every_s);
   if (coupling != "guided" && coupling != "independent") {
     throw base::UsageError(section + ".coupling must be \"guided\" or \"independent\", got \"" + coupling + "\"");
+  }
+  if (start != "surfaces" && start != "everywhere") {
+    throw base::UsageError(section + ".start must be \"surfaces\" or \"everywhere\", got \"" + start + "\"");
   }
 }
 

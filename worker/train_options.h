@@ -28,6 +28,7 @@ struct TrainOptions {
   double empty_ray_share = 0.05;
   double checkpoint_every_s = 20.0;
   std::string coupling = "guided";
+  std::string start = "surfaces";
 
   void Visit(config::OptionVisitor& v);
   // Throws base::UsageError naming the option and the rule it broke; `section` is its name in the configuration.

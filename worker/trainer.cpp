@@ -213,6 +213,10 @@ class Loop {
   TeamSteps team_;
 };
 
+bool SearchesEverywhere(const TrainOptions& options) {
+  return options.start == "everywhere";
+}
+
 void RequireJob(const TrainJob& job) {
   SKYQUILT_CHECK(job.survey != nullptr && job.pixels != nullptr, "a job needs a survey and its pixels");
   SKYQUILT_CHECK(job.response.photos() == job.survey->photos.size() && job.pixels->size() == job.survey->photos.size(),
@@ -254,7 +258,11 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   } else {
     trainer.InitializeParameters();
     MarkUnseen(source, *job.survey, area.photos, surface, job.min_views, target, threads);
-    StartFromPoints(*job.survey, target);
+    if (SearchesEverywhere(job.options)) {
+      StartEverywhere(target);
+    } else {
+      StartFromPoints(*job.survey, target);
+    }
   }
   source.UpdateExposures();
   Loop loop("context", job, target, trainer, &extras, report);
@@ -298,8 +306,12 @@ TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::fil
   } else {
     trainer.InitializeParameters();
     MarkUnseen(source, *job.survey, block.photos, surface, job.min_views, target, threads);
-    StartFromPoints(*job.survey, target);
-    if (context != nullptr) StartFromBands(source, *job.survey, tiles, *context, target);
+    if (SearchesEverywhere(job.options)) {
+      StartEverywhere(target);
+    } else {
+      StartFromPoints(*job.survey, target);
+      if (context != nullptr) StartFromBands(source, *job.survey, tiles, *context, target);
+    }
   }
   Loop loop("block", job, target, trainer, nullptr, report);
   return loop.Run(record, {});

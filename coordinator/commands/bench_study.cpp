@@ -14,6 +14,7 @@ namespace {
 
 struct StudyFlags {
   std::string out, survey, preset, model, budget, blocks;
+  std::vector<int> log2_table_sizes;  // empty: the study's own
   bool quick = false, restart = false, keep = false, json = false;
 };
 
@@ -117,6 +118,7 @@ StudyBench RunCapacity(Study& study, const StudyFlags& flags) {
   options.budget_s = BudgetOf(flags, options.budget_s, 15.0);
   options.blocks = flags.blocks;
   if (flags.quick) options.log2_table_sizes = {13, 15};
+  if (!flags.log2_table_sizes.empty()) options.log2_table_sizes = flags.log2_table_sizes;
   return CapacityBench(study, options);
 }
 
@@ -179,6 +181,13 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                    .options =
                        [](CLI::App* command, StudyFlags* flags) {
                          command->add_option("--blocks", flags->blocks, "rows x columns; default: as `partition` chooses")->type_name("RxC");
+                         command
+                             ->add_option("--log2-table-sizes", flags->log2_table_sizes,
+                                          "tables to compare with, the same for all blocks: log2 of the entries of a level; default: 15,16,17,18, "
+                                          "with --quick 13,15")
+                             ->delimiter(',')
+                             ->check(CLI::Range(4, 24))
+                             ->type_name("N,...");
                        },
                    .run = RunCapacity});
   AddStudyCommand(bench, state,

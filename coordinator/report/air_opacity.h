@@ -10,11 +10,12 @@
 
 namespace skyquilt::report {
 
-// Air that counts ends this far in front of the true surface, metres: what a surface's own blur takes is not dirt in the air.
-inline constexpr double kAirClearance_m = 1.0;
+// Air that counts ends so far in front of the true surface, along the ray: what a surface's own blur takes is not dirt in the air. A photo's blur
+// grows with its ground sampling distance (here: the distance on the surface between rays one pixel apart), so the larger of both counts.
+inline constexpr double kAirClearance_m = 1.0, kAirClearance_gsd = 5.0;
 
 struct AirOpacity {
-  double sum = 0.0;  // of opacities in [0, 1], each gathered from the camera to kAirClearance_m in front of the true surface
+  double sum = 0.0;  // of opacities in [0, 1], each gathered from the camera to the clearance in front of the true surface
   int64_t rays = 0;
 
   AirOpacity& operator+=(const AirOpacity& other);

@@ -99,6 +99,9 @@ TEST(TrainOptions, RefusesImpossibleValuesByName) {
   options = {};
   options.coupling = "joint";
   EXPECT_THROW(options.Check("train"), base::UsageError);
+  options = {};
+  options.start = "nowhere";
+  EXPECT_THROW(options.Check("train"), base::UsageError);
   const auto refusal = [](const TrainOptions& refused) -> std::string {
     try {
       refused.Check("context");

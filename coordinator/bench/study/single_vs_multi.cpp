@@ -23,12 +23,21 @@ std::string Difference(const VariantResult& a, const VariantResult& b) {
   return fmt::format("{:+.2f} dB ({:.2f} against {:.2f}), SSIM {:+.3f}", a.psnr_db - b.psnr_db, a.psnr_db, b.psnr_db, a.ssim - b.ssim);
 }
 
+// Empty where nothing was measured.
+std::string DirtRatio(const VariantResult& clean, const VariantResult& dirty) {
+  if (!std::isfinite(clean.air_opacity) || !(clean.air_opacity > 0.0)) return "";
+  return fmt::format("; dirt in the air {:.3f} % against {:.3f} %, a factor of {:.1f}", 100.0 * clean.air_opacity, 100.0 * dirty.air_opacity,
+                     dirty.air_opacity / clean.air_opacity);
+}
+
 std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
   const VariantResult* guided = Find(results, "guided");
   const VariantResult* small = Find(results, "single_small");
   const VariantResult* large = Find(results, "single_large");
   const VariantResult* independent = Find(results, "independent");
   const VariantResult* shared = Find(results, "shared_height");
+  const VariantResult* everywhere = Find(results, "everywhere");
+  const VariantResult* shared_everywhere = Find(results, "shared_everywhere");
   std::vector<std::string> verdicts;
   if (guided == nullptr) return {"The divided model could not be trained: nothing can be compared."};
   if (small != nullptr) verdicts.push_back("Blocks against one model with the tables of one block, equal time: " + Difference(*guided, *small) + ".");
@@ -42,12 +51,16 @@ std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
   }
   if (independent != nullptr) verdicts.push_back("Blocks guided by a context against blocks alone: " + Difference(*guided, *independent) + ".");
   if (shared != nullptr) {
-    std::string verdict = "A box as high as what stands in it against boxes that share the survey's height: " + Difference(*guided, *shared);
-    if (std::isfinite(guided->air_opacity) && guided->air_opacity > 0.0) {
-      verdict += fmt::format("; dirt in the air {:.3f} % against {:.3f} %, a factor of {:.1f}", 100.0 * guided->air_opacity,
-                             100.0 * shared->air_opacity, shared->air_opacity / guided->air_opacity);
-    }
-    verdicts.push_back(verdict + ".");
+    verdicts.push_back("A box as high as what stands in it against boxes that share the survey's height: " + Difference(*guided, *shared) +
+                       DirtRatio(*guided, *shared) + ".");
+  }
+  if (everywhere != nullptr && shared_everywhere != nullptr) {
+    verdicts.push_back("The same when fields know nothing of where surfaces are and search their whole boxes: " +
+                       Difference(*everywhere, *shared_everywhere) + DirtRatio(*everywhere, *shared_everywhere) + ".");
+  }
+  if (shared_everywhere != nullptr) {
+    verdicts.push_back("Boxes of their own height and surfaces that are known, against neither: " + Difference(*guided, *shared_everywhere) +
+                       DirtRatio(*guided, *shared_everywhere) + ".");
   }
   for (const VariantResult* one : {small, large}) {
     if (one == nullptr || !std::isfinite(one->air_opacity) || !(guided->air_opacity > 0.0)) continue;
@@ -60,25 +73,27 @@ std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
 }  // namespace
 
 StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
-  const std::string budget = fmt::format("{}", options.budget_s);
-  const auto variant = [&](const std::string& name, const std::string& label, std::vector<Override> overrides) {
-    overrides.push_back({"run.time_budget_s", budget});
-    return Variant{.name = name, .label = label, .overrides = std::move(overrides)};
-  };
   StudyBench bench;
   std::vector<VariantResult>& results = bench.results;
-  results.push_back(study.Run(variant("guided", "blocks, guided", {{"partition.blocks", options.blocks}})));
+  const Override budget = {"run.time_budget_s", fmt::format("{}", options.budget_s)};
+  const auto run = [&](const std::string& name, const std::string& label, std::vector<Override> overrides) {
+    overrides.push_back(budget);
+    results.push_back(study.Run({.name = name, .label = label, .overrides = std::move(overrides)}));
+  };
+  const Override divided = {"partition.blocks", options.blocks}, whole = {"partition.blocks", "1x1"};
+  run("guided", "blocks, guided", {divided});
   const int blocks = std::max(1, results.front().blocks);
-  const int tables = study.settings().partition.max_log2_table_size;
-  const std::string joined = std::to_string(JoinedTableSize(tables, blocks));
-  results.push_back(
-      study.Run(variant("independent", "blocks, independent", {{"partition.blocks", options.blocks}, {"train.coupling", "independent"}})));
-  results.push_back(
-      study.Run(variant("shared_height", "blocks, one height for all", {{"partition.blocks", options.blocks}, {"partition.heights", "survey"}})));
-  results.push_back(study.Run(variant("single_small", "single, tables of one block", {{"partition.blocks", "1x1"}})));
-  results.push_back(
-      study.Run(variant("single_large", "single, as many parameters",
-                        {{"partition.blocks", "1x1"}, {"partition.min_log2_table_size", joined}, {"partition.max_log2_table_size", joined}})));
+  const std::string joined = std::to_string(JoinedTableSize(study.settings().partition.max_log2_table_size, blocks));
+  run("single_small", "single, tables of one block", {whole});
+  run("single_large", "single, as many parameters", {whole, {"partition.min_log2_table_size", joined}, {"partition.max_log2_table_size", joined}});
+  run("independent", "blocks, independent", {divided, {"train.coupling", "independent"}});
+  const Override one_height = {"partition.heights", "survey"}, everywhere = {"train.start", "everywhere"};
+  run("shared_height", "blocks, one height for all", {divided, one_height});
+  // Dirt in the air is only known where the true surface is.
+  if (std::isfinite(results.front().air_opacity)) {
+    run("everywhere", "blocks that search their whole box", {divided, everywhere});
+    run("shared_everywhere", "one height for all, whole box", {divided, one_height, everywhere});
+  }
 
   BenchPage& page = bench.page;
   page.name = "single-vs-multi";
@@ -88,7 +103,7 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
       "block. "
       "Blocks either know the context (guided) or nothing outside themselves (independent). Dirt in the air is what a scene swallows of a ray that "
       "should "
-      "be free until 1 m in front of the true surface; only simulated surveys can tell.",
+      "be free until 1 m (or 5 ground pixels, where that is more) in front of the true surface; only simulated surveys can tell.",
       options.budget_s);
   if (const VariantResult* guided = Find(results, "guided")) {
     page.figures.push_back({"Blocks, guided", fmt::format("{:.2f} dB", guided->psnr_db), fmt::format("{} blocks", guided->blocks)});

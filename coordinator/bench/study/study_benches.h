@@ -32,8 +32,8 @@ struct BlocksBenchOptions {
 StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options);
 
 struct CapacityOptions {
-  std::string blocks;                                        // empty: as partition chooses
-  std::vector<int> log2_table_sizes = {15, 16, 17, 18, 19};  // the same for all blocks
+  std::string blocks;                                    // empty: as partition chooses
+  std::vector<int> log2_table_sizes = {15, 16, 17, 18};  // the same for all blocks
   double budget_s = 300.0;
 };
 // Tables sized by what each block's ground sampling distance and surface ask for, against the same size for all blocks; what a scene leaves out of

@@ -25,6 +25,15 @@ std::vector<Priced> Prices(const std::vector<VariantResult>& results) {
   return points;
 }
 
+// Presets train on photos of different widths; all are scored at one, the settings' own, or small pictures would seem the better ones.
+Override ScoringWidth(const Study& study) {
+  int width = study.settings().run.image_width;
+  if (width == 0) {
+    for (const camera::Camera& camera : study.survey().cameras) width = std::max(width, camera.width);
+  }
+  return {"evaluate.image_width", std::to_string(width)};
+}
+
 // Presets as curves over time, with the front through all of them.
 std::string ParetoChart(const std::vector<std::string>& presets, const std::vector<std::vector<VariantResult>>& by_preset) {
   std::vector<report::Curve> curves;
@@ -83,6 +92,7 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
     bench.results.insert(bench.results.end(), results.begin(), results.end());
   };
 
+  const Override scoring_width = ScoringWidth(study);
   std::vector<std::vector<VariantResult>> by_preset;
   std::vector<VariantResult> presets;
   for (const std::string& preset : PresetNames()) {
@@ -90,6 +100,7 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
     for (const double budget_s : options.budgets_s) {
       std::vector<Override> overrides = PresetOverrides(preset);
       overrides.push_back(Budget(budget_s));
+      overrides.push_back(scoring_width);
       by_preset.back().push_back(study.Run({.name = fmt::format("{}_{:.0f}s", preset, budget_s),
                                             .label = fmt::format("{}, {:.0f} s", preset, budget_s),
                                             .overrides = std::move(overrides)}));
@@ -158,7 +169,7 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
   }
   page.sections.push_back({.id = "presets",
                            .title = "Presets and time",
-                           .lead = "",
+                           .lead = "All scored on held-out photos " + scoring_width.value + " pixels wide (or as wide as they are).",
                            .charts = {ParetoChart(names, by_preset), TrainingChart(presets)},
                            .tables = {QualityTable(presets, "presets")},
                            .pictures = {}});

@@ -74,7 +74,7 @@ double SurfaceVoxels(const SurveyArea& area, const std::vector<Eigen::Vector3d>&
 }
 
 int Log2TableSize(double surface_voxels, const PartitionOptions& options) {
-  const double exact = std::log2(std::max(1.0, surface_voxels));
+  const double exact = std::log2(std::max(1.0, surface_voxels / options.voxels_per_entry));
   return static_cast<int>(
       std::lround(std::clamp(exact, static_cast<double>(options.min_log2_table_size), static_cast<double>(options.max_log2_table_size))));
 }

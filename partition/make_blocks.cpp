@@ -51,6 +51,7 @@ double VoxelsOf(const Inputs& in, const BlockGrid& grid, int index, double voxel
 BlockGrid AutoGrid(const Inputs& in) {
   const Eigen::Vector2d extent = in.area.max_enu - in.area.min_enu;
   const double largest_table = std::exp2(in.options.max_log2_table_size);
+  const double most_voxels = largest_table * in.options.max_voxels_per_entry;
   const double most_blocks =
       in.options.parameter_budget > 0.0 ? std::clamp(std::floor(in.options.parameter_budget / largest_table), 1.0, double{kMaxBlocks}) : kMaxBlocks;
   BlockGrid grid = SplitByCount(in.area.min_enu, in.area.max_enu, 1, 1);
@@ -71,7 +72,7 @@ BlockGrid AutoGrid(const Inputs& in) {
       const int column = index % columns;
       const double agl = BlockAltitude(in.survey, in.photo_altitude_m, grid.Min(row, column), grid.Max(row, column));
       const double voxel_m = in.options.voxel_per_gsd * SurveyGsd(in.survey, agl, in.image_width);
-      fits = VoxelsOf(in, grid, index, voxel_m) <= largest_table * std::sqrt(2.0);
+      fits = VoxelsOf(in, grid, index, voxel_m) <= most_voxels * std::sqrt(2.0);
     }
     if (fits) return grid;
   }

@@ -35,6 +35,10 @@ void PartitionOptions::Visit(config::OptionVisitor& v) {
   v.Field("voxel_per_gsd", voxel_per_gsd, "finest voxel as a multiple of the ground sampling distance, 0.1..100");
   v.Field("min_log2_table_size", min_log2_table_size, "smallest hash table of a level, log2 of its entries, 1..24");
   v.Field("max_log2_table_size", max_log2_table_size, "largest hash table of a level, log2 of its entries, 1..24");
+  v.Field("voxels_per_entry", voxels_per_entry,
+          "finest voxels of surface that share an entry of a block's tables, where the largest table allows: more means smaller tables; 0.1..1000");
+  v.Field("max_voxels_per_entry", max_voxels_per_entry,
+          "with blocks = auto: blocks are cut until no more finest voxels of surface than these share an entry of the largest table; 0.1..1000");
   v.Field("parameter_budget", parameter_budget, "entries of the finest level over all blocks that auto may use; 0: no limit");
 }
 
@@ -57,6 +61,8 @@ void PartitionOptions::Check() const {
   RequireRange("max_log2_table_size", max_log2_table_size, 1, 24);
   Require(min_log2_table_size <= max_log2_table_size, "min_log2_table_size", std::to_string(min_log2_table_size),
           "must not exceed max_log2_table_size = " + std::to_string(max_log2_table_size));
+  RequireRange("voxels_per_entry", voxels_per_entry, 0.1, 1000.0);
+  RequireRange("max_voxels_per_entry", max_voxels_per_entry, 0.1, 1000.0);
   Require(std::isfinite(parameter_budget) && parameter_budget >= 0.0, "parameter_budget", std::to_string(parameter_budget), "must be 0 or positive");
 }
 

@@ -14,7 +14,8 @@ namespace {
 
 struct StudyFlags {
   std::string out, survey, preset, model, budget, blocks;
-  std::vector<int> log2_table_sizes;  // empty: the study's own
+  std::vector<int> log2_table_sizes;     // empty: the study's own
+  std::vector<double> voxels_per_entry;  // empty: the study's own
   bool quick = false, restart = false, keep = false, json = false;
 };
 
@@ -119,6 +120,7 @@ StudyBench RunCapacity(Study& study, const StudyFlags& flags) {
   options.blocks = flags.blocks;
   if (flags.quick) options.log2_table_sizes = {13, 15};
   if (!flags.log2_table_sizes.empty()) options.log2_table_sizes = flags.log2_table_sizes;
+  if (!flags.voxels_per_entry.empty()) options.voxels_per_entry = flags.voxels_per_entry;
   return CapacityBench(study, options);
 }
 
@@ -183,11 +185,17 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                          command->add_option("--blocks", flags->blocks, "rows x columns; default: as `partition` chooses")->type_name("RxC");
                          command
                              ->add_option("--log2-table-sizes", flags->log2_table_sizes,
-                                          "tables to compare with, the same for all blocks: log2 of the entries of a level; default: 15,16,17,18, "
+                                          "tables to compare with, the same for all blocks: log2 of the entries of a level; default: 16,17,18, "
                                           "with --quick 13,15")
                              ->delimiter(',')
                              ->check(CLI::Range(4, 24))
                              ->type_name("N,...");
+                         command
+                             ->add_option("--voxels-per-entry", flags->voxels_per_entry,
+                                          "how many finest voxels of surface share an entry of a table; default: 1,2,4")
+                             ->delimiter(',')
+                             ->check(CLI::Range(0.1, 1000.0))
+                             ->type_name("X,...");
                        },
                    .run = RunCapacity});
   AddStudyCommand(bench, state,

@@ -162,6 +162,7 @@ void FillMeans(const render::SceneInfo& info, const Pools& pools, Metrics* metri
     metrics->depth_rmse_m = errors.rmse_m;
     metrics->depth_median_abs_m = errors.median_abs_m;
     metrics->air_opacity = pools.air.Mean();
+    metrics->air_profile = pools.air.Profile();
   }
 }
 

@@ -131,6 +131,10 @@ std::string MetricsJson(const Metrics& metrics) {
     json["depth_rmse_m"] = NumberOrNull(metrics.depth_rmse_m);
     json["depth_median_abs_m"] = NumberOrNull(metrics.depth_median_abs_m);
     json["air_opacity"] = NumberOrNull(metrics.air_opacity);
+    json["air_profile"] = Json::array();
+    for (const auto& [clearance_m, opacity] : metrics.air_profile) {
+      json["air_profile"].push_back({{"clearance_m", clearance_m}, {"opacity", NumberOrNull(opacity)}});
+    }
   }
   json["train_seconds"] = NumberOrNull(metrics.train_seconds);
   json["samples_per_second"] = NumberOrNull(metrics.samples_per_second);

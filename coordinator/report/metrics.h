@@ -73,7 +73,8 @@ struct Metrics {
   double footprint_step_control = kNotMeasured;
   double depth_rmse_m = kNotMeasured;  // pooled over the pixels of all test photos
   double depth_median_abs_m = kNotMeasured;
-  double air_opacity = kNotMeasured;  // of what should be empty in front of the true surface, mean over rays (air_opacity.h)
+  double air_opacity = kNotMeasured;                   // of what should be empty in front of the true surface, mean over rays (air_opacity.h)
+  std::vector<std::pair<double, double>> air_profile;  // (metres in front of the true surface, the same until there)
   bool has_truth = false;
 
   double train_seconds = kNotMeasured;

@@ -16,6 +16,7 @@ PartitionOptions Request(const std::string& blocks) {
   PartitionOptions options;
   options.blocks = blocks;
   options.max_log2_table_size = 19;  // room to tell differences
+  options.max_voxels_per_entry = 1.0;
   return options;
 }
 
@@ -170,6 +171,29 @@ TEST(MakeBlocks, AutoSplitsUntilTablesFit) {
   const BlockSet few = MakeBlocks(FlySurvey({}), options, 800);
   EXPECT_LE(few.blocks.size(), 4U);
   EXPECT_GT(few.blocks.size(), 1U);
+}
+
+TEST(MakeBlocks, VoxelsThatShareEntriesMakeTablesSmaller) {
+  PartitionOptions options = Request("2x2");
+  const int exact = MakeBlocks(FlySurvey({}), options, 0).blocks[0].log2_table_size;
+  options.voxels_per_entry = 4.0;
+  EXPECT_EQ(MakeBlocks(FlySurvey({}), options, 0).blocks[0].log2_table_size, exact - 2);
+  options.voxels_per_entry = 0.0;
+  EXPECT_NE(MessageOf(options).find("partition.voxels_per_entry"), std::string::npos);
+}
+
+TEST(MakeBlocks, CrowdedTablesMakeAutomaticBlocksLarger) {
+  PartitionOptions options = Request("auto");
+  options.max_log2_table_size = 15;
+  size_t blocks = std::numeric_limits<size_t>::max();
+  for (const double shared : {1.0, 4.0, 16.0}) {
+    options.max_voxels_per_entry = shared;
+    const BlockSet set = MakeBlocks(FlySurvey({}), options, 400);
+    EXPECT_LT(set.blocks.size(), blocks) << shared;
+    blocks = set.blocks.size();
+  }
+  options.max_voxels_per_entry = 0.0;
+  EXPECT_NE(MessageOf(options).find("partition.max_voxels_per_entry"), std::string::npos);
 }
 
 TEST(MakeBlocks, EmptyBlocksAreNamedAndSkipped) {

@@ -37,68 +37,98 @@ BenchTable FieldTable(const VariantResult& result) {
   return table;
 }
 
-std::string AgainstUniform(const VariantResult& fitted, const VariantResult& uniform) {
-  const double share = 1.0 - fitted.scene_parameters / uniform.parameters;
-  const double change_db = fitted.psnr_db - uniform.psnr_db;
-  const double bytes = 1.0 - fitted.scene_bytes / uniform.scene_bytes;
+std::string Against(const VariantResult& fitted, const VariantResult& other) {
+  const double share = 1.0 - fitted.scene_parameters / other.parameters;
+  const double change_db = fitted.psnr_db - other.psnr_db;
+  const double bytes = 1.0 - fitted.scene_bytes / other.scene_bytes;
   return fmt::format(
       "Against {}: {:.0f} % fewer parameters in the scene than that trained ({:.2f} M against {:.2f} M; its file is {:.0f} % smaller than that "
-      "one's, "
-      "which leaves out unread entries too), PSNR {:+.2f} dB. The aim, {:.0f} % fewer at a loss of at most {:g} dB, is {}.",
-      uniform.label, 100.0 * share, fitted.scene_parameters / 1e6, uniform.parameters / 1e6, 100.0 * bytes, change_db, 100.0 * kAimShare, kAimLoss_db,
+      "one's, which leaves out unread entries too), PSNR {:+.2f} dB. The aim, {:.0f} % fewer at a loss of at most {:g} dB, is {}.",
+      other.label, 100.0 * share, fitted.scene_parameters / 1e6, other.parameters / 1e6, 100.0 * bytes, change_db, 100.0 * kAimShare, kAimLoss_db,
       share >= kAimShare && change_db >= -kAimLoss_db ? "met" : "missed");
+}
+
+std::string Even(const VariantResult& fitted, const VariantResult& leaner) {
+  return fmt::format("{} would do with {:.0f} % of the fitted scene's parameters ({:.2f} M) at {:+.2f} dB.", leaner.label,
+                     100.0 * leaner.scene_parameters / fitted.scene_parameters, leaner.scene_parameters / 1e6, leaner.psnr_db - fitted.psnr_db);
+}
+
+report::Curve Points(const std::string& name, const std::vector<VariantResult>& results) {
+  report::Curve curve{.name = name, .points = {}, .marks = true};
+  for (const VariantResult& r : results) curve.points.emplace_back(r.scene_parameters, r.psnr_db);
+  std::sort(curve.points.begin(), curve.points.end());
+  return curve;
 }
 
 }  // namespace
 
 StudyBench CapacityBench(Study& study, const CapacityOptions& options) {
-  StudyBench bench;
   const Override budget = {"run.time_budget_s", fmt::format("{}", options.budget_s)};
-  std::vector<Override> first = {budget};
-  if (!options.blocks.empty()) first.push_back({"partition.blocks", options.blocks});
-  const VariantResult fitted = study.Run({.name = "fitted", .label = "fitted to each block", .overrides = first});
-  bench.results.push_back(fitted);
+  std::vector<Override> own = {budget};
+  if (!options.blocks.empty()) own.push_back({"partition.blocks", options.blocks});
+  const VariantResult fitted = study.Run({.name = "fitted", .label = "fitted to each block", .overrides = own});
   // Other tables would make automatic partition cut other blocks.
   const std::string layout = fitted.layout.empty() ? study.settings().partition.blocks : fitted.layout;
-  report::Curve curve{.name = "the same for all blocks", .points = {}, .marks = true};
+  std::vector<VariantResult> uniform, shared, cut;
   for (const int log2 : options.log2_table_sizes) {
     const std::string size = std::to_string(log2);
-    bench.results.push_back(study.Run(
+    uniform.push_back(study.Run(
         {.name = "uniform_" + size,
          .label = "2^" + size + " for all blocks",
          .overrides = {budget, {"partition.blocks", layout}, {"partition.min_log2_table_size", size}, {"partition.max_log2_table_size", size}}}));
-    curve.points.emplace_back(bench.results.back().parameters, bench.results.back().psnr_db);
   }
+  const partition::PartitionOptions& partition = study.settings().partition;
+  for (const double load : options.voxels_per_entry) {
+    if (load == partition.voxels_per_entry) continue;
+    std::string name = fmt::format("shared_{:g}", load);
+    std::replace(name.begin(), name.end(), '.', '_');
+    shared.push_back(study.Run({.name = name,
+                                .label = fmt::format("{:g} voxels per entry", load),
+                                .overrides = {budget, {"partition.blocks", layout}, {"partition.voxels_per_entry", fmt::format("{}", load)}}}));
+  }
+  if (options.blocks.empty() && partition.blocks == "auto" && partition.max_voxels_per_entry > 1.0) {
+    cut.push_back(study.Run(
+        {.name = "small_blocks", .label = "blocks cut until no entry is shared", .overrides = {budget, {"partition.max_voxels_per_entry", "1"}}}));
+  }
+
+  StudyBench bench;
+  bench.results = {fitted};
+  for (const auto* group : {&uniform, &shared, &cut}) bench.results.insert(bench.results.end(), group->begin(), group->end());
   BenchPage& page = bench.page;
   page.name = "capacity";
   page.title = "Only what a scene requires";
   page.lead = fmt::format(
-      "Each block's tables as large as its ground sampling distance, its area and the roughness of its surface ask for, against one size for all. "
-      "{:.0f} s of training for every variant.",
-      options.budget_s);
+      "Each block's tables as large as its ground sampling distance, area and roughness ask for ({:g} finest voxels "
+      "of surface per entry), against one size for all blocks, and against more and fewer voxels per entry. {:.0f} s of training for every variant.",
+      partition.voxels_per_entry, options.budget_s);
   const int largest = LargestTable(fitted);
-  for (size_t i = 1; i < bench.results.size(); ++i) {
-    const VariantResult& uniform = bench.results[i];
-    if (!fitted.failure.empty() || !uniform.failure.empty()) continue;
-    if (options.log2_table_sizes[i - 1] >= largest) page.verdicts.push_back(AgainstUniform(fitted, uniform));
-    if (options.log2_table_sizes[i - 1] != largest) continue;
-    page.figures.push_back({"Parameters", fmt::format("{:+.0f} %", 100.0 * (fitted.scene_parameters / uniform.parameters - 1.0)),
+  for (size_t i = 0; i < uniform.size(); ++i) {
+    const VariantResult& same = uniform[i];
+    if (!fitted.failure.empty() || !same.failure.empty() || options.log2_table_sizes[i] < largest) continue;
+    page.verdicts.push_back(Against(fitted, same));
+    if (options.log2_table_sizes[i] != largest) continue;
+    page.figures.push_back({"Parameters", fmt::format("{:+.0f} %", 100.0 * (fitted.scene_parameters / same.parameters - 1.0)),
                             "against the largest block's tables for all"});
-    page.figures.push_back({"PSNR", fmt::format("{:+.2f} dB", fitted.psnr_db - uniform.psnr_db), "at equal training time"});
+    page.figures.push_back({"PSNR", fmt::format("{:+.2f} dB", fitted.psnr_db - same.psnr_db), "at equal training time"});
+  }
+  for (const auto* group : {&shared, &cut}) {
+    for (const VariantResult& other : *group) {
+      if (!fitted.failure.empty() || !other.failure.empty()) continue;
+      page.verdicts.push_back(other.scene_parameters > fitted.scene_parameters ? Against(fitted, other) : Even(fitted, other));
+    }
   }
   if (fitted.failure.empty()) {
     page.figures.push_back({"Left out after training", fmt::format("{:.0f} %", 100.0 * (1.0 - fitted.scene_parameters / fitted.parameters)),
                             "entries that nothing reads; changes no pixel"});
   }
-  const report::Curve own{
-      .name = "fitted, trained", .points = {{fitted.parameters, fitted.psnr_db}}, .emphasised = true, .line = false, .marks = true};
-  const report::Curve kept{.name = "fitted, in the scene", .points = {{fitted.scene_parameters, fitted.psnr_db}}, .line = false, .marks = true};
+  const report::Curve here{.name = "fitted", .points = {{fitted.scene_parameters, fitted.psnr_db}}, .emphasised = true, .line = false, .marks = true};
   page.sections.push_back(
       {.id = "quality",
        .title = "Quality for size",
        .lead = "",
-       .charts = {report::CurveChart({curve, own, kept},
-                                     {.title = "PSNR by parameters", .x_label = "parameters of all fields", .y_label = "PSNR (dB)", .log_x = true})},
+       .charts = {report::CurveChart(
+           {Points("one size for all blocks", uniform), Points("other voxels per entry", shared), Points("smaller blocks", cut), here},
+           {.title = "PSNR by parameters", .x_label = "parameters in the scene", .y_label = "PSNR (dB)", .log_x = true})},
        .tables = {QualityTable(bench.results)},
        .pictures = {}});
   page.sections.push_back({.id = "fields",

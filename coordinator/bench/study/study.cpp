@@ -264,6 +264,10 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored) cons
                                    {"evaluate_seconds", &r.evaluate_seconds}}) {
     *value = NumberAt(metrics, key);
   }
+  for (const nlohmann::json& place : metrics.value("air_profile", nlohmann::json::array())) {
+    const double opacity = NumberAt(place, "opacity");
+    if (std::isfinite(opacity)) r.air_profile.emplace_back(NumberAt(place, "clearance_m"), opacity);
+  }
   r.scene_bytes = static_cast<double>(std::filesystem::file_size(project.SceneFile()));
   r.samples = r.parameters = 0.0;
   const std::map<std::string, int64_t> kept = SceneParameters(project.SceneFile());

@@ -32,12 +32,13 @@ struct BlocksBenchOptions {
 StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options);
 
 struct CapacityOptions {
-  std::string blocks;                                    // empty: as partition chooses
-  std::vector<int> log2_table_sizes = {15, 16, 17, 18};  // the same for all blocks
+  std::string blocks;                                      // empty: as partition chooses
+  std::vector<int> log2_table_sizes = {16, 17, 18};        // the same for all blocks
+  std::vector<double> voxels_per_entry = {1.0, 2.0, 4.0};  // of partition
   double budget_s = 300.0;
 };
-// Tables sized by what each block's ground sampling distance and surface ask for, against the same size for all blocks; what a scene leaves out of
-// both, and what all of it costs in quality.
+// Tables (and blocks) sized by what each block's ground sampling distance and surface ask for, against the same size for all blocks, and against
+// more and fewer surface voxels per entry and smaller blocks; what a scene leaves out of them, and what all of it costs in quality.
 StudyBench CapacityBench(Study& study, const CapacityOptions& options);
 
 struct EncodingsOptions {

@@ -61,6 +61,7 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"psnr_db", OrNull(field.psnr_db)}});
   }
   json["curve"] = result.curve;
+  json["air_profile"] = result.air_profile;
   for (const auto& [key, value] :
        {std::pair{"photo", &result.photo}, {"render", &result.render}, {"error", &result.error}, {"report", &result.report}}) {
     json[key] = *value;
@@ -89,6 +90,7 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .psnr_db = OrNone(field.at("psnr_db"))});
   }
   json.at("curve").get_to(result.curve);
+  json.at("air_profile").get_to(result.air_profile);
   for (const auto& [key, value] :
        {std::pair{"photo", &result.photo}, {"render", &result.render}, {"error", &result.error}, {"report", &result.report}}) {
     json.at(key).get_to(*value);

@@ -35,10 +35,11 @@ def test(skyquilt, folder):
     expect(digest(out / "runs" / "guided") == before, "a finished variant was run again")
     result = check_page(out, "single-vs-multi")
     names = [variant["name"] for variant in result["results"]]
-    expect(names == ["guided", "independent", "shared_height", "single_small", "single_large"], names)
+    expect(names == ["guided", "single_small", "single_large", "independent", "shared_height", "everywhere", "shared_everywhere"], names)
     for variant in result["results"]:
         expect("failure" not in variant, variant)
         expect(variant["psnr_db"] > 8.0 and variant["train_seconds"] > 0.0 and variant["parameters"] > 0 and variant["air_opacity"] is not None, variant)
+        expect([place[0] for place in variant["air_profile"]] == [1, 2, 5, 10, 20] and variant["air_profile"][0][1] >= variant["air_profile"][3][1], variant)
         expect(variant["blocks"] == (1 if variant["name"].startswith("single") else 2), variant)
         expect(not (out / "runs" / variant["name"] / "checkpoints").exists(), "large files were kept")
         expect((out / variant["report"]).is_file(), "the variant's report is gone")
@@ -54,7 +55,7 @@ def test(skyquilt, folder):
     out = folder / "capacity"
     skyquilt.call("bench", "capacity", "--survey", survey, "-o", out, "--blocks", "1x2", *SMALL)
     result = check_page(out, "capacity")
-    expect([variant["name"] for variant in result["results"]] == ["fitted", "uniform_13", "uniform_15"], result["results"])
+    expect([variant["name"] for variant in result["results"]] == ["fitted", "uniform_13", "uniform_15", "shared_2", "shared_4"], result["results"])
     for variant in result["results"]:
         fields = variant["fields"]
         expect([field["name"] for field in fields] == ["context", "r0c0", "r0c1"], fields)

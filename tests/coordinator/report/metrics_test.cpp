@@ -41,6 +41,7 @@ TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   metrics.has_truth = true;
   metrics.depth_rmse_m = 0.75;
   metrics.air_opacity = 0.02;
+  metrics.air_profile = {{1.0, 0.03}, {10.0, kNotMeasured}};
   PhotoScore good, blank, equal;
   good.name = "a/one.jpg";
   good.psnr_db = 27.5;
@@ -56,6 +57,9 @@ TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   EXPECT_DOUBLE_EQ(json["depth_rmse_m"].get<double>(), 0.75);
   EXPECT_TRUE(json["depth_median_abs_m"].is_null());
   EXPECT_DOUBLE_EQ(json["air_opacity"].get<double>(), 0.02);
+  EXPECT_DOUBLE_EQ(json["air_profile"][0]["opacity"].get<double>(), 0.03);
+  EXPECT_DOUBLE_EQ(json["air_profile"][1]["clearance_m"].get<double>(), 10.0);
+  EXPECT_TRUE(json["air_profile"][1]["opacity"].is_null());
   EXPECT_DOUBLE_EQ(json["psnr_per_image"]["a/one.jpg"].get<double>(), 27.5);
   EXPECT_TRUE(json["psnr_per_image"]["two.jpg"].is_null());
   EXPECT_TRUE(json["psnr_per_image"]["three.jpg"].is_null());

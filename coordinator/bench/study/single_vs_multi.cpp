@@ -48,6 +48,7 @@ std::string DirtRatio(const VariantResult& clean, const VariantResult& dirty) {
 
 BenchSection AirSection(const std::vector<VariantResult>& results) {
   std::vector<report::Curve> curves;
+  curves.reserve(results.size());
   for (const VariantResult& r : results) curves.push_back({.name = r.label, .points = r.air_profile, .marks = true});
   return {.id = "air",
           .title = "Dirt in the air",

@@ -31,7 +31,6 @@ constexpr double kVisitsToJudge = 16.0;  // samples per occupied cell: fewer, an
 constexpr int kMaxDroppedInARow = 20;
 constexpr int64_t kMaxOccupancyCells = 4'000'000;
 constexpr double kCellPerVoxel = 3.0;
-// A step of two finest voxels: interpolation is smooth across cells, and half the samples buy more rays.
 // Largest display value of a field whose photos' gains are learned: white in a photo of a stop less.
 constexpr double kLearnedRange = 1.4;
 constexpr double kLuminanceRange = 2.0;

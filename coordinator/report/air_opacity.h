@@ -13,29 +13,22 @@
 
 namespace skyquilt::report {
 
-// Air that counts ends so far in front of the true surface, along the ray: what a surface's own blur takes is not dirt in the air. A photo's blur
-// grows with its ground sampling distance (here: the distance on the surface between rays one pixel apart), so the larger of both counts.
-inline constexpr double kAirClearance_m = 1.0, kAirClearance_gsd = 5.0;
-// How far from surfaces dirt hangs: the same, ending so far in front of them.
-inline constexpr std::array<double, 5> kAirProfile_m = {1.0, 2.0, 5.0, 10.0, 20.0};
+// Air that counts ends this far in front of the true surface, metres: what a surface's own blur takes is not dirt in the air.
+inline constexpr double kAirClearance_m = 1.0;
+// The same farther from surfaces: blur falls off, what floats stays. Ascending, from kAirClearance_m.
+inline constexpr std::array<double, 5> kAirProfile_m = {kAirClearance_m, 2.0, 5.0, 10.0, 20.0};
 
-class AirOpacity {
- public:
+struct AirOpacity {
+  // Per clearance of kAirProfile_m: opacities in [0, 1], each gathered from the camera to the clearance in front of the true surface, of the rays
+  // that are longer than that.
+  std::array<double, kAirProfile_m.size()> sum = {};
+  std::array<int64_t, kAirProfile_m.size()> rays = {};
+
   AirOpacity& operator+=(const AirOpacity& other);
-  // Opacity in [0, 1], mean over rays, gathered from the camera to the clearance in front of the true surface. NaN without rays.
-  double Mean() const { return clear_.Mean(); }
-  // (clearance in metres, mean opacity) for kAirProfile_m, of the rays that are longer than that; NaN without any.
+  double Mean() const { return Mean(0); }  // to kAirClearance_m; NaN without rays
+  double Mean(size_t clearance) const;
+  // (clearance in metres, mean opacity).
   std::vector<std::pair<double, double>> Profile() const;
-
- private:
-  friend AirOpacity MeasureAirOpacity(const render::Scene& scene, const PhotoTask& task, const PhotoFindings& findings, base::ThreadPool& threads);
-  struct Pool {
-    double sum = 0.0;
-    int64_t rays = 0;
-    double Mean() const;
-  };
-  Pool clear_;
-  std::array<Pool, kAirProfile_m.size()> profile_;
 };
 
 // Over a grid of pixels of one photo that are scored and have a true depth. `findings` as ScorePhoto gave them for this task.

@@ -36,8 +36,8 @@ std::string Headline(const ReportInput& input) {
   html += KeyFigure("LPIPS", FormatFixed(metrics.lpips, 3), EscapeHtml(metrics.lpips_note));
   if (metrics.has_truth) {
     html += KeyFigure("Median depth error", FormatFixed(metrics.depth_median_abs_m, 2, "m"), "RMSE " + FormatFixed(metrics.depth_rmse_m, 2, "m"));
-    html += KeyFigure("Dirt in the air", FormatPercent(metrics.air_opacity, 2),
-                      "of light from the true surface swallowed more than 1 m (or 5 ground pixels) in front of it");
+    html +=
+        KeyFigure("Dirt in the air", FormatPercent(metrics.air_opacity, 2), "of light from the true surface swallowed more than 1 m in front of it");
   }
   html += KeyFigure("Seam gap", FormatFixed(metrics.seam_psnr_gap_db, 2, "dB"),
                     std::isfinite(metrics.seam_psnr_gap_db) ? "same textures inside " + FormatFixed(metrics.psnr_matched_interior_db, 2) +

@@ -68,6 +68,19 @@ TEST(StartingOccupancy, WithoutPointsEverythingSeenStays) {
   EXPECT_EQ(f.occupancy.occupied, before);
 }
 
+TEST(StartingOccupancy, EverywhereIsAllThatIsSeen) {
+  render::TrainedField target;
+  const double extent[3] = {1.0, 1.0, 0.5};
+  target.occupancy = field::OccupancyGrid::Make(extent, 0.25, 1000);
+  target.occupancy.depth[3] = -1.0F;
+  target.occupancy.occupied[3] = 0;
+  StartEverywhere(target);
+  for (size_t i = 0; i < target.occupancy.depth.size(); ++i) {
+    EXPECT_EQ(target.occupancy.depth[i], i == 3 ? -1.0F : kStartDepth) << i;
+    EXPECT_EQ(target.occupancy.occupied[i], i == 3 ? 0 : 1) << i;
+  }
+}
+
 TEST(StartingOccupancy, NeverSeenCellsStayNeverSeen) {
   render::TrainedField f = EmptyField();
   const Eigen::Vector3f unit = f.map.UnitFromEnu({8.0, 30.0, 3.0});

@@ -53,9 +53,8 @@ BenchSection AirSection(const std::vector<VariantResult>& results) {
   return {.id = "air",
           .title = "Dirt in the air",
           .lead =
-              "What a scene swallows of a ray from the camera until so far in front of the true surface. Blur of surfaces ends after some metres; "
-              "what is "
-              "left floats.",
+              "What a scene swallows of a ray from the camera until so far in front of the true surface. Blur of surfaces ends "
+              "after some metres; what is left floats.",
           .charts = {report::CurveChart(curves, {.title = "Opacity of air",
                                                  .x_label = "distance from the true surface (m)",
                                                  .y_label = "share of light swallowed",
@@ -138,7 +137,7 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
       "block. "
       "Blocks either know the context (guided) or nothing outside themselves (independent). Dirt in the air is what a scene swallows of a ray that "
       "should "
-      "be free until 1 m (or 5 ground pixels, where that is more) in front of the true surface; only simulated surveys can tell.",
+      "be free until 1 m in front of the true surface; only simulated surveys can tell.",
       options.budget_s);
   if (const VariantResult* guided = Find(results, "guided")) {
     page.figures.push_back({"Blocks, guided", fmt::format("{:.2f} dB", guided->psnr_db), fmt::format("{} blocks", guided->blocks)});

@@ -22,7 +22,7 @@ struct PartitionOptions {
   double voxel_per_gsd = 1.5;     // finest voxel as a multiple of the ground sampling distance
   int min_log2_table_size = 14;
   int max_log2_table_size = 17;
-  double voxels_per_entry = 1.0;
+  double voxels_per_entry = 4.0;
   double max_voxels_per_entry = 4.0;
   double parameter_budget = 0.0;  // hash entries (of the finest level) over the whole survey that "auto" may use; 0: no limit
 

@@ -66,10 +66,11 @@ std::string HtmlTable(const BenchTable& table) {
 
 std::string HtmlPictures(const std::vector<BenchPicture>& pictures) {
   if (pictures.empty()) return "";
-  std::string html = "<div class=\"pics\">";
+  std::string html = "<div class=\"pics magnified\">";
   for (const BenchPicture& picture : pictures) {
-    html += fmt::format("<figure class=\"pic\"><img src=\"{}\" alt=\"{}\" loading=\"lazy\"><figcaption>{}</figcaption></figure>",
-                        report::EscapeHtml(picture.file), report::EscapeHtml(picture.caption), report::EscapeHtml(picture.caption));
+    html += fmt::format(
+        "<figure class=\"pic\"><div class=\"pane\"><img src=\"{}\" alt=\"{}\" loading=\"lazy\"></div><figcaption>{}</figcaption></figure>",
+        report::EscapeHtml(picture.file), report::EscapeHtml(picture.caption), report::EscapeHtml(picture.caption));
   }
   return html + "</div>";
 }

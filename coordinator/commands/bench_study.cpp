@@ -185,14 +185,14 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                          command->add_option("--blocks", flags->blocks, "rows x columns; default: as `partition` chooses")->type_name("RxC");
                          command
                              ->add_option("--log2-table-sizes", flags->log2_table_sizes,
-                                          "tables to compare with, the same for all blocks: log2 of the entries of a level; default: 16,17,18, "
+                                          "tables to compare with, the same for all blocks: log2 of the entries of a level; default: 17,18, "
                                           "with --quick 13,15")
                              ->delimiter(',')
                              ->check(CLI::Range(4, 24))
                              ->type_name("N,...");
                          command
                              ->add_option("--voxels-per-entry", flags->voxels_per_entry,
-                                          "how many finest voxels of surface share an entry of a table; default: 1,2,4")
+                                          "how many finest voxels of surface share an entry of a table; default: 1,2,8")
                              ->delimiter(',')
                              ->check(CLI::Range(0.1, 1000.0))
                              ->type_name("X,...");

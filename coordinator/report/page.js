@@ -68,6 +68,17 @@
     };
   });
 
+  // All pictures of a group show the same place, the one the pointer is at.
+  document.querySelectorAll(".magnified").forEach(function (group) {
+    group.addEventListener("pointermove", function (e) {
+      const pane = e.target.closest(".pane");
+      if (!pane) return;
+      const box = pane.getBoundingClientRect();
+      group.style.setProperty("--mx", 100 * (e.clientX - box.left) / box.width + "%");
+      group.style.setProperty("--my", 100 * (e.clientY - box.top) / box.height + "%");
+    });
+  });
+
   const viewer = document.getElementById("viewer");
   const stage = viewer.querySelector("div");
   document.addEventListener("click", function (e) {
@@ -85,7 +96,7 @@
     shown.style.width = "min(100%, calc(88vh * " + (img.naturalWidth / img.naturalHeight || 1.5) + "))";
     stage.replaceChildren(shown);
     const what = compared ? "drag to compare photo and render" : img.alt.toLowerCase();
-    viewer.querySelector("p").textContent = card.querySelector("h3").textContent + " \u00b7 " + what;
+    viewer.querySelector("p").textContent = card ? card.querySelector("h3").textContent + " \u00b7 " + what : img.alt;
     viewer.showModal();
   });
   viewer.querySelector("button").onclick = function () { viewer.close(); };

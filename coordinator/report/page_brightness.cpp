@@ -22,7 +22,7 @@ struct GainColor {
   const char* name;
   const char* css_class;
 };
-constexpr std::array<GainColor, 3> kGainColors = {{{"red", "c7"}, {"green", "c5"}, {"blue", "c1"}}};
+constexpr std::array<GainColor, 3> kGainColors = {{{"red", "c5"}, {"green", "c7"}, {"blue", "c1"}}};
 
 // Axes of a drawing: values to pixels.
 struct PlotFrame {
@@ -171,7 +171,7 @@ std::string GainDots(const PlotFrame& frame, const GainSeries& series, size_t i,
   if (learned) {
     for (size_t c = 0; c < 3; ++c) dot(series.learned[c][i], kGainColors[c].css_class);
   } else {
-    dot(series.exif[i], "c8");
+    dot(series.exif[i], "c6");
   }
   return html + "</g>";
 }
@@ -185,8 +185,8 @@ std::string GainChart(const BrightnessReport& brightness) {
   if (brightness.timed) labels.x = "flight time (min)";
   if (series.shortened) labels.x += fmt::format(", pauses of more than {:.0f} min shown as {:.0f} min", kLongPause_min, kShownPause_min);
   std::string html = OpenPlot(frame, labels, 10, "wide");
-  html += GainPath(frame, series, series.exif, true, "c8", "EXIF");
-  std::string legend = "<span><i class=\"c8\"></i>EXIF</span>";
+  html += GainPath(frame, series, series.exif, true, "c6", "EXIF");
+  std::string legend = "<span><i class=\"c6\"></i>EXIF</span>";
   for (size_t c = 0; learned && c < 3; ++c) {
     const std::string name = fmt::format("EXIF and learned, {}", kGainColors[c].name);
     html += GainPath(frame, series, series.learned[c], false, kGainColors[c].css_class, name);
@@ -218,7 +218,7 @@ std::string HistogramChart(const BrightnessReport& brightness, bool alone) {
   const PlotLabels labels{"Brightness of the training photos", "display value (0 black, 1 white)", "share of pixels (%)"};
   return OpenPlot(frame, labels, 10, alone ? "wide" : "") + BinsPath(frame, after, "bins c0", "at reference exposure") +
          BinsPath(frame, before, "curve c8", "as recorded") +
-         ClosePlot("<span><i class=\"c8\"></i>as recorded</span><span><i class=\"c0\"></i>at reference exposure</span>");
+         ClosePlot("<span><i class=\"c6\"></i>as recorded</span><span><i class=\"c0\"></i>at reference exposure</span>");
 }
 
 std::string FalloffChart(const BrightnessReport& brightness) {

@@ -175,6 +175,7 @@ TEST(MakeBlocks, AutoSplitsUntilTablesFit) {
 
 TEST(MakeBlocks, VoxelsThatShareEntriesMakeTablesSmaller) {
   PartitionOptions options = Request("2x2");
+  options.voxels_per_entry = 1.0;
   const int exact = MakeBlocks(FlySurvey({}), options, 0).blocks[0].log2_table_size;
   options.voxels_per_entry = 4.0;
   EXPECT_EQ(MakeBlocks(FlySurvey({}), options, 0).blocks[0].log2_table_size, exact - 2);

@@ -80,9 +80,7 @@ StudyBench CapacityBench(Study& study, const CapacityOptions& options) {
   const partition::PartitionOptions& partition = study.settings().partition;
   for (const double load : options.voxels_per_entry) {
     if (load == partition.voxels_per_entry) continue;
-    std::string name = fmt::format("shared_{:g}", load);
-    std::replace(name.begin(), name.end(), '.', '_');
-    shared.push_back(study.Run({.name = name,
+    shared.push_back(study.Run({.name = "shared_" + NumberInName(load),
                                 .label = fmt::format("{:g} voxels per entry", load),
                                 .overrides = {budget, {"partition.blocks", layout}, {"partition.voxels_per_entry", fmt::format("{}", load)}}}));
   }

@@ -33,8 +33,8 @@ StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options);
 
 struct CapacityOptions {
   std::string blocks;                                      // empty: as partition chooses
-  std::vector<int> log2_table_sizes = {16, 17, 18};        // the same for all blocks
-  std::vector<double> voxels_per_entry = {1.0, 2.0, 4.0};  // of partition
+  std::vector<int> log2_table_sizes = {17, 18};            // the same for all blocks
+  std::vector<double> voxels_per_entry = {1.0, 2.0, 8.0};  // of partition
   double budget_s = 300.0;
 };
 // Tables (and blocks) sized by what each block's ground sampling distance and surface ask for, against the same size for all blocks, and against

@@ -1,5 +1,7 @@
 #include "coordinator/bench/study/study_tables.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -89,7 +91,9 @@ std::string TrainingChart(const std::vector<VariantResult>& results) {
 BenchSection PictureSection(const std::vector<VariantResult>& results) {
   BenchSection section{.id = "pictures",
                        .title = "Pictures",
-                       .lead = "The same held-out photo, taken and rendered by every variant.",
+                       .lead =
+                           "The same held-out photo, taken and rendered by every variant, magnified. Point at another place to see it "
+                           "in all of them; click for the whole picture.",
                        .charts = {},
                        .tables = {},
                        .pictures = {}};
@@ -99,6 +103,12 @@ BenchSection PictureSection(const std::vector<VariantResult>& results) {
     section.pictures.push_back({r.render, r.label});
   }
   return section;
+}
+
+std::string NumberInName(double number) {
+  std::string name = fmt::format("{:g}", number);
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
 }
 
 std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& results, const std::string& settings_toml) {

@@ -18,6 +18,9 @@ std::string TrainingChart(const std::vector<VariantResult>& results);
 // One held-out photo and what every variant makes of it.
 BenchSection PictureSection(const std::vector<VariantResult>& results);
 
+// A number as part of a variant's name, which names files: "0.5" becomes "0_5".
+std::string NumberInName(double number);
+
 // The part of a bench's JSON that all studies share: bench, results, machine, date, command, and `settings`.
 std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& results, const std::string& settings_toml);
 

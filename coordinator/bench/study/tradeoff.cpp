@@ -129,9 +129,7 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
   }
   for (const double step : options.steps_per_voxel) {
     const std::string text = fmt::format("{:g}", step);
-    std::string name = text;
-    std::replace(name.begin(), name.end(), '.', '_');
-    samples.push_back(study.Run({.name = "step_" + name,
+    samples.push_back(study.Run({.name = "step_" + NumberInName(step),
                                  .label = "a step of " + text + " voxels",
                                  .overrides = {middle, layout, {"train.step_voxels", text}, {"context.step_voxels", text}}}));
     sample_x.push_back(step);

@@ -51,8 +51,9 @@ struct EncodingsOptions {
 StudyBench EncodingsBench(Study& study, const EncodingsOptions& options);
 
 struct TradeoffOptions {
-  std::vector<double> budgets_s = {45.0, 120.0, 360.0};
-  double middle_budget_s = 120.0;  // of the studies that vary one thing
+  double middle_budget_s = 60.0;  // of the studies that vary one thing
+  // Times for each of PresetNames(), as multiples of the middle budget: around what each is made for.
+  std::vector<std::vector<double>> preset_budgets = {{1.0 / 3.0, 1.0, 3.0}, {1.0 / 3.0, 1.0, 3.0, 9.0}, {1.0, 3.0, 9.0}};
   std::vector<int> log2_table_sizes = {14, 15, 16, 17, 18, 19};
   std::vector<double> steps_per_voxel = {1.0, 2.0, 4.0};  // marching step: how many samples a ray gets
   std::vector<int> keep_every = {1, 2, 4};                // of the training photos

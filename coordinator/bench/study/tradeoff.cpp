@@ -95,9 +95,12 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
   const Override scoring_width = ScoringWidth(study);
   std::vector<std::vector<VariantResult>> by_preset;
   std::vector<VariantResult> presets;
-  for (const std::string& preset : PresetNames()) {
+  const std::vector<std::string> names = PresetNames();
+  for (size_t p = 0; p < names.size(); ++p) {
+    const std::string& preset = names[p];
     by_preset.emplace_back();
-    for (const double budget_s : options.budgets_s) {
+    for (const double times : options.preset_budgets.at(p)) {
+      const double budget_s = times * options.middle_budget_s;
       std::vector<Override> overrides = PresetOverrides(preset);
       overrides.push_back(Budget(budget_s));
       overrides.push_back(scoring_width);
@@ -155,7 +158,6 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
       "What more time, larger tables, more samples or more photos buy. Presets at several time budgets first; then one thing at a time, {:.0f} s "
       "each.",
       options.middle_budget_s);
-  const std::vector<std::string> names = PresetNames();
   for (size_t p = 0; p < names.size(); ++p) page.verdicts.push_back(PresetVerdict(names[p], by_preset[p], presets));
   if (storage.size() == 3 && storage[0].failure.empty()) {
     for (const size_t k : {size_t{1}, size_t{2}}) {

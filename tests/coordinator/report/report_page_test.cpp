@@ -150,7 +150,7 @@ TEST_F(ReportPage, LongPausesDoNotSqueezeTheFlights) {
   EXPECT_NE(section.find("pauses of more than 10 min"), std::string::npos);
   // Three minutes are left, and each flight has a line of its own.
   EXPECT_EQ(section.find(">1440<"), std::string::npos);
-  const size_t line = section.find("<path class=\"curve c8\"");
+  const size_t line = section.find("<path class=\"curve c6\"");
   ASSERT_NE(line, std::string::npos);
   EXPECT_EQ(CountOf(section.substr(line, section.find("<title>", line) - line), "M"), 2U);
 }

@@ -15,9 +15,29 @@ const VariantResult* Find(const std::vector<VariantResult>& results, const std::
   return at == results.end() ? nullptr : &*at;
 }
 
-// The table size of one field that has about as many parameters as `blocks` of 2^log2_table_size each.
-int JoinedTableSize(int log2_table_size, int blocks) {
-  return std::min(24, log2_table_size + static_cast<int>(std::lround(std::log2(std::max(1, blocks)))));
+// Log2 of the table size of one field that has about as many entries as all blocks together.
+int JoinedTableSize(const VariantResult& divided, int log2_table_size) {
+  double entries = 0.0;
+  for (const VariantField& field : divided.fields) {
+    if (field.log2_table_size > 0) entries += std::exp2(field.log2_table_size);
+  }
+  return entries > 0.0 ? std::min(24, static_cast<int>(std::lround(std::log2(entries)))) : log2_table_size;
+}
+
+// What every field but the context had to itself: "2 to 31 s and 5 to 87 M samples".
+std::string OfItsOwn(const VariantResult& result) {
+  std::vector<double> seconds, samples;
+  for (const VariantField& field : result.fields) {
+    if (field.name == "context") continue;
+    seconds.push_back(field.seconds);
+    samples.push_back(static_cast<double>(field.samples) / 1e6);
+  }
+  if (seconds.empty()) return "nothing";
+  const auto range = [](const std::vector<double>& of) {
+    const auto [low, high] = std::minmax_element(of.begin(), of.end());
+    return of.size() == 1 ? fmt::format("{:.0f}", *low) : fmt::format("{:.0f} to {:.0f}", *low, *high);
+  };
+  return range(seconds) + " s and " + range(samples) + " M samples";
 }
 
 std::string Difference(const VariantResult& a, const VariantResult& b) {
@@ -82,6 +102,8 @@ std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
         fmt::format("The large model was trained with {:.0f} M samples ({:.2f} M/s), the blocks with {:.0f} M together ({:.2f} M/s){}.",
                     large->samples / 1e6, large->samples_per_second / 1e6, guided->samples / 1e6, guided->samples_per_second / 1e6,
                     large->samples_per_second < 0.95 * guided->samples_per_second ? ": larger tables leave the caches" : ""));
+    verdicts.push_back(
+        fmt::format("Each block had {} of its own to learn everything from the beginning, the large model {}.", OfItsOwn(*guided), OfItsOwn(*large)));
   }
   if (independent != nullptr) verdicts.push_back("Blocks guided by a context against blocks alone: " + Difference(*guided, *independent) + ".");
   if (shared != nullptr) {
@@ -116,8 +138,7 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
   };
   const Override divided = {"partition.blocks", options.blocks}, whole = {"partition.blocks", "1x1"};
   run("guided", "blocks, guided", {divided});
-  const int blocks = std::max(1, results.front().blocks);
-  const std::string joined = std::to_string(JoinedTableSize(study.settings().partition.max_log2_table_size, blocks));
+  const std::string joined = std::to_string(JoinedTableSize(results.front(), study.settings().partition.max_log2_table_size));
   run("single_small", "single, tables of one block", {whole});
   run("single_large", "single, as many parameters", {whole, {"partition.min_log2_table_size", joined}, {"partition.max_log2_table_size", joined}});
   run("independent", "blocks, independent", {divided, {"train.coupling", "independent"}});

@@ -100,7 +100,7 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
     const std::string& preset = names[p];
     by_preset.emplace_back();
     for (const double times : options.preset_budgets.at(p)) {
-      const double budget_s = times * options.middle_budget_s;
+      const double budget_s = std::max(1.0, std::round(times * options.middle_budget_s));
       std::vector<Override> overrides = PresetOverrides(preset);
       overrides.push_back(Budget(budget_s));
       overrides.push_back(scoring_width);

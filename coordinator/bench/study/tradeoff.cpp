@@ -14,6 +14,12 @@ namespace {
 
 constexpr double kNearFront_db = 0.1;  // smaller differences are not told apart here; the verdict gives the figure
 
+// To the second, or a tenth of one: what a label says is what is trained.
+double Rounded(double seconds) {
+  const double digits = seconds < 10.0 ? 10.0 : 1.0;
+  return std::max(0.1, std::round(seconds * digits) / digits);
+}
+
 Override Budget(double seconds) {
   return {"run.time_budget_s", fmt::format("{}", seconds)};
 }
@@ -100,12 +106,12 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
     const std::string& preset = names[p];
     by_preset.emplace_back();
     for (const double times : options.preset_budgets.at(p)) {
-      const double budget_s = std::max(1.0, std::round(times * options.middle_budget_s));
+      const double budget_s = Rounded(times * options.middle_budget_s);
       std::vector<Override> overrides = PresetOverrides(preset);
       overrides.push_back(Budget(budget_s));
       overrides.push_back(scoring_width);
-      by_preset.back().push_back(study.Run({.name = fmt::format("{}_{:.0f}s", preset, budget_s),
-                                            .label = fmt::format("{}, {:.0f} s", preset, budget_s),
+      by_preset.back().push_back(study.Run({.name = fmt::format("{}_{}s", preset, NumberInName(budget_s)),
+                                            .label = fmt::format("{}, {:g} s", preset, budget_s),
                                             .overrides = std::move(overrides)}));
     }
     presets.insert(presets.end(), by_preset.back().begin(), by_preset.back().end());

@@ -55,7 +55,7 @@ def test(skyquilt, folder):
     out = folder / "capacity"
     skyquilt.call("bench", "capacity", "--survey", survey, "-o", out, "--blocks", "1x2", *SMALL)
     result = check_page(out, "capacity")
-    expect([variant["name"] for variant in result["results"]] == ["fitted", "uniform_13", "uniform_15", "shared_2", "shared_4"], result["results"])
+    expect([variant["name"] for variant in result["results"]] == ["fitted", "uniform_13", "uniform_15", "shared_1", "shared_2", "shared_8"], result["results"])
     for variant in result["results"]:
         fields = variant["fields"]
         expect([field["name"] for field in fields] == ["context", "r0c0", "r0c1"], fields)

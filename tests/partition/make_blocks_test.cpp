@@ -16,7 +16,7 @@ PartitionOptions Request(const std::string& blocks) {
   PartitionOptions options;
   options.blocks = blocks;
   options.max_log2_table_size = 19;  // room to tell differences
-  options.max_voxels_per_entry = 1.0;
+  options.voxels_per_entry = options.max_voxels_per_entry = 1.0;
   return options;
 }
 
@@ -117,9 +117,9 @@ TEST(MakeBlocks, CapacityFollowsResolution) {
   EXPECT_NEAR(block.gsd_m, 100.0 / 700.0, 1e-3);
   EXPECT_NEAR(block.finest_voxel_m, 1.5 * block.gsd_m, 1e-12);
   EXPECT_NEAR(half.blocks[0].gsd_m, 2.0 * block.gsd_m, 1e-9);
-  // About 112 x 112 m in voxels of 0.214 m, of which four share an entry: 2^16.
-  EXPECT_EQ(block.log2_table_size, 16);
-  EXPECT_EQ(half.blocks[0].log2_table_size, 14);
+  // About 112 x 112 m in voxels of 0.214 m: 2^18.
+  EXPECT_EQ(block.log2_table_size, 18);
+  EXPECT_EQ(half.blocks[0].log2_table_size, 16);
   EXPECT_NEAR(half.blocks[0].expected_pixels, 0.25 * block.expected_pixels, 1e-6 * block.expected_pixels);
   EXPECT_NE(full.config_hash, half.config_hash);
 }
@@ -175,7 +175,6 @@ TEST(MakeBlocks, AutoSplitsUntilTablesFit) {
 
 TEST(MakeBlocks, VoxelsThatShareEntriesMakeTablesSmaller) {
   PartitionOptions options = Request("2x2");
-  options.voxels_per_entry = 1.0;
   const int exact = MakeBlocks(FlySurvey({}), options, 0).blocks[0].log2_table_size;
   options.voxels_per_entry = 4.0;
   EXPECT_EQ(MakeBlocks(FlySurvey({}), options, 0).blocks[0].log2_table_size, exact - 2);
@@ -274,7 +273,7 @@ RC_GTEST_PROP(MakeBlocks, WorksAtAnyScale, ()) {
   const BlockSet set = MakeBlocks(FlySurvey(flown), Request("2x2"), 0);
   for (const Block& block : set.blocks) {
     RC_ASSERT(!block.empty);
-    RC_ASSERT(block.log2_table_size >= 15 && block.log2_table_size <= 18);
+    RC_ASSERT(block.log2_table_size >= 17 && block.log2_table_size <= 19);
     const Eigen::Vector3d extent = block.max_enu - block.min_enu;
     RC_ASSERT(block.margin_m > 0.0 && block.margin_m <= 0.2501 * extent.head<2>().minCoeff());
     RC_ASSERT(extent.z() > 16.0 * block.gsd_m);

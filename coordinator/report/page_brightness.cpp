@@ -217,7 +217,7 @@ std::string HistogramChart(const BrightnessReport& brightness, bool alone) {
   frame.y_high = 100.0 * most * 1.06;
   const PlotLabels labels{"Brightness of the training photos", "display value (0 black, 1 white)", "share of pixels (%)"};
   return OpenPlot(frame, labels, 10, alone ? "wide" : "") + BinsPath(frame, after, "bins c0", "at reference exposure") +
-         BinsPath(frame, before, "curve c8", "as recorded") +
+         BinsPath(frame, before, "curve c6", "as recorded") +
          ClosePlot("<span><i class=\"c6\"></i>as recorded</span><span><i class=\"c0\"></i>at reference exposure</span>");
 }
 

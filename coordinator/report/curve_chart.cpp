@@ -31,6 +31,10 @@ std::vector<double> LogTicks(double low_log10, double high_log10) {
       if (tick >= low_log10 && tick <= high_log10) ticks.push_back(tick);
     }
   }
+  if (ticks.size() >= 3 || high_log10 - low_log10 >= 1.0) return ticks;
+  // Less than a decade: round numbers between its ends say more than the one power of ten that may lie there.
+  ticks = RoundTicks(std::pow(10.0, low_log10), std::pow(10.0, high_log10), 5);
+  for (double& tick : ticks) tick = std::log10(tick);
   return ticks;
 }
 

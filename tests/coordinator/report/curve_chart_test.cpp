@@ -38,6 +38,28 @@ TEST(Thin, KeepsTheEndsAndTheMean) {
   EXPECT_EQ(Thin(points, 10000).size(), points.size());
 }
 
+// The labels of the ticks along x, as numbers.
+std::vector<double> TicksAlongX(const std::string& chart) {
+  const std::string mark = "text-anchor=\"middle\">";
+  std::vector<double> ticks;
+  for (size_t at = chart.find("class=\"tick\""); at != std::string::npos; at = chart.find("class=\"tick\"", at + 1)) {
+    const size_t anchor = chart.find(mark, at);
+    if (anchor != std::string::npos && anchor < chart.find("</text>", at)) ticks.push_back(std::stod(chart.substr(anchor + mark.size())));
+  }
+  return ticks;
+}
+
+TEST(CurveChart, HasSeveralTicksOnALogarithmicAxisOfAnyLength) {
+  for (const double factor : {1.2, 1.5, 2.0, 4.0, 9.0, 30.0, 300.0, 1e5, 1e9}) {
+    for (const double low : {0.003, 0.7, 4.0, 170.0, 8000.0}) {
+      const std::string chart = CurveChart({{"a", {{low, 1.0}, {low * factor, 2.0}}}}, {.title = "t", .x_label = "x", .y_label = "y", .log_x = true});
+      const std::vector<double> ticks = TicksAlongX(chart);
+      EXPECT_GE(ticks.size(), 2U) << low << " to " << low * factor;
+      EXPECT_LE(ticks.size(), 12U) << low << " to " << low * factor;
+    }
+  }
+}
+
 TEST(CurveChart, SurvivesEmptySingleAndNonFiniteData) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(CurveChart({}, {}).find("No data"), std::string::npos);

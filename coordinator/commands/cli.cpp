@@ -68,7 +68,7 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 void AddCommands(CLI::App& app, CommandState& state) {
-  app.add_option("--config", state.config, "TOML file with options (see configs/)")->type_name("FILE");
+  app.add_option("--config", state.config, "TOML file with options, or a preset: fast, default, quality (see configs/)")->type_name("FILE|NAME");
   app.add_option("--set", state.set, "one option: --set train.levels=10; may be repeated")->type_name("SECTION.KEY=VALUE")->expected(1)->take_all();
   app.add_option("--threads", state.threads, "threads on this machine; 0: every core")->type_name("N");
   app.add_flag("--quiet", state.quiet, "only warnings and errors");

@@ -1,19 +1,49 @@
 #include "coordinator/commands/command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "coordinator/duration.h"
 #include "coordinator/memory_size.h"
+#include "coordinator/presets.h"
+#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 
 namespace skyquilt::coordinator {
 
-Settings CommandState::Load(const std::vector<std::filesystem::path>& files, const std::vector<Override>& flags) const {
-  std::vector<std::filesystem::path> all_files = files;
-  if (!config.empty()) all_files.emplace_back(config);
+namespace {
+
+// What --config sets: the options of a file, or of a preset by its name. A file is preferred.
+struct NamedConfig {
+  std::vector<std::filesystem::path> files;
   std::vector<Override> overrides;
+};
+
+NamedConfig FindConfig(const std::string& config) {
+  if (config.empty()) return {};
+  if (std::filesystem::exists(config)) return {.files = {config}, .overrides = {}};
+  const std::vector<std::string> presets = PresetNames();
+  if (std::find(presets.begin(), presets.end(), config) == presets.end()) {
+    const std::string nearest = config::Nearest(config, presets);
+    throw base::InputError(config, "no such file, and no preset of that name",
+                           nearest.empty() ? "Give a TOML file, or one of fast, default, quality" : "Did you mean '" + nearest + "'?");
+  }
+  if (config != "default") return {.files = {}, .overrides = PresetOverrides(config)};
+  // Back to the defaults, whatever the project's own configuration says.
+  NamedConfig named;
+  for (const auto& [key, value] : Settings().Flat()) named.overrides.push_back({key, value});
+  return named;
+}
+
+}  // namespace
+
+Settings CommandState::Load(const std::vector<std::filesystem::path>& files, const std::vector<Override>& flags) const {
+  const NamedConfig named = FindConfig(config);
+  std::vector<std::filesystem::path> all_files = files;
+  all_files.insert(all_files.end(), named.files.begin(), named.files.end());
+  std::vector<Override> overrides = named.overrides;
   for (const std::string& text : set) overrides.push_back(ParseOverride(text));
   overrides.insert(overrides.end(), flags.begin(), flags.end());
   if (!threads.empty()) overrides.push_back({"run.threads", threads});
@@ -21,8 +51,10 @@ Settings CommandState::Load(const std::vector<std::filesystem::path>& files, con
 }
 
 Settings CommandState::LoadOver(Settings settings) const {
+  const NamedConfig named = FindConfig(config);
   config::Sections sections = settings.AllSections();
-  if (!config.empty()) config::ReadToml(config, sections);
+  for (const std::filesystem::path& file : named.files) config::ReadToml(file, sections);
+  for (const Override& entry : named.overrides) ApplyOverride(settings, entry);
   for (const std::string& text : set) ApplyOverride(settings, ParseOverride(text));
   if (!threads.empty()) ApplyOverride(settings, {"run.threads", threads});
   settings.Validate();

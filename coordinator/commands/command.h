@@ -20,7 +20,7 @@ namespace skyquilt::coordinator {
 
 struct CommandState {
   comm::Communicator* comm = nullptr;
-  std::string config;            // --config
+  std::string config;            // --config: a TOML file, or the name of a preset
   std::vector<std::string> set;  // --set
   std::string threads;           // --threads
   std::string command_line;      // as it was typed, for reports

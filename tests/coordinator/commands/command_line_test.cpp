@@ -6,6 +6,7 @@
 
 #include "coordinator/bench/numerics/numerics_bench.h"
 #include "coordinator/commands/cli.h"
+#include "coordinator/commands/command.h"
 #include "coordinator/commands/describe.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -68,6 +69,29 @@ TEST(CommandLine, VersionAndDefaults) {
   const Result defaults = Call({"info", "--defaults", "--set", "train.levels=3"});
   EXPECT_EQ(defaults.status, 0);
   EXPECT_NE(defaults.out.find("levels = 3"), std::string::npos);
+}
+
+TEST(CommandLine, PresetsGoByName) {
+  EXPECT_NE(Call({"info", "--defaults", "--config", "quality"}).out.find("image_width = 2000"), std::string::npos);
+  EXPECT_EQ(Call({"info", "--defaults", "--config", "default"}).out, Call({"info", "--defaults"}).out);
+  const Result wrong = Call({"info", "--defaults", "--config", "qualty"});
+  EXPECT_EQ(wrong.status, 3);
+  EXPECT_NE(wrong.err.find("Did you mean 'quality'?"), std::string::npos) << wrong.err;
+
+  // Over a project's own configuration: a preset sets what it names, "default" takes everything back, --set comes last.
+  const std::filesystem::path own = std::filesystem::temp_directory_path() / ("skyquilt_presets_" + std::to_string(getpid()) + ".toml");
+  base::WriteFileAtomically(own, "[run]\nimage_width = 123\n[train]\nlevels = 5\n");
+  CommandState state;
+  state.config = "quality";
+  EXPECT_EQ(state.Load({own}, {}).run.image_width, 2000);
+  EXPECT_EQ(state.Load({own}, {}).train.levels, 5);
+  state.config = "default";
+  EXPECT_EQ(state.Load({own}, {}).run.image_width, Settings().run.image_width);
+  EXPECT_EQ(state.Load({own}, {}).train.levels, Settings().train.levels);
+  state.set = {"train.levels=3"};
+  EXPECT_EQ(state.Load({own}, {}).train.levels, 3);
+  EXPECT_EQ(state.LoadOver(state.Load({own}, {})).train.levels, 3);
+  std::filesystem::remove(own);
 }
 
 TEST(CommandLine, MissingThingsAreInputErrors) {

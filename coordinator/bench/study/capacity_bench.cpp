@@ -43,14 +43,15 @@ std::string Against(const VariantResult& fitted, const VariantResult& other) {
   const double bytes = 1.0 - fitted.scene_bytes / other.scene_bytes;
   return fmt::format(
       "Against {}: {:.0f} % fewer parameters in the scene than that trained ({:.2f} M against {:.2f} M; its file is {:.0f} % smaller than that "
-      "one's, which leaves out unread entries too), PSNR {:+.2f} dB. The aim, {:.0f} % fewer at a loss of at most {:g} dB, is {}.",
-      other.label, 100.0 * share, fitted.scene_parameters / 1e6, other.parameters / 1e6, 100.0 * bytes, change_db, 100.0 * kAimShare, kAimLoss_db,
-      share >= kAimShare && change_db >= -kAimLoss_db ? "met" : "missed");
+      "one's, which leaves out unread entries too), PSNR {} dB. The aim, {:.0f} % fewer at a loss of at most {:g} dB, is {}.",
+      other.label, 100.0 * share, fitted.scene_parameters / 1e6, other.parameters / 1e6, 100.0 * bytes, Signed(change_db, 2), 100.0 * kAimShare,
+      kAimLoss_db, share >= kAimShare && change_db >= -kAimLoss_db ? "met" : "missed");
 }
 
 std::string Even(const VariantResult& fitted, const VariantResult& leaner) {
-  return fmt::format("{} would do with {:.0f} % of the fitted scene's parameters ({:.2f} M) at {:+.2f} dB.", leaner.label,
-                     100.0 * leaner.scene_parameters / fitted.scene_parameters, leaner.scene_parameters / 1e6, leaner.psnr_db - fitted.psnr_db);
+  return fmt::format("{} would do with {:.0f} % of the fitted scene's parameters ({:.2f} M) at {} dB.", leaner.label,
+                     100.0 * leaner.scene_parameters / fitted.scene_parameters, leaner.scene_parameters / 1e6,
+                     Signed(leaner.psnr_db - fitted.psnr_db, 2));
 }
 
 report::Curve Points(const std::string& name, const std::vector<VariantResult>& results) {
@@ -105,9 +106,9 @@ StudyBench CapacityBench(Study& study, const CapacityOptions& options) {
     if (!fitted.failure.empty() || !same.failure.empty() || options.log2_table_sizes[i] < largest) continue;
     page.verdicts.push_back(Against(fitted, same));
     if (options.log2_table_sizes[i] != largest) continue;
-    page.figures.push_back({"Parameters", fmt::format("{:+.0f} %", 100.0 * (fitted.scene_parameters / same.parameters - 1.0)),
-                            "against the largest block's tables for all"});
-    page.figures.push_back({"PSNR", fmt::format("{:+.2f} dB", fitted.psnr_db - same.psnr_db), "at equal training time"});
+    page.figures.push_back(
+        {"Parameters", Signed(100.0 * (fitted.scene_parameters / same.parameters - 1.0), 0) + " %", "against the largest block's tables for all"});
+    page.figures.push_back({"PSNR", Signed(fitted.psnr_db - same.psnr_db, 2) + " dB", "at equal training time"});
   }
   for (const auto* group : {&shared, &cut}) {
     for (const VariantResult& other : *group) {

@@ -49,11 +49,11 @@ StudyBench EncodingsBench(Study& study, const EncodingsOptions& options) {
   for (size_t i = 1; i < bench.results.size(); ++i) {
     const VariantResult& other = bench.results[i];
     if (!hash.failure.empty() || !other.failure.empty()) continue;
-    page.figures.push_back({other.label, fmt::format("{:+.2f} dB", other.psnr_db - hash.psnr_db), "against the hash grid"});
-    page.verdicts.push_back(fmt::format(
-        "{} against the hash grid: {:+.2f} dB ({:.2f} against {:.2f}), with {:.0f} % of its parameters at {:.0f} % of its samples per second.",
-        other.label, other.psnr_db - hash.psnr_db, other.psnr_db, hash.psnr_db, 100.0 * other.parameters / hash.parameters,
-        100.0 * other.samples_per_second / hash.samples_per_second));
+    page.figures.push_back({other.label, Signed(other.psnr_db - hash.psnr_db, 2) + " dB", "against the hash grid"});
+    page.verdicts.push_back(
+        fmt::format("{} against the hash grid: {} dB ({:.2f} against {:.2f}), with {:.0f} % of its parameters at {:.0f} % of its samples per second.",
+                    other.label, Signed(other.psnr_db - hash.psnr_db, 2), other.psnr_db, hash.psnr_db, 100.0 * other.parameters / hash.parameters,
+                    100.0 * other.samples_per_second / hash.samples_per_second));
   }
   page.sections.push_back({.id = "quality",
                            .title = "Quality, time, memory",

@@ -25,10 +25,10 @@ std::vector<size_t> ParetoFront(const std::vector<Priced>& points) {
   return front;
 }
 
-double BelowFront(const std::vector<Priced>& points, size_t point) {
+double BelowFront(const std::vector<Priced>& points, size_t point, double same_cost) {
   double best = points.at(point).quality;
   for (const Priced& other : points) {
-    if (other.cost <= points[point].cost && other.quality > best) best = other.quality;
+    if (other.cost <= (1.0 + same_cost) * points[point].cost && other.quality > best) best = other.quality;
   }
   return best - points[point].quality;
 }

@@ -15,6 +15,7 @@ struct Priced {
 // Points with a NaN are left out.
 std::vector<size_t> ParetoFront(const std::vector<Priced>& points);
 // How far a point lies under the front: the quality that the front offers at its cost or less, minus its own; 0 on the front.
-double BelowFront(const std::vector<Priced>& points, size_t point);
+// Costs up to `same_cost` (a share, 0 or more) higher count as its own: measured times of equal budgets differ a little.
+double BelowFront(const std::vector<Priced>& points, size_t point, double same_cost = 0.0);
 
 }  // namespace skyquilt::coordinator

@@ -41,7 +41,7 @@ std::string OfItsOwn(const VariantResult& result) {
 }
 
 std::string Difference(const VariantResult& a, const VariantResult& b) {
-  return fmt::format("{:+.2f} dB ({:.2f} against {:.2f}), SSIM {:+.3f}", a.psnr_db - b.psnr_db, a.psnr_db, b.psnr_db, a.ssim - b.ssim);
+  return fmt::format("{} dB ({:.2f} against {:.2f}), SSIM {}", Signed(a.psnr_db - b.psnr_db, 2), a.psnr_db, b.psnr_db, Signed(a.ssim - b.ssim, 3));
 }
 
 // Dirt that hangs so far in front of surfaces is no blur of theirs.
@@ -163,11 +163,10 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
   if (const VariantResult* guided = Find(results, "guided")) {
     page.figures.push_back({"Blocks, guided", fmt::format("{:.2f} dB", guided->psnr_db), fmt::format("{} blocks", guided->blocks)});
     if (const VariantResult* small = Find(results, "single_small")) {
-      page.figures.push_back({"against one such model", fmt::format("{:+.2f} dB", guided->psnr_db - small->psnr_db), "equal time"});
+      page.figures.push_back({"against one such model", Signed(guided->psnr_db - small->psnr_db, 2) + " dB", "equal time"});
     }
     if (const VariantResult* large = Find(results, "single_large")) {
-      page.figures.push_back(
-          {"against one as large as all", fmt::format("{:+.2f} dB", guided->psnr_db - large->psnr_db), "equal time and parameters"});
+      page.figures.push_back({"against one as large as all", Signed(guided->psnr_db - large->psnr_db, 2) + " dB", "equal time and parameters"});
     }
     if (const VariantResult* naive = Find(results, "shared_everywhere"); naive != nullptr && HighAir(*guided) > 0.0) {
       page.figures.push_back({"Dirt high in the air", fmt::format("{:.1f} x less", HighAir(*naive) / HighAir(*guided)),

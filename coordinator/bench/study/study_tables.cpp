@@ -111,6 +111,11 @@ std::string NumberInName(double number) {
   return name;
 }
 
+std::string Signed(double number, int decimals) {
+  const std::string text = fmt::format("{:+.{}f}", number, decimals);
+  return text.find_first_of("123456789") == std::string::npos && std::isfinite(number) ? text.substr(1) : text;
+}
+
 std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& results, const std::string& settings_toml) {
   nlohmann::ordered_json json;
   json["bench"] = page.name;

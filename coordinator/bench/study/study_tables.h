@@ -21,6 +21,9 @@ BenchSection PictureSection(const std::vector<VariantResult>& results);
 // A number as part of a variant's name, which names files: "0.5" becomes "0_5".
 std::string NumberInName(double number);
 
+// "+1.20", "-0.35", and "0.00" for what rounds to nothing.
+std::string Signed(double number, int decimals);
+
 // The part of a bench's JSON that all studies share: bench, results, machine, date, command, and `settings`.
 std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& results, const std::string& settings_toml);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "coordinator/bench/study/pareto.h"
 #include "coordinator/bench/study/study_benches.h"
@@ -12,6 +13,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
+constexpr double kSameTime = 0.03;     // trainings with one budget end within this share of each other
 constexpr double kNearFront_db = 0.1;  // smaller differences are not told apart here; the verdict gives the figure
 
 // To the second, or a tenth of one: what a label says is what is trained.
@@ -42,20 +44,17 @@ Override ScoringWidth(const Study& study) {
 
 // Presets as curves over time, with the front through all of them.
 std::string ParetoChart(const std::vector<std::string>& presets, const std::vector<std::vector<VariantResult>>& by_preset) {
-  std::vector<report::Curve> curves;
   std::vector<VariantResult> all;
-  for (size_t p = 0; p < presets.size(); ++p) {
-    report::Curve curve{.name = presets[p], .points = {}, .marks = true};
-    for (const VariantResult& r : by_preset[p]) {
-      curve.points.emplace_back(r.train_seconds, r.psnr_db);
-      all.push_back(r);
-    }
-    curves.push_back(std::move(curve));
-  }
+  for (const auto& results : by_preset) all.insert(all.end(), results.begin(), results.end());
   const std::vector<Priced> points = Prices(all);
   report::Curve front{.name = "best for its time", .points = {}, .emphasised = true};
   for (const size_t i : ParetoFront(points)) front.points.emplace_back(points[i].cost, points[i].quality);
-  curves.push_back(std::move(front));
+  std::vector<report::Curve> curves = {std::move(front)};  // drawn first: the presets' own marks stay in sight
+  for (size_t p = 0; p < presets.size(); ++p) {
+    report::Curve curve{.name = presets[p], .points = {}, .marks = true};
+    for (const VariantResult& r : by_preset[p]) curve.points.emplace_back(r.train_seconds, r.psnr_db);
+    curves.push_back(std::move(curve));
+  }
   return report::CurveChart(curves, {.title = "Quality for time", .x_label = "training time (s)", .y_label = "PSNR (dB)", .log_x = true});
 }
 
@@ -70,23 +69,30 @@ BenchSection OneThing(const std::string& id, const std::string& title, const std
   return section;
 }
 
-// How far under the front each preset's best place lies.
-std::string PresetVerdict(const std::string& preset, const std::vector<VariantResult>& own, const std::vector<VariantResult>& all) {
+// Where a preset comes nearest to the front of all; of equals the longest training.
+struct Nearest {
+  const VariantResult* result = nullptr;  // none when no training of the preset succeeded
+  double below_db = std::numeric_limits<double>::infinity();
+  bool OnFront() const { return below_db <= kNearFront_db; }
+};
+
+Nearest NearestToFront(const std::vector<VariantResult>& own, const std::vector<VariantResult>& all) {
   const std::vector<Priced> points = Prices(all);
-  double nearest = std::numeric_limits<double>::infinity();
-  std::string at;
+  Nearest nearest;
   for (const VariantResult& r : own) {
     for (size_t i = 0; i < all.size(); ++i) {
       if (all[i].name != r.name || !r.failure.empty()) continue;
-      const double below = BelowFront(points, i);
-      if (below >= nearest) continue;
-      nearest = below;
-      at = r.label;
+      const double below = BelowFront(points, i, kSameTime);
+      if (below <= nearest.below_db) nearest = {&r, below};
     }
   }
-  if (at.empty()) return "Preset '" + preset + "' could not be trained.";
+  return nearest;
+}
+
+std::string PresetVerdict(const std::string& preset, const Nearest& nearest) {
+  if (nearest.result == nullptr) return "Preset '" + preset + "' could not be trained.";
   return fmt::format("Preset '{}' {}: nearest at {}, {:.2f} dB under it.", preset,
-                     nearest <= kNearFront_db ? "lies on the front" : "does not lie on the front", at, nearest);
+                     nearest.OnFront() ? "lies on the front" : "does not lie on the front", nearest.result->label, nearest.below_db);
 }
 
 }  // namespace
@@ -164,13 +170,20 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
       "What more time, larger tables, more samples or more photos buy. Presets at several time budgets first; then one thing at a time, {:.0f} s "
       "each.",
       options.middle_budget_s);
-  for (size_t p = 0; p < names.size(); ++p) page.verdicts.push_back(PresetVerdict(names[p], by_preset[p], presets));
+  for (size_t p = 0; p < names.size(); ++p) {
+    const Nearest nearest = NearestToFront(by_preset[p], presets);
+    page.verdicts.push_back(PresetVerdict(names[p], nearest));
+    if (nearest.result == nullptr) continue;
+    page.figures.push_back({"preset " + names[p], fmt::format("{:.2f} dB", nearest.result->psnr_db),
+                            fmt::format("in {:.0f} s{}", nearest.result->train_seconds, nearest.OnFront() ? "" : ", not the best for its time")});
+  }
   if (storage.size() == 3 && storage[0].failure.empty()) {
     for (const size_t k : {size_t{1}, size_t{2}}) {
-      page.verdicts.push_back(fmt::format("{} storage: {:+.3f} dB against fp32 at {:.0f} % of its bytes.", storage[k].label,
-                                          storage[k].psnr_db - storage[0].psnr_db, 100.0 * storage[k].scene_bytes / storage[0].scene_bytes));
+      page.verdicts.push_back(fmt::format("{} storage: {} dB against fp32 at {:.0f} % of its bytes.", storage[k].label,
+                                          Signed(storage[k].psnr_db - storage[0].psnr_db, 3),
+                                          100.0 * storage[k].scene_bytes / storage[0].scene_bytes));
     }
-    page.figures.push_back({"bf16 storage", fmt::format("{:+.3f} dB", storage[1].psnr_db - storage[0].psnr_db),
+    page.figures.push_back({"bf16 storage", Signed(storage[1].psnr_db - storage[0].psnr_db, 3) + " dB",
                             fmt::format("{:.0f} % of the bytes", 100.0 * storage[1].scene_bytes / storage[0].scene_bytes)});
   }
   page.sections.push_back({.id = "presets",

@@ -43,5 +43,12 @@ TEST(ParetoFront, PassesOverWhatWasNotMeasured) {
   EXPECT_DOUBLE_EQ(BelowFront({{1.0, 30.0}, {2.0, 29.5}, {3.0, 31.0}}, 1), 0.5);
 }
 
+TEST(BelowFront, TakesNearlyEqualCostsForEqual) {
+  const std::vector<Priced> points = {{100.0, 30.0}, {101.0, 30.4}, {110.0, 32.0}};
+  EXPECT_DOUBLE_EQ(BelowFront(points, 0), 0.0);
+  EXPECT_DOUBLE_EQ(BelowFront(points, 0, 0.02), 30.4 - 30.0);
+  EXPECT_DOUBLE_EQ(BelowFront(points, 2, 0.02), 0.0);
+}
+
 }  // namespace
 }  // namespace skyquilt::coordinator

@@ -27,6 +27,14 @@ VariantResult Example() {
   return r;
 }
 
+TEST(Signed, HasASignUnlessItRoundsToNothing) {
+  EXPECT_EQ(Signed(1.204, 2), "+1.20");
+  EXPECT_EQ(Signed(-0.351, 2), "-0.35");
+  EXPECT_EQ(Signed(-0.0002, 3), "0.000");
+  EXPECT_EQ(Signed(0.0, 0), "0");
+  EXPECT_EQ(Signed(-0.0006, 3), "-0.001");
+}
+
 TEST(ResultJson, ComesBackAsItWas) {
   const VariantResult r = Example();
   std::string identity;

@@ -24,22 +24,6 @@ int JoinedTableSize(const VariantResult& divided, int log2_table_size) {
   return entries > 0.0 ? std::min(24, static_cast<int>(std::lround(std::log2(entries)))) : log2_table_size;
 }
 
-// What every field but the context had to itself: "2 to 31 s and 5 to 87 M samples".
-std::string OfItsOwn(const VariantResult& result) {
-  std::vector<double> seconds, samples;
-  for (const VariantField& field : result.fields) {
-    if (field.name == "context") continue;
-    seconds.push_back(field.seconds);
-    samples.push_back(static_cast<double>(field.samples) / 1e6);
-  }
-  if (seconds.empty()) return "nothing";
-  const auto range = [](const std::vector<double>& of) {
-    const auto [low, high] = std::minmax_element(of.begin(), of.end());
-    return of.size() == 1 ? fmt::format("{:.0f}", *low) : fmt::format("{:.0f} to {:.0f}", *low, *high);
-  };
-  return range(seconds) + " s and " + range(samples) + " M samples";
-}
-
 std::string Difference(const VariantResult& a, const VariantResult& b) {
   return fmt::format("{} dB ({:.2f} against {:.2f}), SSIM {}", Signed(a.psnr_db - b.psnr_db, 2), a.psnr_db, b.psnr_db, Signed(a.ssim - b.ssim, 3));
 }

@@ -116,6 +116,21 @@ std::string Signed(double number, int decimals) {
   return text.find_first_of("123456789") == std::string::npos && std::isfinite(number) ? text.substr(1) : text;
 }
 
+std::string OfItsOwn(const VariantResult& result) {
+  std::vector<double> seconds, samples;
+  for (const VariantField& field : result.fields) {
+    if (field.name == "context") continue;
+    seconds.push_back(field.seconds);
+    samples.push_back(static_cast<double>(field.samples) / 1e6);
+  }
+  if (seconds.empty()) return "nothing";
+  const auto range = [](const std::vector<double>& of) {
+    const auto [low, high] = std::minmax_element(of.begin(), of.end());
+    return of.size() == 1 ? fmt::format("{:.0f}", *low) : fmt::format("{:.0f} to {:.0f}", *low, *high);
+  };
+  return range(seconds) + " s and " + range(samples) + " M samples";
+}
+
 std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& results, const std::string& settings_toml) {
   nlohmann::ordered_json json;
   json["bench"] = page.name;

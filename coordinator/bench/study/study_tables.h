@@ -24,6 +24,9 @@ std::string NumberInName(double number);
 // "+1.20", "-0.35", and "0.00" for what rounds to nothing.
 std::string Signed(double number, int decimals);
 
+// What every field but the context had to itself: "2 to 31 s and 5 to 87 M samples"; "nothing" without blocks.
+std::string OfItsOwn(const VariantResult& result);
+
 // The part of a bench's JSON that all studies share: bench, results, machine, date, command, and `settings`.
 std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& results, const std::string& settings_toml);
 

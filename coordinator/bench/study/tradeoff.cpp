@@ -91,8 +91,11 @@ Nearest NearestToFront(const std::vector<VariantResult>& own, const std::vector<
 
 std::string PresetVerdict(const std::string& preset, const Nearest& nearest) {
   if (nearest.result == nullptr) return "Preset '" + preset + "' could not be trained.";
-  return fmt::format("Preset '{}' {}: nearest at {}, {:.2f} dB under it.", preset,
-                     nearest.OnFront() ? "lies on the front" : "does not lie on the front", nearest.result->label, nearest.below_db);
+  const VariantResult& r = *nearest.result;
+  std::string text = fmt::format("Preset '{}' {}: nearest at {}, {:.2f} dB under it.", preset,
+                                 nearest.OnFront() ? "lies on the front" : "does not lie on the front", r.label, nearest.below_db);
+  if (!nearest.OnFront()) text += fmt::format(" Its {} blocks had {} each to learn everything from the beginning.", r.layout, OfItsOwn(r));
+  return text;
 }
 
 }  // namespace

@@ -35,6 +35,18 @@ TEST(Signed, HasASignUnlessItRoundsToNothing) {
   EXPECT_EQ(Signed(-0.0006, 3), "-0.001");
 }
 
+TEST(OfItsOwn, LeavesOutTheContext) {
+  VariantResult r = Example();
+  r.fields[1].samples = 40'000'000;
+  r.fields[2].samples = 7'000'000;
+  r.fields[2].seconds = 11.6;
+  EXPECT_EQ(OfItsOwn(r), "2 to 12 s and 7 to 40 M samples");
+  r.fields.resize(2);
+  EXPECT_EQ(OfItsOwn(r), "2 s and 40 M samples");
+  r.fields.resize(1);
+  EXPECT_EQ(OfItsOwn(r), "nothing");
+}
+
 TEST(ResultJson, ComesBackAsItWas) {
   const VariantResult r = Example();
   std::string identity;

@@ -72,7 +72,7 @@ TEST(CommandLine, VersionAndDefaults) {
 }
 
 TEST(CommandLine, PresetsGoByName) {
-  EXPECT_NE(Call({"info", "--defaults", "--config", "quality"}).out.find("image_width = 2000"), std::string::npos);
+  EXPECT_NE(Call({"info", "--defaults", "--config", "quality"}).out.find("image_width = 1500"), std::string::npos);
   EXPECT_EQ(Call({"info", "--defaults", "--config", "default"}).out, Call({"info", "--defaults"}).out);
   const Result wrong = Call({"info", "--defaults", "--config", "qualty"});
   EXPECT_EQ(wrong.status, 3);
@@ -83,7 +83,7 @@ TEST(CommandLine, PresetsGoByName) {
   base::WriteFileAtomically(own, "[run]\nimage_width = 123\n[train]\nlevels = 5\n");
   CommandState state;
   state.config = "quality";
-  EXPECT_EQ(state.Load({own}, {}).run.image_width, 2000);
+  EXPECT_EQ(state.Load({own}, {}).run.image_width, 1500);
   EXPECT_EQ(state.Load({own}, {}).train.levels, 5);
   state.config = "default";
   EXPECT_EQ(state.Load({own}, {}).run.image_width, Settings().run.image_width);

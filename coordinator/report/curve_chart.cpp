@@ -83,7 +83,7 @@ std::string Frame(const Axis& x_axis, const Axis& y_axis, const ChartOptions& op
 std::string DrawLine(const Line& line, const Curve& curve, size_t color, const Axis& x_axis, const Axis& y_axis) {
   std::string html;
   if (curve.line) {
-    html += fmt::format("<path class=\"curve c{}{}\" d=\"", color, curve.emphasised ? " strong" : "");
+    html += fmt::format("<path class=\"curve c{}{}\" d=\"", color, curve.band ? " band" : curve.emphasised ? " strong" : "");
     for (size_t k = 0; k < line.points.size(); ++k) {
       html += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", x_axis.Px(line.points[k].first), y_axis.Px(line.points[k].second));
     }

@@ -13,6 +13,7 @@ struct Curve {
   bool emphasised = false;
   bool line = true;
   bool marks = false;                    // a mark on every point; all points are then drawn
+  bool band = false;                     // drawn wide and pale, to lie behind the curves that follow
   std::vector<std::string> labels = {};  // of the marks, by point; may be empty
 };
 

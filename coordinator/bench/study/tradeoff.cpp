@@ -47,9 +47,9 @@ std::string ParetoChart(const std::vector<std::string>& presets, const std::vect
   std::vector<VariantResult> all;
   for (const auto& results : by_preset) all.insert(all.end(), results.begin(), results.end());
   const std::vector<Priced> points = Prices(all);
-  report::Curve front{.name = "best for its time", .points = {}, .emphasised = true};
+  report::Curve front{.name = "best for its time", .points = {}, .band = true};
   for (const size_t i : ParetoFront(points)) front.points.emplace_back(points[i].cost, points[i].quality);
-  std::vector<report::Curve> curves = {std::move(front)};  // drawn first: the presets' own marks stay in sight
+  std::vector<report::Curve> curves = {std::move(front)};
   for (size_t p = 0; p < presets.size(); ++p) {
     report::Curve curve{.name = presets[p], .points = {}, .marks = true};
     for (const VariantResult& r : by_preset[p]) curve.points.emplace_back(r.train_seconds, r.psnr_db);

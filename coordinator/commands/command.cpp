@@ -23,7 +23,8 @@ struct NamedConfig {
 
 NamedConfig FindConfig(const std::string& config) {
   if (config.empty()) return {};
-  if (std::filesystem::exists(config)) return {.files = {config}, .overrides = {}};
+  // A folder may well be called after the preset that it was made with.
+  if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.files = {config}, .overrides = {}};
   const std::vector<std::string> presets = PresetNames();
   if (std::find(presets.begin(), presets.end(), config) == presets.end()) {
     const std::string nearest = config::Nearest(config, presets);

@@ -74,6 +74,7 @@ TEST(CommandLine, VersionAndDefaults) {
 TEST(CommandLine, PresetsGoByName) {
   EXPECT_NE(Call({"info", "--defaults", "--config", "quality"}).out.find("image_width = 1500"), std::string::npos);
   EXPECT_EQ(Call({"info", "--defaults", "--config", "default"}).out, Call({"info", "--defaults"}).out);
+  EXPECT_EQ(Call({"info", "--defaults", "--config", std::filesystem::temp_directory_path().string()}).status, 3);
   const Result wrong = Call({"info", "--defaults", "--config", "qualty"});
   EXPECT_EQ(wrong.status, 3);
   EXPECT_NE(wrong.err.find("Did you mean 'quality'?"), std::string::npos) << wrong.err;

@@ -65,7 +65,7 @@ def test(skyquilt, folder):
     expect(float(shares[0][1]) == result["undisturbed"]["efficiency"] and abs(sum(float(row[2]) for row in shares) - 1.0) < 1e-9, shares)
 
     # Numbers at the extremes: tables on the page, every row in the files, nothing left of what cases made.
-    text = skyquilt.call("bench", "numerics", "--quick", "--only", "space,nonfinite,brightness", "-o", out)
+    text = skyquilt.call("bench", "numerics", "--quick", "--only", "space,nonfinite,brightness,storage,earth", "-o", out)
     expect("Space" in text and "FAILED" not in text, text)
     result = json.loads((out / "numerics.json").read_text())
     expect(result["failed"] == 0 and result["passed"] > 30, result["passed"])

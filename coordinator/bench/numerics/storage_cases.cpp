@@ -107,7 +107,7 @@ std::vector<StoredScene> StoreHamlet(const NumericsOptions& options) {
   const std::filesystem::path folder = options.work_folder / "storage";
   std::filesystem::remove_all(folder);
   Pipeline pipeline{.comm = *options.comm, .project = Project::Create(folder), .settings = HamletSettings({}, options), .quiet = true};
-  // Tables fitted to a hamlet are so small that networks and occupancy, which stay as they are, outweigh what they do in any survey.
+  // Tables fitted to a hamlet are so small that networks and occupancy, which stay as they are, weigh more than in a real block.
   pipeline.settings.partition.voxels_per_entry = 1.0;
   const std::filesystem::path photos = pipeline.project.SimulatedFolder();
   SimulateStage(pipeline, photos);

@@ -17,13 +17,23 @@ if(SKYQUILT_SANITIZE)
   target_link_options(skyquilt_warnings INTERFACE -fsanitize=${SKYQUILT_SANITIZE})
 endif()
 
+# What every target of ours is compiled with.
+function(skyquilt_target name)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
+  # Behind CMake's own -O3 of release builds, so that this one counts.
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O2>)
+  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE skyquilt_warnings)
+endfunction()
+
 function(skyquilt_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
-  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  skyquilt_target(${name})
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${SKYQUILT_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   # Third-party headers are not held to our warnings.
-  target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE skyquilt_warnings ${ARG_PRIVATE})
+  target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
 endfunction()
 
 # skyquilt_timeout(600 test...): seconds before a test counts as hung; sanitizers slow everything down.
@@ -37,8 +47,8 @@ endfunction()
 function(skyquilt_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(test_${name} ${ARG_SOURCES})
-  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(test_${name} PRIVATE ${ARG_LIBRARIES} skyquilt_warnings GTest::gtest GTest::gtest_main)
+  skyquilt_target(test_${name})
+  target_link_libraries(test_${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)
   endif()

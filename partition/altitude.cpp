@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/errors.h"
-#include "partition/percentile.h"
+#include "core/base/order_statistics.h"
 
 namespace skyquilt::partition {
 
@@ -32,13 +32,13 @@ double BlockAltitude(const survey::Survey& survey, const std::vector<double>& ph
     if (outside.isZero(0.0)) above.push_back(photo_altitude_m[i]);
     by_distance.emplace_back(outside.norm(), photo_altitude_m[i]);
   }
-  if (above.size() >= 2) return Percentile(std::move(above), 0.5);
+  if (above.size() >= 2) return base::Median(std::move(above));
   constexpr size_t kNearest = 5;
   const size_t n = std::min(kNearest, by_distance.size());
   std::partial_sort(by_distance.begin(), by_distance.begin() + static_cast<std::ptrdiff_t>(n), by_distance.end());
   std::vector<double> nearest;
   for (size_t i = 0; i < n; ++i) nearest.push_back(by_distance[i].second);
-  return Percentile(std::move(nearest), 0.5);
+  return base::Median(std::move(nearest));
 }
 
 }  // namespace skyquilt::partition

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/base/errors.h"
-#include "partition/percentile.h"
+#include "core/base/order_statistics.h"
 
 namespace skyquilt::partition {
 namespace {
@@ -43,7 +43,7 @@ double Roughness(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector
   }
   std::vector<double> median;
   median.reserve(heights.size());
-  for (std::vector<double>& values : heights) median.push_back(Percentile(std::move(values), 0.5));
+  for (std::vector<double>& values : heights) median.push_back(base::Median(std::move(values)));
   const auto at = [&](int row, int column) { return median[static_cast<size_t>(row) * static_cast<size_t>(cells) + static_cast<size_t>(column)]; };
   Eigen::Array2d sum(0.0, 0.0);
   Eigen::Array2d count(0.0, 0.0);

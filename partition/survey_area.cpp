@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/base/errors.h"
-#include "partition/percentile.h"
+#include "core/base/order_statistics.h"
 
 namespace skyquilt::partition {
 namespace {
@@ -65,7 +65,7 @@ GroundRaster::GroundRaster(const std::vector<Eigen::Vector3d>& points, const Eig
     : min_enu_(min_enu),
       cell_((max_enu - min_enu) / cells),
       cells_(cells),
-      median_(Percentile(Coordinate(points, 2), 0.5)),
+      median_(base::Median(Coordinate(points, 2))),
       height_(static_cast<size_t>(cells) * static_cast<size_t>(cells), median_) {
   std::vector<std::vector<double>> heights(height_.size());
   for (const Eigen::Vector3d& x : points) {
@@ -74,7 +74,7 @@ GroundRaster::GroundRaster(const std::vector<Eigen::Vector3d>& points, const Eig
     heights[static_cast<size_t>(place.y()) * static_cast<size_t>(cells_) + static_cast<size_t>(place.x())].push_back(x.z());
   }
   for (size_t i = 0; i < heights.size(); ++i) {
-    if (heights[i].size() >= 3) height_[i] = Percentile(std::move(heights[i]), 0.5);
+    if (heights[i].size() >= 3) height_[i] = base::Median(std::move(heights[i]));
   }
 }
 
@@ -114,8 +114,8 @@ SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen:
   SurveyArea area;
   for (int axis = 0; axis < 2; ++axis) {
     const std::vector<double> values = Coordinate(points, axis);
-    const double low = Percentile(values, 0.01);
-    const double high = Percentile(values, 0.99);
+    const double low = base::Quantile(values, 0.01);
+    const double high = base::Quantile(values, 0.99);
     // What the percentiles cut off an even spread comes back. Points thin out towards the rim, where few photos overlap; where coverage
     // decides, the search goes a little farther.
     const double widening = rule == "covered" ? kSearchBeyondPoints : 0.02;
@@ -152,8 +152,8 @@ SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen:
     return area;
   }
   if (rule == "covered") {
-    const Eigen::Vector2d low(std::floor(Percentile(x_covered, 0.005)), std::floor(Percentile(y_covered, 0.005)));
-    const Eigen::Vector2d high(std::ceil(Percentile(x_covered, 0.995)) + 1.0, std::ceil(Percentile(y_covered, 0.995)) + 1.0);
+    const Eigen::Vector2d low(std::floor(base::Quantile(x_covered, 0.005)), std::floor(base::Quantile(y_covered, 0.005)));
+    const Eigen::Vector2d high(std::ceil(base::Quantile(x_covered, 0.995)) + 1.0, std::ceil(base::Quantile(y_covered, 0.995)) + 1.0);
     area.min_enu = area.raster_min + area.raster_cell.cwiseProduct(low);
     area.max_enu = area.raster_min + area.raster_cell.cwiseProduct(high);
   }

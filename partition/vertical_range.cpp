@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/base/errors.h"
-#include "partition/percentile.h"
+#include "core/base/order_statistics.h"
 
 namespace skyquilt::partition {
 namespace {
@@ -26,13 +26,13 @@ std::optional<std::pair<double, double>> VerticalRange(const std::vector<Eigen::
   constexpr size_t kEnough = 50;
   const std::vector<double> heights = HeightsInside(points, low, high);
   if (heights.empty()) return std::nullopt;
-  double bottom = Percentile(heights, 0.005);
-  double top = Percentile(heights, 0.998);
+  double bottom = base::Quantile(heights, 0.005);
+  double top = base::Quantile(heights, 0.998);
   if (heights.size() < kEnough) {
     const auto [least, most] = std::minmax_element(heights.begin(), heights.end());
     const std::vector<double> around = HeightsInside(points, low - (high - low), high + (high - low));
-    bottom = std::min(*least, Percentile(around, 0.25));
-    top = std::max(*most, Percentile(around, 0.75));
+    bottom = std::min(*least, base::Quantile(around, 0.25));
+    top = std::max(*most, base::Quantile(around, 0.75));
   }
   bottom -= std::clamp(options.z_margin_below_m, 8.0 * gsd_m, 40.0 * gsd_m);
   top += std::clamp(options.z_margin_above_m, 8.0 * gsd_m, 40.0 * gsd_m);

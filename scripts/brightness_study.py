@@ -3,7 +3,7 @@
 
   scripts/brightness_study.py -o study
   scripts/brightness_study.py -o study --study exposure --steps 2000
-  scripts/brightness_study.py -o study --skyquilt build/release/coordinator/skyquilt --quick
+  scripts/brightness_study.py -o study --skyquilt build/release/skyquilt --quick
 
 Studies: exposure (drift, jumps, wrong tags, no tags), hidden (under- and over-exposed surveys), light (brighter, darker and moved sun).
 Simulations and finished runs in the output folder are used again, so a stopped study goes on. Writes study.md, study.json and pictures.
@@ -223,7 +223,7 @@ class Study:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-o", "--out", required=True, help="folder for surveys, runs, tables and pictures")
-    parser.add_argument("--skyquilt", default=shutil.which("skyquilt") or "build/release/coordinator/skyquilt", help="the program")
+    parser.add_argument("--skyquilt", default=shutil.which("skyquilt") or "build/release/skyquilt", help="the program")
     parser.add_argument("--study", choices=["exposure", "hidden", "light", "all"], default="all")
     parser.add_argument("--steps", type=int, default=600, help="of every block's training; the context has half as many")
     parser.add_argument("--quick", action="store_true", help="sixty steps: shows that everything works, not how well")

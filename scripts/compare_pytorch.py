@@ -2,7 +2,7 @@
 """Trains and evaluates the field of `skyquilt bench kernel` in PyTorch on the CPU and prints samples per second.
 
   /usr/bin/python3 scripts/compare_pytorch.py
-  /usr/bin/python3 scripts/compare_pytorch.py --skyquilt build/release/coordinator/skyquilt
+  /usr/bin/python3 scripts/compare_pytorch.py --skyquilt build/release/skyquilt
   /usr/bin/python3 scripts/compare_pytorch.py --threads 1 --batch 262144 --rounds 5
 
 Needs PyTorch. Debian: apt-get install python3-torch libopenblas0-pthread (without OpenBLAS its matrix products run on the

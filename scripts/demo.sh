@@ -44,7 +44,7 @@ line("median depth error", "depth_median_abs_m", " m", 3)
 PYTHON
 }
 
-skyquilt=build/release/coordinator/skyquilt
+skyquilt=build/release/skyquilt
 stage "set-up" scripts/setup.sh --run
 stage "build" build
 stage "simulate" "$skyquilt" simulate town -o "$out/simulated"

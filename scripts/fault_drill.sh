@@ -10,6 +10,6 @@ if [[ -z "${SKYQUILT:-}" ]]; then
   scripts/setup.sh
   cmake --preset release >/dev/null
   cmake --build --preset release --target skyquilt
-  SKYQUILT=build/release/coordinator/skyquilt
+  SKYQUILT=build/release/skyquilt
 fi
 exec python3 tests/coordinator/e2e/fault_drill.py "$(realpath "$SKYQUILT")" "$@"

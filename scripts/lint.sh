@@ -12,5 +12,5 @@ fi
 if (( $# > 0 )); then
   printf '%s\0' "$@"
 else
-  find core partition worker coordinator tests -name '*.cpp' -print0 | sort -z
+  find app bench coordinator core evaluate merge partition prepare products simulate tests worker -name '*.cpp' -print0 | sort -z
 fi | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p "$build" --quiet --extra-arg=-Wno-unknown-warning-option

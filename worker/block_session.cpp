@@ -6,7 +6,8 @@
 
 #include "core/base/errors.h"
 #include "core/base/log.h"
-#include "core/render/scene_file.h"
+#include "core/scene/field_file.h"
+#include "core/scene/scene_file.h"
 
 namespace skyquilt::worker {
 
@@ -29,7 +30,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   } give_back{target, state};
 
   checkpoint::ArchiveWriter writer(kind, kCheckpointVersion);
-  render::PutField(target, "", writer);
+  scene::PutField(target, "", writer);
   writer.Put("grid_moment1", state.grid_moment1);
   writer.Put("grid_moment2", state.grid_moment2);
   writer.Put("network_moment1", state.network_moment1);
@@ -51,7 +52,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
     brightness::PutLuminance(job.luminance, trainer.luminance_state(), writer);
   }
   if (extras != nullptr && extras->findings != nullptr) {
-    render::PutBackdrop(extras->findings->backdrop, writer);
+    scene::PutBackdrop(extras->findings->backdrop, writer);
     for (const SurfaceBand& band : extras->findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
     writer.Put("surface_bands", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
   }
@@ -116,7 +117,7 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
                  const ContextExtras* extras) {
   const std::filesystem::path& usable = session.file;
   const checkpoint::ArchiveReader& reader = session.reader;
-  render::TrainedField loaded = render::GetField(reader, usable, "");
+  render::TrainedField loaded = scene::GetField(reader, usable, "");
   field::TrainableState& state = trainer.state();
   const auto take = [&](std::vector<float>& to, std::vector<float> from, const char* name) {
     if (from.size() != to.size()) {
@@ -147,7 +148,7 @@ LoadedContext LoadContext(const std::filesystem::path& checkpoint) {
   const std::filesystem::path usable = checkpoint::NewestUsable(checkpoint, "context", &why);
   if (usable.empty()) throw base::InputError(checkpoint, "the context cannot be read (" + why + ")", "Train it again with --restart");
   const checkpoint::ArchiveReader reader(usable);
-  LoadedContext context{render::GetField(reader, usable, ""), brightness::GetResponse(reader, usable), {}, {}, {}};
+  LoadedContext context{scene::GetField(reader, usable, ""), brightness::GetResponse(reader, usable), {}, {}, {}};
   brightness::GetLuminance(reader, &context.luminance, &context.luminance_state);
   if (reader.Has("surface_bands")) {
     const std::vector<float> numbers = reader.Floats("surface_bands");

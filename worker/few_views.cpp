@@ -22,7 +22,7 @@ int CountViews(const RaySource& source, const survey::Survey& survey, const std:
 }
 
 std::vector<Tile> TilesInCompany(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
-                                 const render::PlanSurface& surface, int min_views) {
+                                 const scene::PlanSurface& surface, int min_views) {
   std::vector<Tile> all = TrainingTiles(survey, photos);
   if (surface.Empty() || min_views < 2) return all;
   std::vector<Tile> kept;

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/render/plan_surface.h"
+#include "core/scene/plan_surface.h"
 #include "core/survey/survey.h"
 #include "worker/ray_source.h"
 
@@ -17,6 +17,6 @@ int CountViews(const RaySource& source, const survey::Survey& survey, const std:
 // The training tiles of the photos whose ground at least min_views training photos see, their own included. All tiles when that leaves none,
 // without a surface, and for min_views < 2.
 std::vector<Tile> TilesInCompany(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
-                                 const render::PlanSurface& surface, int min_views);
+                                 const scene::PlanSurface& surface, int min_views);
 
 }  // namespace skyquilt::worker

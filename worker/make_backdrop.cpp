@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/order_statistics.h"
+
 namespace skyquilt::worker {
 namespace {
 
@@ -17,16 +19,10 @@ struct Splat {
   Eigen::Vector3f srgb;
 };
 
-double MiddleOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
-render::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& survey, const render::PlanSurface& points, uint64_t seed) {
-  render::Backdrop backdrop;
+scene::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& survey, const scene::PlanSurface& points, uint64_t seed) {
+  scene::Backdrop backdrop;
   backdrop.mean_srgb = source.MeanColor(seed);
   if (points.Empty()) return backdrop;
   std::vector<int> photos;
@@ -53,7 +49,7 @@ render::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& sur
     high = high.cwiseMax(splat.x.head<2>());
   }
   const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
-  const double cell_m = std::max(MiddleOf(std::move(spacing)), size.maxCoeff() / kMostBackdropCells);
+  const double cell_m = std::max(base::UpperMedian(spacing), size.maxCoeff() / kMostBackdropCells);
   if (!(cell_m > 0.0)) return backdrop;
   const int columns = static_cast<int>(size.x() / cell_m) + 1, rows = static_cast<int>(size.y() / cell_m) + 1;
   const size_t cells = static_cast<size_t>(columns) * static_cast<size_t>(rows);
@@ -75,8 +71,8 @@ render::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& sur
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) heights.push_back(points.At(low.x() + (column + 0.5) * cell_m, low.y() + (row + 0.5) * cell_m));
   }
-  render::FillFromSurroundings(columns, rows, 3, &sum, std::move(count));
-  backdrop.surface = render::PlanSurface(low.x(), low.y(), cell_m, columns, rows, std::move(heights));
+  scene::FillFromSurroundings(columns, rows, 3, &sum, std::move(count));
+  backdrop.surface = scene::PlanSurface(low.x(), low.y(), cell_m, columns, rows, std::move(heights));
   backdrop.rgb_srgb.assign(sum.begin(), sum.end());
   return backdrop;
 }

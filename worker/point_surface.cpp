@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/order_statistics.h"
+
 namespace skyquilt::worker {
 namespace {
 
@@ -16,14 +18,12 @@ double QuantileOf(const std::vector<survey::SparsePoint>& points, int axis, doub
   std::vector<double> values;
   values.reserve(points.size());
   for (const survey::SparsePoint& point : points) values.push_back(point.x_in_enu[axis]);
-  const auto at = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return base::NearestRank(values, share);
 }
 
 }  // namespace
 
-render::PlanSurface SurfaceOfPoints(const survey::Survey& survey) {
+scene::PlanSurface SurfaceOfPoints(const survey::Survey& survey) {
   if (survey.points.empty()) return {};
   Eigen::Vector2d low, high;
   for (int axis = 0; axis < 2; ++axis) {
@@ -44,12 +44,10 @@ render::PlanSurface SurfaceOfPoints(const survey::Survey& survey) {
   for (size_t i = 0; i < in_cell.size(); ++i) {
     std::vector<double>& z = in_cell[i];
     if (z.empty()) continue;
-    const auto middle = z.begin() + static_cast<ptrdiff_t>(z.size() / 2);
-    std::nth_element(z.begin(), middle, z.end());
-    heights[i] = *middle;
+    heights[i] = base::UpperMedian(z);
     known[i] = 1.0;
   }
-  render::FillFromSurroundings(columns, rows, 1, &heights, std::move(known));
+  scene::FillFromSurroundings(columns, rows, 1, &heights, std::move(known));
   return {low.x(), low.y(), cell_m, columns, rows, std::move(heights)};
 }
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/render/march.h"
-#include "core/render/scene.h"
+#include "core/scene/scene.h"
 #include "worker/few_views.h"
 
 namespace skyquilt::worker {
@@ -20,7 +20,7 @@ constexpr int kGroundReach = 6;
 
 }  // namespace
 
-void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const render::PlanSurface& surface,
+void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const scene::PlanSurface& surface,
                 int min_views, render::TrainedField& target, base::ThreadPool& threads) {
   field::OccupancyGrid& grid = target.occupancy;
   const int groups[3] = {(grid.size[0] + kGroup - 1) / kGroup, (grid.size[1] + kGroup - 1) / kGroup, (grid.size[2] + kGroup - 1) / kGroup};

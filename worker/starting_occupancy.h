@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "core/render/plan_surface.h"
 #include "core/render/trained_field.h"
+#include "core/scene/plan_surface.h"
 #include "worker/ray_source.h"
 #include "worker/surface_band.h"
 
@@ -16,7 +16,7 @@ constexpr float kStartDepth = 0.1F;
 
 // Cells in view of none of the photos become "never seen", and so do all cells above and below ground that fewer than min_views training photos
 // show (unless that would leave none; empty surface: nothing is known of the ground). Tested per group of 4 x 4 x 4 cells, generously.
-void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const render::PlanSurface& surface,
+void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const scene::PlanSurface& surface,
                 int min_views, render::TrainedField& target, base::ThreadPool& threads);
 // Every cell that may be seen is looked at: what fields without any knowledge of the survey do, for comparison.
 void StartEverywhere(render::TrainedField& target);

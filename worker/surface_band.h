@@ -7,8 +7,8 @@
 #include "core/base/thread_pool.h"
 #include "core/brightness/luminance.h"
 #include "core/brightness/response.h"
-#include "core/render/backdrop.h"
 #include "core/render/trained_field.h"
+#include "core/scene/backdrop.h"
 #include "core/survey/survey.h"
 #include "worker/ray_source.h"
 
@@ -24,7 +24,7 @@ struct SurfaceBand {
 // What the context stage finds out beside its field.
 struct ContextFindings {
   std::vector<SurfaceBand> bands;  // [photo][row][column], kTileRows x kTileColumns per photo
-  render::Backdrop backdrop;
+  scene::Backdrop backdrop;
 };
 
 struct LoadedContext {

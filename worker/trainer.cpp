@@ -7,11 +7,11 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "core/brightness/captured_photos.h"
 #include "core/brightness/exposure.h"
 #include "core/brightness/predict_gains.h"
 #include "core/render/march.h"
 #include "worker/block_session.h"
-#include "worker/captured_photos.h"
 #include "worker/few_views.h"
 #include "worker/field_trainer.h"
 #include "worker/make_backdrop.h"
@@ -238,7 +238,7 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   brightness::ResponseLearner learner(response, job.learn);
   ContextExtras extras{&response, &learner, nullptr};
   RaySource source(*job.survey, *job.pixels, response);
-  const render::PlanSurface surface = SurfaceOfPoints(*job.survey);
+  const scene::PlanSurface surface = SurfaceOfPoints(*job.survey);
   source.SetTiles(TilesInCompany(source, *job.survey, area.photos, surface, job.min_views), {}, 0.0);
   if (!source.HasRays()) {
     TrainResult none;
@@ -268,7 +268,7 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   return loop.Run(record, [&] {
     target.grid = trainer.state().grid;
     target.networks = trainer.state().networks;
-    if (job.learn.Gains()) brightness::PredictGains(CapturedPhotos(*job.survey), response);
+    if (job.learn.Gains()) brightness::PredictGains(brightness::CapturedPhotos(*job.survey), response);
     return ContextFindings{SurfaceBands(source, *job.survey, target, threads), MakeBackdrop(source, *job.survey, surface, job.seed)};
   });
 }
@@ -288,7 +288,7 @@ TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::fil
   }
   render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false);
   RaySource source(*job.survey, *job.pixels, loaded.response);
-  const render::PlanSurface surface = SurfaceOfPoints(*job.survey);
+  const scene::PlanSurface surface = SurfaceOfPoints(*job.survey);
   const std::vector<Tile> tiles = TilesInCompany(source, *job.survey, block.photos, surface, job.min_views);
   ChooseTiles(*job.survey, tiles, target, context, job.options.empty_ray_share, source);
   if (!source.HasRays()) {

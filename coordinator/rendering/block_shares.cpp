@@ -21,7 +21,7 @@ uint64_t Interleave(uint32_t x, uint32_t y) {
   return key;
 }
 
-std::vector<int> AlongCurve(const render::FieldStore& store) {
+std::vector<int> AlongCurve(const scene::FieldStore& store) {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d high = -low;
   const auto centre = [&](int k) -> Eigen::Vector2d { return 0.5 * (store.block(k).core_min_enu + store.block(k).core_max_enu).head<2>(); };
@@ -49,7 +49,7 @@ bool Meet(const render::TrainedField& a, const render::TrainedField& b) {
 
 }  // namespace
 
-std::vector<int> DealBlocks(const render::FieldStore& store, int n) {
+std::vector<int> DealBlocks(const scene::FieldStore& store, int n) {
   SKYQUILT_CHECK(n >= 1, std::to_string(n));
   double total = 0.0;
   for (int k = 0; k < store.size(); ++k) total += store.Bytes(k);
@@ -64,7 +64,7 @@ std::vector<int> DealBlocks(const render::FieldStore& store, int n) {
   return owner;
 }
 
-std::vector<std::vector<int>> LowerNeighbours(const render::FieldStore& store) {
+std::vector<std::vector<int>> LowerNeighbours(const scene::FieldStore& store) {
   std::vector<std::vector<int>> lower(static_cast<size_t>(store.size()));
   for (int k = 0; k < store.size(); ++k) {
     for (int other = 0; other < k; ++other) {
@@ -74,7 +74,7 @@ std::vector<std::vector<int>> LowerNeighbours(const render::FieldStore& store) {
   return lower;
 }
 
-double LargestShareBytes(const render::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n) {
+double LargestShareBytes(const scene::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n) {
   std::vector<double> bytes(static_cast<size_t>(n), 0.0);
   std::set<int> holders;
   for (size_t k = 0; k < owner.size(); ++k) {
@@ -86,7 +86,7 @@ double LargestShareBytes(const render::FieldStore& store, const std::vector<std:
   return *std::max_element(bytes.begin(), bytes.end()) + store.ContextBytes();
 }
 
-std::vector<RankGroup> MakeGroups(const render::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes) {
+std::vector<RankGroup> MakeGroups(const scene::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes) {
   SKYQUILT_CHECK(!ranks.empty() && ranks.size() == memory_bytes.size(), "one memory size per rank");
   const double least = *std::min_element(memory_bytes.begin(), memory_bytes.end());
   const auto n = static_cast<int>(ranks.size());

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/render/field_store.h"
+#include "core/scene/field_store.h"
 
 namespace skyquilt::coordinator {
 
@@ -16,17 +16,17 @@ struct RankGroup {
 
 // Blocks dealt out to n owners in parts of about equal bytes that hang together on the ground (along a Z-order curve of their centres). Per block
 // its owner; with more owners than blocks some get none.
-std::vector<int> DealBlocks(const render::FieldStore& store, int n);
+std::vector<int> DealBlocks(const scene::FieldStore& store, int n);
 
 // Per block the ones of lower number that it is blended with somewhere.
-std::vector<std::vector<int>> LowerNeighbours(const render::FieldStore& store);
+std::vector<std::vector<int>> LowerNeighbours(const scene::FieldStore& store);
 
 // Bytes that the owner with most of them needs at once, the context and the neighbours included that its blocks are blended with.
-double LargestShareBytes(const render::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n);
+double LargestShareBytes(const scene::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n);
 
 // As many groups as there can be such that everybody's share fits its memory; one group of all when not even that is enough.
 // memory_bytes[i] belongs to ranks[i]; both have the same length, at least 1.
-std::vector<RankGroup> MakeGroups(const render::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes);
+std::vector<RankGroup> MakeGroups(const scene::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes);
 
 // Who renders where these blocks meet; `otherwise` where there are none.
 inline int OwnerOf(std::span<const int> owner, std::span<const int> blocks, int otherwise) {

@@ -5,14 +5,14 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "coordinator/scheduler/coordinate.h"
+#include "coordinator/ranks/messages.h"
 #include "core/base/errors.h"
 
 namespace skyquilt::coordinator {
 namespace {
 
-using render::kArrived;
-using render::Traveller;
+using scene::kArrived;
+using scene::Traveller;
 
 // Rays that are handed out together: enough to keep a rank's cores busy while the next ones travel, few enough that all ranks have some.
 constexpr size_t kMostRays = 1 << 14;
@@ -47,7 +47,7 @@ RayFarm::RayFarm(comm::Communicator& comm, const std::string& setup) : comm_(com
   SKYQUILT_CHECK(comm.size() > 1, "a farm of other ranks");
 }
 
-void RayFarm::Begin(const render::FieldStore& store, const render::RaySegments& segments) {
+void RayFarm::Begin(const scene::FieldStore& store, const render::RaySegments& segments) {
   store_ = &store;
   segments_ = &segments;
   const std::vector<CrewMember> members = crew_.Muster();

@@ -11,24 +11,24 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/ranks/crew.h"
 #include "coordinator/rendering/block_shares.h"
 #include "coordinator/rendering/ray_parcel.h"
-#include "coordinator/scheduler/crew.h"
 #include "core/comm/communicator.h"
-#include "core/render/ray_service.h"
+#include "core/scene/ray_service.h"
 
 namespace skyquilt::coordinator {
 
-class RayFarm : public render::RayService {
+class RayFarm : public scene::RayService {
  public:
   // Calls the other ranks together (at least one); they open the scene file. Its destructor sends them back.
   // `setup` is for ServeRays, see serve_rays.h.
   RayFarm(comm::Communicator& comm, const std::string& setup);
 
-  void Begin(const render::FieldStore& store, const render::RaySegments& segments) override;
+  void Begin(const scene::FieldStore& store, const render::RaySegments& segments) override;
   void Render(std::span<const render::Ray> rays, std::span<render::RayColor> out, const render::EngineOptions& options) override;
 
-  render::RenderStatistics statistics() const override { return statistics_; }
+  scene::RenderStatistics statistics() const override { return statistics_; }
 
  private:
   // Rays that wait for a rank, or are with one.
@@ -46,12 +46,12 @@ class RayFarm : public render::RayService {
 
   comm::Communicator& comm_;
   Crew crew_;
-  const render::FieldStore* store_ = nullptr;
+  const scene::FieldStore* store_ = nullptr;
   const render::RaySegments* segments_ = nullptr;
   std::vector<RankGroup> groups_;
   uint64_t next_id_ = 1;
   std::map<int, int64_t> loads_;  // per rank
-  render::RenderStatistics statistics_;
+  scene::RenderStatistics statistics_;
 };
 
 }  // namespace skyquilt::coordinator

@@ -8,7 +8,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-static_assert(std::is_trivially_copyable_v<render::Traveller> && std::is_trivially_copyable_v<render::RayColor> &&
+static_assert(std::is_trivially_copyable_v<scene::Traveller> && std::is_trivially_copyable_v<render::RayColor> &&
               std::is_trivially_copyable_v<render::EngineOptions>);
 
 class Packer {
@@ -79,12 +79,12 @@ bool Same(const render::Ray& a, const render::Ray& b) {
   return a.origin_enu == b.origin_enu && a.t_near == b.t_near && a.t_far == b.t_far && a.pixel_radius == b.pixel_radius;
 }
 
-bool Fresh(const render::Traveller& traveller) {
+bool Fresh(const scene::Traveller& traveller) {
   return traveller.at == 0.0 && traveller.state.transmittance == 1.0 && !traveller.state.ended;
 }
 
 // Without the padding, whose bytes nobody set.
-void AddTraveller(const render::Traveller& traveller, Packer* packer) {
+void AddTraveller(const scene::Traveller& traveller, Packer* packer) {
   const render::RayState& s = traveller.state;
   packer->Add(s.transmittance);
   packer->Add(s.depth_moment);
@@ -104,8 +104,8 @@ void TakeArray(T (&values)[kCount], Unpacker* unpacker) {
   for (T& value : values) value = unpacker->Take<T>();
 }
 
-render::Traveller TakeTraveller(Unpacker* unpacker) {
-  render::Traveller traveller;
+scene::Traveller TakeTraveller(Unpacker* unpacker) {
+  scene::Traveller traveller;
   render::RayState& s = traveller.state;
   s.transmittance = unpacker->Take<double>();
   s.depth_moment = unpacker->Take<double>();
@@ -141,7 +141,7 @@ std::string ToBytes(const RayParcel& parcel) {
     if (!shared) packer.Add(CommonOf(ray));
   }
   if (!fresh) {
-    for (const render::Traveller& traveller : parcel.travellers) AddTraveller(traveller, &packer);
+    for (const scene::Traveller& traveller : parcel.travellers) AddTraveller(traveller, &packer);
   }
   return packer.Take();
 }
@@ -170,7 +170,7 @@ RayParcel RayParcelFromBytes(const std::string& bytes) {
   }
   parcel.travellers.resize(n);
   if (!fresh) {
-    for (render::Traveller& traveller : parcel.travellers) traveller = TakeTraveller(&unpacker);
+    for (scene::Traveller& traveller : parcel.travellers) traveller = TakeTraveller(&unpacker);
   }
   unpacker.End();
   return parcel;
@@ -186,8 +186,8 @@ std::string ToBytes(const CarriedParcel& parcel) {
   packer.AddText(parcel.file);
   packer.Add(static_cast<uint64_t>(parcel.travellers.size()));
   size_t color = 0;
-  for (const render::Traveller& traveller : parcel.travellers) {
-    const bool arrived = traveller.owner == render::kArrived;
+  for (const scene::Traveller& traveller : parcel.travellers) {
+    const bool arrived = traveller.owner == scene::kArrived;
     packer.Add(arrived);
     if (arrived) {
       packer.Add(parcel.colors.at(color++));
@@ -209,9 +209,9 @@ CarriedParcel CarriedParcelFromBytes(const std::string& bytes) {
   parcel.file = unpacker.TakeText();
   const size_t n = unpacker.TakeCount(sizeof(bool));
   for (size_t i = 0; i < n; ++i) {
-    render::Traveller traveller;
+    scene::Traveller traveller;
     if (unpacker.Take<bool>()) {
-      traveller.owner = render::kArrived;
+      traveller.owner = scene::kArrived;
       parcel.colors.push_back(unpacker.Take<render::RayColor>());
     } else {
       traveller = TakeTraveller(&unpacker);

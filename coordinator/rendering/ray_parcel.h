@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/render/paged_rays.h"
+#include "core/scene/paged_rays.h"
 
 namespace skyquilt::coordinator {
 
@@ -14,7 +14,7 @@ struct RayParcel {
   uint64_t id = 0;
   render::EngineOptions options;
   std::vector<render::Ray> rays;
-  std::vector<render::Traveller> travellers;  // one per ray
+  std::vector<scene::Traveller> travellers;  // one per ray
 };
 
 // Back from it: in the order of the parcel's rays.
@@ -23,10 +23,10 @@ struct CarriedParcel {
 
   uint64_t id = 0;
   int64_t samples = 0;
-  int64_t field_loads = 0;                    // of the rank, so far
-  std::vector<render::Traveller> travellers;  // of arrived ones only `owner` counts
-  std::vector<render::RayColor> colors;       // of arrived ones, in order
-  Failure failure = Failure::kNone;           // with it no rays come back
+  int64_t field_loads = 0;                   // of the rank, so far
+  std::vector<scene::Traveller> travellers;  // of arrived ones only `owner` counts
+  std::vector<render::RayColor> colors;      // of arrived ones, in order
+  Failure failure = Failure::kNone;          // with it no rays come back
   std::string reason;
   std::string file;  // that it concerns
 };

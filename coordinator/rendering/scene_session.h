@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <memory>
 
+#include "coordinator/project/run_options.h"
 #include "coordinator/rendering/ray_farm.h"
-#include "coordinator/run_options.h"
 #include "core/base/thread_pool.h"
 #include "core/comm/communicator.h"
-#include "core/render/scene.h"
+#include "core/scene/scene.h"
 
 namespace skyquilt::coordinator {
 
@@ -21,13 +21,13 @@ class SceneSession {
   SceneSession(const SceneSession&) = delete;
   SceneSession& operator=(const SceneSession&) = delete;
 
-  const render::Scene& scene() const { return *scene_; }
+  const scene::Scene& scene() const { return *scene_; }
   base::ThreadPool& threads() { return threads_; }
 
  private:
   base::ThreadPool threads_;
   std::unique_ptr<RayFarm> farm_;
-  std::unique_ptr<render::Scene> scene_;
+  std::unique_ptr<scene::Scene> scene_;
 };
 
 }  // namespace skyquilt::coordinator

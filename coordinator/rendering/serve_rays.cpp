@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/ranks/crew.h"
+#include "coordinator/ranks/messages.h"
 #include "coordinator/rendering/block_shares.h"
 #include "coordinator/rendering/ray_parcel.h"
-#include "coordinator/scheduler/coordinate.h"
-#include "coordinator/scheduler/crew.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/base/system.h"
 #include "core/base/thread_pool.h"
-#include "core/render/paged_rays.h"
-#include "core/render/scene_file.h"
+#include "core/scene/paged_rays.h"
+#include "core/scene/scene_file.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -36,10 +36,10 @@ class RayServer {
   CarriedParcel Carry(RayParcel parcel) {
     CarriedParcel carried{.id = parcel.id, .travellers = {}, .colors = {}, .reason = {}, .file = {}};
     try {
-      for (render::Traveller& traveller : parcel.travellers) traveller.owner = number_;
+      for (scene::Traveller& traveller : parcel.travellers) traveller.owner = number_;
       carried.samples = rays_.Continue(parcel.rays, parcel.travellers, parcel.options, number_, Owner());
-      for (const render::Traveller& traveller : parcel.travellers) {
-        if (traveller.owner == render::kArrived) carried.colors.push_back(render::Finished(traveller.state));
+      for (const scene::Traveller& traveller : parcel.travellers) {
+        if (traveller.owner == scene::kArrived) carried.colors.push_back(render::Finished(traveller.state));
       }
       carried.travellers = std::move(parcel.travellers);
     } catch (const base::Interrupted&) {
@@ -60,21 +60,21 @@ class RayServer {
   }
 
  private:
-  render::PagedRays::Owner Owner() const {
+  scene::PagedRays::Owner Owner() const {
     const bool alone = std::all_of(owner_.begin(), owner_.end(), [this](int number) { return number == number_; });
     if (alone) return {};
     return [this](std::span<const int> blocks) { return OwnerOf(owner_, blocks, number_); };
   }
-  static render::FieldStore OpenStore(const std::filesystem::path& scene_h5, double memory_bytes) {
-    checkpoint::ArchiveReader reader = render::OpenScene(scene_h5);
-    const bool hard = render::BordersOf(reader) == render::Borders::kHard;
+  static scene::FieldStore OpenStore(const std::filesystem::path& scene_h5, double memory_bytes) {
+    checkpoint::ArchiveReader reader = scene::OpenScene(scene_h5);
+    const bool hard = scene::BordersOf(reader) == scene::Borders::kHard;
     return {std::move(reader), scene_h5, memory_bytes, hard};
   }
 
   base::ThreadPool threads_;
-  render::FieldStore store_;
+  scene::FieldStore store_;
   render::RaySegments segments_;
-  render::PagedRays rays_;
+  scene::PagedRays rays_;
   int number_;
   std::vector<int> owner_;
 };

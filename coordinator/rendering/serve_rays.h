@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "coordinator/settings.h"
+#include "coordinator/project/settings.h"
 #include "core/comm/communicator.h"
 
 namespace skyquilt::coordinator {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/ranks/messages.h"
 #include "coordinator/scheduler/rank_speeds.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -264,20 +265,6 @@ void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int thre
         trainer, job, [&reporter](const worker::TrainStatus& status) { reporter(status); }, comm.rank(), threads);
     if (reporter.only_yielded()) base::WithdrawRequest();
     comm.Send(0, kTagOutcome, ToText(outcome));
-  }
-}
-
-comm::Message WaitForMessage(comm::Communicator& comm) {
-  auto pause = std::chrono::microseconds(200);
-  std::optional<Clock::time_point> cancelled;
-  while (true) {
-    if (std::optional<comm::Message> message = comm.TryReceive()) return *std::move(message);
-    if (base::CancelRequested()) {
-      if (!cancelled) cancelled = Clock::now();
-      if (SecondsSince(*cancelled) > 60.0) throw base::Interrupted();
-    }
-    std::this_thread::sleep_for(std::min(pause, comm.Nap() * 20));
-    pause = std::min(pause * 2, std::chrono::microseconds(20000));
   }
 }
 

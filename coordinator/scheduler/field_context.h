@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/pipeline_project.h"
+#include "coordinator/project/project.h"
+#include "coordinator/project/settings.h"
 #include "coordinator/scheduler/field_job.h"
-#include "coordinator/settings.h"
 #include "core/base/thread_pool.h"
 #include "core/comm/communicator.h"
 #include "core/image/pixel_cache.h"

@@ -4,9 +4,10 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/ranks/crew.h"
+#include "coordinator/ranks/messages.h"
 #include "coordinator/scheduler/block_queue.h"
 #include "coordinator/scheduler/coordinate.h"
-#include "coordinator/scheduler/crew.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/train_ledger.h"

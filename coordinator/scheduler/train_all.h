@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/pipeline_project.h"
+#include "coordinator/project/project.h"
+#include "coordinator/project/settings.h"
 #include "coordinator/scheduler/field_job.h"
-#include "coordinator/settings.h"
 #include "core/comm/communicator.h"
 #include "core/survey/survey.h"
 #include "partition/block.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/pipeline_project.h"
+#include "coordinator/project/project.h"
 #include "coordinator/scheduler/field_job.h"
 
 namespace skyquilt::coordinator {

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "coordinator/ranks/messages.h"
 #include "coordinator/scheduler/coordinate.h"
 #include "core/base/errors.h"
 

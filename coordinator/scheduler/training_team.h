@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/scheduler/crew.h"
+#include "coordinator/ranks/crew.h"
 #include "coordinator/scheduler/field_job.h"
 #include "core/comm/communicator.h"
 #include "worker/trainer.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/order_statistics.h"
 #include "core/image/srgb.h"
 
 namespace skyquilt::brightness {
@@ -32,8 +33,7 @@ PhotoGains GainsFromExif(const std::vector<std::optional<double>>& exposures) {
     if (exposure) known.push_back(*exposure);
   }
   if (known.empty()) return result;
-  std::nth_element(known.begin(), known.begin() + static_cast<ptrdiff_t>(known.size() / 2), known.end());
-  result.reference_exposure = known[known.size() / 2];
+  result.reference_exposure = base::UpperMedian(known);
   const double limit = std::exp(static_cast<double>(kMaxLogGain));
   for (size_t i = 0; i < exposures.size(); ++i) {
     if (!exposures[i]) continue;

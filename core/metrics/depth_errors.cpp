@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/order_statistics.h"
 #include "core/metrics/check_shapes.h"
 
 namespace skyquilt::metrics {
@@ -32,11 +33,7 @@ DepthErrors DepthErrorCollector::Result() const {
     return errors;
   }
   errors.rmse_m = std::sqrt(sum_of_squares_ / static_cast<double>(errors.n));
-  std::vector<float> sorted = absolute_m_;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  errors.median_abs_m = static_cast<double>(*middle);
-  if (sorted.size() % 2 == 0) errors.median_abs_m = 0.5 * (errors.median_abs_m + static_cast<double>(*std::max_element(sorted.begin(), middle)));
+  errors.median_abs_m = base::Median({absolute_m_.begin(), absolute_m_.end()});
   return errors;
 }
 

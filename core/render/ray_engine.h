@@ -10,9 +10,9 @@
 #include "core/base/thread_pool.h"
 #include "core/brightness/luminance.h"
 #include "core/render/concealed.h"
+#include "core/render/ray.h"
 #include "core/render/ray_box.h"
 #include "core/render/ray_state.h"
-#include "core/render/scene.h"
 #include "core/render/trained_field.h"
 
 namespace skyquilt::render {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/render/ray.h"
 #include "core/render/ray_box.h"
-#include "core/render/scene.h"
 
 namespace skyquilt::render {
 

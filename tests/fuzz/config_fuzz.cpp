@@ -1,5 +1,5 @@
 // The configuration file.
-#include "coordinator/settings.h"
+#include "coordinator/project/settings.h"
 #include "core/base/errors.h"
 #include "core/config/options.h"
 #include "tests/fuzz/fuzz_target.h"

@@ -6,26 +6,27 @@
 #include <vector>
 
 #include "core/checkpoint/archive.h"
-#include "core/render/scene_file.h"
+#include "core/scene/field_file.h"
+#include "core/scene/scene_file.h"
 #include "tests/support/random_field.h"
 
-namespace skyquilt::render {
+namespace skyquilt::scene {
 
 constexpr double kRandomBlock_m = 5.0;  // edge of a block
 
 // rows x columns blocks from (0, 0) eastwards, row by row from the south; 4 m high. The file has what FieldStore reads.
 inline void WriteRandomScene(const std::filesystem::path& file, int rows, int columns, double margin_m, double density_bias, bool with_context) {
-  std::vector<TrainedField> blocks;
+  std::vector<render::TrainedField> blocks;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const Eigen::Vector3d low(kRandomBlock_m * column, kRandomBlock_m * row, 0.0);
       const auto seed = 10 + static_cast<uint64_t>(row) * static_cast<uint64_t>(columns) + static_cast<uint64_t>(column);
-      blocks.push_back(RandomField(seed, low, low + Eigen::Vector3d(kRandomBlock_m, kRandomBlock_m, 4.0), margin_m, density_bias));
+      blocks.push_back(render::RandomField(seed, low, low + Eigen::Vector3d(kRandomBlock_m, kRandomBlock_m, 4.0), margin_m, density_bias));
       blocks.back().name = "r" + std::to_string(row) + "c" + std::to_string(column);
     }
   }
   const Eigen::Vector3d far_corner(kRandomBlock_m * columns, kRandomBlock_m * rows, 4.0);
-  TrainedField context = RandomField(5, Eigen::Vector3d::Zero(), far_corner, 0.0, density_bias - 1.0, true);
+  render::TrainedField context = render::RandomField(5, Eigen::Vector3d::Zero(), far_corner, 0.0, density_bias - 1.0, true);
   context.name = "context";
   checkpoint::ArchiveWriter writer(kSceneKind, kSceneVersion);
   writer.SetAttribute("blocks", static_cast<int64_t>(blocks.size()));
@@ -34,4 +35,4 @@ inline void WriteRandomScene(const std::filesystem::path& file, int rows, int co
   writer.Commit(file);
 }
 
-}  // namespace skyquilt::render
+}  // namespace skyquilt::scene

@@ -5,6 +5,7 @@
 
 #include "core/base/errors.h"
 #include "core/image/srgb.h"
+#include "core/scene/field_file.h"
 #include "tests/worker/small_survey.h"
 #include "worker/block_session.h"
 #include "worker/tie_point_gains.h"
@@ -244,7 +245,7 @@ TEST_F(BrightnessTest, BlocksKeepToTheContextsLight) {
   ASSERT_TRUE(block.ok) << block.reason;
   const LoadedContext context = LoadContext(folder_ / "context.h5");
   const checkpoint::ArchiveReader reader(folder_ / "block.h5");
-  const render::TrainedField field = render::GetField(reader, folder_ / "block.h5", "");
+  const render::TrainedField field = scene::GetField(reader, folder_ / "block.h5", "");
   render::FieldSet coarse, fine;
   coarse.context = &context.field;
   fine.blocks = {&field};

@@ -123,7 +123,7 @@ TEST_F(FewViewsTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
 
 TEST_F(FewViewsTest, TheBackdropShowsCoarseColoursWhereOnePhotoLookedAndNearOnesWhereNoneDid) {
   Photograph(48.0);
-  const render::Backdrop backdrop = MakeBackdrop(*source_, survey_, SurfaceOfPoints(survey_), 1);
+  const scene::Backdrop backdrop = MakeBackdrop(*source_, survey_, SurfaceOfPoints(survey_), 1);
   const auto down_at = [&](double x) { return backdrop.Color({x, 0.0, 50.0}, {0.0, 0.0, -1.0}); };
   EXPECT_NEAR(down_at(-24.0)[0], 150.0F / 255.0F, 0.01F) << "the check is blurred";
   EXPECT_NEAR(down_at(-24.0)[1], 80.0F / 255.0F, 0.01F);
@@ -131,7 +131,7 @@ TEST_F(FewViewsTest, TheBackdropShowsCoarseColoursWhereOnePhotoLookedAndNearOnes
   EXPECT_NEAR(down_at(80.0)[1], 80.0F / 255.0F, 0.01F);
   EXPECT_NEAR(down_at(-300.0)[1], 80.0F / 255.0F, 0.02F) << "beyond the photos their edge goes on";
   EXPECT_EQ(backdrop.Color({0.0, 0.0, 50.0}, {1.0, 0.0, 0.1}), backdrop.mean_srgb) << "the sky";
-  const render::Backdrop flat = MakeBackdrop(*source_, survey_, {}, 1);
+  const scene::Backdrop flat = MakeBackdrop(*source_, survey_, {}, 1);
   EXPECT_EQ(flat.Color({0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}), flat.mean_srgb) << "without points";
 }
 
@@ -154,7 +154,7 @@ TEST(SurfaceOfPoints, FollowsTheGroundAndReachesBeyondThePoints) {
     point.x_in_enu = {x, y, x < 40.0 ? 5.0 : 25.0};
     survey.points.push_back(point);
   }
-  const render::PlanSurface surface = SurfaceOfPoints(survey);
+  const scene::PlanSurface surface = SurfaceOfPoints(survey);
   EXPECT_DOUBLE_EQ(surface.At(10.0, 20.0), 5.0);
   EXPECT_DOUBLE_EQ(surface.At(70.0, 20.0), 25.0);
   EXPECT_DOUBLE_EQ(surface.At(-500.0, 900.0), 5.0);

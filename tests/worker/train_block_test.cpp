@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/base/errors.h"
+#include "core/scene/field_file.h"
 #include "tests/worker/small_survey.h"
 #include "worker/block_session.h"
 #include "worker/starting_occupancy.h"
@@ -29,7 +30,7 @@ TEST_F(TrainBlockTest, LearnsTheSceneThroughContextAndBlock) {
   // The held-out nadir ray over the box's middle ends on its roof, one beside it on the ground.
   const LoadedContext loaded = LoadContext(folder_ / "context.h5");
   const checkpoint::ArchiveReader reader(folder_ / "block.h5");
-  const render::TrainedField field = render::GetField(reader, folder_ / "block.h5", "");
+  const render::TrainedField field = scene::GetField(reader, folder_ / "block.h5", "");
   render::FieldSet set;
   set.blocks = {&field};
   set.context = &loaded.field;

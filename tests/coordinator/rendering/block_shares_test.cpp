@@ -16,8 +16,8 @@ constexpr int kRows = 4, kColumns = 4;
 class BlockShares : public ::testing::Test {
  protected:
   BlockShares() {
-    render::WriteRandomScene(folder_ / "scene.h5", kRows, kColumns, 0.5, -2.0, true);
-    store_ = std::make_unique<render::FieldStore>(checkpoint::ArchiveReader(folder_ / "scene.h5"), folder_ / "scene.h5", 0.0, false);
+    scene::WriteRandomScene(folder_ / "scene.h5", kRows, kColumns, 0.5, -2.0, true);
+    store_ = std::make_unique<scene::FieldStore>(checkpoint::ArchiveReader(folder_ / "scene.h5"), folder_ / "scene.h5", 0.0, false);
   }
   double AllBytes() const {
     double bytes = store_->ContextBytes();
@@ -26,7 +26,7 @@ class BlockShares : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  std::unique_ptr<render::FieldStore> store_;
+  std::unique_ptr<scene::FieldStore> store_;
 };
 
 TEST_F(BlockShares, PartsAreEvenAndHangTogether) {

@@ -12,7 +12,7 @@ namespace skyquilt::coordinator {
 namespace {
 
 using render::Ray;
-using render::Traveller;
+using scene::Traveller;
 
 RayParcel Parcel(int n, bool one_camera, bool fresh, uint64_t seed) {
   base::Random random(seed);
@@ -68,7 +68,7 @@ RC_GTEST_PROP(RayParcelProperty, ComesBackUnchanged, ()) {
     traveller.owner = *rc::gen::inRange(-1, 3);
     traveller.at = i;
     sent.travellers.push_back(traveller);
-    if (traveller.owner == render::kArrived) sent.colors.push_back({.opacity = 0.01F * static_cast<float>(i)});
+    if (traveller.owner == scene::kArrived) sent.colors.push_back({.opacity = 0.01F * static_cast<float>(i)});
   }
   const CarriedParcel got = CarriedParcelFromBytes(ToBytes(sent));
   RC_ASSERT(got.id == 7U && got.samples == 123 && got.field_loads == 4 && got.reason == "why" && got.file == "scene.h5");

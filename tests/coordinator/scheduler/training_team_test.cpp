@@ -4,6 +4,7 @@
 
 #include <thread>
 
+#include "coordinator/ranks/messages.h"
 #include "coordinator/scheduler/coordinate.h"
 #include "core/base/errors.h"
 #include "fake_ranks.h"

@@ -1,0 +1,224 @@
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <iostream>
+
+#include "app/commands/command.h"
+#include "app/settings/duration.h"
+#include "app/settings/presets.h"
+#include "bench/study/study_benches.h"
+#include "bench/study/study_tables.h"
+#include "core/base/errors.h"
+#include "core/base/system.h"
+
+namespace skyquilt::app {
+namespace {
+
+struct StudyFlags {
+  std::string out, survey, preset, model, budget, blocks;
+  std::vector<int> log2_table_sizes;     // empty: the study's own
+  std::vector<double> voxels_per_entry;  // empty: the study's own
+  bool quick = false, restart = false, keep = false, json = false;
+};
+
+// What only costs time in a comparison.
+const std::vector<config::Override> kLean = {
+    {"products.video_seconds", "0"}, {"evaluate.report_photos", "6"}, {"evaluate.report_image_width", "640"}};
+// A small invented place, seen in small photos.
+const std::vector<config::Override> kQuick = {{"run.image_width", "320"}, {"evaluate.report_photos", "2"}, {"partition.max_log2_table_size", "15"}};
+
+struct StudyCommand {
+  std::string name, help;
+  std::string preset;  // simulated when no survey is given
+  std::string budget;  // the default, for people
+  std::string footer;
+  std::function<void(CLI::App*, StudyFlags*)> options = {};  // of this command alone
+  std::function<bench::StudyBench(bench::Study&, const StudyFlags&)> run;
+};
+
+double BudgetOf(const StudyFlags& flags, double otherwise_s, double quick_s) {
+  if (!flags.budget.empty()) return ParseDurationSeconds(flags.budget);
+  return flags.quick ? quick_s : otherwise_s;
+}
+
+bench::Study Begin(const CommandState& state, const StudyFlags& flags, const std::string& preset) {
+  std::vector<config::Override> own = kLean;
+  if (flags.quick) own.insert(own.end(), kQuick.begin(), kQuick.end());
+  // --config and --set come last: what the user says counts.
+  coordinator::Settings settings;
+  for (const config::Override& entry : own) settings.Set(entry);
+  settings = state.LoadOver(settings);
+  bench::StudySurvey survey{.folder = flags.survey, .preset = flags.preset, .model = flags.model};
+  if (survey.folder.empty() && survey.preset.empty()) survey.preset = flags.quick ? "hamlet" : preset;
+  if (!survey.folder.empty() && !std::filesystem::is_directory(survey.folder)) {
+    throw base::InputError(survey.folder, "no such folder", "Give the folder that holds the photos, or a project");
+  }
+  return bench::Study(*state.comm, {.folder = flags.out,
+                                    .survey = survey,
+                                    .settings = settings,
+                                    .restart = flags.restart,
+                                    .keep = flags.keep,
+                                    .quiet = state.quiet,
+                                    .verbose = state.verbose});
+}
+
+void Finish(bench::StudyBench bench, const bench::Study& study, const CommandState& state, const StudyFlags& flags) {
+  bench::BenchPage& page = bench.page;
+  page.machine = base::MachineDescription();
+  page.date = base::UtcTimestamp();
+  page.command = state.command_line;
+  coordinator::Settings settings = study.settings();
+  const std::string json = bench::StudyJson(page, bench.results, settings.Toml());
+  bench::WriteBench(flags.out, page, json);
+  std::cout << (flags.json ? json : bench::BenchText(page));
+  if (!flags.json) std::cout << "\n" << (std::filesystem::path(flags.out) / (page.name + ".html")).string() << "\n";
+}
+
+void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& study_command) {
+  const auto flags = std::make_shared<StudyFlags>();
+  const std::string& name = study_command.name;
+  CLI::App* command = bench.add_subcommand(name, study_command.help);
+  command->add_option("-o,--output", flags->out, "folder for " + name + ".json, .csv, .html and the runs")->required()->type_name("DIR");
+  command->add_option("--survey", flags->survey, "folder with photos, a simulated survey, or a project that was prepared")->type_name("FOLDER");
+  command->add_option("--preset", flags->preset, "simulate a place instead; default: " + study_command.preset)->type_name("NAME");
+  command->add_option("--model", flags->model, "COLMAP model of the photos; without it COLMAP is run")->type_name("FOLDER");
+  command->add_option("--time-budget", flags->budget, "training time of every variant, as 90s or 10min; default: " + study_command.budget)
+      ->type_name("TIME");
+  command->add_flag("--quick", flags->quick, "a hamlet in small photos, seconds instead of minutes: shows that it works, decides nothing");
+  command->add_flag("--restart", flags->restart, "remove the earlier runs in the folder first");
+  command->add_flag("--keep", flags->keep, "keep checkpoints and scenes of finished variants");
+  command->add_flag("--json", flags->json, "print JSON instead of the tables");
+  if (study_command.options) study_command.options(command, flags.get());
+  command->footer(study_command.footer);
+  command->callback([&state, flags, study_command] {
+    state.chosen = [&state, flags, study_command] {
+      bench::Study study = Begin(state, *flags, study_command.preset);
+      Finish(study_command.run(study, *flags), study, state, *flags);
+    };
+  });
+}
+
+bench::StudyBench RunSingleVsMulti(bench::Study& study, const StudyFlags& flags) {
+  const bool smaller = flags.quick && flags.blocks.empty();
+  bench::SingleVsMultiOptions options;
+  options.budget_s = BudgetOf(flags, options.budget_s, 20.0);
+  if (smaller) options.blocks = "2x2";
+  if (!flags.blocks.empty()) options.blocks = flags.blocks;
+  return bench::SingleVsMulti(study, options);
+}
+
+bench::StudyBench RunBlocks(bench::Study& study, const StudyFlags& flags) {
+  bench::BlocksBenchOptions options;
+  options.budget_s = BudgetOf(flags, options.budget_s, 10.0);
+  if (flags.quick) {
+    options.per_side = {1, 2, 3};
+    options.log2_table_sizes = {12, 15};
+  }
+  return bench::BlocksBench(study, options);
+}
+
+bench::StudyBench RunCapacity(bench::Study& study, const StudyFlags& flags) {
+  bench::CapacityOptions options;
+  options.budget_s = BudgetOf(flags, options.budget_s, 15.0);
+  options.blocks = flags.blocks;
+  if (flags.quick) options.log2_table_sizes = {13, 15};
+  if (!flags.log2_table_sizes.empty()) options.log2_table_sizes = flags.log2_table_sizes;
+  if (!flags.voxels_per_entry.empty()) options.voxels_per_entry = flags.voxels_per_entry;
+  return bench::CapacityBench(study, options);
+}
+
+bench::StudyBench RunEncodings(bench::Study& study, const StudyFlags& flags) {
+  bench::EncodingsOptions options;
+  options.budget_s = BudgetOf(flags, options.budget_s, 20.0);
+  return bench::EncodingsBench(study, options);
+}
+
+bench::StudyBench RunTradeoff(bench::Study& study, const StudyFlags& flags) {
+  bench::TradeoffOptions options;
+  const std::map<std::string, std::vector<double>> made_for = {
+      {"fast", {1.0 / 3.0, 1.0, 3.0}}, {"default", {1.0 / 3.0, 1.0, 3.0, 9.0}}, {"quality", {1.0, 3.0, 9.0}}};
+  for (const std::string& name : PresetNames()) options.presets.push_back({name, PresetOverrides(name), made_for.at(name)});
+  options.middle_budget_s = BudgetOf(flags, options.middle_budget_s, 8.0);
+  if (flags.quick) {
+    for (bench::StudiedPreset& preset : options.presets) preset.budgets = {1.0 / 3.0, 1.0};
+    options.log2_table_sizes = {12, 15};
+    options.steps_per_voxel = {2.0, 4.0};
+    options.keep_every = {1, 2};
+  }
+  return bench::Tradeoff(study, options);
+}
+
+}  // namespace
+
+void AddStudyBenches(CLI::App& bench, CommandState& state) {
+  AddStudyCommand(bench, state,
+                  {.name = "single-vs-multi",
+                   .help = "one model of the whole area against one per block",
+                   .preset = "smallcity",
+                   .budget = "5min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench single-vs-multi -o out/bench\n"
+                             "  skyquilt bench single-vs-multi --survey photos/ --model sparse/0 --time-budget 10min -o out/bench\n"
+                             "Interrupted, the same command goes on with the variant it was at.",
+                   .options =
+                       [](CLI::App* command, StudyFlags* flags) {
+                         command->add_option("--blocks", flags->blocks, "of the divided variants, rows x columns; default: 3x3, with --quick 2x2")
+                             ->type_name("RxC");
+                       },
+                   .run = RunSingleVsMulti});
+  AddStudyCommand(bench, state,
+                  {.name = "blocks",
+                   .help = "number of blocks against the size of each",
+                   .preset = "town",
+                   .budget = "3min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench blocks -o out/bench\n"
+                             "  skyquilt bench blocks --quick -o out/bench",
+                   .run = RunBlocks});
+  AddStudyCommand(bench, state,
+                  {.name = "capacity",
+                   .help = "tables as large as a block's content asks for, against the same for all",
+                   .preset = "smallcity",
+                   .budget = "5min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench capacity -o out/bench\n"
+                             "  skyquilt bench capacity --survey photos/ --model sparse/0 --blocks 3x3 -o out/bench",
+                   .options =
+                       [](CLI::App* command, StudyFlags* flags) {
+                         command->add_option("--blocks", flags->blocks, "rows x columns; default: as `partition` chooses")->type_name("RxC");
+                         command
+                             ->add_option("--log2-table-sizes", flags->log2_table_sizes,
+                                          "tables to compare with, the same for all blocks: log2 of the entries of a level; default: 17,18, "
+                                          "with --quick 13,15")
+                             ->delimiter(',')
+                             ->check(CLI::Range(4, 24))
+                             ->type_name("N,...");
+                         command
+                             ->add_option("--voxels-per-entry", flags->voxels_per_entry,
+                                          "how many finest voxels of surface share an entry of a table; default: 1,2,8")
+                             ->delimiter(',')
+                             ->check(CLI::Range(0.1, 1000.0))
+                             ->type_name("X,...");
+                       },
+                   .run = RunCapacity});
+  AddStudyCommand(bench, state,
+                  {.name = "encodings",
+                   .help = "hash grid, voxels, planes and frequencies in the same field",
+                   .preset = "town",
+                   .budget = "3min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench encodings -o out/bench\n"
+                             "  skyquilt bench encodings --quick -o out/bench",
+                   .run = RunEncodings});
+  AddStudyCommand(bench, state,
+                  {.name = "tradeoff",
+                   .help = "what time, tables, samples, photos and precision buy",
+                   .preset = "town",
+                   .budget = "1min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench tradeoff -o out/bench\n"
+                             "  skyquilt bench tradeoff --survey out/brighton --time-budget 3min -o out/bench\n"
+                             "--time-budget is for what varies one thing; presets are trained for a third of it up to nine times as long.",
+                   .run = RunTradeoff});
+}
+
+}  // namespace skyquilt::app

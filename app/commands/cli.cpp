@@ -1,0 +1,172 @@
+#include "app/commands/cli.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "coordinator/stages/serve_rank.h"
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/base/system.h"
+#include "core/config/options.h"
+
+namespace skyquilt::app {
+namespace {
+
+enum ExitStatus : int { kDone = 0, kBug = 1, kUsage = 2, kInput = 3, kBlockFailed = 4, kCheckFailed = 5, kInterrupted = 130 };
+
+// However rank 0 leaves, the others must hear of it.
+class RankRelease {
+ public:
+  explicit RankRelease(comm::Communicator& comm) : comm_(comm) {}
+  ~RankRelease() { coordinator::ReleaseRanks(comm_); }
+  RankRelease(const RankRelease&) = delete;
+  RankRelease& operator=(const RankRelease&) = delete;
+
+ private:
+  comm::Communicator& comm_;
+};
+
+std::string LongNames(const CLI::App& app, std::vector<std::string>* names) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names->push_back("--" + name);
+  }
+  return app.get_name();
+}
+
+// What the first word that nobody understood was probably meant to be.
+std::string Suggestion(const CLI::App& app) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  std::vector<std::string> words = app.remaining(true);
+  if (words.empty()) return "";
+  std::vector<std::string> known;
+  LongNames(app, &known);
+  if (chosen.empty()) {
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) known.push_back(command->get_name());
+  } else {
+    LongNames(*chosen.front(), &known);
+  }
+  const std::string word = words.front().substr(0, words.front().find('='));
+  const std::string nearest = config::Nearest(word, known);
+  const std::string kind = word.rfind('-', 0) == 0 ? "option" : chosen.empty() ? "command" : "argument";
+  return "unknown " + kind + " '" + word + "'" + (nearest.empty() ? "" : ". Did you mean '" + nearest + "'?");
+}
+
+int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const std::string suggestion = Suggestion(app);
+  std::cerr << "skyquilt: " << (suggestion.empty() ? error.what() : suggestion) << "\n"
+            << "Run 'skyquilt " << (chosen.empty() ? "" : chosen.front()->get_name() + " ") << "--help' for what is possible.\n";
+  return kUsage;
+}
+
+void AddCommands(CLI::App& app, CommandState& state) {
+  app.add_option("--config", state.config, "TOML file with options, or a preset: fast, default, quality (see configs/)")->type_name("FILE|NAME");
+  app.add_option("--set", state.set, "one option: --set train.levels=10; may be repeated")->type_name("SECTION.KEY=VALUE")->expected(1)->take_all();
+  app.add_option("--threads", state.threads, "threads on this machine; 0: every core")->type_name("N");
+  app.add_flag("--quiet", state.quiet, "only warnings and errors");
+  app.add_flag("--verbose", state.verbose, "tell more");
+  app.set_version_flag("--version", std::string("skyquilt ") + SKYQUILT_VERSION);
+  app.fallthrough();
+  app.footer(
+      "Examples:\n"
+      "  skyquilt run photos/ -o out --time-budget 10min\n"
+      "  mpirun -n 4 skyquilt run photos/ -o out --blocks 3x3\n"
+      "  skyquilt run --preset town -o out/town\n"
+      "  skyquilt info out");
+  AddRun(app, state);
+  AddSimulate(app, state);
+  AddPrepare(app, state);
+  AddPartition(app, state);
+  AddTrain(app, state);
+  AddMerge(app, state);
+  AddRender(app, state);
+  AddEvaluate(app, state);
+  AddInfo(app, state);
+  AddBench(app, state);
+}
+
+}  // namespace
+
+int Guarded(const std::function<void()>& body) {
+  try {
+    body();
+    return kDone;
+  } catch (const base::UsageError& error) {
+    spdlog::error("{}", error.what());
+    return kUsage;
+  } catch (const base::InputError& error) {
+    spdlog::error("{}", error.what());
+    return kInput;
+  } catch (const base::BlockError& error) {
+    spdlog::error("{}", error.what());
+    return kBlockFailed;
+  } catch (const base::FailedCheck& error) {
+    spdlog::error("{}", error.what());
+    return kCheckFailed;
+  } catch (const base::Interrupted& error) {
+    spdlog::warn("{}", error.what());
+    return kInterrupted;
+  } catch (const std::filesystem::filesystem_error& error) {
+    spdlog::error("{}. Check that the path exists, that you may use it and that the disk has space", error.what());
+    return kInput;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("out of memory. Use a smaller --image-width, more blocks, or fewer ranks on this machine");
+    return kBug;
+  } catch (const std::exception& error) {
+    spdlog::error("{}\nThis is a bug in skyquilt: please report it with log.txt of the project. What was saved before is intact", error.what());
+    return kBug;
+  }
+}
+
+int RunCommandLine(int argc, char** argv) {
+  base::ReleaseAffinity();
+  base::InitLog(false);
+  base::InstallSignalHandlers();
+  std::unique_ptr<comm::Communicator> comm;
+  if (const int status = Guarded([&comm] { comm = comm::Connect(); }); status != kDone) return status;
+  if (comm->rank() != 0) {
+    base::InitLog(false, "rank " + std::to_string(comm->rank()));
+    Guarded([&comm] { coordinator::ServeRank(*comm); });
+    return kDone;
+  }
+  const RankRelease release(*comm);
+  CommandState state;
+  state.comm = comm.get();
+  state.command_line = "skyquilt";
+  for (int i = 1; i < argc; ++i) state.command_line += std::string(" ") + argv[i];
+  CLI::App app{"Skyquilt turns a survey of drone photos into a geo-referenced radiance field, block by block, on CPUs.", "skyquilt"};
+  AddCommands(app, state);
+  int parse_status = kDone;
+  const int status = Guarded([&] {
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::Success& done) {
+      app.exit(done);
+      state.chosen = [] {};
+    } catch (const CLI::ParseError& error) {
+      parse_status = ReportParseError(app, error);
+    }
+  });
+  if (parse_status != kDone) return parse_status;
+  if (status != kDone) return status;
+  if (!state.chosen) {
+    std::cerr << app.help();
+    return kUsage;
+  }
+  base::InitLog(state.verbose);
+  if (state.quiet) {
+    spdlog::set_level(spdlog::level::warn);
+    base::Progress::SetQuiet(true);
+  }
+  return Guarded(state.chosen);
+}
+
+}  // namespace skyquilt::app

@@ -1,0 +1,125 @@
+#include "app/commands/command.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "app/settings/duration.h"
+#include "app/settings/load_settings.h"
+#include "app/settings/memory_size.h"
+#include "app/settings/presets.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+
+namespace skyquilt::app {
+
+namespace {
+
+// What --config sets: the options of a file, or of a preset by its name. A file is preferred.
+struct NamedConfig {
+  std::vector<std::filesystem::path> files;
+  std::vector<config::Override> overrides;
+};
+
+NamedConfig FindConfig(const std::string& config) {
+  if (config.empty()) return {};
+  // A folder may well be called after the preset that it was made with.
+  if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.files = {config}, .overrides = {}};
+  const std::vector<std::string> presets = PresetNames();
+  if (std::find(presets.begin(), presets.end(), config) == presets.end()) {
+    const std::string nearest = config::Nearest(config, presets);
+    throw base::InputError(config, "no such file, and no preset of that name",
+                           nearest.empty() ? "Give a TOML file, or one of fast, default, quality" : "Did you mean '" + nearest + "'?");
+  }
+  if (config != "default") return {.files = {}, .overrides = PresetOverrides(config)};
+  // Back to the defaults, whatever the project's own configuration says.
+  NamedConfig named;
+  for (const auto& [key, value] : coordinator::Settings().Flat()) named.overrides.push_back({key, value});
+  return named;
+}
+
+}  // namespace
+
+coordinator::Settings CommandState::Load(const std::vector<std::filesystem::path>& files, const std::vector<config::Override>& flags) const {
+  const NamedConfig named = FindConfig(config);
+  std::vector<std::filesystem::path> all_files = files;
+  all_files.insert(all_files.end(), named.files.begin(), named.files.end());
+  std::vector<config::Override> overrides = named.overrides;
+  for (const std::string& text : set) overrides.push_back(config::ParseOverride(text));
+  overrides.insert(overrides.end(), flags.begin(), flags.end());
+  if (!threads.empty()) overrides.push_back({"run.threads", threads});
+  return LoadSettings(all_files, overrides);
+}
+
+coordinator::Settings CommandState::LoadOver(coordinator::Settings settings) const {
+  const NamedConfig named = FindConfig(config);
+  config::Sections sections = settings.AllSections();
+  for (const std::filesystem::path& file : named.files) config::ReadToml(file, sections);
+  for (const config::Override& entry : named.overrides) settings.Set(entry);
+  for (const std::string& text : set) settings.Set(config::ParseOverride(text));
+  if (!threads.empty()) settings.Set({"run.threads", threads});
+  settings.Validate();
+  return settings;
+}
+
+coordinator::Pipeline CommandState::Begin(const coordinator::Project& project, coordinator::Settings settings, bool restart) const {
+  base::AddLogFile(project.LogFile());
+  return coordinator::Pipeline{
+      .comm = *comm, .project = project, .settings = std::move(settings), .restart = restart, .quiet = quiet, .verbose = verbose};
+}
+
+void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help) {
+  command.add_option_function<std::string>(
+      flag,
+      [overrides, key](const std::string& value) {
+        overrides->push_back({key, value});
+      },
+      help + " [" + key + "]");
+}
+
+namespace {
+
+// A duration that sets options in seconds.
+void AddDurationFlag(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::vector<std::string>& keys,
+                     const std::string& help) {
+  std::string names;
+  for (const std::string& key : keys) names += (names.empty() ? "" : ", ") + key;
+  command.add_option_function<std::string>(
+      flag,
+      [overrides, keys](const std::string& text) {
+        // Whole milliseconds: the text form of the option must read back to the same number.
+        const double seconds = std::round(ParseDurationSeconds(text) * 1000.0) / 1000.0;
+        for (const std::string& key : keys) overrides->push_back({key, std::to_string(seconds)});
+      },
+      help + " [" + names + "]");
+}
+
+}  // namespace
+
+void AddMemoryFlag(CLI::App& command, const Overrides& overrides) {
+  command.add_option_function<std::string>(
+      "--memory",
+      [overrides](const std::string& text) {
+        overrides->push_back({"run.memory_gb", FormatGib(ParseBytes(text))});
+      },
+      "memory this machine's ranks may use together, as 2GiB or 1500MB; half of the machine when not given [run.memory_gb]");
+}
+
+void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
+  AddDurationFlag(command, overrides, "--time-budget", {"run.time_budget_s"}, "time for all training together, as 90s, 10min or 1h30m");
+  AddOverride(command, overrides, "--steps", "train.steps", "train every block for exactly so many steps, instead of a time budget");
+  AddDurationFlag(command, overrides, "--checkpoint-every", {"context.checkpoint_every_s", "train.checkpoint_every_s"},
+                  "time between two checkpoints of a field, as 20s or 5min");
+  AddMemoryFlag(command, overrides);
+  AddOverride(command, overrides, "--seed", "run.seed", "start of every random sequence of the training");
+  AddOverride(command, overrides, "--brightness", "brightness.correction",
+              "none, or any of exif,gain,vignette,luminance: what is done about exposure differences");
+}
+
+std::vector<std::filesystem::path> ProjectConfig(const coordinator::Project& project) {
+  if (!std::filesystem::exists(project.ConfigFile())) return {};
+  return {project.ConfigFile()};
+}
+
+}  // namespace skyquilt::app

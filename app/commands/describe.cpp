@@ -1,0 +1,154 @@
+#include "app/commands/describe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "coordinator/project/project.h"
+#include "coordinator/project/stamp.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/geo/enu_frame.h"
+#include "core/survey/survey.h"
+#include "partition/block.h"
+
+namespace skyquilt::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json Origin(const geo::Geodetic& origin) {
+  return {{"latitude_deg", origin.latitude_deg}, {"longitude_deg", origin.longitude_deg}, {"height_m", origin.height_m}};
+}
+
+Json Round(double value, int digits) {
+  if (!std::isfinite(value)) return nullptr;
+  const double scale = std::pow(10.0, digits);
+  return std::round(value * scale) / scale;
+}
+
+Json DescribeSurvey(const std::filesystem::path& folder) {
+  const survey::Survey survey = survey::LoadSurvey(folder);
+  const auto n_test = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.is_test; });
+  const auto n_gps = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.gps.has_value(); });
+  Json cameras = Json::array();
+  for (const camera::Camera& camera : survey.cameras) {
+    cameras.push_back({{"model", camera::ModelName(camera.model)}, {"width", camera.width}, {"height", camera.height}, {"params", camera.params}});
+  }
+  Json json = {{"what", "survey"},
+               {"photo_root", survey.photo_root.string()},
+               {"photos", survey.photos.size()},
+               {"held_out", n_test},
+               {"with_gps", n_gps},
+               {"without_pose", survey.unregistered},
+               {"sparse_points", survey.points.size()},
+               {"georeferenced", survey.georeferenced}};
+  if (survey.georeferenced) {
+    json["origin"] = Origin(survey.origin);
+    json["gps_fit"] = {{"matches", survey.fit.n_matches},
+                       {"inliers", survey.fit.n_inliers},
+                       {"rmse_m", Round(survey.fit.rmse_m, 3)},
+                       {"rmse_horizontal_m", Round(survey.fit.rmse_horizontal_m, 3)},
+                       {"rmse_vertical_m", Round(survey.fit.rmse_vertical_m, 3)},
+                       {"scale", survey.fit.scale},
+                       {"flight_vertical_offset_m", survey.fit.flight_vertical_offset_m}};
+  }
+  json["median_agl_m"] = Round(survey.MedianAgl(), 2);
+  json["cameras"] = cameras;
+  json["has_ground_truth"] = survey.truth.has_value();
+  return json;
+}
+
+Json DescribeBlocks(const std::filesystem::path& file) {
+  const partition::BlockSet set = partition::LoadBlocks(file);
+  Json blocks = Json::array();
+  for (const partition::Block& block : set.blocks) {
+    const Eigen::Vector3d size = block.max_enu - block.min_enu;
+    blocks.push_back({{"name", block.name},
+                      {"east_m", Round(block.min_enu.x(), 1)},
+                      {"north_m", Round(block.min_enu.y(), 1)},
+                      {"width_m", Round(size.x(), 1)},
+                      {"depth_m", Round(size.y(), 1)},
+                      {"height_m", Round(size.z(), 1)},
+                      {"altitude_m", Round(block.altitude_agl_m, 1)},
+                      {"gsd_m", Round(block.gsd_m, 4)},
+                      {"log2_table_size", block.log2_table_size},
+                      {"photos", block.photos.size()},
+                      {"cost", Round(block.cost, 4)},
+                      {"empty", block.empty ? block.empty_reason : ""}});
+  }
+  Json json = {
+      {"what", "blocks"}, {"rows", set.rows}, {"columns", set.columns}, {"image_width", set.image_width}, {"georeferenced", set.georeferenced}};
+  if (set.georeferenced) json["origin"] = Origin(set.origin);
+  json["blocks"] = blocks;
+  return json;
+}
+
+Json DescribeProject(const std::filesystem::path& folder) {
+  const coordinator::Project project{std::filesystem::absolute(folder).lexically_normal()};
+  Json stages = Json::array();
+  for (const std::string& stage : coordinator::StageNames()) {
+    // A simulated survey's stamp lies in its own folder.
+    const coordinator::Project home = stage == "simulate" ? coordinator::Project{project.SimulatedFolder()} : project;
+    const std::optional<coordinator::StageStamp> stamp = coordinator::LoadStamp(home, stage);
+    if (!stamp && stage == "simulate") continue;
+    const std::vector<std::filesystem::path> proof = coordinator::StageProof(home, stage);
+    const bool there = std::all_of(proof.begin(), proof.end(), [](const auto& path) { return std::filesystem::exists(path); });
+    std::string state = stamp ? stamp->state : there ? "done" : "not yet";
+    if (state == "done" && !there) state = "files missing";
+    if (state == "running") state = "begun";
+    stages.push_back({{"stage", stage},
+                      {"state", state},
+                      {"finished", stamp ? stamp->finished_utc : ""},
+                      {"seconds", stamp ? Round(stamp->seconds, 1) : Json(nullptr)}});
+  }
+  Json json = {{"what", "project"}, {"folder", project.folder.string()}, {"stages", stages}};
+  const std::filesystem::path metrics = project.ReportFolder() / "metrics.json";
+  if (std::filesystem::exists(metrics)) {
+    const Json all = Json::parse(base::ReadFile(metrics), nullptr, false);
+    for (const char* key : {"psnr", "ssim", "coverage", "psnr_full_frame", "depth_median_abs_m"}) {
+      if (all.is_object() && all.contains(key)) json[key] = all.at(key);
+    }
+    json["report"] = (project.ReportFolder() / "index.html").string();
+  }
+  return json;
+}
+
+Json DescribeJson(const std::filesystem::path& file) {
+  const Json content = Json::parse(base::ReadFile(file), nullptr, false);
+  if (content.is_discarded()) throw base::InputError(file, "is not valid JSON", "Make it again with the command that wrote it");
+  Json json = {{"what", "JSON of skyquilt"}, {"bytes", std::filesystem::file_size(file)}};
+  if (file.filename() == "metrics.json") json["what"] = "metrics";
+  if (file.filename() == "simulate.json") json["what"] = "simulated survey";
+  if (file.filename() == "train.json") json["what"] = "training report";
+  json["content"] = content;
+  return json;
+}
+
+}  // namespace
+
+nlohmann::ordered_json Describe(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) throw base::InputError(path, "no such file or folder", "");
+  if (std::filesystem::is_directory(path)) {
+    if (coordinator::Project::IsProject(path)) return DescribeProject(path);
+    if (std::filesystem::exists(path / "survey.json")) return DescribeSurvey(path);
+    if (std::filesystem::exists(path / "simulate.json")) return DescribeJson(path / "simulate.json");
+    throw base::InputError(path, "is no folder of skyquilt", "Give a project folder, a survey folder or a simulated survey");
+  }
+  const std::string name = path.filename().string();
+  const std::string extension = path.extension().string();
+  if (name == "survey.json" || name == "points.ply") return DescribeSurvey(path.parent_path());
+  if (name == "cameras.geojson") return DescribeCameras(path);
+  if (extension == ".geojson") return DescribeBlocks(path);
+  if (extension == ".csv") return DescribeTable(path);
+  if (extension == ".toml") return DescribeConfiguration(path);
+  if (extension == ".h5" || extension == ".prev") return DescribeArchive(path);
+  if (extension == ".tif" || extension == ".tiff") return DescribeRaster(path);
+  if (extension == ".json") return DescribeJson(path);
+  throw base::InputError(path, "is of no kind that skyquilt knows",
+                         "It reads project and survey folders, .geojson, .h5, .json, .csv, .toml, points.ply and .tif");
+}
+
+}  // namespace skyquilt::app

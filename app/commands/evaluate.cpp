@@ -1,0 +1,34 @@
+#include <CLI/CLI.hpp>
+
+#include "app/commands/command.h"
+
+namespace skyquilt::app {
+
+void AddEvaluate(CLI::App& app, CommandState& state) {
+  struct EvaluateFlags {
+    std::string project;
+    bool restart = false;
+  };
+  const auto flags = std::make_shared<EvaluateFlags>();
+  const auto overrides = std::make_shared<std::vector<config::Override>>();
+  CLI::App* command = app.add_subcommand("evaluate", "score the scene on the held-out photos and write the report");
+  command->add_option("project", flags->project, "project folder with a scene")->required()->type_name("FOLDER");
+  AddOverride(*command, overrides, "--lpips", "evaluate.lpips_network", "ONNX network for LPIPS; without it LPIPS is not measured");
+  AddOverride(*command, overrides, "--max-photos", "evaluate.max_photos", "score at most so many, evenly spread");
+  AddMemoryFlag(*command, overrides);
+  command->add_flag("--restart", flags->restart, "remove the report first");
+  command->footer(
+      "Examples:\n"
+      "  skyquilt evaluate out\n"
+      "  skyquilt evaluate out --lpips lpips_alex.onnx\n"
+      "Writes out/report/metrics.json and out/report/index.html, which opens offline.");
+  command->callback([&state, flags, overrides] {
+    state.chosen = [&state, flags, overrides] {
+      const coordinator::Project project = coordinator::Project::Open(flags->project);
+      coordinator::Pipeline pipeline = state.Begin(project, state.Load(ProjectConfig(project), *overrides), flags->restart);
+      coordinator::EvaluateStage(pipeline);
+    };
+  });
+}
+
+}  // namespace skyquilt::app

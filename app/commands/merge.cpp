@@ -1,0 +1,30 @@
+#include <CLI/CLI.hpp>
+
+#include "app/commands/command.h"
+
+namespace skyquilt::app {
+
+void AddMerge(CLI::App& app, CommandState& state) {
+  struct MergeFlags {
+    std::string project;
+    bool restart = false;
+  };
+  const auto flags = std::make_shared<MergeFlags>();
+  CLI::App* command = app.add_subcommand("merge", "join the checkpoints into one scene without seams");
+  command->add_option("project", flags->project, "project folder with checkpoints")->required()->type_name("FOLDER");
+  command->add_flag("--restart", flags->restart, "remove the scene and everything made from it first");
+  command->footer(
+      "Examples:\n"
+      "  skyquilt merge out\n"
+      "  skyquilt merge out --restart\n"
+      "Writes out/scene.h5. Blocks that failed are left to the context.");
+  command->callback([&state, flags] {
+    state.chosen = [&state, flags] {
+      const coordinator::Project project = coordinator::Project::Open(flags->project);
+      coordinator::Pipeline pipeline = state.Begin(project, state.Load(ProjectConfig(project), {}), flags->restart);
+      coordinator::MergeStage(pipeline);
+    };
+  });
+}
+
+}  // namespace skyquilt::app

@@ -1,0 +1,38 @@
+#include <CLI/CLI.hpp>
+
+#include "app/commands/command.h"
+
+namespace skyquilt::app {
+
+void AddPrepare(CLI::App& app, CommandState& state) {
+  struct PrepareFlags {
+    std::string photos;
+    std::string model;
+    std::string out;
+    bool restart = false;
+  };
+  const auto flags = std::make_shared<PrepareFlags>();
+  const auto overrides = std::make_shared<std::vector<config::Override>>();
+  CLI::App* command = app.add_subcommand("prepare", "photos (and their COLMAP model, if at hand) to a geo-referenced survey");
+  command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->required()->type_name("FOLDER");
+  command->add_option("-o,--out", flags->out, "project folder; made if needed")->required()->type_name("FOLDER");
+  command->add_option("--model", flags->model, "COLMAP model of these photos (text or binary); without it COLMAP is run")->type_name("FOLDER");
+  AddOverride(*command, overrides, "--holdout", "prepare.holdout", "which photos are never trained on");
+  AddOverride(*command, overrides, "--masks", "prepare.masks", "folder with masks/<photo>.png; 0 = ignored pixel");
+  command->add_flag("--restart", flags->restart, "remove the survey and everything made from it first");
+  command->footer(
+      "Examples:\n"
+      "  skyquilt prepare photos/ -o out\n"
+      "  skyquilt prepare photos/ --model sparse/0 -o out\n"
+      "  skyquilt prepare photos/ -o out --holdout every:10\n"
+      "Writes out/survey/. Exit status: 0 done, 2 wrong usage, 3 bad input, 130 interrupted.");
+  command->callback([&state, flags, overrides] {
+    state.chosen = [&state, flags, overrides] {
+      coordinator::Settings settings = state.Load({}, *overrides);
+      coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags->out), std::move(settings), flags->restart);
+      coordinator::PrepareStage(pipeline, flags->photos, flags->model);
+    };
+  });
+}
+
+}  // namespace skyquilt::app

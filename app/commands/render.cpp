@@ -1,0 +1,151 @@
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "app/commands/command.h"
+#include "coordinator/rendering/scene_session.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/scene/scene.h"
+#include "products/camera_path.h"
+#include "products/map_products.h"
+#include "products/render_views.h"
+
+namespace skyquilt::app {
+namespace {
+
+struct RenderFlags {
+  std::string target;
+  std::vector<std::string> photos;
+  std::string path;
+  std::string out;
+  int width = 0;
+  bool test = false;
+  bool video = false;
+  bool ortho = false;
+  bool dsm = false;
+  bool no_depth = false;
+  bool restart = false;
+
+  bool Anything() const { return !photos.empty() || test || !path.empty() || video || ortho || dsm; }
+};
+
+// The scene to render and the project around it, if there is one.
+struct Target {
+  std::filesystem::path scene;
+  std::optional<coordinator::Project> project;
+};
+
+Target FindTarget(const std::filesystem::path& path) {
+  if (std::filesystem::is_regular_file(path)) {
+    const std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal().parent_path();
+    return {path, coordinator::Project::IsProject(folder) ? std::optional<coordinator::Project>(coordinator::Project{folder}) : std::nullopt};
+  }
+  if (path.extension() == ".h5") throw base::InputError(path, "no such file", "Make it with 'skyquilt merge' in its project");
+  const coordinator::Project project = coordinator::Project::Open(path);
+  return {project.SceneFile(), project};
+}
+
+void LogStats(const products::RenderStats& stats, const std::filesystem::path& where) {
+  spdlog::info("{} picture(s), {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), where.string());
+}
+
+void RenderAsked(const RenderFlags& flags, const Target& target, const coordinator::Settings& settings, coordinator::SceneSession& session,
+                 const std::filesystem::path& renders, const std::filesystem::path& maps) {
+  const products::ProductOptions& options = settings.products;
+  base::ThreadPool& threads = session.threads();
+  const scene::Scene& scene = session.scene();
+  const products::ViewRenderer renderer = products::RendererOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads);
+  const int path_width = flags.width > 0 ? flags.width / 2 * 2 : options.video_width;
+  const int path_height = std::max(2, path_width * options.video_height / options.video_width / 2 * 2);
+  if (!flags.photos.empty() || flags.test) {
+    if (!target.project) {
+      throw base::UsageError("--photo and --test need the survey: give the project folder, or a scene.h5 inside its project");
+    }
+    const survey::Survey survey = survey::LoadSurvey(target.project->SurveyFolder());
+    std::vector<products::View> views;
+    if (flags.test) views = products::ViewsOfPhotos(survey, {}, flags.width);
+    if (!flags.photos.empty()) {
+      const std::vector<products::View> named = products::ViewsOfPhotos(survey, flags.photos, flags.width);
+      views.insert(views.end(), named.begin(), named.end());
+    }
+    LogStats(products::RenderViews(renderer, views, renders, !flags.no_depth), renders);
+  }
+  if (!flags.path.empty()) {
+    const std::vector<products::View> views = products::LoadCameraPath(flags.path, scene.info(), path_width, path_height);
+    const std::string stem = std::filesystem::path(flags.path).stem().string();
+    if (flags.video) {
+      std::filesystem::create_directories(renders);
+      LogStats(products::RenderVideo(renderer, views, options.video_fps, renders / (stem + ".mp4")), renders / (stem + ".mp4"));
+    } else {
+      LogStats(products::RenderViews(renderer, views, renders / stem, !flags.no_depth), renders / stem);
+    }
+  } else if (flags.video) {
+    products::ProductOptions video = options;
+    if (!(video.video_seconds > 0.0)) video.video_seconds = products::ProductOptions().video_seconds;
+    video.video_width = path_width;
+    video.video_height = path_height;
+    std::filesystem::create_directories(renders);
+    const std::filesystem::path file = renders / (options.video_path + ".mp4");
+    LogStats(products::RenderVideo(renderer, products::BuiltInPath(scene.info(), video), options.video_fps, file), file);
+  }
+  if (flags.ortho || flags.dsm) {
+    products::ProductOptions asked = options;
+    asked.ortho = flags.ortho;
+    asked.dsm = flags.dsm;
+    const products::MapProducts made = products::MakeMapProducts(scene, asked, maps, threads);
+    spdlog::info("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", made.grid.width, made.grid.height, made.grid.resolution_m,
+                 100.0 * made.filled, maps.string());
+  }
+}
+
+void Render(const CommandState& state, const RenderFlags& flags, const std::vector<config::Override>& overrides) {
+  if (flags.width < 0) throw base::UsageError("--width " + std::to_string(flags.width) + " cannot be: a number of pixels is needed");
+  const Target target = FindTarget(flags.target);
+  coordinator::Settings settings = state.Load(target.project ? ProjectConfig(*target.project) : std::vector<std::filesystem::path>{}, overrides);
+  if (!flags.Anything()) {
+    if (!target.project) throw base::UsageError("what of " + flags.target + " is to be rendered? Give --path, --video, --ortho or --dsm");
+    coordinator::Pipeline pipeline = state.Begin(*target.project, std::move(settings), flags.restart);
+    coordinator::ProductsStage(pipeline);
+    return;
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(target.scene).lexically_normal().parent_path();
+  const std::filesystem::path renders = flags.out.empty() ? folder / "renders" : std::filesystem::path(flags.out);
+  const std::filesystem::path maps = flags.out.empty() ? folder / "products" : std::filesystem::path(flags.out);
+  base::RequireWritableFolder(flags.ortho || flags.dsm ? maps : renders);
+  coordinator::SceneSession session(*state.comm, target.scene, settings.run, state.verbose, state.quiet);
+  RenderAsked(flags, target, settings, session, renders, maps);
+}
+
+}  // namespace
+
+void AddRender(CLI::App& app, CommandState& state) {
+  const auto flags = std::make_shared<RenderFlags>();
+  const auto overrides = std::make_shared<std::vector<config::Override>>();
+  CLI::App* command = app.add_subcommand("render", "pictures, depth, video, orthophoto and surface model of a scene");
+  command->add_option("scene", flags->target, "project folder or scene.h5")->required()->type_name("PATH");
+  command->add_option("--photo", flags->photos, "the view of this photo; may be repeated")->type_name("NAME")->expected(1)->take_all();
+  command->add_flag("--test", flags->test, "the views of all held-out photos");
+  command->add_option("--path", flags->path, "JSON file with camera positions")->type_name("FILE");
+  command->add_flag("--video", flags->video, "an MP4: along --path, or on the built-in path of [products]");
+  command->add_flag("--ortho", flags->ortho, "the orthophoto as GeoTIFF");
+  command->add_flag("--dsm", flags->dsm, "the surface model as GeoTIFF");
+  command->add_flag("--no-depth", flags->no_depth, "pictures without their depth images");
+  AddOverride(*command, overrides, "--exposure", "products.exposure", "normal, stops above it, or the name of a photo to look like");
+  AddOverride(*command, overrides, "--resolution", "products.resolution_m", "metres per cell of orthophoto and surface model");
+  AddMemoryFlag(*command, overrides);
+  command->add_option("--width", flags->width, "pixels of the pictures; 0: the photos' own size")->type_name("N");
+  command->add_option("-o,--out", flags->out, "folder for the files; default: renders/ and products/ beside the scene")->type_name("FOLDER");
+  command->add_flag("--restart", flags->restart, "remove products, renders and report first (without a selection)");
+  command->footer(
+      "Examples:\n"
+      "  skyquilt render out                           everything that [products] names, once\n"
+      "  skyquilt render out --test --width 1000\n"
+      "  skyquilt render out --photo IMG_0007.jpg --exposure 1\n"
+      "  skyquilt render out/scene.h5 --path flight.json --video -o movie\n"
+      "  skyquilt render out --ortho --dsm --resolution 0.05");
+  command->callback([&state, flags, overrides] { state.chosen = [&state, flags, overrides] { Render(state, *flags, *overrides); }; });
+}
+
+}  // namespace skyquilt::app

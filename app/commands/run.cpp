@@ -1,0 +1,81 @@
+#include <CLI/CLI.hpp>
+
+#include "app/commands/command.h"
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "simulate/simulate.h"
+
+namespace skyquilt::app {
+namespace {
+
+struct RunFlags {
+  std::string photos;
+  std::string preset;
+  std::string model;
+  std::string out;
+  bool restart = false;
+};
+
+void Run(const CommandState& state, const RunFlags& flags, const std::vector<config::Override>& overrides) {
+  if (flags.photos.empty() == flags.preset.empty()) {
+    throw base::UsageError("skyquilt run needs either a folder with photos or --preset NAME, and not both");
+  }
+  coordinator::Settings settings = state.Load({}, overrides);
+  // A folder that cannot be read is found before the output folder is made.
+  if (!flags.photos.empty() && !std::filesystem::is_directory(flags.photos)) {
+    throw base::InputError(flags.photos, "no such folder", "Give the folder that holds the photos");
+  }
+  coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags.out), std::move(settings), flags.restart);
+  coordinator::RequireSameConfiguration(pipeline, "prepare");
+  std::filesystem::path photos = flags.photos;
+  if (!flags.preset.empty()) {
+    photos = pipeline.project.SimulatedFolder();
+    coordinator::SimulateStage(pipeline, photos);
+  }
+  coordinator::PrepareStage(pipeline, photos, flags.model);
+  coordinator::PartitionStage(pipeline);
+  const std::vector<std::string> failed = coordinator::TrainStage(pipeline);
+  coordinator::MergeStage(pipeline);
+  coordinator::ProductsStage(pipeline);
+  coordinator::EvaluateStage(pipeline);
+  coordinator::ThrowIfBlocksFailed(failed, pipeline.project);
+}
+
+}  // namespace
+
+void AddRun(CLI::App& app, CommandState& state) {
+  const auto flags = std::make_shared<RunFlags>();
+  const auto overrides = std::make_shared<std::vector<config::Override>>();
+  std::string presets;
+  for (const std::string& name : simulate::PresetNames()) presets += (presets.empty() ? "" : ", ") + name;
+  CLI::App* command = app.add_subcommand("run", "the whole way: photos in, scene, map products and report out");
+  command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->type_name("FOLDER");
+  command->add_option("-o,--out", flags->out, "project folder; made if needed")->required()->type_name("FOLDER");
+  command->add_option_function<std::string>(
+      "--preset",
+      [flags, overrides](const std::string& name) {
+        flags->preset = name;
+        overrides->push_back({"simulate.preset", name});
+      },
+      "simulate a place instead: " + presets);
+  command->add_option("--model", flags->model, "COLMAP model of the photos (text or binary); without it COLMAP is run")->type_name("FOLDER");
+  AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns as 2x2, size:<metres>, or auto");
+  AddOverride(*command, overrides, "--altitudes", "partition.altitudes",
+              "metres above ground, one per block from the south-west, separated by commas");
+  AddOverride(*command, overrides, "--image-width", "run.image_width", "width in pixels that photos are trained and scored at; 0: full size");
+  AddOverride(*command, overrides, "--holdout", "prepare.holdout", "which photos are never trained on");
+  AddTrainingFlags(*command, overrides);
+  command->add_flag("--restart", flags->restart, "remove all earlier results in the project folder first");
+  command->footer(
+      "Examples:\n"
+      "  skyquilt run photos/ -o out --blocks 2x2 --time-budget 10min --image-width 1000\n"
+      "  skyquilt run photos/ --model sparse/0 -o out --blocks 3x3 --time-budget 15min\n"
+      "  skyquilt run --preset town -o out/town --steps 3000\n"
+      "  mpirun -n 3 skyquilt run photos/ -o out --time-budget 1h30m\n"
+      "The same command again continues where it stopped and does nothing twice.\n"
+      "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 a block failed (the rest is saved), 130 interrupted (resumable).");
+  command->callback([&state, flags, overrides] { state.chosen = [&state, flags, overrides] { Run(state, *flags, *overrides); }; });
+}
+
+}  // namespace skyquilt::app

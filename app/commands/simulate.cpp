@@ -1,0 +1,43 @@
+#include "simulate/simulate.h"
+
+#include <CLI/CLI.hpp>
+
+#include "app/commands/command.h"
+
+namespace skyquilt::app {
+
+void AddSimulate(CLI::App& app, CommandState& state) {
+  struct SimulateFlags {
+    std::string out;
+    bool restart = false;
+  };
+  const auto flags = std::make_shared<SimulateFlags>();
+  const auto overrides = std::make_shared<std::vector<config::Override>>();
+  std::string presets;
+  for (const std::string& name : simulate::PresetNames()) presets += (presets.empty() ? "" : ", ") + name;
+  CLI::App* command = app.add_subcommand("simulate", "make a survey with ground truth: photos, poses, depth, masks, buildings");
+  command->add_option_function<std::string>(
+      "preset,--preset",
+      [overrides](const std::string& name) {
+        overrides->push_back({"simulate.preset", name});
+      },
+      "which place: " + presets + " [simulate.preset]");
+  command->add_option("-o,--out", flags->out, "folder for the survey; made if needed")->required()->type_name("FOLDER");
+  AddOverride(*command, overrides, "--seed", "simulate.seed", "another place of the same kind");
+  AddOverride(*command, overrides, "--image-width", "simulate.image_width", "pixels");
+  AddOverride(*command, overrides, "--altitudes", "simulate.altitudes", "metres above ground: one, or one per block, separated by commas");
+  command->add_flag("--restart", flags->restart, "make it anew even if it is there");
+  command->footer(
+      "Examples:\n"
+      "  skyquilt simulate hamlet -o data/hamlet\n"
+      "  skyquilt simulate town -o data/town --seed 7 --altitudes 60,80,60,80\n"
+      "  skyquilt simulate tidalflat -o data/flat --set simulate.exposure_jumps_stops=1.5");
+  command->callback([&state, flags, overrides] {
+    state.chosen = [&state, flags, overrides] {
+      coordinator::Pipeline pipeline{.comm = *state.comm, .project = {}, .settings = state.Load({}, *overrides), .restart = flags->restart};
+      coordinator::SimulateStage(pipeline, flags->out);
+    };
+  });
+}
+
+}  // namespace skyquilt::app

@@ -1,0 +1,34 @@
+#include <CLI/CLI.hpp>
+
+#include "app/commands/command.h"
+
+namespace skyquilt::app {
+
+void AddTrain(CLI::App& app, CommandState& state) {
+  struct TrainFlags {
+    std::string project;
+    bool restart = false;
+  };
+  const auto flags = std::make_shared<TrainFlags>();
+  const auto overrides = std::make_shared<std::vector<config::Override>>();
+  CLI::App* command = app.add_subcommand("train", "train the context, then every block; continues where it stopped");
+  command->add_option("project", flags->project, "project folder with blocks")->required()->type_name("FOLDER");
+  AddTrainingFlags(*command, overrides);
+  command->add_flag("--restart", flags->restart, "remove the checkpoints and everything made from them first");
+  command->footer(
+      "Examples:\n"
+      "  skyquilt train out --time-budget 10min\n"
+      "  skyquilt train out --steps 4000\n"
+      "  mpirun -n 4 skyquilt train out --time-budget 1h30m\n"
+      "Writes out/checkpoints/ and out/train.json. With several ranks, rank 0 hands out blocks and the others train them.\n"
+      "Exit status 4: a block failed after its tries, the others are saved; 130: interrupted, the same command continues.");
+  command->callback([&state, flags, overrides] {
+    state.chosen = [&state, flags, overrides] {
+      const coordinator::Project project = coordinator::Project::Open(flags->project);
+      coordinator::Pipeline pipeline = state.Begin(project, state.Load(ProjectConfig(project), *overrides), flags->restart);
+      coordinator::ThrowIfBlocksFailed(coordinator::TrainStage(pipeline), project);
+    };
+  });
+}
+
+}  // namespace skyquilt::app

@@ -1,0 +1,5 @@
+#include "app/commands/cli.h"
+
+int main(int argc, char** argv) {
+  return skyquilt::app::RunCommandLine(argc, argv);
+}

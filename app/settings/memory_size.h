@@ -1,0 +1,13 @@
+// Amounts of memory as people write them: "2GiB", "1500MB", "1.5G" (binary) and plain bytes "2147483648".
+#pragma once
+
+#include <string>
+
+namespace skyquilt::app {
+
+// Bytes, > 0. Throws base::UsageError quoting the text and showing what would be understood.
+double ParseBytes(const std::string& text);
+// GiB with the digits that read back to the same number.
+std::string FormatGib(double bytes);
+
+}  // namespace skyquilt::app

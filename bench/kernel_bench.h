@@ -1,0 +1,69 @@
+// How fast a field trains on this machine, against the machine's own limit measured in the same run.
+//   limit per sample and thread = networks' operations / peak + sum over levels of 8 (random read + random addition)
+// with every figure measured on all threads at once. Positions are random, as a shuffled batch of rays is worst for caches.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/bench_page.h"
+#include "worker/stage_times.h"
+
+namespace skyquilt::bench {
+
+struct KernelBenchOptions {
+  std::string isa;  // empty: the best of this processor
+  int threads = 0;  // 0: every usable core
+  int levels = 16;
+  int features = 2;
+  int log2_table_size = 19;
+  int hidden = 64;
+  int color_hidden_layers = 2;
+  int sh_degree = 4;
+  int64_t batch_samples = 262144;
+  int samples_per_ray = 16;
+  double seconds = 2.0;  // per figure and round
+  int rounds = 3;        // medians of these
+
+  // Throws base::UsageError naming the option.
+  void Check() const;
+};
+
+// Medians over rounds at one number of threads.
+struct KernelSpeed {
+  int threads = 1;
+  double train_samples_per_second = 0.0;
+  double infer_samples_per_second = 0.0;
+  double roofline_train_samples_per_second = 0.0;
+  double roofline_infer_samples_per_second = 0.0;
+  double gflops_per_thread = 0.0;
+  double network_limit_s = 0.0;  // per sample and thread
+  double gather_limit_s = 0.0;
+  double scatter_limit_s = 0.0;
+  std::array<double, worker::kStages> train_share = {};  // of the threads' time
+  double waiting_share = 0.0;                            // time in which a thread had nothing to do
+  double RooflineFraction() const { return train_samples_per_second / roofline_train_samples_per_second; }
+};
+
+struct KernelBenchResult {
+  KernelBenchOptions options;
+  std::string isa;
+  KernelSpeed all;                      // options.threads
+  std::vector<KernelSpeed> one_thread;  // one entry when threads > 1: for the scaling
+  double train_flops = 0.0;             // per sample
+  // Speed-up by threads over the limit's own speed-up; 1 when one thread is all there is.
+  double ScalingFraction() const;
+};
+
+// Shows progress; minutes at most. Throws base::Interrupted when cancelled.
+KernelBenchResult RunKernelBench(const KernelBenchOptions& options);
+
+// JSON with what a script needs, and a table for people.
+std::string KernelBenchJson(const KernelBenchResult& result);
+std::string KernelBenchTable(const KernelBenchResult& result);
+// `command`: as it was typed. What was not measured is an en dash.
+BenchPage KernelBenchPage(const KernelBenchResult& result, const std::string& command);
+
+}  // namespace skyquilt::bench

@@ -1,0 +1,262 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "bench/kernel_bench.h"
+#include "core/base/system.h"
+#include "core/page/bar_chart.h"
+#include "core/page/html.h"
+
+namespace skyquilt::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json SpeedJson(const KernelSpeed& s) {
+  Json share;
+  for (size_t i = 0; i < worker::kStages; ++i) {
+    if (s.train_share[i] > 0.0) share[worker::kStageNames[i]] = s.train_share[i];
+  }
+  share["waiting"] = s.waiting_share;
+  return {{"threads", s.threads},
+          {"train_samples_per_second", s.train_samples_per_second},
+          {"infer_samples_per_second", s.infer_samples_per_second},
+          {"roofline_train_samples_per_second", s.roofline_train_samples_per_second},
+          {"roofline_infer_samples_per_second", s.roofline_infer_samples_per_second},
+          {"roofline_fraction", s.RooflineFraction()},
+          {"peak_gflops_per_thread", s.gflops_per_thread},
+          {"limit_ns_per_sample_and_thread",
+           {{"networks", 1e9 * s.network_limit_s}, {"random_reads", 1e9 * s.gather_limit_s}, {"random_additions", 1e9 * s.scatter_limit_s}}},
+          {"share", share}};
+}
+
+std::string Million(double value) {
+  return fmt::format("{:.2f} M/s", value * 1e-6);
+}
+
+std::string InMillions(double samples_per_second) {
+  return page::FormatFixed(samples_per_second * 1e-6, 2, "M/s");
+}
+
+BenchCell RateCell(double samples_per_second) {
+  return {InMillions(samples_per_second), samples_per_second};
+}
+
+// The table's number is in nanoseconds.
+BenchCell NsCell(double seconds) {
+  return BenchCell::Number(1e9 * seconds, 1, "ns");
+}
+
+std::string ThreadsText(int threads) {
+  return threads == 1 ? "one thread" : fmt::format("{} threads", threads);
+}
+
+// All threads, and one alone where that was measured too.
+std::vector<KernelSpeed> SpeedsOf(const KernelBenchResult& r) {
+  std::vector<KernelSpeed> speeds = {r.all};
+  speeds.insert(speeds.end(), r.one_thread.begin(), r.one_thread.end());
+  return speeds;
+}
+
+std::vector<BenchFigure> KernelFigures(const KernelBenchResult& r) {
+  const KernelSpeed& s = r.all;
+  std::vector<BenchFigure> figures = {
+      {"Training", InMillions(s.train_samples_per_second), fmt::format("samples on {}, {}", ThreadsText(s.threads), r.isa)},
+      {"Share of the limit", page::FormatPercent(s.RooflineFraction(), 0), "this machine's own: " + InMillions(s.roofline_train_samples_per_second)},
+      {"Inference", InMillions(s.infer_samples_per_second),
+       fmt::format("{} times training; limit {}", page::FormatFixed(s.infer_samples_per_second / s.train_samples_per_second, 1),
+                   InMillions(s.roofline_infer_samples_per_second))}};
+  if (!r.one_thread.empty()) {
+    const KernelSpeed& one = r.one_thread.front();
+    figures.push_back(
+        {"One thread trains", InMillions(one.train_samples_per_second), page::FormatPercent(one.RooflineFraction(), 0) + " of its own limit"});
+    figures.push_back({"Scaling", page::FormatPercent(r.ScalingFraction(), 0),
+                       fmt::format("speed-up by {}, as a share of the limit's own speed-up", ThreadsText(s.threads))});
+  }
+  return figures;
+}
+
+std::vector<std::string> KernelVerdicts(const KernelBenchResult& r) {
+  const KernelSpeed& s = r.all;
+  const auto most = static_cast<size_t>(std::max_element(s.train_share.begin(), s.train_share.end()) - s.train_share.begin());
+  std::vector<std::string> verdicts = {fmt::format("Training reaches {} of what this machine can do at best; most of its time goes into {} ({}).",
+                                                   page::FormatPercent(s.RooflineFraction(), 0), worker::kStageNames[most],
+                                                   page::FormatPercent(s.train_share[most], 0))};
+  if (!r.one_thread.empty()) {
+    const KernelSpeed& one = r.one_thread.front();
+    verdicts.push_back(fmt::format("{} threads train {} times as fast as one; the limit itself grows {} times.", s.threads,
+                                   page::FormatFixed(s.train_samples_per_second / one.train_samples_per_second, 2),
+                                   page::FormatFixed(s.roofline_train_samples_per_second / one.roofline_train_samples_per_second, 2)));
+  }
+  return verdicts;
+}
+
+BenchSection LimitSection(const KernelBenchResult& r) {
+  BenchTable table{
+      .name = "limit", .title = "", .note = "", .columns = {"samples per second", "measured", "limit", "share of the limit"}, .rows = {}};
+  std::vector<page::Bar> bars;
+  const auto add = [&](const std::string& what, double measured, double limit) {
+    table.rows.push_back({BenchCell::Text(what), RateCell(measured), RateCell(limit), BenchCell::Percent(measured / limit)});
+    bars.push_back({.label = what, .value = 1e-6 * measured, .shown = InMillions(measured), .limit = 1e-6 * limit, .limit_shown = InMillions(limit)});
+  };
+  for (const KernelSpeed& s : SpeedsOf(r)) {
+    add("training, " + ThreadsText(s.threads), s.train_samples_per_second, s.roofline_train_samples_per_second);
+    add("inference, " + ThreadsText(s.threads), s.infer_samples_per_second, s.roofline_infer_samples_per_second);
+  }
+  return {.id = "limit",
+          .title = "Against the limit",
+          .lead =
+              "The limit is what a sample would take if nothing were done but its multiply-adds at the peak rate and its reads and additions in "
+              "the tables, one after the other.",
+          .charts = {page::BarChart(bars, {.title = "Measured against the limit", .x_label = "million samples per second"})},
+          .tables = {table},
+          .pictures = {}};
+}
+
+BenchSection StageSection(const KernelBenchResult& r) {
+  const std::vector<KernelSpeed> speeds = SpeedsOf(r);
+  BenchTable table{.name = "stages", .title = "", .note = "", .columns = {"stage"}, .rows = {}};
+  for (const KernelSpeed& s : speeds) {
+    table.columns.push_back("share, " + ThreadsText(s.threads));
+    table.columns.push_back("ns a sample, " + ThreadsText(s.threads));
+  }
+  std::vector<std::vector<page::Bar>> bars(speeds.size());
+  for (size_t stage = 0; stage <= worker::kStages; ++stage) {
+    const bool waiting = stage == worker::kStages;
+    if (!waiting && !(r.all.train_share[stage] > 0.0)) continue;
+    const std::string name = waiting ? "waiting, bookkeeping" : worker::kStageNames[stage];
+    std::vector<BenchCell> row = {BenchCell::Text(name)};
+    for (size_t k = 0; k < speeds.size(); ++k) {
+      const KernelSpeed& s = speeds[k];
+      const double share = waiting ? s.waiting_share : s.train_share[stage];
+      row.push_back(BenchCell::Percent(share));
+      bars[k].push_back({.label = name, .value = 100.0 * share, .shown = row.back().shown});
+      row.push_back(NsCell(share * s.threads / s.train_samples_per_second));
+      bars[k].back().shown += " \xC2\xB7 " + row.back().shown;
+    }
+    table.rows.push_back(row);
+  }
+  std::vector<std::string> charts;
+  for (size_t k = 0; k < speeds.size(); ++k) {
+    charts.push_back(
+        page::BarChart(bars[k], {.title = "Training on " + ThreadsText(speeds[k].threads), .x_label = "share of the threads' time (%)"}));
+  }
+  return {
+      .id = "stages",
+      .title = "Where a sample's time goes",
+      .lead = "Time of one thread for a training sample. Waiting is what the stages leave: threads with nothing to do, and what lies between calls.",
+      .charts = charts,
+      .tables = {table},
+      .pictures = {}};
+}
+
+BenchSection MachineSection(const KernelBenchResult& r) {
+  const KernelBenchOptions& o = r.options;
+  BenchTable table{
+      .name = "machine",
+      .title = "",
+      .note = fmt::format(
+          "Networks: {} kFLOP a training sample at {} a thread. Reads and additions: 8 corners of {} numbers at each of {} levels, anywhere in "
+          "tables of up to 2^{} entries. Every row is a median, so that parts and sums may differ a little.",
+          page::FormatFixed(1e-3 * r.train_flops, 1), page::FormatFixed(r.all.gflops_per_thread, 0, "GFLOP/s"), o.features, o.levels,
+          o.log2_table_size),
+      .columns = {"limit of a sample"},
+      .rows = {}};
+  for (const char* name : {"networks, training", "random reads", "random additions", "training, all three", "inference, without additions"}) {
+    table.rows.push_back({BenchCell::Text(name)});
+  }
+  for (const KernelSpeed& s : SpeedsOf(r)) {
+    table.columns.push_back("ns a thread, " + ThreadsText(s.threads));
+    const std::vector<BenchCell> cells = {NsCell(s.network_limit_s), NsCell(s.gather_limit_s), NsCell(s.scatter_limit_s),
+                                          NsCell(s.threads / s.roofline_train_samples_per_second),
+                                          NsCell(s.threads / s.roofline_infer_samples_per_second)};
+    for (size_t i = 0; i < cells.size(); ++i) table.rows[i].push_back(cells[i]);
+  }
+  return {.id = "machine",
+          .title = "The machine's limit",
+          .lead = "Measured in the same rounds, on as many threads at once.",
+          .charts = {},
+          .tables = {table},
+          .pictures = {}};
+}
+
+}  // namespace
+
+std::string KernelBenchJson(const KernelBenchResult& r) {
+  const KernelBenchOptions& o = r.options;
+  Json json = {{"bench", "kernel"}, {"isa", r.isa}};
+  json.update(SpeedJson(r.all));
+  if (!r.one_thread.empty()) {
+    json["one_thread"] = SpeedJson(r.one_thread.front());
+    json["scaling_fraction"] = r.ScalingFraction();
+  }
+  json["config"] = {{"levels", o.levels},
+                    {"features", o.features},
+                    {"log2_table_size", o.log2_table_size},
+                    {"hidden", o.hidden},
+                    {"color_hidden_layers", o.color_hidden_layers},
+                    {"sh_degree", o.sh_degree},
+                    {"batch_samples", o.batch_samples},
+                    {"samples_per_ray", o.samples_per_ray},
+                    {"train_flops_per_sample", r.train_flops},
+                    {"seconds", o.seconds},
+                    {"rounds", o.rounds}};
+  json["machine"] = base::MachineDescription();
+  json["date"] = base::UtcTimestamp();
+  return json.dump(2) + "\n";
+}
+
+std::string KernelBenchTable(const KernelBenchResult& r) {
+  const KernelSpeed& s = r.all;
+  const KernelBenchOptions& o = r.options;
+  std::string text = fmt::format("{} levels x {} features, 2^{} entries, {}-wide networks, {} samples a batch, {}, {} thread{}\n", o.levels,
+                                 o.features, o.log2_table_size, o.hidden, o.batch_samples, r.isa, s.threads, s.threads == 1 ? "" : "s");
+  const auto row = [&](const std::string& what, const std::string& value, const std::string& note = "") {
+    text += fmt::format("  {:<22}{:>12}  {}\n", what, value, note);
+  };
+  row("training", Million(s.train_samples_per_second),
+      fmt::format("{:.0f} % of this machine's limit of {}", 100.0 * s.RooflineFraction(), Million(s.roofline_train_samples_per_second)));
+  row("inference", Million(s.infer_samples_per_second),
+      fmt::format("{:.1f} times training; limit {}", s.infer_samples_per_second / s.train_samples_per_second,
+                  Million(s.roofline_infer_samples_per_second)));
+  if (!r.one_thread.empty()) {
+    const KernelSpeed& one = r.one_thread.front();
+    row("one thread trains", Million(one.train_samples_per_second),
+        fmt::format("{:.0f} % of its limit; threads scale to {:.0f} % of the limit's scaling", 100.0 * one.RooflineFraction(),
+                    100.0 * r.ScalingFraction()));
+  }
+  text += fmt::format(
+      "Limit per sample and thread: {:.0f} ns networks ({:.1f} kFLOP at {:.0f} GFLOP/s) + {:.0f} ns random reads + {:.0f} ns random additions\n",
+      1e9 * s.network_limit_s, 1e-3 * r.train_flops, s.gflops_per_thread, 1e9 * s.gather_limit_s, 1e9 * s.scatter_limit_s);
+  text += "Where training time goes:\n";
+  const double thread_s = s.threads / s.train_samples_per_second;
+  for (size_t i = 0; i < worker::kStages; ++i) {
+    if (s.train_share[i] > 0.0005) {
+      row(worker::kStageNames[i], fmt::format("{:.1f} %", 100.0 * s.train_share[i]),
+          fmt::format("{:.0f} ns a sample", 1e9 * thread_s * s.train_share[i]));
+    }
+  }
+  row("waiting, bookkeeping", fmt::format("{:.1f} %", 100.0 * s.waiting_share), fmt::format("{:.0f} ns a sample", 1e9 * thread_s * s.waiting_share));
+  return text;
+}
+
+BenchPage KernelBenchPage(const KernelBenchResult& r, const std::string& command) {
+  const KernelBenchOptions& o = r.options;
+  BenchPage page{
+      .name = "kernel",
+      .title = "A field's speed against the machine's limit",
+      .lead = fmt::format("{} levels of {} features, tables of up to 2^{} entries, networks {} wide with {} hidden layer{} for colour, batches of {} "
+                          "samples at random places. Medians of {} round{} of {:g} s a figure; the limit is measured in the same rounds.",
+                          o.levels, o.features, o.log2_table_size, o.hidden, o.color_hidden_layers, o.color_hidden_layers == 1 ? "" : "s",
+                          page::FormatInteger(o.batch_samples), o.rounds, o.rounds == 1 ? "" : "s", o.seconds),
+      .figures = KernelFigures(r),
+      .verdicts = KernelVerdicts(r),
+      .sections = {LimitSection(r), StageSection(r), MachineSection(r)},
+      .command = command,
+      .machine = base::MachineDescription(),
+      .date = base::UtcTimestamp()};
+  return page;
+}
+
+}  // namespace skyquilt::bench

@@ -1,0 +1,31 @@
+#include "bench/numerics/hamlet_flight.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+
+namespace skyquilt::bench {
+
+coordinator::Settings HamletSettings(const HamletTraining& training, const NumericsOptions& options) {
+  coordinator::Settings settings;
+  settings.run.seed = training.seed;
+  settings.run.threads = options.threads;
+  settings.simulate.preset = "hamlet";
+  settings.simulate.samples_per_pixel = 1;
+  settings.simulate.soft_shadows = false;
+  settings.prepare.holdout = "every:4";
+  settings.partition.blocks = "1x1";
+  settings.context.steps = training.context_steps;
+  settings.train.steps = training.train_steps;
+  settings.context.batch_samples = settings.train.batch_samples = 8192;
+  // Parameters come to rest: less is left to chance.
+  settings.context.final_learning_rate_share = settings.train.final_learning_rate_share = 0.02;
+  return settings;
+}
+
+double ReportedPsnrDb(const coordinator::Pipeline& pipeline) {
+  const nlohmann::json metrics = nlohmann::json::parse(base::ReadFile(pipeline.project.ReportFolder() / "metrics.json"));
+  return metrics.at("psnr").is_number() ? metrics.at("psnr").get<double>() : kNoNumber;
+}
+
+}  // namespace skyquilt::bench

@@ -1,0 +1,18 @@
+// A small simulated survey for cases that need the whole pipeline: the hamlet in one block, a fixed number of steps.
+#pragma once
+
+#include "bench/numerics/groups.h"
+#include "coordinator/stages/pipeline.h"
+
+namespace skyquilt::bench {
+
+struct HamletTraining {
+  int seed = 1;
+  int context_steps = 100, train_steps = 200;  // of 8192 samples
+};
+coordinator::Settings HamletSettings(const HamletTraining& training, const NumericsOptions& options);
+
+// Held-out PSNR from the report of a pipeline that has run; NaN when it could not be measured.
+double ReportedPsnrDb(const coordinator::Pipeline& pipeline);
+
+}  // namespace skyquilt::bench

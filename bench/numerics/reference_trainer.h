@@ -1,0 +1,49 @@
+// Trains the same field on the same batches as worker::FieldStep, in double and one ray after the other: sampling positions, the rule which samples
+// count as hidden, losses, Adam and its rule for untouched entries are the same, the arithmetic is written anew from the formulas.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bench/numerics/reference_field.h"
+#include "core/field/optimizer.h"
+#include "core/render/trained_field.h"
+#include "worker/field_step.h"
+#include "worker/ray_batch.h"
+
+namespace skyquilt::bench {
+
+struct ReferenceState {
+  std::vector<double> grid, networks;
+  std::vector<double> grid_moment1, grid_moment2, network_moment1, network_moment2;
+  int64_t step = 0;
+
+  static ReferenceState From(const field::TrainableState& state);
+};
+
+struct ReferenceResult {
+  double loss = 0.0;           // mean over rays
+  double squared_error = 0.0;  // mean over colour rays and channels
+  int64_t live = 0;            // samples that light reaches
+};
+
+class ReferenceTrainer {
+ public:
+  // Both must outlive this. The target's map, step and colour range are read.
+  ReferenceTrainer(const render::TrainedField& target, const field::HashField& field);
+
+  // The loss of a batch and its derivatives by every parameter (weight decay is the optimiser's). Both gradients are overwritten; null: not wanted.
+  ReferenceResult Gradient(const worker::RayBatch& batch, const ReferenceState& state, double distortion, std::vector<double>* grid_gradient,
+                           std::vector<double>* network_gradient) const;
+  ReferenceResult Step(const worker::RayBatch& batch, const worker::StepOptions& options, ReferenceState& state) const;
+
+ private:
+  // One ray; adds to the gradients.
+  ReferenceResult Ray(const worker::RayBatch& batch, const worker::BatchRay& ray, const ReferenceState& state, double ray_share, double distortion,
+                      std::vector<double>* grid_gradient, std::vector<double>* network_gradient) const;
+
+  const render::TrainedField& target_;
+  ReferenceField reference_;
+};
+
+}  // namespace skyquilt::bench

@@ -1,0 +1,128 @@
+#include "bench/numerics/synthetic_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/render/march.h"
+
+namespace skyquilt::bench {
+namespace {
+
+constexpr double kCamera_m = 30.0;
+
+// Display values of the surface a ray meets, in the scene's own frame: ground z = 0 with waves half a metre long, and a block of 2.5 x 2.5 x 2 m.
+Eigen::Vector3d ShadeScene(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  const render::Stretch block = render::RayBox(origin, direction, {-1.25, -1.25, 0.0}, {1.25, 1.25, 2.0});
+  const Eigen::Vector3d p = origin + (block.Empty() ? -origin.z() / direction.z() : block.t_near) * direction;
+  const double wave = 0.5 + 0.35 * std::sin(12.0 * p.x()) * std::cos(11.0 * p.y());
+  if (block.Empty()) return {0.7 * wave, wave, 0.6 * wave};
+  return {0.6 + 0.2 * std::sin(9.0 * p.x() + 7.0 * p.z()), 0.25, 0.3 + 0.15 * std::sin(8.0 * p.y())};
+}
+
+}  // namespace
+
+render::TrainedField SyntheticField(const SyntheticOptions& options) {
+  render::TrainedField field;
+  field.name = "synthetic";
+  const double half = 0.5 * options.edge_m;
+  field.core_min_enu = options.offset_enu + Eigen::Vector3d(-half, -half, -0.5);
+  field.core_max_enu = options.offset_enu + Eigen::Vector3d(half, half, options.height_m - 0.5);
+  field.map = encoding::SpaceMap::Box(field.core_min_enu, field.core_max_enu);
+  field.step_m = 2.0 * options.voxel_m;
+  encoding::HashGridConfig& grid = field.config.grid;
+  grid.levels = options.levels;
+  grid.features = options.features;
+  grid.log2_table_size = options.log2_table_size;
+  grid.base_resolution = 4;
+  grid.finest_resolution = options.edge_m / options.voxel_m;
+  // Far from the origin the box's corners are rounded: the field's shape must not depend on that.
+  const double extent[3] = {1.0, 1.0, std::min(1.0, options.height_m / options.edge_m)};
+  std::copy(extent, extent + 3, grid.extent);
+  field.config.hidden = options.hidden;
+  field.config.color_hidden_layers = options.color_hidden_layers;
+  field.config.color_range = 1.4;
+  field.config.density_bias = -3.0;
+  field.occupancy = field::OccupancyGrid::Make(grid.extent, 3.0 * options.voxel_m / options.edge_m, 100'000);
+  return field;
+}
+
+void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOptions& scene, const SyntheticRays& rays, base::Random& random,
+                        worker::RayBatch* batch) {
+  batch->Clear();
+  std::vector<float> x, y, z, t, unit_length;
+  std::vector<int32_t> cell;
+  const double half = 0.5 * scene.edge_m;
+  for (int i = 0; i < rays.rays; ++i) {
+    const Eigen::Vector3d camera(random.Uniform(-half, half), random.Uniform(-half, half), kCamera_m);
+    const Eigen::Vector3d ground(random.Uniform(-half, half), random.Uniform(-half, half), 0.0);
+    const float stops = rays.most_stops * (2.0F * random.Uniform() - 1.0F);
+    worker::BatchRay ray;
+    ray.ray.direction_enu = (ground - camera).normalized();
+    ray.ray.origin_enu = camera + scene.offset_enu;
+    ray.ray.empty = random.Uniform() < rays.empty_share;
+    const Eigen::Vector3d color = ShadeScene(camera, ray.ray.direction_enu);
+    for (size_t c = 0; c < 3; ++c) {
+      ray.ray.exposure[c] = brightness::Exposure::FromLogGain(stops * std::log(2.0F));
+      const float recorded = brightness::Expose(static_cast<float>(color[static_cast<Eigen::Index>(c)]), ray.ray.exposure[c]).value;
+      ray.ray.target_srgb[c] = std::clamp(recorded, 0.0F, 1.0F);
+      ray.background[c] = random.Uniform();
+    }
+    const float jitter = random.Uniform();
+    const render::Stretch stretch = render::FieldStretch(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
+    const render::UnitRay unit(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
+    for (auto* values : {&x, &y, &z, &t, &unit_length}) values->clear();
+    cell.clear();
+    render::March(field, ray.ray.origin_enu, ray.ray.direction_enu, stretch, field.step_m, jitter,
+                  [&](double at, double, double length, int64_t index) {
+                    const Eigen::Vector3f p = unit.At(at);
+                    x.push_back(p.x());
+                    y.push_back(p.y());
+                    z.push_back(p.z());
+                    t.push_back(static_cast<float>(at));
+                    unit_length.push_back(static_cast<float>(length / field.step_m));
+                    cell.push_back(static_cast<int32_t>(index));
+                    return true;
+                  });
+    ray.count = static_cast<int64_t>(x.size());
+    batch->Append(ray, x.data(), y.data(), z.data(), t.data(), unit_length.data(), cell.data());
+  }
+  batch->Finish(field.config.grid.levels * field.config.grid.features);
+}
+
+void RepositionInFloat(const render::TrainedField& field, worker::RayBatch* batch) {
+  const Eigen::Vector3f low = field.map.min_enu().cast<float>();
+  const auto scale = static_cast<float>(field.map.units_per_metre());
+  for (const worker::BatchRay& ray : batch->rays) {
+    const Eigen::Vector3f origin = ray.ray.origin_enu.cast<float>();
+    const Eigen::Vector3f direction = ray.ray.direction_enu.cast<float>();
+    for (auto s = static_cast<size_t>(ray.begin); s < static_cast<size_t>(ray.begin + ray.count); ++s) {
+      const Eigen::Vector3f unit = ((origin + batch->t[s] * direction) - low) * scale;
+      batch->x[s] = unit.x();
+      batch->y[s] = unit.y();
+      batch->z[s] = unit.z();
+    }
+  }
+}
+
+field::TrainableState InitialState(const field::HashField& field, uint64_t seed) {
+  field::TrainableState state;
+  state.Allocate(field);
+  base::Random random(seed);
+  field.Initialize(random, state.grid, state.networks);
+  return state;
+}
+
+bool AllFinite(const field::TrainableState& state) {
+  for (const auto* values :
+       {&state.grid, &state.networks, &state.grid_moment1, &state.grid_moment2, &state.network_moment1, &state.network_moment2}) {
+    if (!kernel::AllFinite(values->data(), static_cast<int64_t>(values->size()))) return false;
+  }
+  return true;
+}
+
+bool SameParameters(const field::TrainableState& a, const field::TrainableState& b) {
+  return a.grid == b.grid && a.networks == b.networks && a.grid_moment1 == b.grid_moment1 && a.grid_moment2 == b.grid_moment2 &&
+         a.network_moment1 == b.network_moment1 && a.network_moment2 == b.network_moment2;
+}
+
+}  // namespace skyquilt::bench

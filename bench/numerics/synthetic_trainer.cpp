@@ -1,0 +1,36 @@
+#include "bench/numerics/synthetic_trainer.h"
+
+#include <utility>
+
+namespace skyquilt::bench {
+
+SyntheticTrainer::SyntheticTrainer(const SyntheticOptions& scene, uint64_t seed, int threads)
+    : scene_(scene),
+      threads_(threads),
+      times_(threads_.size()),
+      target_(SyntheticField(scene)),
+      field_(target_.config),
+      state_(InitialState(field_, seed)),
+      step_(target_, field_, nullptr, {}, threads_, times_) {}
+
+worker::RayBatch SyntheticTrainer::Draw(const SyntheticRays& rays, base::Random& random) const {
+  worker::RayBatch batch;
+  DrawSyntheticBatch(target_, scene_, rays, random, &batch);
+  return batch;
+}
+
+SyntheticTrainer::Gradients SyntheticTrainer::GradientsOf(worker::RayBatch batch, double distortion) {
+  // After one step from moments of zero, the first moment is a tenth of the gradient.
+  field::TrainableState probe;
+  probe.Allocate(field_);
+  probe.grid = state_.grid;
+  probe.networks = state_.networks;
+  Gradients gradients;
+  gradients.result = step_.Train(batch, {.learning_rate = 0.0, .network_l2 = 0.0, .distortion = distortion}, probe, nullptr);
+  const auto share = static_cast<double>(1.0F - kernel::AdamStep{}.beta1);
+  for (const float moment : probe.grid_moment1) gradients.grid.push_back(static_cast<double>(moment) / share);
+  for (const float moment : probe.network_moment1) gradients.networks.push_back(static_cast<double>(moment) / share);
+  return gradients;
+}
+
+}  // namespace skyquilt::bench

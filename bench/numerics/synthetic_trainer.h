@@ -1,0 +1,44 @@
+// The worker's own training step on synthetic batches.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bench/numerics/synthetic_scene.h"
+#include "core/base/thread_pool.h"
+#include "worker/field_step.h"
+
+namespace skyquilt::bench {
+
+class SyntheticTrainer {
+ public:
+  SyntheticTrainer(const SyntheticOptions& scene, uint64_t seed, int threads);
+  SyntheticTrainer(const SyntheticTrainer&) = delete;
+  SyntheticTrainer& operator=(const SyntheticTrainer&) = delete;
+
+  const render::TrainedField& target() const { return target_; }
+  const field::HashField& field() const { return field_; }
+  const SyntheticOptions& scene() const { return scene_; }
+  field::TrainableState& state() { return state_; }
+
+  worker::RayBatch Draw(const SyntheticRays& rays, base::Random& random) const;
+  // The batch is copied: training loses positions of hidden samples.
+  worker::StepResult Train(worker::RayBatch batch, const worker::StepOptions& options) { return step_.Train(batch, options, state_, nullptr); }
+  // Loss and gradients at the present parameters, which stay as they are.
+  struct Gradients {
+    worker::StepResult result;
+    std::vector<double> grid, networks;
+  };
+  Gradients GradientsOf(worker::RayBatch batch, double distortion);
+
+ private:
+  SyntheticOptions scene_;
+  base::ThreadPool threads_;
+  worker::StageTimes times_;
+  render::TrainedField target_;
+  field::HashField field_;
+  field::TrainableState state_;
+  worker::FieldStep step_;
+};
+
+}  // namespace skyquilt::bench

@@ -1,0 +1,36 @@
+#include "bench/study/pareto.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace skyquilt::bench {
+
+std::vector<size_t> ParetoFront(const std::vector<Priced>& points) {
+  std::vector<size_t> order;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (!std::isnan(points[i].cost) && !std::isnan(points[i].quality)) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return points[a].cost < points[b].cost || (points[a].cost == points[b].cost && points[a].quality > points[b].quality);
+  });
+  std::vector<size_t> front;
+  double best = -std::numeric_limits<double>::infinity();
+  for (const size_t i : order) {
+    if (points[i].quality <= best) continue;
+    best = points[i].quality;
+    front.push_back(i);
+  }
+  return front;
+}
+
+double BelowFront(const std::vector<Priced>& points, size_t point, double same_cost) {
+  double best = points.at(point).quality;
+  for (const Priced& other : points) {
+    if (other.cost <= (1.0 + same_cost) * points[point].cost && other.quality > best) best = other.quality;
+  }
+  return best - points[point].quality;
+}
+
+}  // namespace skyquilt::bench

@@ -1,0 +1,174 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/study/study_benches.h"
+#include "bench/study/study_tables.h"
+#include "core/page/curve_chart.h"
+
+namespace skyquilt::bench {
+namespace {
+
+const VariantResult* Find(const std::vector<VariantResult>& results, const std::string& name) {
+  const auto at = std::find_if(results.begin(), results.end(), [&](const VariantResult& r) { return r.name == name && r.failure.empty(); });
+  return at == results.end() ? nullptr : &*at;
+}
+
+// Log2 of the table size of one field that has about as many entries as all blocks together.
+int JoinedTableSize(const VariantResult& divided, int log2_table_size) {
+  double entries = 0.0;
+  for (const VariantField& field : divided.fields) {
+    if (field.log2_table_size > 0) entries += std::exp2(field.log2_table_size);
+  }
+  return entries > 0.0 ? std::min(24, static_cast<int>(std::lround(std::log2(entries)))) : log2_table_size;
+}
+
+std::string Difference(const VariantResult& a, const VariantResult& b) {
+  return fmt::format("{} dB ({:.2f} against {:.2f}), SSIM {}", Signed(a.psnr_db - b.psnr_db, 2), a.psnr_db, b.psnr_db, Signed(a.ssim - b.ssim, 3));
+}
+
+// Dirt that hangs so far in front of surfaces is no blur of theirs.
+constexpr double kHighAir_m = 10.0;
+
+double HighAir(const VariantResult& result) {
+  for (const auto& [clearance_m, opacity] : result.air_profile) {
+    if (clearance_m == kHighAir_m) return opacity;
+  }
+  return VariantResult::kNone;
+}
+
+// Empty where nothing was measured.
+std::string DirtRatio(const VariantResult& clean, const VariantResult& dirty) {
+  std::string text;
+  const auto add = [&text](const std::string& what, double less, double more) {
+    if (!std::isfinite(less) || !std::isfinite(more) || !(less > 0.0)) return;
+    text += fmt::format("; {} {:.3f} % against {:.3f} %, a factor of {:.1f}", what, 100.0 * less, 100.0 * more, more / less);
+  };
+  add("dirt in the air", clean.air_opacity, dirty.air_opacity);
+  add(fmt::format("{:g} m and more in front of surfaces", kHighAir_m), HighAir(clean), HighAir(dirty));
+  return text;
+}
+
+BenchSection AirSection(const std::vector<VariantResult>& results) {
+  std::vector<page::Curve> curves;
+  curves.reserve(results.size());
+  for (const VariantResult& r : results) curves.push_back({.name = r.label, .points = r.air_profile, .marks = true});
+  return {.id = "air",
+          .title = "Dirt in the air",
+          .lead =
+              "What a scene swallows of a ray from the camera until so far in front of the true surface. Blur of surfaces ends "
+              "after some metres; what is left floats.",
+          .charts = {page::CurveChart(curves, {.title = "Opacity of air",
+                                               .x_label = "distance from the true surface (m)",
+                                               .y_label = "share of light swallowed",
+                                               .log_y = true,
+                                               .log_x = true})},
+          .tables = {},
+          .pictures = {}};
+}
+
+std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
+  const VariantResult* guided = Find(results, "guided");
+  const VariantResult* small = Find(results, "single_small");
+  const VariantResult* large = Find(results, "single_large");
+  const VariantResult* independent = Find(results, "independent");
+  const VariantResult* shared = Find(results, "shared_height");
+  const VariantResult* everywhere = Find(results, "everywhere");
+  const VariantResult* shared_everywhere = Find(results, "shared_everywhere");
+  std::vector<std::string> verdicts;
+  if (guided == nullptr) return {"The divided model could not be trained: nothing can be compared."};
+  if (small != nullptr) verdicts.push_back("Blocks against one model with the tables of one block, equal time: " + Difference(*guided, *small) + ".");
+  if (large != nullptr) {
+    verdicts.push_back(fmt::format("Blocks against one model with as many parameters ({:.1f} M against {:.1f} M), equal time: {}.",
+                                   guided->parameters / 1e6, large->parameters / 1e6, Difference(*guided, *large)));
+    verdicts.push_back(
+        fmt::format("The large model was trained with {:.0f} M samples ({:.2f} M/s), the blocks with {:.0f} M together ({:.2f} M/s){}.",
+                    large->samples / 1e6, large->samples_per_second / 1e6, guided->samples / 1e6, guided->samples_per_second / 1e6,
+                    large->samples_per_second < 0.95 * guided->samples_per_second ? ": larger tables leave the caches" : ""));
+    verdicts.push_back(
+        fmt::format("Each block had {} of its own to learn everything from the beginning, the large model {}.", OfItsOwn(*guided), OfItsOwn(*large)));
+  }
+  if (independent != nullptr) verdicts.push_back("Blocks guided by a context against blocks alone: " + Difference(*guided, *independent) + ".");
+  if (shared != nullptr) {
+    verdicts.push_back("A box as high as what stands in it against boxes that share the survey's height: " + Difference(*guided, *shared) +
+                       DirtRatio(*guided, *shared) + ".");
+  }
+  if (everywhere != nullptr && shared_everywhere != nullptr) {
+    verdicts.push_back("The same when fields know nothing of where surfaces are and search their whole boxes: " +
+                       Difference(*everywhere, *shared_everywhere) + DirtRatio(*everywhere, *shared_everywhere) + ".");
+  }
+  if (shared_everywhere != nullptr) {
+    verdicts.push_back("Boxes of their own height and surfaces that are known, against neither: " + Difference(*guided, *shared_everywhere) +
+                       DirtRatio(*guided, *shared_everywhere) + ".");
+  }
+  for (const VariantResult* one : {small, large}) {
+    if (one == nullptr || !std::isfinite(one->air_opacity) || !(guided->air_opacity > 0.0)) continue;
+    verdicts.push_back(fmt::format("Dirt in the air of '{}': {:.3f} %, {:.1f} times that of the blocks.", one->label, 100.0 * one->air_opacity,
+                                   one->air_opacity / guided->air_opacity));
+  }
+  return verdicts;
+}
+
+}  // namespace
+
+StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
+  StudyBench bench;
+  std::vector<VariantResult>& results = bench.results;
+  const config::Override budget = {"run.time_budget_s", fmt::format("{}", options.budget_s)};
+  const auto run = [&](const std::string& name, const std::string& label, std::vector<config::Override> overrides) {
+    overrides.push_back(budget);
+    results.push_back(study.Run({.name = name, .label = label, .overrides = std::move(overrides)}));
+  };
+  const config::Override divided = {"partition.blocks", options.blocks}, whole = {"partition.blocks", "1x1"};
+  run("guided", "blocks, guided", {divided});
+  const std::string joined = std::to_string(JoinedTableSize(results.front(), study.settings().partition.max_log2_table_size));
+  run("single_small", "single, tables of one block", {whole});
+  run("single_large", "single, as many parameters", {whole, {"partition.min_log2_table_size", joined}, {"partition.max_log2_table_size", joined}});
+  run("independent", "blocks, independent", {divided, {"train.coupling", "independent"}});
+  const config::Override one_height = {"partition.heights", "survey"}, everywhere = {"train.start", "everywhere"};
+  run("shared_height", "blocks, one height for all", {divided, one_height});
+  // Dirt in the air is only known where the true surface is.
+  if (std::isfinite(results.front().air_opacity)) {
+    run("everywhere", "blocks that search their whole box", {divided, everywhere});
+    run("shared_everywhere", "one height for all, whole box", {divided, one_height, everywhere});
+  }
+
+  BenchPage& page = bench.page;
+  page.name = "single-vs-multi";
+  page.title = "One model or many";
+  page.lead = fmt::format(
+      "The same survey, the same {:.0f} s of training for every variant (the context's time included): one field of the whole area against one per "
+      "block. "
+      "Blocks either know the context (guided) or nothing outside themselves (independent). Dirt in the air is what a scene swallows of a ray that "
+      "should "
+      "be free until 1 m in front of the true surface; only simulated surveys can tell.",
+      options.budget_s);
+  if (const VariantResult* guided = Find(results, "guided")) {
+    page.figures.push_back({"Blocks, guided", fmt::format("{:.2f} dB", guided->psnr_db), fmt::format("{} blocks", guided->blocks)});
+    if (const VariantResult* small = Find(results, "single_small")) {
+      page.figures.push_back({"against one such model", Signed(guided->psnr_db - small->psnr_db, 2) + " dB", "equal time"});
+    }
+    if (const VariantResult* large = Find(results, "single_large")) {
+      page.figures.push_back({"against one as large as all", Signed(guided->psnr_db - large->psnr_db, 2) + " dB", "equal time and parameters"});
+    }
+    if (const VariantResult* naive = Find(results, "shared_everywhere"); naive != nullptr && HighAir(*guided) > 0.0) {
+      page.figures.push_back({"Dirt high in the air", fmt::format("{:.1f} x less", HighAir(*naive) / HighAir(*guided)),
+                              "boxes of their own height, surfaces that are known"});
+    }
+  }
+  page.verdicts = Verdicts(results);
+  page.sections.push_back(
+      {.id = "quality", .title = "Quality, time, memory", .lead = "", .charts = {}, .tables = {QualityTable(results)}, .pictures = {}});
+  page.sections.push_back({.id = "blocks",
+                           .title = "Block by block",
+                           .lead = "",
+                           .charts = {TrainingChart(results)},
+                           .tables = {BlockTable(results, "blocks")},
+                           .pictures = {}});
+  if (!results.front().air_profile.empty()) page.sections.push_back(AirSection(results));
+  page.sections.push_back(PictureSection(results));
+  return bench;
+}
+
+}  // namespace skyquilt::bench

@@ -1,0 +1,334 @@
+#include "bench/study/study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "coordinator/stages/pipeline.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/system.h"
+#include "core/render/trained_field.h"
+#include "core/scene/field_file.h"
+#include "core/scene/scene_file.h"
+#include "evaluate/train_log.h"
+
+namespace skyquilt::bench {
+namespace {
+
+constexpr const char* kMend = "Run the bench again with --restart, or remove this file";
+
+// Nothing of these changes a result.
+constexpr const char* kIdle[] = {"run.threads", "run.memory_gb", "run.context_ranks", "context.checkpoint_every_s", "train.checkpoint_every_s"};
+
+void RemoveOldRuns(const std::filesystem::path& folder) {
+  for (const char* part : {"runs", "source", "cache"}) {
+    std::error_code error;
+    std::filesystem::remove_all(folder / part, error);
+    if (error) throw base::InputError(folder / part, "cannot be removed: " + error.message(), "Check the permissions of the folder");
+  }
+}
+
+double NumberAt(const nlohmann::json& json, const char* key) {
+  const auto place = json.find(key);
+  return place != json.end() && place->is_number() ? place->get<double>() : VariantResult::kNone;
+}
+
+// Batches' PSNR over the time that all fields together have trained: fields one after the other, each at the mean of what has begun.
+std::vector<std::pair<double, double>> JoinedCurve(const evaluate::TrainLog& log) {
+  constexpr int kPoints = 60;
+  std::vector<std::pair<double, double>> curve;
+  size_t blocks = 0;
+  double seconds = 0.0;
+  for (const evaluate::FieldLog& field : log.fields) {
+    if (field.name == "context" || field.curve.empty()) continue;
+    ++blocks;
+    seconds += field.seconds;
+  }
+  if (blocks == 0) return curve;
+  for (int k = 1; k <= kPoints; ++k) {
+    const double share = static_cast<double>(k) / kPoints;
+    double sum = 0.0;
+    size_t counted = 0;
+    for (const evaluate::FieldLog& field : log.fields) {
+      if (field.name == "context" || field.curve.empty()) continue;
+      const double until = share * field.curve.back().step;
+      const auto at = std::find_if(field.curve.begin(), field.curve.end(), [&](const evaluate::CurvePoint& p) { return p.step >= until; });
+      if (at == field.curve.end() || !std::isfinite(at->psnr_db)) continue;
+      sum += at->psnr_db;
+      ++counted;
+    }
+    if (counted == blocks) curve.emplace_back(share * seconds, sum / static_cast<double>(blocks));
+  }
+  return curve;
+}
+
+// Of every field in a scene, by name.
+std::map<std::string, int64_t> SceneParameters(const std::filesystem::path& file) {
+  const checkpoint::ArchiveReader reader = scene::OpenScene(file);
+  std::vector<std::string> prefixes = {scene::kContextPrefix};
+  for (int64_t i = 0; i < reader.IntAttribute("blocks"); ++i) prefixes.push_back(scene::BlockPrefix(i));
+  std::map<std::string, int64_t> parameters;
+  for (const std::string& prefix : prefixes) {
+    if (reader.HasAttribute(prefix + "name")) parameters[reader.StringAttribute(prefix + "name")] = scene::StoredParameters(reader, prefix);
+  }
+  return parameters;
+}
+
+// In the place of one that may be there.
+void MoveFolder(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::filesystem::remove_all(to);
+  std::filesystem::create_directories(to.parent_path());
+  std::filesystem::rename(from, to);
+}
+
+// Training photos of every n-th in name order, and all held-out ones.
+survey::Survey Thinned(survey::Survey survey, int keep_every) {
+  std::vector<survey::Photo> kept;
+  int number = 0;
+  for (survey::Photo& photo : survey.photos) {
+    if (photo.is_test || number++ % keep_every == 0) kept.push_back(std::move(photo));
+  }
+  survey.photos = std::move(kept);
+  return survey;
+}
+
+}  // namespace
+
+Study::Study(comm::Communicator& comm, Options options) : comm_(comm), options_(std::move(options)) {
+  const StudySurvey& wanted = options_.survey;
+  if (wanted.folder.empty() == wanted.preset.empty()) throw base::UsageError("a bench needs either --survey FOLDER or --preset NAME, and not both");
+  options_.folder = std::filesystem::absolute(options_.folder).lexically_normal();
+  base::RequireWritableFolder(options_.folder);
+  if (options_.restart) RemoveOldRuns(options_.folder);
+  base::RequireWritableFolder(options_.folder / "runs");
+  base::AddLogFile(options_.folder / "log.txt");
+  if (!wanted.folder.empty() && coordinator::Project::IsProject(wanted.folder)) {
+    source_ = std::filesystem::absolute(wanted.folder);
+  } else {
+    source_ = options_.folder / "source";
+    coordinator::Pipeline pipeline{.comm = comm_,
+                                   .project = coordinator::Project::Create(source_),
+                                   .settings = options_.settings,
+                                   .quiet = options_.quiet,
+                                   .verbose = options_.verbose};
+    std::filesystem::path photos = wanted.folder;
+    if (photos.empty()) {
+      pipeline.settings.simulate.preset = wanted.preset;
+      photos = pipeline.project.SimulatedFolder();
+      coordinator::SimulateStage(pipeline, photos);
+    }
+    coordinator::PrepareStage(pipeline, photos, wanted.model);
+  }
+  survey_ = survey::LoadSurvey(source_ / "survey");
+}
+
+std::string Study::Identity(const Variant& variant, coordinator::Settings settings) const {
+  coordinator::FlatOptions flat = settings.Flat();
+  for (const char* key : kIdle) flat.erase(key);
+  // How the survey came about shows in the survey.
+  std::erase_if(flat, [](const auto& entry) { return entry.first.starts_with("simulate.") || entry.first.starts_with("prepare."); });
+  return config::Hash(flat) + " " + coordinator::FileIdentity(source_ / "survey" / "survey.json") + " " + std::to_string(variant.keep_every);
+}
+
+coordinator::Settings Study::SettingsOf(const Variant& variant) const {
+  const auto legal = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
+  SKYQUILT_CHECK(!variant.name.empty() && std::all_of(variant.name.begin(), variant.name.end(), legal), variant.name);
+  SKYQUILT_CHECK(variant.keep_every >= 1, variant.name);
+  coordinator::Settings settings = options_.settings;
+  for (const config::Override& entry : variant.overrides) settings.Set(entry);
+  settings.Validate();
+  return settings;
+}
+
+VariantResult Study::Run(const Variant& variant) {
+  return RunMerged(variant, {}).front();
+}
+
+std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::vector<Variant>& merged) {
+  const coordinator::Settings settings = SettingsOf(variant);
+  const std::string identity = Identity(variant, settings);
+  std::vector<VariantResult> results;
+  if (std::optional<VariantResult> known = Load(variant, identity)) results.push_back(std::move(*known));
+  for (const Variant& other : merged) {
+    if (results.empty()) break;
+    // Their training is the variant's.
+    const std::optional<VariantResult> known = Load(other, identity + " " + Identity(other, SettingsOf(other)));
+    if (!known) results.clear();
+    if (known) results.push_back(*known);
+  }
+  if (results.size() == 1 + merged.size()) {
+    spdlog::info("{}: nothing to do, its result is there", variant.label);
+    return results;
+  }
+  results = {Measure(variant, settings, identity, !merged.empty())};
+  const coordinator::Project project{RunFolder(variant)};
+  const std::filesystem::path own_report = project.folder / "report_of_itself";
+  if (!merged.empty() && results.front().failure.empty()) MoveFolder(project.ReportFolder(), own_report);
+  for (const Variant& other : merged) {
+    if (!results.front().failure.empty()) break;
+    spdlog::info("--- {}", other.label);
+    const coordinator::Settings own = SettingsOf(other);
+    // Merging anew is what is wanted here: nothing is refused.
+    coordinator::Pipeline pipeline{
+        .comm = comm_, .project = project, .settings = own, .restart = true, .quiet = options_.quiet, .verbose = options_.verbose};
+    coordinator::MergeStage(pipeline);
+    coordinator::EvaluateStage(pipeline);
+    MoveFolder(project.ReportFolder(), coordinator::Project{RunFolder(other)}.ReportFolder());
+    results.push_back(Collect(variant, other));
+    results.back().label = other.label;
+    base::WriteFileAtomically(RunFolder(other).string() + ".json", ResultJson(results.back(), identity + " " + Identity(other, own)));
+  }
+  if (std::filesystem::exists(own_report)) MoveFolder(own_report, project.ReportFolder());
+  if (!options_.keep && results.front().failure.empty()) RemoveLargeFiles(variant);
+  return results;
+}
+
+VariantResult Study::Measure(const Variant& variant, const coordinator::Settings& settings, const std::string& identity, bool merge_anew) {
+  spdlog::info("--- {}", variant.label);
+  VariantResult result;
+  result.name = variant.name;
+  try {
+    Train(variant, settings, merge_anew);
+    result = Collect(variant, variant);
+  } catch (const base::BlockError& error) {
+    result.failure = error.what();
+  }
+  result.label = variant.label;
+  if (result.failure.empty()) {
+    base::WriteFileAtomically(RunFolder(variant).string() + ".json", ResultJson(result, identity));
+  } else {
+    spdlog::error("{}: {}", variant.label, result.failure);
+  }
+  return result;
+}
+
+void Study::RemoveLargeFiles(const Variant& variant) const {
+  std::error_code ignored;
+  for (const char* part : {"checkpoints", "cache", "scene.h5", "scene.h5.prev", "survey"})
+    std::filesystem::remove_all(RunFolder(variant) / part, ignored);
+}
+
+// The decoded photos of one width are the same for all variants that use all photos: one file under several names.
+void Study::LinkPixels(const std::filesystem::path& run_folder, int image_width, bool share) const {
+  const std::filesystem::path shared = options_.folder / "cache" / ("pixels_" + std::to_string(image_width) + ".bin");
+  const std::filesystem::path own = coordinator::Project{run_folder}.PixelCacheFile();
+  const std::filesystem::path& from = share ? own : shared;
+  const std::filesystem::path& to = share ? shared : own;
+  if (!std::filesystem::exists(from) || std::filesystem::exists(to)) return;
+  std::filesystem::create_directories(to.parent_path());
+  std::error_code ignored;  // a file system without links: everybody decodes for himself
+  std::filesystem::create_hard_link(from, to, ignored);
+}
+
+void Study::Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew) {
+  const coordinator::Project project = coordinator::Project::Create(RunFolder(variant));
+  if (!std::filesystem::exists(project.SurveyFolder() / "survey.json")) {
+    survey::SaveSurvey(variant.keep_every > 1 ? Thinned(survey_, variant.keep_every) : survey_, project.SurveyFolder());
+  }
+  coordinator::Pipeline pipeline{.comm = comm_, .project = project, .settings = settings, .quiet = options_.quiet, .verbose = options_.verbose};
+  if (!merge_anew) coordinator::RequireSameConfiguration(pipeline, "partition");
+  coordinator::PartitionStage(pipeline);
+  if (variant.keep_every == 1) LinkPixels(project.folder, settings.run.image_width, false);
+  base::ResetPeakRss();
+  std::vector<std::string> failed;
+  try {
+    failed = coordinator::TrainStage(pipeline);
+  } catch (const base::UsageError& error) {
+    throw base::BlockError(error.what());  // what cannot be trained with these settings, for instance for want of memory, is a result
+  }
+  coordinator::ThrowIfBlocksFailed(failed, project);
+  if (variant.keep_every == 1) LinkPixels(project.folder, settings.run.image_width, true);
+  pipeline.restart = merge_anew;
+  coordinator::MergeStage(pipeline);
+  coordinator::EvaluateStage(pipeline);
+}
+
+VariantResult Study::Collect(const Variant& trained, const Variant& scored) const {
+  const coordinator::Project project{RunFolder(trained)};
+  const std::filesystem::path report_folder = coordinator::Project{RunFolder(scored)}.ReportFolder();
+  const nlohmann::json metrics = nlohmann::json::parse(base::ReadFile(report_folder / "metrics.json"));
+  const evaluate::TrainLog log = evaluate::ReadTrainLog(project.TrainReport(), project.CheckpointFolder());
+  VariantResult r;
+  r.name = scored.name;
+  for (const auto& [key, value] : {std::pair{"psnr", &r.psnr_db},
+                                   {"ssim", &r.ssim},
+                                   {"lpips", &r.lpips},
+                                   {"psnr_full_frame", &r.psnr_full_db},
+                                   {"coverage", &r.coverage},
+                                   {"seam_psnr_gap_db", &r.seam_gap_db},
+                                   {"depth_rmse_m", &r.depth_rmse_m},
+                                   {"depth_median_abs_m", &r.depth_median_abs_m},
+                                   {"air_opacity", &r.air_opacity},
+                                   {"train_seconds", &r.train_seconds},
+                                   {"samples_per_second", &r.samples_per_second},
+                                   {"peak_rss_bytes", &r.peak_rss_bytes},
+                                   {"parameters", &r.scene_parameters},
+                                   {"evaluate_seconds", &r.evaluate_seconds}}) {
+    *value = NumberAt(metrics, key);
+  }
+  for (const nlohmann::json& place : metrics.value("air_profile", nlohmann::json::array())) {
+    const double opacity = NumberAt(place, "opacity");
+    if (std::isfinite(opacity)) r.air_profile.emplace_back(NumberAt(place, "clearance_m"), opacity);
+  }
+  r.scene_bytes = static_cast<double>(std::filesystem::file_size(project.SceneFile()));
+  r.samples = r.parameters = 0.0;
+  const std::map<std::string, int64_t> kept = SceneParameters(project.SceneFile());
+  const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
+  for (const evaluate::FieldLog& field : log.fields) {
+    r.samples += static_cast<double>(field.samples);
+    r.parameters += static_cast<double>(field.parameters);
+    const auto block = std::find_if(blocks.blocks.begin(), blocks.blocks.end(), [&field](const partition::Block& b) { return b.name == field.name; });
+    const auto stored = kept.find(field.name);
+    r.fields.push_back(
+        {.name = field.name,
+         .parameters = field.parameters,
+         .samples = field.samples,
+         .scene_parameters = stored == kept.end() ? 0 : stored->second,
+         .log2_table_size = block == blocks.blocks.end() ? 0 : block->log2_table_size,
+         .seconds = field.seconds,
+         .psnr_db = metrics.contains("psnr_per_block") ? NumberAt(metrics["psnr_per_block"], field.name.c_str()) : VariantResult::kNone});
+    if (field.name != "context") ++r.blocks;
+  }
+  r.layout = std::to_string(blocks.rows) + "x" + std::to_string(blocks.columns);
+  r.curve = JoinedCurve(log);
+  const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
+  r.training_photos = static_cast<int>(std::count_if(survey.photos.begin(), survey.photos.end(), [](const auto& photo) { return !photo.is_test; }));
+  const std::filesystem::path relative = std::filesystem::path("runs") / scored.name / "report";
+  r.report = (relative / "index.html").generic_string();
+  std::vector<std::string> renders;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("photo_") && name.ends_with("_render.jpg")) renders.push_back(name);
+  }
+  if (renders.empty()) return r;
+  std::sort(renders.begin(), renders.end());
+  const std::string chosen = renders[renders.size() / 2];
+  const std::string stem = chosen.substr(0, chosen.size() - std::string("_render.jpg").size());
+  r.render = (relative / "images" / chosen).generic_string();
+  r.photo = (relative / "images" / (stem + "_photo.jpg")).generic_string();
+  r.error = (relative / "images" / (stem + "_error.png")).generic_string();
+  return r;
+}
+
+std::optional<VariantResult> Study::Load(const Variant& variant, const std::string& identity) const {
+  const std::filesystem::path file = RunFolder(variant).string() + ".json";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  std::string made_with;
+  VariantResult result;
+  try {
+    result = ParseResult(base::ReadFile(file), &made_with);
+  } catch (const nlohmann::json::exception& error) {
+    throw base::InputError(file, std::string("is damaged: ") + error.what(), kMend);
+  }
+  if (made_with != identity) {
+    throw base::UsageError(file.string() + ": this variant was measured with other settings or another survey. Use another folder, or --restart");
+  }
+  result.label = variant.label;
+  return result;
+}
+
+}  // namespace skyquilt::bench

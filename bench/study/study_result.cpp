@@ -1,0 +1,101 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "bench/study/study.h"
+
+namespace skyquilt::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Everything that is one number, by name.
+template <typename Result, typename Each>
+void EachNumber(Result& r, const Each& each) {
+  each("psnr_db", r.psnr_db);
+  each("ssim", r.ssim);
+  each("lpips", r.lpips);
+  each("psnr_full_db", r.psnr_full_db);
+  each("coverage", r.coverage);
+  each("seam_gap_db", r.seam_gap_db);
+  each("depth_rmse_m", r.depth_rmse_m);
+  each("depth_median_abs_m", r.depth_median_abs_m);
+  each("air_opacity", r.air_opacity);
+  each("train_seconds", r.train_seconds);
+  each("samples_per_second", r.samples_per_second);
+  each("samples", r.samples);
+  each("peak_rss_bytes", r.peak_rss_bytes);
+  each("parameters", r.parameters);
+  each("scene_parameters", r.scene_parameters);
+  each("scene_bytes", r.scene_bytes);
+  each("evaluate_seconds", r.evaluate_seconds);
+}
+
+Json OrNull(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+double OrNone(const Json& value) {
+  return value.is_null() ? VariantResult::kNone : value.get<double>();
+}
+
+}  // namespace
+
+std::string ResultJson(const VariantResult& result, const std::string& identity) {
+  Json json;
+  json["name"] = result.name;
+  json["label"] = result.label;
+  json["identity"] = identity;
+  if (!result.failure.empty()) json["failure"] = result.failure;
+  EachNumber(result, [&](const char* key, double value) { json[key] = OrNull(value); });
+  json["blocks"] = result.blocks;
+  json["layout"] = result.layout;
+  json["training_photos"] = result.training_photos;
+  json["fields"] = Json::array();
+  for (const VariantField& field : result.fields) {
+    json["fields"].push_back({{"name", field.name},
+                              {"parameters", field.parameters},
+                              {"scene_parameters", field.scene_parameters},
+                              {"log2_table_size", field.log2_table_size},
+                              {"samples", field.samples},
+                              {"seconds", field.seconds},
+                              {"psnr_db", OrNull(field.psnr_db)}});
+  }
+  json["curve"] = result.curve;
+  json["air_profile"] = result.air_profile;
+  for (const auto& [key, value] :
+       {std::pair{"photo", &result.photo}, {"render", &result.render}, {"error", &result.error}, {"report", &result.report}}) {
+    json[key] = *value;
+  }
+  return json.dump(1) + "\n";
+}
+
+VariantResult ParseResult(const std::string& text, std::string* identity) {
+  const Json json = Json::parse(text);
+  VariantResult result;
+  json.at("name").get_to(result.name);
+  json.at("label").get_to(result.label);
+  json.at("identity").get_to(*identity);
+  result.failure = json.value("failure", "");
+  EachNumber(result, [&](const char* key, double& value) { value = OrNone(json.at(key)); });
+  json.at("blocks").get_to(result.blocks);
+  json.at("layout").get_to(result.layout);
+  json.at("training_photos").get_to(result.training_photos);
+  for (const Json& field : json.at("fields")) {
+    result.fields.push_back({.name = field.at("name").get<std::string>(),
+                             .parameters = field.at("parameters").get<int64_t>(),
+                             .samples = field.at("samples").get<int64_t>(),
+                             .scene_parameters = field.at("scene_parameters").get<int64_t>(),
+                             .log2_table_size = field.at("log2_table_size").get<int>(),
+                             .seconds = field.at("seconds").get<double>(),
+                             .psnr_db = OrNone(field.at("psnr_db"))});
+  }
+  json.at("curve").get_to(result.curve);
+  json.at("air_profile").get_to(result.air_profile);
+  for (const auto& [key, value] :
+       {std::pair{"photo", &result.photo}, {"render", &result.render}, {"error", &result.error}, {"report", &result.report}}) {
+    json.at(key).get_to(*value);
+  }
+  return result;
+}
+
+}  // namespace skyquilt::bench

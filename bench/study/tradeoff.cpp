@@ -1,0 +1,210 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bench/study/pareto.h"
+#include "bench/study/study_benches.h"
+#include "bench/study/study_tables.h"
+#include "core/page/curve_chart.h"
+
+namespace skyquilt::bench {
+namespace {
+
+constexpr double kSameTime = 0.03;     // trainings with one budget end within this share of each other
+constexpr double kNearFront_db = 0.1;  // smaller differences are not told apart here; the verdict gives the figure
+
+// To the second, or a tenth of one: what a label says is what is trained.
+double Rounded(double seconds) {
+  const double digits = seconds < 10.0 ? 10.0 : 1.0;
+  return std::max(0.1, std::round(seconds * digits) / digits);
+}
+
+config::Override Budget(double seconds) {
+  return {"run.time_budget_s", fmt::format("{}", seconds)};
+}
+
+std::vector<Priced> Prices(const std::vector<VariantResult>& results) {
+  std::vector<Priced> points;
+  points.reserve(results.size());
+  for (const VariantResult& r : results) points.push_back({r.train_seconds, r.psnr_db});
+  return points;
+}
+
+// Presets train on photos of different widths; all are scored at one, the settings' own, or small pictures would seem the better ones.
+config::Override ScoringWidth(const Study& study) {
+  int width = study.settings().run.image_width;
+  if (width == 0) {
+    for (const camera::Camera& camera : study.survey().cameras) width = std::max(width, camera.width);
+  }
+  return {"evaluate.image_width", std::to_string(width)};
+}
+
+// Presets as curves over time, with the front through all of them.
+std::string ParetoChart(const std::vector<std::string>& presets, const std::vector<std::vector<VariantResult>>& by_preset) {
+  std::vector<VariantResult> all;
+  for (const auto& results : by_preset) all.insert(all.end(), results.begin(), results.end());
+  const std::vector<Priced> points = Prices(all);
+  page::Curve front{.name = "best for its time", .points = {}, .band = true};
+  for (const size_t i : ParetoFront(points)) front.points.emplace_back(points[i].cost, points[i].quality);
+  std::vector<page::Curve> curves = {std::move(front)};
+  for (size_t p = 0; p < presets.size(); ++p) {
+    page::Curve curve{.name = presets[p], .points = {}, .marks = true};
+    for (const VariantResult& r : by_preset[p]) curve.points.emplace_back(r.train_seconds, r.psnr_db);
+    curves.push_back(std::move(curve));
+  }
+  return page::CurveChart(curves, {.title = "Quality for time", .x_label = "training time (s)", .y_label = "PSNR (dB)", .log_x = true});
+}
+
+// x: where each result stands on the axis; empty: no plot.
+BenchSection OneThing(const std::string& id, const std::string& title, const std::string& lead, const std::vector<VariantResult>& results,
+                      const std::string& x_label = "", const std::vector<double>& x = {}, bool log_x = false) {
+  BenchSection section{.id = id, .title = title, .lead = lead, .charts = {}, .tables = {QualityTable(results, id)}, .pictures = {}};
+  if (x.empty()) return section;
+  page::Curve curve{.name = "PSNR", .points = {}, .marks = true};
+  for (size_t i = 0; i < results.size(); ++i) curve.points.emplace_back(x.at(i), results[i].psnr_db);
+  section.charts.push_back(page::CurveChart({curve}, {.title = title, .x_label = x_label, .y_label = "PSNR (dB)", .log_x = log_x}));
+  return section;
+}
+
+// Where a preset comes nearest to the front of all; of equals the longest training.
+struct Nearest {
+  const VariantResult* result = nullptr;  // none when no training of the preset succeeded
+  double below_db = std::numeric_limits<double>::infinity();
+  bool OnFront() const { return below_db <= kNearFront_db; }
+};
+
+Nearest NearestToFront(const std::vector<VariantResult>& own, const std::vector<VariantResult>& all) {
+  const std::vector<Priced> points = Prices(all);
+  Nearest nearest;
+  for (const VariantResult& r : own) {
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (all[i].name != r.name || !r.failure.empty()) continue;
+      const double below = BelowFront(points, i, kSameTime);
+      if (below <= nearest.below_db) nearest = {&r, below};
+    }
+  }
+  return nearest;
+}
+
+std::string PresetVerdict(const std::string& preset, const Nearest& nearest) {
+  if (nearest.result == nullptr) return "Preset '" + preset + "' could not be trained.";
+  const VariantResult& r = *nearest.result;
+  std::string text = fmt::format("Preset '{}' {}: nearest at {}, {:.2f} dB under it.", preset,
+                                 nearest.OnFront() ? "lies on the front" : "does not lie on the front", r.label, nearest.below_db);
+  if (!nearest.OnFront()) text += fmt::format(" Its {} blocks had {} each to learn everything from the beginning.", r.layout, OfItsOwn(r));
+  return text;
+}
+
+}  // namespace
+
+StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
+  StudyBench bench;
+  BenchPage& page = bench.page;
+  const auto keep = [&bench](const std::vector<VariantResult>& results) {
+    bench.results.insert(bench.results.end(), results.begin(), results.end());
+  };
+
+  const config::Override scoring_width = ScoringWidth(study);
+  std::vector<std::string> names;
+  std::vector<std::vector<VariantResult>> by_preset;
+  std::vector<VariantResult> presets;
+  for (const StudiedPreset& preset : options.presets) {
+    names.push_back(preset.name);
+    by_preset.emplace_back();
+    for (const double times : preset.budgets) {
+      const double budget_s = Rounded(times * options.middle_budget_s);
+      std::vector<config::Override> overrides = preset.overrides;
+      overrides.push_back(Budget(budget_s));
+      overrides.push_back(scoring_width);
+      by_preset.back().push_back(study.Run({.name = fmt::format("{}_{}s", preset.name, NumberInName(budget_s)),
+                                            .label = fmt::format("{}, {:g} s", preset.name, budget_s),
+                                            .overrides = std::move(overrides)}));
+    }
+    presets.insert(presets.end(), by_preset.back().begin(), by_preset.back().end());
+  }
+  keep(presets);
+
+  const config::Override middle = Budget(options.middle_budget_s);
+  // The same training, written with fewer bits.
+  const std::vector<VariantResult> storage =
+      study.RunMerged({.name = "storage_fp32", .label = "fp32", .overrides = {middle}},
+                      {{.name = "storage_bf16", .label = "bf16", .overrides = {middle, {"merge.storage", "bf16"}}},
+                       {.name = "storage_fp16", .label = "fp16", .overrides = {middle, {"merge.storage", "fp16"}}}});
+  keep(storage);
+  // Other tables would make automatic partition cut other blocks: one thing at a time.
+  const config::Override layout = {"partition.blocks", storage.front().layout.empty() ? study.settings().partition.blocks : storage.front().layout};
+  std::vector<VariantResult> tables, samples, placing, photos;
+  std::vector<double> table_x, sample_x, photo_x;
+  for (const int log2 : options.log2_table_sizes) {
+    const std::string size = std::to_string(log2);
+    tables.push_back(study.Run({.name = "tables_" + size,
+                                .label = "2^" + size,
+                                .overrides = {middle, layout, {"partition.min_log2_table_size", size}, {"partition.max_log2_table_size", size}}}));
+    table_x.push_back(tables.back().parameters);
+  }
+  for (const double step : options.steps_per_voxel) {
+    const std::string text = fmt::format("{:g}", step);
+    samples.push_back(study.Run({.name = "step_" + NumberInName(step),
+                                 .label = "a step of " + text + " voxels",
+                                 .overrides = {middle, layout, {"train.step_voxels", text}, {"context.step_voxels", text}}}));
+    sample_x.push_back(step);
+  }
+  for (const char* stratified : {"true", "false"}) {
+    const bool on = std::string(stratified) == "true";
+    placing.push_back(study.Run({.name = on ? "stratified" : "uniform",
+                                 .label = on ? "stratified: the first sample anywhere in its step" : "uniform: always in the middle of it",
+                                 .overrides = {middle, layout, {"train.stratified", stratified}, {"context.stratified", stratified}}}));
+  }
+  for (const int every : options.keep_every) {
+    photos.push_back(study.Run({.name = "photos_" + std::to_string(every),
+                                .label = every == 1 ? "all photos" : fmt::format("every {}. photo", every),
+                                .overrides = {middle, layout},
+                                .keep_every = every}));
+    photo_x.push_back(photos.back().training_photos);
+  }
+  for (const auto* group : {&tables, &samples, &placing, &photos}) keep(*group);
+
+  page.name = "tradeoff";
+  page.title = "Speed against accuracy";
+  page.lead = fmt::format(
+      "What more time, larger tables, more samples or more photos buy. Presets at several time budgets first; then one thing at a time, {:.0f} s "
+      "each.",
+      options.middle_budget_s);
+  for (size_t p = 0; p < names.size(); ++p) {
+    const Nearest nearest = NearestToFront(by_preset[p], presets);
+    page.verdicts.push_back(PresetVerdict(names[p], nearest));
+    if (nearest.result == nullptr) continue;
+    page.figures.push_back({"preset " + names[p], fmt::format("{:.2f} dB", nearest.result->psnr_db),
+                            fmt::format("in {:.0f} s{}", nearest.result->train_seconds, nearest.OnFront() ? "" : ", not the best for its time")});
+  }
+  if (storage.size() == 3 && storage[0].failure.empty()) {
+    for (const size_t k : {size_t{1}, size_t{2}}) {
+      page.verdicts.push_back(fmt::format("{} storage: {} dB against fp32 at {:.0f} % of its bytes.", storage[k].label,
+                                          Signed(storage[k].psnr_db - storage[0].psnr_db, 3),
+                                          100.0 * storage[k].scene_bytes / storage[0].scene_bytes));
+    }
+    page.figures.push_back({"bf16 storage", Signed(storage[1].psnr_db - storage[0].psnr_db, 3) + " dB",
+                            fmt::format("{:.0f} % of the bytes", 100.0 * storage[1].scene_bytes / storage[0].scene_bytes)});
+  }
+  page.sections.push_back({.id = "presets",
+                           .title = "Presets and time",
+                           .lead = "All scored on held-out photos " + scoring_width.value + " pixels wide (or as wide as they are).",
+                           .charts = {ParetoChart(names, by_preset), TrainingChart(presets)},
+                           .tables = {QualityTable(presets, "presets")},
+                           .pictures = {}});
+  page.sections.push_back(OneThing("storage", "Storage of the parameters", "One training, its scene written with three precisions.", storage));
+  page.sections.push_back(OneThing("tables", "Table sizes", "Entries per level of every block.", tables, "parameters", table_x, true));
+  page.sections.push_back(OneThing(
+      "samples", "Samples per ray",
+      "The marching step as a multiple of the finest voxel: half the step is twice the samples on a ray, and half the rays in the same time.",
+      samples, "marching step (voxels)", sample_x));
+  page.sections.push_back(OneThing("placing", "Stratified against uniform sampling", "", placing));
+  page.sections.push_back(OneThing("photos", "Number of photos", "Training photos left out evenly; the held-out ones are always the same.", photos,
+                                   "training photos", photo_x));
+  page.sections.push_back(PictureSection(presets));
+  return bench;
+}
+
+}  // namespace skyquilt::bench

@@ -1,0 +1,71 @@
+#include "coordinator/project/settings.h"
+
+#include "core/base/errors.h"
+
+namespace skyquilt::coordinator {
+
+config::Sections Settings::AllSections() {
+  config::Sections sections;
+  sections.Add("run", run, "the whole way from photos to report");
+  sections.Add("simulate", simulate, "surveys with ground truth, made by 'skyquilt simulate'");
+  sections.Add("prepare", prepare, "photos to a geo-referenced survey");
+  sections.Add("partition", partition, "survey to blocks");
+  sections.Add("brightness", brightness, "what is done about exposure differences between photos");
+  sections.Add("context", context, "the coarse field of the whole survey");
+  sections.Add("train", train, "the fine field of each block");
+  sections.Add("merge", merge, "how blocks are joined to one scene");
+  sections.Add("products", products, "orthophoto, surface model, pictures, video");
+  sections.Add("evaluate", evaluate, "scores and report");
+  return sections;
+}
+
+std::string Settings::Toml() {
+  config::Sections sections = AllSections();
+  return config::WriteToml(sections);
+}
+
+FlatOptions Settings::Flat() {
+  config::Sections sections = AllSections();
+  return config::Flatten(sections);
+}
+
+void Settings::Set(const config::Override& entry) {
+  config::Sections sections = AllSections();
+  config::ApplyOverride(entry, sections);
+}
+
+void Settings::Validate() const {
+  run.Validate();
+  prepare.Validate();
+  partition.Check();
+  context.Check("context");
+  train.Check("train");
+  merge.Check();
+  products.Check();
+  brightness.Check();
+  if (run.time_budget_s > 0.0 && train.steps > 0) {
+    throw base::UsageError("both a time budget (run.time_budget_s = " + std::to_string(run.time_budget_s) +
+                           ") and a number of steps (train.steps = " + std::to_string(train.steps) + ") are given: choose one, the other must be 0");
+  }
+}
+
+FlatOptions StageOptions(Settings& settings, const std::string& stage) {
+  const FlatOptions all = settings.Flat();
+  if (stage == "simulate") return Select(all, {"simulate."});
+  if (stage == "prepare") return Select(all, {"prepare."});
+  if (stage == "partition") return Select(all, {"partition.", "run.image_width"});
+  if (stage == "train") {
+    FlatOptions selected =
+        Select(all, {"brightness.", "context.", "train.", "run.image_width", "run.time_budget_s", "run.context_share", "run.seed"});
+    // How often a field is saved changes nothing in it.
+    selected.erase("context.checkpoint_every_s");
+    selected.erase("train.checkpoint_every_s");
+    return selected;
+  }
+  if (stage == "merge") return Select(all, {"merge."});
+  if (stage == "products") return Select(all, {"products."});
+  SKYQUILT_CHECK(stage == "evaluate", stage);
+  return Select(all, {"evaluate.", "run.image_width"});
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,47 @@
+// Every option of the program in one place.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coordinator/project/run_options.h"
+#include "coordinator/project/stamp.h"
+#include "core/brightness/options.h"
+#include "core/config/options.h"
+#include "core/config/override.h"
+#include "evaluate/evaluate.h"
+#include "merge/merge_options.h"
+#include "partition/partition_options.h"
+#include "prepare/prepare_options.h"
+#include "products/product_options.h"
+#include "simulate/simulate_options.h"
+#include "worker/train_options.h"
+
+namespace skyquilt::coordinator {
+
+struct Settings {
+  RunOptions run;
+  simulate::SimulateOptions simulate;
+  prepare::PrepareOptions prepare;
+  partition::PartitionOptions partition;
+  brightness::BrightnessOptions brightness;
+  worker::TrainOptions context;
+  worker::TrainOptions train;
+  merge::MergeOptions merge;
+  products::ProductOptions products;
+  evaluate::EvaluateOptions evaluate;
+
+  // Holds references to this object.
+  config::Sections AllSections();
+  std::string Toml();
+  FlatOptions Flat();
+  // Throws base::UsageError as config::ApplyOverride does.
+  void Set(const config::Override& entry);
+  // Throws base::UsageError for values that cannot be, alone or together.
+  void Validate() const;
+};
+
+// What a stage's result depends on, for its stamp.
+FlatOptions StageOptions(Settings& settings, const std::string& stage);
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,115 @@
+#include "coordinator/project/stamp.h"
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/memory_map.h"
+#include "core/config/options.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+std::string Join(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += "\n  " + line;
+  return text;
+}
+
+}  // namespace
+
+std::string StageStamp::Hash() const {
+  FlatOptions all = options;
+  for (const auto& [name, value] : inputs) all["input:" + name] = value;
+  all["stage"] = stage;
+  return config::Hash(all);
+}
+
+std::optional<StageStamp> LoadStamp(const Project& project, const std::string& stage) {
+  const std::filesystem::path file = project.StampFile(stage);
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    const nlohmann::json json = nlohmann::json::parse(base::ReadFile(file));
+    StageStamp stamp;
+    stamp.stage = json.at("stage").get<std::string>();
+    stamp.state = json.at("state").get<std::string>();
+    stamp.options = json.at("options").get<FlatOptions>();
+    stamp.inputs = json.at("inputs").get<FlatOptions>();
+    stamp.finished_utc = json.value("finished_utc", "");
+    stamp.seconds = json.value("seconds", 0.0);
+    return stamp;
+  } catch (const nlohmann::json::exception& error) {
+    throw base::InputError(file, std::string("is damaged: ") + error.what(), "Run '" + stage + "' again with --restart");
+  }
+}
+
+void SaveStamp(const Project& project, const StageStamp& stamp) {
+  std::filesystem::create_directories(project.StateFolder());
+  const nlohmann::json json = {{"stage", stamp.stage},    {"state", stamp.state}, {"options", stamp.options},
+                               {"inputs", stamp.inputs},  {"hash", stamp.Hash()}, {"finished_utc", stamp.finished_utc},
+                               {"seconds", stamp.seconds}};
+  base::WriteFileAtomically(project.StampFile(stamp.stage), json.dump(2) + "\n");
+}
+
+Freshness CheckStage(const Project& project, const std::string& stage, const FlatOptions& options, const FlatOptions& inputs) {
+  const std::optional<StageStamp> stamp = LoadStamp(project, stage);
+  if (!stamp) return Freshness::kAbsent;
+  const std::vector<std::string> differences = config::Differences(stamp->options, options);
+  if (!differences.empty()) {
+    throw base::UsageError(
+        "the results of '" + stage + "' in " + project.folder.string() + " were made with another configuration:" + Join(differences) +
+        "\nUse the old values, another project folder, or --restart to remove the results of '" + stage + "' and of all later stages");
+  }
+  const std::vector<std::filesystem::path> proof = StageProof(project, stage);
+  const bool complete = std::all_of(proof.begin(), proof.end(), [](const auto& path) { return std::filesystem::exists(path); });
+  if (!config::Differences(stamp->inputs, inputs).empty()) return Freshness::kInputsChanged;
+  if (stamp->state != "done") return Freshness::kUnfinished;
+  return complete ? Freshness::kFresh : Freshness::kUnfinished;
+}
+
+FlatOptions Select(const FlatOptions& all, const std::vector<std::string>& keys) {
+  FlatOptions selected;
+  for (const auto& [key, value] : all) {
+    const bool wanted = std::any_of(keys.begin(), keys.end(), [&key = key](const std::string& pattern) {
+      return !pattern.empty() && pattern.back() == '.' ? key.rfind(pattern, 0) == 0 : key == pattern;
+    });
+    if (wanted) selected[key] = value;
+  }
+  return selected;
+}
+
+std::string FileIdentity(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return "absent";
+  const base::MemoryMap map(file);
+  const std::span<const uint8_t> bytes = map.bytes();
+  return base::HashHex(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+std::string PhotosIdentity(const std::filesystem::path& folder, const std::filesystem::path& except) {
+  static const std::set<std::string> kImages = {".jpg", ".jpeg", ".png", ".tif", ".tiff"};
+  std::vector<std::string> lines;
+  std::error_code error;
+  for (std::filesystem::recursive_directory_iterator it(folder, std::filesystem::directory_options::follow_directory_symlink, error), end;
+       !error && it != end; it.increment(error)) {
+    if (!except.empty() && it->path().lexically_normal() == except) {
+      it.disable_recursion_pending();
+      continue;
+    }
+    if (!it->is_regular_file(error)) continue;
+    std::string extension = it->path().extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (!kImages.contains(extension)) continue;
+    const auto time = std::chrono::duration_cast<std::chrono::seconds>(it->last_write_time(error).time_since_epoch()).count();
+    lines.push_back(it->path().lexically_relative(folder).generic_string() + "|" + std::to_string(it->file_size(error)) + "|" + std::to_string(time));
+  }
+  std::sort(lines.begin(), lines.end());
+  std::string all;
+  for (const std::string& line : lines) all += line + "\n";
+  return std::to_string(lines.size()) + " images, " + base::HashHex(all);
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,93 @@
+#include "coordinator/ranks/crew.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "coordinator/ranks/messages.h"
+#include "core/base/errors.h"
+#include "core/base/system.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+using nlohmann::json;
+
+// Back to waiting before the body was done: nothing more is to be said.
+struct SentBack {};
+
+}  // namespace
+
+Crew::Crew(comm::Communicator& comm, int tag, const std::string& setup) : comm_(comm) {
+  for (int rank = 1; rank < comm.size(); ++rank) comm.Send(rank, tag, setup);
+}
+
+Crew::~Crew() {
+  for (int rank = 1; rank < comm_.size(); ++rank) comm_.Send(rank, kTagDone, "");
+}
+
+std::vector<CrewMember> Crew::Muster() {
+  std::vector<json> hello(static_cast<size_t>(comm_.size()));
+  std::map<std::string, int> ranks_on;
+  for (int n = 1; n < comm_.size();) {
+    const comm::Message message = comm_.Receive();
+    if (message.tag != kTagHello) continue;
+    json one = json::parse(message.bytes);
+    const std::string host = one.at("host").get<std::string>();
+    if (one.contains("error")) {
+      const std::string text = "rank " + std::to_string(message.source) + " on " + host + ": " + one.at("error").get<std::string>();
+      if (one.at("kind") == "usage") throw base::UsageError(text);
+      throw base::InputError(one.at("file").get<std::string>(), text, "All ranks must see the same project folder");
+    }
+    ++ranks_on[host];
+    hello[static_cast<size_t>(message.source)] = std::move(one);
+    ++n;
+  }
+  std::vector<CrewMember> members;
+  for (int rank = 1; rank < comm_.size(); ++rank) {
+    const json& one = hello[static_cast<size_t>(rank)];
+    CrewMember member{.rank = rank, .host = one.at("host").get<std::string>()};
+    member.sharing = ranks_on[member.host];
+    member.threads = std::max(1, one.at("threads").get<int>() / member.sharing);
+    member.memory_bytes = one.value("memory_bytes", 0.0) / member.sharing;
+    members.push_back(member);
+  }
+  return members;
+}
+
+std::string Enlist(comm::Communicator& comm, const json& hello, int tag) {
+  comm.Send(0, kTagHello, hello.dump());
+  while (true) {
+    comm::Message message = WaitForMessage(comm);
+    if (message.tag == tag) return std::move(message.bytes);
+    if (message.tag == kTagDone) throw SentBack();
+  }
+}
+
+void ServeCrew(comm::Communicator& comm, const std::function<void(json& hello)>& body) {
+  json hello = {{"host", base::HostName()}};
+  try {
+    body(hello);
+    return;
+  } catch (const SentBack&) {
+    return;
+  } catch (const base::UsageError& error) {
+    hello["kind"] = "usage";
+    hello["error"] = error.what();
+  } catch (const base::InputError& error) {
+    hello["kind"] = "input";
+    hello["file"] = error.file().string();
+    hello["error"] = error.what();
+  } catch (const base::Interrupted&) {
+    return;  // rank 0 is gone
+  } catch (const std::exception& error) {
+    hello["kind"] = "input";
+    hello["file"] = "";
+    hello["error"] = error.what();
+  }
+  comm.Send(0, kTagHello, hello.dump(-1, ' ', false, json::error_handler_t::replace));
+  while (WaitForMessage(comm).tag != kTagDone) {
+  }
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,49 @@
+// Medians and quantiles of unsorted samples. Values must not be NaN.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace skyquilt::base {
+
+// The value of this rank, counted from 0 upwards; reorders the values. index < values.size().
+template <typename T>
+const T& OrderStatistic(std::vector<T>& values, size_t index) {
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(index);
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+// The middle value, the upper one of an even number; reorders the values, of which there must be one at least.
+template <typename T>
+const T& UpperMedian(std::vector<T>& values) {
+  return OrderStatistic(values, values.size() / 2);
+}
+
+// The value of the rank nearest to share * (n - 1), share in [0, 1]; reorders the values, of which there must be one at least.
+template <typename T>
+const T& NearestRank(std::vector<T>& values, double share) {
+  return OrderStatistic(values, static_cast<size_t>(std::lround(share * static_cast<double>(values.size() - 1))));
+}
+
+// Linear between neighbouring ranks, share in [0, 1] (beyond: its nearest end); NaN when there are no values. Takes a copy because it reorders.
+inline double Quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double position = std::clamp(share, 0.0, 1.0) * static_cast<double>(values.size() - 1);
+  const double lower = std::floor(position);
+  const auto index = static_cast<size_t>(lower);
+  const double low = OrderStatistic(values, index);
+  if (position == lower) return low;
+  const double high = *std::min_element(values.begin() + static_cast<std::ptrdiff_t>(index) + 1, values.end());
+  return low + (position - lower) * (high - low);
+}
+
+inline double Median(std::vector<double> values) {
+  return Quantile(std::move(values), 0.5);
+}
+
+}  // namespace skyquilt::base

@@ -1,0 +1,193 @@
+#include "core/gis/geotiff.h"
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+
+namespace skyquilt::gis {
+namespace {
+
+// GDAL prints its errors itself unless told otherwise; ours go into exceptions.
+class QuietErrors {
+ public:
+  QuietErrors() {
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+    CPLErrorReset();
+  }
+  ~QuietErrors() { CPLPopErrorHandler(); }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+};
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
+
+[[noreturn]] void Fail(const std::filesystem::path& file, const std::string& what) {
+  const std::string reason = CPLGetLastErrorMsg();
+  throw base::InputError(file, what + (reason.empty() ? "" : ": " + reason), "Check free space and permissions of its folder");
+}
+
+GDALDataType TypeOf(PixelType type) {
+  return type == PixelType::kUint8 ? GDT_Byte : GDT_Float32;
+}
+
+int ContinueUnlessCancelled(double /*fraction*/, const char* /*message*/, void* /*data*/) {
+  return base::CancelRequested() ? FALSE : TRUE;
+}
+
+CPLStringList CreationOptions(const GeoTiffSpec& spec) {
+  CPLStringList options;
+  options.SetNameValue("TILED", "YES");
+  options.SetNameValue("BLOCKXSIZE", std::to_string(GeoTiffWriter::kTile).c_str());
+  options.SetNameValue("BLOCKYSIZE", std::to_string(GeoTiffWriter::kTile).c_str());
+  options.SetNameValue("COMPRESS", "DEFLATE");
+  options.SetNameValue("PREDICTOR", spec.type == PixelType::kFloat32 ? "3" : "2");
+  options.SetNameValue("BIGTIFF", "IF_SAFER");
+  if (spec.type == PixelType::kUint8 && spec.bands == 4) {
+    options.SetNameValue("PHOTOMETRIC", "RGB");
+    options.SetNameValue("ALPHA", "YES");
+  }
+  return options;
+}
+
+}  // namespace
+
+struct GeoTiffWriter::Impl {
+  std::filesystem::path file;
+  std::filesystem::path partial;
+  GeoTiffSpec spec;
+  Dataset dataset;
+
+  ~Impl() {
+    if (!dataset) return;
+    const QuietErrors quiet;
+    dataset.reset();
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+  }
+  void Write(int first_row, int n_rows, const void* values, size_t count, PixelType type);
+};
+
+GeoTiffWriter::GeoTiffWriter(const std::filesystem::path& file, const GeoTiffSpec& spec) : impl_(std::make_unique<Impl>()) {
+  const QuietErrors quiet;
+  impl_->file = file;
+  impl_->partial = file;
+  impl_->partial += ".partial";
+  impl_->spec = spec;
+  GDALRegister_GTiff();
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  SKYQUILT_CHECK(driver != nullptr, "GDAL without GeoTIFF");
+  impl_->dataset.reset(
+      driver->Create(impl_->partial.c_str(), spec.grid.width, spec.grid.height, spec.bands, TypeOf(spec.type), CreationOptions(spec).List()));
+  if (!impl_->dataset) Fail(file, "cannot be created");
+  GDALDataset& dataset = *impl_->dataset;
+  double transform[6] = {spec.grid.left, spec.grid.resolution_m, 0.0, spec.grid.top, 0.0, -spec.grid.resolution_m};
+  if (dataset.SetGeoTransform(transform) != CE_None) Fail(file, "cannot be placed on the map");
+  if (spec.grid.georeferenced) {
+    OGRSpatialReference reference;
+    if (reference.importFromEPSG(spec.grid.zone.Epsg()) != OGRERR_NONE) {
+      Fail(file, "needs the definition of EPSG:" + std::to_string(spec.grid.zone.Epsg()) + ", which PROJ does not find");
+    }
+    reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    if (dataset.SetSpatialRef(&reference) != CE_None) Fail(file, "cannot store its coordinate system");
+  }
+  for (const auto& [key, value] : spec.metadata) dataset.SetMetadataItem(key.c_str(), value.c_str());
+  dataset.SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
+  for (int band = 1; band <= spec.bands; ++band) {
+    GDALRasterBand& raster = *dataset.GetRasterBand(band);
+    if (spec.nodata) raster.SetNoDataValue(*spec.nodata);
+    if (!spec.unit.empty()) raster.SetUnitType(spec.unit.c_str());
+    if (static_cast<size_t>(band) <= spec.band_names.size()) raster.SetDescription(spec.band_names[static_cast<size_t>(band) - 1].c_str());
+  }
+}
+
+GeoTiffWriter::~GeoTiffWriter() = default;
+GeoTiffWriter::GeoTiffWriter(GeoTiffWriter&&) noexcept = default;
+
+void GeoTiffWriter::Impl::Write(int first_row, int n_rows, const void* values, size_t count, PixelType type) {
+  const QuietErrors quiet;
+  const size_t expected = static_cast<size_t>(n_rows) * static_cast<size_t>(spec.grid.width) * static_cast<size_t>(spec.bands);
+  SKYQUILT_CHECK(dataset != nullptr && type == spec.type && count == expected, std::to_string(count) + " values, " + std::to_string(expected));
+  const int size = GDALGetDataTypeSizeBytes(TypeOf(type));
+  const GSpacing pixel = static_cast<GSpacing>(size) * spec.bands;
+  // GDAL's one call serves reading and writing; when writing it leaves the buffer alone.
+  const CPLErr error = dataset->RasterIO(GF_Write, 0, first_row, spec.grid.width, n_rows, const_cast<void*>(values), spec.grid.width, n_rows,
+                                         TypeOf(type), spec.bands, nullptr, pixel, pixel * spec.grid.width, size, nullptr);
+  if (error != CE_None) Fail(file, "cannot be written");
+}
+
+void GeoTiffWriter::WriteRows(int first_row, int n_rows, std::span<const uint8_t> values) {
+  impl_->Write(first_row, n_rows, values.data(), values.size(), PixelType::kUint8);
+}
+
+void GeoTiffWriter::WriteRows(int first_row, int n_rows, std::span<const float> values) {
+  impl_->Write(first_row, n_rows, values.data(), values.size(), PixelType::kFloat32);
+}
+
+void GeoTiffWriter::Close() {
+  SKYQUILT_CHECK(impl_->dataset != nullptr, "closed twice");
+  const QuietErrors quiet;
+  std::vector<int> levels;
+  for (int level = 2; std::max(impl_->spec.grid.width, impl_->spec.grid.height) / level >= kTile / 2; level *= 2) levels.push_back(level);
+  if (!levels.empty() && impl_->dataset->BuildOverviews("AVERAGE", static_cast<int>(levels.size()), levels.data(), 0, nullptr,
+                                                        ContinueUnlessCancelled, nullptr) != CE_None) {
+    base::ThrowIfCancelled();
+    Fail(impl_->file, "cannot be given overviews");
+  }
+  // The last tiles reach the disk only when the file is closed; GDALClose reports nothing but the error state.
+  CPLErrorReset();
+  impl_->dataset.reset();
+  if (CPLGetLastErrorType() >= CE_Failure) {
+    const std::string reason = CPLGetLastErrorMsg();
+    std::error_code ignored;
+    std::filesystem::remove(impl_->partial, ignored);
+    throw base::InputError(impl_->file, "cannot be finished: " + reason, "Check free space of its folder");
+  }
+  base::SyncPath(impl_->partial);
+  std::error_code error;
+  std::filesystem::rename(impl_->partial, impl_->file, error);
+  if (error) throw base::InputError(impl_->file, "cannot be put in place: " + error.message(), "Check permissions of its folder");
+}
+
+ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width) {
+  const QuietErrors quiet;
+  GDALRegister_GTiff();
+  const Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  if (!dataset) throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), "Make the products again");
+  const int width = std::min(max_width, dataset->GetRasterXSize());
+  const int height = std::max(1, static_cast<int>(std::lround(static_cast<double>(dataset->GetRasterYSize()) * width / dataset->GetRasterXSize())));
+  const int bands = dataset->GetRasterCount();
+  ReducedRaster reduced;
+  reduced.image = image::ImageF(width, height, bands);
+  reduced.scale = static_cast<double>(dataset->GetRasterXSize()) / width;
+  reduced.scale_down = static_cast<double>(dataset->GetRasterYSize()) / height;
+  GDALRasterIOExtraArg extra;
+  INIT_RASTERIO_EXTRA_ARG(extra);
+  extra.eResampleAlg = GRIORA_Average;
+  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
+  if (dataset->RasterIO(GF_Read, 0, 0, dataset->GetRasterXSize(), dataset->GetRasterYSize(), reduced.image.data.data(), width, height, GDT_Float32,
+                        bands, nullptr, pixel, pixel * width, sizeof(float), &extra) != CE_None) {
+    throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), "Make the products again");
+  }
+  int has_nodata = FALSE;
+  const double nodata = dataset->GetRasterBand(1)->GetNoDataValue(&has_nodata);
+  if (has_nodata) {
+    for (float& value : reduced.image.data) {
+      if (value == static_cast<float>(nodata)) value = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return reduced;
+}
+
+}  // namespace skyquilt::gis

@@ -1,0 +1,38 @@
+// Line and point charts as inline SVG, coloured by the page's style sheet (light and dark).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace skyquilt::page {
+
+struct Curve {
+  std::string name;
+  std::vector<std::pair<double, double>> points;  // x, y; non-finite points are left out
+  bool emphasised = false;
+  bool line = true;
+  bool marks = false;                    // a mark on every point; all points are then drawn
+  bool band = false;                     // drawn wide and pale, to lie behind the curves that follow
+  std::vector<std::string> labels = {};  // of the marks, by point; may be empty
+};
+
+struct ChartOptions {
+  std::string title;
+  std::string x_label;  // with unit
+  std::string y_label;
+  bool log_y = false;       // points with y <= 0 are left out
+  size_t max_points = 240;  // per curve without marks; longer ones are thinned by averaging neighbours
+  bool log_x = false;       // points with x <= 0 are left out
+};
+
+// A <figure>; says "no data" inside when no curve has a point.
+std::string CurveChart(const std::vector<Curve>& curves, const ChartOptions& options);
+// At most about `count` round numbers (1, 2, 5 times a power of ten) inside [low, high].
+std::vector<double> RoundTicks(double low, double high, int count);
+// "10", "0.05", "25.0 k": as many digits as the number needs.
+std::string TickLabel(double value);
+// Averages runs of neighbours so that at most `max_points` remain; first and last stay in place.
+std::vector<std::pair<double, double>> Thin(const std::vector<std::pair<double, double>>& points, size_t max_points);
+
+}  // namespace skyquilt::page

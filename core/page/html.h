@@ -1,0 +1,26 @@
+// Small pieces of HTML: escaping, numbers with units, table cells.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace skyquilt::page {
+
+// Text for element content and quoted attributes: & < > " ' are replaced, control characters dropped, bytes that are not UTF-8 become U+FFFD.
+std::string EscapeHtml(std::string_view text);
+// Fixed decimals; an en dash for NaN, the infinity sign for infinity. Unit after a thin no-break space, left out when there is no number.
+std::string FormatFixed(double value, int decimals, std::string_view unit = "");
+// "0.93" as "93.0 %".
+std::string FormatPercent(double share, int decimals = 1);
+// "1.53 GiB"; an en dash for 0.
+std::string FormatBytes(int64_t bytes);
+// "12 345 678" with thin no-break spaces.
+std::string FormatInteger(int64_t value);
+// Large counts as "1.53 M"; an en dash for NaN.
+std::string FormatLarge(double value, std::string_view unit = "");
+// Right-aligned table cell that sorts by `value`.
+std::string NumberCell(double value, const std::string& shown);
+std::string TextCell(std::string_view text);
+
+}  // namespace skyquilt::page

@@ -1,0 +1,209 @@
+#include "core/scene/field_file.h"
+
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <stdexcept>
+
+#include "core/base/errors.h"
+#include "core/encoding/hash_grid.h"
+#include "core/field/reached_entries.h"
+
+namespace skyquilt::scene {
+namespace {
+
+constexpr const char* kMend = "Train it again with --restart";
+constexpr int64_t kMaxCellsPerAxis = int64_t{1} << 20;
+
+// Fixed order of the numbers that rebuild a field.
+std::vector<double> Describe(const render::TrainedField& f) {
+  const auto& g = f.config.grid;
+  std::vector<double> d = {static_cast<double>(g.levels),
+                           static_cast<double>(g.features),
+                           static_cast<double>(g.log2_table_size),
+                           g.base_resolution,
+                           g.finest_resolution,
+                           g.extent[0],
+                           g.extent[1],
+                           g.extent[2],
+                           static_cast<double>(f.config.hidden),
+                           static_cast<double>(f.config.color_hidden_layers),
+                           static_cast<double>(f.config.sh_degree),
+                           f.config.color_range,
+                           f.config.density_bias,
+                           f.map.contracted() ? 1.0 : 0.0};
+  for (const auto& corner : {f.map.min_enu(), f.map.max_enu(), f.core_min_enu, f.core_max_enu}) {
+    for (int axis = 0; axis < 3; ++axis) d.push_back(corner[axis]);
+  }
+  d.push_back(f.margin_m);
+  d.push_back(f.step_m);
+  return d;
+}
+
+// One bit per cell, the first in the lowest bit.
+std::vector<uint8_t> PackBits(const std::vector<uint8_t>& flags) {
+  std::vector<uint8_t> bits((flags.size() + 7) / 8, 0);
+  for (size_t i = 0; i < flags.size(); ++i) {
+    if (flags[i] != 0) bits[i / 8] = static_cast<uint8_t>(bits[i / 8] | 1U << i % 8);
+  }
+  return bits;
+}
+
+std::vector<uint8_t> UnpackBits(const std::vector<uint8_t>& bits, size_t n) {
+  std::vector<uint8_t> flags(n, 0);
+  for (size_t i = 0; i < n && i / 8 < bits.size(); ++i) flags[i] = bits[i / 8] >> i % 8 & 1U;
+  return flags;
+}
+
+// Cells per axis of a field in a file, x first. Throws base::InputError as the reader does.
+std::vector<int64_t> StoredSize(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
+  if (reader.Has(prefix + "occupancy_size")) return reader.Ints(prefix + "occupancy_size");
+  const std::vector<int64_t> shape = reader.Shape(prefix + "occupied");
+  return {shape.rbegin(), shape.rend()};
+}
+
+// False for what no grid can be.
+bool SetSize(const std::vector<int64_t>& size, field::OccupancyGrid* occupancy) {
+  if (size.size() != 3) return false;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if (size[axis] <= 0 || size[axis] > kMaxCellsPerAxis) return false;
+    occupancy->size[axis] = static_cast<int>(size[axis]);
+  }
+  return true;
+}
+
+}  // namespace
+
+void PutOutline(const render::TrainedField& f, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
+  writer.SetAttribute(prefix + "name", f.name);
+  writer.SetAttribute(prefix + "steps", f.steps);
+  writer.SetAttribute(prefix + "seconds", f.seconds);
+  writer.SetAttribute(prefix + "samples", f.samples);
+  const std::vector<double> numbers = Describe(f);
+  for (size_t i = 0; i < numbers.size(); ++i) writer.SetAttribute(prefix + "describe" + std::to_string(i), numbers[i]);
+  writer.SetAttribute(prefix + "encoding", encoding::Name(f.config.encoding));
+  writer.SetAttribute(prefix + "density_hidden_layers", f.config.density_hidden_layers);
+  writer.SetAttribute(prefix + "luminance", f.config.luminance ? 1 : 0);
+  writer.SetAttribute(prefix + "occupancy_cell", static_cast<double>(f.occupancy.cell));
+}
+
+void PutField(const render::TrainedField& f, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
+  PutOutline(f, prefix, writer);
+  writer.Put(prefix + "grid", f.grid);
+  writer.Put(prefix + "networks", f.networks);
+  const std::vector<int64_t> shape = {f.occupancy.size[2], f.occupancy.size[1], f.occupancy.size[0]};
+  writer.Put(prefix + "occupied", f.occupancy.occupied, shape);
+  writer.Put(prefix + "occupancy_depth", f.occupancy.depth, shape);
+}
+
+void PutFieldOf(const render::TrainedField& outline, const std::filesystem::path& checkpoint, const std::string& prefix,
+                checkpoint::ArchiveWriter& writer, checkpoint::Precision tables) {
+  PutOutline(outline, prefix, writer);
+  const checkpoint::ArchiveReader reader(checkpoint);
+  const std::vector<int64_t> size = StoredSize(reader, "");
+  field::OccupancyGrid occupancy = outline.occupancy;
+  occupancy.occupied = reader.Bytes("occupied");
+  if (!(occupancy.cell > 0.0F) || !SetSize(size, &occupancy) || occupancy.CellCount() != static_cast<int64_t>(occupancy.occupied.size()))
+    throw base::InputError(checkpoint, "its occupancy has no shape", kMend);
+  if (outline.config.encoding == encoding::Kind::kHash) {
+    const encoding::HashGrid grid(outline.config.grid);
+    if (reader.Shape("grid") != std::vector<int64_t>{grid.ParameterCount()}) {
+      throw base::InputError(checkpoint, "its tables and their configuration disagree", kMend);
+    }
+    writer.PutKept(prefix + "grid", checkpoint, "grid", field::ReachedEntries(grid, occupancy), grid.features(), tables);
+  } else {
+    writer.PutCopy(prefix + "grid", checkpoint, "grid", tables);
+  }
+  writer.PutCopy(prefix + "networks", checkpoint, "networks");
+  // Rendering asks only whether a cell is occupied.
+  writer.PutOwned(prefix + "occupied_bits", PackBits(occupancy.occupied));
+  writer.PutOwned(prefix + "occupancy_size", size);
+}
+
+render::TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
+  render::TrainedField f;
+  f.name = reader.StringAttribute(prefix + "name");
+  f.steps = reader.IntAttribute(prefix + "steps");
+  f.seconds = reader.DoubleAttribute(prefix + "seconds");
+  f.samples = reader.IntAttribute(prefix + "samples");
+  size_t next = 0;
+  const auto number = [&] { return reader.DoubleAttribute(prefix + "describe" + std::to_string(next++)); };
+  const auto integer = [&] { return static_cast<int>(std::lround(number())); };
+  auto& g = f.config.grid;
+  g.levels = integer();
+  g.features = integer();
+  g.log2_table_size = integer();
+  g.base_resolution = number();
+  g.finest_resolution = number();
+  for (double& edge : g.extent) edge = number();
+  f.config.hidden = integer();
+  f.config.color_hidden_layers = integer();
+  f.config.sh_degree = integer();
+  f.config.color_range = number();
+  f.config.density_bias = number();
+  const bool contracted = integer() != 0;
+  Eigen::Vector3d min_enu, max_enu;
+  for (auto* corner : {&min_enu, &max_enu, &f.core_min_enu, &f.core_max_enu}) {
+    for (int axis = 0; axis < 3; ++axis) (*corner)[axis] = number();
+  }
+  f.margin_m = number();
+  f.step_m = number();
+  f.config.luminance = reader.HasAttribute(prefix + "luminance") && reader.IntAttribute(prefix + "luminance") != 0;
+  f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
+  f.blend_m = f.margin_m;
+  try {
+    // Absent in files from before there was a choice.
+    if (reader.HasAttribute(prefix + "encoding")) f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));
+    if (reader.HasAttribute(prefix + "density_hidden_layers")) {
+      f.config.density_hidden_layers = static_cast<int>(reader.IntAttribute(prefix + "density_hidden_layers"));
+    }
+    f.map = contracted ? encoding::SpaceMap::Slab(min_enu, max_enu) : encoding::SpaceMap::Box(min_enu, max_enu);
+  } catch (const std::invalid_argument& error) {
+    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);
+  }
+  return f;
+}
+
+int64_t StoredParameters(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
+  return reader.Shape(prefix + "grid").at(0) + reader.Shape(prefix + "networks").at(0);
+}
+
+int64_t HeldParameters(const render::TrainedField& outline) {
+  const field::HashField field(outline.config);
+  return field.GridParameters() + field.NetworkParameters();
+}
+
+int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
+  const std::vector<int64_t> size = StoredSize(reader, prefix);
+  return std::accumulate(size.begin(), size.end(), int64_t{1}, std::multiplies<>());
+}
+
+render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
+  render::TrainedField f = GetOutline(reader, file, prefix);
+  try {
+    f.grid = reader.KeptFloats(prefix + "grid");
+    f.networks = reader.Floats(prefix + "networks");
+    f.Finish();
+  } catch (const std::invalid_argument& error) {
+    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);
+  }
+  const std::vector<int64_t> size = StoredSize(reader, prefix);
+  bool fits = SetSize(size, &f.occupancy);
+  const auto cells = static_cast<size_t>(fits ? f.occupancy.CellCount() : 0);
+  if (reader.Has(prefix + "occupied_bits")) {
+    const std::vector<uint8_t> bits = reader.Bytes(prefix + "occupied_bits");
+    fits = fits && bits.size() == (cells + 7) / 8;
+    if (fits) f.occupancy.occupied = UnpackBits(bits, cells);
+  } else {
+    f.occupancy.occupied = reader.Bytes(prefix + "occupied");
+    f.occupancy.depth = reader.Floats(prefix + "occupancy_depth");
+    fits = fits && f.occupancy.occupied.size() == cells && f.occupancy.depth.size() == cells;
+  }
+  if (!fits || static_cast<int64_t>(f.grid.size()) != f.field->GridParameters() ||
+      static_cast<int64_t>(f.networks.size()) != f.field->NetworkParameters() || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {
+    throw base::InputError(file, "arrays and configuration of field '" + f.name + "' disagree", kMend);
+  }
+  return f;
+}
+
+}  // namespace skyquilt::scene

@@ -1,0 +1,147 @@
+#include "core/scene/paged_rays.h"
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+
+namespace skyquilt::scene {
+namespace {
+
+constexpr int64_t kPagedGroup = 1024;  // one task
+
+// One ray's way through the scene.
+struct Way {
+  std::vector<render::RaySegment> segments;
+  size_t at = 0;  // the segment where the ray is
+};
+
+}  // namespace
+
+PagedRays::PagedRays(FieldStore& store, const render::RaySegments& segments, base::ThreadPool& threads)
+    : store_(store), segments_(segments), threads_(threads) {}
+
+void PagedRays::ForGroups(size_t n, const std::function<void(size_t begin, size_t end, int thread)>& body) {
+  threads_.ParallelFor((static_cast<int64_t>(n) + kPagedGroup - 1) / kPagedGroup, [&](int64_t task, int thread) {
+    base::ThrowIfCancelled();
+    const auto begin = static_cast<size_t>(task * kPagedGroup);
+    body(begin, std::min(n, begin + static_cast<size_t>(kPagedGroup)), thread);
+  });
+}
+
+// Takes these rays through their windows, with what is loaded.
+int64_t PagedRays::Carry(std::span<const render::Ray> rays, std::span<Traveller> travellers, const render::EngineOptions& options,
+                         std::span<const size_t> going, std::span<const render::Window> windows) {
+  if (store_.loads() != renderers_loads_ || !(options == renderers_options_)) {
+    renderers_.clear();
+    renderers_.resize(static_cast<size_t>(threads_.size()));
+    renderers_loads_ = store_.loads();
+    renderers_options_ = options;
+  }
+  render::FieldSet fields;
+  fields.blocks = store_.Blocks();
+  if (store_.HasContext()) fields.context = &store_.context();
+  std::atomic<int64_t> evaluated{0};
+  ForGroups(going.size(), [&](size_t begin, size_t end, int thread) {
+    auto& renderer = renderers_[static_cast<size_t>(thread)];
+    if (!renderer) renderer = std::make_unique<render::RayRenderer>(fields, options);
+    thread_local std::vector<render::Ray> some;
+    thread_local std::vector<render::RayState> states;
+    some.clear();
+    states.clear();
+    for (size_t g = begin; g < end; ++g) {
+      some.push_back(rays[going[g]]);
+      states.push_back(travellers[going[g]].state);
+    }
+    evaluated += renderer->Continue(some, windows.subspan(begin, end - begin), states);
+    for (size_t g = begin; g < end; ++g) travellers[going[g]].state = states[g - begin];
+  });
+  return evaluated;
+}
+
+int64_t PagedRays::RunTogether(std::span<const render::Ray> rays, std::span<Traveller> travellers, const render::EngineOptions& options) {
+  std::vector<size_t> going(rays.size());
+  std::iota(going.begin(), going.end(), size_t{0});
+  std::vector<render::Window> windows;
+  for (const Traveller& traveller : travellers) windows.push_back({.from = traveller.at});
+  const int64_t evaluated = Carry(rays, travellers, options, going, windows);
+  for (Traveller& traveller : travellers) traveller.owner = kArrived;
+  return evaluated;
+}
+
+int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<Traveller> travellers, const render::EngineOptions& options, int me,
+                            const Owner& owner) {
+  SKYQUILT_CHECK(rays.size() == travellers.size(), "one traveller per ray");
+  const size_t n = rays.size();
+  if (!owner && store_.AllFit()) {
+    store_.NeedAll();
+    return RunTogether(rays, travellers, options);
+  }
+  std::vector<Way> ways(n);
+  ForGroups(n, [&](size_t begin, size_t end, int) {
+    for (size_t i = begin; i < end; ++i) {
+      segments_.Split(rays[i], &ways[i].segments);
+      while (ways[i].at + 1 < ways[i].segments.size() && ways[i].segments[ways[i].at].t_far <= travellers[i].at) ++ways[i].at;
+    }
+  });
+  std::map<int, int> owners;  // per set
+  const auto owner_of = [&](int set) {
+    const auto at = owners.find(set);
+    if (at != owners.end()) return at->second;
+    return owners[set] = owner ? owner(segments_.Blocks(set)) : me;
+  };
+  // Who goes on with a ray that stands at its next segment.
+  const auto settle = [&](size_t i) {
+    const Way& way = ways[i];
+    const bool arrived = travellers[i].state.ended || way.at >= way.segments.size();
+    travellers[i].owner = arrived ? kArrived : owner_of(way.segments[way.at].set);
+  };
+  for (size_t i = 0; i < n; ++i) {
+    if (travellers[i].owner != kArrived) settle(i);
+  }
+
+  int64_t evaluated = 0;
+  while (true) {
+    std::map<int, int64_t> waiting;  // rays per set
+    for (size_t i = 0; i < n; ++i) {
+      if (travellers[i].owner == me) ++waiting[ways[i].segments[ways[i].at].set];
+    }
+    if (waiting.empty()) break;
+    const auto loaded = [this](int set) {
+      const std::span<const int> blocks = segments_.Blocks(set);
+      return std::all_of(blocks.begin(), blocks.end(), [this](int k) { return store_.IsLoaded(k); });
+    };
+    // Where most rays wait; what is in memory goes first.
+    const auto next = std::max_element(waiting.begin(), waiting.end(), [&](const auto& a, const auto& b) {
+      return std::pair(loaded(a.first), a.second) < std::pair(loaded(b.first), b.second);
+    });
+    store_.Need(segments_.Blocks(next->first));
+    std::map<int, bool> carried;  // sets that the loaded fields carry
+    const auto carries = [&](int set) {
+      const auto at = carried.find(set);
+      if (at != carried.end()) return at->second;
+      return carried[set] = owner_of(set) == me && loaded(set);
+    };
+    std::vector<size_t> going;
+    std::vector<render::Window> windows;
+    for (size_t i = 0; i < n; ++i) {
+      if (travellers[i].owner != me || !carries(ways[i].segments[ways[i].at].set)) continue;
+      Way& way = ways[i];
+      while (way.at < way.segments.size() && carries(way.segments[way.at].set)) ++way.at;
+      going.push_back(i);
+      windows.push_back({travellers[i].at, way.segments[way.at - 1].t_far});
+    }
+    evaluated += Carry(rays, travellers, options, going, windows);
+    for (size_t g = 0; g < going.size(); ++g) {
+      travellers[going[g]].at = windows[g].to;
+      settle(going[g]);
+    }
+  }
+  return evaluated;
+}
+
+}  // namespace skyquilt::scene

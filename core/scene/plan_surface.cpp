@@ -1,0 +1,105 @@
+#include "core/scene/plan_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace skyquilt::scene {
+namespace {
+
+struct Along {
+  int first = 0, second = 0;
+  double share = 0.0;  // of the second
+};
+
+Along Between(double position, int count) {
+  const double t = std::clamp(position - 0.5, 0.0, static_cast<double>(count - 1));
+  const int first = std::min(static_cast<int>(t), count - 1);
+  return {first, std::min(first + 1, count - 1), t - first};
+}
+
+}  // namespace
+
+PlanSurface::PlanSurface(double min_x, double min_y, double cell_m, int columns, int rows, std::vector<double> heights)
+    : min_x_(min_x), min_y_(min_y), cell_m_(cell_m), columns_(columns), rows_(rows), heights_(std::move(heights)) {
+  if (columns < 1 || rows < 1 || !(cell_m > 0.0) || heights_.size() != static_cast<size_t>(columns) * static_cast<size_t>(rows)) {
+    throw std::invalid_argument("a surface of " + std::to_string(columns) + " x " + std::to_string(rows) + " cells with " +
+                                std::to_string(heights_.size()) + " heights");
+  }
+}
+
+PlanSurface::Corners PlanSurface::Around(double x, double y) const {
+  const Along u = Between((x - min_x_) / cell_m_, columns_);
+  const Along v = Between((y - min_y_) / cell_m_, rows_);
+  const auto index = [&](int row, int column) { return static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column); };
+  return {{index(v.first, u.first), index(v.first, u.second), index(v.second, u.first), index(v.second, u.second)},
+          {(1.0 - v.share) * (1.0 - u.share), (1.0 - v.share) * u.share, v.share * (1.0 - u.share), v.share * u.share}};
+}
+
+double PlanSurface::At(double x, double y) const {
+  const Corners corners = Around(x, y);
+  double height = 0.0;
+  for (size_t i = 0; i < 4; ++i) height += corners.weight[i] * heights_[corners.cell[i]];
+  return height;
+}
+
+bool PlanSurface::Meet(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Eigen::Vector3d* x_in_enu) const {
+  constexpr double kShallowest = -0.05;  // nearly level rays meet the ground where nobody knows its height
+  constexpr int kRounds = 6;
+  if (Empty() || !(direction.z() < kShallowest)) return false;
+  double height = At(origin.x(), origin.y());
+  for (int round = 0; round < kRounds; ++round) {
+    const double t = (height - origin.z()) / direction.z();
+    if (!(t > 0.0)) return false;
+    *x_in_enu = origin + t * direction;
+    const double next = At(x_in_enu->x(), x_in_enu->y());
+    if (std::abs(next - height) < 0.05) break;
+    height = next;
+  }
+  return true;
+}
+
+void FillFromSurroundings(int columns, int rows, int channels, std::vector<double>* values, std::vector<double> weights) {
+  if (columns <= 1 && rows <= 1) return;
+  if (std::ranges::none_of(weights, [](double weight) { return weight > 0.0; })) return;
+  const int half_columns = (columns + 1) / 2, half_rows = (rows + 1) / 2;
+  const auto n = static_cast<size_t>(channels);
+  const auto index = [](int row, int column, int width) {
+    return static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
+  };
+  std::vector<double> coarse(static_cast<size_t>(half_columns) * static_cast<size_t>(half_rows) * n, 0.0);
+  std::vector<double> coarse_weights(static_cast<size_t>(half_columns) * static_cast<size_t>(half_rows), 0.0);
+  bool all = true;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const size_t from = index(row, column, columns), to = index(row / 2, column / 2, half_columns);
+      all = all && weights[from] > 0.0;
+      coarse_weights[to] += weights[from];
+      for (size_t c = 0; c < n; ++c) coarse[to * n + c] += weights[from] * (*values)[from * n + c];
+    }
+  }
+  if (all) return;
+  for (size_t i = 0; i < coarse_weights.size(); ++i) {
+    for (size_t c = 0; c < n && coarse_weights[i] > 0.0; ++c) coarse[i * n + c] /= coarse_weights[i];
+    coarse_weights[i] = std::min(coarse_weights[i], 1.0);
+  }
+  FillFromSurroundings(half_columns, half_rows, channels, &coarse, std::move(coarse_weights));
+  for (int row = 0; row < rows; ++row) {
+    const Along v = Between(0.5 * (row + 0.5), half_rows);
+    for (int column = 0; column < columns; ++column) {
+      const size_t to = index(row, column, columns);
+      const double own = std::min(weights[to], 1.0);
+      if (own >= 1.0) continue;
+      const Along u = Between(0.5 * (column + 0.5), half_columns);
+      for (size_t c = 0; c < n; ++c) {
+        const auto at = [&](int r, int s) { return coarse[index(r, s, half_columns) * n + c]; };
+        const double around = (1.0 - v.share) * ((1.0 - u.share) * at(v.first, u.first) + u.share * at(v.first, u.second)) +
+                              v.share * ((1.0 - u.share) * at(v.second, u.first) + u.share * at(v.second, u.second));
+        (*values)[to * n + c] = own * (*values)[to * n + c] + (1.0 - own) * around;
+      }
+    }
+  }
+}
+
+}  // namespace skyquilt::scene

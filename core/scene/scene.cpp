@@ -1,0 +1,196 @@
+#include "core/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/errors.h"
+#include "core/checkpoint/archive.h"
+#include "core/image/srgb.h"
+#include "core/render/ray_engine.h"
+#include "core/render/ray_segments.h"
+#include "core/scene/backdrop.h"
+#include "core/scene/field_store.h"
+#include "core/scene/paged_rays.h"
+#include "core/scene/ray_service.h"
+#include "core/scene/scene_file.h"
+
+namespace skyquilt::scene {
+namespace {
+
+constexpr int kTile = 32;                // pixels
+constexpr int kBandTiles = 128;          // rays built at a time: memory does not grow with the image
+constexpr int kServiceBandTiles = 1024;  // others want more at a time, for they wait for each other at the end
+
+void Expose(const std::array<float, 3>& log_gain, std::span<render::RayColor> colors) {
+  for (size_t c = 0; c < 3; ++c) {
+    if (log_gain[c] == 0.0F) continue;
+    const brightness::Exposure exposure = brightness::Exposure::FromLogGain(log_gain[c]);
+    for (render::RayColor& color : colors) color.rgb_srgb[c] = brightness::Expose(color.rgb_srgb[c], exposure).value;
+  }
+}
+
+// Display values from the light that fields with luminance show; premultiplied as before.
+void ShowConcealed(std::span<render::RayColor> colors) {
+  for (render::RayColor& color : colors) {
+    for (size_t c = 0; c < 3; ++c) {
+      color.rgb_srgb[c] = color.opacity > 0.0F ? color.opacity * image::SrgbFromLinear(color.concealed_light[c] / color.opacity) : 0.0F;
+    }
+  }
+}
+
+}  // namespace
+
+struct Scene::Impl {
+  // Whether a look is the rendering with held-back light.
+  bool Conceals(Look look) const {
+    return look == Look::kNormal ? info.luminance.mode == brightness::LuminanceMode::kOver : info.luminance.mode == brightness::LuminanceMode::kUnder;
+  }
+  render::EngineOptions Options(Look look) const { return Conceals(look) ? render::EngineOptions::For(info.luminance) : render::EngineOptions{}; }
+  // Light of the backdrop, which has the photos' colours, over what a look shows of it.
+  float BackdropGain(Look look) const {
+    if (look == Look::kRecorded || !info.luminance.On()) return 1.0F;
+    const double sign = info.luminance.mode == brightness::LuminanceMode::kUnder ? -1.0 : 1.0;
+    return static_cast<float>(std::exp(sign * info.luminance_state.mean_log_gain));
+  }
+
+  void Answer(std::span<const render::Ray> rays, std::span<render::RayColor> out, Look look, base::ThreadPool& threads) {
+    const render::EngineOptions options = Options(look);
+    if (service != nullptr) {
+      service->Render(rays, out, options);
+    } else {
+      std::vector<Traveller> travellers(rays.size());
+      if (pager == nullptr || pager_threads != &threads) {
+        pager = std::make_unique<PagedRays>(*store, *segments, threads);
+        pager_threads = &threads;
+      }
+      statistics.samples += pager->Continue(rays, travellers, options, 0, {});
+      statistics.rays += static_cast<int64_t>(rays.size());
+      for (size_t i = 0; i < rays.size(); ++i) out[i] = render::Finished(travellers[i].state);
+    }
+    if (Conceals(look)) ShowConcealed(out);
+  }
+
+  SceneInfo info;
+  Backdrop backdrop;
+  std::unique_ptr<FieldStore> store;
+  std::unique_ptr<render::RaySegments> segments;
+  std::unique_ptr<PagedRays> pager;  // for pager_threads
+  const base::ThreadPool* pager_threads = nullptr;
+  RayService* service = nullptr;
+  RenderStatistics statistics;
+};
+
+Scene::Scene() : impl_(std::make_unique<Impl>()) {}
+Scene::Scene(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
+const SceneInfo& Scene::info() const {
+  return impl_->info;
+}
+
+RenderStatistics Scene::statistics() const {
+  if (impl_->service != nullptr) return impl_->service->statistics();
+  RenderStatistics statistics = impl_->statistics;
+  statistics.field_loads = impl_->store->loads();
+  return statistics;
+}
+
+Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& options) {
+  checkpoint::ArchiveReader reader = OpenScene(scene_h5);
+  Scene scene;
+  Impl& impl = *scene.impl_;
+  impl.service = options.service;
+  SceneInfo& info = impl.info;
+  info.origin = {reader.DoubleAttribute("origin_latitude_deg"), reader.DoubleAttribute("origin_longitude_deg"),
+                 reader.DoubleAttribute("origin_height_m")};
+  info.georeferenced = reader.IntAttribute("georeferenced") != 0;
+  info.response = brightness::GetResponse(reader, scene_h5);
+  brightness::GetLuminance(reader, &info.luminance, &info.luminance_state);
+  info.config = reader.StringAttribute("config");
+  info.gsd_m = reader.DoubleAttribute("gsd_m");
+  info.borders = BordersOf(reader);
+  impl.backdrop = GetBackdrop(reader, scene_h5);
+  impl.store = std::make_unique<FieldStore>(std::move(reader), scene_h5, options.memory_bytes, info.borders == Borders::kHard);
+  const FieldStore& store = *impl.store;
+  if (store.size() == 0) throw base::InputError(scene_h5, "holds no blocks", "Train at least one block, then merge again");
+  info.min_enu = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  info.max_enu = -info.min_enu;
+  for (int k = 0; k < store.size(); ++k) {
+    const render::TrainedField& f = store.block(k);
+    info.blocks.push_back({f.name, f.core_min_enu, f.core_max_enu, f.margin_m, store.Parameters(k), f.steps, f.seconds, f.samples});
+    info.parameters += store.Parameters(k);
+    info.min_enu = info.min_enu.cwiseMin(f.core_min_enu);
+    info.max_enu = info.max_enu.cwiseMax(f.core_max_enu);
+  }
+  impl.segments = std::make_unique<render::RaySegments>(store.Blocks());
+  if (store.HasContext()) {
+    info.parameters += store.ContextParameters();
+    info.context_seconds = store.context().seconds;
+    info.context_samples = store.context().samples;
+  }
+  if (impl.service != nullptr) impl.service->Begin(store, *impl.segments);
+  // What is damaged is to be found now, not in the middle of a rendering.
+  if (impl.service == nullptr && store.AllFit()) impl.store->NeedAll();
+  return scene;
+}
+
+void Scene::RenderRays(std::span<const render::Ray> rays, std::span<render::RayColor> out, const Appearance& appearance,
+                       base::ThreadPool& threads) const {
+  SKYQUILT_CHECK(rays.size() == out.size(), std::to_string(rays.size()) + " rays, " + std::to_string(out.size()) + " results");
+  impl_->Answer(rays, out, appearance.look, threads);
+  Expose(appearance.log_gain, out);
+}
+
+std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, const Appearance& appearance,
+                                                  base::ThreadPool& threads) const {
+  const Look look = appearance.look;
+  std::vector<render::RayColor> out(static_cast<size_t>(camera.width) * static_cast<size_t>(camera.height));
+  const geo::Rigid3d enu_from_cam = cam_from_enu.Inverse();
+  const float radius = static_cast<float>(0.5 / std::max(1e-9, camera.FocalX()));
+  // Square tiles: rays that are rendered together look at the same places, so table entries are in cache.
+  const int tile_columns = (camera.width + kTile - 1) / kTile;
+  const int n_tiles = tile_columns * ((camera.height + kTile - 1) / kTile);
+  const float backdrop_gain = impl_->BackdropGain(look);
+  std::vector<size_t> pixels;
+  std::vector<render::Ray> rays;
+  std::vector<render::RayColor> colors;
+  const int band_tiles = impl_->service != nullptr ? kServiceBandTiles : kBandTiles;
+  for (int first = 0; first < n_tiles; first += band_tiles) {
+    pixels.clear();
+    for (int tile = first; tile < std::min(first + band_tiles, n_tiles); ++tile) {
+      const int x0 = tile % tile_columns * kTile, y0 = tile / tile_columns * kTile;
+      for (int y = y0; y < std::min(y0 + kTile, camera.height); ++y) {
+        for (int x = x0; x < std::min(x0 + kTile, camera.width); ++x) {
+          pixels.push_back(static_cast<size_t>(y) * static_cast<size_t>(camera.width) + static_cast<size_t>(x));
+        }
+      }
+    }
+    rays.assign(pixels.size(), render::Ray{});
+    colors.resize(pixels.size());
+    threads.ParallelFor(static_cast<int64_t>((pixels.size() + 255) / 256), [&](int64_t task, int) {
+      const size_t begin = static_cast<size_t>(task) * 256;
+      for (size_t i = begin; i < std::min(begin + 256, pixels.size()); ++i) {
+        const auto width = static_cast<size_t>(camera.width);
+        const size_t row = pixels[i] / width, column = pixels[i] % width;
+        const Eigen::Vector2d img(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
+        rays[i].origin_enu = enu_from_cam.translation;
+        rays[i].direction_enu = (enu_from_cam.rotation * camera.RayFromImg(img)).normalized();
+        rays[i].pixel_radius = radius;
+      }
+    });
+    impl_->Answer(rays, colors, look, threads);
+    for (size_t i = 0; i < colors.size(); ++i) {
+      if (colors[i].opacity >= 1.0F) continue;
+      std::array<float, 3> behind = impl_->backdrop.Color(rays[i].origin_enu, rays[i].direction_enu);
+      if (backdrop_gain != 1.0F) {
+        for (float& value : behind) value = image::SrgbFromLinear(backdrop_gain * image::LinearFromSrgb(value));
+      }
+      for (size_t c = 0; c < 3; ++c) colors[i].rgb_srgb[c] += (1.0F - colors[i].opacity) * behind[c];
+    }
+    Expose(appearance.log_gain, colors);
+    for (size_t i = 0; i < pixels.size(); ++i) out[pixels[i]] = colors[i];
+  }
+  return out;
+}
+
+}  // namespace skyquilt::scene

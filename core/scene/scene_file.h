@@ -1,0 +1,25 @@
+// Layout of scene.h5, shared by the merge stage that writes it and Scene that reads it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "core/checkpoint/archive.h"
+#include "core/scene/scene.h"
+
+namespace skyquilt::scene {
+
+constexpr const char* kSceneKind = "scene";
+constexpr int kSceneVersion = 2;
+constexpr const char* kBordersAttribute = "borders";  // of render::Borders; absent: smooth
+constexpr const char* kContextPrefix = "context/";
+inline std::string BlockPrefix(int64_t i) {
+  return "blocks/" + std::to_string(i) + "/";
+}
+
+// Throws base::InputError for a file that is not a scene, or damaged.
+checkpoint::ArchiveReader OpenScene(const std::filesystem::path& scene_h5);
+Borders BordersOf(const checkpoint::ArchiveReader& scene);
+
+}  // namespace skyquilt::scene

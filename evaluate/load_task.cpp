@@ -1,0 +1,48 @@
+#include "evaluate/load_task.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace skyquilt::evaluate {
+
+PhotoTask LoadTask(const survey::Survey& survey, const image::PixelCache& pixels, int index, int image_width) {
+  const auto i = static_cast<size_t>(index);
+  const survey::Photo& photo = survey.photos[i];
+  const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
+  const int cached_width = pixels.Width(i);
+  const int width = image_width > 0 ? std::min(image_width, camera.width) : cached_width;
+  PhotoTask task;
+  task.cam_from_enu = photo.cam_from_enu;
+  image::Image8 mask;
+  if (width <= cached_width) {
+    task.photo = image::Image8(cached_width, pixels.Height(i), 3);
+    const auto rgb = pixels.Rgb(i);
+    std::copy(rgb.begin(), rgb.end(), task.photo.data.begin());
+    if (const auto cached_mask = pixels.Mask(i); !cached_mask.empty()) {
+      mask = image::Image8(cached_width, pixels.Height(i), 1);
+      std::copy(cached_mask.begin(), cached_mask.end(), mask.data.begin());
+    }
+  } else {
+    task.photo = image::LoadRgb8(survey.photo_root / photo.name);
+    if (!photo.mask.empty()) mask = image::LoadMask(photo.mask);
+  }
+  if (task.photo.width != width) {
+    task.photo = image::Resize(task.photo, width, image::ScaledHeight(task.photo.width, task.photo.height, width));
+  }
+  if (!mask.Empty()) {
+    if (mask.width != task.photo.width || mask.height != task.photo.height) mask = image::ResizeMask(mask, task.photo.width, task.photo.height);
+    task.mask = std::move(mask.data);
+  }
+  task.camera = camera.Resized(task.photo.width, task.photo.height);
+  if (survey.truth) {
+    const std::filesystem::path stem = std::filesystem::path(photo.name).replace_extension(".tiff");
+    for (const std::filesystem::path& file : {survey.truth->depth_folder / stem, survey.truth->depth_folder / stem.filename()}) {
+      if (!std::filesystem::is_regular_file(file)) continue;
+      task.true_depth = image::LoadFloatTiff(file);
+      break;
+    }
+  }
+  return task;
+}
+
+}  // namespace skyquilt::evaluate

@@ -1,0 +1,117 @@
+// What one evaluation found, and its JSON form (report/metrics.json).
+// NaN stands for "not measured" in every number and becomes null in JSON; so does an infinite PSNR (identical images).
+// PSNR in dB with display values in [0,1] (MAX = 1), higher better; SSIM at most 1, higher better; LPIPS a distance, lower better.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "core/survey/survey.h"
+
+namespace skyquilt::evaluate {
+
+inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+struct PhotoScore {
+  int photo = -1;  // index into Survey::photos
+  std::string name;
+  int width = 0;  // scored size, pixels
+  int height = 0;
+  int64_t used_pixels = 0;                                  // not masked
+  int64_t covered_pixels = 0;                               // used and covered (see kCoverageDefinition)
+  double exposure_gain = 1.0;                               // linear light, from the tags
+  std::array<double, 3> predicted_stops = {0.0, 0.0, 0.0};  // applied beside it, per colour
+  double psnr_db = kNotMeasured;                            // over the covered pixels
+  double psnr_exif_gain_db = kNotMeasured;                  // over the covered pixels, with exposure_gain alone
+  double psnr_normal_db = kNotMeasured;  // at normal brightness against a normally exposed photo (evaluate.normal_photos), covered pixels
+  double ssim_normal = kNotMeasured;
+  double ssim = kNotMeasured;
+  double psnr_full_db = kNotMeasured;  // over all pixels that are not masked
+  double ssim_full = kNotMeasured;
+  double lpips = kNotMeasured;                           // full frame
+  double right_half_db = kNotMeasured;                   // PSNR over the covered pixels of the right half,
+  double right_half_fitted_db = kNotMeasured;            // and with gains per colour fitted to the left half
+  std::array<double, 3> fitted_stops = {0.0, 0.0, 0.0};  // those gains, on top of exposure_gain
+  double depth_rmse_m = kNotMeasured;                    // simulated surveys only: z-depth over covered pixels where both depths exist
+  double depth_median_abs_m = kNotMeasured;
+  double render_seconds = 0.0;
+
+  double Coverage() const;  // covered share of the used pixels; NaN when none is used
+};
+
+struct BlockScore {
+  std::string name;
+  double psnr_db = kNotMeasured;  // pooled over the covered pixels of all test photos whose surface point lies in the block
+  int64_t pixels = 0;
+};
+
+struct Metrics {
+  // Means over the test photos of the per-photo values, the convention of the field; photos without the value do not count.
+  double psnr = kNotMeasured;
+  double psnr_exif_gain = kNotMeasured;
+  double psnr_normal = kNotMeasured;
+  double ssim_normal = kNotMeasured;
+  double ssim = kNotMeasured;
+  double coverage = kNotMeasured;  // pooled: all covered pixels / all used pixels
+  double psnr_full_frame = kNotMeasured;
+  double ssim_full_frame = kNotMeasured;
+  double psnr_right_half = kNotMeasured;
+  double psnr_right_half_fitted = kNotMeasured;
+  double lpips = kNotMeasured;
+  std::string lpips_note;  // why lpips is null, or which network measured it
+  std::vector<PhotoScore> photos;
+  std::vector<BlockScore> blocks;
+  double psnr_interior_db = kNotMeasured;          // covered pixels deeper than the margin inside a block, pooled
+  double psnr_seam_db = kNotMeasured;              // covered pixels where two or more blocks blend, pooled
+  double psnr_matched_interior_db = kNotMeasured;  // the interior weighted to the seams' textures
+  double seam_psnr_gap_db = kNotMeasured;          // matched interior minus seam; NaN with a single block
+  double footprint_step = kNotMeasured;            // brightness steps across the borders of photos' footprints, display values (footprint_steps.h)
+  double footprint_step_control = kNotMeasured;
+  double depth_rmse_m = kNotMeasured;  // pooled over the pixels of all test photos
+  double depth_median_abs_m = kNotMeasured;
+  double air_opacity = kNotMeasured;                   // of what should be empty in front of the true surface, mean over rays (air_opacity.h)
+  std::vector<std::pair<double, double>> air_profile;  // (metres in front of the true surface, the same until there)
+  bool has_truth = false;
+
+  double train_seconds = kNotMeasured;
+  double samples_per_second = kNotMeasured;
+  int64_t peak_rss_bytes = 0;
+  int64_t evaluate_peak_rss_bytes = 0;
+  double evaluate_seconds = 0.0;
+  int64_t parameters = 0;
+  int ranks = 1;
+  int threads = 0;
+  std::string config;  // TOML text of the training
+  scene::RenderStatistics rendering;
+
+  bool georeferenced = false;
+  survey::GeoFit geo_fit;
+  double median_agl_m = kNotMeasured;
+  double median_relative_altitude_m = kNotMeasured;  // XMP, the drone's own figure
+  double gsd_m = kNotMeasured;
+  int n_photos = 0;  // registered
+  int n_unregistered = 0;
+  int n_test = 0;
+  int image_width = 0;  // of the first scored photo, pixels
+  std::string machine;
+  std::string date;  // UTC
+  std::vector<std::string> warnings;
+};
+
+extern const char* const kCoverageDefinition;
+extern const char* const kPsnrDefinition;
+extern const char* const kSeamDefinition;
+extern const char* const kRightHalfDefinition;
+
+// Mean of the finite values; NaN when there is none. An infinite value makes the mean infinite.
+double MeanOfMeasured(const std::vector<double>& values);
+// Median of the finite values; NaN when there is none.
+double MedianOfMeasured(std::vector<double> values);
+// UTF-8 JSON text, keys as in the project's documentation; file names that are not UTF-8 are repaired, never refused.
+std::string MetricsJson(const Metrics& metrics);
+
+}  // namespace skyquilt::evaluate

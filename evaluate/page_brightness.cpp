@@ -1,0 +1,311 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "core/page/curve_chart.h"
+#include "core/page/html.h"
+#include "evaluate/report_page.h"
+
+namespace skyquilt::evaluate {
+
+namespace {
+
+constexpr double kAlikeStops = 0.05;     // tags that differ by less say nothing
+constexpr double kLongPause_min = 10.0;  // between flights
+constexpr double kShownPause_min = 1.0;  // what the chart leaves of one
+constexpr size_t kManyDots = 400;
+
+struct GainColor {
+  const char* name;
+  const char* css_class;
+};
+constexpr std::array<GainColor, 3> kGainColors = {{{"red", "c5"}, {"green", "c7"}, {"blue", "c1"}}};
+
+// Axes of a drawing: values to pixels.
+struct PlotFrame {
+  static constexpr double kLeft_px = 52.0, kRight_px = 14.0, kTop_px = 14.0, kBottom_px = 42.0;
+  double width_px = 560.0, height_px = 300.0;
+  double x_low = 0.0, x_high = 1.0, y_low = 0.0, y_high = 1.0;
+  double right_px() const { return width_px - kRight_px; }
+  double bottom_px() const { return height_px - kBottom_px; }
+  double X(double x) const { return kLeft_px + (x - x_low) / (x_high - x_low) * (right_px() - kLeft_px); }
+  double Y(double y) const { return bottom_px() - (y - y_low) / (y_high - y_low) * (bottom_px() - kTop_px); }
+};
+
+struct PlotLabels {
+  std::string title, x, y;
+};
+
+// With a plus before what is above zero.
+std::string SignedFixed(double value, int decimals, std::string_view unit = "") {
+  const std::string text = page::FormatFixed(value, decimals, unit);
+  return value > 0.0 && text.find_first_of("123456789") != std::string::npos ? "+" + text : text;
+}
+
+std::string OpenPlot(const PlotFrame& frame, const PlotLabels& labels, int x_ticks, const char* css_class = "") {
+  std::string html =
+      fmt::format("<figure class=\"chart card {}\"><figcaption>{}</figcaption><svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">",
+                  css_class, page::EscapeHtml(labels.title), frame.width_px, frame.height_px, page::EscapeHtml(labels.title));
+  const auto line = [&](const char* kind, double x1, double x2, double y1, double y2) {
+    html += fmt::format("<line class=\"{}\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", kind, x1, x2, y1, y2);
+  };
+  for (const double tick : page::RoundTicks(frame.y_low, frame.y_high, 5)) {
+    const double y = frame.Y(tick);
+    line(tick == 0.0 ? "axis" : "grid", PlotFrame::kLeft_px, frame.right_px(), y, y);
+    html += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{:.4g}</text>", PlotFrame::kLeft_px - 8.0, y + 4.0, tick);
+  }
+  for (const double tick : page::RoundTicks(frame.x_low, frame.x_high, x_ticks)) {
+    const double x = frame.X(tick);
+    line("axis", x, x, frame.bottom_px(), frame.bottom_px() + 4.0);
+    html += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.4g}</text>", x, frame.bottom_px() + 17.0, tick);
+  }
+  line("axis", PlotFrame::kLeft_px, frame.right_px(), frame.bottom_px(), frame.bottom_px());
+  html += fmt::format("<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>",
+                      0.5 * (PlotFrame::kLeft_px + frame.right_px()), frame.height_px - 6.0, page::EscapeHtml(labels.x));
+  html += fmt::format("<text class=\"label\" transform=\"translate(12 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+                      0.5 * (PlotFrame::kTop_px + frame.bottom_px()), page::EscapeHtml(labels.y));
+  return html;
+}
+
+std::string ClosePlot(const std::string& legend) {
+  return "</svg><div class=\"legend\">" + legend + "</div></figure>\n";
+}
+
+bool AllFinite(const BrightnessPhoto& photo) {
+  return std::isfinite(photo.time_s + photo.exif_stops + photo.learned_stops[0] + photo.learned_stops[1] + photo.learned_stops[2]);
+}
+
+bool Learned(const BrightnessReport& brightness) {
+  return std::any_of(brightness.photos.begin(), brightness.photos.end(), [](const BrightnessPhoto& photo) {
+    return photo.learned_stops != std::array<double, 3>{0.0, 0.0, 0.0};
+  });
+}
+
+// What the chart draws: one x and four y per photo, and the photos of each flight and camera in order.
+struct GainSeries {
+  std::vector<const BrightnessPhoto*> photos;
+  std::vector<double> x, exif;
+  std::array<std::vector<double>, 3> learned;  // tags and learned gains together
+  std::map<int, std::vector<size_t>> groups;
+  bool shortened = false;  // pauses
+};
+
+GainSeries SeriesOf(const BrightnessReport& brightness) {
+  GainSeries series;
+  double x = 0.0, last_min = 0.0;
+  for (const BrightnessPhoto& photo : brightness.photos) {
+    if (!AllFinite(photo)) continue;
+    if (brightness.timed) {
+      // Two flights on two mornings would otherwise be two dots.
+      const double gap_min = photo.time_s / 60.0 - last_min;
+      x += gap_min > kLongPause_min ? kShownPause_min : gap_min;
+      last_min += gap_min;
+      series.shortened = series.shortened || gap_min > kLongPause_min;
+    } else {
+      x = photo.time_s + 1.0;
+    }
+    series.groups[photo.group].push_back(series.photos.size());
+    series.photos.push_back(&photo);
+    series.x.push_back(x);
+    series.exif.push_back(photo.exif_stops);
+    for (size_t c = 0; c < 3; ++c) series.learned[c].push_back(photo.exif_stops + photo.learned_stops[c]);
+  }
+  return series;
+}
+
+void Widen(const std::vector<double>& values, double* low, double* high) {
+  for (const double value : values) {
+    *low = std::min(*low, value);
+    *high = std::max(*high, value);
+  }
+}
+
+PlotFrame GainFrame(const GainSeries& series) {
+  PlotFrame frame{1160.0, 320.0, series.x.front(), series.x.back(), -0.25, 0.25};
+  Widen(series.x, &frame.x_low, &frame.x_high);
+  Widen(series.exif, &frame.y_low, &frame.y_high);
+  for (const std::vector<double>& values : series.learned) Widen(values, &frame.y_low, &frame.y_high);
+  const double x_pad = frame.x_high > frame.x_low ? 0.01 * (frame.x_high - frame.x_low) : 0.5;
+  const double y_pad = 0.06 * (frame.y_high - frame.y_low);
+  frame.x_low -= x_pad;
+  frame.x_high += x_pad;
+  frame.y_low -= y_pad;
+  frame.y_high += y_pad;
+  return frame;
+}
+
+// Photos of another flight or camera are not joined. Steps: a value holds until the next photo.
+std::string GainPath(const PlotFrame& frame, const GainSeries& series, const std::vector<double>& y, bool steps, const char* css_class,
+                     const std::string& title) {
+  std::string path = fmt::format("<path class=\"curve {}\" d=\"", css_class);
+  for (const auto& group : series.groups) {
+    for (size_t k = 0; k < group.second.size(); ++k) {
+      const double x_px = frame.X(series.x[group.second[k]]), y_px = frame.Y(y[group.second[k]]);
+      if (k == 0) {
+        path += fmt::format("M{:.1f} {:.1f}", x_px, y_px);
+      } else {
+        path += steps ? fmt::format("H{:.1f}V{:.1f}", x_px, y_px) : fmt::format("L{:.1f} {:.1f}", x_px, y_px);
+      }
+    }
+  }
+  return path + "\"><title>" + title + "</title></path>";
+}
+
+std::string GainDots(const PlotFrame& frame, const GainSeries& series, size_t i, bool learned) {
+  const BrightnessPhoto& photo = *series.photos[i];
+  std::string html = fmt::format("<g class=\"at\"><title>{}{}\nEXIF {}", page::EscapeHtml(photo.name), photo.held_out ? " (held out)" : "",
+                                 SignedFixed(photo.exif_stops, 2, "stops"));
+  if (learned) {
+    html += fmt::format("\nEXIF and {}: red {}, green {}, blue {}", photo.held_out ? "predicted" : "learned", SignedFixed(series.learned[0][i], 2),
+                        SignedFixed(series.learned[1][i], 2), SignedFixed(series.learned[2][i], 2, "stops"));
+  }
+  html += "</title>";
+  const double radius_px = series.photos.size() > kManyDots ? 1.4 : 2.4;
+  const auto dot = [&](double y, const char* css_class) {
+    html += fmt::format("<circle class=\"dot {}{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>", css_class, photo.held_out ? " hollow" : "",
+                        frame.X(series.x[i]), frame.Y(y), radius_px);
+  };
+  if (learned) {
+    for (size_t c = 0; c < 3; ++c) dot(series.learned[c][i], kGainColors[c].css_class);
+  } else {
+    dot(series.exif[i], "c6");
+  }
+  return html + "</g>";
+}
+
+std::string GainChart(const BrightnessReport& brightness) {
+  const GainSeries series = SeriesOf(brightness);
+  if (series.photos.empty()) return "";
+  const PlotFrame frame = GainFrame(series);
+  const bool learned = Learned(brightness);
+  PlotLabels labels{"Exposure of the photos, 0 is the reference", "photo, in order of names", "exposure (stops)"};
+  if (brightness.timed) labels.x = "flight time (min)";
+  if (series.shortened) labels.x += fmt::format(", pauses of more than {:.0f} min shown as {:.0f} min", kLongPause_min, kShownPause_min);
+  std::string html = OpenPlot(frame, labels, 10, "wide");
+  html += GainPath(frame, series, series.exif, true, "c6", "EXIF");
+  std::string legend = "<span><i class=\"c6\"></i>EXIF</span>";
+  for (size_t c = 0; learned && c < 3; ++c) {
+    const std::string name = fmt::format("EXIF and learned, {}", kGainColors[c].name);
+    html += GainPath(frame, series, series.learned[c], false, kGainColors[c].css_class, name);
+    legend += fmt::format("<span><i class=\"{}\"></i>{}</span>", kGainColors[c].css_class, name);
+  }
+  for (size_t i = 0; i < series.photos.size(); ++i) html += GainDots(frame, series, i, learned);
+  legend += "<span><i class=\"ring\"></i>held-out photo</span>";
+  return html + ClosePlot(legend);
+}
+
+std::string BinsPath(const PlotFrame& frame, const BrightnessHistogram& shares, const char* css_class, const char* title) {
+  std::string path = fmt::format("<path class=\"{}\" d=\"M{:.1f} {:.1f}", css_class, frame.X(0.0), frame.Y(0.0));
+  for (size_t bin = 0; bin < shares.size(); ++bin) {
+    path += fmt::format("V{:.1f}H{:.1f}", frame.Y(100.0 * shares[bin]), frame.X(static_cast<double>(bin + 1) / static_cast<double>(shares.size())));
+  }
+  return path + fmt::format("V{:.1f}Z\"><title>{}</title></path>", frame.Y(0.0), title);
+}
+
+std::string HistogramChart(const BrightnessReport& brightness, bool alone) {
+  const BrightnessHistogram &before = brightness.histogram_before, &after = brightness.histogram_after;
+  const double most = std::max(*std::max_element(before.begin(), before.end()), *std::max_element(after.begin(), after.end()));
+  if (!(most > 0.0)) return "";
+  PlotFrame frame;
+  if (alone) {
+    frame.width_px = 1160.0;
+    frame.height_px = 260.0;
+  }
+  frame.y_high = 100.0 * most * 1.06;
+  const PlotLabels labels{"Brightness of the training photos", "display value (0 black, 1 white)", "share of pixels (%)"};
+  return OpenPlot(frame, labels, 10, alone ? "wide" : "") + BinsPath(frame, after, "bins c0", "at reference exposure") +
+         BinsPath(frame, before, "curve c6", "as recorded") +
+         ClosePlot("<span><i class=\"c6\"></i>as recorded</span><span><i class=\"c0\"></i>at reference exposure</span>");
+}
+
+std::string FalloffChart(const BrightnessReport& brightness) {
+  std::vector<page::Curve> curves;
+  for (size_t camera = 0; camera < brightness.falloff.size(); ++camera) {
+    const FalloffCurve& shares = brightness.falloff[camera];
+    page::Curve& curve = curves.emplace_back();
+    curve.name = fmt::format("camera {}", camera + 1);
+    for (size_t i = 0; i < shares.size(); ++i) {
+      curve.points.emplace_back(static_cast<double>(i) / static_cast<double>(shares.size() - 1), 100.0 * shares[i]);
+    }
+  }
+  return page::CurveChart(curves,
+                          {.title = "Light towards the corners", .x_label = "way from the middle to the farthest corner", .y_label = "light (%)"});
+}
+
+std::string TagSentences(const BrightnessReport& brightness, double low_stops, double high_stops) {
+  const bool alike = high_stops - low_stops < kAlikeStops;
+  std::string text = "The tags (shutter time, aperture, ISO) tell no differences in exposure, or are not used. ";
+  if (!alike) {
+    text = fmt::format(
+        "By their tags (shutter time, aperture, ISO) the photos were exposed between {} and {} from the reference; one stop is twice the light. ",
+        SignedFixed(low_stops, 2), SignedFixed(high_stops, 2, "stops"));
+  }
+  if (!Learned(brightness)) return text + "Nothing beyond the tags was learned. ";
+  text += "Training learned what the photos needed on top, per colour; for held-out photos it is predicted from the photos before and after. ";
+  if (alike) return text;
+  const char* meaning = "that share of a difference in the tags shows in the photos, the rest is changing light that the camera made up for";
+  if (brightness.trust_in_tags >= 0.9) meaning = "the photos are as much brighter or darker as their tags say";
+  if (brightness.trust_in_tags <= 0.1) meaning = "the camera followed the changing light, so that the photos came out alike whatever their tags say";
+  return text + fmt::format("Trust in the tags is {}: {}. ", page::FormatPercent(brightness.trust_in_tags, 0), meaning);
+}
+
+std::string SpreadSentences(const BrightnessReport& brightness) {
+  const double before = brightness.spread_before_stops, after = brightness.spread_after_stops;
+  if (!std::isfinite(before) || !std::isfinite(after)) return "";
+  const char* meaning = "The gains hardly change it: what differs is the ground, or nothing does.";
+  if (after < 0.8 * before) meaning = "The gains explain much of it; bright and dark ground remains.";
+  if (after > 1.1 * before && after > before + kAlikeStops) {
+    meaning = "More than before: either the camera had evened out bright and dark ground, or the gains are wrong; the pictures tell.";
+  }
+  return fmt::format("The mean light of the training photos spreads by {} as recorded, and by {} with the gains taken out. {} ",
+                     page::FormatFixed(before, 2, "stops"), page::FormatFixed(after, 2, "stops"), meaning);
+}
+
+std::string ViewPicture(const BrightnessView& view, const std::string& file, const char* kind, const char* caption) {
+  if (file.empty()) return "";
+  return fmt::format(
+      "<figure class=\"pic {0}\"><img src=\"{1}\" width=\"{2}\" height=\"{3}\" loading=\"lazy\" alt=\"{4}\" data-kind=\"{0}\"><figcaption>{4}"
+      "</figcaption></figure>",
+      kind, page::EscapeHtml(file), view.width, view.height, caption);
+}
+
+std::string ViewCard(const BrightnessView& view) {
+  return fmt::format(
+             "<article class=\"card photo\"><header><h3>{}</h3><div class=\"chips\"><span class=\"chip\"><b>{}</b>exposure</span></div></header>"
+             "<div class=\"pics three\">",
+             page::EscapeHtml(view.name), SignedFixed(view.stops, 2, "stops")) +
+         ViewPicture(view, view.photo, "taken-pic", "Photo as taken") +
+         ViewPicture(view, view.recorded, "recorded-pic", "Scene, as this photo recorded") +
+         ViewPicture(view, view.normal, "normal-pic", "Scene at normal exposure") + "</div></article>\n";
+}
+
+}  // namespace
+
+std::string BrightnessSection(const ReportInput& input) {
+  if (input.brightness == nullptr || input.brightness->Empty()) return "";
+  const BrightnessReport& brightness = *input.brightness;
+  const auto [low, high] = std::minmax_element(brightness.photos.begin(), brightness.photos.end(),
+                                               [](const auto& a, const auto& b) { return a.exif_stops < b.exif_stops; });
+  std::string html = "<section id=\"brightness\"><div class=\"heading\"><h2>Brightness</h2><div class=\"chips\">";
+  html += fmt::format("<span class=\"chip main\"><b>{} \xE2\x86\x92 {}</b>spread of the photos</span>",
+                      page::FormatFixed(brightness.spread_before_stops, 2), page::FormatFixed(brightness.spread_after_stops, 2, "stops"));
+  if (Learned(brightness) && high->exif_stops - low->exif_stops >= kAlikeStops) {
+    html += fmt::format("<span class=\"chip\"><b>{}</b>trust in the tags</span>", page::FormatPercent(brightness.trust_in_tags, 0));
+  }
+  html += "</div></div><p class=\"lead\">" + TagSentences(brightness, low->exif_stops, high->exif_stops) + SpreadSentences(brightness) +
+          page::EscapeHtml(brightness.luminance) + "</p><div class=\"chart-grid\">" + GainChart(brightness);
+  html += HistogramChart(brightness, brightness.falloff.empty());
+  if (!brightness.falloff.empty()) html += FalloffChart(brightness);
+  html += "</div>";
+  if (!brightness.views.empty()) {
+    html += "<div class=\"views\">";
+    for (const BrightnessView& view : brightness.views) html += ViewCard(view);
+    html += "</div>";
+  }
+  return html + "</section>\n";
+}
+
+}  // namespace skyquilt::evaluate

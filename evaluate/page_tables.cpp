@@ -1,0 +1,121 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/progress.h"
+#include "core/page/html.h"
+#include "evaluate/report_page.h"
+
+namespace skyquilt::evaluate {
+
+namespace {
+
+std::string StatusCell(const FieldLog* log, const partition::Block* block) {
+  if (block != nullptr && block->empty)
+    return fmt::format("<td class=\"status\"><span class=\"state idle\">empty</span><small>{}</small></td>", page::EscapeHtml(block->empty_reason));
+  if (log == nullptr) return "<td class=\"status\"><span class=\"state idle\">no log</span></td>";
+  if (!log->ok)
+    return fmt::format("<td class=\"status\"><span class=\"state bad\">failed</span><small>{}</small></td>", page::EscapeHtml(log->reason));
+  if (log->dropped_steps > 0) {
+    return fmt::format("<td class=\"status\"><span class=\"state warn\">done</span><small>{} non-finite steps dropped</small></td>",
+                       page::FormatInteger(log->dropped_steps));
+  }
+  return "<td class=\"status\"><span class=\"state good\">done</span></td>";
+}
+
+std::string TrainingCells(const FieldLog* log) {
+  if (log == nullptr)
+    return "<td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td>"
+           "<td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td>";
+  const auto number = [](int64_t value) { return page::NumberCell(static_cast<double>(value), page::FormatLarge(static_cast<double>(value))); };
+  return page::NumberCell(log->psnr_db, page::FormatFixed(log->psnr_db, 2, "dB")) +
+         page::NumberCell(static_cast<double>(log->steps), page::FormatInteger(log->steps)) +
+         page::NumberCell(log->seconds, base::FormatDuration(log->seconds)) + number(log->rays) + number(log->samples) + number(log->parameters);
+}
+
+}  // namespace
+
+std::string BlockTable(const ReportInput& input) {
+  std::string html =
+      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Field</th><th>State</th><th class=\"num\">Held-out PSNR</th><th "
+      "class=\"num\">Scored "
+      "pixels</th>"
+      "<th class=\"num\">Training PSNR</th><th class=\"num\">Steps</th><th class=\"num\">Time</th><th class=\"num\">Rays</th><th "
+      "class=\"num\">Samples</th>"
+      "<th class=\"num\">Parameters</th><th class=\"num\">Size</th><th class=\"num\">Heights</th><th class=\"num\">Flown above ground</th><th "
+      "class=\"num\">GSD</th>"
+      "<th class=\"num\">Photos</th></tr></thead><tbody>";
+  if (const FieldLog* context = input.log->Find("context")) {
+    html += "<tr><td><b>context</b></td>" + StatusCell(context, nullptr) +
+            "<td class=\"num\" data-v=\"\">\xE2\x80\x93</td><td class=\"num\" data-v=\"\">\xE2\x80\x93</td>" + TrainingCells(context);
+    for (int i = 0; i < 5; ++i) html += "<td class=\"num\" data-v=\"\">\xE2\x80\x93</td>";
+    html += "</tr>";
+  }
+  for (const partition::Block& block : input.blocks->blocks) {
+    const auto& scores = input.metrics->blocks;
+    const auto score = std::find_if(scores.begin(), scores.end(), [&](const BlockScore& s) { return s.name == block.name; });
+    const double psnr_db = score == scores.end() ? kNotMeasured : score->psnr_db;
+    const double pixels = score == scores.end() ? kNotMeasured : static_cast<double>(score->pixels);
+    const FieldLog* log = input.log->Find(block.name);
+    const Eigen::Vector3d size = block.max_enu - block.min_enu;
+    html += fmt::format("<tr id=\"block-{0}\"><td><b>{0}</b></td>", page::EscapeHtml(block.name)) + StatusCell(log, &block);
+    html += page::NumberCell(psnr_db, page::FormatFixed(psnr_db, 2, "dB")) + page::NumberCell(pixels, page::FormatLarge(pixels)) + TrainingCells(log);
+    html += page::NumberCell(size.x() * size.y(), fmt::format("{:.0f} \xC3\x97 {:.0f}\xE2\x80\xAFm", size.x(), size.y()));
+    html += page::NumberCell(
+        block.min_enu.z(), fmt::format("{} \xE2\x80\xA6 {}", page::FormatFixed(block.min_enu.z(), 1), page::FormatFixed(block.max_enu.z(), 1, "m")));
+    html += page::NumberCell(block.altitude_agl_m, page::FormatFixed(block.altitude_agl_m, 1, "m"));
+    html += page::NumberCell(block.gsd_m, page::FormatFixed(block.gsd_m * 100.0, 1, "cm"));
+    html += page::NumberCell(static_cast<double>(block.photos.size()), page::FormatInteger(static_cast<int64_t>(block.photos.size())));
+    html += "</tr>";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string ResidualTable(const ReportInput& input) {
+  const survey::Survey& survey = *input.survey;
+  std::vector<const survey::Photo*> tagged;
+  size_t n_untagged = 0;
+  for (const survey::Photo& photo : survey.photos) {
+    if (std::isfinite(photo.gps_residual_m) && photo.gps) {
+      tagged.push_back(&photo);
+    } else {
+      ++n_untagged;
+    }
+  }
+  if (!survey.georeferenced || tagged.empty()) {
+    return "<p class=\"card empty\">The survey has no usable GPS: positions are in a local frame of unknown scale and no residuals exist.</p>\n";
+  }
+  std::stable_sort(tagged.begin(), tagged.end(), [](const auto* a, const auto* b) { return a->gps_residual_m > b->gps_residual_m; });
+  const double worst = tagged.front()->gps_residual_m;
+  const auto row = [&](const survey::Photo& photo) {
+    const double bar = worst > 0.0 ? 100.0 * photo.gps_residual_m / worst : 0.0;
+    std::string html = "<tr>" + page::TextCell(photo.name);
+    html += fmt::format("<td class=\"num bar\" data-v=\"{}\"><i style=\"width:{:.1f}%\"></i>{}</td>", photo.gps_residual_m, bar,
+                        page::FormatFixed(photo.gps_residual_m, 2, "m"));
+    html += fmt::format("<td><span class=\"state {}</span></td>", photo.gps_inlier ? "good\">inlier" : "bad\">outlier");
+    html += page::NumberCell(photo.agl_m, page::FormatFixed(photo.agl_m, 1, "m"));
+    const double relative_m = photo.relative_altitude_m.value_or(kNotMeasured);
+    html +=
+        page::NumberCell(relative_m, page::FormatFixed(relative_m, 1, "m")) + page::NumberCell(photo.flight + 1, std::to_string(photo.flight + 1));
+    return html + page::TextCell(photo.is_test ? "held out" : "training") + "</tr>";
+  };
+  const std::string head =
+      "<thead><tr><th>Photo</th><th class=\"num\">Residual</th><th>Fit</th><th class=\"num\">Above ground</th><th class=\"num\">XMP relative "
+      "altitude</th>"
+      "<th class=\"num\">Flight</th><th>Use</th></tr></thead>";
+  constexpr size_t kShown = 12;
+  std::string html = "<div class=\"card scroll\"><table class=\"sortable\">" + head + "<tbody>";
+  for (size_t i = 0; i < tagged.size() && i < kShown; ++i) html += row(*tagged[i]);
+  html += "</tbody></table></div>";
+  if (tagged.size() > kShown) {
+    html += fmt::format("<details><summary>The other {} photos</summary><div class=\"card scroll\"><table class=\"sortable\">{}<tbody>",
+                        page::FormatInteger(static_cast<int64_t>(tagged.size() - kShown)), head);
+    for (size_t i = kShown; i < tagged.size(); ++i) html += row(*tagged[i]);
+    html += "</tbody></table></div></details>";
+  }
+  if (n_untagged > 0) html += fmt::format("<p class=\"note\">{} registered photos carry no GPS tag and are not listed.</p>", n_untagged);
+  return html + "\n";
+}
+
+}  // namespace skyquilt::evaluate

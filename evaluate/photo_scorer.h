@@ -1,0 +1,47 @@
+// Compares one rendered held-out photo with the real one, pixel by pixel: coverage, squared errors per group, SSIM, depth.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/thread_pool.h"
+#include "core/camera/camera.h"
+#include "core/geo/transform.h"
+#include "core/image/image.h"
+#include "core/scene/scene.h"
+#include "evaluate/coverage.h"
+#include "evaluate/metrics.h"
+#include "evaluate/pixel_groups.h"
+#include "evaluate/seam_errors.h"
+
+namespace skyquilt::evaluate {
+
+struct PhotoTask {
+  camera::Camera camera;  // at the scored size
+  geo::Rigid3d cam_from_enu;
+  image::Image8 photo;        // RGB, width * height of the camera
+  std::vector<uint8_t> mask;  // per pixel, 0 = ignored; empty: every pixel counts
+  image::ImageF true_depth;   // metres along z of the camera, NaN = none, any size; empty: unknown
+};
+
+struct SceneArea {
+  std::vector<BlockBox> boxes;
+  HeightRange heights;
+};
+
+struct PhotoFindings {
+  PhotoScore score;  // sizes, pixel counts, PSNR, SSIM and depth; the caller fills the rest
+  SeamErrors seams;
+  std::vector<metrics::SquaredError> per_block;  // one per box of the area, covered pixels
+  image::Image8 scored;                          // one channel, 1 = unmasked and covered
+  image::Image8 render;                          // what the report shows
+  image::ImageF z_depth;                         // metres along z of the camera, NaN where the render has none
+  image::ImageF true_depth;                      // brought to the scored size; empty when unknown
+};
+
+// `rendered` row-major, one per pixel of the camera. Same result for any number of threads.
+PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area,
+                         base::ThreadPool& threads);
+
+}  // namespace skyquilt::evaluate

@@ -1,0 +1,38 @@
+// Pictures of the report: photo, render, error and depth of a held-out photo, the colour ramp, the map's background.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/image/image.h"
+#include "evaluate/report_page.h"
+
+namespace skyquilt::evaluate {
+
+struct PhotoPixels {
+  const image::Image8* photo = nullptr;
+  const image::Image8* render = nullptr;
+  const image::ImageF* depth = nullptr;  // metres along z of the camera, NaN where there is none
+  std::span<const uint8_t> scored;       // row-major, 0 = masked or not covered
+};
+
+// Mean over RGB of |photo - render| in display values, one channel. Sizes must agree.
+image::ImageF AbsoluteError(const image::Image8& photo, const image::Image8& render);
+// Colours from 0 to error_high; pixels that are not scored show the photo in dimmed grey.
+image::Image8 ErrorPicture(const PhotoPixels& pixels, float error_high);
+// Values below which `low` and `high` shares of the finite values lie; false when there is none.
+bool PercentileRange(const image::ImageF& image, double low, double high, float* low_value, float* high_value);
+
+// Writes <prefix>_photo.jpg, _render.jpg, _error.png, _depth.png under report_folder/images, at most max_width pixels wide.
+// Throws base::InputError.
+PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::path& report_folder, const std::string& prefix, int max_width,
+                             float error_high);
+// Writes images/ramp.png and returns its relative path.
+std::string WriteColorRamp(const std::filesystem::path& report_folder);
+// products/orthophoto.png with its bounds in products/orthophoto.json, copied beside the page. Nothing when either is missing or damaged.
+std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& products_folder, const std::filesystem::path& report_folder);
+
+}  // namespace skyquilt::evaluate

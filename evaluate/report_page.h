@@ -1,0 +1,55 @@
+// report/index.html: one page that opens offline; style and script inside, pictures as files beside it.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/survey/survey.h"
+#include "evaluate/brightness_report.h"
+#include "evaluate/metrics.h"
+#include "evaluate/train_log.h"
+#include "partition/block.h"
+
+namespace skyquilt::evaluate {
+
+// Pictures of one held-out photo; paths relative to the page, empty when not written.
+struct PhotoImages {
+  std::string photo, render, error, depth;
+  int width = 0;  // pixels
+  int height = 0;
+  double depth_low_m = kNotMeasured;  // range of the depth colours
+  double depth_high_m = kNotMeasured;
+};
+
+// A picture under the block map, north up.
+struct MapBackground {
+  std::string image;                                  // relative to the page
+  Eigen::Vector2d min_enu = Eigen::Vector2d::Zero();  // metres
+  Eigen::Vector2d max_enu = Eigen::Vector2d::Zero();
+};
+
+struct ReportInput {
+  std::string title;  // name of the project
+  const Metrics* metrics = nullptr;
+  const survey::Survey* survey = nullptr;
+  const partition::BlockSet* blocks = nullptr;
+  const TrainLog* log = nullptr;
+  const BrightnessReport* brightness = nullptr;  // nothing or empty: no such section
+  std::vector<PhotoImages> images;               // entry i belongs to metrics->photos[i]
+  std::optional<MapBackground> background;
+  std::string color_ramp;    // picture of the colour map from low to high, relative to the page; empty: no legend
+  double error_high = 0.25;  // display values at the top of the error colours
+};
+
+std::string BuildReportPage(const ReportInput& input);
+
+// Parts of the page, each a <section> or a piece of one.
+std::string BlockMapSvg(const ReportInput& input);
+std::string PhotoSection(const ReportInput& input);
+std::string BrightnessSection(const ReportInput& input);  // empty without brightness
+std::string BlockTable(const ReportInput& input);
+std::string ResidualTable(const ReportInput& input);
+
+}  // namespace skyquilt::evaluate

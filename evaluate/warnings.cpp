@@ -1,0 +1,77 @@
+#include "evaluate/warnings.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace skyquilt::evaluate {
+
+namespace {
+
+// "a, b, c and 4 more"
+std::string Names(const std::vector<std::string>& names) {
+  constexpr size_t kShown = 8;
+  std::string text;
+  for (size_t i = 0; i < names.size() && i < kShown; ++i) text += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
+  return text;
+}
+
+std::string Photos(size_t n) {
+  return fmt::format("{} {}", n, n == 1 ? "photo" : "photos");
+}
+
+}  // namespace
+
+std::vector<std::string> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const TrainLog& log,
+                                         const Metrics& metrics) {
+  std::vector<std::string> warnings;
+  if (!survey.unregistered.empty()) {
+    warnings.push_back(
+        fmt::format("{} could not be registered and took no part: {}", Photos(survey.unregistered.size()), Names(survey.unregistered)));
+  }
+  if (!survey.georeferenced) {
+    warnings.emplace_back(
+        "No geo-reference: too few photos carry usable GPS. Positions are in a local frame of unknown scale; lengths are not metres");
+  } else {
+    std::vector<std::string> outliers;
+    for (const survey::Photo& photo : survey.photos) {
+      if (photo.gps && std::isfinite(photo.gps_residual_m) && !photo.gps_inlier) outliers.push_back(photo.name);
+    }
+    if (!outliers.empty()) {
+      warnings.push_back(fmt::format("The GPS tags of {} disagree with the reconstruction and were left out of the geo-reference: {}",
+                                     Photos(outliers.size()), Names(outliers)));
+    }
+  }
+  std::vector<std::string> unfinished;
+  for (const partition::Block& block : blocks.blocks) {
+    if (block.empty) {
+      warnings.push_back(fmt::format("Block {} is empty and was not trained: {}", block.name, block.empty_reason));
+    } else if (log.found && log.Find(block.name) == nullptr) {
+      unfinished.push_back(block.name);
+    }
+  }
+  if (!unfinished.empty()) warnings.push_back("No training record for these blocks: " + Names(unfinished));
+  for (const FieldLog& field : log.fields) {
+    if (!field.ok)
+      warnings.push_back(fmt::format("Training of {} failed: {}", field.name, field.reason.empty() ? "no reason was given" : field.reason));
+    if (field.ok && field.dropped_steps > 0) {
+      warnings.push_back(fmt::format("Training of {} dropped {} steps with non-finite loss or gradient", field.name, field.dropped_steps));
+    }
+  }
+  if (!log.found) warnings.emplace_back("No train.json: training time, speed and memory are unknown");
+  if (metrics.photos.empty()) {
+    warnings.emplace_back("No held-out photo was scored, so there are no quality figures");
+  } else if (std::isfinite(metrics.coverage) && metrics.coverage < 0.5) {
+    warnings.push_back(
+        fmt::format("Only {:.0f} % of the held-out pixels are covered by two training photos or more: the scores speak for that share only",
+                    100.0 * metrics.coverage));
+  }
+  if (!metrics.photos.empty() && metrics.photos.size() < static_cast<size_t>(metrics.n_test)) {
+    warnings.push_back(fmt::format("Only {} of {} held-out photos were scored", metrics.photos.size(), metrics.n_test));
+  }
+  return warnings;
+}
+
+}  // namespace skyquilt::evaluate

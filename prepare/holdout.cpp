@@ -1,0 +1,77 @@
+#include "prepare/holdout.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <sstream>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+[[noreturn]] void FailUsage(const std::string& text) {
+  throw base::UsageError("holdout '" + text + "' is not understood: use every:N (N >= 2), every:N:offset (0 <= offset < N), list:FILE or none");
+}
+
+int ParseInt(const std::string& digits, const std::string& text) {
+  int value = 0;
+  const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (digits.empty() || result.ec != std::errc() || result.ptr != digits.data() + digits.size()) FailUsage(text);
+  return value;
+}
+
+void MarkList(const std::filesystem::path& file, survey::Survey& survey) {
+  std::map<std::string, survey::Photo*> by_name;
+  for (survey::Photo& photo : survey.photos) by_name[photo.name] = &photo;
+  std::istringstream lines(base::ReadFile(file));
+  std::string line;
+  while (std::getline(lines, line)) {
+    const size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#') continue;
+    const std::string name = line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
+    const auto found = by_name.find(name);
+    if (found != by_name.end()) {
+      found->second->is_test = true;
+    } else if (std::find(survey.unregistered.begin(), survey.unregistered.end(), name) != survey.unregistered.end()) {
+      spdlog::warn("{}: '{}' has no pose and cannot be a test photo", file.string(), name);
+    } else {
+      throw base::InputError(file, "names '" + name + "', which is not among the photos",
+                             "Write names as in survey.json, relative to the photo folder");
+    }
+  }
+}
+
+}  // namespace
+
+Holdout ParseHoldout(const std::string& text) {
+  Holdout holdout;
+  if (text == "none") return holdout;
+  if (text.starts_with("list:") && text.size() > 5) {
+    holdout.list = text.substr(5);
+    return holdout;
+  }
+  if (!text.starts_with("every:")) FailUsage(text);
+  const std::string numbers = text.substr(6);
+  const size_t colon = numbers.find(':');
+  holdout.every = ParseInt(numbers.substr(0, colon), text);
+  if (colon != std::string::npos) holdout.offset = ParseInt(numbers.substr(colon + 1), text);
+  if (holdout.every < 2 || holdout.offset < 0 || holdout.offset >= holdout.every) FailUsage(text);
+  return holdout;
+}
+
+void MarkHoldout(const Holdout& holdout, survey::Survey& survey) {
+  for (survey::Photo& photo : survey.photos) photo.is_test = false;
+  if (!holdout.list.empty()) MarkList(holdout.list, survey);
+  if (holdout.every > 0) {
+    for (size_t i = 0; i < survey.photos.size(); ++i) {
+      survey.photos[i].is_test = i % static_cast<size_t>(holdout.every) == static_cast<size_t>(holdout.offset);
+    }
+  }
+  const bool any_train = std::any_of(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return !photo.is_test; });
+  if (!survey.photos.empty() && !any_train) throw base::UsageError("the holdout keeps every photo for testing: nothing remains to train on");
+}
+
+}  // namespace skyquilt::prepare

@@ -1,0 +1,229 @@
+#include "prepare/prepare.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/survey/colmap_model.h"
+#include "prepare/colmap_run.h"
+#include "prepare/georeference.h"
+#include "prepare/holdout.h"
+#include "prepare/input_folder.h"
+#include "prepare/photo_files.h"
+#include "prepare/prepare_report.h"
+#include "prepare/sparse_cloud.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A photo of the model together with its file.
+struct Registered {
+  const survey::ColmapImage* image;
+  size_t file;  // index into the usable photos
+};
+
+std::string Joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size() && i < 5; ++i) text += (i > 0 ? ", " : "") + names[i];
+  return names.size() > 5 ? text + ", ..." : text;
+}
+
+std::string BaseNameKey(const std::string& name) {
+  std::string key = fs::path(name).filename().string();
+  std::transform(key.begin(), key.end(), key.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return key;
+}
+
+// Photos by their name in the model: as written, else by a file name that occurs only once on both sides (models are often made from another
+// folder than the one given now).
+class PhotoFinder {
+ public:
+  PhotoFinder(const std::vector<PhotoFile>& files, const survey::ColmapModel& model) {
+    for (size_t i = 0; i < files.size(); ++i) {
+      by_name_[files[i].name] = i;
+      by_base_name_[BaseNameKey(files[i].name)].push_back(i);
+    }
+    for (const survey::ColmapImage& image : model.images) ++uses_[BaseNameKey(image.name)];
+  }
+  std::optional<size_t> Find(const std::string& name) const {
+    if (const auto exact = by_name_.find(name); exact != by_name_.end()) return exact->second;
+    const std::string key = BaseNameKey(name);
+    const auto same = by_base_name_.find(key);
+    if (same == by_base_name_.end() || same->second.size() != 1 || uses_.at(key) != 1) return std::nullopt;
+    return same->second.front();
+  }
+
+ private:
+  std::map<std::string, size_t> by_name_;
+  std::map<std::string, std::vector<size_t>> by_base_name_;
+  std::map<std::string, int> uses_;
+};
+
+// In name order. Photos without a file or of another size than their camera are left out with a warning.
+std::vector<Registered> MatchPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files, const fs::path& model_folder,
+                                    const fs::path& photo_root) {
+  const PhotoFinder finder(files, model);
+  std::vector<Registered> registered;
+  std::vector<std::string> missing;
+  std::vector<std::string> other_size;
+  std::string size_example;
+  for (const survey::ColmapImage& image : model.images) {
+    const std::optional<size_t> file = finder.Find(image.name);
+    if (!file) {
+      missing.push_back(image.name);
+      continue;
+    }
+    const camera::Camera& camera = model.cameras.at(image.camera_id);
+    const PhotoFile& photo = files[*file];
+    if (camera.width != photo.width || camera.height != photo.height) {
+      other_size.push_back(photo.name);
+      size_example = photo.name + " is " + std::to_string(photo.width) + "x" + std::to_string(photo.height) + ", its camera in the model " +
+                     std::to_string(camera.width) + "x" + std::to_string(camera.height) + " pixels";
+      continue;
+    }
+    registered.push_back({&image, *file});
+  }
+  if (!missing.empty()) {
+    spdlog::warn("{}: {} of {} photos of the model are not in {} (or cannot be read) and are left out: {}", model_folder.string(), missing.size(),
+                 model.images.size(), photo_root.string(), Joined(missing));
+  }
+  if (!other_size.empty()) {
+    spdlog::warn("{} photos have another size than their camera in the model and are left out: {} ({})", other_size.size(), Joined(other_size),
+                 size_example);
+  }
+  if (registered.size() < kMinPhotos) {
+    std::string found =
+        "only " + std::to_string(registered.size()) + " photos of the model can be used, at least " + std::to_string(kMinPhotos) + " are needed";
+    if (!missing.empty()) found += "; " + std::to_string(missing.size()) + " are not in " + photo_root.string() + " (" + Joined(missing) + ")";
+    if (!other_size.empty()) found += "; " + std::to_string(other_size.size()) + " have another size: " + size_example;
+    throw base::InputError(
+        model_folder, found,
+        other_size.empty() ? "Give the folder with the photos the model was made from" : "Give the photos in the size the model was made from");
+  }
+  std::sort(registered.begin(), registered.end(), [&](const Registered& a, const Registered& b) { return files[a.file].name < files[b.file].name; });
+  return registered;
+}
+
+std::vector<Station> MakeStations(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files) {
+  std::vector<Station> stations;
+  for (const Registered& entry : registered) {
+    const survey::PhotoTags& tags = files[entry.file].tags;
+    stations.push_back({entry.image->cam_from_world, tags.gps, tags.capture_time_s, tags.rtk});
+  }
+  return stations;
+}
+
+std::vector<survey::SparsePoint> ConvertPoints(const survey::ColmapModel& model, const geo::Similarity3d& enu_from_model) {
+  std::vector<survey::SparsePoint> points;
+  points.reserve(model.points.size());
+  for (const survey::ColmapPoint& point : model.points) {
+    // A point may be seen more than once in one photo; what counts is from how many photos.
+    const std::set<uint32_t> photos(point.image_ids.begin(), point.image_ids.end());
+    points.push_back({enu_from_model * point.x_in_world, point.rgb, static_cast<float>(point.error_px), static_cast<int>(photos.size())});
+  }
+  return points;
+}
+
+// Poses, tags and cameras into the survey; only cameras that are used are kept.
+void FillPhotos(const survey::ColmapModel& model, const std::vector<Registered>& registered, const std::vector<PhotoFile>& files,
+                const std::vector<std::string>& masks, const Georeference& georeference, survey::Survey& survey) {
+  std::map<uint32_t, int> camera_index;
+  std::optional<double> first_time_s;
+  for (const Registered& entry : registered) {
+    if (const auto time_s = files[entry.file].tags.capture_time_s) first_time_s = std::min(first_time_s.value_or(*time_s), *time_s);
+  }
+  for (size_t i = 0; i < registered.size(); ++i) {
+    const survey::ColmapImage& image = *registered[i].image;
+    const PhotoFile& file = files[registered[i].file];
+    const auto [found, is_new] = camera_index.emplace(image.camera_id, static_cast<int>(survey.cameras.size()));
+    if (is_new) survey.cameras.push_back(model.cameras.at(image.camera_id));
+    survey::Photo photo;
+    photo.name = file.name;
+    photo.mask = masks[registered[i].file];
+    photo.camera = found->second;
+    photo.cam_from_enu = geo::ChangeWorld(image.cam_from_world, georeference.enu_from_model);
+    photo.cam_from_enu.rotation.normalize();
+    photo.gps = file.tags.gps;
+    photo.relative_altitude_m = file.tags.relative_altitude_m;
+    if (file.tags.capture_time_s) photo.time_s = *file.tags.capture_time_s - *first_time_s;
+    photo.exposure = file.tags.exposure;
+    photo.gps_residual_m = georeference.residual_m[i];
+    photo.gps_inlier = georeference.inlier[i] != 0;
+    photo.flight = georeference.flight[i];
+    survey.photos.push_back(std::move(photo));
+  }
+}
+
+}  // namespace
+
+survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads) {
+  options.Validate();
+  const Holdout holdout = ParseHoldout(options.holdout);
+  InputFolder folders = FindInputs(input.photos, input.model, options.masks);
+  base::RequireWritableFolder(input.out_folder);
+
+  const std::vector<std::string> names =
+      ListPhotos(folders.photo_root, {folders.masks, input.out_folder, fs::absolute(input.out_folder).parent_path()});
+  PhotoSet photos = ReadPhotos(folders.photo_root, names, threads);
+  ResolveHeights(photos.usable);
+  const std::vector<std::string> masks = FindMasks(folders.masks, photos.usable);
+  base::ThrowIfCancelled();
+
+  if (folders.model.empty()) {
+    const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap", threads.size()};
+    folders.model = RunColmap(job, photos.usable, options);
+  }
+  const survey::ColmapModel model = survey::ReadColmapModel(folders.model);
+  const std::vector<Registered> registered = MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
+
+  const std::vector<Station> stations = MakeStations(registered, photos.usable);
+  Georeference georeference = folders.exact_origin ? KeepExactFrame(stations, *folders.exact_origin, options) : FitToGps(stations, options);
+  if (!georeference.ok) {
+    std::vector<Eigen::Vector3d> points;
+    for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
+    georeference.enu_from_model = LocalFrame(stations, points);
+    georeference.origin = {};
+  }
+
+  survey::Survey survey;
+  survey.origin = georeference.origin;
+  survey.georeferenced = georeference.ok;
+  survey.photo_root = folders.photo_root;
+  survey.fit = georeference.fit;
+  survey.fit.scale = georeference.enu_from_model.scale;
+  survey.truth = folders.truth;
+  FillPhotos(model, registered, photos.usable, masks, georeference, survey);
+  std::set<std::string> with_pose;
+  for (const survey::Photo& photo : survey.photos) with_pose.insert(photo.name);
+  for (const std::string& name : names) {
+    if (!with_pose.contains(name)) survey.unregistered.push_back(name);
+  }
+  survey.points = ConvertPoints(model, georeference.enu_from_model);
+  FilterSparsePoints(survey.points);
+  MeasureAgl(survey, threads);
+  MarkHoldout(holdout, survey);
+  base::ThrowIfCancelled();
+
+  LogSummary(survey, georeference);
+  if (!survey.unregistered.empty())
+    spdlog::warn("{} photos without a pose are not used: {}", survey.unregistered.size(), Joined(survey.unregistered));
+  WriteResidualTable(survey, georeference, input.out_folder / "geo_residuals.csv");
+  if (survey.georeferenced) {
+    WriteCameraMap(survey, input.out_folder / "cameras.geojson");
+  } else {
+    fs::remove(input.out_folder / "cameras.geojson");
+  }
+  survey::SaveSurvey(survey, input.out_folder);
+  return survey;
+}
+
+}  // namespace skyquilt::prepare

@@ -1,0 +1,91 @@
+#include "prepare/sparse_cloud.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/base/log.h"
+#include "core/base/order_statistics.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+// Fewer good points than this share or number: better some doubtful ones than none.
+constexpr size_t kFewPoints = 1000;
+constexpr double kFewShare = 0.2;
+constexpr size_t kMinAglPoints = 3;
+
+size_t CountGood(const std::vector<survey::SparsePoint>& points, double max_error_px, int min_track) {
+  return static_cast<size_t>(std::count_if(points.begin(), points.end(), [&](const survey::SparsePoint& point) {
+    return static_cast<double>(point.error_px) <= max_error_px && point.track_length >= min_track;
+  }));
+}
+
+// Bounds that hold 99 % of the points, grown by their own extent: a stray triangulation is far outside, a tower or a distant hill is not.
+void RemoveOutliers(std::vector<survey::SparsePoint>& points) {
+  if (points.size() < 20) return;
+  Eigen::Vector3d low;
+  Eigen::Vector3d high;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    values.reserve(points.size());
+    for (const survey::SparsePoint& point : points) values.push_back(point.x_in_enu[axis]);
+    low[axis] = base::Quantile(values, 0.005);
+    high[axis] = base::Quantile(std::move(values), 0.995);
+  }
+  // Perfectly flat ground still tolerates noise.
+  const double smallest = 1e-3 * (high - low).maxCoeff();
+  const Eigen::Vector3d margin = (high - low).cwiseMax(smallest);
+  std::erase_if(points, [&](const survey::SparsePoint& point) {
+    return (point.x_in_enu.array() < (low - margin).array()).any() || (point.x_in_enu.array() > (high + margin).array()).any();
+  });
+}
+
+}  // namespace
+
+void FilterSparsePoints(std::vector<survey::SparsePoint>& points) {
+  const size_t n_all = points.size();
+  const size_t enough = std::min(kFewPoints, static_cast<size_t>(kFewShare * static_cast<double>(n_all)));
+  const std::pair<double, int> conditions[] = {{kMaxPointErrorPx, kMinTrack}, {kMaxPointErrorPx, 2}, {std::numeric_limits<double>::infinity(), 0}};
+  for (const auto& [max_error_px, min_track] : conditions) {
+    if (CountGood(points, max_error_px, min_track) < enough) continue;
+    std::erase_if(points, [max = max_error_px, min = min_track](const survey::SparsePoint& point) {
+      return !(static_cast<double>(point.error_px) <= max && point.track_length >= min);
+    });
+    break;
+  }
+  const size_t n_good = points.size();
+  RemoveOutliers(points);
+  spdlog::info("sparse points: {} of {} kept ({} with large error or short track and {} far outliers left out)", points.size(), n_all, n_all - n_good,
+               n_good - points.size());
+}
+
+void MeasureAgl(survey::Survey& survey, base::ThreadPool& threads) {
+  threads.ParallelFor(static_cast<int64_t>(survey.photos.size()), [&](int64_t task, int /*thread*/) {
+    survey::Photo& photo = survey.photos[static_cast<size_t>(task)];
+    photo.agl_m = kNan;
+    const Eigen::Vector3d centre = photo.cam_from_enu.OriginInSource();
+    std::vector<std::pair<double, double>> below;  // horizontal distance squared, height
+    below.reserve(survey.points.size());
+    for (const survey::SparsePoint& point : survey.points) {
+      if (point.x_in_enu.z() < centre.z()) below.emplace_back((point.x_in_enu - centre).head<2>().squaredNorm(), point.x_in_enu.z());
+    }
+    if (below.size() < kMinAglPoints) return;
+    const auto n_near = std::min<size_t>(kAglPoints, below.size());
+    base::OrderStatistic(below, n_near - 1);
+    below.resize(n_near);
+    std::vector<double> heights;
+    for (const auto& [distance_squared, z] : below) heights.push_back(z);
+    const double height = centre.z() - base::Median(heights);
+    const double radius = 0.5 * height;
+    std::vector<double> within;
+    for (const auto& [distance_squared, z] : below) {
+      if (distance_squared <= radius * radius) within.push_back(z);
+    }
+    if (within.size() >= kMinAglPoints) photo.agl_m = centre.z() - base::Median(within);
+  });
+}
+
+}  // namespace skyquilt::prepare

@@ -1,0 +1,143 @@
+#include "products/camera_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "core/base/errors.h"
+#include "core/config/options.h"
+#include "core/image/image.h"
+
+namespace skyquilt::products {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+geo::Rigid3d PoseFromAxes(const Eigen::Vector3d& eye, const Eigen::Vector3d& right, const Eigen::Vector3d& down, const Eigen::Vector3d& forward) {
+  Eigen::Matrix3d cam_from_enu;
+  cam_from_enu.row(0) = right.transpose();
+  cam_from_enu.row(1) = down.transpose();
+  cam_from_enu.row(2) = forward.transpose();
+  geo::Rigid3d pose;
+  pose.rotation = Eigen::Quaterniond(cam_from_enu).normalized();
+  pose.translation = -(pose.rotation * eye);
+  return pose;
+}
+
+std::string FrameName(size_t index) {
+  const std::string digits = std::to_string(index);
+  return "frame_" + std::string(digits.size() < 5 ? 5 - digits.size() : 0, '0') + digits;
+}
+
+// "flight/a.jpg" -> "flight_a"; photos that would share a name keep their extension as well.
+std::string FileStem(const std::string& photo, std::set<std::string>* taken) {
+  std::string name = std::filesystem::path(photo).replace_extension().generic_string();
+  std::replace(name.begin(), name.end(), '/', '_');
+  if (!taken->insert(name).second) {
+    name = photo;
+    std::replace(name.begin(), name.end(), '/', '_');
+    while (!taken->insert(name).second) name += "_";
+  }
+  return name;
+}
+
+const survey::Photo& FindPhoto(const survey::Survey& survey, const std::string& name) {
+  std::vector<std::string> known;
+  for (const survey::Photo& photo : survey.photos) {
+    if (photo.name == name) return photo;
+    known.push_back(photo.name);
+  }
+  for (const survey::Photo& photo : survey.photos) {
+    if (std::filesystem::path(photo.name).filename() == name) return photo;
+  }
+  const std::string nearest = config::Nearest(name, known);
+  throw base::UsageError("the survey has no photo \"" + name + "\"" + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+}
+
+}  // namespace
+
+geo::Rigid3d PoseFromAngles(const Eigen::Vector3d& eye_enu, double yaw_deg, double pitch_deg, double roll_deg) {
+  const double yaw = yaw_deg * kRadPerDeg;
+  const double pitch = pitch_deg * kRadPerDeg;
+  const double roll = roll_deg * kRadPerDeg;
+  const Eigen::Vector3d forward(std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch), std::sin(pitch));
+  const Eigen::Vector3d level(std::cos(yaw), -std::sin(yaw), 0.0);
+  const Eigen::Vector3d below = forward.cross(level);
+  return PoseFromAxes(eye_enu, std::cos(roll) * level + std::sin(roll) * below, std::cos(roll) * below - std::sin(roll) * level, forward);
+}
+
+geo::Rigid3d PoseLookingAt(const Eigen::Vector3d& eye_enu, const Eigen::Vector3d& target_enu) {
+  const Eigen::Vector3d way = target_enu - eye_enu;
+  const double across = way.head<2>().norm();
+  const double yaw = across > 1e-9 * way.norm() ? std::atan2(way.x(), way.y()) : 0.0;
+  return PoseFromAngles(eye_enu, yaw / kRadPerDeg, std::atan2(way.z(), across) / kRadPerDeg, 0.0);
+}
+
+camera::Camera PinholeCamera(int width, int height, double fov_deg) {
+  SKYQUILT_CHECK(width > 0 && height > 0 && fov_deg > 0.0 && fov_deg < 180.0, std::to_string(fov_deg));
+  camera::Camera camera;
+  camera.model = camera::CameraModel::kSimplePinhole;
+  camera.width = width;
+  camera.height = height;
+  camera.params = {0.5 * width / std::tan(0.5 * fov_deg * kRadPerDeg), 0.5 * width, 0.5 * height};
+  return camera;
+}
+
+std::vector<View> ViewsOfPhotos(const survey::Survey& survey, const std::vector<std::string>& names, int width) {
+  if (width < 0) throw base::UsageError("width = " + std::to_string(width) + ": must be positive, or 0 for the photo's own");
+  std::vector<const survey::Photo*> photos;
+  for (const std::string& name : names) photos.push_back(&FindPhoto(survey, name));
+  if (names.empty()) {
+    for (const survey::Photo& photo : survey.photos) {
+      if (photo.is_test) photos.push_back(&photo);
+    }
+    if (photos.empty()) throw base::UsageError("the survey holds out no photo; name the photos whose views to render");
+  }
+  std::vector<View> views;
+  std::set<std::string> taken;
+  for (const survey::Photo* photo : photos) {
+    const camera::Camera& camera = survey.cameras.at(static_cast<size_t>(photo->camera));
+    const bool resize = width > 0 && width != camera.width;
+    views.push_back({FileStem(photo->name, &taken), resize ? camera.Resized(width, image::ScaledHeight(camera.width, camera.height, width)) : camera,
+                     photo->cam_from_enu});
+  }
+  return views;
+}
+
+std::vector<View> BuiltInPath(const scene::SceneInfo& info, const ProductOptions& options) {
+  options.Check();
+  constexpr double kFovDeg = 55.0;
+  constexpr double kDownDeg = 50.0;
+  const camera::Camera camera = PinholeCamera(options.video_width, options.video_height, kFovDeg);
+  const auto frames = static_cast<size_t>(std::max(1L, std::lround(options.video_seconds * options.video_fps)));
+  const Eigen::Vector3d extent = info.max_enu - info.min_enu;
+  Eigen::Vector3d centre = 0.5 * (info.min_enu + info.max_enu);
+  // The lower third: ground and low roofs, not the air beside a tower.
+  centre.z() = info.min_enu.z() + extent.z() / 3.0;
+  const double reach = 0.5 * extent.head<2>().minCoeff();
+  std::vector<View> views;
+  for (size_t i = 0; i < frames; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(frames);
+    View view;
+    view.name = FrameName(i);
+    view.camera = camera;
+    if (options.video_path == "orbit") {
+      const double clearance = (info.max_enu.z() - centre.z()) / std::sin(kDownDeg * kRadPerDeg);
+      const double distance = std::max(1.8 * reach, 1.3 * clearance);
+      const double azimuth = 2.0 * std::numbers::pi * share;
+      const double flat = distance * std::cos(kDownDeg * kRadPerDeg);
+      const Eigen::Vector3d offset(-flat * std::sin(azimuth), -flat * std::cos(azimuth), distance * std::sin(kDownDeg * kRadPerDeg));
+      view.cam_from_enu = PoseLookingAt(centre + offset, centre);
+    } else {
+      const double height = std::max(reach, 1.5 * (info.max_enu.z() - centre.z()));
+      const Eigen::Vector3d ahead = Eigen::Vector3d(extent.x(), extent.y(), 0.0).normalized();
+      const Eigen::Vector3d eye = centre + ahead * (-1.1 + 1.6 * share) * reach + Eigen::Vector3d(0.0, 0.0, height);
+      view.cam_from_enu = PoseLookingAt(eye, eye + ahead * 0.7 * height - Eigen::Vector3d(0.0, 0.0, height));
+    }
+    views.push_back(view);
+  }
+  return views;
+}
+
+}  // namespace skyquilt::products

@@ -1,0 +1,158 @@
+#include "products/map_preview.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/base/file.h"
+#include "core/base/order_statistics.h"
+#include "core/gis/geotiff.h"
+
+namespace skyquilt::products {
+namespace {
+
+constexpr int kLattice = 32;  // exact nodes along each side of a preview
+
+// Cell coordinates in the map for each pixel of a preview over the scene's box.
+class CellLookup {
+ public:
+  CellLookup(const scene::SceneInfo& info, const gis::MapGrid& grid, int width, int height) : width_(width), height_(height) {
+    const MapProjection projection(info, grid);
+    const double z = 0.5 * (info.min_enu.z() + info.max_enu.z());
+    for (int j = 0; j <= kLattice; ++j) {
+      for (int i = 0; i <= kLattice; ++i) {
+        const double x = info.min_enu.x() + (info.max_enu.x() - info.min_enu.x()) * i / kLattice;
+        const double y = info.max_enu.y() - (info.max_enu.y() - info.min_enu.y()) * j / kLattice;
+        nodes_.push_back(grid.CellOf(projection.EastingNorthing({x, y, z})));
+      }
+    }
+  }
+  Eigen::Vector2d At(int x, int y) const {
+    const double u = (x + 0.5) / width_ * kLattice;
+    const double v = (y + 0.5) / height_ * kLattice;
+    const int i = std::min(static_cast<int>(u), kLattice - 1);
+    const int j = std::min(static_cast<int>(v), kLattice - 1);
+    const double fu = u - i;
+    const double fv = v - j;
+    return (1 - fv) * ((1 - fu) * Node(j, i) + fu * Node(j, i + 1)) + fv * ((1 - fu) * Node(j + 1, i) + fu * Node(j + 1, i + 1));
+  }
+
+ private:
+  const Eigen::Vector2d& Node(int j, int i) const { return nodes_[static_cast<size_t>(j) * (kLattice + 1) + static_cast<size_t>(i)]; }
+  int width_;
+  int height_;
+  std::vector<Eigen::Vector2d> nodes_;
+};
+
+// The pixel of the reduced map nearest to a cell of the full one; null outside.
+const float* Sample(const gis::ReducedRaster& raster, const Eigen::Vector2d& cell) {
+  const double x = std::floor((cell.x() + 0.5) / raster.scale);
+  const double y = std::floor((cell.y() + 0.5) / raster.scale_down);
+  if (!(x >= 0.0 && y >= 0.0 && x < raster.image.width && y < raster.image.height)) return nullptr;
+  return raster.image.At(static_cast<int>(x), static_cast<int>(y));
+}
+
+image::Image8 OrthophotoPreview(const gis::ReducedRaster& raster, const CellLookup& lookup, int width, int height) {
+  image::Image8 preview(width, height, 3, 255);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const float* rgba = Sample(raster, lookup.At(x, y));
+      if (rgba == nullptr || rgba[3] < 128.0F) continue;
+      for (int c = 0; c < 3; ++c) preview.At(x, y)[c] = static_cast<uint8_t>(std::lround(std::clamp(rgba[c], 0.0F, 255.0F)));
+    }
+  }
+  return preview;
+}
+
+// Between the four nearest heights; a slope sampled pixel by pixel would show the raster's grid in the relief. NaN where the nearest is NaN.
+float SmoothSample(const gis::ReducedRaster& raster, const Eigen::Vector2d& cell) {
+  const float* nearest = Sample(raster, cell);
+  if (nearest == nullptr) return std::numeric_limits<float>::quiet_NaN();
+  const double x = std::clamp((cell.x() + 0.5) / raster.scale - 0.5, 0.0, raster.image.width - 1.0);
+  const double y = std::clamp((cell.y() + 0.5) / raster.scale_down - 0.5, 0.0, raster.image.height - 1.0);
+  const int x0 = static_cast<int>(x);
+  const int y0 = static_cast<int>(y);
+  const int x1 = std::min(x0 + 1, raster.image.width - 1);
+  const int y1 = std::min(y0 + 1, raster.image.height - 1);
+  const auto u = static_cast<float>(x - x0);
+  const auto v = static_cast<float>(y - y0);
+  const float smooth = (1 - v) * ((1 - u) * *raster.image.At(x0, y0) + u * *raster.image.At(x1, y0)) +
+                       v * ((1 - u) * *raster.image.At(x0, y1) + u * *raster.image.At(x1, y1));
+  return std::isfinite(*nearest) && std::isfinite(smooth) ? smooth : *nearest;
+}
+
+image::ImageF HeightPreview(const gis::ReducedRaster& raster, const CellLookup& lookup, int width, int height) {
+  image::ImageF preview(width, height, 1);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) *preview.At(x, y) = SmoothSample(raster, lookup.At(x, y));
+  }
+  return preview;
+}
+
+// Central difference where both neighbours exist, one-sided at the rim of the data, 0 for a lone pixel.
+double Slope(const image::ImageF& height, int x, int y, int dx, int dy, double cell_m) {
+  const auto at = [&](int px, int py) {
+    const bool inside = px >= 0 && py >= 0 && px < height.width && py < height.height;
+    return inside ? static_cast<double>(*height.At(px, py)) : std::numeric_limits<double>::quiet_NaN();
+  };
+  const double here = at(x, y);
+  const double before = at(x - dx, y - dy);
+  const double after = at(x + dx, y + dy);
+  if (std::isfinite(before) && std::isfinite(after)) return (after - before) / (2.0 * cell_m);
+  if (std::isfinite(after)) return (after - here) / cell_m;
+  if (std::isfinite(before)) return (here - before) / cell_m;
+  return 0.0;
+}
+
+}  // namespace
+
+image::Image8 ShadedRelief(const image::ImageF& height_m, double cell_m) {
+  std::vector<float> finite;
+  for (const float value : height_m.data) {
+    if (std::isfinite(value)) finite.push_back(value);
+  }
+  image::Image8 relief(height_m.width, height_m.height, 3, 255);
+  if (finite.empty()) return relief;
+  const auto rank = [&finite](double share) { return static_cast<size_t>(share * static_cast<double>(finite.size() - 1)); };
+  const float low = base::OrderStatistic(finite, rank(0.02));
+  const float high = std::max(base::OrderStatistic(finite, rank(0.98)), low + 1e-3F);
+  const image::Image8 colored = image::Colorize(height_m, low, high);
+  const Eigen::Vector3d light = Eigen::Vector3d(-1.0, 1.0, std::sqrt(2.0)).normalized();
+  for (int y = 0; y < height_m.height; ++y) {
+    for (int x = 0; x < height_m.width; ++x) {
+      if (!std::isfinite(*height_m.At(x, y))) continue;
+      const double to_east = Slope(height_m, x, y, 1, 0, cell_m);
+      const double to_north = -Slope(height_m, x, y, 0, 1, cell_m);
+      const double shade = 0.35 + 0.65 * std::max(0.0, Eigen::Vector3d(-to_east, -to_north, 1.0).normalized().dot(light)) * std::sqrt(2.0);
+      for (int c = 0; c < 3; ++c) {
+        const double value = static_cast<double>(colored.At(x, y)[c]) * shade;
+        relief.At(x, y)[c] = static_cast<uint8_t>(std::lround(std::min(value, 255.0)));
+      }
+    }
+  }
+  return relief;
+}
+
+void WriteMapPreviews(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& orthophoto,
+                      const std::filesystem::path& dsm, const std::filesystem::path& folder, int preview_width) {
+  const Eigen::Vector2d extent = (info.max_enu - info.min_enu).head<2>();
+  const int full_width = std::max(1, static_cast<int>(std::ceil(extent.x() / grid.resolution_m)));
+  const int width = std::min(preview_width, full_width);
+  const int height = std::clamp(static_cast<int>(std::lround(width * extent.y() / extent.x())), 1, 8 * preview_width);
+  const CellLookup lookup(info, grid, width, height);
+  if (!orthophoto.empty()) {
+    image::SavePng(OrthophotoPreview(gis::ReadReduced(orthophoto, preview_width), lookup, width, height), folder / "orthophoto.png");
+  }
+  if (!dsm.empty()) {
+    image::SavePng(ShadedRelief(HeightPreview(gis::ReadReduced(dsm, preview_width), lookup, width, height), extent.x() / width), folder / "dsm.png");
+  }
+  const nlohmann::ordered_json bounds = {{"min_enu", {info.min_enu.x(), info.min_enu.y()}},
+                                         {"max_enu", {info.max_enu.x(), info.max_enu.y()}},
+                                         {"resolution_m", grid.resolution_m},
+                                         {"crs", grid.georeferenced ? "EPSG:" + std::to_string(grid.zone.Epsg()) : "local"}};
+  base::WriteFileAtomically(folder / "orthophoto.json", bounds.dump(1) + "\n");
+}
+
+}  // namespace skyquilt::products

@@ -1,0 +1,146 @@
+#include "products/map_products.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/base/cancel.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/gis/geotiff.h"
+#include "products/map_preview.h"
+
+namespace skyquilt::products {
+namespace {
+
+constexpr float kNoHeight = -9999.0F;
+constexpr size_t kBatchRays = 1 << 16;
+
+// Rows of both maps that are written together.
+struct Band {
+  int first_row = 0;
+  int n_rows = 0;
+  std::vector<uint8_t> rgba;
+  std::vector<float> height;
+};
+
+// Where a ray's answer belongs.
+struct Pending {
+  std::vector<render::Ray> rays;
+  std::vector<size_t> cell;  // in the band
+  std::vector<double> start_height_m;
+  std::vector<render::RayColor> colors;
+};
+
+uint8_t ToByte(float display_value) {
+  return static_cast<uint8_t>(std::lround(255.0F * std::clamp(display_value, 0.0F, 1.0F)));
+}
+
+// Returns the number of cells that got data.
+int64_t Answer(const RayCaster& caster, double min_opacity, Pending* pending, Band* band) {
+  pending->colors.assign(pending->rays.size(), {});
+  caster(pending->rays, pending->colors);
+  int64_t filled = 0;
+  for (size_t i = 0; i < pending->rays.size(); ++i) {
+    const render::RayColor& color = pending->colors[i];
+    if (!(static_cast<double>(color.opacity) >= min_opacity)) continue;
+    const size_t cell = pending->cell[i];
+    // Colours come premultiplied; the map's alpha is all or nothing.
+    for (size_t c = 0; c < 3; ++c) {
+      const float straight = color.rgb_srgb[c] / color.opacity;
+      band->rgba[4 * cell + c] = std::isfinite(straight) ? ToByte(straight) : uint8_t{0};
+    }
+    band->rgba[4 * cell + 3] = 255;
+    // An opacity limit below one half can accept a ray without median depth.
+    const float depth = std::isfinite(color.depth_median) ? color.depth_median : color.depth;
+    if (std::isfinite(depth)) band->height[cell] = static_cast<float>(pending->start_height_m[i] - static_cast<double>(depth));
+    ++filled;
+  }
+  pending->rays.clear();
+  pending->cell.clear();
+  pending->start_height_m.clear();
+  return filled;
+}
+
+gis::GeoTiffSpec OrthophotoSpec(const gis::MapGrid& grid) {
+  gis::GeoTiffSpec spec;
+  spec.grid = grid;
+  spec.bands = 4;
+  spec.band_names = {"red", "green", "blue", "alpha"};
+  spec.metadata["TIFFTAG_SOFTWARE"] = "skyquilt";
+  return spec;
+}
+
+gis::GeoTiffSpec DsmSpec(const gis::MapGrid& grid) {
+  gis::GeoTiffSpec spec;
+  spec.grid = grid;
+  spec.type = gis::PixelType::kFloat32;
+  spec.nodata = static_cast<double>(kNoHeight);
+  spec.band_names = {grid.georeferenced ? "ellipsoidal height" : "local height"};
+  spec.unit = "m";
+  spec.metadata["TIFFTAG_SOFTWARE"] = "skyquilt";
+  spec.metadata["VERTICAL_REFERENCE"] =
+      grid.georeferenced ? "WGS84 ellipsoid (EPSG:4979), metres" : "local frame, metres if the survey's scale is known";
+  return spec;
+}
+
+}  // namespace
+
+MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options,
+                            const std::filesystem::path& folder) {
+  const auto begin = std::chrono::steady_clock::now();
+  MapProducts products;
+  products.grid = PlanMapGrid(info, options);
+  if (!options.ortho && !options.dsm) return products;
+  base::RequireWritableFolder(folder);
+  const gis::MapGrid& grid = products.grid;
+  if (!grid.georeferenced) spdlog::warn("the survey has no geo-reference: orthophoto and surface model are in local coordinates, without CRS");
+  std::optional<gis::GeoTiffWriter> ortho;
+  std::optional<gis::GeoTiffWriter> dsm;
+  if (options.ortho) ortho.emplace(products.orthophoto = folder / "orthophoto.tif", OrthophotoSpec(grid));
+  if (options.dsm) dsm.emplace(products.dsm = folder / "dsm.tif", DsmSpec(grid));
+
+  const MapRayMaker maker(info, grid);
+  base::Progress progress(options.ortho ? "orthophoto" : "surface model", static_cast<double>(grid.width) * grid.height, "cells");
+  Band band;
+  MapRays row_rays;
+  Pending pending;
+  int64_t filled = 0;
+  for (band.first_row = 0; band.first_row < grid.height; band.first_row += gis::GeoTiffWriter::kTile) {
+    base::ThrowIfCancelled();
+    band.n_rows = std::min(gis::GeoTiffWriter::kTile, grid.height - band.first_row);
+    const size_t cells = static_cast<size_t>(band.n_rows) * static_cast<size_t>(grid.width);
+    band.rgba.assign(4 * cells, 0);
+    band.height.assign(cells, kNoHeight);
+    for (int row = 0; row < band.n_rows; ++row) {
+      maker.MakeRow(band.first_row + row, &row_rays);
+      products.rays += static_cast<int64_t>(row_rays.rays.size());
+      for (size_t i = 0; i < row_rays.rays.size(); ++i) {
+        pending.rays.push_back(row_rays.rays[i]);
+        pending.cell.push_back(static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(row_rays.column[i]));
+        pending.start_height_m.push_back(row_rays.start_height_m[i]);
+        if (pending.rays.size() == kBatchRays) filled += Answer(caster, options.min_opacity, &pending, &band);
+      }
+      progress.Update(static_cast<double>(band.first_row + row) * grid.width);
+    }
+    filled += Answer(caster, options.min_opacity, &pending, &band);
+    if (ortho) ortho->WriteRows(band.first_row, band.n_rows, std::span<const uint8_t>(band.rgba));
+    if (dsm) dsm->WriteRows(band.first_row, band.n_rows, std::span<const float>(band.height));
+  }
+  progress.Update(static_cast<double>(grid.width) * grid.height);
+  if (ortho) ortho->Close();
+  if (dsm) dsm->Close();
+  progress.Finish();
+  products.filled = products.rays > 0 ? static_cast<double>(filled) / static_cast<double>(products.rays) : 0.0;
+  WriteMapPreviews(info, grid, products.orthophoto, products.dsm, folder, options.preview_width);
+  products.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return products;
+}
+
+MapProducts MakeMapProducts(const scene::Scene& scene, const ProductOptions& options, const std::filesystem::path& folder,
+                            base::ThreadPool& threads) {
+  return MakeMapProducts(scene.info(), CasterOf(scene, AppearanceOf(options.exposure, scene.info()), threads), options, folder);
+}
+
+}  // namespace skyquilt::products

@@ -1,0 +1,81 @@
+#include "products/render_views.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/progress.h"
+#include "products/video_writer.h"
+
+namespace skyquilt::products {
+namespace {
+
+// Renders and accounts for one view.
+std::vector<render::RayColor> Render(const ViewRenderer& renderer, const View& view, RenderStats* stats) {
+  base::ThrowIfCancelled();
+  const auto begin = std::chrono::steady_clock::now();
+  std::vector<render::RayColor> colors = renderer(view);
+  stats->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  stats->rays += static_cast<int64_t>(colors.size());
+  ++stats->views;
+  return colors;
+}
+
+std::string RateText(const RenderStats& stats) {
+  return base::FormatCount(stats.RaysPerSecond()) + " rays/s";
+}
+
+}  // namespace
+
+image::Image8 ColorImage(const std::vector<render::RayColor>& colors, int width, int height) {
+  image::Image8 picture(width, height, 3);
+  SKYQUILT_CHECK(colors.size() * 3 == picture.data.size(), std::to_string(colors.size()));
+  for (size_t i = 0; i < colors.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      const float value = colors[i].rgb_srgb[c];
+      picture.data[3 * i + c] = std::isfinite(value) ? static_cast<uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F))) : uint8_t{0};
+    }
+  }
+  return picture;
+}
+
+image::ImageF DepthImage(const std::vector<render::RayColor>& colors, int width, int height) {
+  image::ImageF depth(width, height, 1);
+  SKYQUILT_CHECK(colors.size() == depth.data.size(), std::to_string(colors.size()));
+  std::transform(colors.begin(), colors.end(), depth.data.begin(), [](const render::RayColor& color) { return color.depth_median; });
+  return depth;
+}
+
+RenderStats RenderViews(const ViewRenderer& renderer, const std::vector<View>& views, const std::filesystem::path& folder, bool with_depth) {
+  RenderStats stats;
+  base::RequireWritableFolder(folder);
+  base::Progress progress("render", static_cast<double>(views.size()), "views");
+  for (const View& view : views) {
+    const std::vector<render::RayColor> colors = Render(renderer, view, &stats);
+    image::SavePng(ColorImage(colors, view.camera.width, view.camera.height), folder / (view.name + ".png"));
+    if (with_depth) image::SaveFloatTiff(DepthImage(colors, view.camera.width, view.camera.height), folder / (view.name + "_depth.tiff"));
+    progress.Advance(1.0, RateText(stats));
+  }
+  progress.Finish(RateText(stats));
+  return stats;
+}
+
+RenderStats RenderVideo(const ViewRenderer& renderer, const std::vector<View>& views, int fps, const std::filesystem::path& file) {
+  SKYQUILT_CHECK(!views.empty(), "a video without frames");
+  RenderStats stats;
+  if (file.has_parent_path()) base::RequireWritableFolder(file.parent_path());
+  VideoWriter video(file, views.front().camera.width, views.front().camera.height, fps);
+  base::Progress progress("video", static_cast<double>(views.size()), "frames");
+  for (const View& view : views) {
+    video.Write(ColorImage(Render(renderer, view, &stats), view.camera.width, view.camera.height));
+    progress.Advance(1.0, RateText(stats));
+  }
+  video.Close();
+  progress.Finish(RateText(stats));
+  return stats;
+}
+
+}  // namespace skyquilt::products

@@ -1,0 +1,101 @@
+#include "products/video_writer.h"
+
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
+#include <optional>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "products/ffmpeg_pipe.h"
+
+namespace skyquilt::products {
+
+struct VideoWriter::Impl {
+  std::filesystem::path file;
+  std::filesystem::path partial;
+  int width = 0;
+  int height = 0;
+  bool closed = false;
+  std::string encoder;
+  std::optional<FfmpegPipe> ffmpeg;
+  cv::VideoWriter opencv;
+};
+
+VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int height, int fps, const std::string& ffmpeg)
+    : impl_(std::make_unique<Impl>()) {
+  SKYQUILT_CHECK(width > 0 && height > 0 && width % 2 == 0 && height % 2 == 0, std::to_string(width) + " x " + std::to_string(height));
+  SKYQUILT_CHECK(fps > 0, std::to_string(fps));
+  impl_->file = file;
+  // OpenCV picks the container by the extension.
+  impl_->partial = file;
+  impl_->partial.replace_extension(".partial.mp4");
+  impl_->width = width;
+  impl_->height = height;
+  impl_->ffmpeg = FfmpegPipe::Start(ffmpeg, impl_->partial, width, height, fps);
+  if (impl_->ffmpeg) {
+    impl_->encoder = "ffmpeg libx264";
+    return;
+  }
+  spdlog::warn("the program ffmpeg is not installed; the video is written as MPEG-4 instead of H.264");
+  impl_->encoder = "OpenCV mp4v";
+  bool opened = false;
+  try {
+    opened = impl_->opencv.open(impl_->partial.string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), fps, cv::Size(width, height));
+  } catch (const cv::Exception&) {
+    opened = false;
+  }
+  if (!opened) throw base::InputError(file, "cannot be written as a video", "Install ffmpeg, and check that its folder is writable");
+}
+
+VideoWriter::~VideoWriter() {
+  if (impl_->closed) return;
+  impl_->ffmpeg.reset();
+  impl_->opencv.release();
+  std::error_code ignored;
+  std::filesystem::remove(impl_->partial, ignored);
+}
+
+void VideoWriter::Write(const image::Image8& frame) {
+  SKYQUILT_CHECK(frame.width == impl_->width && frame.height == impl_->height && frame.channels == 3,
+                 std::to_string(frame.width) + " x " + std::to_string(frame.height));
+  if (impl_->ffmpeg) {
+    if (impl_->ffmpeg->Send(frame.data)) return;
+    // A signal to the group ends ffmpeg too.
+    base::ThrowIfCancelled();
+    throw base::InputError(impl_->file, "cannot be written: " + impl_->ffmpeg->Finish(), "Check free space and that ffmpeg has libx264");
+  }
+  // OpenCV's frames are blue, green, red.
+  cv::Mat bgr(frame.height, frame.width, CV_8UC3);
+  for (int y = 0; y < frame.height; ++y) {
+    for (int x = 0; x < frame.width; ++x) {
+      const uint8_t* rgb = frame.At(x, y);
+      bgr.at<cv::Vec3b>(y, x) = cv::Vec3b(rgb[2], rgb[1], rgb[0]);
+    }
+  }
+  impl_->opencv.write(bgr);
+}
+
+void VideoWriter::Close() {
+  SKYQUILT_CHECK(!impl_->closed, "closed twice");
+  if (impl_->ffmpeg) {
+    const std::string reason = impl_->ffmpeg->Finish();
+    impl_->ffmpeg.reset();
+    if (!reason.empty()) {
+      base::ThrowIfCancelled();
+      throw base::InputError(impl_->file, "cannot be written: " + reason, "Check free space and that ffmpeg has libx264");
+    }
+  } else {
+    impl_->opencv.release();
+  }
+  std::error_code error;
+  std::filesystem::rename(impl_->partial, impl_->file, error);
+  if (error) throw base::InputError(impl_->file, "cannot be put in place: " + error.message(), "Check permissions of its folder");
+  impl_->closed = true;
+}
+
+const std::string& VideoWriter::encoder() const {
+  return impl_->encoder;
+}
+
+}  // namespace skyquilt::products

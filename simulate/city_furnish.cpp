@@ -1,0 +1,239 @@
+// What stands in a cell between streets: houses with gardens, slabs of flats, towers on a plaza, a park with a pond.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "simulate/city_layout.h"
+
+namespace skyquilt::simulate {
+namespace {
+
+using Eigen::Vector2d;
+
+Pad MakePad(PadKind kind, const Vector2d& centre, const Vector2d& half, double yaw_deg = 0.0) {
+  const double yaw = yaw_deg * std::numbers::pi / 180.0;
+  Pad pad;
+  pad.kind = kind;
+  pad.centre = centre.cast<float>();
+  pad.half = half.cast<float>();
+  pad.cosine = static_cast<float>(std::cos(yaw));
+  pad.sine = static_cast<float>(std::sin(yaw));
+  return pad;
+}
+
+void AddGardenTree(const Vector2d& position, double low_m, double high_m, CityContents& contents, base::Random& random) {
+  Tree tree;
+  tree.position = position;
+  tree.height_m = random.Uniform(low_m, high_m);
+  tree.crown_radius_m = random.Uniform(0.28, 0.38) * tree.height_m;
+  tree.conifer = random.UniformDouble() < 0.2;
+  tree.seed = random.NextU32();
+  if (TreeFits(tree, contents, 0)) contents.trees.push_back(tree);
+}
+
+void FlatRoofed(Building& building, double height_m, double parapet_m) {
+  building.roof = RoofKind::kFlat;
+  building.eave_height_m = height_m;
+  building.ridge_height_m = height_m;
+  building.parapet_height_m = parapet_m;
+}
+
+// `front` is +1 when the street lies towards +y of the lot, -1 otherwise.
+void AddHouseLot(Cell& cell, double lot_x, double lot_width, double front, CityContents& contents, base::Random& random) {
+  const double street_y = front > 0.0 ? cell.max.y() : cell.min.y();
+  Building house;
+  house.kind = BuildingKind::kHouse;
+  house.length_m = random.Uniform(9.5, std::min(13.5, lot_width - 5.0));
+  house.width_m = random.Uniform(7.2, std::min(9.2, house.length_m));
+  house.eave_height_m = random.UniformDouble() < 0.45 ? random.Uniform(2.9, 3.6) : random.Uniform(5.0, 6.2);
+  const double pitch = std::tan(random.Uniform(26.0, 42.0) * std::numbers::pi / 180.0);
+  house.ridge_height_m = house.eave_height_m + 0.5 * house.width_m * pitch;
+  house.roof = random.UniformDouble() < 0.65 ? RoofKind::kGable : RoofKind::kHip;
+  const bool across = random.UniformDouble() < 0.25;
+  house.yaw_deg = (across ? 90.0 : 0.0) + random.Uniform(-4.0, 4.0);
+  if (random.UniformDouble() < 0.12) FlatRoofed(house, random.Uniform(3.0, 6.0), 0.3);
+  const double depth = across ? house.length_m : house.width_m;
+  const double breadth = across ? house.width_m : house.length_m;
+  const double setback = random.Uniform(4.0, 6.5);
+  house.centre = {lot_x + 1.0 + 0.5 * (lot_width - breadth) - 1.0, street_y - front * (setback + 0.5 * depth)};
+  house.seed = random.NextU32();
+  contents.buildings.push_back(house);
+
+  const double drive_x = house.centre.x() + 0.5 * breadth + 1.9;
+  const double drive_half = 0.5 * (setback + 0.7 * depth);
+  cell.pads.push_back(MakePad(PadKind::kDriveway, {drive_x, street_y - front * drive_half}, {1.5, drive_half}));
+  cell.pads.push_back(MakePad(PadKind::kPath, {house.centre.x() - 0.2 * breadth, street_y - front * 0.5 * setback}, {0.7, 0.5 * setback}));
+  const double behind = street_y - front * (setback + depth);
+  cell.pads.push_back(
+      MakePad(PadKind::kTerrace, {house.centre.x(), behind - front * 1.6}, {0.32 * breadth, 1.8}, house.yaw_deg - (across ? 90.0 : 0.0)));
+  if (random.UniformDouble() < 0.4) {
+    Car car;
+    car.position = {drive_x, street_y - front * random.Uniform(2.7, 4.0)};
+    car.yaw_deg = 90.0 + random.Uniform(-3.0, 3.0);
+    car.seed = random.NextU32();
+    contents.parked.push_back(car);
+  }
+  const double middle_y = 0.5 * (cell.min.y() + cell.max.y());
+  if (random.UniformDouble() < 0.3) {
+    Building shed;
+    shed.kind = BuildingKind::kShed;
+    shed.length_m = random.Uniform(2.8, 4.0);
+    shed.width_m = random.Uniform(2.2, 2.8);
+    shed.yaw_deg = random.Uniform(-8.0, 8.0);
+    FlatRoofed(shed, random.Uniform(2.1, 2.6), 0.0);
+    shed.centre = {lot_x + random.Uniform(3.0, lot_width - 3.0), middle_y + front * 2.6};
+    shed.seed = random.NextU32();
+    if ((shed.centre - house.centre).norm() > 9.5) contents.buildings.push_back(shed);
+  }
+  const int n_trees = static_cast<int>(random.Below(4));
+  for (int i = 0; i < n_trees; ++i) {
+    const double y = random.Uniform(std::min(middle_y + front * 1.5, behind), std::max(middle_y + front * 1.5, behind));
+    AddGardenTree({lot_x + random.Uniform(2.0, lot_width - 2.0), y}, 3.5, 8.0, contents, random);
+  }
+  if (random.UniformDouble() < 0.35) AddGardenTree({lot_x + random.Uniform(2.0, 5.0), street_y - front * 2.2}, 3.0, 4.5, contents, random);
+}
+
+void FurnishHouses(const CityPlan& plan, Cell& cell, CityContents& contents, base::Random& random) {
+  const double width = cell.max.x() - cell.min.x();
+  const int n_lots = std::max(1, static_cast<int>(std::lround(width / 17.0)));
+  const double lot_width = width / n_lots;
+  cell.lot_pitch_m = static_cast<float>(lot_width);
+  for (const double front : {-1.0, 1.0}) {
+    for (int lot = 0; lot < n_lots; ++lot) {
+      const double lot_x = cell.min.x() + lot * lot_width;
+      if (random.UniformDouble() < plan.lot_use) {
+        AddHouseLot(cell, lot_x, lot_width, front, contents, random);
+      } else {
+        for (int i = 0; i < 4; ++i) {
+          const double y = 0.5 * (cell.min.y() + cell.max.y()) + front * random.Uniform(3.0, 20.0);
+          AddGardenTree({lot_x + random.Uniform(2.0, lot_width - 2.0), y}, 4.0, 9.0, contents, random);
+        }
+      }
+    }
+  }
+}
+
+void AddParking(Cell& cell, const Vector2d& centre, const Vector2d& half, double fill, CityContents& contents, base::Random& random) {
+  cell.pads.push_back(MakePad(PadKind::kParking, centre, half));
+  for (double x = centre.x() - half.x() + 1.35; x < centre.x() + half.x() - 1.0; x += 2.7) {
+    for (const double side : {-1.0, 1.0}) {
+      const double pick = random.UniformDouble();
+      const double turn = random.Uniform(-2.0, 2.0);
+      const uint32_t seed = random.NextU32();
+      if (pick > fill) continue;
+      Car car;
+      car.position = {x, centre.y() + side * (half.y() - 2.5)};
+      car.yaw_deg = 90.0 + turn;
+      car.seed = seed;
+      contents.parked.push_back(car);
+    }
+  }
+}
+
+void FurnishFlats(Cell& cell, CityContents& contents, base::Random& random) {
+  const Vector2d size = cell.max - cell.min;
+  const Vector2d middle = 0.5 * (cell.min + cell.max);
+  for (const double side : {-1.0, 1.0}) {
+    Building slab;
+    slab.kind = BuildingKind::kApartment;
+    slab.length_m = random.Uniform(0.52, 0.68) * size.x();
+    slab.width_m = random.Uniform(10.5, 12.5);
+    slab.yaw_deg = random.Uniform(-2.0, 2.0);
+    FlatRoofed(slab, 3.0 * static_cast<double>(3 + random.Below(4)) + 0.6, random.Uniform(0.4, 0.7));
+    slab.centre = {middle.x() + random.Uniform(-0.08, 0.08) * size.x(), middle.y() + side * (0.5 * size.y() - 5.0 - 0.5 * slab.width_m)};
+    slab.seed = random.NextU32();
+    contents.buildings.push_back(slab);
+    cell.pads.push_back(MakePad(PadKind::kPath, {slab.centre.x(), slab.centre.y() + side * (0.5 * slab.width_m + 2.4)}, {0.5 * slab.length_m, 0.9}));
+  }
+  AddParking(cell, {middle.x() - 0.08 * size.x(), middle.y()}, {0.34 * size.x(), 8.0}, 0.5, contents, random);
+  cell.pads.push_back(MakePad(PadKind::kDriveway, {cell.max.x() - 0.12 * size.x(), middle.y()}, {0.14 * size.x(), 2.6}));
+  for (int i = 0; i < 14; ++i) {
+    const double x = random.Uniform(cell.min.x() + 2.0, cell.max.x() - 2.0);
+    const double y = random.Uniform(cell.min.y() + 2.0, cell.max.y() - 2.0);
+    if (std::abs(y - middle.y()) > 10.5) AddGardenTree({x, y}, 5.0, 10.0, contents, random);
+  }
+}
+
+void FurnishTowers(Cell& cell, CityContents& contents, base::Random& random) {
+  const Vector2d size = cell.max - cell.min;
+  const Vector2d middle = 0.5 * (cell.min + cell.max);
+  cell.pads.push_back(MakePad(PadKind::kPlaza, middle, {0.5 * size.x() - 2.5, 0.5 * size.y() - 2.5}));
+  for (const double side : {-1.0, 1.0}) {
+    Building tower;
+    tower.kind = BuildingKind::kTower;
+    tower.length_m = random.Uniform(15.0, 19.0);
+    tower.width_m = random.Uniform(13.0, 15.0);
+    tower.yaw_deg = random.UniformDouble() < 0.5 ? random.Uniform(-3.0, 3.0) : 90.0 + random.Uniform(-3.0, 3.0);
+    FlatRoofed(tower, 3.1 * static_cast<double>(6 + random.Below(4)) + 1.0, random.Uniform(0.6, 1.0));
+    tower.centre = middle + Vector2d(side * 0.27 * size.x(), side * random.Uniform(0.12, 0.2) * size.y());
+    tower.seed = random.NextU32();
+    contents.buildings.push_back(tower);
+  }
+  Building hall;
+  hall.kind = BuildingKind::kHall;
+  hall.length_m = random.Uniform(15.0, 18.0);
+  hall.width_m = random.Uniform(10.0, 13.0);
+  hall.yaw_deg = random.Uniform(-2.0, 2.0);
+  FlatRoofed(hall, random.Uniform(4.5, 6.0), 0.4);
+  hall.centre = middle + Vector2d(-0.25 * size.x(), 0.28 * size.y());
+  hall.seed = random.NextU32();
+  contents.buildings.push_back(hall);
+  AddParking(cell, {middle.x() + 0.24 * size.x(), middle.y() - 0.27 * size.y()}, {0.2 * size.x(), 7.6}, 0.6, contents, random);
+  for (double x = cell.min.x() + 4.0; x < cell.max.x() - 3.0; x += 7.5) {
+    AddGardenTree({x, cell.min.y() + 4.0}, 5.0, 7.0, contents, random);
+    AddGardenTree({x, cell.max.y() - 4.0}, 5.0, 7.0, contents, random);
+  }
+}
+
+void FurnishPark(Cell& cell, CityContents& contents, base::Random& random) {
+  const Vector2d size = cell.max - cell.min;
+  const Vector2d middle = 0.5 * (cell.min + cell.max);
+  Pond pond;
+  pond.centre = middle + Vector2d(random.Uniform(0.12, 0.2) * size.x(), random.Uniform(0.1, 0.2) * size.y());
+  pond.radii = {random.Uniform(8.0, 11.0), random.Uniform(6.0, 8.5)};
+  contents.ponds.push_back(pond);
+  const double diagonal = 0.5 * size.norm();
+  cell.pads.push_back(MakePad(PadKind::kPath, middle - Vector2d(0.16 * size.x(), 0.0), {1.1, 0.5 * size.y()}, random.Uniform(-6.0, 6.0)));
+  cell.pads.push_back(MakePad(PadKind::kPath, middle - Vector2d(0.0, 0.18 * size.y()), {0.98 * diagonal * 0.7, 1.1}, random.Uniform(-5.0, 5.0)));
+  const int n_trees = static_cast<int>(size.x() * size.y() / 75.0);
+  for (int i = 0; i < n_trees; ++i) {
+    const Vector2d at(random.Uniform(cell.min.x() + 3.0, cell.max.x() - 3.0), random.Uniform(cell.min.y() + 3.0, cell.max.y() - 3.0));
+    AddGardenTree(at, 6.0, 12.0, contents, random);
+  }
+}
+
+}  // namespace
+
+bool TreeFits(const Tree& tree, const CityContents& contents, size_t first_building) {
+  for (size_t i = first_building; i < contents.buildings.size(); ++i) {
+    if (contents.buildings[i].DistanceTo(tree.position) < 1.15 * tree.crown_radius_m + 0.6) return false;
+  }
+  for (const Pond& pond : contents.ponds) {
+    if (pond.Radius(tree.position.x(), tree.position.y()) < 1.3) return false;
+  }
+  return true;
+}
+
+void FurnishCell(const CityPlan& plan, Cell& cell, CityContents& contents, base::Random& random) {
+  // Beyond the built-up rectangle cells are meadows.
+  const Vector2d middle = 0.5 * (cell.min + cell.max);
+  if ((middle - plan.min).minCoeff() < -0.25 * plan.pitch_m || (plan.max - middle).minCoeff() < -0.25 * plan.pitch_m) cell.kind = CellKind::kField;
+  switch (cell.kind) {
+    case CellKind::kHouses:
+      FurnishHouses(plan, cell, contents, random);
+      break;
+    case CellKind::kFlats:
+      FurnishFlats(cell, contents, random);
+      break;
+    case CellKind::kTowers:
+      FurnishTowers(cell, contents, random);
+      break;
+    case CellKind::kPark:
+      FurnishPark(cell, contents, random);
+      break;
+    case CellKind::kField:
+      break;
+  }
+}
+
+}  // namespace skyquilt::simulate

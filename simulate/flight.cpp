@@ -1,0 +1,211 @@
+#include "simulate/flight.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "core/base/order_statistics.h"
+#include "core/base/random.h"
+#include "simulate/noise.h"
+
+namespace skyquilt::simulate {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kPhotoInterval_s = 2.0;
+constexpr double kObliquePitch_deg = -60.0;
+
+double Radians(double deg) {
+  return deg * std::numbers::pi / 180.0;
+}
+
+struct Station {
+  Vector2d position;
+  double altitude_m;
+  double yaw_deg;
+  double pitch_deg;
+  int line;
+};
+
+// Positions with exactly this spacing, centred on [low, high].
+std::vector<double> Spread(double low, double high, double spacing) {
+  const int n = std::max(1, static_cast<int>(std::lround((high - low) / spacing)) + 1);
+  std::vector<double> at;
+  at.reserve(static_cast<size_t>(n));
+  for (int i = 0; i < n; ++i) at.push_back(0.5 * (low + high) + (i - 0.5 * (n - 1)) * spacing);
+  return at;
+}
+
+void AddNadirLines(const Preset& preset, const Vector2d& min, const Vector2d& max, double altitude_m, int* line, std::vector<Station>* stations) {
+  const double across = altitude_m * preset.camera.width / preset.camera.FocalX() * (1.0 - preset.side_overlap);
+  const double along = altitude_m * preset.camera.height / preset.camera.FocalY() * (1.0 - preset.forward_overlap);
+  const double inset = preset.flight_inset_m;
+  bool north = true;
+  for (const double x : Spread(min.x() + inset, max.x() - inset, across)) {
+    std::vector<double> ys = Spread(min.y() + inset, max.y() - inset, along);
+    if (!north) std::reverse(ys.begin(), ys.end());
+    for (const double y : ys) stations->push_back({{x, y}, altitude_m, north ? 0.0 : 180.0, -90.0, *line});
+    ++*line;
+    north = !north;
+  }
+}
+
+// Along the edges, looking inwards; the optical axis meets the ground a quarter of the way into the area.
+void AddObliqueLines(const Preset& preset, double altitude_m, int* line, std::vector<Station>* stations) {
+  const double slant = altitude_m / std::sin(Radians(-kObliquePitch_deg));
+  const double spacing = slant * preset.camera.width / preset.camera.FocalX() * (1.0 - preset.oblique_overlap);
+  const double back = altitude_m / std::tan(Radians(-kObliquePitch_deg));
+  const Vector2d centre = 0.5 * (preset.area_min + preset.area_max);
+  const Vector2d half = 0.5 * (preset.area_max - preset.area_min);
+  constexpr std::array<double, 4> kYaw = {0.0, 180.0, 90.0, 270.0};
+  for (int i = 0; i < std::min(preset.oblique_lines, 4); ++i) {
+    const double yaw = kYaw[static_cast<size_t>(i)];
+    const Vector2d forward(std::sin(Radians(yaw)), std::cos(Radians(yaw)));
+    const Vector2d right(forward.y(), -forward.x());
+    const double half_depth = std::abs(forward.dot(half));
+    const double half_breadth = std::abs(right.x() * half.x()) + std::abs(right.y() * half.y());
+    for (const double s : Spread(-half_breadth, half_breadth, spacing)) {
+      const Vector2d at = centre - forward * (0.5 * half_depth + back) + right * s;
+      stations->push_back({at, altitude_m, yaw, kObliquePitch_deg, *line});
+    }
+    ++*line;
+  }
+}
+
+std::vector<Station> PlanStations(const Preset& preset) {
+  std::vector<Station> stations;
+  int line = 0;
+  const std::vector<double>& altitudes = preset.altitudes_agl_m;
+  if (std::all_of(altitudes.begin(), altitudes.end(), [&](double a) { return a == altitudes.front(); })) {
+    AddNadirLines(preset, preset.area_min, preset.area_max, altitudes.front(), &line, &stations);
+  } else {
+    const Vector2d block = (preset.area_max - preset.area_min).cwiseQuotient(Vector2d(preset.columns, preset.rows));
+    for (int row = 0; row < preset.rows; ++row) {
+      for (int column = 0; column < preset.columns; ++column) {
+        const Vector2d min = preset.area_min + block.cwiseProduct(Vector2d(column, row));
+        AddNadirLines(preset, min, min + block,
+                      altitudes[static_cast<size_t>(row) * static_cast<size_t>(preset.columns) + static_cast<size_t>(column)], &line, &stations);
+      }
+    }
+  }
+  double mean = 0.0;
+  for (const double altitude : altitudes) mean += altitude / static_cast<double>(altitudes.size());
+  AddObliqueLines(preset, mean, &line, &stations);
+  return stations;
+}
+
+// In [-1, 1], over some ten photos from one side to the other.
+double Wander(size_t photo, uint32_t noise_seed) {
+  const auto noise = static_cast<double>(ValueNoise(static_cast<float>(photo) / 9.0F, 0.5F, noise_seed));
+  return std::clamp(1.5 * noise, -1.0, 1.0);
+}
+
+// Stops relative to the survey's exposure for every photo: a slow wander and steps now and then.
+std::vector<double> ExposureStops(const Preset& preset, size_t n_photos) {
+  base::Random random(preset.seed, 51);
+  const auto noise_seed = random.NextU32();
+  std::vector<double> stops;
+  double jump = 0.0;
+  int until_jump = 5 + static_cast<int>(random.Below(6));
+  for (size_t i = 0; i < n_photos; ++i) {
+    if (until_jump-- == 0) {
+      jump = random.Uniform(-1.0, 1.0);
+      until_jump = 6 + static_cast<int>(random.Below(10));
+    }
+    stops.push_back(preset.exposure_drift_stops * Wander(i, noise_seed) + preset.exposure_jumps_stops * jump);
+  }
+  return stops;
+}
+
+void SetExposure(double stops, PhotoPlan& photo) {
+  constexpr double kNormalTime_s = 1.0 / 800.0;
+  photo.iso = stops > 1.0 ? 200.0 : 100.0;
+  const double wanted = kNormalTime_s * std::exp2(stops) * 100.0 / photo.iso;
+  // Cameras tag exposure times as 1/n, long ones in hundredths of a second: the tag is then exact.
+  const double n = std::round(1.0 / wanted);
+  photo.exposure_time_s = n >= 10.0 ? 1.0 / n : std::round(100.0 * wanted) / 100.0;
+}
+
+double Exposure(const PhotoPlan& photo) {
+  return photo.exposure_time_s * photo.iso / (100.0 * photo.f_number * photo.f_number);
+}
+
+// Gains from the settings, and what changes the light without the tags knowing.
+void SetLight(const Preset& preset, std::vector<PhotoPlan>& photos) {
+  std::vector<double> exposure;
+  exposure.reserve(photos.size());
+  for (const PhotoPlan& photo : photos) exposure.push_back(Exposure(photo));
+  const double median = base::Median(exposure);
+  base::Random random(preset.seed, 52);
+  const uint32_t color_seed = base::Random(preset.seed, 53).NextU32();
+  for (size_t i = 0; i < photos.size(); ++i) {
+    PhotoPlan& photo = photos[i];
+    photo.gain = exposure[i] / median;
+    // Normal exposure is the median photo's without the offset.
+    photo.development_gain = photo.gain * std::exp2(preset.exposure_offset_stops + preset.exposure_error_stops * random.Normal());
+    photo.color_drift_stops = preset.color_drift_stops * Wander(i, color_seed);
+  }
+}
+
+}  // namespace
+
+std::array<double, 3> LightRgb(const PhotoPlan& photo) {
+  return {photo.development_gain * std::exp2(photo.color_drift_stops), photo.development_gain,
+          photo.development_gain * std::exp2(-photo.color_drift_stops)};
+}
+
+geo::Rigid3d PoseFromGimbal(const Vector3d& position, double yaw_deg, double pitch_deg, double roll_deg) {
+  const double yaw = Radians(yaw_deg);
+  const double pitch = Radians(pitch_deg);
+  const Vector3d forward(std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch), std::sin(pitch));
+  const Vector3d level(std::cos(yaw), -std::sin(yaw), 0.0);
+  const Eigen::AngleAxisd roll(Radians(roll_deg), forward);
+  const Vector3d right = roll * level;
+  Eigen::Matrix3d enu_from_cam;
+  enu_from_cam.col(0) = right;
+  enu_from_cam.col(1) = forward.cross(right);
+  enu_from_cam.col(2) = forward;
+  geo::Rigid3d pose;
+  pose.rotation = Eigen::Quaterniond(Eigen::Matrix3d(enu_from_cam.transpose())).normalized();
+  pose.translation = -(pose.rotation * position);
+  return pose;
+}
+
+std::vector<PhotoPlan> PlanFlight(const Preset& preset, double takeoff_z_m) {
+  const std::vector<Station> stations = PlanStations(preset);
+  const std::vector<double> stops = ExposureStops(preset, stations.size());
+  std::vector<PhotoPlan> photos;
+  for (size_t i = 0; i < stations.size(); ++i) {
+    const Station& station = stations[i];
+    base::Random random(preset.seed, 1000 + i);
+    PhotoPlan photo;
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "IMG_%04zu.jpg", i + 1);
+    photo.name = name.data();
+    photo.line = station.line;
+    photo.oblique = station.pitch_deg > -89.0;
+    photo.time_s = kPhotoInterval_s * static_cast<double>(i);
+    photo.yaw_deg = station.yaw_deg + 1.2 * random.Normal();
+    photo.pitch_deg = std::max(station.pitch_deg + 0.7 * random.Normal(), -90.0);
+    photo.roll_deg = 0.7 * random.Normal();
+    const Vector3d drift(0.25 * random.Normal(), 0.25 * random.Normal(), 0.3 * random.Normal());
+    const Vector3d position = Vector3d(station.position.x(), station.position.y(), takeoff_z_m + station.altitude_m) + drift;
+    photo.cam_from_enu = PoseFromGimbal(position, photo.yaw_deg, photo.pitch_deg, photo.roll_deg);
+    const double noise = preset.gps_noise_m;
+    const Vector3d gps_error(noise * random.Normal(), noise * random.Normal(), 1.5 * noise * random.Normal());
+    photo.tagged_position = position + gps_error;
+    photo.relative_altitude_m = position.z() - takeoff_z_m + 0.15 * random.Normal();
+    SetExposure(preset.exposure_offset_stops + stops[i], photo);
+    photo.exposure_tagged = preset.exposure_tags == ExposureTags::kAll || (preset.exposure_tags == ExposureTags::kHalf && i % 2 == 0);
+    photos.push_back(photo);
+  }
+  SetLight(preset, photos);
+  return photos;
+}
+
+}  // namespace skyquilt::simulate

@@ -1,0 +1,13 @@
+// How trees and cars look.
+#pragma once
+
+#include "simulate/car.h"
+#include "simulate/surface.h"
+#include "simulate/tree.h"
+
+namespace skyquilt::simulate {
+
+Surface TreeSurface(const Tree& tree, const Hit& hit);
+Surface CarSurface(const Car& car, const Hit& hit);
+
+}  // namespace skyquilt::simulate

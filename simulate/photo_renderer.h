@@ -1,0 +1,43 @@
+// Renders what a camera of a simulated survey sees: linear colour, true depth, and where moving things are.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/base/thread_pool.h"
+#include "core/camera/camera.h"
+#include "core/geo/transform.h"
+#include "core/image/image.h"
+#include "simulate/world.h"
+
+namespace skyquilt::simulate {
+
+struct Rendering {
+  image::ImageF rgb_linear;  // radiance before the photo's exposure
+  image::Image8 usable;      // 0 where a moving car or its shadow is seen, 255 elsewhere; empty when there is none
+};
+
+class PhotoRenderer {
+ public:
+  // samples_per_pixel 1, 4 or 16, on a regular grid. Holds references: world and camera must outlive it.
+  PhotoRenderer(const World& world, const camera::Camera& camera, int samples_per_pixel, bool soft_shadows);
+
+  // The same picture for any number of threads.
+  Rendering Render(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const;
+  // Metres along the camera's z axis at pixel centres, moving cars included; NaN where the sky is seen.
+  image::ImageF Depth(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const;
+
+ private:
+  struct Frame;  // one photo's pose in single precision
+  void Trace(const Frame& frame, const MovingScene& moving, int tile_x, int tile_y, raytrace::RayPacket& rays, uint32_t* on_moving) const;
+  void ShadeTile(const Frame& frame, const MovingScene& moving, int tile_x, int tile_y, Rendering& out, std::vector<char>& row_masked) const;
+  Eigen::Vector3f Shade(const Hit& hit, const Surface& surface, float sun_share) const;
+
+  const World& world_;
+  const camera::Camera& camera_;
+  int grid_;  // samples per pixel side
+  bool soft_shadows_;
+  std::vector<Eigen::Vector3f> sample_direction_;  // camera frame, unit, (width * grid) x (height * grid)
+};
+
+}  // namespace skyquilt::simulate

@@ -1,0 +1,68 @@
+// The simulated places: numbers only. Options are laid over a preset once, checked, and everything after works from the result.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/camera/camera.h"
+#include "simulate/simulate_options.h"
+
+namespace skyquilt::simulate {
+
+enum class Landscape { kCity, kTidalFlat };
+enum class ExposureTags { kAll, kNone, kHalf };  // kHalf: the first photo has them, the second has not, and so on
+
+struct CityPlan {
+  Eigen::Vector2d min = Eigen::Vector2d::Zero();  // built-up rectangle, ENU metres; fields beyond
+  Eigen::Vector2d max = Eigen::Vector2d::Zero();
+  double pitch_m = 66.0;                            // between street centre lines
+  Eigen::Vector2d phase = Eigen::Vector2d::Zero();  // one crossing of streets
+  double tower_share = 0.1;                         // of the cells between streets
+  double flats_share = 0.2;
+  double park_share = 0.1;
+  double lot_use = 0.95;  // share of house lots that are built on
+  double trees = 1.0;     // density relative to the town
+  int tree_detail = 2;    // subdivisions of each crown
+};
+
+struct Preset {
+  std::string name;
+  Landscape landscape = Landscape::kCity;
+  uint32_t seed = 1;
+  Eigen::Vector2d area_min = Eigen::Vector2d::Zero();  // what is surveyed and cut into blocks, ENU metres
+  Eigen::Vector2d area_max = Eigen::Vector2d::Zero();
+  double surround_m = 150.0;  // ground modelled beyond the area on every side
+  double terrain_step_m = 2.0;
+  double terrain_amplitude_m = 1.5;
+  CityPlan city;
+  int rows = 2;
+  int columns = 2;
+  std::vector<double> altitudes_agl_m;  // rows * columns, row-major from the south-west
+  double forward_overlap = 0.8;
+  double side_overlap = 0.7;
+  double flight_inset_m = 0.0;  // flight lines end this far inside the area
+  double speed_mps = 8.0;
+  int oblique_lines = 0;  // 0, 2 or 4: passes along the edges looking inwards, 30 degrees off nadir
+  double oblique_overlap = 0.65;
+  camera::Camera camera;
+  double gps_noise_m = 0.5;
+  double exposure_drift_stops = 0.2;
+  double exposure_jumps_stops = 0.0;
+  double exposure_offset_stops = 0.0;
+  double exposure_error_stops = 0.0;
+  double color_drift_stops = 0.0;
+  double vignetting = 0.0;
+  ExposureTags exposure_tags = ExposureTags::kAll;
+  int moving_cars = 3;
+  double sun_azimuth_deg = 140.0;
+  double sun_elevation_deg = 48.0;
+  double ambient_voxel_m = 3.0;
+  double sky_clouds = 0.0;  // 0..1, contrast of the clouds that wet surfaces mirror
+};
+
+// The preset with the options laid over it. Throws base::UsageError naming the option, what was given and what is allowed.
+Preset ResolvePreset(const SimulateOptions& options);
+
+}  // namespace skyquilt::simulate

@@ -1,0 +1,99 @@
+#include "simulate/simulate.h"
+
+#include <chrono>
+#include <string>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "simulate/flight.h"
+#include "simulate/photo_renderer.h"
+#include "simulate/preset.h"
+#include "simulate/sparse_points.h"
+#include "simulate/survey_writer.h"
+#include "simulate/world.h"
+
+namespace skyquilt::simulate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSeedsPerPhoto = 170;
+constexpr const char* kStarted = "simulate.started";
+
+// Makes the folders; removes an earlier simulation, and nothing else.
+void PrepareFolder(const fs::path& folder) {
+  base::RequireWritableFolder(folder);
+  const bool ours = fs::exists(folder / "simulate.json") || fs::exists(folder / kStarted);
+  for (const char* name : {"images", "sparse", "truth"}) {
+    const fs::path part = folder / name;
+    if (!fs::exists(part)) continue;
+    if (!ours && !(fs::is_directory(part) && fs::is_empty(part))) {
+      throw base::InputError(part, "exists and was not made by simulate", "Choose an empty or new folder");
+    }
+  }
+  base::WriteFileAtomically(folder / kStarted, "");
+  fs::remove(folder / "simulate.json");
+  for (const char* name : {"images", "sparse", "truth"}) fs::remove_all(folder / name);
+  for (const char* name : {"images", "sparse/0", "truth/depth", "truth/masks"}) fs::create_directories(folder / name);
+}
+
+}  // namespace
+
+SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder, base::ThreadPool& threads) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Preset preset = ResolvePreset(options);
+  PrepareFolder(folder);
+  const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
+  spdlog::info("simulate: building {}", preset.name);
+  const World world(preset, options.light_intensity, threads);
+  const Eigen::Vector2f middle = (0.5 * (preset.area_min + preset.area_max)).cast<float>();
+  const std::vector<PhotoPlan> photos = PlanFlight(preset, static_cast<double>(world.terrain().Height(middle.x(), middle.y())));
+  const PhotoRenderer renderer(world, preset.camera, options.samples_per_pixel, options.soft_shadows);
+
+  SimulateSummary summary;
+  summary.n_photos = static_cast<int>(photos.size());
+  summary.n_buildings = static_cast<int>(world.buildings().size());
+  std::vector<SurfaceSeed> seeds;
+  base::Progress progress("simulate", static_cast<double>(photos.size()), "photos");
+  for (size_t i = 0; i < photos.size(); ++i) {
+    base::ThrowIfCancelled();
+    const PhotoPlan& photo = photos[i];
+    const MovingScene moving = world.MovingAt(photo.time_s);
+    const Rendering rendering = renderer.Render(photo.cam_from_enu, moving, threads);
+    const image::Image8 pixels = Develop(rendering.rgb_linear, {LightRgb(photo), preset.vignetting, preset.camera.PrincipalPoint()});
+    WritePhoto(folder, photo, pixels, preset.camera, frame, options.jpeg_quality);
+    if (!rendering.usable.Empty()) {
+      image::SavePng(rendering.usable, folder / "truth" / "masks" / (photo.name + ".png"));
+      ++summary.n_masks;
+    }
+    if (i % static_cast<size_t>(options.test_every) == 0) {
+      const image::ImageF depth = renderer.Depth(photo.cam_from_enu, moving, threads);
+      image::SaveFloatTiff(depth, folder / "truth" / "depth" / (fs::path(photo.name).stem().string() + ".tiff"));
+      ++summary.n_test;
+    }
+    for (SurfaceSeed& seed : ChooseSeeds(preset.camera, static_cast<int>(i), kSeedsPerPhoto, preset.seed)) {
+      const uint8_t* rgb = pixels.At(seed.x, seed.y);
+      seed.rgb = {rgb[0], rgb[1], rgb[2]};
+      seeds.push_back(seed);
+    }
+    progress.Advance(1.0);
+  }
+  progress.Finish();
+  std::vector<survey::ColmapPoint> points = MakeSparsePoints(world, preset.camera, photos, seeds, preset.seed, threads);
+  summary.n_points = static_cast<int>(points.size());
+  WriteModel(folder, preset.camera, photos, std::move(points));
+  WriteExposureTruth(folder, photos, preset);
+  WriteBuildingTruth(folder, world.buildings(), preset, frame);
+  base::ThrowIfCancelled();
+  WriteSummary(folder, preset, options, frame, photos.size());
+  fs::remove(folder / kStarted);
+  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  spdlog::info("simulate: {} photos ({} test views), {} points, {} buildings in {}", summary.n_photos, summary.n_test, summary.n_points,
+               summary.n_buildings, base::FormatDuration(summary.seconds));
+  return summary;
+}
+
+}  // namespace skyquilt::simulate

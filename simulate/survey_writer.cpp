@@ -1,0 +1,176 @@
+#include "simulate/survey_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/base/file.h"
+#include "core/config/options.h"
+#include "core/image/srgb.h"
+#include "core/survey/exif.h"
+
+namespace skyquilt::simulate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kFirstPhoto_s = 1777888800.0;  // 2026-05-04 10:00:00 on the camera's clock
+// So bright that grass in the sun comes out in the middle of the scale.
+constexpr float kNormalExposure = 1.35F;
+
+// The options as they were given, for the record.
+class JsonVisitor : public config::OptionVisitor {
+ public:
+  void Field(const std::string& key, bool& value, const std::string& /*help*/) override { json[key] = value; }
+  void Field(const std::string& key, int& value, const std::string& /*help*/) override { json[key] = value; }
+  void Field(const std::string& key, double& value, const std::string& /*help*/) override { json[key] = value; }
+  void Field(const std::string& key, std::string& value, const std::string& /*help*/) override { json[key] = value; }
+  void Field(const std::string& key, std::vector<double>& value, const std::string& /*help*/) override { json[key] = value; }
+  Json json = Json::object();
+};
+
+double Rounded(double value, double unit) {
+  return std::round(value / unit) * unit;
+}
+
+}  // namespace
+
+image::Image8 Develop(const image::ImageF& rgb_linear, const Development& development) {
+  // 8-bit values by table: finer than one step of sRGB at its steepest.
+  constexpr size_t kTableSize = 1U << 15U;
+  static const std::array<uint8_t, kTableSize + 1> table = [] {
+    std::array<uint8_t, kTableSize + 1> made{};
+    for (size_t i = 0; i <= kTableSize; ++i) {
+      made[i] = static_cast<uint8_t>(std::lround(255.0F * image::SrgbFromLinear(static_cast<float>(i) / static_cast<float>(kTableSize))));
+    }
+    return made;
+  }();
+  image::Image8 out(rgb_linear.width, rgb_linear.height, 3);
+  std::array<float, 3> scale{};
+  for (size_t c = 0; c < scale.size(); ++c) scale[c] = static_cast<float>(development.gain[c]) * kNormalExposure;
+  const Eigen::Vector2d& centre = development.principal_point;
+  const Eigen::Vector2d farthest = centre.cwiseAbs().cwiseMax((Eigen::Vector2d(out.width, out.height) - centre).cwiseAbs());
+  const double log_per_px2 = std::log1p(-development.vignetting) / farthest.squaredNorm();
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
+      const double distance2 = (Eigen::Vector2d(x + 0.5, y + 0.5) - centre).squaredNorm();
+      // Exactly 1 without vignetting.
+      const auto falloff = static_cast<float>(std::exp(log_per_px2 * distance2));
+      const float* light = rgb_linear.At(x, y);
+      uint8_t* stored = out.At(x, y);
+      for (size_t c = 0; c < scale.size(); ++c) {
+        const float value = std::clamp(light[c] * (falloff * scale[c]), 0.0F, 1.0F);
+        stored[c] = table[static_cast<size_t>(std::lrint(value * static_cast<float>(kTableSize)))];
+      }
+    }
+  }
+  return out;
+}
+
+void WritePhoto(const std::filesystem::path& folder, const PhotoPlan& photo, const image::Image8& pixels, const camera::Camera& camera,
+                const geo::EnuFrame& frame, int jpeg_quality) {
+  const std::filesystem::path file = folder / "images" / photo.name;
+  image::SaveJpeg(pixels, file, jpeg_quality);
+  survey::PhotoTags tags;
+  tags.gps = frame.GeodeticFromEnu(photo.tagged_position);
+  tags.absolute_altitude_m = Rounded(tags.gps->height_m, 0.01);
+  tags.relative_altitude_m = Rounded(photo.relative_altitude_m, 0.01);
+  tags.gimbal_yaw_deg = Rounded(std::remainder(photo.yaw_deg, 360.0), 0.01);
+  tags.gimbal_pitch_deg = Rounded(photo.pitch_deg, 0.01);
+  tags.gimbal_roll_deg = Rounded(photo.roll_deg, 0.01);
+  if (photo.exposure_tagged) tags.exposure = {photo.exposure_time_s, photo.f_number, photo.iso};
+  // A sensor 13.2 mm wide, as on common survey drones.
+  tags.focal_length_mm = Rounded(13.2 * camera.FocalX() / camera.width, 0.01);
+  tags.focal_length_35mm = std::round(36.0 * camera.FocalX() / camera.width);
+  tags.capture_time_s = kFirstPhoto_s + photo.time_s;
+  tags.make = "Skyquilt";
+  tags.model = "Simulated";
+  survey::WritePhotoTags(tags, file);
+}
+
+void WriteModel(const std::filesystem::path& folder, const camera::Camera& camera, const std::vector<PhotoPlan>& photos,
+                std::vector<survey::ColmapPoint> points) {
+  survey::ColmapModel model;
+  model.cameras[1] = camera;
+  for (size_t i = 0; i < photos.size(); ++i) model.images.push_back({static_cast<uint32_t>(i + 1), 1, photos[i].name, photos[i].cam_from_enu});
+  model.points = std::move(points);
+  std::filesystem::create_directories(folder / "sparse" / "0");
+  survey::WriteColmapText(model, folder / "sparse" / "0");
+}
+
+void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const Preset& preset) {
+  Json list = Json::array();
+  for (const PhotoPlan& photo : photos) {
+    list.push_back({{"name", photo.name},
+                    {"gain", photo.gain},
+                    {"light_rgb", LightRgb(photo)},
+                    {"exposure_time_s", photo.exposure_time_s},
+                    {"f_number", photo.f_number},
+                    {"iso", photo.iso}});
+  }
+  const Json json = {
+      {"about",
+       "gain: factor on linear light by the photo's settings relative to the median photo, t * ISO / (100 N^2); light_rgb: factors on linear red, "
+       "green and blue light that the photo really got relative to normal exposure, with the survey's exposure offset and what no tag tells, "
+       "brightness errors and colour drift; vignetting: share of light lost in the corner farthest from the principal point, elsewhere the factor "
+       "is exp(log(1 - vignetting) r^2), r the distance from the principal point over that corner's"},
+      {"vignetting", preset.vignetting},
+      {"photos", list}};
+  base::WriteFileAtomically(folder / "truth" / "exposure.json", json.dump(1) + "\n");
+}
+
+void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<Building>& buildings, const Preset& preset,
+                        const geo::EnuFrame& frame) {
+  Json list = Json::array();
+  for (size_t i = 0; i < buildings.size(); ++i) {
+    const Building& b = buildings[i];
+    const geo::Geodetic place = frame.GeodeticFromEnu({b.centre.x(), b.centre.y(), b.ground_z_m});
+    const bool inside = (b.centre - preset.area_min).minCoeff() >= 0.0 && (preset.area_max - b.centre).minCoeff() >= 0.0;
+    list.push_back({{"id", i},
+                    {"kind", KindName(b.kind)},
+                    {"roof", RoofName(b.roof)},
+                    {"longitude_deg", place.longitude_deg},
+                    {"latitude_deg", place.latitude_deg},
+                    {"east_m", b.centre.x()},
+                    {"north_m", b.centre.y()},
+                    {"ground_z_m", b.ground_z_m},
+                    {"length_m", b.length_m},
+                    {"width_m", b.width_m},
+                    {"eave_height_m", b.eave_height_m},
+                    {"ridge_height_m", b.ridge_height_m},
+                    {"parapet_height_m", b.parapet_height_m},
+                    {"yaw_deg", b.yaw_deg},
+                    {"inside_area", inside}});
+  }
+  const Json json = {
+      {"about",
+       "ENU metres about the survey's origin; heights above ground_z_m (ground at the centre); yaw of the length axis counter-clockwise "
+       "from east; flat roofs: eave = ridge = roof deck, the parapet stands above it"},
+      {"buildings", list}};
+  base::WriteFileAtomically(folder / "truth" / "buildings.json", json.dump(1) + "\n");
+}
+
+void WriteSummary(const std::filesystem::path& folder, const Preset& preset, SimulateOptions options, const geo::EnuFrame& frame, size_t n_photos) {
+  JsonVisitor visitor;
+  options.Visit(visitor);
+  const geo::Geodetic& origin = frame.origin();
+  const Json json = {{"preset", preset.name},
+                     {"seed", preset.seed},
+                     {"photos", n_photos},
+                     {"origin", {{"latitude_deg", origin.latitude_deg}, {"longitude_deg", origin.longitude_deg}, {"height_m", origin.height_m}}},
+                     {"exact_frame", true},
+                     {"gps_noise_m", preset.gps_noise_m},
+                     {"test_every", options.test_every},
+                     {"options", visitor.json},
+                     {"blocks",
+                      {{"rows", preset.rows},
+                       {"columns", preset.columns},
+                       {"min_enu", {preset.area_min.x(), preset.area_min.y()}},
+                       {"max_enu", {preset.area_max.x(), preset.area_max.y()}},
+                       {"altitudes_agl_m", preset.altitudes_agl_m}}}};
+  base::WriteFileAtomically(folder / "simulate.json", json.dump(1) + "\n");
+}
+
+}  // namespace skyquilt::simulate

@@ -1,0 +1,23 @@
+// A tree: a trunk and a few lumpy crowns.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "simulate/mesh.h"
+
+namespace skyquilt::simulate {
+
+struct Tree {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  // ENU metres
+  double ground_z_m = 0.0;
+  double height_m = 7.0;
+  double crown_radius_m = 2.5;
+  bool conifer = false;
+  uint32_t seed = 0;
+};
+
+// detail: subdivisions of each crown's sphere, 0..3.
+void AddTree(const Tree& tree, uint32_t index, int detail, Mesh& mesh);
+
+}  // namespace skyquilt::simulate

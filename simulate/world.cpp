@@ -1,0 +1,127 @@
+#include "simulate/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/building_material.h"
+#include "simulate/ground_material.h"
+#include "simulate/noise.h"
+#include "simulate/object_material.h"
+#include "simulate/tidal_material.h"
+
+namespace skyquilt::simulate {
+
+World::World(const Preset& preset, double light_intensity, base::ThreadPool& threads)
+    : seed_(HashCell(static_cast<int>(preset.seed), 0, 4711U)),
+      sky_(preset.sun_azimuth_deg, preset.sun_elevation_deg, light_intensity, preset.sky_clouds, seed_ + 5U) {
+  const Eigen::Vector2d surround = Eigen::Vector2d::Constant(preset.surround_m);
+  if (preset.landscape == Landscape::kCity) {
+    BuildCity(preset, preset.area_min - surround, preset.area_max + surround);
+  } else {
+    BuildTidalFlat(preset, preset.area_min - surround, preset.area_max + surround);
+  }
+  scene_ = std::make_unique<raytrace::TracedScene>(mesh_.position, mesh_.triangle);
+  ambient_ = std::make_unique<AmbientVolume>(mesh_, *scene_, sky_, static_cast<float>(preset.ambient_voxel_m), threads);
+}
+
+const std::vector<Building>& World::buildings() const {
+  static const std::vector<Building> none;
+  return city_ ? city_->contents().buildings : none;
+}
+
+void World::BuildCity(const Preset& preset, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
+  city_ = std::make_unique<CityLayout>(preset.city, ground_min, ground_max, seed_);
+  CityContents& contents = city_->contents();
+  const auto Rolling = [&](double east, double north) { return RollingHeight(east, north, preset.terrain_amplitude_m, seed_ + 1U); };
+  for (Pond& pond : contents.ponds) {
+    pond.level_z_m = Rolling(pond.centre.x(), pond.centre.y()) - 0.5;
+  }
+  terrain_ = std::make_unique<Terrain>(ground_min, ground_max, preset.terrain_step_m, [&](double east, double north) {
+    double height = Rolling(east, north);
+    for (const Pond& pond : contents.ponds) {
+      const double r = pond.Radius(east, north);
+      if (r > 1.5) continue;
+      // A level shore first, then the basin.
+      const auto shore = static_cast<double>(Smoothstep(1.5F, 1.05F, static_cast<float>(r)));
+      const double basin = pond.level_z_m + (r - 1.0) * 1.6;
+      height += shore * (basin - height);
+    }
+    return height;
+  });
+  terrain_->AddTo(mesh_);
+  for (size_t i = 0; i < contents.ponds.size(); ++i) {
+    AddWater(contents.ponds[i].centre, 1.3 * contents.ponds[i].radii, contents.ponds[i].level_z_m, static_cast<uint32_t>(i));
+  }
+  const auto Ground = [&](const Eigen::Vector2d& p) {
+    return static_cast<double>(terrain_->Height(static_cast<float>(p.x()), static_cast<float>(p.y())));
+  };
+  for (size_t i = 0; i < contents.buildings.size(); ++i) {
+    contents.buildings[i].ground_z_m = Ground(contents.buildings[i].centre);
+    building_axis_.push_back(contents.buildings[i].Axis().cast<float>());
+    AddBuilding(contents.buildings[i], static_cast<uint32_t>(i), mesh_);
+  }
+  for (size_t i = 0; i < contents.trees.size(); ++i) {
+    contents.trees[i].ground_z_m = Ground(contents.trees[i].position);
+    AddTree(contents.trees[i], static_cast<uint32_t>(i), preset.city.tree_detail, mesh_);
+  }
+  for (size_t i = 0; i < contents.parked.size(); ++i) {
+    contents.parked[i].ground_z_m = Ground(contents.parked[i].position);
+    AddCar(contents.parked[i], static_cast<uint32_t>(i), mesh_);
+  }
+  base::Random random(seed_, 3);
+  const Eigen::Vector2d beyond = Eigen::Vector2d::Constant(40.0);
+  moving_ = city_->MakeMovingCars(preset.moving_cars, preset.area_min - beyond, preset.area_max + beyond, random);
+}
+
+void World::BuildTidalFlat(const Preset& preset, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
+  channels_ = std::make_unique<TidalChannels>(preset.area_min, preset.area_max, preset.terrain_amplitude_m, seed_);
+  terrain_ = std::make_unique<Terrain>(ground_min, ground_max, preset.terrain_step_m,
+                                       [&](double east, double north) { return channels_->Height(east, north); });
+  terrain_->AddTo(mesh_);
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(0.5);
+  AddWater(0.5 * (ground_min + ground_max), 0.5 * (ground_max - ground_min) - margin, channels_->water_z_m(), 0);
+}
+
+void World::AddWater(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double z, uint32_t object) {
+  const auto Corner = [&](double x, double y) {
+    return Eigen::Vector3f(static_cast<float>(centre.x() + x * half.x()), static_cast<float>(centre.y() + y * half.y()), static_cast<float>(z));
+  };
+  mesh_.AddQuad(Corner(-1, -1), Corner(1, -1), Corner(1, 1), Corner(-1, 1), {Part::kWater, object});
+}
+
+MovingScene World::MovingAt(double time_s) const {
+  std::vector<Car> cars;
+  Mesh mesh;
+  for (size_t i = 0; i < moving_.size(); ++i) {
+    Car car = moving_[i].At(time_s);
+    car.ground_z_m = static_cast<double>(terrain_->Height(static_cast<float>(car.position.x()), static_cast<float>(car.position.y())));
+    AddCar(car, static_cast<uint32_t>(i), mesh);
+    cars.push_back(car);
+  }
+  raytrace::TracedScene scene(mesh.position, mesh.triangle);
+  return {std::move(cars), std::move(mesh), std::move(scene)};
+}
+
+Surface World::SurfaceAt(const Hit& hit) const {
+  switch (hit.tag.part) {
+    case Part::kGround:
+      return city_ ? CityGround(*city_, hit, seed_) : TidalSand(hit, static_cast<float>(channels_->water_z_m()), seed_);
+    case Part::kWater:
+      return city_ ? PondWater(hit, seed_) : TidalWater(*terrain_, hit, seed_);
+    case Part::kTrunk:
+    case Part::kLeaves:
+      return TreeSurface(city_->contents().trees[hit.tag.object], hit);
+    case Part::kCarBody:
+    case Part::kCarGlass:
+    case Part::kCarTyre:
+      return CarSurface(city_->contents().parked[hit.tag.object], hit);
+    default:
+      return BuildingSurface(city_->contents().buildings[hit.tag.object], building_axis_[hit.tag.object], hit);
+  }
+}
+
+Surface World::MovingSurfaceAt(const Hit& hit, const std::vector<Car>& cars) {
+  return CarSurface(cars[hit.tag.object], hit);
+}
+
+}  // namespace skyquilt::simulate

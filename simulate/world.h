@@ -1,0 +1,61 @@
+// A simulated place: geometry, light and the look of everything in it, made from a preset. Read-only once made; thread-safe.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "core/base/thread_pool.h"
+#include "core/raytrace/traced_scene.h"
+#include "simulate/ambient_volume.h"
+#include "simulate/city_layout.h"
+#include "simulate/preset.h"
+#include "simulate/sky.h"
+#include "simulate/surface.h"
+#include "simulate/terrain.h"
+#include "simulate/tidal_channels.h"
+
+namespace skyquilt::simulate {
+
+// The moving cars where they are at one moment.
+struct MovingScene {
+  std::vector<Car> cars;
+  Mesh mesh;
+  raytrace::TracedScene scene;
+};
+
+class World {
+ public:
+  World(const Preset& preset, double light_intensity, base::ThreadPool& threads);
+
+  const Mesh& mesh() const { return mesh_; }
+  const raytrace::TracedScene& scene() const { return *scene_; }
+  const Sky& sky() const { return sky_; }
+  const AmbientVolume& ambient() const { return *ambient_; }
+  const Terrain& terrain() const { return *terrain_; }
+  // Everything of known size, empty without a city.
+  const std::vector<Building>& buildings() const;
+
+  MovingScene MovingAt(double time_s) const;
+  // Looks of the fixed scenery and, given their cars, of moving things.
+  Surface SurfaceAt(const Hit& hit) const;
+  static Surface MovingSurfaceAt(const Hit& hit, const std::vector<Car>& cars);
+
+ private:
+  void BuildCity(const Preset& preset, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  void BuildTidalFlat(const Preset& preset, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  void AddWater(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double z, uint32_t object);
+
+  uint32_t seed_;
+  std::unique_ptr<CityLayout> city_;
+  std::unique_ptr<TidalChannels> channels_;
+  std::unique_ptr<Terrain> terrain_;
+  std::vector<MovingCar> moving_;
+  std::vector<Eigen::Vector2f> building_axis_;
+  Mesh mesh_;
+  std::unique_ptr<raytrace::TracedScene> scene_;
+  Sky sky_;
+  std::unique_ptr<AmbientVolume> ambient_;
+};
+
+}  // namespace skyquilt::simulate

@@ -1,0 +1,161 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/cli.h"
+#include "app/commands/command.h"
+#include "app/commands/describe.h"
+#include "bench/numerics/numerics_bench.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+
+namespace skyquilt::app {
+namespace {
+
+struct Result {
+  int status = 0;
+  std::string out;
+  std::string err;
+};
+
+Result Call(std::vector<std::string> words) {
+  words.insert(words.begin(), "skyquilt");
+  std::vector<char*> argv;
+  argv.reserve(words.size());
+  for (std::string& word : words) argv.push_back(word.data());
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  Result result;
+  result.status = RunCommandLine(static_cast<int>(argv.size()), argv.data());
+  result.out = testing::internal::GetCapturedStdout();
+  result.err = testing::internal::GetCapturedStderr();
+  return result;
+}
+
+const std::vector<std::string> kCommands = {"run", "simulate", "prepare", "partition", "train", "merge", "render", "evaluate", "info"};
+
+TEST(CommandLine, EveryCommandHasHelpWithExamples) {
+  for (const std::string& command : kCommands) {
+    const Result result = Call({command, "--help"});
+    EXPECT_EQ(result.status, 0) << command;
+    EXPECT_NE(result.out.find("Examples"), std::string::npos) << command;
+    EXPECT_NE(result.out.find("skyquilt " + command), std::string::npos) << command;
+  }
+  EXPECT_NE(Call({"--help"}).out.find("Examples"), std::string::npos);
+}
+
+TEST(CommandLine, WrongWordsSuggestTheNearestAndLeaveWithTwo) {
+  Result result = Call({"trian", "out"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("'train'"), std::string::npos) << result.err;
+  result = Call({"train", "out", "--stpes", "5"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("'--steps'"), std::string::npos) << result.err;
+  result = Call({"train"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(Call({}).status, 2);
+  EXPECT_EQ(Call({"run", "-o", "x", "--time-budget", "soon"}).status, 2);
+  result = Call({"info", "--defaults", "--set", "train.levles=3"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("train.levels"), std::string::npos) << result.err;
+}
+
+TEST(CommandLine, VersionAndDefaults) {
+  const Result version = Call({"--version"});
+  EXPECT_EQ(version.status, 0);
+  EXPECT_EQ(version.out.rfind("skyquilt ", 0), 0U);
+  const Result defaults = Call({"info", "--defaults", "--set", "train.levels=3"});
+  EXPECT_EQ(defaults.status, 0);
+  EXPECT_NE(defaults.out.find("levels = 3"), std::string::npos);
+}
+
+TEST(CommandLine, PresetsGoByName) {
+  EXPECT_NE(Call({"info", "--defaults", "--config", "quality"}).out.find("image_width = 1500"), std::string::npos);
+  EXPECT_EQ(Call({"info", "--defaults", "--config", "default"}).out, Call({"info", "--defaults"}).out);
+  EXPECT_EQ(Call({"info", "--defaults", "--config", std::filesystem::temp_directory_path().string()}).status, 3);
+  const Result wrong = Call({"info", "--defaults", "--config", "qualty"});
+  EXPECT_EQ(wrong.status, 3);
+  EXPECT_NE(wrong.err.find("Did you mean 'quality'?"), std::string::npos) << wrong.err;
+
+  // Over a project's own configuration: a preset sets what it names, "default" takes everything back, --set comes last.
+  const std::filesystem::path own = std::filesystem::temp_directory_path() / ("skyquilt_presets_" + std::to_string(getpid()) + ".toml");
+  base::WriteFileAtomically(own, "[run]\nimage_width = 123\n[train]\nlevels = 5\n");
+  CommandState state;
+  state.config = "quality";
+  EXPECT_EQ(state.Load({own}, {}).run.image_width, 1500);
+  EXPECT_EQ(state.Load({own}, {}).train.levels, 5);
+  state.config = "default";
+  EXPECT_EQ(state.Load({own}, {}).run.image_width, coordinator::Settings().run.image_width);
+  EXPECT_EQ(state.Load({own}, {}).train.levels, coordinator::Settings().train.levels);
+  state.set = {"train.levels=3"};
+  EXPECT_EQ(state.Load({own}, {}).train.levels, 3);
+  EXPECT_EQ(state.LoadOver(state.Load({own}, {})).train.levels, 3);
+  std::filesystem::remove(own);
+}
+
+TEST(CommandLine, MissingThingsAreInputErrors) {
+  EXPECT_EQ(Call({"info", "/nonexistent/skyquilt"}).status, 3);
+  EXPECT_EQ(Call({"train", "/nonexistent/skyquilt"}).status, 3);
+  EXPECT_EQ(Call({"--config", "/nonexistent/skyquilt.toml", "info", "--defaults"}).status, 3);
+}
+
+TEST(CommandLine, RunNeedsPhotosOrAPresetAndNotBoth) {
+  EXPECT_EQ(Call({"run", "-o", "x"}).status, 2);
+  EXPECT_EQ(Call({"run", "photos", "--preset", "hamlet", "-o", "x"}).status, 2);
+}
+
+TEST(CommandLine, AFailedNumericCaseIsStatusFive) {
+  const auto status_of = [](double worst) {
+    bench::NumericGroup group{.id = "space", .title = "Space"};
+    group.cases.push_back({.name = "one", .limit = 1.0, .run = [worst] { return bench::Finding{.worst = worst}; }});
+    return Guarded([&] { bench::ThrowIfFailed(bench::RunNumerics({group}, true)); });
+  };
+  EXPECT_EQ(status_of(2.0), 5);
+  EXPECT_EQ(status_of(0.5), 0);
+}
+
+TEST(CommandLine, NumericsRunsTheGroupsAskedFor) {
+  const Result run = Call({"--quiet", "bench", "numerics", "--quick", "--only", "rays,compositing", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const nlohmann::json json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json.at("failed"), 0);
+  for (const nlohmann::json& row : json.at("rows")) {
+    EXPECT_TRUE(row.at("group") == "rays" || row.at("group") == "compositing") << row;
+    EXPECT_FALSE(row.at("expected").get<std::string>().empty());
+  }
+  EXPECT_EQ(json.at("rows").size(), json.at("passed").get<size_t>());
+  const Result unknown = Call({"bench", "numerics", "--only", "space,rain"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("rain"), std::string::npos);
+  EXPECT_NE(unknown.err.find("nonfinite"), std::string::npos);
+}
+
+TEST(Describe, ForeignFilesAreRefusedByName) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("skyquilt_describe_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  base::WriteFileAtomically(folder / "a.h5", "not HDF5");
+  base::WriteFileAtomically(folder / "a.json", "{");
+  base::WriteFileAtomically(folder / "a.xyz", "?");
+  for (const char* name : {"a.h5", "a.json", "a.xyz", "absent"}) EXPECT_THROW(Describe(folder / name), base::InputError) << name;
+  EXPECT_THROW(Describe(folder), base::InputError);
+  base::WriteFileAtomically(folder / "metrics.json", R"({"psnr": 28.5, "lpips": null})");
+  EXPECT_EQ(Describe(folder / "metrics.json").at("content").at("psnr"), 28.5);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Readable, ShowsValuesTablesAndText) {
+  const nlohmann::ordered_json json = {{"what", "blocks"}, {"rows", 2},
+                                       {"none", nullptr},  {"list", {1, 2}},
+                                       {"text", "a\nb"},   {"table", {{{"name", "r0c0"}, {"cost", 0.5}}, {{"name", "r0c1"}, {"cost", 0.25}}}}};
+  const std::string text = Readable(json);
+  EXPECT_NE(text.find("rows: 2\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("none: -\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("list: 1, 2\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("name  cost\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("r0c1  0.25\n"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace skyquilt::app

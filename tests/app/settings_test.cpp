@@ -1,0 +1,106 @@
+#include "coordinator/project/settings.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "app/settings/load_settings.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+
+namespace skyquilt::app {
+namespace {
+
+std::string MessageOf(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const base::UsageError& error) {
+    return error.what();
+  }
+  return "nothing thrown";
+}
+
+TEST(Settings, FlagsWinOverTheFileAndTheFileOverDefaults) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("skyquilt_settings_" + std::to_string(getpid()) + ".toml");
+  base::WriteFileAtomically(file, "[train]\nlevels = 6\nhidden = 32\n");
+  const coordinator::Settings settings = LoadSettings({file}, {config::ParseOverride("train.levels=10"), {"partition.altitudes", "150, 300"}});
+  std::filesystem::remove(file);
+  EXPECT_EQ(settings.train.levels, 10);
+  EXPECT_EQ(settings.train.hidden, 32);
+  EXPECT_EQ(settings.train.features, worker::TrainOptions().features);
+  EXPECT_EQ(settings.partition.altitudes, (std::vector<double>{150.0, 300.0}));
+}
+
+TEST(Settings, TomlOfAnySettingsReadsBackTheSame) {
+  coordinator::Settings settings = LoadSettings(
+      {}, {{"train.learning_rate", "0.0123"}, {"partition.blocks", "3x2"}, {"run.time_budget_s", "90.5"}, {"evaluate.exif_gain", "false"}});
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("skyquilt_settings_back_" + std::to_string(getpid()) + ".toml");
+  base::WriteFileAtomically(file, settings.Toml());
+  coordinator::Settings back = LoadSettings({file}, {});
+  std::filesystem::remove(file);
+  EXPECT_EQ(back.Flat(), settings.Flat());
+}
+
+TEST(Settings, UnknownNamesSuggestTheNearest) {
+  EXPECT_NE(MessageOf([] { LoadSettings({}, {{"train.levles", "4"}}); }).find("train.levels"), std::string::npos);
+  EXPECT_NE(MessageOf([] { LoadSettings({}, {{"trian.levels", "4"}}); }).find("'train'"), std::string::npos);
+  EXPECT_NE(MessageOf([] { LoadSettings({}, {{"levels", "4"}}); }).find("section"), std::string::npos);
+  EXPECT_NE(MessageOf([] { config::ParseOverride("train.levels"); }).find("section.key=value"), std::string::npos);
+}
+
+TEST(Settings, ValuesOfTheWrongTypeOrRangeAreNamed) {
+  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"train.levels", "many"},
+                                                                                   {"train.levels", "4.5"},
+                                                                                   {"train.levels", ""},
+                                                                                   {"train.learning_rate", "1e-2x"},
+                                                                                   {"train.learning_rate", "nan"},
+                                                                                   {"evaluate.exif_gain", "maybe"},
+                                                                                   {"partition.altitudes", "150,,300"},
+                                                                                   {"partition.altitudes", "150,-300"},
+                                                                                   {"run.context_share", "1.5"},
+                                                                                   {"run.image_width", "-1"},
+                                                                                   {"run.seed", "-1"},
+                                                                                   {"run.threads", "-2"},
+                                                                                   {"brightness.correction", "exfi"},
+                                                                                   {"train.steps", "-5"}}) {
+    const std::string message = MessageOf([&key = key, &value = value] { LoadSettings({}, {{key, value}}); });
+    EXPECT_NE(message.find(key.substr(key.find('.') + 1)), std::string::npos) << key << " = " << value << ": " << message;
+  }
+}
+
+TEST(Settings, TimeBudgetAndStepsExcludeEachOther) {
+  EXPECT_THROW(LoadSettings({}, {{"run.time_budget_s", "60"}, {"train.steps", "100"}}), base::UsageError);
+  EXPECT_NO_THROW(LoadSettings({}, {{"run.time_budget_s", "60"}}));
+}
+
+TEST(Settings, PresetFilesParseAndTheDefaultOneIsTheDefaults) {
+  coordinator::Settings defaults;
+  const std::filesystem::path folder = "configs";
+  ASSERT_TRUE(std::filesystem::exists(folder / "default.toml"));
+  EXPECT_EQ(LoadSettings({folder / "default.toml"}, {}).Flat(), defaults.Flat());
+  EXPECT_EQ(base::ReadFile(folder / "default.toml"), defaults.Toml()) << "make it again with: skyquilt info --defaults > configs/default.toml";
+  for (const char* name : {"fast.toml", "quality.toml"}) {
+    coordinator::Settings preset = LoadSettings({folder / name}, {});
+    EXPECT_NE(preset.Flat(), defaults.Flat()) << name;
+    EXPECT_EQ(preset.Flat().size(), defaults.Flat().size());
+  }
+}
+
+TEST(Settings, StagesDependOnTheirOwnOptionsOnly) {
+  coordinator::Settings before;
+  coordinator::Settings after;
+  after.train.levels += 1;
+  EXPECT_EQ(coordinator::StageOptions(before, "partition"), coordinator::StageOptions(after, "partition"));
+  EXPECT_NE(coordinator::StageOptions(before, "train"), coordinator::StageOptions(after, "train"));
+  after = before;
+  after.run.threads = 3;
+  after.train.checkpoint_every_s = 1.0;
+  for (const std::string& stage : coordinator::StageNames())
+    EXPECT_EQ(coordinator::StageOptions(before, stage), coordinator::StageOptions(after, stage)) << stage;
+  after.run.image_width = 640;
+  EXPECT_NE(coordinator::StageOptions(before, "partition"), coordinator::StageOptions(after, "partition"));
+}
+
+}  // namespace
+}  // namespace skyquilt::app

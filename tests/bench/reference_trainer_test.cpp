@@ -1,0 +1,111 @@
+#include "bench/numerics/reference_trainer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/numerics/synthetic_trainer.h"
+#include "core/encoding/spherical_harmonics.h"
+#include "tests/support/gradient_check.h"
+
+namespace skyquilt::bench::numerics {
+namespace {
+
+SyntheticOptions TinyScene() {
+  SyntheticOptions scene;
+  scene.levels = 2;
+  scene.log2_table_size = 4;
+  scene.hidden = 4;
+  scene.voxel_m = 0.5;
+  return scene;
+}
+
+// Exposures a stop either way and emptiness rays among them, so that every loss takes part.
+const SyntheticRays kMixedRays{.rays = 12, .empty_share = 0.25F, .most_stops = 1.0F};
+
+TEST(ReferenceTrainer, GradientsMatchFiniteDifferencesInDouble) {
+  SyntheticTrainer trainer(TinyScene(), 3, 1);
+  const ReferenceTrainer reference(trainer.target(), trainer.field());
+  base::Random random(5);
+  const worker::RayBatch batch = trainer.Draw(kMixedRays, random);
+  ReferenceState state = ReferenceState::From(trainer.state());
+  for (double& value : state.grid) value = random.Uniform(-0.5, 0.5);  // large enough to matter
+  std::vector<double> grid, networks;
+  const double distortion = 0.05;
+  const ReferenceResult at = reference.Gradient(batch, state, distortion, &grid, &networks);
+  EXPECT_GT(at.loss, 0.01);
+  const auto loss_with = [&](std::vector<double> ReferenceState::*part) {
+    return [&, part](const std::vector<double>& values) {
+      ReferenceState moved = state;
+      moved.*part = values;
+      return reference.Gradient(batch, moved, distortion, nullptr, nullptr).loss;
+    };
+  };
+  testing::ExpectGradient(loss_with(&ReferenceState::grid), state.grid, grid, 1e-7);
+  testing::ExpectGradient(loss_with(&ReferenceState::networks), state.networks, networks, 1e-7);
+  const auto nonzero = [](const std::vector<double>& values) {
+    return std::count_if(values.begin(), values.end(), [](double v) { return v != 0.0; });
+  };
+  EXPECT_GT(nonzero(grid), 20);
+  EXPECT_GT(nonzero(networks), 80);
+}
+
+// Two implementations of the same functions, in the order and with the signs of Sloan 2013.
+TEST(ReferenceField, HarmonicsAreTheFieldsOwn) {
+  base::Random random(7);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d d = i == 0 ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
+    double own[16];
+    encoding::SphericalHarmonics(d.x(), d.y(), d.z(), 4, own);
+    const std::vector<double> values = ReferenceHarmonics({d.x(), d.y(), d.z()}, 4);
+    ASSERT_EQ(values.size(), 16U);
+    for (size_t k = 0; k < values.size(); ++k) EXPECT_NEAR(values[k], own[k], 1e-12) << k;
+  }
+}
+
+TEST(ReferenceTrainer, LearnsAndLetsUntouchedEntriesRest) {
+  SyntheticTrainer trainer(TinyScene(), 3, 1);
+  const ReferenceTrainer reference(trainer.target(), trainer.field());
+  base::Random random(5);
+  ReferenceState state = ReferenceState::From(trainer.state());
+  const worker::RayBatch one = trainer.Draw({.rays = 1}, random);
+  const ReferenceState before = state;
+  reference.Step(one, {.learning_rate = 1e-3}, state);
+  size_t moved = 0;
+  for (size_t i = 0; i < state.grid.size(); ++i) {
+    if (state.grid[i] == before.grid[i]) {
+      EXPECT_EQ(state.grid_moment2[i], 0.0) << i;
+    } else {
+      // The first step of Adam is the learning rate.
+      EXPECT_NEAR(std::abs(state.grid[i] - before.grid[i]), 1e-3, 1e-6) << i;
+      ++moved;
+    }
+  }
+  EXPECT_GT(moved, 4U);
+  EXPECT_LT(moved, state.grid.size());
+  double first = 0.0, last = 0.0;
+  for (int step = 0; step < 150; ++step) {
+    const ReferenceResult result = reference.Step(trainer.Draw({.rays = 32}, random), {.learning_rate = 1e-2}, state);
+    if (step < 10) first += result.squared_error;
+    if (step >= 140) last += result.squared_error;
+  }
+  EXPECT_LT(last, 0.7 * first);
+}
+
+TEST(ReferenceTrainer, AgreesWithTheWorkerFromTheSameStart) {
+  SyntheticTrainer trainer(TinyScene(), 3, 1);
+  const ReferenceTrainer reference(trainer.target(), trainer.field());
+  base::Random random(5);
+  const worker::RayBatch batch = trainer.Draw(kMixedRays, random);
+  std::vector<double> grid, networks;
+  const ReferenceResult exact = reference.Gradient(batch, ReferenceState::From(trainer.state()), 1e-2, &grid, &networks);
+  const SyntheticTrainer::Gradients seen = trainer.GradientsOf(batch, 1e-2);
+  EXPECT_NEAR(seen.result.loss, exact.loss, 1e-5 * exact.loss);
+  EXPECT_EQ(seen.result.n_live, exact.live);
+  for (size_t i = 0; i < networks.size(); ++i) EXPECT_NEAR(seen.networks[i], networks[i], 1e-6) << i;
+  for (size_t i = 0; i < grid.size(); ++i) EXPECT_NEAR(seen.grid[i], grid[i], 1e-6) << i;
+}
+
+}  // namespace
+}  // namespace skyquilt::bench::numerics

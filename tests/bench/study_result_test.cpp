@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/settings/load_settings.h"
+#include "app/settings/presets.h"
+#include "bench/study/study.h"
+#include "bench/study/study_tables.h"
+#include "core/base/errors.h"
+
+namespace skyquilt::bench {
+namespace {
+
+VariantResult Example() {
+  VariantResult r;
+  r.name = "guided";
+  r.label = "blocks, \"guided\"";
+  r.psnr_db = 27.5;
+  r.train_seconds = 61.0;
+  r.blocks = 2;
+  r.layout = "1x2";
+  r.fields = {{.name = "context", .parameters = 10, .samples = 20, .seconds = 1.0},
+              {.name = "r0c0", .parameters = 30, .samples = 40, .scene_parameters = 25, .log2_table_size = 17, .seconds = 2.0, .psnr_db = 28.0},
+              {.name = "r0c1", .parameters = 30, .samples = 40, .seconds = 2.0}};
+  r.curve = {{1.0, 20.0}, {2.0, 22.0}};
+  r.render = "runs/guided/report/images/photo_00001_render.jpg";
+  return r;
+}
+
+TEST(Signed, HasASignUnlessItRoundsToNothing) {
+  EXPECT_EQ(Signed(1.204, 2), "+1.20");
+  EXPECT_EQ(Signed(-0.351, 2), "-0.35");
+  EXPECT_EQ(Signed(-0.0002, 3), "0.000");
+  EXPECT_EQ(Signed(0.0, 0), "0");
+  EXPECT_EQ(Signed(-0.0006, 3), "-0.001");
+}
+
+TEST(OfItsOwn, LeavesOutTheContext) {
+  VariantResult r = Example();
+  r.fields[1].samples = 40'000'000;
+  r.fields[2].samples = 7'000'000;
+  r.fields[2].seconds = 11.6;
+  EXPECT_EQ(OfItsOwn(r), "2 to 12 s and 7 to 40 M samples");
+  r.fields.resize(2);
+  EXPECT_EQ(OfItsOwn(r), "2 s and 40 M samples");
+  r.fields.resize(1);
+  EXPECT_EQ(OfItsOwn(r), "nothing");
+}
+
+TEST(ResultJson, ComesBackAsItWas) {
+  const VariantResult r = Example();
+  std::string identity;
+  const VariantResult back = ParseResult(ResultJson(r, "abc 1"), &identity);
+  EXPECT_EQ(identity, "abc 1");
+  EXPECT_EQ(back.label, r.label);
+  EXPECT_EQ(back.layout, "1x2");
+  EXPECT_EQ(back.psnr_db, r.psnr_db);
+  EXPECT_TRUE(std::isnan(back.ssim));
+  ASSERT_EQ(back.fields.size(), 3U);
+  EXPECT_EQ(back.fields[1].psnr_db, 28.0);
+  EXPECT_EQ(back.fields[1].scene_parameters, 25);
+  EXPECT_EQ(back.fields[1].log2_table_size, 17);
+  EXPECT_TRUE(std::isnan(back.fields[2].psnr_db));
+  EXPECT_EQ(back.curve, r.curve);
+  EXPECT_EQ(back.render, r.render);
+  EXPECT_EQ(ResultJson(back, identity), ResultJson(r, "abc 1"));
+}
+
+TEST(ResultJson, RefusesADamagedText) {
+  std::string identity;
+  const std::string text = ResultJson(Example(), "abc");
+  EXPECT_THROW(ParseResult(text.substr(0, text.size() / 2), &identity), nlohmann::json::exception);
+  EXPECT_THROW(ParseResult("{}", &identity), nlohmann::json::exception);
+}
+
+TEST(QualityTable, LeavesOutWhatNobodyMeasured) {
+  VariantResult failed;
+  failed.label = "too large";
+  failed.failure = "no memory";
+  const BenchTable table = QualityTable({Example(), failed});
+  for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size());
+  EXPECT_NE(std::find(table.columns.begin(), table.columns.end(), "PSNR"), table.columns.end());
+  EXPECT_EQ(std::find(table.columns.begin(), table.columns.end(), "LPIPS"), table.columns.end());
+  EXPECT_EQ(table.rows[1][0].shown, "too large (no memory)");
+}
+
+BenchPage ExamplePage() {
+  BenchPage page;
+  page.name = "example";
+  page.title = "An example <of> a page";
+  page.verdicts = {"It works."};
+  page.sections.push_back({.id = "s", .title = "Section", .lead = "", .charts = {}, .tables = {QualityTable({Example()})}, .pictures = {}});
+  return page;
+}
+
+TEST(BenchPage, IsEscapedAndCarriesNumbersInFull) {
+  const BenchPage page = ExamplePage();
+  const std::string html = BenchHtml(page);
+  EXPECT_EQ(html.find("<of>"), std::string::npos);
+  EXPECT_EQ(html.find("blocks, \"guided\""), std::string::npos);
+  EXPECT_EQ(html.find("http"), std::string::npos) << "the page opens offline";
+  const std::string csv = BenchCsv(page.sections[0].tables[0]);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "variant,PSNR,training");
+  EXPECT_NE(csv.find("\"blocks, \"\"guided\"\"\",27.5,61"), std::string::npos) << csv;
+  const std::string text = BenchText(page);
+  EXPECT_NE(text.find("27.50"), std::string::npos);
+  EXPECT_NE(text.find("- It works."), std::string::npos);
+}
+
+TEST(Presets, AreWhatTheFilesSayAndCanBeUsed) {
+  for (const std::string& name : app::PresetNames()) {
+    coordinator::Settings settings;
+    for (const config::Override& entry : app::PresetOverrides(name)) settings.Set(entry);
+    EXPECT_NO_THROW(settings.Validate()) << name;
+    coordinator::Settings from_file = app::LoadSettings({std::string(SKYQUILT_SOURCE_DIR) + "/configs/" + name + ".toml"}, {});
+    EXPECT_EQ(settings.Flat(), from_file.Flat()) << name;
+  }
+  EXPECT_TRUE(app::PresetOverrides("default").empty());
+  EXPECT_FALSE(app::PresetOverrides("fast").empty());
+  EXPECT_THROW(app::PresetOverrides("fastest"), base::UsageError);
+}
+
+}  // namespace
+}  // namespace skyquilt::bench

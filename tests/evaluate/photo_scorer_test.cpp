@@ -1,0 +1,146 @@
+#include "evaluate/photo_scorer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace skyquilt::evaluate {
+namespace {
+
+constexpr int kWidth = 100, kHeight = 80;
+
+camera::Camera Lens() {
+  camera::Camera camera;
+  camera.model = camera::CameraModel::kPinhole;
+  camera.width = kWidth;
+  camera.height = kHeight;
+  camera.params = {100.0, 100.0, 50.0, 40.0};
+  return camera;
+}
+
+geo::Rigid3d NadirPose(double x, double y, double height_m) {
+  Eigen::Matrix3d rotation;
+  rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  geo::Rigid3d pose;
+  pose.rotation = Eigen::Quaterniond(rotation);
+  pose.translation = -(rotation * Eigen::Vector3d(x, y, height_m));
+  return pose;
+}
+
+// A camera 100 m above flat ground at height 0: 100 m x 80 m are in the frame, one pixel is one metre.
+struct FlatGround {
+  PhotoTask task;
+  std::vector<render::RayColor> rendered;
+  SceneArea area{{{{-50, -40, -1}, {0, 40, 5}, 5.0}, {{0, -40, -1}, {50, 40, 5}, 5.0}}, {-1.0, 5.0}};
+  base::ThreadPool threads{2};
+
+  FlatGround() {
+    task.camera = Lens();
+    task.cam_from_enu = NadirPose(0, 0, 100);
+    task.photo = image::Image8(kWidth, kHeight, 3, 100);
+    rendered.resize(static_cast<size_t>(kWidth) * kHeight);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        render::RayColor& ray = rendered[static_cast<size_t>(y) * kWidth + static_cast<size_t>(x)];
+        // The western half is rendered 10/255 too bright, the eastern 20/255.
+        for (float& c : ray.rgb_srgb) c = (x < 50 ? 110.0F : 120.0F) / 255.0F;
+        ray.opacity = 1.0F;
+        ray.depth_median = static_cast<float>(100.0 / task.camera.RayFromImg({x + 0.5, y + 0.5}).z());
+        ray.depth = ray.depth_median;
+      }
+    }
+  }
+  static TrainingViews TwoEverywhere() { return TrainingViews({{Lens(), NadirPose(0, 0, 120), {}}, {Lens(), NadirPose(1, 0, 120), {}}}); }
+};
+
+double Psnr(double difference) {
+  return -20.0 * std::log10(difference / 255.0);
+}
+
+TEST(ScorePhoto, AllPixelsCoveredGiveTheFullFrameScore) {
+  FlatGround flat;
+  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  EXPECT_EQ(findings.score.used_pixels, kWidth * kHeight);
+  EXPECT_EQ(findings.score.covered_pixels, kWidth * kHeight);
+  EXPECT_DOUBLE_EQ(findings.score.Coverage(), 1.0);
+  EXPECT_NEAR(findings.score.psnr_db, Psnr(std::sqrt(250.0)), 1e-3);
+  EXPECT_NEAR(findings.score.psnr_full_db, findings.score.psnr_db, 1e-9);
+  EXPECT_NEAR(findings.score.ssim, findings.score.ssim_full, 1e-6);
+}
+
+TEST(ScorePhoto, BlocksAndSeamsGetTheirOwnPixels) {
+  FlatGround flat;
+  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  ASSERT_EQ(findings.per_block.size(), 2U);
+  EXPECT_EQ(PixelsOf(findings.per_block[0]), 50 * kHeight);
+  EXPECT_EQ(PixelsOf(findings.per_block[1]), 50 * kHeight);
+  EXPECT_NEAR(metrics::PsnrOf(findings.per_block[0]), Psnr(10.0), 1e-3);
+  EXPECT_NEAR(metrics::PsnrOf(findings.per_block[1]), Psnr(20.0), 1e-3);
+  EXPECT_EQ(PixelsOf(findings.seams.AllSeam()), 10 * kHeight);                 // 5 m on either side
+  EXPECT_EQ(PixelsOf(findings.seams.AllInterior()), 2 * 40 * (kHeight - 10));  // less seam and rim
+}
+
+TEST(ScorePhoto, PixelsSeenByOneViewOnlyAreNotCovered) {
+  FlatGround flat;
+  // The second view is moved 50 m west: its frame ends at x = 0 + 10 (60 m half width at 120 m height).
+  const TrainingViews views({{Lens(), NadirPose(0, 0, 120), {}}, {Lens(), NadirPose(-50, 0, 120), {}}});
+  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
+  EXPECT_EQ(findings.score.covered_pixels, 60 * kHeight);
+  EXPECT_EQ(findings.scored.data[0], 1);
+  EXPECT_EQ(findings.scored.data[kWidth - 1], 0);
+  EXPECT_GT(findings.score.psnr_db, findings.score.psnr_full_db);  // the worse half is partly uncovered
+}
+
+TEST(ScorePhoto, MaskedPixelsCountNowhere) {
+  FlatGround flat;
+  flat.task.mask.assign(static_cast<size_t>(kWidth) * kHeight, 1);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 50; x < kWidth; ++x) flat.task.mask[static_cast<size_t>(y) * kWidth + static_cast<size_t>(x)] = 0;
+  }
+  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  EXPECT_EQ(findings.score.used_pixels, 50 * kHeight);
+  EXPECT_NEAR(findings.score.psnr_full_db, Psnr(10.0), 1e-3);
+  EXPECT_EQ(PixelsOf(findings.per_block[1]), 0);
+}
+
+TEST(ScorePhoto, HolesOverPhotographedGroundStillCount) {
+  FlatGround flat;
+  for (render::RayColor& ray : flat.rendered) {
+    ray = render::RayColor{};
+    ray.depth = ray.depth_median = std::numeric_limits<float>::quiet_NaN();
+  }
+  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  EXPECT_GT(findings.score.Coverage(), 0.9);
+  EXPECT_NEAR(findings.score.psnr_full_db, Psnr(100.0), 1e-3);
+}
+
+TEST(ScorePhoto, DepthIsComparedAlongTheOpticalAxis) {
+  FlatGround flat;
+  flat.task.true_depth = image::ImageF(2 * kWidth, 2 * kHeight, 1, 100.5F);  // of twice the size; the render is half a metre too near
+  *flat.task.true_depth.At(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  EXPECT_NEAR(findings.score.depth_rmse_m, 0.5, 1e-4);
+  EXPECT_NEAR(findings.score.depth_median_abs_m, 0.5, 1e-3);
+}
+
+TEST(ScorePhoto, SameResultForAnyNumberOfThreads) {
+  FlatGround flat;
+  base::ThreadPool one(1);
+  const TrainingViews views = FlatGround::TwoEverywhere();
+  const PhotoFindings a = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
+  const PhotoFindings b = ScorePhoto(flat.task, flat.rendered, views, flat.area, one);
+  EXPECT_EQ(a.score.psnr_db, b.score.psnr_db);
+  EXPECT_EQ(a.seams.AllInterior().sum, b.seams.AllInterior().sum);
+  EXPECT_EQ(a.scored.data, b.scored.data);
+}
+
+TEST(ScorePhoto, NonFiniteRenderedColoursAreBlackNotNan) {
+  FlatGround flat;
+  flat.rendered[5].rgb_srgb[1] = std::numeric_limits<float>::quiet_NaN();
+  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  EXPECT_TRUE(std::isfinite(findings.score.psnr_db));
+}
+
+}  // namespace
+}  // namespace skyquilt::evaluate

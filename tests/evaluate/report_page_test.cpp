@@ -1,0 +1,200 @@
+#include "evaluate/report_page.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <regex>
+
+#include "core/base/file.h"
+#include "evaluate/report_images.h"
+#include "sample_report.h"
+
+namespace skyquilt::evaluate {
+namespace {
+
+// One sample for all tests; SKYQUILT_SAMPLE_REPORT=<folder> keeps its page for a look at it.
+class ReportPage : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const char* kept = std::getenv("SKYQUILT_SAMPLE_REPORT");
+    keep_ = kept != nullptr;
+    folder_ = keep_ ? std::filesystem::path(kept) : std::filesystem::temp_directory_path() / ("skyquilt_report_" + std::to_string(::getpid()));
+    sample_ = std::make_unique<SampleReport>(folder_);
+    html_ = BuildReportPage(sample_->input);
+    if (keep_) base::WriteFileAtomically(folder_ / "index.html", html_);
+  }
+  static void TearDownTestSuite() {
+    sample_.reset();
+    if (!keep_) std::filesystem::remove_all(folder_);
+  }
+  static inline std::filesystem::path folder_;
+  static inline bool keep_ = false;
+  static inline std::unique_ptr<SampleReport> sample_;
+  static inline std::string html_;
+};
+
+size_t CountOf(const std::string& text, const std::string& part) {
+  size_t n = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
+  return n;
+}
+
+TEST_F(ReportPage, TellsWhereTrainingTimeWent) {
+  const size_t at = html_.find("Where training time goes");
+  ASSERT_NE(at, std::string::npos);
+  // Longest first: 0.9 of 1.5.
+  EXPECT_LT(html_.find("network backward", at), html_.find("hash forward", at));
+  EXPECT_NE(html_.find("60.0\xE2\x80\xAF%", at), std::string::npos);
+}
+
+TEST_F(ReportPage, OpensOfflineAndEveryPictureExists) {
+  EXPECT_EQ(html_.find("http://"), std::string::npos);
+  EXPECT_EQ(html_.find("https://"), std::string::npos);
+  EXPECT_EQ(html_.find("@import"), std::string::npos);
+  const std::regex source("(?:src|href)=\"(images/[^\"]+)\"");
+  size_t n_pictures = 0;
+  for (std::sregex_iterator it(html_.begin(), html_.end(), source), end; it != end; ++it, ++n_pictures) {
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / (*it)[1].str())) << (*it)[1];
+  }
+  EXPECT_GE(n_pictures, 4 * sample_->metrics.photos.size());
+}
+
+TEST_F(ReportPage, LinksWithinThePageArrive) {
+  const std::regex link("href=\"#([^\"]+)\"");
+  size_t n_links = 0;
+  for (std::sregex_iterator it(html_.begin(), html_.end(), link), end; it != end; ++it, ++n_links) {
+    EXPECT_EQ(CountOf(html_, "id=\"" + (*it)[1].str() + "\""), 1U) << (*it)[1];
+  }
+  EXPECT_GT(n_links, 10U);
+}
+
+TEST_F(ReportPage, FileNamesNeverBecomeMarkup) {
+  EXPECT_EQ(html_.find("<b>DJI"), std::string::npos);
+  EXPECT_NE(html_.find("&lt;b&gt;DJI &amp; &quot;co&quot;&lt;/b&gt;.jpg"), std::string::npos);
+  EXPECT_EQ(html_.find("town <sample>"), std::string::npos);
+}
+
+TEST_F(ReportPage, TagsAreBalancedAndNoNumberIsNan) {
+  for (const char* tag : {"section", "table", "tbody", "tr", "svg", "figure", "article", "details", "div", "span", "dl", "a"}) {
+    const std::string name(tag);
+    const size_t opened = CountOf(html_, "<" + name + " ") + CountOf(html_, "<" + name + ">");
+    EXPECT_EQ(opened, CountOf(html_, "</" + name + ">")) << name;
+  }
+  EXPECT_EQ(CountOf(html_, "\"nan\"") + CountOf(html_, ">nan") + CountOf(html_, "inf\""), 0U);
+}
+
+TEST_F(ReportPage, SummaryTellsWhatPredictedGainsAreWorth) {
+  const size_t summary = html_.find("id=\"summary\""), end = html_.find("</section>", summary);
+  EXPECT_LT(html_.find("PSNR with the EXIF gain alone", summary), end);
+  EXPECT_LT(html_.find("PSNR of right halves, as rendered", summary), end);
+  EXPECT_LT(html_.find("with gains fitted to the left halves", summary), end);
+}
+
+TEST_F(ReportPage, BrightnessHasChartsPicturesAndATooltipPerPhoto) {
+  const std::string section = BrightnessSection(sample_->input);
+  EXPECT_NE(html_.find(section), std::string::npos);
+  EXPECT_EQ(CountOf(html_, "href=\"#brightness\""), 1U);
+  EXPECT_EQ(CountOf(section, "<svg"), 3U);
+  EXPECT_EQ(CountOf(section, "<title>flight"), sample_->survey.photos.size());
+  EXPECT_EQ(CountOf(section, " (held out)\n"), sample_->metrics.photos.size());
+  EXPECT_EQ(CountOf(section, "dot c7"), sample_->survey.photos.size());
+  EXPECT_EQ(CountOf(section, "dot c7 hollow"), sample_->metrics.photos.size());
+  EXPECT_EQ(CountOf(section, "<img src=\"images/brightness_"), 6U);
+  EXPECT_NE(section.find("87\xE2\x80\xAF%"), std::string::npos);
+  EXPECT_NE(section.find("0.62 \xE2\x86\x92 0.21\xE2\x80\xAFstops"), std::string::npos);
+  EXPECT_NE(section.find("<b>+1.23\xE2\x80\xAFstops</b>"), std::string::npos);
+}
+
+TEST_F(ReportPage, BrightnessEscapesNamesAndSentences) {
+  const std::string section = BrightnessSection(sample_->input);
+  EXPECT_EQ(section.find("<b>DJI"), std::string::npos);
+  // In a tooltip and over the pictures.
+  EXPECT_EQ(CountOf(section, "&lt;b&gt;DJI &amp; &quot;co&quot;&lt;/b&gt;.jpg"), 2U);
+  EXPECT_NE(section.find("Hidden light &lt;none&gt;."), std::string::npos);
+}
+
+TEST_F(ReportPage, ThereIsNoBrightnessWithoutFindings) {
+  const BrightnessReport nothing;
+  ReportInput input = sample_->input;
+  input.brightness = &nothing;
+  EXPECT_EQ(BrightnessSection(input), "");
+  EXPECT_EQ(BuildReportPage(input).find("#brightness"), std::string::npos);
+  input.brightness = nullptr;
+  EXPECT_EQ(BrightnessSection(input), "");
+}
+
+TEST_F(ReportPage, BrightnessOfOnePhotoThatLearnedNothing) {
+  BrightnessReport one;
+  one.photos.push_back({"only.jpg", 0, 0.0, false, 0.0, {}});
+  ReportInput input = sample_->input;
+  input.brightness = &one;
+  const std::string section = BrightnessSection(input);
+  EXPECT_EQ(CountOf(section, "<svg"), 1U);
+  EXPECT_EQ(CountOf(section, "<circle"), 1U);
+  EXPECT_NE(section.find("Nothing beyond the tags was learned"), std::string::npos);
+  EXPECT_EQ(section.find("nan"), std::string::npos);
+}
+
+TEST_F(ReportPage, LongPausesDoNotSqueezeTheFlights) {
+  BrightnessReport two_days;
+  two_days.timed = true;
+  for (const double time_s : {0.0, 60.0, 86400.0, 86460.0}) {
+    two_days.photos.push_back({"p.jpg", time_s < 3600.0 ? 0 : 1, time_s, false, time_s < 3600.0 ? 0.0 : 0.5, {}});
+  }
+  ReportInput input = sample_->input;
+  input.brightness = &two_days;
+  const std::string section = BrightnessSection(input);
+  EXPECT_NE(section.find("pauses of more than 10 min"), std::string::npos);
+  // Three minutes are left, and each flight has a line of its own.
+  EXPECT_EQ(section.find(">1440<"), std::string::npos);
+  const size_t line = section.find("<path class=\"curve c6\"");
+  ASSERT_NE(line, std::string::npos);
+  EXPECT_EQ(CountOf(section.substr(line, section.find("<title>", line) - line), "M"), 2U);
+}
+
+TEST(ReportPageOfNothing, SaysWhatIsMissing) {
+  const Metrics metrics;
+  const survey::Survey survey;
+  const partition::BlockSet blocks;
+  const TrainLog log;
+  ReportInput input;
+  input.metrics = &metrics;
+  input.survey = &survey;
+  input.blocks = &blocks;
+  input.log = &log;
+  const std::string html = BuildReportPage(input);
+  EXPECT_NE(html.find("No photo was scored"), std::string::npos);
+  EXPECT_NE(html.find("no usable GPS"), std::string::npos);
+  EXPECT_NE(html.find("No data"), std::string::npos);
+  EXPECT_EQ(CountOf(html, "\"nan\"") + CountOf(html, ">nan") + CountOf(html, ">inf"), 0U);
+}
+
+TEST_F(ReportPage, BackgroundNeedsPictureAndBounds) {
+  const std::filesystem::path products = folder_ / "products";
+  std::filesystem::create_directories(products);
+  EXPECT_FALSE(CopyMapBackground(products, folder_).has_value());
+  image::SavePng(image::Image8(8, 4, 3, 90), products / "orthophoto.png");
+  std::ofstream(products / "orthophoto.json") << "{\"min_enu\": [0, 0]}";
+  EXPECT_FALSE(CopyMapBackground(products, folder_).has_value());
+  std::ofstream(products / "orthophoto.json") << "{\"min_enu\": [-5, -2.5], \"max_enu\": [5, 2.5]}";
+  const auto background = CopyMapBackground(products, folder_);
+  ASSERT_TRUE(background.has_value());
+  EXPECT_DOUBLE_EQ(background->min_enu.y(), -2.5);
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / background->image));
+}
+
+TEST(ErrorPicture, PixelsThatDoNotCountAreGrey) {
+  const image::Image8 photo(2, 1, 3, 200), render(2, 1, 3, 100);
+  const image::ImageF error = AbsoluteError(photo, render);
+  EXPECT_NEAR(error.data[0], 100.0F / 255.0F, 1e-6F);
+  const std::vector<uint8_t> scored = {1, 0};
+  const image::Image8 picture = ErrorPicture({&photo, &render, nullptr, scored}, 0.25F);
+  EXPECT_FALSE(picture.data[0] == picture.data[1] && picture.data[1] == picture.data[2]);
+  EXPECT_TRUE(picture.data[3] == picture.data[4] && picture.data[4] == picture.data[5]);
+}
+
+}  // namespace
+}  // namespace skyquilt::evaluate

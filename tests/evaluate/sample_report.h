@@ -1,0 +1,27 @@
+// A made-up evaluation, complete enough to fill every part of the report page.
+#pragma once
+
+#include <filesystem>
+
+#include "evaluate/brightness_report.h"
+#include "evaluate/metrics.h"
+#include "evaluate/report_page.h"
+#include "evaluate/train_log.h"
+
+namespace skyquilt::evaluate {
+
+struct SampleReport {
+  Metrics metrics;
+  survey::Survey survey;
+  partition::BlockSet blocks;
+  TrainLog log;
+  BrightnessReport brightness;
+  ReportInput input;  // points into the above: do not copy
+
+  // Writes the pictures under folder/images.
+  explicit SampleReport(const std::filesystem::path& folder);
+  SampleReport(const SampleReport&) = delete;
+  SampleReport& operator=(const SampleReport&) = delete;
+};
+
+}  // namespace skyquilt::evaluate

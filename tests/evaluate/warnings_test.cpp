@@ -1,0 +1,97 @@
+#include "evaluate/warnings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace skyquilt::evaluate {
+namespace {
+
+bool Mentions(const std::vector<std::string>& warnings, const std::string& text) {
+  return std::any_of(warnings.begin(), warnings.end(), [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+struct Case {
+  survey::Survey survey;
+  partition::BlockSet blocks;
+  TrainLog log;
+  Metrics metrics;
+
+  Case() {
+    survey.georeferenced = true;
+    partition::Block block;
+    block.name = "r0c0";
+    blocks.blocks = {block};
+    FieldLog field;
+    field.name = "r0c0";
+    field.ok = true;
+    log.found = true;
+    log.fields = {field};
+    metrics.photos.resize(1);
+    metrics.n_test = 1;
+    metrics.coverage = 0.9;
+  }
+  std::vector<std::string> Collect() const { return CollectWarnings(survey, blocks, log, metrics); }
+};
+
+TEST(CollectWarnings, NothingToSayAboutAGoodRun) {
+  EXPECT_TRUE(Case().Collect().empty());
+}
+
+TEST(CollectWarnings, NamesUnregisteredPhotosAndGpsOutliers) {
+  Case c;
+  c.survey.unregistered = {"lost.jpg"};
+  survey::Photo photo;
+  photo.name = "astray.jpg";
+  photo.gps = geo::Geodetic{1, 2, 3};
+  photo.gps_inlier = false;
+  c.survey.photos = {photo};
+  EXPECT_TRUE(Mentions(c.Collect(), "lost.jpg"));
+  EXPECT_TRUE(Mentions(c.Collect(), "astray.jpg"));
+}
+
+TEST(CollectWarnings, LongListsAreCutShort) {
+  Case c;
+  for (int i = 0; i < 100; ++i) c.survey.unregistered.push_back("photo" + std::to_string(i));
+  EXPECT_TRUE(Mentions(c.Collect(), "100 photos"));
+  EXPECT_TRUE(Mentions(c.Collect(), "92 more"));
+}
+
+TEST(CollectWarnings, NamesEmptyFailedAndUntrainedBlocks) {
+  Case c;
+  c.log.fields[0].ok = false;
+  c.log.fields[0].reason = "diverged";
+  partition::Block empty, untrained;
+  empty.name = "r0c1";
+  empty.empty = true;
+  empty.empty_reason = "no photo sees it";
+  untrained.name = "r0c2";
+  c.blocks.blocks.push_back(empty);
+  c.blocks.blocks.push_back(untrained);
+  const auto warnings = c.Collect();
+  EXPECT_TRUE(Mentions(warnings, "diverged"));
+  EXPECT_TRUE(Mentions(warnings, "no photo sees it"));
+  EXPECT_TRUE(Mentions(warnings, "r0c2"));
+}
+
+TEST(CollectWarnings, SaysWhenGpsTrainingRecordOrScoresAreMissing) {
+  Case c;
+  c.survey.georeferenced = false;
+  c.log = TrainLog{};
+  c.metrics.photos.clear();
+  const auto warnings = c.Collect();
+  EXPECT_TRUE(Mentions(warnings, "No geo-reference"));
+  EXPECT_TRUE(Mentions(warnings, "train.json"));
+  EXPECT_TRUE(Mentions(warnings, "No held-out photo"));
+}
+
+TEST(CollectWarnings, LowCoverageAndPartialScoringAreSaid) {
+  Case c;
+  c.metrics.coverage = 0.2;
+  c.metrics.n_test = 10;
+  EXPECT_TRUE(Mentions(c.Collect(), "20 %"));
+  EXPECT_TRUE(Mentions(c.Collect(), "1 of 10"));
+}
+
+}  // namespace
+}  // namespace skyquilt::evaluate

@@ -1,0 +1,176 @@
+#include "prepare/georeference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/geo/enu_frame.h"
+#include "tests/prepare/synthetic_flight.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+std::vector<Station> Stations(const test::Flight& flight) {
+  std::vector<Station> stations;
+  for (size_t i = 0; i < flight.photos.size(); ++i) {
+    const survey::PhotoTags& tags = flight.photos[i].tags;
+    stations.push_back({flight.model.images[i].cam_from_world, tags.gps, tags.capture_time_s, tags.rtk});
+  }
+  return stations;
+}
+
+TEST(Georeference, ExactTagsAreRecoveredEverywhereOnEarth) {
+  const geo::Geodetic places[] = {{46.8, -92.0, 150.0}, {-33.9, 151.2, 20.0}, {31.5, 35.5, -430.0}, {10.0, 180.0, 0.0},  {-16.8, -179.9999, 5.0},
+                                  {90.0, 0.0, 10.0},    {-90.0, 0.0, 2800.0}, {89.9999, 45.0, 0.0}, {27.9, 86.9, 8900.0}};
+  for (const geo::Geodetic& place : places) {
+    const test::Flight flight = test::MakeFlight(place);
+    const Georeference result = FitToGps(Stations(flight), {});
+    ASSERT_TRUE(result.ok) << result.reason << " at " << place.latitude_deg;
+    EXPECT_LT(result.fit.rmse_m, 1e-3) << place.latitude_deg << " " << place.longitude_deg;
+    EXPECT_EQ(result.fit.n_inliers, 20);
+    EXPECT_NEAR(result.fit.scale, 1.0 / 0.07, 1e-3);
+    // The origin is near the flight, so coordinates stay small.
+    const Eigen::Vector3d first = result.enu_from_model * flight.model.images[0].cam_from_world.OriginInSource();
+    EXPECT_LT(first.norm(), 200.0);
+    const geo::EnuFrame fitted(result.origin);
+    const geo::EnuFrame tagged(place);
+    const Eigen::Vector3d back = tagged.EnuFromGeodetic(fitted.GeodeticFromEnu(first));
+    EXPECT_LT((back - flight.photos[0].centre_in_enu).norm(), 1e-2);
+  }
+}
+
+TEST(Georeference, OutliersAreFoundAndDoNotPull) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  test::SetTags(flight, [](size_t i, const Eigen::Vector3d& centre) {
+    return i % 5 == 2 ? Eigen::Vector3d(centre + Eigen::Vector3d(300.0, -150.0 * static_cast<double>(i), 60.0)) : centre;
+  });
+  const Georeference result = FitToGps(Stations(flight), {});
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.fit.n_matches, 20);
+  EXPECT_EQ(result.fit.n_inliers, 16);
+  EXPECT_LT(result.fit.rmse_m, 1e-3);
+  for (size_t i = 0; i < 20; ++i) EXPECT_EQ(result.inlier[i] != 0, i % 5 != 2);
+  EXPECT_GT(result.residual_m[2], 300.0);
+}
+
+TEST(Georeference, FlightsThatDisagreeGetOneOffsetEach) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  // Lines flown in turns on two days; the second day's barometer stood 15 m higher.
+  for (size_t i = 0; i < 20; ++i) flight.photos[i].tags.capture_time_s = *flight.photos[i].tags.capture_time_s + (i % 3 == 1 ? 86400.0 : 0.0);
+  test::SetTags(flight,
+                [](size_t i, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(0.0, 0.0, i % 3 == 1 ? 15.0 : 0.0)); });
+  const Georeference result = FitToGps(Stations(flight), {});
+  ASSERT_TRUE(result.ok);
+  ASSERT_EQ(result.fit.flight_vertical_offset_m.size(), 2U);
+  EXPECT_EQ(result.fit.flight_vertical_offset_m[0], 0.0);  // the larger flight is the reference
+  EXPECT_NEAR(result.fit.flight_vertical_offset_m[1], -15.0, 0.05);
+  EXPECT_EQ(result.fit.n_inliers, 20);
+  EXPECT_LT(result.fit.rmse_m, 0.05);
+
+  PrepareOptions off;
+  off.flight_offsets = "off";
+  const Georeference without = FitToGps(Stations(flight), off);
+  EXPECT_TRUE(without.fit.flight_vertical_offset_m.empty());
+  EXPECT_LT(without.fit.n_inliers, 20);
+}
+
+TEST(Georeference, FlightsThatAgreeGetNoOffset) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  for (size_t i = 10; i < 20; ++i) flight.photos[i].tags.capture_time_s = *flight.photos[i].tags.capture_time_s + 86400.0;
+  test::SetTags(flight,
+                [](size_t i, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(0.0, 0.0, i >= 10 ? 1.0 : 0.0)); });
+  const Georeference result = FitToGps(Stations(flight), {});
+  EXPECT_EQ(result.flight[9], 0);
+  EXPECT_EQ(result.flight[10], 1);
+  EXPECT_TRUE(result.fit.flight_vertical_offset_m.empty());
+}
+
+TEST(Georeference, TheRtkFlightIsTheReference) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  for (size_t i = 0; i < 20; ++i) {
+    flight.photos[i].tags.rtk = i % 3 == 1;
+    flight.photos[i].tags.capture_time_s = *flight.photos[i].tags.capture_time_s + (i % 3 == 1 ? 86400.0 : 0.0);
+  }
+  test::SetTags(flight,
+                [](size_t i, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(0.0, 0.0, i % 3 == 1 ? 0.0 : 15.0)); });
+  const Georeference result = FitToGps(Stations(flight), {});
+  ASSERT_EQ(result.fit.flight_vertical_offset_m.size(), 2U);
+  EXPECT_NEAR(result.fit.flight_vertical_offset_m[0], -15.0, 0.05);
+  EXPECT_EQ(result.fit.flight_vertical_offset_m[1], 0.0);
+}
+
+TEST(Georeference, TooFewOrOnePlaceIsNotOk) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  std::vector<Station> stations = Stations(flight);
+  for (size_t i = 2; i < stations.size(); ++i) stations[i].gps.reset();
+  EXPECT_FALSE(FitToGps(stations, {}).ok);
+  for (Station& station : stations) station.gps.reset();
+  EXPECT_FALSE(FitToGps(stations, {}).ok);
+  EXPECT_FALSE(FitToGps({}, {}).ok);
+  test::SetTags(flight, [](size_t, const Eigen::Vector3d&) { return Eigen::Vector3d(1.0, 2.0, 3.0); });
+  const Georeference one_place = FitToGps(Stations(flight), {});
+  EXPECT_FALSE(one_place.ok);
+  EXPECT_FALSE(one_place.reason.empty());
+}
+
+TEST(Georeference, AnExactFrameStaysAndStillReportsResiduals) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  test::SetTags(flight, [](size_t, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(3.0, 0.0, 4.0)); });
+  std::vector<Station> stations = Stations(flight);
+  for (size_t i = 0; i < stations.size(); ++i) {
+    stations[i].cam_from_model.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+    stations[i].cam_from_model.translation = -(stations[i].cam_from_model.rotation * flight.photos[i].centre_in_enu);
+  }
+  const Georeference result = KeepExactFrame(stations, flight.origin, {});
+  EXPECT_EQ(result.enu_from_model.scale, 1.0);
+  EXPECT_EQ(result.enu_from_model.translation, Eigen::Vector3d::Zero());
+  EXPECT_NEAR(result.fit.rmse_m, 5.0, 1e-3);
+  EXPECT_NEAR(result.fit.rmse_horizontal_m, 3.0, 1e-3);
+  EXPECT_NEAR(result.fit.rmse_vertical_m, 4.0, 1e-3);
+}
+
+TEST(SplitFlights, GoesByTimeNotByName) {
+  std::vector<Station> stations(6);
+  const double times[] = {1000.0, 0.0, 5000.0, 500.0, -1.0, 5100.0};
+  for (size_t i = 0; i < 6; ++i) {
+    if (times[i] >= 0.0) stations[i].time_s = times[i];
+  }
+  EXPECT_EQ(SplitFlights(stations, 900.0), (std::vector<int>{0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(SplitFlights(stations, 400.0), (std::vector<int>{2, 0, 3, 1, 1, 3}));
+  EXPECT_TRUE(SplitFlights({}, 900.0).empty());
+}
+
+TEST(LocalFrame, PutsTheGroundBelowAtAFixedDepth) {
+  const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  std::vector<Eigen::Vector3d> points;
+  for (const survey::ColmapPoint& point : flight.model.points) points.push_back(point.x_in_world);
+  const std::vector<Station> stations = Stations(flight);
+  const geo::Similarity3d local = LocalFrame(stations, points);
+  EXPECT_NEAR((local.rotation * (flight.model_from_enu.rotation * Eigen::Vector3d::UnitZ())).z(), 1.0, 1e-9);
+  EXPECT_NEAR((local * stations[7].cam_from_model.OriginInSource()).z(), kLocalDepth, 5.0);
+}
+
+TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirPlane) {
+  std::vector<Station> stations;
+  const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
+  const Eigen::Quaterniond tilt = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
+  for (int i = 0; i < 12; ++i) {
+    const double angle = i * M_PI / 6.0;
+    const Eigen::Vector3d centre(10.0 * std::cos(angle), 10.0 * std::sin(angle), 4.0);
+    const Eigen::Vector3d forward = (-centre).normalized();
+    const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+    Eigen::Matrix3d world_from_cam;
+    world_from_cam << right, forward.cross(right), forward;
+    Station station;
+    station.cam_from_model.rotation = Eigen::Quaterniond(world_from_cam).conjugate() * tilt.conjugate();
+    station.cam_from_model.translation = -(station.cam_from_model.rotation * (tilt * centre));
+    stations.push_back(station);
+  }
+  const geo::Similarity3d local =
+      LocalFrame(stations, {Eigen::Vector3d::Zero(), tilt * Eigen::Vector3d(1.0, 1.0, 0.0), tilt * Eigen::Vector3d(-1.0, 0.5, 0.0)});
+  EXPECT_NEAR((local.rotation * up).z(), 1.0, 1e-9);
+  EXPECT_GT((local * stations[0].cam_from_model.OriginInSource()).z(), 0.0);
+}
+
+}  // namespace
+}  // namespace skyquilt::prepare

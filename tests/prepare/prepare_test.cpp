@@ -1,0 +1,215 @@
+#include "prepare/prepare.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/image/image.h"
+#include "tests/prepare/synthetic_flight.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PrepareTest : public ::testing::Test {
+ protected:
+  void Write() { test::WriteFlight(flight_, folder_.path()); }
+  survey::Survey Run() { return Prepare({folder_ / "images", folder_ / "sparse/0", folder_ / "out"}, options_, threads_); }
+  std::string Error() {
+    try {
+      Run();
+    } catch (const base::InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  void ExpectInMessage(const std::string& word) {
+    const std::string message = Error();
+    EXPECT_NE(message.find(word), std::string::npos) << "message: " << message;
+  }
+
+  TemporaryFolder folder_;
+  test::Flight flight_ = test::MakeFlight({47.0, 8.0, 400.0});
+  PrepareOptions options_;
+  base::ThreadPool threads_{2};
+};
+
+TEST_F(PrepareTest, AGoodFlightIsPlacedOnEarthAndSaved) {
+  Write();
+  const survey::Survey survey = Run();
+  ASSERT_EQ(survey.photos.size(), 20U);
+  EXPECT_TRUE(survey.georeferenced);
+  EXPECT_TRUE(survey.unregistered.empty());
+  EXPECT_LT(survey.fit.rmse_m, 0.02);
+  EXPECT_NEAR(survey.MedianAgl(), test::kFlightHeight_m, 3.0);
+  EXPECT_TRUE(survey.photos[0].is_test && survey.photos[8].is_test && survey.photos[16].is_test);
+  EXPECT_FALSE(survey.photos[1].is_test);
+  EXPECT_EQ(*survey.photos[3].time_s, 15.0);
+  EXPECT_NEAR(*survey.photos[3].exposure.time_s, 0.002, 1e-9);
+  EXPECT_NEAR(*survey.photos[3].relative_altitude_m, test::kFlightHeight_m, 1e-9);
+  // Nadir cameras look down in ENU too.
+  EXPECT_NEAR((survey.photos[5].cam_from_enu.rotation.conjugate() * Eigen::Vector3d::UnitZ()).z(), -1.0, 1e-3);
+  EXPECT_GT(survey.points.size(), 1000U);
+
+  const survey::Survey loaded = survey::LoadSurvey(folder_ / "out");
+  EXPECT_EQ(loaded.photos.size(), 20U);
+  EXPECT_EQ(loaded.points.size(), survey.points.size());
+  const nlohmann::json map = nlohmann::json::parse(base::ReadFile(folder_ / "out/cameras.geojson"));
+  EXPECT_EQ(map["features"].size(), 20U);
+  EXPECT_NEAR(map["features"][0]["geometry"]["coordinates"][0].get<double>(), 8.0, 0.01);
+  EXPECT_NEAR(map["features"][0]["geometry"]["coordinates"][1].get<double>(), 47.0, 0.01);
+  const std::string table = base::ReadFile(folder_ / "out/geo_residuals.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 21);
+}
+
+TEST_F(PrepareTest, WithoutGpsItGoesOnInALocalFrame) {
+  for (test::FlightPhoto& photo : flight_.photos) {
+    photo.tags.gps.reset();
+    photo.tags.absolute_altitude_m.reset();
+  }
+  Write();
+  const survey::Survey survey = Run();
+  EXPECT_FALSE(survey.georeferenced);
+  EXPECT_EQ(survey.photos.size(), 20U);
+  EXPECT_NEAR(survey.MedianAgl(), 40.0, 4.0);
+  EXPECT_TRUE(std::isnan(survey.photos[0].gps_residual_m));
+  EXPECT_FALSE(fs::exists(folder_ / "out/cameras.geojson"));
+  EXPECT_FALSE(survey::LoadSurvey(folder_ / "out").georeferenced);
+}
+
+TEST_F(PrepareTest, AllPhotosAtOnePlaceAreNotGeoreferenced) {
+  test::SetTags(flight_, [](size_t, const Eigen::Vector3d&) { return Eigen::Vector3d(1.0, 2.0, 50.0); });
+  Write();
+  const survey::Survey survey = Run();
+  EXPECT_FALSE(survey.georeferenced);
+  EXPECT_EQ(survey.photos.size(), 20U);
+}
+
+TEST_F(PrepareTest, TagsWithoutAltitudeStillPlaceTheSurvey) {
+  for (test::FlightPhoto& photo : flight_.photos) {
+    photo.tags.gps->height_m = std::numeric_limits<double>::quiet_NaN();
+    photo.tags.absolute_altitude_m.reset();
+  }
+  Write();
+  const survey::Survey survey = Run();
+  EXPECT_TRUE(survey.georeferenced);
+  EXPECT_NEAR(survey.origin.height_m, test::kFlightHeight_m, 1e-6);  // RelativeAltitude
+  for (const survey::Photo& photo : survey.photos) EXPECT_TRUE(std::isfinite(photo.gps->height_m));
+}
+
+TEST_F(PrepareTest, UnusablePhotosAreLeftOutByName) {
+  Write();
+  std::ofstream(folder_ / "images/notes.jpg") << "text, not a photo";
+  std::ofstream(folder_ / "images/empty.JPG").flush();
+  const std::string whole = base::ReadFile(folder_ / "images/photo_04.jpg");
+  std::ofstream(folder_ / "images/photo_04.jpg", std::ios::binary | std::ios::trunc) << whole.substr(0, whole.size() - 40);
+  image::SaveJpeg(image::Image8(32, 24, 3, 90), folder_ / "images/photo_06.jpg", 90);
+  const survey::Survey survey = Run();
+  EXPECT_EQ(survey.photos.size(), 18U);
+  EXPECT_EQ(survey.unregistered, (std::vector<std::string>{"empty.JPG", "notes.jpg", "photo_04.jpg", "photo_06.jpg"}));
+}
+
+TEST_F(PrepareTest, EmptyFoldersAndTextFilesHaveTheirOwnMessages) {
+  Write();
+  fs::remove_all(folder_ / "images");
+  ExpectInMessage("no such folder");
+  fs::create_directories(folder_ / "images");
+  ExpectInMessage("holds no photos");
+  for (const char* name : {"a.jpg", "b.jpg", "c.jpg", "d.jpg"}) std::ofstream(folder_ / (std::string("images/") + name)) << "text";
+  ExpectInMessage("only 0 of 4 photos can be used");
+}
+
+TEST_F(PrepareTest, PhotosTheModelNamesButTheFolderLacksAreLeftOut) {
+  Write();
+  for (int i = 5; i < 20; ++i) fs::remove(folder_ / ("images/" + flight_.photos[static_cast<size_t>(i)].name));
+  const survey::Survey survey = Run();
+  EXPECT_EQ(survey.photos.size(), 5U);
+  for (int i = 2; i < 5; ++i) fs::remove(folder_ / ("images/" + flight_.photos[static_cast<size_t>(i)].name));
+  for (const char* name : {"x.jpg", "y.jpg", "z.jpg"}) image::SaveJpeg(image::Image8(64, 48, 3, 90), folder_ / (std::string("images/") + name), 90);
+  ExpectInMessage("18 are not in");
+}
+
+TEST_F(PrepareTest, PhotosOfAnotherSizeThanTheModelAreRefusedTogether) {
+  flight_.model.cameras[1] = flight_.model.cameras[1].Resized(128, 96);
+  Write();
+  ExpectInMessage("is 64x48, its camera in the model 128x96");
+}
+
+TEST_F(PrepareTest, NanInAPoseNamesThePhoto) {
+  flight_.model.images[7].cam_from_world.translation.x() = std::numeric_limits<double>::quiet_NaN();
+  Write();
+  ExpectInMessage("photo_07.jpg");
+}
+
+TEST_F(PrepareTest, PhotosInSubFoldersAreFoundByTheModelsNames) {
+  Write();
+  fs::create_directories(folder_ / "images/100MEDIA");
+  for (size_t i = 0; i < 10; ++i) fs::rename(folder_ / ("images/" + flight_.photos[i].name), folder_ / ("images/100MEDIA/" + flight_.photos[i].name));
+  const survey::Survey survey = Run();
+  ASSERT_EQ(survey.photos.size(), 20U);
+  EXPECT_EQ(survey.photos[0].name, "100MEDIA/photo_00.jpg");
+  EXPECT_LT(survey.fit.rmse_m, 0.02);
+}
+
+TEST_F(PrepareTest, MasksFollowColmapsNames) {
+  Write();
+  fs::create_directories(folder_ / "masks");
+  options_.masks = (folder_ / "masks").string();
+  ExpectInMessage("no mask for any photo");
+  image::SavePng(image::Image8(64, 48, 1, 255), folder_ / "masks/photo_02.jpg.png");
+  const survey::Survey survey = Run();
+  EXPECT_EQ(survey.photos[2].mask, (folder_ / "masks/photo_02.jpg.png").string());
+  EXPECT_TRUE(survey.photos[3].mask.empty());
+  image::SavePng(image::Image8(60, 48, 1, 255), folder_ / "masks/photo_03.jpg.png");
+  ExpectInMessage("photo_03.jpg.png");
+}
+
+TEST_F(PrepareTest, ASimulatedSurveyKeepsItsFrameAndItsTruth) {
+  // The model of a simulated survey is in ENU.
+  for (size_t i = 0; i < 20; ++i) {
+    geo::Rigid3d& pose = flight_.model.images[i].cam_from_world;
+    pose.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+    pose.translation = -(pose.rotation * flight_.photos[i].centre_in_enu);
+  }
+  for (survey::ColmapPoint& point : flight_.model.points) {
+    const geo::Similarity3d& a = flight_.model_from_enu;
+    point.x_in_world = a.rotation.conjugate() * (point.x_in_world - a.translation) / a.scale;
+  }
+  test::SetTags(flight_, [](size_t, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(1.0, 0.0, 0.0)); });
+  Write();
+  fs::create_directories(folder_ / "truth/depth");
+  fs::create_directories(folder_ / "truth/masks");
+  image::SavePng(image::Image8(64, 48, 1, 255), folder_ / "truth/masks/photo_02.jpg.png");
+  base::WriteFileAtomically(folder_ / "simulate.json", R"({"origin":{"latitude_deg":47.0,"longitude_deg":8.0,"height_m":400.0},"exact_frame":true})");
+  const survey::Survey survey = Prepare({folder_.path(), {}, folder_ / "out"}, options_, threads_);
+  EXPECT_EQ(survey.origin.latitude_deg, 47.0);
+  EXPECT_EQ(survey.origin.height_m, 400.0);
+  EXPECT_EQ(survey.fit.scale, 1.0);
+  EXPECT_NEAR(survey.fit.rmse_m, 1.0, 0.01);
+  EXPECT_LT((survey.photos[4].cam_from_enu.OriginInSource() - flight_.photos[4].centre_in_enu).norm(), 1e-9);
+  ASSERT_TRUE(survey.truth);
+  EXPECT_EQ(survey.truth->depth_folder, folder_ / "truth/depth");
+  EXPECT_TRUE(survey.photos[2].mask.empty());
+  EXPECT_EQ(survey.photo_root, folder_ / "images");
+}
+
+TEST_F(PrepareTest, WrongOptionsAreUsageErrors) {
+  Write();
+  options_.ransac_threshold_m = 0.0;
+  EXPECT_THROW(Run(), base::UsageError);
+  options_ = {};
+  options_.camera_model = "PINHOLEE";
+  EXPECT_THROW(Run(), base::UsageError);
+  options_ = {};
+  options_.flight_offsets = "maybe";
+  EXPECT_THROW(Run(), base::UsageError);
+}
+
+}  // namespace
+}  // namespace skyquilt::prepare

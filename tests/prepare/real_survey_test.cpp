@@ -1,0 +1,47 @@
+// Figures of an independent fit of the same models: Brighton Beach 0.60 m over 18 photos and 45.5 m above ground (40.0 m RelativeAltitude),
+// Seneca 3.6 m over 166 photos and 63.9 m.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "prepare/prepare.h"
+#include "tests/prepare/synthetic_flight.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+std::filesystem::path Data() {
+  const char* data = std::getenv("SKYQUILT_DATA");
+  return data == nullptr ? "../shared/data" : data;
+}
+
+survey::Survey PrepareReal(const std::string& name) {
+  const TemporaryFolder out;
+  base::ThreadPool threads(2);
+  return Prepare({Data() / name / "images", Data() / name / "sparse/0", out / "survey"}, {}, threads);
+}
+
+TEST(RealSurvey, BrightonBeachLandsOnItsTags) {
+  if (!std::filesystem::exists(Data() / "brighton_beach")) GTEST_SKIP() << "no real photos in " << Data();
+  const survey::Survey survey = PrepareReal("brighton_beach");
+  EXPECT_EQ(survey.photos.size(), 18U);
+  EXPECT_TRUE(survey.georeferenced);
+  EXPECT_EQ(survey.fit.n_inliers, 18);
+  EXPECT_LT(survey.fit.rmse_m, 1.0);
+  EXPECT_NEAR(survey.MedianAgl(), 45.5, 2.0);
+  EXPECT_NEAR(survey.origin.latitude_deg, 46.8427, 0.002);
+  EXPECT_NEAR(survey.origin.longitude_deg, -91.994, 0.002);
+}
+
+TEST(RealSurvey, SenecaLandsOnItsTags) {
+  if (!std::filesystem::exists(Data() / "seneca")) GTEST_SKIP() << "no real photos in " << Data();
+  const survey::Survey survey = PrepareReal("seneca");
+  EXPECT_EQ(survey.photos.size(), 166U);
+  EXPECT_EQ(survey.unregistered, std::vector<std::string>{"IMG_0482.jpg"});
+  EXPECT_GE(survey.fit.n_inliers, 160);
+  EXPECT_NEAR(survey.fit.rmse_m, 3.6, 0.5);
+  EXPECT_NEAR(survey.MedianAgl(), 63.9, 3.0);
+}
+
+}  // namespace
+}  // namespace skyquilt::prepare

@@ -1,0 +1,302 @@
+#include "products/map_products.h"
+
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/geo/enu_frame.h"
+#include "core/image/image.h"
+#include "tests/products/analytic_scene.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skyquilt::products {
+namespace {
+
+// What another program sees in the file: GDAL's own geo-transform, CRS and PROJ instead of our projections.
+class OtherProgram {
+ public:
+  explicit OtherProgram(const std::filesystem::path& file) {
+    GDALAllRegister();
+    dataset_ = GDALDataset::Open(file.c_str(), GDAL_OF_RASTER);
+    if (dataset_ != nullptr) dataset_->GetGeoTransform(transform_);
+  }
+  ~OtherProgram() {
+    if (dataset_ != nullptr) GDALClose(dataset_);
+  }
+  OtherProgram(const OtherProgram&) = delete;
+  OtherProgram& operator=(const OtherProgram&) = delete;
+
+  GDALDataset* dataset() const { return dataset_; }
+  // Column and row (fractional, outer corner 0) of a place on Earth.
+  Eigen::Vector2d PixelOf(double longitude_deg, double latitude_deg) const {
+    OGRSpatialReference wgs84;
+    wgs84.importFromEPSG(4326);
+    wgs84.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    OGRSpatialReference map(*dataset_->GetSpatialRef());
+    map.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    OGRCoordinateTransformation* to_map = OGRCreateCoordinateTransformation(&wgs84, &map);
+    double x = longitude_deg;
+    double y = latitude_deg;
+    EXPECT_TRUE(to_map != nullptr && to_map->Transform(1, &x, &y));
+    OCTDestroyCoordinateTransformation(to_map);
+    return {(x - transform_[0]) / transform_[1], (y - transform_[3]) / transform_[5]};
+  }
+  std::vector<float> Band(int band) const {
+    std::vector<float> values(static_cast<size_t>(Width()) * static_cast<size_t>(Height()));
+    EXPECT_EQ(dataset_->GetRasterBand(band)->RasterIO(GF_Read, 0, 0, Width(), Height(), values.data(), Width(), Height(), GDT_Float32, 0, 0),
+              CE_None);
+    return values;
+  }
+  int Width() const { return dataset_->GetRasterXSize(); }
+  int Height() const { return dataset_->GetRasterYSize(); }
+  const double* transform() const { return transform_; }
+
+ private:
+  GDALDataset* dataset_ = nullptr;
+  double transform_[6] = {};
+};
+
+class AnywhereOnEarth : public testing::TestWithParam<geo::Geodetic> {};
+
+TEST_P(AnywhereOnEarth, PlacesAndHeightsAreRight) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  const scene::SceneInfo info = scene.Info(GetParam(), true);
+  const MapProducts products = MakeMapProducts(info, scene.Caster(), ProductOptions{}, folder.path());
+  EXPECT_DOUBLE_EQ(products.grid.resolution_m, 0.5);
+  EXPECT_DOUBLE_EQ(products.filled, 1.0);
+  const OtherProgram ortho(products.orthophoto);
+  const OtherProgram dsm(products.dsm);
+  ASSERT_NE(ortho.dataset(), nullptr);
+  ASSERT_NE(dsm.dataset(), nullptr);
+  EXPECT_EQ(ortho.dataset()->GetRasterCount(), 4);
+  EXPECT_EQ(ortho.dataset()->GetRasterBand(4)->GetColorInterpretation(), GCI_AlphaBand);
+  EXPECT_EQ(dsm.dataset()->GetRasterBand(1)->GetNoDataValue(), -9999.0);
+  const std::vector<float> red = ortho.Band(1);
+  const std::vector<float> green = ortho.Band(2);
+  const std::vector<float> blue = ortho.Band(3);
+  const std::vector<float> height = dsm.Band(1);
+  const geo::EnuFrame frame(info.origin);
+  int checked = 0;
+  for (double x = -59.0; x < 60.0; x += 2.93) {
+    for (double y = -49.0; y < 50.0; y += 2.71) {
+      // Edges of the house fall between two cells.
+      const bool near_edge =
+          std::abs(x) < 1.0 || std::abs(x - 10) < 1.0 || std::abs(x - 40) < 1.0 || std::abs(y + 20) < 1.0 || std::abs(y - 10) < 1.0;
+      if (near_edge) continue;
+      const geo::Geodetic place = frame.GeodeticFromEnu({x, y, scene.SurfaceZ(x, y)});
+      const Eigen::Vector2d pixel = dsm.PixelOf(place.longitude_deg, place.latitude_deg);
+      ASSERT_GE(pixel.minCoeff(), 0.0);
+      ASSERT_LT(pixel.x(), dsm.Width());
+      ASSERT_LT(pixel.y(), dsm.Height());
+      const size_t cell = static_cast<size_t>(pixel.y()) * static_cast<size_t>(dsm.Width()) + static_cast<size_t>(pixel.x());
+      EXPECT_NEAR(static_cast<double>(height[cell]), place.height_m, 0.01) << x << " " << y;
+      const bool house = scene.InHouse(x, y);
+      EXPECT_EQ(blue[cell], house ? 255.0F : 0.0F);
+      EXPECT_EQ(red[cell], !house && x > 0 ? 255.0F : 0.0F);
+      EXPECT_EQ(green[cell], !house && x < 0 ? 255.0F : 0.0F);
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 800);
+  // The map ends where the scene ends: its corners lie within two cells of the outermost of the scene's corners.
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
+  Eigen::Vector2d high = -low;
+  for (const double x : {info.min_enu.x(), info.max_enu.x()}) {
+    for (const double y : {info.min_enu.y(), info.max_enu.y()}) {
+      const geo::Geodetic corner = frame.GeodeticFromEnu({x, y, scene.ground_z});
+      const Eigen::Vector2d pixel = dsm.PixelOf(corner.longitude_deg, corner.latitude_deg);
+      low = low.cwiseMin(pixel);
+      high = high.cwiseMax(pixel);
+    }
+  }
+  EXPECT_LT(low.cwiseAbs().maxCoeff(), 2.0);
+  EXPECT_LT((high - Eigen::Vector2d(dsm.Width(), dsm.Height())).cwiseAbs().maxCoeff(), 2.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Places, AnywhereOnEarth,
+                         testing::Values(geo::Geodetic{41.38, 2.17, 50.0}, geo::Geodetic{-33.86, 151.21, -20.0}, geo::Geodetic{0.0, 6.0, 0.0},
+                                         geo::Geodetic{-17.0, 179.99999, 10.0}, geo::Geodetic{64.1, -21.9, 9000.0}, geo::Geodetic{78.2, 15.6, 40.0},
+                                         geo::Geodetic{-54.8, -68.3, 5.0}, geo::Geodetic{89.9999, 10.0, 0.0}, geo::Geodetic{-90.0, 0.0, 2800.0}));
+
+TEST(MapProducts, StayRightOverTensOfKilometres) {
+  const TemporaryFolder folder;
+  AnalyticScene scene;
+  scene.house_min = {2000.0, -9000.0};
+  scene.house_max = {12000.0, 3000.0};
+  scene.roof_z = 600.0;
+  scene::SceneInfo info = scene.Info({46.5, 7.9, 500.0}, true);
+  info.gsd_m = 50.0;
+  info.min_enu = {-15000.0, -15000.0, 0.0};
+  info.max_enu = {15000.0, 15000.0, 610.0};
+  info.blocks.resize(1);
+  info.blocks[0].min_enu = info.min_enu;
+  info.blocks[0].max_enu = info.max_enu;
+  const MapProducts products = MakeMapProducts(info, scene.Caster(), ProductOptions{}, folder.path());
+  const OtherProgram dsm(products.dsm);
+  const std::vector<float> height = dsm.Band(1);
+  const geo::EnuFrame frame(info.origin);
+  for (double x = -14000.0; x < 14500.0; x += 1310.0) {
+    for (double y = -14000.0; y < 14500.0; y += 1270.0) {
+      if (std::abs(x - 2000) < 200 || std::abs(x - 12000) < 200 || std::abs(y + 9000) < 200 || std::abs(y - 3000) < 200) continue;
+      const geo::Geodetic place = frame.GeodeticFromEnu({x, y, scene.SurfaceZ(x, y)});
+      const Eigen::Vector2d pixel = dsm.PixelOf(place.longitude_deg, place.latitude_deg);
+      const auto column = static_cast<int>(pixel.x());
+      const auto row = static_cast<int>(pixel.y());
+      // A level plane of the local frame slopes against the ellipsoid: compare at the cell's own centre.
+      const Eigen::Vector2d en = products.grid.CellCentre(column, row);
+      Eigen::Vector3d centre = frame.EnuFromGeodetic(geo::GeodeticFromUtm(en, place.height_m, products.grid.zone));
+      centre.z() = scene.SurfaceZ(x, y);
+      const double expected = frame.GeodeticFromEnu(centre).height_m;
+      EXPECT_NEAR(static_cast<double>(height[static_cast<size_t>(row) * static_cast<size_t>(dsm.Width()) + static_cast<size_t>(column)]), expected,
+                  0.02)
+          << x << " " << y;
+    }
+  }
+}
+
+TEST(MapProducts, PlacesWithoutSurfaceHaveNoData) {
+  const TemporaryFolder folder;
+  AnalyticScene scene;
+  scene.open_west = -30.0;
+  const MapProducts products = MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path());
+  EXPECT_NEAR(products.filled, 0.75, 0.02);
+  const std::vector<float> alpha = OtherProgram(products.orthophoto).Band(4);
+  const std::vector<float> height = OtherProgram(products.dsm).Band(1);
+  ASSERT_EQ(alpha.size(), height.size());
+  size_t with_data = 0;
+  for (size_t i = 0; i < alpha.size(); ++i) {
+    EXPECT_EQ(alpha[i] > 0.0F, height[i] != -9999.0F);
+    with_data += alpha[i] > 0.0F ? 1 : 0;
+  }
+  EXPECT_GT(with_data, alpha.size() / 2);
+}
+
+TEST(MapProducts, WithoutGeoReferenceTheyAreLocal) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  const MapProducts products = MakeMapProducts(scene.Info({}, false), scene.Caster(), ProductOptions{}, folder.path());
+  const OtherProgram dsm(products.dsm);
+  EXPECT_TRUE(dsm.dataset()->GetSpatialRef() == nullptr || dsm.dataset()->GetSpatialRef()->IsEmpty());
+  EXPECT_EQ(dsm.transform()[0], -60.0);
+  EXPECT_EQ(dsm.transform()[3], 50.0);
+  EXPECT_EQ(dsm.Width(), 240);
+  EXPECT_EQ(dsm.Height(), 200);
+  const std::vector<float> height = dsm.Band(1);
+  EXPECT_EQ(height[0], 5.0F);
+  EXPECT_EQ(height[static_cast<size_t>(100) * 240 + 160], 25.0F);
+}
+
+TEST(MapProducts, LargeMapsHaveOverviewsAndTiles) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  ProductOptions options;
+  options.resolution_m = 0.1;
+  options.dsm = false;
+  const MapProducts products = MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), options, folder.path());
+  const OtherProgram ortho(products.orthophoto);
+  EXPECT_GE(ortho.dataset()->GetRasterBand(1)->GetOverviewCount(), 2);
+  int block_width = 0;
+  int block_height = 0;
+  ortho.dataset()->GetRasterBand(1)->GetBlockSize(&block_width, &block_height);
+  EXPECT_EQ(block_width, 256);
+  EXPECT_EQ(block_height, 256);
+  EXPECT_STREQ(ortho.dataset()->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE"), "DEFLATE");
+  EXPECT_TRUE(products.dsm.empty());
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "dsm.tif"));
+}
+
+TEST(MapProducts, PreviewsLieInTheLocalFrame) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  // Far from the zone's central meridian north of the map and of the frame differ by two degrees.
+  MakeMapProducts(scene.Info({50.0, 5.9, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path());
+  const image::Image8 picture = image::LoadRgb8(folder.path() / "orthophoto.png");
+  const auto bounds = nlohmann::json::parse(base::ReadFile(folder.path() / "orthophoto.json"));
+  EXPECT_EQ(bounds["min_enu"][0], -60.0);
+  EXPECT_EQ(bounds["max_enu"][1], 50.0);
+  EXPECT_EQ(bounds["crs"], "EPSG:32631");
+  ASSERT_EQ(picture.width, 240);
+  ASSERT_EQ(picture.height, 200);
+  int wrong = 0;
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const double east = -60.0 + (x + 0.5) * 0.5;
+      const double north = 50.0 - (y + 0.5) * 0.5;
+      const bool near_edge = std::abs(east) < 1 || std::abs(east - 10) < 1 || std::abs(east - 40) < 1 || std::abs(north + 20) < 1 ||
+                             std::abs(north - 10) < 1 || std::abs(east) > 59 || std::abs(north) > 49;
+      if (near_edge) continue;
+      const int channel = scene.InHouse(east, north) ? 2 : east > 0 ? 0 : 1;
+      if (picture.At(x, y)[channel] != 255 || picture.At(x, y)[(channel + 1) % 3] != 0) ++wrong;
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  const image::Image8 relief = image::LoadRgb8(folder.path() / "dsm.png");
+  EXPECT_EQ(relief.width, 240);
+}
+
+TEST(MapProducts, TooManyCellsAreRefusedOrCoarsened) {
+  const AnalyticScene scene;
+  const scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
+  ProductOptions options;
+  options.max_pixels = 20000;
+  const gis::MapGrid coarse = PlanMapGrid(info, options);
+  EXPECT_LE(static_cast<double>(coarse.width) * coarse.height, 20000.0);
+  EXPECT_GT(coarse.resolution_m, 0.5);
+  options.resolution_m = 0.25;
+  try {
+    PlanMapGrid(info, options);
+    FAIL() << "accepted";
+  } catch (const base::UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("use at least 1.0"), std::string::npos) << error.what();
+  }
+  options.resolution_m = -1.0;
+  EXPECT_THROW(PlanMapGrid(info, options), base::UsageError);
+  options.resolution_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(PlanMapGrid(info, options), base::UsageError);
+}
+
+TEST(MapProducts, RaysStayInTheBoxesAboveTheirCell) {
+  const AnalyticScene scene;
+  scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
+  info.blocks[0].max_enu.z() = 8.0;
+  const gis::MapGrid grid = PlanMapGrid(info, ProductOptions{});
+  const MapRayMaker maker(info, grid);
+  MapRays rays;
+  maker.MakeRow(grid.height / 2, &rays);
+  ASSERT_GT(rays.rays.size(), 200U);
+  for (const render::Ray& ray : rays.rays) {
+    EXPECT_NEAR(ray.direction_enu.norm(), 1.0, 1e-12);
+    const double top = ray.origin_enu.x() < -3.0 ? 8.0 : 27.0;
+    EXPECT_NEAR(ray.origin_enu.z(), top, 1e-6);
+    EXPECT_NEAR(ray.origin_enu.z() + ray.t_far * ray.direction_enu.z(), 3.0, 1e-6);
+  }
+}
+
+TEST(MapProducts, CancellingLeavesNoFileBehind) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  base::RequestCancel();
+  EXPECT_THROW(MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path()), base::Interrupted);
+  base::ClearCancel();
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(NiceResolution, IsOneTwoOrFive) {
+  EXPECT_DOUBLE_EQ(NiceResolution(0.46), 0.5);
+  EXPECT_DOUBLE_EQ(NiceResolution(0.061), 0.05);
+  EXPECT_DOUBLE_EQ(NiceResolution(0.13), 0.1);
+  EXPECT_DOUBLE_EQ(NiceResolution(0.16), 0.2);
+  EXPECT_DOUBLE_EQ(NiceResolution(8.0), 10.0);
+  EXPECT_DOUBLE_EQ(NiceResolution(1.0), 1.0);
+}
+
+}  // namespace
+}  // namespace skyquilt::products

@@ -1,0 +1,176 @@
+#include "products/render_views.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "products/camera_path.h"
+#include "products/video_writer.h"
+#include "tests/products/analytic_scene.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skyquilt::products {
+namespace {
+
+struct VideoFacts {
+  int frames = 0;
+  int width = 0;
+  int height = 0;
+  double fps = 0.0;
+  std::string codec;
+  cv::Vec3b first_pixel;  // blue, green, red
+};
+
+VideoFacts Inspect(const std::filesystem::path& file) {
+  cv::VideoCapture capture(file.string());
+  VideoFacts facts;
+  facts.width = static_cast<int>(capture.get(cv::CAP_PROP_FRAME_WIDTH));
+  facts.height = static_cast<int>(capture.get(cv::CAP_PROP_FRAME_HEIGHT));
+  facts.fps = capture.get(cv::CAP_PROP_FPS);
+  const auto code = static_cast<uint32_t>(capture.get(cv::CAP_PROP_FOURCC));
+  for (unsigned i = 0; i < 4; ++i) facts.codec += static_cast<char>((code >> (8 * i)) & 0xFFU);
+  cv::Mat frame;
+  while (capture.read(frame)) {
+    if (facts.frames++ == 0) facts.first_pixel = frame.at<cv::Vec3b>(frame.rows / 2, frame.cols / 2);
+  }
+  return facts;
+}
+
+TEST(RenderViews, DepthRunsAlongTheRay) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  View view;
+  view.name = "nadir";
+  view.camera = PinholeCamera(64, 48, 60.0);
+  view.cam_from_enu = PoseFromAngles({-40.0, 0.0, 105.0}, 0.0, -90.0, 0.0);
+  const RenderStats stats = RenderViews(RendererOf(scene.Caster()), {view}, folder.path(), true);
+  EXPECT_EQ(stats.views, 1);
+  EXPECT_EQ(stats.rays, 64 * 48);
+  const image::ImageF depth = image::LoadFloatTiff(folder.path() / "nadir_depth.tiff");
+  ASSERT_EQ(depth.width, 64);
+  const double f = view.camera.FocalX();
+  for (const auto& [x, y] : {std::pair{0, 0}, {31, 23}, {10, 40}}) {
+    const Eigen::Vector2d offset = (Eigen::Vector2d(x + 0.5, y + 0.5) - Eigen::Vector2d(32, 24)) / f;
+    EXPECT_NEAR(static_cast<double>(*depth.At(x, y)), 100.0 * std::sqrt(1.0 + offset.squaredNorm()), 1e-3);
+  }
+  const image::Image8 picture = image::LoadRgb8(folder.path() / "nadir.png");
+  EXPECT_EQ(picture.At(0, 24)[1], 255) << "green in the west";
+  EXPECT_EQ(picture.At(63, 0)[0], 255) << "red in the east";
+  // 50 m east of the camera and 100 m below it the house's west wall begins: 27.7 px right of the centre.
+  EXPECT_EQ(picture.At(58, 24)[0], 255) << "ground";
+  EXPECT_EQ(picture.At(61, 24)[2], 255) << "wall";
+}
+
+TEST(RenderViews, SkyIsBlackWithoutDepth) {
+  const TemporaryFolder folder;
+  View view;
+  view.name = "up";
+  view.camera = PinholeCamera(8, 6, 60.0);
+  view.cam_from_enu = PoseFromAngles({0.0, 0.0, 105.0}, 0.0, 80.0, 0.0);
+  RenderViews(RendererOf(AnalyticScene{}.Caster()), {view}, folder.path(), true);
+  EXPECT_TRUE(std::isnan(*image::LoadFloatTiff(folder.path() / "up_depth.tiff").At(3, 3)));
+  EXPECT_EQ(image::LoadRgb8(folder.path() / "up.png").At(3, 3)[0], 0);
+}
+
+TEST(RenderVideo, HasOneFramePerView) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  ProductOptions options;
+  options.video_seconds = 1.0;
+  options.video_width = 160;
+  options.video_height = 90;
+  const std::vector<View> views = BuiltInPath(scene.Info({41.0, 2.0, 0.0}, true), options);
+  const std::filesystem::path file = folder.path() / "video.mp4";
+  const RenderStats stats = RenderVideo(RendererOf(scene.Caster()), views, options.video_fps, file);
+  EXPECT_EQ(stats.rays, 12 * 160 * 90);
+  const VideoFacts facts = Inspect(file);
+  EXPECT_EQ(facts.frames, 12);
+  EXPECT_EQ(facts.width, 160);
+  EXPECT_EQ(facts.height, 90);
+  EXPECT_NEAR(facts.fps, 12.0, 0.01);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "nothing else is left";
+}
+
+TEST(VideoWriter, FallsBackToOpenCv) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "video.mp4";
+  VideoWriter video(file, 64, 48, 10, "a-program-that-is-not-there");
+  EXPECT_EQ(video.encoder(), "OpenCV mp4v");
+  image::Image8 frame(64, 48, 3, 0);
+  for (size_t i = 0; i < frame.data.size(); i += 3) frame.data[i] = 230;
+  for (int i = 0; i < 7; ++i) video.Write(frame);
+  EXPECT_FALSE(std::filesystem::exists(file));
+  video.Close();
+  const VideoFacts facts = Inspect(file);
+  EXPECT_EQ(facts.frames, 7);
+  EXPECT_GT(facts.first_pixel[2], 180) << "red stays red";
+  EXPECT_LT(facts.first_pixel[0], 60);
+}
+
+TEST(VideoWriter, FfmpegWritesH264) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "with space 'quote.mp4";
+  VideoWriter video(file, 64, 48, 10);
+  if (video.encoder() != "ffmpeg libx264") GTEST_SKIP() << "the program ffmpeg is not installed";
+  image::Image8 frame(64, 48, 3, 0);
+  for (size_t i = 0; i < frame.data.size(); i += 3) frame.data[i] = 230;
+  for (int i = 0; i < 5; ++i) video.Write(frame);
+  video.Close();
+  const VideoFacts facts = Inspect(file);
+  EXPECT_EQ(facts.frames, 5);
+  EXPECT_TRUE(facts.codec == "avc1" || facts.codec == "h264" || facts.codec == "H264") << facts.codec;
+  EXPECT_GT(facts.first_pixel[2], 180);
+}
+
+TEST(VideoWriter, AProgramThatDiesIsReported) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "video.mp4";
+  EXPECT_THROW(
+      {
+        VideoWriter video(file, 640, 480, 10, "false");
+        const image::Image8 frame(640, 480, 3, 0);
+        for (int i = 0; i < 50; ++i) video.Write(frame);
+        video.Close();
+      },
+      base::InputError);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(VideoWriter, LeavesNothingWhenAbandoned) {
+  const TemporaryFolder folder;
+  {
+    VideoWriter video(folder.path() / "video.mp4", 64, 48, 10);
+    video.Write(image::Image8(64, 48, 3, 100));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(RenderViews, StopsWhenCancelled) {
+  const TemporaryFolder folder;
+  View view;
+  view.name = "x";
+  view.camera = PinholeCamera(8, 6, 60.0);
+  base::RequestCancel();
+  EXPECT_THROW(RenderViews(RendererOf(AnalyticScene{}.Caster()), {view}, folder.path(), false), base::Interrupted);
+  base::ClearCancel();
+}
+
+TEST(ProductOptions, RefuseWhatCannotBe) {
+  ProductOptions options;
+  options.Check();
+  options.video_width = 481;
+  EXPECT_THROW(options.Check(), base::UsageError);
+  options = {};
+  options.video_path = "dive";
+  EXPECT_THROW(options.Check(), base::UsageError);
+  options = {};
+  options.min_opacity = std::nan("");
+  EXPECT_THROW(options.Check(), base::UsageError);
+}
+
+}  // namespace
+}  // namespace skyquilt::products

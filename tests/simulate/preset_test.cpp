@@ -1,0 +1,126 @@
+#include "simulate/preset.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+#include "core/base/errors.h"
+#include "simulate/simulate.h"
+
+namespace skyquilt::simulate {
+namespace {
+
+TEST(Presets, EveryNameResolvesToUsableNumbers) {
+  const std::vector<std::string> names = PresetNames();
+  for (const char* wanted : {"hamlet", "town", "smallcity", "tidalflat"}) EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end());
+  for (const std::string& name : names) {
+    SimulateOptions options;
+    options.preset = name;
+    const Preset preset = ResolvePreset(options);
+    EXPECT_EQ(preset.name, name);
+    EXPECT_EQ(preset.camera.Problem(), "");
+    EXPECT_EQ(preset.altitudes_agl_m.size(), static_cast<size_t>(preset.rows * preset.columns));
+  }
+}
+
+TEST(Presets, SmallCityFliesTheMatrixCityHeights) {
+  SimulateOptions options;
+  options.preset = "smallcity";
+  EXPECT_EQ(ResolvePreset(options).altitudes_agl_m, (std::vector<double>{150, 150, 300, 500, 450, 450, 350, 350, 250, 200}));
+}
+
+TEST(Presets, OptionsAreLaidOver) {
+  SimulateOptions options;
+  options.preset = "town";
+  options.image_width = 320;
+  options.forward_overlap = 0.6;
+  options.altitudes = {120.0};
+  options.gps_noise_m = 0.0;
+  options.oblique = false;
+  const Preset preset = ResolvePreset(options);
+  EXPECT_EQ(preset.camera.width, 320);
+  EXPECT_EQ(preset.camera.height, 180);
+  EXPECT_EQ(preset.forward_overlap, 0.6);
+  EXPECT_EQ(preset.altitudes_agl_m, (std::vector<double>{120.0, 120.0, 120.0, 120.0}));
+  EXPECT_EQ(preset.gps_noise_m, 0.0);
+  EXPECT_EQ(preset.oblique_lines, 0);
+}
+
+TEST(Presets, LightIsAsTheTagsTellUnlessAskedFor) {
+  SimulateOptions options;
+  const Preset plain = ResolvePreset(options);
+  EXPECT_EQ(plain.exposure_offset_stops, 0.0);
+  EXPECT_EQ(plain.exposure_error_stops, 0.0);
+  EXPECT_EQ(plain.color_drift_stops, 0.0);
+  EXPECT_EQ(plain.vignetting, 0.0);
+  EXPECT_EQ(plain.exposure_tags, ExposureTags::kAll);
+  options.exposure_offset_stops = -10.0;
+  options.exposure_error_stops = 3.0;
+  options.color_drift_stops = 0.5;
+  options.vignetting = 0.9;
+  options.exposure_tags = "half";
+  const Preset changed = ResolvePreset(options);
+  EXPECT_EQ(changed.exposure_offset_stops, -10.0);
+  EXPECT_EQ(changed.exposure_error_stops, 3.0);
+  EXPECT_EQ(changed.color_drift_stops, 0.5);
+  EXPECT_EQ(changed.vignetting, 0.9);
+  EXPECT_EQ(changed.exposure_tags, ExposureTags::kHalf);
+  options.exposure_tags = "none";
+  EXPECT_EQ(ResolvePreset(options).exposure_tags, ExposureTags::kNone);
+}
+
+void ExpectRefused(const std::string& named, const std::function<void(SimulateOptions&)>& change) {
+  SimulateOptions options;
+  options.preset = "town";
+  change(options);
+  try {
+    ResolvePreset(options);
+    ADD_FAILURE() << named << " was accepted";
+  } catch (const base::UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
+  }
+}
+
+TEST(Presets, BadOptionsAreRefusedByName) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  ExpectRefused("preset", [](SimulateOptions& o) { o.preset = "metropolis"; });
+  ExpectRefused("seed", [](SimulateOptions& o) { o.seed = -1; });
+  ExpectRefused("image_width", [](SimulateOptions& o) { o.image_width = 3; });
+  ExpectRefused("image_width", [](SimulateOptions& o) { o.image_width = -640; });
+  ExpectRefused("forward_overlap", [](SimulateOptions& o) { o.forward_overlap = 1.0; });
+  ExpectRefused("forward_overlap", [&](SimulateOptions& o) { o.forward_overlap = nan; });
+  ExpectRefused("side_overlap", [](SimulateOptions& o) { o.side_overlap = 80.0; });
+  ExpectRefused("altitudes", [](SimulateOptions& o) { o.altitudes = {80.0, 90.0}; });
+  ExpectRefused("altitudes", [](SimulateOptions& o) { o.altitudes = {-80.0}; });
+  ExpectRefused("altitudes", [&](SimulateOptions& o) { o.altitudes = {nan}; });
+  ExpectRefused("exposure_offset_stops", [](SimulateOptions& o) { o.exposure_offset_stops = -10.1; });
+  ExpectRefused("exposure_offset_stops", [](SimulateOptions& o) { o.exposure_offset_stops = 11.0; });
+  ExpectRefused("exposure_offset_stops", [&](SimulateOptions& o) { o.exposure_offset_stops = nan; });
+  // Each is possible alone.
+  ExpectRefused("exposure_offset_stops", [](SimulateOptions& o) {
+    o.exposure_offset_stops = -10.0;
+    o.exposure_drift_stops = 4.0;
+  });
+  ExpectRefused("exposure_error_stops", [](SimulateOptions& o) { o.exposure_error_stops = -0.1; });
+  ExpectRefused("exposure_error_stops", [](SimulateOptions& o) { o.exposure_error_stops = 3.1; });
+  ExpectRefused("color_drift_stops", [](SimulateOptions& o) { o.color_drift_stops = -0.1; });
+  ExpectRefused("color_drift_stops", [&](SimulateOptions& o) { o.color_drift_stops = nan; });
+  ExpectRefused("vignetting", [](SimulateOptions& o) { o.vignetting = 0.95; });
+  ExpectRefused("vignetting", [](SimulateOptions& o) { o.vignetting = -0.1; });
+  ExpectRefused("exposure_tags", [](SimulateOptions& o) { o.exposure_tags = "some"; });
+  ExpectRefused("all, none, half", [](SimulateOptions& o) { o.exposure_tags = ""; });
+  ExpectRefused("latitude_deg", [](SimulateOptions& o) { o.latitude_deg = 91.0; });
+  ExpectRefused("test_every", [](SimulateOptions& o) { o.test_every = 0; });
+  ExpectRefused("samples_per_pixel", [](SimulateOptions& o) { o.samples_per_pixel = 5; });
+  ExpectRefused("light_intensity", [](SimulateOptions& o) { o.light_intensity = 0.0; });
+  ExpectRefused("jpeg_quality", [](SimulateOptions& o) { o.jpeg_quality = 101; });
+  ExpectRefused("moving_cars", [](SimulateOptions& o) {
+    o.preset = "tidalflat";
+    o.moving_cars = 2;
+  });
+}
+
+}  // namespace
+}  // namespace skyquilt::simulate

@@ -49,7 +49,7 @@ FieldStep::FieldStep(const render::TrainedField& target, const field::HashField&
 
 FieldStep::~FieldStep() = default;
 
-void FieldStep::Encode(const RayBatch& batch, const field::TrainableState& state, const StepShare* share) {
+void FieldStep::Encode(const RayBatch& batch, const field::TrainableState& state) {
   if (batch.packets.empty()) return;
   const Packet& last = batch.packets.back();
   Grow(features_, last.features + last.stride * static_cast<size_t>(field_.FeatureRows()));
@@ -71,7 +71,6 @@ void FieldStep::Encode(const RayBatch& batch, const field::TrainableState& state
     const auto first = static_cast<size_t>(stretch * kEncodePackets);
     const auto end = std::min(first + static_cast<size_t>(kEncodePackets), batch.packets.size());
     for (size_t k = first; k < end; ++k) {
-      if (share != nullptr && !share->Mine(k % kGradientSlots)) continue;
       const Packet& p = batch.packets[k];
       encoding.Forward(part, table, batch.x.data() + p.begin, batch.y.data() + p.begin, batch.z.data() + p.begin, p.count,
                        features_.data() + p.features + static_cast<size_t>(encoding.FirstRow(part)) * p.stride, p.stride);
@@ -218,13 +217,12 @@ FieldStep::PacketResult FieldStep::TrainPacket(RayBatch& batch, const Packet& pa
   return result;
 }
 
-StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state, brightness::ResponseLearner* learner,
-                            const StepShare* share) {
+StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state, brightness::ResponseLearner* learner) {
   StepResult result;
   result.n_rays = static_cast<int>(batch.rays.size());
   result.n_samples = batch.n_samples;
   weights_ = field_.Prepare(state.networks);
-  Encode(batch, state, share);
+  Encode(batch, state);
   Grow(observed_, static_cast<size_t>(batch.Size()));
   const size_t n_packets = batch.packets.size();
   results_.assign(n_packets, {});
@@ -233,14 +231,12 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   gain_gradients_.assign(learner != nullptr ? batch.rays.size() : 0, {0.0F, 0.0F, 0.0F});
   const float ray_share = 1.0F / static_cast<float>(std::max(1, result.n_rays));
   threads_.ParallelFor(kGradientSlots, [&](int64_t slot, int thread) {
-    if (share != nullptr && !share->Mine(static_cast<size_t>(slot))) return;
     for (size_t k = static_cast<size_t>(slot); k < n_packets; k += kGradientSlots) {
       results_[k] = TrainPacket(batch, batch.packets[k], ray_share, options.distortion,
                                 slot_gradients_.data() + static_cast<size_t>(slot) * network_size, *workers_[static_cast<size_t>(thread)], thread);
     }
   });
   auto at = StageTimes::Clock::now();
-  if (share != nullptr) PassOn(batch, *share);
   PacketResult sums;
   stretches_.clear();
   for (size_t k = 0; k < n_packets; ++k) {
@@ -291,7 +287,7 @@ void FieldStep::FollowMeans(const PacketResult& sums) {
 
 void FieldStep::Infer(RayBatch& batch, const field::TrainableState& state) {
   weights_ = field_.Prepare(state.networks);
-  Encode(batch, state, nullptr);
+  Encode(batch, state);
   threads_.ParallelFor(static_cast<int64_t>(batch.packets.size()), [&](int64_t k, int thread) {
     const Packet& packet = batch.packets[static_cast<size_t>(k)];
     Worker& w = *workers_[static_cast<size_t>(thread)];

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "core/base/thread_pool.h"
@@ -17,7 +16,6 @@
 #include "core/render/trained_field.h"
 #include "worker/ray_batch.h"
 #include "worker/stage_times.h"
-#include "worker/step_share.h"
 
 namespace skyquilt::worker {
 
@@ -55,9 +53,7 @@ class FieldStep {
 
   // Learns from the batch; positions of its dropped samples are lost. Non-finite gradients leave the state as it was. What the rays say about
   // their photos' brightness is added to the learner, when there is one; its step is the caller's.
-  // share: this trainer's part of the work; null: all of it.
-  StepResult Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state, brightness::ResponseLearner* learner,
-                   const StepShare* share = nullptr);
+  StepResult Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state, brightness::ResponseLearner* learner);
   // Density and colour of every sample, for timing: the forward half alone.
   void Infer(RayBatch& batch, const field::TrainableState& state);
   // Running means of a field with luminance; part of what a checkpoint holds.
@@ -77,10 +73,7 @@ class FieldStep {
   // Network gradients are summed in so many places, packet k in place k modulo that.
   static constexpr size_t kGradientSlots = 16;
 
-  void Encode(const RayBatch& batch, const field::TrainableState& state, const StepShare* share);
-  std::string PackShare(const RayBatch& batch, const StepShare& share) const;
-  void UnpackShare(const std::string& bytes, const StepShare& sender, RayBatch& batch);
-  void PassOn(RayBatch& batch, const StepShare& share);
+  void Encode(const RayBatch& batch, const field::TrainableState& state);
   void Density(const Packet& packet, Worker& w);
   int64_t DropHidden(RayBatch& batch, const Packet& packet, Worker& w);
   void Color(const RayBatch& batch, const Packet& packet, int64_t n, Worker& w) const;

@@ -49,7 +49,7 @@ void FieldTrainer::InitializeParameters() {
   state_.networks[static_cast<size_t>(field_.LuminanceOffset() + field::kLuminanceTaps)] = static_cast<float>(std::log(omega / (1.0 - omega)));
 }
 
-StepResult FieldTrainer::Step(double progress, double learning_rate_scale, const StepShare* share) {
+StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   drawer_.Draw(state_.step, rays_per_step_, field_.FeatureRows(), &batch_);
   StepOptions step;
   const double warm_up = std::min(1.0, static_cast<double>(state_.step + 1) / kWarmUpSteps);
@@ -58,7 +58,7 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale, const
   step.network_l2 = options_.network_l2;
   step.distortion = options_.distortion * std::clamp((progress - kDistortionFrom) / (kDistortionTo - kDistortionFrom), 0.0, 1.0);
   brightness::ResponseLearner* learner = learner_ != nullptr && learner_->active() ? learner_ : nullptr;
-  const StepResult result = step_.Train(batch_, step, state_, learner, share);
+  const StepResult result = step_.Train(batch_, step, state_, learner);
   if (learner != nullptr && result.finite) {
     learner->Step(progress);
     source_.UpdateExposures();

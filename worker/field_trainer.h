@@ -29,8 +29,7 @@ class FieldTrainer {
   void InitializeParameters();
 
   // progress in [0, 1] of the budget sets learning rate and distortion loss.
-  // share: this trainer's part of the step, see step_share.h.
-  StepResult Step(double progress, double learning_rate_scale, const StepShare* share = nullptr);
+  StepResult Step(double progress, double learning_rate_scale);
   // Looks for matter in cells that are not sampled, then decides which cells are. `grow` also wakes the cells around surfaces.
   void UpdateOccupancy(bool grow);
   // Seconds of work per stage (kStageNames) since the start, summed over threads.

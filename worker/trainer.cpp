@@ -18,7 +18,6 @@
 #include "worker/point_surface.h"
 #include "worker/starting_occupancy.h"
 #include "worker/surface_band.h"
-#include "worker/team_steps.h"
 #include "worker/tie_point_gains.h"
 
 namespace skyquilt::worker {
@@ -104,7 +103,7 @@ class Loop {
   // extras: the context's, null for blocks.
   Loop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, ContextExtras* extras,
        const Reporter& report)
-      : kind_(kind), job_(job), target_(target), trainer_(trainer), extras_(extras), report_(report), team_(job.team) {}
+      : kind_(kind), job_(job), target_(target), trainer_(trainer), extras_(extras), report_(report) {}
 
   TrainResult Run(SessionRecord record, const std::function<ContextFindings()>& find_out) {
     const TrainOptions& options = job_.options;
@@ -116,17 +115,14 @@ class Loop {
     const auto fraction_at = [&](int64_t done) {
       return total_steps > 0 ? static_cast<double>(done) / static_cast<double>(total_steps) : record.seconds / std::max(1e-3, options.seconds);
     };
-    if (!team_.leads()) team_.Begin(0.0);
     while (true) {
-      // Members hear from who leads, whose clock it is, with each shared step.
-      const double fraction = team_.together() ? team_.fraction() : fraction_at(state.step);
+      const double fraction = fraction_at(state.step);
       if (fraction >= 1.0) break;
-      if (team_.together() ? team_.stop() : base::CancelRequested()) {
-        if (team_.leads()) SaveSession(kind_, job_, target_, trainer_, record, extras_);
+      if (base::CancelRequested()) {
+        SaveSession(kind_, job_, target_, trainer_, record, extras_);
         throw base::Interrupted();
       }
-      if (team_.together()) team_.Announce(fraction_at(state.step + 1), false);
-      const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale, team_.together() ? &team_.share() : nullptr);
+      const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
       if (state.step % kOccupancyEvery == 0) trainer_.UpdateOccupancy(state.step % kGrowEvery == 0 && fraction < kGrowUntil);
       if (step.finite) {
         dropped_in_a_row = 0;
@@ -156,20 +152,11 @@ class Loop {
         rays_since = samples_since = since = 0.0;
         last_report = now;
       }
-      if (team_.together()) {
-        if (team_.GoesHome(step_s) && !team_.leads()) return Summarise(record, trainer_);
-      } else if (team_.TimeToSummon(step_s)) {
-        SaveSession(kind_, job_, target_, trainer_, record, extras_);
-        job_.team.summon();
-        team_.Begin(fraction_at(state.step));
-        last = last_save = Now();
-      }
-      if (team_.leads() && now - last_save >= options.checkpoint_every_s) {
+      if (now - last_save >= options.checkpoint_every_s) {
         SaveSession(kind_, job_, target_, trainer_, record, extras_);
         last = last_save = Now();  // saving is not training
       }
     }
-    if (!team_.leads()) return Summarise(record, trainer_);
     record.complete = true;
     // Cells at the edge of view that no ray happened to cross would show whatever the tables hold there.
     field::OccupancyGrid& cells = target_.occupancy;
@@ -209,7 +196,6 @@ class Loop {
   FieldTrainer& trainer_;
   ContextExtras* extras_;
   const Reporter& report_;
-  TeamSteps team_;
 };
 
 bool SearchesEverywhere(const TrainOptions& options) {
@@ -229,10 +215,6 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   std::optional<SavedSession> saved = OpenSession("context", job);
   if (saved) {
     if (const std::optional<TrainResult> finished = FinishedResult(*saved)) return *finished;
-  }
-  if (job.team.number > 0 && !saved) {
-    throw base::InputError(job.checkpoint, "was just saved by the rank that leads, but cannot be read here",
-                           "All ranks must see the same project folder");
   }
   brightness::Response response = job.response;
   brightness::ResponseLearner learner(response, job.learn);

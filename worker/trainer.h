@@ -47,16 +47,6 @@ struct TrainResult {
 
 using Reporter = std::function<void(const TrainStatus&)>;
 
-// Trainers that share the work of a context's steps (step_share.h): one leads, and asks the others to come when it has saved where it stands.
-struct Team {
-  int members = 1;
-  int number = 0;                // of this one. Number 0 leads: it alone saves, reports and has a result
-  double worth_it = 0.95;        // of the time that a step takes alone: the others go home when shared steps take longer
-  std::function<void()> summon;  // of number 0: has the others begin, from the checkpoint that was just written
-  // Everybody's bytes, by number; every member calls it equally often.
-  std::function<std::vector<std::string>(std::string own)> exchange;
-};
-
 struct TrainJob {
   const survey::Survey* survey = nullptr;
   const image::PixelCache* pixels = nullptr;  // entry i belongs to survey->photos[i]
@@ -69,7 +59,6 @@ struct TrainJob {
   double learning_rate_scale = 1.0;  // below 1 on retries
   std::string config_hash;           // stored; a checkpoint with another hash is refused
   uint64_t seed = 1;
-  Team team;                         // of the context
   std::filesystem::path checkpoint;  // context.h5 or block_<name>.h5
 };
 

@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kMend = "Run the bench again with --restart, or remove this file";
 
 // Nothing of these changes a result.
-constexpr const char* kIdle[] = {"run.threads", "run.memory_gb", "run.context_ranks", "context.checkpoint_every_s", "train.checkpoint_every_s"};
+constexpr const char* kIdle[] = {"run.threads", "run.memory_gb", "context.checkpoint_every_s", "train.checkpoint_every_s"};
 
 void RemoveOldRuns(const std::filesystem::path& folder) {
   for (const char* part : {"runs", "source", "cache"}) {

@@ -13,10 +13,6 @@ void RunOptions::Visit(config::OptionVisitor& v) {
   v.Field("time_budget_s", time_budget_s,
           "seconds for all training together, shared out over context and blocks; 0 = the steps of [context] and [train] decide");
   v.Field("context_share", context_share, "share of the time budget that the context gets, 0.01 to 0.9");
-  v.Field(
-      "context_ranks", context_ranks,
-      "ranks that share the work of training the context, where that is measured to be faster; the result is the same to the bit. 0 = one of every "
-      "machine, at most 8; 1 = rank 0 alone; a number = so many, also of one machine");
   v.Field("seed", seed, "start of every random sequence of the training, 0 or more");
   v.Field("threads", threads, "threads per machine; 0 = every core this process may use");
   v.Field("memory_gb", memory_gb,
@@ -39,7 +35,6 @@ void RunOptions::Validate() const {
   require(image_width == 0 || image_width >= 16, "image_width", std::to_string(image_width), "0 (full size) or at least 16 pixels");
   require(std::isfinite(time_budget_s) && time_budget_s >= 0.0, "time_budget_s", std::to_string(time_budget_s), "0 or a positive number of seconds");
   require(context_share >= 0.01 && context_share <= 0.9, "context_share", std::to_string(context_share), "between 0.01 and 0.9");
-  require(context_ranks >= 0 && context_ranks <= 16, "context_ranks", std::to_string(context_ranks), "between 0 and 16");
   require(seed >= 0, "seed", std::to_string(seed), "0 or more");
   require(threads >= 0 && threads <= 4096, "threads", std::to_string(threads), "between 0 and 4096");
   require(std::isfinite(memory_gb) && memory_gb >= 0.0, "memory_gb", std::to_string(memory_gb), "0 or more");

@@ -9,7 +9,6 @@ struct RunOptions {
   int image_width = 1000;       // pixels; photos are reduced to it for training and scoring; 0: full size
   double time_budget_s = 0.0;   // of the whole training; 0: the steps of [context] and [train] decide
   double context_share = 0.15;  // of the time budget
-  int context_ranks = 0;        // that share the work of the context; 0: one of every machine
   int seed = 1;
   int threads = 0;         // per machine; 0: every core this process may use
   double memory_gb = 0.0;  // per machine; 0: half of it

@@ -16,6 +16,7 @@ config::Sections Settings::AllSections() {
   sections.Add("merge", merge, "how blocks are joined to one scene");
   sections.Add("products", products, "orthophoto, surface model, pictures, video");
   sections.Add("evaluate", evaluate, "scores and report");
+  sections.Retire("run.context_ranks", "rank 0 trains the context alone");
   return sections;
 }
 

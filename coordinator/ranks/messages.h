@@ -21,7 +21,6 @@ enum Tag : int {
   kTagPart = 112,     // 0 -> worker: what it may use and which blocks are whose
   kTagRays = 113,     // 0 -> worker: rays to take on
   kTagCarried = 114,  // worker -> 0: how far they came, or what went wrong
-  kTagShare = 115,    // between members of a team: what came of their part of a training step
 };
 
 // Waits for a message without giving up when a signal came: only rank 0 decides when a worker rank ends.

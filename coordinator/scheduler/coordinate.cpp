@@ -157,8 +157,7 @@ class Coordination {
   }
 
   void TakeOutcome(const comm::Message& message) {
-    FieldOutcome outcome = OutcomeFromText(message.bytes);
-    if (outcome.job.block < 0) return;  // of a rank that helped with the context and has gone home
+    const FieldOutcome outcome = OutcomeFromText(message.bytes);
     busy_.erase(message.source);
     idle_.insert(message.source);
     const bool finished = outcome.failure == Failure::kNone;
@@ -255,11 +254,6 @@ void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int thre
     if (message.tag == kTagDone) return;
     if (message.tag != kTagJob) continue;  // a stop that crossed the outcome of the job it was meant for
     const FieldJob job = JobFromText(message.bytes);
-    if (!job.team.empty()) {
-      // Rank 0 leads the team and knows how far it is; messages belong to the team.
-      comm.Send(0, kTagOutcome, ToText(RunField(trainer, job, {}, comm.rank(), threads)));
-      continue;
-    }
     RankReporter reporter(comm, job);
     const FieldOutcome outcome = RunField(
         trainer, job, [&reporter](const worker::TrainStatus& status) { reporter(status); }, comm.rank(), threads);

@@ -7,7 +7,6 @@
 
 #include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/training_log.h"
-#include "coordinator/scheduler/training_team.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/encoding/encoding.h"
@@ -82,10 +81,10 @@ bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& bloc
 }
 
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,
-                              const Settings& settings, const Project& project, const std::string& config_hash, comm::Communicator& comm,
+                              const Settings& settings, const Project& project, const std::string& config_hash,
                               base::ThreadPool& threads) {
   const BrightnessPlan plan = PlanBrightness(survey, settings.brightness);
-  return [&survey, &blocks, &pixels, &settings, project, config_hash, plan, &comm, &threads](const FieldJob& job, const worker::Reporter& report) {
+  return [&survey, &blocks, &pixels, &settings, project, config_hash, plan, &threads](const FieldJob& job, const worker::Reporter& report) {
     worker::TrainJob train;
     train.survey = &survey;
     train.pixels = &pixels;
@@ -98,11 +97,9 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
     train.learning_rate_scale = job.rate_factor;
     train.config_hash = config_hash;
     train.seed = job.seed;
-    train.team = MakeTeam(comm, job);
-    std::optional<TrainingLog> log;
-    if (train.team.number == 0) log.emplace(project.TrainLog(job.name));
+    TrainingLog log(project.TrainLog(job.name));
     const worker::Reporter both = [&log, &report](const worker::TrainStatus& status) {
-      if (log) log->Add(status);
+      log.Add(status);
       if (report) report(status);
     };
     if (job.block < 0) {

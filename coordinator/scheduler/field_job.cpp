@@ -16,7 +16,7 @@ using nlohmann::json;
 
 json ToJson(const FieldJob& job) {
   return {{"block", job.block},     {"name", job.name},        {"attempt", job.attempt}, {"steps", job.steps},
-          {"seconds", job.seconds}, {"rate", job.rate_factor}, {"seed", job.seed},       {"team", job.team}};
+          {"seconds", job.seconds}, {"rate", job.rate_factor}, {"seed", job.seed}};
 }
 
 FieldJob JobFromJson(const json& j) {
@@ -28,7 +28,6 @@ FieldJob JobFromJson(const json& j) {
   job.seconds = j.at("seconds").get<double>();
   job.rate_factor = j.at("rate").get<double>();
   job.seed = j.at("seed").get<uint64_t>();
-  job.team = j.at("team").get<std::vector<int>>();
   return job;
 }
 

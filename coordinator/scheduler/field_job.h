@@ -18,7 +18,6 @@ struct FieldJob {
   double seconds = 0.0;      // budget when steps = 0; 0: the trainer's default
   double rate_factor = 1.0;  // multiplies the learning rate; halved with each attempt
   uint64_t seed = 1;
-  std::vector<int> team = {};  // ranks that share its steps, 0 first; empty: one alone
 };
 
 enum class Failure {

@@ -12,7 +12,6 @@
 #include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/train_ledger.h"
 #include "coordinator/scheduler/train_progress.h"
-#include "coordinator/scheduler/training_team.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
@@ -66,16 +65,13 @@ class Training {
                         {"quiet", input_.quiet}};
     Crew crew(comm_, kTagSetup, setup.dump());
     if (const std::string remark = PlanBrightness(*input_.survey, settings_.brightness).remark; !remark.empty()) spdlog::info("{}", remark);
-    const FieldTrainer trainer = MakeFieldTrainer(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, comm_, pool);
+    const FieldTrainer trainer = MakeFieldTrainer(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
     int per_host = 1;
     int threads = all_threads;
-    std::vector<int> team;
     if (comm_.size() > 1) {
-      const std::vector<CrewMember> members = crew.Muster();
-      threads = AssignThreads(members, &per_host);
-      team = ChooseTeam(members, base::HostName(), settings_.run.context_ranks);
+      threads = AssignThreads(crew.Muster(), &per_host);
     }
-    summary.fields.push_back(TrainContext(trainer, all_threads, team));
+    summary.fields.push_back(TrainContext(trainer, all_threads));
     RequireMemory(*input_.blocks, settings_, threads, per_host);
     TrainBlocks(trainer, threads, &summary);
     ledger_.SetSpent(Now(), true);
@@ -99,7 +95,7 @@ class Training {
     return fewest;
   }
 
-  FieldOutcome TrainContext(const FieldTrainer& trainer, int threads, const std::vector<int>& team) {
+  FieldOutcome TrainContext(const FieldTrainer& trainer, int threads) {
     QueueOptions options;
     options.steps = ContextSteps(settings_);
     options.seconds = settings_.run.time_budget_s > 0.0 ? settings_.run.time_budget_s * settings_.run.context_share : settings_.context.seconds;
@@ -110,8 +106,7 @@ class Training {
     TrainProgress progress("context", 1.0, 1);
     while (queue.HasWaiting()) {
       base::ThrowIfCancelled();
-      FieldJob job = queue.Take(Now(), {});
-      job.team = team;
+      const FieldJob job = queue.Take(Now(), {});
       const auto report = [&](const worker::TrainStatus& status) {
         progress.Update(job, 1.0, status);
         ledger_.SetSpent(Now(), false);
@@ -241,7 +236,7 @@ void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
     hello["threads"] = settings.run.UsableThreads();
     const int threads = std::stoi(Enlist(comm, hello, kTagThreads));
     base::ThreadPool pool(threads);
-    ServeBlocks(comm, MakeFieldTrainer(survey, blocks, pixels, settings, project, setup.at("config_hash").get<std::string>(), comm, pool), threads);
+    ServeBlocks(comm, MakeFieldTrainer(survey, blocks, pixels, settings, project, setup.at("config_hash").get<std::string>(), pool), threads);
   });
 }
 

@@ -35,8 +35,14 @@ class Sections {
   };
   const std::vector<Entry>& entries() const { return entries_; }
 
+  // An option of earlier versions, as "section.key": still taken wherever it is set, without effect but a warning that says `why`.
+  void Retire(const std::string& key, const std::string& why) { retired_[key] = why; }
+  // True for a retired option, which is then warned of; `origin`: where it was set.
+  bool IsRetired(const std::string& key, const std::string& origin) const;
+
  private:
   std::vector<Entry> entries_;
+  std::map<std::string, std::string> retired_;
 };
 
 // Reads a TOML file into the sections. Throws base::InputError for a file that cannot be read or parsed (line named), base::UsageError for

@@ -97,6 +97,7 @@ Override ParseOverride(const std::string& text) {
 }
 
 void ApplyOverride(const Override& entry, Sections& sections) {
+  if (sections.IsRetired(entry.key, "--set")) return;
   const size_t dot = entry.key.find('.');
   const std::string section = entry.key.substr(0, dot);
   std::vector<std::string> section_names;

@@ -184,19 +184,20 @@ Known Describe(const Sections& sections) {
 }
 
 // Every value of the document by its dotted name; refuses tables that no section knows.
-void CollectLeaves(const std::string& origin, const toml::table& table, const std::string& prefix, const Known& known,
+void CollectLeaves(const std::string& origin, const toml::table& table, const std::string& prefix, const Sections& sections, const Known& known,
                    std::map<std::string, const toml::node*>& leaves) {
   for (const auto& [key, node] : table) {
     const std::string name = prefix + std::string(key.str());
     const toml::table* inner = node.as_table();
     const bool is_option = std::find(known.keys.begin(), known.keys.end(), name) != known.keys.end();
+    if (!is_option && sections.IsRetired(name, origin)) continue;
     if (inner == nullptr || is_option) {
       if (!is_option) RefuseKey(origin, name, node, known);
       leaves[name] = &node;
       continue;
     }
     if (!known.tables.contains(name)) RefuseTable(origin, name, node, known);
-    CollectLeaves(origin, *inner, name + ".", known, leaves);
+    CollectLeaves(origin, *inner, name + ".", sections, known, leaves);
   }
 }
 
@@ -223,7 +224,7 @@ void ReadTomlText(const std::string& text, const std::string& origin, Sections& 
   const toml::table document = Parse(text, origin);
   const Known known = Describe(sections);
   std::map<std::string, const toml::node*> leaves;
-  CollectLeaves(origin, document, "", known, leaves);
+  CollectLeaves(origin, document, "", sections, known, leaves);
   for (const Sections::Entry& entry : sections.entries()) {
     const std::string prefix = PrefixOf(entry);
     ReadVisitor visitor(origin, prefix, leaves);

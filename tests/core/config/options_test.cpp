@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/config/override.h"
 
 namespace skyquilt::config {
 namespace {
@@ -55,6 +56,16 @@ std::string MessageOf(const std::string& text) {
     return error.what();
   }
   return "";
+}
+
+TEST(Toml, ARetiredOptionIsTakenWithoutEffect) {
+  All all;
+  all.sections.Retire("train.gone", "nothing needs it");
+  ReadTomlText("[train]\ngone = 3\nsteps = 7\n", "old.toml", all.sections);
+  EXPECT_EQ(all.train.steps, 7);
+  ApplyOverride({"train.gone", "4"}, all.sections);
+  EXPECT_THROW(ApplyOverride({"train.never", "4"}, all.sections), base::UsageError);
+  EXPECT_EQ(WriteToml(all.sections).find("gone"), std::string::npos);
 }
 
 TEST(Toml, ValuesComeBackExactly) {

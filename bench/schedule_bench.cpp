@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "bench/simulated_ranks.h"
@@ -132,13 +131,8 @@ ScheduleBenchResult RunScheduleBench(const ScheduleBenchOptions& options) {
 
 std::vector<double> MeasuredBlockSeconds(const std::string& train_json) {
   std::vector<double> seconds;
-  try {
-    const nlohmann::json report = nlohmann::json::parse(base::ReadFile(train_json));
-    for (const nlohmann::json& field : report.at("fields")) {
-      if (field.at("block").get<int>() >= 0 && field.at("ok").get<bool>()) seconds.push_back(field.at("seconds").get<double>());
-    }
-  } catch (const nlohmann::json::exception& error) {
-    throw base::InputError(train_json, std::string("is not a training's train.json: ") + error.what(), "Give the one in a project folder");
+  for (const scene::FieldTraining& field : scene::ReadTrainReport(train_json).fields) {
+    if (field.block >= 0 && field.ok) seconds.push_back(field.seconds);
   }
   std::erase_if(seconds, [](double s) { return !(s > 0.0); });
   if (seconds.empty()) throw base::InputError(train_json, "holds no trained block", "Give the train.json of a finished training");

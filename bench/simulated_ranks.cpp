@@ -80,7 +80,7 @@ std::optional<comm::Message> SimulatedRanks::TryReceive() {
     outcome.wall_s = training.until_s - training.from_s;
     outcome.result.ok = !training.yields;
     if (training.yields) {
-      outcome.failure = coordinator::Failure::kInterrupted;
+      outcome.failure.kind = coordinator::Failure::kInterrupted;
     } else {
       left_s_[block] = 0.0;
     }

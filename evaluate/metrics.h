@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
@@ -113,5 +114,8 @@ double MeanOfMeasured(const std::vector<double>& values);
 double MedianOfMeasured(std::vector<double> values);
 // UTF-8 JSON text, keys as in the project's documentation; file names that are not UTF-8 are repaired, never refused.
 std::string MetricsJson(const Metrics& metrics);
+// Back from the file, all but the fit of poses to GPS and what rendering took; of single photos name and PSNR alone. Infinity comes back as not
+// measured. Throws base::InputError.
+Metrics ReadMetrics(const std::filesystem::path& file);
 
 }  // namespace skyquilt::evaluate

@@ -12,4 +12,4 @@ if [[ -z "${SKYQUILT:-}" ]]; then
   cmake --build --preset release --target skyquilt
   SKYQUILT=build/release/skyquilt
 fi
-exec python3 tests/coordinator/e2e/fault_drill.py "$(realpath "$SKYQUILT")" "$@"
+exec python3 tests/e2e/fault_drill.py "$(realpath "$SKYQUILT")" "$@"

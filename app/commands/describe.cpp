@@ -8,6 +8,7 @@
 
 #include "coordinator/project/project.h"
 #include "coordinator/project/stamp.h"
+#include "coordinator/stages/stage.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/geo/enu_frame.h"
@@ -89,17 +90,17 @@ Json DescribeBlocks(const std::filesystem::path& file) {
 Json DescribeProject(const std::filesystem::path& folder) {
   const coordinator::Project project{std::filesystem::absolute(folder).lexically_normal()};
   Json stages = Json::array();
-  for (const std::string& stage : coordinator::StageNames()) {
-    // A simulated survey's stamp lies in its own folder.
-    const coordinator::Project home = stage == "simulate" ? coordinator::Project{project.SimulatedFolder()} : project;
-    const std::optional<coordinator::StageStamp> stamp = coordinator::LoadStamp(home, stage);
-    if (!stamp && stage == "simulate") continue;
-    const std::vector<std::filesystem::path> proof = coordinator::StageProof(home, stage);
+  for (const coordinator::Stage& stage : coordinator::Stages()) {
+    const coordinator::Project home = stage.home == nullptr ? project : stage.home(project);
+    const std::optional<coordinator::StageStamp> stamp = coordinator::LoadStamp(home, stage.name);
+    // Only what belongs to every project is shown when it has not been begun.
+    if (!stamp && stage.home != nullptr) continue;
+    const coordinator::Paths proof = stage.proof(home);
     const bool there = std::all_of(proof.begin(), proof.end(), [](const auto& path) { return std::filesystem::exists(path); });
     std::string state = stamp ? stamp->state : there ? "done" : "not yet";
     if (state == "done" && !there) state = "files missing";
     if (state == "running") state = "begun";
-    stages.push_back({{"stage", stage},
+    stages.push_back({{"stage", stage.name},
                       {"state", state},
                       {"finished", stamp ? stamp->finished_utc : ""},
                       {"seconds", stamp ? Round(stamp->seconds, 1) : Json(nullptr)}});

@@ -35,11 +35,11 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   }
   coordinator::PrepareStage(pipeline, photos, flags.model);
   coordinator::PartitionStage(pipeline);
-  const std::vector<std::string> failed = coordinator::TrainStage(pipeline);
+  coordinator::TrainStage(pipeline);
   coordinator::MergeStage(pipeline);
   coordinator::ProductsStage(pipeline);
   coordinator::EvaluateStage(pipeline);
-  coordinator::ThrowIfBlocksFailed(failed, pipeline.project);
+  coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);
 }
 
 }  // namespace

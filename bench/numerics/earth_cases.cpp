@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "bench/numerics/geodesy.h"
@@ -110,12 +109,11 @@ void FlyOnce(const EarthPlace& place, const EarthFrame& frame, int seed, const N
   }
   if (frame.turn_deg != 0.0) TurnSurvey(pipeline.project.SurveyFolder(), frame.turn_deg);
   coordinator::PartitionStage(pipeline);
-  coordinator::ThrowIfBlocksFailed(coordinator::TrainStage(pipeline), pipeline.project);
+  const scene::TrainReport& training = coordinator::TrainStage(pipeline);
+  coordinator::ThrowIfBlocksFailed(training, pipeline.project);
   coordinator::MergeStage(pipeline);
-  coordinator::EvaluateStage(pipeline);
-  run->psnr_db.push_back(ReportedPsnrDb(pipeline));
-  const nlohmann::json training = nlohmann::json::parse(base::ReadFile(pipeline.project.TrainReport()));
-  for (const nlohmann::json& field : training.at("fields")) run->dropped_steps += field.at("dropped_steps").get<int64_t>();
+  run->psnr_db.push_back(coordinator::EvaluateStage(pipeline).psnr);
+  for (const scene::FieldTraining& field : training.fields) run->dropped_steps += field.dropped_steps;
   const survey::Survey survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
   run->origin = survey.origin;
   run->fit_rmse_m = survey.fit.rmse_m;

@@ -1,9 +1,5 @@
 #include "bench/numerics/hamlet_flight.h"
 
-#include <nlohmann/json.hpp>
-
-#include "core/base/file.h"
-
 namespace skyquilt::bench {
 
 coordinator::Settings HamletSettings(const HamletTraining& training, const NumericsOptions& options) {
@@ -21,11 +17,6 @@ coordinator::Settings HamletSettings(const HamletTraining& training, const Numer
   // Parameters come to rest: less is left to chance.
   settings.context.final_learning_rate_share = settings.train.final_learning_rate_share = 0.02;
   return settings;
-}
-
-double ReportedPsnrDb(const coordinator::Pipeline& pipeline) {
-  const nlohmann::json metrics = nlohmann::json::parse(base::ReadFile(pipeline.project.ReportFolder() / "metrics.json"));
-  return metrics.at("psnr").is_number() ? metrics.at("psnr").get<double>() : kNoNumber;
 }
 
 }  // namespace skyquilt::bench

@@ -12,7 +12,4 @@ struct HamletTraining {
 };
 coordinator::Settings HamletSettings(const HamletTraining& training, const NumericsOptions& options);
 
-// Held-out PSNR from the report of a pipeline that has run; NaN when it could not be measured.
-double ReportedPsnrDb(const coordinator::Pipeline& pipeline);
-
 }  // namespace skyquilt::bench

@@ -98,8 +98,8 @@ StoredScene MergeAndScore(coordinator::Pipeline& pipeline, const std::string& st
   pipeline.settings.merge.storage = storage;
   pipeline.restart = true;
   coordinator::MergeStage(pipeline);
-  coordinator::EvaluateStage(pipeline);
-  return {.psnr_db = ReportedPsnrDb(pipeline), .bytes = static_cast<double>(std::filesystem::file_size(pipeline.project.SceneFile()))};
+  const double psnr_db = coordinator::EvaluateStage(pipeline).psnr;
+  return {.psnr_db = psnr_db, .bytes = static_cast<double>(std::filesystem::file_size(pipeline.project.SceneFile()))};
 }
 
 std::vector<StoredScene> StoreHamlet(const NumericsOptions& options) {

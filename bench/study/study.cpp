@@ -31,11 +31,6 @@ void RemoveOldRuns(const std::filesystem::path& folder) {
   }
 }
 
-double NumberAt(const nlohmann::json& json, const char* key) {
-  const auto place = json.find(key);
-  return place != json.end() && place->is_number() ? place->get<double>() : VariantResult::kNone;
-}
-
 // Batches' PSNR over the time that all fields together have trained: fields one after the other, each at the mean of what has begun.
 std::vector<std::pair<double, double>> JoinedCurve(const evaluate::TrainLog& log) {
   constexpr int kPoints = 60;
@@ -163,7 +158,8 @@ std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::v
     spdlog::info("{}: nothing to do, its result is there", variant.label);
     return results;
   }
-  results = {Measure(variant, settings, identity, !merged.empty())};
+  scene::TrainReport training;
+  results = {Measure(variant, settings, identity, !merged.empty(), &training)};
   const coordinator::Project project{RunFolder(variant)};
   const std::filesystem::path own_report = project.folder / "report_of_itself";
   if (!merged.empty() && results.front().failure.empty()) MoveFolder(project.ReportFolder(), own_report);
@@ -175,9 +171,9 @@ std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::v
     coordinator::Pipeline pipeline{
         .comm = comm_, .project = project, .settings = own, .restart = true, .quiet = options_.quiet, .verbose = options_.verbose};
     coordinator::MergeStage(pipeline);
-    coordinator::EvaluateStage(pipeline);
+    const evaluate::Metrics& metrics = coordinator::EvaluateStage(pipeline);
     MoveFolder(project.ReportFolder(), coordinator::Project{RunFolder(other)}.ReportFolder());
-    results.push_back(Collect(variant, other));
+    results.push_back(Collect(variant, other, training, metrics));
     results.back().label = other.label;
     base::WriteFileAtomically(RunFolder(other).string() + ".json", ResultJson(results.back(), identity + " " + Identity(other, own)));
   }
@@ -186,13 +182,14 @@ std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::v
   return results;
 }
 
-VariantResult Study::Measure(const Variant& variant, const coordinator::Settings& settings, const std::string& identity, bool merge_anew) {
+VariantResult Study::Measure(const Variant& variant, const coordinator::Settings& settings, const std::string& identity, bool merge_anew,
+                             scene::TrainReport* training) {
   spdlog::info("--- {}", variant.label);
   VariantResult result;
   result.name = variant.name;
   try {
-    Train(variant, settings, merge_anew);
-    result = Collect(variant, variant);
+    const evaluate::Metrics metrics = Train(variant, settings, merge_anew, training);
+    result = Collect(variant, variant, *training, metrics);
   } catch (const base::BlockError& error) {
     result.failure = error.what();
   }
@@ -223,7 +220,7 @@ void Study::LinkPixels(const std::filesystem::path& run_folder, int image_width,
   std::filesystem::create_hard_link(from, to, ignored);
 }
 
-void Study::Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew) {
+evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training) {
   const coordinator::Project project = coordinator::Project::Create(RunFolder(variant));
   if (!std::filesystem::exists(project.SurveyFolder() / "survey.json")) {
     survey::SaveSurvey(variant.keep_every > 1 ? Thinned(survey_, variant.keep_every) : survey_, project.SurveyFolder());
@@ -233,74 +230,70 @@ void Study::Train(const Variant& variant, const coordinator::Settings& settings,
   coordinator::PartitionStage(pipeline);
   if (variant.keep_every == 1) LinkPixels(project.folder, settings.run.image_width, false);
   base::ResetPeakRss();
-  std::vector<std::string> failed;
   try {
-    failed = coordinator::TrainStage(pipeline);
+    *training = coordinator::TrainStage(pipeline);
   } catch (const base::UsageError& error) {
     throw base::BlockError(error.what());  // what cannot be trained with these settings, for instance for want of memory, is a result
   }
-  coordinator::ThrowIfBlocksFailed(failed, project);
+  coordinator::ThrowIfBlocksFailed(*training, project);
   if (variant.keep_every == 1) LinkPixels(project.folder, settings.run.image_width, true);
   pipeline.restart = merge_anew;
   coordinator::MergeStage(pipeline);
-  coordinator::EvaluateStage(pipeline);
+  return coordinator::EvaluateStage(pipeline);
 }
 
-VariantResult Study::Collect(const Variant& trained, const Variant& scored) const {
+VariantResult Study::Collect(const Variant& trained, const Variant& scored, const scene::TrainReport& training,
+                             const evaluate::Metrics& metrics) const {
   const coordinator::Project project{RunFolder(trained)};
-  const std::filesystem::path report_folder = coordinator::Project{RunFolder(scored)}.ReportFolder();
-  const nlohmann::json metrics = nlohmann::json::parse(base::ReadFile(report_folder / "metrics.json"));
-  const evaluate::TrainLog log = evaluate::ReadTrainLog(project.TrainReport(), project.CheckpointFolder());
   VariantResult r;
   r.name = scored.name;
-  for (const auto& [key, value] : {std::pair{"psnr", &r.psnr_db},
-                                   {"ssim", &r.ssim},
-                                   {"lpips", &r.lpips},
-                                   {"psnr_full_frame", &r.psnr_full_db},
-                                   {"coverage", &r.coverage},
-                                   {"seam_psnr_gap_db", &r.seam_gap_db},
-                                   {"depth_rmse_m", &r.depth_rmse_m},
-                                   {"depth_median_abs_m", &r.depth_median_abs_m},
-                                   {"air_opacity", &r.air_opacity},
-                                   {"train_seconds", &r.train_seconds},
-                                   {"samples_per_second", &r.samples_per_second},
-                                   {"peak_rss_bytes", &r.peak_rss_bytes},
-                                   {"parameters", &r.scene_parameters},
-                                   {"evaluate_seconds", &r.evaluate_seconds}}) {
-    *value = NumberAt(metrics, key);
-  }
-  for (const nlohmann::json& place : metrics.value("air_profile", nlohmann::json::array())) {
-    const double opacity = NumberAt(place, "opacity");
-    if (std::isfinite(opacity)) r.air_profile.emplace_back(NumberAt(place, "clearance_m"), opacity);
+  const auto known = [](double value) { return std::isfinite(value) ? value : VariantResult::kNone; };
+  r.psnr_db = known(metrics.psnr);
+  r.ssim = known(metrics.ssim);
+  r.lpips = known(metrics.lpips);
+  r.psnr_full_db = known(metrics.psnr_full_frame);
+  r.coverage = known(metrics.coverage);
+  r.seam_gap_db = known(metrics.seam_psnr_gap_db);
+  r.depth_rmse_m = known(metrics.depth_rmse_m);
+  r.depth_median_abs_m = known(metrics.depth_median_abs_m);
+  r.air_opacity = known(metrics.air_opacity);
+  r.train_seconds = known(metrics.train_seconds);
+  r.samples_per_second = known(metrics.samples_per_second);
+  r.peak_rss_bytes = metrics.peak_rss_bytes > 0 ? static_cast<double>(metrics.peak_rss_bytes) : VariantResult::kNone;
+  r.scene_parameters = static_cast<double>(metrics.parameters);
+  r.evaluate_seconds = known(metrics.evaluate_seconds);
+  for (const auto& [clearance_m, opacity] : metrics.air_profile) {
+    if (std::isfinite(opacity)) r.air_profile.emplace_back(clearance_m, opacity);
   }
   r.scene_bytes = static_cast<double>(std::filesystem::file_size(project.SceneFile()));
   r.samples = r.parameters = 0.0;
   const std::map<std::string, int64_t> kept = SceneParameters(project.SceneFile());
   const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
-  for (const evaluate::FieldLog& field : log.fields) {
+  for (const scene::FieldTraining& field : training.fields) {
     r.samples += static_cast<double>(field.samples);
     r.parameters += static_cast<double>(field.parameters);
     const auto block = std::find_if(blocks.blocks.begin(), blocks.blocks.end(), [&field](const partition::Block& b) { return b.name == field.name; });
+    const auto score =
+        std::find_if(metrics.blocks.begin(), metrics.blocks.end(), [&field](const evaluate::BlockScore& b) { return b.name == field.name; });
     const auto stored = kept.find(field.name);
-    r.fields.push_back(
-        {.name = field.name,
-         .parameters = field.parameters,
-         .samples = field.samples,
-         .scene_parameters = stored == kept.end() ? 0 : stored->second,
-         .log2_table_size = block == blocks.blocks.end() ? 0 : block->log2_table_size,
-         .seconds = field.seconds,
-         .psnr_db = metrics.contains("psnr_per_block") ? NumberAt(metrics["psnr_per_block"], field.name.c_str()) : VariantResult::kNone});
-    if (field.name != "context") ++r.blocks;
+    r.fields.push_back({.name = field.name,
+                        .parameters = field.parameters,
+                        .samples = field.samples,
+                        .scene_parameters = stored == kept.end() ? 0 : stored->second,
+                        .log2_table_size = block == blocks.blocks.end() ? 0 : block->log2_table_size,
+                        .seconds = field.seconds,
+                        .psnr_db = score == metrics.blocks.end() ? VariantResult::kNone : known(score->psnr_db)});
+    if (field.block >= 0) ++r.blocks;
   }
   r.layout = std::to_string(blocks.rows) + "x" + std::to_string(blocks.columns);
-  r.curve = JoinedCurve(log);
+  r.curve = JoinedCurve(evaluate::ReadTrainLog(project.TrainReport(), project.CheckpointFolder()));
   const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
   r.training_photos = static_cast<int>(std::count_if(survey.photos.begin(), survey.photos.end(), [](const auto& photo) { return !photo.is_test; }));
   const std::filesystem::path relative = std::filesystem::path("runs") / scored.name / "report";
   r.report = (relative / "index.html").generic_string();
   std::vector<std::string> renders;
   std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
+  for (const auto& entry : std::filesystem::directory_iterator(options_.folder / relative / "images", ignored)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("photo_") && name.ends_with("_render.jpg")) renders.push_back(name);
   }

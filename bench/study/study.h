@@ -15,7 +15,9 @@
 
 #include "coordinator/project/settings.h"
 #include "core/comm/communicator.h"
+#include "core/scene/train_report.h"
 #include "core/survey/survey.h"
+#include "evaluate/metrics.h"
 
 namespace skyquilt::bench {
 
@@ -87,14 +89,15 @@ class Study {
  private:
   coordinator::Settings SettingsOf(const Variant& variant) const;
   // merge_anew: what is merged and scored already came from other settings.
-  VariantResult Measure(const Variant& variant, const coordinator::Settings& settings, const std::string& identity, bool merge_anew);
+  VariantResult Measure(const Variant& variant, const coordinator::Settings& settings, const std::string& identity, bool merge_anew,
+                        scene::TrainReport* training);
   void RemoveLargeFiles(const Variant& variant) const;
   std::filesystem::path RunFolder(const Variant& variant) const { return options_.folder / "runs" / variant.name; }
   std::string Identity(const Variant& variant, coordinator::Settings settings) const;
-  void Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew);
+  evaluate::Metrics Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training);
   void LinkPixels(const std::filesystem::path& run_folder, int image_width, bool share) const;
-  // What is in the project of one variant and in the report of another (or the same).
-  VariantResult Collect(const Variant& trained, const Variant& scored) const;
+  // From what the training of one variant and the scoring of another (or the same) found, and from their files' sizes and pictures.
+  VariantResult Collect(const Variant& trained, const Variant& scored, const scene::TrainReport& training, const evaluate::Metrics& metrics) const;
   std::optional<VariantResult> Load(const Variant& variant, const std::string& identity) const;
 
   comm::Communicator& comm_;

@@ -1,9 +1,8 @@
-// Where everything of one project lies, and which stages of the pipeline its files belong to.
+// Where everything of one project lies.
 #pragma once
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace skyquilt::coordinator {
 
@@ -23,9 +22,11 @@ struct Project {
   std::filesystem::path RendersFolder() const { return folder / "renders"; }
   std::filesystem::path ProductsFolder() const { return folder / "products"; }
   std::filesystem::path ReportFolder() const { return folder / "report"; }
+  std::filesystem::path MetricsFile() const { return ReportFolder() / "metrics.json"; }
   std::filesystem::path ConfigFile() const { return folder / "config.toml"; }
   std::filesystem::path LogFile() const { return folder / "log.txt"; }
   std::filesystem::path StateFolder() const { return folder / ".state"; }
+  std::filesystem::path TrainLedgerFile() const { return StateFolder() / "training.json"; }
   std::filesystem::path StampFile(const std::string& stage) const { return StateFolder() / (stage + ".json"); }
 
   // Creates the folder and proves it writable. Throws base::InputError.
@@ -35,14 +36,5 @@ struct Project {
   // What Open asks, without throwing.
   static bool IsProject(const std::filesystem::path& folder);
 };
-
-// "simulate", "prepare", "partition", "train", "merge", "products", "evaluate": in the order they run.
-const std::vector<std::string>& StageNames();
-// What a stage leaves behind, all of it removed when it is restarted.
-std::vector<std::filesystem::path> StageFiles(const Project& project, const std::string& stage);
-// What must exist for a finished stage to count as finished. For "simulate" the project is the simulated survey's own folder.
-std::vector<std::filesystem::path> StageProof(const Project& project, const std::string& stage);
-// Deletes the files and stamps of this stage and of every later one.
-void RemoveStagesFrom(const Project& project, const std::string& stage);
 
 }  // namespace skyquilt::coordinator

@@ -50,23 +50,4 @@ void Settings::Validate() const {
   }
 }
 
-FlatOptions StageOptions(Settings& settings, const std::string& stage) {
-  const FlatOptions all = settings.Flat();
-  if (stage == "simulate") return Select(all, {"simulate."});
-  if (stage == "prepare") return Select(all, {"prepare."});
-  if (stage == "partition") return Select(all, {"partition.", "run.image_width"});
-  if (stage == "train") {
-    FlatOptions selected =
-        Select(all, {"brightness.", "context.", "train.", "run.image_width", "run.time_budget_s", "run.context_share", "run.seed"});
-    // How often a field is saved changes nothing in it.
-    selected.erase("context.checkpoint_every_s");
-    selected.erase("train.checkpoint_every_s");
-    return selected;
-  }
-  if (stage == "merge") return Select(all, {"merge."});
-  if (stage == "products") return Select(all, {"products."});
-  SKYQUILT_CHECK(stage == "evaluate", stage);
-  return Select(all, {"evaluate.", "run.image_width"});
-}
-
 }  // namespace skyquilt::coordinator

@@ -41,7 +41,4 @@ struct Settings {
   void Validate() const;
 };
 
-// What a stage's result depends on, for its stamp.
-FlatOptions StageOptions(Settings& settings, const std::string& stage);
-
 }  // namespace skyquilt::coordinator

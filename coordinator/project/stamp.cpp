@@ -12,15 +12,12 @@
 #include "core/config/options.h"
 
 namespace skyquilt::coordinator {
-namespace {
 
-std::string Join(const std::vector<std::string>& lines) {
+std::string JoinLines(const std::vector<std::string>& lines) {
   std::string text;
   for (const std::string& line : lines) text += "\n  " + line;
   return text;
 }
-
-}  // namespace
 
 std::string StageStamp::Hash() const {
   FlatOptions all = options;
@@ -55,19 +52,19 @@ void SaveStamp(const Project& project, const StageStamp& stamp) {
   base::WriteFileAtomically(project.StampFile(stamp.stage), json.dump(2) + "\n");
 }
 
-Freshness CheckStage(const Project& project, const std::string& stage, const FlatOptions& options, const FlatOptions& inputs) {
+Freshness CheckStage(const Project& project, const std::string& stage, const FlatOptions& options, const FlatOptions& inputs,
+                     const std::vector<std::filesystem::path>& proof) {
   const std::optional<StageStamp> stamp = LoadStamp(project, stage);
   if (!stamp) return Freshness::kAbsent;
   const std::vector<std::string> differences = config::Differences(stamp->options, options);
   if (!differences.empty()) {
     throw base::UsageError(
-        "the results of '" + stage + "' in " + project.folder.string() + " were made with another configuration:" + Join(differences) +
+        "the results of '" + stage + "' in " + project.folder.string() + " were made with another configuration:" + JoinLines(differences) +
         "\nUse the old values, another project folder, or --restart to remove the results of '" + stage + "' and of all later stages");
   }
-  const std::vector<std::filesystem::path> proof = StageProof(project, stage);
   const bool complete = std::all_of(proof.begin(), proof.end(), [](const auto& path) { return std::filesystem::exists(path); });
   if (!config::Differences(stamp->inputs, inputs).empty()) return Freshness::kInputsChanged;
-  if (stamp->state != "done") return Freshness::kUnfinished;
+  if (stamp->state != StageStamp::kDone) return Freshness::kUnfinished;
   return complete ? Freshness::kFresh : Freshness::kUnfinished;
 }
 

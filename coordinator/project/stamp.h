@@ -13,8 +13,12 @@ namespace skyquilt::coordinator {
 using FlatOptions = std::map<std::string, std::string>;
 
 struct StageStamp {
+  static constexpr const char* kRunning = "running";
+  static constexpr const char* kDone = "done";
+  static constexpr const char* kFailed = "failed";  // finished, with blocks that failed
+
   std::string stage;
-  std::string state;    // "running", "done" or "failed" (finished, with blocks that failed)
+  std::string state;    // one of the above
   FlatOptions options;  // "section.key" = value of everything the stage's result depends on
   FlatOptions inputs;   // name = hash or description of what it read
   std::string finished_utc = {};
@@ -25,21 +29,26 @@ struct StageStamp {
 };
 
 enum class Freshness {
-  kAbsent,         // never run, or its files are gone
-  kUnfinished,     // begun with the same configuration: continue
+  kAbsent,         // never begun: it left no stamp
+  kUnfinished,     // begun, failed, or finished but its files are gone, with the same configuration and inputs: continue
   kFresh,          // finished with the same configuration and inputs: nothing to do
-  kInputsChanged,  // finished, but what it read is different now
+  kInputsChanged,  // begun or finished, but what it read is different now
 };
 
 // Nothing when there is none. Throws base::InputError when it is damaged.
 std::optional<StageStamp> LoadStamp(const Project& project, const std::string& stage);
 void SaveStamp(const Project& project, const StageStamp& stamp);
 
+// proof: what must exist for the stage to count as finished.
 // Throws base::UsageError naming every difference when the stage's options differ from those of the existing results.
-Freshness CheckStage(const Project& project, const std::string& stage, const FlatOptions& options, const FlatOptions& inputs);
+Freshness CheckStage(const Project& project, const std::string& stage, const FlatOptions& options, const FlatOptions& inputs,
+                     const std::vector<std::filesystem::path>& proof);
 
 // The entries whose key is in `keys`, or begins with one of them when it ends in '.'.
 FlatOptions Select(const FlatOptions& all, const std::vector<std::string>& keys);
+
+// For messages: every line on its own, indented.
+std::string JoinLines(const std::vector<std::string>& lines);
 
 // Identity of a file's bytes; "absent" when it does not exist.
 std::string FileIdentity(const std::filesystem::path& file);

@@ -4,8 +4,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/ranks/failure.h"
 #include "coordinator/ranks/messages.h"
-#include "core/base/errors.h"
 #include "core/base/system.h"
 
 namespace skyquilt::coordinator {
@@ -34,11 +34,7 @@ std::vector<CrewMember> Crew::Muster() {
     if (message.tag != kTagHello) continue;
     json one = json::parse(message.bytes);
     const std::string host = one.at("host").get<std::string>();
-    if (one.contains("error")) {
-      const std::string text = "rank " + std::to_string(message.source) + " on " + host + ": " + one.at("error").get<std::string>();
-      if (one.at("kind") == "usage") throw base::UsageError(text);
-      throw base::InputError(one.at("file").get<std::string>(), text, "All ranks must see the same project folder");
-    }
+    if (one.contains("failure")) Throw(FailureFromJson(one.at("failure")), "rank " + std::to_string(message.source) + " on " + host);
     ++ranks_on[host];
     hello[static_cast<size_t>(message.source)] = std::move(one);
     ++n;
@@ -71,19 +67,10 @@ void ServeCrew(comm::Communicator& comm, const std::function<void(json& hello)>&
     return;
   } catch (const SentBack&) {
     return;
-  } catch (const base::UsageError& error) {
-    hello["kind"] = "usage";
-    hello["error"] = error.what();
-  } catch (const base::InputError& error) {
-    hello["kind"] = "input";
-    hello["file"] = error.file().string();
-    hello["error"] = error.what();
-  } catch (const base::Interrupted&) {
-    return;  // rank 0 is gone
-  } catch (const std::exception& error) {
-    hello["kind"] = "input";
-    hello["file"] = "";
-    hello["error"] = error.what();
+  } catch (...) {
+    const Failure failure = CurrentFailure();
+    if (failure.kind == Failure::kInterrupted) return;  // rank 0 is gone
+    hello["failure"] = ToJson(failure);
   }
   comm.Send(0, kTagHello, hello.dump(-1, ' ', false, json::error_handler_t::replace));
   while (WaitForMessage(comm).tag != kTagDone) {

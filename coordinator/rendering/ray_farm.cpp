@@ -20,13 +20,6 @@ constexpr size_t kFewestRays = 1 << 11;
 // Parcels with a rank at a time: one to work on and one to go on with.
 constexpr size_t kWithRank = 2;
 
-[[noreturn]] void Throw(const CarriedParcel& carried, int rank) {
-  if (carried.failure == CarriedParcel::Failure::kInterrupted) throw base::Interrupted();
-  const std::string reason = "rank " + std::to_string(rank) + ": " + carried.reason;
-  if (carried.failure == CarriedParcel::Failure::kUsage) throw base::UsageError(reason);
-  throw base::InputError(carried.file, reason, "All ranks must see the same project folder");
-}
-
 }  // namespace
 
 // One call of Render.
@@ -158,7 +151,7 @@ void RayFarm::TakeBack(Work& work, const comm::Message& message) {
   std::map<uint64_t, Parcel>& with_rank = work.with_rank[rank];
   const auto at = with_rank.find(carried.id);
   if (at == with_rank.end()) return;  // of a call that was given up
-  if (carried.failure != CarriedParcel::Failure::kNone) Throw(carried, rank);
+  if (carried.failure) Throw(carried.failure, "rank " + std::to_string(rank));
   const Parcel parcel = std::move(at->second);
   with_rank.erase(at);
   SKYQUILT_CHECK(carried.travellers.size() == parcel.rays.size(), "a parcel comes back whole");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <type_traits>
 
@@ -44,6 +45,13 @@ class Unpacker {
     Require(n);
     at_ += n;
     return bytes_.substr(at_ - n, n);
+  }
+  Failure TakeFailure() {
+    try {
+      return FailureFromJson(nlohmann::json::parse(TakeText()));
+    } catch (const nlohmann::json::exception&) {
+      Fail();
+    }
   }
   // A count of things that take at least so many bytes each.
   size_t TakeCount(size_t bytes_each) {
@@ -181,9 +189,7 @@ std::string ToBytes(const CarriedParcel& parcel) {
   packer.Add(parcel.id);
   packer.Add(parcel.samples);
   packer.Add(parcel.field_loads);
-  packer.Add(parcel.failure);
-  packer.AddText(parcel.reason);
-  packer.AddText(parcel.file);
+  packer.AddText(ToJson(parcel.failure).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   packer.Add(static_cast<uint64_t>(parcel.travellers.size()));
   size_t color = 0;
   for (const scene::Traveller& traveller : parcel.travellers) {
@@ -204,9 +210,7 @@ CarriedParcel CarriedParcelFromBytes(const std::string& bytes) {
   parcel.id = unpacker.Take<uint64_t>();
   parcel.samples = unpacker.Take<int64_t>();
   parcel.field_loads = unpacker.Take<int64_t>();
-  parcel.failure = unpacker.Take<CarriedParcel::Failure>();
-  parcel.reason = unpacker.TakeText();
-  parcel.file = unpacker.TakeText();
+  parcel.failure = unpacker.TakeFailure();
   const size_t n = unpacker.TakeCount(sizeof(bool));
   for (size_t i = 0; i < n; ++i) {
     scene::Traveller traveller;

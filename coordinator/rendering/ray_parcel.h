@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/ranks/failure.h"
 #include "core/scene/paged_rays.h"
 
 namespace skyquilt::coordinator {
@@ -19,16 +20,12 @@ struct RayParcel {
 
 // Back from it: in the order of the parcel's rays.
 struct CarriedParcel {
-  enum class Failure : uint8_t { kNone, kUsage, kInput, kInterrupted };
-
   uint64_t id = 0;
   int64_t samples = 0;
   int64_t field_loads = 0;                   // of the rank, so far
   std::vector<scene::Traveller> travellers;  // of arrived ones only `owner` counts
   std::vector<render::RayColor> colors;      // of arrived ones, in order
-  Failure failure = Failure::kNone;          // with it no rays come back
-  std::string reason;
-  std::string file;  // that it concerns
+  Failure failure;                           // with it no rays come back
 };
 
 // Rays of one camera share most numbers, and fresh travellers need none: 24 bytes per ray then, at most 152.

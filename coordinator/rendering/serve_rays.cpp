@@ -34,7 +34,7 @@ class RayServer {
   }
 
   CarriedParcel Carry(RayParcel parcel) {
-    CarriedParcel carried{.id = parcel.id, .travellers = {}, .colors = {}, .reason = {}, .file = {}};
+    CarriedParcel carried{.id = parcel.id, .travellers = {}, .colors = {}, .failure = {}};
     try {
       for (scene::Traveller& traveller : parcel.travellers) traveller.owner = number_;
       carried.samples = rays_.Continue(parcel.rays, parcel.travellers, parcel.options, number_, Owner());
@@ -42,18 +42,8 @@ class RayServer {
         if (traveller.owner == scene::kArrived) carried.colors.push_back(render::Finished(traveller.state));
       }
       carried.travellers = std::move(parcel.travellers);
-    } catch (const base::Interrupted&) {
-      carried.failure = CarriedParcel::Failure::kInterrupted;
-    } catch (const base::UsageError& error) {
-      carried.failure = CarriedParcel::Failure::kUsage;
-      carried.reason = error.what();
-    } catch (const base::InputError& error) {
-      carried.failure = CarriedParcel::Failure::kInput;
-      carried.reason = error.what();
-      carried.file = error.file().string();
-    } catch (const std::exception& error) {
-      carried.failure = CarriedParcel::Failure::kInput;
-      carried.reason = error.what();
+    } catch (...) {
+      carried.failure = CurrentFailure();
     }
     carried.field_loads = store_.loads();
     return carried;

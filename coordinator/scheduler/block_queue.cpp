@@ -92,7 +92,7 @@ FieldJob BlockQueue::Take(double now_s, std::span<const double> busy_until_s) {
 }
 
 bool BlockQueue::Finish(const FieldOutcome& outcome) {
-  if (outcome.failure == Failure::kBlock && outcome.job.attempt + 1 < options_.max_tries) {
+  if (outcome.failure.kind == Failure::kBlock && outcome.job.attempt + 1 < options_.max_tries) {
     const auto found = std::find_if(all_.begin(), all_.end(), [&outcome](const QueueBlock& block) { return block.block == outcome.job.block; });
     SKYQUILT_CHECK(found != all_.end(), outcome.job.name);
     Waiting again{*found, outcome.job.attempt + 1};

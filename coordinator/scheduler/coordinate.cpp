@@ -27,13 +27,7 @@ double SecondsSince(Clock::time_point start) {
 }  // namespace
 
 void ThrowIfEndsCommand(const FieldOutcome& outcome) {
-  if (outcome.failure == Failure::kInterrupted) throw base::Interrupted();
-  if (outcome.failure == Failure::kUsage) throw base::UsageError(outcome.reason);
-  if (outcome.failure != Failure::kInput) return;
-  // The text already names file, finding and mend.
-  const size_t colon = outcome.reason.find(": ");
-  if (colon == std::string::npos) throw base::InputError(outcome.job.name, outcome.reason, "");
-  throw base::InputError(outcome.reason.substr(0, colon), outcome.reason.substr(colon + 2), "");
+  if (outcome.failure && outcome.failure.kind != Failure::kBlock) Throw(outcome.failure);
 }
 
 namespace {
@@ -160,18 +154,18 @@ class Coordination {
     const FieldOutcome outcome = OutcomeFromText(message.bytes);
     busy_.erase(message.source);
     idle_.insert(message.source);
-    const bool finished = outcome.failure == Failure::kNone;
+    const bool finished = outcome.failure.kind == Failure::kNone;
     if (finished) {
       speeds_.Finished(message.source, hooks_.now_s());
     } else {
       speeds_.GivenUp(message.source, hooks_.now_s());
     }
     const bool was_asked = asked_.erase(message.source) > 0;
-    if (was_asked && outcome.failure == Failure::kInterrupted && !stopping_) {
+    if (was_asked && outcome.failure.kind == Failure::kInterrupted && !stopping_) {
       returned_.emplace_back(outcome.job, message.source);
       return;
     }
-    switch (outcome.failure) {
+    switch (outcome.failure.kind) {
       case Failure::kInterrupted:
         // Also when the signal reached only that rank: the batch system wants its machines back.
         interrupted_ = true;

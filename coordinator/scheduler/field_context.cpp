@@ -81,8 +81,7 @@ bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& bloc
 }
 
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,
-                              const Settings& settings, const Project& project, const std::string& config_hash,
-                              base::ThreadPool& threads) {
+                              const Settings& settings, const Project& project, const std::string& config_hash, base::ThreadPool& threads) {
   const BrightnessPlan plan = PlanBrightness(survey, settings.brightness);
   return [&survey, &blocks, &pixels, &settings, project, config_hash, plan, &threads](const FieldJob& job, const worker::Reporter& report) {
     worker::TrainJob train;

@@ -26,8 +26,7 @@ worker::BoxView ViewOfSurvey(const partition::BlockSet& blocks, const survey::Su
 
 // A trainer over references that must outlive it; writes the field's log beside its checkpoint.
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,
-                              const Settings& settings, const Project& project, const std::string& config_hash,
-                              base::ThreadPool& threads);
+                              const Settings& settings, const Project& project, const std::string& config_hash, base::ThreadPool& threads);
 
 // Steps of the context: its own, or half of the blocks' (at least 200); 0 when the blocks have none either.
 int ContextSteps(const Settings& settings);

@@ -2,11 +2,8 @@
 
 #include <array>
 #include <chrono>
-#include <exception>
-#include <new>
 #include <nlohmann/json.hpp>
 
-#include "core/base/errors.h"
 #include "core/base/system.h"
 
 namespace skyquilt::coordinator {
@@ -14,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-json ToJson(const FieldJob& job) {
+json JobToJson(const FieldJob& job) {
   return {{"block", job.block},     {"name", job.name},        {"attempt", job.attempt}, {"steps", job.steps},
           {"seconds", job.seconds}, {"rate", job.rate_factor}, {"seed", job.seed}};
 }
@@ -46,25 +43,9 @@ FieldOutcome RunField(const FieldTrainer& trainer, const FieldJob& job, const wo
   const auto start = std::chrono::steady_clock::now();
   try {
     outcome.result = trainer(job, report);
-    if (!outcome.result.ok) {
-      outcome.failure = Failure::kBlock;
-      outcome.reason = outcome.result.reason;
-    }
-  } catch (const base::Interrupted& error) {
-    outcome.failure = Failure::kInterrupted;
-    outcome.reason = error.what();
-  } catch (const base::InputError& error) {
-    outcome.failure = Failure::kInput;
-    outcome.reason = error.what();
-  } catch (const base::UsageError& error) {
-    outcome.failure = Failure::kUsage;
-    outcome.reason = error.what();
-  } catch (const std::bad_alloc&) {
-    outcome.failure = Failure::kBlock;
-    outcome.reason = "out of memory: smaller blocks, fewer ranks on this machine or a smaller table would fit";
-  } catch (const std::exception& error) {
-    outcome.failure = Failure::kBlock;
-    outcome.reason = error.what();
+    if (!outcome.result.ok) outcome.failure = {Failure::kBlock, outcome.result.reason};
+  } catch (...) {
+    outcome.failure = CurrentFailure();
   }
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.peak_rss_bytes = base::PeakRssBytes();
@@ -72,14 +53,13 @@ FieldOutcome RunField(const FieldTrainer& trainer, const FieldJob& job, const wo
 }
 
 std::string ToText(const FieldJob& job) {
-  return ToJson(job).dump();
+  return JobToJson(job).dump();
 }
 
 std::string ToText(const FieldOutcome& outcome) {
   const worker::TrainResult& r = outcome.result;
-  const json j = {{"job", ToJson(outcome.job)},
-                  {"failure", static_cast<int>(outcome.failure)},
-                  {"reason", outcome.reason},
+  const json j = {{"job", JobToJson(outcome.job)},
+                  {"failure", ToJson(outcome.failure)},
                   {"rank", outcome.rank},
                   {"threads", outcome.threads},
                   {"wall_s", outcome.wall_s},
@@ -111,14 +91,16 @@ FieldOutcome OutcomeFromText(const std::string& text) {
   const json j = json::parse(text);
   FieldOutcome outcome;
   outcome.job = JobFromJson(j.at("job"));
-  outcome.failure = static_cast<Failure>(j.at("failure").get<int>());
-  outcome.reason = j.at("reason").get<std::string>();
+  const json& failure = j.at("failure");
+  // Ledgers of earlier versions keep kind and reason side by side.
+  outcome.failure =
+      failure.is_object() ? FailureFromJson(failure) : Failure{static_cast<Failure::Kind>(failure.get<int>()), j.at("reason").get<std::string>()};
   outcome.rank = j.at("rank").get<int>();
   outcome.threads = j.at("threads").get<int>();
   outcome.wall_s = Number(j, "wall_s");
   outcome.peak_rss_bytes = j.at("peak_rss_bytes").get<int64_t>();
   outcome.result.ok = j.at("ok").get<bool>();
-  outcome.result.reason = outcome.reason;
+  outcome.result.reason = outcome.failure.reason;
   outcome.result.steps = j.at("steps").get<int64_t>();
   outcome.result.seconds = Number(j, "seconds");
   outcome.result.samples = j.at("samples").get<int64_t>();

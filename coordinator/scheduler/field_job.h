@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/ranks/failure.h"
 #include "worker/trainer.h"
 
 namespace skyquilt::coordinator {
@@ -20,19 +21,10 @@ struct FieldJob {
   uint64_t seed = 1;
 };
 
-enum class Failure {
-  kNone,
-  kBlock,        // this block only: diverged, out of memory, an exception
-  kInput,        // base::InputError: ends the command
-  kUsage,        // base::UsageError: ends the command
-  kInterrupted,  // saved and stopped
-};
-
 struct FieldOutcome {
   FieldJob job;
   worker::TrainResult result;
-  Failure failure = Failure::kNone;
-  std::string reason;
+  Failure failure;
   int rank = 0;
   int threads = 1;
   double wall_s = 0.0;

@@ -44,10 +44,9 @@ class Training {
   Training(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project)
       : comm_(comm), input_(input), settings_(settings), project_(project), ledger_(project, input.config_hash), spent_before_s_(ledger_.spent_s()) {}
 
-  TrainSummary Run() {
+  scene::TrainReport Run() {
     std::filesystem::create_directories(project_.CheckpointFolder());
     std::filesystem::create_directories(project_.PixelCacheFile().parent_path());
-    TrainSummary summary;
     const int all_threads = settings_.run.UsableThreads();
     base::ThreadPool pool(all_threads);
     image::PixelCache pixels = image::PixelCache::Open(project_.PixelCacheFile(), PixelSources(*input_.survey), settings_.run.image_width, pool);
@@ -71,12 +70,13 @@ class Training {
     if (comm_.size() > 1) {
       threads = AssignThreads(crew.Muster(), &per_host);
     }
-    summary.fields.push_back(TrainContext(trainer, all_threads));
+    TrainContext(trainer, all_threads);
     RequireMemory(*input_.blocks, settings_, threads, per_host);
-    TrainBlocks(trainer, threads, &summary);
+    TrainBlocks(trainer, threads);
     ledger_.SetSpent(Now(), true);
-    ledger_.WriteReport(comm_.size(), threads);
-    return summary;
+    scene::TrainReport report = ledger_.Report(comm_.size(), threads);
+    scene::WriteTrainReport(report, project_.TrainReport());
+    return report;
   }
 
  private:
@@ -95,7 +95,7 @@ class Training {
     return fewest;
   }
 
-  FieldOutcome TrainContext(const FieldTrainer& trainer, int threads) {
+  void TrainContext(const FieldTrainer& trainer, int threads) {
     QueueOptions options;
     options.steps = ContextSteps(settings_);
     options.seconds = settings_.run.time_budget_s > 0.0 ? settings_.run.time_budget_s * settings_.run.context_share : settings_.context.seconds;
@@ -114,20 +114,20 @@ class Training {
       const FieldOutcome outcome = RunField(trainer, job, report, 0, threads);
       RethrowIfFatal(outcome);
       if (queue.Finish(outcome)) {
-        spdlog::warn("the context failed and is tried again: {}", outcome.reason);
+        spdlog::warn("the context failed and is tried again: {}", outcome.failure.reason);
         progress.FieldAgain(job);
       }
     }
     progress.FieldDone(queue.outcomes().front().job, 1.0);
     progress.Finish();
-    FieldOutcome outcome = queue.outcomes().front();
+    const FieldOutcome& outcome = queue.outcomes().front();
     ledger_.AddOutcome(outcome);
-    if (outcome.failure != Failure::kNone) throw base::BlockError("the context failed " + std::to_string(kMaxTries) + " times: " + outcome.reason);
+    if (outcome.failure.kind != Failure::kNone)
+      throw base::BlockError("the context failed " + std::to_string(kMaxTries) + " times: " + outcome.failure.reason);
     LogField(outcome);
-    return outcome;
   }
 
-  void TrainBlocks(const FieldTrainer& trainer, int threads, TrainSummary* summary) {
+  void TrainBlocks(const FieldTrainer& trainer, int threads) {
     std::vector<QueueBlock> waiting;
     for (const partition::Block& block : input_.blocks->blocks) {
       const std::string name = "block_" + block.name;
@@ -163,17 +163,16 @@ class Training {
     };
     hooks.finished = [&](const FieldOutcome& outcome, bool retried) {
       if (retried) {
-        spdlog::warn("{} failed and is tried again with half the learning rate: {}", outcome.job.name, outcome.reason);
+        spdlog::warn("{} failed and is tried again with half the learning rate: {}", outcome.job.name, outcome.failure.reason);
         progress.FieldAgain(outcome.job);
         return;
       }
       progress.FieldDone(outcome.job, queue.Cost(outcome.job.block));
       ledger_.AddOutcome(outcome);
-      if (outcome.failure == Failure::kNone) {
+      if (outcome.failure.kind == Failure::kNone) {
         LogField(outcome);
       } else {
-        spdlog::error("{} failed after {} tries: {}", outcome.job.name, outcome.job.attempt + 1, outcome.reason);
-        summary->failed.push_back(outcome.job.name + ": " + outcome.reason);
+        spdlog::error("{} failed after {} tries: {}", outcome.job.name, outcome.job.attempt + 1, outcome.failure.reason);
       }
     };
     hooks.moved = [](const FieldJob& job, int from_rank, int to_rank) {
@@ -186,11 +185,10 @@ class Training {
       throw;
     }
     progress.Finish();
-    summary->fields.insert(summary->fields.end(), queue.outcomes().begin(), queue.outcomes().end());
   }
 
   void RethrowIfFatal(const FieldOutcome& outcome) {
-    if (outcome.failure != Failure::kNone) ledger_.SetSpent(Now(), true);
+    if (outcome.failure.kind != Failure::kNone) ledger_.SetSpent(Now(), true);
     ThrowIfEndsCommand(outcome);
   }
 
@@ -213,7 +211,7 @@ class Training {
 
 }  // namespace
 
-TrainSummary TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project) {
+scene::TrainReport TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project) {
   SKYQUILT_CHECK(comm.rank() == 0, "rank 0 coordinates");
   return Training(comm, input, settings, project).Run();
 }

@@ -10,6 +10,7 @@
 #include "coordinator/project/settings.h"
 #include "coordinator/scheduler/field_job.h"
 #include "core/comm/communicator.h"
+#include "core/scene/train_report.h"
 #include "core/survey/survey.h"
 #include "partition/block.h"
 
@@ -23,14 +24,10 @@ struct TrainInput {
   bool quiet = false;
 };
 
-struct TrainSummary {
-  std::vector<FieldOutcome> fields;  // context first, then blocks in order of completion
-  std::vector<std::string> failed;   // "block_r0c1: reason", after all tries
-};
-
-// Called on rank 0. Writes checkpoints, <field>.log.csv and train.json into the project; continues from what is there.
-// Throws base::Interrupted (everything saved), base::InputError, base::UsageError, base::BlockError when the context itself failed.
-TrainSummary TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project);
+// Called on rank 0. Returns and writes what came of every field; blocks that failed after all tries are not ok. Writes checkpoints, <field>.log.csv
+// and train.json into the project; continues from what is there. Throws base::Interrupted (everything saved), base::InputError, base::UsageError,
+// base::BlockError when the context itself failed.
+scene::TrainReport TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project);
 
 // One training as every other rank sees it, begun by kTagSetup with this text: trains blocks for rank 0 until kTagDone.
 // Never throws for what a training met.

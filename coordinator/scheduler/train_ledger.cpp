@@ -11,23 +11,19 @@ namespace {
 
 using nlohmann::json;
 
-std::filesystem::path LedgerFile(const Project& project) {
-  return project.StateFolder() / "training.json";
-}
-
 }  // namespace
 
 TrainLedger::TrainLedger(const Project& project, const std::string& config_hash) : project_(project), config_hash_(config_hash) {
-  if (!std::filesystem::exists(LedgerFile(project))) return;
+  if (!std::filesystem::exists(project.TrainLedgerFile())) return;
   try {
-    const json ledger = json::parse(base::ReadFile(LedgerFile(project)));
+    const json ledger = json::parse(base::ReadFile(project.TrainLedgerFile()));
     if (ledger.at("config_hash") != config_hash) return;
     spent_s_ = ledger.at("spent_s").get<double>();
     promised_s_ = ledger.at("promised_s").get<std::map<std::string, double>>();
     outcomes_ = ledger.at("outcomes").get<std::map<std::string, std::string>>();
   } catch (const json::exception& error) {
     // Only the sharing of the rest of the budget depends on it, never the result in steps.
-    spdlog::warn("{}: damaged ({}); the time budget starts anew", LedgerFile(project).string(), error.what());
+    spdlog::warn("{}: damaged ({}); the time budget starts anew", project.TrainLedgerFile().string(), error.what());
     spent_s_ = 0.0;
     promised_s_.clear();
     outcomes_.clear();
@@ -54,9 +50,9 @@ void TrainLedger::SetSpent(double seconds, bool now) {
 void TrainLedger::AddOutcome(const FieldOutcome& outcome) {
   const auto previous = outcomes_.find(outcome.job.name);
   // A field that was complete already says nothing new about time and memory: the earlier figures stand.
-  if (previous != outcomes_.end() && outcome.failure == Failure::kNone) {
+  if (previous != outcomes_.end() && !outcome.failure) {
     const FieldOutcome earlier = OutcomeFromText(previous->second);
-    if (earlier.failure == Failure::kNone && earlier.result.steps >= outcome.result.steps) return;
+    if (!earlier.failure && earlier.result.steps >= outcome.result.steps) return;
   }
   outcomes_[outcome.job.name] = ToText(outcome);
   Save();
@@ -65,47 +61,37 @@ void TrainLedger::AddOutcome(const FieldOutcome& outcome) {
 void TrainLedger::Save() const {
   std::filesystem::create_directories(project_.StateFolder());
   const json ledger = {{"config_hash", config_hash_}, {"spent_s", spent_s_}, {"promised_s", promised_s_}, {"outcomes", outcomes_}};
-  base::WriteFileAtomically(LedgerFile(project_), ledger.dump(1) + "\n");
+  base::WriteFileAtomically(project_.TrainLedgerFile(), ledger.dump(1) + "\n");
 }
 
-void TrainLedger::WriteReport(int ranks, int threads) const {
-  json fields = json::array();
-  int64_t peak = 0;
-  int64_t samples = 0;
-  int64_t parameters = 0;
-  std::vector<FieldOutcome> outcomes;
-  for (const auto& [name, text] : outcomes_) outcomes.push_back(OutcomeFromText(text));
-  std::sort(outcomes.begin(), outcomes.end(), [](const FieldOutcome& a, const FieldOutcome& b) { return a.job.block < b.job.block; });
-  for (const FieldOutcome& outcome : outcomes) {
+scene::TrainReport TrainLedger::Report(int ranks, int threads) const {
+  scene::TrainReport report{.ranks = ranks, .threads = threads, .wall_seconds = spent_s_, .config_hash = config_hash_, .fields = {}};
+  for (const auto& [name, text] : outcomes_) {
+    const FieldOutcome outcome = OutcomeFromText(text);
     const worker::TrainResult& r = outcome.result;
-    peak = std::max(peak, outcome.peak_rss_bytes);
-    samples += r.samples;
-    parameters += r.parameters;
+    scene::FieldTraining field;
     // By the block's own name, as everywhere outside the scheduler.
-    const std::string name = outcome.job.block < 0 ? outcome.job.name : outcome.job.name.substr(outcome.job.name.find('_') + 1);
-    json stages = json::object();
-    for (size_t i = 0; i < worker::kStages; ++i) stages[worker::kStageNames[i]] = r.stage_seconds[i];
-    fields.push_back({{"name", name},
-                      {"block", outcome.job.block},
-                      {"ok", outcome.failure == Failure::kNone},
-                      {"reason", outcome.reason},
-                      {"steps", r.steps},
-                      {"seconds", r.seconds},
-                      {"wall_seconds", outcome.wall_s},
-                      {"samples", r.samples},
-                      {"rays", r.rays},
-                      {"parameters", r.parameters},
-                      {"psnr_db", r.final_psnr_db},
-                      {"dropped_steps", r.dropped_steps},
-                      {"attempts", outcome.job.attempt + 1},
-                      {"rank", outcome.rank},
-                      {"threads", outcome.threads},
-                      {"peak_rss_bytes", outcome.peak_rss_bytes},
-                      {"stage_seconds", stages}});
+    field.name = outcome.job.block < 0 ? outcome.job.name : outcome.job.name.substr(outcome.job.name.find('_') + 1);
+    field.block = outcome.job.block;
+    field.ok = !outcome.failure;
+    field.reason = outcome.failure.Text();
+    field.steps = r.steps;
+    field.seconds = r.seconds;
+    field.wall_seconds = outcome.wall_s;
+    field.samples = r.samples;
+    field.rays = r.rays;
+    field.parameters = r.parameters;
+    field.psnr_db = r.final_psnr_db;
+    field.dropped_steps = r.dropped_steps;
+    field.attempts = outcome.job.attempt + 1;
+    field.rank = outcome.rank;
+    field.threads = outcome.threads;
+    field.peak_rss_bytes = outcome.peak_rss_bytes;
+    for (size_t i = 0; i < worker::kStages; ++i) field.stage_seconds[worker::kStageNames[i]] = r.stage_seconds[i];
+    report.fields.push_back(std::move(field));
   }
-  const json report = {{"ranks", ranks},     {"threads", threads},       {"wall_seconds", spent_s_},    {"peak_rss_bytes", peak},
-                       {"samples", samples}, {"parameters", parameters}, {"config_hash", config_hash_}, {"fields", fields}};
-  base::WriteFileAtomically(project_.TrainReport(), report.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  std::sort(report.fields.begin(), report.fields.end(), [](const auto& a, const auto& b) { return a.block < b.block; });
+  return report;
 }
 
 }  // namespace skyquilt::coordinator

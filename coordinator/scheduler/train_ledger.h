@@ -1,5 +1,5 @@
-// What one training keeps on disk beside the checkpoints: how much of the time budget is spent and promised (.state/budget.json, so that a
-// resumed training keeps to the same budget) and what came of every field (train.json, read by the report).
+// What one training keeps on disk beside the checkpoints (.state/training.json): how much of the time budget is spent and promised, so that a resumed
+// training keeps to the same budget, and what came of every field.
 #pragma once
 
 #include <map>
@@ -8,6 +8,7 @@
 
 #include "coordinator/project/project.h"
 #include "coordinator/scheduler/field_job.h"
+#include "core/scene/train_report.h"
 
 namespace skyquilt::coordinator {
 
@@ -24,8 +25,8 @@ class TrainLedger {
   void SetSpent(double seconds, bool now);
 
   void AddOutcome(const FieldOutcome& outcome);
-  // `threads`: per rank that trains. Throws base::InputError.
-  void WriteReport(int ranks, int threads) const;
+  // What came of every field so far, the context first. `threads`: per rank that trains.
+  scene::TrainReport Report(int ranks, int threads) const;
 
  private:
   void Save() const;

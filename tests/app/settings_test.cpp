@@ -87,20 +87,5 @@ TEST(Settings, PresetFilesParseAndTheDefaultOneIsTheDefaults) {
   }
 }
 
-TEST(Settings, StagesDependOnTheirOwnOptionsOnly) {
-  coordinator::Settings before;
-  coordinator::Settings after;
-  after.train.levels += 1;
-  EXPECT_EQ(coordinator::StageOptions(before, "partition"), coordinator::StageOptions(after, "partition"));
-  EXPECT_NE(coordinator::StageOptions(before, "train"), coordinator::StageOptions(after, "train"));
-  after = before;
-  after.run.threads = 3;
-  after.train.checkpoint_every_s = 1.0;
-  for (const std::string& stage : coordinator::StageNames())
-    EXPECT_EQ(coordinator::StageOptions(before, stage), coordinator::StageOptions(after, stage)) << stage;
-  after.run.image_width = 640;
-  EXPECT_NE(coordinator::StageOptions(before, "partition"), coordinator::StageOptions(after, "partition"));
-}
-
 }  // namespace
 }  // namespace skyquilt::app

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "tests/support/temporary_folder.h"
+
 namespace skyquilt::evaluate {
 namespace {
 
@@ -66,6 +70,46 @@ TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   EXPECT_TRUE(json["psnr_per_block"]["r0c1"].is_null());
   EXPECT_DOUBLE_EQ(json["images"][0]["coverage"].get<double>(), 0.5);
   EXPECT_TRUE(json["images"][1]["coverage"].is_null());
+}
+
+TEST(MetricsJson, IsReadBackAsItWasWritten) {
+  Metrics metrics;
+  metrics.psnr = 27.515625;
+  metrics.seam_psnr_gap_db = -0.125;
+  metrics.has_truth = true;
+  metrics.depth_median_abs_m = 0.1;
+  metrics.air_opacity = 0.02;
+  metrics.air_profile = {{1.0, 0.03}, {10.0, kNotMeasured}};
+  metrics.blocks = {{"r0c0", 28.0, 100}, {"r0c1", kNotMeasured, 0}};
+  metrics.train_seconds = 12.5;
+  metrics.peak_rss_bytes = 123456789012;
+  metrics.parameters = 7;
+  metrics.n_test = 3;
+  metrics.warnings = {"one", "two"};
+  const TemporaryFolder folder;
+  base::WriteFileAtomically(folder.path() / "metrics.json", MetricsJson(metrics));
+  const Metrics back = ReadMetrics(folder.path() / "metrics.json");
+  EXPECT_EQ(back.psnr, metrics.psnr);
+  EXPECT_TRUE(std::isnan(back.ssim));
+  EXPECT_EQ(back.seam_psnr_gap_db, metrics.seam_psnr_gap_db);
+  EXPECT_TRUE(back.has_truth);
+  EXPECT_EQ(back.depth_median_abs_m, metrics.depth_median_abs_m);
+  EXPECT_EQ(back.air_opacity, metrics.air_opacity);
+  ASSERT_EQ(back.air_profile.size(), 2U);
+  EXPECT_EQ(back.air_profile[0], metrics.air_profile[0]);
+  EXPECT_TRUE(std::isnan(back.air_profile[1].second));
+  ASSERT_EQ(back.blocks.size(), 2U);
+  EXPECT_EQ(back.blocks[0].name, "r0c0");
+  EXPECT_EQ(back.blocks[0].pixels, 100);
+  EXPECT_TRUE(std::isnan(back.blocks[1].psnr_db));
+  EXPECT_EQ(back.train_seconds, metrics.train_seconds);
+  EXPECT_EQ(back.peak_rss_bytes, metrics.peak_rss_bytes);
+  EXPECT_EQ(back.n_test, 3);
+  EXPECT_EQ(back.warnings, metrics.warnings);
+  base::WriteFileAtomically(folder.path() / "metrics.json", "{\"psnr\": 1, \"rank");
+  EXPECT_THROW(ReadMetrics(folder.path() / "metrics.json"), base::InputError);
+  base::WriteFileAtomically(folder.path() / "metrics.json", "{\"n_test\": 1, \"photos_held_out\": \"many\"}");
+  EXPECT_THROW(ReadMetrics(folder.path() / "metrics.json"), base::InputError);
 }
 
 TEST(MetricsJson, FileNamesThatAreNotUtf8AreRepaired) {

@@ -33,15 +33,15 @@ class Stamp : public testing::Test {
 };
 
 TEST_F(Stamp, FinishedStageWithItsFilesIsFresh) {
-  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_), Freshness::kAbsent);
+  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kAbsent);
   Finish("merge", "running");
-  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_), Freshness::kUnfinished);
+  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kUnfinished);
   Finish("merge");
-  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_), Freshness::kUnfinished) << "its file is missing";
+  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kUnfinished) << "its file is missing";
   Touch(project_.SceneFile());
-  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_), Freshness::kFresh);
+  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kFresh);
   Finish("merge", "failed");
-  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_), Freshness::kUnfinished);
+  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kUnfinished);
 }
 
 TEST_F(Stamp, ChangedOptionIsNamedWithBothValuesAndTheWayOut) {
@@ -49,7 +49,7 @@ TEST_F(Stamp, ChangedOptionIsNamedWithBothValuesAndTheWayOut) {
   FlatOptions changed = options_;
   changed["train.steps"] = "4000";
   try {
-    CheckStage(project_, "train", changed, inputs_);
+    CheckStage(project_, "train", changed, inputs_, {project_.SceneFile()});
     FAIL() << "nothing thrown";
   } catch (const base::UsageError& error) {
     const std::string text = error.what();
@@ -62,31 +62,13 @@ TEST_F(Stamp, ChangedOptionIsNamedWithBothValuesAndTheWayOut) {
 TEST_F(Stamp, ChangedInputIsSeen) {
   Finish("merge");
   Touch(project_.SceneFile());
-  EXPECT_EQ(CheckStage(project_, "merge", options_, {{"survey", "other"}}), Freshness::kInputsChanged);
-}
-
-TEST_F(Stamp, RestartRemovesThisStageAndLaterOnesOnly) {
-  for (const std::string& stage : StageNames()) Finish(stage);
-  Touch(project_.SurveyFolder() / "survey.json");
-  Touch(project_.BlocksFile());
-  Touch(project_.ContextCheckpoint());
-  Touch(project_.SceneFile());
-  Touch(project_.ReportFolder() / "metrics.json");
-  RemoveStagesFrom(project_, "train");
-  EXPECT_TRUE(std::filesystem::exists(project_.SurveyFolder() / "survey.json"));
-  EXPECT_TRUE(std::filesystem::exists(project_.BlocksFile()));
-  EXPECT_TRUE(LoadStamp(project_, "partition").has_value());
-  EXPECT_FALSE(std::filesystem::exists(project_.CheckpointFolder()));
-  EXPECT_FALSE(std::filesystem::exists(project_.SceneFile()));
-  EXPECT_FALSE(std::filesystem::exists(project_.ReportFolder()));
-  EXPECT_FALSE(LoadStamp(project_, "train").has_value());
-  EXPECT_FALSE(LoadStamp(project_, "evaluate").has_value());
+  EXPECT_EQ(CheckStage(project_, "merge", options_, {{"survey", "other"}}, {project_.SceneFile()}), Freshness::kInputsChanged);
 }
 
 TEST_F(Stamp, DamagedStampIsAnInputErrorThatNamesTheFile) {
   Touch(project_.StampFile("train"), "{ half");
   try {
-    CheckStage(project_, "train", options_, inputs_);
+    CheckStage(project_, "train", options_, inputs_, {project_.SceneFile()});
     FAIL() << "nothing thrown";
   } catch (const base::InputError& error) {
     EXPECT_EQ(error.file(), project_.StampFile("train"));

@@ -61,7 +61,7 @@ RC_GTEST_PROP(RayParcelProperty, TravelsUnchanged, ()) {
 }
 
 RC_GTEST_PROP(RayParcelProperty, ComesBackUnchanged, ()) {
-  CarriedParcel sent{.id = 7, .samples = 123, .field_loads = 4, .travellers = {}, .colors = {}, .reason = "why", .file = "scene.h5"};
+  CarriedParcel sent{.id = 7, .samples = 123, .field_loads = 4, .travellers = {}, .colors = {}, .failure = {Failure::kInput, "why", "scene.h5"}};
   const int n = *rc::gen::inRange(0, 20);
   for (int i = 0; i < n; ++i) {
     Traveller traveller;
@@ -71,7 +71,8 @@ RC_GTEST_PROP(RayParcelProperty, ComesBackUnchanged, ()) {
     if (traveller.owner == scene::kArrived) sent.colors.push_back({.opacity = 0.01F * static_cast<float>(i)});
   }
   const CarriedParcel got = CarriedParcelFromBytes(ToBytes(sent));
-  RC_ASSERT(got.id == 7U && got.samples == 123 && got.field_loads == 4 && got.reason == "why" && got.file == "scene.h5");
+  RC_ASSERT(got.id == 7U && got.samples == 123 && got.field_loads == 4 && got.failure.kind == Failure::kInput && got.failure.reason == "why" &&
+            got.failure.file == "scene.h5");
   RC_ASSERT(got.travellers.size() == sent.travellers.size() && got.colors.size() == sent.colors.size());
   for (size_t i = 0; i < sent.travellers.size(); ++i) RC_ASSERT(got.travellers[i].owner == sent.travellers[i].owner);
   for (size_t i = 0; i < sent.colors.size(); ++i) RC_ASSERT(got.colors[i].opacity == sent.colors[i].opacity);

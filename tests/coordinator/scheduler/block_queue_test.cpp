@@ -20,8 +20,8 @@ std::vector<QueueBlock> RandomBlocks(base::Random& random, int n) {
 FieldOutcome Outcome(const FieldJob& job, bool ok) {
   FieldOutcome outcome;
   outcome.job = job;
-  outcome.failure = ok ? Failure::kNone : Failure::kBlock;
-  outcome.reason = ok ? "" : "diverged";
+  outcome.failure.kind = ok ? Failure::kNone : Failure::kBlock;
+  outcome.failure.reason = ok ? "" : "diverged";
   return outcome;
 }
 
@@ -66,7 +66,7 @@ TEST(BlockQueue, FailedBlockIsTriedThreeTimesWithOtherSeedAndHalfTheRate) {
   }
   EXPECT_FALSE(queue.HasWaiting());
   ASSERT_EQ(queue.outcomes().size(), 1U);
-  EXPECT_EQ(queue.outcomes().front().failure, Failure::kBlock);
+  EXPECT_EQ(queue.outcomes().front().failure.kind, Failure::kBlock);
 }
 
 TEST(BlockQueue, SeedsDoNotDependOnTheOrderOfHandingOut) {

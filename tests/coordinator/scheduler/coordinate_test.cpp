@@ -126,9 +126,9 @@ TEST_F(Coordinate, AFailingBlockCostsOnlyItself) {
     EXPECT_EQ(tries, 3);
     ASSERT_EQ(played.outcomes.size(), 3U);
     for (const FieldOutcome& outcome : played.outcomes) {
-      EXPECT_EQ(outcome.failure, outcome.job.block == 1 ? Failure::kBlock : Failure::kNone);
+      EXPECT_EQ(outcome.failure.kind, outcome.job.block == 1 ? Failure::kBlock : Failure::kNone);
       if (outcome.job.block == 1) {
-        EXPECT_EQ(outcome.reason, "loss is not finite");
+        EXPECT_EQ(outcome.failure.reason, "loss is not finite");
       }
     }
   }
@@ -140,7 +140,7 @@ TEST_F(Coordinate, ARetryThatSucceedsCounts) {
     return Good(job);
   });
   ASSERT_EQ(played.outcomes.size(), 1U);
-  EXPECT_EQ(played.outcomes[0].failure, Failure::kNone);
+  EXPECT_EQ(played.outcomes[0].failure.kind, Failure::kNone);
   EXPECT_EQ(played.outcomes[0].job.attempt, 1);
 }
 

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <new>
+#include <nlohmann/json.hpp>
 
 #include "core/base/errors.h"
 
@@ -27,18 +28,28 @@ TEST(FieldJob, TravelsUnchanged) {
 TEST(FieldJob, OutcomeTravelsUnchangedEvenWithStrangeText) {
   FieldOutcome outcome;
   outcome.job.name = "block_r0c0";
-  outcome.failure = Failure::kInput;
-  outcome.reason = "photo \xff\xfe \"quoted\"\nsecond line";
+  outcome.failure.kind = Failure::kInput;
+  outcome.failure.reason = "photo \xff\xfe \"quoted\"\nsecond line";
   outcome.result.samples = (int64_t{1} << 60) + 1;
   outcome.result.final_psnr_db = std::numeric_limits<double>::quiet_NaN();
   outcome.peak_rss_bytes = 123456789012;
   outcome.result.stage_seconds[3] = 1.5;
   const FieldOutcome back = OutcomeFromText(ToText(outcome));
-  EXPECT_EQ(back.failure, Failure::kInput);
-  EXPECT_NE(back.reason.find("\"quoted\"\nsecond line"), std::string::npos);
+  EXPECT_EQ(back.failure.kind, Failure::kInput);
+  EXPECT_NE(back.failure.reason.find("\"quoted\"\nsecond line"), std::string::npos);
   EXPECT_EQ(back.result.samples, outcome.result.samples);
   EXPECT_EQ(back.peak_rss_bytes, outcome.peak_rss_bytes);
   EXPECT_EQ(back.result.stage_seconds, outcome.result.stage_seconds);
+}
+
+TEST(FieldJob, OutcomeOfAnEarlierVersionsLedgerIsRead) {
+  nlohmann::json old = nlohmann::json::parse(ToText(FieldOutcome{}));
+  old["failure"] = 1;
+  old["reason"] = "diverged";
+  old["job"]["team"] = {0, 1};
+  const FieldOutcome outcome = OutcomeFromText(old.dump());
+  EXPECT_EQ(outcome.failure.kind, Failure::kBlock);
+  EXPECT_EQ(outcome.failure.reason, "diverged");
 }
 
 TEST(FieldJob, StatusWithANonFiniteLossStillTravels) {
@@ -49,7 +60,7 @@ TEST(FieldJob, StatusWithANonFiniteLossStillTravels) {
 }
 
 TEST(RunField, EveryWayToFailBecomesAnOutcome) {
-  const auto failure = [](const FieldTrainer& trainer) { return RunField(trainer, {}, kSilent, 1, 2).failure; };
+  const auto failure = [](const FieldTrainer& trainer) { return RunField(trainer, {}, kSilent, 1, 2).failure.kind; };
   using Result = worker::TrainResult;
   EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) { return Result{.ok = true, .reason = ""}; }), Failure::kNone);
   EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) { return Result{.ok = false, .reason = "x"}; }), Failure::kBlock);

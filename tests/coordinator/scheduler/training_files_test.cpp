@@ -102,11 +102,11 @@ TEST_F(TrainingFiles, ReportKeepsTheFiguresOfFieldsThatWereAlreadyComplete) {
   again.wall_s = 0.01;  // loaded, not trained
   ledger.AddOutcome(again);
   FieldOutcome failed = Outcome(0, "block_r0c0", 5, 1.0);
-  failed.failure = Failure::kBlock;
-  failed.reason = "diverged";
+  failed.failure.kind = Failure::kBlock;
+  failed.failure.reason = "diverged";
   ledger.AddOutcome(failed);
   ledger.SetSpent(31.0, true);
-  ledger.WriteReport(3, 2);
+  scene::WriteTrainReport(ledger.Report(3, 2), project_.TrainReport());
   const nlohmann::json report = nlohmann::json::parse(base::ReadFile(project_.TrainReport()));
   EXPECT_EQ(report.at("ranks"), 3);
   EXPECT_EQ(report.at("peak_rss_bytes"), 1000);

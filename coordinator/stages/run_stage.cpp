@@ -1,0 +1,90 @@
+#include <chrono>
+
+#include "coordinator/stages/stage.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/base/system.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+void RequireFile(const std::filesystem::path& file, const std::string& stage, const Project& project) {
+  if (std::filesystem::exists(file)) return;
+  throw base::InputError(file, "is not there yet", "Run 'skyquilt " + stage + " " + project.folder.string() + "' first");
+}
+
+// False when the inputs are other ones and the stage follows by itself.
+void RequireSameInputs(const Project& project, const Stage& stage, const FlatOptions& inputs) {
+  const std::string changes = JoinLines(config::Differences(LoadStamp(project, stage.name)->inputs, inputs));
+  if (stage.on_new_inputs == OnNewInputs::kAgain) return;
+  throw base::UsageError("what '" + stage.name + "' in " + project.folder.string() + " was made from has changed:" + changes +
+                         "\nUse another project folder, or --restart to remove the results of '" + stage.name + "' and of all later stages");
+}
+
+}  // namespace
+
+FlatOptions StageOptions(const Stage& stage, Settings& settings) {
+  FlatOptions selected = Select(settings.Flat(), stage.options);
+  for (const std::string& key : stage.without_effect) selected.erase(key);
+  return selected;
+}
+
+void RemoveStagesFrom(const Project& project, const std::string& name) {
+  // Latest first: an interrupted removal never leaves a stage whose inputs are gone.
+  for (auto stage = Stages().rbegin(); stage != Stages().rend(); ++stage) {
+    std::error_code error;
+    std::filesystem::remove(project.StampFile(stage->name), error);
+    for (const std::filesystem::path& path : stage->outputs(project)) {
+      std::filesystem::remove_all(path, error);
+      if (error) throw base::InputError(path, "cannot be removed: " + error.message(), "Check the permissions of the project folder");
+    }
+    if (stage->name == name) return;
+  }
+}
+
+void RequireSameConfiguration(Pipeline& pipeline, const std::string& first) {
+  if (pipeline.restart) return;
+  bool reached = false;
+  for (const Stage& stage : Stages()) {
+    reached = reached || stage.name == first;
+    // One with a home of its own keeps its own stamp there.
+    if (reached && stage.home == nullptr) CheckStage(pipeline.project, stage.name, StageOptions(stage, pipeline.settings), {}, {});
+  }
+}
+
+void RunStage(Pipeline& pipeline, const std::string& name) {
+  const Stage& stage = StageNamed(name);
+  const Project& project = pipeline.project;
+  for (const Stage::Need& need : stage.needs) RequireFile(need.file(project), need.stage, project);
+  // Before anything is removed: what it reads may be what a restart removes.
+  StageStamp stamp{.stage = name, .state = StageStamp::kRunning, .options = StageOptions(stage, pipeline.settings), .inputs = stage.inputs(pipeline)};
+  if (pipeline.restart) {
+    RemoveStagesFrom(project, name);
+    pipeline.restart = false;
+  }
+  const Freshness freshness = CheckStage(project, name, stamp.options, stamp.inputs, stage.proof(project));
+  if (freshness == Freshness::kFresh) {
+    spdlog::info("{}: nothing to do, the results are there", name);
+    if (stage.recall != nullptr) stage.recall(pipeline);
+    return;
+  }
+  if (freshness == Freshness::kInputsChanged) {
+    RequireSameInputs(project, stage, stamp.inputs);
+    spdlog::info("{}: made again, because its input is new", name);
+  }
+  SaveStamp(project, stamp);
+  if (stage.dated) base::WriteFileAtomically(project.ConfigFile(), pipeline.settings.Toml());
+  spdlog::info("{}", name);
+  const auto start = std::chrono::steady_clock::now();
+  stamp.state = stage.body(pipeline, stamp);
+  if (stage.dated) {
+    stamp.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    stamp.finished_utc = base::UtcTimestamp();
+  }
+  SaveStamp(project, stamp);
+  spdlog::debug("{} took {}", name, base::FormatDuration(stamp.seconds));
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,148 @@
+#include "coordinator/stages/stage_bodies.h"
+
+#include <set>
+
+#include "coordinator/rendering/scene_session.h"
+#include "coordinator/scheduler/field_context.h"
+#include "coordinator/scheduler/train_all.h"
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/base/thread_pool.h"
+#include "core/scene/scene.h"
+#include "evaluate/evaluate.h"
+#include "merge/merge.h"
+#include "partition/make_blocks.h"
+#include "prepare/prepare.h"
+#include "products/camera_path.h"
+#include "products/map_products.h"
+#include "products/render_views.h"
+#include "simulate/simulate.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+void LogBlocks(const partition::BlockSet& blocks) {
+  spdlog::info("{} x {} blocks", blocks.rows, blocks.columns);
+  for (const partition::Block& block : blocks.blocks) {
+    if (block.empty) {
+      spdlog::info("  {}: empty, {}", block.name, block.empty_reason);
+    } else {
+      const Eigen::Vector3d size = block.max_enu - block.min_enu;
+      spdlog::info("  {}: {:.0f} x {:.0f} m, {:.1f} m high, {} photos from {:.0f} m, GSD {:.3f} m, table 2^{}", block.name, size.x(), size.y(),
+                   size.z(), block.photos.size(), block.altitude_agl_m, block.gsd_m, block.log2_table_size);
+    }
+  }
+}
+
+}  // namespace
+
+std::string SimulateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
+  base::ThreadPool threads(pipeline.settings.run.threads);
+  simulate::Simulate(pipeline.settings.simulate, pipeline.project.folder, threads);
+  return StageStamp::kDone;
+}
+
+std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
+  const prepare::PrepareInput input{.photos = pipeline.photos, .model = pipeline.model, .out_folder = pipeline.project.SurveyFolder()};
+  base::ThreadPool threads(pipeline.settings.run.threads);
+  prepare::Prepare(input, pipeline.settings.prepare, threads);
+  return StageStamp::kDone;
+}
+
+std::string PartitionBody(Pipeline& pipeline, const StageStamp& stamp) {
+  const survey::Survey survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
+  partition::BlockSet blocks = partition::MakeBlocks(survey, pipeline.settings.partition, pipeline.settings.run.image_width);
+  if (blocks.config_hash.empty()) blocks.config_hash = stamp.Hash();
+  partition::SaveBlocks(blocks, pipeline.project.BlocksFile());
+  LogBlocks(blocks);
+  return StageStamp::kDone;
+}
+
+std::string TrainBody(Pipeline& pipeline, const StageStamp& stamp) {
+  const survey::Survey survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
+  const partition::BlockSet blocks = partition::LoadBlocks(pipeline.project.BlocksFile());
+  const TrainInput input{.survey = &survey, .blocks = &blocks, .config_hash = stamp.Hash(), .verbose = pipeline.verbose, .quiet = pipeline.quiet};
+  pipeline.training = TrainAll(pipeline.comm, input, pipeline.settings, pipeline.project);
+  return pipeline.training.Failed().empty() ? StageStamp::kDone : StageStamp::kFailed;
+}
+
+std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
+  const Project& project = pipeline.project;
+  const scene::TrainReport training = scene::ReadTrainReport(project.TrainReport());
+  const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
+  const std::optional<StageStamp> train = LoadStamp(project, "train");
+  merge::MergeInput input{.context = project.ContextCheckpoint(),
+                          .blocks = {},
+                          .origin = blocks.origin,
+                          .georeferenced = blocks.georeferenced,
+                          .borders = pipeline.settings.merge.Borders(),
+                          .storage = pipeline.settings.merge.Storage(),
+                          .use_context = pipeline.settings.train.coupling != "independent",
+                          .config_toml = pipeline.settings.Toml(),
+                          .config_hash = train ? train->Hash() : "",
+                          .scene = project.SceneFile()};
+  for (const partition::Block& block : blocks.blocks) {
+    if (block.empty) continue;
+    const scene::FieldTraining* field = training.Find(block.name);
+    if (field != nullptr && field->ok) {
+      input.blocks.push_back({.checkpoint = project.BlockCheckpoint(block.name), .gsd_m = block.gsd_m});
+    } else {
+      spdlog::warn("block {} has no finished checkpoint: the context stands in for it", block.name);
+    }
+  }
+  merge::MergeScene(input);
+  spdlog::info("{}", project.SceneFile().string());
+  return StageStamp::kDone;
+}
+
+std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
+  const products::ProductOptions& options = pipeline.settings.products;
+  const std::filesystem::path folder = pipeline.project.ProductsFolder();
+  SceneSession session(pipeline.comm, pipeline.project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
+  const scene::Scene& scene = session.scene();
+  base::ThreadPool& threads = session.threads();
+  std::filesystem::create_directories(folder);
+  if (options.ortho || options.dsm) {
+    const products::MapProducts maps = products::MakeMapProducts(scene, options, folder, threads);
+    spdlog::info("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", maps.grid.width, maps.grid.height, maps.grid.resolution_m,
+                 100.0 * maps.filled, folder.string());
+  }
+  if (options.video_seconds > 0.0) {
+    const std::filesystem::path file = folder / (options.video_path + ".mp4");
+    const products::RenderStats stats =
+        products::RenderVideo(products::RendererOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads),
+                              products::BuiltInPath(scene.info(), options), options.video_fps, file);
+    spdlog::info("video of {} frames, {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), file.string());
+  }
+  return StageStamp::kDone;
+}
+
+std::string EvaluateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
+  const Project& project = pipeline.project;
+  SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
+  base::ThreadPool& threads = session.threads();
+  const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
+  const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
+  std::filesystem::create_directories(project.PixelCacheFile().parent_path());
+  const image::PixelCache pixels =
+      image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), pipeline.settings.run.image_width, threads);
+  const evaluate::EvaluateInput input{.scene = &session.scene(),
+                                      .survey = &survey,
+                                      .blocks = &blocks,
+                                      .pixels = &pixels,
+                                      .project_folder = project.folder,
+                                      .train_json = project.TrainReport(),
+                                      .ranks = 0,
+                                      .config_text = pipeline.settings.Toml(),
+                                      .options = pipeline.settings.evaluate};
+  pipeline.metrics = evaluate::Evaluate(input, threads);
+  const evaluate::Metrics& metrics = pipeline.metrics;
+  spdlog::info("PSNR {:.2f} dB, SSIM {:.3f} over the {:.0f} % covered pixels of {} held-out photos; full frame {:.2f} dB", metrics.psnr, metrics.ssim,
+               100.0 * metrics.coverage, metrics.n_test, metrics.psnr_full_frame);
+  if (metrics.has_truth) spdlog::info("depth: median error {:.2f} m, RMSE {:.2f} m", metrics.depth_median_abs_m, metrics.depth_rmse_m);
+  spdlog::info("report: {}", (project.ReportFolder() / "index.html").string());
+  return StageStamp::kDone;
+}
+
+}  // namespace skyquilt::coordinator

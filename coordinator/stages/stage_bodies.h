@@ -1,0 +1,19 @@
+// What each stage does, for the table of stages. Each returns StageStamp::kDone or kFailed, and leaves what it found in the pipeline.
+#pragma once
+
+#include <string>
+
+#include "coordinator/project/stamp.h"
+#include "coordinator/stages/pipeline.h"
+
+namespace skyquilt::coordinator {
+
+std::string SimulateBody(Pipeline& pipeline, const StageStamp& stamp);
+std::string PrepareBody(Pipeline& pipeline, const StageStamp& stamp);
+std::string PartitionBody(Pipeline& pipeline, const StageStamp& stamp);
+std::string TrainBody(Pipeline& pipeline, const StageStamp& stamp);
+std::string MergeBody(Pipeline& pipeline, const StageStamp& stamp);
+std::string ProductsBody(Pipeline& pipeline, const StageStamp& stamp);
+std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp);
+
+}  // namespace skyquilt::coordinator

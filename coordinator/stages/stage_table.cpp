@@ -1,0 +1,146 @@
+// The table of stages.
+#include <algorithm>
+
+#include "coordinator/stages/stage.h"
+#include "coordinator/stages/stage_bodies.h"
+#include "core/base/errors.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+std::filesystem::path SurveyFile(const Project& project) {
+  return project.SurveyFolder() / "survey.json";
+}
+
+std::filesystem::path BlocksFile(const Project& project) {
+  return project.BlocksFile();
+}
+
+std::filesystem::path TrainReportFile(const Project& project) {
+  return project.TrainReport();
+}
+
+std::filesystem::path SceneFile(const Project& project) {
+  return project.SceneFile();
+}
+
+std::string SurveyIdentity(const Project& project) {
+  return FileIdentity(SurveyFile(project)) + " " + FileIdentity(project.SurveyFolder() / "points.ply");
+}
+
+// The context and every block that train.json calls trained. A damaged train.json proves nothing, not even the blocks.
+Paths TrainProof(const Project& project) {
+  Paths proof = {project.ContextCheckpoint(), project.TrainReport()};
+  const std::optional<scene::TrainReport> report = scene::TryReadTrainReport(project.TrainReport());
+  if (!report) return proof;
+  for (const scene::FieldTraining& field : report->fields) {
+    if (field.ok && field.block >= 0) proof.push_back(project.BlockCheckpoint(field.name));
+  }
+  return proof;
+}
+
+std::vector<Stage> MakeTable() {
+  return {
+      {.name = "simulate",
+       .options = {"simulate."},
+       .inputs = [](const Pipeline&) { return FlatOptions(); },
+       .outputs = [](const Project& p) { return Paths{p.SimulatedFolder()}; },
+       .proof = [](const Project& p) { return Paths{p.folder / "simulate.json"}; },
+       .body = SimulateBody,
+       .home = [](const Project& p) { return Project{p.SimulatedFolder()}; },
+       .dated = false},
+      {.name = "prepare",
+       .options = {"prepare."},
+       .inputs =
+           [](const Pipeline& pipeline) {
+             return FlatOptions{{"photos", pipeline.photos.string()},
+                                {"model", pipeline.model.string()},
+                                {"images", PhotosIdentity(pipeline.photos, pipeline.project.folder)}};
+           },
+       .outputs = [](const Project& p) { return Paths{p.SurveyFolder()}; },
+       .proof = [](const Project& p) { return Paths{SurveyFile(p)}; },
+       .body = PrepareBody,
+       .on_new_inputs = OnNewInputs::kRefuse},
+      {.name = "partition",
+       .options = {"partition.", "run.image_width"},
+       .needs = {{SurveyFile, "prepare"}},
+       .inputs =
+           [](const Pipeline& pipeline) {
+             return FlatOptions{{"survey", SurveyIdentity(pipeline.project)}};
+           },
+       .outputs = [](const Project& p) { return Paths{p.BlocksFile()}; },
+       .proof = [](const Project& p) { return Paths{p.BlocksFile()}; },
+       .body = PartitionBody,
+       .on_new_inputs = OnNewInputs::kRefuse},
+      {.name = "train",
+       .options = {"brightness.", "context.", "train.", "run.image_width", "run.time_budget_s", "run.context_share", "run.seed"},
+       // How often a field is saved changes nothing in it.
+       .without_effect = {"context.checkpoint_every_s", "train.checkpoint_every_s"},
+       .needs = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},
+       .inputs =
+           [](const Pipeline& pipeline) {
+             return FlatOptions{{"survey", SurveyIdentity(pipeline.project)}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
+           },
+       .outputs =
+           [](const Project& p) {
+             return Paths{p.CheckpointFolder(), p.TrainReport(), p.PixelCacheFile().parent_path(), p.TrainLedgerFile()};
+           },
+       .proof = TrainProof,
+       .body = TrainBody,
+       .recall = [](Pipeline& pipeline) { pipeline.training = scene::ReadTrainReport(pipeline.project.TrainReport()); },
+       .on_new_inputs = OnNewInputs::kRefuse},
+      {.name = "merge",
+       .options = {"merge."},
+       .needs = {{BlocksFile, "partition"}, {TrainReportFile, "train"}},
+       .inputs =
+           [](const Pipeline& pipeline) {
+             return FlatOptions{{"train", FileIdentity(pipeline.project.TrainReport())}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
+           },
+       .outputs =
+           [](const Project& p) {
+             return Paths{p.SceneFile(), p.SceneFile().string() + ".prev"};
+           },
+       .proof = [](const Project& p) { return Paths{p.SceneFile()}; },
+       .body = MergeBody},
+      {.name = "products",
+       .options = {"products."},
+       .needs = {{SceneFile, "merge"}},
+       .inputs =
+           [](const Pipeline& pipeline) {
+             return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))}};
+           },
+       .outputs =
+           [](const Project& p) {
+             return Paths{p.ProductsFolder(), p.RendersFolder()};
+           },
+       .proof = [](const Project& p) { return Paths{p.ProductsFolder()}; },
+       .body = ProductsBody},
+      {.name = "evaluate",
+       .options = {"evaluate.", "run.image_width"},
+       .needs = {{SceneFile, "merge"}},
+       .inputs =
+           [](const Pipeline& pipeline) {
+             return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))},
+                                {"products", FileIdentity(pipeline.project.StampFile("products"))}};
+           },
+       .outputs = [](const Project& p) { return Paths{p.ReportFolder()}; },
+       .proof = [](const Project& p) { return Paths{p.MetricsFile()}; },
+       .body = EvaluateBody,
+       .recall = [](Pipeline& pipeline) { pipeline.metrics = evaluate::ReadMetrics(pipeline.project.MetricsFile()); }},
+  };
+}
+
+}  // namespace
+
+const std::vector<Stage>& Stages() {
+  static const std::vector<Stage> table = MakeTable();
+  return table;
+}
+
+const Stage& StageNamed(const std::string& name) {
+  const auto found = std::find_if(Stages().begin(), Stages().end(), [&name](const Stage& stage) { return stage.name == name; });
+  SKYQUILT_CHECK(found != Stages().end(), name);
+  return *found;
+}
+
+}  // namespace skyquilt::coordinator

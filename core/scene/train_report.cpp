@@ -1,0 +1,176 @@
+#include "core/scene/train_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+
+namespace skyquilt::scene {
+namespace {
+
+using Json = nlohmann::json;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kTrainAgain = "Run 'skyquilt train' again";
+
+double Number(const Json& json, const char* key, double fallback) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number() ? found->get<double>() : fallback;
+}
+
+int64_t Integer(const Json& json, const char* key, int64_t fallback = 0) {
+  const auto found = json.find(key);
+  if (found != json.end() && found->is_number_integer()) return found->get<int64_t>();
+  return std::llround(Number(json, key, static_cast<double>(fallback)));
+}
+
+std::string Text(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+FieldTraining FieldFrom(const Json& json) {
+  FieldTraining field;
+  field.name = Text(json, "name");
+  field.block = static_cast<int>(Integer(json, "block", field.name == "context" ? -1 : 0));
+  const auto ok = json.find("ok");
+  field.ok = ok != json.end() && ok->is_boolean() && ok->get<bool>();
+  field.reason = Text(json, "reason");
+  field.steps = Integer(json, "steps");
+  field.seconds = Number(json, "seconds", 0.0);
+  field.wall_seconds = Number(json, "wall_seconds", 0.0);
+  field.samples = Integer(json, "samples");
+  field.rays = Integer(json, "rays");
+  field.parameters = Integer(json, "parameters");
+  field.psnr_db = Number(json, "psnr_db", kUnknown);
+  field.dropped_steps = Integer(json, "dropped_steps");
+  field.attempts = static_cast<int>(Integer(json, "attempts", 1));
+  field.rank = static_cast<int>(Integer(json, "rank"));
+  field.threads = static_cast<int>(Integer(json, "threads"));
+  field.peak_rss_bytes = Integer(json, "peak_rss_bytes");
+  if (const auto stages = json.find("stage_seconds"); stages != json.end() && stages->is_object()) {
+    for (const auto& [stage, seconds] : stages->items()) {
+      if (seconds.is_number()) field.stage_seconds[stage] = seconds.get<double>();
+    }
+  }
+  return field;
+}
+
+Json ToJson(const FieldTraining& field) {
+  return {{"name", field.name},
+          {"block", field.block},
+          {"ok", field.ok},
+          {"reason", field.reason},
+          {"steps", field.steps},
+          {"seconds", field.seconds},
+          {"wall_seconds", field.wall_seconds},
+          {"samples", field.samples},
+          {"rays", field.rays},
+          {"parameters", field.parameters},
+          {"psnr_db", field.psnr_db},
+          {"dropped_steps", field.dropped_steps},
+          {"attempts", field.attempts},
+          {"rank", field.rank},
+          {"threads", field.threads},
+          {"peak_rss_bytes", field.peak_rss_bytes},
+          {"stage_seconds", field.stage_seconds}};
+}
+
+template <typename Member>
+int64_t Sum(const std::vector<FieldTraining>& fields, Member member) {
+  return std::accumulate(fields.begin(), fields.end(), int64_t{0}, [&](int64_t sum, const FieldTraining& field) { return sum + field.*member; });
+}
+
+}  // namespace
+
+const FieldTraining* TrainReport::Find(const std::string& name) const {
+  const auto match = std::find_if(fields.begin(), fields.end(), [&](const FieldTraining& field) { return field.name == name; });
+  return match == fields.end() ? nullptr : &*match;
+}
+
+std::vector<std::string> TrainReport::Failed() const {
+  std::vector<std::string> failed;
+  for (const FieldTraining& field : fields) {
+    if (!field.ok) failed.push_back((field.block < 0 ? "" : "block_") + field.name + ": " + field.reason);
+  }
+  return failed;
+}
+
+int64_t TrainReport::Samples() const {
+  return Sum(fields, &FieldTraining::samples);
+}
+
+int64_t TrainReport::Parameters() const {
+  return Sum(fields, &FieldTraining::parameters);
+}
+
+int64_t TrainReport::PeakRssBytes() const {
+  int64_t peak = 0;
+  for (const FieldTraining& field : fields) peak = std::max(peak, field.peak_rss_bytes);
+  return peak;
+}
+
+double TrainReport::TrainSeconds() const {
+  double field_seconds = 0.0;
+  for (const FieldTraining& field : fields) field_seconds += field.seconds;
+  const double seconds = std::max(wall_seconds, field_seconds / std::max(ranks, 1));
+  return seconds > 0.0 ? seconds : kUnknown;
+}
+
+double TrainReport::SamplesPerRay() const {
+  const int64_t rays = Sum(fields, &FieldTraining::rays);
+  return rays > 0 ? static_cast<double>(Samples()) / static_cast<double>(rays) : kUnknown;
+}
+
+double TrainReport::SamplesPerSecond() const {
+  const int64_t samples = Samples();
+  const double seconds = TrainSeconds();
+  return samples > 0 && seconds > 0.0 ? static_cast<double>(samples) / seconds : kUnknown;
+}
+
+void WriteTrainReport(const TrainReport& report, const std::filesystem::path& file) {
+  Json fields = Json::array();
+  for (const FieldTraining& field : report.fields) fields.push_back(ToJson(field));
+  const Json json = {{"ranks", report.ranks},
+                     {"threads", report.threads},
+                     {"wall_seconds", report.wall_seconds},
+                     {"peak_rss_bytes", report.PeakRssBytes()},
+                     {"samples", report.Samples()},
+                     {"parameters", report.Parameters()},
+                     {"config_hash", report.config_hash},
+                     {"fields", fields}};
+  base::WriteFileAtomically(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+TrainReport ReadTrainReport(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw base::InputError(file, "is not there yet", "Run 'skyquilt train' first");
+  const Json json = Json::parse(base::ReadFile(file), nullptr, false);
+  if (!json.is_object()) throw base::InputError(file, "is damaged: not valid JSON", kTrainAgain);
+  const auto fields = json.find("fields");
+  if (fields == json.end() || !fields->is_array()) throw base::InputError(file, "is no report of a training: it has no fields", kTrainAgain);
+  TrainReport report;
+  report.ranks = static_cast<int>(Integer(json, "ranks"));
+  report.threads = static_cast<int>(Integer(json, "threads"));
+  report.wall_seconds = Number(json, "wall_seconds", 0.0);
+  report.config_hash = Text(json, "config_hash");
+  for (const Json& field : *fields) {
+    if (field.is_object()) report.fields.push_back(FieldFrom(field));
+  }
+  return report;
+}
+
+std::optional<TrainReport> TryReadTrainReport(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) return std::nullopt;
+  try {
+    return ReadTrainReport(file);
+  } catch (const base::InputError& error) {
+    spdlog::warn("{}", error.what());
+    return std::nullopt;
+  }
+}
+
+}  // namespace skyquilt::scene

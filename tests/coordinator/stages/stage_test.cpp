@@ -1,0 +1,113 @@
+#include "coordinator/stages/stage.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/comm/communicator.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+class StageFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    project_ = Project::Create(std::filesystem::temp_directory_path() / ("skyquilt_stages_" + std::to_string(getpid()) + "_" + info->name()));
+  }
+  void TearDown() override { std::filesystem::remove_all(project_.folder); }
+
+  void Touch(const std::filesystem::path& file, const std::string& text = "x") const {
+    std::filesystem::create_directories(file.parent_path());
+    base::WriteFileAtomically(file, text);
+  }
+  void Finish(const std::string& stage, const std::string& state = "done") const {
+    SaveStamp(project_, {.stage = stage, .state = state, .options = options_, .inputs = inputs_});
+  }
+
+  Project project_;
+  FlatOptions options_ = {{"train.steps", "2000"}, {"train.levels", "8"}};
+  FlatOptions inputs_ = {{"survey", "abc"}};
+};
+
+TEST_F(StageFiles, RestartRemovesThisStageAndLaterOnesOnly) {
+  for (const Stage& stage : Stages()) Finish(stage.name);
+  Touch(project_.SurveyFolder() / "survey.json");
+  Touch(project_.BlocksFile());
+  Touch(project_.ContextCheckpoint());
+  Touch(project_.SceneFile());
+  Touch(project_.ReportFolder() / "metrics.json");
+  RemoveStagesFrom(project_, "train");
+  EXPECT_TRUE(std::filesystem::exists(project_.SurveyFolder() / "survey.json"));
+  EXPECT_TRUE(std::filesystem::exists(project_.BlocksFile()));
+  EXPECT_TRUE(LoadStamp(project_, "partition").has_value());
+  EXPECT_FALSE(std::filesystem::exists(project_.CheckpointFolder()));
+  EXPECT_FALSE(std::filesystem::exists(project_.SceneFile()));
+  EXPECT_FALSE(std::filesystem::exists(project_.ReportFolder()));
+  EXPECT_FALSE(LoadStamp(project_, "train").has_value());
+  EXPECT_FALSE(LoadStamp(project_, "evaluate").has_value());
+}
+
+TEST(Stages, StagesDependOnTheirOwnOptionsOnly) {
+  Settings before;
+  Settings after;
+  after.train.levels += 1;
+  EXPECT_EQ(StageOptions(StageNamed("partition"), before), StageOptions(StageNamed("partition"), after));
+  EXPECT_NE(StageOptions(StageNamed("train"), before), StageOptions(StageNamed("train"), after));
+  after = before;
+  after.run.threads = 3;
+  after.train.checkpoint_every_s = 1.0;
+  for (const Stage& stage : Stages()) EXPECT_EQ(StageOptions(stage, before), StageOptions(stage, after)) << stage.name;
+  after.run.image_width = 640;
+  EXPECT_NE(StageOptions(StageNamed("partition"), before), StageOptions(StageNamed("partition"), after));
+}
+
+TEST(Stages, HaveEachItsOwnNameAndNeedOnlyEarlierOnes) {
+  std::set<std::string> names;
+  for (const Stage& stage : Stages()) {
+    for (const Stage::Need& need : stage.needs) EXPECT_TRUE(names.contains(need.stage)) << stage.name << " needs " << need.stage;
+    EXPECT_TRUE(names.insert(stage.name).second) << stage.name;
+    EXPECT_TRUE(stage.inputs != nullptr && stage.outputs != nullptr && stage.proof != nullptr && stage.body != nullptr) << stage.name;
+  }
+}
+
+TEST(Stages, NameOptionsThatExist) {
+  Settings settings;
+  const FlatOptions all = settings.Flat();
+  for (const Stage& stage : Stages()) {
+    for (const std::string& key : stage.options) EXPECT_FALSE(Select(all, {key}).empty()) << stage.name << " depends on " << key;
+    for (const std::string& key : stage.without_effect) EXPECT_FALSE(Select(all, {key}).empty()) << stage.name << " has " << key;
+  }
+}
+
+TEST_F(StageFiles, WhatProvesAStageIsRemovedWithIt) {
+  for (const Stage& stage : Stages()) {
+    if (stage.home != nullptr) continue;
+    for (const std::filesystem::path& proof : stage.proof(project_)) {
+      bool removed = false;
+      for (const std::filesystem::path& output : stage.outputs(project_)) removed = removed || proof.string().starts_with(output.string());
+      EXPECT_TRUE(removed) << stage.name << " leaves " << proof;
+    }
+  }
+}
+
+TEST_F(StageFiles, AStageWhoseInputIsMissingNamesFileAndCommand) {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) unsetenv(name);  // alone even under a launcher
+  const auto comm = comm::Connect();
+  Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
+  try {
+    MergeStage(pipeline);
+    FAIL() << "nothing thrown";
+  } catch (const base::InputError& error) {
+    EXPECT_EQ(error.file(), project_.BlocksFile());
+    EXPECT_NE(std::string(error.what()).find("skyquilt partition"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace skyquilt::coordinator

@@ -5,6 +5,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "tests/prepare/synthetic_flight.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -40,13 +41,9 @@ TEST(ColmapRun, FinishedStepsAreSkippedAndFailuresNameTheLog) {
   const ColmapJob job{folder / "images", {}, folder / "work", 1};
 
   write_fake("echo no good initial pair; exit 1");
-  try {
-    RunColmap(job, photos, options);
-    FAIL() << "no error";
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("colmap.log"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("no good initial pair"), std::string::npos);
-  }
+  const std::string error = InputErrorOf([&] { RunColmap(job, photos, options); });
+  EXPECT_NE(error.find("colmap.log"), std::string::npos) << error;
+  EXPECT_NE(error.find("no good initial pair"), std::string::npos) << error;
   write_fake("exit 0");
   EXPECT_THROW(RunColmap(job, photos, options), base::InputError);  // succeeded, yet left no model
   EXPECT_EQ(base::ReadFile(folder / "calls"), "feature_extractor\nexhaustive_matcher\nmapper\nmapper\n");

@@ -6,12 +6,12 @@
 #include <deque>
 #include <map>
 
+#include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/survey/colmap_model.h"
-#include "prepare/child_process.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -71,21 +71,17 @@ void RunStep(const ColmapJob& job, const fs::path& program, const Step& step, si
   const fs::path log = job.folder / "colmap.log";
   std::deque<std::string> last_lines;
   base::Progress progress(step.label, static_cast<double>(n_photos), "photos");
-  ChildProcess child;
-  child.program = program;
-  child.arguments = {step.command};
-  child.arguments.insert(child.arguments.end(), step.arguments.begin(), step.arguments.end());
+  base::Command command{program, {step.command}};
+  command.arguments.insert(command.arguments.end(), step.arguments.begin(), step.arguments.end());
   // No window and no display: COLMAP is linked against Qt even for its plain commands.
-  child.environment = {"QT_QPA_PLATFORM=offscreen"};
-  child.log = log;
+  command.environment = {"QT_QPA_PLATFORM=offscreen"};
   double share = 0.0;
-  child.on_line = [&](const std::string& line) {
+  const int status = base::RunLogged(command, log, [&](const std::string& line) {
     last_lines.push_back(line);
     if (last_lines.size() > 3) last_lines.pop_front();
     share = std::max(share, ColmapLineProgress(line, n_photos));
     progress.Update(share * static_cast<double>(n_photos));
-  };
-  const int status = RunChild(child);
+  });
   if (status == 0) {
     progress.Update(static_cast<double>(n_photos));
     progress.Finish();
@@ -223,7 +219,7 @@ double ColmapLineProgress(const std::string& line, size_t n_photos) {
 }
 
 fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PrepareOptions& options) {
-  const fs::path program = FindProgram(options.colmap);
+  const fs::path program = base::FindProgram(options.colmap);
   if (program.empty()) {
     throw base::InputError(options.colmap, "no such program",
                            "Install COLMAP (Debian: apt install colmap), name it with prepare.colmap, or give a model with --model");

@@ -6,11 +6,13 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <span>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/text.h"
 #include "core/survey/colmap_model.h"
 #include "prepare/colmap_run.h"
 #include "prepare/georeference.h"
@@ -32,9 +34,7 @@ struct Registered {
 };
 
 std::string Joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (size_t i = 0; i < names.size() && i < 5; ++i) text += (i > 0 ? ", " : "") + names[i];
-  return names.size() > 5 ? text + ", ..." : text;
+  return base::Join(std::span(names).first(std::min<size_t>(names.size(), 5))) + (names.size() > 5 ? ", ..." : "");
 }
 
 std::string BaseNameKey(const std::string& name) {

@@ -1,15 +1,48 @@
 #include "products/video_writer.h"
 
+#include <cerrno>
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/base/cancel.h"
+#include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
-#include "products/ffmpeg_pipe.h"
 
 namespace skyquilt::products {
+namespace {
+
+constexpr const char* kFfmpegMend = "Check free space and that ffmpeg has libx264";
+
+// ffmpeg that takes raw frames on its standard input. Nothing when there is no such program.
+std::optional<base::ChildProcess> StartFfmpeg(const std::string& program, const std::filesystem::path& file, int width, int height, int fps) {
+  const std::filesystem::path found = base::FindProgram(program);
+  if (found.empty()) return std::nullopt;
+  const std::string size = std::to_string(width) + "x" + std::to_string(height), rate = std::to_string(fps), output = "file:" + file.string();
+  const std::vector<std::string> arguments = {"-hide_banner", "-loglevel",  "error",   "-nostats", "-y",   "-f", "rawvideo", "-pix_fmt",
+                                              "rgb24",        "-s",         size,      "-r",       rate,   "-i", "pipe:0",   "-an",
+                                              "-c:v",         "libx264",    "-preset", "medium",   "-crf", "18", "-pix_fmt", "yuv420p",
+                                              "-movflags",    "+faststart", "-f",      "mp4",      output};
+  try {
+    return base::ChildProcess::StartWriting({found, arguments});
+  } catch (const base::StartError& error) {
+    // As if it were not there: a script whose interpreter is missing, say.
+    if (error.missing() == base::StartError::Missing::kProgram && (error.code() == ENOENT || error.code() == EACCES)) return std::nullopt;
+    const bool channel = error.missing() == base::StartError::Missing::kChannel;
+    throw base::InputError(file, channel ? "no socket for ffmpeg" : "ffmpeg cannot be started", error.what());
+  }
+}
+
+// Waits for its end. Empty when it went well, otherwise the reason.
+std::string Finish(base::ChildProcess& ffmpeg) {
+  const base::ChildEnd end = ffmpeg.Wait();
+  return end.Text("ffmpeg") + (end.status == 0 ? "" : "; its own message stands above");
+}
+
+}  // namespace
 
 struct VideoWriter::Impl {
   std::filesystem::path file;
@@ -18,7 +51,7 @@ struct VideoWriter::Impl {
   int height = 0;
   bool closed = false;
   std::string encoder;
-  std::optional<FfmpegPipe> ffmpeg;
+  std::optional<base::ChildProcess> ffmpeg;
   cv::VideoWriter opencv;
 };
 
@@ -32,7 +65,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int heigh
   impl_->partial.replace_extension(".partial.mp4");
   impl_->width = width;
   impl_->height = height;
-  impl_->ffmpeg = FfmpegPipe::Start(ffmpeg, impl_->partial, width, height, fps);
+  impl_->ffmpeg = StartFfmpeg(ffmpeg, impl_->partial, width, height, fps);
   if (impl_->ffmpeg) {
     impl_->encoder = "ffmpeg libx264";
     return;
@@ -63,7 +96,7 @@ void VideoWriter::Write(const image::Image8& frame) {
     if (impl_->ffmpeg->Send(frame.data)) return;
     // A signal to the group ends ffmpeg too.
     base::ThrowIfCancelled();
-    throw base::InputError(impl_->file, "cannot be written: " + impl_->ffmpeg->Finish(), "Check free space and that ffmpeg has libx264");
+    throw base::InputError(impl_->file, "cannot be written: " + Finish(*impl_->ffmpeg), kFfmpegMend);
   }
   // OpenCV's frames are blue, green, red.
   cv::Mat bgr(frame.height, frame.width, CV_8UC3);
@@ -79,11 +112,11 @@ void VideoWriter::Write(const image::Image8& frame) {
 void VideoWriter::Close() {
   SKYQUILT_CHECK(!impl_->closed, "closed twice");
   if (impl_->ffmpeg) {
-    const std::string reason = impl_->ffmpeg->Finish();
+    const std::string reason = Finish(*impl_->ffmpeg);
     impl_->ffmpeg.reset();
     if (!reason.empty()) {
       base::ThrowIfCancelled();
-      throw base::InputError(impl_->file, "cannot be written: " + reason, "Check free space and that ffmpeg has libx264");
+      throw base::InputError(impl_->file, "cannot be written: " + reason, kFfmpegMend);
     }
   } else {
     impl_->opencv.release();

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/base/errors.h"
+#include "core/base/text.h"
 #include "simulate/simulate.h"
 
 namespace skyquilt::simulate {
@@ -198,9 +199,7 @@ Preset ResolvePreset(const SimulateOptions& options) {
   } else if (options.preset == "tidalflat") {
     preset = TidalFlat();
   } else {
-    std::string names;
-    for (const std::string& name : PresetNames()) names += (names.empty() ? "" : ", ") + name;
-    Refuse("preset", "'" + options.preset + "'", "choose one of " + names);
+    Refuse("preset", "'" + options.preset + "'", "choose one of " + base::Join(PresetNames()));
   }
   RequireRange("seed", options.seed, 0, 2147483647.0);
   preset.seed = static_cast<uint32_t>(options.seed);

@@ -11,6 +11,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/text.h"
 
 namespace skyquilt::app {
 
@@ -69,6 +70,11 @@ coordinator::Pipeline CommandState::Begin(const coordinator::Project& project, c
       .comm = *comm, .project = project, .settings = std::move(settings), .restart = restart, .quiet = quiet, .verbose = verbose};
 }
 
+coordinator::Pipeline CommandState::BeginIn(const std::string& folder, const std::vector<config::Override>& flags, bool restart) const {
+  const coordinator::Project project = coordinator::Project::Open(folder);
+  return Begin(project, Load(ProjectConfig(project), flags), restart);
+}
+
 void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help) {
   command.add_option_function<std::string>(
       flag,
@@ -83,8 +89,6 @@ namespace {
 // A duration that sets options in seconds.
 void AddDurationFlag(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::vector<std::string>& keys,
                      const std::string& help) {
-  std::string names;
-  for (const std::string& key : keys) names += (names.empty() ? "" : ", ") + key;
   command.add_option_function<std::string>(
       flag,
       [overrides, keys](const std::string& text) {
@@ -92,7 +96,7 @@ void AddDurationFlag(CLI::App& command, const Overrides& overrides, const std::s
         const double seconds = std::round(ParseDurationSeconds(text) * 1000.0) / 1000.0;
         for (const std::string& key : keys) overrides->push_back({key, std::to_string(seconds)});
       },
-      help + " [" + names + "]");
+      help + " [" + base::Join(keys) + "]");
 }
 
 }  // namespace

@@ -34,6 +34,8 @@ struct CommandState {
   coordinator::Settings LoadOver(coordinator::Settings settings) const;
   // A project for a command: logging into it begins. `restart` as given on the command line.
   coordinator::Pipeline Begin(const coordinator::Project& project, coordinator::Settings settings, bool restart) const;
+  // The same for the project in a folder, with its own configuration and the command's flags.
+  coordinator::Pipeline BeginIn(const std::string& folder, const std::vector<config::Override>& flags, bool restart) const;
 };
 
 using Overrides = std::shared_ptr<std::vector<config::Override>>;

@@ -24,8 +24,7 @@ void AddEvaluate(CLI::App& app, CommandState& state) {
       "Writes out/report/metrics.json and out/report/index.html, which opens offline.");
   command->callback([&state, flags, overrides] {
     state.chosen = [&state, flags, overrides] {
-      const coordinator::Project project = coordinator::Project::Open(flags->project);
-      coordinator::Pipeline pipeline = state.Begin(project, state.Load(ProjectConfig(project), *overrides), flags->restart);
+      coordinator::Pipeline pipeline = state.BeginIn(flags->project, *overrides, flags->restart);
       coordinator::EvaluateStage(pipeline);
     };
   });

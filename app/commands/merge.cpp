@@ -20,8 +20,7 @@ void AddMerge(CLI::App& app, CommandState& state) {
       "Writes out/scene.h5. Blocks that failed are left to the context.");
   command->callback([&state, flags] {
     state.chosen = [&state, flags] {
-      const coordinator::Project project = coordinator::Project::Open(flags->project);
-      coordinator::Pipeline pipeline = state.Begin(project, state.Load(ProjectConfig(project), {}), flags->restart);
+      coordinator::Pipeline pipeline = state.BeginIn(flags->project, {}, flags->restart);
       coordinator::MergeStage(pipeline);
     };
   });

@@ -26,8 +26,7 @@ void AddPartition(CLI::App& app, CommandState& state) {
       "Writes out/blocks.geojson, which opens in QGIS.");
   command->callback([&state, flags, overrides] {
     state.chosen = [&state, flags, overrides] {
-      const coordinator::Project project = coordinator::Project::Open(flags->project);
-      coordinator::Pipeline pipeline = state.Begin(project, state.Load(ProjectConfig(project), *overrides), flags->restart);
+      coordinator::Pipeline pipeline = state.BeginIn(flags->project, *overrides, flags->restart);
       coordinator::PartitionStage(pipeline);
     };
   });

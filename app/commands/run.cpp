@@ -4,6 +4,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
+#include "core/base/text.h"
 #include "simulate/simulate.h"
 
 namespace skyquilt::app {
@@ -47,8 +48,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
 void AddRun(CLI::App& app, CommandState& state) {
   const auto flags = std::make_shared<RunFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  std::string presets;
-  for (const std::string& name : simulate::PresetNames()) presets += (presets.empty() ? "" : ", ") + name;
+  const std::string presets = base::Join(simulate::PresetNames());
   CLI::App* command = app.add_subcommand("run", "the whole way: photos in, scene, map products and report out");
   command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->type_name("FOLDER");
   command->add_option("-o,--out", flags->out, "project folder; made if needed")->required()->type_name("FOLDER");

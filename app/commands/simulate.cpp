@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/command.h"
+#include "core/base/text.h"
 
 namespace skyquilt::app {
 
@@ -13,8 +14,7 @@ void AddSimulate(CLI::App& app, CommandState& state) {
   };
   const auto flags = std::make_shared<SimulateFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  std::string presets;
-  for (const std::string& name : simulate::PresetNames()) presets += (presets.empty() ? "" : ", ") + name;
+  const std::string presets = base::Join(simulate::PresetNames());
   CLI::App* command = app.add_subcommand("simulate", "make a survey with ground truth: photos, poses, depth, masks, buildings");
   command->add_option_function<std::string>(
       "preset,--preset",

@@ -24,9 +24,8 @@ void AddTrain(CLI::App& app, CommandState& state) {
       "Exit status 4: a block failed after its tries, the others are saved; 130: interrupted, the same command continues.");
   command->callback([&state, flags, overrides] {
     state.chosen = [&state, flags, overrides] {
-      const coordinator::Project project = coordinator::Project::Open(flags->project);
-      coordinator::Pipeline pipeline = state.Begin(project, state.Load(ProjectConfig(project), *overrides), flags->restart);
-      coordinator::ThrowIfBlocksFailed(coordinator::TrainStage(pipeline), project);
+      coordinator::Pipeline pipeline = state.BeginIn(flags->project, *overrides, flags->restart);
+      coordinator::ThrowIfBlocksFailed(coordinator::TrainStage(pipeline), pipeline.project);
     };
   });
 }

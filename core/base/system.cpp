@@ -42,33 +42,36 @@ std::vector<fs::path> CgroupFolders() {
   return folders;
 }
 
-// Cores granted by the tightest cpu.max ("max 100000" or "150000 100000"), rounded up.
-std::optional<int> CgroupCores() {
-  std::optional<int> cores;
+// The tightest of the limits that `read` finds in the first line of a file of every cgroup folder.
+template <typename Limit>
+std::optional<Limit> TightestLimit(const char* file, std::optional<Limit> (*read)(std::istream& words)) {
+  std::optional<Limit> tightest;
   for (const fs::path& folder : CgroupFolders()) {
-    const std::optional<std::string> line = FirstLine(folder / "cpu.max");
+    const std::optional<std::string> line = FirstLine(folder / file);
     if (!line) continue;
     std::istringstream words(*line);
+    const std::optional<Limit> limit = read(words);
+    if (limit) tightest = tightest ? std::min(*tightest, *limit) : *limit;
+  }
+  return tightest;
+}
+
+// Cores granted by cpu.max ("max 100000" or "150000 100000"), rounded up.
+std::optional<int> CgroupCores() {
+  return TightestLimit<int>("cpu.max", [](std::istream& words) -> std::optional<int> {
     double quota = 0.0;
     double period = 0.0;
-    if (!(words >> quota >> period) || !(quota > 0.0) || !(period > 0.0)) continue;
-    const int granted = static_cast<int>(std::clamp(std::ceil(quota / period), 1.0, 65536.0));
-    cores = cores ? std::min(*cores, granted) : granted;
-  }
-  return cores;
+    if (!(words >> quota >> period) || !(quota > 0.0) || !(period > 0.0)) return std::nullopt;
+    return static_cast<int>(std::clamp(std::ceil(quota / period), 1.0, 65536.0));
+  });
 }
 
 std::optional<int64_t> CgroupMemoryBytes() {
-  std::optional<int64_t> bytes;
-  for (const fs::path& folder : CgroupFolders()) {
-    const std::optional<std::string> line = FirstLine(folder / "memory.max");
-    if (!line) continue;
-    std::istringstream words(*line);
+  return TightestLimit<int64_t>("memory.max", [](std::istream& words) -> std::optional<int64_t> {
     int64_t limit = 0;
-    if (!(words >> limit) || limit <= 0) continue;
-    bytes = bytes ? std::min(*bytes, limit) : limit;
-  }
-  return bytes;
+    if (!(words >> limit) || limit <= 0) return std::nullopt;
+    return limit;
+  });
 }
 
 // A processor set that is large enough for this machine, or null.

@@ -1,9 +1,11 @@
 #include "core/brightness/options.h"
 
+#include <algorithm>
 #include <sstream>
 #include <vector>
 
 #include "core/base/errors.h"
+#include "core/base/text.h"
 
 namespace skyquilt::brightness {
 namespace {
@@ -19,12 +21,8 @@ std::vector<std::string> Rungs(const std::string& list) {
 }
 
 void RequireOneOf(const std::string& key, const std::string& given, const std::vector<std::string>& choices) {
-  std::string names;
-  for (const std::string& choice : choices) {
-    if (given == choice) return;
-    names += (names.empty() ? "" : ", ") + choice;
-  }
-  throw base::UsageError("brightness." + key + " = '" + given + "' cannot be: choose one of " + names);
+  if (std::find(choices.begin(), choices.end(), given) != choices.end()) return;
+  throw base::UsageError("brightness." + key + " = '" + given + "' cannot be: choose one of " + base::Join(choices));
 }
 
 }  // namespace

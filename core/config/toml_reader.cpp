@@ -6,6 +6,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 #include "core/config/checked_toml.h"
 #include "core/config/options.h"
 
@@ -34,12 +35,6 @@ std::string KindOf(const toml::node& node) {
     default:
       return "a date or time";
   }
-}
-
-std::string Join(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
 }
 
 // Every option of the sections, and every table that may hold one ("a" and "a.b" for section "a.b").
@@ -154,7 +149,7 @@ Known Describe(const Sections& sections) {
   const std::vector<std::string> tables(known.tables.begin(), known.tables.end());
   const std::string nearest = Nearest(name, tables);
   throw base::UsageError(origin + ": unknown section '" + name + "'" +
-                         (nearest.empty() ? "; known sections: " + Join(tables) : "; did you mean '" + nearest + "'?") + LineOf(node));
+                         (nearest.empty() ? "; known sections: " + base::Join(tables) : "; did you mean '" + nearest + "'?") + LineOf(node));
 }
 
 [[noreturn]] void RefuseKey(const std::string& origin, const std::string& name, const toml::node& node, const Known& known) {
@@ -178,7 +173,7 @@ Known Describe(const Sections& sections) {
   if (!nearest.empty()) {
     advice = "; did you mean '" + nearest + "'?";
   } else if (!here.empty()) {
-    advice = "; known here: " + Join(here);
+    advice = "; known here: " + base::Join(here);
   }
   throw base::UsageError(origin + ": unknown key '" + name + "'" + advice + LineOf(node));
 }

@@ -21,11 +21,14 @@ std::string CommonName(int64_t target) {
   return Lower(hwy::TargetName(target));
 }
 
-// Sets of instructions the program was built for and this processor has, best first.
-std::vector<int64_t> UsableTargets() {
-  hwy::SetSupportedTargetsForTest(0);
-  std::vector<int64_t> usable;
-  for (int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1) usable.push_back(rest & -rest);
+// Sets of instructions the program was built for and this processor has, best first. Looked up once, before one is forced: afterwards Highway knows
+// only that one, and could be asked for the others only by taking it back while kernels may run.
+const std::vector<int64_t>& UsableTargets() {
+  static const std::vector<int64_t> usable = [] {
+    std::vector<int64_t> found;
+    for (int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1) found.push_back(rest & -rest);
+    return found;
+  }();
   return usable;
 }
 
@@ -37,15 +40,13 @@ std::string ActiveInstructionSet() {
 }
 
 std::vector<std::string> InstructionSets() {
-  const std::string active = ActiveInstructionSet();
   std::vector<std::string> names;
   for (const int64_t target : UsableTargets()) names.push_back(Lower(hwy::TargetName(target)));
-  ForceInstructionSet(active);
   return names;
 }
 
 void ForceInstructionSet(const std::string& name) {
-  const std::vector<int64_t> usable = UsableTargets();
+  const std::vector<int64_t>& usable = UsableTargets();
   std::string known;
   for (const int64_t target : usable) {
     const std::string own = Lower(hwy::TargetName(target));

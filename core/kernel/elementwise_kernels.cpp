@@ -1,3 +1,4 @@
+#include "core/base/errors.h"
 #include "core/kernel/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -105,15 +106,27 @@ HWY_EXPORT(SineCosineImpl);
 HWY_EXPORT(AllFiniteImpl);
 HWY_EXPORT(CompactImpl);
 
+namespace {
+
+// The loops above load and store whole vectors, and would go past the end of anything else.
+void CheckWholeVectors(int64_t n) {
+  SKYQUILT_CHECK(n >= 0 && n % kPad == 0, std::to_string(n) + " samples");
+}
+
+}  // namespace
+
 void ExpShifted(const float* x, int64_t n, float bias, float limit, float* out) {
+  CheckWholeVectors(n);
   HWY_DYNAMIC_DISPATCH(ExpShiftedImpl)(x, n, bias, limit, out);
 }
 
 void Sigmoid(const float* x, int64_t n, float range, float* out) {
+  CheckWholeVectors(n);
   HWY_DYNAMIC_DISPATCH(SigmoidImpl)(x, n, range, out);
 }
 
 void SineCosine(const float* turns, int64_t n, float* sine, float* cosine) {
+  CheckWholeVectors(n);
   HWY_DYNAMIC_DISPATCH(SineCosineImpl)(turns, n, sine, cosine);
 }
 
@@ -122,6 +135,9 @@ bool AllFinite(const float* values, int64_t n) {
 }
 
 int64_t Compact(const float* keep, int64_t n, int rows, const float* in, size_t in_stride, float* out, size_t out_stride) {
+  CheckWholeVectors(n);
+  const auto columns = static_cast<size_t>(n);
+  SKYQUILT_CHECK(rows <= 1 || (in_stride >= columns && out_stride >= columns), std::to_string(in_stride) + ", " + std::to_string(out_stride));
   return HWY_DYNAMIC_DISPATCH(CompactImpl)(keep, n, rows, in, in_stride, out, out_stride);
 }
 

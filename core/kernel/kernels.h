@@ -34,7 +34,7 @@ constexpr int kLineFloats = 16;
 
 // Name of the instruction set in use: "avx3_zen4", "avx3", "avx2", "sse4", ...
 std::string ActiveInstructionSet();
-// All that this processor can run, best first; the last is the portable one.
+// All that this processor can run, best first; the last is the portable one. Asking changes nothing.
 std::vector<std::string> InstructionSets();
 // Runs every kernel on one of them from now on: a name of InstructionSets(), or "avx512", "avx2", "portable".
 // Throws std::invalid_argument naming the choices. Not while kernels run.
@@ -76,14 +76,15 @@ void HashForward(const HashLevel& level, int features, const float* table, const
 void HashBackward(const HashLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
                   size_t out_stride, float* table_gradient, uint8_t* touched);
 
-// out = exp(min(limit, x + bias)), n a multiple of kPad.
+// These four work on whole vectors: they throw std::logic_error for an n that is no multiple of kPad.
+// out = exp(min(limit, x + bias)).
 void ExpShifted(const float* x, int64_t n, float bias, float limit, float* out);
-// out = range / (1 + exp(-x)), n a multiple of kPad.
+// out = range / (1 + exp(-x)).
 void Sigmoid(const float* x, int64_t n, float range, float* out);
-// Sine and cosine of 2 pi turns, off by at most 2e-7 for |turns| < 2^22; n a multiple of kPad.
+// Sine and cosine of 2 pi turns, off by at most 2e-7 for |turns| < 2^22.
 void SineCosine(const float* turns, int64_t n, float* sine, float* cosine);
-// Moves the columns s with keep[s] > 0 of every row to the front, in order; returns how many. n a multiple of kPad; in may be out.
-// Up to kPad columns behind the kept ones are overwritten.
+// Moves the columns s with keep[s] > 0 of every row to the front, in order; returns how many. Strides of several rows at least n; in may be
+// out. Up to kPad columns behind the kept ones are overwritten.
 int64_t Compact(const float* keep, int64_t n, int rows, const float* in, size_t in_stride, float* out, size_t out_stride);
 
 struct AdamStep {

@@ -19,6 +19,30 @@ RTCDevice Device() {
   return device;
 }
 
+RTCIntersectContext CoherentContext() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  return context;
+}
+
+void SetRays(const RayPacket& rays, RTCRay16& packet) {
+  for (size_t i = 0; i < kPacket; ++i) {
+    packet.org_x[i] = rays.ox[i];
+    packet.org_y[i] = rays.oy[i];
+    packet.org_z[i] = rays.oz[i];
+    packet.dir_x[i] = rays.dx[i];
+    packet.dir_y[i] = rays.dy[i];
+    packet.dir_z[i] = rays.dz[i];
+    packet.tnear[i] = rays.t_near[i];
+    packet.tfar[i] = rays.t_far[i];
+    packet.time[i] = 0.0F;
+    packet.mask[i] = 0xffffffffU;
+    packet.id[i] = 0;
+    packet.flags[i] = 0;
+  }
+}
+
 }  // namespace
 
 struct TracedScene::Impl {
@@ -71,23 +95,10 @@ TracedScene& TracedScene::operator=(TracedScene&&) noexcept = default;
 
 uint32_t TracedScene::Intersect(RayPacket& rays) const {
   if (empty_) return 0;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCIntersectContext context = CoherentContext();
   alignas(64) RTCRayHit16 packet;
+  SetRays(rays, packet.ray);
   for (size_t i = 0; i < kPacket; ++i) {
-    packet.ray.org_x[i] = rays.ox[i];
-    packet.ray.org_y[i] = rays.oy[i];
-    packet.ray.org_z[i] = rays.oz[i];
-    packet.ray.dir_x[i] = rays.dx[i];
-    packet.ray.dir_y[i] = rays.dy[i];
-    packet.ray.dir_z[i] = rays.dz[i];
-    packet.ray.tnear[i] = rays.t_near[i];
-    packet.ray.tfar[i] = rays.t_far[i];
-    packet.ray.time[i] = 0.0F;
-    packet.ray.mask[i] = 0xffffffffU;
-    packet.ray.id[i] = 0;
-    packet.ray.flags[i] = 0;
     packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
@@ -106,24 +117,9 @@ uint32_t TracedScene::Intersect(RayPacket& rays) const {
 
 uint32_t TracedScene::Occluded(const RayPacket& rays) const {
   if (empty_) return 0;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCIntersectContext context = CoherentContext();
   alignas(64) RTCRay16 packet;
-  for (size_t i = 0; i < kPacket; ++i) {
-    packet.org_x[i] = rays.ox[i];
-    packet.org_y[i] = rays.oy[i];
-    packet.org_z[i] = rays.oz[i];
-    packet.dir_x[i] = rays.dx[i];
-    packet.dir_y[i] = rays.dy[i];
-    packet.dir_z[i] = rays.dz[i];
-    packet.tnear[i] = rays.t_near[i];
-    packet.tfar[i] = rays.t_far[i];
-    packet.time[i] = 0.0F;
-    packet.mask[i] = 0xffffffffU;
-    packet.id[i] = 0;
-    packet.flags[i] = 0;
-  }
+  SetRays(rays, packet);
   rtcOccluded16(rays.valid.data(), impl_->scene, &context, &packet);
   uint32_t occluded = 0;
   for (size_t i = 0; i < kPacket; ++i) {

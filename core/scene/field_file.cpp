@@ -4,6 +4,7 @@
 #include <functional>
 #include <numeric>
 #include <stdexcept>
+#include <type_traits>
 
 #include "core/base/errors.h"
 #include "core/encoding/hash_grid.h"
@@ -15,30 +16,65 @@ namespace {
 constexpr const char* kMend = "Train it again with --restart";
 constexpr int64_t kMaxCellsPerAxis = int64_t{1} << 20;
 
-// Fixed order of the numbers that rebuild a field.
-std::vector<double> Describe(const render::TrainedField& f) {
-  const auto& g = f.config.grid;
-  std::vector<double> d = {static_cast<double>(g.levels),
-                           static_cast<double>(g.features),
-                           static_cast<double>(g.log2_table_size),
-                           g.base_resolution,
-                           g.finest_resolution,
-                           g.extent[0],
-                           g.extent[1],
-                           g.extent[2],
-                           static_cast<double>(f.config.hidden),
-                           static_cast<double>(f.config.color_hidden_layers),
-                           static_cast<double>(f.config.sh_degree),
-                           f.config.color_range,
-                           f.config.density_bias,
-                           f.map.contracted() ? 1.0 : 0.0};
-  for (const auto& corner : {f.map.min_enu(), f.map.max_enu(), f.core_min_enu, f.core_max_enu}) {
-    for (int axis = 0; axis < 3; ++axis) d.push_back(corner[axis]);
-  }
-  d.push_back(f.margin_m);
-  d.push_back(f.step_m);
-  return d;
+// The box that a field is trained in, as its map was made from.
+struct Box {
+  bool contracted = false;
+  Eigen::Vector3d min_enu, max_enu;
+};
+
+// Calls visit(name, number) for the numbers that rebuild a field, int and double, each by reference. Older files have no names for them but their
+// places in this order: what is new stands elsewhere.
+template <typename Field, typename BoxOf, typename Visit>
+void VisitNumbers(Field& f, BoxOf& box, const Visit& visit) {
+  const auto corner = [&visit](const std::string& name, auto& point) {
+    visit(name + "_x", point[0]);
+    visit(name + "_y", point[1]);
+    visit(name + "_z", point[2]);
+  };
+  auto& g = f.config.grid;
+  visit("levels", g.levels);
+  visit("features", g.features);
+  visit("log2_table_size", g.log2_table_size);
+  visit("base_resolution", g.base_resolution);
+  visit("finest_resolution", g.finest_resolution);
+  corner("extent", g.extent);
+  visit("hidden", f.config.hidden);
+  visit("color_hidden_layers", f.config.color_hidden_layers);
+  visit("sh_degree", f.config.sh_degree);
+  visit("color_range", f.config.color_range);
+  visit("density_bias", f.config.density_bias);
+  visit("contracted", box.contracted);
+  corner("min_enu", box.min_enu);
+  corner("max_enu", box.max_enu);
+  corner("core_min_enu", f.core_min_enu);
+  corner("core_max_enu", f.core_max_enu);
+  visit("margin_m", f.margin_m);
+  visit("step_m", f.step_m);
 }
+
+// Reads the numbers one after the other.
+class NumberReader {
+ public:
+  NumberReader(const checkpoint::ArchiveReader& reader, const std::string& prefix)
+      : reader_(reader), prefix_(prefix), numbered_(reader.HasAttribute(prefix + "describe0")) {}
+
+  template <typename Number>
+  void Read(const std::string& name, Number& number) {
+    if constexpr (std::is_same_v<Number, double>) {
+      number = numbered_ ? NextNumbered() : reader_.DoubleAttribute(prefix_ + name);
+    } else {
+      number = static_cast<Number>(numbered_ ? std::lround(NextNumbered()) : reader_.IntAttribute(prefix_ + name));
+    }
+  }
+
+ private:
+  double NextNumbered() { return reader_.DoubleAttribute(prefix_ + "describe" + std::to_string(next_++)); }
+
+  const checkpoint::ArchiveReader& reader_;
+  std::string prefix_;
+  bool numbered_;  // an older file
+  size_t next_ = 0;
+};
 
 // One bit per cell, the first in the lowest bit.
 std::vector<uint8_t> PackBits(const std::vector<uint8_t>& flags) {
@@ -79,8 +115,8 @@ void PutOutline(const render::TrainedField& f, const std::string& prefix, checkp
   writer.SetAttribute(prefix + "steps", f.steps);
   writer.SetAttribute(prefix + "seconds", f.seconds);
   writer.SetAttribute(prefix + "samples", f.samples);
-  const std::vector<double> numbers = Describe(f);
-  for (size_t i = 0; i < numbers.size(); ++i) writer.SetAttribute(prefix + "describe" + std::to_string(i), numbers[i]);
+  const Box box{f.map.contracted(), f.map.min_enu(), f.map.max_enu()};
+  VisitNumbers(f, box, [&](const std::string& name, const auto& number) { writer.SetAttribute(prefix + name, number); });
   writer.SetAttribute(prefix + "encoding", encoding::Name(f.config.encoding));
   writer.SetAttribute(prefix + "density_hidden_layers", f.config.density_hidden_layers);
   writer.SetAttribute(prefix + "luminance", f.config.luminance ? 1 : 0);
@@ -126,28 +162,9 @@ render::TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const s
   f.steps = reader.IntAttribute(prefix + "steps");
   f.seconds = reader.DoubleAttribute(prefix + "seconds");
   f.samples = reader.IntAttribute(prefix + "samples");
-  size_t next = 0;
-  const auto number = [&] { return reader.DoubleAttribute(prefix + "describe" + std::to_string(next++)); };
-  const auto integer = [&] { return static_cast<int>(std::lround(number())); };
-  auto& g = f.config.grid;
-  g.levels = integer();
-  g.features = integer();
-  g.log2_table_size = integer();
-  g.base_resolution = number();
-  g.finest_resolution = number();
-  for (double& edge : g.extent) edge = number();
-  f.config.hidden = integer();
-  f.config.color_hidden_layers = integer();
-  f.config.sh_degree = integer();
-  f.config.color_range = number();
-  f.config.density_bias = number();
-  const bool contracted = integer() != 0;
-  Eigen::Vector3d min_enu, max_enu;
-  for (auto* corner : {&min_enu, &max_enu, &f.core_min_enu, &f.core_max_enu}) {
-    for (int axis = 0; axis < 3; ++axis) (*corner)[axis] = number();
-  }
-  f.margin_m = number();
-  f.step_m = number();
+  Box box;
+  NumberReader numbers(reader, prefix);
+  VisitNumbers(f, box, [&numbers](const std::string& name, auto& number) { numbers.Read(name, number); });
   f.config.luminance = reader.HasAttribute(prefix + "luminance") && reader.IntAttribute(prefix + "luminance") != 0;
   f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
   f.blend_m = f.margin_m;
@@ -157,7 +174,7 @@ render::TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const s
     if (reader.HasAttribute(prefix + "density_hidden_layers")) {
       f.config.density_hidden_layers = static_cast<int>(reader.IntAttribute(prefix + "density_hidden_layers"));
     }
-    f.map = contracted ? encoding::SpaceMap::Slab(min_enu, max_enu) : encoding::SpaceMap::Box(min_enu, max_enu);
+    f.map = box.contracted ? encoding::SpaceMap::Slab(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu, box.max_enu);
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);
   }

@@ -99,10 +99,9 @@ void ReadImages(const std::filesystem::path& file, ColmapModel& model) {
   for (size_t i = 0; i < n_images; ++i) {
     ColmapImage image;
     image.id = in.Read<uint32_t>("an image");
-    double pose[7];
+    std::array<double, 7> pose{};
     for (double& value : pose) value = in.Read<double>("an image");
-    image.cam_from_world.rotation = Eigen::Quaterniond(pose[0], pose[1], pose[2], pose[3]);
-    image.cam_from_world.translation = Eigen::Vector3d(pose[4], pose[5], pose[6]);
+    image.cam_from_world = PoseOf(pose);
     image.camera_id = in.Read<uint32_t>("an image");
     image.name = in.ReadName();
     constexpr size_t kObservationBytes = 24;

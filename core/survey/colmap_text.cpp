@@ -102,10 +102,9 @@ void ParseImages(const std::filesystem::path& file, ColmapModel& model) {
   while (in.NextRecord()) {
     ColmapImage image;
     image.id = in.Number<uint32_t>("an image id");
-    double pose[7];
+    std::array<double, 7> pose{};
     for (double& value : pose) value = in.Number<double>("a pose");
-    image.cam_from_world.rotation = Eigen::Quaterniond(pose[0], pose[1], pose[2], pose[3]);
-    image.cam_from_world.translation = Eigen::Vector3d(pose[4], pose[5], pose[6]);
+    image.cam_from_world = PoseOf(pose);
     image.camera_id = in.Number<uint32_t>("a camera id");
     image.name = in.Remainder("a photo name");
     model.images.push_back(std::move(image));

@@ -8,18 +8,10 @@
 #include "app/settings/load_settings.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::app {
 namespace {
-
-std::string MessageOf(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const base::UsageError& error) {
-    return error.what();
-  }
-  return "nothing thrown";
-}
 
 TEST(Settings, FlagsWinOverTheFileAndTheFileOverDefaults) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / ("skyquilt_settings_" + std::to_string(getpid()) + ".toml");
@@ -43,10 +35,10 @@ TEST(Settings, TomlOfAnySettingsReadsBackTheSame) {
 }
 
 TEST(Settings, UnknownNamesSuggestTheNearest) {
-  EXPECT_NE(MessageOf([] { LoadSettings({}, {{"train.levles", "4"}}); }).find("train.levels"), std::string::npos);
-  EXPECT_NE(MessageOf([] { LoadSettings({}, {{"trian.levels", "4"}}); }).find("'train'"), std::string::npos);
-  EXPECT_NE(MessageOf([] { LoadSettings({}, {{"levels", "4"}}); }).find("section"), std::string::npos);
-  EXPECT_NE(MessageOf([] { config::ParseOverride("train.levels"); }).find("section.key=value"), std::string::npos);
+  EXPECT_NE(UsageErrorOf([] { LoadSettings({}, {{"train.levles", "4"}}); }).find("train.levels"), std::string::npos);
+  EXPECT_NE(UsageErrorOf([] { LoadSettings({}, {{"trian.levels", "4"}}); }).find("'train'"), std::string::npos);
+  EXPECT_NE(UsageErrorOf([] { LoadSettings({}, {{"levels", "4"}}); }).find("section"), std::string::npos);
+  EXPECT_NE(UsageErrorOf([] { config::ParseOverride("train.levels"); }).find("section.key=value"), std::string::npos);
 }
 
 TEST(Settings, ValuesOfTheWrongTypeOrRangeAreNamed) {
@@ -64,7 +56,7 @@ TEST(Settings, ValuesOfTheWrongTypeOrRangeAreNamed) {
                                                                                    {"run.threads", "-2"},
                                                                                    {"brightness.correction", "exfi"},
                                                                                    {"train.steps", "-5"}}) {
-    const std::string message = MessageOf([&key = key, &value = value] { LoadSettings({}, {{key, value}}); });
+    const std::string message = UsageErrorOf([&key = key, &value = value] { LoadSettings({}, {{key, value}}); });
     EXPECT_NE(message.find(key.substr(key.find('.') + 1)), std::string::npos) << key << " = " << value << ": " << message;
   }
 }

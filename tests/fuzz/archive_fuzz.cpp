@@ -1,8 +1,5 @@
 // Checkpoints: what stands before HDF5 (the plain header, length and digest), and HDF5 itself for what happens to pass. The digest is no defence
 // against forgers, so content with a forged digest is not tried.
-#include <fstream>
-
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/checkpoint/archive.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -24,17 +21,13 @@ std::vector<std::string> Seeds() {
 }
 
 void Feed(const std::string& bytes) {
-  static const TemporaryFolder folder;
-  const std::filesystem::path file = folder / "block.h5";
-  std::ofstream(file, std::ios::binary) << bytes;
-  try {
+  FeedFile("block.h5", bytes, [](const std::filesystem::path& file) {
     const checkpoint::ArchiveReader reader(file);
     for (const std::string& name : reader.Names()) {
       reader.Shape(name);
       if (reader.TypeName(name) == "float32") reader.Floats(name);
     }
-  } catch (const base::InputError&) {
-  }
+  });
 }
 
 }  // namespace skyquilt::fuzz

@@ -1,7 +1,4 @@
 // Tags of a photo, through Exiv2.
-#include <fstream>
-
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/image/image.h"
 #include "core/survey/exif.h"
@@ -31,13 +28,7 @@ std::vector<std::string> Seeds() {
 }
 
 void Feed(const std::string& bytes) {
-  static const TemporaryFolder folder;
-  const std::filesystem::path file = folder / "photo.jpg";
-  std::ofstream(file, std::ios::binary) << bytes;
-  try {
-    survey::ReadPhotoTags(file);
-  } catch (const base::InputError&) {
-  }
+  FeedFile("photo.jpg", bytes, survey::ReadPhotoTags);
 }
 
 }  // namespace skyquilt::fuzz

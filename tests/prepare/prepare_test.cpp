@@ -11,6 +11,7 @@
 #include "core/base/file.h"
 #include "core/image/image.h"
 #include "tests/prepare/synthetic_flight.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -21,16 +22,8 @@ class PrepareTest : public ::testing::Test {
  protected:
   void Write() { test::WriteFlight(flight_, folder_.path()); }
   survey::Survey Run() { return Prepare({folder_ / "images", folder_ / "sparse/0", folder_ / "out"}, options_, threads_); }
-  std::string Error() {
-    try {
-      Run();
-    } catch (const base::InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
   void ExpectInMessage(const std::string& word) {
-    const std::string message = Error();
+    const std::string message = InputErrorOf([&] { Run(); });
     EXPECT_NE(message.find(word), std::string::npos) << "message: " << message;
   }
 

@@ -7,6 +7,7 @@
 #include "core/base/errors.h"
 #include "core/geo/enu_frame.h"
 #include "tests/products/analytic_scene.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::products {
@@ -139,12 +140,9 @@ TEST_F(CameraPathFile, ComplaintsNameTheEntry) {
     EXPECT_THROW(Load(text), base::InputError) << text;
   }
   EXPECT_THROW(Load(R"([{"longitude": 2, "latitude": 41, "height": 3}])", false), base::InputError);
-  try {
-    Load(R"([{"position_enu": [1, 2, 3]}, {"position_enu": [1, 2, 3], "pich": 3}])");
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("view 1"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("\"pitch\"?"), std::string::npos) << error.what();
-  }
+  const std::string error = InputErrorOf([&] { Load(R"([{"position_enu": [1, 2, 3]}, {"position_enu": [1, 2, 3], "pich": 3}])"); });
+  EXPECT_NE(error.find("view 1"), std::string::npos) << error;
+  EXPECT_NE(error.find("\"pitch\"?"), std::string::npos) << error;
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "core/geo/enu_frame.h"
 #include "core/image/image.h"
 #include "tests/products/analytic_scene.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::products {
@@ -251,12 +252,8 @@ TEST(MapProducts, TooManyCellsAreRefusedOrCoarsened) {
   EXPECT_LE(static_cast<double>(coarse.width) * coarse.height, 20000.0);
   EXPECT_GT(coarse.resolution_m, 0.5);
   options.resolution_m = 0.25;
-  try {
-    PlanMapGrid(info, options);
-    FAIL() << "accepted";
-  } catch (const base::UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("use at least 1.0"), std::string::npos) << error.what();
-  }
+  const std::string error = UsageErrorOf([&] { PlanMapGrid(info, options); });
+  EXPECT_NE(error.find("use at least 1.0"), std::string::npos) << error;
   options.resolution_m = -1.0;
   EXPECT_THROW(PlanMapGrid(info, options), base::UsageError);
   options.resolution_m = std::numeric_limits<double>::quiet_NaN();

@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "simulate/simulate.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -75,12 +76,8 @@ void ExpectRefused(const std::string& named, const std::function<void(SimulateOp
   SimulateOptions options;
   options.preset = "town";
   change(options);
-  try {
-    ResolvePreset(options);
-    ADD_FAILURE() << named << " was accepted";
-  } catch (const base::UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
-  }
+  const std::string error = UsageErrorOf([&] { ResolvePreset(options); });
+  EXPECT_NE(error.find(named), std::string::npos) << named << ": " << error;
 }
 
 TEST(Presets, BadOptionsAreRefusedByName) {

@@ -11,32 +11,27 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-TEST(Half, EveryFloat16SurvivesTheWayThroughFloat) {
+template <typename ToHalf, typename ToFloat>
+void ExpectEveryHalfComesBack(ToHalf to_half, ToFloat to_float, float largest) {
   for (uint32_t bits = 0; bits <= 0xFFFFU; ++bits) {
     const auto half = static_cast<uint16_t>(bits);
-    const float value = FloatFromFloat16(half);
+    const float value = to_float(half);
     if (std::isnan(value)) {
-      EXPECT_TRUE(std::isnan(FloatFromFloat16(Float16FromFloat(value)))) << bits;
+      EXPECT_TRUE(std::isnan(to_float(to_half(value)))) << bits;
     } else if (std::isinf(value)) {
-      EXPECT_EQ(FloatFromFloat16(Float16FromFloat(value)), std::copysign(kLargestFloat16, value));
+      EXPECT_EQ(to_float(to_half(value)), std::copysign(largest, value));
     } else {
-      EXPECT_EQ(Float16FromFloat(value), half) << bits;
+      EXPECT_EQ(to_half(value), half) << bits;
     }
   }
 }
 
+TEST(Half, EveryFloat16SurvivesTheWayThroughFloat) {
+  ExpectEveryHalfComesBack(Float16FromFloat, FloatFromFloat16, kLargestFloat16);
+}
+
 TEST(Half, EveryBfloat16SurvivesTheWayThroughFloat) {
-  for (uint32_t bits = 0; bits <= 0xFFFFU; ++bits) {
-    const auto half = static_cast<uint16_t>(bits);
-    const float value = FloatFromBfloat16(half);
-    if (std::isnan(value)) {
-      EXPECT_TRUE(std::isnan(FloatFromBfloat16(Bfloat16FromFloat(value)))) << bits;
-    } else if (std::isinf(value)) {
-      EXPECT_EQ(FloatFromBfloat16(Bfloat16FromFloat(value)), std::copysign(kLargestBfloat16, value));
-    } else {
-      EXPECT_EQ(Bfloat16FromFloat(value), half) << bits;
-    }
-  }
+  ExpectEveryHalfComesBack(Bfloat16FromFloat, FloatFromBfloat16, kLargestBfloat16);
 }
 
 // The neighbour in the format that is nearest to any float, found by trying the result's own neighbours.

@@ -13,7 +13,7 @@
 #include "core/base/random.h"
 #include "core/checkpoint/digest.h"
 #include "core/checkpoint/user_block.h"
-#include "tests/core/checkpoint/input_error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
 

@@ -16,7 +16,7 @@
 #include "core/base/file.h"
 #include "core/base/system.h"
 #include "core/checkpoint/archive.h"
-#include "tests/core/checkpoint/input_error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::checkpoint {

@@ -9,6 +9,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/config/override.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::config {
 namespace {
@@ -50,12 +51,7 @@ struct All {
 template <typename Error>
 std::string MessageOf(const std::string& text) {
   All all;
-  try {
-    ReadTomlText(text, "skyquilt.toml", all.sections);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return ErrorOf<Error>([&] { ReadTomlText(text, "skyquilt.toml", all.sections); });
 }
 
 TEST(Toml, ARetiredOptionIsTakenWithoutEffect) {

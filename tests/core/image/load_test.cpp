@@ -9,6 +9,7 @@
 #include "core/image/image.h"
 #include "core/image/jpeg_structure.h"
 #include "tests/core/image/raw_files.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::image {

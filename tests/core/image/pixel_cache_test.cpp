@@ -16,6 +16,7 @@
 #include "core/base/progress.h"
 #include "core/image/image.h"
 #include "tests/core/image/raw_files.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::image {

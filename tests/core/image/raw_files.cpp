@@ -2,8 +2,6 @@
 
 #include <fstream>
 
-#include "core/base/errors.h"
-
 namespace skyquilt {
 namespace {
 
@@ -75,15 +73,6 @@ image::Image8 Pattern(int width, int height) {
     }
   }
   return image;
-}
-
-std::string InputErrorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace skyquilt

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,8 +24,5 @@ std::string PngBytes(const RawPng& png);
 
 // A colourful image without symmetry: channel c of pixel (x, y) differs from its neighbours.
 image::Image8 Pattern(int width, int height);
-
-// The message of the base::InputError that `action` throws; empty if it throws none.
-std::string InputErrorOf(const std::function<void()>& action);
 
 }  // namespace skyquilt

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 
 #include "core/base/random.h"
 #include "core/kernel/kernels.h"
@@ -87,6 +89,41 @@ TEST_P(ElementwiseKernels, AllFiniteFindsOneBadValueAnywhere) {
       EXPECT_FALSE(AllFinite(copy.data(), 77)) << at;
     }
   }
+}
+
+// Where they would read and write past the end.
+TEST_P(ElementwiseKernels, RefuseWhatIsNotPadded) {
+  std::vector<float> in(64, 1.0F), out(64), more(64);
+  for (const int64_t n : {int64_t{-16}, int64_t{1}, int64_t{15}, int64_t{47}}) {
+    EXPECT_THROW(ExpShifted(in.data(), n, 0.0F, 1.0F, out.data()), std::logic_error) << n;
+    EXPECT_THROW(Sigmoid(in.data(), n, 1.0F, out.data()), std::logic_error) << n;
+    EXPECT_THROW(SineCosine(in.data(), n, out.data(), more.data()), std::logic_error) << n;
+    EXPECT_THROW(Compact(in.data(), n, 1, in.data(), 64, out.data(), 64), std::logic_error) << n;
+  }
+  EXPECT_THROW(Compact(in.data(), 32, 2, in.data(), 16, out.data(), 32), std::logic_error);
+  EXPECT_THROW(Compact(in.data(), 32, 2, in.data(), 32, out.data(), 16), std::logic_error);
+  EXPECT_EQ(Compact(in.data(), 32, 1, in.data(), 0, out.data(), 0), 32) << "one row has no stride";
+  ExpShifted(in.data(), 0, 0.0F, 1.0F, out.data());
+  EXPECT_EQ(out[32], 0.0F);
+}
+
+using ForcedInstructionSet = testing::EachInstructionSet;
+SKYQUILT_EACH_INSTRUCTION_SET(ForcedInstructionSet);
+
+TEST_P(ForcedInstructionSet, StaysWhenItsChoicesAreAskedFor) {
+  bool stayed = true;
+  std::atomic<bool> done{false};
+  // Another thread never sees it change either.
+  std::thread watch([&] {
+    while (!done) stayed = stayed && ActiveInstructionSet() == GetParam();
+  });
+  const std::vector<std::string> names = InstructionSets();
+  for (int i = 0; i < 1000; ++i) EXPECT_EQ(InstructionSets(), names);
+  EXPECT_THROW(ForceInstructionSet("quantum"), std::invalid_argument);
+  EXPECT_EQ(ActiveInstructionSet(), GetParam());
+  done = true;
+  watch.join();
+  EXPECT_TRUE(stayed);
 }
 
 TEST(InstructionSets, EndWithThePortableOneAndRefuseOthers) {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <fstream>
-#include <functional>
 #include <limits>
 
 #include "core/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::metrics {
@@ -66,15 +66,6 @@ std::string SquaredDifferenceModel(int height, int width, bool second_input = tr
   if (second_input) graph += Text(11, Value("in1", {1, 3, height, width}));
   graph += Text(12, Value("distance", {1, 1, 1, 1}));
   return Number(1, 7) + Text(8, Number(2, 11)) + Text(7, graph);
-}
-
-std::string InputErrorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 class LpipsTest : public testing::Test {

@@ -11,6 +11,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/random.h"
+#include "tests/support/error_of.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/temporary_folder.h"
 
@@ -156,12 +157,8 @@ TEST_P(PagedRaysTest, TooLittleMemorySaysHowMuchIsNeeded) {
   const render::RaySegments segments(tiny.Blocks());
   const std::vector<render::Ray> rays = SlantedRays(50, 6);
   std::vector<Traveller> travellers(rays.size());
-  try {
-    PagedRays(tiny, segments, threads_).Continue(rays, travellers, {}, 0, {});
-    FAIL() << "nothing was thrown";
-  } catch (const base::UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("--memory"), std::string::npos) << error.what();
-  }
+  const std::string error = UsageErrorOf([&] { PagedRays(tiny, segments, threads_).Continue(rays, travellers, {}, 0, {}); });
+  EXPECT_NE(error.find("--memory"), std::string::npos) << error;
 }
 
 INSTANTIATE_TEST_SUITE_P(BordersAndDensity, PagedRaysTest,

@@ -7,6 +7,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::survey {
@@ -117,12 +118,7 @@ void ExpectEqual(const ColmapModel& a, const ColmapModel& b) {
 }
 
 std::string MessageOf(const std::filesystem::path& folder) {
-  try {
-    ReadColmapModel(folder);
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
+  return InputErrorOf([&] { ReadColmapModel(folder); });
 }
 
 TEST(ColmapModel, TextAndBinaryGiveTheSameModel) {

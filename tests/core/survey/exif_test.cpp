@@ -9,6 +9,7 @@
 
 #include "core/base/errors.h"
 #include "core/image/image.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::survey {
@@ -166,12 +167,7 @@ TEST(Exif, ZeroZeroIsNoFixAndBrokenRationalsAreAbsent) {
 TEST(Exif, AFileThatIsNoImageIsRefusedByName) {
   const TemporaryFolder folder;
   std::ofstream(folder / "notes.jpg") << "these are notes, not a photo";
-  try {
-    ReadPhotoTags(folder / "notes.jpg");
-    FAIL() << "no error";
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("notes.jpg"), std::string::npos);
-  }
+  EXPECT_NE(InputErrorOf([&] { ReadPhotoTags(folder / "notes.jpg"); }).find("notes.jpg"), std::string::npos);
   EXPECT_THROW(ReadPhotoTags(folder / "absent.jpg"), base::InputError);
 }
 

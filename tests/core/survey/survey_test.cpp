@@ -9,6 +9,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::survey {
@@ -55,12 +56,8 @@ void ExpectRefused(const std::string& word, const Edit& edit) {
   nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
   edit(json);
   base::WriteFileAtomically(folder / "survey.json", json.dump());
-  try {
-    LoadSurvey(folder.path());
-    ADD_FAILURE() << "accepted: " << word;
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
-  }
+  const std::string error = InputErrorOf([&] { LoadSurvey(folder.path()); });
+  EXPECT_NE(error.find(word), std::string::npos) << word << ": " << error;
 }
 
 TEST(Survey, SavingAndLoadingKeepsEveryBit) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -68,9 +67,5 @@ std::vector<int> ChooseViews(const scene::SceneInfo& info, const survey::Survey&
 
 // Rendered colours as a picture. colors: row-major, width * height.
 image::Image8 PictureOf(std::span<const render::RayColor> colors, int width, int height);
-// Writes images/<prefix>_taken.jpg, _recorded.jpg and _normal.jpg under report_folder, at most max_width pixels wide. The caller fills in name
-// and stops. Throws base::InputError.
-BrightnessView WriteBrightnessView(const image::Image8& photo, const image::Image8& recorded, const image::Image8& normal,
-                                   const std::filesystem::path& report_folder, const std::string& prefix, int max_width);
 
 }  // namespace skyquilt::evaluate

@@ -9,6 +9,7 @@
 #include "core/page/figure.h"
 #include "core/page/html.h"
 #include "core/page/plot_frame.h"
+#include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
 
 namespace skyquilt::evaluate {
@@ -218,22 +219,13 @@ std::string SpreadSentences(const BrightnessReport& brightness) {
                      page::FormatFixed(before, 2, "stops"), page::FormatFixed(after, 2, "stops"), meaning);
 }
 
-std::string ViewPicture(const BrightnessView& view, const std::string& file, const char* kind, const char* caption) {
-  if (file.empty()) return "";
-  return fmt::format(
-      "<figure class=\"pic {0}\"><img src=\"{1}\" width=\"{2}\" height=\"{3}\" loading=\"lazy\" alt=\"{4}\" data-kind=\"{0}\"><figcaption>{4}"
-      "</figcaption></figure>",
-      kind, page::EscapeHtml(file), view.width, view.height, caption);
-}
-
 std::string ViewCard(const BrightnessView& view) {
-  return fmt::format(
-             "<article class=\"card photo\"><header><h3>{}</h3><div class=\"chips\"><span class=\"chip\"><b>{}</b>exposure</span></div></header>"
-             "<div class=\"pics three\">",
-             page::EscapeHtml(view.name), SignedFixed(view.stops, 2, "stops")) +
-         ViewPicture(view, view.photo, "taken-pic", "Photo as taken") +
-         ViewPicture(view, view.recorded, "recorded-pic", "Scene, as this photo recorded") +
-         ViewPicture(view, view.normal, "normal-pic", "Scene at normal exposure") + "</div></article>\n";
+  std::string html = "<article class=\"card photo\"><header><h3>" + page::EscapeHtml(view.name) + "</h3><div class=\"chips\">" +
+                     Chip("exposure", SignedFixed(view.stops, 2, "stops")) + "</div></header><div class=\"pics three\">";
+  html += Picture("taken-pic", view.photo, view.width, view.height, "Photo as taken");
+  html += Picture("recorded-pic", view.recorded, view.width, view.height, "Scene, as this photo recorded");
+  html += Picture("normal-pic", view.normal, view.width, view.height, "Scene at normal exposure");
+  return html + "</div></article>\n";
 }
 
 }  // namespace
@@ -244,10 +236,11 @@ std::string BrightnessSection(const ReportInput& input) {
   const auto [low, high] = std::minmax_element(brightness.photos.begin(), brightness.photos.end(),
                                                [](const auto& a, const auto& b) { return a.exif_stops < b.exif_stops; });
   std::string html = "<section id=\"brightness\"><div class=\"heading\"><h2>Brightness</h2><div class=\"chips\">";
-  html += fmt::format("<span class=\"chip main\"><b>{} \xE2\x86\x92 {}</b>spread of the photos</span>",
-                      page::FormatFixed(brightness.spread_before_stops, 2), page::FormatFixed(brightness.spread_after_stops, 2, "stops"));
+  html += Chip("spread of the photos",
+               page::FormatFixed(brightness.spread_before_stops, 2) + " \xE2\x86\x92 " + page::FormatFixed(brightness.spread_after_stops, 2, "stops"),
+               "main");
   if (Learned(brightness) && high->exif_stops - low->exif_stops >= kAlikeStops) {
-    html += fmt::format("<span class=\"chip\"><b>{}</b>trust in the tags</span>", page::FormatPercent(brightness.trust_in_tags, 0));
+    html += Chip("trust in the tags", page::FormatPercent(brightness.trust_in_tags, 0));
   }
   html += "</div></div><p class=\"lead\">" + TagSentences(brightness, low->exif_stops, high->exif_stops) + SpreadSentences(brightness) +
           page::EscapeHtml(brightness.luminance) + "</p><div class=\"chart-grid\">" + GainChart(brightness);

@@ -65,17 +65,17 @@ std::string Rect(const MapFrame& frame, const Eigen::Vector3d& low, const Eigen:
                      frame.Y(high.y()), (high.x() - low.x()) * frame.scale(), (high.y() - low.y()) * frame.scale());
 }
 
+std::string HeldOutPsnr(const ReportInput& input, const partition::Block& block) {
+  const BlockScore* score = input.metrics->FindBlock(block.name);
+  return page::FormatFixed(score == nullptr ? kNotMeasured : score->psnr_db, 2, "dB");
+}
+
 std::string Blocks(const ReportInput& input, const MapFrame& frame) {
-  std::map<std::string, double> psnr;
-  for (const BlockScore& score : input.metrics->blocks) psnr[score.name] = score.psnr_db;
   std::string svg = "<g class=\"layer-blocks\">";
   for (const partition::Block& block : input.blocks->blocks) {
     const FieldLog* log = input.log->Find(block.name);
     const bool failed = log != nullptr && !log->ok;
-    const auto scored = psnr.find(block.name);
-    const std::string value = block.empty ? "empty"
-                              : failed    ? "failed"
-                                          : page::FormatFixed(scored == psnr.end() ? kNotMeasured : scored->second, 2, "dB");
+    const std::string value = block.empty ? "empty" : failed ? "failed" : HeldOutPsnr(input, block);
     svg += "<g>";
     if (!block.empty) svg += Rect(frame, block.TrainMin(), block.TrainMax(), "margin");
     svg += Rect(frame, block.min_enu, block.max_enu, block.empty ? "block empty" : failed ? "block failed" : "block");
@@ -87,19 +87,15 @@ std::string Blocks(const ReportInput& input, const MapFrame& frame) {
 }
 
 std::string BlockLabels(const ReportInput& input, const MapFrame& frame) {
-  std::map<std::string, double> psnr;
-  for (const BlockScore& score : input.metrics->blocks) psnr[score.name] = score.psnr_db;
   std::string svg = "<g class=\"layer-blocks\">";
   for (const partition::Block& block : input.blocks->blocks) {
     const double width_px = (block.max_enu.x() - block.min_enu.x()) * frame.scale();
     if (width_px < 28.0) continue;  // would only overlap its neighbours; the tooltip still names it
     const double x = frame.X(0.5 * (block.min_enu.x() + block.max_enu.x()));
     const double y = frame.Y(0.5 * (block.min_enu.y() + block.max_enu.y()));
-    const auto scored = psnr.find(block.name);
     svg += fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, y - 2.0, page::EscapeHtml(block.name));
     if (width_px < 70.0) continue;
-    svg += fmt::format("<text class=\"value\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, y + 16.0,
-                       block.empty ? "empty" : page::FormatFixed(scored == psnr.end() ? kNotMeasured : scored->second, 2, "dB"));
+    svg += fmt::format("<text class=\"value\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, y + 16.0, block.empty ? "empty" : HeldOutPsnr(input, block));
   }
   return svg + "</g>";
 }

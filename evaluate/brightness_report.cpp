@@ -20,7 +20,6 @@ namespace {
 
 constexpr int kGrid = 48;           // pixels each way that stand for a photo
 constexpr double kOffStops = 0.15;  // less is hard to see
-constexpr int kViewJpegQuality = 88;
 
 struct LightOfPhotos {
   std::vector<double> before_stops, after_stops;  // log2 of the mean light of each photo
@@ -112,17 +111,6 @@ std::string LuminanceSentence(const scene::SceneInfo& info) {
       omega, target);
 }
 
-std::string WriteViewPicture(const image::Image8& picture, const std::filesystem::path& report_folder, const std::string& name, int max_width) {
-  std::string relative = "images/" + name;
-  if (picture.width <= max_width) {
-    image::SaveJpeg(picture, report_folder / relative, kViewJpegQuality);
-  } else {
-    const image::Image8 reduced = image::Resize(picture, max_width, image::ScaledHeight(picture.width, picture.height, max_width));
-    image::SaveJpeg(reduced, report_folder / relative, kViewJpegQuality);
-  }
-  return relative;
-}
-
 }  // namespace
 
 BrightnessReport CollectBrightness(const scene::SceneInfo& info, const survey::Survey& survey, const image::PixelCache& pixels) {
@@ -203,17 +191,6 @@ image::Image8 PictureOf(std::span<const render::RayColor> colors, int width, int
   image::ImageF picture(width, height, 3);
   for (size_t i = 0; i < colors.size(); ++i) std::copy_n(colors[i].rgb_srgb, 3, picture.data.begin() + static_cast<std::ptrdiff_t>(3 * i));
   return image::ToImage8(picture);
-}
-
-BrightnessView WriteBrightnessView(const image::Image8& photo, const image::Image8& recorded, const image::Image8& normal,
-                                   const std::filesystem::path& report_folder, const std::string& prefix, int max_width) {
-  BrightnessView view;
-  view.width = std::min(max_width, photo.width);
-  view.height = view.width < photo.width ? image::ScaledHeight(photo.width, photo.height, view.width) : photo.height;
-  view.photo = WriteViewPicture(photo, report_folder, prefix + "_taken.jpg", max_width);
-  view.recorded = WriteViewPicture(recorded, report_folder, prefix + "_recorded.jpg", max_width);
-  view.normal = WriteViewPicture(normal, report_folder, prefix + "_normal.jpg", max_width);
-  return view;
 }
 
 }  // namespace skyquilt::evaluate

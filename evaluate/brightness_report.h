@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,9 +57,9 @@ struct BrightnessReport {
 
 // All but the views, from a grid of pixels of each training photo. Empty when the scene does not know the photos' brightness.
 BrightnessReport CollectBrightness(const scene::SceneInfo& info, const survey::Survey& survey, const image::PixelCache& pixels);
-// Mean over the three colours of tags and learned gains together, on the axis.
-// report/brightness.json: every photo's gains in stops and the cameras' falloff, for other programs. UTF-8.
+// report/brightness.json, for other programs: every photo's gains in stops, the cameras' falloff, the spreads and the trust in the tags. UTF-8.
 std::string BrightnessJson(const BrightnessReport& report);
+// A photo's exposure by tags and learned gains together, mean over the three colours, at the principal point, where nothing falls off.
 double ExposureStops(const brightness::Response& response, size_t photo);
 // Which of the held-out photos to show: the darkest- and the brightest-exposed if they are off the reference by more than 0.15 stops; when
 // neither is, the one that is farthest off. Empty when held_out is, or when the scene does not know the photos' brightness.
@@ -68,9 +67,5 @@ std::vector<int> ChooseViews(const scene::SceneInfo& info, const survey::Survey&
 
 // Rendered colours as a picture. colors: row-major, width * height.
 image::Image8 PictureOf(std::span<const render::RayColor> colors, int width, int height);
-// Writes images/<prefix>_taken.jpg, _recorded.jpg and _normal.jpg under report_folder, at most max_width pixels wide. The caller fills in name
-// and stops. Throws base::InputError.
-BrightnessView WriteBrightnessView(const image::Image8& photo, const image::Image8& recorded, const image::Image8& normal,
-                                   const std::filesystem::path& report_folder, const std::string& prefix, int max_width);
 
 }  // namespace skyquilt::evaluate

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "evaluate/choose_photos.h"
+
 namespace skyquilt::evaluate {
 namespace {
 
@@ -78,9 +80,8 @@ std::optional<double> StepAcross(const scene::Scene& scene, const TrainingView& 
 
 FootprintSteps MeasureFootprintSteps(const scene::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads) {
   std::vector<double> border, control;
-  const size_t count = std::min(views.size(), static_cast<size_t>(kFootprints));
-  for (size_t i = 0; i < count; ++i) {
-    const TrainingView& view = views[(2 * i + 1) * views.size() / (2 * count)];
+  for (const size_t place : SpreadPlaces(views.size(), kFootprints)) {
+    const TrainingView& view = views[place];
     const std::optional<double> across = StepAcross(scene, view, 0.5, threads), beside = StepAcross(scene, view, kControlPixels, threads);
     if (!across || !beside) continue;
     border.push_back(*across);

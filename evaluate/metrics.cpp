@@ -30,6 +30,11 @@ double PhotoScore::Coverage() const {
   return used_pixels > 0 ? static_cast<double>(covered_pixels) / static_cast<double>(used_pixels) : kNotMeasured;
 }
 
+const BlockScore* Metrics::FindBlock(const std::string& name) const {
+  const auto match = std::find_if(blocks.begin(), blocks.end(), [&](const BlockScore& block) { return block.name == name; });
+  return match == blocks.end() ? nullptr : &*match;
+}
+
 double MeanOfMeasured(const std::vector<double>& values) {
   double sum = 0.0;
   int n = 0;

@@ -101,6 +101,8 @@ struct Metrics {
   std::string machine;
   std::string date;  // UTC
   std::vector<std::string> warnings;
+
+  const BlockScore* FindBlock(const std::string& name) const;  // nullptr when none of that name was scored
 };
 
 extern const char* const kCoverageDefinition;

@@ -6,7 +6,10 @@
 #include <map>
 
 #include "core/page/curve_chart.h"
+#include "core/page/figure.h"
 #include "core/page/html.h"
+#include "core/page/plot_frame.h"
+#include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
 
 namespace skyquilt::evaluate {
@@ -17,6 +20,7 @@ constexpr double kAlikeStops = 0.05;     // tags that differ by less say nothing
 constexpr double kLongPause_min = 10.0;  // between flights
 constexpr double kShownPause_min = 1.0;  // what the chart leaves of one
 constexpr size_t kManyDots = 400;
+constexpr double kWide_px = 1160.0;  // of a drawing over the whole page
 
 struct GainColor {
   const char* name;
@@ -24,54 +28,10 @@ struct GainColor {
 };
 constexpr std::array<GainColor, 3> kGainColors = {{{"red", "c5"}, {"green", "c7"}, {"blue", "c1"}}};
 
-// Axes of a drawing: values to pixels.
-struct PlotFrame {
-  static constexpr double kLeft_px = 52.0, kRight_px = 14.0, kTop_px = 14.0, kBottom_px = 42.0;
-  double width_px = 560.0, height_px = 300.0;
-  double x_low = 0.0, x_high = 1.0, y_low = 0.0, y_high = 1.0;
-  double right_px() const { return width_px - kRight_px; }
-  double bottom_px() const { return height_px - kBottom_px; }
-  double X(double x) const { return kLeft_px + (x - x_low) / (x_high - x_low) * (right_px() - kLeft_px); }
-  double Y(double y) const { return bottom_px() - (y - y_low) / (y_high - y_low) * (bottom_px() - kTop_px); }
-};
-
-struct PlotLabels {
-  std::string title, x, y;
-};
-
 // With a plus before what is above zero.
 std::string SignedFixed(double value, int decimals, std::string_view unit = "") {
   const std::string text = page::FormatFixed(value, decimals, unit);
   return value > 0.0 && text.find_first_of("123456789") != std::string::npos ? "+" + text : text;
-}
-
-std::string OpenPlot(const PlotFrame& frame, const PlotLabels& labels, int x_ticks, const char* css_class = "") {
-  std::string html =
-      fmt::format("<figure class=\"chart card {}\"><figcaption>{}</figcaption><svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">",
-                  css_class, page::EscapeHtml(labels.title), frame.width_px, frame.height_px, page::EscapeHtml(labels.title));
-  const auto line = [&](const char* kind, double x1, double x2, double y1, double y2) {
-    html += fmt::format("<line class=\"{}\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", kind, x1, x2, y1, y2);
-  };
-  for (const double tick : page::RoundTicks(frame.y_low, frame.y_high, 5)) {
-    const double y = frame.Y(tick);
-    line(tick == 0.0 ? "axis" : "grid", PlotFrame::kLeft_px, frame.right_px(), y, y);
-    html += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{:.4g}</text>", PlotFrame::kLeft_px - 8.0, y + 4.0, tick);
-  }
-  for (const double tick : page::RoundTicks(frame.x_low, frame.x_high, x_ticks)) {
-    const double x = frame.X(tick);
-    line("axis", x, x, frame.bottom_px(), frame.bottom_px() + 4.0);
-    html += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.4g}</text>", x, frame.bottom_px() + 17.0, tick);
-  }
-  line("axis", PlotFrame::kLeft_px, frame.right_px(), frame.bottom_px(), frame.bottom_px());
-  html += fmt::format("<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>",
-                      0.5 * (PlotFrame::kLeft_px + frame.right_px()), frame.height_px - 6.0, page::EscapeHtml(labels.x));
-  html += fmt::format("<text class=\"label\" transform=\"translate(12 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-                      0.5 * (PlotFrame::kTop_px + frame.bottom_px()), page::EscapeHtml(labels.y));
-  return html;
-}
-
-std::string ClosePlot(const std::string& legend) {
-  return "</svg><div class=\"legend\">" + legend + "</div></figure>\n";
 }
 
 bool AllFinite(const BrightnessPhoto& photo) {
@@ -116,31 +76,30 @@ GainSeries SeriesOf(const BrightnessReport& brightness) {
   return series;
 }
 
-void Widen(const std::vector<double>& values, double* low, double* high) {
-  for (const double value : values) {
-    *low = std::min(*low, value);
-    *high = std::max(*high, value);
+page::PlotFrame GainFrame(const BrightnessReport& brightness, const GainSeries& series) {
+  page::PlotFrame frame{.title = "Exposure of the photos, 0 is the reference",
+                        .x = {.label = "photo, in order of names", .low = series.x.front(), .high = series.x.back(), .ticks = 10},
+                        .y = {.label = "exposure (stops)", .low = -0.25, .high = 0.25},
+                        .width_px = kWide_px,
+                        .height_px = 320.0,
+                        .css_class = "wide",
+                        .zero_stands_out = true};
+  if (brightness.timed) frame.x.label = "flight time (min)";
+  if (series.shortened) frame.x.label += fmt::format(", pauses of more than {:.0f} min shown as {:.0f} min", kLongPause_min, kShownPause_min);
+  for (const double x : series.x) frame.x.Include(x);
+  for (const double stops : series.exif) frame.y.Include(stops);
+  for (const std::vector<double>& learned : series.learned) {
+    for (const double stops : learned) frame.y.Include(stops);
   }
-}
-
-PlotFrame GainFrame(const GainSeries& series) {
-  PlotFrame frame{1160.0, 320.0, series.x.front(), series.x.back(), -0.25, 0.25};
-  Widen(series.x, &frame.x_low, &frame.x_high);
-  Widen(series.exif, &frame.y_low, &frame.y_high);
-  for (const std::vector<double>& values : series.learned) Widen(values, &frame.y_low, &frame.y_high);
-  const double x_pad = frame.x_high > frame.x_low ? 0.01 * (frame.x_high - frame.x_low) : 0.5;
-  const double y_pad = 0.06 * (frame.y_high - frame.y_low);
-  frame.x_low -= x_pad;
-  frame.x_high += x_pad;
-  frame.y_low -= y_pad;
-  frame.y_high += y_pad;
+  frame.x.Pad(frame.x.high > frame.x.low ? 0.01 * (frame.x.high - frame.x.low) : 0.5);
+  frame.y.Pad(0.06 * (frame.y.high - frame.y.low));
   return frame;
 }
 
 // Photos of another flight or camera are not joined. Steps: a value holds until the next photo.
-std::string GainPath(const PlotFrame& frame, const GainSeries& series, const std::vector<double>& y, bool steps, const char* css_class,
+std::string GainPath(const page::PlotFrame& frame, const GainSeries& series, const std::vector<double>& y, bool steps, const char* css_class,
                      const std::string& title) {
-  std::string path = fmt::format("<path class=\"curve {}\" d=\"", css_class);
+  std::string path;
   for (const auto& group : series.groups) {
     for (size_t k = 0; k < group.second.size(); ++k) {
       const double x_px = frame.X(series.x[group.second[k]]), y_px = frame.Y(y[group.second[k]]);
@@ -151,10 +110,10 @@ std::string GainPath(const PlotFrame& frame, const GainSeries& series, const std
       }
     }
   }
-  return path + "\"><title>" + title + "</title></path>";
+  return page::SvgPath(fmt::format("curve {}", css_class), path, title);
 }
 
-std::string GainDots(const PlotFrame& frame, const GainSeries& series, size_t i, bool learned) {
+std::string GainDots(const page::PlotFrame& frame, const GainSeries& series, size_t i, bool learned) {
   const BrightnessPhoto& photo = *series.photos[i];
   std::string html = fmt::format("<g class=\"at\"><title>{}{}\nEXIF {}", page::EscapeHtml(photo.name), photo.held_out ? " (held out)" : "",
                                  SignedFixed(photo.exif_stops, 2, "stops"));
@@ -179,46 +138,42 @@ std::string GainDots(const PlotFrame& frame, const GainSeries& series, size_t i,
 std::string GainChart(const BrightnessReport& brightness) {
   const GainSeries series = SeriesOf(brightness);
   if (series.photos.empty()) return "";
-  const PlotFrame frame = GainFrame(series);
+  const page::PlotFrame frame = GainFrame(brightness, series);
   const bool learned = Learned(brightness);
-  PlotLabels labels{"Exposure of the photos, 0 is the reference", "photo, in order of names", "exposure (stops)"};
-  if (brightness.timed) labels.x = "flight time (min)";
-  if (series.shortened) labels.x += fmt::format(", pauses of more than {:.0f} min shown as {:.0f} min", kLongPause_min, kShownPause_min);
-  std::string html = OpenPlot(frame, labels, 10, "wide");
-  html += GainPath(frame, series, series.exif, true, "c6", "EXIF");
-  std::string legend = "<span><i class=\"c6\"></i>EXIF</span>";
+  std::string html = page::PlotBegin(frame) + GainPath(frame, series, series.exif, true, "c6", "EXIF");
+  std::string legend = page::LegendEntry("c6", "EXIF");
   for (size_t c = 0; learned && c < 3; ++c) {
     const std::string name = fmt::format("EXIF and learned, {}", kGainColors[c].name);
     html += GainPath(frame, series, series.learned[c], false, kGainColors[c].css_class, name);
-    legend += fmt::format("<span><i class=\"{}\"></i>{}</span>", kGainColors[c].css_class, name);
+    legend += page::LegendEntry(kGainColors[c].css_class, name);
   }
   for (size_t i = 0; i < series.photos.size(); ++i) html += GainDots(frame, series, i, learned);
-  legend += "<span><i class=\"ring\"></i>held-out photo</span>";
-  return html + ClosePlot(legend);
+  return html + page::FigureEnd(legend + page::LegendEntry("ring", "held-out photo"));
 }
 
-std::string BinsPath(const PlotFrame& frame, const BrightnessHistogram& shares, const char* css_class, const char* title) {
-  std::string path = fmt::format("<path class=\"{}\" d=\"M{:.1f} {:.1f}", css_class, frame.X(0.0), frame.Y(0.0));
+std::string BinsPath(const page::PlotFrame& frame, const BrightnessHistogram& shares, const char* css_class, const char* title) {
+  std::string path = fmt::format("M{:.1f} {:.1f}", frame.X(0.0), frame.Y(0.0));
   for (size_t bin = 0; bin < shares.size(); ++bin) {
     path += fmt::format("V{:.1f}H{:.1f}", frame.Y(100.0 * shares[bin]), frame.X(static_cast<double>(bin + 1) / static_cast<double>(shares.size())));
   }
-  return path + fmt::format("V{:.1f}Z\"><title>{}</title></path>", frame.Y(0.0), title);
+  return page::SvgPath(css_class, path + fmt::format("V{:.1f}Z", frame.Y(0.0)), title);
 }
 
 std::string HistogramChart(const BrightnessReport& brightness, bool alone) {
   const BrightnessHistogram &before = brightness.histogram_before, &after = brightness.histogram_after;
   const double most = std::max(*std::max_element(before.begin(), before.end()), *std::max_element(after.begin(), after.end()));
   if (!(most > 0.0)) return "";
-  PlotFrame frame;
+  page::PlotFrame frame{.title = "Brightness of the training photos",
+                        .x = {.label = "display value (0 black, 1 white)", .ticks = 10},
+                        .y = {.label = "share of pixels (%)", .high = 100.0 * most * 1.06},
+                        .zero_stands_out = true};
   if (alone) {
-    frame.width_px = 1160.0;
+    frame.width_px = kWide_px;
     frame.height_px = 260.0;
+    frame.css_class = "wide";
   }
-  frame.y_high = 100.0 * most * 1.06;
-  const PlotLabels labels{"Brightness of the training photos", "display value (0 black, 1 white)", "share of pixels (%)"};
-  return OpenPlot(frame, labels, 10, alone ? "wide" : "") + BinsPath(frame, after, "bins c0", "at reference exposure") +
-         BinsPath(frame, before, "curve c6", "as recorded") +
-         ClosePlot("<span><i class=\"c6\"></i>as recorded</span><span><i class=\"c0\"></i>at reference exposure</span>");
+  return page::PlotBegin(frame) + BinsPath(frame, after, "bins c0", "at reference exposure") + BinsPath(frame, before, "curve c6", "as recorded") +
+         page::FigureEnd(page::LegendEntry("c6", "as recorded") + page::LegendEntry("c0", "at reference exposure"));
 }
 
 std::string FalloffChart(const BrightnessReport& brightness) {
@@ -264,22 +219,13 @@ std::string SpreadSentences(const BrightnessReport& brightness) {
                      page::FormatFixed(before, 2, "stops"), page::FormatFixed(after, 2, "stops"), meaning);
 }
 
-std::string ViewPicture(const BrightnessView& view, const std::string& file, const char* kind, const char* caption) {
-  if (file.empty()) return "";
-  return fmt::format(
-      "<figure class=\"pic {0}\"><img src=\"{1}\" width=\"{2}\" height=\"{3}\" loading=\"lazy\" alt=\"{4}\" data-kind=\"{0}\"><figcaption>{4}"
-      "</figcaption></figure>",
-      kind, page::EscapeHtml(file), view.width, view.height, caption);
-}
-
 std::string ViewCard(const BrightnessView& view) {
-  return fmt::format(
-             "<article class=\"card photo\"><header><h3>{}</h3><div class=\"chips\"><span class=\"chip\"><b>{}</b>exposure</span></div></header>"
-             "<div class=\"pics three\">",
-             page::EscapeHtml(view.name), SignedFixed(view.stops, 2, "stops")) +
-         ViewPicture(view, view.photo, "taken-pic", "Photo as taken") +
-         ViewPicture(view, view.recorded, "recorded-pic", "Scene, as this photo recorded") +
-         ViewPicture(view, view.normal, "normal-pic", "Scene at normal exposure") + "</div></article>\n";
+  std::string html = "<article class=\"card photo\"><header><h3>" + page::EscapeHtml(view.name) + "</h3><div class=\"chips\">" +
+                     Chip("exposure", SignedFixed(view.stops, 2, "stops")) + "</div></header><div class=\"pics three\">";
+  html += Picture("taken-pic", view.photo, view.width, view.height, "Photo as taken");
+  html += Picture("recorded-pic", view.recorded, view.width, view.height, "Scene, as this photo recorded");
+  html += Picture("normal-pic", view.normal, view.width, view.height, "Scene at normal exposure");
+  return html + "</div></article>\n";
 }
 
 }  // namespace
@@ -290,10 +236,11 @@ std::string BrightnessSection(const ReportInput& input) {
   const auto [low, high] = std::minmax_element(brightness.photos.begin(), brightness.photos.end(),
                                                [](const auto& a, const auto& b) { return a.exif_stops < b.exif_stops; });
   std::string html = "<section id=\"brightness\"><div class=\"heading\"><h2>Brightness</h2><div class=\"chips\">";
-  html += fmt::format("<span class=\"chip main\"><b>{} \xE2\x86\x92 {}</b>spread of the photos</span>",
-                      page::FormatFixed(brightness.spread_before_stops, 2), page::FormatFixed(brightness.spread_after_stops, 2, "stops"));
+  html += Chip("spread of the photos",
+               page::FormatFixed(brightness.spread_before_stops, 2) + " \xE2\x86\x92 " + page::FormatFixed(brightness.spread_after_stops, 2, "stops"),
+               "main");
   if (Learned(brightness) && high->exif_stops - low->exif_stops >= kAlikeStops) {
-    html += fmt::format("<span class=\"chip\"><b>{}</b>trust in the tags</span>", page::FormatPercent(brightness.trust_in_tags, 0));
+    html += Chip("trust in the tags", page::FormatPercent(brightness.trust_in_tags, 0));
   }
   html += "</div></div><p class=\"lead\">" + TagSentences(brightness, low->exif_stops, high->exif_stops) + SpreadSentences(brightness) +
           page::EscapeHtml(brightness.luminance) + "</p><div class=\"chart-grid\">" + GainChart(brightness);

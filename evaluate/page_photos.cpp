@@ -3,24 +3,12 @@
 #include <cmath>
 
 #include "core/page/html.h"
+#include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
 
 namespace skyquilt::evaluate {
 
 namespace {
-
-std::string Chip(const char* label, const std::string& value, const char* css_class = "") {
-  return fmt::format("<span class=\"chip {}\"><b>{}</b>{}</span>", css_class, value, label);
-}
-
-std::string Picture(const std::string& file, const PhotoImages& images, const char* kind, const std::string& caption,
-                    const std::string& legend = "") {
-  if (file.empty()) return "";
-  return fmt::format(
-      "<figure class=\"pic {0}\"><img src=\"{1}\" width=\"{2}\" height=\"{3}\" loading=\"lazy\" alt=\"{4}\" "
-      "data-kind=\"{0}\"><figcaption>{4}{5}</figcaption></figure>",
-      kind, page::EscapeHtml(file), images.width, images.height, page::EscapeHtml(caption), legend);
-}
 
 std::string Legend(const ReportInput& input, const std::string& low, const std::string& high) {
   if (input.color_ramp.empty()) return "";
@@ -46,11 +34,14 @@ std::string PhotoCard(const ReportInput& input, size_t index) {
       "min=\"0\" max=\"100\" step=\"0.1\" value=\"50\" "
       "aria-label=\"Move between photo and render\"></div><figcaption>Drag to compare photo and render</figcaption></figure>",
       images.width, images.height, page::EscapeHtml(images.render), page::EscapeHtml(images.photo));
-  html += Picture(images.photo, images, "photo-pic", "Photo");
-  html += Picture(images.render, images, "render-pic", "Render");
-  html += Picture(images.error, images, "error-pic", "Error", Legend(input, "0", page::FormatFixed(input.error_high, 2)));
-  html += Picture(images.depth, images, "depth-pic", "Depth",
-                  Legend(input, page::FormatFixed(images.depth_low_m, 1), page::FormatFixed(images.depth_high_m, 1, "m")));
+  const auto picture = [&](const char* kind, const std::string& file, const char* caption, const std::string& legend = "") {
+    html += Picture(kind, file, images.width, images.height, caption, legend);
+  };
+  picture("photo-pic", images.photo, "Photo");
+  picture("render-pic", images.render, "Render");
+  picture("error-pic", images.error, "Error", Legend(input, "0", page::FormatFixed(input.error_high, 2)));
+  picture("depth-pic", images.depth, "Depth",
+          Legend(input, page::FormatFixed(images.depth_low_m, 1), page::FormatFixed(images.depth_high_m, 1, "m")));
   return html + "</div></article>\n";
 }
 

@@ -53,10 +53,9 @@ std::string BlockTable(const ReportInput& input) {
     html += "</tr>";
   }
   for (const partition::Block& block : input.blocks->blocks) {
-    const auto& scores = input.metrics->blocks;
-    const auto score = std::find_if(scores.begin(), scores.end(), [&](const BlockScore& s) { return s.name == block.name; });
-    const double psnr_db = score == scores.end() ? kNotMeasured : score->psnr_db;
-    const double pixels = score == scores.end() ? kNotMeasured : static_cast<double>(score->pixels);
+    const BlockScore* score = input.metrics->FindBlock(block.name);
+    const double psnr_db = score == nullptr ? kNotMeasured : score->psnr_db;
+    const double pixels = score == nullptr ? kNotMeasured : static_cast<double>(score->pixels);
     const FieldLog* log = input.log->Find(block.name);
     const Eigen::Vector3d size = block.max_enu - block.min_enu;
     html += fmt::format("<tr id=\"block-{0}\"><td><b>{0}</b></td>", page::EscapeHtml(block.name)) + StatusCell(log, &block);

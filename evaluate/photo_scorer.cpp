@@ -15,11 +15,98 @@ namespace skyquilt::evaluate {
 
 namespace {
 
-struct RowSums {
+// What pixels add up to.
+struct PixelSums {
   metrics::SquaredError full, covered;
   SeamErrors seams;
   std::vector<metrics::SquaredError> per_block;
   int64_t used = 0;
+
+  PixelSums& operator+=(const PixelSums& other) {
+    full += other.full;
+    covered += other.covered;
+    seams += other.seams;
+    for (size_t b = 0; b < per_block.size(); ++b) per_block[b] += other.per_block[b];
+    used += other.used;
+    return *this;
+  }
+};
+
+// Photo and rendering of one frame, compared pixel by pixel.
+class FrameComparison {
+ public:
+  FrameComparison(const PhotoTask& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area)
+      : photo(image::ToImageF(task.photo)),
+        render(task.camera.width, task.camera.height, 3),
+        unclamped(task.camera.width, task.camera.height, 3),
+        scored(task.camera.width, task.camera.height, 1, 0),
+        z_depth(task.camera.width, task.camera.height, 1, std::numeric_limits<float>::quiet_NaN()),
+        task_(task),
+        rendered_(rendered),
+        views_(views),
+        area_(area),
+        enu_from_cam_(task.cam_from_enu.Inverse()),
+        origin_(task.cam_from_enu.OriginInSource()),
+        order_(views.ByDistance(origin_)) {}
+
+  // Fills the pictures below and gives the sums over all pixels, the same for any number of threads.
+  PixelSums Compare(base::ThreadPool& threads) {
+    PixelSums none;
+    none.per_block.resize(area_.boxes.size());
+    std::vector<PixelSums> rows(static_cast<size_t>(task_.camera.height), none);
+    threads.ParallelFor(task_.camera.height, [&](int64_t row, int) {
+      for (int x = 0; x < task_.camera.width; ++x) ComparePixel(x, static_cast<int>(row), &rows[static_cast<size_t>(row)]);
+    });
+    for (const PixelSums& row : rows) none += row;
+    return none;
+  }
+
+  const image::ImageF photo;
+  image::ImageF render;     // as a picture shows it
+  image::ImageF unclamped;  // brighter than white where the scene is
+  image::Image8 scored;     // as in PhotoFindings
+  image::ImageF z_depth;    // as in PhotoFindings
+
+ private:
+  void ComparePixel(int x, int y, PixelSums* sums) {
+    const size_t i = static_cast<size_t>(y) * static_cast<size_t>(task_.camera.width) + static_cast<size_t>(x);
+    const render::RayColor& ray = rendered_[i];
+    float* rgb = render.At(x, y);
+    for (int c = 0; c < 3; ++c) {
+      const float value = std::isfinite(ray.rgb_srgb[c]) ? std::max(ray.rgb_srgb[c], 0.0F) : 0.0F;
+      unclamped.At(x, y)[c] = value;
+      rgb[c] = std::min(value, 1.0F);
+    }
+    const Eigen::Vector3d direction_in_cam = task_.camera.RayFromImg({x + 0.5, y + 0.5});
+    const double median_m = static_cast<double>(ray.depth_median);
+    *z_depth.At(x, y) = static_cast<float>(median_m * direction_in_cam.z());
+    if (!task_.mask.empty() && task_.mask[i] == 0) return;
+    ++sums->used;
+    AddPixel(rgb, photo.At(x, y), &sums->full);
+    const auto surface = SurfacePoint(origin_, enu_from_cam_.rotation * direction_in_cam, median_m, area_.heights);
+    if (!surface) return;
+    const int block = BlockAt(*surface, area_.boxes);
+    if (block < 0 || views_.Count(*surface, order_, 2) < 2) return;
+    scored.data[i] = 1;
+    AddCovered(x, y, block, ZoneAt(*surface, block, area_.boxes), sums);
+  }
+
+  void AddCovered(int x, int y, int block, Zone zone, PixelSums* sums) const {
+    const float *rgb = render.At(x, y), *wanted = photo.At(x, y);
+    AddPixel(rgb, wanted, &sums->covered);
+    AddPixel(rgb, wanted, &sums->per_block[static_cast<size_t>(block)]);
+    if (zone != Zone::kInterior && zone != Zone::kSeam) return;
+    auto& group = zone == Zone::kSeam ? sums->seams.seam : sums->seams.interior;
+    AddPixel(rgb, wanted, &group[static_cast<size_t>(TextureClass(photo, x, y))]);
+  }
+
+  const PhotoTask& task_;
+  const std::span<const render::RayColor> rendered_;
+  const TrainingViews& views_;
+  const SceneArea& area_;
+  const geo::Rigid3d enu_from_cam_;
+  const Eigen::Vector3d origin_;
+  const std::vector<int> order_;
 };
 
 // Averaging would invent depths between roof and ground.
@@ -32,7 +119,29 @@ image::ImageF ResizeNearest(const image::ImageF& image, int width, int height) {
   return resized;
 }
 
+// What is not a sum over pixels, three scores at a time.
+void AddWholeFrameScores(const PhotoTask& task, const FrameComparison& frame, base::ThreadPool& threads, PhotoScore* score) {
+  const image::Image8 used = task.UsedPixels();
+  HalfScores halves;
+  threads.ParallelFor(3, [&](int64_t which, int) {
+    if (which == 0) score->ssim = metrics::Ssim(frame.render, frame.photo, &frame.scored);
+    if (which == 1) score->ssim_full = metrics::Ssim(frame.render, frame.photo, used.Empty() ? nullptr : &used);
+    if (which == 2) halves = ScoreHalves(frame.unclamped, frame.photo, frame.scored);
+  });
+  score->right_half_db = metrics::PsnrOf(halves.right);
+  score->right_half_fitted_db = metrics::PsnrOf(halves.right_fitted);
+  for (size_t c = 0; c < 3; ++c) score->fitted_stops[c] = static_cast<double>(halves.log_gain[c]) / std::numbers::ln2;
+}
+
 }  // namespace
+
+image::Image8 PhotoTask::UsedPixels() const {
+  image::Image8 used;
+  if (mask.empty()) return used;
+  used = image::Image8(photo.width, photo.height, 1);
+  used.data = mask;
+  return used;
+}
 
 PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area,
                          base::ThreadPool& threads) {
@@ -43,88 +152,28 @@ PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor
   SKYQUILT_CHECK(rendered.size() == n_pixels, "one rendered ray per pixel");
   SKYQUILT_CHECK(task.mask.empty() || task.mask.size() == n_pixels, "a mask of the camera's size");
 
-  const image::ImageF photo = image::ToImageF(task.photo);
-  image::ImageF render(width, height, 3);
-  image::ImageF unclamped(width, height, 3);
+  FrameComparison frame(task, rendered, views, area);
+  PixelSums sums = frame.Compare(threads);
   PhotoFindings findings;
-  findings.scored = image::Image8(width, height, 1, 0);
-  findings.z_depth = image::ImageF(width, height, 1, std::numeric_limits<float>::quiet_NaN());
-
-  const geo::Rigid3d enu_from_cam = task.cam_from_enu.Inverse();
-  const Eigen::Vector3d origin = task.cam_from_enu.OriginInSource();
-  const std::vector<int> order = views.ByDistance(origin);
-  std::vector<RowSums> rows(static_cast<size_t>(height));
-  threads.ParallelFor(height, [&](int64_t row, int) {
-    const int y = static_cast<int>(row);
-    RowSums& sums = rows[static_cast<size_t>(y)];
-    sums.per_block.resize(area.boxes.size());
-    for (int x = 0; x < width; ++x) {
-      const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
-      const render::RayColor& ray = rendered[i];
-      float* rgb = render.At(x, y);
-      for (int c = 0; c < 3; ++c) {
-        const float value = std::isfinite(ray.rgb_srgb[c]) ? std::max(ray.rgb_srgb[c], 0.0F) : 0.0F;
-        unclamped.At(x, y)[c] = value;
-        rgb[c] = std::min(value, 1.0F);
-      }
-      const Eigen::Vector3d direction_in_cam = task.camera.RayFromImg({x + 0.5, y + 0.5});
-      const double median_m = static_cast<double>(ray.depth_median);
-      *findings.z_depth.At(x, y) = static_cast<float>(median_m * direction_in_cam.z());
-      if (!task.mask.empty() && task.mask[i] == 0) continue;
-      ++sums.used;
-      AddPixel(rgb, photo.At(x, y), &sums.full);
-      const auto surface = SurfacePoint(origin, enu_from_cam.rotation * direction_in_cam, median_m, area.heights);
-      if (!surface) continue;
-      const int block = BlockAt(*surface, area.boxes);
-      if (block < 0 || views.Count(*surface, order, 2) < 2) continue;
-      findings.scored.data[i] = 1;
-      AddPixel(rgb, photo.At(x, y), &sums.covered);
-      AddPixel(rgb, photo.At(x, y), &sums.per_block[static_cast<size_t>(block)]);
-      const Zone zone = ZoneAt(*surface, block, area.boxes);
-      if (zone != Zone::kInterior && zone != Zone::kSeam) continue;
-      auto& group = zone == Zone::kSeam ? sums.seams.seam : sums.seams.interior;
-      AddPixel(rgb, photo.At(x, y), &group[static_cast<size_t>(TextureClass(photo, x, y))]);
-    }
-  });
-
-  metrics::SquaredError full, covered;
-  findings.per_block.resize(area.boxes.size());
+  findings.seams = sums.seams;
+  findings.per_block = std::move(sums.per_block);
   PhotoScore& score = findings.score;
-  for (const RowSums& sums : rows) {
-    full += sums.full;
-    covered += sums.covered;
-    findings.seams += sums.seams;
-    for (size_t b = 0; b < area.boxes.size(); ++b) findings.per_block[b] += sums.per_block[b];
-    score.used_pixels += sums.used;
-  }
   score.width = width;
   score.height = height;
-  score.covered_pixels = PixelsOf(covered);
-  score.psnr_db = metrics::PsnrOf(covered);
-  score.psnr_full_db = metrics::PsnrOf(full);
-
-  image::Image8 used;
-  if (!task.mask.empty()) {
-    used = image::Image8(width, height, 1);
-    used.data = task.mask;
-  }
-  HalfScores halves;
-  threads.ParallelFor(3, [&](int64_t which, int) {
-    if (which == 0) score.ssim = metrics::Ssim(render, photo, &findings.scored);
-    if (which == 1) score.ssim_full = metrics::Ssim(render, photo, used.Empty() ? nullptr : &used);
-    if (which == 2) halves = ScoreHalves(unclamped, photo, findings.scored);
-  });
-  score.right_half_db = metrics::PsnrOf(halves.right);
-  score.right_half_fitted_db = metrics::PsnrOf(halves.right_fitted);
-  for (size_t c = 0; c < 3; ++c) score.fitted_stops[c] = static_cast<double>(halves.log_gain[c]) / std::numbers::ln2;
-
+  score.used_pixels = sums.used;
+  score.covered_pixels = PixelsOf(sums.covered);
+  score.psnr_db = metrics::PsnrOf(sums.covered);
+  score.psnr_full_db = metrics::PsnrOf(sums.full);
+  AddWholeFrameScores(task, frame, threads, &score);
+  findings.scored = std::move(frame.scored);
+  findings.z_depth = std::move(frame.z_depth);
+  findings.render = image::ToImage8(frame.render);
   if (!task.true_depth.Empty()) {
     findings.true_depth = ResizeNearest(task.true_depth, width, height);
     const metrics::DepthErrors errors = metrics::CompareDepth(findings.z_depth, findings.true_depth, &findings.scored);
     score.depth_rmse_m = errors.rmse_m;
     score.depth_median_abs_m = errors.median_abs_m;
   }
-  findings.render = image::ToImage8(render);
   return findings;
 }
 

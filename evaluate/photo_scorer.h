@@ -23,6 +23,8 @@ struct PhotoTask {
   image::Image8 photo;        // RGB, width * height of the camera
   std::vector<uint8_t> mask;  // per pixel, 0 = ignored; empty: every pixel counts
   image::ImageF true_depth;   // metres along z of the camera, NaN = none, any size; empty: unknown
+
+  image::Image8 UsedPixels() const;  // the mask as a picture of one channel; empty: every pixel counts
 };
 
 struct SceneArea {

@@ -37,6 +37,13 @@ std::string Write(const image::Image8& picture, const std::filesystem::path& rep
   return relative;
 }
 
+// The size of a photo's pictures, which Fit gives them.
+template <typename Images>
+void SetShownSize(const image::Image8& photo, int max_width, Images* images) {
+  images->width = std::min(max_width, photo.width);
+  images->height = images->width < photo.width ? image::ScaledHeight(photo.width, photo.height, images->width) : photo.height;
+}
+
 }  // namespace
 
 image::ImageF AbsoluteError(const image::Image8& photo, const image::Image8& render) {
@@ -79,9 +86,7 @@ bool PercentileRange(const image::ImageF& image, double low, double high, float*
 PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::path& report_folder, const std::string& prefix, int max_width,
                              float error_high) {
   PhotoImages images;
-  images.width = std::min(max_width, pixels.photo->width);
-  images.height =
-      images.width < pixels.photo->width ? image::ScaledHeight(pixels.photo->width, pixels.photo->height, images.width) : pixels.photo->height;
+  SetShownSize(*pixels.photo, max_width, &images);
   images.photo = Write(*pixels.photo, report_folder, prefix + "_photo.jpg", max_width);
   images.render = Write(*pixels.render, report_folder, prefix + "_render.jpg", max_width);
   images.error = WriteColors(ErrorPicture(pixels, error_high), report_folder, prefix + "_error.png", max_width);
@@ -92,6 +97,16 @@ PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::p
     images.depth_high_m = static_cast<double>(high);
   }
   return images;
+}
+
+BrightnessView WriteBrightnessView(const image::Image8& photo, const image::Image8& recorded, const image::Image8& normal,
+                                   const std::filesystem::path& report_folder, const std::string& prefix, int max_width) {
+  BrightnessView view;
+  SetShownSize(photo, max_width, &view);
+  view.photo = Write(photo, report_folder, prefix + "_taken.jpg", max_width);
+  view.recorded = Write(recorded, report_folder, prefix + "_recorded.jpg", max_width);
+  view.normal = Write(normal, report_folder, prefix + "_normal.jpg", max_width);
+  return view;
 }
 
 std::string WriteColorRamp(const std::filesystem::path& report_folder) {

@@ -1,4 +1,4 @@
-// Pictures of the report: photo, render, error and depth of a held-out photo, the colour ramp, the map's background.
+// Pictures of the report: photo, render, error and depth of a held-out photo, its brightness, the colour ramp, the map's background.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,10 @@ bool PercentileRange(const image::ImageF& image, double low, double high, float*
 // Throws base::InputError.
 PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::path& report_folder, const std::string& prefix, int max_width,
                              float error_high);
+// Writes images/<prefix>_taken.jpg, _recorded.jpg and _normal.jpg under report_folder, at most max_width pixels wide. The caller fills in name
+// and stops. Throws base::InputError.
+BrightnessView WriteBrightnessView(const image::Image8& photo, const image::Image8& recorded, const image::Image8& normal,
+                                   const std::filesystem::path& report_folder, const std::string& prefix, int max_width);
 // Writes images/ramp.png and returns its relative path.
 std::string WriteColorRamp(const std::filesystem::path& report_folder);
 // products/orthophoto.png with its bounds in products/orthophoto.json, copied beside the page. Nothing when either is missing or damaged.

@@ -11,6 +11,7 @@
 #include "core/page/curve_chart.h"
 #include "core/page/html.h"
 #include "core/page/page_frame.h"
+#include "evaluate/page_parts.h"
 
 namespace skyquilt::evaluate {
 
@@ -94,8 +95,8 @@ std::string BlockBars(const ReportInput& input) {
   html += "<div class=\"rows\">";
   for (const BlockScore* block : order) {
     const double share = std::isfinite(block->psnr_db) ? std::clamp((block->psnr_db - base) / std::max(high - base, 1e-9), 0.0, 1.0) : 0.0;
-    html += fmt::format("<div class=\"row\"><a href=\"#block-{0}\">{0}</a><span><i style=\"width:{1:.1f}%\"></i></span><b>{2}</b></div>",
-                        page::EscapeHtml(block->name), 100.0 * share, page::FormatFixed(block->psnr_db, 2, "dB"));
+    html += BarRow(fmt::format("<a href=\"#block-{0}\">{0}</a>", page::EscapeHtml(block->name)), 100.0 * share,
+                   page::FormatFixed(block->psnr_db, 2, "dB"));
   }
   return html + fmt::format("</div><p class=\"note\">Bars start at {}.</p></div>", page::FormatFixed(base, 0, "dB"));
 }
@@ -122,7 +123,7 @@ std::string BlockFacts(const ReportInput& input) {
   }
   const Metrics& metrics = *input.metrics;
   std::string html = "<dl class=\"card facts small\">";
-  const auto fact = [&](const char* name, const std::string& value) { html += fmt::format("<dt>{}</dt><dd>{}</dd>", name, value); };
+  const auto fact = [&](const char* name, const std::string& value) { html += Fact(name, value); };
   fact("Blocks", fmt::format("{} \xC3\x97 {}{}", input.blocks->rows, input.blocks->columns, n_empty > 0 ? fmt::format(", {} empty", n_empty) : ""));
   fact("Flown at", RangeOf(altitude_m, 0, "m above ground"));
   fact("GSD", RangeOf(gsd_cm, 1, "cm"));
@@ -160,8 +161,8 @@ std::string StageBars(const ReportInput& input) {
   std::stable_sort(stages.begin(), stages.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string html = "<div class=\"card bars\"><h3>Where training time goes</h3><div class=\"rows\">";
   for (const auto& [stage, seconds] : stages) {
-    html += fmt::format("<div class=\"row\"><em>{}</em><span><i style=\"width:{:.1f}%\"></i></span><b>{:.1f}\xE2\x80\xAF%</b></div>",
-                        page::EscapeHtml(stage), 100.0 * seconds / stages.front().second, 100.0 * seconds / total);
+    html += BarRow("<em>" + page::EscapeHtml(stage) + "</em>", 100.0 * seconds / stages.front().second,
+                   page::FormatFixed(100.0 * seconds / total, 1, "%"));
   }
   return html + fmt::format("</div><p class=\"note\">{} of work on all threads, {} samples per ray.</p></div>", base::FormatDuration(total),
                             page::FormatFixed(input.log->SamplesPerRay(), 1));
@@ -209,7 +210,7 @@ std::string Facts(const ReportInput& input) {
   const Metrics& metrics = *input.metrics;
   std::string html =
       "<section id=\"details\"><div class=\"heading\"><h2>How this was measured</h2></div><div class=\"facts-grid\"><dl class=\"card facts\">";
-  const auto fact = [&](const char* name, const std::string& value) { html += fmt::format("<dt>{}</dt><dd>{}</dd>", name, value); };
+  const auto fact = [&](const char* name, const std::string& value) { html += Fact(name, value); };
   const scene::RenderStatistics& rendering = metrics.rendering;
   if (rendering.bytes_sent > 0) {
     fact("Rendered by", fmt::format("{} rank(s), {}B on the wire", rendering.ranks,

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/page/curve_chart.h"
+#include "core/page/figure.h"
 #include "core/page/html.h"
+#include "core/page/ticks.h"
 
 namespace skyquilt::page {
 
@@ -72,38 +73,33 @@ std::string BarAxis(const BarSpan& span, double bottom_px, const std::string& x_
   std::string html;
   for (const double tick : RoundTicks(0.0, span.high, std::max(2, static_cast<int>((span.right_px - span.left_px) / 60.0)))) {
     const double x = span.Px(tick);
-    html += fmt::format("<line class=\"grid\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", x, x, kAboveBars_px, bottom_px);
-    html += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>", x, bottom_px + 17.0, TickLabel(tick));
+    html += SvgLine("grid", x, x, kAboveBars_px, bottom_px);
+    html += SvgText("tick", x, bottom_px + 17.0, Anchor::kMiddle, TickLabel(tick));
   }
-  html += fmt::format("<line class=\"axis\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", span.left_px, span.left_px, kAboveBars_px,
-                      bottom_px);
-  return html + fmt::format("<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>", 0.5 * (span.left_px + span.right_px),
-                            bottom_px + 36.0, EscapeHtml(x_label));
+  html += SvgLine("axis", span.left_px, span.left_px, kAboveBars_px, bottom_px);
+  return html + SvgText("label", 0.5 * (span.left_px + span.right_px), bottom_px + 36.0, Anchor::kMiddle, x_label);
 }
 
 std::string DrawBar(const Bar& bar, double middle_px, const BarSpan& span, const BarChartOptions& options) {
-  std::string html =
-      fmt::format("<g><title>{}</title><text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>",
-                  EscapeHtml(Spoken(bar, options)), span.left_px - 8.0, middle_px + 4.0, EscapeHtml(Shortened(bar.label, kLongestLabel)));
+  std::string html = fmt::format("<g><title>{}</title>", EscapeHtml(Spoken(bar, options)));
+  html += SvgText("tick", span.left_px - 8.0, middle_px + 4.0, Anchor::kEnd, Shortened(bar.label, kLongestLabel));
   if (std::isfinite(bar.value) && bar.value > 0.0) {
     html += fmt::format("<rect class=\"bar c0\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>", span.left_px,
                         middle_px - 0.5 * kThickness_px, std::max(span.Px(bar.value) - span.left_px, kThinnest_px), kThickness_px);
   }
   if (HasLimit(bar)) {
     const double x = span.Px(bar.limit);
-    html += fmt::format("<line class=\"limit\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", x, x, middle_px - 0.4 * kRow_px,
-                        middle_px + 0.4 * kRow_px);
+    html += SvgLine("limit", x, x, middle_px - 0.4 * kRow_px, middle_px + 0.4 * kRow_px);
   }
-  return html + fmt::format("<text class=\"mark\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text></g>", kBarsWidth_px - 2.0, middle_px + 4.0,
-                            EscapeHtml(Shortened(ShownValue(bar.value, bar.shown), kLongestShown)));
+  const std::string shown = Shortened(ShownValue(bar.value, bar.shown), kLongestShown);
+  return html + SvgText("mark", kBarsWidth_px - 2.0, middle_px + 4.0, Anchor::kEnd, shown) + "</g>";
 }
 
 }  // namespace
 
 std::string BarChart(const std::vector<Bar>& bars, const BarChartOptions& options) {
-  std::string html = fmt::format("<figure class=\"chart card\"><figcaption>{}</figcaption>", EscapeHtml(options.title));
   if (std::none_of(bars.begin(), bars.end(), [](const Bar& bar) { return std::isfinite(bar.value) || HasLimit(bar); })) {
-    return html + "<p class=\"empty\">No data.</p></figure>\n";
+    return EmptyFigure(options.title);
   }
   const BarSpan span = SpanOf(bars);
   const double bottom_px = kAboveBars_px + kRow_px * static_cast<double>(bars.size());
@@ -112,14 +108,10 @@ std::string BarChart(const std::vector<Bar>& bars, const BarChartOptions& option
     spoken += (i == 0 ? ". " : "; ") + Spoken(bars[i], options);
     rows += DrawBar(bars[i], kAboveBars_px + kRow_px * (static_cast<double>(i) + 0.5), span, options);
   }
-  html +=
-      fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">", kBarsWidth_px, bottom_px + kBelowBars_px, EscapeHtml(spoken));
-  html += BarAxis(span, bottom_px, options.x_label) + rows + "</svg>";
-  if (std::any_of(bars.begin(), bars.end(), HasLimit)) {
-    html += fmt::format("<div class=\"legend\"><span><i class=\"c0\"></i>{}</span><span><i class=\"limit\"></i>{}</span></div>",
-                        EscapeHtml(options.value_name), EscapeHtml(options.limit_name));
-  }
-  return html + "</figure>\n";
+  std::string legend;
+  if (std::any_of(bars.begin(), bars.end(), HasLimit)) legend = LegendEntry("c0", options.value_name) + LegendEntry("limit", options.limit_name);
+  return FigureBegin({.title = options.title, .width_px = kBarsWidth_px, .height_px = bottom_px + kBelowBars_px, .spoken = spoken}) +
+         BarAxis(span, bottom_px, options.x_label) + rows + FigureEnd(legend);
 }
 
 }  // namespace skyquilt::page

@@ -5,38 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "core/page/figure.h"
 #include "core/page/html.h"
+#include "core/page/plot_frame.h"
 
 namespace skyquilt::page {
 
 namespace {
-
-constexpr double kWidth = 560.0, kHeight = 300.0;
-constexpr double kLeft = 52.0, kRight = 14.0, kTop = 14.0, kBottom = 42.0;
-
-struct Axis {
-  double low = 0.0, high = 1.0;
-  double first_px = 0.0, last_px = 1.0;
-  double Px(double value) const { return first_px + (value - low) / (high - low) * (last_px - first_px); }
-};
-
-std::vector<double> LogTicks(double low_log10, double high_log10) {
-  std::vector<double> ticks;
-  const bool dense = high_log10 - low_log10 < 2.5;
-  for (int decade = static_cast<int>(std::floor(low_log10)); decade <= static_cast<int>(std::ceil(high_log10)); ++decade) {
-    for (const double factor : {1.0, 2.0, 5.0}) {
-      if (!dense && factor != 1.0) continue;
-      const double tick = decade + std::log10(factor);
-      if (tick >= low_log10 && tick <= high_log10) ticks.push_back(tick);
-    }
-  }
-  if (ticks.size() >= 3 || high_log10 - low_log10 >= 1.0) return ticks;
-  // Less than a decade: round numbers between its ends say more than the one power of ten that may lie there.
-  ticks = RoundTicks(std::pow(10.0, low_log10), std::pow(10.0, high_log10), 5);
-  for (double& tick : ticks) tick = std::log10(tick);
-  return ticks;
-}
 
 // What is drawn of a curve, in the axes' own units (logarithms where they are logarithmic).
 struct Line {
@@ -56,77 +33,54 @@ Line ToLine(const Curve& curve, const ChartOptions& options) {
   return line;
 }
 
-// Grid lines, ticks and labels of both axes.
-std::string Frame(const Axis& x_axis, const Axis& y_axis, const ChartOptions& options) {
-  std::string html;
-  for (const double tick : options.log_y ? LogTicks(y_axis.low, y_axis.high) : RoundTicks(y_axis.low, y_axis.high, 5)) {
-    const double y = y_axis.Px(tick);
-    html += fmt::format("<line class=\"grid\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", kLeft, kWidth - kRight, y, y);
-    html += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", kLeft - 8.0, y + 4.0,
-                        TickLabel(options.log_y ? std::pow(10.0, tick) : tick));
+// A frame that holds the lines; nothing when there is nothing to hold.
+std::optional<PlotFrame> FrameOf(const std::vector<Line>& lines, bool marks, const ChartOptions& options) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  PlotFrame frame{.title = options.title,
+                  .x = {.label = options.x_label, .low = kInfinity, .high = -kInfinity, .ticks = 6, .logarithmic = options.log_x},
+                  .y = {.label = options.y_label, .low = kInfinity, .high = -kInfinity, .logarithmic = options.log_y}};
+  for (const Line& line : lines) {
+    for (const auto& [x, y] : line.points) {
+      frame.x.Include(x);
+      frame.y.Include(y);
+    }
   }
-  for (const double tick : options.log_x ? LogTicks(x_axis.low, x_axis.high) : RoundTicks(x_axis.low, x_axis.high, 6)) {
-    const double x = x_axis.Px(tick);
-    html += fmt::format("<line class=\"axis\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", x, x, kHeight - kBottom,
-                        kHeight - kBottom + 4.0);
-    html += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>", x, kHeight - kBottom + 17.0,
-                        TickLabel(options.log_x ? std::pow(10.0, tick) : tick));
+  if (!(frame.x.high >= frame.x.low)) return std::nullopt;
+  if (!options.log_x) frame.x.low = std::min(frame.x.low, 0.0);
+  if (!(frame.x.high > frame.x.low)) frame.x.high = frame.x.low + 1.0;
+  if (marks) {
+    // Marks stand clear of the edges.
+    const double pad = 0.04 * (frame.x.high - frame.x.low);
+    frame.x.high += pad;
+    if (options.log_x) frame.x.low -= pad;
   }
-  html += fmt::format("<line class=\"axis\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", kLeft, kWidth - kRight, kHeight - kBottom,
-                      kHeight - kBottom);
-  html += fmt::format("<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>", 0.5 * (kLeft + kWidth - kRight),
-                      kHeight - 6.0, EscapeHtml(options.x_label));
-  return html + fmt::format("<text class=\"label\" transform=\"translate(12 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-                            0.5 * (kTop + kHeight - kBottom), EscapeHtml(options.y_label));
+  frame.y.Pad(std::max(0.05 * (frame.y.high - frame.y.low), options.log_y ? 0.05 : std::min(0.5, 0.2 * std::abs(frame.y.high) + 1e-6)));
+  return frame;
 }
 
-std::string DrawLine(const Line& line, const Curve& curve, size_t color, const Axis& x_axis, const Axis& y_axis) {
+std::string DrawLine(const PlotFrame& frame, const Line& line, const Curve& curve, const std::string& color) {
   std::string html;
   if (curve.line) {
-    html += fmt::format("<path class=\"curve c{}{}\" d=\"", color, curve.band ? " band" : curve.emphasised ? " strong" : "");
-    for (size_t k = 0; k < line.points.size(); ++k) {
-      html += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", x_axis.Px(line.points[k].first), y_axis.Px(line.points[k].second));
-    }
-    html += fmt::format("\"><title>{}</title></path>", EscapeHtml(curve.name));
+    std::string steps;
+    for (const auto& [x, y] : line.points) steps += fmt::format("{}{:.1f} {:.1f}", steps.empty() ? "M" : "L", frame.X(x), frame.Y(y));
+    html += SvgPath(fmt::format("curve {}{}", color, curve.band ? " band" : curve.emphasised ? " strong" : ""), steps, curve.name);
   }
   if (!curve.marks && line.points.size() != 1) return html;
   for (size_t k = 0; k < line.points.size(); ++k) {
-    const double x = x_axis.Px(line.points[k].first);
-    const double y = y_axis.Px(line.points[k].second);
-    const std::string label = line.labels.empty() ? "" : EscapeHtml(line.labels[k]);
-    html += fmt::format("<circle class=\"dot c{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"><title>{}</title></circle>", color, x, y,
-                        curve.emphasised ? 4.5 : 3.0, label.empty() ? EscapeHtml(curve.name) : label);
+    const double x = frame.X(line.points[k].first);
+    const double y = frame.Y(line.points[k].second);
+    const std::string label = line.labels.empty() ? "" : line.labels[k];
+    html += fmt::format("<circle class=\"dot {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"><title>{}</title></circle>", color, x, y,
+                        curve.emphasised ? 4.5 : 3.0, EscapeHtml(label.empty() ? curve.name : label));
     if (label.empty()) continue;
     // Labels of marks near the right edge stand on the left.
-    const bool left = x > 0.72 * kWidth;
-    html += fmt::format("<text class=\"mark\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>", left ? x - 7.0 : x + 7.0, y + 4.0,
-                        left ? "end" : "start", label);
+    const bool left = x > 0.72 * frame.width_px;
+    html += SvgText("mark", left ? x - 7.0 : x + 7.0, y + 4.0, left ? Anchor::kEnd : Anchor::kStart, label);
   }
   return html;
 }
 
 }  // namespace
-
-std::vector<double> RoundTicks(double low, double high, int count) {
-  if (!(high > low) || !std::isfinite(low) || !std::isfinite(high) || count < 1) return {};
-  const double raw = (high - low) / count;
-  const double magnitude = std::pow(10.0, std::floor(std::log10(raw)));
-  double step = 10.0 * magnitude;
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * magnitude >= raw * 0.999) {
-      step = factor * magnitude;
-      break;
-    }
-  }
-  std::vector<double> ticks;
-  for (double index = std::ceil(low / step - 1e-9); index * step <= high + 1e-9 * step; index += 1.0)
-    ticks.push_back(index * step + 0.0);  // + 0.0 turns -0 into 0
-  return ticks;
-}
-
-std::string TickLabel(double value) {
-  return std::abs(value) >= 1e4 ? FormatLarge(value) : fmt::format("{:.4g}", value);
-}
 
 std::vector<std::pair<double, double>> Thin(const std::vector<std::pair<double, double>>& points, size_t max_points) {
   if (points.size() <= max_points || max_points < 3) return points;
@@ -149,42 +103,19 @@ std::vector<std::pair<double, double>> Thin(const std::vector<std::pair<double, 
 }
 
 std::string CurveChart(const std::vector<Curve>& curves, const ChartOptions& options) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Axis x_axis{kInfinity, -kInfinity, kLeft, kWidth - kRight};
-  Axis y_axis{kInfinity, -kInfinity, kHeight - kBottom, kTop};
   std::vector<Line> lines;
-  for (const Curve& curve : curves) {
-    lines.push_back(ToLine(curve, options));
-    for (const auto& [x, y] : lines.back().points) {
-      x_axis.low = std::min(x_axis.low, x);
-      x_axis.high = std::max(x_axis.high, x);
-      y_axis.low = std::min(y_axis.low, y);
-      y_axis.high = std::max(y_axis.high, y);
-    }
-  }
-  std::string html = fmt::format("<figure class=\"chart card\"><figcaption>{}</figcaption>", EscapeHtml(options.title));
-  if (!(x_axis.high >= x_axis.low)) return html + "<p class=\"empty\">No data.</p></figure>\n";
-  if (!options.log_x) x_axis.low = std::min(x_axis.low, 0.0);
-  if (!(x_axis.high > x_axis.low)) x_axis.high = x_axis.low + 1.0;
-  if (std::any_of(curves.begin(), curves.end(), [](const Curve& c) { return c.marks; })) {
-    // Marks stand clear of the edges.
-    const double pad = 0.04 * (x_axis.high - x_axis.low);
-    x_axis.high += pad;
-    if (options.log_x) x_axis.low -= pad;
-  }
-  const double pad = std::max(0.05 * (y_axis.high - y_axis.low), options.log_y ? 0.05 : std::min(0.5, 0.2 * std::abs(y_axis.high) + 1e-6));
-  y_axis.low -= pad;
-  y_axis.high += pad;
-
-  html += fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">", kWidth, kHeight, EscapeHtml(options.title));
-  html += Frame(x_axis, y_axis, options);
-  std::string legend;
+  for (const Curve& curve : curves) lines.push_back(ToLine(curve, options));
+  const bool marks = std::any_of(curves.begin(), curves.end(), [](const Curve& c) { return c.marks; });
+  const std::optional<PlotFrame> frame = FrameOf(lines, marks, options);
+  if (!frame) return EmptyFigure(options.title);
+  std::string html = PlotBegin(*frame), legend;
   for (size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].points.empty()) continue;
-    html += DrawLine(lines[i], curves[i], i % 10, x_axis, y_axis);
-    legend += fmt::format("<span><i class=\"c{}\"></i>{}</span>", i % 10, EscapeHtml(curves[i].name));
+    const std::string color = fmt::format("c{}", i % 10);
+    html += DrawLine(*frame, lines[i], curves[i], color);
+    legend += LegendEntry(color, curves[i].name);
   }
-  return html + "</svg><div class=\"legend\">" + legend + "</div></figure>\n";
+  return html + FigureEnd(legend);
 }
 
 }  // namespace skyquilt::page

@@ -28,10 +28,6 @@ struct ChartOptions {
 
 // A <figure>; says "no data" inside when no curve has a point.
 std::string CurveChart(const std::vector<Curve>& curves, const ChartOptions& options);
-// At most about `count` round numbers (1, 2, 5 times a power of ten) inside [low, high].
-std::vector<double> RoundTicks(double low, double high, int count);
-// "10", "0.05", "25.0 k": as many digits as the number needs.
-std::string TickLabel(double value);
 // Averages runs of neighbours so that at most `max_points` remain; first and last stay in place.
 std::vector<std::pair<double, double>> Thin(const std::vector<std::pair<double, double>>& points, size_t max_points);
 

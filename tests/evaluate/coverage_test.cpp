@@ -6,24 +6,12 @@
 #include <limits>
 #include <numeric>
 
+#include "tests/evaluate/nadir_view.h"
+
 namespace skyquilt::evaluate {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-// Looks straight down from (x, y, height): image x east, image y south.
-TrainingView Nadir(double x, double y, double height_m) {
-  TrainingView view;
-  view.camera.model = camera::CameraModel::kPinhole;
-  view.camera.width = 100;
-  view.camera.height = 80;
-  view.camera.params = {100.0, 100.0, 50.0, 40.0};
-  Eigen::Matrix3d rotation;
-  rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-  view.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
-  view.cam_from_enu.translation = -(rotation * Eigen::Vector3d(x, y, height_m));
-  return view;
-}
 
 TEST(SurfacePoint, KeepsADepthInsideTheHeights) {
   const auto point = SurfacePoint({1, 2, 100}, {0, 0, -1}, 95.0, {0.0, 20.0});
@@ -51,7 +39,7 @@ TEST(SurfacePoint, CameraInsideTheHeightsKeepsNearSurfaces) {
 
 TEST(TrainingViews, CountsOnlyViewsWhoseFrameHoldsThePoint) {
   // From 100 m up, each frame spans 100 m x 80 m on the ground.
-  const TrainingViews views({Nadir(0, 0, 100), Nadir(60, 0, 100), Nadir(120, 0, 100)});
+  const TrainingViews views({NadirView(0, 0, 100), NadirView(60, 0, 100), NadirView(120, 0, 100)});
   std::vector<int> order = views.ByDistance({0, 0, 100});
   EXPECT_EQ(order, (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(views.Count({0, 0, 0}, order, 9), 1);
@@ -62,13 +50,13 @@ TEST(TrainingViews, CountsOnlyViewsWhoseFrameHoldsThePoint) {
 }
 
 TEST(TrainingViews, PointsBehindACameraAreNotSeen) {
-  const TrainingViews views({Nadir(0, 0, 100)});
+  const TrainingViews views({NadirView(0, 0, 100)});
   EXPECT_TRUE(views.Sees(0, {0, 0, 99}));
   EXPECT_FALSE(views.Sees(0, {0, 0, 101}));
 }
 
 TEST(TrainingViews, MaskedPixelsDoNotSee) {
-  TrainingView view = Nadir(0, 0, 100);
+  TrainingView view = NadirView(0, 0, 100);
   std::vector<uint8_t> mask(100 * 80, 1);
   for (int y = 0; y < 80; ++y) {
     for (int x = 0; x < 50; ++x) mask[static_cast<size_t>(y * 100 + x)] = 0;  // the western half
@@ -80,14 +68,14 @@ TEST(TrainingViews, MaskedPixelsDoNotSee) {
 }
 
 TEST(TrainingViews, StopsCountingAtEnough) {
-  const TrainingViews views({Nadir(0, 0, 100), Nadir(1, 0, 100), Nadir(2, 0, 100)});
+  const TrainingViews views({NadirView(0, 0, 100), NadirView(1, 0, 100), NadirView(2, 0, 100)});
   EXPECT_EQ(views.Count({0, 0, 0}, views.ByDistance({0, 0, 0}), 2), 2);
   EXPECT_EQ(TrainingViews({}).Count({0, 0, 0}, {}, 2), 0);
 }
 
 // Strong barrel distortion folds points far outside the frame back into it.
 TEST(TrainingViews, FoldedDistortionIsNotSeen) {
-  TrainingView view = Nadir(0, 0, 100);
+  TrainingView view = NadirView(0, 0, 100);
   view.camera.model = camera::CameraModel::kSimpleRadial;
   view.camera.params = {100.0, 50.0, 40.0, -0.3};
   ASSERT_TRUE(view.camera.Problem().empty());

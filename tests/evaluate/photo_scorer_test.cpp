@@ -5,28 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/evaluate/nadir_view.h"
+
 namespace skyquilt::evaluate {
 namespace {
 
 constexpr int kWidth = 100, kHeight = 80;
-
-camera::Camera Lens() {
-  camera::Camera camera;
-  camera.model = camera::CameraModel::kPinhole;
-  camera.width = kWidth;
-  camera.height = kHeight;
-  camera.params = {100.0, 100.0, 50.0, 40.0};
-  return camera;
-}
-
-geo::Rigid3d NadirPose(double x, double y, double height_m) {
-  Eigen::Matrix3d rotation;
-  rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-  geo::Rigid3d pose;
-  pose.rotation = Eigen::Quaterniond(rotation);
-  pose.translation = -(rotation * Eigen::Vector3d(x, y, height_m));
-  return pose;
-}
 
 // A camera 100 m above flat ground at height 0: 100 m x 80 m are in the frame, one pixel is one metre.
 struct FlatGround {
@@ -36,8 +20,9 @@ struct FlatGround {
   base::ThreadPool threads{2};
 
   FlatGround() {
-    task.camera = Lens();
-    task.cam_from_enu = NadirPose(0, 0, 100);
+    const TrainingView view = NadirView(0, 0, 100);
+    task.camera = view.camera;
+    task.cam_from_enu = view.cam_from_enu;
     task.photo = image::Image8(kWidth, kHeight, 3, 100);
     rendered.resize(static_cast<size_t>(kWidth) * kHeight);
     for (int y = 0; y < kHeight; ++y) {
@@ -51,7 +36,7 @@ struct FlatGround {
       }
     }
   }
-  static TrainingViews TwoEverywhere() { return TrainingViews({{Lens(), NadirPose(0, 0, 120), {}}, {Lens(), NadirPose(1, 0, 120), {}}}); }
+  static TrainingViews TwoEverywhere() { return TrainingViews({NadirView(0, 0, 120), NadirView(1, 0, 120)}); }
 };
 
 double Psnr(double difference) {
@@ -84,7 +69,7 @@ TEST(ScorePhoto, BlocksAndSeamsGetTheirOwnPixels) {
 TEST(ScorePhoto, PixelsSeenByOneViewOnlyAreNotCovered) {
   FlatGround flat;
   // The second view is moved 50 m west: its frame ends at x = 0 + 10 (60 m half width at 120 m height).
-  const TrainingViews views({{Lens(), NadirPose(0, 0, 120), {}}, {Lens(), NadirPose(-50, 0, 120), {}}});
+  const TrainingViews views({NadirView(0, 0, 120), NadirView(-50, 0, 120)});
   const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
   EXPECT_EQ(findings.score.covered_pixels, 60 * kHeight);
   EXPECT_EQ(findings.scored.data[0], 1);

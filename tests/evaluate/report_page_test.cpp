@@ -10,7 +10,7 @@
 
 #include "core/base/file.h"
 #include "evaluate/report_images.h"
-#include "sample_report.h"
+#include "tests/evaluate/sample_report.h"
 
 namespace skyquilt::evaluate {
 namespace {

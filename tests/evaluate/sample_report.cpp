@@ -1,4 +1,4 @@
-#include "sample_report.h"
+#include "tests/evaluate/sample_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,11 +117,9 @@ BrightnessReport CloudyFlight(const survey::Survey& survey, const std::filesyste
   return report;
 }
 
-}  // namespace
-
-SampleReport::SampleReport(const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder / "images");
-  base::Random random(11);
+// Nine lines of nine photos over the town, one of them far off its tag.
+survey::Survey FlownSurvey(base::Random& random) {
+  survey::Survey survey;
   survey.origin = {47.3769, 8.5417, 455.0};
   survey.georeferenced = true;
   camera::Camera camera;
@@ -151,7 +149,12 @@ SampleReport::SampleReport(const std::filesystem::path& folder) {
   }
   survey.unregistered = {"flight1/DJI_1082.JPG", "flight1/DJI_1083.JPG"};
   survey.fit = {81, 80, 2.41, 1.62, 1.78, 41.7, {}};
+  return survey;
+}
 
+// Two rows of three, the last of them empty.
+partition::BlockSet TownBlocks(const survey::Survey& survey) {
+  partition::BlockSet blocks;
   blocks.origin = survey.origin;
   blocks.georeferenced = true;
   blocks.rows = 2;
@@ -174,6 +177,11 @@ SampleReport::SampleReport(const std::filesystem::path& folder) {
       blocks.blocks.push_back(block);
     }
   }
+  return blocks;
+}
+
+TrainLog TrainedBlocks(const partition::BlockSet& blocks, base::Random& random) {
+  TrainLog log;
   log.found = true;
   log.ranks = 2;
   log.threads = 4;
@@ -183,44 +191,45 @@ SampleReport::SampleReport(const std::filesystem::path& folder) {
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) continue;
     log.fields.push_back(TrainedField(block.name, 190.0 + 12.0 * block.id, 27.6 + 0.5 * block.id, random));
-    metrics.blocks.push_back({block.name, 26.8 + 0.45 * block.id, 241000 + 9000 * block.id});
   }
   log.fields[3].dropped_steps = 2;
+  return log;
+}
 
-  metrics.has_truth = true;
-  for (size_t i = 0; i < survey.photos.size(); i += 8) {
-    PhotoScore score;
-    score.photo = static_cast<int>(i);
-    score.name = survey.photos[i].name;
-    score.width = 640;
-    score.height = 420;
-    score.used_pixels = 640 * 420;
-    score.covered_pixels = static_cast<int64_t>(640 * 420 * (0.86 + 0.1 * random.UniformDouble()));
-    score.exposure_gain = random.Uniform(0.8, 1.2);
-    score.psnr_db = 28.0 + random.Normal();
-    score.ssim = 0.86 + 0.02 * random.Normal();
-    score.psnr_full_db = score.psnr_db - 1.3;
-    score.ssim_full = score.ssim - 0.03;
-    score.depth_rmse_m = 1.1 + 0.1 * random.Normal();
-    score.depth_median_abs_m = 0.21 + 0.03 * random.Normal();
-    score.render_seconds = 1.7 + 0.1 * random.Normal();
-    metrics.photos.push_back(score);
+PhotoScore ScoreOf(const survey::Survey& survey, int index, base::Random& random) {
+  PhotoScore score;
+  score.photo = index;
+  score.name = survey.photos[static_cast<size_t>(index)].name;
+  score.width = 640;
+  score.height = 420;
+  score.used_pixels = 640 * 420;
+  score.covered_pixels = static_cast<int64_t>(640 * 420 * (0.86 + 0.1 * random.UniformDouble()));
+  score.exposure_gain = random.Uniform(0.8, 1.2);
+  score.psnr_db = 28.0 + random.Normal();
+  score.ssim = 0.86 + 0.02 * random.Normal();
+  score.psnr_full_db = score.psnr_db - 1.3;
+  score.ssim_full = score.ssim - 0.03;
+  score.depth_rmse_m = 1.1 + 0.1 * random.Normal();
+  score.depth_median_abs_m = 0.21 + 0.03 * random.Normal();
+  score.render_seconds = 1.7 + 0.1 * random.Normal();
+  return score;
+}
 
-    const Eigen::Vector3d center = survey.photos[i].cam_from_enu.OriginInSource();
-    const double metres_per_pixel = 120.0 / 520.0;
-    image::ImageF depth;
-    const image::Image8 photo =
-        TownPicture(640, 420, center.x() - 320 * metres_per_pixel, center.y() + 210 * metres_per_pixel, metres_per_pixel, 0.0, nullptr);
-    const image::Image8 render =
-        TownPicture(640, 420, center.x() - 320 * metres_per_pixel, center.y() + 210 * metres_per_pixel, metres_per_pixel, 0.3, &depth);
-    std::vector<uint8_t> scored(640 * 420, 1);
-    for (size_t p = 0; p < scored.size(); ++p) scored[p] = p % 640 < 580 ? 1 : 0;
-    input.images.push_back(WritePhotoImages({&photo, &render, &depth, scored}, folder, "t" + std::to_string(i), 960, 0.25F));
-  }
-  image::SavePng(TownPicture(900, 900, -kExtent_m / 2, kExtent_m / 2, kExtent_m / 900.0, 0.0, nullptr), folder / "images/orthophoto.png");
-  input.background = MapBackground{"images/orthophoto.png", {-kExtent_m / 2, -kExtent_m / 2}, {kExtent_m / 2, kExtent_m / 2}};
-  input.color_ramp = WriteColorRamp(folder);
+PhotoImages PicturesOf(const survey::Photo& photo, const std::filesystem::path& folder, const std::string& prefix) {
+  const Eigen::Vector3d center = photo.cam_from_enu.OriginInSource();
+  const double metres_per_pixel = 120.0 / 520.0;
+  image::ImageF depth;
+  const image::Image8 taken =
+      TownPicture(640, 420, center.x() - 320 * metres_per_pixel, center.y() + 210 * metres_per_pixel, metres_per_pixel, 0.0, nullptr);
+  const image::Image8 render =
+      TownPicture(640, 420, center.x() - 320 * metres_per_pixel, center.y() + 210 * metres_per_pixel, metres_per_pixel, 0.3, &depth);
+  std::vector<uint8_t> scored(640 * 420, 1);
+  for (size_t p = 0; p < scored.size(); ++p) scored[p] = p % 640 < 580 ? 1 : 0;
+  return WritePhotoImages({&taken, &render, &depth, scored}, folder, prefix, 960, 0.25F);
+}
 
+// All but the scores of photos and blocks.
+void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& blocks, const TrainLog& log, Metrics& metrics) {
   std::vector<double> psnr, ssim;
   for (const PhotoScore& photo : metrics.photos) {
     psnr.push_back(photo.psnr_db);
@@ -262,6 +271,28 @@ SampleReport::SampleReport(const std::filesystem::path& folder) {
   metrics.machine = "8-core laptop, 16 GiB, Linux";
   metrics.date = "2026-01-31T12:00:00Z";
   metrics.warnings = CollectWarnings(survey, blocks, log, metrics);
+}
+
+}  // namespace
+
+SampleReport::SampleReport(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder / "images");
+  base::Random random(11);
+  survey = FlownSurvey(random);
+  blocks = TownBlocks(survey);
+  log = TrainedBlocks(blocks, random);
+  metrics.has_truth = true;
+  for (const partition::Block& block : blocks.blocks) {
+    if (!block.empty) metrics.blocks.push_back({block.name, 26.8 + 0.45 * block.id, 241000 + 9000 * block.id});
+  }
+  for (size_t i = 0; i < survey.photos.size(); i += 8) {
+    metrics.photos.push_back(ScoreOf(survey, static_cast<int>(i), random));
+    input.images.push_back(PicturesOf(survey.photos[i], folder, "t" + std::to_string(i)));
+  }
+  image::SavePng(TownPicture(900, 900, -kExtent_m / 2, kExtent_m / 2, kExtent_m / 900.0, 0.0, nullptr), folder / "images/orthophoto.png");
+  input.background = MapBackground{"images/orthophoto.png", {-kExtent_m / 2, -kExtent_m / 2}, {kExtent_m / 2, kExtent_m / 2}};
+  input.color_ramp = WriteColorRamp(folder);
+  FillSceneMetrics(survey, blocks, log, metrics);
 
   brightness = CloudyFlight(survey, folder);
   input.title = "town <sample>";

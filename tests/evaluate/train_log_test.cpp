@@ -1,23 +1,19 @@
 #include "evaluate/train_log.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
+
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::evaluate {
 namespace {
 
 class TrainLogFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("skyquilt_train_log_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   void Write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST(ParseCurve, ReadsColumnsByName) {
@@ -39,9 +35,9 @@ TEST(ParseCurve, SkipsTornLinesAndMarksWhatIsNotANumber) {
 }
 
 TEST_F(TrainLogFiles, MissingOrDamagedFilesGiveAnEmptyLog) {
-  EXPECT_FALSE(ReadTrainLog(folder_ / "train.json", folder_).found);
+  EXPECT_FALSE(ReadTrainLog(folder_ / "train.json", folder_.path()).found);
   Write("train.json", "{\"ranks\": 2, \"fie");
-  EXPECT_FALSE(ReadTrainLog(folder_ / "train.json", folder_).found);
+  EXPECT_FALSE(ReadTrainLog(folder_ / "train.json", folder_.path()).found);
   EXPECT_TRUE(std::isnan(TrainLog{}.TrainSeconds()));
   EXPECT_TRUE(std::isnan(TrainLog{}.SamplesPerSecond()));
 }
@@ -53,7 +49,7 @@ TEST_F(TrainLogFiles, ReadsFieldsAndTheirCurves) {
     {"name":"r0c0","ok":false,"reason":"loss not finite","steps":5,"seconds":30,"samples":3000,"psnr_db":null}]})");
   Write("context.log.csv", "step,seconds,loss,psnr\n1,1,0.5,10\n");
   Write("block_r0c0.log.csv", "step,seconds,loss,psnr\n1,1,0.5,10\n2,2,0.4,11\n");
-  const TrainLog log = ReadTrainLog(folder_ / "train.json", folder_);
+  const TrainLog log = ReadTrainLog(folder_ / "train.json", folder_.path());
   ASSERT_TRUE(log.found);
   ASSERT_EQ(log.fields.size(), 2U);
   EXPECT_EQ(log.ranks, 2);

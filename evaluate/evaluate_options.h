@@ -1,0 +1,26 @@
+// How a scene is evaluated: [evaluate] in the configuration.
+#pragma once
+
+#include <string>
+
+#include "core/config/options.h"
+
+namespace skyquilt::evaluate {
+
+struct EvaluateOptions {
+  int image_width = 0;           // pixels; 0: the training width
+  std::string lpips_network;     // ONNX file; empty: LPIPS is not measured
+  int max_photos = 0;            // score at most so many held-out photos, evenly spread; 0: all
+  bool exif_gain = true;         // render each photo at its EXIF exposure
+  bool predicted_gain = true;    // and with the residual gain predicted for it
+  std::string normal_photos;     // folder of the same photos at normal exposure; empty: none
+  double normal_stops = 0.0;     // -10..10, by which what is shown is raised before that comparison
+  int report_photos = 40;        // photos with pictures in the report, evenly spread
+  int report_image_width = 960;  // pixels
+
+  void Visit(config::OptionVisitor& v);
+  // Throws base::UsageError for options out of range.
+  void Check() const;
+};
+
+}  // namespace skyquilt::evaluate

@@ -1,0 +1,99 @@
+#include "evaluate/held_out_scorer.h"
+
+#include <chrono>
+#include <numbers>
+
+#include "evaluate/load_task.h"
+
+namespace skyquilt::evaluate {
+
+namespace {
+
+SceneArea AreaOf(const scene::SceneInfo& info) {
+  SceneArea area;
+  for (const scene::SceneBlock& block : info.blocks) area.boxes.push_back({block.min_enu, block.max_enu, block.margin_m});
+  if (area.boxes.empty()) area.boxes.push_back({info.min_enu, info.max_enu, 0.0});
+  area.heights = {info.min_enu.z(), info.max_enu.z()};
+  return area;
+}
+
+std::vector<TrainingView> ViewsOf(const EvaluateInput& input) {
+  std::vector<TrainingView> views;
+  for (size_t i = 0; i < input.survey->photos.size(); ++i) {
+    const survey::Photo& photo = input.survey->photos[i];
+    if (photo.is_test) continue;
+    const camera::Camera& camera = input.survey->cameras[static_cast<size_t>(photo.camera)];
+    views.push_back({camera.Resized(input.pixels->Width(i), input.pixels->Height(i)), photo.cam_from_enu, input.pixels->Mask(i)});
+  }
+  return views;
+}
+
+double LpipsOf(metrics::Lpips& network, const PhotoTask& task, const image::Image8& render) {
+  const image::Image8 used = task.UsedPixels();
+  return network.Distance(image::ToImageF(render), image::ToImageF(task.photo), used.Empty() ? nullptr : &used);
+}
+
+}  // namespace
+
+HeldOutScorer::HeldOutScorer(const EvaluateInput& input)
+    : input_(input), area_(AreaOf(input.scene->info())), training_(ViewsOf(input)), views_(training_) {
+  if (!input.options.lpips_network.empty()) lpips_.emplace(input.options.lpips_network);
+}
+
+HeldOutScorer::Recordings HeldOutScorer::RecordingsOf(int photo) const {
+  const brightness::Response& response = input_.scene->info().response;
+  const survey::Photo& taken = input_.survey->photos[static_cast<size_t>(photo)];
+  Recordings recordings;
+  recordings.gain = TaggedGain(taken, response.reference_exposure, input_.options.exif_gain);
+  recordings.tagged = TaggedRecording(response, taken.camera, recordings.gain);
+  recordings.predicted =
+      input_.options.predicted_gain ? PredictedRecording(response, static_cast<size_t>(photo), recordings.tagged) : recordings.tagged;
+  return recordings;
+}
+
+PhotoFindings HeldOutScorer::ScoreRecorded(int photo, const PhotoTask& task, base::ThreadPool& threads) const {
+  using Clock = std::chrono::steady_clock;
+  const Recordings recordings = RecordingsOf(photo);
+  const Clock::time_point start = Clock::now();
+  std::vector<render::RayColor> rendered = input_.scene->RenderCamera(task.camera, task.cam_from_enu, {scene::Look::kRecorded, {}}, threads);
+  const std::vector<render::RayColor> as_reference = recordings.Differ() ? rendered : std::vector<render::RayColor>();
+  Record(task.camera, recordings.predicted, rendered, threads);
+  const double render_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+
+  PhotoFindings findings = ScorePhoto(task, rendered, views_, area_, threads);
+  PhotoScore& score = findings.score;
+  score.photo = photo;
+  score.name = input_.survey->photos[static_cast<size_t>(photo)].name;
+  score.exposure_gain = recordings.gain;
+  for (size_t c = 0; c < 3; ++c) {
+    score.predicted_stops[c] = static_cast<double>(recordings.predicted.log_gain[c] - recordings.tagged.log_gain[c]) / std::numbers::ln2;
+  }
+  score.psnr_exif_gain_db = recordings.Differ() ? PsnrRecorded(task, recordings.tagged, as_reference, findings.scored, threads) : score.psnr_db;
+  score.render_seconds = render_seconds;
+  return findings;
+}
+
+std::vector<render::RayColor> HeldOutScorer::RenderNormal(const PhotoTask& task, base::ThreadPool& threads) const {
+  scene::Appearance appearance;
+  appearance.log_gain.fill(static_cast<float>(input_.options.normal_stops * std::numbers::ln2));
+  return input_.scene->RenderCamera(task.camera, task.cam_from_enu, appearance, threads);
+}
+
+ScoredPhoto HeldOutScorer::Score(int photo, bool keep_normal, base::ThreadPool& threads) {
+  ScoredPhoto scored;
+  scored.task = LoadTask(*input_.survey, *input_.pixels, photo, input_.options.image_width);
+  scored.findings = ScoreRecorded(photo, scored.task, threads);
+  PhotoScore& score = scored.findings.score;
+  if (lpips_) score.lpips = LpipsOf(*lpips_, scored.task, scored.findings.render);
+  if (!scored.findings.true_depth.Empty()) scored.air = MeasureAirOpacity(*input_.scene, scored.task, scored.findings, threads);
+  const std::filesystem::path normal_photos = input_.options.normal_photos;
+  if (keep_normal || !normal_photos.empty()) scored.normal = RenderNormal(scored.task, threads);
+  if (!normal_photos.empty()) {
+    const NormalScore against = ScoreNormal(normal_photos / score.name, scored.normal, scored.findings.scored);
+    score.psnr_normal_db = against.psnr_db;
+    score.ssim_normal = against.ssim;
+  }
+  return scored;
+}
+
+}  // namespace skyquilt::evaluate

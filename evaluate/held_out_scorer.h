@@ -1,0 +1,54 @@
+// Renders held-out photos as they were recorded and scores them, one by one: photos in, values out.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/base/thread_pool.h"
+#include "core/metrics/lpips.h"
+#include "core/scene/scene.h"
+#include "evaluate/air_opacity.h"
+#include "evaluate/coverage.h"
+#include "evaluate/evaluate_input.h"
+#include "evaluate/photo_recording.h"
+#include "evaluate/photo_scorer.h"
+
+namespace skyquilt::evaluate {
+
+struct ScoredPhoto {
+  PhotoTask task;
+  PhotoFindings findings;                // with the whole score
+  AirOpacity air;                        // nothing without true depth
+  std::vector<render::RayColor> normal;  // at normal brightness, row-major; empty when nobody asked
+};
+
+class HeldOutScorer {
+ public:
+  // `input` must outlive it. Throws base::InputError for an LPIPS network that cannot be used.
+  explicit HeldOutScorer(const EvaluateInput& input);
+
+  // photo: index into Survey::photos. keep_normal: the photo at normal brightness is wanted too. Throws base::InputError.
+  ScoredPhoto Score(int photo, bool keep_normal, base::ThreadPool& threads);
+
+  const std::vector<TrainingView>& training() const { return training_; }
+  size_t n_boxes() const { return area_.boxes.size(); }  // as many squared errors per block a photo gives
+
+ private:
+  // How the photo records light by its tags, and with what training predicts for it.
+  struct Recordings {
+    double gain = 1.0;
+    Recording tagged, predicted;
+    bool Differ() const { return predicted.log_gain != tagged.log_gain; }
+  };
+  Recordings RecordingsOf(int photo) const;
+  PhotoFindings ScoreRecorded(int photo, const PhotoTask& task, base::ThreadPool& threads) const;
+  std::vector<render::RayColor> RenderNormal(const PhotoTask& task, base::ThreadPool& threads) const;
+
+  const EvaluateInput& input_;
+  const SceneArea area_;
+  const std::vector<TrainingView> training_;
+  const TrainingViews views_;
+  std::optional<metrics::Lpips> lpips_;
+};
+
+}  // namespace skyquilt::evaluate

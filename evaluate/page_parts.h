@@ -1,0 +1,18 @@
+// Pieces of HTML that several sections of the report's page are made of. Values and legends are HTML; other texts are escaped here.
+#pragma once
+
+#include <string>
+
+namespace skyquilt::evaluate {
+
+// A small figure with its name, in a row of such.
+std::string Chip(const std::string& label, const std::string& value, const std::string& css_class = "");
+// A picture with its caption; nothing without a file. kind: its class, by which the page's script finds it.
+std::string Picture(const std::string& kind, const std::string& file, int width, int height, const std::string& caption,
+                    const std::string& legend = "");
+// A bar of `percent` of the room there is, between a name (HTML) and a value.
+std::string BarRow(const std::string& name, double percent, const std::string& value);
+// An entry of a list of facts (<dl>).
+std::string Fact(const std::string& name, const std::string& value);
+
+}  // namespace skyquilt::evaluate

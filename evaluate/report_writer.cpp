@@ -1,0 +1,93 @@
+#include "evaluate/report_writer.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "core/base/file.h"
+#include "evaluate/choose_photos.h"
+#include "evaluate/report_images.h"
+
+namespace skyquilt::evaluate {
+
+namespace {
+
+constexpr float kErrorHigh = 0.25F;  // display values at the top of the error colours
+
+std::string TitleOf(const std::filesystem::path& project_folder) {
+  const std::filesystem::path folder = std::filesystem::absolute(project_folder).lexically_normal();
+  // A path that ends in a slash has an empty last name.
+  return (folder.filename().empty() ? folder.parent_path() : folder).filename().string();
+}
+
+// Pictures of an earlier evaluation with other options would only take room.
+void RemoveStalePictures(const std::filesystem::path& report_folder, const std::vector<PhotoImages>& images) {
+  std::set<std::string> kept;
+  for (const PhotoImages& one : images) kept.insert({one.photo, one.render, one.error, one.depth});
+  std::vector<std::filesystem::path> stale;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("photo_") && !kept.contains("images/" + name)) stale.push_back(entry.path());
+  }
+  for (const std::filesystem::path& file : stale) std::filesystem::remove(file, ignored);
+}
+
+}  // namespace
+
+ReportPictures::ReportPictures(const EvaluateInput& input, const std::vector<int>& held_out)
+    : input_(input), brightness_(CollectBrightness(input.scene->info(), *input.survey, *input.pixels)) {
+  if (input.options.report_photos == 0) return;
+  pictured_ = EvenlySpread(held_out, input.options.report_photos);
+  contrasted_ = ChooseViews(input.scene->info(), *input.survey, held_out);
+  brightness_.views.resize(contrasted_.size());
+}
+
+bool ReportPictures::ShowsNormal(int photo) const {
+  return std::find(contrasted_.begin(), contrasted_.end(), photo) != contrasted_.end();
+}
+
+void ReportPictures::Write(const ScoredPhoto& scored) {
+  const PhotoFindings& findings = scored.findings;
+  const int photo = findings.score.photo;
+  images_.emplace_back();
+  if (std::find(pictured_.begin(), pictured_.end(), photo) != pictured_.end()) {
+    images_.back() = WritePhotoImages({&scored.task.photo, &findings.render, &findings.z_depth, findings.scored.data}, input_.ReportFolder(),
+                                      fmt::format("photo_{:05d}", photo), input_.options.report_image_width, kErrorHigh);
+  }
+  const auto place = std::find(contrasted_.begin(), contrasted_.end(), photo);
+  if (place != contrasted_.end()) WriteView(scored, static_cast<size_t>(place - contrasted_.begin()));
+}
+
+void ReportPictures::WriteView(const ScoredPhoto& scored, size_t view) {
+  const PhotoScore& score = scored.findings.score;
+  const image::Image8 normal = PictureOf(scored.normal, scored.task.camera.width, scored.task.camera.height);
+  BrightnessView& shown = brightness_.views[view];
+  shown = WriteBrightnessView(scored.task.photo, scored.findings.render, normal, input_.ReportFolder(), fmt::format("brightness_{}", view),
+                              input_.options.report_image_width);
+  shown.name = score.name;
+  shown.stops = ExposureStops(input_.scene->info().response, static_cast<size_t>(score.photo));
+}
+
+void WriteReport(const EvaluateInput& input, const TrainLog& log, const Metrics& metrics, const ReportPictures& pictures) {
+  const std::filesystem::path report_folder = input.ReportFolder();
+  ReportInput page;
+  page.title = TitleOf(input.project_folder);
+  page.metrics = &metrics;
+  page.survey = input.survey;
+  page.blocks = input.blocks;
+  page.log = &log;
+  page.brightness = &pictures.brightness();
+  page.images = pictures.images();
+  page.background = CopyMapBackground(input.project_folder / "products", report_folder);
+  page.color_ramp = WriteColorRamp(report_folder);
+  page.error_high = static_cast<double>(kErrorHigh);
+  base::WriteFileAtomically(report_folder / "index.html", BuildReportPage(page));
+  if (!pictures.brightness().Empty()) base::WriteFileAtomically(report_folder / "brightness.json", BrightnessJson(pictures.brightness()));
+  RemoveStalePictures(report_folder, page.images);
+  base::WriteFileAtomically(report_folder / "metrics.json", MetricsJson(metrics));
+}
+
+}  // namespace skyquilt::evaluate

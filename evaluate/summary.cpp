@@ -1,0 +1,118 @@
+#include "evaluate/summary.h"
+
+#include <algorithm>
+
+#include "core/base/system.h"
+#include "evaluate/warnings.h"
+
+namespace skyquilt::evaluate {
+
+namespace {
+
+double MeanOver(const std::vector<PhotoScore>& photos, double PhotoScore::*value) {
+  std::vector<double> values;
+  for (const PhotoScore& photo : photos) values.push_back(photo.*value);
+  return MeanOfMeasured(values);
+}
+
+void AddMeans(const Scores& scores, Metrics* metrics) {
+  metrics->psnr = scores.Psnr();
+  metrics->psnr_normal = MeanOver(scores.photos, &PhotoScore::psnr_normal_db);
+  metrics->ssim_normal = MeanOver(scores.photos, &PhotoScore::ssim_normal);
+  metrics->psnr_exif_gain = MeanOver(scores.photos, &PhotoScore::psnr_exif_gain_db);
+  metrics->ssim = MeanOver(scores.photos, &PhotoScore::ssim);
+  metrics->psnr_full_frame = MeanOver(scores.photos, &PhotoScore::psnr_full_db);
+  metrics->ssim_full_frame = MeanOver(scores.photos, &PhotoScore::ssim_full);
+  metrics->psnr_right_half = MeanOver(scores.photos, &PhotoScore::right_half_db);
+  metrics->psnr_right_half_fitted = MeanOver(scores.photos, &PhotoScore::right_half_fitted_db);
+  metrics->lpips = MeanOver(scores.photos, &PhotoScore::lpips);
+  metrics->coverage = scores.Coverage();
+}
+
+void AddPooled(const scene::SceneInfo& info, const Scores& scores, Metrics* metrics) {
+  for (size_t b = 0; b < info.blocks.size(); ++b) {
+    metrics->blocks.push_back({info.blocks[b].name, metrics::PsnrOf(scores.per_block[b]), PixelsOf(scores.per_block[b])});
+  }
+  metrics->psnr_interior_db = metrics::PsnrOf(scores.seams.AllInterior());
+  metrics->psnr_matched_interior_db = scores.seams.MatchedInteriorDb();
+  metrics->psnr_seam_db = metrics::PsnrOf(scores.seams.AllSeam());
+  metrics->seam_psnr_gap_db = scores.seams.GapDb();
+  metrics->footprint_step = scores.footprints.border;
+  metrics->footprint_step_control = scores.footprints.control;
+  if (!metrics->has_truth) return;
+  const metrics::DepthErrors errors = scores.depth.Result();
+  metrics->depth_rmse_m = errors.rmse_m;
+  metrics->depth_median_abs_m = errors.median_abs_m;
+  metrics->air_opacity = scores.air.Mean();
+  metrics->air_profile = scores.air.Profile();
+}
+
+void AddSurveyFacts(const survey::Survey& survey, Metrics* metrics) {
+  metrics->has_truth = survey.truth.has_value();
+  metrics->georeferenced = survey.georeferenced;
+  metrics->geo_fit = survey.fit;
+  metrics->median_agl_m = survey.MedianAgl();
+  std::vector<double> relative;
+  for (const survey::Photo& photo : survey.photos) {
+    if (photo.relative_altitude_m) relative.push_back(*photo.relative_altitude_m);
+  }
+  metrics->median_relative_altitude_m = MedianOfMeasured(std::move(relative));
+  metrics->n_photos = static_cast<int>(survey.photos.size());
+  metrics->n_unregistered = static_cast<int>(survey.unregistered.size());
+  metrics->n_test = static_cast<int>(std::count_if(survey.photos.begin(), survey.photos.end(), [](const auto& photo) { return photo.is_test; }));
+}
+
+}  // namespace
+
+void Scores::Add(const ScoredPhoto& photo) {
+  const PhotoFindings& findings = photo.findings;
+  photos.push_back(findings.score);
+  for (size_t b = 0; b < per_block.size(); ++b) per_block[b] += findings.per_block[b];
+  seams += findings.seams;
+  if (!findings.true_depth.Empty()) depth.Add(findings.z_depth, findings.true_depth, &findings.scored);
+  air += photo.air;
+}
+
+double Scores::Psnr() const {
+  return MeanOver(photos, &PhotoScore::psnr_db);
+}
+
+double Scores::Coverage() const {
+  int64_t used = 0, covered = 0;
+  for (const PhotoScore& photo : photos) {
+    used += photo.used_pixels;
+    covered += photo.covered_pixels;
+  }
+  return used > 0 ? static_cast<double>(covered) / static_cast<double>(used) : kNotMeasured;
+}
+
+Metrics KnownFacts(const EvaluateInput& input, const TrainLog& log) {
+  const scene::SceneInfo& info = input.scene->info();
+  const std::filesystem::path network = input.options.lpips_network;
+  Metrics metrics;
+  AddSurveyFacts(*input.survey, &metrics);
+  metrics.train_seconds = log.TrainSeconds();
+  metrics.samples_per_second = log.SamplesPerSecond();
+  metrics.peak_rss_bytes = log.peak_rss_bytes;
+  metrics.parameters = info.parameters;
+  metrics.ranks = input.ranks > 0 ? input.ranks : std::max(log.ranks, 1);
+  metrics.threads = log.threads;
+  metrics.config = input.config_text.empty() ? info.config : input.config_text;
+  metrics.gsd_m = info.gsd_m > 0.0 ? info.gsd_m : kNotMeasured;
+  metrics.lpips_note = network.empty() ? "not measured: no network file was given" : "full frame, network " + network.filename().string();
+  metrics.machine = base::MachineDescription();
+  metrics.date = base::UtcTimestamp();
+  return metrics;
+}
+
+void Summarise(const EvaluateInput& input, const TrainLog& log, const Scores& scores, Metrics* metrics) {
+  metrics->photos = scores.photos;
+  metrics->image_width = scores.photos.empty() ? 0 : scores.photos.front().width;
+  AddMeans(scores, metrics);
+  AddPooled(input.scene->info(), scores, metrics);
+  metrics->rendering = input.scene->statistics();
+  metrics->evaluate_peak_rss_bytes = base::PeakRssBytes();
+  metrics->warnings = CollectWarnings(*input.survey, *input.blocks, log, *metrics);
+}
+
+}  // namespace skyquilt::evaluate

@@ -25,9 +25,9 @@ render::TrainedField SyntheticField(const SyntheticOptions& options) {
   render::TrainedField field;
   field.name = "synthetic";
   const double half = 0.5 * options.edge_m;
-  field.core_min_enu = options.offset_enu + Eigen::Vector3d(-half, -half, -0.5);
-  field.core_max_enu = options.offset_enu + Eigen::Vector3d(half, half, options.height_m - 0.5);
-  field.map = encoding::SpaceMap::Box(field.core_min_enu, field.core_max_enu);
+  field.box.min_enu = options.offset_enu + Eigen::Vector3d(-half, -half, -0.5);
+  field.box.max_enu = options.offset_enu + Eigen::Vector3d(half, half, options.height_m - 0.5);
+  field.map = encoding::SpaceMap::Box(field.box.min_enu, field.box.max_enu);
   field.step_m = 2.0 * options.voxel_m;
   encoding::HashGridConfig& grid = field.config.grid;
   grid.levels = options.levels;

@@ -136,8 +136,8 @@ class RayRenderer::Group {
   static Stretch CoreStretch(const TrainedField& f, const Ray& ray) {
     constexpr double kEver = std::numeric_limits<double>::infinity();
     const double m = f.blend_m;
-    return RayBox(ray.origin_enu, ray.direction_enu, {f.core_min_enu.x() + m, f.core_min_enu.y() + m, -kEver},
-                  {f.core_max_enu.x() - m, f.core_max_enu.y() - m, kEver});
+    return RayBox(ray.origin_enu, ray.direction_enu, {f.box.min_enu.x() + m, f.box.min_enu.y() + m, -kEver},
+                  {f.box.max_enu.x() - m, f.box.max_enu.y() - m, kEver});
   }
 
   // There the context need not be marched.

@@ -32,10 +32,10 @@ std::vector<double> Describe(const render::TrainedField& f) {
                            f.config.color_range,
                            f.config.density_bias,
                            f.map.contracted() ? 1.0 : 0.0};
-  for (const auto& corner : {f.map.min_enu(), f.map.max_enu(), f.core_min_enu, f.core_max_enu}) {
+  for (const auto& corner : {f.map.min_enu(), f.map.max_enu(), f.box.min_enu, f.box.max_enu}) {
     for (int axis = 0; axis < 3; ++axis) d.push_back(corner[axis]);
   }
-  d.push_back(f.margin_m);
+  d.push_back(f.box.margin_m);
   d.push_back(f.step_m);
   return d;
 }
@@ -143,14 +143,14 @@ render::TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const s
   f.config.density_bias = number();
   const bool contracted = integer() != 0;
   Eigen::Vector3d min_enu, max_enu;
-  for (auto* corner : {&min_enu, &max_enu, &f.core_min_enu, &f.core_max_enu}) {
+  for (auto* corner : {&min_enu, &max_enu, &f.box.min_enu, &f.box.max_enu}) {
     for (int axis = 0; axis < 3; ++axis) (*corner)[axis] = number();
   }
-  f.margin_m = number();
+  f.box.margin_m = number();
   f.step_m = number();
   f.config.luminance = reader.HasAttribute(prefix + "luminance") && reader.IntAttribute(prefix + "luminance") != 0;
   f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
-  f.blend_m = f.margin_m;
+  f.blend_m = f.box.margin_m;
   try {
     // Absent in files from before there was a choice.
     if (reader.HasAttribute(prefix + "encoding")) f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));

@@ -112,16 +112,14 @@ class SmallSurvey : public ::testing::Test {
     job.checkpoint = folder_ / name;
     return job;
   }
-  BoxView Box(double half, double margin) const {
-    BoxView box;
-    box.name = "r0c0";
-    box.min_enu = {-half, -half, -1.0};
-    box.max_enu = {half, half, 6.0};
-    box.margin_m = margin;
-    box.finest_voxel_m = 0.5;
-    box.log2_table_size = 14;
-    for (int i = 0; i < 16; ++i) box.photos.push_back(i);
-    return box;
+  BlockSpec Box(double half, double margin) const {
+    BlockSpec block;
+    block.name = "r0c0";
+    block.box = {{-half, -half, -1.0}, {half, half, 6.0}, margin};
+    block.finest_voxel_m = 0.5;
+    block.log2_table_size = 14;
+    for (int i = 0; i < 16; ++i) block.photos.push_back(i);
+    return block;
   }
   std::string Bytes(const std::string& name) const {
     const checkpoint::ArchiveReader reader(folder_ / name);

@@ -80,9 +80,9 @@ TEST_F(TrainBlockTest, FinishedWorkIsNotDoneTwiceAndOtherConfigurationsAreRefuse
 TEST_F(TrainBlockTest, BlockNobodyPhotographedFailsWithItsReason) {
   base::ThreadPool threads(1);
   TrainContext(Job("context.h5", 20), Box(20.0, 0.0), threads, {});
-  BoxView far = Box(5.0, 0.0);
-  far.min_enu.x() += 500.0;
-  far.max_enu.x() += 500.0;
+  BlockSpec far = Box(5.0, 0.0);
+  far.box.min_enu.x() += 500.0;
+  far.box.max_enu.x() += 500.0;
   const TrainResult result = TrainBlock(Job("far.h5", 10), far, folder_ / "context.h5", threads, {});
   EXPECT_FALSE(result.ok);
   EXPECT_NE(result.reason.find("r0c0"), std::string::npos);

@@ -14,10 +14,10 @@ EngineOptions EngineOptions::For(const brightness::Luminance& luminance) {
   return options;
 }
 
-Stretch BlendStretch(const TrainedField& block, const Ray& ray) {
+geo::Stretch BlendStretch(const TrainedField& block, const Ray& ray) {
   constexpr double kEver = std::numeric_limits<double>::infinity();
   const Eigen::Vector3d reach(block.blend_m, block.blend_m, kEver);
-  return RayBox(ray.origin_enu, ray.direction_enu, block.box.min_enu - reach, block.box.max_enu + reach);
+  return geo::RayBox(ray.origin_enu, ray.direction_enu, block.box.min_enu - reach, block.box.max_enu + reach);
 }
 
 double BlendWeights(const FieldSet& fields, std::span<const int> candidates, double x, double y, std::span<double> weights) {

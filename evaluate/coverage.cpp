@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/base/errors.h"
+#include "core/camera/sight.h"
 
 namespace skyquilt::evaluate {
 
@@ -68,12 +69,7 @@ bool TrainingViews::Sees(int view_index, const Eigen::Vector3d& x_in_enu) const 
   const Cone& cone = cones_[static_cast<size_t>(view_index)];
   const Eigen::Vector3d offset = x_in_enu - cone.apex_enu;
   if (offset.dot(cone.axis_enu) < cone.cos_limit * offset.norm()) return false;
-  const auto pixel = view.camera.ImgFromCam(view.cam_from_enu * x_in_enu);
-  if (!pixel || !(pixel->x() >= 0.0) || !(pixel->y() >= 0.0) || !(pixel->x() < view.camera.width) || !(pixel->y() < view.camera.height)) return false;
-  if (view.mask.empty()) return true;
-  const auto column = static_cast<size_t>(pixel->x());
-  const auto row = static_cast<size_t>(pixel->y());
-  return view.mask[row * static_cast<size_t>(view.camera.width) + column] != 0;
+  return camera::Shows(view.camera, view.cam_from_enu, x_in_enu, {.mask = view.mask});
 }
 
 int TrainingViews::Count(const Eigen::Vector3d& x_in_enu, std::span<const int> order, int enough) const {

@@ -7,6 +7,7 @@
 
 #include "core/base/thread_pool.h"
 #include "core/camera/camera.h"
+#include "core/geo/block_box.h"
 #include "core/geo/transform.h"
 #include "core/image/image.h"
 #include "core/scene/scene.h"
@@ -28,7 +29,7 @@ struct PhotoTask {
 };
 
 struct SceneArea {
-  std::vector<BlockBox> boxes;
+  std::vector<geo::BlockBox> boxes;
   HeightRange heights;
 };
 

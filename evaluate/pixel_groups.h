@@ -6,14 +6,10 @@
 #include <cstdint>
 #include <span>
 
+#include "core/geo/block_box.h"
 #include "core/metrics/psnr.h"
 
 namespace skyquilt::evaluate {
-
-struct BlockBox {
-  Eigen::Vector3d min_enu, max_enu;  // core box
-  double margin_m = 0.0;             // horizontal overlap on each side
-};
 
 enum class Zone : uint8_t {
   kOutside,   // in no block
@@ -23,9 +19,9 @@ enum class Zone : uint8_t {
 };
 
 // The block whose core box [min, max) holds the point; -1 when none does.
-int BlockAt(const Eigen::Vector3d& x_in_enu, std::span<const BlockBox> boxes);
+int BlockAt(const Eigen::Vector3d& x_in_enu, std::span<const geo::BlockBox> boxes);
 // Zone of a point in core box `block` (as BlockAt returned it).
-Zone ZoneAt(const Eigen::Vector3d& x_in_enu, int block, std::span<const BlockBox> boxes);
+Zone ZoneAt(const Eigen::Vector3d& x_in_enu, int block, std::span<const geo::BlockBox> boxes);
 
 // Adds one pixel's RGB difference, display values in [0,1].
 void AddPixel(const float* a, const float* b, metrics::SquaredError* error);

@@ -1,22 +1,19 @@
 // Blocks: the geo-referenced boxes in which separate fields are trained.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "core/geo/block_box.h"
 #include "core/geo/geodetic.h"
 
 namespace skyquilt::partition {
 
-struct Block {
-  int id = 0;                                         // position in BlockSet::blocks
-  std::string name;                                   // "r0c1": row from the south, column from the west
-  Eigen::Vector3d min_enu = Eigen::Vector3d::Zero();  // core box without margin, metres; z: lowest ground to highest roof
-  Eigen::Vector3d max_enu = Eigen::Vector3d::Zero();
-  double margin_m = 0.0;        // horizontal overlap added on each side for training and blending
+struct Block : geo::BlockBox {
+  int id = 0;                   // position in BlockSet::blocks
+  std::string name;             // "r0c1": row from the south, column from the west
   double altitude_agl_m = 0.0;  // of the cameras that see it: given, or from the flight
   double gsd_m = 0.0;           // ground sampling distance at that altitude and the training image width
   double finest_voxel_m = 0.0;
@@ -26,9 +23,6 @@ struct Block {
   double cost = 0.0;             // relative share of training time, > 0 unless empty
   bool empty = false;
   std::string empty_reason;
-
-  Eigen::Vector3d TrainMin() const { return min_enu - Eigen::Vector3d(margin_m, margin_m, 0.0); }
-  Eigen::Vector3d TrainMax() const { return max_enu + Eigen::Vector3d(margin_m, margin_m, 0.0); }
 };
 
 struct BlockSet {

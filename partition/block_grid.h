@@ -30,6 +30,9 @@ struct BlockGrid {
   int columns() const { return static_cast<int>(x_edges.size()) - 1; }
   Eigen::Vector2d Min(int row, int column) const { return {x_edges[static_cast<size_t>(column)], y_edges[static_cast<size_t>(row)]}; }
   Eigen::Vector2d Max(int row, int column) const { return {x_edges[static_cast<size_t>(column) + 1], y_edges[static_cast<size_t>(row) + 1]}; }
+  // The same of a cell by its index.
+  Eigen::Vector2d Min(int index) const { return Min(index / columns(), index % columns()); }
+  Eigen::Vector2d Max(int index) const { return Max(index / columns(), index % columns()); }
   // Index row * columns + column of the one cell that holds the point: cells own their lower edges, the last ones also their upper edge.
   // -1 outside and for NaN.
   int CellOf(double x, double y) const;

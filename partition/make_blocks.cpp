@@ -35,16 +35,12 @@ double MarginOf(const BlockGrid& grid, const PartitionOptions& options) {
 
 double AltitudeOf(const Inputs& in, const BlockGrid& grid, int index) {
   if (!in.options.altitudes.empty()) return in.options.altitudes[static_cast<size_t>(index)];
-  const int row = index / grid.columns();
-  const int column = index % grid.columns();
-  return BlockAltitude(in.survey, in.photo_altitude_m, grid.Min(row, column), grid.Max(row, column));
+  return BlockAltitude(in.survey, in.photo_altitude_m, grid.Min(index), grid.Max(index));
 }
 
 double VoxelsOf(const Inputs& in, const BlockGrid& grid, int index, double voxel_m) {
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(MarginOf(grid, in.options));
-  const int row = index / grid.columns();
-  const int column = index % grid.columns();
-  return SurfaceVoxels(in.area, in.points, grid.Min(row, column) - margin, grid.Max(row, column) + margin, voxel_m);
+  return SurfaceVoxels(in.area, in.points, grid.Min(index) - margin, grid.Max(index) + margin, voxel_m);
 }
 
 // Grows the number of blocks until each one's surface fits the largest table or the budget is spent.
@@ -68,9 +64,7 @@ BlockGrid AutoGrid(const Inputs& in) {
     // Half a power of two of overload is what rounding to the nearest table allows anyway.
     bool fits = true;
     for (int index = 0; fits && index < rows * columns; ++index) {
-      const int row = index / columns;
-      const int column = index % columns;
-      const double agl = BlockAltitude(in.survey, in.photo_altitude_m, grid.Min(row, column), grid.Max(row, column));
+      const double agl = BlockAltitude(in.survey, in.photo_altitude_m, grid.Min(index), grid.Max(index));
       const double voxel_m = in.options.voxel_per_gsd * SurveyGsd(in.survey, agl, in.image_width);
       fits = VoxelsOf(in, grid, index, voxel_m) <= most_voxels * std::sqrt(2.0);
     }
@@ -96,23 +90,21 @@ void CheckAltitudeCount(const PartitionOptions& options, int rows, int columns) 
 // Everything of a block but what depends on the photos that see it.
 Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   Block block;
-  const int row = index / grid.columns();
-  const int column = index % grid.columns();
   block.id = index;
-  block.name = "r" + std::to_string(row) + "c" + std::to_string(column);
+  block.name = "r" + std::to_string(index / grid.columns()) + "c" + std::to_string(index % grid.columns());
   block.margin_m = MarginOf(grid, in.options);
   block.altitude_agl_m = AltitudeOf(in, grid, index);
   block.gsd_m = SurveyGsd(in.survey, block.altitude_agl_m, in.image_width);
   block.finest_voxel_m = in.options.voxel_per_gsd * block.gsd_m;
-  block.min_enu.head<2>() = grid.Min(row, column);
-  block.max_enu.head<2>() = grid.Max(row, column);
+  block.min_enu.head<2>() = grid.Min(index);
+  block.max_enu.head<2>() = grid.Max(index);
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(block.margin_m);
-  const auto range = VerticalRange(in.points, grid.Min(row, column) - margin, grid.Max(row, column) + margin, block.gsd_m, in.options);
+  const auto range = VerticalRange(in.points, grid.Min(index) - margin, grid.Max(index) + margin, block.gsd_m, in.options);
   const double air = 40.0 * block.gsd_m;
   block.min_enu.z() = range ? range->first : in.area.ground_m - air;
   block.max_enu.z() = range ? range->second : in.area.ground_m + air;
   // Away from points the block may be far higher than they are.
-  if (ShareWithoutPoints(in.points, grid.Min(row, column), grid.Max(row, column)) >= kGap) {
+  if (ShareWithoutPoints(in.points, grid.Min(index), grid.Max(index)) >= kGap) {
     block.max_enu.z() += in.options.headroom * block.altitude_agl_m;
   }
   const bool has_points =

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
+#include "core/camera/sight.h"
 
 namespace skyquilt::partition {
 namespace {
@@ -37,11 +37,10 @@ std::vector<int> CountViews(const survey::Survey& survey, const SurveyArea& area
     const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
     const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
     const double agl = eye.z() - ground.At(eye.x(), eye.y());
-    const double reach = agl > 0.0 ? kMaxSlantPerAgl * agl : std::numeric_limits<double>::infinity();
+    camera::SightRule rule{.far_edges = true};
+    if (agl > 0.0) rule.reach_m = kMaxSlantPerAgl * agl;
     for (size_t i = 0; i < centres.size(); ++i) {
-      if ((centres[i] - eye).squaredNorm() > reach * reach) continue;
-      const auto pixel = camera.ImgFromCam(photo.cam_from_enu * centres[i]);
-      if (pixel && pixel->x() >= 0.0 && pixel->y() >= 0.0 && pixel->x() <= camera.width && pixel->y() <= camera.height) ++views[i];
+      if (camera::Shows(camera, photo.cam_from_enu, centres[i], rule)) ++views[i];
     }
   }
   return views;

@@ -1,8 +1,8 @@
 #include "partition/visibility.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+
+#include "core/geo/ray_box.h"
 
 namespace skyquilt::partition {
 namespace {
@@ -33,7 +33,7 @@ RayGrid MakeRayGrid(const camera::Camera& camera) {
 double ShareByRays(const RayGrid& grid, const std::vector<Eigen::Vector3d>& direction, const Eigen::Vector3d& eye, const Box& box) {
   double share = 0.0;
   for (size_t i = 0; i < direction.size(); ++i) {
-    if (RayMeetsBox(eye, direction[i], box.low, box.high)) share += grid.share[i];
+    if (geo::RayMeetsBox(eye, direction[i], box.low, box.high)) share += grid.share[i];
   }
   return share;
 }
@@ -58,24 +58,6 @@ double ShareByProjection(const camera::Camera& camera, const survey::Photo& phot
 }
 
 }  // namespace
-
-bool RayMeetsBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-  if (!origin.allFinite() || !direction.allFinite()) return false;
-  double t_near = 0.0;
-  double t_far = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    // Dividing by a zero component would give 0 / 0 for rays along a face.
-    if (direction[axis] == 0.0) {
-      if (!(origin[axis] >= low[axis] && origin[axis] <= high[axis])) return false;
-      continue;
-    }
-    const double to_low = (low[axis] - origin[axis]) / direction[axis];
-    const double to_high = (high[axis] - origin[axis]) / direction[axis];
-    t_near = std::max(t_near, std::min(to_low, to_high));
-    t_far = std::min(t_far, std::max(to_low, to_high));
-  }
-  return t_near <= t_far;
-}
 
 std::vector<BoxViews> FindViews(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width) {
   std::vector<RayGrid> grids;

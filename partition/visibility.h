@@ -8,10 +8,6 @@
 
 namespace skyquilt::partition {
 
-// Whether the half-line origin + t * direction, t >= 0, meets the closed box. Direction components may be zero; a ray that starts inside or
-// runs along a face meets it. False when anything is NaN.
-bool RayMeetsBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& low, const Eigen::Vector3d& high);
-
 struct Box {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();
   Eigen::Vector3d high = Eigen::Vector3d::Zero();

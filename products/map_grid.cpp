@@ -148,8 +148,8 @@ void MapRayMaker::MakeRow(int row, MapRays* out) const {
     double top = -std::numeric_limits<double>::infinity();
     double bottom = std::numeric_limits<double>::infinity();
     for (const scene::SceneBlock& block : info_.blocks) {
-      if ((place.head<2>().array() < block.min_enu.head<2>().array() - block.margin_m).any() ||
-          (place.head<2>().array() > block.max_enu.head<2>().array() + block.margin_m).any()) {
+      if ((place.head<2>().array() < block.TrainMin().head<2>().array()).any() ||
+          (place.head<2>().array() > block.TrainMax().head<2>().array()).any()) {
         continue;
       }
       top = std::max(top, block.max_enu.z());

@@ -1,5 +1,7 @@
 #include "worker/few_views.h"
 
+#include "core/camera/sight.h"
+
 namespace skyquilt::worker {
 
 int CountViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const Eigen::Vector3d& x_in_enu,
@@ -8,15 +10,8 @@ int CountViews(const RaySource& source, const survey::Survey& survey, const std:
   for (const int photo : photos) {
     if (views >= enough) break;
     if (survey.photos[static_cast<size_t>(photo)].is_test) continue;
-    const camera::Camera& camera = source.CameraOf(photo);
-    const Eigen::Vector3d in_cam = survey.photos[static_cast<size_t>(photo)].cam_from_enu * x_in_enu;
-    if (in_cam.z() < -radius_m || (radius_m <= 0.0 && in_cam.z() <= 0.0)) continue;
-    if (in_cam.z() <= radius_m) {
-      views += in_cam.norm() < 4.0 * radius_m ? 1 : 0;  // the ball surrounds the camera or nearly so
-    } else if (const auto pixel = camera.ImgFromCam(in_cam)) {
-      const double slack = camera.FocalX() * radius_m / in_cam.z();
-      views += pixel->x() >= -slack && pixel->x() < camera.width + slack && pixel->y() >= -slack && pixel->y() < camera.height + slack ? 1 : 0;
-    }
+    const geo::Rigid3d& cam_from_enu = survey.photos[static_cast<size_t>(photo)].cam_from_enu;
+    if (camera::Shows(source.CameraOf(photo), cam_from_enu, x_in_enu, {.radius_m = radius_m})) ++views;
   }
   return views;
 }

@@ -162,9 +162,9 @@ void FieldStep::LookThroughContext(const RayBatch& batch, const Packet& packet, 
   for (size_t k = 0; k < w.views.size(); ++k) {
     const BatchRay& r = batch.rays[static_cast<size_t>(packet.first_ray) + k];
     if (r.ray.empty) continue;
-    const render::Stretch all = render::FieldStretch(context_->map, r.ray.origin_enu, r.ray.direction_enu);
+    const geo::Stretch all = render::FieldStretch(context_->map, r.ray.origin_enu, r.ray.direction_enu);
     if (all.Empty()) continue;
-    const render::Stretch plan = render::PlanStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
+    const geo::Stretch plan = render::PlanStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
     if (plan.t_near > all.t_near + context_->step_m) {
       w.pieces.push_back({r.ray.origin_enu, r.ray.direction_enu, all.t_near, plan.t_near, 0.0F});
       w.owner.emplace_back(k, false);

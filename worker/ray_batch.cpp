@@ -75,7 +75,7 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
   const float drawn = random.Uniform();
   const float jitter = stratified_ ? drawn : 0.5F;
   for (float& channel : r.background) channel = random.Uniform();
-  const render::Stretch stretch = render::FieldStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
+  const geo::Stretch stretch = render::FieldStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
   if (stretch.Empty()) return;
   const render::UnitRay unit(target_.map, r.ray.origin_enu, r.ray.direction_enu);
   group.MakeRoom(kMaxRaySamples);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
-#include "core/render/ray_box.h"
+#include "core/geo/ray_box.h"
 #include "core/render/trained_field.h"
 #include "worker/ray_source.h"
 #include "worker/stage_times.h"

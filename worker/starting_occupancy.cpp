@@ -135,7 +135,7 @@ void StartFromBands(const RaySource& source, const survey::Survey& survey, const
     const SurfaceBand& band = context.Band(tile.photo, tile.row, tile.column);
     render::Ray ray;
     source.RayThrough(tile.photo, source.TileCentre(tile), &ray.origin_enu, &ray.direction_enu);
-    const render::Stretch box = render::FieldStretch(target.map, ray.origin_enu, ray.direction_enu);
+    const geo::Stretch box = render::FieldStretch(target.map, ray.origin_enu, ray.direction_enu);
     const double near = std::isfinite(band.front) ? std::max(box.t_near, static_cast<double>(band.front) - pad_m) : box.t_near;
     const double far = std::isfinite(band.back) ? std::min(box.t_far, static_cast<double>(band.back) + pad_m) : box.t_far;
     for (double t = near; t < far; t += 0.5 * cell_m) {

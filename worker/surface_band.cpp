@@ -54,7 +54,7 @@ void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, c
         Eigen::Vector3d o, d;
         source.RayThrough(neighbour.photo, source.TileCentre(neighbour), &o, &d);
         const auto depth = static_cast<double>(context->Band(tile.photo, row, column).median);
-        const render::Stretch stretch = render::FieldStretch(target.map, o, d);
+        const geo::Stretch stretch = render::FieldStretch(target.map, o, d);
         if (!std::isfinite(depth)) {
           // Nothing known: as good as inside when the ray leaves through the ground.
           const double out_z = o.z() + stretch.t_far * d.z();

@@ -50,23 +50,20 @@ double ColorRange(const survey::Survey& survey, const brightness::Response& resp
 }
 
 // response: as far as it is known; `learning` when more is to be found out while the field trains.
-render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is_context, const brightness::Luminance& luminance,
+render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool is_context, const brightness::Luminance& luminance,
                                 const brightness::Response& response, bool learning) {
   const TrainOptions& options = job.options;
   render::TrainedField f;
-  f.name = box.name;
-  f.core_min_enu = box.min_enu;
-  f.core_max_enu = box.max_enu;
-  f.margin_m = box.margin_m;
-  const Eigen::Vector3d margin(box.margin_m, box.margin_m, 0.0);
-  f.map = is_context ? encoding::SpaceMap::Slab(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu - margin, box.max_enu + margin);
-  f.step_m = options.step_voxels * box.finest_voxel_m;
+  f.name = spec.name;
+  f.box = spec.box;
+  f.map = is_context ? encoding::SpaceMap::Slab(f.box.min_enu, f.box.max_enu) : encoding::SpaceMap::Box(f.box.TrainMin(), f.box.TrainMax());
+  f.step_m = options.step_voxels * spec.finest_voxel_m;
   auto& grid = f.config.grid;
   grid.levels = options.levels;
   grid.features = options.features;
-  grid.log2_table_size = box.log2_table_size;
+  grid.log2_table_size = spec.log2_table_size;
   grid.base_resolution = options.base_resolution;
-  grid.finest_resolution = std::max<double>(options.base_resolution, 1.0 / (box.finest_voxel_m * f.map.units_per_metre()));
+  grid.finest_resolution = std::max<double>(options.base_resolution, 1.0 / (spec.finest_voxel_m * f.map.units_per_metre()));
   for (int axis = 0; axis < 3; ++axis) grid.extent[axis] = std::min(1.0, f.map.extent()[axis]);
   f.config.encoding = encoding::KindNamed(options.encoding);
   f.config.hidden = options.hidden;
@@ -78,7 +75,7 @@ render::TrainedField MakeTarget(const TrainJob& job, const BoxView& box, bool is
   f.config.luminance = luminance.On();
   // What is shown brighter than the photos, or was brighter than they could say.
   if (luminance.On()) f.config.color_range = std::max(f.config.color_range, kLuminanceRange);
-  f.occupancy = field::OccupancyGrid::Make(grid.extent, kCellPerVoxel * box.finest_voxel_m * f.map.units_per_metre(), kMaxOccupancyCells);
+  f.occupancy = field::OccupancyGrid::Make(grid.extent, kCellPerVoxel * spec.finest_voxel_m * f.map.units_per_metre(), kMaxOccupancyCells);
   return f;
 }
 
@@ -210,7 +207,7 @@ void RequireJob(const TrainJob& job) {
 
 }  // namespace
 
-TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadPool& threads, const Reporter& report) {
+TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::ThreadPool& threads, const Reporter& report) {
   RequireJob(job);
   std::optional<SavedSession> saved = OpenSession("context", job);
   if (saved) {
@@ -255,7 +252,7 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   });
 }
 
-TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
+TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
                        const Reporter& report) {
   RequireJob(job);
   std::optional<SavedSession> saved = OpenSession("block", job);

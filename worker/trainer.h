@@ -13,7 +13,7 @@
 #include "core/brightness/response_learner.h"
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
-#include "worker/box_view.h"
+#include "worker/block_spec.h"
 #include "worker/stage_times.h"
 #include "worker/train_options.h"
 
@@ -66,8 +66,8 @@ struct TrainJob {
 // return at once when it is complete. Steps that are not finite are dropped and counted; when they persist the result is not ok.
 // Throw base::Interrupted after saving when cancelled, base::UsageError for a checkpoint of another configuration,
 // base::InputError for a checkpoint that cannot be written.
-TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadPool& threads, const Reporter& report);
-TrainResult TrainBlock(const TrainJob& job, const BoxView& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
+TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::ThreadPool& threads, const Reporter& report);
+TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
                        const Reporter& report);
 
 }  // namespace skyquilt::worker

@@ -81,20 +81,19 @@ worker::TrainJob EdgeSurvey::Job(const std::string& name, const brightness::Resp
 }
 
 EdgeSurvey::Outcome EdgeSurvey::Train(const brightness::Response& response, int steps, base::ThreadPool& threads) const {
-  worker::BoxView box;
-  box.name = "r0c0";
-  box.min_enu = {-12.0, -12.0, -1.0};
-  box.max_enu = {12.0, 12.0, 5.0};
-  box.finest_voxel_m = 0.5;
-  box.log2_table_size = 12;
-  for (int i = 0; i < kPhotos; ++i) box.photos.push_back(i);
+  worker::BlockSpec area;
+  area.name = "r0c0";
+  area.box = {{-12.0, -12.0, -1.0}, {12.0, 12.0, 5.0}, 0.0};
+  area.finest_voxel_m = 0.5;
+  area.log2_table_size = 12;
+  for (int i = 0; i < kPhotos; ++i) area.photos.push_back(i);
   Outcome outcome;
-  outcome.context = worker::TrainContext(Job("context.h5", response, steps), box, threads, {});
+  outcome.context = worker::TrainContext(Job("context.h5", response, steps), area, threads, {});
   if (!outcome.context.ok) return outcome;
-  worker::BoxView block = box;
-  block.min_enu.head<2>() *= 0.6;
-  block.max_enu.head<2>() *= 0.6;
-  block.margin_m = 1.0;
+  worker::BlockSpec block = area;
+  block.box.min_enu.head<2>() *= 0.6;
+  block.box.max_enu.head<2>() *= 0.6;
+  block.box.margin_m = 1.0;
   outcome.block = worker::TrainBlock(Job("block_r0c0.h5", response, steps), block, folder_ / "context.h5", threads, {});
   outcome.finite = outcome.block.ok && FiniteCheckpoint(folder_ / "context.h5") && FiniteCheckpoint(folder_ / "block_r0c0.h5");
   return outcome;

@@ -9,13 +9,11 @@
 #include "bench/numerics/groups.h"
 #include "bench/numerics/synthetic_scene.h"
 #include "core/base/random.h"
+#include "core/geo/ray_box.h"
 #include "core/render/march.h"
-#include "core/render/ray_box.h"
 
 namespace skyquilt::bench {
 namespace {
-
-using render::Stretch;
 
 struct RayCase {
   std::string name;
@@ -53,7 +51,7 @@ NumericCase BoxCase(const RayCase& ray) {
           .unit = "m",
           .limit = 1e-10,
           .run = [ray] {
-            const Stretch stretch = render::RayBox(ray.origin, ray.direction, {0, 0, 0}, {10, 20, 5});
+            const geo::Stretch stretch = geo::RayBox(ray.origin, ray.direction, {0, 0, 0}, {10, 20, 5});
             Worst worst;
             worst.Take(std::abs(stretch.t_near - ray.t_near));
             worst.Take(std::abs(stretch.t_far - ray.t_far));
@@ -113,7 +111,7 @@ Finding RandomBoxes(int rays) {
     }
     if (!(direction.norm() > 0.0)) continue;
     direction.normalize();
-    const Stretch stretch = render::RayBox(origin, direction, low, high);
+    const geo::Stretch stretch = geo::RayBox(origin, direction, low, high);
     const std::optional<Span> exact = ReferenceSpan(origin, direction, low, high);
     const long double length = exact ? exact->t_far - exact->t_near : 0.0L;
     if (stretch.Empty()) {
@@ -151,7 +149,7 @@ Finding MarchedSamples(int rays) {
     if (i % 10 == 0) direction.x() = 0.0;                  // along it
     if (!(direction.norm() > 0.0)) continue;
     direction.normalize();
-    const Stretch stretch = render::FieldStretch(field.map, origin, direction);
+    const geo::Stretch stretch = render::FieldStretch(field.map, origin, direction);
     const render::UnitRay unit(field.map, origin, direction);
     double last = -kEver;
     int64_t count = 0;
@@ -179,8 +177,8 @@ Finding ZeroLengthStretch() {
   const render::TrainedField field = SyntheticField({});
   int visits = 0;
   const Eigen::Vector3d origin(0.0, 0.0, 20.0), direction(0.0, 0.0, -1.0);
-  const Stretch empty[3] = {{3.0, 3.0}, {5.0, 3.0}, {0.0, std::nan("")}};
-  for (const Stretch& stretch : empty) {
+  const geo::Stretch empty[3] = {{3.0, 3.0}, {5.0, 3.0}, {0.0, std::nan("")}};
+  for (const geo::Stretch& stretch : empty) {
     render::March(field, origin, direction, stretch, field.step_m, 0.5F, [&](double, double, double, int64_t) { return ++visits < 10; });
     render::MarchCoarse(field, origin, direction, stretch, field.step_m, [&](double, double, double) { return ++visits < 10; });
   }

@@ -12,7 +12,7 @@ constexpr double kCamera_m = 30.0;
 
 // Display values of the surface a ray meets, in the scene's own frame: ground z = 0 with waves half a metre long, and a block of 2.5 x 2.5 x 2 m.
 Eigen::Vector3d ShadeScene(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  const render::Stretch block = render::RayBox(origin, direction, {-1.25, -1.25, 0.0}, {1.25, 1.25, 2.0});
+  const geo::Stretch block = geo::RayBox(origin, direction, {-1.25, -1.25, 0.0}, {1.25, 1.25, 2.0});
   const Eigen::Vector3d p = origin + (block.Empty() ? -origin.z() / direction.z() : block.t_near) * direction;
   const double wave = 0.5 + 0.35 * std::sin(12.0 * p.x()) * std::cos(11.0 * p.y());
   if (block.Empty()) return {0.7 * wave, wave, 0.6 * wave};
@@ -25,9 +25,9 @@ render::TrainedField SyntheticField(const SyntheticOptions& options) {
   render::TrainedField field;
   field.name = "synthetic";
   const double half = 0.5 * options.edge_m;
-  field.core_min_enu = options.offset_enu + Eigen::Vector3d(-half, -half, -0.5);
-  field.core_max_enu = options.offset_enu + Eigen::Vector3d(half, half, options.height_m - 0.5);
-  field.map = encoding::SpaceMap::Box(field.core_min_enu, field.core_max_enu);
+  field.box.min_enu = options.offset_enu + Eigen::Vector3d(-half, -half, -0.5);
+  field.box.max_enu = options.offset_enu + Eigen::Vector3d(half, half, options.height_m - 0.5);
+  field.map = encoding::SpaceMap::Box(field.box.min_enu, field.box.max_enu);
   field.step_m = 2.0 * options.voxel_m;
   encoding::HashGridConfig& grid = field.config.grid;
   grid.levels = options.levels;
@@ -68,7 +68,7 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
       ray.background[c] = random.Uniform();
     }
     const float jitter = random.Uniform();
-    const render::Stretch stretch = render::FieldStretch(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
+    const geo::Stretch stretch = render::FieldStretch(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
     const render::UnitRay unit(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
     for (auto* values : {&x, &y, &z, &t, &unit_length}) values->clear();
     cell.clear();

@@ -24,7 +24,7 @@ uint64_t Interleave(uint32_t x, uint32_t y) {
 std::vector<int> AlongCurve(const scene::FieldStore& store) {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d high = -low;
-  const auto centre = [&](int k) -> Eigen::Vector2d { return 0.5 * (store.block(k).core_min_enu + store.block(k).core_max_enu).head<2>(); };
+  const auto centre = [&](int k) -> Eigen::Vector2d { return 0.5 * (store.block(k).box.min_enu + store.block(k).box.max_enu).head<2>(); };
   for (int k = 0; k < store.size(); ++k) {
     low = low.cwiseMin(centre(k));
     high = high.cwiseMax(centre(k));
@@ -43,8 +43,8 @@ std::vector<int> AlongCurve(const scene::FieldStore& store) {
 
 bool Meet(const render::TrainedField& a, const render::TrainedField& b) {
   const double reach = a.blend_m + b.blend_m;
-  return (a.core_min_enu.head<2>().array() - reach <= b.core_max_enu.head<2>().array()).all() &&
-         (b.core_min_enu.head<2>().array() - reach <= a.core_max_enu.head<2>().array()).all();
+  return (a.box.min_enu.head<2>().array() - reach <= b.box.max_enu.head<2>().array()).all() &&
+         (b.box.min_enu.head<2>().array() - reach <= a.box.max_enu.head<2>().array()).all();
 }
 
 }  // namespace

@@ -19,40 +19,38 @@ std::vector<image::PixelSource> PixelSources(const survey::Survey& survey) {
   return sources;
 }
 
-worker::BoxView ViewOfBlock(const partition::Block& block) {
-  worker::BoxView view;
-  view.name = block.name;
-  view.min_enu = block.min_enu;
-  view.max_enu = block.max_enu;
-  view.margin_m = block.margin_m;
-  view.finest_voxel_m = block.finest_voxel_m;
-  view.log2_table_size = block.log2_table_size;
-  view.photos = block.photos;
-  return view;
+worker::BlockSpec SpecOfBlock(const partition::Block& block) {
+  worker::BlockSpec spec;
+  spec.name = block.name;
+  spec.box = block;
+  spec.finest_voxel_m = block.finest_voxel_m;
+  spec.log2_table_size = block.log2_table_size;
+  spec.photos = block.photos;
+  return spec;
 }
 
-worker::BoxView ViewOfSurvey(const partition::BlockSet& blocks, const survey::Survey& survey, const std::filesystem::path& blocks_file) {
-  worker::BoxView view;
-  view.name = "context";
+worker::BlockSpec SpecOfSurvey(const partition::BlockSet& blocks, const survey::Survey& survey, const std::filesystem::path& blocks_file) {
+  worker::BlockSpec spec;
+  spec.name = "context";
   bool any = false;
   double finest_block_voxel_m = 0.0;
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) continue;
-    view.min_enu = any ? view.min_enu.cwiseMin(block.min_enu).eval() : block.min_enu;
-    view.max_enu = any ? view.max_enu.cwiseMax(block.max_enu).eval() : block.max_enu;
-    view.log2_table_size = any ? std::max(view.log2_table_size, block.log2_table_size - 1) : block.log2_table_size - 1;
+    spec.box.min_enu = any ? spec.box.min_enu.cwiseMin(block.min_enu).eval() : block.min_enu;
+    spec.box.max_enu = any ? spec.box.max_enu.cwiseMax(block.max_enu).eval() : block.max_enu;
+    spec.log2_table_size = any ? std::max(spec.log2_table_size, block.log2_table_size - 1) : block.log2_table_size - 1;
     finest_block_voxel_m = any ? std::min(finest_block_voxel_m, block.finest_voxel_m) : block.finest_voxel_m;
     any = true;
   }
   if (!any)
     throw base::InputError(blocks_file, "every block is empty, so there is nothing to train", "Check the photos' positions or choose larger blocks");
-  view.log2_table_size = std::max(view.log2_table_size, 1);
+  spec.log2_table_size = std::max(spec.log2_table_size, 1);
   // A thousandth of the survey: what stands behind a block is seen from afar.
-  const Eigen::Vector3d extent = view.max_enu - view.min_enu;
-  view.finest_voxel_m = std::max(2.0 * finest_block_voxel_m, std::max(extent.x(), extent.y()) / 1024.0);
-  view.photos.resize(survey.photos.size());
-  std::iota(view.photos.begin(), view.photos.end(), 0);
-  return view;
+  const Eigen::Vector3d extent = spec.box.max_enu - spec.box.min_enu;
+  spec.finest_voxel_m = std::max(2.0 * finest_block_voxel_m, std::max(extent.x(), extent.y()) / 1024.0);
+  spec.photos.resize(survey.photos.size());
+  std::iota(spec.photos.begin(), spec.photos.end(), 0);
+  return spec;
 }
 
 int ContextSteps(const Settings& settings) {
@@ -108,11 +106,11 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
         spdlog::info("{}", LuminanceRemark(train.luminance, statistics));
       }
       train.checkpoint = project.ContextCheckpoint();
-      return worker::TrainContext(train, ViewOfSurvey(blocks, survey, project.BlocksFile()), threads, both);
+      return worker::TrainContext(train, SpecOfSurvey(blocks, survey, project.BlocksFile()), threads, both);
     }
     const partition::Block& block = blocks.blocks[static_cast<size_t>(job.block)];
     train.checkpoint = project.BlockCheckpoint(block.name);
-    return worker::TrainBlock(train, ViewOfBlock(block), project.ContextCheckpoint(), threads, both);
+    return worker::TrainBlock(train, SpecOfBlock(block), project.ContextCheckpoint(), threads, both);
   };
 }
 

@@ -12,7 +12,7 @@
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
 #include "partition/block.h"
-#include "worker/box_view.h"
+#include "worker/block_spec.h"
 
 namespace skyquilt::coordinator {
 
@@ -20,9 +20,9 @@ namespace skyquilt::coordinator {
 std::vector<image::PixelSource> PixelSources(const survey::Survey& survey);
 
 // One block as the trainer wants it.
-worker::BoxView ViewOfBlock(const partition::Block& block);
+worker::BlockSpec SpecOfBlock(const partition::Block& block);
 // The whole survey as one box: the union of the blocks that are not empty. Throws base::InputError when all are.
-worker::BoxView ViewOfSurvey(const partition::BlockSet& blocks, const survey::Survey& survey, const std::filesystem::path& blocks_file);
+worker::BlockSpec SpecOfSurvey(const partition::BlockSet& blocks, const survey::Survey& survey, const std::filesystem::path& blocks_file);
 
 // A trainer over references that must outlive it; writes the field's log beside its checkpoint.
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,

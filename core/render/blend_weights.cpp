@@ -14,17 +14,17 @@ EngineOptions EngineOptions::For(const brightness::Luminance& luminance) {
   return options;
 }
 
-Stretch BlendStretch(const TrainedField& block, const Ray& ray) {
+geo::Stretch BlendStretch(const TrainedField& block, const Ray& ray) {
   constexpr double kEver = std::numeric_limits<double>::infinity();
   const Eigen::Vector3d reach(block.blend_m, block.blend_m, kEver);
-  return RayBox(ray.origin_enu, ray.direction_enu, block.core_min_enu - reach, block.core_max_enu + reach);
+  return geo::RayBox(ray.origin_enu, ray.direction_enu, block.box.min_enu - reach, block.box.max_enu + reach);
 }
 
 double BlendWeights(const FieldSet& fields, std::span<const int> candidates, double x, double y, std::span<double> weights) {
   double sum = 0.0;
   for (size_t c = 0; c < candidates.size(); ++c) {
     const TrainedField& f = *fields.blocks[static_cast<size_t>(candidates[c])];
-    weights[c] = BlockRamp(f.core_min_enu, f.core_max_enu, f.blend_m, x, y);
+    weights[c] = BlockRamp(f.box.min_enu, f.box.max_enu, f.blend_m, x, y);
     sum += weights[c];
   }
   if (sum > 1.0) {

@@ -7,26 +7,26 @@
 #include <cmath>
 #include <limits>
 
-#include "core/render/ray_box.h"
+#include "core/geo/ray_box.h"
 #include "core/render/trained_field.h"
 
 namespace skyquilt::render {
 
 // Where a ray can meet the field: its box, or its slab out to where the contracted frame has no cells left.
-inline Stretch FieldStretch(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  if (!map.contracted()) return RayBox(origin, direction, map.min_enu(), map.max_enu());
+inline geo::Stretch FieldStretch(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  if (!map.contracted()) return geo::RayBox(origin, direction, map.min_enu(), map.max_enu());
   const Eigen::Vector3d centre = 0.5 * (map.min_enu() + map.max_enu());
   const double reach = 20.0 * 0.5 * (map.max_enu() - map.min_enu()).head<2>().maxCoeff();
-  return RayBox(origin, direction, Eigen::Vector3d(centre.x() - reach, centre.y() - reach, map.min_enu().z()),
-                Eigen::Vector3d(centre.x() + reach, centre.y() + reach, map.max_enu().z()));
+  return geo::RayBox(origin, direction, Eigen::Vector3d(centre.x() - reach, centre.y() - reach, map.min_enu().z()),
+                     Eigen::Vector3d(centre.x() + reach, centre.y() + reach, map.max_enu().z()));
 }
 
 // The part of a ray over (or under) the ground plan of an uncontracted field. Inside it only the field itself, never the context, has matter.
-inline Stretch PlanStretch(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+inline geo::Stretch PlanStretch(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   constexpr double kEver = std::numeric_limits<double>::infinity();
   const Eigen::Vector3d& low = map.min_enu();
   const Eigen::Vector3d& high = map.max_enu();
-  return RayBox(origin, direction, Eigen::Vector3d(low.x(), low.y(), -kEver), Eigen::Vector3d(high.x(), high.y(), kEver));
+  return geo::RayBox(origin, direction, Eigen::Vector3d(low.x(), low.y(), -kEver), Eigen::Vector3d(high.x(), high.y(), kEver));
 }
 
 // Positions along a ray in a field's unit frame, computed in double: a line where the frame is not contracted.
@@ -51,7 +51,7 @@ namespace internal {
 // Walks the cells of an uncontracted field in ray order (Amanatides and Woo 1987): visit(at, leave, cell) -> bool for every occupied one,
 // distances from the stretch's near end. False ends the walk.
 template <typename Visit>
-void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, Visit&& visit) {
+void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, Visit&& visit) {
   const field::OccupancyGrid& grid = f.occupancy;
   const double cell_m = static_cast<double>(grid.cell) / f.map.units_per_metre();
   const Eigen::Vector3d entry = origin + stretch.t_near * direction - f.map.min_enu();
@@ -87,8 +87,8 @@ void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen
 
 // Emits the lattice points (k + jitter) * step inside occupied cells.
 template <typename Emit>
-void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m, float jitter,
-                Emit&& emit) {
+void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, double step_m,
+                float jitter, Emit&& emit) {
   WalkCells(f, origin, direction, stretch, [&](double at, double leave, int64_t cell) {
     auto k = static_cast<int64_t>(std::ceil(at / step_m - static_cast<double>(jitter)));
     for (;; ++k) {
@@ -102,7 +102,7 @@ void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eige
 // The same walk with one sample for every stretch of at most `step_m` inside occupied cells, at its middle: with steps longer than a cell
 // a lattice would pass over thin surfaces.
 template <typename Emit>
-void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m,
+void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, double step_m,
                    Emit&& emit) {
   double run_begin = 0.0, run_end = -1.0;  // empty
   bool more = true;
@@ -126,7 +126,7 @@ void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const E
 }
 
 template <typename Emit>
-void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m,
+void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, double step_m,
                      float jitter, Emit&& emit) {
   double at = stretch.t_near;
   while (at < stretch.t_far) {
@@ -146,7 +146,7 @@ void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const
 
 // Steps longer than the field's own: for pixels that cover more than the field's finest detail. emit(t, length_m, unit_length_m) as below.
 template <typename Emit>
-void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m,
+void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, double step_m,
                  Emit&& emit) {
   if (stretch.Empty()) return;
   if (f.map.contracted()) {
@@ -160,7 +160,7 @@ void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eig
 // emit(t, length_m, unit_length_m, cell) -> bool: distance along the ray, length of the interval, that length measured in the uncontracted
 // part's metres (what the log density refers to), and the occupancy cell. Return false to stop.
 template <typename Emit>
-void March(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Stretch stretch, double step_m, float jitter,
+void March(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, double step_m, float jitter,
            Emit&& emit) {
   if (stretch.Empty()) return;
   if (f.map.contracted()) {

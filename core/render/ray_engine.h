@@ -9,9 +9,9 @@
 
 #include "core/base/thread_pool.h"
 #include "core/brightness/luminance.h"
+#include "core/geo/ray_box.h"
 #include "core/render/concealed.h"
 #include "core/render/ray.h"
-#include "core/render/ray_box.h"
 #include "core/render/ray_state.h"
 #include "core/render/trained_field.h"
 
@@ -34,7 +34,7 @@ struct EngineOptions {
 };
 
 // Where a block has weight along a ray: its core box widened by the ramp, of any height.
-Stretch BlendStretch(const TrainedField& block, const Ray& ray);
+geo::Stretch BlendStretch(const TrainedField& block, const Ray& ray);
 
 // Blend weights of the set at a place: one per block, and the context's share in the return value. Sums to 1 inside any core box.
 double BlendWeights(const FieldSet& fields, std::span<const int> candidates, double x, double y, std::span<double> weights);

@@ -10,13 +10,13 @@ RaySegments::RaySegments(std::vector<const TrainedField*> blocks) : blocks_(std:
 
 void RaySegments::Split(const Ray& ray, std::vector<RaySegment>* segments) const {
   constexpr double kEver = std::numeric_limits<double>::infinity();
-  thread_local std::vector<std::pair<Stretch, int>> over;
+  thread_local std::vector<std::pair<geo::Stretch, int>> over;
   thread_local std::vector<double> changes;
   thread_local std::vector<int> here;
   over.clear();
   changes.assign({0.0, kEver});
   for (size_t k = 0; k < blocks_.size(); ++k) {
-    const Stretch stretch = BlendStretch(*blocks_[k], ray);
+    const geo::Stretch stretch = BlendStretch(*blocks_[k], ray);
     if (stretch.Empty()) continue;
     over.emplace_back(stretch, static_cast<int>(k));
     changes.push_back(stretch.t_near);

@@ -5,8 +5,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/geo/ray_box.h"
 #include "core/render/ray.h"
-#include "core/render/ray_box.h"
 
 namespace skyquilt::render {
 
@@ -27,7 +27,7 @@ static_assert(std::is_trivially_copyable_v<RayState>);
 struct Window {
   double from = 0.0;
   double to = std::numeric_limits<double>::infinity();
-  bool Meets(const Stretch& stretch) const { return !stretch.Empty() && stretch.t_far > from && stretch.t_near < to; }
+  bool Meets(const geo::Stretch& stretch) const { return !stretch.Empty() && stretch.t_far > from && stretch.t_near < to; }
 };
 
 // What a ray shows that goes no farther. What was gathered by one that ended early is taken for all.

@@ -5,7 +5,7 @@ namespace skyquilt::render {
 void TrainedField::Finish() {
   field = std::make_unique<field::HashField>(config);
   weights = field->Prepare(networks);
-  blend_m = margin_m;
+  blend_m = box.margin_m;
 }
 
 }  // namespace skyquilt::render

@@ -1,7 +1,6 @@
 // A field with its parameters, occupancy and place in the survey: what training leaves behind and rendering reads.
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "core/encoding/space_map.h"
 #include "core/field/hash_field.h"
 #include "core/field/occupancy_grid.h"
+#include "core/geo/block_box.h"
 
 namespace skyquilt::render {
 
@@ -16,11 +16,9 @@ struct TrainedField {
   std::string name;
   field::FieldConfig config;
   encoding::SpaceMap map;
-  Eigen::Vector3d core_min_enu = Eigen::Vector3d::Zero();  // without margin
-  Eigen::Vector3d core_max_enu = Eigen::Vector3d::Zero();
-  double margin_m = 0.0;  // trained beyond the core box, horizontally
-  double blend_m = 0.0;   // half width of the ramp at its faces; Finish() makes it the margin, 0 is a hard border
-  double step_m = 0.1;    // marching step inside the uncontracted part = the length that log density refers to
+  geo::BlockBox box;     // whose ground it answers for; of a block, the map spans it with its margin
+  double blend_m = 0.0;  // half width of the ramp at its faces; Finish() makes it the margin, 0 is a hard border
+  double step_m = 0.1;   // marching step inside the uncontracted part = the length that log density refers to
   std::vector<float> grid, networks;
   field::OccupancyGrid occupancy;
   // Training record.

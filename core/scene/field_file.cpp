@@ -46,9 +46,9 @@ void VisitNumbers(Field& f, BoxOf& box, const Visit& visit) {
   visit("contracted", box.contracted);
   corner("min_enu", box.min_enu);
   corner("max_enu", box.max_enu);
-  corner("core_min_enu", f.core_min_enu);
-  corner("core_max_enu", f.core_max_enu);
-  visit("margin_m", f.margin_m);
+  corner("core_min_enu", f.box.min_enu);
+  corner("core_max_enu", f.box.max_enu);
+  visit("margin_m", f.box.margin_m);
   visit("step_m", f.step_m);
 }
 
@@ -167,7 +167,7 @@ render::TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const s
   VisitNumbers(f, box, [&numbers](const std::string& name, auto& number) { numbers.Read(name, number); });
   f.config.luminance = reader.HasAttribute(prefix + "luminance") && reader.IntAttribute(prefix + "luminance") != 0;
   f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
-  f.blend_m = f.margin_m;
+  f.blend_m = f.box.margin_m;
   try {
     // Absent in files from before there was a choice.
     if (reader.HasAttribute(prefix + "encoding")) f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));

@@ -117,10 +117,10 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
   info.max_enu = -info.min_enu;
   for (int k = 0; k < store.size(); ++k) {
     const render::TrainedField& f = store.block(k);
-    info.blocks.push_back({f.name, f.core_min_enu, f.core_max_enu, f.margin_m, store.Parameters(k), f.steps, f.seconds, f.samples});
+    info.blocks.push_back({f.box, f.name, store.Parameters(k), f.steps, f.seconds, f.samples});
     info.parameters += store.Parameters(k);
-    info.min_enu = info.min_enu.cwiseMin(f.core_min_enu);
-    info.max_enu = info.max_enu.cwiseMax(f.core_max_enu);
+    info.min_enu = info.min_enu.cwiseMin(f.box.min_enu);
+    info.max_enu = info.max_enu.cwiseMax(f.box.max_enu);
   }
   impl.segments = std::make_unique<render::RaySegments>(store.Blocks());
   if (store.HasContext()) {

@@ -16,16 +16,15 @@
 #include "core/brightness/luminance.h"
 #include "core/brightness/response.h"
 #include "core/camera/camera.h"
+#include "core/geo/block_box.h"
 #include "core/geo/geodetic.h"
 #include "core/geo/transform.h"
 #include "core/render/ray.h"
 
 namespace skyquilt::scene {
 
-struct SceneBlock {
+struct SceneBlock : geo::BlockBox {
   std::string name;
-  Eigen::Vector3d min_enu, max_enu;  // core box
-  double margin_m = 0.0;
   int64_t parameters = 0;
   int64_t steps = 0;
   double train_seconds = 0.0;

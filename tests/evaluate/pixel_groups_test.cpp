@@ -9,7 +9,7 @@ namespace skyquilt::evaluate {
 namespace {
 
 // Two blocks of 100 m x 100 m, west and east, with 10 m margins.
-std::vector<BlockBox> WestAndEast() {
+std::vector<geo::BlockBox> WestAndEast() {
   return {{{0, 0, 0}, {100, 100, 20}, 10.0}, {{100, 0, 0}, {200, 100, 20}, 10.0}};
 }
 
@@ -39,7 +39,7 @@ TEST(ZoneAt, OuterRimIsNeitherSeamNorInterior) {
 }
 
 TEST(ZoneAt, SingleBlockHasNoSeam) {
-  const std::vector<BlockBox> one = {{{0, 0, 0}, {100, 100, 20}, 10.0}};
+  const std::vector<geo::BlockBox> one = {{{0, 0, 0}, {100, 100, 20}, 10.0}};
   for (double x = 0.5; x < 100.0; x += 1.0) EXPECT_NE(ZoneAt({x, 50, 0}, 0, one), Zone::kSeam);
 }
 

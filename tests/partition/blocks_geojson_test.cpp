@@ -120,15 +120,20 @@ void ExpectGoodRing(const Json& ring, bool polar) {
   }
 }
 
+// What a file holds after the blocks were saved, which come back from it unchanged.
+Json SavedAndLoaded(const BlockSet& set) {
+  const TempFile file;
+  SaveBlocks(set, file.path());
+  ExpectEqual(set, LoadBlocks(file.path()));
+  return Json::parse(base::ReadFile(file.path()));
+}
+
 class AnywhereOnEarth : public testing::TestWithParam<geo::Geodetic> {};
 
 TEST_P(AnywhereOnEarth, RoundTripIsExactAndGeometryValid) {
   for (const double side_m : {1.0, 150.0, 100e3}) {
-    const TempFile file;
     const BlockSet set = TwoByTwo(GetParam(), side_m);
-    SaveBlocks(set, file.path());
-    ExpectEqual(set, LoadBlocks(file.path()));
-    const Json root = Json::parse(base::ReadFile(file.path()));
+    const Json root = SavedAndLoaded(set);
     EXPECT_EQ(root["type"], "FeatureCollection");
     EXPECT_EQ(root["bbox"].size(), 4U);
     for (const Json& feature : root["features"]) {
@@ -153,10 +158,7 @@ INSTANTIATE_TEST_SUITE_P(Places, AnywhereOnEarth,
                                          geo::Geodetic{-90, 0, 2800}, geo::Geodetic{89.9995, 120, 0}, geo::Geodetic{-89.5, -179.9, 0}));
 
 TEST(BlocksGeoJson, DateLineIsSplit) {
-  const TempFile file;
-  const BlockSet set = TwoByTwo({-17.0, 179.9999, 0}, 150.0);
-  SaveBlocks(set, file.path());
-  const Json root = Json::parse(base::ReadFile(file.path()));
+  const Json root = SavedAndLoaded(TwoByTwo({-17.0, 179.9999, 0}, 150.0));
   EXPECT_EQ(root["features"][0]["geometry"]["type"], "Polygon");
   const Json& east = root["features"][1];
   ASSERT_EQ(east["geometry"]["type"], "MultiPolygon");
@@ -191,12 +193,9 @@ TEST(BlocksGeoJson, PoleIsCovered) {
 }
 
 TEST(BlocksGeoJson, WithoutGeoReferenceMetresAreWritten) {
-  const TempFile file;
   BlockSet set = TwoByTwo({0, 0, 0}, 100.0);
   set.georeferenced = false;
-  SaveBlocks(set, file.path());
-  ExpectEqual(set, LoadBlocks(file.path()));
-  const Json root = Json::parse(base::ReadFile(file.path()));
+  const Json root = SavedAndLoaded(set);
   EXPECT_EQ(root["skyquilt:georeferenced"], false);
   EXPECT_EQ(root["features"][0]["geometry"]["coordinates"][0][0][1].get<double>(), -100.0);
 }

@@ -1,10 +1,9 @@
 // A made-up survey for partition tests: nadir photos on a grid over points on flat ground, optionally with a tower quarter.
 #pragma once
 
-#include <cmath>
-
 #include "core/base/random.h"
 #include "core/survey/survey.h"
+#include "tests/support/nadir_photo.h"
 
 namespace skyquilt::partition {
 
@@ -18,18 +17,6 @@ struct FlownSurveyOptions {
   double roof_m = 12.0;     // of the north-east quarter; equal to the ground: none
   bool empty_east = false;  // no points in the eastern third
 };
-
-inline survey::Photo NadirPhoto(const Eigen::Vector3d& eye, const std::string& name) {
-  survey::Photo photo;
-  photo.name = name;
-  // x east, y south, looking down.
-  Eigen::Matrix3d rotation;
-  rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-  photo.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
-  photo.cam_from_enu.translation = -(rotation * eye);
-  photo.agl_m = std::nan("");
-  return photo;
-}
 
 inline survey::Survey FlySurvey(const FlownSurveyOptions& options) {
   survey::Survey survey;

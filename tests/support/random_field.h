@@ -13,11 +13,11 @@ namespace skyquilt::render {
 inline TrainedField RandomField(uint64_t seed, const Eigen::Vector3d& low, const Eigen::Vector3d& high, double margin_m, double density_bias,
                                 bool contracted = false, encoding::Kind encoding = encoding::Kind::kHash, int density_hidden_layers = 1) {
   TrainedField f;
-  f.core_min_enu = low;
-  f.core_max_enu = high;
-  f.margin_m = margin_m;
-  const Eigen::Vector3d margin(margin_m, margin_m, 0.0);
-  f.map = contracted ? encoding::SpaceMap::Slab(low - margin, high + margin) : encoding::SpaceMap::Box(low - margin, high + margin);
+  f.box.min_enu = low;
+  f.box.max_enu = high;
+  f.box.margin_m = margin_m;
+  const Eigen::Vector3d map_min = f.box.TrainMin(), map_max = f.box.TrainMax();
+  f.map = contracted ? encoding::SpaceMap::Slab(map_min, map_max) : encoding::SpaceMap::Box(map_min, map_max);
   f.step_m = 0.25;
   f.config.encoding = encoding;
   f.config.density_hidden_layers = density_hidden_layers;

@@ -42,6 +42,21 @@ class BrightnessTest : public SmallSurvey {
     job.learn.falloff = falloff;
     return job;
   }
+  TrainJob JobWithLight(LuminanceMode mode, double start_log_gain, int steps) const {
+    TrainJob job = Job("context.h5", steps);
+    job.luminance.mode = mode;
+    job.luminance.start_log_gain = start_log_gain;
+    return job;
+  }
+  // What the tie points say about the brightness that a job is to learn; whether they say anything, if `said` is given.
+  brightness::Response FromTiePoints(const TrainJob& job, bool* said = nullptr) const {
+    brightness::Response response = job.response;
+    const RaySource source(survey_, *pixels_, response);
+    base::ThreadPool threads(2);
+    const bool known = GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads);
+    if (said != nullptr) *said = known;
+    return response;
+  }
   // Root mean square error in stops of a response's gains against what the photos were made with, mean taken off, over the training photos.
   double RmsStops(const brightness::Response& response, const std::function<double(int, int)>& truth_stops) const {
     double squares = 0.0, n = 0.0;
@@ -63,14 +78,19 @@ class BrightnessTest : public SmallSurvey {
     }
     return std::sqrt(squares / n);
   }
+  // Straight down from 30 m, a metre apart, over the square about the survey's middle.
+  static std::vector<render::Ray> RaysDown(double reach_m) {
+    std::vector<render::Ray> rays;
+    for (double x = -reach_m; x <= reach_m; x += 1.0) {
+      for (double y = -reach_m; y <= reach_m; y += 1.0) rays.push_back({{x, y, 30.0}, {0.0, 0.0, -1.0}});
+    }
+    return rays;
+  }
   // Mean display value of what the middle of the survey shows in one of the two renderings.
   double MeanShown(const LoadedContext& context, bool concealed, base::ThreadPool& threads) const {
     render::FieldSet set;
     set.context = &context.field;
-    std::vector<render::Ray> rays;
-    for (double x = -14.0; x <= 14.0; x += 1.0) {
-      for (double y = -14.0; y <= 14.0; y += 1.0) rays.push_back({{x, y, 30.0}, {0.0, 0.0, -1.0}});
-    }
+    const std::vector<render::Ray> rays = RaysDown(14.0);
     std::vector<render::RayColor> out(rays.size());
     render::RenderRays(set, rays, out, render::EngineOptions::For(context.luminance), threads);
     double sum = 0.0;
@@ -88,11 +108,9 @@ TEST_F(BrightnessTest, TiePointsKnowTheGains) {
   const auto stops = [](int photo, int c) { return Stops(photo) + 0.2 * (c - 1) * std::sin(photo); };
   Photograph([&](int photo, int c, double value, double) { return Exposed(0.6 * value, std::exp2(stops(photo, c))); });
   AddGroundPoints();
-  const TrainJob job = Learning("context.h5", 1, false);
-  brightness::Response response = job.response;
-  const RaySource source(survey_, *pixels_, response);
-  base::ThreadPool threads(2);
-  EXPECT_TRUE(GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads));
+  bool said = false;
+  const brightness::Response response = FromTiePoints(Learning("context.h5", 1, false), &said);
+  EXPECT_TRUE(said);
   EXPECT_LT(RmsStops(response, stops), 0.05);
   for (size_t c = 0; c < 3; ++c) {
     double mean = 0.0;
@@ -104,21 +122,15 @@ TEST_F(BrightnessTest, TiePointsKnowTheGains) {
 TEST_F(BrightnessTest, TiePointsKnowTheFalloff) {
   Photograph([](int photo, int, double value, double r2) { return Exposed(0.6 * value, std::exp2(Stops(photo)) * std::exp(-0.5 * r2)); });
   AddGroundPoints();
-  const TrainJob job = Learning("context.h5", 1, true);
-  brightness::Response response = job.response;
-  const RaySource source(survey_, *pixels_, response);
-  base::ThreadPool threads(2);
-  GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads);
+  const brightness::Response response = FromTiePoints(Learning("context.h5", 1, true));
   EXPECT_LT(RmsStops(response, [](int photo, int) { return Stops(photo); }), 0.05);
   for (const float r2 : {0.2F, 0.5F, 0.9F}) EXPECT_NEAR(response.LogFalloff(0, r2), -0.5F * r2, 0.05F) << r2;
 }
 
 TEST_F(BrightnessTest, WithoutPointsNothingIsKnown) {
-  const TrainJob job = Learning("context.h5", 1, true);
-  brightness::Response response = job.response;
-  const RaySource source(survey_, *pixels_, response);
-  base::ThreadPool threads(1);
-  EXPECT_FALSE(GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads));
+  bool said = true;
+  const brightness::Response response = FromTiePoints(Learning("context.h5", 1, true), &said);
+  EXPECT_FALSE(said);
   for (const float gain : response.log_gain) EXPECT_EQ(gain, 0.0F);
 }
 
@@ -129,10 +141,7 @@ TEST_F(BrightnessTest, TiePointsKeepToAnchors) {
   job.learn.learns_gain.assign(survey_.photos.size(), 0);
   job.learn.learns_gain[5] = 1;
   job.learn.anchored = true;
-  brightness::Response response = job.response;
-  const RaySource source(survey_, *pixels_, response);
-  base::ThreadPool threads(1);
-  GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads);
+  const brightness::Response response = FromTiePoints(job);
   EXPECT_NEAR(response.log_gain[15] / std::log(2.0F), -1.5F, 0.05F);
   EXPECT_EQ(response.log_gain[18], 0.0F);
 }
@@ -154,18 +163,11 @@ TEST_F(BrightnessTest, LearningGoesOnAfterAnInterruptionBitForBit) {
   Photograph([](int photo, int, double value, double) { return Exposed(0.6 * value, std::exp2(0.5 * Stops(photo))); });
   base::ThreadPool one(1), three(3);
   TrainContext(Learning("a.h5", 80, true), Box(20.0, 0.0), three, {});
-  TrainJob job = Learning("b.h5", 80, true);
+  const TrainJob job = Learning("b.h5", 80, true);
   const Reporter stop = [](const TrainStatus& status) {
     if (status.fraction > 0.2 && status.fraction < 0.9) base::RequestCancel();
   };
-  for (int attempt = 0; attempt < 50; ++attempt) {
-    base::ClearCancel();
-    try {
-      TrainContext(job, Box(20.0, 0.0), one, attempt == 0 ? stop : Reporter());
-      break;
-    } catch (const base::Interrupted&) {
-    }
-  }
+  TrainInterrupted(job, stop, [&](const Reporter& report) { TrainContext(job, Box(20.0, 0.0), one, report); });
   EXPECT_EQ(Bytes("a.h5"), Bytes("b.h5"));
   EXPECT_EQ(LoadContext(folder_ / "a.h5").response.log_gain, LoadContext(folder_ / "b.h5").response.log_gain);
 }
@@ -178,11 +180,9 @@ class LuminanceTest : public BrightnessTest, public ::testing::WithParamInterfac
 
 TEST_P(LuminanceTest, ShowsAnUnderExposedSurveyAtTheWantedBrightness) {
   Photograph([](int, int, double value, double) { return Exposed(value, 0.08); });
-  TrainJob job = Job("context.h5", 600);
-  job.luminance.mode = LuminanceMode::kUnder;
+  TrainJob job = JobWithLight(LuminanceMode::kUnder, -2.0, 600);
   job.luminance.product = GetParam().product;
   job.luminance.patches = GetParam().patches;
-  job.luminance.start_log_gain = -2.0;
   base::ThreadPool threads(2);
   const TrainResult result = TrainContext(job, Box(20.0, 0.0), threads, {});
   ASSERT_TRUE(result.ok) << result.reason;
@@ -223,11 +223,8 @@ TEST_F(BrightnessTest, DarkAndBrightSurveysAreLearnedWithoutIt) {
 
 TEST_F(BrightnessTest, ShowsAnOverExposedSurveyDarker) {
   Photograph([](int, int, double value, double) { return Exposed(value, 4.0); });
-  TrainJob job = Job("context.h5", 400);
-  job.luminance.mode = LuminanceMode::kOver;
-  job.luminance.start_log_gain = -1.0;
   base::ThreadPool threads(2);
-  ASSERT_TRUE(TrainContext(job, Box(20.0, 0.0), threads, {}).ok);
+  ASSERT_TRUE(TrainContext(JobWithLight(LuminanceMode::kOver, -1.0, 400), Box(20.0, 0.0), threads, {}).ok);
   const LoadedContext context = LoadContext(folder_ / "context.h5");
   const double plain = MeanShown(context, false, threads);
   EXPECT_GT(plain, 0.5);
@@ -236,11 +233,8 @@ TEST_F(BrightnessTest, ShowsAnOverExposedSurveyDarker) {
 
 TEST_F(BrightnessTest, BlocksKeepToTheContextsLight) {
   Photograph([](int, int, double value, double) { return Exposed(value, 0.08); });
-  TrainJob job = Job("context.h5", 300);
-  job.luminance.mode = LuminanceMode::kUnder;
-  job.luminance.start_log_gain = -2.0;
   base::ThreadPool threads(2);
-  ASSERT_TRUE(TrainContext(job, Box(20.0, 0.0), threads, {}).ok);
+  ASSERT_TRUE(TrainContext(JobWithLight(LuminanceMode::kUnder, -2.0, 300), Box(20.0, 0.0), threads, {}).ok);
   const TrainResult block = TrainBlock(Job("block.h5", 400), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
   ASSERT_TRUE(block.ok) << block.reason;
   const LoadedContext context = LoadContext(folder_ / "context.h5");
@@ -249,10 +243,7 @@ TEST_F(BrightnessTest, BlocksKeepToTheContextsLight) {
   render::FieldSet coarse, fine;
   coarse.context = &context.field;
   fine.blocks = {&field};
-  std::vector<render::Ray> rays;
-  for (double x = -10.0; x <= 10.0; x += 1.0) {
-    for (double y = -10.0; y <= 10.0; y += 1.0) rays.push_back({{x, y, 30.0}, {0.0, 0.0, -1.0}});
-  }
+  const std::vector<render::Ray> rays = RaysDown(10.0);
   const auto mean_shown = [&](const render::FieldSet& fields) {
     std::vector<render::RayColor> out(rays.size());
     render::RenderRays(fields, rays, out, {}, threads);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/image/image.h"
+#include "tests/support/nadir_photo.h"
 #include "tests/support/temporary_folder.h"
 #include "worker/make_backdrop.h"
 #include "worker/point_surface.h"
@@ -29,12 +30,7 @@ class FewViewsTest : public ::testing::Test {
     survey_.cameras = {camera};
     std::vector<image::PixelSource> sources;
     for (int i = 0; i < 2; ++i) {
-      survey::Photo photo;
-      photo.name = "p" + std::to_string(i) + ".png";
-      Eigen::Matrix3d rotation;
-      rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-      photo.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
-      photo.cam_from_enu.translation = -(photo.cam_from_enu.rotation * Eigen::Vector3d(i * shift_m, 0.0, 50.0));
+      const survey::Photo photo = NadirPhoto({i * shift_m, 0.0, 50.0}, "p" + std::to_string(i) + ".png");
       image::Image8 picture(kWidth, kHeight, 3);
       for (int y = 0; y < kHeight; ++y) {
         // A fine check in red; green where the first photo looks west and the second one east.

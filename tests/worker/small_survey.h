@@ -13,11 +13,13 @@
 #include <vector>
 
 #include "core/base/cancel.h"
+#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/checkpoint/archive.h"
+#include "core/geo/ray_box.h"
 #include "core/image/image.h"
 #include "core/image/srgb.h"
-#include "core/render/ray_box.h"
+#include "tests/support/nadir_photo.h"
 #include "worker/trainer.h"
 
 namespace skyquilt::worker {
@@ -28,7 +30,7 @@ struct SmallWorld {
   // Colour of the surface a ray meets: ground z = 0 with a smooth pattern; a 6 x 6 x 4 m red box in the middle, patterned too: a roof of one
   // colour could hang at any height inside the silhouettes.
   static Eigen::Vector3d Shade(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-    const render::Stretch box = render::RayBox(origin, direction, {-3, -3, 0}, {3, 3, 4});
+    const geo::Stretch box = geo::RayBox(origin, direction, {-3, -3, 0}, {3, 3, 4});
     if (!box.Empty()) {
       const Eigen::Vector3d p = origin + box.t_near * direction;
       return {0.75 + 0.2 * std::sin(1.8 * p.x() + p.z()) * std::cos(1.6 * p.y()), 0.2, 0.15 + 0.1 * std::sin(1.5 * p.y())};
@@ -63,20 +65,14 @@ class SmallSurvey : public ::testing::Test {
     survey_.cameras = {camera};
     std::vector<image::PixelSource> sources;
     for (int i = 0; i < 16; ++i) {
-      survey::Photo photo;
-      photo.name = "p" + std::to_string(10 + i) + ".png";
       const int row = i / 4;
       const Eigen::Vector3d centre(-15.0 + 10.0 * (i % 4), -15.0 + 10.0 * row, 30.0 + (i % 3));
-      // Looks down: camera x = east, y = south, z = down.
-      Eigen::Matrix3d rotation;
-      rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-      photo.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
-      photo.cam_from_enu.translation = -(rotation * centre);
+      survey::Photo photo = NadirPhoto(centre, "p" + std::to_string(10 + i) + ".png");
       photo.is_test = i % 8 == 0;
       image::Image8 picture(kSmallWidth, kSmallHeight, 3);
       for (int y = 0; y < kSmallHeight; ++y) {
         for (int x = 0; x < kSmallWidth; ++x) {
-          const Eigen::Vector3d direction = rotation.transpose() * camera.RayFromImg({x + 0.5, y + 0.5});
+          const Eigen::Vector3d direction = photo.cam_from_enu.rotation.conjugate() * camera.RayFromImg({x + 0.5, y + 0.5});
           const Eigen::Vector3d color = SmallWorld::Shade(centre, direction);
           const double u = (x + 0.5) / kSmallWidth - 0.5, v = (y + 0.5) / kSmallHeight - 0.5;
           const double aspect = static_cast<double>(kSmallHeight) / kSmallWidth;
@@ -112,16 +108,26 @@ class SmallSurvey : public ::testing::Test {
     job.checkpoint = folder_ / name;
     return job;
   }
-  BoxView Box(double half, double margin) const {
-    BoxView box;
-    box.name = "r0c0";
-    box.min_enu = {-half, -half, -1.0};
-    box.max_enu = {half, half, 6.0};
-    box.margin_m = margin;
-    box.finest_voxel_m = 0.5;
-    box.log2_table_size = 14;
-    for (int i = 0; i < 16; ++i) box.photos.push_back(i);
-    return box;
+  BlockSpec Box(double half, double margin) const {
+    BlockSpec block;
+    block.name = "r0c0";
+    block.box = {{-half, -half, -1.0}, {half, half, 6.0}, margin};
+    block.finest_voxel_m = 0.5;
+    block.log2_table_size = 14;
+    for (int i = 0; i < 16; ++i) block.photos.push_back(i);
+    return block;
+  }
+  // Trains a job that `stop` interrupts, then again without it until it comes to its end.
+  static void TrainInterrupted(const TrainJob& job, const Reporter& stop, const std::function<void(const Reporter&)>& train) {
+    for (int attempt = 0; attempt < 50; ++attempt) {
+      base::ClearCancel();
+      try {
+        train(attempt == 0 ? stop : Reporter());
+        break;
+      } catch (const base::Interrupted&) {
+        EXPECT_TRUE(std::filesystem::exists(job.checkpoint));
+      }
+    }
   }
   std::string Bytes(const std::string& name) const {
     const checkpoint::ArchiveReader reader(folder_ / name);

@@ -54,15 +54,7 @@ TEST_F(TrainBlockTest, BitsDoNotDependOnThreadsNorOnInterruption) {
   const Reporter stop = [](const TrainStatus& status) {
     if (status.step >= 10 && status.fraction < 0.9) base::RequestCancel();
   };
-  for (int attempt = 0; attempt < 50; ++attempt) {
-    base::ClearCancel();
-    try {
-      TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", one, attempt == 0 ? stop : Reporter());
-      break;
-    } catch (const base::Interrupted&) {
-      EXPECT_TRUE(fs::exists(folder_ / "c.h5"));
-    }
-  }
+  TrainInterrupted(job, stop, [&](const Reporter& report) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", one, report); });
   EXPECT_EQ(Bytes("a.h5"), Bytes("c.h5"));
 }
 
@@ -80,9 +72,9 @@ TEST_F(TrainBlockTest, FinishedWorkIsNotDoneTwiceAndOtherConfigurationsAreRefuse
 TEST_F(TrainBlockTest, BlockNobodyPhotographedFailsWithItsReason) {
   base::ThreadPool threads(1);
   TrainContext(Job("context.h5", 20), Box(20.0, 0.0), threads, {});
-  BoxView far = Box(5.0, 0.0);
-  far.min_enu.x() += 500.0;
-  far.max_enu.x() += 500.0;
+  BlockSpec far = Box(5.0, 0.0);
+  far.box.min_enu.x() += 500.0;
+  far.box.max_enu.x() += 500.0;
   const TrainResult result = TrainBlock(Job("far.h5", 10), far, folder_ / "context.h5", threads, {});
   EXPECT_FALSE(result.ok);
   EXPECT_NE(result.reason.find("r0c0"), std::string::npos);

@@ -41,7 +41,7 @@ const std::map<std::string, std::set<std::string>>& Arrows() {
       {"core/encoding", {"core/kernel", "core/base"}},
       {"core/field", {"core/encoding", "core/kernel", "core/base"}},
       {"core/brightness", {"core/survey", "core/image", "core/config", "core/checkpoint", "core/base"}},
-      {"core/render", {"core/field", "core/encoding", "core/kernel", "core/brightness", "core/image", "core/base"}},
+      {"core/render", {"core/field", "core/encoding", "core/kernel", "core/brightness", "core/geo", "core/image", "core/base"}},
       {"core/scene",
        {"core/render", "core/field", "core/encoding", "core/brightness", "core/camera", "core/geo", "core/checkpoint", "core/image", "core/base"}},
       {"core/metrics", {"core/image", "core/base"}},

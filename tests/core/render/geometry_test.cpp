@@ -2,52 +2,17 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "core/base/random.h"
+#include "core/geo/ray_box.h"
 #include "core/render/blend.h"
 #include "core/render/march.h"
-#include "core/render/ray_box.h"
 
 namespace skyquilt::render {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Eigen::Vector3d kMin(-1.0, -2.0, 0.0), kMax(3.0, 2.0, 5.0);
-
-TEST(RayBox, StretchEndsLieOnTheBox) {
-  base::Random random(37);
-  int hits = 0;
-  for (int i = 0; i < 5000; ++i) {
-    const Eigen::Vector3d origin(random.Uniform(-10, 10), random.Uniform(-10, 10), random.Uniform(-10, 10));
-    const Eigen::Vector3d direction = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
-    const Stretch s = RayBox(origin, direction, kMin, kMax);
-    if (s.Empty()) {
-      // No point of the ray is inside.
-      for (double t = 0.0; t < 30.0; t += 0.05) {
-        const Eigen::Vector3d p = origin + t * direction;
-        EXPECT_FALSE(((p - kMin).array() > 1e-2).all() && ((kMax - p).array() > 1e-2).all());
-      }
-      continue;
-    }
-    ++hits;
-    const Eigen::Vector3d middle = origin + 0.5 * (s.t_near + s.t_far) * direction;
-    EXPECT_TRUE(((middle - kMin).array() >= -1e-9).all() && ((kMax - middle).array() >= -1e-9).all());
-    const Eigen::Vector3d out = origin + (s.t_far + 1e-6) * direction;
-    EXPECT_TRUE(((out - kMin).array() < 0.0).any() || ((kMax - out).array() < 0.0).any());
-  }
-  EXPECT_GT(hits, 100);
-}
-
-TEST(RayBox, EdgesAreLegal) {
-  EXPECT_DOUBLE_EQ(RayBox({0, 0, 1}, {0, 0, 1}, kMin, kMax).t_far, 4.0);  // starts inside
-  EXPECT_FALSE(RayBox({-5, -2, 1}, {1, 0, 0}, kMin, kMax).Empty());       // runs along a face
-  EXPECT_TRUE(RayBox({-5, -2.001, 1}, {1, 0, 0}, kMin, kMax).Empty());    // just misses it
-  EXPECT_TRUE(RayBox({0, 0, 9}, {0, 0, 1}, kMin, kMax).Empty());          // behind the origin
-  EXPECT_TRUE(RayBox({kNan, 0, 1}, {0, 0, 1}, kMin, kMax).Empty());
-  EXPECT_TRUE(RayBox({0, 0, 1}, {kNan, kNan, kNan}, kMin, kMax).Empty() || !std::isnan(RayBox({0, 0, 1}, {kNan, kNan, kNan}, kMin, kMax).t_near));
-}
 
 TEST(Blend, NeighboursSumToOneAcrossTheirBorder) {
   const Eigen::Vector3d a_min(0, 0, 0), a_max(10, 10, 5), b_min(10, 0, 0), b_max(20, 10, 9);
@@ -75,7 +40,7 @@ TEST(March, FullOccupancyGivesEveryLatticePointOnce) {
     const Eigen::Vector3d origin(random.Uniform(-6, 6), random.Uniform(-6, 6), random.Uniform(-3, 9));
     const Eigen::Vector3d target(random.Uniform(-1, 3), random.Uniform(-2, 2), random.Uniform(0, 5));
     const Eigen::Vector3d direction = (target - origin).normalized();
-    const Stretch s = FieldStretch(f.map, origin, direction);
+    const geo::Stretch s = FieldStretch(f.map, origin, direction);
     if (s.Empty()) continue;
     std::vector<double> ts;
     March(f, origin, direction, s, f.step_m, 0.5F, [&](double t, double, double, int64_t) {
@@ -104,7 +69,7 @@ RC_GTEST_PROP(March, LongStepsMissNothing, ()) {
   const double slope = *rc::gen::inRange(-5, 6) / 100.0;
   const Eigen::Vector3d origin(x, y, 12.0), direction = Eigen::Vector3d(slope, 0.0, -1.0).normalized();
   const double step_m = *rc::gen::inRange(1, 40) / 10.0;
-  const Stretch s = RayBox(origin, direction, f.map.min_enu(), f.map.max_enu());
+  const geo::Stretch s = geo::RayBox(origin, direction, f.map.min_enu(), f.map.max_enu());
   double length = 0.0, last = 0.0;
   MarchCoarse(f, origin, direction, s, step_m, [&](double t, double sample_m, double) {
     RC_ASSERT(sample_m <= step_m * 1.000001);
@@ -125,7 +90,7 @@ TEST(March, SamplesLieInOccupiedCellsOnly) {
   for (int i = 0; i < 300; ++i) {
     const Eigen::Vector3d origin(random.Uniform(-6, 6), random.Uniform(-6, 6), 8.0);
     const Eigen::Vector3d direction = Eigen::Vector3d(random.Uniform(-0.5, 0.5), random.Uniform(-0.5, 0.5), -1.0).normalized();
-    const Stretch s = FieldStretch(f.map, origin, direction);
+    const geo::Stretch s = FieldStretch(f.map, origin, direction);
     std::set<int64_t> expected, got;
     // Every lattice point tested one by one; points within rounding of a cell face may fall either way.
     int64_t k = 0;

@@ -170,8 +170,8 @@ RC_GTEST_PROP(RaySegmentsProperty, SegmentsCoverTheRayAndNameTheBlocksOverIt, ()
   std::vector<render::TrainedField> blocks(static_cast<size_t>(n));
   for (render::TrainedField& block : blocks) {
     const double x = *rc::gen::inRange(-10, 10), y = *rc::gen::inRange(-10, 10);
-    block.core_min_enu = {x, y, 0.0};
-    block.core_max_enu = {x + *rc::gen::inRange(1, 8), y + *rc::gen::inRange(1, 8), 3.0};
+    block.box.min_enu = {x, y, 0.0};
+    block.box.max_enu = {x + *rc::gen::inRange(1, 8), y + *rc::gen::inRange(1, 8), 3.0};
     block.blend_m = 0.25 * *rc::gen::inRange(0, 5);
   }
   std::vector<const render::TrainedField*> outlines;
@@ -194,11 +194,11 @@ RC_GTEST_PROP(RaySegmentsProperty, SegmentsCoverTheRayAndNameTheBlocksOverIt, ()
     const std::span<const int> named = segments.Blocks(found[i].set);
     for (int k = 0; k < n; ++k) {
       const render::TrainedField& b = blocks[static_cast<size_t>(k)];
-      const bool inside = (place.head<2>().array() > b.core_min_enu.head<2>().array() - b.blend_m + 1e-9).all() &&
-                          (place.head<2>().array() < b.core_max_enu.head<2>().array() + b.blend_m - 1e-9).all();
+      const bool inside = (place.head<2>().array() > b.box.min_enu.head<2>().array() - b.blend_m + 1e-9).all() &&
+                          (place.head<2>().array() < b.box.max_enu.head<2>().array() + b.blend_m - 1e-9).all();
       if (inside) RC_ASSERT(std::find(named.begin(), named.end(), k) != named.end());
-      const bool outside = (place.head<2>().array() < b.core_min_enu.head<2>().array() - b.blend_m - 1e-9).any() ||
-                           (place.head<2>().array() > b.core_max_enu.head<2>().array() + b.blend_m + 1e-9).any();
+      const bool outside = (place.head<2>().array() < b.box.min_enu.head<2>().array() - b.blend_m - 1e-9).any() ||
+                           (place.head<2>().array() > b.box.max_enu.head<2>().array() + b.blend_m + 1e-9).any();
       if (outside) RC_ASSERT(std::find(named.begin(), named.end(), k) == named.end());
     }
     from = found[i].t_far;

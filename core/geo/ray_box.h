@@ -1,0 +1,57 @@
+// A ray against an axis-aligned box (slab method, Kay and Kajiya 1986). Never NaN: rays along a face count as inside, zero direction components
+// and infinite boxes are legal.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace skyquilt::geo {
+
+// A part of a ray, in lengths of its direction from its origin.
+struct Stretch {
+  double t_near = 0.0;
+  double t_far = 0.0;
+  bool Empty() const { return !(t_far > t_near); }
+};
+
+namespace internal {
+
+// Where the half-line t >= 0 is between all three pairs of faces; t_far < t_near when nowhere, t_far = t_near when it only touches the box.
+inline Stretch BetweenFaces(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+  constexpr Stretch kNowhere = {0.0, -1.0};
+  double t_near = 0.0;
+  double t_far = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    // Dividing by a zero component would give 0 / 0 for rays along a face.
+    if (direction[axis] == 0.0) {
+      if (!(origin[axis] >= min[axis] && origin[axis] <= max[axis])) return kNowhere;
+      continue;
+    }
+    double t0 = (min[axis] - origin[axis]) / direction[axis];
+    double t1 = (max[axis] - origin[axis]) / direction[axis];
+    if (t0 > t1) std::swap(t0, t1);
+    t_near = std::max(t_near, t0);
+    t_far = std::min(t_far, t1);
+  }
+  return {t_near, t_far};
+}
+
+}  // namespace internal
+
+// The stretch inside the box, for those who walk along it: of no length, and then {0, 0}, when the ray misses the box or only touches it.
+inline Stretch RayBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+  const Stretch inside = internal::BetweenFaces(origin, direction, min, max);
+  return inside.Empty() ? Stretch{} : inside;
+}
+
+// Whether the half-line meets the closed box, for those who ask what can be seen: touching an edge or a corner is enough, a box may be flat.
+// False when anything is NaN, and for rays that are not finite.
+inline bool RayMeetsBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+  if (!origin.allFinite() || !direction.allFinite() || min.hasNaN() || max.hasNaN()) return false;
+  const Stretch inside = internal::BetweenFaces(origin, direction, min, max);
+  return inside.t_near <= inside.t_far;
+}
+
+}  // namespace skyquilt::geo

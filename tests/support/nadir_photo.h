@@ -1,0 +1,23 @@
+// A photo for made-up surveys, taken straight down.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "core/survey/survey.h"
+
+namespace skyquilt {
+
+// From `eye`, metres; camera x = east, y = south, z = down.
+inline survey::Photo NadirPhoto(const Eigen::Vector3d& eye, const std::string& name) {
+  survey::Photo photo;
+  photo.name = name;
+  Eigen::Matrix3d rotation;
+  rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  photo.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
+  photo.cam_from_enu.translation = -(rotation * eye);
+  photo.agl_m = std::nan("");
+  return photo;
+}
+
+}  // namespace skyquilt

@@ -13,6 +13,7 @@
 #include "core/base/progress.h"
 #include "core/base/random.h"
 #include "core/base/system.h"
+#include "core/scene/train_report.h"
 
 namespace skyquilt::bench {
 namespace {

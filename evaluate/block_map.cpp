@@ -73,7 +73,7 @@ std::string HeldOutPsnr(const ReportInput& input, const partition::Block& block)
 std::string Blocks(const ReportInput& input, const MapFrame& frame) {
   std::string svg = "<g class=\"layer-blocks\">";
   for (const partition::Block& block : input.blocks->blocks) {
-    const FieldLog* log = input.log->Find(block.name);
+    const scene::FieldTraining* log = input.training->Find(block.name);
     const bool failed = log != nullptr && !log->ok;
     const std::string value = block.empty ? "empty" : failed ? "failed" : HeldOutPsnr(input, block);
     svg += "<g>";

@@ -25,11 +25,6 @@ void CheckInput(const EvaluateInput& input) {
   input.options.Check();
 }
 
-TrainLog LogOf(const EvaluateInput& input) {
-  const std::filesystem::path& project = input.project_folder;
-  return ReadTrainLog(input.train_json.empty() ? project / "train.json" : input.train_json, project / "checkpoints");
-}
-
 Scores ScorePhotos(const EvaluateInput& input, const std::vector<int>& held_out, HeldOutScorer& scorer, ReportPictures& pictures,
                    base::ThreadPool& threads) {
   Scores scores(scorer.n_boxes());
@@ -52,8 +47,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   CheckInput(input);
   const Clock::time_point start = Clock::now();
   base::RequireWritableFolder(input.ReportFolder() / "images");
-  const TrainLog log = LogOf(input);
-  Metrics metrics = KnownFacts(input, log);
+  Metrics metrics = KnownFacts(input);
 
   const std::vector<int> held_out = EvenlySpread(HeldOutPhotos(*input.survey), input.options.max_photos);
   HeldOutScorer scorer(input);
@@ -61,9 +55,9 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   const Scores scores = ScorePhotos(input, held_out, scorer, pictures, threads);
   metrics.evaluate_seconds = std::chrono::duration<double>(Clock::now() - start).count();
 
-  Summarise(input, log, scores, &metrics);
+  Summarise(input, scores, &metrics);
   for (const std::string& warning : metrics.warnings) spdlog::warn("{}", warning);
-  WriteReport(input, log, metrics, pictures);
+  WriteReport(input, metrics, pictures);
   return metrics;
 }
 

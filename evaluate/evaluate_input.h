@@ -6,6 +6,7 @@
 
 #include "core/image/pixel_cache.h"
 #include "core/scene/scene.h"
+#include "core/scene/train_report.h"
 #include "core/survey/survey.h"
 #include "evaluate/evaluate_options.h"
 #include "partition/block.h"
@@ -16,11 +17,10 @@ struct EvaluateInput {
   const scene::Scene* scene = nullptr;
   const survey::Survey* survey = nullptr;
   const partition::BlockSet* blocks = nullptr;
-  const image::PixelCache* pixels = nullptr;  // entry i belongs to survey->photos[i]
-  std::filesystem::path project_folder;       // report/ is written here; checkpoints/ and products/ are read
-  std::filesystem::path train_json;           // empty: train.json of the project
-  int ranks = 0;                              // 0: as train.json says, else 1
-  std::string config_text;                    // TOML; empty: what the scene was trained with
+  const image::PixelCache* pixels = nullptr;     // entry i belongs to survey->photos[i]
+  std::filesystem::path project_folder;          // report/ is written here; checkpoints/ and products/ are read
+  const scene::TrainReport* training = nullptr;  // null: nothing is known of it
+  std::string config_text;                       // TOML; empty: what the scene was trained with
   EvaluateOptions options;
 
   std::filesystem::path ReportFolder() const { return project_folder / "report"; }

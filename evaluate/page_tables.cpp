@@ -11,7 +11,7 @@ namespace skyquilt::evaluate {
 
 namespace {
 
-std::string StatusCell(const FieldLog* log, const partition::Block* block) {
+std::string StatusCell(const scene::FieldTraining* log, const partition::Block* block) {
   if (block != nullptr && block->empty)
     return fmt::format("<td class=\"status\"><span class=\"state idle\">empty</span><small>{}</small></td>", page::EscapeHtml(block->empty_reason));
   if (log == nullptr) return "<td class=\"status\"><span class=\"state idle\">no log</span></td>";
@@ -24,7 +24,7 @@ std::string StatusCell(const FieldLog* log, const partition::Block* block) {
   return "<td class=\"status\"><span class=\"state good\">done</span></td>";
 }
 
-std::string TrainingCells(const FieldLog* log) {
+std::string TrainingCells(const scene::FieldTraining* log) {
   if (log == nullptr)
     return "<td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td>"
            "<td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td>";
@@ -46,7 +46,7 @@ std::string BlockTable(const ReportInput& input) {
       "<th class=\"num\">Parameters</th><th class=\"num\">Size</th><th class=\"num\">Heights</th><th class=\"num\">Flown above ground</th><th "
       "class=\"num\">GSD</th>"
       "<th class=\"num\">Photos</th></tr></thead><tbody>";
-  if (const FieldLog* context = input.log->Find("context")) {
+  if (const scene::FieldTraining* context = input.training->Find("context")) {
     html += "<tr><td><b>context</b></td>" + StatusCell(context, nullptr) +
             "<td class=\"num\" data-v=\"\">\xE2\x80\x93</td><td class=\"num\" data-v=\"\">\xE2\x80\x93</td>" + TrainingCells(context);
     for (int i = 0; i < 5; ++i) html += "<td class=\"num\" data-v=\"\">\xE2\x80\x93</td>";
@@ -56,7 +56,7 @@ std::string BlockTable(const ReportInput& input) {
     const BlockScore* score = input.metrics->FindBlock(block.name);
     const double psnr_db = score == nullptr ? kNotMeasured : score->psnr_db;
     const double pixels = score == nullptr ? kNotMeasured : static_cast<double>(score->pixels);
-    const FieldLog* log = input.log->Find(block.name);
+    const scene::FieldTraining* log = input.training->Find(block.name);
     const Eigen::Vector3d size = block.max_enu - block.min_enu;
     html += fmt::format("<tr id=\"block-{0}\"><td><b>{0}</b></td>", page::EscapeHtml(block.name)) + StatusCell(log, &block);
     html += page::NumberCell(psnr_db, page::FormatFixed(psnr_db, 2, "dB")) + page::NumberCell(pixels, page::FormatLarge(pixels)) + TrainingCells(log);

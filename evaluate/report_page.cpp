@@ -149,7 +149,7 @@ std::string MapSection(const ReportInput& input) {
 std::string StageBars(const ReportInput& input) {
   std::vector<std::pair<std::string, double>> stages;
   double total = 0.0;
-  for (const FieldLog& field : input.log->fields) {
+  for (const scene::FieldTraining& field : input.training->fields) {
     for (const auto& [stage, seconds] : field.stage_seconds) {
       auto known = std::find_if(stages.begin(), stages.end(), [&, &name = stage](const auto& s) { return s.first == name; });
       if (known == stages.end()) known = stages.insert(stages.end(), {stage, 0.0});
@@ -165,15 +165,17 @@ std::string StageBars(const ReportInput& input) {
                    page::FormatFixed(100.0 * seconds / total, 1, "%"));
   }
   return html + fmt::format("</div><p class=\"note\">{} of work on all threads, {} samples per ray.</p></div>", base::FormatDuration(total),
-                            page::FormatFixed(input.log->SamplesPerRay(), 1));
+                            page::FormatFixed(input.training->SamplesPerRay(), 1));
 }
 
 std::string TrainingSection(const ReportInput& input) {
   std::vector<page::Curve> loss, psnr;
-  for (const FieldLog& field : input.log->fields) {
+  for (const scene::FieldTraining& field : input.training->fields) {
     page::Curve loss_curve{field.name, {}, field.name == "context"};
     page::Curve psnr_curve = loss_curve;
-    for (const CurvePoint& point : field.curve) {
+    const auto curve = input.curves.find(field.name);
+    const std::vector<CurvePoint> points = curve == input.curves.end() ? std::vector<CurvePoint>() : curve->second;
+    for (const CurvePoint& point : points) {
       const double x = std::isfinite(point.seconds) ? point.seconds : point.step;
       loss_curve.points.emplace_back(x, point.loss);
       psnr_curve.points.emplace_back(x, point.psnr_db);
@@ -238,7 +240,8 @@ std::string Facts(const ReportInput& input) {
 }  // namespace
 
 std::string BuildReportPage(const ReportInput& input) {
-  SKYQUILT_CHECK(input.metrics != nullptr && input.survey != nullptr && input.blocks != nullptr && input.log != nullptr, "all parts of the input");
+  SKYQUILT_CHECK(input.metrics != nullptr && input.survey != nullptr && input.blocks != nullptr && input.training != nullptr,
+                 "all parts of the input");
   SKYQUILT_CHECK(input.images.empty() || input.images.size() == input.metrics->photos.size(), "one entry of images per scored photo");
   const std::string brightness = BrightnessSection(input);
   page::PageFrame frame{.title = input.title,

@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/train_report.h"
 #include "core/survey/survey.h"
 #include "evaluate/brightness_report.h"
 #include "evaluate/metrics.h"
-#include "evaluate/train_log.h"
+#include "evaluate/training_curve.h"
 #include "partition/block.h"
 
 namespace skyquilt::evaluate {
@@ -35,7 +36,8 @@ struct ReportInput {
   const Metrics* metrics = nullptr;
   const survey::Survey* survey = nullptr;
   const partition::BlockSet* blocks = nullptr;
-  const TrainLog* log = nullptr;
+  const scene::TrainReport* training = nullptr;  // without fields when it is unknown
+  Curves curves;                                 // of its fields
   const BrightnessReport* brightness = nullptr;  // nothing or empty: no such section
   std::vector<PhotoImages> images;               // entry i belongs to metrics->photos[i]
   std::optional<MapBackground> background;

@@ -71,14 +71,20 @@ void ReportPictures::WriteView(const ScoredPhoto& scored, size_t view) {
   shown.stops = ExposureStops(input_.scene->info().response, static_cast<size_t>(score.photo));
 }
 
-void WriteReport(const EvaluateInput& input, const TrainLog& log, const Metrics& metrics, const ReportPictures& pictures) {
+void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures) {
   const std::filesystem::path report_folder = input.ReportFolder();
+  const scene::TrainReport unknown;
+  std::vector<std::string> names;
+  if (input.training != nullptr) {
+    for (const scene::FieldTraining& field : input.training->fields) names.push_back(field.name);
+  }
   ReportInput page;
   page.title = TitleOf(input.project_folder);
   page.metrics = &metrics;
   page.survey = input.survey;
   page.blocks = input.blocks;
-  page.log = &log;
+  page.training = input.training == nullptr ? &unknown : input.training;
+  page.curves = ReadCurves(input.project_folder / "checkpoints", names);
   page.brightness = &pictures.brightness();
   page.images = pictures.images();
   page.background = CopyMapBackground(input.project_folder / "products", report_folder);

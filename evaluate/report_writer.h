@@ -8,7 +8,6 @@
 #include "evaluate/held_out_scorer.h"
 #include "evaluate/metrics.h"
 #include "evaluate/report_page.h"
-#include "evaluate/train_log.h"
 
 namespace skyquilt::evaluate {
 
@@ -36,6 +35,6 @@ class ReportPictures {
 };
 
 // Everything but those pictures; metrics.json last, because its presence says that the evaluation is complete. Throws base::InputError.
-void WriteReport(const EvaluateInput& input, const TrainLog& log, const Metrics& metrics, const ReportPictures& pictures);
+void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures);
 
 }  // namespace skyquilt::evaluate

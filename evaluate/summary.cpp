@@ -86,17 +86,19 @@ double Scores::Coverage() const {
   return used > 0 ? static_cast<double>(covered) / static_cast<double>(used) : kNotMeasured;
 }
 
-Metrics KnownFacts(const EvaluateInput& input, const TrainLog& log) {
+Metrics KnownFacts(const EvaluateInput& input) {
   const scene::SceneInfo& info = input.scene->info();
   const std::filesystem::path network = input.options.lpips_network;
   Metrics metrics;
   AddSurveyFacts(*input.survey, &metrics);
-  metrics.train_seconds = log.TrainSeconds();
-  metrics.samples_per_second = log.SamplesPerSecond();
-  metrics.peak_rss_bytes = log.peak_rss_bytes;
+  if (input.training != nullptr) {
+    metrics.train_seconds = input.training->TrainSeconds();
+    metrics.samples_per_second = input.training->SamplesPerSecond();
+    metrics.peak_rss_bytes = input.training->PeakRssBytes();
+    metrics.ranks = std::max(input.training->ranks, 1);
+    metrics.threads = input.training->threads;
+  }
   metrics.parameters = info.parameters;
-  metrics.ranks = input.ranks > 0 ? input.ranks : std::max(log.ranks, 1);
-  metrics.threads = log.threads;
   metrics.config = input.config_text.empty() ? info.config : input.config_text;
   metrics.gsd_m = info.gsd_m > 0.0 ? info.gsd_m : kNotMeasured;
   metrics.lpips_note = network.empty() ? "not measured: no network file was given" : "full frame, network " + network.filename().string();
@@ -105,14 +107,14 @@ Metrics KnownFacts(const EvaluateInput& input, const TrainLog& log) {
   return metrics;
 }
 
-void Summarise(const EvaluateInput& input, const TrainLog& log, const Scores& scores, Metrics* metrics) {
+void Summarise(const EvaluateInput& input, const Scores& scores, Metrics* metrics) {
   metrics->photos = scores.photos;
   metrics->image_width = scores.photos.empty() ? 0 : scores.photos.front().width;
   AddMeans(scores, metrics);
   AddPooled(input.scene->info(), scores, metrics);
   metrics->rendering = input.scene->statistics();
   metrics->evaluate_peak_rss_bytes = base::PeakRssBytes();
-  metrics->warnings = CollectWarnings(*input.survey, *input.blocks, log, *metrics);
+  metrics->warnings = CollectWarnings(*input.survey, *input.blocks, input.training, *metrics);
 }
 
 }  // namespace skyquilt::evaluate

@@ -11,7 +11,6 @@
 #include "evaluate/held_out_scorer.h"
 #include "evaluate/metrics.h"
 #include "evaluate/seam_errors.h"
-#include "evaluate/train_log.h"
 
 namespace skyquilt::evaluate {
 
@@ -32,8 +31,8 @@ struct Scores {
 };
 
 // What is known before any photo is scored: survey, training, machine.
-Metrics KnownFacts(const EvaluateInput& input, const TrainLog& log);
+Metrics KnownFacts(const EvaluateInput& input);
 // Adds what the scores say, what scoring took so far, and the warnings.
-void Summarise(const EvaluateInput& input, const TrainLog& log, const Scores& scores, Metrics* metrics);
+void Summarise(const EvaluateInput& input, const Scores& scores, Metrics* metrics);
 
 }  // namespace skyquilt::evaluate

@@ -24,7 +24,7 @@ std::string Photos(size_t n) {
 
 }  // namespace
 
-std::vector<std::string> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const TrainLog& log,
+std::vector<std::string> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport* training,
                                          const Metrics& metrics) {
   std::vector<std::string> warnings;
   if (!survey.unregistered.empty()) {
@@ -48,19 +48,20 @@ std::vector<std::string> CollectWarnings(const survey::Survey& survey, const par
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) {
       warnings.push_back(fmt::format("Block {} is empty and was not trained: {}", block.name, block.empty_reason));
-    } else if (log.found && log.Find(block.name) == nullptr) {
+    } else if (training != nullptr && training->Find(block.name) == nullptr) {
       unfinished.push_back(block.name);
     }
   }
   if (!unfinished.empty()) warnings.push_back("No training record for these blocks: " + Names(unfinished));
-  for (const FieldLog& field : log.fields) {
+  const std::vector<scene::FieldTraining> fields = training == nullptr ? std::vector<scene::FieldTraining>() : training->fields;
+  for (const scene::FieldTraining& field : fields) {
     if (!field.ok)
       warnings.push_back(fmt::format("Training of {} failed: {}", field.name, field.reason.empty() ? "no reason was given" : field.reason));
     if (field.ok && field.dropped_steps > 0) {
       warnings.push_back(fmt::format("Training of {} dropped {} steps with non-finite loss or gradient", field.name, field.dropped_steps));
     }
   }
-  if (!log.found) warnings.emplace_back("No train.json: training time, speed and memory are unknown");
+  if (training == nullptr) warnings.emplace_back("No train.json: training time, speed and memory are unknown");
   if (metrics.photos.empty()) {
     warnings.emplace_back("No held-out photo was scored, so there are no quality figures");
   } else if (std::isfinite(metrics.coverage) && metrics.coverage < 0.5) {

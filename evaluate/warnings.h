@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/train_report.h"
 #include "core/survey/survey.h"
 #include "evaluate/metrics.h"
-#include "evaluate/train_log.h"
 #include "partition/block.h"
 
 namespace skyquilt::evaluate {
 
-std::vector<std::string> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const TrainLog& log,
+std::vector<std::string> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport* training,
                                          const Metrics& metrics);
 
 }  // namespace skyquilt::evaluate

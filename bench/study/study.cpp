@@ -13,7 +13,7 @@
 #include "core/render/trained_field.h"
 #include "core/scene/field_file.h"
 #include "core/scene/scene_file.h"
-#include "evaluate/train_log.h"
+#include "evaluate/training_curve.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -32,32 +32,34 @@ void RemoveOldRuns(const std::filesystem::path& folder) {
 }
 
 // Batches' PSNR over the time that all fields together have trained: fields one after the other, each at the mean of what has begun.
-std::vector<std::pair<double, double>> JoinedCurve(const evaluate::TrainLog& log) {
+std::vector<std::pair<double, double>> JoinedCurve(const scene::TrainReport& training, const std::filesystem::path& checkpoint_folder) {
   constexpr int kPoints = 60;
-  std::vector<std::pair<double, double>> curve;
-  size_t blocks = 0;
-  double seconds = 0.0;
-  for (const evaluate::FieldLog& field : log.fields) {
-    if (field.name == "context" || field.curve.empty()) continue;
-    ++blocks;
-    seconds += field.seconds;
+  std::vector<std::pair<double, double>> joined;
+  std::vector<std::string> blocks;
+  for (const scene::FieldTraining& field : training.fields) {
+    if (field.block >= 0) blocks.push_back(field.name);
   }
-  if (blocks == 0) return curve;
+  evaluate::Curves curves = evaluate::ReadCurves(checkpoint_folder, blocks);
+  std::erase_if(curves, [](const auto& entry) { return entry.second.empty(); });
+  if (curves.empty()) return joined;
+  double seconds = 0.0;
+  for (const scene::FieldTraining& field : training.fields) {
+    if (curves.contains(field.name)) seconds += field.seconds;
+  }
   for (int k = 1; k <= kPoints; ++k) {
     const double share = static_cast<double>(k) / kPoints;
     double sum = 0.0;
     size_t counted = 0;
-    for (const evaluate::FieldLog& field : log.fields) {
-      if (field.name == "context" || field.curve.empty()) continue;
-      const double until = share * field.curve.back().step;
-      const auto at = std::find_if(field.curve.begin(), field.curve.end(), [&](const evaluate::CurvePoint& p) { return p.step >= until; });
-      if (at == field.curve.end() || !std::isfinite(at->psnr_db)) continue;
+    for (const auto& [name, curve] : curves) {
+      const double until = share * curve.back().step;
+      const auto at = std::find_if(curve.begin(), curve.end(), [until](const evaluate::CurvePoint& p) { return p.step >= until; });
+      if (at == curve.end() || !std::isfinite(at->psnr_db)) continue;
       sum += at->psnr_db;
       ++counted;
     }
-    if (counted == blocks) curve.emplace_back(share * seconds, sum / static_cast<double>(blocks));
+    if (counted == curves.size()) joined.emplace_back(share * seconds, sum / static_cast<double>(curves.size()));
   }
-  return curve;
+  return joined;
 }
 
 // Of every field in a scene, by name.
@@ -286,7 +288,7 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
     if (field.block >= 0) ++r.blocks;
   }
   r.layout = std::to_string(blocks.rows) + "x" + std::to_string(blocks.columns);
-  r.curve = JoinedCurve(evaluate::ReadTrainLog(project.TrainReport(), project.CheckpointFolder()));
+  r.curve = JoinedCurve(training, project.CheckpointFolder());
   const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
   r.training_photos = static_cast<int>(std::count_if(survey.photos.begin(), survey.photos.end(), [](const auto& photo) { return !photo.is_test; }));
   const std::filesystem::path relative = std::filesystem::path("runs") / scored.name / "report";

@@ -127,13 +127,13 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   std::filesystem::create_directories(project.PixelCacheFile().parent_path());
   const image::PixelCache pixels =
       image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), pipeline.settings.run.image_width, threads);
+  const std::optional<scene::TrainReport> training = scene::TryReadTrainReport(project.TrainReport());
   const evaluate::EvaluateInput input{.scene = &session.scene(),
                                       .survey = &survey,
                                       .blocks = &blocks,
                                       .pixels = &pixels,
                                       .project_folder = project.folder,
-                                      .train_json = project.TrainReport(),
-                                      .ranks = 0,
+                                      .training = training ? &*training : nullptr,
                                       .config_text = pipeline.settings.Toml(),
                                       .options = pipeline.settings.evaluate};
   pipeline.metrics = evaluate::Evaluate(input, threads);

@@ -11,10 +11,10 @@
 namespace skyquilt::scene {
 
 struct FieldTraining {
-  std::string name;    // "context" or a block's name
-  int block = -1;      // position in the survey's blocks; -1: the context
-  bool ok = false;     // finished, with a checkpoint that can be merged
-  std::string reason;  // when not ok
+  std::string name;         // "context" or a block's name
+  int block = -1;           // position in the survey's blocks; -1: the context
+  bool ok = false;          // finished, with a checkpoint that can be merged
+  std::string reason = {};  // when not ok
   int64_t steps = 0;
   double seconds = 0.0;       // trained, earlier runs included
   double wall_seconds = 0.0;  // of the run that finished it
@@ -27,7 +27,7 @@ struct FieldTraining {
   int rank = 0;
   int threads = 0;
   int64_t peak_rss_bytes = 0;
-  std::map<std::string, double> stage_seconds;  // work per stage of a step, summed over threads
+  std::map<std::string, double> stage_seconds = {};  // work per stage of a step, summed over threads
 };
 
 struct TrainReport {

@@ -159,12 +159,12 @@ TEST(ReportPageOfNothing, SaysWhatIsMissing) {
   const Metrics metrics;
   const survey::Survey survey;
   const partition::BlockSet blocks;
-  const TrainLog log;
+  const scene::TrainReport training;
   ReportInput input;
   input.metrics = &metrics;
   input.survey = &survey;
   input.blocks = &blocks;
-  input.log = &log;
+  input.training = &training;
   const std::string html = BuildReportPage(input);
   EXPECT_NE(html.find("No photo was scored"), std::string::npos);
   EXPECT_NE(html.find("no usable GPS"), std::string::npos);

@@ -54,8 +54,9 @@ image::Image8 TownPicture(int width, int height, double west, double north, doub
   return image::ToImage8(picture);
 }
 
-FieldLog TrainedField(const std::string& name, double seconds, double final_psnr_db, base::Random& random) {
-  FieldLog field;
+scene::FieldTraining TrainedField(const std::string& name, int block, double seconds, double final_psnr_db, base::Random& random, Curves* curves) {
+  scene::FieldTraining field;
+  field.block = block;
   field.name = name;
   field.ok = true;
   field.steps = static_cast<int64_t>(seconds * 14.0);
@@ -68,7 +69,7 @@ FieldLog TrainedField(const std::string& name, double seconds, double final_psnr
   for (int i = 1; i <= 400; ++i) {
     const double t = seconds * i / 400.0;
     const double psnr_db = final_psnr_db - 14.0 * std::exp(-6.0 * t / seconds) - 2.0 * std::exp(-t / seconds) + 0.25 * random.Normal();
-    field.curve.push_back({t * 14.0, t, std::pow(10.0, -psnr_db / 10.0), psnr_db});
+    (*curves)[name].push_back({t * 14.0, t, std::pow(10.0, -psnr_db / 10.0), psnr_db});
   }
   return field;
 }
@@ -180,20 +181,19 @@ partition::BlockSet TownBlocks(const survey::Survey& survey) {
   return blocks;
 }
 
-TrainLog TrainedBlocks(const partition::BlockSet& blocks, base::Random& random) {
-  TrainLog log;
-  log.found = true;
-  log.ranks = 2;
-  log.threads = 4;
-  log.wall_seconds = 611.0;
-  log.peak_rss_bytes = int64_t{2640} << 20;
-  log.fields.push_back(TrainedField("context", 90.0, 24.8, random));
+scene::TrainReport TrainedBlocks(const partition::BlockSet& blocks, base::Random& random, Curves* curves) {
+  scene::TrainReport training;
+  training.ranks = 2;
+  training.threads = 4;
+  training.wall_seconds = 611.0;
+  training.fields.push_back(TrainedField("context", -1, 90.0, 24.8, random, curves));
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) continue;
-    log.fields.push_back(TrainedField(block.name, 190.0 + 12.0 * block.id, 27.6 + 0.5 * block.id, random));
+    training.fields.push_back(TrainedField(block.name, block.id, 190.0 + 12.0 * block.id, 27.6 + 0.5 * block.id, random, curves));
   }
-  log.fields[3].dropped_steps = 2;
-  return log;
+  training.fields[0].peak_rss_bytes = int64_t{2640} << 20;
+  training.fields[3].dropped_steps = 2;
+  return training;
 }
 
 PhotoScore ScoreOf(const survey::Survey& survey, int index, base::Random& random) {
@@ -229,7 +229,7 @@ PhotoImages PicturesOf(const survey::Photo& photo, const std::filesystem::path& 
 }
 
 // All but the scores of photos and blocks.
-void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& blocks, const TrainLog& log, Metrics& metrics) {
+void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport& training, Metrics& metrics) {
   std::vector<double> psnr, ssim;
   for (const PhotoScore& photo : metrics.photos) {
     psnr.push_back(photo.psnr_db);
@@ -250,14 +250,14 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.seam_psnr_gap_db = 0.12;
   metrics.depth_rmse_m = 1.12;
   metrics.depth_median_abs_m = 0.21;
-  metrics.train_seconds = log.TrainSeconds();
-  metrics.samples_per_second = log.SamplesPerSecond();
-  metrics.peak_rss_bytes = log.peak_rss_bytes;
+  metrics.train_seconds = training.TrainSeconds();
+  metrics.samples_per_second = training.SamplesPerSecond();
+  metrics.peak_rss_bytes = training.PeakRssBytes();
   metrics.evaluate_peak_rss_bytes = int64_t{830} << 20;
   metrics.evaluate_seconds = 24.0;
   metrics.parameters = 22812672;
-  metrics.ranks = log.ranks;
-  metrics.threads = log.threads;
+  metrics.ranks = training.ranks;
+  metrics.threads = training.threads;
   metrics.config = "[train]\n# resolutions of the hash grid\nlevels = 8\nfeatures = 4\n\n[partition]\nblocks = \"2x3\"\n";
   metrics.georeferenced = true;
   metrics.geo_fit = survey.fit;
@@ -270,7 +270,7 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.image_width = 640;
   metrics.machine = "8-core laptop, 16 GiB, Linux";
   metrics.date = "2026-01-31T12:00:00Z";
-  metrics.warnings = CollectWarnings(survey, blocks, log, metrics);
+  metrics.warnings = CollectWarnings(survey, blocks, &training, metrics);
 }
 
 }  // namespace
@@ -280,7 +280,7 @@ SampleReport::SampleReport(const std::filesystem::path& folder) {
   base::Random random(11);
   survey = FlownSurvey(random);
   blocks = TownBlocks(survey);
-  log = TrainedBlocks(blocks, random);
+  training = TrainedBlocks(blocks, random, &curves);
   metrics.has_truth = true;
   for (const partition::Block& block : blocks.blocks) {
     if (!block.empty) metrics.blocks.push_back({block.name, 26.8 + 0.45 * block.id, 241000 + 9000 * block.id});
@@ -292,14 +292,15 @@ SampleReport::SampleReport(const std::filesystem::path& folder) {
   image::SavePng(TownPicture(900, 900, -kExtent_m / 2, kExtent_m / 2, kExtent_m / 900.0, 0.0, nullptr), folder / "images/orthophoto.png");
   input.background = MapBackground{"images/orthophoto.png", {-kExtent_m / 2, -kExtent_m / 2}, {kExtent_m / 2, kExtent_m / 2}};
   input.color_ramp = WriteColorRamp(folder);
-  FillSceneMetrics(survey, blocks, log, metrics);
+  FillSceneMetrics(survey, blocks, training, metrics);
 
   brightness = CloudyFlight(survey, folder);
   input.title = "town <sample>";
   input.metrics = &metrics;
   input.survey = &survey;
   input.blocks = &blocks;
-  input.log = &log;
+  input.training = &training;
+  input.curves = curves;
   input.brightness = &brightness;
 }
 

@@ -6,7 +6,6 @@
 #include "evaluate/brightness_report.h"
 #include "evaluate/metrics.h"
 #include "evaluate/report_page.h"
-#include "evaluate/train_log.h"
 
 namespace skyquilt::evaluate {
 
@@ -14,7 +13,8 @@ struct SampleReport {
   Metrics metrics;
   survey::Survey survey;
   partition::BlockSet blocks;
-  TrainLog log;
+  scene::TrainReport training;
+  Curves curves;
   BrightnessReport brightness;
   ReportInput input;  // points into the above: do not copy
 

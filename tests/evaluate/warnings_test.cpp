@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace skyquilt::evaluate {
 namespace {
@@ -14,7 +15,7 @@ bool Mentions(const std::vector<std::string>& warnings, const std::string& text)
 struct Case {
   survey::Survey survey;
   partition::BlockSet blocks;
-  TrainLog log;
+  std::optional<scene::TrainReport> training = scene::TrainReport();
   Metrics metrics;
 
   Case() {
@@ -22,16 +23,15 @@ struct Case {
     partition::Block block;
     block.name = "r0c0";
     blocks.blocks = {block};
-    FieldLog field;
+    scene::FieldTraining field;
     field.name = "r0c0";
     field.ok = true;
-    log.found = true;
-    log.fields = {field};
+    training->fields = {field};
     metrics.photos.resize(1);
     metrics.n_test = 1;
     metrics.coverage = 0.9;
   }
-  std::vector<std::string> Collect() const { return CollectWarnings(survey, blocks, log, metrics); }
+  std::vector<std::string> Collect() const { return CollectWarnings(survey, blocks, training ? &*training : nullptr, metrics); }
 };
 
 TEST(CollectWarnings, NothingToSayAboutAGoodRun) {
@@ -59,8 +59,8 @@ TEST(CollectWarnings, LongListsAreCutShort) {
 
 TEST(CollectWarnings, NamesEmptyFailedAndUntrainedBlocks) {
   Case c;
-  c.log.fields[0].ok = false;
-  c.log.fields[0].reason = "diverged";
+  c.training->fields[0].ok = false;
+  c.training->fields[0].reason = "diverged";
   partition::Block empty, untrained;
   empty.name = "r0c1";
   empty.empty = true;
@@ -77,7 +77,7 @@ TEST(CollectWarnings, NamesEmptyFailedAndUntrainedBlocks) {
 TEST(CollectWarnings, SaysWhenGpsTrainingRecordOrScoresAreMissing) {
   Case c;
   c.survey.georeferenced = false;
-  c.log = TrainLog{};
+  c.training.reset();
   c.metrics.photos.clear();
   const auto warnings = c.Collect();
   EXPECT_TRUE(Mentions(warnings, "No geo-reference"));

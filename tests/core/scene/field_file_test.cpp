@@ -133,10 +133,10 @@ std::vector<double> Numbered(const render::TrainedField& f) {
                                  f.config.color_range,
                                  f.config.density_bias,
                                  f.map.contracted() ? 1.0 : 0.0};
-  for (const auto& corner : {f.map.min_enu(), f.map.max_enu(), f.core_min_enu, f.core_max_enu}) {
+  for (const auto& corner : {f.map.min_enu(), f.map.max_enu(), f.box.min_enu, f.box.max_enu}) {
     for (int axis = 0; axis < 3; ++axis) numbers.push_back(corner[axis]);
   }
-  numbers.push_back(f.margin_m);
+  numbers.push_back(f.box.margin_m);
   numbers.push_back(f.step_m);
   return numbers;
 }

@@ -5,7 +5,7 @@
 
 #include "core/image/image.h"
 #include "core/scene/scene.h"
-#include "products/map_grid.h"
+#include "products/map_rays.h"
 
 namespace skyquilt::products {
 

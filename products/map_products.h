@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "products/map_grid.h"
+#include "products/map_rays.h"
 #include "products/product_options.h"
 #include "products/ray_caster.h"
 

@@ -1,36 +1,16 @@
 #include "coordinator/project/stamp.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
 #include "core/base/errors.h"
-#include "core/base/file.h"
+#include "tests/support/project_fixture.h"
 
 namespace skyquilt::coordinator {
 namespace {
 
-class Stamp : public testing::Test {
- protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    project_ = Project::Create(std::filesystem::temp_directory_path() / ("skyquilt_stamp_" + std::to_string(getpid()) + "_" + info->name()));
-  }
-  void TearDown() override { std::filesystem::remove_all(project_.folder); }
-
-  void Touch(const std::filesystem::path& file, const std::string& text = "x") const {
-    std::filesystem::create_directories(file.parent_path());
-    base::WriteFileAtomically(file, text);
-  }
-  void Finish(const std::string& stage, const std::string& state = "done") const {
-    SaveStamp(project_, {.stage = stage, .state = state, .options = options_, .inputs = inputs_});
-  }
-
-  Project project_;
-  FlatOptions options_ = {{"train.steps", "2000"}, {"train.levels", "8"}};
-  FlatOptions inputs_ = {{"survey", "abc"}};
-};
+class Stamp : public ProjectFixture {};
 
 TEST_F(Stamp, FinishedStageWithItsFilesIsFresh) {
   EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kAbsent);

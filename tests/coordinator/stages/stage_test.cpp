@@ -1,39 +1,19 @@
 #include "coordinator/stages/stage.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <set>
 
 #include "core/base/errors.h"
-#include "core/base/file.h"
 #include "core/comm/communicator.h"
+#include "tests/support/project_fixture.h"
 
 namespace skyquilt::coordinator {
 namespace {
 
-class StageFiles : public testing::Test {
- protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    project_ = Project::Create(std::filesystem::temp_directory_path() / ("skyquilt_stages_" + std::to_string(getpid()) + "_" + info->name()));
-  }
-  void TearDown() override { std::filesystem::remove_all(project_.folder); }
-
-  void Touch(const std::filesystem::path& file, const std::string& text = "x") const {
-    std::filesystem::create_directories(file.parent_path());
-    base::WriteFileAtomically(file, text);
-  }
-  void Finish(const std::string& stage, const std::string& state = "done") const {
-    SaveStamp(project_, {.stage = stage, .state = state, .options = options_, .inputs = inputs_});
-  }
-
-  Project project_;
-  FlatOptions options_ = {{"train.steps", "2000"}, {"train.levels", "8"}};
-  FlatOptions inputs_ = {{"survey", "abc"}};
-};
+class StageFiles : public ProjectFixture {};
 
 TEST_F(StageFiles, RestartRemovesThisStageAndLaterOnesOnly) {
   for (const Stage& stage : Stages()) Finish(stage.name);

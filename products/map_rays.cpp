@@ -1,4 +1,4 @@
-#include "products/map_grid.h"
+#include "products/map_rays.h"
 
 #include <algorithm>
 #include <cmath>

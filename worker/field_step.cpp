@@ -96,7 +96,7 @@ int64_t FieldStep::DropHidden(RayBatch& batch, const Packet& packet, Worker& w) 
   int64_t live = 0;
   for (int64_t k = 0; k < packet.n_rays; ++k) {
     const BatchRay& r = batch.rays[static_cast<size_t>(packet.first_ray + k)];
-    Worker::View& view = w.views[static_cast<size_t>(k)];
+    RayView& view = w.views[static_cast<size_t>(k)];
     view.begin = live;
     float passed = 0.0F;
     int64_t i = 0;
@@ -140,7 +140,7 @@ void FieldStep::Color(const RayBatch& batch, const Packet& packet, int64_t n, Wo
   const int64_t padded = kernel::Padded(n);
   float* sh = w.a.color_in + static_cast<size_t>(field::kGeometryRows) * w.a.stride;
   for (int64_t k = 0; k < packet.n_rays; ++k) {
-    const Worker::View& view = w.views[static_cast<size_t>(k)];
+    const RayView& view = w.views[static_cast<size_t>(k)];
     const Eigen::Vector3f direction = batch.rays[static_cast<size_t>(packet.first_ray + k)].ray.direction_enu.cast<float>();
     field_.FillDirection(direction.data(), view.count, sh + view.begin, w.a.stride);
   }
@@ -169,7 +169,7 @@ void FieldStep::LookThroughContext(const RayBatch& batch, const Packet& packet, 
       w.pieces.push_back({r.ray.origin_enu, r.ray.direction_enu, all.t_near, plan.t_near, 0.0F});
       w.owner.emplace_back(k, false);
     }
-    const Worker::View& view = w.views[k];
+    const RayView& view = w.views[k];
     float depth = 0.0F;
     for (int64_t i = 0; i < view.count; ++i) depth += w.tau[static_cast<size_t>(view.begin + i)];
     if (depth < kOpaqueDepth && all.t_far > plan.t_far) {
@@ -180,7 +180,7 @@ void FieldStep::LookThroughContext(const RayBatch& batch, const Packet& packet, 
   w.colors.resize(w.pieces.size());
   w.context->Render(w.pieces, w.colors);
   for (size_t i = 0; i < w.pieces.size(); ++i) {
-    Worker::View& view = w.views[w.owner[i].first];
+    RayView& view = w.views[w.owner[i].first];
     const bool behind = w.owner[i].second;
     for (size_t c = 0; c < 3; ++c) {
       (behind ? view.behind_rgb : view.front_rgb)[c] = w.colors[i].rgb_srgb[c];
@@ -237,18 +237,18 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
     }
   });
   auto at = StageTimes::Clock::now();
-  PacketResult sums;
+  LossSums sums;
   stretches_.clear();
   for (size_t k = 0; k < n_packets; ++k) {
     const PacketResult& p = results_[k];
-    result.loss += p.loss;
-    result.squared_error += p.squared_error;
+    result.loss += p.sums.loss;
+    result.squared_error += p.sums.squared_error;
     result.n_live += p.live;
     result.finite = result.finite && p.finite;
-    sums.color_rays += p.color_rays;
-    sums.solid_rays += p.solid_rays;
-    sums.shown += p.shown;
-    sums.log_share += p.log_share;
+    sums.color_rays += p.sums.color_rays;
+    sums.solid_rays += p.sums.solid_rays;
+    sums.shown += p.sums.shown;
+    sums.log_share += p.sums.log_share;
     const Packet& packet = batch.packets[k];
     stretches_.push_back({packet.begin, p.live, features_.data() + packet.features, packet.stride});
   }
@@ -276,7 +276,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   return result;
 }
 
-void FieldStep::FollowMeans(const PacketResult& sums) {
+void FieldStep::FollowMeans(const LossSums& sums) {
   if (!luminance_.On() || !controls_mean_) return;
   if (sums.color_rays > 0) {
     const double shown = sums.shown / (3.0 * static_cast<double>(sums.color_rays));

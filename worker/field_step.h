@@ -14,6 +14,7 @@
 #include "core/field/optimizer.h"
 #include "core/render/ray_engine.h"
 #include "core/render/trained_field.h"
+#include "worker/concealed_ray_loss.h"
 #include "worker/ray_batch.h"
 #include "worker/stage_times.h"
 
@@ -64,10 +65,8 @@ class FieldStep {
  private:
   struct Worker;  // one thread's workspace
   struct PacketResult {
-    double loss = 0.0, squared_error = 0.0;
-    int64_t color_rays = 0, live = 0;
-    double shown = 0.0, log_share = 0.0;  // sums over rays (and colours) of fields with luminance
-    int64_t solid_rays = 0;
+    LossSums sums;
+    int64_t live = 0;
     bool finite = true;
   };
   // Network gradients are summed in so many places, packet k in place k modulo that.
@@ -82,14 +81,21 @@ class FieldStep {
   // The same for fields with luminance.
   PacketResult ConcealAndLoss(const RayBatch& batch, const Packet& packet, int64_t n, float ray_share, double distortion, float* network_gradient,
                               Worker& w);
-  void PlanConcealed(const RayBatch& batch, const Packet& packet, int64_t n, Worker& w) const;
-  float SmoothnessGradient(const Worker& w, size_t k, double* loss) const;
-  // Distortion loss of one ray times ray_share; its gradient is added to w.weight_gradient.
-  double AddDistortion(const RayBatch& batch, const Packet& packet, int64_t begin, int64_t count, float ray_share, double distortion,
-                       Worker& w) const;
+  static ComposedRay Compose(const RayView& view, Worker& w);
+  void ComposeConcealed(const RayBatch& batch, const Packet& packet, int64_t n, Worker& w) const;
+  ConcealedRay ComposeConcealedRay(const RayView& view, int64_t patch, Worker& w) const;
+  // From what a ray came to back to its samples' optical depths and colours. weight_gradient: by the compositing weights, or null.
+  static void ScatterComposed(const RayView& view, const ComposedRay& composed, const ComposedGradient& gradient, const float* weight_gradient,
+                              Worker& w);
+  void ScatterConcealed(const RayView& view, const ConcealedRay& composed, const ConcealedGradient& gradient, Worker& w) const;
+  // ray: index in the batch.
+  void KeepGainGradient(size_t ray, const ComposedGradient& gradient);
+  // Distortion loss of one ray; its gradient is added to w.weight_gradient.
+  void AddDistortion(const RayBatch& batch, const Packet& packet, const RayView& view, float ray_share, double distortion, Worker& w,
+                     LossSums& sums) const;
   // From gradients of optical depths and colours to those of the networks' outputs.
   void FinishGradients(int64_t n, Worker& w) const;
-  void FollowMeans(const PacketResult& sums);
+  void FollowMeans(const LossSums& sums);
   PacketResult TrainPacket(RayBatch& batch, const Packet& packet, float ray_share, double distortion, float* network_gradient, Worker& w, int thread);
 
   const render::TrainedField& target_;

@@ -12,7 +12,7 @@
 namespace skyquilt::worker {
 
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
-                 const ContextExtras* extras) {
+                 const ContextExtras* extras, const ContextFindings* findings) {
   field::TrainableState& state = trainer.state();
   target.steps = state.step;
   target.seconds = record.seconds;
@@ -51,9 +51,9 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
     extras->learner->Put(writer);
     brightness::PutLuminance(job.luminance, trainer.luminance_state(), writer);
   }
-  if (extras != nullptr && extras->findings != nullptr) {
-    scene::PutBackdrop(extras->findings->backdrop, writer);
-    for (const SurfaceBand& band : extras->findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
+  if (findings != nullptr) {
+    scene::PutBackdrop(findings->backdrop, writer);
+    for (const SurfaceBand& band : findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
     writer.Put("surface_bands", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
   }
   writer.Commit(job.checkpoint);

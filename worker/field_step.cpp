@@ -49,7 +49,7 @@ FieldStep::FieldStep(const render::TrainedField& target, const field::HashField&
 
 FieldStep::~FieldStep() = default;
 
-void FieldStep::Encode(const RayBatch& batch, const field::TrainableState& state) {
+void FieldStep::Encode(const RayBatch& batch, std::span<const float> grid) {
   if (batch.packets.empty()) return;
   const Packet& last = batch.packets.back();
   Grow(features_, last.features + last.stride * static_cast<size_t>(field_.FeatureRows()));
@@ -59,7 +59,7 @@ void FieldStep::Encode(const RayBatch& batch, const field::TrainableState& state
   threads_.ParallelFor(stretches * encoding.parts(), [&](int64_t task, int thread) {
     const auto start = StageTimes::Clock::now();
     const int part = static_cast<int>(task / stretches);
-    const float* table = state.grid.data() + encoding.Offset(part);
+    const float* table = grid.data() + encoding.Offset(part);
     const int64_t stretch = task % stretches;
     const int64_t floats = encoding.Offset(part + 1) - encoding.Offset(part);
     const int64_t readers = std::min<int64_t>(threads_.size(), stretches);
@@ -217,12 +217,13 @@ FieldStep::PacketResult FieldStep::TrainPacket(RayBatch& batch, const Packet& pa
   return result;
 }
 
-StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state, brightness::ResponseLearner* learner) {
+StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::TrainableState& state,
+                            brightness::ResponseLearner* learner) {
   StepResult result;
   result.n_rays = static_cast<int>(batch.rays.size());
   result.n_samples = batch.n_samples;
-  weights_ = field_.Prepare(state.networks);
-  Encode(batch, state);
+  weights_ = field_.Prepare(parameters.networks);
+  Encode(batch, parameters.grid);
   Grow(observed_, static_cast<size_t>(batch.Size()));
   const size_t n_packets = batch.packets.size();
   results_.assign(n_packets, {});
@@ -270,7 +271,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   }
   times_.Add(0, Stage::kBackward, at);
   optimizer_.Update(
-      batch.x.data(), batch.y.data(), batch.z.data(), stretches_, options.learning_rate, options.network_l2, state,
+      batch.x.data(), batch.y.data(), batch.z.data(), stretches_, options.learning_rate, options.network_l2, parameters, state,
       [&](int thread, StageTimes::Clock::time_point began) { times_.Add(thread, Stage::kScatter, began); },
       [&](int thread, StageTimes::Clock::time_point began) { times_.Add(thread, Stage::kOptimise, began); });
   return result;
@@ -285,9 +286,9 @@ void FieldStep::FollowMeans(const LossSums& sums) {
   if (sums.solid_rays > 0) state_.mean_log_gain += kMeansFollow * (sums.log_share / static_cast<double>(sums.solid_rays) - state_.mean_log_gain);
 }
 
-void FieldStep::Infer(RayBatch& batch, const field::TrainableState& state) {
-  weights_ = field_.Prepare(state.networks);
-  Encode(batch, state);
+void FieldStep::Infer(RayBatch& batch, const field::Parameters& parameters) {
+  weights_ = field_.Prepare(parameters.networks);
+  Encode(batch, parameters.grid);
   threads_.ParallelFor(static_cast<int64_t>(batch.packets.size()), [&](int64_t k, int thread) {
     const Packet& packet = batch.packets[static_cast<size_t>(k)];
     Worker& w = *workers_[static_cast<size_t>(thread)];

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/base/thread_pool.h"
@@ -47,16 +48,17 @@ struct StepResult {
 
 class FieldStep {
  public:
-  // target's map, step and colour range are read, its grid and networks are not. context may be null; it is frozen.
+  // target's map, step and colour range are read; parameters are handed to every step. context may be null; it is frozen.
   FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context, const LuminancePlan& luminance,
             base::ThreadPool& threads, StageTimes& times);
   ~FieldStep();
 
-  // Learns from the batch; positions of its dropped samples are lost. Non-finite gradients leave the state as it was. What the rays say about
-  // their photos' brightness is added to the learner, when there is one; its step is the caller's.
-  StepResult Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state, brightness::ResponseLearner* learner);
+  // Learns from the batch; positions of its dropped samples are lost. Non-finite gradients leave parameters and state as they were. What the rays say
+  // about their photos' brightness is added to the learner, when there is one; its step is the caller's.
+  StepResult Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::TrainableState& state,
+                   brightness::ResponseLearner* learner);
   // Density and colour of every sample, for timing: the forward half alone.
-  void Infer(RayBatch& batch, const field::TrainableState& state);
+  void Infer(RayBatch& batch, const field::Parameters& parameters);
   // Running means of a field with luminance; part of what a checkpoint holds.
   brightness::LuminanceState& luminance_state() { return state_; }
   // Optical depth of one marching step per sample of the last Train, 0 where no light arrived.
@@ -72,7 +74,7 @@ class FieldStep {
   // Network gradients are summed in so many places, packet k in place k modulo that.
   static constexpr size_t kGradientSlots = 16;
 
-  void Encode(const RayBatch& batch, const field::TrainableState& state);
+  void Encode(const RayBatch& batch, std::span<const float> grid);
   void Density(const Packet& packet, Worker& w);
   int64_t DropHidden(RayBatch& batch, const Packet& packet, Worker& w);
   void Color(const RayBatch& batch, const Packet& packet, int64_t n, Worker& w) const;

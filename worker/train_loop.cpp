@@ -145,14 +145,13 @@ void TrainLoop::ForgetUnseenCells() {
 }
 
 TrainResult TrainLoop::Summarise() const {
-  const field::TrainableState& state = trainer_.state();
   TrainResult result;
   result.ok = true;
-  result.steps = state.step;
+  result.steps = trainer_.state().step;
   result.seconds = record_.seconds;
   result.samples = record_.samples;
   result.rays = record_.rays;
-  result.parameters = static_cast<int64_t>(state.grid.size() + state.networks.size());
+  result.parameters = target_.ParameterCount();
   result.final_psnr_db = RunningPsnr(record_);
   result.dropped_steps = record_.dropped_steps;
   result.stage_seconds = trainer_.StageSeconds();

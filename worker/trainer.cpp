@@ -121,8 +121,6 @@ TrainResult TrainContext(const TrainJob& job, const BoxView& area, base::ThreadP
   source.UpdateExposures();
   TrainLoop loop("context", job, target, trainer, &extras, record, report);
   if (!loop.Run()) return loop.Failure();
-  target.grid = trainer.state().grid;
-  target.networks = trainer.state().networks;
   if (job.learn.Gains()) brightness::PredictGains(brightness::CapturedPhotos(*job.survey), response);
   const ContextFindings findings{SurfaceBands(source, *job.survey, target, threads), MakeBackdrop(source, *job.survey, surface, job.seed)};
   return loop.Finish(&findings);

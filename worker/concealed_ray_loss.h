@@ -34,13 +34,15 @@ struct ConcealedGradient {
   float log_share = 0.0F;
 };
 
-// weight: 0 lets the mean brightness go where it will. mean_shown: display value, of all rays.
+// Derivative of the wish for a mean brightness by one colour of one ray. weight: 0 lets the brightness go where it will. mean_shown and target:
+// display values.
 float MeanBrightnessPull(float weight, double mean_shown, double target);
 
 // The photo's loss and the wish of a ray of colour; arguments as LossOfRay.
 ConcealedGradient LossOfConcealedRay(const BatchRay& ray, const RayView& view, const ConcealedRay& composed, const ConcealedTask& task,
                                      float ray_share, LossSums& sums);
-// That ray k agrees with its neighbours and stays near the mean: the derivative by its log share, of the sum over rays.
+// Adds what ray k's log share costs for being unlike its neighbours and far from the mean (a logarithm, too); returns the derivative of the sum over
+// all rays by it.
 float LossOfShares(std::span<const ConcealedRay> rays, size_t k, float mean_log_gain, LossSums& sums);
 
 }  // namespace skyquilt::worker

@@ -95,7 +95,7 @@ void PacketTrainer::ConcealAndLoss(float* network_gradient, LossSums& sums) {
   FinishGradients();
 }
 
-// Adds to weight_gradient_ what is there already of the distortion loss.
+// weight_gradient_ holds the distortion loss's share already, or zeros.
 void PacketTrainer::ScatterConcealed(const RayView& view, const ConcealedRay& composed, const ConcealedGradient& gradient) {
   const auto begin = static_cast<size_t>(view.begin), count = static_cast<size_t>(view.count);
   const float* weights = weight_.data() + begin;

@@ -119,10 +119,12 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
   base::ThreadPool threads(n_threads);
   const render::TrainedField target = MakeField(options);
   const field::HashField field(target.config);
+  field::Parameters parameters;
+  parameters.Allocate(field);
   field::TrainableState state;
   state.Allocate(field);
   base::Random random(11);
-  field.Initialize(random, state.grid, state.networks);
+  field.Initialize(random, parameters.grid, parameters.networks);
   worker::StageTimes times(threads.size());
   worker::FieldStep step(target, field, nullptr, worker::LuminancePlan{}, threads, times);
   worker::RayBatch batch = MakeBatch(options, field.FeatureRows());
@@ -132,14 +134,14 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
 
   std::vector<KernelSpeed> rounds;
   std::vector<double> train, infer, roof_train, roof_infer;
-  step.Train(batch, learning, state, nullptr);
+  step.Train(batch, learning, parameters, state, nullptr);
   for (int round = 0; round < options.rounds; ++round) {
     KernelSpeed speed;
     MeasureLimits(options, field, threads, &speed);
     progress.Advance();
     times.Clear();
     const Clock::time_point start = Clock::now();
-    speed.train_samples_per_second = Rate(samples, options.seconds, [&] { step.Train(batch, learning, state, nullptr); });
+    speed.train_samples_per_second = Rate(samples, options.seconds, [&] { step.Train(batch, learning, parameters, state, nullptr); });
     const double thread_seconds = Since(start) * n_threads;
     const auto stages = times.Seconds();
     double busy = 0.0;
@@ -149,7 +151,7 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
     }
     speed.waiting_share = std::max(0.0, 1.0 - busy);
     progress.Advance();
-    speed.infer_samples_per_second = Rate(samples, 0.5 * options.seconds, [&] { step.Infer(batch, state); });
+    speed.infer_samples_per_second = Rate(samples, 0.5 * options.seconds, [&] { step.Infer(batch, parameters); });
     progress.Advance();
     rounds.push_back(speed);
   }

@@ -12,22 +12,11 @@
 namespace skyquilt::worker {
 
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
-                 const ContextExtras* extras) {
-  field::TrainableState& state = trainer.state();
+                 const ContextExtras* extras, const ContextFindings* findings) {
+  const field::TrainableState& state = trainer.state();
   target.steps = state.step;
   target.seconds = record.seconds;
   target.samples = record.samples;
-  // Lent, not copied: tables are the largest thing in memory.
-  target.grid.swap(state.grid);
-  target.networks.swap(state.networks);
-  struct Return {
-    render::TrainedField& target;
-    field::TrainableState& state;
-    ~Return() {
-      target.grid.swap(state.grid);
-      target.networks.swap(state.networks);
-    }
-  } give_back{target, state};
 
   checkpoint::ArchiveWriter writer(kind, kCheckpointVersion);
   scene::PutField(target, "", writer);
@@ -51,9 +40,9 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
     extras->learner->Put(writer);
     brightness::PutLuminance(job.luminance, trainer.luminance_state(), writer);
   }
-  if (extras != nullptr && extras->findings != nullptr) {
-    scene::PutBackdrop(extras->findings->backdrop, writer);
-    for (const SurfaceBand& band : extras->findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
+  if (findings != nullptr) {
+    scene::PutBackdrop(findings->backdrop, writer);
+    for (const SurfaceBand& band : findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
     writer.Put("surface_bands", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
   }
   writer.Commit(job.checkpoint);
@@ -125,8 +114,8 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
     }
     std::copy(from.begin(), from.end(), to.begin());  // the buffers were laid out for random access
   };
-  take(state.grid, std::move(loaded.grid), "grid");
-  take(state.networks, std::move(loaded.networks), "networks");
+  take(target.parameters.grid, std::move(loaded.parameters.grid), "grid");
+  take(target.parameters.networks, std::move(loaded.parameters.networks), "networks");
   take(state.grid_moment1, reader.Floats("grid_moment1"), "grid_moment1");
   take(state.grid_moment2, reader.Floats("grid_moment2"), "grid_moment2");
   take(state.network_moment1, reader.Floats("network_moment1"), "network_moment1");

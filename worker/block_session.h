@@ -30,12 +30,11 @@ struct SessionRecord {
 struct ContextExtras {
   brightness::Response* response = nullptr;
   brightness::ResponseLearner* learner = nullptr;
-  const ContextFindings* findings = nullptr;  // null until it is finished
 };
 
-// kind: "context" or "block". extras: the context's, null for blocks. Throws base::InputError.
+// kind: "context" or "block". extras: the context's, null for blocks. findings: the finished context's, else null. Throws base::InputError.
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
-                 const ContextExtras* extras);
+                 const ContextExtras* extras, const ContextFindings* findings);
 
 // PSNR of recent training rays.
 double RunningPsnr(const SessionRecord& record);

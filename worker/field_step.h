@@ -1,19 +1,20 @@
 // One optimiser step of one field on a drawn batch: encoding part by part (a hash grid's levels) over the whole batch, then every packet from density
-// to gradient while its activations are in cache, then the gradient's way back into the tables and Adam. Bits do not depend on the number of threads:
-// parts have one writer each and network gradients are summed in fixed slots.
+// to gradient while its activations are in cache (packet_trainer.h), then the gradient's way back into the tables and Adam. Bits do not depend on the
+// number of threads: parts have one writer each and network gradients are summed in fixed slots.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/base/thread_pool.h"
 #include "core/brightness/luminance.h"
 #include "core/brightness/response_learner.h"
 #include "core/field/optimizer.h"
-#include "core/render/ray_engine.h"
 #include "core/render/trained_field.h"
+#include "worker/packet_trainer.h"
 #include "worker/ray_batch.h"
 #include "worker/stage_times.h"
 
@@ -25,9 +26,6 @@ struct LuminancePlan {
   brightness::LuminanceState start;  // what the context found, for blocks; where the context starts
   bool controls_mean = false;        // brings the mean brightness of what is shown to the target; else keeps to start.mean_log_gain
 };
-
-// Densities are exp of at most this, so that they and their gradients stay finite.
-constexpr float kMaxLogDepth = 15.0F;
 
 struct StepOptions {
   double learning_rate = 0.0;
@@ -46,55 +44,36 @@ struct StepResult {
 
 class FieldStep {
  public:
-  // target's map, step and colour range are read, its grid and networks are not. context may be null; it is frozen.
+  // target's map, step and colour range are read; parameters are handed to every step. context may be null; it is frozen.
   FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context, const LuminancePlan& luminance,
             base::ThreadPool& threads, StageTimes& times);
-  ~FieldStep();
 
-  // Learns from the batch; positions of its dropped samples are lost. Non-finite gradients leave the state as it was. What the rays say about
-  // their photos' brightness is added to the learner, when there is one; its step is the caller's.
-  StepResult Train(RayBatch& batch, const StepOptions& options, field::TrainableState& state, brightness::ResponseLearner* learner);
+  FieldStep(const FieldStep&) = delete;  // packet trainers refer to it
+  FieldStep& operator=(const FieldStep&) = delete;
+
+  // Learns from the batch; positions of its dropped samples are lost. Non-finite gradients leave parameters and state as they were. What the rays say
+  // about their photos' brightness is added to the learner, when there is one; its step is the caller's.
+  StepResult Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::TrainableState& state,
+                   brightness::ResponseLearner* learner);
   // Density and colour of every sample, for timing: the forward half alone.
-  void Infer(RayBatch& batch, const field::TrainableState& state);
+  void Infer(RayBatch& batch, const field::Parameters& parameters);
   // Running means of a field with luminance; part of what a checkpoint holds.
   brightness::LuminanceState& luminance_state() { return state_; }
   // Optical depth of one marching step per sample of the last Train, 0 where no light arrived.
   const std::vector<float>& ObservedDepths() const { return observed_; }
 
  private:
-  struct Worker;  // one thread's workspace
-  struct PacketResult {
-    double loss = 0.0, squared_error = 0.0;
-    int64_t color_rays = 0, live = 0;
-    double shown = 0.0, log_share = 0.0;  // sums over rays (and colours) of fields with luminance
-    int64_t solid_rays = 0;
-    bool finite = true;
-  };
   // Network gradients are summed in so many places, packet k in place k modulo that.
   static constexpr size_t kGradientSlots = 16;
 
-  void Encode(const RayBatch& batch, const field::TrainableState& state);
-  void Density(const Packet& packet, Worker& w);
-  int64_t DropHidden(RayBatch& batch, const Packet& packet, Worker& w);
-  void Color(const RayBatch& batch, const Packet& packet, int64_t n, Worker& w) const;
-  void LookThroughContext(const RayBatch& batch, const Packet& packet, Worker& w) const;
-  PacketResult ComposeAndLoss(const RayBatch& batch, const Packet& packet, int64_t n, float ray_share, double distortion, Worker& w);
-  // The same for fields with luminance.
-  PacketResult ConcealAndLoss(const RayBatch& batch, const Packet& packet, int64_t n, float ray_share, double distortion, float* network_gradient,
-                              Worker& w);
-  void PlanConcealed(const RayBatch& batch, const Packet& packet, int64_t n, Worker& w) const;
-  float SmoothnessGradient(const Worker& w, size_t k, double* loss) const;
-  // Distortion loss of one ray times ray_share; its gradient is added to w.weight_gradient.
-  double AddDistortion(const RayBatch& batch, const Packet& packet, int64_t begin, int64_t count, float ray_share, double distortion,
-                       Worker& w) const;
-  // From gradients of optical depths and colours to those of the networks' outputs.
-  void FinishGradients(int64_t n, Worker& w) const;
-  void FollowMeans(const PacketResult& sums);
-  PacketResult TrainPacket(RayBatch& batch, const Packet& packet, float ray_share, double distortion, float* network_gradient, Worker& w, int thread);
+  void Encode(const RayBatch& batch, std::span<const float> grid);
+  // What the packets left behind, in their order.
+  LossSums SumResults(const RayBatch& batch, StepResult* result);
+  // Adds the slots' gradients to the state's; false when one is not finite.
+  bool SumNetworkGradients(field::TrainableState& state) const;
+  void FollowMeans(const LossSums& sums);
 
-  const render::TrainedField& target_;
   const field::HashField& field_;
-  const render::TrainedField* context_;
   brightness::Luminance luminance_;
   brightness::LuminanceState state_;
   bool controls_mean_;
@@ -102,8 +81,9 @@ class FieldStep {
   StageTimes& times_;
   field::Optimizer optimizer_;
   field::NetworkWeights weights_;
-  std::vector<std::unique_ptr<Worker>> workers_;
-  std::vector<float> features_;  // per packet, then the gradient in its place
+  std::vector<std::unique_ptr<PacketTrainer>> trainers_;  // per thread
+  std::vector<float> read_ahead_;                         // per thread
+  std::vector<float> features_;                           // per packet, then the gradient in its place
   std::vector<float> observed_;
   std::vector<PacketResult> results_;
   std::vector<float> slot_gradients_;

@@ -38,15 +38,17 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
       learner_(learner),
       source_(source),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / 24)) {
+  target.parameters.Allocate(field_);
   state_.Allocate(field_);
 }
 
 void FieldTrainer::InitializeParameters() {
   base::Random random(seed_, kInitStream);
-  field_.Initialize(random, state_.grid, state_.networks);
+  field_.Initialize(random, target_.parameters.grid, target_.parameters.networks);
   if (!target_.config.luminance) return;
   const double omega = std::clamp(std::exp(start_log_gain_), 1e-4, 1.0 - 1e-4);
-  state_.networks[static_cast<size_t>(field_.LuminanceOffset() + field::kLuminanceTaps)] = static_cast<float>(std::log(omega / (1.0 - omega)));
+  target_.parameters.networks[static_cast<size_t>(field_.LuminanceOffset() + field::kLuminanceTaps)] =
+      static_cast<float>(std::log(omega / (1.0 - omega)));
 }
 
 StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
@@ -58,7 +60,7 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   step.network_l2 = options_.network_l2;
   step.distortion = options_.distortion * std::clamp((progress - kDistortionFrom) / (kDistortionTo - kDistortionFrom), 0.0, 1.0);
   brightness::ResponseLearner* learner = learner_ != nullptr && learner_->active() ? learner_ : nullptr;
-  const StepResult result = step_.Train(batch_, step, state_, learner);
+  const StepResult result = step_.Train(batch_, step, target_.parameters, state_, learner);
   if (learner != nullptr && result.finite) {
     learner->Step(progress);
     source_.UpdateExposures();
@@ -97,7 +99,7 @@ void FieldTrainer::StepDepths(const std::vector<float>& x, const std::vector<flo
   const auto n = static_cast<int64_t>(x.size());
   depth->assign(x.size(), 0.0F);
   constexpr int64_t kStretch = 16 * field::kChunk;
-  const field::NetworkWeights weights = field_.Prepare(state_.networks);
+  const field::NetworkWeights weights = field_.Prepare(target_.parameters.networks);
   threads_.ParallelFor((n + kStretch - 1) / kStretch, [&](int64_t task, int thread) {
     const auto start = StageTimes::Clock::now();
     const int64_t begin = task * kStretch;
@@ -107,7 +109,7 @@ void FieldTrainer::StepDepths(const std::vector<float>& x, const std::vector<flo
     std::vector<float> features(static_cast<size_t>(field_.FeatureRows()) * stride, 0.0F);
     std::vector<float> geometry(static_cast<size_t>(field::kGeometryRows) * field::kChunkStride);
     std::vector<float> hidden(static_cast<size_t>(field_.DensityHiddenRows()) * field::kChunkStride);
-    field_.EncodeSerial(state_.grid, x.data() + begin, y.data() + begin, z.data() + begin, count, features.data(), stride);
+    field_.EncodeSerial(target_.parameters.grid, x.data() + begin, y.data() + begin, z.data() + begin, count, features.data(), stride);
     for (int64_t s = 0; s < padded; s += field::kChunk) {
       const int64_t size = std::min<int64_t>(field::kChunk, padded - s);
       field_.Density(weights, features.data() + s, stride, size, hidden.data(), field::kChunkStride, geometry.data(), field::kChunkStride);

@@ -18,8 +18,8 @@ namespace skyquilt::worker {
 
 class FieldTrainer {
  public:
-  // target.grid and target.networks are not used here: parameters live in state(). context may be null, and so may learner: the photos'
-  // brightness then stays as it is.
+  // Trains target.parameters in place; they are allocated here, and all zero until InitializeParameters() or a checkpoint fills them. context may
+  // be null, and so may learner: the photos' brightness then stays as it is.
   FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options, uint64_t seed,
                const LuminancePlan& luminance, brightness::ResponseLearner* learner, base::ThreadPool& threads);
 

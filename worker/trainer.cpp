@@ -1,12 +1,9 @@
 #include "worker/trainer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
-#include "core/base/log.h"
 #include "core/brightness/captured_photos.h"
 #include "core/brightness/exposure.h"
 #include "core/brightness/predict_gains.h"
@@ -19,24 +16,16 @@
 #include "worker/starting_occupancy.h"
 #include "worker/surface_band.h"
 #include "worker/tie_point_gains.h"
+#include "worker/train_loop.h"
 
 namespace skyquilt::worker {
 namespace {
 
-constexpr int kOccupancyEvery = 16;
-constexpr int kGrowEvery = 128;
-constexpr double kGrowUntil = 0.6;       // of the budget; later, cells that hold nothing only cost samples
-constexpr double kVisitsToJudge = 16.0;  // samples per occupied cell: fewer, and chance alone leaves cells out
-constexpr int kMaxDroppedInARow = 20;
 constexpr int64_t kMaxOccupancyCells = 4'000'000;
 constexpr double kCellPerVoxel = 3.0;
 // Largest display value of a field whose photos' gains are learned: white in a photo of a stop less.
 constexpr double kLearnedRange = 1.4;
 constexpr double kLuminanceRange = 2.0;
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Largest display value that the training photos, brought to reference exposure, can ask for.
 double ColorRange(const survey::Survey& survey, const brightness::Response& response) {
@@ -79,122 +68,6 @@ render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool
   return f;
 }
 
-TrainResult Summarise(const SessionRecord& record, FieldTrainer& trainer) {
-  const field::TrainableState& state = trainer.state();
-  TrainResult result;
-  result.ok = true;
-  result.steps = state.step;
-  result.seconds = record.seconds;
-  result.samples = record.samples;
-  result.rays = record.rays;
-  result.parameters = static_cast<int64_t>(state.grid.size() + state.networks.size());
-  result.final_psnr_db = RunningPsnr(record);
-  result.dropped_steps = record.dropped_steps;
-  result.stage_seconds = trainer.StageSeconds();
-  return result;
-}
-
-// The loop both kinds share. Returns with record.complete = false only when steps kept failing.
-class Loop {
- public:
-  // extras: the context's, null for blocks.
-  Loop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, ContextExtras* extras,
-       const Reporter& report)
-      : kind_(kind), job_(job), target_(target), trainer_(trainer), extras_(extras), report_(report) {}
-
-  TrainResult Run(SessionRecord record, const std::function<ContextFindings()>& find_out) {
-    const TrainOptions& options = job_.options;
-    const int64_t total_steps = options.steps > 0 ? options.steps : options.seconds > 0.0 ? 0 : kDefaultSteps;
-    double last = Now(), last_save = last, last_report = last;
-    int dropped_in_a_row = 0;
-    field::TrainableState& state = trainer_.state();
-    double rays_since = 0.0, samples_since = 0.0, since = 0.0, loss = 0.0;
-    const auto fraction_at = [&](int64_t done) {
-      return total_steps > 0 ? static_cast<double>(done) / static_cast<double>(total_steps) : record.seconds / std::max(1e-3, options.seconds);
-    };
-    while (true) {
-      const double fraction = fraction_at(state.step);
-      if (fraction >= 1.0) break;
-      if (base::CancelRequested()) {
-        SaveSession(kind_, job_, target_, trainer_, record, extras_);
-        throw base::Interrupted();
-      }
-      const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
-      if (state.step % kOccupancyEvery == 0) trainer_.UpdateOccupancy(state.step % kGrowEvery == 0 && fraction < kGrowUntil);
-      if (step.finite) {
-        dropped_in_a_row = 0;
-        const double keep = state.step <= 1 ? 0.0 : std::min(0.98, 1.0 - 1.0 / static_cast<double>(state.step));
-        record.mean_squared_error = keep * record.mean_squared_error + (1.0 - keep) * step.squared_error;
-      } else {
-        ++record.dropped_steps;
-        if (++dropped_in_a_row >= kMaxDroppedInARow) {
-          TrainResult failed = Summarise(record, trainer_);
-          failed.ok = false;
-          failed.reason = std::to_string(dropped_in_a_row) + " steps in a row were not finite";
-          return failed;
-        }
-      }
-      const double now = Now();
-      const double step_s = now - last;
-      record.seconds += step_s;
-      since += step_s;
-      last = now;
-      record.samples += step.n_samples;
-      record.rays += step.n_rays;
-      rays_since += step.n_rays;
-      samples_since += static_cast<double>(step.n_samples);
-      loss = step.loss;
-      if (now - last_report >= 0.5) {
-        Report(record, fraction, total_steps, loss, rays_since, samples_since, since);
-        rays_since = samples_since = since = 0.0;
-        last_report = now;
-      }
-      if (now - last_save >= options.checkpoint_every_s) {
-        SaveSession(kind_, job_, target_, trainer_, record, extras_);
-        last = last_save = Now();  // saving is not training
-      }
-    }
-    record.complete = true;
-    // Cells at the edge of view that no ray happened to cross would show whatever the tables hold there.
-    field::OccupancyGrid& cells = target_.occupancy;
-    if (static_cast<double>(record.samples) > kVisitsToJudge * cells.OccupiedShare() * static_cast<double>(cells.CellCount())) {
-      cells.ForgetUnsampled(kStartDepth);
-    }
-    if (since > 0.0) Report(record, 1.0, total_steps, loss, rays_since, samples_since, since);
-    ContextFindings findings;
-    if (extras_ != nullptr) {
-      findings = find_out();
-      extras_->findings = &findings;
-    }
-    SaveSession(kind_, job_, target_, trainer_, record, extras_);
-    if (extras_ != nullptr) extras_->findings = nullptr;
-    return Summarise(record, trainer_);
-  }
-
- private:
-  void Report(const SessionRecord& record, double fraction, int64_t total_steps, double loss, double rays, double samples, double seconds) const {
-    if (!report_) return;
-    TrainStatus status;
-    status.step = trainer_.state().step;
-    status.fraction = std::min(1.0, fraction);
-    status.total_steps = total_steps > 0 ? total_steps : static_cast<int64_t>(static_cast<double>(status.step) / std::max(1e-3, fraction));
-    status.seconds = record.seconds;
-    status.loss = loss;
-    status.psnr_db = RunningPsnr(record);
-    status.rays_per_second = rays / std::max(1e-6, seconds);
-    status.samples_per_second = samples / std::max(1e-6, seconds);
-    status.samples_per_ray = samples / std::max(1.0, rays);
-    report_(status);
-  }
-
-  std::string kind_;
-  const TrainJob& job_;
-  render::TrainedField& target_;
-  FieldTrainer& trainer_;
-  ContextExtras* extras_;
-  const Reporter& report_;
-};
-
 bool SearchesEverywhere(const TrainOptions& options) {
   return options.start == "everywhere";
 }
@@ -215,7 +88,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   }
   brightness::Response response = job.response;
   brightness::ResponseLearner learner(response, job.learn);
-  ContextExtras extras{&response, &learner, nullptr};
+  const ContextExtras extras{&response, &learner};
   RaySource source(*job.survey, *job.pixels, response);
   const scene::PlanSurface surface = SurfaceOfPoints(*job.survey);
   source.SetTiles(TilesInCompany(source, *job.survey, area.photos, surface, job.min_views), {}, 0.0);
@@ -243,13 +116,11 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
     }
   }
   source.UpdateExposures();
-  Loop loop("context", job, target, trainer, &extras, report);
-  return loop.Run(record, [&] {
-    target.grid = trainer.state().grid;
-    target.networks = trainer.state().networks;
-    if (job.learn.Gains()) brightness::PredictGains(brightness::CapturedPhotos(*job.survey), response);
-    return ContextFindings{SurfaceBands(source, *job.survey, target, threads), MakeBackdrop(source, *job.survey, surface, job.seed)};
-  });
+  TrainLoop loop("context", job, target, trainer, &extras, record, report);
+  if (!loop.Run()) return loop.Failure();
+  if (job.learn.Gains()) brightness::PredictGains(brightness::CapturedPhotos(*job.survey), response);
+  const ContextFindings findings{SurfaceBands(source, *job.survey, target, threads), MakeBackdrop(source, *job.survey, surface, job.seed)};
+  return loop.Finish(&findings);
 }
 
 TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
@@ -291,8 +162,8 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
       if (context != nullptr) StartFromBands(source, *job.survey, tiles, *context, target);
     }
   }
-  Loop loop("block", job, target, trainer, nullptr, report);
-  return loop.Run(record, {});
+  TrainLoop loop("block", job, target, trainer, nullptr, record, report);
+  return loop.Run() ? loop.Finish(nullptr) : loop.Failure();
 }
 
 }  // namespace skyquilt::worker

@@ -15,22 +15,22 @@ constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 const worker::StepOptions kPoisonOptions{.learning_rate = 1e-2, .network_l2 = 1e-6, .distortion = 1e-2};
 
-using Poison = std::function<void(worker::RayBatch& batch, field::TrainableState& state)>;
+using Poison = std::function<void(worker::RayBatch& batch, TrainingState& state)>;
 
 // Some clean steps, one with the poison in it, and a clean one.
 Finding PoisonedStep(const Poison& poison) {
   SyntheticTrainer trainer({}, 9, 1);
   base::Random random(43);
   for (int step = 0; step < 5; ++step) trainer.Train(trainer.Draw({.rays = 200}, random), kPoisonOptions);
-  const field::TrainableState before = trainer.state();
+  const TrainingState before = trainer.state();
   worker::RayBatch batch = trainer.Draw({.rays = 200}, random);
   poison(batch, trainer.state());
   const bool poisoned_state = !AllFinite(trainer.state());
   const worker::StepResult result = trainer.Train(batch, kPoisonOptions);
   // A poisoned parameter is put back as the last good checkpoint would; the others must not have moved.
   if (poisoned_state) {
-    trainer.state().grid[0] = before.grid[0];
-    trainer.state().networks[0] = before.networks[0];
+    trainer.state().parameters.grid[0] = before.parameters.grid[0];
+    trainer.state().parameters.networks[0] = before.parameters.networks[0];
   }
   const bool untouched = SameParameters(before, trainer.state());
   const worker::StepResult after = trainer.Train(trainer.Draw({.rays = 200}, random), kPoisonOptions);
@@ -85,21 +85,16 @@ NumericGroup NonFiniteGroup(const NumericsOptions& options) {
                            .expected = "the step is dropped, parameters and moments stay bit for bit, the next step trains",
                            .run = [poison] { return PoisonedStep(poison); }});
   };
-  add("A pixel that is NaN", [](worker::RayBatch& batch, field::TrainableState&) { batch.rays[7].ray.target_srgb[1] = kNotANumber; });
-  add("A pixel that is infinite", [](worker::RayBatch& batch, field::TrainableState&) { batch.rays[7].ray.target_srgb[1] = -kInfinity; });
-  add("A background that is NaN", [](worker::RayBatch& batch, field::TrainableState&) { batch.rays[7].background[0] = kNotANumber; });
-  add("A ray whose direction is NaN",
-      [](worker::RayBatch& batch, field::TrainableState&) { batch.rays[7].ray.direction_enu.setConstant(std::nan("")); });
-  add("A gain that is NaN", [](worker::RayBatch& batch, field::TrainableState&) {
-    batch.rays[7].ray.exposure[2] = {kNotANumber, kNotANumber, kNotANumber};
-  });
-  add("A gain that is infinite", [](worker::RayBatch& batch, field::TrainableState&) {
-    batch.rays[7].ray.exposure[2] = {100.0F, kInfinity, kInfinity};
-  });
-  add("An interval whose length is NaN", [](worker::RayBatch& batch, field::TrainableState&) { batch.unit_length[3] = kNotANumber; });
-  add("A network parameter that is NaN", [](worker::RayBatch&, field::TrainableState& state) { state.networks[0] = kNotANumber; });
-  add("A network parameter that is infinite", [](worker::RayBatch&, field::TrainableState& state) { state.networks[0] = kInfinity; });
-  add("A table that is NaN", [](worker::RayBatch&, field::TrainableState& state) { state.grid[0] = kNotANumber; });
+  add("A pixel that is NaN", [](worker::RayBatch& batch, TrainingState&) { batch.rays[7].ray.target_srgb[1] = kNotANumber; });
+  add("A pixel that is infinite", [](worker::RayBatch& batch, TrainingState&) { batch.rays[7].ray.target_srgb[1] = -kInfinity; });
+  add("A background that is NaN", [](worker::RayBatch& batch, TrainingState&) { batch.rays[7].background[0] = kNotANumber; });
+  add("A ray whose direction is NaN", [](worker::RayBatch& batch, TrainingState&) { batch.rays[7].ray.direction_enu.setConstant(std::nan("")); });
+  add("A gain that is NaN", [](worker::RayBatch& batch, TrainingState&) { batch.rays[7].ray.exposure[2] = {kNotANumber, kNotANumber, kNotANumber}; });
+  add("A gain that is infinite", [](worker::RayBatch& batch, TrainingState&) { batch.rays[7].ray.exposure[2] = {100.0F, kInfinity, kInfinity}; });
+  add("An interval whose length is NaN", [](worker::RayBatch& batch, TrainingState&) { batch.unit_length[3] = kNotANumber; });
+  add("A network parameter that is NaN", [](worker::RayBatch&, TrainingState& state) { state.parameters.networks[0] = kNotANumber; });
+  add("A network parameter that is infinite", [](worker::RayBatch&, TrainingState& state) { state.parameters.networks[0] = kInfinity; });
+  add("A table that is NaN", [](worker::RayBatch&, TrainingState& state) { state.parameters.grid[0] = kNotANumber; });
   group.cases.push_back(
       {.name = "Positions that are NaN, infinite or far outside", .expected = "parameters and moments stay finite", .run = NanPositions});
   group.cases.push_back({.name = "A field whose every step fails",

@@ -40,15 +40,15 @@ void Adam(double learning_rate, double correction1, double correction2, double g
 
 }  // namespace
 
-ReferenceState ReferenceState::From(const field::TrainableState& state) {
+ReferenceState ReferenceState::From(const TrainingState& state) {
   const auto doubled = [](const std::vector<float>& values) { return std::vector<double>(values.begin(), values.end()); };
-  return {doubled(state.grid),
-          doubled(state.networks),
-          doubled(state.grid_moment1),
-          doubled(state.grid_moment2),
-          doubled(state.network_moment1),
-          doubled(state.network_moment2),
-          state.step};
+  return {doubled(state.parameters.grid),
+          doubled(state.parameters.networks),
+          doubled(state.moments.grid_moment1),
+          doubled(state.moments.grid_moment2),
+          doubled(state.moments.network_moment1),
+          doubled(state.moments.network_moment2),
+          state.moments.step};
 }
 
 ReferenceTrainer::ReferenceTrainer(const render::TrainedField& target, const field::HashField& field) : target_(target), reference_(field) {}

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/numerics/reference_field.h"
-#include "core/field/optimizer.h"
+#include "bench/numerics/synthetic_scene.h"
 #include "core/render/trained_field.h"
 #include "worker/field_step.h"
 #include "worker/ray_batch.h"
@@ -18,7 +18,7 @@ struct ReferenceState {
   std::vector<double> grid_moment1, grid_moment2, network_moment1, network_moment2;
   int64_t step = 0;
 
-  static ReferenceState From(const field::TrainableState& state);
+  static ReferenceState From(const TrainingState& state);
 };
 
 struct ReferenceResult {

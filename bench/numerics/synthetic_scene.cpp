@@ -104,25 +104,28 @@ void RepositionInFloat(const render::TrainedField& field, worker::RayBatch* batc
   }
 }
 
-field::TrainableState InitialState(const field::HashField& field, uint64_t seed) {
-  field::TrainableState state;
-  state.Allocate(field);
+TrainingState InitialState(const field::HashField& field, uint64_t seed) {
+  TrainingState state;
+  state.parameters.Allocate(field);
+  state.moments.Allocate(field);
   base::Random random(seed);
-  field.Initialize(random, state.grid, state.networks);
+  field.Initialize(random, state.parameters.grid, state.parameters.networks);
   return state;
 }
 
-bool AllFinite(const field::TrainableState& state) {
+bool AllFinite(const TrainingState& state) {
+  const field::TrainableState& m = state.moments;
   for (const auto* values :
-       {&state.grid, &state.networks, &state.grid_moment1, &state.grid_moment2, &state.network_moment1, &state.network_moment2}) {
+       {&state.parameters.grid, &state.parameters.networks, &m.grid_moment1, &m.grid_moment2, &m.network_moment1, &m.network_moment2}) {
     if (!kernel::AllFinite(values->data(), static_cast<int64_t>(values->size()))) return false;
   }
   return true;
 }
 
-bool SameParameters(const field::TrainableState& a, const field::TrainableState& b) {
-  return a.grid == b.grid && a.networks == b.networks && a.grid_moment1 == b.grid_moment1 && a.grid_moment2 == b.grid_moment2 &&
-         a.network_moment1 == b.network_moment1 && a.network_moment2 == b.network_moment2;
+bool SameParameters(const TrainingState& a, const TrainingState& b) {
+  return a.parameters.grid == b.parameters.grid && a.parameters.networks == b.parameters.networks &&
+         a.moments.grid_moment1 == b.moments.grid_moment1 && a.moments.grid_moment2 == b.moments.grid_moment2 &&
+         a.moments.network_moment1 == b.moments.network_moment1 && a.moments.network_moment2 == b.moments.network_moment2;
 }
 
 }  // namespace skyquilt::bench

@@ -40,9 +40,14 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
 // frame would feed its field with.
 void RepositionInFloat(const render::TrainedField& field, worker::RayBatch* batch);
 
-// Parameters as training starts with.
-field::TrainableState InitialState(const field::HashField& field, uint64_t seed);
-bool AllFinite(const field::TrainableState& state);
-bool SameParameters(const field::TrainableState& a, const field::TrainableState& b);
+// A field in training: copied to see later what a step did.
+struct TrainingState {
+  field::Parameters parameters;
+  field::TrainableState moments;
+};
+// As training starts.
+TrainingState InitialState(const field::HashField& field, uint64_t seed);
+bool AllFinite(const TrainingState& state);
+bool SameParameters(const TrainingState& a, const TrainingState& b);
 
 }  // namespace skyquilt::bench

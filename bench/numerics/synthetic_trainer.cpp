@@ -21,12 +21,11 @@ worker::RayBatch SyntheticTrainer::Draw(const SyntheticRays& rays, base::Random&
 
 SyntheticTrainer::Gradients SyntheticTrainer::GradientsOf(worker::RayBatch batch, double distortion) {
   // After one step from moments of zero, the first moment is a tenth of the gradient.
+  field::Parameters parameters = state_.parameters;
   field::TrainableState probe;
   probe.Allocate(field_);
-  probe.grid = state_.grid;
-  probe.networks = state_.networks;
   Gradients gradients;
-  gradients.result = step_.Train(batch, {.learning_rate = 0.0, .network_l2 = 0.0, .distortion = distortion}, probe, nullptr);
+  gradients.result = step_.Train(batch, {.learning_rate = 0.0, .network_l2 = 0.0, .distortion = distortion}, parameters, probe, nullptr);
   const auto share = static_cast<double>(1.0F - kernel::AdamStep{}.beta1);
   for (const float moment : probe.grid_moment1) gradients.grid.push_back(static_cast<double>(moment) / share);
   for (const float moment : probe.network_moment1) gradients.networks.push_back(static_cast<double>(moment) / share);

@@ -19,11 +19,13 @@ class SyntheticTrainer {
   const render::TrainedField& target() const { return target_; }
   const field::HashField& field() const { return field_; }
   const SyntheticOptions& scene() const { return scene_; }
-  field::TrainableState& state() { return state_; }
+  TrainingState& state() { return state_; }
 
   worker::RayBatch Draw(const SyntheticRays& rays, base::Random& random) const;
   // The batch is copied: training loses positions of hidden samples.
-  worker::StepResult Train(worker::RayBatch batch, const worker::StepOptions& options) { return step_.Train(batch, options, state_, nullptr); }
+  worker::StepResult Train(worker::RayBatch batch, const worker::StepOptions& options) {
+    return step_.Train(batch, options, state_.parameters, state_.moments, nullptr);
+  }
   // Loss and gradients at the present parameters, which stay as they are.
   struct Gradients {
     worker::StepResult result;
@@ -37,7 +39,7 @@ class SyntheticTrainer {
   worker::StageTimes times_;
   render::TrainedField target_;
   field::HashField field_;
-  field::TrainableState state_;
+  TrainingState state_;
   worker::FieldStep step_;
 };
 

@@ -141,7 +141,7 @@ std::string RunsText(const Runs& runs) {
 
 Finding EmptyBatch() {
   SyntheticTrainer trainer({}, kTrainerSeed, 1);
-  const field::TrainableState before = trainer.state();
+  const TrainingState before = trainer.state();
   worker::RayBatch batch;
   batch.Finish(trainer.field().FeatureRows());
   const worker::StepResult result = trainer.Train(batch, {.learning_rate = 1e-2, .network_l2 = 0.0, .distortion = kTrainerDistortion});

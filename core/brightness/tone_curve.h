@@ -11,16 +11,19 @@ namespace skyquilt::brightness {
 
 constexpr float kSafe = 1e-3F;
 
-struct Toned {
-  float value;
-  float slope;
+template <typename T>
+struct TonedValue {
+  T value;
+  T slope;
 };
+using Toned = TonedValue<float>;
 
-inline Toned ToneCurve(float x) {
-  const float inside = std::clamp(x, kSafe, 1.0F - kSafe);
-  const float angle = std::asin(1.0F - 2.0F * inside) / 3.0F;
-  const float slope = std::cos(angle) / (3.0F * std::sqrt(inside * (1.0F - inside)));
-  return {0.5F - std::sin(angle) + slope * (x - inside), slope};
+template <typename T>
+TonedValue<T> ToneCurve(T x) {
+  const T inside = std::clamp(x, T(kSafe), T(1) - T(kSafe));
+  const T angle = std::asin(T(1) - T(2) * inside) / T(3);
+  const T slope = std::cos(angle) / (T(3) * std::sqrt(inside * (T(1) - inside)));
+  return {T(0.5) - std::sin(angle) + slope * (x - inside), slope};
 }
 
 }  // namespace skyquilt::brightness

@@ -3,26 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/system.h"
-
 namespace skyquilt::field {
-namespace {
-
-// Random access to tables of megabytes misses the TLB at every corner on pages of 4 KiB.
-void AssignTable(std::vector<float>* table, size_t n) {
-  table->clear();
-  table->reserve(n);
-  base::AdviseHugePages(table->data(), n * sizeof(float));
-  table->assign(n, 0.0F);
-}
-
-}  // namespace
 
 void TrainableState::Allocate(const HashField& field) {
   const auto grid_size = static_cast<size_t>(field.GridParameters());
   const auto network_size = static_cast<size_t>(field.NetworkParameters());
-  for (auto* buffer : {&grid, &grid_moment1, &grid_moment2}) AssignTable(buffer, grid_size);
-  for (auto* buffer : {&networks, &network_moment1, &network_moment2, &network_gradient}) buffer->assign(network_size, 0.0F);
+  for (auto* buffer : {&grid_moment1, &grid_moment2}) AssignTable(buffer, grid_size);
+  for (auto* buffer : {&network_moment1, &network_moment2, &network_gradient}) buffer->assign(network_size, 0.0F);
   step = 0;
 }
 
@@ -39,14 +26,14 @@ Optimizer::Optimizer(const HashField& field, base::ThreadPool& threads)
     : field_(field), threads_(threads), scratch_(static_cast<size_t>(threads.size())) {}
 
 void Optimizer::Update(const float* x, const float* y, const float* z, std::span<const GridGradient> stretches, double learning_rate,
-                       double network_l2, TrainableState& state, const TaskClock& scattered, const TaskClock& applied) {
+                       double network_l2, Parameters& parameters, TrainableState& state, const TaskClock& scattered, const TaskClock& applied) {
   ++state.step;
   kernel::AdamStep step;
   const auto t = static_cast<double>(state.step);
   step.learning_rate = static_cast<float>(learning_rate);
   step.correction1 = static_cast<float>(1.0 - std::pow(static_cast<double>(step.beta1), t));
   step.correction2 = static_cast<float>(1.0 - std::pow(static_cast<double>(step.beta2), t));
-  kernel::AdamDense(step, static_cast<float>(network_l2), field_.NetworkParameters(), state.networks.data(), state.network_gradient.data(),
+  kernel::AdamDense(step, static_cast<float>(network_l2), field_.NetworkParameters(), parameters.networks.data(), state.network_gradient.data(),
                     state.network_moment1.data(), state.network_moment2.data());
   const encoding::Encoding& encoding = field_.encoding();
   if (encoding.ParameterCount() == 0) return;
@@ -61,7 +48,7 @@ void Optimizer::Update(const float* x, const float* y, const float* z, std::span
     // A hash grid's finest levels, its last, cost most: start with them.
     const int part = encoding.parts() - 1 - static_cast<int>(task);
     const int64_t offset = encoding.Offset(part);
-    float* table = state.grid.data() + offset;
+    float* table = parameters.grid.data() + offset;
     const auto began = std::chrono::steady_clock::now();
     AddPartGradient(field_, part, table, x, y, z, stretches, scratch.gradient.data(), scratch.touched.data());
     if (scattered) scattered(thread, began);

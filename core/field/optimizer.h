@@ -10,12 +10,12 @@
 
 #include "core/base/thread_pool.h"
 #include "core/field/hash_field.h"
+#include "core/field/parameters.h"
 
 namespace skyquilt::field {
 
-// Parameters, moments and gradient buffers of one field in training.
+// What training keeps beside a field's parameters: their moments and the gradient buffer.
 struct TrainableState {
-  std::vector<float> grid, networks;
   std::vector<float> grid_moment1, grid_moment2, network_moment1, network_moment2;
   int64_t step = 0;  // updates done
 
@@ -46,7 +46,7 @@ class Optimizer {
   // One step of Adam with state.network_gradient, which is cleared, and the grid gradient of the stretches. network_l2 is the weight decay of
   // the networks.
   void Update(const float* x, const float* y, const float* z, std::span<const GridGradient> stretches, double learning_rate, double network_l2,
-              TrainableState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
+              Parameters& parameters, TrainableState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
 
  private:
   struct PartScratch {

@@ -229,7 +229,7 @@ class RayRenderer::Group {
     const auto rows = static_cast<size_t>(f.FeatureRows());
     batch.features.resize(std::max(batch.features.size(), rows * batch.stride));
     batch.geometry.resize(std::max(batch.geometry.size(), static_cast<size_t>(field::kGeometryRows) * batch.stride));
-    f.EncodeSerial(all_[k]->grid, batch.x.data(), batch.y.data(), batch.z.data(), n, batch.features.data(), batch.stride);
+    f.EncodeSerial(all_[k]->parameters.grid, batch.x.data(), batch.y.data(), batch.z.data(), n, batch.features.data(), batch.stride);
     for (size_t row = 0; row < rows; ++row) std::fill_n(batch.features.data() + row * batch.stride + n, padded - n, 0.0F);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {
       f.Density(all_[k]->weights, batch.features.data() + begin, batch.stride, std::min<int64_t>(field::kChunk, padded - begin),

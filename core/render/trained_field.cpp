@@ -4,7 +4,7 @@ namespace skyquilt::render {
 
 void TrainedField::Finish() {
   field = std::make_unique<field::HashField>(config);
-  weights = field->Prepare(networks);
+  weights = field->Prepare(parameters.networks);
   blend_m = box.margin_m;
 }
 

@@ -3,11 +3,11 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "core/encoding/space_map.h"
 #include "core/field/hash_field.h"
 #include "core/field/occupancy_grid.h"
+#include "core/field/parameters.h"
 #include "core/geo/block_box.h"
 
 namespace skyquilt::render {
@@ -19,7 +19,7 @@ struct TrainedField {
   geo::BlockBox box;     // whose ground it answers for; of a block, the map spans it with its margin
   double blend_m = 0.0;  // half width of the ramp at its faces; Finish() makes it the margin, 0 is a hard border
   double step_m = 0.1;   // marching step inside the uncontracted part = the length that log density refers to
-  std::vector<float> grid, networks;
+  field::Parameters parameters;
   field::OccupancyGrid occupancy;
   // Training record.
   int64_t steps = 0;
@@ -30,7 +30,7 @@ struct TrainedField {
   std::unique_ptr<field::HashField> field;
   field::NetworkWeights weights;
   void Finish();
-  int64_t ParameterCount() const { return static_cast<int64_t>(grid.size() + networks.size()); }
+  int64_t ParameterCount() const { return static_cast<int64_t>(parameters.Count()); }
 };
 
 }  // namespace skyquilt::render

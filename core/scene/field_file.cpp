@@ -125,8 +125,8 @@ void PutOutline(const render::TrainedField& f, const std::string& prefix, checkp
 
 void PutField(const render::TrainedField& f, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
   PutOutline(f, prefix, writer);
-  writer.Put(prefix + "grid", f.grid);
-  writer.Put(prefix + "networks", f.networks);
+  writer.Put(prefix + "grid", f.parameters.grid);
+  writer.Put(prefix + "networks", f.parameters.networks);
   const std::vector<int64_t> shape = {f.occupancy.size[2], f.occupancy.size[1], f.occupancy.size[0]};
   writer.Put(prefix + "occupied", f.occupancy.occupied, shape);
   writer.Put(prefix + "occupancy_depth", f.occupancy.depth, shape);
@@ -198,8 +198,8 @@ int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& 
 render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
   render::TrainedField f = GetOutline(reader, file, prefix);
   try {
-    f.grid = reader.KeptFloats(prefix + "grid");
-    f.networks = reader.Floats(prefix + "networks");
+    f.parameters.grid = reader.KeptFloats(prefix + "grid");
+    f.parameters.networks = reader.Floats(prefix + "networks");
     f.Finish();
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);
@@ -216,8 +216,8 @@ render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std
     f.occupancy.depth = reader.Floats(prefix + "occupancy_depth");
     fits = fits && f.occupancy.occupied.size() == cells && f.occupancy.depth.size() == cells;
   }
-  if (!fits || static_cast<int64_t>(f.grid.size()) != f.field->GridParameters() ||
-      static_cast<int64_t>(f.networks.size()) != f.field->NetworkParameters() || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {
+  if (!fits || static_cast<int64_t>(f.parameters.grid.size()) != f.field->GridParameters() ||
+      static_cast<int64_t>(f.parameters.networks.size()) != f.field->NetworkParameters() || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {
     throw base::InputError(file, "arrays and configuration of field '" + f.name + "' disagree", kMend);
   }
   return f;

@@ -31,10 +31,10 @@ inline TrainedField RandomField(uint64_t seed, const Eigen::Vector3d& low, const
   f.occupancy = field::OccupancyGrid::Make(f.config.grid.extent, 0.5 * f.map.units_per_metre(), 100'000);
   base::Random random(seed);
   const field::HashField shape(f.config);
-  f.grid.resize(static_cast<size_t>(shape.GridParameters()));
-  f.networks.resize(static_cast<size_t>(shape.NetworkParameters()));
-  shape.Initialize(random, f.grid, f.networks);
-  for (float& value : f.grid) value = 4.0F * (random.Uniform() - 0.5F);
+  f.parameters.grid.resize(static_cast<size_t>(shape.GridParameters()));
+  f.parameters.networks.resize(static_cast<size_t>(shape.NetworkParameters()));
+  shape.Initialize(random, f.parameters.grid, f.parameters.networks);
+  for (float& value : f.parameters.grid) value = 4.0F * (random.Uniform() - 0.5F);
   for (uint8_t& cell : f.occupancy.occupied) cell = random.Uniform() < 0.7F ? 1 : 0;
   f.Finish();
   return f;

@@ -275,7 +275,7 @@ TEST_P(OddPhotosTest, TrainToTheEnd) {
     EXPECT_EQ(result.dropped_steps, 0);
     const LoadedContext context = LoadContext(job.checkpoint);
     for (const float gain : context.response.log_gain) EXPECT_TRUE(std::isfinite(gain));
-    for (const float weight : context.field.networks) ASSERT_TRUE(std::isfinite(weight));
+    for (const float weight : context.field.parameters.networks) ASSERT_TRUE(std::isfinite(weight));
   }
 }
 

@@ -21,7 +21,7 @@ inline std::vector<float> RandomValues(size_t n, float low, float high, uint64_t
   return values;
 }
 
-// Zeros on large pages where they can be had, as field::TrainableState keeps its tables.
+// Zeros on large pages where they can be had, as field::AssignTable lays out tables.
 inline std::vector<float> Table(size_t n) {
   std::vector<float> values;
   values.reserve(n);

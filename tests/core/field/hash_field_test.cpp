@@ -65,10 +65,12 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   config.density_hidden_layers = GetParam().density_hidden_layers;
   const HashField field(config);
   base::Random random(19);
+  Parameters parameters;
+  parameters.Allocate(field);
   TrainableState state;
   state.Allocate(field);
-  field.Initialize(random, state.grid, state.networks);
-  for (float& value : state.grid) value = random.Uniform() - 0.5F;  // large enough to matter
+  field.Initialize(random, parameters.grid, parameters.networks);
+  for (float& value : parameters.grid) value = random.Uniform() - 0.5F;  // large enough to matter
 
   const int64_t n = 5;
   const auto stride = static_cast<size_t>(kernel::Padded(n));
@@ -85,8 +87,8 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   }
   const auto rows = static_cast<size_t>(field.FeatureRows());
   std::vector<float> features(rows * stride, 0.0F);
-  field.EncodeSerial(state.grid, x.data(), y.data(), z.data(), n, features.data(), stride);
-  const NetworkWeights weights = field.Prepare(state.networks);
+  field.EncodeSerial(parameters.grid, x.data(), y.data(), z.data(), n, features.data(), stride);
+  const NetworkWeights weights = field.Prepare(parameters.networks);
   Activations a;
   a.Reserve(field, n);
   const auto padded = static_cast<int64_t>(stride);
@@ -101,15 +103,15 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   field.Backward(weights, a, features.data(), stride, padded, state.network_gradient.data());
   // Two stretches, as two packets leave them.
   const GridGradient stretches[2] = {{0, 2, features.data(), stride}, {2, n - 2, features.data() + 2, stride}};
-  std::vector<float> grid_gradient(state.grid.size(), 0.0F);
-  std::vector<uint8_t> touched(state.grid.size() / kernel::kLineFloats, 0);
+  std::vector<float> grid_gradient(parameters.grid.size(), 0.0F);
+  std::vector<uint8_t> touched(parameters.grid.size() / kernel::kLineFloats, 0);
   for (int part = 0; part < field.encoding().parts(); ++part) {
     const int64_t offset = field.encoding().Offset(part);
-    AddPartGradient(field, part, state.grid.data() + offset, x.data(), y.data(), z.data(), stretches, grid_gradient.data() + offset,
+    AddPartGradient(field, part, parameters.grid.data() + offset, x.data(), y.data(), z.data(), stretches, grid_gradient.data() + offset,
                     touched.data() + offset / kernel::kLineFloats);
   }
 
-  std::vector<double> grid(state.grid.begin(), state.grid.end()), networks(state.networks.begin(), state.networks.end());
+  std::vector<double> grid(parameters.grid.begin(), parameters.grid.end()), networks(parameters.networks.begin(), parameters.networks.end());
   const Reference reference{field};
   const auto loss = [&] {
     double sum = 0.0;
@@ -123,17 +125,17 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
     }
     return sum;
   };
-  const auto check = [&](std::vector<double>& parameters, const std::vector<float>& gradient, const char* name, size_t skip_from) {
+  const auto check = [&](std::vector<double>& values, const std::vector<float>& gradient, const char* name, size_t skip_from) {
     size_t nonzero = 0;
-    for (size_t i = 0; i < std::min(parameters.size(), skip_from); ++i) {
-      const double keep = parameters[i];
+    for (size_t i = 0; i < std::min(values.size(), skip_from); ++i) {
+      const double keep = values[i];
       double best = 1e300, numeric = 0.0;
       for (const double h : {1e-4, 1e-6}) {  // the smaller one where a ReLU turns on within the larger
-        parameters[i] = keep + h;
+        values[i] = keep + h;
         const double above = loss();
-        parameters[i] = keep - h;
+        values[i] = keep - h;
         const double candidate = (above - loss()) / (2.0 * h);
-        parameters[i] = keep;
+        values[i] = keep;
         if (std::abs(candidate - static_cast<double>(gradient[i])) < best) {
           best = std::abs(candidate - static_cast<double>(gradient[i]));
           numeric = candidate;
@@ -143,7 +145,7 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
       // Float arithmetic of a few dozen terms of size one.
       EXPECT_NEAR(static_cast<double>(gradient[i]), numeric, 2e-5 * std::max(1.0, std::abs(numeric))) << name << " " << i;
     }
-    if (!parameters.empty()) {
+    if (!values.empty()) {
       EXPECT_GT(nonzero, 20U) << name;
     }
   };
@@ -201,6 +203,8 @@ TEST(Optimizer, MovesWhatSamplesTouchedOnAnyNumberOfThreads) {
   std::vector<std::vector<float>> moved;
   for (const int n_threads : {1, 3}) {
     base::ThreadPool threads(n_threads);
+    Parameters parameters;
+    parameters.Allocate(field);
     TrainableState state;
     state.Allocate(field);
     Optimizer optimizer(field, threads);
@@ -209,12 +213,12 @@ TEST(Optimizer, MovesWhatSamplesTouchedOnAnyNumberOfThreads) {
     for (size_t row = 0; row < static_cast<size_t>(field.FeatureRows()); ++row) gradient[2 * row] = 1.0F;  // the second sample has none
     state.network_gradient[5] = 1.0F;
     const GridGradient stretch{0, 2, gradient.data(), 2};
-    optimizer.Update(x, y, z, {&stretch, 1}, 0.01, 0.0, state);
+    optimizer.Update(x, y, z, {&stretch, 1}, 0.01, 0.0, parameters, state);
     EXPECT_EQ(state.step, 1);
-    EXPECT_NEAR(state.networks[5], -0.01F, 1e-6F);
+    EXPECT_NEAR(parameters.networks[5], -0.01F, 1e-6F);
     EXPECT_EQ(state.network_gradient[5], 0.0F);
     int n_moved = 0;
-    for (const float value : state.grid) {
+    for (const float value : parameters.grid) {
       if (value == 0.0F) continue;
       EXPECT_NEAR(value, -0.01F, 1e-6F);
       ++n_moved;
@@ -222,8 +226,8 @@ TEST(Optimizer, MovesWhatSamplesTouchedOnAnyNumberOfThreads) {
     // Eight corners of at most four features in three levels; some corners may share an entry.
     EXPECT_GT(n_moved, 48);
     EXPECT_LE(n_moved, 96);
-    optimizer.Update(x, y, z, {}, 0.01, 0.0, state);
-    moved.push_back(state.grid);
+    optimizer.Update(x, y, z, {}, 0.01, 0.0, parameters, state);
+    moved.push_back(parameters.grid);
   }
   EXPECT_EQ(moved[0], moved[1]);
 }
@@ -233,15 +237,17 @@ TEST(Optimizer, TrainsNetworksWhereTheEncodingHasNoParameters) {
   config.encoding = encoding::Kind::kFrequency;
   const HashField field(config);
   base::ThreadPool threads(2);
+  Parameters parameters;
+  parameters.Allocate(field);
   TrainableState state;
   state.Allocate(field);
-  EXPECT_TRUE(state.grid.empty());
+  EXPECT_TRUE(parameters.grid.empty());
   state.network_gradient[5] = 1.0F;
   const float x[2] = {0.1F, 0.6F};
   const std::vector<float> gradient(static_cast<size_t>(field.FeatureRows()) * 2, 1.0F);
   const GridGradient stretch{0, 2, gradient.data(), 2};
-  Optimizer(field, threads).Update(x, x, x, {&stretch, 1}, 0.01, 0.0, state);
-  EXPECT_NEAR(state.networks[5], -0.01F, 1e-6F);
+  Optimizer(field, threads).Update(x, x, x, {&stretch, 1}, 0.01, 0.0, parameters, state);
+  EXPECT_NEAR(parameters.networks[5], -0.01F, 1e-6F);
 }
 
 }  // namespace

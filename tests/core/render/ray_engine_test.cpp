@@ -46,7 +46,7 @@ Plain WalkPlainly(const FieldSet& set, const Ray& ray) {
     field::Activations a;
     a.Reserve(*f.field, kernel::kPad);
     std::vector<float> features(static_cast<size_t>(f.field->FeatureRows()) * kernel::kPad, 0.0F);
-    f.field->EncodeSerial(f.grid, &x.x(), &x.y(), &x.z(), 1, features.data(), kernel::kPad);
+    f.field->EncodeSerial(f.parameters.grid, &x.x(), &x.y(), &x.z(), 1, features.data(), kernel::kPad);
     f.field->Density(f.weights, features.data(), kernel::kPad, kernel::kPad, a.density_hidden, a.stride, a.geometry(), a.stride);
     const Eigen::Vector3f d = ray.direction_enu.cast<float>();
     f.field->FillDirection(d.data(), 1, a.color_in + static_cast<size_t>(field::kGeometryRows) * a.stride, a.stride);

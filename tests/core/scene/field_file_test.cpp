@@ -95,8 +95,8 @@ TEST_P(TrainedFieldOf, ComesBackAsItWas) {
   EXPECT_EQ(after.config.encoding, GetParam());
   EXPECT_EQ(after.config.density_hidden_layers, 3);
   EXPECT_EQ(after.field->encoding().kind(), GetParam());
-  EXPECT_EQ(after.grid, before.grid);
-  EXPECT_EQ(after.networks, before.networks);
+  EXPECT_EQ(after.parameters.grid, before.parameters.grid);
+  EXPECT_EQ(after.parameters.networks, before.parameters.networks);
   const checkpoint::ArchiveReader reader(file);
   EXPECT_EQ(StoredParameters(reader, "a/"), before.ParameterCount());
   ExpectSameLook(before, after, 0.1F);
@@ -113,7 +113,7 @@ TEST_F(TrainedFieldFile, FromBeforeThereWereOtherEncodingsAreHashGridsOfOneLayer
   const render::TrainedField after = Read(old);
   EXPECT_EQ(after.config.encoding, encoding::Kind::kHash);
   EXPECT_EQ(after.config.density_hidden_layers, 1);
-  EXPECT_EQ(after.networks, before.networks);
+  EXPECT_EQ(after.parameters.networks, before.parameters.networks);
 }
 
 // The numbers that rebuild a field, as files held them when they had no names: describe0, describe1, ...
@@ -209,12 +209,12 @@ TEST_P(TrainedFieldOf, LooksTheSameWithoutWhatNothingReads) {
     EXPECT_EQ(StoredParameters(reader, "a/"), before.ParameterCount());
   }
   // Zero was read back for what is not in the file: no entry of the random field is.
-  ASSERT_EQ(after.grid.size(), before.grid.size());
-  for (size_t i = 0; i < after.grid.size(); ++i) {
-    if (after.grid[i] == 0.0F) {
-      after.grid[i] = std::nanf("");
+  ASSERT_EQ(after.parameters.grid.size(), before.parameters.grid.size());
+  for (size_t i = 0; i < after.parameters.grid.size(); ++i) {
+    if (after.parameters.grid[i] == 0.0F) {
+      after.parameters.grid[i] = std::nanf("");
     } else {
-      ASSERT_EQ(after.grid[i], before.grid[i]);
+      ASSERT_EQ(after.parameters.grid[i], before.parameters.grid[i]);
     }
   }
   ExpectSameLook(before, after, 0.01F);

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <tuple>
+#include <vector>
+
+#include "tests/support/loss_check.h"
+#include "worker/losses/distortion_loss.h"
+#include "worker/losses/emptiness_loss.h"
+#include "worker/losses/mean_loss.h"
+#include "worker/losses/photo_loss.h"
+#include "worker/losses/smoothness_loss.h"
+
+namespace skyquilt::worker {
+namespace {
+
+using testing::CheckedLoss;
+using testing::ExpectLossGradient;
+using Inputs = std::vector<double>;
+
+// Photo losses have weight 1.
+CheckedLoss Weighted(double weight, const PhotoLoss<double>& loss) {
+  return {weight * loss.value, {weight * loss.gradient}};
+}
+
+TEST(Losses, SquaredPhotoLossHasItsGradient) {
+  ExpectLossGradient([](double weight, const Inputs& x) { return Weighted(weight, SquaredPhotoLoss(x[0], 0.37)); }, {1, -0.2, 1.4});
+}
+
+TEST(Losses, TonedPhotoLossHasItsGradient) {
+  ExpectLossGradient([](double weight, const Inputs& x) { return Weighted(weight, TonedPhotoLoss(x[0], 0.62)); }, {1, 0.01, 0.99});
+  // Past the ends the curve is a straight line.
+  ExpectLossGradient([](double weight, const Inputs& x) { return Weighted(weight, TonedPhotoLoss(x[0], 0.62)); }, {1, 1.01, 1.4});
+  ExpectLossGradient([](double weight, const Inputs& x) { return Weighted(weight, TonedPhotoLoss(x[0], 0.62)); }, {1, -0.4, -0.01});
+}
+
+TEST(Losses, SaturatedAndBlackPixelsSayOnlyOneThing) {
+  for (const auto loss : {SquaredPhotoLoss<double>, TonedPhotoLoss<double>}) {
+    for (const auto& [rendered, target, counts] : {std::tuple{1.2, 1.0, false}, {0.9, 1.0, true}, {-0.1, 0.0, false}, {0.1, 0.0, true}}) {
+      const PhotoLoss<double> at = loss(rendered, target);
+      EXPECT_EQ(at.counts, counts) << rendered;
+      EXPECT_EQ(at.value > 0.0, counts) << rendered;
+      EXPECT_EQ(at.gradient != 0.0, counts) << rendered;
+      EXPECT_NEAR(at.squared_error, (rendered - target) * (rendered - target), 1e-15) << "errors count all the same";
+    }
+  }
+}
+
+TEST(Losses, EmptinessLossHasItsGradient) {
+  ExpectLossGradient(
+      [](double weight, const Inputs& x) {
+        const Loss<double> loss = EmptinessLoss(weight, x[0]);
+        return CheckedLoss{loss.value, {loss.gradient}};
+      },
+      {1, 0.0, 1.0});
+}
+
+TEST(Losses, MeanLossHasItsGradient) {
+  ExpectLossGradient(
+      [](double weight, const Inputs& x) {
+        const Loss<double> loss = MeanLoss(weight, x[0]);
+        return CheckedLoss{loss.value, {loss.gradient}};
+      },
+      {1, -2.0, 2.0});
+}
+
+// A row of neighbours, each of which adds what it sees: together the sum over pairs.
+TEST(Losses, SmoothnessLossOfAGroupHasItsGradient) {
+  const auto loss = [](double weight, const Inputs& x) {
+    CheckedLoss sum{0.0, Inputs(x.size(), 0.0)};
+    for (size_t k = 0; k < x.size(); ++k) {
+      if (k > 0) AddSmoothnessLoss(weight, x[k], x[k - 1], &sum.value, &sum.gradient[k]);
+      if (k + 1 < x.size()) AddSmoothnessLoss(weight, x[k], x[k + 1], &sum.value, &sum.gradient[k]);
+    }
+    return sum;
+  };
+  ExpectLossGradient(loss, {6, -1.0, 1.0});
+  EXPECT_NEAR(loss(0.5, {1.0, 3.0, 2.0}).value, 0.5 * (4.0 + 1.0), 1e-15);
+}
+
+TEST(Losses, DistortionLossHasItsGradient) {
+  const Inputs distance = {12.0, 12.5, 13.0, 14.5, 15.0};
+  DistortionScratch<double> scratch;
+  ExpectLossGradient(
+      [&](double weight, const Inputs& weights) {
+        CheckedLoss loss{0.0, Inputs(weights.size(), 0.0)};
+        loss.value = AddDistortionLoss(weight, weights.size(), weights.data(), distance.data(), 0.5, 0.1, scratch, loss.gradient.data());
+        return loss;
+      },
+      {distance.size(), 0.0, 0.4});
+}
+
+}  // namespace
+}  // namespace skyquilt::worker

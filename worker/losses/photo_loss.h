@@ -1,0 +1,42 @@
+// How far one colour channel of a ray is from its pixel, both display values: squared, as it stands or after the tone curve that spreads dark and
+// bright values.
+#pragma once
+
+#include "core/brightness/tone_curve.h"
+
+namespace skyquilt::worker {
+
+// A saturated pixel says only "at least this bright", a black one "at most": true when that is satisfied. residual: rendering less pixel.
+template <typename T>
+bool SaysLittle(T target, T residual) {
+  return (target >= T(254.5F / 255.0F) && residual > T(0)) || (target <= T(0.5F / 255.0F) && residual < T(0));
+}
+
+template <typename T>
+struct PhotoLoss {
+  double value = 0.0;
+  T gradient = T(0);           // by the rendered value
+  double squared_error = 0.0;  // of display values, whatever the loss
+  bool counts = false;         // false: the pixel says little; value and gradient are zero
+};
+
+// target: 0..1.
+template <typename T>
+PhotoLoss<T> SquaredPhotoLoss(T rendered, T target) {
+  const T residual = rendered - target;
+  const double squared = static_cast<double>(residual) * static_cast<double>(residual);
+  if (SaysLittle(target, residual)) return {0.0, T(0), squared, false};
+  return {squared, T(2) * residual, squared, true};
+}
+
+template <typename T>
+PhotoLoss<T> TonedPhotoLoss(T rendered, T target) {
+  const T error = rendered - target;
+  const double squared_error = static_cast<double>(error) * static_cast<double>(error);
+  const auto [toned, slope] = brightness::ToneCurve(rendered);
+  const T residual = toned - brightness::ToneCurve(target).value;
+  if (SaysLittle(target, residual)) return {0.0, T(0), squared_error, false};
+  return {static_cast<double>(residual) * static_cast<double>(residual), T(2) * residual * slope, squared_error, true};
+}
+
+}  // namespace skyquilt::worker

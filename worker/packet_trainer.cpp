@@ -1,0 +1,157 @@
+#include "worker/packet_trainer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skyquilt::worker {
+namespace {
+
+// Where less light than this arrives, a sample gets neither colour nor gradient.
+const float kHiddenDepth = -std::log(1e-3F);
+
+}  // namespace
+
+PacketTrainer::PacketTrainer(const PacketShared& shared, StageTimes& times, int thread) : shared_(shared), times_(times), thread_(thread) {
+  if (shared.context == nullptr) return;
+  render::FieldSet set;
+  set.context = shared.context;
+  context_ = std::make_unique<render::RayRenderer>(set, render::EngineOptions::For(shared.luminance));
+}
+
+PacketResult PacketTrainer::Train(const PacketStep& step, const Packet& packet, float* network_gradient) {
+  auto at = StageTimes::Clock::now();
+  Begin(step, packet);
+  Density();
+  DropHidden();
+  at = times_.Add(thread_, Stage::kDensity, at);
+  Color();
+  at = times_.Add(thread_, Stage::kColor, at);
+  LookThroughContext();
+  at = times_.Add(thread_, Stage::kContext, at);
+  PacketResult result;
+  result.live = live_;
+  if (shared_.luminance.On()) {
+    ConcealAndLoss(network_gradient, result.sums);
+  } else {
+    ComposeAndLoss(result.sums);
+  }
+  at = times_.Add(thread_, Stage::kCompose, at);
+  if (live_ > 0) result.finite = Backward(network_gradient);
+  times_.Add(thread_, Stage::kBackward, at);
+  return result;
+}
+
+void PacketTrainer::Infer(const PacketStep& step, const Packet& packet) {
+  auto at = StageTimes::Clock::now();
+  Begin(step, packet);
+  Density();
+  KeepAll();
+  at = times_.Add(thread_, Stage::kDensity, at);
+  Color();
+  times_.Add(thread_, Stage::kColor, at);
+}
+
+void PacketTrainer::Begin(const PacketStep& step, const Packet& packet) {
+  step_ = &step;
+  packet_ = &packet;
+  live_ = packet.count;
+  a_.Reserve(shared_.field, kernel::Padded(packet.count));
+  for (auto* v : {&depth_, &keep_, &tau_, &weight_}) Grow(*v, a_.stride);
+  Grow(rgb_, 3 * a_.stride);
+  views_.assign(static_cast<size_t>(packet.n_rays), {});
+}
+
+// Padding takes part in the networks' sums: it must be finite.
+void PacketTrainer::ZeroPadding(float* rows, int n_rows, size_t stride) const {
+  const int64_t end = kernel::Padded(live_);
+  for (int row = 0; row < n_rows; ++row) {
+    float* values = rows + static_cast<size_t>(row) * stride;
+    std::fill(values + live_, values + end, 0.0F);
+  }
+}
+
+void PacketTrainer::Density() {
+  const int64_t padded = kernel::Padded(packet_->count);
+  float* features = Features();
+  ZeroPadding(features, shared_.field.FeatureRows(), packet_->stride);
+  shared_.field.Density(shared_.weights, features, packet_->stride, padded, a_.density_hidden, a_.stride, a_.geometry(), a_.stride);
+  kernel::ExpShifted(a_.geometry(), padded, static_cast<float>(shared_.target.config.density_bias), kMaxLogDepth, depth_.data());
+}
+
+void PacketTrainer::KeepAll() {
+  for (size_t k = 0; k < views_.size(); ++k) {
+    views_[k].begin = Ray(k).begin - packet_->begin;
+    views_[k].count = Ray(k).count;
+  }
+}
+
+// Keeps the samples that light still reaches; what lies behind an opaque surface gets neither colour nor gradient.
+void PacketTrainer::DropHidden() {
+  int64_t live = 0;
+  for (size_t k = 0; k < views_.size(); ++k) live += LiveSamples(k, live);
+  live_ = live;
+  if (live == packet_->count) return;
+  const int64_t padded = kernel::Padded(packet_->count);
+  std::fill(keep_.begin() + packet_->count, keep_.begin() + padded, 0.0F);
+  float* features = Features();
+  kernel::Compact(keep_.data(), padded, shared_.field.FeatureRows(), features, packet_->stride, features, packet_->stride);
+  kernel::Compact(keep_.data(), padded, a_.kept_rows, a_.density_hidden, a_.stride, a_.density_hidden, a_.stride);
+  RayBatch& batch = step_->batch;
+  for (auto* v : {&batch.x, &batch.y, &batch.z, &batch.t}) {
+    kernel::Compact(keep_.data(), padded, 1, v->data() + packet_->begin, 0, v->data() + packet_->begin, 0);
+  }
+  ZeroPadding(features, shared_.field.FeatureRows(), packet_->stride);
+  ZeroPadding(a_.density_hidden, a_.kept_rows, a_.stride);
+}
+
+// Finds a ray's samples that light reaches, whose optical depths go to tau_ from first_live on; how many there are.
+int64_t PacketTrainer::LiveSamples(size_t view, int64_t first_live) {
+  const BatchRay& r = Ray(view);
+  const float* unit_length = step_->batch.unit_length.data();
+  int64_t live = first_live;
+  float passed = 0.0F;
+  int64_t i = 0;
+  for (; i < r.count && passed < kHiddenDepth; ++i) {
+    const auto s = static_cast<size_t>(r.begin + i);
+    const auto local = static_cast<size_t>(r.begin + i - packet_->begin);
+    const float tau = depth_[local] * unit_length[s];
+    passed += tau;
+    keep_[local] = 1.0F;
+    tau_[static_cast<size_t>(live++)] = tau;
+    step_->observed[s] = depth_[local];
+  }
+  views_[view].begin = first_live;
+  views_[view].count = i;
+  for (; i < r.count; ++i) {
+    keep_[static_cast<size_t>(r.begin + i - packet_->begin)] = 0.0F;
+    step_->observed[static_cast<size_t>(r.begin + i)] = 0.0F;
+  }
+  return live - first_live;
+}
+
+void PacketTrainer::Color() {
+  const int64_t padded = kernel::Padded(live_);
+  float* sh = a_.color_in + static_cast<size_t>(field::kGeometryRows) * a_.stride;
+  for (size_t k = 0; k < views_.size(); ++k) {
+    const Eigen::Vector3f direction = Ray(k).ray.direction_enu.cast<float>();
+    shared_.field.FillDirection(direction.data(), views_[k].count, sh + views_[k].begin, a_.stride);
+  }
+  ZeroPadding(sh, shared_.field.ColorInputRows() - field::kGeometryRows, a_.stride);
+  shared_.field.Color(shared_.weights, a_.color_in, a_.stride, padded, a_.color_hidden, a_.stride, a_.color_raw, a_.stride);
+  for (size_t c = 0; c < 3; ++c) {
+    kernel::Sigmoid(a_.color_raw + c * a_.stride, padded, static_cast<float>(shared_.target.config.color_range), rgb_.data() + c * a_.stride);
+  }
+}
+
+// Leaves the features' gradient in their place; false when it is not finite.
+bool PacketTrainer::Backward(float* network_gradient) {
+  float* features = Features();
+  shared_.field.Backward(shared_.weights, a_, features, packet_->stride, kernel::Padded(live_), network_gradient);
+  bool finite = true;
+  for (int row = 0; row < shared_.field.FeatureRows(); ++row) {
+    finite = finite && kernel::AllFinite(features + static_cast<size_t>(row) * packet_->stride, live_);
+  }
+  return finite;
+}
+
+}  // namespace skyquilt::worker

@@ -1,0 +1,88 @@
+// From the samples' densities and colours to the loss of every ray and back.
+#include <algorithm>
+
+#include "core/render/composite.h"
+#include "worker/packet_trainer.h"
+
+namespace skyquilt::worker {
+namespace {
+
+constexpr float kLeastColorSlope = 0.02F;
+
+}  // namespace
+
+void PacketTrainer::ComposeAndLoss(LossSums& sums) {
+  for (size_t k = 0; k < views_.size(); ++k) {
+    const BatchRay& r = Ray(k);
+    const RayView& view = views_[k];
+    const ComposedRay composed = Compose(view);
+    ComposedGradient gradient;
+    const float* weight_gradient = nullptr;
+    if (r.ray.empty) {
+      gradient.transmittance = LossOfEmptyRay(composed.transmittance, step_->ray_share, sums);
+    } else {
+      gradient = LossOfRay(r, view, composed, step_->ray_share, sums);
+      KeepGainGradient(k, gradient);
+      if (step_->distortion > 0.0 && view.count > 0) {
+        weight_gradient_.assign(static_cast<size_t>(view.count), 0.0F);
+        AddDistortion(view, sums);
+        weight_gradient = weight_gradient_.data();
+      }
+    }
+    ScatterComposed(view, composed, gradient, weight_gradient);
+  }
+  std::fill_n(a_.color_gradient + 3 * a_.stride, static_cast<size_t>(live_), 0.0F);
+  FinishGradients();
+}
+
+ComposedRay PacketTrainer::Compose(const RayView& view) {
+  const auto begin = static_cast<size_t>(view.begin);
+  ComposedRay composed;
+  composed.transmittance = render::CompositeForward(static_cast<int>(view.count), tau_.data() + begin, rgb_.data() + begin, a_.stride,
+                                                    weight_.data() + begin, composed.rgb);
+  return composed;
+}
+
+void PacketTrainer::ScatterComposed(const RayView& view, const ComposedRay& composed, const ComposedGradient& gradient,
+                                    const float* weight_gradient) {
+  const auto begin = static_cast<size_t>(view.begin);
+  render::CompositeBackward(static_cast<int>(view.count), rgb_.data() + begin, a_.stride, weight_.data() + begin, composed.transmittance,
+                            gradient.rgb, gradient.transmittance, weight_gradient, a_.log_density_gradient + begin, a_.color_gradient + begin,
+                            a_.stride);
+}
+
+void PacketTrainer::KeepGainGradient(size_t view, const ComposedGradient& gradient) const {
+  if (step_->gain_gradients == nullptr) return;
+  std::copy(gradient.log_gain, gradient.log_gain + 3, step_->gain_gradients[static_cast<size_t>(packet_->first_ray) + view].begin());
+}
+
+void PacketTrainer::AddDistortion(const RayView& view, LossSums& sums) {
+  const auto& map = shared_.target.map;
+  const auto per_metre = static_cast<float>(1.0 / std::max(1.0, map.max_enu().z() - map.min_enu().z()));
+  const float weight = static_cast<float>(step_->distortion) * step_->ray_share;
+  const float loss =
+      AddDistortionLoss(weight, static_cast<size_t>(view.count), weight_.data() + view.begin, step_->batch.t.data() + packet_->begin + view.begin,
+                        static_cast<float>(shared_.target.step_m), per_metre, distortion_, weight_gradient_.data());
+  sums.loss += static_cast<double>(loss) / static_cast<double>(step_->ray_share);
+}
+
+void PacketTrainer::FinishGradients() {
+  const auto range = static_cast<float>(shared_.target.config.color_range);
+  const auto live = static_cast<size_t>(live_);
+  const auto padded = static_cast<size_t>(kernel::Padded(live_));
+  // d tau / d log density = tau; d rgb / d raw = rgb (1 - rgb / range), and never nothing: colours of a dark or bright survey that overshoot the end
+  // of the scale in the first steps would never come back.
+  for (size_t i = 0; i < live; ++i) a_.log_density_gradient[i] *= tau_[i];
+  std::fill(a_.log_density_gradient + live, a_.log_density_gradient + padded, 0.0F);
+  for (size_t c = 0; c < 3; ++c) {
+    float* gradient = a_.color_gradient + c * a_.stride;
+    const float* color = rgb_.data() + c * a_.stride;
+    for (size_t i = 0; i < live; ++i) gradient[i] *= std::max(color[i] * (1.0F - color[i] / range), kLeastColorSlope);
+  }
+  for (size_t row = 0; row < field::kColorRows; ++row) {
+    float* gradient = a_.color_gradient + row * a_.stride;
+    std::fill(gradient + live, gradient + padded, 0.0F);
+  }
+}
+
+}  // namespace skyquilt::worker

@@ -1,0 +1,55 @@
+// What the frozen context shows of a packet's rays in front of the box's ground plan and, where light passes through, behind it.
+#include "core/render/march.h"
+#include "worker/packet_trainer.h"
+
+namespace skyquilt::worker {
+namespace {
+
+// Behind this optical depth the context is not looked at: it would show through at less than 2 %.
+constexpr float kOpaqueDepth = 4.0F;
+
+}  // namespace
+
+void PacketTrainer::LookThroughContext() {
+  if (shared_.context == nullptr) return;
+  pieces_.clear();
+  owner_.clear();
+  for (size_t k = 0; k < views_.size(); ++k) {
+    if (!Ray(k).ray.empty) AddPieces(k);
+  }
+  colors_.resize(pieces_.size());
+  context_->Render(pieces_, colors_);
+  TakeColors();
+}
+
+void PacketTrainer::AddPieces(size_t view) {
+  const PixelRay& ray = Ray(view).ray;
+  const geo::Stretch all = render::FieldStretch(shared_.context->map, ray.origin_enu, ray.direction_enu);
+  if (all.Empty()) return;
+  const geo::Stretch plan = render::PlanStretch(shared_.target.map, ray.origin_enu, ray.direction_enu);
+  if (plan.t_near > all.t_near + shared_.context->step_m) {
+    pieces_.push_back({ray.origin_enu, ray.direction_enu, all.t_near, plan.t_near, 0.0F});
+    owner_.emplace_back(view, false);
+  }
+  float depth = 0.0F;
+  for (int64_t i = 0; i < views_[view].count; ++i) depth += tau_[static_cast<size_t>(views_[view].begin + i)];
+  if (depth < kOpaqueDepth && all.t_far > plan.t_far) {
+    pieces_.push_back({ray.origin_enu, ray.direction_enu, plan.t_far, all.t_far, 0.0F});
+    owner_.emplace_back(view, true);
+  }
+}
+
+void PacketTrainer::TakeColors() {
+  for (size_t i = 0; i < pieces_.size(); ++i) {
+    RayView& view = views_[owner_[i].first];
+    const bool behind = owner_[i].second;
+    for (size_t c = 0; c < 3; ++c) {
+      (behind ? view.behind_rgb : view.front_rgb)[c] = colors_[i].rgb_srgb[c];
+      (behind ? view.behind_light : view.front_light)[c] = colors_[i].concealed_light[c];
+    }
+    // Whatever the context leaves open behind shows the random background.
+    (behind ? view.background_share : view.front_transmittance) = 1.0F - colors_[i].opacity;
+  }
+}
+
+}  // namespace skyquilt::worker

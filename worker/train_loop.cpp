@@ -1,0 +1,161 @@
+#include "worker/train_loop.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "worker/starting_occupancy.h"
+
+namespace skyquilt::worker {
+namespace {
+
+constexpr int kOccupancyEvery = 16;
+constexpr int kGrowEvery = 128;
+constexpr double kGrowUntil = 0.6;       // of the budget; later, cells that hold nothing only cost samples
+constexpr double kVisitsToJudge = 16.0;  // samples per occupied cell: fewer, and chance alone leaves cells out
+constexpr int kMaxDroppedInARow = 20;
+constexpr double kReportEvery_s = 0.5;
+
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+int64_t TotalSteps(const TrainOptions& options) {
+  if (options.steps > 0) return options.steps;
+  return options.seconds > 0.0 ? 0 : kDefaultSteps;
+}
+
+}  // namespace
+
+TrainLoop::TrainLoop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const ContextExtras* extras,
+                     const SessionRecord& record, const Reporter& report)
+    : kind_(kind),
+      job_(job),
+      target_(target),
+      trainer_(trainer),
+      extras_(extras),
+      record_(record),
+      report_(report),
+      total_steps_(TotalSteps(job.options)) {}
+
+bool TrainLoop::Run() {
+  last_ = last_save_ = last_report_ = Now();
+  for (double fraction = Fraction(); fraction < 1.0; fraction = Fraction()) {
+    if (base::CancelRequested()) {
+      SaveSession(kind_, job_, target_, trainer_, record_, extras_, nullptr);
+      throw base::Interrupted();
+    }
+    if (!Step(fraction)) return false;
+    ReportAtTimes(fraction);
+    SaveAtTimes();
+  }
+  ForgetUnseenCells();
+  if (recent_.seconds > 0.0) Report(1.0);
+  return true;
+}
+
+TrainResult TrainLoop::Finish(const ContextFindings* findings) {
+  record_.complete = true;
+  SaveSession(kind_, job_, target_, trainer_, record_, extras_, findings);
+  return Summarise();
+}
+
+TrainResult TrainLoop::Failure() const {
+  TrainResult failed = Summarise();
+  failed.ok = false;
+  failed.reason = std::to_string(dropped_in_a_row_) + " steps in a row were not finite";
+  return failed;
+}
+
+double TrainLoop::Fraction() const {
+  if (total_steps_ > 0) return static_cast<double>(trainer_.state().step) / static_cast<double>(total_steps_);
+  return record_.seconds / std::max(1e-3, job_.options.seconds);
+}
+
+bool TrainLoop::Step(double fraction) {
+  const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
+  const int64_t done = trainer_.state().step;
+  if (done % kOccupancyEvery == 0) trainer_.UpdateOccupancy(done % kGrowEvery == 0 && fraction < kGrowUntil);
+  if (!KeepError(step)) return false;
+  KeepCounts(step);
+  return true;
+}
+
+// The running mean of the error, and how many steps failed in a row: false when they are too many.
+bool TrainLoop::KeepError(const StepResult& step) {
+  if (!step.finite) {
+    ++record_.dropped_steps;
+    return ++dropped_in_a_row_ < kMaxDroppedInARow;
+  }
+  dropped_in_a_row_ = 0;
+  const int64_t done = trainer_.state().step;
+  const double keep = done <= 1 ? 0.0 : std::min(0.98, 1.0 - 1.0 / static_cast<double>(done));
+  record_.mean_squared_error = keep * record_.mean_squared_error + (1.0 - keep) * step.squared_error;
+  return true;
+}
+
+void TrainLoop::KeepCounts(const StepResult& step) {
+  const double now = Now();
+  const double step_s = now - last_;
+  last_ = now;
+  record_.seconds += step_s;
+  record_.samples += step.n_samples;
+  record_.rays += step.n_rays;
+  recent_.seconds += step_s;
+  recent_.rays += step.n_rays;
+  recent_.samples += static_cast<double>(step.n_samples);
+  loss_ = step.loss;
+}
+
+void TrainLoop::ReportAtTimes(double fraction) {
+  if (last_ - last_report_ < kReportEvery_s) return;
+  Report(fraction);
+  recent_ = {};
+  last_report_ = last_;
+}
+
+void TrainLoop::Report(double fraction) {
+  if (!report_) return;
+  TrainStatus status;
+  status.step = trainer_.state().step;
+  status.fraction = std::min(1.0, fraction);
+  status.total_steps = total_steps_ > 0 ? total_steps_ : static_cast<int64_t>(static_cast<double>(status.step) / std::max(1e-3, fraction));
+  status.seconds = record_.seconds;
+  status.loss = loss_;
+  status.psnr_db = RunningPsnr(record_);
+  status.rays_per_second = recent_.rays / std::max(1e-6, recent_.seconds);
+  status.samples_per_second = recent_.samples / std::max(1e-6, recent_.seconds);
+  status.samples_per_ray = recent_.samples / std::max(1.0, recent_.rays);
+  report_(status);
+}
+
+void TrainLoop::SaveAtTimes() {
+  if (last_ - last_save_ < job_.options.checkpoint_every_s) return;
+  SaveSession(kind_, job_, target_, trainer_, record_, extras_, nullptr);
+  last_ = last_save_ = Now();  // saving is not training
+}
+
+// Cells at the edge of view that no ray happened to cross would show whatever the tables hold there.
+void TrainLoop::ForgetUnseenCells() {
+  field::OccupancyGrid& cells = target_.occupancy;
+  if (static_cast<double>(record_.samples) > kVisitsToJudge * cells.OccupiedShare() * static_cast<double>(cells.CellCount())) {
+    cells.ForgetUnsampled(kStartDepth);
+  }
+}
+
+TrainResult TrainLoop::Summarise() const {
+  TrainResult result;
+  result.ok = true;
+  result.steps = trainer_.state().step;
+  result.seconds = record_.seconds;
+  result.samples = record_.samples;
+  result.rays = record_.rays;
+  result.parameters = target_.ParameterCount();
+  result.final_psnr_db = RunningPsnr(record_);
+  result.dropped_steps = record_.dropped_steps;
+  result.stage_seconds = trainer_.StageSeconds();
+  return result;
+}
+
+}  // namespace skyquilt::worker

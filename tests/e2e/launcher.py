@@ -6,7 +6,7 @@ import subprocess
 
 from harness import QUICK_TRAIN, children, expect, main, small_project, small_survey, state_of, wait_for
 
-LAUNCHER = str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "skyquilt-mpirun")
+LAUNCHER = str(pathlib.Path(__file__).resolve().parents[2] / "scripts" / "skyquilt-mpirun")
 
 
 def test(skyquilt, folder):

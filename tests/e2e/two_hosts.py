@@ -11,7 +11,7 @@ import sys
 
 from harness import expect, main, small_project, small_survey, state_of, wait_for
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 HOSTS = {"skyquilt-a": "10.231.77.1", "skyquilt-b": "10.231.77.2"}
 TRAIN = ["--steps", "1500", "--set", "train.checkpoint_every_s=0.2", "--set", "context.checkpoint_every_s=0.2", "--set", "train.batch_samples=4096",
          "--set", "context.batch_samples=4096"]

@@ -74,7 +74,7 @@ class Study {
     bool keep = false;  // checkpoints and scenes of finished variants
     bool quiet = false, verbose = false;
   };
-  // Prepares the survey. Throws as the stages of coordinator/pipeline.h do.
+  // Prepares the survey. Throws as the stages of coordinator/stages/pipeline.h do.
   Study(comm::Communicator& comm, Options options);
 
   const survey::Survey& survey() const { return survey_; }

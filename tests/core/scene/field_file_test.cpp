@@ -162,8 +162,8 @@ TEST_F(TrainedFieldFile, FromBeforeItsNumbersHadNamesComesBackAsItWas) {
   for (const std::string& name : names) ASSERT_FALSE(reader.HasAttribute(name));
   const render::TrainedField after = Read(old);
   EXPECT_EQ(Numbered(after), Numbered(before));
-  EXPECT_EQ(after.grid, before.grid);
-  EXPECT_EQ(after.networks, before.networks);
+  EXPECT_EQ(after.parameters.grid, before.parameters.grid);
+  EXPECT_EQ(after.parameters.networks, before.parameters.networks);
   ExpectSameLook(before, after, 0.1F);
 }
 

@@ -11,6 +11,7 @@ namespace {
 
 double MeanOver(const std::vector<PhotoScore>& photos, double PhotoScore::*value) {
   std::vector<double> values;
+  values.reserve(photos.size());
   for (const PhotoScore& photo : photos) values.push_back(photo.*value);
   return MeanOfMeasured(values);
 }

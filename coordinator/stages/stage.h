@@ -29,6 +29,8 @@ struct Stage {
     std::string stage;
   };
   std::vector<Need> needs = {};
+  // Throws base::InputError when one of them is damaged, before anything is changed; null: the body finds out.
+  void (*check)(const Project& project) = nullptr;
   // Identity of what it reads, by name.
   FlatOptions (*inputs)(const Pipeline& pipeline);
   // What it leaves behind, all of it removed when it is restarted.

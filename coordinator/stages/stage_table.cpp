@@ -92,6 +92,7 @@ std::vector<Stage> MakeTable() {
       {.name = "merge",
        .options = {"merge."},
        .needs = {{BlocksFile, "partition"}, {TrainReportFile, "train"}},
+       .check = [](const Project& p) { scene::ReadTrainReport(p.TrainReport()); },
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"train", FileIdentity(pipeline.project.TrainReport())}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};

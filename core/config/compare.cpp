@@ -38,7 +38,7 @@ size_t EditDistance(const std::string& a, const std::string& b) {
 
 std::string Hash(const std::map<std::string, std::string>& flat) {
   std::string text;
-  for (const auto& [key, value] : flat) text += key + " = " + value + "\n";
+  for (const auto& [key, value] : flat) text.append(key).append(" = ").append(value).append("\n");
   return base::HashHex(text);
 }
 

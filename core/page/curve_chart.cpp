@@ -104,6 +104,7 @@ std::vector<std::pair<double, double>> Thin(const std::vector<std::pair<double, 
 
 std::string CurveChart(const std::vector<Curve>& curves, const ChartOptions& options) {
   std::vector<Line> lines;
+  lines.reserve(curves.size());
   for (const Curve& curve : curves) lines.push_back(ToLine(curve, options));
   const bool marks = std::any_of(curves.begin(), curves.end(), [](const Curve& c) { return c.marks; });
   const std::optional<PlotFrame> frame = FrameOf(lines, marks, options);

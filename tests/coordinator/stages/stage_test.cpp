@@ -76,6 +76,16 @@ TEST_F(StageFiles, WhatProvesAStageIsRemovedWithIt) {
   }
 }
 
+TEST_F(StageFiles, ADamagedInputLeavesTheStageAsItWas) {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) unsetenv(name);  // alone even under a launcher
+  const auto comm = comm::Connect();
+  Touch(project_.BlocksFile());
+  Touch(project_.TrainReport(), "{\"fields\": [");
+  Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
+  EXPECT_THROW(MergeStage(pipeline), base::InputError);
+  EXPECT_FALSE(LoadStamp(project_, "merge").has_value());
+}
+
 TEST_F(StageFiles, AStageWhoseInputIsMissingNamesFileAndCommand) {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) unsetenv(name);  // alone even under a launcher
   const auto comm = comm::Connect();

@@ -46,6 +46,7 @@ void WriteTable(const Json& rows, const std::string& indent, std::ostream& out) 
   std::vector<std::vector<std::string>> lines = {columns};
   for (const Json& row : rows) {
     std::vector<std::string> line;
+    line.reserve(columns.size());
     for (const std::string& column : columns) line.push_back(row.contains(column) ? FlatText(row.at(column)) : "");
     lines.push_back(line);
   }

@@ -81,6 +81,7 @@ TEST_F(Coordinate, EveryBlockIsTrainedExactlyOnceOnAnyNumberOfRanks) {
   base::Random random(11);
   for (const int n_ranks : {1, 2, 3, 5}) {
     std::vector<QueueBlock> blocks;
+    blocks.reserve(9);
     for (int i = 0; i < 9; ++i) blocks.push_back(Named(i, random.Uniform(0.1, 1.0)));
     std::mutex mutex;
     std::map<int, int> times;

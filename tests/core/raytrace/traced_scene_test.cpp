@@ -54,6 +54,7 @@ TEST(TracedScene, WithoutTrianglesNothingIsHit) {
 TEST(TracedScene, TwoThousandLiveAtOnceMadeByTwoThreads) {
   std::vector<std::vector<TracedScene>> scenes(2);
   std::vector<std::thread> threads;
+  threads.reserve(scenes.size());
   for (auto& own : scenes) {
     threads.emplace_back([&own] {
       for (int i = 0; i < 1000; ++i) own.push_back(Square(static_cast<float>(i)));

@@ -31,7 +31,7 @@ struct ConcealedGradient {
   ComposedGradient plain;
   float light[3] = {0, 0, 0};        // of the concealed rendering, all the way to density and colour
   float share_light[3] = {0, 0, 0};  // of the concealed rendering, for Omega alone
-  float log_share = 0.0F;
+  float log_share = 0.0F;            // of the logarithm of the mean share: from LossOfShares, 0 without it
 };
 
 // Derivative of the wish for a mean brightness by one colour of one ray. weight: 0 lets the brightness go where it will. mean_shown and target:
@@ -42,7 +42,7 @@ float MeanBrightnessPull(float weight, double mean_shown, double target);
 ConcealedGradient LossOfConcealedRay(const BatchRay& ray, const RayView& view, const ConcealedRay& composed, const ConcealedTask& task,
                                      float ray_share, LossSums& sums);
 // Adds what ray k's log share costs for being unlike its neighbours and far from the mean (a logarithm, too); returns the derivative of the sum over
-// all rays by it.
+// all rays by it, not yet multiplied by ray_share.
 float LossOfShares(std::span<const ConcealedRay> rays, size_t k, float mean_log_gain, LossSums& sums);
 
 }  // namespace skyquilt::worker

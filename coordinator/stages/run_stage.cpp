@@ -15,7 +15,7 @@ void RequireFile(const std::filesystem::path& file, const std::string& stage, co
   throw base::InputError(file, "is not there yet", "Run 'skyquilt " + stage + " " + project.folder.string() + "' first");
 }
 
-// False when the inputs are other ones and the stage follows by itself.
+// Throws base::UsageError when the inputs are other ones and the stage must not follow by itself.
 void RequireSameInputs(const Project& project, const Stage& stage, const FlatOptions& inputs) {
   const std::string changes = JoinLines(config::Differences(LoadStamp(project, stage.name)->inputs, inputs));
   if (stage.on_new_inputs == OnNewInputs::kAgain) return;
@@ -32,6 +32,7 @@ FlatOptions StageOptions(const Stage& stage, Settings& settings) {
 }
 
 void RemoveStagesFrom(const Project& project, const std::string& name) {
+  StageNamed(name);  // or everything would go
   // Latest first: an interrupted removal never leaves a stage whose inputs are gone.
   for (auto stage = Stages().rbegin(); stage != Stages().rend(); ++stage) {
     std::error_code error;
@@ -67,9 +68,11 @@ void RunStage(Pipeline& pipeline, const std::string& name) {
   }
   const Freshness freshness = CheckStage(project, name, stamp.options, stamp.inputs, stage.proof(project));
   if (freshness == Freshness::kFresh) {
-    spdlog::info("{}: nothing to do, the results are there", name);
-    if (stage.recall != nullptr) stage.recall(pipeline);
-    return;
+    if (stage.recall == nullptr || stage.recall(pipeline)) {
+      spdlog::info("{}: nothing to do, the results are there", name);
+      return;
+    }
+    spdlog::info("{}: again, because its results cannot be read", name);
   }
   if (freshness == Freshness::kInputsChanged) {
     RequireSameInputs(project, stage, stamp.inputs);

@@ -39,8 +39,8 @@ struct Stage {
   Paths (*proof)(const Project& project);
   // Does the work; returns StageStamp::kDone or kFailed. The stamp identifies configuration and inputs.
   std::string (*body)(Pipeline& pipeline, const StageStamp& stamp);
-  // Reads again what the body found, when there is nothing to do; may be null.
-  void (*recall)(Pipeline& pipeline) = nullptr;
+  // Reads again what the body found, when there is nothing to do; null: nothing is kept. False when it cannot be read: the body runs again.
+  bool (*recall)(Pipeline& pipeline) = nullptr;
   OnNewInputs on_new_inputs = OnNewInputs::kAgain;
   // A folder of its own within the project, with a stamp of its own; null: the project's.
   Project (*home)(const Project& project) = nullptr;

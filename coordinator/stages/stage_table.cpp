@@ -4,6 +4,7 @@
 #include "coordinator/stages/stage.h"
 #include "coordinator/stages/stage_bodies.h"
 #include "core/base/errors.h"
+#include "core/base/log.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -31,12 +32,30 @@ std::string SurveyIdentity(const Project& project) {
 // The context and every block that train.json calls trained. A damaged train.json proves nothing, not even the blocks.
 Paths TrainProof(const Project& project) {
   Paths proof = {project.ContextCheckpoint(), project.TrainReport()};
-  const std::optional<scene::TrainReport> report = scene::TryReadTrainReport(project.TrainReport());
-  if (!report) return proof;
-  for (const scene::FieldTraining& field : report->fields) {
-    if (field.ok && field.block >= 0) proof.push_back(project.BlockCheckpoint(field.name));
+  try {
+    for (const scene::FieldTraining& field : scene::ReadTrainReport(project.TrainReport()).fields) {
+      if (field.ok && field.block >= 0) proof.push_back(project.BlockCheckpoint(field.name));
+    }
+  } catch (const base::InputError&) {
   }
   return proof;
+}
+
+bool RecallTraining(Pipeline& pipeline) {
+  std::optional<scene::TrainReport> report = scene::TryReadTrainReport(pipeline.project.TrainReport());
+  if (!report) return false;
+  pipeline.training = *std::move(report);
+  return true;
+}
+
+bool RecallMetrics(Pipeline& pipeline) {
+  try {
+    pipeline.metrics = evaluate::ReadMetrics(pipeline.project.MetricsFile());
+    return true;
+  } catch (const base::InputError& error) {
+    spdlog::warn("{}", error.what());
+    return false;
+  }
 }
 
 std::vector<Stage> MakeTable() {
@@ -87,7 +106,7 @@ std::vector<Stage> MakeTable() {
            },
        .proof = TrainProof,
        .body = TrainBody,
-       .recall = [](Pipeline& pipeline) { pipeline.training = scene::ReadTrainReport(pipeline.project.TrainReport()); },
+       .recall = RecallTraining,
        .on_new_inputs = OnNewInputs::kRefuse},
       {.name = "merge",
        .options = {"merge."},
@@ -127,7 +146,7 @@ std::vector<Stage> MakeTable() {
        .outputs = [](const Project& p) { return Paths{p.ReportFolder()}; },
        .proof = [](const Project& p) { return Paths{p.MetricsFile()}; },
        .body = EvaluateBody,
-       .recall = [](Pipeline& pipeline) { pipeline.metrics = evaluate::ReadMetrics(pipeline.project.MetricsFile()); }},
+       .recall = RecallMetrics},
   };
 }
 

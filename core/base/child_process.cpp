@@ -233,6 +233,7 @@ ChildEnd ChildProcess::Wait() {
 }
 
 void ChildProcess::Terminate() {
+  if (process_ <= 0) return;
   Signal(SIGTERM);
   const auto deadline = std::chrono::steady_clock::now() + kGrace;
   while (std::chrono::steady_clock::now() < deadline) {

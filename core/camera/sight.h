@@ -1,4 +1,5 @@
-// Whether a photo shows a place: what every count of "how many photos see this" builds on. Who counts asks for different things on purpose:
+// Whether a photo shows a place: what every count of "how many photos see this place" builds on (partition/visibility counts
+// rays that meet a box instead). Who counts asks for different things on purpose:
 //   partition/survey_area  which ground is covered: middles of raster cells, and not from far away, where oblique views blur into the horizon.
 //                          A place on any edge of the frame counts. Masks are not read yet.
 //   worker/few_views       what could be learned: balls around groups of cells, since a photo that shows but the rim of a group still teaches it.

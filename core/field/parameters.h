@@ -1,4 +1,5 @@
-// The learned numbers of one field. They have one owner, render::TrainedField; training and rendering read them there.
+// The learned numbers of one field. In the program their one owner is render::TrainedField; training and rendering read
+// them there.
 #pragma once
 
 #include <cstddef>

@@ -71,6 +71,7 @@ TracedScene::TracedScene(std::span<const Eigen::Vector3f> position, std::span<co
     : impl_(std::make_unique<Impl>()), empty_(triangle.empty()) {
   if (empty_) return;
   const RTCDevice device = Device();
+  rtcGetDeviceError(device);  // forgets what another scene of this thread may have left
   impl_->scene = rtcNewScene(device);
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);

@@ -9,6 +9,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "tests/support/error_of.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::app {
 namespace {
@@ -39,6 +40,14 @@ TEST(Settings, UnknownNamesSuggestTheNearest) {
   EXPECT_NE(UsageErrorOf([] { LoadSettings({}, {{"trian.levels", "4"}}); }).find("'train'"), std::string::npos);
   EXPECT_NE(UsageErrorOf([] { LoadSettings({}, {{"levels", "4"}}); }).find("section"), std::string::npos);
   EXPECT_NE(UsageErrorOf([] { config::ParseOverride("train.levels"); }).find("section.key=value"), std::string::npos);
+}
+
+TEST(Settings, OptionsThatAreGoneAreStillTaken) {
+  coordinator::Settings defaults;
+  EXPECT_EQ(LoadSettings({}, {{"run.context_ranks", "2"}}).Flat(), defaults.Flat());
+  const TemporaryFolder folder;
+  base::WriteFileAtomically(folder / "old.toml", "[run]\ncontext_ranks = 2\nseed = 1\n");
+  EXPECT_EQ(LoadSettings({folder / "old.toml"}, {}).Flat(), defaults.Flat());
 }
 
 TEST(Settings, ValuesOfTheWrongTypeOrRangeAreNamed) {

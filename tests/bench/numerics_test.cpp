@@ -10,7 +10,7 @@
 #include "core/base/progress.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::bench::numerics {
+namespace skyquilt::bench {
 namespace {
 
 class Numerics : public testing::Test {
@@ -121,4 +121,4 @@ TEST_F(Numerics, LeavesOutThePipelineWithoutRanks) {
 }
 
 }  // namespace
-}  // namespace skyquilt::bench::numerics
+}  // namespace skyquilt::bench

@@ -9,7 +9,7 @@
 #include "core/encoding/spherical_harmonics.h"
 #include "tests/support/gradient_check.h"
 
-namespace skyquilt::bench::numerics {
+namespace skyquilt::bench {
 namespace {
 
 SyntheticOptions TinyScene() {
@@ -108,4 +108,4 @@ TEST(ReferenceTrainer, AgreesWithTheWorkerFromTheSameStart) {
 }
 
 }  // namespace
-}  // namespace skyquilt::bench::numerics
+}  // namespace skyquilt::bench

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/base/cancel.h"
@@ -117,17 +119,27 @@ class SmallSurvey : public ::testing::Test {
     for (int i = 0; i < 16; ++i) block.photos.push_back(i);
     return block;
   }
-  // Trains a job that `stop` interrupts, then again without it until it comes to its end.
-  static void TrainInterrupted(const TrainJob& job, const Reporter& stop, const std::function<void(const Reporter&)>& train) {
-    for (int attempt = 0; attempt < 50; ++attempt) {
-      base::ClearCancel();
-      try {
-        train(attempt == 0 ? stop : Reporter());
-        break;
-      } catch (const base::Interrupted&) {
-        EXPECT_TRUE(std::filesystem::exists(job.checkpoint));
-      }
+  // Trains a job that is interrupted once it has saved its first step, then again until it comes to its end.
+  static void TrainInterrupted(TrainJob job, const std::function<void(const TrainJob&)>& train) {
+    job.options.checkpoint_every_s = 0.0;  // saves after every step
+    base::ClearCancel();
+    std::atomic<bool> ended = false;
+    std::thread interrupter([&] {
+      while (!ended && !std::filesystem::exists(job.checkpoint)) std::this_thread::yield();
+      base::RequestCancel();
+    });
+    bool interrupted = false;
+    try {
+      train(job);
+    } catch (const base::Interrupted&) {
+      interrupted = true;
     }
+    ended = true;
+    interrupter.join();
+    EXPECT_TRUE(interrupted);
+    EXPECT_TRUE(std::filesystem::exists(job.checkpoint));
+    base::ClearCancel();
+    train(job);
   }
   std::string Bytes(const std::string& name) const {
     const checkpoint::ArchiveReader reader(folder_ / name);

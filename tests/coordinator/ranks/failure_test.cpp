@@ -39,7 +39,7 @@ TEST(Failure, NamesWhoMetIt) {
   try {
     Throw(failure, "rank 3 on alpha");
   } catch (const base::InputError& error) {
-    EXPECT_STREQ(error.what(), "scene.h5: rank 3 on alpha: no such file. Make it");
+    EXPECT_STREQ(error.what(), "scene.h5: rank 3 on alpha: no such file. Make it. All ranks must see the same project folder");
   }
 }
 

@@ -76,6 +76,24 @@ TEST_F(StageFiles, WhatProvesAStageIsRemovedWithIt) {
   }
 }
 
+TEST_F(StageFiles, WhatCannotBeReadAgainIsNoResult) {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) unsetenv(name);  // alone even under a launcher
+  const auto comm = comm::Connect();
+  Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
+  scene::WriteTrainReport({.ranks = 2, .config_hash = "a", .fields = {{.name = "context", .ok = true}}}, project_.TrainReport());
+  evaluate::Metrics metrics;
+  metrics.psnr = 27.5;
+  Touch(project_.MetricsFile(), evaluate::MetricsJson(metrics));
+  EXPECT_TRUE(StageNamed("train").recall(pipeline));
+  EXPECT_EQ(pipeline.training.ranks, 2);
+  EXPECT_TRUE(StageNamed("evaluate").recall(pipeline));
+  EXPECT_EQ(pipeline.metrics.psnr, 27.5);
+  Touch(project_.TrainReport(), "{\"fields\": [");
+  Touch(project_.MetricsFile(), "{\"psnr\": 2");
+  EXPECT_FALSE(StageNamed("train").recall(pipeline));
+  EXPECT_FALSE(StageNamed("evaluate").recall(pipeline));
+}
+
 TEST_F(StageFiles, ADamagedInputLeavesTheStageAsItWas) {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) unsetenv(name);  // alone even under a launcher
   const auto comm = comm::Connect();

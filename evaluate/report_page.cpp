@@ -174,7 +174,8 @@ std::string TrainingSection(const ReportInput& input) {
     page::Curve loss_curve{field.name, {}, field.name == "context"};
     page::Curve psnr_curve = loss_curve;
     const auto curve = input.curves.find(field.name);
-    const std::vector<CurvePoint> points = curve == input.curves.end() ? std::vector<CurvePoint>() : curve->second;
+    static const std::vector<CurvePoint> kNone;
+    const std::vector<CurvePoint>& points = curve == input.curves.end() ? kNone : curve->second;
     for (const CurvePoint& point : points) {
       const double x = std::isfinite(point.seconds) ? point.seconds : point.step;
       loss_curve.points.emplace_back(x, point.loss);

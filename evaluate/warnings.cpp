@@ -53,8 +53,8 @@ std::vector<std::string> CollectWarnings(const survey::Survey& survey, const par
     }
   }
   if (!unfinished.empty()) warnings.push_back("No training record for these blocks: " + Names(unfinished));
-  const std::vector<scene::FieldTraining> fields = training == nullptr ? std::vector<scene::FieldTraining>() : training->fields;
-  for (const scene::FieldTraining& field : fields) {
+  static const scene::TrainReport kUnknown;
+  for (const scene::FieldTraining& field : (training == nullptr ? kUnknown : *training).fields) {
     if (!field.ok)
       warnings.push_back(fmt::format("Training of {} failed: {}", field.name, field.reason.empty() ? "no reason was given" : field.reason));
     if (field.ok && field.dropped_steps > 0) {

@@ -9,15 +9,10 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/memory_map.h"
+#include "core/base/text.h"
 #include "core/config/options.h"
 
 namespace skyquilt::coordinator {
-
-std::string JoinLines(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += "\n  " + line;
-  return text;
-}
 
 std::string StageStamp::Hash() const {
   FlatOptions all = options;
@@ -58,9 +53,9 @@ Freshness CheckStage(const Project& project, const std::string& stage, const Fla
   if (!stamp) return Freshness::kAbsent;
   const std::vector<std::string> differences = config::Differences(stamp->options, options);
   if (!differences.empty()) {
-    throw base::UsageError(
-        "the results of '" + stage + "' in " + project.folder.string() + " were made with another configuration:" + JoinLines(differences) +
-        "\nUse the old values, another project folder, or --restart to remove the results of '" + stage + "' and of all later stages");
+    throw base::UsageError("the results of '" + stage + "' in " + project.folder.string() + " were made with another configuration:\n  " +
+                           base::Join(differences, "\n  ") + "\nUse the old values, another project folder, or --restart to remove the results of '" +
+                           stage + "' and of all later stages");
   }
   const bool complete = std::all_of(proof.begin(), proof.end(), [](const auto& path) { return std::filesystem::exists(path); });
   if (!config::Differences(stamp->inputs, inputs).empty()) return Freshness::kInputsChanged;

@@ -48,9 +48,6 @@ Freshness CheckStage(const Project& project, const std::string& stage, const Fla
 // The entries whose key is in `keys`, or begins with one of them when it ends in '.'.
 FlatOptions Select(const FlatOptions& all, const std::vector<std::string>& keys);
 
-// For messages: every line on its own, indented.
-std::string JoinLines(const std::vector<std::string>& lines);
-
 // Identity of a file's bytes; "absent" when it does not exist.
 std::string FileIdentity(const std::filesystem::path& file);
 // Identity of the names, sizes and times of all images below a folder (the folder `except` left out): cheap even for thousands of photos.

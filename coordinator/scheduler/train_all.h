@@ -24,9 +24,9 @@ struct TrainInput {
   bool quiet = false;
 };
 
-// Called on rank 0. Returns and writes what came of every field; blocks that failed after all tries are not ok. Writes checkpoints, <field>.log.csv
-// and train.json into the project; continues from what is there. Throws base::Interrupted (everything saved), base::InputError, base::UsageError,
-// base::BlockError when the context itself failed.
+// Called on rank 0. Returns and writes the training results of every field; blocks that failed after all tries are not ok. Writes checkpoints,
+// <field>.log.csv and train.json into the project; continues from what is there. Throws base::Interrupted (everything saved), base::InputError,
+// base::UsageError, base::BlockError when the context itself failed.
 scene::TrainReport TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project);
 
 // One training as every other rank sees it, begun by kTagSetup with this text: trains blocks for rank 0 until kTagDone.

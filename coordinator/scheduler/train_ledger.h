@@ -1,5 +1,5 @@
 // What one training keeps on disk beside the checkpoints (.state/training.json): how much of the time budget is spent and promised, so that a resumed
-// training keeps to the same budget, and what came of every field.
+// training keeps to the same budget, and the training results of every field.
 #pragma once
 
 #include <map>
@@ -25,7 +25,7 @@ class TrainLedger {
   void SetSpent(double seconds, bool now);
 
   void AddOutcome(const FieldOutcome& outcome);
-  // What came of every field so far, the context first. `threads`: per rank that trains.
+  // The training results of every field so far, the context first. `threads`: per rank that trains.
   scene::TrainReport Report(int ranks, int threads) const;
 
  private:

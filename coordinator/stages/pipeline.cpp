@@ -2,6 +2,7 @@
 
 #include "coordinator/stages/stage.h"
 #include "core/base/errors.h"
+#include "core/base/text.h"
 
 namespace skyquilt::coordinator {
 
@@ -50,7 +51,7 @@ const evaluate::Metrics& EvaluateStage(Pipeline& pipeline) {
 void ThrowIfBlocksFailed(const scene::TrainReport& training, const Project& project) {
   const std::vector<std::string> failed = training.Failed();
   if (failed.empty()) return;
-  throw base::BlockError(std::to_string(failed.size()) + " block(s) failed after all tries:" + JoinLines(failed) +
+  throw base::BlockError(std::to_string(failed.size()) + " block(s) failed after all tries:\n  " + base::Join(failed, "\n  ") +
                          "\nThe others are finished and saved in " + project.CheckpointFolder().string() +
                          "; the same command tries the failed ones again");
 }

@@ -6,6 +6,7 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/base/system.h"
+#include "core/base/text.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -17,9 +18,9 @@ void RequireFile(const std::filesystem::path& file, const std::string& stage, co
 
 // Throws base::UsageError when the inputs are other ones and the stage must not follow by itself.
 void RequireSameInputs(const Project& project, const Stage& stage, const FlatOptions& inputs) {
-  const std::string changes = JoinLines(config::Differences(LoadStamp(project, stage.name)->inputs, inputs));
   if (stage.on_new_inputs == OnNewInputs::kAgain) return;
-  throw base::UsageError("what '" + stage.name + "' in " + project.folder.string() + " was made from has changed:" + changes +
+  const std::string changes = base::Join(config::Differences(LoadStamp(project, stage.name)->inputs, inputs), "\n  ");
+  throw base::UsageError("what '" + stage.name + "' in " + project.folder.string() + " was made from has changed:\n  " + changes +
                          "\nUse another project folder, or --restart to remove the results of '" + stage.name + "' and of all later stages");
 }
 

@@ -1,4 +1,4 @@
-// What the training of a scene's fields came to: train.json, for reports and for going on.
+// The training results of a scene's fields: train.json, for reports and for resuming.
 #pragma once
 
 #include <cstdint>

@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 
 #include "core/base/errors.h"
-#include "core/comm/communicator.h"
+#include "tests/support/connect_alone.h"
 #include "tests/support/project_fixture.h"
 
 namespace skyquilt::coordinator {
@@ -77,8 +76,7 @@ TEST_F(StageFiles, WhatProvesAStageIsRemovedWithIt) {
 }
 
 TEST_F(StageFiles, WhatCannotBeReadAgainIsNoResult) {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) unsetenv(name);  // alone even under a launcher
-  const auto comm = comm::Connect();
+  const auto comm = comm::ConnectAlone();
   Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
   scene::WriteTrainReport({.ranks = 2, .config_hash = "a", .fields = {{.name = "context", .ok = true}}}, project_.TrainReport());
   evaluate::Metrics metrics;
@@ -95,8 +93,7 @@ TEST_F(StageFiles, WhatCannotBeReadAgainIsNoResult) {
 }
 
 TEST_F(StageFiles, ADamagedInputLeavesTheStageAsItWas) {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) unsetenv(name);  // alone even under a launcher
-  const auto comm = comm::Connect();
+  const auto comm = comm::ConnectAlone();
   Touch(project_.BlocksFile());
   Touch(project_.TrainReport(), "{\"fields\": [");
   Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
@@ -105,8 +102,7 @@ TEST_F(StageFiles, ADamagedInputLeavesTheStageAsItWas) {
 }
 
 TEST_F(StageFiles, AStageWhoseInputIsMissingNamesFileAndCommand) {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) unsetenv(name);  // alone even under a launcher
-  const auto comm = comm::Connect();
+  const auto comm = comm::ConnectAlone();
   Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
   try {
     MergeStage(pipeline);

@@ -1,19 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
-#include "core/comm/communicator.h"
+#include "tests/support/connect_alone.h"
 
 namespace skyquilt::comm {
 namespace {
-
-// Alone even when the test programs themselves run under a launcher.
-std::unique_ptr<Communicator> ConnectAlone() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) unsetenv(name);
-  return Connect();
-}
 
 TEST(SingleRank, IsAllThereIs) {
   const auto ranks = ConnectAlone();

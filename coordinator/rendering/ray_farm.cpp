@@ -12,7 +12,7 @@ namespace skyquilt::coordinator {
 namespace {
 
 using scene::kArrived;
-using scene::Traveller;
+using scene::RayInFlight;
 
 // Rays that are handed out together: enough to keep a rank's cores busy while the next ones travel, few enough that all ranks have some.
 constexpr size_t kMostRays = 1 << 14;
@@ -27,7 +27,7 @@ struct RayFarm::Work {
   std::span<const render::Ray> rays;
   std::span<render::RayColor> out;
   render::EngineOptions options;
-  std::vector<Traveller> travellers;
+  std::vector<RayInFlight> in_flight;
   size_t chunk = kMostRays;
   size_t next_ray = 0;  // of those that no group has yet
   size_t arrived = 0;
@@ -68,7 +68,7 @@ void RayFarm::Render(std::span<const render::Ray> rays, std::span<render::RayCol
   work.rays = rays;
   work.out = out;
   work.options = options;
-  work.travellers.resize(rays.size());
+  work.in_flight.resize(rays.size());
   work.chunk = std::clamp(rays.size() / (4 * static_cast<size_t>(statistics_.ranks)), kFewestRays, kMostRays);
   work.in_group.assign(groups_.size(), 0);
   statistics_.rays += static_cast<int64_t>(rays.size());
@@ -134,10 +134,10 @@ void RayFarm::Queue(Work& work, int rank, Parcel parcel) {
 void RayFarm::Send(Work& work, int rank) {
   Parcel parcel = std::move(work.waiting[rank].front());
   work.waiting[rank].pop_front();
-  RayParcel message{.id = next_id_++, .options = work.options, .rays = {}, .travellers = {}};
+  RayParcel message{.id = next_id_++, .options = work.options, .rays = {}, .in_flight = {}};
   for (const size_t i : parcel.rays) {
     message.rays.push_back(work.rays[i]);
-    message.travellers.push_back(work.travellers[i]);
+    message.in_flight.push_back(work.in_flight[i]);
   }
   const std::string bytes = ToBytes(message);
   statistics_.bytes_sent += static_cast<int64_t>(bytes.size());
@@ -154,7 +154,7 @@ void RayFarm::TakeBack(Work& work, const comm::Message& message) {
   if (carried.failure) Throw(carried.failure, "rank " + std::to_string(rank));
   const Parcel parcel = std::move(at->second);
   with_rank.erase(at);
-  SKYQUILT_CHECK(carried.travellers.size() == parcel.rays.size(), "a parcel comes back whole");
+  SKYQUILT_CHECK(carried.in_flight.size() == parcel.rays.size(), "a parcel comes back whole");
   statistics_.bytes_received += static_cast<int64_t>(message.bytes.size());
   statistics_.samples += carried.samples;
   statistics_.field_loads += carried.field_loads - std::exchange(loads_[rank], carried.field_loads);
@@ -163,14 +163,14 @@ void RayFarm::TakeBack(Work& work, const comm::Message& message) {
   size_t color = 0;
   for (size_t k = 0; k < parcel.rays.size(); ++k) {
     const size_t i = parcel.rays[k];
-    if (carried.travellers[k].owner == kArrived) {
+    if (carried.in_flight[k].owner == kArrived) {
       work.out[i] = carried.colors.at(color++);
       ++work.arrived;
       --work.in_group[parcel.group];
       continue;
     }
-    work.travellers[i] = carried.travellers[k];
-    const int next = group.ranks.at(static_cast<size_t>(carried.travellers[k].owner));
+    work.in_flight[i] = carried.in_flight[k];
+    const int next = group.ranks.at(static_cast<size_t>(carried.in_flight[k].owner));
     SKYQUILT_CHECK(next != rank, "a ray that its rank did not take on");
     onward[next].rays.push_back(i);
     ++statistics_.handovers;

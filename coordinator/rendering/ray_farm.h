@@ -1,5 +1,5 @@
 // Rays answered by the other ranks, as rank 0 sees it. Ranks whose memory holds the whole scene work side by side; otherwise groups of ranks hold
-// it together, and a ray goes from rank to rank, front to back, with what it has gathered (render::Traveller). So the picture is the one that a
+// it together, and a ray goes from rank to rank, front to back, with what it has gathered (scene::RayInFlight). So the picture is the one that a
 // single process makes, to the bit.
 #pragma once
 

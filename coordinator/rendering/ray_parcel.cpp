@@ -9,7 +9,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-static_assert(std::is_trivially_copyable_v<scene::Traveller> && std::is_trivially_copyable_v<render::RayColor> &&
+static_assert(std::is_trivially_copyable_v<scene::RayInFlight> && std::is_trivially_copyable_v<render::RayColor> &&
               std::is_trivially_copyable_v<render::EngineOptions>);
 
 class Packer {
@@ -87,13 +87,13 @@ bool Same(const render::Ray& a, const render::Ray& b) {
   return a.origin_enu == b.origin_enu && a.t_near == b.t_near && a.t_far == b.t_far && a.pixel_radius == b.pixel_radius;
 }
 
-bool Fresh(const scene::Traveller& traveller) {
-  return traveller.at == 0.0 && traveller.state.transmittance == 1.0 && !traveller.state.ended;
+bool Fresh(const scene::RayInFlight& ray_in_flight) {
+  return ray_in_flight.at == 0.0 && ray_in_flight.state.transmittance == 1.0 && !ray_in_flight.state.ended;
 }
 
 // Without the padding, whose bytes nobody set.
-void AddTraveller(const scene::Traveller& traveller, Packer* packer) {
-  const render::RayState& s = traveller.state;
+void AddRayInFlight(const scene::RayInFlight& ray_in_flight, Packer* packer) {
+  const render::RayState& s = ray_in_flight.state;
   packer->Add(s.transmittance);
   packer->Add(s.depth_moment);
   packer->Add(s.rgb_srgb);
@@ -103,8 +103,8 @@ void AddTraveller(const scene::Traveller& traveller, Packer* packer) {
   packer->Add(s.depth_median);
   packer->Add(s.depth_back);
   packer->Add(s.ended);
-  packer->Add(traveller.at);
-  packer->Add(traveller.owner);
+  packer->Add(ray_in_flight.at);
+  packer->Add(ray_in_flight.owner);
 }
 
 template <typename T, size_t kCount>
@@ -112,9 +112,9 @@ void TakeArray(T (&values)[kCount], Unpacker* unpacker) {
   for (T& value : values) value = unpacker->Take<T>();
 }
 
-scene::Traveller TakeTraveller(Unpacker* unpacker) {
-  scene::Traveller traveller;
-  render::RayState& s = traveller.state;
+scene::RayInFlight TakeRayInFlight(Unpacker* unpacker) {
+  scene::RayInFlight ray_in_flight;
+  render::RayState& s = ray_in_flight.state;
   s.transmittance = unpacker->Take<double>();
   s.depth_moment = unpacker->Take<double>();
   TakeArray(s.rgb_srgb, unpacker);
@@ -124,9 +124,9 @@ scene::Traveller TakeTraveller(Unpacker* unpacker) {
   s.depth_median = unpacker->Take<float>();
   s.depth_back = unpacker->Take<float>();
   s.ended = unpacker->Take<bool>();
-  traveller.at = unpacker->Take<double>();
-  traveller.owner = unpacker->Take<int>();
-  return traveller;
+  ray_in_flight.at = unpacker->Take<double>();
+  ray_in_flight.owner = unpacker->Take<int>();
+  return ray_in_flight;
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ std::string ToBytes(const RayParcel& parcel) {
   packer.Add(parcel.options.concealing);
   const auto& rays = parcel.rays;
   const bool shared = std::all_of(rays.begin(), rays.end(), [&](const render::Ray& ray) { return Same(ray, rays.front()); });
-  const bool fresh = std::all_of(parcel.travellers.begin(), parcel.travellers.end(), Fresh);
+  const bool fresh = std::all_of(parcel.in_flight.begin(), parcel.in_flight.end(), Fresh);
   packer.Add(shared);
   packer.Add(fresh);
   packer.Add(static_cast<uint64_t>(rays.size()));
@@ -149,7 +149,7 @@ std::string ToBytes(const RayParcel& parcel) {
     if (!shared) packer.Add(CommonOf(ray));
   }
   if (!fresh) {
-    for (const scene::Traveller& traveller : parcel.travellers) AddTraveller(traveller, &packer);
+    for (const scene::RayInFlight& ray_in_flight : parcel.in_flight) AddRayInFlight(ray_in_flight, &packer);
   }
   return packer.Take();
 }
@@ -176,9 +176,9 @@ RayParcel RayParcelFromBytes(const std::string& bytes) {
     ray.pixel_radius = common.pixel_radius;
     parcel.rays.push_back(ray);
   }
-  parcel.travellers.resize(n);
+  parcel.in_flight.resize(n);
   if (!fresh) {
-    for (scene::Traveller& traveller : parcel.travellers) traveller = TakeTraveller(&unpacker);
+    for (scene::RayInFlight& ray_in_flight : parcel.in_flight) ray_in_flight = TakeRayInFlight(&unpacker);
   }
   unpacker.End();
   return parcel;
@@ -190,15 +190,15 @@ std::string ToBytes(const CarriedParcel& parcel) {
   packer.Add(parcel.samples);
   packer.Add(parcel.field_loads);
   packer.AddText(ToJson(parcel.failure).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  packer.Add(static_cast<uint64_t>(parcel.travellers.size()));
+  packer.Add(static_cast<uint64_t>(parcel.in_flight.size()));
   size_t color = 0;
-  for (const scene::Traveller& traveller : parcel.travellers) {
-    const bool arrived = traveller.owner == scene::kArrived;
+  for (const scene::RayInFlight& ray_in_flight : parcel.in_flight) {
+    const bool arrived = ray_in_flight.owner == scene::kArrived;
     packer.Add(arrived);
     if (arrived) {
       packer.Add(parcel.colors.at(color++));
     } else {
-      AddTraveller(traveller, &packer);
+      AddRayInFlight(ray_in_flight, &packer);
     }
   }
   return packer.Take();
@@ -213,14 +213,14 @@ CarriedParcel CarriedParcelFromBytes(const std::string& bytes) {
   parcel.failure = unpacker.TakeFailure();
   const size_t n = unpacker.TakeCount(sizeof(bool));
   for (size_t i = 0; i < n; ++i) {
-    scene::Traveller traveller;
+    scene::RayInFlight ray_in_flight;
     if (unpacker.Take<bool>()) {
-      traveller.owner = scene::kArrived;
+      ray_in_flight.owner = scene::kArrived;
       parcel.colors.push_back(unpacker.Take<render::RayColor>());
     } else {
-      traveller = TakeTraveller(&unpacker);
+      ray_in_flight = TakeRayInFlight(&unpacker);
     }
-    parcel.travellers.push_back(traveller);
+    parcel.in_flight.push_back(ray_in_flight);
   }
   unpacker.End();
   return parcel;

@@ -15,20 +15,20 @@ struct RayParcel {
   uint64_t id = 0;
   render::EngineOptions options;
   std::vector<render::Ray> rays;
-  std::vector<scene::Traveller> travellers;  // one per ray
+  std::vector<scene::RayInFlight> in_flight;  // one per ray
 };
 
 // Back from it: in the order of the parcel's rays.
 struct CarriedParcel {
   uint64_t id = 0;
   int64_t samples = 0;
-  int64_t field_loads = 0;                   // of the rank, so far
-  std::vector<scene::Traveller> travellers;  // of arrived ones only `owner` counts
-  std::vector<render::RayColor> colors;      // of arrived ones, in order
-  Failure failure;                           // with it no rays come back
+  int64_t field_loads = 0;                    // of the rank, so far
+  std::vector<scene::RayInFlight> in_flight;  // of arrived ones only `owner` counts
+  std::vector<render::RayColor> colors;       // of arrived ones, in order
+  Failure failure;                            // with it no rays come back
 };
 
-// Rays of one camera share most numbers, and fresh travellers need none: 24 bytes per ray then, at most 152.
+// Rays of one camera share most numbers, and fresh ones need none: 24 bytes per ray then, at most 152.
 std::string ToBytes(const RayParcel& parcel);
 std::string ToBytes(const CarriedParcel& parcel);
 // Throw std::runtime_error on bytes that are not theirs.

@@ -34,14 +34,14 @@ class RayServer {
   }
 
   CarriedParcel Carry(RayParcel parcel) {
-    CarriedParcel carried{.id = parcel.id, .travellers = {}, .colors = {}, .failure = {}};
+    CarriedParcel carried{.id = parcel.id, .in_flight = {}, .colors = {}, .failure = {}};
     try {
-      for (scene::Traveller& traveller : parcel.travellers) traveller.owner = number_;
-      carried.samples = rays_.Continue(parcel.rays, parcel.travellers, parcel.options, number_, Owner());
-      for (const scene::Traveller& traveller : parcel.travellers) {
-        if (traveller.owner == scene::kArrived) carried.colors.push_back(render::Finished(traveller.state));
+      for (scene::RayInFlight& ray_in_flight : parcel.in_flight) ray_in_flight.owner = number_;
+      carried.samples = rays_.Continue(parcel.rays, parcel.in_flight, parcel.options, number_, Owner());
+      for (const scene::RayInFlight& ray_in_flight : parcel.in_flight) {
+        if (ray_in_flight.owner == scene::kArrived) carried.colors.push_back(render::Finished(ray_in_flight.state));
       }
-      carried.travellers = std::move(parcel.travellers);
+      carried.in_flight = std::move(parcel.in_flight);
     } catch (...) {
       carried.failure = CurrentFailure();
     }

@@ -34,7 +34,7 @@ void PagedRays::ForGroups(size_t n, const std::function<void(size_t begin, size_
 }
 
 // Takes these rays through their windows, with what is loaded.
-int64_t PagedRays::Carry(std::span<const render::Ray> rays, std::span<Traveller> travellers, const render::EngineOptions& options,
+int64_t PagedRays::Carry(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options,
                          std::span<const size_t> going, std::span<const render::Window> windows) {
   if (store_.loads() != renderers_loads_ || !(options == renderers_options_)) {
     renderers_.clear();
@@ -55,37 +55,37 @@ int64_t PagedRays::Carry(std::span<const render::Ray> rays, std::span<Traveller>
     states.clear();
     for (size_t g = begin; g < end; ++g) {
       some.push_back(rays[going[g]]);
-      states.push_back(travellers[going[g]].state);
+      states.push_back(in_flight[going[g]].state);
     }
     evaluated += renderer->Continue(some, windows.subspan(begin, end - begin), states);
-    for (size_t g = begin; g < end; ++g) travellers[going[g]].state = states[g - begin];
+    for (size_t g = begin; g < end; ++g) in_flight[going[g]].state = states[g - begin];
   });
   return evaluated;
 }
 
-int64_t PagedRays::RunTogether(std::span<const render::Ray> rays, std::span<Traveller> travellers, const render::EngineOptions& options) {
+int64_t PagedRays::RunTogether(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options) {
   std::vector<size_t> going(rays.size());
   std::iota(going.begin(), going.end(), size_t{0});
   std::vector<render::Window> windows;
-  for (const Traveller& traveller : travellers) windows.push_back({.from = traveller.at});
-  const int64_t evaluated = Carry(rays, travellers, options, going, windows);
-  for (Traveller& traveller : travellers) traveller.owner = kArrived;
+  for (const RayInFlight& ray_in_flight : in_flight) windows.push_back({.from = ray_in_flight.at});
+  const int64_t evaluated = Carry(rays, in_flight, options, going, windows);
+  for (RayInFlight& ray_in_flight : in_flight) ray_in_flight.owner = kArrived;
   return evaluated;
 }
 
-int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<Traveller> travellers, const render::EngineOptions& options, int me,
+int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options, int me,
                             const Owner& owner) {
-  SKYQUILT_CHECK(rays.size() == travellers.size(), "one traveller per ray");
+  SKYQUILT_CHECK(rays.size() == in_flight.size(), "one state in flight per ray");
   const size_t n = rays.size();
   if (!owner && store_.AllFit()) {
     store_.NeedAll();
-    return RunTogether(rays, travellers, options);
+    return RunTogether(rays, in_flight, options);
   }
   std::vector<Way> ways(n);
   ForGroups(n, [&](size_t begin, size_t end, int) {
     for (size_t i = begin; i < end; ++i) {
       segments_.Split(rays[i], &ways[i].segments);
-      while (ways[i].at + 1 < ways[i].segments.size() && ways[i].segments[ways[i].at].t_far <= travellers[i].at) ++ways[i].at;
+      while (ways[i].at + 1 < ways[i].segments.size() && ways[i].segments[ways[i].at].t_far <= in_flight[i].at) ++ways[i].at;
     }
   });
   std::map<int, int> owners;  // per set
@@ -97,18 +97,18 @@ int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<Travell
   // Who goes on with a ray that stands at its next segment.
   const auto settle = [&](size_t i) {
     const Way& way = ways[i];
-    const bool arrived = travellers[i].state.ended || way.at >= way.segments.size();
-    travellers[i].owner = arrived ? kArrived : owner_of(way.segments[way.at].set);
+    const bool arrived = in_flight[i].state.ended || way.at >= way.segments.size();
+    in_flight[i].owner = arrived ? kArrived : owner_of(way.segments[way.at].set);
   };
   for (size_t i = 0; i < n; ++i) {
-    if (travellers[i].owner != kArrived) settle(i);
+    if (in_flight[i].owner != kArrived) settle(i);
   }
 
   int64_t evaluated = 0;
   while (true) {
     std::map<int, int64_t> waiting;  // rays per set
     for (size_t i = 0; i < n; ++i) {
-      if (travellers[i].owner == me) ++waiting[ways[i].segments[ways[i].at].set];
+      if (in_flight[i].owner == me) ++waiting[ways[i].segments[ways[i].at].set];
     }
     if (waiting.empty()) break;
     const auto loaded = [this](int set) {
@@ -129,15 +129,15 @@ int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<Travell
     std::vector<size_t> going;
     std::vector<render::Window> windows;
     for (size_t i = 0; i < n; ++i) {
-      if (travellers[i].owner != me || !carries(ways[i].segments[ways[i].at].set)) continue;
+      if (in_flight[i].owner != me || !carries(ways[i].segments[ways[i].at].set)) continue;
       Way& way = ways[i];
       while (way.at < way.segments.size() && carries(way.segments[way.at].set)) ++way.at;
       going.push_back(i);
-      windows.push_back({travellers[i].at, way.segments[way.at - 1].t_far});
+      windows.push_back({in_flight[i].at, way.segments[way.at - 1].t_far});
     }
-    evaluated += Carry(rays, travellers, options, going, windows);
+    evaluated += Carry(rays, in_flight, options, going, windows);
     for (size_t g = 0; g < going.size(); ++g) {
-      travellers[going[g]].at = windows[g].to;
+      in_flight[going[g]].at = windows[g].to;
       settle(going[g]);
     }
   }

@@ -15,7 +15,7 @@
 namespace skyquilt::scene {
 
 // A ray on its way through a scene.
-struct Traveller {
+struct RayInFlight {
   render::RayState state;
   double at = 0.0;  // metres along the ray: what lies before is gathered
   int owner = 0;    // who goes on with it; kArrived when nobody needs to
@@ -32,14 +32,14 @@ class PagedRays {
 
   // Takes every ray on until it arrives or comes to a place of another owner than `me`; rays of others are left as they are. The result does
   // not depend on memory, owners or threads. Returns the samples evaluated. Throws base::UsageError (memory too small), base::Interrupted.
-  int64_t Continue(std::span<const render::Ray> rays, std::span<Traveller> travellers, const render::EngineOptions& options, int me,
+  int64_t Continue(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options, int me,
                    const Owner& owner);
 
  private:
   void ForGroups(size_t n, const std::function<void(size_t begin, size_t end, int thread)>& body);
-  int64_t Carry(std::span<const render::Ray> rays, std::span<Traveller> travellers, const render::EngineOptions& options,
+  int64_t Carry(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options,
                 std::span<const size_t> going, std::span<const render::Window> windows);
-  int64_t RunTogether(std::span<const render::Ray> rays, std::span<Traveller> travellers, const render::EngineOptions& options);
+  int64_t RunTogether(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options);
 
   FieldStore& store_;
   const render::RaySegments& segments_;

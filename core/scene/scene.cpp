@@ -58,14 +58,14 @@ struct Scene::Impl {
     if (service != nullptr) {
       service->Render(rays, out, options);
     } else {
-      std::vector<Traveller> travellers(rays.size());
+      std::vector<RayInFlight> in_flight(rays.size());
       if (pager == nullptr || pager_threads != &threads) {
         pager = std::make_unique<PagedRays>(*store, *segments, threads);
         pager_threads = &threads;
       }
-      statistics.samples += pager->Continue(rays, travellers, options, 0, {});
+      statistics.samples += pager->Continue(rays, in_flight, options, 0, {});
       statistics.rays += static_cast<int64_t>(rays.size());
-      for (size_t i = 0; i < rays.size(); ++i) out[i] = render::Finished(travellers[i].state);
+      for (size_t i = 0; i < rays.size(); ++i) out[i] = render::Finished(in_flight[i].state);
     }
     if (Conceals(look)) ShowConcealed(out);
   }

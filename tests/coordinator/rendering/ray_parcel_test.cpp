@@ -12,27 +12,27 @@ namespace skyquilt::coordinator {
 namespace {
 
 using render::Ray;
-using scene::Traveller;
+using scene::RayInFlight;
 
 RayParcel Parcel(int n, bool one_camera, bool fresh, uint64_t seed) {
   base::Random random(seed);
-  RayParcel parcel{.id = seed, .options = {.step_scale = 2.0, .concealing = render::Concealing::kGain}, .rays = {}, .travellers = {}};
+  RayParcel parcel{.id = seed, .options = {.step_scale = 2.0, .concealing = render::Concealing::kGain}, .rays = {}, .in_flight = {}};
   for (int i = 0; i < n; ++i) {
     Ray ray;
     ray.origin_enu = one_camera ? Eigen::Vector3d(1.0, 2.0, 3.0) : Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal());
     ray.direction_enu = {random.Normal(), random.Normal(), random.Normal()};
     ray.pixel_radius = 0.001F;
     parcel.rays.push_back(ray);
-    Traveller traveller;
+    RayInFlight ray_in_flight;
     if (!fresh) {
-      traveller.at = random.Uniform(0.1, 9.0);
-      traveller.state.transmittance = 0.5;
-      traveller.state.rgb_srgb[1] = 0.25F;
-      traveller.state.depth_front = 4.0F;
-      traveller.state.light_passed = 0.75F;
-      traveller.owner = i % 3;
+      ray_in_flight.at = random.Uniform(0.1, 9.0);
+      ray_in_flight.state.transmittance = 0.5;
+      ray_in_flight.state.rgb_srgb[1] = 0.25F;
+      ray_in_flight.state.depth_front = 4.0F;
+      ray_in_flight.state.light_passed = 0.75F;
+      ray_in_flight.owner = i % 3;
     }
-    parcel.travellers.push_back(traveller);
+    parcel.in_flight.push_back(ray_in_flight);
   }
   return parcel;
 }
@@ -52,29 +52,29 @@ RC_GTEST_PROP(RayParcelProperty, TravelsUnchanged, ()) {
     RC_ASSERT(got.rays[i].t_near == sent.rays[i].t_near);
     RC_ASSERT(got.rays[i].t_far == sent.rays[i].t_far);
     RC_ASSERT(got.rays[i].pixel_radius == sent.rays[i].pixel_radius);
-    RC_ASSERT(got.travellers[i].at == sent.travellers[i].at);
-    RC_ASSERT(got.travellers[i].state.transmittance == sent.travellers[i].state.transmittance);
-    RC_ASSERT(got.travellers[i].state.rgb_srgb[1] == sent.travellers[i].state.rgb_srgb[1]);
-    RC_ASSERT(got.travellers[i].state.light_passed == sent.travellers[i].state.light_passed);
-    RC_ASSERT(std::isnan(sent.travellers[i].state.depth_front) || got.travellers[i].state.depth_front == sent.travellers[i].state.depth_front);
+    RC_ASSERT(got.in_flight[i].at == sent.in_flight[i].at);
+    RC_ASSERT(got.in_flight[i].state.transmittance == sent.in_flight[i].state.transmittance);
+    RC_ASSERT(got.in_flight[i].state.rgb_srgb[1] == sent.in_flight[i].state.rgb_srgb[1]);
+    RC_ASSERT(got.in_flight[i].state.light_passed == sent.in_flight[i].state.light_passed);
+    RC_ASSERT(std::isnan(sent.in_flight[i].state.depth_front) || got.in_flight[i].state.depth_front == sent.in_flight[i].state.depth_front);
   }
 }
 
 RC_GTEST_PROP(RayParcelProperty, ComesBackUnchanged, ()) {
-  CarriedParcel sent{.id = 7, .samples = 123, .field_loads = 4, .travellers = {}, .colors = {}, .failure = {Failure::kInput, "why", "scene.h5"}};
+  CarriedParcel sent{.id = 7, .samples = 123, .field_loads = 4, .in_flight = {}, .colors = {}, .failure = {Failure::kInput, "why", "scene.h5"}};
   const int n = *rc::gen::inRange(0, 20);
   for (int i = 0; i < n; ++i) {
-    Traveller traveller;
-    traveller.owner = *rc::gen::inRange(-1, 3);
-    traveller.at = i;
-    sent.travellers.push_back(traveller);
-    if (traveller.owner == scene::kArrived) sent.colors.push_back({.opacity = 0.01F * static_cast<float>(i)});
+    RayInFlight ray_in_flight;
+    ray_in_flight.owner = *rc::gen::inRange(-1, 3);
+    ray_in_flight.at = i;
+    sent.in_flight.push_back(ray_in_flight);
+    if (ray_in_flight.owner == scene::kArrived) sent.colors.push_back({.opacity = 0.01F * static_cast<float>(i)});
   }
   const CarriedParcel got = CarriedParcelFromBytes(ToBytes(sent));
   RC_ASSERT(got.id == 7U && got.samples == 123 && got.field_loads == 4 && got.failure.kind == Failure::kInput && got.failure.reason == "why" &&
             got.failure.file == "scene.h5");
-  RC_ASSERT(got.travellers.size() == sent.travellers.size() && got.colors.size() == sent.colors.size());
-  for (size_t i = 0; i < sent.travellers.size(); ++i) RC_ASSERT(got.travellers[i].owner == sent.travellers[i].owner);
+  RC_ASSERT(got.in_flight.size() == sent.in_flight.size() && got.colors.size() == sent.colors.size());
+  for (size_t i = 0; i < sent.in_flight.size(); ++i) RC_ASSERT(got.in_flight[i].owner == sent.in_flight[i].owner);
   for (size_t i = 0; i < sent.colors.size(); ++i) RC_ASSERT(got.colors[i].opacity == sent.colors[i].opacity);
 }
 

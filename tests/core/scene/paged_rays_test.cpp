@@ -99,11 +99,11 @@ TEST_P(PagedRaysTest, LittleMemoryGivesTheSameBits) {
   FieldStore small = Small(enough);
   ASSERT_FALSE(small.AllFit());
   const render::RaySegments segments(small.Blocks());
-  std::vector<Traveller> travellers(rays.size());
-  PagedRays(small, segments, threads_).Continue(rays, travellers, {}, 0, {});
+  std::vector<RayInFlight> in_flight(rays.size());
+  PagedRays(small, segments, threads_).Continue(rays, in_flight, {}, 0, {});
   for (size_t i = 0; i < rays.size(); ++i) {
-    EXPECT_EQ(travellers[i].owner, kArrived);
-    EXPECT_TRUE(SameBits(render::Finished(travellers[i].state), whole[i])) << i;
+    EXPECT_EQ(in_flight[i].owner, kArrived);
+    EXPECT_TRUE(SameBits(render::Finished(in_flight[i].state), whole[i])) << i;
   }
   EXPECT_LE(small.most_bytes(), enough);
   EXPECT_GT(small.loads(), kRows * kColumns + 1) << "blocks come back when they are needed again";
@@ -120,31 +120,31 @@ TEST_P(PagedRaysTest, ManyOwnersGiveTheSameBits) {
     segments.push_back(std::make_unique<render::RaySegments>(stores.back()->Blocks()));
   }
   const auto owner_for = [](int me) { return [me](std::span<const int> blocks) { return blocks.empty() ? me : blocks.front() % kOwners; }; };
-  std::vector<Traveller> travellers(rays.size());
+  std::vector<RayInFlight> in_flight(rays.size());
   int rounds = 0;
   for (bool going = true; going; ++rounds) {
     ASSERT_LT(rounds, 40) << "a ray goes round in circles";
     for (int me = 0; me < kOwners; ++me) {
       // Owners take on only what was handed to them.
       std::vector<render::Ray> own;
-      std::vector<Traveller> mine;
+      std::vector<RayInFlight> mine;
       std::vector<size_t> place;
       for (size_t i = 0; i < rays.size(); ++i) {
-        if (travellers[i].owner != me) continue;
+        if (in_flight[i].owner != me) continue;
         own.push_back(rays[i]);
-        mine.push_back(travellers[i]);
+        mine.push_back(in_flight[i]);
         place.push_back(i);
       }
       PagedRays(*stores[static_cast<size_t>(me)], *segments[static_cast<size_t>(me)], threads_).Continue(own, mine, {}, me, owner_for(me));
       for (size_t k = 0; k < place.size(); ++k) {
         EXPECT_NE(mine[k].owner, me);
-        travellers[place[k]] = mine[k];
+        in_flight[place[k]] = mine[k];
       }
     }
-    going = std::any_of(travellers.begin(), travellers.end(), [](const Traveller& t) { return t.owner != kArrived; });
+    going = std::any_of(in_flight.begin(), in_flight.end(), [](const RayInFlight& t) { return t.owner != kArrived; });
   }
   EXPECT_GT(rounds, 1) << "no ray was ever handed over";
-  for (size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(SameBits(render::Finished(travellers[i].state), whole[i])) << i;
+  for (size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(SameBits(render::Finished(in_flight[i].state), whole[i])) << i;
   for (const auto& store : stores) {
     int loaded = 0;
     for (int k = 0; k < store->size(); ++k) loaded += store->IsLoaded(k) ? 1 : 0;
@@ -156,8 +156,8 @@ TEST_P(PagedRaysTest, TooLittleMemorySaysHowMuchIsNeeded) {
   FieldStore tiny = Small(0.5 * store_->Bytes(0));
   const render::RaySegments segments(tiny.Blocks());
   const std::vector<render::Ray> rays = SlantedRays(50, 6);
-  std::vector<Traveller> travellers(rays.size());
-  const std::string error = UsageErrorOf([&] { PagedRays(tiny, segments, threads_).Continue(rays, travellers, {}, 0, {}); });
+  std::vector<RayInFlight> in_flight(rays.size());
+  const std::string error = UsageErrorOf([&] { PagedRays(tiny, segments, threads_).Continue(rays, in_flight, {}, 0, {}); });
   EXPECT_NE(error.find("--memory"), std::string::npos) << error;
 }
 

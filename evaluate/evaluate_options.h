@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/config/options.h"
 
@@ -18,7 +19,7 @@ struct EvaluateOptions {
   int report_photos = 40;        // photos with pictures in the report, evenly spread
   int report_image_width = 960;  // pixels
 
-  void Visit(config::OptionVisitor& v);
+  static std::vector<config::Field<EvaluateOptions>> Fields();
   // Throws base::UsageError for options out of range.
   void Check() const;
 };

@@ -40,7 +40,7 @@ std::string Headline(const ReportInput& input) {
   if (metrics.has_truth) {
     html += page::KeyFigure("Median depth error", page::FormatFixed(metrics.depth_median_abs_m, 2, "m"),
                             "RMSE " + page::FormatFixed(metrics.depth_rmse_m, 2, "m"));
-    html += page::KeyFigure("Dirt in the air", page::FormatPercent(metrics.air_opacity, 2),
+    html += page::KeyFigure("Floater opacity", page::FormatPercent(metrics.floater_opacity, 2),
                             "of light from the true surface swallowed more than 1 m in front of it");
   }
   html += page::KeyFigure("Seam gap", page::FormatFixed(metrics.seam_psnr_gap_db, 2, "dB"),
@@ -150,9 +150,9 @@ std::string StageBars(const ReportInput& input) {
   std::vector<std::pair<std::string, double>> stages;
   double total = 0.0;
   for (const scene::FieldTraining& field : input.training->fields) {
-    for (const auto& [stage, seconds] : field.stage_seconds) {
-      auto known = std::find_if(stages.begin(), stages.end(), [&, &name = stage](const auto& s) { return s.first == name; });
-      if (known == stages.end()) known = stages.insert(stages.end(), {stage, 0.0});
+    for (const auto& [phase, seconds] : field.phase_seconds) {
+      auto known = std::find_if(stages.begin(), stages.end(), [&, &name = phase](const auto& s) { return s.first == name; });
+      if (known == stages.end()) known = stages.insert(stages.end(), {phase, 0.0});
       known->second += seconds;
       total += seconds;
     }
@@ -160,8 +160,8 @@ std::string StageBars(const ReportInput& input) {
   if (total <= 0.0) return "";
   std::stable_sort(stages.begin(), stages.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string html = "<div class=\"card bars\"><h3>Where training time goes</h3><div class=\"rows\">";
-  for (const auto& [stage, seconds] : stages) {
-    html += BarRow("<em>" + page::EscapeHtml(stage) + "</em>", 100.0 * seconds / stages.front().second,
+  for (const auto& [phase, seconds] : stages) {
+    html += BarRow("<em>" + page::EscapeHtml(phase) + "</em>", 100.0 * seconds / stages.front().second,
                    page::FormatFixed(100.0 * seconds / total, 1, "%"));
   }
   return html + fmt::format("</div><p class=\"note\">{} of work on all threads, {} samples per ray.</p></div>", base::FormatDuration(total),

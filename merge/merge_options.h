@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/checkpoint/archive.h"
 #include "core/config/options.h"
@@ -13,7 +14,7 @@ struct MergeOptions {
   std::string borders = "smooth";
   std::string storage = "fp32";
 
-  void Visit(config::OptionVisitor& v);
+  static std::vector<config::Field<MergeOptions>> Fields();
   // Throws base::UsageError naming the option and what it may be.
   void Check() const;
   checkpoint::Precision Storage() const;

@@ -26,7 +26,7 @@ struct PartitionOptions {
   double max_voxels_per_entry = 4.0;
   double parameter_budget = 0.0;  // hash entries (of the finest level) over the whole survey that "auto" may use; 0: no limit
 
-  void Visit(config::OptionVisitor& v);
+  static std::vector<config::Field<PartitionOptions>> Fields();
   // Throws base::UsageError naming the option, its value and the rule it breaks.
   void Check() const;
 };

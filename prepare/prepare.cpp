@@ -166,7 +166,7 @@ void FillPhotos(const survey::ColmapModel& model, const std::vector<Registered>&
 }  // namespace
 
 survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads) {
-  options.Validate();
+  options.Check();
   const Holdout holdout = ParseHoldout(options.holdout);
   InputFolder folders = FindInputs(input.photos, input.model, options.masks);
   base::RequireWritableFolder(input.out_folder);

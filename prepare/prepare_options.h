@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/config/options.h"
 
@@ -20,9 +21,9 @@ struct PrepareOptions {
   std::string flight_offsets = "auto";
   int seed = 1;
 
-  void Visit(config::OptionVisitor& v);
+  static std::vector<config::Field<PrepareOptions>> Fields();
   // Throws base::UsageError naming the option, its value and what is allowed.
-  void Validate() const;
+  void Check() const;
 };
 
 }  // namespace skyquilt::prepare

@@ -1,52 +1,27 @@
 #include "products/product_options.h"
 
-#include <cmath>
-
-#include "core/base/errors.h"
-
 namespace skyquilt::products {
-namespace {
-
-void RequireRange(const std::string& key, double value, double low, double high) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  throw base::UsageError("products." + key + " = " + std::to_string(value) + ": must lie in [" + std::to_string(low) + ", " + std::to_string(high) +
-                         "]");
-}
-
-void RequireEven(const std::string& key, int value) {
-  RequireRange(key, value, 16, 16384);
-  if (value % 2 != 0) throw base::UsageError("products." + key + " = " + std::to_string(value) + ": must be even");
-}
-
-}  // namespace
-
-void ProductOptions::Visit(config::OptionVisitor& v) {
-  v.Field("ortho", ortho, "make the orthophoto");
-  v.Field("dsm", dsm, "make the digital surface model");
-  v.Field("resolution_m", resolution_m, "metres per cell of both; 0: the ground sampling distance, rounded");
-  v.Field("max_pixels", max_pixels, "largest map in cells; maps of automatic resolution are coarsened to fit");
-  v.Field("min_opacity", min_opacity, "cells whose ray stays more transparent than this have no data, 0.01..0.99");
-  v.Field("preview_width", preview_width, "pixels of the PNG previews, 16..16384");
-  v.Field("exposure", exposure, "normal (one brightness everywhere), stops above it, -10..10, or the name of a photo to look like");
-  v.Field("video_path", video_path, "orbit or flyover");
-  v.Field("video_seconds", video_seconds, "length of the video; 0: none");
-  v.Field("video_fps", video_fps, "frames per second, 1..120");
-  v.Field("video_width", video_width, "pixels, even");
-  v.Field("video_height", video_height, "pixels, even");
+std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
+  using config::Range;
+  using O = ProductOptions;
+  return {
+      {"ortho", &O::ortho, Range(), "make the orthophoto"},
+      {"dsm", &O::dsm, Range(), "make the digital surface model"},
+      {"resolution_m", &O::resolution_m, Range{0, 1e5}, "metres per cell of both; 0: the ground sampling distance, rounded"},
+      {"max_pixels", &O::max_pixels, Range{1, 1e11}, "largest map in cells; maps of automatic resolution are coarsened to fit"},
+      {"min_opacity", &O::min_opacity, Range{0.01, 0.99}, "cells whose ray stays more transparent than this have no data"},
+      {"preview_width", &O::preview_width, Range{16, 16384}, "pixels of the PNG previews"},
+      {"exposure", &O::exposure, Range(), "normal (one brightness everywhere), stops above it, -10..10, or the name of a photo to look like"},
+      {"video_path", &O::video_path, Range::OneOf({"orbit", "flyover"}), "how the camera of the video flies"},
+      {"video_seconds", &O::video_seconds, Range{0, 3600}, "length of the video; 0: none"},
+      {"video_fps", &O::video_fps, Range{1, 120}, "frames per second"},
+      {"video_width", &O::video_width, Range{16, 16384}.MultipleOf(2), "pixels; even, as H.264 asks"},
+      {"video_height", &O::video_height, Range{16, 16384}.MultipleOf(2), "pixels; even, as H.264 asks"},
+  };
 }
 
 void ProductOptions::Check() const {
-  RequireRange("resolution_m", resolution_m, 0.0, 1e5);
-  RequireRange("max_pixels", max_pixels, 1.0, 1e11);
-  RequireRange("min_opacity", min_opacity, 0.01, 0.99);
-  RequireRange("preview_width", preview_width, 16, 16384);
-  RequireRange("video_seconds", video_seconds, 0.0, 3600.0);
-  RequireRange("video_fps", video_fps, 1, 120);
-  RequireEven("video_width", video_width);
-  RequireEven("video_height", video_height);
-  if (video_path != "orbit" && video_path != "flyover") {
-    throw base::UsageError("products.video_path = " + video_path + ": must be orbit or flyover");
-  }
+  config::CheckRanges("products", *this);
 }
 
 }  // namespace skyquilt::products

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/config/options.h"
 
@@ -21,7 +22,7 @@ struct ProductOptions {
   int video_width = 480;  // pixels; even, as H.264 asks
   int video_height = 270;
 
-  void Visit(config::OptionVisitor& v);
+  static std::vector<config::Field<ProductOptions>> Fields();
   // Throws base::UsageError naming the option, its value and the rule it breaks.
   void Check() const;
 };

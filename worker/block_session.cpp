@@ -18,7 +18,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   target.seconds = record.seconds;
   target.samples = record.samples;
 
-  checkpoint::ArchiveWriter writer(kind, kCheckpointVersion);
+  checkpoint::ArchiveWriter writer(kind, scene::kCheckpointVersion);
   scene::PutField(target, "", writer);
   writer.Put("grid_moment1", state.grid_moment1);
   writer.Put("grid_moment2", state.grid_moment2);
@@ -41,7 +41,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
     brightness::PutLuminance(job.luminance, trainer.luminance_state(), writer);
   }
   if (findings != nullptr) {
-    scene::PutBackdrop(findings->backdrop, writer);
+    scene::PutBackground(findings->background, writer);
     for (const SurfaceBand& band : findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
     writer.Put("surface_bands", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
   }
@@ -57,6 +57,7 @@ std::optional<SavedSession> OpenSession(const std::string& kind, const TrainJob&
     return std::nullopt;
   }
   checkpoint::ArchiveReader reader(usable);
+  reader.RequireVersion(scene::kCheckpointVersion);
   if (reader.StringAttribute("config_hash") != job.config_hash) {
     throw base::UsageError(usable.string() +
                            ": was trained with another configuration. Use the configuration it was trained with, or --restart to train anew");
@@ -137,6 +138,7 @@ LoadedContext LoadContext(const std::filesystem::path& checkpoint) {
   const std::filesystem::path usable = checkpoint::NewestUsable(checkpoint, "context", &why);
   if (usable.empty()) throw base::InputError(checkpoint, "the context cannot be read (" + why + ")", "Train it again with --restart");
   const checkpoint::ArchiveReader reader(usable);
+  reader.RequireVersion(scene::kCheckpointVersion);
   LoadedContext context{scene::GetField(reader, usable, ""), brightness::GetResponse(reader, usable), {}, {}, {}};
   brightness::GetLuminance(reader, &context.luminance, &context.luminance_state);
   if (reader.Has("surface_bands")) {

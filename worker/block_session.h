@@ -15,8 +15,6 @@
 
 namespace skyquilt::worker {
 
-constexpr int kCheckpointVersion = 1;
-
 struct SessionRecord {
   double seconds = 0.0;
   int64_t samples = 0;

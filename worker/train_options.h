@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/config/options.h"
 
@@ -30,7 +31,7 @@ struct TrainOptions {
   std::string coupling = "guided";
   std::string start = "surfaces";
 
-  void Visit(config::OptionVisitor& v);
+  static std::vector<config::Field<TrainOptions>> Fields();
   // Throws base::UsageError naming the option and the rule it broke; `section` is its name in the configuration.
   void Check(const std::string& section) const;
 };

@@ -14,7 +14,7 @@ namespace skyquilt::app {
 namespace {
 
 struct StudyFlags {
-  std::string out, survey, preset, model, budget, blocks;
+  std::string out, survey, place, model, budget, blocks;
   std::vector<int> log2_table_sizes;     // empty: the study's own
   std::vector<double> voxels_per_entry;  // empty: the study's own
   bool quick = false, restart = false, keep = false, json = false;
@@ -28,7 +28,7 @@ const std::vector<config::Override> kQuick = {{"run.image_width", "320"}, {"eval
 
 struct StudyCommand {
   std::string name, help;
-  std::string preset;  // simulated when no survey is given
+  std::string place;   // simulated when no survey is given
   std::string budget;  // the default, for people
   std::string footer;
   std::function<void(CLI::App*, StudyFlags*)> options = {};  // of this command alone
@@ -40,15 +40,15 @@ double BudgetOf(const StudyFlags& flags, double otherwise_s, double quick_s) {
   return flags.quick ? quick_s : otherwise_s;
 }
 
-bench::Study Begin(const CommandState& state, const StudyFlags& flags, const std::string& preset) {
+bench::Study Begin(const CommandState& state, const StudyFlags& flags, const std::string& place) {
   std::vector<config::Override> own = kLean;
   if (flags.quick) own.insert(own.end(), kQuick.begin(), kQuick.end());
   // --config and --set come last: what the user says counts.
   coordinator::Settings settings;
   for (const config::Override& entry : own) settings.Set(entry);
   settings = state.LoadOver(settings);
-  bench::StudySurvey survey{.folder = flags.survey, .preset = flags.preset, .model = flags.model};
-  if (survey.folder.empty() && survey.preset.empty()) survey.preset = flags.quick ? "hamlet" : preset;
+  bench::StudySurvey survey{.folder = flags.survey, .place = flags.place, .model = flags.model};
+  if (survey.folder.empty() && survey.place.empty()) survey.place = flags.quick ? "hamlet" : place;
   if (!survey.folder.empty() && !std::filesystem::is_directory(survey.folder)) {
     throw base::InputError(survey.folder, "no such folder", "Give the folder that holds the photos, or a project");
   }
@@ -61,7 +61,7 @@ bench::Study Begin(const CommandState& state, const StudyFlags& flags, const std
                                     .verbose = state.verbose});
 }
 
-void Finish(bench::StudyBench bench, const bench::Study& study, const CommandState& state, const StudyFlags& flags) {
+void WriteResults(bench::StudyBench bench, const bench::Study& study, const CommandState& state, const StudyFlags& flags) {
   bench::BenchPage& page = bench.page;
   page.machine = base::MachineDescription();
   page.date = base::UtcTimestamp();
@@ -79,7 +79,8 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   CLI::App* command = bench.add_subcommand(name, study_command.help);
   command->add_option("-o,--output", flags->out, "folder for " + name + ".json, .csv, .html and the runs")->required()->type_name("DIR");
   command->add_option("--survey", flags->survey, "folder with photos, a simulated survey, or a project that was prepared")->type_name("FOLDER");
-  command->add_option("--preset", flags->preset, "simulate a place instead; default: " + study_command.preset)->type_name("NAME");
+  AddPlaceFlag(
+      *command, "--place", [flags](const std::string& place) { flags->place = place; }, "simulate a place instead; default: " + study_command.place);
   command->add_option("--model", flags->model, "COLMAP model of the photos; without it COLMAP is run")->type_name("FOLDER");
   command->add_option("--time-budget", flags->budget, "training time of every variant, as 90s or 10min; default: " + study_command.budget)
       ->type_name("TIME");
@@ -91,8 +92,8 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   command->footer(study_command.footer);
   command->callback([&state, flags, study_command] {
     state.chosen = [&state, flags, study_command] {
-      bench::Study study = Begin(state, *flags, study_command.preset);
-      Finish(study_command.run(study, *flags), study, state, *flags);
+      bench::Study study = Begin(state, *flags, study_command.place);
+      WriteResults(study_command.run(study, *flags), study, state, *flags);
     };
   });
 }
@@ -153,7 +154,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
   AddStudyCommand(bench, state,
                   {.name = "single-vs-multi",
                    .help = "one model of the whole area against one per block",
-                   .preset = "smallcity",
+                   .place = "smallcity",
                    .budget = "5min",
                    .footer = "Examples:\n"
                              "  skyquilt bench single-vs-multi -o out/bench\n"
@@ -168,7 +169,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
   AddStudyCommand(bench, state,
                   {.name = "blocks",
                    .help = "number of blocks against the size of each",
-                   .preset = "town",
+                   .place = "town",
                    .budget = "3min",
                    .footer = "Examples:\n"
                              "  skyquilt bench blocks -o out/bench\n"
@@ -177,7 +178,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
   AddStudyCommand(bench, state,
                   {.name = "capacity",
                    .help = "tables as large as a block's content asks for, against the same for all",
-                   .preset = "smallcity",
+                   .place = "smallcity",
                    .budget = "5min",
                    .footer = "Examples:\n"
                              "  skyquilt bench capacity -o out/bench\n"
@@ -203,7 +204,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
   AddStudyCommand(bench, state,
                   {.name = "encodings",
                    .help = "hash grid, voxels, planes and frequencies in the same field",
-                   .preset = "town",
+                   .place = "town",
                    .budget = "3min",
                    .footer = "Examples:\n"
                              "  skyquilt bench encodings -o out/bench\n"
@@ -212,7 +213,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
   AddStudyCommand(bench, state,
                   {.name = "tradeoff",
                    .help = "what time, tables, samples, photos and precision buy",
-                   .preset = "town",
+                   .place = "town",
                    .budget = "1min",
                    .footer = "Examples:\n"
                              "  skyquilt bench tradeoff -o out/bench\n"

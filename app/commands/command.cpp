@@ -55,12 +55,12 @@ coordinator::Settings CommandState::Load(const std::vector<std::filesystem::path
 
 coordinator::Settings CommandState::LoadOver(coordinator::Settings settings) const {
   const NamedConfig named = FindConfig(config);
-  config::Sections sections = settings.AllSections();
+  const config::Sections sections = settings.AllSections();
   for (const std::filesystem::path& file : named.files) config::ReadToml(file, sections);
   for (const config::Override& entry : named.overrides) settings.Set(entry);
   for (const std::string& text : set) settings.Set(config::ParseOverride(text));
   if (!threads.empty()) settings.Set({"run.threads", threads});
-  settings.Validate();
+  settings.Check();
   return settings;
 }
 
@@ -75,13 +75,40 @@ coordinator::Pipeline CommandState::BeginIn(const std::string& folder, const std
   return Begin(project, Load(ProjectConfig(project), flags), restart);
 }
 
+namespace {
+
+// What an option may be, as help and configuration files show it.
+std::string AllowedText(const std::string& key) {
+  coordinator::Settings settings;
+  const config::Sections sections = settings.AllSections();
+  const config::Option* option = sections.Find(key);
+  SKYQUILT_CHECK(option != nullptr, "a flag for the option '" + key + "' that is not there");
+  const std::string range = option->range.Text();
+  return range.empty() ? "" : " (" + range + ")";
+}
+
+}  // namespace
+
 void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help) {
   command.add_option_function<std::string>(
       flag,
       [overrides, key](const std::string& value) {
         overrides->push_back({key, value});
       },
-      help + " [" + key + "]");
+      help + AllowedText(key) + " [" + key + "]");
+}
+
+void AddPlaceFlag(CLI::App& command, const std::string& names, const std::function<void(const std::string&)>& take, const std::string& help) {
+  command.add_option_function<std::string>(names, take, help)->type_name("NAME");
+  command
+      .add_option_function<std::string>(
+          "--preset",
+          [take](const std::string& name) {
+            spdlog::warn("--preset is now called --place; presets are what --config takes: {}", base::Join(PresetNames()));
+            take(name);
+          },
+          "earlier name of --place")
+      ->group("");  // not in the help
 }
 
 namespace {

@@ -42,6 +42,8 @@ using Overrides = std::shared_ptr<std::vector<config::Override>>;
 
 // A flag with a value that sets one option, "section.key".
 void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help);
+// The flag of commands that simulate: `take` gets the name of the place. Its name in earlier versions, --preset, is still taken, with a warning.
+void AddPlaceFlag(CLI::App& command, const std::string& names, const std::function<void(const std::string&)>& take, const std::string& help);
 // --memory.
 void AddMemoryFlag(CLI::App& command, const Overrides& overrides);
 // --time-budget, --steps, --checkpoint-every, --memory, --seed, --brightness.

@@ -12,15 +12,15 @@ namespace {
 
 struct RunFlags {
   std::string photos;
-  std::string preset;
+  std::string place;
   std::string model;
   std::string out;
   bool restart = false;
 };
 
 void Run(const CommandState& state, const RunFlags& flags, const std::vector<config::Override>& overrides) {
-  if (flags.photos.empty() == flags.preset.empty()) {
-    throw base::UsageError("skyquilt run needs either a folder with photos or --preset NAME, and not both");
+  if (flags.photos.empty() == flags.place.empty()) {
+    throw base::UsageError("skyquilt run needs either a folder with photos or --place NAME, and not both");
   }
   coordinator::Settings settings = state.Load({}, overrides);
   // A folder that cannot be read is found before the output folder is made.
@@ -30,7 +30,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags.out), std::move(settings), flags.restart);
   coordinator::RequireSameConfiguration(pipeline, "prepare");
   std::filesystem::path photos = flags.photos;
-  if (!flags.preset.empty()) {
+  if (!flags.place.empty()) {
     photos = pipeline.project.SimulatedFolder();
     coordinator::SimulateStage(pipeline, photos);
   }
@@ -48,17 +48,16 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
 void AddRun(CLI::App& app, CommandState& state) {
   const auto flags = std::make_shared<RunFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  const std::string presets = base::Join(simulate::PresetNames());
   CLI::App* command = app.add_subcommand("run", "the whole way: photos in, scene, map products and report out");
   command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->type_name("FOLDER");
   command->add_option("-o,--out", flags->out, "project folder; made if needed")->required()->type_name("FOLDER");
-  command->add_option_function<std::string>(
-      "--preset",
+  AddPlaceFlag(
+      *command, "--place",
       [flags, overrides](const std::string& name) {
-        flags->preset = name;
-        overrides->push_back({"simulate.preset", name});
+        flags->place = name;
+        overrides->push_back({"simulate.place", name});
       },
-      "simulate a place instead: " + presets);
+      "simulate a place instead: " + base::Join(simulate::PlaceNames()));
   command->add_option("--model", flags->model, "COLMAP model of the photos (text or binary); without it COLMAP is run")->type_name("FOLDER");
   AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns as 2x2, size:<metres>, or auto");
   AddOverride(*command, overrides, "--altitudes", "partition.altitudes",
@@ -71,7 +70,7 @@ void AddRun(CLI::App& app, CommandState& state) {
       "Examples:\n"
       "  skyquilt run photos/ -o out --blocks 2x2 --time-budget 10min --image-width 1000\n"
       "  skyquilt run photos/ --model sparse/0 -o out --blocks 3x3 --time-budget 15min\n"
-      "  skyquilt run --preset town -o out/town --steps 3000\n"
+      "  skyquilt run --place town -o out/town --steps 3000\n"
       "  mpirun -n 3 skyquilt run photos/ -o out --time-budget 1h30m\n"
       "The same command again continues where it stopped and does nothing twice.\n"
       "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 a block failed (the rest is saved), 130 interrupted (resumable).");

@@ -4,10 +4,10 @@ namespace skyquilt::app {
 
 coordinator::Settings LoadSettings(const std::vector<std::filesystem::path>& files, const std::vector<config::Override>& overrides) {
   coordinator::Settings settings;
-  config::Sections sections = settings.AllSections();
+  const config::Sections sections = settings.AllSections();
   for (const std::filesystem::path& file : files) config::ReadToml(file, sections);
   for (const config::Override& entry : overrides) config::ApplyOverride(entry, sections);
-  settings.Validate();
+  settings.Check();
   return settings;
 }
 

@@ -10,7 +10,7 @@
 
 namespace skyquilt::app {
 
-// `files` in order; ones that are not there are base::InputError. The result is validated.
+// `files` in order; ones that are not there are base::InputError. The result is checked.
 coordinator::Settings LoadSettings(const std::vector<std::filesystem::path>& files, const std::vector<config::Override>& overrides);
 
 }  // namespace skyquilt::app

@@ -79,7 +79,7 @@ coordinator::Settings EarthSettings(const geo::Geodetic& origin, const EarthFram
   settings.simulate.latitude_deg = origin.latitude_deg;
   settings.simulate.longitude_deg = origin.longitude_deg;
   settings.simulate.height_m = origin.height_m;
-  settings.Validate();
+  settings.Check();
   return settings;
 }
 

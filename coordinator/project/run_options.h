@@ -1,6 +1,8 @@
 // Options that concern the whole way from photos to report, [run] in the configuration.
 #pragma once
 
+#include <vector>
+
 #include "core/config/options.h"
 
 namespace skyquilt::coordinator {
@@ -17,9 +19,9 @@ struct RunOptions {
   int UsableThreads() const;
   double MemoryLimitBytes() const;
 
-  void Visit(config::OptionVisitor& v);
+  static std::vector<config::Field<RunOptions>> Fields();
   // Throws base::UsageError naming the option, its value and what is allowed.
-  void Validate() const;
+  void Check() const;
 };
 
 }  // namespace skyquilt::coordinator

@@ -16,34 +16,28 @@ config::Sections Settings::AllSections() {
   sections.Add("merge", merge, "how blocks are joined to one scene");
   sections.Add("products", products, "orthophoto, surface model, pictures, video");
   sections.Add("evaluate", evaluate, "scores and report");
+  sections.Rename("simulate.preset", "simulate.place");
   sections.Retire("run.context_ranks", "rank 0 trains the context alone");
   return sections;
 }
 
-std::string Settings::Toml() {
-  config::Sections sections = AllSections();
-  return config::WriteToml(sections);
+std::string Settings::Toml() const {
+  Settings copy = *this;
+  return config::WriteToml(copy.AllSections());
 }
 
-FlatOptions Settings::Flat() {
-  config::Sections sections = AllSections();
-  return config::Flatten(sections);
+FlatOptions Settings::Flat() const {
+  Settings copy = *this;
+  return config::Flatten(copy.AllSections());
 }
 
 void Settings::Set(const config::Override& entry) {
-  config::Sections sections = AllSections();
-  config::ApplyOverride(entry, sections);
+  config::ApplyOverride(entry, AllSections());
 }
 
-void Settings::Validate() const {
-  run.Validate();
-  prepare.Validate();
-  partition.Check();
-  context.Check("context");
-  train.Check("train");
-  merge.Check();
-  products.Check();
-  brightness.Check();
+void Settings::Check() const {
+  Settings copy = *this;
+  copy.AllSections().Check();
   if (run.time_budget_s > 0.0 && train.steps > 0) {
     throw base::UsageError("both a time budget (run.time_budget_s = " + std::to_string(run.time_budget_s) +
                            ") and a number of steps (train.steps = " + std::to_string(train.steps) + ") are given: choose one, the other must be 0");

@@ -33,12 +33,12 @@ struct Settings {
 
   // Holds references to this object.
   config::Sections AllSections();
-  std::string Toml();
-  FlatOptions Flat();
+  std::string Toml() const;
+  FlatOptions Flat() const;
   // Throws base::UsageError as config::ApplyOverride does.
   void Set(const config::Override& entry);
   // Throws base::UsageError for values that cannot be, alone or together.
-  void Validate() const;
+  void Check() const;
 };
 
 }  // namespace skyquilt::coordinator

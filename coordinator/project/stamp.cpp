@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "coordinator/project/settings.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/memory_map.h"
@@ -29,7 +30,9 @@ std::optional<StageStamp> LoadStamp(const Project& project, const std::string& s
     StageStamp stamp;
     stamp.stage = json.at("stage").get<std::string>();
     stamp.state = json.at("state").get<std::string>();
-    stamp.options = json.at("options").get<FlatOptions>();
+    Settings settings;
+    const config::Sections sections = settings.AllSections();
+    for (const auto& [key, value] : json.at("options").get<FlatOptions>()) stamp.options[sections.CurrentName(key, "")] = value;
     stamp.inputs = json.at("inputs").get<FlatOptions>();
     stamp.finished_utc = json.value("finished_utc", "");
     stamp.seconds = json.value("seconds", 0.0);

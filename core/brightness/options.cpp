@@ -20,36 +20,35 @@ std::vector<std::string> Rungs(const std::string& list) {
   return rungs;
 }
 
-void RequireOneOf(const std::string& key, const std::string& given, const std::vector<std::string>& choices) {
-  if (std::find(choices.begin(), choices.end(), given) != choices.end()) return;
-  throw base::UsageError("brightness." + key + " = '" + given + "' cannot be: choose one of " + base::Join(choices));
-}
-
 }  // namespace
 
-void BrightnessOptions::Visit(config::OptionVisitor& v) {
-  v.Field("correction", correction,
-          "none, or any of exif (shutter, aperture and ISO of each photo), gain (what they miss, learned per photo and colour), vignette (darker "
-          "corners, learned per camera), luminance (hidden light of under- or over-exposed surveys), separated by commas");
-  v.Field("luminance_mode", luminance_mode, "under, over, or auto: what the photos' brightness says; normally exposed surveys then do without");
-  v.Field("target_brightness", target_brightness, "mean display value that the luminance field brings a survey to, 0.1..0.9");
-  v.Field("luminance_form", luminance_form, "gain: each sample's own factor; product: factors multiply along the ray (tidal-flat paper, eq. 13)");
-  v.Field("luminance_neighbours", luminance_neighbours,
-          "what the convolution of width 7 runs over: patch (neighbouring pixels) or batch (unrelated pixels, as in published code)");
+std::vector<config::Field<BrightnessOptions>> BrightnessOptions::Fields() {
+  using config::Range;
+  using O = BrightnessOptions;
+  return {
+      {"correction", &O::correction, Range(),
+       "none, or any of exif (shutter, aperture and ISO of each photo), gain (what they miss, learned per photo and colour), vignette (darker "
+       "corners, learned per camera), luminance (concealing field of under- or over-exposed surveys), separated by commas"},
+      {"luminance_mode", &O::luminance_mode, Range::OneOf({"auto", "under", "over"}),
+       "which way the survey is badly exposed; auto: what the photos' brightness says, normally exposed surveys then do without"},
+      {"target_brightness", &O::target_brightness, Range{0.1, 0.9}, "mean display value that the luminance field brings a survey to"},
+      {"luminance_form", &O::luminance_form, Range::OneOf({"gain", "product"}),
+       "gain: each sample's own factor; product: factors multiply along the ray (tidal-flat paper, eq. 13)"},
+      {"luminance_neighbours", &O::luminance_neighbours, Range::OneOf({"patch", "batch"}),
+       "what the convolution of width 7 runs over: patch (neighbouring pixels) or batch (unrelated pixels, as in published code)"},
+  };
 }
 
 void BrightnessOptions::Check() const {
+  config::CheckRanges("brightness", *this);
+  const config::Range known = config::Range::OneOf({"none", "exif", "gain", "vignette", "luminance"});
   const std::vector<std::string> rungs = Rungs(correction);
   if (rungs.empty()) throw base::UsageError("brightness.correction is empty: give none, or any of exif, gain, vignette, luminance");
   for (const std::string& rung : rungs) {
-    if (rung == "none" && rungs.size() > 1) throw base::UsageError("brightness.correction = '" + correction + "' cannot be: none stands alone");
-    RequireOneOf("correction", rung, {"none", "exif", "gain", "vignette", "luminance"});
-  }
-  RequireOneOf("luminance_mode", luminance_mode, {"auto", "under", "over"});
-  RequireOneOf("luminance_form", luminance_form, {"gain", "product"});
-  RequireOneOf("luminance_neighbours", luminance_neighbours, {"patch", "batch"});
-  if (!(target_brightness >= 0.1 && target_brightness <= 0.9)) {
-    throw base::UsageError("brightness.target_brightness = " + std::to_string(target_brightness) + " cannot be: give a number from 0.1 to 0.9");
+    if (rung == "none" && rungs.size() > 1) {
+      throw base::UsageError("brightness.correction = '" + correction + "' is not allowed: none cannot be combined with others");
+    }
+    if (!known.Contains(rung)) throw base::UsageError("brightness.correction = '" + rung + "' is not allowed: choose any of " + known.Text());
   }
 }
 

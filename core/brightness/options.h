@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/config/options.h"
 
@@ -14,7 +15,7 @@ struct BrightnessOptions {
   std::string luminance_form = "gain";
   std::string luminance_neighbours = "patch";
 
-  void Visit(config::OptionVisitor& v);
+  static std::vector<config::Field<BrightnessOptions>> Fields();
   // Throws base::UsageError naming the option and what it may be.
   void Check() const;
 

@@ -57,13 +57,15 @@ class ArchiveWriter {
 
 class ArchiveReader {
  public:
-  // Opens and verifies checksums and digest. Throws base::InputError with the reason: not HDF5, not ours, damaged, version too new.
+  // Opens and verifies checksums and digest. Throws base::InputError with the reason: not HDF5, not ours, damaged.
   explicit ArchiveReader(const std::filesystem::path& file);
   ~ArchiveReader();
   ArchiveReader(ArchiveReader&&) noexcept;
 
   const std::string& kind() const;
   int version() const;
+  // Throws base::InputError when the layout is of another version than the program's, naming both.
+  void RequireVersion(int expected) const;
   std::vector<std::string> Names() const;           // of arrays, sorted
   std::vector<std::string> AttributeNames() const;  // sorted
   bool Has(const std::string& name) const;

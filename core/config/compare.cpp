@@ -2,17 +2,9 @@
 #include <numeric>
 
 #include "core/base/file.h"
-#include "core/base/log.h"
 #include "core/config/options.h"
 
 namespace skyquilt::config {
-
-bool Sections::IsRetired(const std::string& key, const std::string& origin) const {
-  const auto retired = retired_.find(key);
-  if (retired == retired_.end()) return false;
-  spdlog::warn("{}: '{}' has no effect any more: {}", origin, key, retired->second);
-  return true;
-}
 
 namespace {
 

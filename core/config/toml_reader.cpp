@@ -13,7 +13,9 @@
 namespace skyquilt::config {
 namespace {
 
+// Nothing for single options, which have no file.
 std::string LineOf(const toml::node& node) {
+  if (node.source().path == nullptr || node.source().path->empty()) return "";
   const auto line = node.source().begin.line;
   return line > 0 ? " (line " + std::to_string(line) + ")" : "";
 }
@@ -44,103 +46,66 @@ struct Known {
   std::set<std::string> tables;
 };
 
-// Takes the values of one section from the flattened document.
-class ReadVisitor : public OptionVisitor {
- public:
-  ReadVisitor(const std::string& origin, const std::string& prefix, const std::map<std::string, const toml::node*>& leaves)
-      : origin_(origin), prefix_(prefix), leaves_(leaves) {}
+// "my.toml: " in front of a message; nothing for single options, which name themselves.
+std::string From(const std::string& origin) {
+  return origin.empty() ? "" : origin + ": ";
+}
 
-  void Field(const std::string& key, bool& value, const std::string&) override { ReadExact(key, value, "true or false"); }
+// Reads one value of the document into its option.
+struct Assign {
+  const std::string& origin;
+  const std::string& name;  // "section.key"
+  const toml::node& node;
 
-  void Field(const std::string& key, int& value, const std::string&) override {
-    int64_t wide = value;
-    ReadExact(key, wide, "an integer");
+  void operator()(bool* value) const { *value = Exact<bool>("true or false"); }
+  void operator()(int* value) const {
+    const auto wide = Exact<int64_t>("a whole number");
     if (wide < std::numeric_limits<int>::min() || wide > std::numeric_limits<int>::max()) {
-      throw base::UsageError(origin_ + ": '" + prefix_ + key + "' = " + std::to_string(wide) + " is too large" + LineOf(*Find(key)));
+      throw base::UsageError(From(origin) + name + " = " + std::to_string(wide) + " is too large" + LineOf(node));
     }
-    value = static_cast<int>(wide);
+    *value = static_cast<int>(wide);
   }
-
-  void Field(const std::string& key, double& value, const std::string&) override {
-    if (const toml::node* node = Find(key)) value = Number(key, *node, "a number");
-  }
-
-  void Field(const std::string& key, std::string& value, const std::string&) override { ReadExact(key, value, "a string in quotes"); }
-
-  void Field(const std::string& key, std::vector<double>& value, const std::string&) override {
-    const toml::node* node = Find(key);
-    if (node == nullptr) return;
-    const toml::array* array = node->as_array();
-    if (array == nullptr) Refuse(key, *node, "an array of numbers");
+  void operator()(double* value) const { *value = Number(node, "a number"); }
+  void operator()(std::string* value) const { *value = Exact<std::string>("a text in quotes"); }
+  void operator()(std::vector<double>* value) const {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) Refuse(node, "a list of numbers");
     std::vector<double> numbers;
-    for (const toml::node& element : *array) numbers.push_back(Number(key, element, "an array of numbers"));
-    value = std::move(numbers);
+    numbers.reserve(array->size());
+    for (const toml::node& element : *array) numbers.push_back(Number(element, "a list of numbers"));
+    *value = std::move(numbers);
   }
 
  private:
-  const toml::node* Find(const std::string& key) const {
-    const auto leaf = leaves_.find(prefix_ + key);
-    return leaf == leaves_.end() ? nullptr : leaf->second;
+  [[noreturn]] void Refuse(const toml::node& found, const std::string& wanted) const {
+    throw base::UsageError(From(origin) + name + " must be " + wanted + ", found " + KindOf(found) + LineOf(found));
   }
-
-  [[noreturn]] void Refuse(const std::string& key, const toml::node& node, const std::string& wanted) const {
-    throw base::UsageError(origin_ + ": '" + prefix_ + key + "' must be " + wanted + ", found " + KindOf(node) + LineOf(node));
+  template <typename T>
+  T Exact(const std::string& wanted) const {
+    const std::optional<T> found = node.value_exact<T>();
+    if (!found) Refuse(node, wanted);
+    return *found;
   }
-
-  template <typename Value>
-  void ReadExact(const std::string& key, Value& value, const std::string& wanted) const {
-    const toml::node* node = Find(key);
-    if (node == nullptr) return;
-    const std::optional<Value> found = node->value_exact<Value>();
-    if (!found) Refuse(key, *node, wanted);
-    value = *found;
-  }
-
-  double Number(const std::string& key, const toml::node& node, const std::string& wanted) const {
-    if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
-    const auto* number = node.as_floating_point();
-    if (number == nullptr) Refuse(key, node, wanted);
-    if (std::isnan(number->get())) throw base::UsageError(origin_ + ": '" + prefix_ + key + "' is nan" + LineOf(node));
+  double Number(const toml::node& found, const std::string& wanted) const {
+    if (const auto* integer = found.as_integer()) return static_cast<double>(integer->get());
+    const auto* number = found.as_floating_point();
+    if (number == nullptr) Refuse(found, wanted);
+    if (std::isnan(number->get())) throw base::UsageError(From(origin) + name + " is nan" + LineOf(found));
     return number->get();
   }
-
-  const std::string& origin_;
-  const std::string& prefix_;
-  const std::map<std::string, const toml::node*>& leaves_;
 };
-
-// Collects the names only.
-class NameVisitor : public OptionVisitor {
- public:
-  explicit NameVisitor(std::vector<std::string>& keys) : keys_(keys) {}
-  void Field(const std::string& key, bool&, const std::string&) override { keys_.push_back(key); }
-  void Field(const std::string& key, int&, const std::string&) override { keys_.push_back(key); }
-  void Field(const std::string& key, double&, const std::string&) override { keys_.push_back(key); }
-  void Field(const std::string& key, std::string&, const std::string&) override { keys_.push_back(key); }
-  void Field(const std::string& key, std::vector<double>&, const std::string&) override { keys_.push_back(key); }
-
- private:
-  std::vector<std::string>& keys_;
-};
-
-std::string PrefixOf(const Sections::Entry& entry) {
-  return entry.name.empty() ? "" : entry.name + ".";
-}
 
 Known Describe(const Sections& sections) {
   Known known;
   for (const Sections::Entry& entry : sections.entries()) {
-    std::vector<std::string> keys;
-    NameVisitor visitor(keys);
-    entry.visit(visitor);
-    for (const std::string& key : keys) {
-      known.keys.push_back(PrefixOf(entry) + key);
+    for (const Option& option : entry.options) {
+      known.keys.push_back(entry.name + "." + option.key);
       known.section_of_key.push_back(entry.name);
     }
     for (size_t dot = entry.name.find('.'); dot != std::string::npos; dot = entry.name.find('.', dot + 1)) {
       known.tables.insert(entry.name.substr(0, dot));
     }
-    if (!entry.name.empty()) known.tables.insert(entry.name);
+    known.tables.insert(entry.name);
   }
   return known;
 }
@@ -148,7 +113,7 @@ Known Describe(const Sections& sections) {
 [[noreturn]] void RefuseTable(const std::string& origin, const std::string& name, const toml::node& node, const Known& known) {
   const std::vector<std::string> tables(known.tables.begin(), known.tables.end());
   const std::string nearest = Nearest(name, tables);
-  throw base::UsageError(origin + ": unknown section '" + name + "'" +
+  throw base::UsageError(From(origin) + "unknown section '" + name + "'" +
                          (nearest.empty() ? "; known sections: " + base::Join(tables) : "; did you mean '" + nearest + "'?") + LineOf(node));
 }
 
@@ -175,7 +140,7 @@ Known Describe(const Sections& sections) {
   } else if (!here.empty()) {
     advice = "; known here: " + base::Join(here);
   }
-  throw base::UsageError(origin + ": unknown key '" + name + "'" + advice + LineOf(node));
+  throw base::UsageError(From(origin) + "unknown key '" + name + "'" + advice + LineOf(node));
 }
 
 // Every value of the document by its dotted name; refuses tables that no section knows.
@@ -184,11 +149,17 @@ void CollectLeaves(const std::string& origin, const toml::table& table, const st
   for (const auto& [key, node] : table) {
     const std::string name = prefix + std::string(key.str());
     const toml::table* inner = node.as_table();
-    const bool is_option = std::find(known.keys.begin(), known.keys.end(), name) != known.keys.end();
-    if (!is_option && sections.IsRetired(name, origin)) continue;
+    const std::string current = sections.CurrentName(name, "");
+    const bool is_option = sections.Find(current) != nullptr;
+    if (!is_option && sections.IsRetired(name, origin.empty() ? "--set" : origin)) continue;
     if (inner == nullptr || is_option) {
       if (!is_option) RefuseKey(origin, name, node, known);
-      leaves[name] = &node;
+      if (current == name) {
+        leaves[current] = &node;
+      } else {
+        sections.CurrentName(name, origin.empty() ? "--set" : origin);
+        leaves.try_emplace(current, &node);  // the new name counts where both are given
+      }
       continue;
     }
     if (!known.tables.contains(name)) RefuseTable(origin, name, node, known);
@@ -211,19 +182,21 @@ toml::table Parse(const std::string& text, const std::string& origin) {
 
 }  // namespace
 
-void ReadToml(const std::filesystem::path& file, Sections& sections) {
+void ReadToml(const std::filesystem::path& file, const Sections& sections) {
   ReadTomlText(base::ReadFile(file), file.string(), sections);
 }
 
-void ReadTomlText(const std::string& text, const std::string& origin, Sections& sections) {
+void ReadTomlText(const std::string& text, const std::string& origin, const Sections& sections) {
   const toml::table document = Parse(text, origin);
-  const Known known = Describe(sections);
   std::map<std::string, const toml::node*> leaves;
-  CollectLeaves(origin, document, "", sections, known, leaves);
-  for (const Sections::Entry& entry : sections.entries()) {
-    const std::string prefix = PrefixOf(entry);
-    ReadVisitor visitor(origin, prefix, leaves);
-    entry.visit(visitor);
+  CollectLeaves(origin, document, "", sections, Describe(sections), leaves);
+  for (const auto& [name, node] : leaves) {
+    const Option& option = *sections.Find(name);
+    std::visit(Assign{origin, name, *node}, option.value);
+    if (!IsAllowed(option)) {
+      throw base::UsageError(From(origin) + name + " = " + TomlText(option.value) + " is not allowed: it must be " + option.range.Text() +
+                             LineOf(*node));
+    }
   }
 }
 

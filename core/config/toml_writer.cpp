@@ -10,7 +10,6 @@
 namespace skyquilt::config {
 namespace {
 
-// A value as TOML writes it; numbers in the shortest form that reads back to the same bits.
 std::string ValueText(bool value) {
   return value ? "true" : "false";
 }
@@ -53,21 +52,6 @@ std::string ValueText(const std::vector<double>& values) {
   return text + "]";
 }
 
-// Hands every field on as (key, text, help).
-class TextVisitor : public OptionVisitor {
- public:
-  using Sink = std::function<void(const std::string& key, const std::string& text, const std::string& help)>;
-  explicit TextVisitor(Sink sink) : sink_(std::move(sink)) {}
-  void Field(const std::string& key, bool& value, const std::string& help) override { sink_(key, ValueText(value), help); }
-  void Field(const std::string& key, int& value, const std::string& help) override { sink_(key, ValueText(value), help); }
-  void Field(const std::string& key, double& value, const std::string& help) override { sink_(key, ValueText(value), help); }
-  void Field(const std::string& key, std::string& value, const std::string& help) override { sink_(key, ValueText(value), help); }
-  void Field(const std::string& key, std::vector<double>& value, const std::string& help) override { sink_(key, ValueText(value), help); }
-
- private:
-  Sink sink_;
-};
-
 void WriteComment(std::ostream& out, const std::string& text) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) out << "# " << line << "\n";
@@ -81,34 +65,34 @@ bool IsBareKey(const std::string& key) {
 
 }  // namespace
 
-std::string WriteToml(Sections& sections) {
+std::string TomlText(const Value& value) {
+  return std::visit([](const auto* v) { return ValueText(*v); }, value);
+}
+
+std::string WriteToml(const Sections& sections) {
   std::ostringstream out;
   for (const Sections::Entry& entry : sections.entries()) {
     if (out.tellp() > 0) out << "\n";
     WriteComment(out, entry.help);
-    if (!entry.name.empty()) {
-      out << "[" << entry.name << "]\n";
-    } else {
-      SKYQUILT_CHECK(&entry == sections.entries().data(), "keys without a section must come first in TOML");
+    out << "[" << entry.name << "]\n";
+    for (const Option& option : entry.options) {
+      SKYQUILT_CHECK(IsBareKey(option.key), "option key '" + option.key + "'");
+      WriteComment(out, option.help);
+      const std::string range = option.range.Text();
+      if (!range.empty()) WriteComment(out, "allowed: " + range);
+      out << option.key << " = " << TomlText(option.value) << "\n";
     }
-    TextVisitor visitor([&out](const std::string& key, const std::string& text, const std::string& help) {
-      SKYQUILT_CHECK(IsBareKey(key), "option key '" + key + "'");
-      WriteComment(out, help);
-      out << key << " = " << text << "\n";
-    });
-    entry.visit(visitor);
   }
   return out.str();
 }
 
-std::map<std::string, std::string> Flatten(Sections& sections) {
+std::map<std::string, std::string> Flatten(const Sections& sections) {
   std::map<std::string, std::string> flat;
   for (const Sections::Entry& entry : sections.entries()) {
-    const std::string prefix = entry.name.empty() ? "" : entry.name + ".";
-    TextVisitor visitor([&](const std::string& key, const std::string& text, const std::string&) {
-      SKYQUILT_CHECK(flat.emplace(prefix + key, text).second, "option '" + prefix + key + "' is described twice");
-    });
-    entry.visit(visitor);
+    for (const Option& option : entry.options) {
+      const std::string key = entry.name + "." + option.key;
+      SKYQUILT_CHECK(flat.emplace(key, TomlText(option.value)).second, "option '" + key + "' is described twice");
+    }
   }
   return flat;
 }

@@ -9,6 +9,7 @@ checkpoint::ArchiveReader OpenScene(const std::filesystem::path& scene_h5) {
   if (reader.kind() != kSceneKind) {
     throw base::InputError(scene_h5, "is a " + reader.kind() + " file, not a scene", "Give the scene.h5 that `skyquilt merge` wrote");
   }
+  reader.RequireVersion(kSceneVersion);
   return reader;
 }
 

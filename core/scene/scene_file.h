@@ -11,14 +11,14 @@
 namespace skyquilt::scene {
 
 constexpr const char* kSceneKind = "scene";
-constexpr int kSceneVersion = 2;
+constexpr int kSceneVersion = 3;
 constexpr const char* kBordersAttribute = "borders";  // of render::Borders; absent: smooth
 constexpr const char* kContextPrefix = "context/";
 inline std::string BlockPrefix(int64_t i) {
   return "blocks/" + std::to_string(i) + "/";
 }
 
-// Throws base::InputError for a file that is not a scene, or damaged.
+// Throws base::InputError for a file that is not a scene, of another version, or damaged.
 checkpoint::ArchiveReader OpenScene(const std::filesystem::path& scene_h5);
 Borders BordersOf(const checkpoint::ArchiveReader& scene);
 

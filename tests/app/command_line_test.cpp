@@ -4,78 +4,58 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "app/commands/cli.h"
 #include "app/commands/command.h"
 #include "app/commands/describe.h"
 #include "bench/numerics/numerics_bench.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "tests/support/call_program.h"
 
 namespace skyquilt::app {
 namespace {
-
-struct Result {
-  int status = 0;
-  std::string out;
-  std::string err;
-};
-
-Result Call(std::vector<std::string> words) {
-  words.insert(words.begin(), "skyquilt");
-  std::vector<char*> argv;
-  argv.reserve(words.size());
-  for (std::string& word : words) argv.push_back(word.data());
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  Result result;
-  result.status = RunCommandLine(static_cast<int>(argv.size()), argv.data());
-  result.out = testing::internal::GetCapturedStdout();
-  result.err = testing::internal::GetCapturedStderr();
-  return result;
-}
 
 const std::vector<std::string> kCommands = {"run", "simulate", "prepare", "partition", "train", "merge", "render", "evaluate", "info"};
 
 TEST(CommandLine, EveryCommandHasHelpWithExamples) {
   for (const std::string& command : kCommands) {
-    const Result result = Call({command, "--help"});
+    const Called result = CallProgram({command, "--help"});
     EXPECT_EQ(result.status, 0) << command;
     EXPECT_NE(result.out.find("Examples"), std::string::npos) << command;
     EXPECT_NE(result.out.find("skyquilt " + command), std::string::npos) << command;
   }
-  EXPECT_NE(Call({"--help"}).out.find("Examples"), std::string::npos);
+  EXPECT_NE(CallProgram({"--help"}).out.find("Examples"), std::string::npos);
 }
 
 TEST(CommandLine, WrongWordsSuggestTheNearestAndLeaveWithTwo) {
-  Result result = Call({"trian", "out"});
+  Called result = CallProgram({"trian", "out"});
   EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.err.find("'train'"), std::string::npos) << result.err;
-  result = Call({"train", "out", "--stpes", "5"});
+  result = CallProgram({"train", "out", "--stpes", "5"});
   EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.err.find("'--steps'"), std::string::npos) << result.err;
-  result = Call({"train"});
+  result = CallProgram({"train"});
   EXPECT_EQ(result.status, 2);
-  EXPECT_EQ(Call({}).status, 2);
-  EXPECT_EQ(Call({"run", "-o", "x", "--time-budget", "soon"}).status, 2);
-  result = Call({"info", "--defaults", "--set", "train.levles=3"});
+  EXPECT_EQ(CallProgram({}).status, 2);
+  EXPECT_EQ(CallProgram({"run", "-o", "x", "--time-budget", "soon"}).status, 2);
+  result = CallProgram({"info", "--defaults", "--set", "train.levles=3"});
   EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.err.find("train.levels"), std::string::npos) << result.err;
 }
 
 TEST(CommandLine, VersionAndDefaults) {
-  const Result version = Call({"--version"});
+  const Called version = CallProgram({"--version"});
   EXPECT_EQ(version.status, 0);
   EXPECT_EQ(version.out.rfind("skyquilt ", 0), 0U);
-  const Result defaults = Call({"info", "--defaults", "--set", "train.levels=3"});
+  const Called defaults = CallProgram({"info", "--defaults", "--set", "train.levels=3"});
   EXPECT_EQ(defaults.status, 0);
   EXPECT_NE(defaults.out.find("levels = 3"), std::string::npos);
 }
 
 TEST(CommandLine, PresetsGoByName) {
-  EXPECT_NE(Call({"info", "--defaults", "--config", "quality"}).out.find("image_width = 1500"), std::string::npos);
-  EXPECT_EQ(Call({"info", "--defaults", "--config", "default"}).out, Call({"info", "--defaults"}).out);
-  EXPECT_EQ(Call({"info", "--defaults", "--config", std::filesystem::temp_directory_path().string()}).status, 3);
-  const Result wrong = Call({"info", "--defaults", "--config", "qualty"});
+  EXPECT_NE(CallProgram({"info", "--defaults", "--config", "quality"}).out.find("image_width = 1500"), std::string::npos);
+  EXPECT_EQ(CallProgram({"info", "--defaults", "--config", "default"}).out, CallProgram({"info", "--defaults"}).out);
+  EXPECT_EQ(CallProgram({"info", "--defaults", "--config", std::filesystem::temp_directory_path().string()}).status, 3);
+  const Called wrong = CallProgram({"info", "--defaults", "--config", "qualty"});
   EXPECT_EQ(wrong.status, 3);
   EXPECT_NE(wrong.err.find("Did you mean 'quality'?"), std::string::npos) << wrong.err;
 
@@ -96,14 +76,14 @@ TEST(CommandLine, PresetsGoByName) {
 }
 
 TEST(CommandLine, MissingThingsAreInputErrors) {
-  EXPECT_EQ(Call({"info", "/nonexistent/skyquilt"}).status, 3);
-  EXPECT_EQ(Call({"train", "/nonexistent/skyquilt"}).status, 3);
-  EXPECT_EQ(Call({"--config", "/nonexistent/skyquilt.toml", "info", "--defaults"}).status, 3);
+  EXPECT_EQ(CallProgram({"info", "/nonexistent/skyquilt"}).status, 3);
+  EXPECT_EQ(CallProgram({"train", "/nonexistent/skyquilt"}).status, 3);
+  EXPECT_EQ(CallProgram({"--config", "/nonexistent/skyquilt.toml", "info", "--defaults"}).status, 3);
 }
 
 TEST(CommandLine, RunNeedsPhotosOrAPresetAndNotBoth) {
-  EXPECT_EQ(Call({"run", "-o", "x"}).status, 2);
-  EXPECT_EQ(Call({"run", "photos", "--preset", "hamlet", "-o", "x"}).status, 2);
+  EXPECT_EQ(CallProgram({"run", "-o", "x"}).status, 2);
+  EXPECT_EQ(CallProgram({"run", "photos", "--place", "hamlet", "-o", "x"}).status, 2);
 }
 
 TEST(CommandLine, AFailedNumericCaseIsStatusFive) {
@@ -117,7 +97,7 @@ TEST(CommandLine, AFailedNumericCaseIsStatusFive) {
 }
 
 TEST(CommandLine, NumericsRunsTheGroupsAskedFor) {
-  const Result run = Call({"--quiet", "bench", "numerics", "--quick", "--only", "rays,compositing", "--json"});
+  const Called run = CallProgram({"--quiet", "bench", "numerics", "--quick", "--only", "rays,compositing", "--json"});
   ASSERT_EQ(run.status, 0) << run.err;
   const nlohmann::json json = nlohmann::json::parse(run.out);
   EXPECT_EQ(json.at("failed"), 0);
@@ -126,7 +106,7 @@ TEST(CommandLine, NumericsRunsTheGroupsAskedFor) {
     EXPECT_FALSE(row.at("expected").get<std::string>().empty());
   }
   EXPECT_EQ(json.at("rows").size(), json.at("passed").get<size_t>());
-  const Result unknown = Call({"bench", "numerics", "--only", "space,rain"});
+  const Called unknown = CallProgram({"bench", "numerics", "--only", "space,rain"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_NE(unknown.err.find("rain"), std::string::npos);
   EXPECT_NE(unknown.err.find("nonfinite"), std::string::npos);

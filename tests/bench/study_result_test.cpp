@@ -112,7 +112,7 @@ TEST(Presets, AreWhatTheFilesSayAndCanBeUsed) {
   for (const std::string& name : app::PresetNames()) {
     coordinator::Settings settings;
     for (const config::Override& entry : app::PresetOverrides(name)) settings.Set(entry);
-    EXPECT_NO_THROW(settings.Validate()) << name;
+    EXPECT_NO_THROW(settings.Check()) << name;
     coordinator::Settings from_file = app::LoadSettings({std::string(SKYQUILT_SOURCE_DIR) + "/configs/" + name + ".toml"}, {});
     EXPECT_EQ(settings.Flat(), from_file.Flat()) << name;
   }

@@ -113,7 +113,7 @@ TEST_F(ReportPage, BrightnessEscapesNamesAndSentences) {
   EXPECT_EQ(section.find("<b>DJI"), std::string::npos);
   // In a tooltip and over the pictures.
   EXPECT_EQ(CountOf(section, "&lt;b&gt;DJI &amp; &quot;co&quot;&lt;/b&gt;.jpg"), 2U);
-  EXPECT_NE(section.find("Hidden light &lt;none&gt;."), std::string::npos);
+  EXPECT_NE(section.find("Concealing field &lt;none&gt;."), std::string::npos);
 }
 
 TEST_F(ReportPage, ThereIsNoBrightnessWithoutFindings) {

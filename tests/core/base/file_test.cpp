@@ -32,7 +32,7 @@ TEST(File, ContentComesBackByteForByte) {
   EXPECT_EQ(CountEntries(folder.path()), 1U) << "temporary files were left behind";
 }
 
-TEST(File, ErrorsNameTheFileAndTheMend) {
+TEST(File, ErrorsNameTheFileAndHowToFixIt) {
   const TemporaryFolder folder;
   const fs::path missing = folder.path() / "nowhere" / "file.txt";
   try {

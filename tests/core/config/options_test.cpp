@@ -20,21 +20,41 @@ struct TrainOptions {
   bool guided = true;
   std::string note = "plain";
   std::vector<double> altitudes_m = {150.0, 300.5};
-  void Visit(OptionVisitor& v) {
-    v.Field("steps", steps, "optimiser updates, > 0");
-    v.Field("rate", rate, "learning rate\nof the first step");
-    v.Field("guided", guided, "use the context");
-    v.Field("note", note, "free text");
-    v.Field("altitudes_m", altitudes_m, "one per block, metres above ground");
+
+  static std::vector<Field<TrainOptions>> Fields() {
+    using O = TrainOptions;
+    return {
+        {"steps", &O::steps, Range(), "optimiser updates"},
+        {"rate", &O::rate, Range(), "learning rate\nof the first step"},
+        {"guided", &O::guided, Range(), "use the context"},
+        {"note", &O::note, Range(), "free text"},
+        {"altitudes_m", &O::altitudes_m, Range(), "one per block, metres above ground"},
+    };
   }
+  void Check() const { CheckRanges("train", *this); }
 };
 
 struct RenderOptions {
   double exposure_stops = 0.0;
   int supersample = 1;
-  void Visit(OptionVisitor& v) {
-    v.Field("exposure_stops", exposure_stops, "brighter or darker");
-    v.Field("supersample", supersample, "rays per pixel and axis");
+  int width = 0;
+  std::string shape = "round";
+  std::vector<double> heights_m;
+
+  static std::vector<Field<RenderOptions>> Fields() {
+    using O = RenderOptions;
+    return {
+        {"exposure_stops", &O::exposure_stops, Range{-10, 10}, "brighter or darker"},
+        {"supersample", &O::supersample, Range{1, 8}, "rays per pixel and axis"},
+        {"width", &O::width, Range{16, 4096}.MultipleOf(2).Or(0), "pixels"},
+        {"shape", &O::shape, Range::OneOf({"round", "square"}), "of the pixels"},
+        {"heights_m", &O::heights_m, Range{0.5, 100}, "of the cameras"},
+    };
+  }
+  // Takes the name of its section: several sections may hold such a struct.
+  void Check(const std::string& section) const {
+    CheckRanges(section, *this);
+    if (supersample > 1 && exposure_stops > 5.0) throw base::UsageError(section + ".supersample is not allowed with so much light");
   }
 };
 
@@ -62,6 +82,67 @@ TEST(Toml, ARetiredOptionIsTakenWithoutEffect) {
   ApplyOverride({"train.gone", "4"}, all.sections);
   EXPECT_THROW(ApplyOverride({"train.never", "4"}, all.sections), base::UsageError);
   EXPECT_EQ(WriteToml(all.sections).find("gone"), std::string::npos);
+}
+
+TEST(Toml, ARenamedOptionIsTakenUnderItsNewName) {
+  All all;
+  all.sections.Rename("train.strides", "train.steps");
+  ReadTomlText("[train]\nstrides = 7\n", "old.toml", all.sections);
+  EXPECT_EQ(all.train.steps, 7);
+  ApplyOverride({"train.strides", "8"}, all.sections);
+  EXPECT_EQ(all.train.steps, 8);
+  // The new name counts where both are given, whatever their order.
+  ReadTomlText("[train]\nsteps = 9\nstrides = 10\n", "old.toml", all.sections);
+  EXPECT_EQ(all.train.steps, 9);
+  EXPECT_EQ(WriteToml(all.sections).find("strides"), std::string::npos);
+}
+
+TEST(Toml, AValueOutOfRangeIsRefusedWithItsLineAndRange) {
+  EXPECT_EQ(MessageOf<base::UsageError>("[products.render]\nsupersample = 9\n"),
+            "skyquilt.toml: products.render.supersample = 9 is not allowed: it must be 1 to 8 (line 2)");
+  EXPECT_EQ(MessageOf<base::UsageError>("[products.render]\nwidth = 17\n"),
+            "skyquilt.toml: products.render.width = 17 is not allowed: it must be 0 or 16 to 4096 in steps of 2 (line 2)");
+  EXPECT_EQ(MessageOf<base::UsageError>("[products.render]\nheights_m = [1, 0.25]\n"),
+            "skyquilt.toml: products.render.heights_m = [1.0, 0.25] is not allowed: it must be 0.5 to 100 (line 2)");
+  EXPECT_NE(MessageOf<base::UsageError>("[products.render]\nexposure_stops = inf\n").find("-10 to 10"), std::string::npos);
+  EXPECT_EQ(MessageOf<base::UsageError>("[products.render]\nshape = \"oval\"\n"),
+            "skyquilt.toml: products.render.shape = \"oval\" is not allowed: it must be round or square (line 2)");
+}
+
+TEST(Override, IsReadAsALineOfAFileWouldBe) {
+  All all;
+  const auto set = [&](const std::string& text) { ApplyOverride(ParseOverride(text), all.sections); };
+  const auto refusal = [&](const std::string& text) { return ErrorOf<base::UsageError>([&] { set(text); }); };
+  set("train.note = a \"quoted\" \\ word");
+  EXPECT_EQ(all.train.note, "a \"quoted\" \\ word");
+  set("train.note=\"in TOML's \\t own way\"");
+  EXPECT_EQ(all.train.note, "in TOML's \t own way");
+  set("train.altitudes_m=100, 2.5");
+  EXPECT_EQ(all.train.altitudes_m, (std::vector<double>{100.0, 2.5}));
+  set("train.altitudes_m=[]");
+  EXPECT_TRUE(all.train.altitudes_m.empty());
+  set("train.guided=false");
+  EXPECT_FALSE(all.train.guided);
+  set("products.render.shape=square");
+  EXPECT_EQ(all.render.shape, "square");
+  // Single options have no file and no line.
+  EXPECT_EQ(refusal("products.render.supersample=0"), "products.render.supersample = 0 is not allowed: it must be 1 to 8");
+  EXPECT_EQ(refusal("train.steps=3.5"), "train.steps must be a whole number, found a number with a point");
+  EXPECT_NE(refusal("train.steps=many").find("train.steps = 'many' is not understood"), std::string::npos);
+  EXPECT_NE(refusal("train.stepz=3").find("'train.steps'"), std::string::npos);
+  EXPECT_NE(refusal("train.steps=").find("train.steps"), std::string::npos);
+}
+
+TEST(Sections, CheckNamesSectionAndRangeOfWhatAProgramSet) {
+  All all;
+  EXPECT_NO_THROW(all.sections.Check());
+  all.render.width = 15;
+  EXPECT_EQ(ErrorOf<base::UsageError>([&] { all.sections.Check(); }),
+            "products.render.width = 15 is not allowed: it must be 0 or 16 to 4096 in steps of 2");
+  all.render.width = 0;
+  all.render.exposure_stops = 6.0;
+  all.render.supersample = 2;
+  EXPECT_EQ(ErrorOf<base::UsageError>([&] { all.sections.Check(); }), "products.render.supersample is not allowed with so much light");
 }
 
 TEST(Toml, ValuesComeBackExactly) {
@@ -98,8 +179,10 @@ TEST(Toml, EveryHelpLineIsAComment) {
   All all;
   const std::string text = WriteToml(all.sections);
   for (const char* part :
-       {"# training of one block\n[train]\n", "# optimiser updates, > 0\nsteps = 2000\n", "# learning rate\n# of the first step\nrate = 0.01\n",
-        "[products.render]\n", "altitudes_m = [150.0, 300.5]\n", "guided = true\n", "note = \"plain\"\n"}) {
+       {"# training of one block\n[train]\n", "# optimiser updates\nsteps = 2000\n", "# learning rate\n# of the first step\nrate = 0.01\n",
+        "[products.render]\n", "# brighter or darker\n# allowed: -10 to 10\nexposure_stops = 0.0\n",
+        "# allowed: 0 or 16 to 4096 in steps of 2\nwidth = 0\n", "# allowed: round or square\nshape = \"round\"\n", "altitudes_m = [150.0, 300.5]\n",
+        "guided = true\n", "note = \"plain\"\n"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "in\n" << text;
   }
 }
@@ -166,7 +249,7 @@ TEST(Toml, FilesAreReadAndMissingOnesNamed) {
 TEST(Flatten, HashFollowsEveryValueAndNothingElse) {
   All one;
   All two;
-  EXPECT_EQ(Flatten(one.sections).size(), 7U);
+  EXPECT_EQ(Flatten(one.sections).size(), 10U);
   EXPECT_EQ(Flatten(one.sections).at("train.rate"), "0.01");
   EXPECT_EQ(Flatten(one.sections).at("products.render.supersample"), "1");
   EXPECT_EQ(Hash(Flatten(one.sections)), Hash(Flatten(two.sections)));

@@ -1,0 +1,54 @@
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/config/options.h"
+
+namespace skyquilt::config {
+
+bool IsAllowed(const Option& option) {
+  if (const auto* number = std::get_if<int*>(&option.value)) return option.range.Contains(static_cast<double>(**number));
+  if (const auto* number = std::get_if<double*>(&option.value)) return option.range.Contains(**number);
+  if (const auto* text = std::get_if<std::string*>(&option.value)) return option.range.Contains(**text);
+  if (const auto* numbers = std::get_if<std::vector<double>*>(&option.value)) {
+    for (const double number : **numbers) {
+      if (!option.range.Contains(number)) return false;
+    }
+  }
+  return true;
+}
+
+void CheckRanges(const std::string& section, const std::vector<Option>& options) {
+  for (const Option& option : options) {
+    if (IsAllowed(option)) continue;
+    throw base::UsageError(section + "." + option.key + " = " + TomlText(option.value) + " is not allowed: it must be " + option.range.Text());
+  }
+}
+
+const Option* Sections::Find(const std::string& key) const {
+  for (const Entry& entry : entries_) {
+    if (key.rfind(entry.name + ".", 0) != 0) continue;
+    for (const Option& option : entry.options) {
+      if (key.compare(entry.name.size() + 1, std::string::npos, option.key) == 0) return &option;
+    }
+  }
+  return nullptr;
+}
+
+void Sections::Check() const {
+  for (const Entry& entry : entries_) entry.check();
+}
+
+bool Sections::IsRetired(const std::string& key, const std::string& origin) const {
+  const auto retired = retired_.find(key);
+  if (retired == retired_.end()) return false;
+  spdlog::warn("{}: '{}' has no effect any more: {}", origin, key, retired->second);
+  return true;
+}
+
+std::string Sections::CurrentName(const std::string& key, const std::string& origin) const {
+  const auto renamed = renamed_.find(key);
+  if (renamed == renamed_.end()) return key;
+  if (!origin.empty()) spdlog::warn("{}: '{}' is now called '{}'", origin, key, renamed->second);
+  return renamed->second;
+}
+
+}  // namespace skyquilt::config

@@ -1,0 +1,115 @@
+// Every option of the program: a value out of its range is refused before any work, and help and configuration files show the same range.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <regex>
+#include <set>
+
+#include "app/commands/cli.h"
+#include "coordinator/project/settings.h"
+#include "core/base/file.h"
+#include "tests/support/call_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skyquilt::app {
+namespace {
+
+struct Described {
+  std::string key;  // "section.key"
+  config::Option option;
+};
+
+std::vector<Described> AllOptions(coordinator::Settings& settings) {
+  std::vector<Described> all;
+  for (const config::Sections::Entry& entry : settings.AllSections().entries()) {
+    for (const config::Option& option : entry.options) all.push_back({entry.name + "." + option.key, option});
+  }
+  return all;
+}
+
+// A value that the range does not contain, as typed; empty when it contains all that was tried.
+std::string ForbiddenValue(const config::Option& option) {
+  if (std::holds_alternative<bool*>(option.value) || option.range.Text().empty()) return "";
+  if (std::holds_alternative<std::string*>(option.value)) {
+    std::string word = *rc::gen::container<std::string>(rc::gen::inRange('a', 'z'));
+    return option.range.Contains(word) ? "" : word;
+  }
+  if (std::holds_alternative<int*>(option.value)) {
+    const int value = *rc::gen::oneOf(rc::gen::arbitrary<int>(), rc::gen::inRange(-20, 20), rc::gen::just(std::numeric_limits<int>::max()));
+    return option.range.Contains(value) ? "" : std::to_string(value);
+  }
+  double value = *rc::gen::oneOf(rc::gen::arbitrary<double>(), rc::gen::elementOf(std::vector<double>{-1e-9, -1.0, 1e9, 1e300}));
+  return !std::isfinite(value) || option.range.Contains(value) ? "" : config::TomlText(&value);
+}
+
+RC_GTEST_PROP(OptionRanges, AValueOutOfRangeIsRefusedBeforeAnyWork, ()) {
+  coordinator::Settings settings;
+  const std::vector<Described> all = AllOptions(settings);
+  const Described& one = *rc::gen::elementOf(all);
+  const std::string value = ForbiddenValue(one.option);
+  RC_PRE(!value.empty());
+  const TemporaryFolder folder;
+  const std::filesystem::path out = folder.path() / "project";
+  const Called called = CallProgram({"run", "--place", "hamlet", "-o", out.string(), "--set", one.key + "=" + value});
+  RC_ASSERT(called.status == 2);
+  for (const std::string& part : {one.key, value, one.option.range.Text()}) {
+    if (called.err.find(part) == std::string::npos) RC_FAIL("'" + part + "' is not named in: " + called.err);
+  }
+  RC_ASSERT(!std::filesystem::exists(out));
+  // The same in a file, and by a command that works in an existing project.
+  const bool is_text = std::holds_alternative<std::string*>(one.option.value);
+  const bool is_list = std::holds_alternative<std::vector<double>*>(one.option.value);
+  const std::string in_toml = is_text ? "\"" + value + "\"" : is_list ? "[" + value + "]" : value;
+  base::WriteFileAtomically(folder.path() / "my.toml", one.key + " = " + in_toml + "\n");
+  const Called from_file = CallProgram({"info", "--defaults", "--config", (folder.path() / "my.toml").string()});
+  RC_ASSERT(from_file.status == 2);
+  RC_ASSERT(from_file.err.find(one.option.range.Text()) != std::string::npos);
+  RC_ASSERT(from_file.err.find("my.toml") != std::string::npos);
+}
+
+// Every numeric option and every choice has a range; free texts have checks of their own.
+TEST(OptionRanges, OnlyTextsAndSwitchesGoWithoutOne) {
+  coordinator::Settings settings;
+  const std::set<std::string> free_texts = {"prepare.holdout",       "prepare.colmap",    "prepare.masks",          "partition.blocks",
+                                            "brightness.correction", "products.exposure", "evaluate.lpips_network", "evaluate.normal_photos"};
+  for (const Described& one : AllOptions(settings)) {
+    if (std::holds_alternative<bool*>(one.option.value) || free_texts.contains(one.key)) continue;
+    EXPECT_NE(one.option.range.Text(), "") << one.key;
+  }
+}
+
+TEST(OptionRanges, DefaultsLieWithinThem) {
+  coordinator::Settings settings;
+  EXPECT_NO_THROW(settings.Check());
+}
+
+TEST(OptionRanges, ConfigurationFilesAndHelpShowTheSame) {
+  coordinator::Settings settings;
+  const std::vector<Described> all = AllOptions(settings);
+  const std::string defaults = CallProgram({"info", "--defaults"}).out;
+  std::string help;
+  for (const char* command : {"run", "simulate", "prepare", "partition", "train", "merge", "render", "evaluate"}) {
+    help += CallProgram({command, "--help"}).out;
+  }
+  help = std::regex_replace(help, std::regex("\\s+"), " ");
+  size_t in_help = 0;
+  for (const Described& one : all) {
+    const std::string range = one.option.range.Text();
+    const std::string key = one.key.substr(one.key.find('.') + 1);
+    if (range.empty()) continue;
+    EXPECT_NE(defaults.find("# allowed: " + range + "\n" + key + " = " + config::TomlText(one.option.value)), std::string::npos) << one.key;
+    for (size_t at = help.find("[" + one.key + "]"); at != std::string::npos; at = help.find("[" + one.key + "]", at + 1)) {
+      const std::string shown = "(" + range + ") ";
+      EXPECT_EQ(help.substr(at - std::min(at, shown.size()), shown.size()), shown) << one.key;
+      ++in_help;
+    }
+  }
+  EXPECT_GE(in_help, 8U);
+}
+
+}  // namespace
+}  // namespace skyquilt::app

@@ -1,0 +1,33 @@
+// Runs the program's command line within the test's own process.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "app/commands/cli.h"
+
+namespace skyquilt {
+
+struct Called {
+  int status = 0;
+  std::string out;
+  std::string err;
+};
+
+inline Called CallProgram(std::vector<std::string> words) {
+  words.insert(words.begin(), "skyquilt");
+  std::vector<char*> argv;
+  argv.reserve(words.size());
+  for (std::string& word : words) argv.push_back(word.data());
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  Called called;
+  called.status = app::RunCommandLine(static_cast<int>(argv.size()), argv.data());
+  called.out = testing::internal::GetCapturedStdout();
+  called.err = testing::internal::GetCapturedStderr();
+  return called;
+}
+
+}  // namespace skyquilt

@@ -8,9 +8,10 @@ Checked:
   - #anchors lead to a heading (as GitHub names them) or to an HTML id;
   - paths of our sources in code, as `core/geo/utm.h`, exist;
   - README.md has at most 1,200 words;
-  - in pages of figures, a section with a table of figures says where they come from: a paragraph that begins with "Measured " and holds a date
-    (2026-11-22), a commit (`c99d8c3`) and the machine (with its number of cores), and a code block with the command. A subsection may leave
-    either to the text between the section's heading and its first subsection.
+  - in pages of figures, the text above a table of figures says where they come from: the command (in code), the date (2026-11-22), the commit
+    (c99d8c3) and the machine (its processor, cores or memory). Text above a table is what stands between it and the table before, and what stands
+    between the section's heading and its first table or subsection. The machine may also be named once, in a line that begins with "**Machine:**".
+    Rows that link to another place need nothing: that place says it.
 Python's standard library only.
 """
 import os
@@ -24,7 +25,7 @@ import urllib.parse
 README_WORDS = 1200
 PAGES_OF_FIGURES = ("docs/benchmarks.md", "docs/brightness.md")
 NOT_OURS = {".git", ".cache", "build", "out", "shared"}
-SOURCE_ENDINGS = ("h", "cpp", "py", "sh", "toml", "md", "css", "js", "in", "cmake", "slurm", "CMakeLists.txt")
+SOURCE_ENDINGS = (".h", ".cpp", ".py", ".sh", ".toml", ".md", ".css", ".js", ".in", ".cmake", ".slurm", "CMakeLists.txt")
 
 FENCE = re.compile(r"^ {0,3}(```+|~~~+)")
 HEADING = re.compile(r"^ {0,3}(#{1,6})\s+(.*?)\s*#*\s*$")
@@ -36,9 +37,11 @@ HTML_ID = re.compile(r"<[a-z]+\b[^>]*?\b(?:id|name)=\"([^\"]+)\"", re.IGNORECASE
 SCHEME = re.compile(r"^[a-z][a-z0-9+.-]*:|^//", re.IGNORECASE)
 PATH = re.compile(r"(?<![\w./~$<>*{-])(?:\./)?((?:[\w.-]+/)+[\w.-]*)(?![\w/<>*{}$])")
 FIGURE = re.compile(r"^[^\w`]*\d")
+COMMAND = re.compile(r"^(?:mpirun\b.*)?(?:skyquilt |scripts/|build/|cmake |ctest )")
 DATE = re.compile(r"\b20\d\d-\d\d-\d\d\b")
-COMMIT = re.compile(r"`[0-9a-f]{7,40}`")
-MACHINE = re.compile(r"\bcores?\b")
+COMMIT = re.compile(r"(?:commit |`)[0-9a-f]{7,40}\b|\b(?=[0-9a-f]*\d)(?=[0-9a-f]*[a-f])[0-9a-f]{7,40}\b")
+MACHINE = re.compile(r"\b(?:\d+ cores?|\d+ GiB|EPYC|Zen \d|Xeon|Core i\d|Ryzen)\b")
+MACHINE_OF_PAGE = re.compile(r"^\*\*Machine:\*\* .*" + MACHINE.pattern)
 
 
 def tracked(root):
@@ -132,65 +135,56 @@ def path_faults(page, files):
                 path = found[1].rstrip(".")
                 if path.split("/")[0] not in ours:
                     continue
-                source = path.startswith("scripts/") or path.endswith(tuple("." + ending for ending in SOURCE_ENDINGS)) or path.endswith("CMakeLists.txt")
-                if path.endswith("/") and path.rstrip("/") not in folders:
-                    yield number, f"there is no folder '{path}'"
-                elif source and not path.endswith("/") and path not in files and path not in folders:
+                if path.endswith("/"):
+                    if path.rstrip("/") not in folders:
+                        yield number, f"there is no folder '{path}'"
+                elif (path.startswith("scripts/") or path.endswith(SOURCE_ENDINGS)) and path not in files and path not in folders:
                     yield number, f"there is no file '{path}'"
 
 
-def sections_of(page):
-    """(level, heading's number, first line, line after the last) of every section without its subsections."""
-    last = page.lines[-1][0] + 1 if page.lines else 1
-    starts = [(level, number) for number, level, _ in page.headings]
-    for k, (level, number) in enumerate(starts):
-        yield level, number, number + 1, starts[k + 1][1] if k + 1 < len(starts) else last
-
-
-def origin_of(lines):
-    """What the text tells of where its figures come from."""
-    measured, paragraph = [], None
-    for _, line, code in lines:
-        if code or not line.strip() or line.startswith("|"):
-            paragraph = None
-        elif paragraph is not None:
-            paragraph.append(line)
-        elif line.startswith("Measured "):
-            paragraph = [line]
-            measured.append(paragraph)
-    text = [" ".join(lines_of) for lines_of in measured]
-    return {
-        'a paragraph that begins with "Measured "': bool(text),
-        'a date as 2026-11-22 in its "Measured" paragraph': any(DATE.search(t) for t in text),
-        'a commit as `c99d8c3` in its "Measured" paragraph': any(COMMIT.search(t) for t in text),
-        'the machine with its number of cores in its "Measured" paragraph': any(MACHINE.search(t) for t in text),
-        "a code block with the command": any(code and not FENCE.match(line) and line.strip() for _, line, code in lines),
-    }
+def tables_of(page):
+    """(number of the first row with a figure, lines of text above it) of every table that holds figures."""
+    inherited = {}  # by level of heading: the text before the first table or subsection
+    for k, (start, level, _) in enumerate(page.headings):
+        end = page.headings[k + 1][0] if k + 1 < len(page.headings) else len(page.lines) + 1
+        above, first_table, figure, in_table = list(inherited.get(level - 1, [])) if level > 2 else [], True, None, False
+        intro = above
+        for number, line, code in page.lines[start:end - 1] + [(end, "", False)]:
+            if line.startswith("|") and not code:
+                if figure is None and is_figure_row(line):
+                    figure = number
+                in_table = True
+                continue
+            if in_table:
+                if figure is not None:
+                    yield figure, above
+                if first_table:
+                    intro, first_table = above, False
+                above, figure, in_table = list(intro), None, False
+            above = above + [(line, code)]
+        inherited[level] = above if first_table else intro
 
 
 def is_figure_row(line):
-    """A row of a table with a number outside of code in any cell but the first."""
+    """Whether a row of a table has a number, outside of code, at the start of any cell but the first."""
     cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
-    return any(FIGURE.match(cell) for cell in cells[1:])
+    return "](" not in line and any(FIGURE.match(cell) for cell in cells[1:])
 
 
 def figure_faults(page):
-    inherited = {}  # by level: what the sections above this one tell
-    for level, _, begin, end in sections_of(page):
-        lines = [entry for entry in page.lines if begin <= entry[0] < end]
-        own = origin_of(lines)
-        above = inherited.get(level - 1, {}) if level > 2 else {}
-        told = {what: yes or above.get(what, False) for what, yes in own.items()}
-        inherited[level] = told
-        for deeper in [key for key in inherited if key > level]:
-            del inherited[deeper]
-        rows = [number for number, line, code in lines if not code and line.startswith("|") and is_figure_row(line)]
-        if not rows:
-            continue
-        for what, yes in told.items():
-            # Without the paragraph, what it should hold need not be asked for.
-            if not yes and (own['a paragraph that begins with "Measured "'] or "in its" not in what):
-                yield rows[0], f"the section of this table of figures lacks {what}"
+    machine_of_page = any(MACHINE_OF_PAGE.match(line) for _, line, code in page.lines if not code)
+    for number, above in tables_of(page):
+        text = " ".join(line for line, code in above if not code)
+        pieces = [line for line, code in above if code] + [found[2] for found in CODE.finditer(text)]
+        told = {
+            "the command": any(COMMAND.match(piece.strip()) for piece in pieces),
+            "the date (as 2026-11-22)": DATE.search(text),
+            "the commit (as c99d8c3)": COMMIT.search(text),
+            "the machine (processor, cores or memory)": MACHINE.search(text) or machine_of_page,
+        }
+        missing = [what for what, found in told.items() if not found]
+        if missing:
+            yield number, "the text above this table of figures does not name " + ", ".join(missing)
 
 
 def faults(root):
@@ -211,22 +205,30 @@ GOOD = {
     "README.md": "# Top\n[page](docs/page.md#a-heading-with-code)\n![picture](docs/picture.png)\n[up](#top) `core/a.h` `out/x.h` `core/<name>.h`\n",
     "docs/page.md": "# A heading, with `code`\n```\n[not a link](nowhere.md)\n```\n[back](../README.md) [again](#twice-1)\n## Twice\n## Twice\n",
     "docs/picture.png": "",
-    "docs/benchmarks.md": "# Figures\n## Speed\n```\nskyquilt bench\n```\nMeasured 2026-11-22 at commit `c99d8c3` on a machine\nwith 2 cores.\n"
-                          "### Fast\n| what | s |\n|---|---|\n| a | 1.5 |\n",
+    "docs/benchmarks.md": "# Figures\n## Speed\n```\nskyquilt bench kernel\n```\nMeasured 2026-11-22 at commit `c99d8c3`,\n2 cores.\n"
+                          "### Fast\n| what | s |\n|---|---|\n| a | 1.5 |\n\nand\n\n| what | s |\n|---|---|\n| a | 1.5 |\n"
+                          "## Summary\n| what | s |\n|---|---|\n| a | 1.5 ([speed](#speed)) |\n",
     "core/a.h": "",
 }
 BAD = {
     "README.md": "# Top\n[gone](docs/gone.md)\n[anchor](docs/page.md#gone)\n`core/b.h`\n[out](../x.md)\n`scripts/none --now`\n" + "word " * 1200,
     "docs/page.md": "# Page\n![picture](gone.png)\n[absolute](/README.md)\n",
-    "docs/benchmarks.md": "# Figures\n## Speed\n| what | s |\n|---|---|\n| a | 1.5 |\n## Again\n```\nrun\n```\nMeasured in `c99d8c3`.\n\n|x|y|\n|-|-|\n|a|2|\n",
+    "docs/benchmarks.md": "# Figures\n## Speed\n| what | s |\n|---|---|\n| a | 1.5 |\n"
+                          "## Again\n`skyquilt run`, commit c99d8c3\n\n|x|y|\n|-|-|\n|a|2|\n",
     "core/a.h": "",
     "scripts/some.sh": "",
 }
 EXPECTED = [
-    "README.md:1: has 1208 words", "README.md:2: link 'docs/gone.md'", "README.md:3: link 'docs/page.md#gone'", "README.md:4: there is no file 'core/b.h'",
-    "README.md:5: link '../x.md' leads out", "README.md:6: there is no file 'scripts/none'", "docs/benchmarks.md:5: the section of this table of figures lacks a code",
-    "docs/benchmarks.md:5: the section of this table of figures lacks a paragraph", "docs/benchmarks.md:14: the section of this table of figures lacks a date",
-    "docs/benchmarks.md:14: the section of this table of figures lacks the machine", "docs/page.md:2: link 'gone.png'", "docs/page.md:3: link '/README.md' is absolute",
+    "README.md:1: has 1208 words",
+    "README.md:2: link 'docs/gone.md' leads to no file",
+    "README.md:3: link 'docs/page.md#gone': docs/page.md has no heading '#gone'",
+    "README.md:4: there is no file 'core/b.h'",
+    "README.md:5: link '../x.md' leads out of the repository",
+    "README.md:6: there is no file 'scripts/none'",
+    "docs/benchmarks.md:5: the text above this table of figures does not name the command, the date (as 2026-11-22), the commit (as c99d8c3), the machine",
+    "docs/benchmarks.md:11: the text above this table of figures does not name the date (as 2026-11-22), the machine",
+    "docs/page.md:2: link 'gone.png' leads to no file",
+    "docs/page.md:3: link '/README.md' is absolute",
 ]
 
 

@@ -27,7 +27,7 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
   const auto flags = std::make_shared<Flags>();
   bench::KernelBenchOptions& o = flags->options;
   CLI::App* command = bench.add_subcommand("kernel", "samples per second of training and rendering a field, against this machine's own limit");
-  command->add_option("-o,--output", flags->out, "folder for kernel.json, kernel.html and tables as CSV")->type_name("DIR");
+  command->add_option("-o,--out,--output", flags->out, "folder for kernel.json, kernel.html and tables as CSV")->type_name("DIR");
   command->add_option("--isa", o.isa, "force an instruction set: avx512, avx2, portable or one by name")->type_name("NAME");
   command->add_option("--levels", o.levels, "resolutions of the hash grid")->type_name("N")->capture_default_str();
   command->add_option("--features", o.features, "numbers per grid entry, 2 or 4")->type_name("N")->capture_default_str();
@@ -74,7 +74,7 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
   const auto flags = std::make_shared<Flags>();
   bench::ScheduleBenchOptions& o = flags->options;
   CLI::App* command = bench.add_subcommand("schedule", "how well a cluster would be used: the scheduler against simulated ranks");
-  command->add_option("-o,--output", flags->out, "folder for schedule.json, schedule.html and tables as CSV")->type_name("DIR");
+  command->add_option("-o,--out,--output", flags->out, "folder for schedule.json, schedule.html and tables as CSV")->type_name("DIR");
   const CLI::Option* blocks = command->add_option("--blocks", o.blocks, "blocks to train")->type_name("N")->capture_default_str();
   const CLI::Option* ranks = command->add_option("--ranks", o.ranks, "ranks, the one that hands out included")->type_name("N")->capture_default_str();
   command->add_option("--block-seconds", o.block_seconds, "mean training time of a block on one rank")->type_name("S")->capture_default_str();

@@ -35,8 +35,9 @@ std::string Db(double value) {
 
 void AddPictureRows(const Metrics& metrics, FigureTable* table) {
   table->Group("Picture similarity, mean over the held-out photos");
-  table->Row("PSNR", Db(metrics.psnr),
-             "Peak signal-to-noise ratio of the rendered picture against the photo, over covered pixels. Higher is better; twice the error is 6 dB less.");
+  table->Row(
+      "PSNR", Db(metrics.psnr),
+      "Peak signal-to-noise ratio of the rendered picture against the photo, over covered pixels. Higher is better; twice the error is 6 dB less.");
   table->Row("PSNR, full frame", Db(metrics.psnr_full_frame), "The same over all pixels that no mask excludes.");
   table->Row("SSIM", page::FormatFixed(metrics.ssim, 3), "Structural similarity over covered pixels. 1 is identical.");
   table->Row("SSIM, full frame", page::FormatFixed(metrics.ssim_full_frame, 3), "The same over all pixels that no mask excludes.");
@@ -44,7 +45,8 @@ void AddPictureRows(const Metrics& metrics, FigureTable* table) {
   table->Row("Coverage", page::FormatPercent(metrics.coverage),
              fmt::format("Pixels of {} held-out photos that show ground seen by at least two training photos.", metrics.photos.size()));
   if (!std::isnan(metrics.psnr_exif_gain)) {
-    table->Row("PSNR with the EXIF gain alone", Db(metrics.psnr_exif_gain), "With the brightness that the tags state, without what training learned.");
+    table->Row("PSNR with the EXIF gain alone", Db(metrics.psnr_exif_gain),
+               "With the brightness that the tags state, without what training learned.");
   }
   if (!std::isnan(metrics.psnr_right_half)) {
     table->Row("PSNR of right halves, as rendered", Db(metrics.psnr_right_half), "Over the covered pixels of the right half of each photo.");
@@ -83,6 +85,7 @@ void AddSeamRows(const Metrics& metrics, FigureTable* table) {
 }
 
 void AddFlightRows(const Metrics& metrics, FigureTable* table) {
+  if (!metrics.georeferenced) return;  // lengths are in units of unknown size
   table->Group("Flight");
   table->Row("Height above ground, median", page::FormatFixed(metrics.median_agl_m, 1, "m"), "Camera above the sparse points below it.");
   table->Row("Height above take-off, median", page::FormatFixed(metrics.median_relative_altitude_m, 1, "m"),
@@ -122,9 +125,10 @@ std::string GeoSection(const ReportInput& input) {
         "{} tagged photos: {} horizontal, {} vertical.",
         page::FormatFixed(fit.rmse_m, 2, "m"), fit.n_inliers, fit.n_matches, page::FormatFixed(fit.rmse_horizontal_m, 2, "m"),
         page::FormatFixed(fit.rmse_vertical_m, 2, "m"));
-    html += fmt::format(" Coordinates are east, north and up of the origin at latitude {}, longitude {}, height {}.",
-                        page::FormatFixed(input.survey->origin.latitude_deg, 6, "\xC2\xB0"),
-                        page::FormatFixed(input.survey->origin.longitude_deg, 6, "\xC2\xB0"), page::FormatFixed(input.survey->origin.height_m, 1, "m"));
+    html +=
+        fmt::format(" Coordinates are east, north and up of the origin at latitude {}, longitude {}, height {}.",
+                    page::FormatFixed(input.survey->origin.latitude_deg, 6, "\xC2\xB0"),
+                    page::FormatFixed(input.survey->origin.longitude_deg, 6, "\xC2\xB0"), page::FormatFixed(input.survey->origin.height_m, 1, "m"));
     for (size_t i = 0; i < fit.flight_vertical_offset_m.size(); ++i) {
       html += fmt::format(" The tagged heights of flight {} were moved by {}.", i + 1, page::FormatFixed(fit.flight_vertical_offset_m[i], 2, "m"));
     }
@@ -142,9 +146,8 @@ std::string MethodSection(const ReportInput& input) {
   fact("Machine", page::EscapeHtml(metrics.machine));
   const scene::RenderStatistics& rendering = metrics.rendering;
   if (rendering.bytes_sent > 0) {
-    fact("Rendered by",
-         fmt::format("{} {}, {} between them", rendering.ranks, rendering.ranks == 1 ? "rank" : "ranks",
-                     page::FormatBytes(rendering.bytes_sent + rendering.bytes_received)));
+    fact("Rendered by", fmt::format("{} {}, {} between them", rendering.ranks, rendering.ranks == 1 ? "rank" : "ranks",
+                                    page::FormatBytes(rendering.bytes_sent + rendering.bytes_received)));
   }
   fact("Photos", fmt::format("{} placed, {} not placed, {} held out, {} scored", page::FormatInteger(metrics.n_photos),
                              page::FormatInteger(metrics.n_unregistered), page::FormatInteger(metrics.n_test), metrics.photos.size()));
@@ -154,7 +157,8 @@ std::string MethodSection(const ReportInput& input) {
     html += "<p>" + page::EscapeHtml(definition) + "</p>";
   }
   html +=
-      "<p>Each photo is rendered at the exposure that its EXIF tags state. Where training learned gains, those of the photos taken before and after are "
+      "<p>Each photo is rendered at the exposure that its EXIF tags state. Where training learned gains, those of the photos taken before and after "
+      "are "
       "added. Nothing is fitted to the held-out photo itself.</p></div></div>";
   if (!metrics.config.empty())
     html += "<details class=\"card config\"><summary>Configuration</summary><pre>" + page::EscapeHtml(metrics.config) + "</pre></details>";

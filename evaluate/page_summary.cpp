@@ -36,7 +36,8 @@ std::string AreaFigure(const ReportInput& input) {
   double area_m2 = 0.0;
   size_t n_blocks = 0;
   for (const partition::Block& block : input.blocks->blocks) {
-    if (block.empty) continue;
+    const scene::FieldTraining* log = input.training->Find(block.name);
+    if (block.empty || (log != nullptr && !log->ok)) continue;
     const Eigen::Vector3d size = block.max_enu - block.min_enu;
     area_m2 += size.x() * size.y();
     ++n_blocks;
@@ -44,8 +45,8 @@ std::string AreaFigure(const ReportInput& input) {
   const double area_ha = n_blocks > 0 && input.metrics->georeferenced ? area_m2 * 1e-4 : kNotMeasured;
   const int n_photos = input.metrics->n_photos;
   return page::KeyFigure("Area mapped", page::FormatFixed(area_ha, area_ha < 10.0 ? 2 : 1, "ha"),
-                         fmt::format("{} of {} photos placed, {} {}", page::FormatInteger(n_photos),
-                                     page::FormatInteger(n_photos + input.metrics->n_unregistered), n_blocks, n_blocks == 1 ? "block" : "blocks"));
+                         fmt::format("{} {}; {} of {} photos placed", n_blocks, n_blocks == 1 ? "block" : "blocks", page::FormatInteger(n_photos),
+                                     page::FormatInteger(n_photos + input.metrics->n_unregistered)));
 }
 
 // Without true depths the area that photos cover is what can be said of the surface.
@@ -65,8 +66,9 @@ std::string SimilarityFigure(const Metrics& metrics) {
 
 std::string TimeFigure(const Metrics& metrics) {
   std::string note = metrics.ranks == 1 ? "1 process" : fmt::format("{} ranks", metrics.ranks);
-  if (metrics.threads > 0) note += fmt::format(", {} {}{}", metrics.threads, metrics.threads == 1 ? "thread" : "threads", metrics.ranks > 1 ? " each" : "");
-  return page::KeyFigure("Training time", ShownDuration(metrics.train_seconds), note + "; camera positions not included");
+  if (metrics.threads > 0)
+    note += fmt::format(", {} {}{}", metrics.threads, metrics.threads == 1 ? "thread" : "threads", metrics.ranks > 1 ? " each" : "");
+  return page::KeyFigure("Training time", ShownDuration(metrics.train_seconds), note + "; COLMAP not included");
 }
 
 }  // namespace
@@ -74,7 +76,7 @@ std::string TimeFigure(const Metrics& metrics) {
 std::string SummarySection(const ReportInput& input) {
   const Metrics& metrics = *input.metrics;
   // What a surveyor asks first: where on Earth, how fine, how much ground, how right, how like the photos, how long.
-  return "<section id=\"summary\" class=\"kpis\">" + PositionFigure(metrics) + GroundSamplingFigure(input) + AreaFigure(input) +
+  return "<section id=\"summary\" class=\"kpis six\">" + PositionFigure(metrics) + GroundSamplingFigure(input) + AreaFigure(input) +
          SurfaceFigure(metrics) + SimilarityFigure(metrics) + TimeFigure(metrics) +
          "</section>\n<p class=\"more\"><a href=\"#details\">All figures, and what they mean</a></p>\n";
 }

@@ -37,13 +37,15 @@ std::string TrainingCells(const scene::FieldTraining* log) {
 }  // namespace
 
 std::string BlockTable(const ReportInput& input) {
+  const char* length_unit = input.survey->georeferenced ? "m" : "units";
   std::string html =
       "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Block</th><th>State</th><th class=\"num\">Held-out PSNR</th><th "
       "class=\"num\">Scored "
       "pixels</th>"
       "<th class=\"num\">Training PSNR</th><th class=\"num\">Steps</th><th class=\"num\">Training time</th><th class=\"num\">Rays</th><th "
       "class=\"num\">Samples</th>"
-      "<th class=\"num\">Parameters</th><th class=\"num\">Size</th><th class=\"num\">Heights from, to</th><th class=\"num\">Height above ground</th><th "
+      "<th class=\"num\">Parameters</th><th class=\"num\">Size</th><th class=\"num\">Heights from, to</th><th class=\"num\">Height above "
+      "ground</th><th "
       "class=\"num\">GSD</th>"
       "<th class=\"num\">Photos</th></tr></thead><tbody>";
   if (const scene::FieldTraining* context = input.training->Find("context")) {
@@ -58,13 +60,14 @@ std::string BlockTable(const ReportInput& input) {
     const double pixels = score == nullptr ? kNotMeasured : static_cast<double>(score->pixels);
     const scene::FieldTraining* log = input.training->Find(block.name);
     const Eigen::Vector3d size = block.max_enu - block.min_enu;
+    const double gsd_m = input.survey->georeferenced ? block.gsd_m : kNotMeasured;
     html += fmt::format("<tr id=\"block-{0}\"><td><b>{0}</b></td>", page::EscapeHtml(block.name)) + StatusCell(log, &block);
     html += page::NumberCell(psnr_db, page::FormatFixed(psnr_db, 2, "dB")) + page::NumberCell(pixels, page::FormatLarge(pixels)) + TrainingCells(log);
-    html += page::NumberCell(size.x() * size.y(), fmt::format("{:.0f} \xC3\x97 {:.0f}\xE2\x80\xAFm", size.x(), size.y()));
-    html += page::NumberCell(
-        block.min_enu.z(), fmt::format("{} \xE2\x80\xA6 {}", page::FormatFixed(block.min_enu.z(), 1), page::FormatFixed(block.max_enu.z(), 1, "m")));
-    html += page::NumberCell(block.altitude_agl_m, page::FormatFixed(block.altitude_agl_m, 1, "m"));
-    html += page::NumberCell(block.gsd_m, page::FormatFixed(block.gsd_m * 100.0, 1, "cm"));
+    html += page::NumberCell(size.x() * size.y(), fmt::format("{:.0f} \xC3\x97 {:.0f}\xE2\x80\xAF{}", size.x(), size.y(), length_unit));
+    html += page::NumberCell(block.min_enu.z(), fmt::format("{} \xE2\x80\xA6 {}", page::FormatFixed(block.min_enu.z(), 1),
+                                                            page::FormatFixed(block.max_enu.z(), 1, length_unit)));
+    html += page::NumberCell(block.altitude_agl_m, page::FormatFixed(block.altitude_agl_m, 1, length_unit));
+    html += page::NumberCell(gsd_m, page::FormatFixed(gsd_m * 100.0, 1, "cm"));
     html += page::NumberCell(static_cast<double>(block.photos.size()), page::FormatInteger(static_cast<int64_t>(block.photos.size())));
     html += "</tr>";
   }
@@ -83,7 +86,8 @@ std::string ResidualTable(const ReportInput& input) {
     }
   }
   if (!survey.georeferenced || tagged.empty()) {
-    return "<p class=\"card empty\">The survey has no usable GPS: positions are in a local frame of unknown scale, and there is nothing to compare them with.</p>\n";
+    return "<p class=\"card empty\">The survey has no usable GPS: positions are in a local frame of unknown scale, and there is nothing to compare "
+           "them with.</p>\n";
   }
   std::stable_sort(tagged.begin(), tagged.end(), [](const auto* a, const auto* b) { return a->gps_residual_m > b->gps_residual_m; });
   const double worst = tagged.front()->gps_residual_m;
@@ -100,7 +104,8 @@ std::string ResidualTable(const ReportInput& input) {
     return html + page::TextCell(photo.is_test ? "testing" : "training") + "</tr>";
   };
   const std::string head =
-      "<thead><tr><th>Photo</th><th class=\"num\">Residual</th><th>GPS tag</th><th class=\"num\">Height above ground</th><th class=\"num\">Height above take-off "
+      "<thead><tr><th>Photo</th><th class=\"num\">Residual</th><th>GPS tag</th><th class=\"num\">Height above ground</th><th class=\"num\">Height "
+      "above take-off "
       "(XMP)</th>"
       "<th class=\"num\">Flight</th><th>Used for</th></tr></thead>";
   constexpr size_t kShown = 12;

@@ -60,6 +60,7 @@ std::string BlockFacts(const ReportInput& input) {
   std::string html = "<dl class=\"card facts small\">";
   const auto fact = [&](const char* name, const std::string& value) { html += Fact(name, value); };
   fact("Blocks", fmt::format("{} \xC3\x97 {}{}", input.blocks->rows, input.blocks->columns, n_empty > 0 ? fmt::format(", {} empty", n_empty) : ""));
+  if (!input.survey->georeferenced) return html + "</dl>";  // lengths are in units of unknown size
   fact("Height above ground", RangeOf(altitude_m, 0, "m"));
   fact("Ground sampling distance", RangeOf(gsd_cm, 1, "cm"));
   fact("Overlap on each side", RangeOf(margin_m, 1, "m"));
@@ -67,8 +68,11 @@ std::string BlockFacts(const ReportInput& input) {
 }
 
 std::string MapSection(const ReportInput& input) {
-  std::string html = "<section id=\"map-section\"><div class=\"heading\"><h2>Map and blocks</h2></div><p class=\"lead\">The ground is cut into blocks, and each block is trained by itself. The figure in a block is the PSNR of the held-out photos there.</p><div class=\"map-grid\"><div class=\"card map-card\">" +
-                     BlockMapSvg(input);
+  std::string html =
+      "<section id=\"map-section\"><div class=\"heading\"><h2>Map and blocks</h2></div><p class=\"lead\">The ground is cut into blocks, and each "
+      "block is trained by itself. The figure in a block is the PSNR of the held-out photos there.</p><div class=\"map-grid\"><div class=\"card "
+      "map-card\">" +
+      BlockMapSvg(input);
   html += "<div class=\"toggles\">";
   if (input.background) html += Toggle("ortho", "Orthophoto", "k-ortho");
   html += Toggle("blocks", "Blocks and margins", "k-block") + Toggle("cameras", "Training photos", "k-camera") +
@@ -129,19 +133,16 @@ std::string BuildReportPage(const ReportInput& input) {
                  "all parts of the input");
   SKYQUILT_CHECK(input.images.empty() || input.images.size() == input.metrics->photos.size(), "one entry of images per scored photo");
   const std::string brightness = BrightnessSection(input);
-  page::PageFrame frame{.title = input.title,
-                        .window_title = "Skyquilt report",
-                        .subtitle = fmt::format("Survey report \xC2\xB7 {} \xC2\xB7 {} photos, {} blocks", ShownDate(input.metrics->date),
-                                                page::FormatInteger(input.metrics->n_photos), input.blocks->blocks.size()),
-                        .anchors = {{"summary", "Summary"},
-                                    {"map-section", "Map"},
-                                    {"photos", "Photos"},
-                                    {"geo", "Geo-reference"},
-                                    {"details", "Details"}}};
+  page::PageFrame frame{
+      .title = input.title,
+      .window_title = "Skyquilt report",
+      .subtitle = fmt::format("Survey report \xC2\xB7 {} \xC2\xB7 {} photos, {} blocks", ShownDate(input.metrics->date),
+                              page::FormatInteger(input.metrics->n_photos), input.blocks->blocks.size()),
+      .anchors = {{"summary", "Summary"}, {"map-section", "Map"}, {"photos", "Photos"}, {"geo", "Geo-reference"}, {"details", "Details"}}};
   if (!brightness.empty()) frame.anchors.emplace_back("brightness", "Brightness");
   frame.anchors.insert(frame.anchors.end(), {{"training", "Training"}, {"method", "Method"}});
-  return page::PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + GeoSection(input) +
-         DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + page::PageEnd();
+  return page::PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) +
+         GeoSection(input) + DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + page::PageEnd();
 }
 
 }  // namespace skyquilt::evaluate

@@ -33,14 +33,14 @@ void AboutPlacedPhotos(const survey::Survey& survey, std::vector<Warning>* warni
   warnings->push_back({fmt::format("{} of {} photos {} not placed: COLMAP found no camera position for {}", n, survey.photos.size() + n,
                                    n == 1 ? "was" : "were", Names(survey.unregistered)),
                        "The map is made without them. If they matter, check that they are sharp and show firm ground rather than water, add photos "
-                       "that overlap them more, and run again with --restart. The COLMAP log is survey/colmap/colmap.log"});
+                       "that overlap them more, and run the same command with --restart. The COLMAP log is survey/colmap/colmap.log"});
 }
 
 void AboutPosition(const survey::Survey& survey, std::vector<Warning>* warnings) {
   if (!survey.georeferenced) {
     warnings->push_back({"No geo-reference: too few photos carry usable GPS. The map has a local frame of unknown scale, and lengths are not metres",
-                         "Use photos with GPS tags (EXIF or XMP): at least three, not all in one place or on one line. Then run again with "
-                         "--restart"});
+                         "Use photos with GPS tags (EXIF or XMP): at least three, not all in one place or on one line. Then run the same "
+                         "command with --restart"});
     return;
   }
   std::vector<std::string> outliers;
@@ -52,7 +52,7 @@ void AboutPosition(const survey::Survey& survey, std::vector<Warning>* warnings)
                                    outliers.size() == 1 ? "tag" : "tags", outliers.size(), outliers.size() == 1 ? "photo" : "photos",
                                    outliers.size() == 1 ? "s" : "", outliers.size() == 1 ? "was" : "were", Names(outliers)),
                        "Compare the residuals under Geo-reference (or in survey/geo_residuals.csv). A few bad tags do no harm. If good tags are left "
-                       "out, raise prepare.ransac_threshold_m and run again with --restart"});
+                       "out, raise prepare.ransac_threshold_m and run the same command with --restart"});
 }
 
 void AboutBlocks(const partition::BlockSet& blocks, const scene::TrainReport* training, std::vector<Warning>* warnings) {
@@ -99,7 +99,7 @@ void AboutTraining(const scene::TrainReport* training, std::vector<Warning>* war
 void AboutScores(const Metrics& metrics, std::vector<Warning>* warnings) {
   if (metrics.photos.empty()) {
     warnings->push_back({"No held-out photo was scored, so there are no figures of quality",
-                         "Keep some photos out of training with --holdout every:8 and run again with --restart"});
+                         "Keep some photos out of training with --holdout every:8, and run the same command with --restart"});
     return;
   }
   if (std::isfinite(metrics.coverage) && metrics.coverage < kLowCoverage) {

@@ -110,7 +110,10 @@ TEST_F(ReportPage, TheFirstScreenSaysWhereOnEarthOrThatNothingDoes) {
   const std::string good = SummarySection(sample_->input), poor = SummarySection(poor_->input);
   EXPECT_NE(good.find("2.41\xE2\x80\xAFm"), std::string::npos) << good;
   EXPECT_NE(good.find("80 of 81 GPS tags used"), std::string::npos) << good;
-  EXPECT_NE(good.find("6.1\xE2\x80\xAF" "cm/pixel"), std::string::npos) << good;
+  EXPECT_NE(good.find("6.1\xE2\x80\xAF"
+                      "cm/pixel"),
+            std::string::npos)
+      << good;
   // Five blocks of 100 m by 150 m.
   EXPECT_NE(good.find("7.50\xE2\x80\xAFha"), std::string::npos) << good;
   EXPECT_NE(good.find("Depth error"), std::string::npos) << good;
@@ -134,7 +137,7 @@ TEST_F(ReportPage, EveryWarningSaysWhatToDo) {
 }
 
 TEST_F(ReportPage, PrintsAsAReportOnPaper) {
-  EXPECT_NE(html_.find("@page { size:A4"), std::string::npos);
+  EXPECT_NE(html_.find("size:A4", html_.find("@page {")), std::string::npos);
   const size_t print = html_.find("@media print");
   ASSERT_NE(print, std::string::npos);
   // Later rules win: none for the screen may follow.
@@ -177,7 +180,7 @@ TEST_F(ReportPage, BrightnessEscapesNamesAndSentences) {
   EXPECT_EQ(section.find("<b>DJI"), std::string::npos);
   // In a tooltip and over the pictures.
   EXPECT_EQ(CountOf(section, "&lt;b&gt;DJI &amp; &quot;co&quot;&lt;/b&gt;.jpg"), 2U);
-  EXPECT_NE(section.find("Hidden light &lt;none&gt;."), std::string::npos);
+  EXPECT_NE(section.find("Concealing field &lt;none&gt;."), std::string::npos);
 }
 
 TEST_F(ReportPage, ThereIsNoBrightnessWithoutFindings) {

@@ -105,7 +105,7 @@ BrightnessReport CloudyFlight(const survey::Survey& survey, const std::filesyste
   report.histogram_after = bell(0.5, 0.2);
   FalloffCurve& falloff = report.falloff.emplace_back();
   for (size_t i = 0; i < falloff.size(); ++i) falloff[i] = std::exp(-0.004 * static_cast<double>(i * i));
-  report.luminance = "Hidden light <none>.";
+  report.luminance = "Concealing field <none>.";
   for (const size_t i : {size_t{0}, size_t{24}}) {
     const double stops = i == 0 ? -0.71 : 1.23;
     const Eigen::Vector3d center = survey.photos[i].cam_from_enu.OriginInSource();

@@ -51,7 +51,7 @@ void AddPictureRows(const Metrics& metrics, FigureTable* table) {
   if (!std::isnan(metrics.psnr_right_half)) {
     table->Row("PSNR of right halves, as rendered", Db(metrics.psnr_right_half), "Over the covered pixels of the right half of each photo.");
     table->Row("PSNR of right halves, with gains fitted to the left halves", Db(metrics.psnr_right_half_fitted),
-               "How much better it would be if the brightness of each photo were known.");
+               "The same, if the brightness of each photo were known.");
   }
   if (!std::isnan(metrics.psnr_normal)) {
     table->Row("PSNR at normal brightness", Db(metrics.psnr_normal), "Against the normally exposed photos in evaluate.normal_photos.");

@@ -26,10 +26,12 @@ std::string GroundSamplingFigure(const ReportInput& input) {
   for (const partition::Block& block : input.blocks->blocks) {
     if (!block.empty) gsd_cm.push_back(100.0 * block.gsd_m);
   }
-  return page::KeyFigure(label, RangeOf(gsd_cm, 1, "cm/pixel"),
-                         std::isfinite(input.metrics->median_agl_m)
-                             ? fmt::format("flown {} above ground", page::FormatFixed(input.metrics->median_agl_m, 0, "m"))
-                             : "at the photo size used for training");
+  int width = 0;  // of the largest photos
+  for (const camera::Camera& camera : input.survey->cameras) width = std::max(width, camera.width);
+  std::string note = fmt::format("per pixel; flown {} above ground", page::FormatFixed(input.metrics->median_agl_m, 0, "m"));
+  const int reduced = input.blocks->image_width;
+  if (reduced > 0 && reduced < width) note += fmt::format(", photos reduced to {} pixels width", page::FormatInteger(reduced));
+  return page::KeyFigure(label, RangeOf(gsd_cm, 1, "cm"), note);
 }
 
 std::string AreaFigure(const ReportInput& input) {
@@ -44,9 +46,9 @@ std::string AreaFigure(const ReportInput& input) {
   }
   const double area_ha = n_blocks > 0 && input.metrics->georeferenced ? area_m2 * 1e-4 : kNotMeasured;
   const int n_photos = input.metrics->n_photos;
-  return page::KeyFigure("Area mapped", page::FormatFixed(area_ha, area_ha < 10.0 ? 2 : 1, "ha"),
-                         fmt::format("{} {}; {} of {} photos placed", n_blocks, n_blocks == 1 ? "block" : "blocks", page::FormatInteger(n_photos),
-                                     page::FormatInteger(n_photos + input.metrics->n_unregistered)));
+  return page::KeyFigure("Area", page::FormatFixed(area_ha, area_ha < 10.0 ? 2 : 1, "ha"),
+                         fmt::format("inside {} {}; {} of {} photos placed", n_blocks, n_blocks == 1 ? "block" : "blocks",
+                                     page::FormatInteger(n_photos), page::FormatInteger(n_photos + input.metrics->n_unregistered)));
 }
 
 // Without true depths the area that photos cover is what can be said of the surface.

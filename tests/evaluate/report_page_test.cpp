@@ -111,14 +111,15 @@ TEST_F(ReportPage, TheFirstScreenSaysWhereOnEarthOrThatNothingDoes) {
   EXPECT_NE(good.find("2.41\xE2\x80\xAFm"), std::string::npos) << good;
   EXPECT_NE(good.find("80 of 81 GPS tags used"), std::string::npos) << good;
   EXPECT_NE(good.find("6.1\xE2\x80\xAF"
-                      "cm/pixel"),
+                      "cm</strong>"),
             std::string::npos)
       << good;
+  EXPECT_NE(good.find("photos reduced to 480 pixels width"), std::string::npos) << good;
   // Five blocks of 100 m by 150 m.
   EXPECT_NE(good.find("7.50\xE2\x80\xAFha"), std::string::npos) << good;
   EXPECT_NE(good.find("Depth error"), std::string::npos) << good;
   EXPECT_NE(poor.find("<strong>none</strong>"), std::string::npos) << poor;
-  EXPECT_EQ(poor.find("cm/pixel"), std::string::npos) << "a scale nobody knows: " << poor;
+  EXPECT_EQ(poor.find("per pixel"), std::string::npos) << "a scale nobody knows: " << poor;
   EXPECT_EQ(poor.find("\xE2\x80\xAFha"), std::string::npos) << poor;
   EXPECT_EQ(poor.find("Depth error"), std::string::npos) << poor;
   EXPECT_NE(poor.find("31.0\xE2\x80\xAF%"), std::string::npos) << "coverage instead: " << poor;

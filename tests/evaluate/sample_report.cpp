@@ -160,6 +160,7 @@ partition::BlockSet TownBlocks(const survey::Survey& survey) {
   blocks.georeferenced = true;
   blocks.rows = 2;
   blocks.columns = 3;
+  blocks.image_width = 480;
   for (int row = 0; row < 2; ++row) {
     for (int column = 0; column < 3; ++column) {
       partition::Block block;

@@ -30,10 +30,11 @@ std::string BlocksAre(const std::vector<std::string>& names) {
 void AboutPlacedPhotos(const survey::Survey& survey, std::vector<Warning>* warnings) {
   if (survey.unregistered.empty()) return;
   const size_t n = survey.unregistered.size();
-  warnings->push_back({fmt::format("{} of {} photos {} not placed: COLMAP found no camera position for {}", n, survey.photos.size() + n,
-                                   n == 1 ? "was" : "were", Names(survey.unregistered)),
-                       "The map is made without them. If they matter, check that they are sharp and show firm ground rather than water, add photos "
-                       "that overlap them more, and run the same command with --restart. The COLMAP log is survey/colmap/colmap.log"});
+  warnings->push_back(
+      {fmt::format("{} of {} photos {} not placed: the COLMAP model has no camera position for {}", n, survey.photos.size() + n,
+                   n == 1 ? "was" : "were", Names(survey.unregistered)),
+       "The map is made without them. If they matter, check that they are sharp and show firm ground rather than water, add photos "
+       "that overlap them more, and run the same command with --restart. If skyquilt ran COLMAP, its log is survey/colmap/colmap.log"});
 }
 
 void AboutPosition(const survey::Survey& survey, std::vector<Warning>* warnings) {

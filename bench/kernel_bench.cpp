@@ -62,7 +62,7 @@ worker::RayBatch MakeBatch(const KernelBenchOptions& options, int feature_rows) 
     }
     batch.Append(r, x.data(), y.data(), z.data(), t.data(), unit_length.data(), cell.data());
   }
-  batch.Finish(feature_rows);
+  batch.CountAndReserve(feature_rows);
   return batch;
 }
 
@@ -125,7 +125,7 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
   state.Allocate(field);
   base::Random random(11);
   field.Initialize(random, parameters.grid, parameters.networks);
-  worker::StageTimes times(threads.size());
+  worker::PhaseTimes times(threads.size());
   worker::FieldStep step(target, field, nullptr, worker::LuminancePlan{}, threads, times);
   worker::RayBatch batch = MakeBatch(options, field.FeatureRows());
   worker::StepOptions learning;
@@ -143,10 +143,10 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
     const Clock::time_point start = Clock::now();
     speed.train_samples_per_second = Rate(samples, options.seconds, [&] { step.Train(batch, learning, parameters, state, nullptr); });
     const double thread_seconds = Since(start) * n_threads;
-    const auto stages = times.Seconds();
+    const auto phases = times.Seconds();
     double busy = 0.0;
-    for (size_t i = 0; i < stages.size(); ++i) {
-      speed.train_share[i] = stages[i] / thread_seconds;
+    for (size_t i = 0; i < phases.size(); ++i) {
+      speed.train_share[i] = phases[i] / thread_seconds;
       busy += speed.train_share[i];
     }
     speed.waiting_share = std::max(0.0, 1.0 - busy);
@@ -172,7 +172,7 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
   median(&KernelSpeed::gather_limit_s);
   median(&KernelSpeed::scatter_limit_s);
   median(&KernelSpeed::waiting_share);
-  for (size_t i = 0; i < worker::kStages; ++i) {
+  for (size_t i = 0; i < worker::kPhases; ++i) {
     std::vector<double> values;
     values.reserve(rounds.size());
     for (const KernelSpeed& r : rounds) values.push_back(r.train_share[i]);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/bench_page.h"
-#include "worker/stage_times.h"
+#include "worker/phase_times.h"
 
 namespace skyquilt::bench {
 
@@ -42,7 +42,7 @@ struct KernelSpeed {
   double network_limit_s = 0.0;  // per sample and thread
   double gather_limit_s = 0.0;
   double scatter_limit_s = 0.0;
-  std::array<double, worker::kStages> train_share = {};  // of the threads' time
+  std::array<double, worker::kPhases> train_share = {};  // of the threads' time
   double waiting_share = 0.0;                            // time in which a thread had nothing to do
   double RooflineFraction() const { return train_samples_per_second / roofline_train_samples_per_second; }
 };

@@ -15,8 +15,8 @@ using Json = nlohmann::ordered_json;
 
 Json SpeedJson(const KernelSpeed& s) {
   Json share;
-  for (size_t i = 0; i < worker::kStages; ++i) {
-    if (s.train_share[i] > 0.0) share[worker::kStageNames[i]] = s.train_share[i];
+  for (size_t i = 0; i < worker::kPhases; ++i) {
+    if (s.train_share[i] > 0.0) share[worker::kPhaseNames[i]] = s.train_share[i];
   }
   share["waiting"] = s.waiting_share;
   return {{"threads", s.threads},
@@ -81,7 +81,7 @@ std::vector<std::string> KernelVerdicts(const KernelBenchResult& r) {
   const KernelSpeed& s = r.all;
   const auto most = static_cast<size_t>(std::max_element(s.train_share.begin(), s.train_share.end()) - s.train_share.begin());
   std::vector<std::string> verdicts = {fmt::format("Training reaches {} of what this machine can do at best; most of its time goes into {} ({}).",
-                                                   page::FormatPercent(s.RooflineFraction(), 0), worker::kStageNames[most],
+                                                   page::FormatPercent(s.RooflineFraction(), 0), worker::kPhaseNames[most],
                                                    page::FormatPercent(s.train_share[most], 0))};
   if (!r.one_thread.empty()) {
     const KernelSpeed& one = r.one_thread.front();
@@ -116,20 +116,20 @@ BenchSection LimitSection(const KernelBenchResult& r) {
 
 BenchSection StageSection(const KernelBenchResult& r) {
   const std::vector<KernelSpeed> speeds = SpeedsOf(r);
-  BenchTable table{.name = "stages", .title = "", .note = "", .columns = {"stage"}, .rows = {}};
+  BenchTable table{.name = "phases", .title = "", .note = "", .columns = {"phase"}, .rows = {}};
   for (const KernelSpeed& s : speeds) {
     table.columns.push_back("share, " + ThreadsText(s.threads));
     table.columns.push_back("ns a sample, " + ThreadsText(s.threads));
   }
   std::vector<std::vector<page::Bar>> bars(speeds.size());
-  for (size_t stage = 0; stage <= worker::kStages; ++stage) {
-    const bool waiting = stage == worker::kStages;
-    if (!waiting && !(r.all.train_share[stage] > 0.0)) continue;
-    const std::string name = waiting ? "waiting, bookkeeping" : worker::kStageNames[stage];
+  for (size_t phase = 0; phase <= worker::kPhases; ++phase) {
+    const bool waiting = phase == worker::kPhases;
+    if (!waiting && !(r.all.train_share[phase] > 0.0)) continue;
+    const std::string name = waiting ? "waiting, bookkeeping" : worker::kPhaseNames[phase];
     std::vector<BenchCell> row = {BenchCell::Text(name)};
     for (size_t k = 0; k < speeds.size(); ++k) {
       const KernelSpeed& s = speeds[k];
-      const double share = waiting ? s.waiting_share : s.train_share[stage];
+      const double share = waiting ? s.waiting_share : s.train_share[phase];
       row.push_back(BenchCell::Percent(share));
       bars[k].push_back({.label = name, .value = 100.0 * share, .shown = row.back().shown});
       row.push_back(NsCell(share * s.threads / s.train_samples_per_second));
@@ -143,9 +143,9 @@ BenchSection StageSection(const KernelBenchResult& r) {
         page::BarChart(bars[k], {.title = "Training on " + ThreadsText(speeds[k].threads), .x_label = "share of the threads' time (%)"}));
   }
   return {
-      .id = "stages",
+      .id = "phases",
       .title = "Where a sample's time goes",
-      .lead = "Time of one thread for a training sample. Waiting is what the stages leave: threads with nothing to do, and what lies between calls.",
+      .lead = "Time of one thread for a training sample. Waiting is what the phases leave: threads with nothing to do, and what lies between calls.",
       .charts = charts,
       .tables = {table},
       .pictures = {}};
@@ -231,9 +231,9 @@ std::string KernelBenchTable(const KernelBenchResult& r) {
       1e9 * s.network_limit_s, 1e-3 * r.train_flops, s.gflops_per_thread, 1e9 * s.gather_limit_s, 1e9 * s.scatter_limit_s);
   text += "Where training time goes:\n";
   const double thread_s = s.threads / s.train_samples_per_second;
-  for (size_t i = 0; i < worker::kStages; ++i) {
+  for (size_t i = 0; i < worker::kPhases; ++i) {
     if (s.train_share[i] > 0.0005) {
-      row(worker::kStageNames[i], fmt::format("{:.1f} %", 100.0 * s.train_share[i]),
+      row(worker::kPhaseNames[i], fmt::format("{:.1f} %", 100.0 * s.train_share[i]),
           fmt::format("{:.0f} ns a sample", 1e9 * thread_s * s.train_share[i]));
     }
   }

@@ -80,16 +80,16 @@ BrightnessHistogram Shares(BrightnessHistogram counts) {
   return counts;
 }
 
-std::vector<FalloffCurve> FalloffOfCameras(const std::vector<float>& falloff) {
-  if (std::all_of(falloff.begin(), falloff.end(), [](float f) { return f == 0.0F; })) return {};
-  std::vector<FalloffCurve> curves;
-  for (size_t at = 0; at + 3 <= falloff.size(); at += 3) {
+std::vector<VignettingCurve> VignettingOfCameras(const std::vector<float>& vignetting) {
+  if (std::all_of(vignetting.begin(), vignetting.end(), [](float f) { return f == 0.0F; })) return {};
+  std::vector<VignettingCurve> curves;
+  for (size_t at = 0; at + 3 <= vignetting.size(); at += 3) {
     brightness::Response one = brightness::Response::Plain(1, 1);
-    std::copy_n(falloff.begin() + static_cast<std::ptrdiff_t>(at), 3, one.falloff.begin());
-    FalloffCurve& curve = curves.emplace_back();
+    std::copy_n(vignetting.begin() + static_cast<std::ptrdiff_t>(at), 3, one.vignetting.begin());
+    VignettingCurve& curve = curves.emplace_back();
     for (size_t i = 0; i < curve.size(); ++i) {
       const float radius = static_cast<float>(i) / static_cast<float>(curve.size() - 1);
-      curve[i] = std::exp(static_cast<double>(one.LogFalloff(0, radius * radius)));
+      curve[i] = std::exp(static_cast<double>(one.LogVignetting(0, radius * radius)));
     }
   }
   return curves;
@@ -143,7 +143,7 @@ BrightnessReport CollectBrightness(const scene::SceneInfo& info, const survey::S
   report.spread_after_stops = SpreadOf(light.after_stops);
   report.histogram_before = Shares(light.before);
   report.histogram_after = Shares(light.after);
-  report.falloff = FalloffOfCameras(response.falloff);
+  report.vignetting = VignettingOfCameras(response.vignetting);
   report.luminance = LuminanceSentence(info);
   return report;
 }
@@ -154,12 +154,12 @@ std::string BrightnessJson(const BrightnessReport& report) {
   Json json;
   json["about"] =
       "light a photo recorded over light at the survey's reference exposure, in stops: exif_stops + learned_stops (red, green, blue); held-out "
-      "photos' learned_stops are predicted from the photos before and after. falloff: per camera, share of light at 0, 0.1 ... 1 of the way from "
+      "photos' learned_stops are predicted from the photos before and after. vignetting: per camera, share of light at 0, 0.1 ... 1 of the way from "
       "the principal point to the farthest corner";
   json["trust_in_tags"] = number(report.trust_in_tags);
   json["spread_before_stops"] = number(report.spread_before_stops);
   json["spread_after_stops"] = number(report.spread_after_stops);
-  json["falloff"] = report.falloff;
+  json["vignetting"] = report.vignetting;
   json["photos"] = Json::array();
   for (const BrightnessPhoto& photo : report.photos) {
     json["photos"].push_back(

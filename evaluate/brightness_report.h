@@ -37,7 +37,7 @@ constexpr size_t kBrightnessBins = 64;
 // Shares of pixels over display values in [0, 1], mean of the three colours; sum 1, or all 0 when no pixel counts.
 using BrightnessHistogram = std::array<double, kBrightnessBins>;
 // Share of light at 0, 0.1 ... 1 of the way from the principal point to the farthest corner, > 0; 1 at the principal point.
-using FalloffCurve = std::array<double, 11>;
+using VignettingCurve = std::array<double, 11>;
 
 struct BrightnessReport {
   std::vector<BrightnessPhoto> photos;  // in order of capture
@@ -48,8 +48,8 @@ struct BrightnessReport {
   double spread_after_stops = kNotMeasured;   // divided by their gains
   BrightnessHistogram histogram_before = {};  // over the training photos, as recorded
   BrightnessHistogram histogram_after = {};   // brought to reference exposure; the last bin holds all that is brighter than white
-  std::vector<FalloffCurve> falloff;          // per camera; empty when none falls off
-  std::string luminance;                      // a sentence about hidden light; empty without
+  std::vector<VignettingCurve> vignetting;    // per camera; empty when none falls off
+  std::string luminance;                      // a sentence about concealing field; empty without
   std::vector<BrightnessView> views;          // darkest-exposed first
 
   bool Empty() const { return photos.empty(); }
@@ -57,7 +57,7 @@ struct BrightnessReport {
 
 // All but the views, from a grid of pixels of each training photo. Empty when the scene does not know the photos' brightness.
 BrightnessReport CollectBrightness(const scene::SceneInfo& info, const survey::Survey& survey, const image::PixelCache& pixels);
-// report/brightness.json, for other programs: every photo's gains in stops, the cameras' falloff, the spreads and the trust in the tags. UTF-8.
+// report/brightness.json, for other programs: every photo's gains in stops, the cameras' vignetting, the spreads and the trust in the tags. UTF-8.
 std::string BrightnessJson(const BrightnessReport& report);
 // A photo's exposure by tags and learned gains together, mean over the three colours, at the principal point, where nothing falls off.
 double ExposureStops(const brightness::Response& response, size_t photo);

@@ -36,7 +36,7 @@ Scores ScorePhotos(const EvaluateInput& input, const std::vector<int>& held_out,
     scores.Add(scored);
     progress.Advance(1.0, fmt::format("{} {:.2f} dB", scored.findings.score.name, scored.findings.score.psnr_db));
   }
-  scores.footprints = MeasureFootprintSteps(*input.scene, scorer.training(), threads);
+  scores.footprints = MeasureExposureSeams(*input.scene, scorer.training(), threads);
   progress.Finish(fmt::format("PSNR {:.2f} dB, coverage {:.1f} %", scores.Psnr(), 100.0 * scores.Coverage()));
   return scores;
 }

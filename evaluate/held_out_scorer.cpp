@@ -85,7 +85,7 @@ ScoredPhoto HeldOutScorer::Score(int photo, bool keep_normal, base::ThreadPool& 
   scored.findings = ScoreRecorded(photo, scored.task, threads);
   PhotoScore& score = scored.findings.score;
   if (lpips_) score.lpips = LpipsOf(*lpips_, scored.task, scored.findings.render);
-  if (!scored.findings.true_depth.Empty()) scored.air = MeasureAirOpacity(*input_.scene, scored.task, scored.findings, threads);
+  if (!scored.findings.true_depth.Empty()) scored.air = MeasureFloaterOpacity(*input_.scene, scored.task, scored.findings, threads);
   const std::filesystem::path normal_photos = input_.options.normal_photos;
   if (keep_normal || !normal_photos.empty()) scored.normal = RenderNormal(scored.task, threads);
   if (!normal_photos.empty()) {

@@ -7,9 +7,9 @@
 #include "core/base/thread_pool.h"
 #include "core/metrics/lpips.h"
 #include "core/scene/scene.h"
-#include "evaluate/air_opacity.h"
 #include "evaluate/coverage.h"
 #include "evaluate/evaluate_input.h"
+#include "evaluate/floater_opacity.h"
 #include "evaluate/photo_recording.h"
 #include "evaluate/photo_scorer.h"
 
@@ -18,7 +18,7 @@ namespace skyquilt::evaluate {
 struct ScoredPhoto {
   PhotoTask task;
   PhotoFindings findings;                // with the whole score
-  AirOpacity air;                        // nothing without true depth
+  FloaterOpacity air;                    // nothing without true depth
   std::vector<render::RayColor> normal;  // at normal brightness, row-major; empty when nobody asked
 };
 

@@ -78,12 +78,12 @@ struct Metrics {
   double psnr_seam_db = kNotMeasured;              // covered pixels where two or more blocks blend, pooled
   double psnr_matched_interior_db = kNotMeasured;  // the interior weighted to the seams' textures
   double seam_psnr_gap_db = kNotMeasured;          // matched interior minus seam; NaN with a single block
-  double footprint_step = kNotMeasured;            // brightness steps across the borders of photos' footprints, display values (footprint_steps.h)
-  double footprint_step_control = kNotMeasured;
+  double exposure_seam = kNotMeasured;             // brightness steps across the borders of photos' footprints, display values (exposure_seams.h)
+  double exposure_seam_control = kNotMeasured;
   double depth_rmse_m = kNotMeasured;  // pooled over the pixels of all test photos
   double depth_median_abs_m = kNotMeasured;
-  double air_opacity = kNotMeasured;                   // of what should be empty in front of the true surface, mean over rays (air_opacity.h)
-  std::vector<std::pair<double, double>> air_profile;  // (metres in front of the true surface, the same until there)
+  double floater_opacity = kNotMeasured;                   // of what should be empty in front of the true surface, mean over rays (floater_opacity.h)
+  std::vector<std::pair<double, double>> floater_profile;  // (metres in front of the true surface, the same until there)
   bool has_truth = false;
 
   double train_seconds = kNotMeasured;

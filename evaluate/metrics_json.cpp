@@ -22,8 +22,8 @@ constexpr std::array<KeyedNumber, 13> kScores = {{{"psnr", &Metrics::psnr},
                                                   {"psnr_full_frame", &Metrics::psnr_full_frame},
                                                   {"ssim_full_frame", &Metrics::ssim_full_frame},
                                                   {"psnr_exif_gain", &Metrics::psnr_exif_gain},
-                                                  {"footprint_step", &Metrics::footprint_step},
-                                                  {"footprint_step_control", &Metrics::footprint_step_control},
+                                                  {"exposure_seam", &Metrics::exposure_seam},
+                                                  {"exposure_seam_control", &Metrics::exposure_seam_control},
                                                   {"psnr_normal", &Metrics::psnr_normal},
                                                   {"ssim_normal", &Metrics::ssim_normal},
                                                   {"psnr_right_half", &Metrics::psnr_right_half},
@@ -34,7 +34,7 @@ constexpr std::array<KeyedNumber, 4> kSeams = {{{"seam_psnr_gap_db", &Metrics::s
                                                 {"psnr_block_interior_matched", &Metrics::psnr_matched_interior_db},
                                                 {"psnr_seam", &Metrics::psnr_seam_db}}};
 constexpr std::array<KeyedNumber, 3> kAgainstTruth = {
-    {{"depth_rmse_m", &Metrics::depth_rmse_m}, {"depth_median_abs_m", &Metrics::depth_median_abs_m}, {"air_opacity", &Metrics::air_opacity}}};
+    {{"depth_rmse_m", &Metrics::depth_rmse_m}, {"depth_median_abs_m", &Metrics::depth_median_abs_m}, {"floater_opacity", &Metrics::floater_opacity}}};
 constexpr std::array<KeyedNumber, 2> kTraining = {{{"train_seconds", &Metrics::train_seconds}, {"samples_per_second", &Metrics::samples_per_second}}};
 constexpr std::array<KeyedNumber, 3> kHeights = {
     {{"median_agl_m", &Metrics::median_agl_m}, {"median_relative_altitude_m", &Metrics::median_relative_altitude_m}, {"gsd_m", &Metrics::gsd_m}}};
@@ -123,9 +123,9 @@ Metrics MetricsFrom(const Json& json) {
     TakeNumbers(numbers, json, &metrics);
   }
   metrics.has_truth = json.contains("depth_rmse_m");
-  const Json profile = ValueAt<Json>(json, "air_profile"), photos = ValueAt<Json>(json, "psnr_per_image");
+  const Json profile = ValueAt<Json>(json, "floater_profile"), photos = ValueAt<Json>(json, "psnr_per_image");
   for (const Json& place : profile) {
-    metrics.air_profile.emplace_back(NumberAt(place, "clearance_m"), NumberAt(place, "opacity"));
+    metrics.floater_profile.emplace_back(NumberAt(place, "clearance_m"), NumberAt(place, "opacity"));
   }
   metrics.lpips_note = ValueAt<std::string>(json, "lpips_note");
   for (const auto& [name, psnr] : photos.items()) {
@@ -165,9 +165,9 @@ std::string MetricsJson(const Metrics& metrics) {
   PutNumbers(kSeams, metrics, &json);
   if (metrics.has_truth) {
     PutNumbers(kAgainstTruth, metrics, &json);
-    json["air_profile"] = Json::array();
-    for (const auto& [clearance_m, opacity] : metrics.air_profile) {
-      json["air_profile"].push_back({{"clearance_m", clearance_m}, {"opacity", NumberOrNull(opacity)}});
+    json["floater_profile"] = Json::array();
+    for (const auto& [clearance_m, opacity] : metrics.floater_profile) {
+      json["floater_profile"].push_back({{"clearance_m", clearance_m}, {"opacity", NumberOrNull(opacity)}});
     }
   }
   PutNumbers(kTraining, metrics, &json);

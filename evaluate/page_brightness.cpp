@@ -176,10 +176,10 @@ std::string HistogramChart(const BrightnessReport& brightness, bool alone) {
          page::FigureEnd(page::LegendEntry("c6", "as recorded") + page::LegendEntry("c0", "at reference exposure"));
 }
 
-std::string FalloffChart(const BrightnessReport& brightness) {
+std::string VignettingChart(const BrightnessReport& brightness) {
   std::vector<page::Curve> curves;
-  for (size_t camera = 0; camera < brightness.falloff.size(); ++camera) {
-    const FalloffCurve& shares = brightness.falloff[camera];
+  for (size_t camera = 0; camera < brightness.vignetting.size(); ++camera) {
+    const VignettingCurve& shares = brightness.vignetting[camera];
     page::Curve& curve = curves.emplace_back();
     curve.name = fmt::format("camera {}", camera + 1);
     for (size_t i = 0; i < shares.size(); ++i) {
@@ -245,8 +245,8 @@ std::string BrightnessSection(const ReportInput& input) {
   }
   html += "</div></div><p class=\"lead\">" + TagSentences(brightness, low->exif_stops, high->exif_stops) + SpreadSentences(brightness) +
           page::EscapeHtml(brightness.luminance) + "</p><div class=\"chart-grid\">" + GainChart(brightness);
-  html += HistogramChart(brightness, brightness.falloff.empty());
-  if (!brightness.falloff.empty()) html += FalloffChart(brightness);
+  html += HistogramChart(brightness, brightness.vignetting.empty());
+  if (!brightness.vignetting.empty()) html += VignettingChart(brightness);
   html += "</div>";
   if (!brightness.views.empty()) {
     html += "<div class=\"views\">";

@@ -64,7 +64,7 @@ void AddSurfaceRows(const Metrics& metrics, FigureTable* table) {
   table->Group("Surface, against the true depth of the simulated survey");
   table->Row("Depth error, median", page::FormatFixed(metrics.depth_median_abs_m, 2, "m"), "Half of the covered pixels have a smaller error.");
   table->Row("Depth error, RMSE", page::FormatFixed(metrics.depth_rmse_m, 2, "m"), "Root mean square error. Edges of roofs weigh heavily.");
-  table->Row("Floater opacity", page::FormatPercent(metrics.air_opacity, 2),
+  table->Row("Floater opacity", page::FormatPercent(metrics.floater_opacity, 2),
              "How much a ray loses in the air between the camera and 1 m in front of the true surface. Air should be empty: 0 % is best.");
 }
 
@@ -78,9 +78,9 @@ void AddSeamRows(const Metrics& metrics, FigureTable* table) {
   } else {
     table->Row("Seam gap", Db(metrics.seam_psnr_gap_db), "No overlap of blocks was scored.");
   }
-  table->Row("Exposure seams", page::FormatFixed(metrics.footprint_step, 4),
+  table->Row("Exposure seams", page::FormatFixed(metrics.exposure_seam, 4),
              "Brightness step on the map along the borders of single photos, median, 1 is white. Good when it is no larger than the control value.");
-  table->Row("Exposure seams, control", page::FormatFixed(metrics.footprint_step_control, 4),
+  table->Row("Exposure seams, control", page::FormatFixed(metrics.exposure_seam_control, 4),
              "The same along lines where no photo ends: the step that texture alone gives.");
 }
 

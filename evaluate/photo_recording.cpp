@@ -35,7 +35,7 @@ Recording TaggedRecording(const brightness::Response& response, int camera, doub
   Recording recording;
   recording.log_gain.fill(static_cast<float>(std::log(gain)));
   const auto at = 3 * static_cast<size_t>(camera);
-  if (at + 3 <= response.falloff.size()) std::copy_n(response.falloff.begin() + static_cast<ptrdiff_t>(at), 3, recording.falloff.begin());
+  if (at + 3 <= response.vignetting.size()) std::copy_n(response.vignetting.begin() + static_cast<ptrdiff_t>(at), 3, recording.vignetting.begin());
   return recording;
 }
 

@@ -42,8 +42,8 @@ float FitLogGain(const image::ImageF& render, const image::ImageF& photo, const 
 void Record(const camera::Camera& camera, const Recording& recording, std::span<render::RayColor> colors, base::ThreadPool& threads) {
   brightness::Response one = brightness::Response::Plain(1, 1);
   one.log_gain.assign(recording.log_gain.begin(), recording.log_gain.end());
-  one.falloff.assign(recording.falloff.begin(), recording.falloff.end());
-  const bool even = recording.falloff == std::array<float, 3>{0.0F, 0.0F, 0.0F};
+  one.vignetting.assign(recording.vignetting.begin(), recording.vignetting.end());
+  const bool even = recording.vignetting == std::array<float, 3>{0.0F, 0.0F, 0.0F};
   if (even && recording.log_gain == std::array<float, 3>{0.0F, 0.0F, 0.0F}) return;
   const Eigen::Vector2d middle = camera.PrincipalPoint();
   const double per_radius2 = 1.0 / (camera.FarthestCorner() * camera.FarthestCorner());

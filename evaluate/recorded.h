@@ -13,10 +13,10 @@
 
 namespace skyquilt::evaluate {
 
-// Gains of a photo as a whole (natural logarithm, linear light) and the falloff of its camera.
+// Gains of a photo as a whole (natural logarithm, linear light) and the vignetting of its camera.
 struct Recording {
   std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};
-  std::array<float, 3> falloff = {0.0F, 0.0F, 0.0F};  // as in brightness::Response
+  std::array<float, 3> vignetting = {0.0F, 0.0F, 0.0F};  // as in brightness::Response
 };
 
 // `colors`: row-major, one per pixel of the camera, at reference exposure. Changes their colours.

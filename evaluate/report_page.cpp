@@ -86,9 +86,9 @@ std::string StageBars(const ReportInput& input) {
   std::vector<std::pair<std::string, double>> stages;
   double total = 0.0;
   for (const scene::FieldTraining& field : input.training->fields) {
-    for (const auto& [stage, seconds] : field.stage_seconds) {
-      auto known = std::find_if(stages.begin(), stages.end(), [&, &name = stage](const auto& s) { return s.first == name; });
-      if (known == stages.end()) known = stages.insert(stages.end(), {stage, 0.0});
+    for (const auto& [phase, seconds] : field.phase_seconds) {
+      auto known = std::find_if(stages.begin(), stages.end(), [&, &name = phase](const auto& s) { return s.first == name; });
+      if (known == stages.end()) known = stages.insert(stages.end(), {phase, 0.0});
       known->second += seconds;
       total += seconds;
     }
@@ -96,8 +96,8 @@ std::string StageBars(const ReportInput& input) {
   if (total <= 0.0) return "";
   std::stable_sort(stages.begin(), stages.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string html = "<div class=\"card bars\"><h3>Where training time goes</h3><div class=\"rows\">";
-  for (const auto& [stage, seconds] : stages) {
-    html += BarRow("<em>" + page::EscapeHtml(stage) + "</em>", 100.0 * seconds / stages.front().second,
+  for (const auto& [phase, seconds] : stages) {
+    html += BarRow("<em>" + page::EscapeHtml(phase) + "</em>", 100.0 * seconds / stages.front().second,
                    page::FormatFixed(100.0 * seconds / total, 1, "%"));
   }
   return html + fmt::format("</div><p class=\"note\">{} of work, summed over all threads. {} samples per ray.</p></div>", ShownDuration(total),

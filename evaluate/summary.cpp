@@ -38,14 +38,14 @@ void AddPooled(const scene::SceneInfo& info, const Scores& scores, Metrics* metr
   metrics->psnr_matched_interior_db = scores.seams.MatchedInteriorDb();
   metrics->psnr_seam_db = metrics::PsnrOf(scores.seams.AllSeam());
   metrics->seam_psnr_gap_db = scores.seams.GapDb();
-  metrics->footprint_step = scores.footprints.border;
-  metrics->footprint_step_control = scores.footprints.control;
+  metrics->exposure_seam = scores.footprints.border;
+  metrics->exposure_seam_control = scores.footprints.control;
   if (!metrics->has_truth) return;
   const metrics::DepthErrors errors = scores.depth.Result();
   metrics->depth_rmse_m = errors.rmse_m;
   metrics->depth_median_abs_m = errors.median_abs_m;
-  metrics->air_opacity = scores.air.Mean();
-  metrics->air_profile = scores.air.Profile();
+  metrics->floater_opacity = scores.air.Mean();
+  metrics->floater_profile = scores.air.Profile();
 }
 
 void AddSurveyFacts(const survey::Survey& survey, Metrics* metrics) {

@@ -5,9 +5,9 @@
 
 #include "core/metrics/depth_errors.h"
 #include "core/metrics/psnr.h"
-#include "evaluate/air_opacity.h"
 #include "evaluate/evaluate_input.h"
-#include "evaluate/footprint_steps.h"
+#include "evaluate/exposure_seams.h"
+#include "evaluate/floater_opacity.h"
 #include "evaluate/held_out_scorer.h"
 #include "evaluate/metrics.h"
 #include "evaluate/seam_errors.h"
@@ -20,8 +20,8 @@ struct Scores {
   std::vector<metrics::SquaredError> per_block;
   SeamErrors seams;
   metrics::DepthErrorCollector depth;
-  AirOpacity air;
-  FootprintSteps footprints;
+  FloaterOpacity air;
+  ExposureSeams footprints;
 
   // n_boxes: of the scene's area.
   explicit Scores(size_t n_boxes) : per_block(n_boxes) {}

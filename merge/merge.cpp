@@ -9,7 +9,7 @@
 #include "core/brightness/response.h"
 #include "core/checkpoint/archive.h"
 #include "core/render/trained_field.h"
-#include "core/scene/backdrop.h"
+#include "core/scene/background.h"
 #include "core/scene/field_file.h"
 #include "core/scene/scene_file.h"
 
@@ -17,11 +17,11 @@ namespace skyquilt::merge {
 namespace {
 
 struct Loaded {
-  render::TrainedField outline;
+  render::TrainedField description;
   brightness::Response response;  // this and what follows: of the context
   brightness::Luminance luminance;
   brightness::LuminanceState luminance_state;
-  scene::Backdrop backdrop;
+  scene::Background background;
 };
 
 Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, const geo::Geodetic& origin) {
@@ -33,11 +33,11 @@ Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, c
                           reader.DoubleAttribute("origin_longitude_deg") == origin.longitude_deg &&
                           reader.DoubleAttribute("origin_height_m") == origin.height_m;
   if (!same_place) throw base::InputError(file, "belongs to a survey with another origin", "Train this survey again with --restart");
-  Loaded loaded{scene::GetOutline(reader, file, ""), {}, {}, {}, {}};
+  Loaded loaded{scene::GetDescription(reader, file, ""), {}, {}, {}, {}};
   if (kind != "context") return loaded;
   loaded.response = brightness::GetResponse(reader, file);
   brightness::GetLuminance(reader, &loaded.luminance, &loaded.luminance_state);
-  loaded.backdrop = scene::GetBackdrop(reader, file);
+  loaded.background = scene::GetBackground(reader, file);
   return loaded;
 }
 
@@ -49,7 +49,7 @@ void MergeScene(const MergeInput& input) {
   std::vector<render::TrainedField> blocks;
   double gsd_m = std::numeric_limits<double>::infinity();
   for (const TrainedBlock& block : input.blocks) {
-    blocks.push_back(LoadTrained(block.checkpoint, "block", input.origin).outline);
+    blocks.push_back(LoadTrained(block.checkpoint, "block", input.origin).description);
     gsd_m = std::min(gsd_m, block.gsd_m);
   }
 
@@ -60,13 +60,13 @@ void MergeScene(const MergeInput& input) {
   writer.SetAttribute("georeferenced", static_cast<int64_t>(input.georeferenced ? 1 : 0));
   brightness::PutResponse(context.response, writer);
   brightness::PutLuminance(context.luminance, context.luminance_state, writer);
-  scene::PutBackdrop(context.backdrop, writer);
+  scene::PutBackground(context.background, writer);
   writer.SetAttribute("gsd_m", std::isfinite(gsd_m) ? gsd_m : 0.0);
   writer.SetAttribute(scene::kBordersAttribute, scene::NameOf(input.borders));
   writer.SetAttribute("config", input.config_toml);
   writer.SetAttribute("config_hash", input.config_hash);
   writer.SetAttribute("blocks", static_cast<int64_t>(blocks.size()));
-  if (input.use_context) scene::PutFieldOf(context.outline, input.context, scene::kContextPrefix, writer, input.storage);
+  if (input.use_context) scene::PutFieldOf(context.description, input.context, scene::kContextPrefix, writer, input.storage);
   for (size_t i = 0; i < blocks.size(); ++i)
     scene::PutFieldOf(blocks[i], input.blocks[i].checkpoint, scene::BlockPrefix(static_cast<int64_t>(i)), writer, input.storage);
   writer.Commit(input.scene);

@@ -153,11 +153,11 @@ Block ReadBlock(const Json& feature) {
   return block;
 }
 
-const char* const kMend = "Delete it and run `skyquilt partition` again";
+const char* const kFix = "Delete it and run `skyquilt partition` again";
 
 void CheckBlock(const Block& block, size_t index, const std::filesystem::path& file) {
   const auto require = [&](bool good, const std::string& found) {
-    if (!good) throw base::InputError(file, "block " + std::to_string(index) + " (\"" + block.name + "\") " + found, kMend);
+    if (!good) throw base::InputError(file, "block " + std::to_string(index) + " (\"" + block.name + "\") " + found, kFix);
   };
   require(block.id == static_cast<int>(index), "has id " + std::to_string(block.id) + "; ids must count from 0 in file order");
   require(block.min_enu.allFinite() && block.max_enu.allFinite(), "has a box that is not finite");
@@ -213,7 +213,7 @@ BlockSet LoadBlocks(const std::filesystem::path& file) {
       throw base::InputError(file, "is not a blocks file of this program", "Name the blocks.geojson that `skyquilt partition` wrote");
     }
     if (root.at("skyquilt:version").get<int>() != kVersion) {
-      throw base::InputError(file, "has version " + root.at("skyquilt:version").dump() + ", this program reads " + std::to_string(kVersion), kMend);
+      throw base::InputError(file, "has version " + root.at("skyquilt:version").dump() + ", this program reads " + std::to_string(kVersion), kFix);
     }
     const Json& origin = root.at("skyquilt:origin");
     set.origin = {ReadNumber(origin.at("latitude_deg")), ReadNumber(origin.at("longitude_deg")), ReadNumber(origin.at("height_m"))};
@@ -224,15 +224,15 @@ BlockSet LoadBlocks(const std::filesystem::path& file) {
     set.config_hash = root.at("skyquilt:config_hash").get<std::string>();
     for (const Json& feature : root.at("features")) set.blocks.push_back(ReadBlock(feature));
   } catch (const Json::exception& error) {
-    throw base::InputError(file, std::string("cannot be read as blocks: ") + error.what(), kMend);
+    throw base::InputError(file, std::string("cannot be read as blocks: ") + error.what(), kFix);
   }
-  if (set.georeferenced && !geo::IsValid(set.origin)) throw base::InputError(file, "has an origin that is not a place on Earth", kMend);
+  if (set.georeferenced && !geo::IsValid(set.origin)) throw base::InputError(file, "has an origin that is not a place on Earth", kFix);
   for (size_t i = 0; i < set.blocks.size(); ++i) CheckBlock(set.blocks[i], i, file);
   if (static_cast<int64_t>(set.rows) * set.columns != static_cast<int64_t>(set.blocks.size())) {
     throw base::InputError(file,
                            "names " + std::to_string(set.rows) + " rows and " + std::to_string(set.columns) + " columns but holds " +
                                std::to_string(set.blocks.size()) + " blocks",
-                           kMend);
+                           kFix);
   }
   return set;
 }

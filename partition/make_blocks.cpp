@@ -116,7 +116,7 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   return block;
 }
 
-void AddViews(Block& block, BoxViews views, double surface_voxels, const PartitionOptions& options) {
+void AddViews(Block& block, BlockViews views, double surface_voxels, const PartitionOptions& options) {
   if (!block.empty && views.n_training < 2) {
     block.empty = true;
     block.empty_reason = views.n_training == 0 ? "no training photo sees it" : "only one training photo sees it";
@@ -198,7 +198,7 @@ BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& option
   if (options.heights == "survey") ShareHeights(set.blocks);
   std::vector<Box> boxes;
   for (const Block& block : set.blocks) boxes.push_back({block.TrainMin(), block.TrainMax()});
-  std::vector<BoxViews> views = FindViews(survey, boxes, image_width);
+  std::vector<BlockViews> views = FindViews(survey, boxes, image_width);
   for (size_t i = 0; i < set.blocks.size(); ++i) {
     Block& block = set.blocks[i];
     AddViews(block, std::move(views[i]), VoxelsOf(in, grid, block.id, block.finest_voxel_m), options);

@@ -29,7 +29,7 @@ void PartitionOptions::Visit(config::OptionVisitor& v) {
   v.Field("z_margin_below_m", z_margin_below_m, "metres of box below the lowest ground; held between 8 and 40 ground pixels");
   v.Field("z_margin_above_m", z_margin_above_m, "metres of box above the highest roof; held between 8 and 40 ground pixels");
   v.Field("heights", heights,
-          "block: every box is as high as what stands in it; survey: all are as high as the highest (dirt gathers in the air above low roofs)");
+          "block: every box is as high as what stands in it; survey: all are as high as the highest (floaters gather above low roofs)");
   v.Field("headroom", headroom,
           "share of the flying height added to the top of blocks of which three tenths or more have no sparse points, as under canopy; 0..1");
   v.Field("voxel_per_gsd", voxel_per_gsd, "finest voxel as a multiple of the ground sampling distance, 0.1..100");

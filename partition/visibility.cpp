@@ -59,10 +59,10 @@ double ShareByProjection(const camera::Camera& camera, const survey::Photo& phot
 
 }  // namespace
 
-std::vector<BoxViews> FindViews(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width) {
+std::vector<BlockViews> FindViews(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width) {
   std::vector<RayGrid> grids;
   for (const camera::Camera& camera : survey.cameras) grids.push_back(MakeRayGrid(camera));
-  std::vector<BoxViews> views(boxes.size());
+  std::vector<BlockViews> views(boxes.size());
   for (size_t p = 0; p < survey.photos.size(); ++p) {
     const survey::Photo& photo = survey.photos[p];
     const camera::Camera& camera = survey.cameras.at(static_cast<size_t>(photo.camera));

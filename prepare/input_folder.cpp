@@ -13,9 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void RequireFolder(const fs::path& folder, const std::string& mend) {
-  if (!fs::exists(folder)) throw base::InputError(folder, "no such folder", mend);
-  if (!fs::is_directory(folder)) throw base::InputError(folder, "is a file, not a folder", mend);
+void RequireFolder(const fs::path& folder, const std::string& fix) {
+  if (!fs::exists(folder)) throw base::InputError(folder, "no such folder", fix);
+  if (!fs::is_directory(folder)) throw base::InputError(folder, "is a file, not a folder", fix);
 }
 
 bool HoldsPhotosDirectly(const fs::path& folder) {
@@ -27,17 +27,17 @@ bool HoldsPhotosDirectly(const fs::path& folder) {
 
 void ReadSimulated(const fs::path& folder, bool own_model, InputFolder& found) {
   const fs::path file = folder / "simulate.json";
-  const std::string mend = "Run 'skyquilt simulate' again";
+  const std::string fix = "Run 'skyquilt simulate' again";
   try {
     const nlohmann::json json = nlohmann::json::parse(base::ReadFile(file));
     if (own_model && json.value("exact_frame", false)) {
       const nlohmann::json& origin = json.at("origin");
       found.exact_origin =
           geo::Geodetic{origin.at("latitude_deg").get<double>(), origin.at("longitude_deg").get<double>(), origin.at("height_m").get<double>()};
-      if (!geo::IsValid(*found.exact_origin)) throw base::InputError(file, "has an origin that is not on Earth", mend);
+      if (!geo::IsValid(*found.exact_origin)) throw base::InputError(file, "has an origin that is not on Earth", fix);
     }
   } catch (const nlohmann::json::exception& error) {
-    throw base::InputError(file, std::string("is damaged (") + error.what() + ")", mend);
+    throw base::InputError(file, std::string("is damaged (") + error.what() + ")", fix);
   }
   const fs::path truth = folder / "truth";
   if (fs::is_directory(truth)) {

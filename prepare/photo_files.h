@@ -28,7 +28,7 @@ constexpr int kMinPhotos = 3;
 bool LooksLikePhoto(const std::filesystem::path& file);
 // All photos under `root` in name order; folders in `skip` and hidden ones are not entered. Throws base::InputError when there is none.
 std::vector<std::string> ListPhotos(const std::filesystem::path& root, const std::vector<std::filesystem::path>& skip);
-// Reads sizes and tags and checks that JPEGs are complete. Files that cannot be used are dropped with a warning that names file and mend.
+// Reads sizes and tags and checks that JPEGs are complete. Files that cannot be used are dropped with a warning that names file and how to fix it.
 // Throws base::InputError when fewer than kMinPhotos remain.
 PhotoSet ReadPhotos(const std::filesystem::path& root, const std::vector<std::string>& names, base::ThreadPool& threads);
 // Tags without a height: taken from RelativeAltitude or 0 when most have none (with a warning), otherwise the tag is not used.

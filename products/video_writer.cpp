@@ -15,7 +15,7 @@
 namespace skyquilt::products {
 namespace {
 
-constexpr const char* kFfmpegMend = "Check free space and that ffmpeg has libx264";
+constexpr const char* kFfmpegFix = "Check free space and that ffmpeg has libx264";
 
 // ffmpeg that takes raw frames on its standard input. Nothing when there is no such program.
 std::optional<base::ChildProcess> StartFfmpeg(const std::string& program, const std::filesystem::path& file, int width, int height, int fps) {
@@ -37,7 +37,7 @@ std::optional<base::ChildProcess> StartFfmpeg(const std::string& program, const 
 }
 
 // Waits for its end. Empty when it went well, otherwise the reason.
-std::string Finish(base::ChildProcess& ffmpeg) {
+std::string WaitForEnd(base::ChildProcess& ffmpeg) {
   const base::ChildEnd end = ffmpeg.Wait();
   return end.Text("ffmpeg") + (end.status == 0 ? "" : "; its own message stands above");
 }
@@ -96,7 +96,7 @@ void VideoWriter::Write(const image::Image8& frame) {
     if (impl_->ffmpeg->Send(frame.data)) return;
     // A signal to the group ends ffmpeg too.
     base::ThrowIfCancelled();
-    throw base::InputError(impl_->file, "cannot be written: " + Finish(*impl_->ffmpeg), kFfmpegMend);
+    throw base::InputError(impl_->file, "cannot be written: " + WaitForEnd(*impl_->ffmpeg), kFfmpegFix);
   }
   // OpenCV's frames are blue, green, red.
   cv::Mat bgr(frame.height, frame.width, CV_8UC3);
@@ -112,11 +112,11 @@ void VideoWriter::Write(const image::Image8& frame) {
 void VideoWriter::Close() {
   SKYQUILT_CHECK(!impl_->closed, "closed twice");
   if (impl_->ffmpeg) {
-    const std::string reason = Finish(*impl_->ffmpeg);
+    const std::string reason = WaitForEnd(*impl_->ffmpeg);
     impl_->ffmpeg.reset();
     if (!reason.empty()) {
       base::ThrowIfCancelled();
-      throw base::InputError(impl_->file, "cannot be written: " + reason, kFfmpegMend);
+      throw base::InputError(impl_->file, "cannot be written: " + reason, kFfmpegFix);
     }
   } else {
     impl_->opencv.release();

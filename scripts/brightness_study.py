@@ -178,7 +178,7 @@ class Study:
             photo = sorted(p.name for p in (survey / "images").glob("*.jpg"))[8]
             self.panel(f"hidden_{kind}.jpg", [survey / "images" / photo, self.view(f"{kind}_equalised", photo), self.view(f"{kind}_luminance", photo),
                                               truth / photo])
-        self.title("Hidden light")
+        self.title("Concealing field")
         self.table(["survey", "method", "PSNR against the normal photo (dB)", "SSIM", "PSNR against the photo as taken"], rows)
 
     def mixed(self, name, first, second):

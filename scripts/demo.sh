@@ -48,7 +48,7 @@ skyquilt=build/release/skyquilt
 stage "set-up" scripts/setup.sh --run
 stage "build" build
 stage "simulate" "$skyquilt" simulate town -o "$out/simulated"
-stage "run ($budget of training)" "$skyquilt" run --preset town -o "$out" --blocks 2x2 --time-budget "$budget"
+stage "run ($budget of training)" "$skyquilt" run --place town -o "$out" --blocks 2x2 --time-budget "$budget"
 
 echo "== done"
 printf '%s\n' "${times[@]}"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Searches for inputs that break the readers: libFuzzer with address and undefined-behaviour sanitizers, memory and time per input bounded.
 #   scripts/fuzz.sh [SECONDS] [TARGET...]      default: 60 seconds for each of colmap config blocks archive exif
-# Findings are kept as build/fuzz/findings/TARGET-*; one that is mended belongs into tests/fuzz/corpus/TARGET, where the tests feed it for ever.
+# Findings are kept as build/fuzz/findings/TARGET-*; one that is fixed belongs into tests/fuzz/corpus/TARGET, where the tests feed it for ever.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -126,7 +126,7 @@ void FlatRoof(const Building& b, const Hit& hit, const Vector3f& local, Surface&
   color *= 1.0F + 0.11F * FractalNoise(local.x(), local.y(), {7.0F, 5, 0.5F}, b.seed + 3U, w);
   const float seams = PulseTrain(local.x() / 3.0F, 0.05F, w / 3.0F) + 0.5F * PulseTrain(local.y() / 6.0F, 0.03F, w / 6.0F);
   color *= 1.0F - 0.25F * std::min(seams, 1.0F);
-  // Dirt gathers along the edges, puddles dry in the middle.
+  // Stains gather along the edges, puddles dry in the middle.
   const float edge =
       std::min(0.5F * static_cast<float>(b.length_m) - std::abs(local.x()), 0.5F * static_cast<float>(b.width_m) - std::abs(local.y()));
   color *= 1.0F - 0.25F * (1.0F - Smoothstep(0.2F, 1.5F, edge));

@@ -16,7 +16,7 @@ struct Car {
   uint32_t seed = 0;
 };
 
-// A stretch of lane driven at constant speed; past its end the car enters again at the start.
+// A section of lane driven at constant speed; past its end the car enters again at the start.
 struct MovingCar {
   Eigen::Vector2d start = Eigen::Vector2d::Zero();
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  // unit

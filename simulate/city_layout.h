@@ -9,7 +9,7 @@
 #include "core/base/random.h"
 #include "simulate/building.h"
 #include "simulate/car.h"
-#include "simulate/preset.h"
+#include "simulate/place_spec.h"
 #include "simulate/tree.h"
 
 namespace skyquilt::simulate {

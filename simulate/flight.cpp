@@ -41,10 +41,10 @@ std::vector<double> Spread(double low, double high, double spacing) {
   return at;
 }
 
-void AddNadirLines(const Preset& preset, const Vector2d& min, const Vector2d& max, double altitude_m, int* line, std::vector<Station>* stations) {
-  const double across = altitude_m * preset.camera.width / preset.camera.FocalX() * (1.0 - preset.side_overlap);
-  const double along = altitude_m * preset.camera.height / preset.camera.FocalY() * (1.0 - preset.forward_overlap);
-  const double inset = preset.flight_inset_m;
+void AddNadirLines(const PlaceSpec& place, const Vector2d& min, const Vector2d& max, double altitude_m, int* line, std::vector<Station>* stations) {
+  const double across = altitude_m * place.camera.width / place.camera.FocalX() * (1.0 - place.side_overlap);
+  const double along = altitude_m * place.camera.height / place.camera.FocalY() * (1.0 - place.forward_overlap);
+  const double inset = place.flight_inset_m;
   bool north = true;
   for (const double x : Spread(min.x() + inset, max.x() - inset, across)) {
     std::vector<double> ys = Spread(min.y() + inset, max.y() - inset, along);
@@ -56,14 +56,14 @@ void AddNadirLines(const Preset& preset, const Vector2d& min, const Vector2d& ma
 }
 
 // Along the edges, looking inwards; the optical axis meets the ground a quarter of the way into the area.
-void AddObliqueLines(const Preset& preset, double altitude_m, int* line, std::vector<Station>* stations) {
+void AddObliqueLines(const PlaceSpec& place, double altitude_m, int* line, std::vector<Station>* stations) {
   const double slant = altitude_m / std::sin(Radians(-kObliquePitch_deg));
-  const double spacing = slant * preset.camera.width / preset.camera.FocalX() * (1.0 - preset.oblique_overlap);
+  const double spacing = slant * place.camera.width / place.camera.FocalX() * (1.0 - place.oblique_overlap);
   const double back = altitude_m / std::tan(Radians(-kObliquePitch_deg));
-  const Vector2d centre = 0.5 * (preset.area_min + preset.area_max);
-  const Vector2d half = 0.5 * (preset.area_max - preset.area_min);
+  const Vector2d centre = 0.5 * (place.area_min + place.area_max);
+  const Vector2d half = 0.5 * (place.area_max - place.area_min);
   constexpr std::array<double, 4> kYaw = {0.0, 180.0, 90.0, 270.0};
-  for (int i = 0; i < std::min(preset.oblique_lines, 4); ++i) {
+  for (int i = 0; i < std::min(place.oblique_lines, 4); ++i) {
     const double yaw = kYaw[static_cast<size_t>(i)];
     const Vector2d forward(std::sin(Radians(yaw)), std::cos(Radians(yaw)));
     const Vector2d right(forward.y(), -forward.x());
@@ -77,25 +77,25 @@ void AddObliqueLines(const Preset& preset, double altitude_m, int* line, std::ve
   }
 }
 
-std::vector<Station> PlanStations(const Preset& preset) {
+std::vector<Station> PlanStations(const PlaceSpec& place) {
   std::vector<Station> stations;
   int line = 0;
-  const std::vector<double>& altitudes = preset.altitudes_agl_m;
+  const std::vector<double>& altitudes = place.altitudes_agl_m;
   if (std::all_of(altitudes.begin(), altitudes.end(), [&](double a) { return a == altitudes.front(); })) {
-    AddNadirLines(preset, preset.area_min, preset.area_max, altitudes.front(), &line, &stations);
+    AddNadirLines(place, place.area_min, place.area_max, altitudes.front(), &line, &stations);
   } else {
-    const Vector2d block = (preset.area_max - preset.area_min).cwiseQuotient(Vector2d(preset.columns, preset.rows));
-    for (int row = 0; row < preset.rows; ++row) {
-      for (int column = 0; column < preset.columns; ++column) {
-        const Vector2d min = preset.area_min + block.cwiseProduct(Vector2d(column, row));
-        AddNadirLines(preset, min, min + block,
-                      altitudes[static_cast<size_t>(row) * static_cast<size_t>(preset.columns) + static_cast<size_t>(column)], &line, &stations);
+    const Vector2d block = (place.area_max - place.area_min).cwiseQuotient(Vector2d(place.columns, place.rows));
+    for (int row = 0; row < place.rows; ++row) {
+      for (int column = 0; column < place.columns; ++column) {
+        const Vector2d min = place.area_min + block.cwiseProduct(Vector2d(column, row));
+        AddNadirLines(place, min, min + block, altitudes[static_cast<size_t>(row) * static_cast<size_t>(place.columns) + static_cast<size_t>(column)],
+                      &line, &stations);
       }
     }
   }
   double mean = 0.0;
   for (const double altitude : altitudes) mean += altitude / static_cast<double>(altitudes.size());
-  AddObliqueLines(preset, mean, &line, &stations);
+  AddObliqueLines(place, mean, &line, &stations);
   return stations;
 }
 
@@ -106,8 +106,8 @@ double Wander(size_t photo, uint32_t noise_seed) {
 }
 
 // Stops relative to the survey's exposure for every photo: a slow wander and steps now and then.
-std::vector<double> ExposureStops(const Preset& preset, size_t n_photos) {
-  base::Random random(preset.seed, 51);
+std::vector<double> ExposureStops(const PlaceSpec& place, size_t n_photos) {
+  base::Random random(place.seed, 51);
   const auto noise_seed = random.NextU32();
   std::vector<double> stops;
   double jump = 0.0;
@@ -117,7 +117,7 @@ std::vector<double> ExposureStops(const Preset& preset, size_t n_photos) {
       jump = random.Uniform(-1.0, 1.0);
       until_jump = 6 + static_cast<int>(random.Below(10));
     }
-    stops.push_back(preset.exposure_drift_stops * Wander(i, noise_seed) + preset.exposure_jumps_stops * jump);
+    stops.push_back(place.exposure_drift_stops * Wander(i, noise_seed) + place.exposure_jumps_stops * jump);
   }
   return stops;
 }
@@ -136,19 +136,19 @@ double Exposure(const PhotoPlan& photo) {
 }
 
 // Gains from the settings, and what changes the light without the tags knowing.
-void SetLight(const Preset& preset, std::vector<PhotoPlan>& photos) {
+void SetLight(const PlaceSpec& place, std::vector<PhotoPlan>& photos) {
   std::vector<double> exposure;
   exposure.reserve(photos.size());
   for (const PhotoPlan& photo : photos) exposure.push_back(Exposure(photo));
   const double median = base::Median(exposure);
-  base::Random random(preset.seed, 52);
-  const uint32_t color_seed = base::Random(preset.seed, 53).NextU32();
+  base::Random random(place.seed, 52);
+  const uint32_t color_seed = base::Random(place.seed, 53).NextU32();
   for (size_t i = 0; i < photos.size(); ++i) {
     PhotoPlan& photo = photos[i];
     photo.gain = exposure[i] / median;
     // Normal exposure is the median photo's without the offset.
-    photo.development_gain = photo.gain * std::exp2(preset.exposure_offset_stops + preset.exposure_error_stops * random.Normal());
-    photo.color_drift_stops = preset.color_drift_stops * Wander(i, color_seed);
+    photo.development_gain = photo.gain * std::exp2(place.exposure_offset_stops + place.exposure_error_stops * random.Normal());
+    photo.color_drift_stops = place.color_drift_stops * Wander(i, color_seed);
   }
 }
 
@@ -176,13 +176,13 @@ geo::Rigid3d PoseFromGimbal(const Vector3d& position, double yaw_deg, double pit
   return pose;
 }
 
-std::vector<PhotoPlan> PlanFlight(const Preset& preset, double takeoff_z_m) {
-  const std::vector<Station> stations = PlanStations(preset);
-  const std::vector<double> stops = ExposureStops(preset, stations.size());
+std::vector<PhotoPlan> PlanFlight(const PlaceSpec& place, double takeoff_z_m) {
+  const std::vector<Station> stations = PlanStations(place);
+  const std::vector<double> stops = ExposureStops(place, stations.size());
   std::vector<PhotoPlan> photos;
   for (size_t i = 0; i < stations.size(); ++i) {
     const Station& station = stations[i];
-    base::Random random(preset.seed, 1000 + i);
+    base::Random random(place.seed, 1000 + i);
     PhotoPlan photo;
     std::array<char, 32> name{};
     std::snprintf(name.data(), name.size(), "IMG_%04zu.jpg", i + 1);
@@ -196,15 +196,15 @@ std::vector<PhotoPlan> PlanFlight(const Preset& preset, double takeoff_z_m) {
     const Vector3d drift(0.25 * random.Normal(), 0.25 * random.Normal(), 0.3 * random.Normal());
     const Vector3d position = Vector3d(station.position.x(), station.position.y(), takeoff_z_m + station.altitude_m) + drift;
     photo.cam_from_enu = PoseFromGimbal(position, photo.yaw_deg, photo.pitch_deg, photo.roll_deg);
-    const double noise = preset.gps_noise_m;
+    const double noise = place.gps_noise_m;
     const Vector3d gps_error(noise * random.Normal(), noise * random.Normal(), 1.5 * noise * random.Normal());
     photo.tagged_position = position + gps_error;
     photo.relative_altitude_m = position.z() - takeoff_z_m + 0.15 * random.Normal();
-    SetExposure(preset.exposure_offset_stops + stops[i], photo);
-    photo.exposure_tagged = preset.exposure_tags == ExposureTags::kAll || (preset.exposure_tags == ExposureTags::kHalf && i % 2 == 0);
+    SetExposure(place.exposure_offset_stops + stops[i], photo);
+    photo.exposure_tagged = place.exposure_tags == ExposureTags::kAll || (place.exposure_tags == ExposureTags::kHalf && i % 2 == 0);
     photos.push_back(photo);
   }
-  SetLight(preset, photos);
+  SetLight(place, photos);
   return photos;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/geo/transform.h"
-#include "simulate/preset.h"
+#include "simulate/place_spec.h"
 
 namespace skyquilt::simulate {
 
@@ -34,7 +34,7 @@ struct PhotoPlan {
 
 // Nadir lines run north and south with the wide side of the photo across them: one flight over the whole area when all altitudes agree,
 // otherwise one per block. Oblique lines follow. takeoff_z_m: ENU height of the ground the drone started from.
-std::vector<PhotoPlan> PlanFlight(const Preset& preset, double takeoff_z_m);
+std::vector<PhotoPlan> PlanFlight(const PlaceSpec& place, double takeoff_z_m);
 
 // Factors on linear light that the photo really gets, relative to normal exposure: red, green, blue.
 std::array<double, 3> LightRgb(const PhotoPlan& photo);

@@ -15,30 +15,30 @@ Vector3f Mix(const Vector3f& a, const Vector3f& b, float share) {
 }
 
 // Everything a ground colour depends on.
-struct Place {
+struct GroundPoint {
   float x, y, footprint;
   uint32_t seed;
-  float Noise(float wavelength, int octaves, uint32_t channel, float falloff = 0.5F) const {
-    return FractalNoise(x, y, {wavelength, octaves, falloff}, seed + 100U * channel, footprint);
+  float Noise(float wavelength, int octaves, uint32_t channel, float persistence = 0.5F) const {
+    return FractalNoise(x, y, {wavelength, octaves, persistence}, seed + 100U * channel, footprint);
   }
 };
 
-Vector3f Asphalt(const Place& at, float tint) {
+Vector3f Asphalt(const GroundPoint& at, float tint) {
   const float tone = 1.0F + 0.12F * at.Noise(14.0F, 3, 1) + 0.12F * at.Noise(2.3F, 3, 2);
   return Vector3f(0.100F, 0.101F, 0.106F) * tint * tone;
 }
 
-Vector3f Grass(const Place& at, float dryness, float tint) {
+Vector3f Grass(const GroundPoint& at, float dryness, float tint) {
   const float dry = std::clamp(dryness + 0.33F * at.Noise(21.0F, 4, 3), 0.0F, 1.0F);
   const Vector3f base = Mix({0.072F, 0.128F, 0.034F}, {0.190F, 0.178F, 0.082F}, dry);
   return base * tint * (1.0F + 0.21F * at.Noise(3.1F, 4, 4, 0.6F));
 }
 
-Vector3f Concrete(const Place& at, const Vector3f& base) {
+Vector3f Concrete(const GroundPoint& at, const Vector3f& base) {
   return base * (1.0F + 0.09F * at.Noise(7.0F, 3, 5) + 0.09F * at.Noise(1.7F, 2, 6));
 }
 
-Vector3f Road(const GroundSample& ground, const Place& at) {
+Vector3f Road(const GroundSample& ground, const GroundPoint& at) {
   const auto street = static_cast<uint32_t>(ground.street + 1000);
   Vector3f color = Asphalt(at, 0.85F + 0.35F * HashUnit(ground.street, 3, at.seed));
   const float w = at.footprint;
@@ -66,7 +66,7 @@ Vector3f Road(const GroundSample& ground, const Place& at) {
   return Mix(color, {0.62F, 0.62F, 0.59F}, std::clamp(paint, 0.0F, 1.0F) * std::clamp(wear, 0.0F, 1.0F));
 }
 
-Vector3f Paved(const Pad& pad, const Place& at) {
+Vector3f Paved(const Pad& pad, const GroundPoint& at) {
   const Eigen::Vector2f local = pad.Local(at.x, at.y);
   const auto key = static_cast<int>(pad.centre.x() * 10.0F);
   const float pick = HashUnit(key, static_cast<int>(pad.centre.y() * 10.0F), at.seed);
@@ -94,8 +94,8 @@ Vector3f Paved(const Pad& pad, const Place& at) {
   return Vector3f::Zero();
 }
 
-// Parcels of farmland, turned against the streets.
-Vector3f Field(const Place& at) {
+// Plots of farmland, turned against the streets.
+Vector3f Field(const GroundPoint& at) {
   const float u = 0.956F * at.x + 0.292F * at.y;
   const float v = -0.292F * at.x + 0.956F * at.y;
   const float row = v / 47.0F;
@@ -114,7 +114,7 @@ Vector3f Field(const Place& at) {
   return Vector3f(0.095F, 0.150F, 0.045F) * furrows * (1.0F + 0.12F * at.Noise(9.0F, 5, 10));
 }
 
-Vector3f Garden(const CityLayout& layout, const GroundSample& ground, const Place& at) {
+Vector3f Garden(const CityLayout& layout, const GroundSample& ground, const GroundPoint& at) {
   const Cell& cell = *ground.cell;
   const double x = static_cast<double>(at.x);
   const double y = static_cast<double>(at.y);
@@ -151,7 +151,7 @@ Vector3f Garden(const CityLayout& layout, const GroundSample& ground, const Plac
 }  // namespace
 
 Surface CityGround(const CityLayout& layout, const Hit& hit, uint32_t seed) {
-  const Place at{hit.position.x(), hit.position.y(), SurfaceFootprint(hit), seed};
+  const GroundPoint at{hit.position.x(), hit.position.y(), SurfaceFootprint(hit), seed};
   const GroundSample ground = layout.Sample(at.x, at.y);
   Surface surface;
   surface.normal = hit.normal;

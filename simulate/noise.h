@@ -51,7 +51,7 @@ inline float ValueNoise(float x, float y, uint32_t seed) {
 struct FractalShape {
   float wavelength_m = 10.0F;  // of the first octave
   int octaves = 4;             // each half the wavelength of the one before
-  float falloff = 0.5F;        // amplitude of an octave relative to the one before; 0.5 is the 1/f of natural surfaces
+  float persistence = 0.5F;    // amplitude of an octave relative to the one before; 0.5 is the 1/f of natural surfaces
 };
 
 // Sum of octaves, first amplitude 1; octaves with a wavelength under 4 footprints fade, under 2 they vanish. footprint in metres per pixel, 0: all.
@@ -64,7 +64,7 @@ inline float FractalNoise(float x, float y, const FractalShape& shape, uint32_t 
     if (keep <= 0.0F) break;
     const float inverse = 1.0F / wavelength;
     sum += amplitude * keep * ValueNoise(x * inverse, y * inverse, seed + static_cast<uint32_t>(octave));
-    amplitude *= shape.falloff;
+    amplitude *= shape.persistence;
     wavelength *= 0.5F;
     // Turning each octave hides the axes of the lattice.
     const float turned = 0.8F * x - 0.6F * y;

@@ -10,7 +10,7 @@
 #include "core/base/progress.h"
 #include "simulate/flight.h"
 #include "simulate/photo_renderer.h"
-#include "simulate/preset.h"
+#include "simulate/place_spec.h"
 #include "simulate/sparse_points.h"
 #include "simulate/survey_writer.h"
 #include "simulate/world.h"
@@ -44,14 +44,14 @@ void PrepareFolder(const fs::path& folder) {
 
 SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder, base::ThreadPool& threads) {
   const auto begin = std::chrono::steady_clock::now();
-  const Preset preset = ResolvePreset(options);
+  const PlaceSpec place = ResolvePlace(options);
   PrepareFolder(folder);
   const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
-  spdlog::info("simulate: building {}", preset.name);
-  const World world(preset, options.light_intensity, threads);
-  const Eigen::Vector2f middle = (0.5 * (preset.area_min + preset.area_max)).cast<float>();
-  const std::vector<PhotoPlan> photos = PlanFlight(preset, static_cast<double>(world.terrain().Height(middle.x(), middle.y())));
-  const PhotoRenderer renderer(world, preset.camera, options.samples_per_pixel, options.soft_shadows);
+  spdlog::info("simulate: building {}", place.name);
+  const World world(place, options.light_intensity, threads);
+  const Eigen::Vector2f middle = (0.5 * (place.area_min + place.area_max)).cast<float>();
+  const std::vector<PhotoPlan> photos = PlanFlight(place, static_cast<double>(world.terrain().Height(middle.x(), middle.y())));
+  const PhotoRenderer renderer(world, place.camera, options.samples_per_pixel, options.soft_shadows);
 
   SimulateSummary summary;
   summary.n_photos = static_cast<int>(photos.size());
@@ -63,8 +63,8 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
     const PhotoPlan& photo = photos[i];
     const MovingScene moving = world.MovingAt(photo.time_s);
     const Rendering rendering = renderer.Render(photo.cam_from_enu, moving, threads);
-    const image::Image8 pixels = Develop(rendering.rgb_linear, {LightRgb(photo), preset.vignetting, preset.camera.PrincipalPoint()});
-    WritePhoto(folder, photo, pixels, preset.camera, frame, options.jpeg_quality);
+    const image::Image8 pixels = Develop(rendering.rgb_linear, {LightRgb(photo), place.vignetting, place.camera.PrincipalPoint()});
+    WritePhoto(folder, photo, pixels, place.camera, frame, options.jpeg_quality);
     if (!rendering.usable.Empty()) {
       image::SavePng(rendering.usable, folder / "truth" / "masks" / (photo.name + ".png"));
       ++summary.n_masks;
@@ -74,7 +74,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
       image::SaveFloatTiff(depth, folder / "truth" / "depth" / (fs::path(photo.name).stem().string() + ".tiff"));
       ++summary.n_test;
     }
-    for (SurfaceSeed& seed : ChooseSeeds(preset.camera, static_cast<int>(i), kSeedsPerPhoto, preset.seed)) {
+    for (SurfaceSeed& seed : ChooseSeeds(place.camera, static_cast<int>(i), kSeedsPerPhoto, place.seed)) {
       const uint8_t* rgb = pixels.At(seed.x, seed.y);
       seed.rgb = {rgb[0], rgb[1], rgb[2]};
       seeds.push_back(seed);
@@ -82,13 +82,13 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
     progress.Advance(1.0);
   }
   progress.Finish();
-  std::vector<survey::ColmapPoint> points = MakeSparsePoints(world, preset.camera, photos, seeds, preset.seed, threads);
+  std::vector<survey::ColmapPoint> points = MakeSparsePoints(world, place.camera, photos, seeds, place.seed, threads);
   summary.n_points = static_cast<int>(points.size());
-  WriteModel(folder, preset.camera, photos, std::move(points));
-  WriteExposureTruth(folder, photos, preset);
-  WriteBuildingTruth(folder, world.buildings(), preset, frame);
+  WriteModel(folder, place.camera, photos, std::move(points));
+  WriteExposureTruth(folder, photos, place);
+  WriteBuildingTruth(folder, world.buildings(), place, frame);
   base::ThrowIfCancelled();
-  WriteSummary(folder, preset, options, frame, photos.size());
+  WriteSummary(folder, place, options, frame, photos.size());
   fs::remove(folder / kStarted);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   spdlog::info("simulate: {} photos ({} test views), {} points, {} buildings in {}", summary.n_photos, summary.n_test, summary.n_points,

@@ -4,7 +4,7 @@
 //   truth/depth/<stem>.tiff            of the test views (every test_every-th in name order): metres along the camera's z, NaN = sky
 //   truth/masks/<name>.jpg.png         0 where a moving car or its shadow is seen; only photos that see one
 //   truth/exposure.json, truth/buildings.json
-//   simulate.json                      preset, origin, options, suggested blocks; written last
+//   simulate.json                      place, origin, options, suggested blocks; written last
 #pragma once
 
 #include <filesystem>
@@ -26,7 +26,7 @@ struct SimulateSummary {
 };
 
 // hamlet, town, smallcity, tidalflat.
-std::vector<std::string> PresetNames();
+std::vector<std::string> PlaceNames();
 
 // Same options and seed: the same bytes, for any number of threads. A folder that holds an earlier simulation is written anew.
 // Throws base::UsageError for impossible options (names the option), base::InputError if the folder cannot be written or holds photos of

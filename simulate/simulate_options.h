@@ -1,4 +1,4 @@
-// Options of `skyquilt simulate`, [simulate] in the configuration. Negative numbers, 0 where said and empty lists mean "as the preset has it".
+// Options of `skyquilt simulate`, [simulate] in the configuration. Negative numbers, 0 where said and empty lists mean "as the place has it".
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 namespace skyquilt::simulate {
 
 struct SimulateOptions {
-  std::string preset = "town";
+  std::string place = "town";
   int seed = 1;                        // >= 0
-  int image_width = 0;                 // pixels; 0: the preset's; the height keeps the preset's aspect ratio
+  int image_width = 0;                 // pixels; 0: the place's; the height keeps the place's aspect ratio
   double forward_overlap = -1.0;       // 0..0.95, share of a photo seen by the next one of its line
   double side_overlap = -1.0;          // 0..0.95, share seen by the next line
   std::vector<double> altitudes;       // metres above ground: one for all blocks, or one per block, row by row from the south-west
-  bool oblique = true;                 // fly the preset's oblique lines too
+  bool oblique = true;                 // fly the place's oblique lines too
   double gps_noise_m = -1.0;           // standard deviation per horizontal axis; the vertical one is 1.5 times that
   double exposure_drift_stops = -1.0;  // slow change over the flight, +- this much
   double exposure_jumps_stops = -1.0;  // sudden changes, +- this much

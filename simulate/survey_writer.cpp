@@ -57,11 +57,11 @@ image::Image8 Develop(const image::ImageF& rgb_linear, const Development& develo
     for (int x = 0; x < out.width; ++x) {
       const double distance2 = (Eigen::Vector2d(x + 0.5, y + 0.5) - centre).squaredNorm();
       // Exactly 1 without vignetting.
-      const auto falloff = static_cast<float>(std::exp(log_per_px2 * distance2));
+      const auto vignetting = static_cast<float>(std::exp(log_per_px2 * distance2));
       const float* light = rgb_linear.At(x, y);
       uint8_t* stored = out.At(x, y);
       for (size_t c = 0; c < scale.size(); ++c) {
-        const float value = std::clamp(light[c] * (falloff * scale[c]), 0.0F, 1.0F);
+        const float value = std::clamp(light[c] * (vignetting * scale[c]), 0.0F, 1.0F);
         stored[c] = table[static_cast<size_t>(std::lrint(value * static_cast<float>(kTableSize)))];
       }
     }
@@ -100,7 +100,7 @@ void WriteModel(const std::filesystem::path& folder, const camera::Camera& camer
   survey::WriteColmapText(model, folder / "sparse" / "0");
 }
 
-void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const Preset& preset) {
+void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const PlaceSpec& place) {
   Json list = Json::array();
   for (const PhotoPlan& photo : photos) {
     list.push_back({{"name", photo.name},
@@ -116,18 +116,18 @@ void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<P
        "green and blue light that the photo really got relative to normal exposure, with the survey's exposure offset and what no tag tells, "
        "brightness errors and colour drift; vignetting: share of light lost in the corner farthest from the principal point, elsewhere the factor "
        "is exp(log(1 - vignetting) r^2), r the distance from the principal point over that corner's"},
-      {"vignetting", preset.vignetting},
+      {"vignetting", place.vignetting},
       {"photos", list}};
   base::WriteFileAtomically(folder / "truth" / "exposure.json", json.dump(1) + "\n");
 }
 
-void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<Building>& buildings, const Preset& preset,
+void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<Building>& buildings, const PlaceSpec& place,
                         const geo::EnuFrame& frame) {
   Json list = Json::array();
   for (size_t i = 0; i < buildings.size(); ++i) {
     const Building& b = buildings[i];
     const geo::Geodetic place = frame.GeodeticFromEnu({b.centre.x(), b.centre.y(), b.ground_z_m});
-    const bool inside = (b.centre - preset.area_min).minCoeff() >= 0.0 && (preset.area_max - b.centre).minCoeff() >= 0.0;
+    const bool inside = (b.centre - place.area_min).minCoeff() >= 0.0 && (place.area_max - b.centre).minCoeff() >= 0.0;
     list.push_back({{"id", i},
                     {"kind", KindName(b.kind)},
                     {"roof", RoofName(b.roof)},
@@ -152,24 +152,24 @@ void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<B
   base::WriteFileAtomically(folder / "truth" / "buildings.json", json.dump(1) + "\n");
 }
 
-void WriteSummary(const std::filesystem::path& folder, const Preset& preset, SimulateOptions options, const geo::EnuFrame& frame, size_t n_photos) {
+void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, SimulateOptions options, const geo::EnuFrame& frame, size_t n_photos) {
   JsonVisitor visitor;
   options.Visit(visitor);
   const geo::Geodetic& origin = frame.origin();
-  const Json json = {{"preset", preset.name},
-                     {"seed", preset.seed},
+  const Json json = {{"place", place.name},
+                     {"seed", place.seed},
                      {"photos", n_photos},
                      {"origin", {{"latitude_deg", origin.latitude_deg}, {"longitude_deg", origin.longitude_deg}, {"height_m", origin.height_m}}},
                      {"exact_frame", true},
-                     {"gps_noise_m", preset.gps_noise_m},
+                     {"gps_noise_m", place.gps_noise_m},
                      {"test_every", options.test_every},
                      {"options", visitor.json},
                      {"blocks",
-                      {{"rows", preset.rows},
-                       {"columns", preset.columns},
-                       {"min_enu", {preset.area_min.x(), preset.area_min.y()}},
-                       {"max_enu", {preset.area_max.x(), preset.area_max.y()}},
-                       {"altitudes_agl_m", preset.altitudes_agl_m}}}};
+                      {{"rows", place.rows},
+                       {"columns", place.columns},
+                       {"min_enu", {place.area_min.x(), place.area_min.y()}},
+                       {"max_enu", {place.area_max.x(), place.area_max.y()}},
+                       {"altitudes_agl_m", place.altitudes_agl_m}}}};
   base::WriteFileAtomically(folder / "simulate.json", json.dump(1) + "\n");
 }
 

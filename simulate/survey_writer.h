@@ -11,7 +11,7 @@
 #include "simulate/building.h"
 #include "simulate/flight.h"
 #include "simulate/photo_renderer.h"
-#include "simulate/preset.h"
+#include "simulate/place_spec.h"
 #include "simulate/simulate_options.h"
 
 namespace skyquilt::simulate {
@@ -33,11 +33,11 @@ void WritePhoto(const std::filesystem::path& folder, const PhotoPlan& photo, con
 void WriteModel(const std::filesystem::path& folder, const camera::Camera& camera, const std::vector<PhotoPlan>& photos,
                 std::vector<survey::ColmapPoint> points);
 // truth/exposure.json
-void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const Preset& preset);
+void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const PlaceSpec& place);
 // truth/buildings.json
-void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<Building>& buildings, const Preset& preset,
+void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<Building>& buildings, const PlaceSpec& place,
                         const geo::EnuFrame& frame);
 // simulate.json: what was made and the suggested blocks. Its presence says that the survey is complete.
-void WriteSummary(const std::filesystem::path& folder, const Preset& preset, SimulateOptions options, const geo::EnuFrame& frame, size_t n_photos);
+void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, SimulateOptions options, const geo::EnuFrame& frame, size_t n_photos);
 
 }  // namespace skyquilt::simulate

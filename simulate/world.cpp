@@ -11,17 +11,17 @@
 
 namespace skyquilt::simulate {
 
-World::World(const Preset& preset, double light_intensity, base::ThreadPool& threads)
-    : seed_(HashCell(static_cast<int>(preset.seed), 0, 4711U)),
-      sky_(preset.sun_azimuth_deg, preset.sun_elevation_deg, light_intensity, preset.sky_clouds, seed_ + 5U) {
-  const Eigen::Vector2d surround = Eigen::Vector2d::Constant(preset.surround_m);
-  if (preset.landscape == Landscape::kCity) {
-    BuildCity(preset, preset.area_min - surround, preset.area_max + surround);
+World::World(const PlaceSpec& place, double light_intensity, base::ThreadPool& threads)
+    : seed_(HashCell(static_cast<int>(place.seed), 0, 4711U)),
+      sky_(place.sun_azimuth_deg, place.sun_elevation_deg, light_intensity, place.sky_clouds, seed_ + 5U) {
+  const Eigen::Vector2d surround = Eigen::Vector2d::Constant(place.surround_m);
+  if (place.landscape == Landscape::kCity) {
+    BuildCity(place, place.area_min - surround, place.area_max + surround);
   } else {
-    BuildTidalFlat(preset, preset.area_min - surround, preset.area_max + surround);
+    BuildTidalFlat(place, place.area_min - surround, place.area_max + surround);
   }
   scene_ = std::make_unique<raytrace::TracedScene>(mesh_.position, mesh_.triangle);
-  ambient_ = std::make_unique<AmbientVolume>(mesh_, *scene_, sky_, static_cast<float>(preset.ambient_voxel_m), threads);
+  ambient_ = std::make_unique<AmbientVolume>(mesh_, *scene_, sky_, static_cast<float>(place.ambient_voxel_m), threads);
 }
 
 const std::vector<Building>& World::buildings() const {
@@ -29,14 +29,14 @@ const std::vector<Building>& World::buildings() const {
   return city_ ? city_->contents().buildings : none;
 }
 
-void World::BuildCity(const Preset& preset, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
-  city_ = std::make_unique<CityLayout>(preset.city, ground_min, ground_max, seed_);
+void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
+  city_ = std::make_unique<CityLayout>(place.city, ground_min, ground_max, seed_);
   CityContents& contents = city_->contents();
-  const auto Rolling = [&](double east, double north) { return RollingHeight(east, north, preset.terrain_amplitude_m, seed_ + 1U); };
+  const auto Rolling = [&](double east, double north) { return RollingHeight(east, north, place.terrain_amplitude_m, seed_ + 1U); };
   for (Pond& pond : contents.ponds) {
     pond.level_z_m = Rolling(pond.centre.x(), pond.centre.y()) - 0.5;
   }
-  terrain_ = std::make_unique<Terrain>(ground_min, ground_max, preset.terrain_step_m, [&](double east, double north) {
+  terrain_ = std::make_unique<Terrain>(ground_min, ground_max, place.terrain_step_m, [&](double east, double north) {
     double height = Rolling(east, north);
     for (const Pond& pond : contents.ponds) {
       const double r = pond.Radius(east, north);
@@ -62,7 +62,7 @@ void World::BuildCity(const Preset& preset, const Eigen::Vector2d& ground_min, c
   }
   for (size_t i = 0; i < contents.trees.size(); ++i) {
     contents.trees[i].ground_z_m = Ground(contents.trees[i].position);
-    AddTree(contents.trees[i], static_cast<uint32_t>(i), preset.city.tree_detail, mesh_);
+    AddTree(contents.trees[i], static_cast<uint32_t>(i), place.city.tree_detail, mesh_);
   }
   for (size_t i = 0; i < contents.parked.size(); ++i) {
     contents.parked[i].ground_z_m = Ground(contents.parked[i].position);
@@ -70,12 +70,12 @@ void World::BuildCity(const Preset& preset, const Eigen::Vector2d& ground_min, c
   }
   base::Random random(seed_, 3);
   const Eigen::Vector2d beyond = Eigen::Vector2d::Constant(40.0);
-  moving_ = city_->MakeMovingCars(preset.moving_cars, preset.area_min - beyond, preset.area_max + beyond, random);
+  moving_ = city_->MakeMovingCars(place.moving_cars, place.area_min - beyond, place.area_max + beyond, random);
 }
 
-void World::BuildTidalFlat(const Preset& preset, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
-  channels_ = std::make_unique<TidalChannels>(preset.area_min, preset.area_max, preset.terrain_amplitude_m, seed_);
-  terrain_ = std::make_unique<Terrain>(ground_min, ground_max, preset.terrain_step_m,
+void World::BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
+  channels_ = std::make_unique<TidalChannels>(place.area_min, place.area_max, place.terrain_amplitude_m, seed_);
+  terrain_ = std::make_unique<Terrain>(ground_min, ground_max, place.terrain_step_m,
                                        [&](double east, double north) { return channels_->Height(east, north); });
   terrain_->AddTo(mesh_);
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(0.5);

@@ -1,4 +1,4 @@
-// A simulated place: geometry, light and the look of everything in it, made from a preset. Read-only once made; thread-safe.
+// A simulated place: geometry, light and the look of everything in it, made from a place. Read-only once made; thread-safe.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 #include "core/raytrace/traced_scene.h"
 #include "simulate/ambient_volume.h"
 #include "simulate/city_layout.h"
-#include "simulate/preset.h"
+#include "simulate/place_spec.h"
 #include "simulate/sky.h"
 #include "simulate/surface.h"
 #include "simulate/terrain.h"
@@ -26,7 +26,7 @@ struct MovingScene {
 
 class World {
  public:
-  World(const Preset& preset, double light_intensity, base::ThreadPool& threads);
+  World(const PlaceSpec& place, double light_intensity, base::ThreadPool& threads);
 
   const Mesh& mesh() const { return mesh_; }
   const raytrace::TracedScene& scene() const { return *scene_; }
@@ -42,8 +42,8 @@ class World {
   static Surface MovingSurfaceAt(const Hit& hit, const std::vector<Car>& cars);
 
  private:
-  void BuildCity(const Preset& preset, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
-  void BuildTidalFlat(const Preset& preset, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  void BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  void BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
   void AddWater(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double z, uint32_t object);
 
   uint32_t seed_;

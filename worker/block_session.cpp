@@ -41,7 +41,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
     brightness::PutLuminance(job.luminance, trainer.luminance_state(), writer);
   }
   if (findings != nullptr) {
-    scene::PutBackdrop(findings->backdrop, writer);
+    scene::PutBackground(findings->background, writer);
     for (const SurfaceBand& band : findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
     writer.Put("surface_bands", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
   }

@@ -1,5 +1,5 @@
-// One ray's loss in fields with hidden light (core/brightness/luminance.h): two renderings from one density, of which the photos judge one and the
-// wish for a given mean brightness the other.
+// One ray's loss in fields with concealing field (core/brightness/luminance.h): two renderings from one density, of which the photos judge one and
+// the wish for a given mean brightness the other.
 #pragma once
 
 #include <cstddef>

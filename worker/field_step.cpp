@@ -20,7 +20,7 @@ float ReadAhead(const float* table, int64_t floats) {
 }  // namespace
 
 FieldStep::FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context,
-                     const LuminancePlan& luminance, base::ThreadPool& threads, StageTimes& times)
+                     const LuminancePlan& luminance, base::ThreadPool& threads, PhaseTimes& times)
     : field_(field),
       luminance_(luminance.luminance),
       state_(luminance.start),
@@ -38,28 +38,28 @@ void FieldStep::Encode(const RayBatch& batch, std::span<const float> grid) {
   const Packet& last = batch.packets.back();
   Grow(features_, last.features + last.stride * static_cast<size_t>(field_.FeatureRows()));
   const auto packets = static_cast<int64_t>(batch.packets.size());
-  const int64_t stretches = (packets + kEncodePackets - 1) / kEncodePackets;
+  const int64_t runs = (packets + kEncodePackets - 1) / kEncodePackets;
   const encoding::Encoding& encoding = field_.encoding();
-  threads_.ParallelFor(stretches * encoding.parts(), [&](int64_t task, int thread) {
-    const auto start = StageTimes::Clock::now();
-    const int part = static_cast<int>(task / stretches);
+  threads_.ParallelFor(runs * encoding.parts(), [&](int64_t task, int thread) {
+    const auto start = PhaseTimes::Clock::now();
+    const int part = static_cast<int>(task / runs);
     const float* table = grid.data() + encoding.Offset(part);
-    const int64_t stretch = task % stretches;
+    const int64_t run = task % runs;
     const int64_t floats = encoding.Offset(part + 1) - encoding.Offset(part);
-    const int64_t readers = std::min<int64_t>(threads_.size(), stretches);
+    const int64_t readers = std::min<int64_t>(threads_.size(), runs);
     // Worth it when the samples will want most of the table.
-    if (stretch < readers && 4 * batch.n_samples > floats / kernel::kLineFloats) {
+    if (run < readers && 4 * batch.n_samples > floats / kernel::kLineFloats) {
       const int64_t length = floats / readers / kernel::kLineFloats * kernel::kLineFloats;
-      read_ahead_[static_cast<size_t>(thread)] = ReadAhead(table + stretch * length, length);
+      read_ahead_[static_cast<size_t>(thread)] = ReadAhead(table + run * length, length);
     }
-    const auto first = static_cast<size_t>(stretch * kEncodePackets);
+    const auto first = static_cast<size_t>(run * kEncodePackets);
     const auto end = std::min(first + static_cast<size_t>(kEncodePackets), batch.packets.size());
     for (size_t k = first; k < end; ++k) {
       const Packet& p = batch.packets[k];
       encoding.Forward(part, table, batch.x.data() + p.begin, batch.y.data() + p.begin, batch.z.data() + p.begin, p.count,
                        features_.data() + p.features + static_cast<size_t>(encoding.FirstRow(part)) * p.stride, p.stride);
     }
-    times_.Add(thread, Stage::kEncode, start);
+    times_.Add(thread, Phase::kEncode, start);
   });
 }
 
@@ -86,7 +86,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
       results_[k] = trainer.Train(step, batch.packets[k], network_gradient);
     }
   });
-  auto at = StageTimes::Clock::now();
+  auto at = PhaseTimes::Clock::now();
   const LossSums sums = SumResults(batch, &result);
   result.finite = SumNetworkGradients(state) && result.finite && std::isfinite(result.loss);
   if (!result.finite) {
@@ -99,17 +99,17 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
     const PixelRay& ray = batch.rays[k].ray;
     if (!ray.empty) learner->Add(static_cast<size_t>(ray.photo), gain_gradients_[k].data(), ray_share);
   }
-  times_.Add(0, Stage::kBackward, at);
+  times_.Add(0, Phase::kBackward, at);
   optimizer_.Update(
-      batch.x.data(), batch.y.data(), batch.z.data(), stretches_, options.learning_rate, options.network_l2, parameters, state,
-      [&](int thread, StageTimes::Clock::time_point began) { times_.Add(thread, Stage::kScatter, began); },
-      [&](int thread, StageTimes::Clock::time_point began) { times_.Add(thread, Stage::kOptimise, began); });
+      batch.x.data(), batch.y.data(), batch.z.data(), gradient_segments_, options.learning_rate, options.network_l2, parameters, state,
+      [&](int thread, PhaseTimes::Clock::time_point began) { times_.Add(thread, Phase::kScatter, began); },
+      [&](int thread, PhaseTimes::Clock::time_point began) { times_.Add(thread, Phase::kOptimise, began); });
   return result;
 }
 
 LossSums FieldStep::SumResults(const RayBatch& batch, StepResult* result) {
   LossSums sums;
-  stretches_.clear();
+  gradient_segments_.clear();
   for (size_t k = 0; k < results_.size(); ++k) {
     const PacketResult& p = results_[k];
     result->n_live += p.live;
@@ -121,7 +121,7 @@ LossSums FieldStep::SumResults(const RayBatch& batch, StepResult* result) {
     sums.shown += p.sums.shown;
     sums.log_share += p.sums.log_share;
     const Packet& packet = batch.packets[k];
-    stretches_.push_back({packet.begin, p.live, features_.data() + packet.features, packet.stride});
+    gradient_segments_.push_back({packet.begin, p.live, features_.data() + packet.features, packet.stride});
   }
   const float ray_share = 1.0F / static_cast<float>(std::max(1, result->n_rays));
   result->loss = sums.loss * static_cast<double>(ray_share);

@@ -15,8 +15,8 @@
 #include "core/field/optimizer.h"
 #include "core/render/trained_field.h"
 #include "worker/packet_trainer.h"
+#include "worker/phase_times.h"
 #include "worker/ray_batch.h"
-#include "worker/stage_times.h"
 
 namespace skyquilt::worker {
 
@@ -46,7 +46,7 @@ class FieldStep {
  public:
   // target's map, step and colour range are read; parameters are handed to every step. context may be null; it is frozen.
   FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context, const LuminancePlan& luminance,
-            base::ThreadPool& threads, StageTimes& times);
+            base::ThreadPool& threads, PhaseTimes& times);
 
   FieldStep(const FieldStep&) = delete;  // packet trainers refer to it
   FieldStep& operator=(const FieldStep&) = delete;
@@ -78,7 +78,7 @@ class FieldStep {
   brightness::LuminanceState state_;
   bool controls_mean_;
   base::ThreadPool& threads_;
-  StageTimes& times_;
+  PhaseTimes& times_;
   field::Optimizer optimizer_;
   field::NetworkWeights weights_;
   std::vector<std::unique_ptr<PacketTrainer>> trainers_;  // per thread
@@ -88,7 +88,7 @@ class FieldStep {
   std::vector<PacketResult> results_;
   std::vector<float> slot_gradients_;
   std::vector<std::array<float, 3>> gain_gradients_;  // per ray, by the logarithm of its gains; empty: nobody learns from them
-  std::vector<field::GridGradient> stretches_;
+  std::vector<field::GridGradient> gradient_segments_;
 };
 
 }  // namespace skyquilt::worker

@@ -82,7 +82,7 @@ void FieldTrainer::ObserveSamples() {
   const std::vector<float>& depth = step_.ObservedDepths();
   const int64_t tasks = std::min(threads_.size(), 8);
   threads_.ParallelFor(tasks, [&](int64_t task, int thread) {
-    const auto start = StageTimes::Clock::now();
+    const auto start = PhaseTimes::Clock::now();
     const int64_t first = task * grid.CellCount() / tasks;
     const int64_t end = (task + 1) * grid.CellCount() / tasks;
     for (const Packet& packet : batch_.packets) {
@@ -91,19 +91,19 @@ void FieldTrainer::ObserveSamples() {
         if (cell >= first && cell < end) grid.Observe(cell, depth[s]);
       }
     }
-    times_.Add(thread, Stage::kOccupancy, start);
+    times_.Add(thread, Phase::kOccupancy, start);
   });
 }
 
 void FieldTrainer::StepDepths(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth) {
   const auto n = static_cast<int64_t>(x.size());
   depth->assign(x.size(), 0.0F);
-  constexpr int64_t kStretch = 16 * field::kChunk;
+  constexpr int64_t kRun = 16 * field::kChunk;
   const field::NetworkWeights weights = field_.Prepare(target_.parameters.networks);
-  threads_.ParallelFor((n + kStretch - 1) / kStretch, [&](int64_t task, int thread) {
-    const auto start = StageTimes::Clock::now();
-    const int64_t begin = task * kStretch;
-    const int64_t count = std::min(kStretch, n - begin);
+  threads_.ParallelFor((n + kRun - 1) / kRun, [&](int64_t task, int thread) {
+    const auto start = PhaseTimes::Clock::now();
+    const int64_t begin = task * kRun;
+    const int64_t count = std::min(kRun, n - begin);
     const int64_t padded = kernel::Padded(count);
     const size_t stride = kernel::StrideFor(count);
     std::vector<float> features(static_cast<size_t>(field_.FeatureRows()) * stride, 0.0F);
@@ -116,7 +116,7 @@ void FieldTrainer::StepDepths(const std::vector<float>& x, const std::vector<flo
       kernel::ExpShifted(geometry.data(), size, static_cast<float>(target_.config.density_bias), kMaxLogDepth, geometry.data());
       std::copy_n(geometry.begin(), std::min(size, count - s), depth->begin() + begin + s);
     }
-    times_.Add(thread, Stage::kOccupancy, start);
+    times_.Add(thread, Phase::kOccupancy, start);
   });
 }
 
@@ -129,7 +129,7 @@ void FieldTrainer::UpdateOccupancy(bool grow) {
   const int64_t budget = options_.batch_samples / 2;
   for (int64_t i = 0; i < budget; ++i) {
     const int64_t index = random.Below(static_cast<uint32_t>(grid.CellCount()));
-    if (grid.depth[static_cast<size_t>(index)] < 0.0F || grid.occupied[static_cast<size_t>(index)] != 0) continue;
+    if (grid.tau[static_cast<size_t>(index)] < 0.0F || grid.occupied[static_cast<size_t>(index)] != 0) continue;
     const int64_t cell_x = index % grid.size[0], cell_y = index / grid.size[0] % grid.size[1], cell_z = index / grid.size[0] / grid.size[1];
     chosen.push_back(index);
     x.push_back((static_cast<float>(cell_x) + random.Uniform()) * grid.cell);
@@ -137,11 +137,11 @@ void FieldTrainer::UpdateOccupancy(bool grow) {
     z.push_back((static_cast<float>(cell_z) + random.Uniform()) * grid.cell);
   }
   StepDepths(x, y, z, &depth);
-  const auto start = StageTimes::Clock::now();
+  const auto start = PhaseTimes::Clock::now();
   for (size_t i = 0; i < chosen.size(); ++i) grid.Observe(chosen[i], depth[i]);
   if (grow) grid.WakeNeighbours(kSolidDepth, kWakeDepth);
   grid.Refresh(kOccupancyLimit);
-  times_.Add(0, Stage::kOccupancy, start);
+  times_.Add(0, Phase::kOccupancy, start);
 }
 
 }  // namespace skyquilt::worker

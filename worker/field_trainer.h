@@ -32,8 +32,8 @@ class FieldTrainer {
   StepResult Step(double progress, double learning_rate_scale);
   // Looks for matter in cells that are not sampled, then decides which cells are. `grow` also wakes the cells around surfaces.
   void UpdateOccupancy(bool grow);
-  // Seconds of work per stage (kStageNames) since the start, summed over threads.
-  std::array<double, kStages> StageSeconds() const { return times_.Seconds(); }
+  // Seconds of work per phase (kPhaseNames) since the start, summed over threads.
+  std::array<double, kPhases> PhaseSeconds() const { return times_.Seconds(); }
 
  private:
   void ObserveSamples();
@@ -45,7 +45,7 @@ class FieldTrainer {
   double start_log_gain_;  // of Omega
   uint64_t seed_;
   base::ThreadPool& threads_;
-  StageTimes times_;
+  PhaseTimes times_;
   field::HashField field_;
   field::TrainableState state_;
   RayDrawer drawer_;

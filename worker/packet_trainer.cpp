@@ -11,7 +11,7 @@ const float kHiddenDepth = -std::log(1e-3F);
 
 }  // namespace
 
-PacketTrainer::PacketTrainer(const PacketShared& shared, StageTimes& times, int thread) : shared_(shared), times_(times), thread_(thread) {
+PacketTrainer::PacketTrainer(const PacketShared& shared, PhaseTimes& times, int thread) : shared_(shared), times_(times), thread_(thread) {
   if (shared.context == nullptr) return;
   render::FieldSet set;
   set.context = shared.context;
@@ -19,15 +19,15 @@ PacketTrainer::PacketTrainer(const PacketShared& shared, StageTimes& times, int 
 }
 
 PacketResult PacketTrainer::Train(const PacketStep& step, const Packet& packet, float* network_gradient) {
-  auto at = StageTimes::Clock::now();
+  auto at = PhaseTimes::Clock::now();
   Begin(step, packet);
   Density();
   DropHidden();
-  at = times_.Add(thread_, Stage::kDensity, at);
+  at = times_.Add(thread_, Phase::kDensity, at);
   Color();
-  at = times_.Add(thread_, Stage::kColor, at);
+  at = times_.Add(thread_, Phase::kColor, at);
   LookThroughContext();
-  at = times_.Add(thread_, Stage::kContext, at);
+  at = times_.Add(thread_, Phase::kContext, at);
   PacketResult result;
   result.live = live_;
   if (shared_.luminance.On()) {
@@ -35,20 +35,20 @@ PacketResult PacketTrainer::Train(const PacketStep& step, const Packet& packet, 
   } else {
     ComposeAndLoss(result.sums);
   }
-  at = times_.Add(thread_, Stage::kCompose, at);
+  at = times_.Add(thread_, Phase::kCompose, at);
   if (live_ > 0) result.finite = Backward(network_gradient);
-  times_.Add(thread_, Stage::kBackward, at);
+  times_.Add(thread_, Phase::kBackward, at);
   return result;
 }
 
 void PacketTrainer::Infer(const PacketStep& step, const Packet& packet) {
-  auto at = StageTimes::Clock::now();
+  auto at = PhaseTimes::Clock::now();
   Begin(step, packet);
   Density();
   KeepAll();
-  at = times_.Add(thread_, Stage::kDensity, at);
+  at = times_.Add(thread_, Phase::kDensity, at);
   Color();
-  times_.Add(thread_, Stage::kColor, at);
+  times_.Add(thread_, Phase::kColor, at);
 }
 
 void PacketTrainer::Begin(const PacketStep& step, const Packet& packet) {

@@ -15,9 +15,9 @@
 #include "worker/concealed_ray_loss.h"
 #include "worker/losses/distortion_loss.h"
 #include "worker/luminance_convolution.h"
+#include "worker/phase_times.h"
 #include "worker/ray_batch.h"
 #include "worker/ray_loss.h"
-#include "worker/stage_times.h"
 
 namespace skyquilt::worker {
 
@@ -54,7 +54,7 @@ struct PacketResult {
 class PacketTrainer {
  public:
   // times: charged to `thread`. All references must outlive it.
-  PacketTrainer(const PacketShared& shared, StageTimes& times, int thread);
+  PacketTrainer(const PacketShared& shared, PhaseTimes& times, int thread);
 
   // Leaves the features' gradient and adds to network_gradient (HashField::NetworkParameters()).
   PacketResult Train(const PacketStep& step, const Packet& packet, float* network_gradient);
@@ -90,7 +90,7 @@ class PacketTrainer {
   // From gradients of optical depths and colours to those of the networks' outputs.
   void FinishGradients();
 
-  // packet_trainer_luminance.cpp: the same for fields with hidden light.
+  // packet_trainer_luminance.cpp: the same for fields with concealing field.
   void ConcealAndLoss(float* network_gradient, LossSums& sums);
   ConcealedTask TaskOfRays() const;
   void ComposeConcealed();
@@ -98,7 +98,7 @@ class PacketTrainer {
   void ScatterConcealed(const RayView& view, const ConcealedRay& composed, const ConcealedGradient& gradient);
 
   PacketShared shared_;
-  StageTimes& times_;
+  PhaseTimes& times_;
   int thread_;
   // The packet at hand.
   const PacketStep* step_ = nullptr;
@@ -109,7 +109,7 @@ class PacketTrainer {
   std::vector<float> depth_, keep_, tau_, weight_, rgb_, weight_gradient_;
   DistortionScratch<float> distortion_;
   std::vector<RayView> views_;  // rays of the packet
-  // The context's stretches of rays.
+  // The context's intervals of rays.
   std::unique_ptr<render::RayRenderer> context_;
   std::vector<render::Ray> pieces_;
   std::vector<render::RayColor> colors_;

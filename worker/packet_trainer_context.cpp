@@ -24,9 +24,9 @@ void PacketTrainer::LookThroughContext() {
 
 void PacketTrainer::AddPieces(size_t view) {
   const PixelRay& ray = Ray(view).ray;
-  const geo::Stretch all = render::FieldStretch(shared_.context->map, ray.origin_enu, ray.direction_enu);
+  const geo::Interval all = render::FieldInterval(shared_.context->map, ray.origin_enu, ray.direction_enu);
   if (all.Empty()) return;
-  const geo::Stretch plan = render::PlanStretch(shared_.target.map, ray.origin_enu, ray.direction_enu);
+  const geo::Interval plan = render::PlanInterval(shared_.target.map, ray.origin_enu, ray.direction_enu);
   if (plan.t_near > all.t_near + shared_.context->step_m) {
     pieces_.push_back({ray.origin_enu, ray.direction_enu, all.t_near, plan.t_near, 0.0F});
     owner_.emplace_back(view, false);

@@ -1,4 +1,4 @@
-// From the samples of fields with hidden light (core/brightness/luminance.h) to the loss of every ray and back.
+// From the samples of fields with concealing field (core/brightness/luminance.h) to the loss of every ray and back.
 #include <algorithm>
 #include <cmath>
 

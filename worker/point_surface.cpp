@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPointsPerCell = 16.0;
 constexpr int kMostCells = 256;    // along an axis
-constexpr double kStrays = 0.002;  // share of points on each side that does not stretch the grid
+constexpr double kStrays = 0.002;  // share of points on each side that does not widen the grid
 
 double QuantileOf(const std::vector<survey::SparsePoint>& points, int axis, double share) {
   std::vector<double> values;
@@ -23,7 +23,7 @@ double QuantileOf(const std::vector<survey::SparsePoint>& points, int axis, doub
 
 }  // namespace
 
-scene::PlanSurface SurfaceOfPoints(const survey::Survey& survey) {
+scene::HeightMap SurfaceOfPoints(const survey::Survey& survey) {
   if (survey.points.empty()) return {};
   Eigen::Vector2d low, high;
   for (int axis = 0; axis < 2; ++axis) {

@@ -52,7 +52,7 @@ void RayBatch::Append(BatchRay ray, const float* x_in, const float* y_in, const 
   rays.push_back(ray);
 }
 
-void RayBatch::Finish(int rows) {
+void RayBatch::LayOutFeatures(int rows) {
   const auto end = static_cast<size_t>(kernel::Padded(Size()));
   for (auto* v : {&x, &y, &z, &t, &unit_length}) v->resize(end, 0.0F);
   cell.resize(end, 0);
@@ -75,14 +75,14 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
   const float drawn = random.Uniform();
   const float jitter = stratified_ ? drawn : 0.5F;
   for (float& channel : r.background) channel = random.Uniform();
-  const geo::Stretch stretch = render::FieldStretch(target_.map, r.ray.origin_enu, r.ray.direction_enu);
-  if (stretch.Empty()) return;
+  const geo::Interval interval = render::FieldInterval(target_.map, r.ray.origin_enu, r.ray.direction_enu);
+  if (interval.Empty()) return;
   const render::UnitRay unit(target_.map, r.ray.origin_enu, r.ray.direction_enu);
   group.MakeRoom(kMaxRaySamples);
   size_t at = group.count;
   const size_t end = at + kMaxRaySamples;
   const double per_step = 1.0 / target_.step_m;
-  render::March(target_, r.ray.origin_enu, r.ray.direction_enu, stretch, target_.step_m, jitter,
+  render::March(target_, r.ray.origin_enu, r.ray.direction_enu, interval, target_.step_m, jitter,
                 [&](double t, double, double unit_length, int64_t cell) {
                   const Eigen::Vector3f p = unit.At(t);
                   group.x[at] = p.x();
@@ -102,7 +102,7 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch
   const int n_groups = (n_rays + kGroupRays - 1) / kGroupRays;
   groups_.resize(static_cast<size_t>(n_groups));
   threads_.ParallelFor(n_groups, [&](int64_t task, int thread) {
-    const auto start = StageTimes::Clock::now();
+    const auto start = PhaseTimes::Clock::now();
     Group& group = groups_[static_cast<size_t>(task)];
     group.rays.clear();
     group.count = 0;
@@ -118,9 +118,9 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch
         AddRay(r, random, group);
       }
     }
-    times_.Add(thread, Stage::kDraw, start);
+    times_.Add(thread, Phase::kDraw, start);
   });
-  const auto start = StageTimes::Clock::now();
+  const auto start = PhaseTimes::Clock::now();
   batch->Clear();
   for (const Group& group : groups_) {
     size_t at = 0;
@@ -130,8 +130,8 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch
       at += static_cast<size_t>(r.count);
     }
   }
-  batch->Finish(feature_rows);
-  times_.Add(0, Stage::kDraw, start);
+  batch->CountAndReserve(feature_rows);
+  times_.Add(0, Phase::kDraw, start);
 }
 
 }  // namespace skyquilt::worker

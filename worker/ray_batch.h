@@ -7,8 +7,8 @@
 #include "core/base/thread_pool.h"
 #include "core/geo/ray_box.h"
 #include "core/render/trained_field.h"
+#include "worker/phase_times.h"
 #include "worker/ray_source.h"
-#include "worker/stage_times.h"
 
 namespace skyquilt::worker {
 
@@ -42,7 +42,7 @@ struct RayBatch {
   void Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* t_in, const float* unit_length_in,
               const int32_t* cell_in);
   // Closes the last packet and lays out feature rows (`rows` per sample).
-  void Finish(int rows);
+  void CountAndReserve(int rows);
 };
 
 // Which rays count as neighbours in BatchRay::patch.
@@ -58,7 +58,7 @@ class RayDrawer {
  public:
   // stratified: a ray's samples begin anywhere in its first step, else in the middle of it.
   RayDrawer(const render::TrainedField& target, const RaySource& source, uint64_t seed, Neighbours neighbours, bool stratified,
-            base::ThreadPool& threads, StageTimes& times)
+            base::ThreadPool& threads, PhaseTimes& times)
       : target_(target), source_(source), seed_(seed), neighbours_(neighbours), stratified_(stratified), threads_(threads), times_(times) {}
   void Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch);
 
@@ -78,7 +78,7 @@ class RayDrawer {
   Neighbours neighbours_;
   bool stratified_;
   base::ThreadPool& threads_;
-  StageTimes& times_;
+  PhaseTimes& times_;
   std::vector<Group> groups_;
 };
 

@@ -88,7 +88,7 @@ bool RaySource::RayOf(int photo, int x, int y, bool empty, PixelRay* ray) const 
   RayThrough(photo, position, &ray->origin_enu, &ray->direction_enu);
   for (size_t c = 0; c < 3; ++c) ray->target_srgb[c] = static_cast<float>(rgb[c]) / 255.0F;
   ray->photo = photo;
-  ray->exposure = brightness::Response::FallenOff(exposures_[index], response_.LogFalloff(index, Radius2(photo, position)));
+  ray->exposure = brightness::Response::FallenOff(exposures_[index], response_.LogVignetting(index, Radius2(photo, position)));
   ray->empty = empty;
   return true;
 }

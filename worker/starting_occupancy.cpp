@@ -6,7 +6,7 @@
 
 #include "core/render/march.h"
 #include "core/scene/scene.h"
-#include "worker/few_views.h"
+#include "worker/view_count.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -20,8 +20,8 @@ constexpr int kGroundReach = 6;
 
 }  // namespace
 
-void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const scene::PlanSurface& surface,
-                int min_views, render::TrainedField& target, base::ThreadPool& threads) {
+void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const scene::HeightMap& surface, int min_views,
+                render::TrainedField& target, base::ThreadPool& threads) {
   field::OccupancyGrid& grid = target.occupancy;
   const int groups[3] = {(grid.size[0] + kGroup - 1) / kGroup, (grid.size[1] + kGroup - 1) / kGroup, (grid.size[2] + kGroup - 1) / kGroup};
   const auto centre_of = [&](int gx, int gy, int gz) {
@@ -54,7 +54,7 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
         for (int z = static_cast<int>(gz) * kGroup; z < std::min(grid.size[2], (static_cast<int>(gz) + 1) * kGroup); ++z) {
           for (int y = gy * kGroup; y < std::min(grid.size[1], (gy + 1) * kGroup); ++y) {
             for (int x = gx * kGroup; x < std::min(grid.size[0], (gx + 1) * kGroup); ++x) {
-              grid.depth[static_cast<size_t>(grid.Index(x, y, z))] = -1.0F;
+              grid.tau[static_cast<size_t>(grid.Index(x, y, z))] = -1.0F;
               grid.occupied[static_cast<size_t>(grid.Index(x, y, z))] = 0;
             }
           }
@@ -65,8 +65,8 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
 }
 
 void StartEverywhere(render::TrainedField& target) {
-  for (float& depth : target.occupancy.depth) {
-    if (depth >= 0.0F) depth = kStartDepth;
+  for (float& tau : target.occupancy.tau) {
+    if (tau >= 0.0F) tau = kStartTau;
   }
 }
 
@@ -117,8 +117,8 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
       }
     }
   }
-  for (size_t i = 0; i < grid.depth.size(); ++i) {
-    if (grid.depth[i] >= 0.0F) grid.depth[i] = grid.occupied[i] != 0 ? kStartDepth : 0.0F;
+  for (size_t i = 0; i < grid.tau.size(); ++i) {
+    if (grid.tau[i] >= 0.0F) grid.tau[i] = grid.occupied[i] != 0 ? kStartTau : 0.0F;
   }
 }
 
@@ -135,13 +135,13 @@ void StartFromBands(const RaySource& source, const survey::Survey& survey, const
     const SurfaceBand& band = context.Band(tile.photo, tile.row, tile.column);
     render::Ray ray;
     source.RayThrough(tile.photo, source.TileCentre(tile), &ray.origin_enu, &ray.direction_enu);
-    const geo::Stretch box = render::FieldStretch(target.map, ray.origin_enu, ray.direction_enu);
+    const geo::Interval box = render::FieldInterval(target.map, ray.origin_enu, ray.direction_enu);
     const double near = std::isfinite(band.front) ? std::max(box.t_near, static_cast<double>(band.front) - pad_m) : box.t_near;
     const double far = std::isfinite(band.back) ? std::min(box.t_far, static_cast<double>(band.back) + pad_m) : box.t_far;
     for (double t = near; t < far; t += 0.5 * cell_m) {
       const Eigen::Vector3f unit = target.map.UnitFromEnu(ray.origin_enu + t * ray.direction_enu);
       const auto index = static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()));
-      if (grid.depth[index] >= 0.0F) grid.occupied[index] = 1;
+      if (grid.tau[index] >= 0.0F) grid.occupied[index] = 1;
     }
   }
   if (grid.OccupiedShare() <= 0.0) {
@@ -153,9 +153,9 @@ void StartFromBands(const RaySource& source, const survey::Survey& survey, const
     if ((point.x_in_enu.array() < target.map.min_enu().array()).any() || (point.x_in_enu.array() > target.map.max_enu().array()).any()) continue;
     const Eigen::Vector3f unit = target.map.UnitFromEnu(point.x_in_enu);
     const auto index = static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()));
-    if (grid.depth[index] >= 0.0F) grid.occupied[index] = 1;
+    if (grid.tau[index] >= 0.0F) grid.occupied[index] = 1;
   }
-  for (size_t i = 0; i < grid.depth.size(); ++i) grid.depth[i] = grid.occupied[i] != 0 ? kStartDepth : std::min(grid.depth[i], 0.0F);
+  for (size_t i = 0; i < grid.tau.size(); ++i) grid.tau[i] = grid.occupied[i] != 0 ? kStartTau : std::min(grid.tau[i], 0.0F);
 }
 
 }  // namespace skyquilt::worker

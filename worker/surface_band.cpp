@@ -22,7 +22,7 @@ std::vector<SurfaceBand> SurfaceBands(const RaySource& source, const survey::Sur
     }
   }
   std::vector<render::RayColor> seen(rays.size());
-  context.Finish();
+  context.BuildNetworks();
   render::FieldSet set;
   set.context = &context;
   render::EngineOptions options;
@@ -43,7 +43,7 @@ void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, c
     Eigen::Vector3d origin, direction;
     source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
     if (!know_depth) {
-      if (!render::FieldStretch(target.map, origin, direction).Empty()) inside.push_back(tile);
+      if (!render::FieldInterval(target.map, origin, direction).Empty()) inside.push_back(tile);
       continue;
     }
     // A tile counts when its own or a neighbouring tile's surface lies above the block's ground plan.
@@ -54,18 +54,18 @@ void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, c
         Eigen::Vector3d o, d;
         source.RayThrough(neighbour.photo, source.TileCentre(neighbour), &o, &d);
         const auto depth = static_cast<double>(context->Band(tile.photo, row, column).median);
-        const geo::Stretch stretch = render::FieldStretch(target.map, o, d);
+        const geo::Interval interval = render::FieldInterval(target.map, o, d);
         if (!std::isfinite(depth)) {
           // Nothing known: as good as inside when the ray leaves through the ground.
-          const double out_z = o.z() + stretch.t_far * d.z();
-          if (!stretch.Empty() && out_z <= low.z() + 1e-6) any_inside = true;
+          const double out_z = o.z() + interval.t_far * d.z();
+          if (!interval.Empty() && out_z <= low.z() + 1e-6) any_inside = true;
           all_behind = false;
           continue;
         }
         const Eigen::Vector3d p = o + depth * d;
         const bool above = p.x() >= low.x() && p.x() <= high.x() && p.y() >= low.y() && p.y() <= high.y();
         any_inside = any_inside || above;
-        all_behind = all_behind && !stretch.Empty() && depth > stretch.t_far + 2.0 * context->field.step_m;
+        all_behind = all_behind && !interval.Empty() && depth > interval.t_far + 2.0 * context->field.step_m;
       }
     }
     if (any_inside) {

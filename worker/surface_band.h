@@ -1,4 +1,4 @@
-// Where the context sees surfaces: for the centre of every tile of every photo the stretch of the ray in which the light ends.
+// Where the context sees surfaces: for the centre of every tile of every photo the interval of the ray in which the light ends.
 // Blocks choose their pixels by it and start their occupancy from it.
 #pragma once
 
@@ -8,7 +8,7 @@
 #include "core/brightness/luminance.h"
 #include "core/brightness/response.h"
 #include "core/render/trained_field.h"
-#include "core/scene/backdrop.h"
+#include "core/scene/background.h"
 #include "core/survey/survey.h"
 #include "worker/ray_source.h"
 
@@ -24,7 +24,7 @@ struct SurfaceBand {
 // What the context stage finds out beside its field.
 struct ContextFindings {
   std::vector<SurfaceBand> bands;  // [photo][row][column], kTileRows x kTileColumns per photo
-  scene::Backdrop backdrop;
+  scene::Background background;
 };
 
 struct LoadedContext {
@@ -40,7 +40,7 @@ struct LoadedContext {
   bool KnowsBands(const survey::Survey& survey) const { return bands.size() == survey.photos.size() * kTileRows * kTileColumns; }
 };
 
-// Renders the context through every tile centre of all photos. Calls context.Finish().
+// Renders the context through every tile centre of all photos. Calls context.BuildNetworks().
 std::vector<SurfaceBand> SurfaceBands(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
                                       base::ThreadPool& threads);
 

@@ -12,15 +12,15 @@ namespace skyquilt::worker {
 namespace {
 
 constexpr size_t kMostPoints = 12'000;
-constexpr int kPointReach = 1;            // pixels around a point's that are averaged
-constexpr int kFewestSightings = 8;       // a photo's shared points: fewer say nothing
-constexpr int kRounds = 6;                // of reweighting
-constexpr int kMostSteps = 200;           // of conjugate gradients
-constexpr double kScatter = 0.15;         // log light beyond which a sighting counts less
-constexpr double kFalloffExplains = 0.1;  // of the squares
-constexpr double kNearlyAll = 0.95;       // of the photos
-constexpr double kFalloffRidge = 1.0;     // in sightings
-constexpr double kTrace = 1e-3;           // in sightings
+constexpr int kPointReach = 1;               // pixels around a point's that are averaged
+constexpr int kFewestSightings = 8;          // a photo's shared points: fewer say nothing
+constexpr int kRounds = 6;                   // of reweighting
+constexpr int kMostSteps = 200;              // of conjugate gradients
+constexpr double kScatter = 0.15;            // log light beyond which a sighting counts less
+constexpr double kVignettingExplains = 0.1;  // of the squares
+constexpr double kNearlyAll = 0.95;          // of the photos
+constexpr double kVignettingRidge = 1.0;     // in sightings
+constexpr double kTrace = 1e-3;              // in sightings
 
 // One point in one photo: logarithm of recorded light without what tags explain.
 struct Sighting {
@@ -108,7 +108,7 @@ Eigen::VectorXd Solve(std::span<const Sighting> sightings, const std::vector<dou
     const auto photo = static_cast<size_t>(i);
     moves[i] = learn.learns_gain[photo] != 0 ? 1.0 : 0.0;
     // Towards what tags say; a trace even without, because all photos together have no place of their own.
-    damping[i] = kTrace + (learn.belief.empty() ? 0.0 : static_cast<double>(learn.belief[photo])) * diagonal[i];
+    damping[i] = kTrace + (learn.tag_weight.empty() ? 0.0 : static_cast<double>(learn.tag_weight[photo])) * diagonal[i];
   }
   // Sum over a photo's sightings of a quantity's distance from its mean over each point.
   const auto about_points = [&](const auto& value) {
@@ -139,12 +139,12 @@ Eigen::VectorXd Solve(std::span<const Sighting> sightings, const std::vector<dou
   return gains;
 }
 
-// Falloff of every camera that explains best what the gains leave, all colours together; none where it hardly explains any of that, for light
+// Vignetting of every camera that explains best what the gains leave, all colours together; none where it hardly explains any of that, for light
 // that depends on the angle of view looks a little like it.
-void SolveFalloff(std::span<const Sighting> sightings, const std::array<std::vector<double>, 3>& weight, const std::array<Eigen::VectorXd, 3>& gains,
-                  brightness::Response& response) {
-  const size_t cameras = response.falloff.size() / 3;
-  std::vector<Eigen::Matrix3d> left(cameras, Eigen::Matrix3d::Identity() * kFalloffRidge);
+void SolveVignetting(std::span<const Sighting> sightings, const std::array<std::vector<double>, 3>& weight,
+                     const std::array<Eigen::VectorXd, 3>& gains, brightness::Response& response) {
+  const size_t cameras = response.vignetting.size() / 3;
+  std::vector<Eigen::Matrix3d> left(cameras, Eigen::Matrix3d::Identity() * kVignettingRidge);
   std::vector<Eigen::Vector3d> right(cameras, Eigen::Vector3d::Zero());
   std::vector<double> squares(cameras, 0.0);
   for (size_t c = 0; c < 3; ++c) {
@@ -166,8 +166,8 @@ void SolveFalloff(std::span<const Sighting> sightings, const std::array<std::vec
   }
   for (size_t camera = 0; camera < cameras; ++camera) {
     Eigen::Vector3d solved = left[camera].ldlt().solve(right[camera]);
-    if (!(solved.dot(right[camera]) > kFalloffExplains * squares[camera])) solved.setZero();
-    for (size_t k = 0; k < 3; ++k) response.falloff[3 * camera + k] = static_cast<float>(solved[static_cast<Eigen::Index>(k)]);
+    if (!(solved.dot(right[camera]) > kVignettingExplains * squares[camera])) solved.setZero();
+    for (size_t k = 0; k < 3; ++k) response.vignetting[3 * camera + k] = static_cast<float>(solved[static_cast<Eigen::Index>(k)]);
   }
 }
 
@@ -204,7 +204,7 @@ bool KeepGains(const std::array<Eigen::VectorXd, 3>& gains, std::span<const Sigh
 
 bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
                         const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads) {
-  if (!learn.Gains() && !learn.falloff) return false;
+  if (!learn.Gains() && !learn.vignetting) return false;
   const std::vector<Sighting> sightings = Look(survey, pixels, source, response, threads);
   const auto n = static_cast<Eigen::Index>(survey.photos.size());
   std::array<Eigen::VectorXd, 3> gains;
@@ -214,11 +214,11 @@ bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& p
     for (Eigen::Index i = 0; i < n; ++i) gains[c][i] = static_cast<double>(response.log_gain[3 * static_cast<size_t>(i) + c]);
     weight[c].assign(sightings.size(), 1.0);
   }
-  std::vector<Sighting> flat = sightings;  // without falloff
+  std::vector<Sighting> flat = sightings;  // without vignetting
   for (int round = 0; round < kRounds; ++round) {
     for (size_t s = 0; s < flat.size(); ++s) {
-      const auto falloff = static_cast<double>(response.LogFalloff(static_cast<size_t>(flat[s].photo), flat[s].radius2));
-      for (size_t c = 0; c < 3; ++c) flat[s].log_light[c] = sightings[s].log_light[c] - falloff;
+      const auto vignetting = static_cast<double>(response.LogVignetting(static_cast<size_t>(flat[s].photo), flat[s].radius2));
+      for (size_t c = 0; c < 3; ++c) flat[s].log_light[c] = sightings[s].log_light[c] - vignetting;
     }
     threads.ParallelFor(3, [&](int64_t colour, int) {
       const auto c = static_cast<size_t>(colour);
@@ -232,7 +232,7 @@ bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& p
         }
       });
     });
-    if (learn.falloff) SolveFalloff(sightings, weight, gains, response);
+    if (learn.vignetting) SolveVignetting(sightings, weight, gains, response);
   }
   return KeepGains(gains, sightings, learn, response);
 }

@@ -1,5 +1,5 @@
 // Photos' gains from what they recorded of the same places: sparse points are looked up in every training photo that shows them, and
-//   log recorded light = log light of the point + log gain of the photo + log falloff of its camera there
+//   log recorded light = log light of the point + log gain of the photo + log vignetting of its camera there
 // is solved for all by weighted least squares, robustly, because points are hidden in some photos (Brown and Lowe 2007, section 6, in the
 // logarithm). Where training starts from: gradients would need many steps to align photos that hardly overlap.
 #pragma once
@@ -13,7 +13,7 @@
 namespace skyquilt::worker {
 
 // True when nearly all photos that learn share enough points, so that little is left to learn. Sets response.log_gain of the photos that learn, and
-// response.falloff when that is learned; other photos' gains stay and anchor them. Without photos that stay, the mean is zero. Photos that share
+// response.vignetting when that is learned; other photos' gains stay and anchor them. Without photos that stay, the mean is zero. Photos that share
 // fewer than a few points with others keep what they have.
 bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
                         const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads);

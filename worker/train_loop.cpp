@@ -55,7 +55,7 @@ bool TrainLoop::Run() {
   return true;
 }
 
-TrainResult TrainLoop::Finish(const ContextFindings* findings) {
+TrainResult TrainLoop::SaveResult(const ContextFindings* findings) {
   record_.complete = true;
   SaveSession(kind_, job_, target_, trainer_, record_, extras_, findings);
   return Summarise();
@@ -140,7 +140,7 @@ void TrainLoop::SaveAtTimes() {
 void TrainLoop::ForgetUnseenCells() {
   field::OccupancyGrid& cells = target_.occupancy;
   if (static_cast<double>(record_.samples) > kVisitsToJudge * cells.OccupiedShare() * static_cast<double>(cells.CellCount())) {
-    cells.ForgetUnsampled(kStartDepth);
+    cells.ForgetUnsampled(kStartTau);
   }
 }
 
@@ -154,7 +154,7 @@ TrainResult TrainLoop::Summarise() const {
   result.parameters = target_.ParameterCount();
   result.final_psnr_db = RunningPsnr(record_);
   result.dropped_steps = record_.dropped_steps;
-  result.stage_seconds = trainer_.StageSeconds();
+  result.phase_seconds = trainer_.PhaseSeconds();
   return result;
 }
 

@@ -18,7 +18,7 @@ class TrainLoop {
   // checkpoint that cannot be written.
   bool Run();
   // Saves the field as complete. findings: of the context, null for blocks. Throws base::InputError.
-  TrainResult Finish(const ContextFindings* findings);
+  TrainResult SaveResult(const ContextFindings* findings);
   TrainResult Failure() const;
 
  private:

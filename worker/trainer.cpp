@@ -9,14 +9,14 @@
 #include "core/brightness/predict_gains.h"
 #include "core/render/march.h"
 #include "worker/block_session.h"
-#include "worker/few_views.h"
 #include "worker/field_trainer.h"
-#include "worker/make_backdrop.h"
+#include "worker/make_background.h"
 #include "worker/point_surface.h"
 #include "worker/starting_occupancy.h"
 #include "worker/surface_band.h"
 #include "worker/tie_point_gains.h"
 #include "worker/train_loop.h"
+#include "worker/view_count.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -90,8 +90,8 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   brightness::ResponseLearner learner(response, job.learn);
   const ContextExtras extras{&response, &learner};
   RaySource source(*job.survey, *job.pixels, response);
-  const scene::PlanSurface surface = SurfaceOfPoints(*job.survey);
-  source.SetTiles(TilesInCompany(source, *job.survey, area.photos, surface, job.min_views), {}, 0.0);
+  const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
+  source.SetTiles(TilesWithEnoughViews(source, *job.survey, area.photos, surface, job.min_views), {}, 0.0);
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo sees the survey area";
@@ -119,8 +119,8 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   TrainLoop loop("context", job, target, trainer, &extras, record, report);
   if (!loop.Run()) return loop.Failure();
   if (job.learn.Gains()) brightness::PredictGains(brightness::CapturedPhotos(*job.survey), response);
-  const ContextFindings findings{SurfaceBands(source, *job.survey, target, threads), MakeBackdrop(source, *job.survey, surface, job.seed)};
-  return loop.Finish(&findings);
+  const ContextFindings findings{SurfaceBands(source, *job.survey, target, threads), MakeBackground(source, *job.survey, surface, job.seed)};
+  return loop.SaveResult(&findings);
 }
 
 TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
@@ -138,8 +138,8 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
   }
   render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false);
   RaySource source(*job.survey, *job.pixels, loaded.response);
-  const scene::PlanSurface surface = SurfaceOfPoints(*job.survey);
-  const std::vector<Tile> tiles = TilesInCompany(source, *job.survey, block.photos, surface, job.min_views);
+  const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
+  const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, block.photos, surface, job.min_views);
   ChooseTiles(*job.survey, tiles, target, context, job.options.empty_ray_share, source);
   if (!source.HasRays()) {
     TrainResult none;
@@ -163,7 +163,7 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
     }
   }
   TrainLoop loop("block", job, target, trainer, nullptr, record, report);
-  return loop.Run() ? loop.Finish(nullptr) : loop.Failure();
+  return loop.Run() ? loop.SaveResult(nullptr) : loop.Failure();
 }
 
 }  // namespace skyquilt::worker

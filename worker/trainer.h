@@ -14,7 +14,7 @@
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
 #include "worker/block_spec.h"
-#include "worker/stage_times.h"
+#include "worker/phase_times.h"
 #include "worker/train_options.h"
 
 namespace skyquilt::worker {
@@ -41,8 +41,8 @@ struct TrainResult {
   int64_t parameters = 0;
   double final_psnr_db = 0.0;  // of recent training rays
   int dropped_steps = 0;       // non-finite steps that never reached the parameters
-  // Seconds of work per stage (kStageNames), summed over threads; of this run alone when training was resumed.
-  std::array<double, kStages> stage_seconds = {};
+  // Seconds of work per phase (kPhaseNames), summed over threads; of this run alone when training was resumed.
+  std::array<double, kPhases> phase_seconds = {};
 };
 
 using Reporter = std::function<void(const TrainStatus&)>;

@@ -61,7 +61,7 @@ bench::Study Begin(const CommandState& state, const StudyFlags& flags, const std
                                     .verbose = state.verbose});
 }
 
-void Finish(bench::StudyBench bench, const bench::Study& study, const CommandState& state, const StudyFlags& flags) {
+void WriteResults(bench::StudyBench bench, const bench::Study& study, const CommandState& state, const StudyFlags& flags) {
   bench::BenchPage& page = bench.page;
   page.machine = base::MachineDescription();
   page.date = base::UtcTimestamp();
@@ -79,7 +79,7 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   CLI::App* command = bench.add_subcommand(name, study_command.help);
   command->add_option("-o,--output", flags->out, "folder for " + name + ".json, .csv, .html and the runs")->required()->type_name("DIR");
   command->add_option("--survey", flags->survey, "folder with photos, a simulated survey, or a project that was prepared")->type_name("FOLDER");
-  command->add_option("--preset", flags->preset, "simulate a place instead; default: " + study_command.preset)->type_name("NAME");
+  command->add_option("--place", flags->preset, "simulate a place instead; default: " + study_command.preset)->type_name("NAME");
   command->add_option("--model", flags->model, "COLMAP model of the photos; without it COLMAP is run")->type_name("FOLDER");
   command->add_option("--time-budget", flags->budget, "training time of every variant, as 90s or 10min; default: " + study_command.budget)
       ->type_name("TIME");
@@ -92,7 +92,7 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   command->callback([&state, flags, study_command] {
     state.chosen = [&state, flags, study_command] {
       bench::Study study = Begin(state, *flags, study_command.preset);
-      Finish(study_command.run(study, *flags), study, state, *flags);
+      WriteResults(study_command.run(study, *flags), study, state, *flags);
     };
   });
 }

@@ -79,7 +79,7 @@ void AddCommands(CLI::App& app, CommandState& state) {
       "Examples:\n"
       "  skyquilt run photos/ -o out --time-budget 10min\n"
       "  mpirun -n 4 skyquilt run photos/ -o out --blocks 3x3\n"
-      "  skyquilt run --preset town -o out/town\n"
+      "  skyquilt run --place town -o out/town\n"
       "  skyquilt info out");
   AddRun(app, state);
   AddSimulate(app, state);

@@ -20,7 +20,7 @@ struct RunFlags {
 
 void Run(const CommandState& state, const RunFlags& flags, const std::vector<config::Override>& overrides) {
   if (flags.photos.empty() == flags.preset.empty()) {
-    throw base::UsageError("skyquilt run needs either a folder with photos or --preset NAME, and not both");
+    throw base::UsageError("skyquilt run needs either a folder with photos or --place NAME, and not both");
   }
   coordinator::Settings settings = state.Load({}, overrides);
   // A folder that cannot be read is found before the output folder is made.
@@ -48,15 +48,15 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
 void AddRun(CLI::App& app, CommandState& state) {
   const auto flags = std::make_shared<RunFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  const std::string presets = base::Join(simulate::PresetNames());
+  const std::string presets = base::Join(simulate::PlaceNames());
   CLI::App* command = app.add_subcommand("run", "the whole way: photos in, scene, map products and report out");
   command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->type_name("FOLDER");
   command->add_option("-o,--out", flags->out, "project folder; made if needed")->required()->type_name("FOLDER");
   command->add_option_function<std::string>(
-      "--preset",
+      "--place",
       [flags, overrides](const std::string& name) {
         flags->preset = name;
-        overrides->push_back({"simulate.preset", name});
+        overrides->push_back({"simulate.place", name});
       },
       "simulate a place instead: " + presets);
   command->add_option("--model", flags->model, "COLMAP model of the photos (text or binary); without it COLMAP is run")->type_name("FOLDER");
@@ -71,7 +71,7 @@ void AddRun(CLI::App& app, CommandState& state) {
       "Examples:\n"
       "  skyquilt run photos/ -o out --blocks 2x2 --time-budget 10min --image-width 1000\n"
       "  skyquilt run photos/ --model sparse/0 -o out --blocks 3x3 --time-budget 15min\n"
-      "  skyquilt run --preset town -o out/town --steps 3000\n"
+      "  skyquilt run --place town -o out/town --steps 3000\n"
       "  mpirun -n 3 skyquilt run photos/ -o out --time-budget 1h30m\n"
       "The same command again continues where it stopped and does nothing twice.\n"
       "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 a block failed (the rest is saved), 130 interrupted (resumable).");

@@ -14,14 +14,14 @@ void AddSimulate(CLI::App& app, CommandState& state) {
   };
   const auto flags = std::make_shared<SimulateFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  const std::string presets = base::Join(simulate::PresetNames());
+  const std::string presets = base::Join(simulate::PlaceNames());
   CLI::App* command = app.add_subcommand("simulate", "make a survey with ground truth: photos, poses, depth, masks, buildings");
   command->add_option_function<std::string>(
       "preset,--preset",
       [overrides](const std::string& name) {
-        overrides->push_back({"simulate.preset", name});
+        overrides->push_back({"simulate.place", name});
       },
-      "which place: " + presets + " [simulate.preset]");
+      "which place: " + presets + " [simulate.place]");
   command->add_option("-o,--out", flags->out, "folder for the survey; made if needed")->required()->type_name("FOLDER");
   AddOverride(*command, overrides, "--seed", "simulate.seed", "another place of the same kind");
   AddOverride(*command, overrides, "--image-width", "simulate.image_width", "pixels");

@@ -6,7 +6,7 @@ coordinator::Settings HamletSettings(const HamletTraining& training, const Numer
   coordinator::Settings settings;
   settings.run.seed = training.seed;
   settings.run.threads = options.threads;
-  settings.simulate.preset = "hamlet";
+  settings.simulate.place = "hamlet";
   settings.simulate.samples_per_pixel = 1;
   settings.simulate.soft_shadows = false;
   settings.prepare.holdout = "every:4";

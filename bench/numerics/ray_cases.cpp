@@ -47,17 +47,17 @@ const std::vector<RayCase>& RayCases() {
 
 NumericCase BoxCase(const RayCase& ray) {
   return {.name = ray.name,
-          .expected = ray.t_far > ray.t_near ? fmt::format("inside from {:.4g} to {:.4g} m", ray.t_near, ray.t_far) : "an empty stretch",
+          .expected = ray.t_far > ray.t_near ? fmt::format("inside from {:.4g} to {:.4g} m", ray.t_near, ray.t_far) : "an empty interval",
           .unit = "m",
           .limit = 1e-10,
           .run = [ray] {
-            const geo::Stretch stretch = geo::RayBox(ray.origin, ray.direction, {0, 0, 0}, {10, 20, 5});
+            const geo::Interval interval = geo::RayBox(ray.origin, ray.direction, {0, 0, 0}, {10, 20, 5});
             Worst worst;
-            worst.Take(std::abs(stretch.t_near - ray.t_near));
-            worst.Take(std::abs(stretch.t_far - ray.t_far));
-            return Finding{.seen = stretch.Empty() ? "empty" : fmt::format("{:.4g} to {:.4g} m", stretch.t_near, stretch.t_far),
+            worst.Take(std::abs(interval.t_near - ray.t_near));
+            worst.Take(std::abs(interval.t_far - ray.t_far));
+            return Finding{.seen = interval.Empty() ? "empty" : fmt::format("{:.4g} to {:.4g} m", interval.t_near, interval.t_far),
                            .worst = worst.value(),
-                           .holds = stretch.Empty() == !(ray.t_far > ray.t_near)};
+                           .holds = interval.Empty() == !(ray.t_far > ray.t_near)};
           }};
 }
 
@@ -111,27 +111,27 @@ Finding RandomBoxes(int rays) {
     }
     if (!(direction.norm() > 0.0)) continue;
     direction.normalize();
-    const geo::Stretch stretch = geo::RayBox(origin, direction, low, high);
+    const geo::Interval interval = geo::RayBox(origin, direction, low, high);
     const std::optional<Span> exact = ReferenceSpan(origin, direction, low, high);
     const long double length = exact ? exact->t_far - exact->t_near : 0.0L;
-    if (stretch.Empty()) {
+    if (interval.Empty()) {
       // A graze shorter than rounding may be either.
       if (length > 1e-9L) ++wrong;
       continue;
     }
     ++hits;
     if (!exact) {
-      if (stretch.t_far - stretch.t_near > 1e-9) ++wrong;
+      if (interval.t_far - interval.t_near > 1e-9) ++wrong;
       continue;
     }
-    worst.Take(static_cast<double>(std::abs(static_cast<long double>(stretch.t_near) - exact->t_near)));
-    worst.Take(static_cast<double>(std::abs(static_cast<long double>(stretch.t_far) - exact->t_far)));
+    worst.Take(static_cast<double>(std::abs(static_cast<long double>(interval.t_near) - exact->t_near)));
+    worst.Take(static_cast<double>(std::abs(static_cast<long double>(interval.t_far) - exact->t_far)));
   }
   return {
       .seen = fmt::format("{} rays, {} hits, {} judged wrongly", rays, hits, wrong), .worst = worst.value(), .holds = wrong == 0 && hits > rays / 4};
 }
 
-// Samples of random rays through a block: inside the stretch, ascending, in the box, and as many as steps fit.
+// Samples of random rays through a block: inside the interval, ascending, in the box, and as many as steps fit.
 Finding MarchedSamples(int rays) {
   const render::TrainedField field = SyntheticField({.offset_enu = {7e4, -3e4, 0.0}});
   base::Random random(59);
@@ -149,22 +149,22 @@ Finding MarchedSamples(int rays) {
     if (i % 10 == 0) direction.x() = 0.0;                  // along it
     if (!(direction.norm() > 0.0)) continue;
     direction.normalize();
-    const geo::Stretch stretch = render::FieldStretch(field.map, origin, direction);
+    const geo::Interval interval = render::FieldInterval(field.map, origin, direction);
     const render::UnitRay unit(field.map, origin, direction);
     double last = -kEver;
     int64_t count = 0;
-    render::March(field, origin, direction, stretch, field.step_m, random.Uniform(), [&](double t, double length, double, int64_t cell) {
+    render::March(field, origin, direction, interval, field.step_m, random.Uniform(), [&](double t, double length, double, int64_t cell) {
       const Eigen::Vector3f p = unit.At(t);
       for (int axis = 0; axis < 3; ++axis) {
         worst.Take(std::max(-static_cast<double>(p[axis]), static_cast<double>(p[axis]) - field.map.extent()[axis]));
       }
-      if (!(t > last && t >= stretch.t_near && t <= stretch.t_far && length == field.step_m && cell >= 0 && cell < field.occupancy.CellCount()))
+      if (!(t > last && t >= interval.t_near && t <= interval.t_far && length == field.step_m && cell >= 0 && cell < field.occupancy.CellCount()))
         ++wrong;
       last = t;
       ++count;
       return true;
     });
-    const double fit = stretch.Empty() ? 0.0 : (stretch.t_far - stretch.t_near) / field.step_m;
+    const double fit = interval.Empty() ? 0.0 : (interval.t_far - interval.t_near) / field.step_m;
     if (std::abs(static_cast<double>(count) - fit) > 1.0 + 1e-9) ++wrong;
     samples += count;
   }
@@ -173,14 +173,14 @@ Finding MarchedSamples(int rays) {
           .holds = wrong == 0 && samples > rays};
 }
 
-Finding ZeroLengthStretch() {
+Finding ZeroLengthInterval() {
   const render::TrainedField field = SyntheticField({});
   int visits = 0;
   const Eigen::Vector3d origin(0.0, 0.0, 20.0), direction(0.0, 0.0, -1.0);
-  const geo::Stretch empty[3] = {{3.0, 3.0}, {5.0, 3.0}, {0.0, std::nan("")}};
-  for (const geo::Stretch& stretch : empty) {
-    render::March(field, origin, direction, stretch, field.step_m, 0.5F, [&](double, double, double, int64_t) { return ++visits < 10; });
-    render::MarchCoarse(field, origin, direction, stretch, field.step_m, [&](double, double, double) { return ++visits < 10; });
+  const geo::Interval empty[3] = {{3.0, 3.0}, {5.0, 3.0}, {0.0, std::nan("")}};
+  for (const geo::Interval& interval : empty) {
+    render::March(field, origin, direction, interval, field.step_m, 0.5F, [&](double, double, double, int64_t) { return ++visits < 10; });
+    render::MarchCoarse(field, origin, direction, interval, field.step_m, [&](double, double, double) { return ++visits < 10; });
   }
   return {.seen = fmt::format("{} samples", visits), .worst = static_cast<double>(visits)};
 }
@@ -206,7 +206,7 @@ NumericGroup RayGroup(const NumericsOptions& options) {
                          .limit = 1.2e-7,
                          .run = [rays] { return MarchedSamples(rays / 20); }});
   group.cases.push_back(
-      {.name = "Stretches of no length, reversed or NaN", .expected = "no sample", .unit = "samples", .limit = 0.0, .run = ZeroLengthStretch});
+      {.name = "Intervals of no length, reversed or NaN", .expected = "no sample", .unit = "samples", .limit = 0.0, .run = ZeroLengthInterval});
   return group;
 }
 

@@ -12,7 +12,7 @@ constexpr double kCamera_m = 30.0;
 
 // Display values of the surface a ray meets, in the scene's own frame: ground z = 0 with waves half a metre long, and a block of 2.5 x 2.5 x 2 m.
 Eigen::Vector3d ShadeScene(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  const geo::Stretch block = geo::RayBox(origin, direction, {-1.25, -1.25, 0.0}, {1.25, 1.25, 2.0});
+  const geo::Interval block = geo::RayBox(origin, direction, {-1.25, -1.25, 0.0}, {1.25, 1.25, 2.0});
   const Eigen::Vector3d p = origin + (block.Empty() ? -origin.z() / direction.z() : block.t_near) * direction;
   const double wave = 0.5 + 0.35 * std::sin(12.0 * p.x()) * std::cos(11.0 * p.y());
   if (block.Empty()) return {0.7 * wave, wave, 0.6 * wave};
@@ -68,11 +68,11 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
       ray.background[c] = random.Uniform();
     }
     const float jitter = random.Uniform();
-    const geo::Stretch stretch = render::FieldStretch(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
+    const geo::Interval interval = render::FieldInterval(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
     const render::UnitRay unit(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
     for (auto* values : {&x, &y, &z, &t, &unit_length}) values->clear();
     cell.clear();
-    render::March(field, ray.ray.origin_enu, ray.ray.direction_enu, stretch, field.step_m, jitter,
+    render::March(field, ray.ray.origin_enu, ray.ray.direction_enu, interval, field.step_m, jitter,
                   [&](double at, double, double length, int64_t index) {
                     const Eigen::Vector3f p = unit.At(at);
                     x.push_back(p.x());
@@ -86,7 +86,7 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
     ray.count = static_cast<int64_t>(x.size());
     batch->Append(ray, x.data(), y.data(), z.data(), t.data(), unit_length.data(), cell.data());
   }
-  batch->Finish(field.config.grid.levels * field.config.grid.features);
+  batch->CountAndReserve(field.config.grid.levels * field.config.grid.features);
 }
 
 void RepositionInFloat(const render::TrainedField& field, worker::RayBatch* batch) {

@@ -36,7 +36,7 @@ class SyntheticTrainer {
  private:
   SyntheticOptions scene_;
   base::ThreadPool threads_;
-  worker::StageTimes times_;
+  worker::PhaseTimes times_;
   render::TrainedField target_;
   field::HashField field_;
   TrainingState state_;

@@ -143,7 +143,7 @@ Finding EmptyBatch() {
   SyntheticTrainer trainer({}, kTrainerSeed, 1);
   const TrainingState before = trainer.state();
   worker::RayBatch batch;
-  batch.Finish(trainer.field().FeatureRows());
+  batch.CountAndReserve(trainer.field().FeatureRows());
   const worker::StepResult result = trainer.Train(batch, {.learning_rate = 1e-2, .network_l2 = 0.0, .distortion = kTrainerDistortion});
   return {.seen = fmt::format("loss {}, {} samples, {}", result.loss, result.n_samples, result.finite ? "finite" : "not finite"),
           .worst = result.loss,
@@ -163,7 +163,7 @@ Finding OneRay() {
     worker::BatchRay ray = full.rays.at(0);
     ray.count = std::min(ray.count, most);
     batch.Append(ray, full.x.data(), full.y.data(), full.z.data(), full.t.data(), full.unit_length.data(), full.cell.data());
-    batch.Finish(trainer.field().FeatureRows());
+    batch.CountAndReserve(trainer.field().FeatureRows());
     const ReferenceTrainer reference(trainer.target(), trainer.field());
     std::vector<double> grid, networks;
     const ReferenceResult exact = reference.Gradient(batch, ReferenceState::From(trainer.state()), 0.0, &grid, &networks);

@@ -28,34 +28,34 @@ std::string Difference(const VariantResult& a, const VariantResult& b) {
   return fmt::format("{} dB ({:.2f} against {:.2f}), SSIM {}", Signed(a.psnr_db - b.psnr_db, 2), a.psnr_db, b.psnr_db, Signed(a.ssim - b.ssim, 3));
 }
 
-// Dirt that hangs so far in front of surfaces is no blur of theirs.
-constexpr double kHighAir_m = 10.0;
+// Opacity so far in front of surfaces is not their blur.
+constexpr double kHighFloaters_m = 10.0;
 
-double HighAir(const VariantResult& result) {
-  for (const auto& [clearance_m, opacity] : result.air_profile) {
-    if (clearance_m == kHighAir_m) return opacity;
+double HighFloaters(const VariantResult& result) {
+  for (const auto& [clearance_m, opacity] : result.floater_profile) {
+    if (clearance_m == kHighFloaters_m) return opacity;
   }
   return VariantResult::kNone;
 }
 
 // Empty where nothing was measured.
-std::string DirtRatio(const VariantResult& clean, const VariantResult& dirty) {
+std::string FloaterRatio(const VariantResult& clean, const VariantResult& dirty) {
   std::string text;
   const auto add = [&text](const std::string& what, double less, double more) {
     if (!std::isfinite(less) || !std::isfinite(more) || !(less > 0.0)) return;
     text += fmt::format("; {} {:.3f} % against {:.3f} %, a factor of {:.1f}", what, 100.0 * less, 100.0 * more, more / less);
   };
-  add("dirt in the air", clean.air_opacity, dirty.air_opacity);
-  add(fmt::format("{:g} m and more in front of surfaces", kHighAir_m), HighAir(clean), HighAir(dirty));
+  add("floater opacity", clean.floater_opacity, dirty.floater_opacity);
+  add(fmt::format("{:g} m and more in front of surfaces", kHighFloaters_m), HighFloaters(clean), HighFloaters(dirty));
   return text;
 }
 
 BenchSection AirSection(const std::vector<VariantResult>& results) {
   std::vector<page::Curve> curves;
   curves.reserve(results.size());
-  for (const VariantResult& r : results) curves.push_back({.name = r.label, .points = r.air_profile, .marks = true});
+  for (const VariantResult& r : results) curves.push_back({.name = r.label, .points = r.floater_profile, .marks = true});
   return {.id = "air",
-          .title = "Dirt in the air",
+          .title = "Floater opacity",
           .lead =
               "What a scene swallows of a ray from the camera until so far in front of the true surface. Blur of surfaces ends "
               "after some metres; what is left floats.",
@@ -92,20 +92,20 @@ std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
   if (independent != nullptr) verdicts.push_back("Blocks guided by a context against blocks alone: " + Difference(*guided, *independent) + ".");
   if (shared != nullptr) {
     verdicts.push_back("A box as high as what stands in it against boxes that share the survey's height: " + Difference(*guided, *shared) +
-                       DirtRatio(*guided, *shared) + ".");
+                       FloaterRatio(*guided, *shared) + ".");
   }
   if (everywhere != nullptr && shared_everywhere != nullptr) {
     verdicts.push_back("The same when fields know nothing of where surfaces are and search their whole boxes: " +
-                       Difference(*everywhere, *shared_everywhere) + DirtRatio(*everywhere, *shared_everywhere) + ".");
+                       Difference(*everywhere, *shared_everywhere) + FloaterRatio(*everywhere, *shared_everywhere) + ".");
   }
   if (shared_everywhere != nullptr) {
     verdicts.push_back("Boxes of their own height and surfaces that are known, against neither: " + Difference(*guided, *shared_everywhere) +
-                       DirtRatio(*guided, *shared_everywhere) + ".");
+                       FloaterRatio(*guided, *shared_everywhere) + ".");
   }
   for (const VariantResult* one : {small, large}) {
-    if (one == nullptr || !std::isfinite(one->air_opacity) || !(guided->air_opacity > 0.0)) continue;
-    verdicts.push_back(fmt::format("Dirt in the air of '{}': {:.3f} %, {:.1f} times that of the blocks.", one->label, 100.0 * one->air_opacity,
-                                   one->air_opacity / guided->air_opacity));
+    if (one == nullptr || !std::isfinite(one->floater_opacity) || !(guided->floater_opacity > 0.0)) continue;
+    verdicts.push_back(fmt::format("Floater opacity of '{}': {:.3f} %, {:.1f} times that of the blocks.", one->label, 100.0 * one->floater_opacity,
+                                   one->floater_opacity / guided->floater_opacity));
   }
   return verdicts;
 }
@@ -128,8 +128,8 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
   run("independent", "blocks, independent", {divided, {"train.coupling", "independent"}});
   const config::Override one_height = {"partition.heights", "survey"}, everywhere = {"train.start", "everywhere"};
   run("shared_height", "blocks, one height for all", {divided, one_height});
-  // Dirt in the air is only known where the true surface is.
-  if (std::isfinite(results.front().air_opacity)) {
+  // Floater opacity is only known where the true surface is.
+  if (std::isfinite(results.front().floater_opacity)) {
     run("everywhere", "blocks that search their whole box", {divided, everywhere});
     run("shared_everywhere", "one height for all, whole box", {divided, one_height, everywhere});
   }
@@ -140,7 +140,7 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
   page.lead = fmt::format(
       "The same survey, the same {:.0f} s of training for every variant (the context's time included): one field of the whole area against one per "
       "block. "
-      "Blocks either know the context (guided) or nothing outside themselves (independent). Dirt in the air is what a scene swallows of a ray that "
+      "Blocks either know the context (guided) or nothing outside themselves (independent). Floater opacity is what a scene swallows of a ray that "
       "should "
       "be free until 1 m in front of the true surface; only simulated surveys can tell.",
       options.budget_s);
@@ -152,8 +152,8 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
     if (const VariantResult* large = Find(results, "single_large")) {
       page.figures.push_back({"against one as large as all", Signed(guided->psnr_db - large->psnr_db, 2) + " dB", "equal time and parameters"});
     }
-    if (const VariantResult* naive = Find(results, "shared_everywhere"); naive != nullptr && HighAir(*guided) > 0.0) {
-      page.figures.push_back({"Dirt high in the air", fmt::format("{:.1f} x less", HighAir(*naive) / HighAir(*guided)),
+    if (const VariantResult* naive = Find(results, "shared_everywhere"); naive != nullptr && HighFloaters(*guided) > 0.0) {
+      page.figures.push_back({"Floaters high above surfaces", fmt::format("{:.1f} x less", HighFloaters(*naive) / HighFloaters(*guided)),
                               "boxes of their own height, surfaces that are known"});
     }
   }
@@ -166,7 +166,7 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
                            .charts = {TrainingChart(results)},
                            .tables = {BlockTable(results, "blocks")},
                            .pictures = {}});
-  if (!results.front().air_profile.empty()) page.sections.push_back(AirSection(results));
+  if (!results.front().floater_profile.empty()) page.sections.push_back(AirSection(results));
   page.sections.push_back(PictureSection(results));
   return bench;
 }

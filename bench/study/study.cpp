@@ -18,7 +18,7 @@
 namespace skyquilt::bench {
 namespace {
 
-constexpr const char* kMend = "Run the bench again with --restart, or remove this file";
+constexpr const char* kFix = "Run the bench again with --restart, or remove this file";
 
 // Nothing of these changes a result.
 constexpr const char* kIdle[] = {"run.threads", "run.memory_gb", "context.checkpoint_every_s", "train.checkpoint_every_s"};
@@ -96,7 +96,7 @@ survey::Survey Thinned(survey::Survey survey, int keep_every) {
 
 Study::Study(comm::Communicator& comm, Options options) : comm_(comm), options_(std::move(options)) {
   const StudySurvey& wanted = options_.survey;
-  if (wanted.folder.empty() == wanted.preset.empty()) throw base::UsageError("a bench needs either --survey FOLDER or --preset NAME, and not both");
+  if (wanted.folder.empty() == wanted.place.empty()) throw base::UsageError("a bench needs either --survey FOLDER or --place NAME, and not both");
   options_.folder = std::filesystem::absolute(options_.folder).lexically_normal();
   base::RequireWritableFolder(options_.folder);
   if (options_.restart) RemoveOldRuns(options_.folder);
@@ -113,7 +113,7 @@ Study::Study(comm::Communicator& comm, Options options) : comm_(comm), options_(
                                    .verbose = options_.verbose};
     std::filesystem::path photos = wanted.folder;
     if (photos.empty()) {
-      pipeline.settings.simulate.preset = wanted.preset;
+      pipeline.settings.simulate.place = wanted.place;
       photos = pipeline.project.SimulatedFolder();
       coordinator::SimulateStage(pipeline, photos);
     }
@@ -258,14 +258,14 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   r.seam_gap_db = known(metrics.seam_psnr_gap_db);
   r.depth_rmse_m = known(metrics.depth_rmse_m);
   r.depth_median_abs_m = known(metrics.depth_median_abs_m);
-  r.air_opacity = known(metrics.air_opacity);
+  r.floater_opacity = known(metrics.floater_opacity);
   r.train_seconds = known(metrics.train_seconds);
   r.samples_per_second = known(metrics.samples_per_second);
   r.peak_rss_bytes = metrics.peak_rss_bytes > 0 ? static_cast<double>(metrics.peak_rss_bytes) : VariantResult::kNone;
   r.scene_parameters = static_cast<double>(metrics.parameters);
   r.evaluate_seconds = known(metrics.evaluate_seconds);
-  for (const auto& [clearance_m, opacity] : metrics.air_profile) {
-    if (std::isfinite(opacity)) r.air_profile.emplace_back(clearance_m, opacity);
+  for (const auto& [clearance_m, opacity] : metrics.floater_profile) {
+    if (std::isfinite(opacity)) r.floater_profile.emplace_back(clearance_m, opacity);
   }
   r.scene_bytes = static_cast<double>(std::filesystem::file_size(project.SceneFile()));
   r.samples = r.parameters = 0.0;
@@ -317,7 +317,7 @@ std::optional<VariantResult> Study::Load(const Variant& variant, const std::stri
   try {
     result = ParseResult(base::ReadFile(file), &made_with);
   } catch (const nlohmann::json::exception& error) {
-    throw base::InputError(file, std::string("is damaged: ") + error.what(), kMend);
+    throw base::InputError(file, std::string("is damaged: ") + error.what(), kFix);
   }
   if (made_with != identity) {
     throw base::UsageError(file.string() + ": this variant was measured with other settings or another survey. Use another folder, or --restart");

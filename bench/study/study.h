@@ -24,7 +24,7 @@ namespace skyquilt::bench {
 // Where the photos come from: exactly one of the first two.
 struct StudySurvey {
   std::filesystem::path folder;  // photos, a simulated survey, or a project that was prepared
-  std::string preset;            // to be simulated
+  std::string place;             // to be simulated
   std::filesystem::path model;   // COLMAP model of the photos; may be empty
 };
 
@@ -51,10 +51,10 @@ struct VariantResult {
   std::string name, label;
   std::string failure;  // empty when it has results
   double psnr_db = kNone, ssim = kNone, lpips = kNone, psnr_full_db = kNone, coverage = kNone, seam_gap_db = kNone;
-  double depth_rmse_m = kNone, depth_median_abs_m = kNone, air_opacity = kNone;  // simulated surveys
+  double depth_rmse_m = kNone, depth_median_abs_m = kNone, floater_opacity = kNone;  // simulated surveys
   double train_seconds = kNone, samples_per_second = kNone, samples = kNone, peak_rss_bytes = kNone;
-  std::vector<std::pair<double, double>> air_profile;  // simulated surveys: (metres in front of the true surface, opacity until there)
-  double parameters = kNone;                           // trained, of all fields
+  std::vector<std::pair<double, double>> floater_profile;  // simulated surveys: (metres in front of the true surface, opacity until there)
+  double parameters = kNone;                               // trained, of all fields
   double scene_parameters = kNone, scene_bytes = kNone, evaluate_seconds = kNone;
   int blocks = 0, training_photos = 0;
   std::string layout;                            // of the blocks, as "3x3": rows x columns

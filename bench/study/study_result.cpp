@@ -19,7 +19,7 @@ void EachNumber(Result& r, const Each& each) {
   each("seam_gap_db", r.seam_gap_db);
   each("depth_rmse_m", r.depth_rmse_m);
   each("depth_median_abs_m", r.depth_median_abs_m);
-  each("air_opacity", r.air_opacity);
+  each("floater_opacity", r.floater_opacity);
   each("train_seconds", r.train_seconds);
   each("samples_per_second", r.samples_per_second);
   each("samples", r.samples);
@@ -61,7 +61,7 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"psnr_db", OrNull(field.psnr_db)}});
   }
   json["curve"] = result.curve;
-  json["air_profile"] = result.air_profile;
+  json["floater_profile"] = result.floater_profile;
   for (const auto& [key, value] :
        {std::pair{"photo", &result.photo}, {"render", &result.render}, {"error", &result.error}, {"report", &result.report}}) {
     json[key] = *value;
@@ -90,7 +90,7 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .psnr_db = OrNone(field.at("psnr_db"))});
   }
   json.at("curve").get_to(result.curve);
-  json.at("air_profile").get_to(result.air_profile);
+  json.at("floater_profile").get_to(result.floater_profile);
   for (const auto& [key, value] :
        {std::pair{"photo", &result.photo}, {"render", &result.render}, {"error", &result.error}, {"report", &result.report}}) {
     json.at(key).get_to(*value);

@@ -17,7 +17,7 @@ void RunOptions::Visit(config::OptionVisitor& v) {
   v.Field("threads", threads, "threads per machine; 0 = every core this process may use");
   v.Field("memory_gb", memory_gb,
           "memory per machine that fields and photos may take, in GiB, shared by the ranks on it; 0 = half of the machine. Training refuses to start "
-          "with blocks that do not fit, and reads photos' pixels by need when they do not; rendering loads blocks by need");
+          "with blocks that do not fit, and reads photos' pixels on demand when they do not; rendering loads blocks on demand");
 }
 
 int RunOptions::UsableThreads() const {

@@ -8,15 +8,15 @@ namespace skyquilt::coordinator {
 
 SceneSession::SceneSession(comm::Communicator& comm, const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet)
     : threads_(options.threads) {
-  if (comm.size() > 1) farm_ = std::make_unique<RayFarm>(comm, RenderingSetup(scene_h5, options, verbose, quiet));
-  scene_ = std::make_unique<scene::Scene>(scene::Scene::Load(scene_h5, {.memory_bytes = options.MemoryLimitBytes(), .service = farm_.get()}));
+  if (comm.size() > 1) remote_ = std::make_unique<RemoteRenderer>(comm, RenderingSetup(scene_h5, options, verbose, quiet));
+  scene_ = std::make_unique<scene::Scene>(scene::Scene::Load(scene_h5, {.memory_bytes = options.MemoryLimitBytes(), .service = remote_.get()}));
 }
 
 SceneSession::~SceneSession() {
   const auto count = [](int64_t n) { return base::FormatCount(static_cast<double>(n)); };
   const int64_t fields = static_cast<int64_t>(scene_->info().blocks.size()) + 1;
   const scene::RenderStatistics s = scene_->statistics();
-  if (farm_ == nullptr) {
+  if (remote_ == nullptr) {
     if (s.field_loads > fields) {
       spdlog::info("fields were loaded {} times, because not all fit in memory: --memory sets how much may be used", s.field_loads);
     }

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "coordinator/project/run_options.h"
-#include "coordinator/rendering/ray_farm.h"
+#include "coordinator/rendering/remote_renderer.h"
 #include "core/base/thread_pool.h"
 #include "core/comm/communicator.h"
 #include "core/scene/scene.h"
@@ -26,7 +26,7 @@ class SceneSession {
 
  private:
   base::ThreadPool threads_;
-  std::unique_ptr<RayFarm> farm_;
+  std::unique_ptr<RemoteRenderer> remote_;
   std::unique_ptr<scene::Scene> scene_;
 };
 

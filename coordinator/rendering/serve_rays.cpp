@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "coordinator/ranks/crew.h"
 #include "coordinator/ranks/messages.h"
-#include "coordinator/rendering/block_shares.h"
-#include "coordinator/rendering/ray_parcel.h"
+#include "coordinator/ranks/rank_group.h"
+#include "coordinator/rendering/block_owners.h"
+#include "coordinator/rendering/ray_request.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
@@ -33,20 +33,20 @@ class RayServer {
     SKYQUILT_CHECK(owner_.size() == static_cast<size_t>(store_.size()), "all ranks see the same scene");
   }
 
-  CarriedParcel Carry(RayParcel parcel) {
-    CarriedParcel carried{.id = parcel.id, .in_flight = {}, .colors = {}, .failure = {}};
+  RayReply Carry(RayRequest request) {
+    RayReply reply{.id = request.id, .in_flight = {}, .colors = {}, .failure = {}};
     try {
-      for (scene::RayInFlight& ray_in_flight : parcel.in_flight) ray_in_flight.owner = number_;
-      carried.samples = rays_.Continue(parcel.rays, parcel.in_flight, parcel.options, number_, Owner());
-      for (const scene::RayInFlight& ray_in_flight : parcel.in_flight) {
-        if (ray_in_flight.owner == scene::kArrived) carried.colors.push_back(render::Finished(ray_in_flight.state));
+      for (scene::RayInFlight& ray_in_flight : request.in_flight) ray_in_flight.owner = number_;
+      reply.samples = rays_.Continue(request.rays, request.in_flight, request.options, number_, Owner());
+      for (const scene::RayInFlight& ray_in_flight : request.in_flight) {
+        if (ray_in_flight.owner == scene::kArrived) reply.colors.push_back(render::Finished(ray_in_flight.state));
       }
-      carried.in_flight = std::move(parcel.in_flight);
+      reply.in_flight = std::move(request.in_flight);
     } catch (...) {
-      carried.failure = CurrentFailure();
+      reply.failure = CurrentFailure();
     }
-    carried.field_loads = store_.loads();
-    return carried;
+    reply.field_loads = store_.loads();
+    return reply;
   }
 
  private:
@@ -81,7 +81,7 @@ std::string RenderingSetup(const std::filesystem::path& scene_h5, const RunOptio
 }
 
 void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
-  ServeCrew(comm, [&](json& hello) {
+  ServeRankGroup(comm, [&](json& hello) {
     const json setup = json::parse(setup_text);
     base::InitLog(setup.at("verbose").get<bool>(), "rank " + std::to_string(comm.rank()));
     if (setup.at("quiet").get<bool>()) spdlog::set_level(spdlog::level::warn);
@@ -94,13 +94,13 @@ void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
     if (!std::filesystem::exists(scene_h5)) throw base::InputError(scene_h5, "no such file", "All ranks must see the same project folder");
     hello["threads"] = options.UsableThreads();
     hello["memory_bytes"] = options.MemoryLimitBytes();
-    RayServer server(scene_h5, json::parse(Enlist(comm, hello, kTagPart)));
+    RayServer server(scene_h5, json::parse(Register(comm, hello, kTagPart)));
     while (true) {
       const comm::Message message = WaitForMessage(comm);
       if (message.tag == kTagDone) return;
       if (message.tag != kTagRays) continue;
-      comm.Send(0, kTagCarried, ToBytes(server.Carry(RayParcelFromBytes(message.bytes))));
-      // Nothing moves while this rank renders the next parcel.
+      comm.Send(0, kTagRayReply, ToBytes(server.Carry(RayRequestFromBytes(message.bytes))));
+      // Nothing moves while this rank renders the next request.
       comm.Flush();
     }
   });

@@ -34,11 +34,11 @@ class BlockQueue {
   BlockQueue(std::vector<QueueBlock> blocks, const QueueOptions& options);
 
   bool HasWaiting() const { return !waiting_.empty(); }
-  // The dearest waiting block (ties: the lower index). `busy_until_s`: when the ranks now training will be free, on the caller's clock.
+  // The most expensive waiting block (ties: the lower index). `busy_until_s`: when the ranks now training will be free, on the caller's clock.
   FieldJob Take(double now_s, std::span<const double> busy_until_s);
   // Notes what came of a job. A failed block waits again, with another seed and half the learning rate, until its tries are used up:
   // true when it does.
-  bool Finish(const FieldOutcome& outcome);
+  bool Record(const FieldOutcome& outcome);
   // Final outcomes in the order they came.
   const std::vector<FieldOutcome>& outcomes() const { return outcomes_; }
   double Cost(int block) const;
@@ -61,7 +61,7 @@ class BlockQueue {
 
   QueueOptions options_;
   std::vector<QueueBlock> all_;
-  std::vector<Waiting> waiting_;  // dearest first
+  std::vector<Waiting> waiting_;  // most expensive first
   std::vector<FieldOutcome> outcomes_;
   double total_cost_ = 0.0;
   double seconds_per_cost_ = 0.0;

@@ -40,7 +40,7 @@ void CoordinateAlone(BlockQueue& queue, const FieldTrainer& trainer, int threads
     const FieldOutcome outcome = RunField(
         trainer, job, [&](const worker::TrainStatus& status) { hooks.status(job, status); }, 0, threads);
     ThrowIfEndsCommand(outcome);
-    hooks.finished(outcome, queue.Finish(outcome));
+    hooks.finished(outcome, queue.Record(outcome));
   }
 }
 
@@ -178,7 +178,7 @@ class Coordination {
         break;
       case Failure::kNone:
       case Failure::kBlock:
-        hooks_.finished(outcome, queue_.Finish(outcome));
+        hooks_.finished(outcome, queue_.Record(outcome));
         break;
     }
   }

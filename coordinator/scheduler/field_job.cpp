@@ -72,7 +72,7 @@ std::string ToText(const FieldOutcome& outcome) {
                   {"parameters", r.parameters},
                   {"psnr", r.final_psnr_db},
                   {"dropped", r.dropped_steps},
-                  {"stages", r.stage_seconds}};
+                  {"phases", r.phase_seconds}};
   return j.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -108,7 +108,7 @@ FieldOutcome OutcomeFromText(const std::string& text) {
   outcome.result.parameters = j.at("parameters").get<int64_t>();
   outcome.result.final_psnr_db = Number(j, "psnr");
   outcome.result.dropped_steps = j.at("dropped").get<int>();
-  if (j.contains("stages")) outcome.result.stage_seconds = j.at("stages").get<std::array<double, worker::kStages>>();
+  if (j.contains("phases")) outcome.result.phase_seconds = j.at("phases").get<std::array<double, worker::kPhases>>();
   return outcome;
 }
 

@@ -8,7 +8,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-constexpr float kBelief = 0.02F;
+constexpr float kTagWeight = 0.02F;
 
 }  // namespace
 
@@ -17,7 +17,7 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
   const size_t n = survey.photos.size();
   plan.response = brightness::Response::Plain(n, survey.cameras.size());
   plan.learn.learns_gain.assign(n, 0);
-  plan.learn.falloff = options.Vignette();
+  plan.learn.vignetting = options.Vignette();
   std::vector<std::optional<double>> exposures;
   for (size_t i = 0; i < n; ++i) {
     const survey::Photo& photo = survey.photos[i];
@@ -34,8 +34,8 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
     known = std::move(gains.known);
   }
   // Only what the tags know can be believed.
-  plan.learn.belief.assign(n, 0.0F);
-  for (size_t i = 0; i < n; ++i) plan.learn.belief[i] = known[i] ? kBelief : 0.0F;
+  plan.learn.tag_weight.assign(n, 0.0F);
+  for (size_t i = 0; i < n; ++i) plan.learn.tag_weight[i] = known[i] ? kTagWeight : 0.0F;
   size_t untagged = 0;
   for (size_t i = 0; i < n; ++i) {
     if (options.Exif() && !known[i]) ++untagged;
@@ -89,7 +89,7 @@ std::string LuminanceRemark(const brightness::Luminance& luminance, const bright
     case brightness::LuminanceMode::kNone:
       break;
   }
-  return seen + ": normally exposed, so no hidden light is looked for (brightness.luminance_mode decides otherwise)";
+  return seen + ": normally exposed, so no concealing field is looked for (brightness.luminance_mode decides otherwise)";
 }
 
 }  // namespace skyquilt::coordinator

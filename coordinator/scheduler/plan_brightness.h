@@ -23,7 +23,7 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
 
 // What the training photos look like as recorded, from some of their pixels.
 brightness::BrightnessStatistics MeasureBrightness(const survey::Survey& survey, const image::PixelCache& pixels);
-// For people: what the statistics say and whether hidden light is looked for.
+// For people: what the statistics say and whether concealing field is looked for.
 std::string LuminanceRemark(const brightness::Luminance& luminance, const brightness::BrightnessStatistics& statistics);
 
 }  // namespace skyquilt::coordinator

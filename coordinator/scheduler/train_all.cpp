@@ -4,8 +4,8 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "coordinator/ranks/crew.h"
 #include "coordinator/ranks/messages.h"
+#include "coordinator/ranks/rank_group.h"
 #include "coordinator/scheduler/block_queue.h"
 #include "coordinator/scheduler/coordinate.h"
 #include "coordinator/scheduler/field_context.h"
@@ -52,7 +52,7 @@ class Training {
     image::PixelCache pixels = image::PixelCache::Open(project_.PixelCacheFile(), PixelSources(*input_.survey), settings_.run.image_width, pool);
     pixels.Stream(MustStream(pixels, *input_.blocks, settings_, all_threads, comm_.local_size()));
     if (pixels.streaming()) {
-      spdlog::info("photos' pixels ({}B) are read by need: they do not fit beside a block in {}B of memory",
+      spdlog::info("photos' pixels ({}B) are read on demand: they do not fit beside a block in {}B of memory",
                    base::FormatCount(static_cast<double>(pixels.FileBytes())), base::FormatCount(settings_.run.MemoryLimitBytes()));
     }
     // Decoding is not training: the budget starts here.
@@ -62,13 +62,13 @@ class Training {
                         {"config_hash", input_.config_hash},
                         {"verbose", input_.verbose},
                         {"quiet", input_.quiet}};
-    Crew crew(comm_, kTagSetup, setup.dump());
+    RankGroup group(comm_, kTagSetup, setup.dump());
     if (const std::string remark = PlanBrightness(*input_.survey, settings_.brightness).remark; !remark.empty()) spdlog::info("{}", remark);
     const FieldTrainer trainer = MakeFieldTrainer(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
     int per_host = 1;
     int threads = all_threads;
     if (comm_.size() > 1) {
-      threads = AssignThreads(crew.Muster(), &per_host);
+      threads = AssignThreads(group.WaitForRanks(), &per_host);
     }
     TrainContext(trainer, all_threads);
     RequireMemory(*input_.blocks, settings_, threads, per_host);
@@ -84,10 +84,10 @@ class Training {
   double Now() const { return spent_before_s_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
   // Tells each rank how many threads it has. Returns the smallest number, and in *per_host the largest number of ranks that share a machine.
-  int AssignThreads(const std::vector<CrewMember>& members, int* per_host) {
+  int AssignThreads(const std::vector<GroupMember>& members, int* per_host) {
     int fewest = 1 << 20;
     *per_host = 1;
-    for (const CrewMember& member : members) {
+    for (const GroupMember& member : members) {
       comm_.Send(member.rank, kTagThreads, std::to_string(member.threads));
       fewest = std::min(fewest, member.threads);
       *per_host = std::max(*per_host, member.sharing);
@@ -113,7 +113,7 @@ class Training {
       };
       const FieldOutcome outcome = RunField(trainer, job, report, 0, threads);
       RethrowIfFatal(outcome);
-      if (queue.Finish(outcome)) {
+      if (queue.Record(outcome)) {
         spdlog::warn("the context failed and is tried again: {}", outcome.failure.reason);
         progress.FieldAgain(job);
       }
@@ -217,7 +217,7 @@ scene::TrainReport TrainAll(comm::Communicator& comm, const TrainInput& input, c
 }
 
 void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
-  ServeCrew(comm, [&](json& hello) {
+  ServeRankGroup(comm, [&](json& hello) {
     const json setup = json::parse(setup_text);
     base::InitLog(setup.at("verbose").get<bool>(), "rank " + std::to_string(comm.rank()));
     if (setup.at("quiet").get<bool>()) spdlog::set_level(spdlog::level::warn);
@@ -232,7 +232,7 @@ void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
     image::PixelCache pixels = image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), settings.run.image_width, one);
     pixels.Stream(MustStream(pixels, blocks, settings, settings.run.UsableThreads(), comm.local_size()));
     hello["threads"] = settings.run.UsableThreads();
-    const int threads = std::stoi(Enlist(comm, hello, kTagThreads));
+    const int threads = std::stoi(Register(comm, hello, kTagThreads));
     base::ThreadPool pool(threads);
     ServeBlocks(comm, MakeFieldTrainer(survey, blocks, pixels, settings, project, setup.at("config_hash").get<std::string>(), pool), threads);
   });

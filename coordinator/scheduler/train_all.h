@@ -1,5 +1,5 @@
 // Trains the context and then every block of a survey, over all ranks.
-// Rank 0 trains the context with all its cores, then hands out blocks, dearest first, and trains them itself only when it is alone.
+// Rank 0 trains the context with all its cores, then hands out blocks, most expensive first, and trains them itself only when it is alone.
 // All ranks read survey, blocks and pixels from the project folder, which they share.
 #pragma once
 

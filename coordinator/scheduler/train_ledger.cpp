@@ -87,7 +87,7 @@ scene::TrainReport TrainLedger::Report(int ranks, int threads) const {
     field.rank = outcome.rank;
     field.threads = outcome.threads;
     field.peak_rss_bytes = outcome.peak_rss_bytes;
-    for (size_t i = 0; i < worker::kStages; ++i) field.stage_seconds[worker::kStageNames[i]] = r.stage_seconds[i];
+    for (size_t i = 0; i < worker::kPhases; ++i) field.phase_seconds[worker::kPhaseNames[i]] = r.phase_seconds[i];
     report.fields.push_back(std::move(field));
   }
   std::sort(report.fields.begin(), report.fields.end(), [](const auto& a, const auto& b) { return a.block < b.block; });

@@ -59,7 +59,7 @@ void RequireSameConfiguration(Pipeline& pipeline, const std::string& first) {
 void RunStage(Pipeline& pipeline, const std::string& name) {
   const Stage& stage = StageNamed(name);
   const Project& project = pipeline.project;
-  for (const Stage::Need& need : stage.needs) RequireFile(need.file(project), need.stage, project);
+  for (const Stage::Input& input : stage.inputs) RequireFile(input.file(project), input.stage, project);
   if (stage.check != nullptr) stage.check(project);
   // Before anything is removed: what it reads may be what a restart removes.
   StageStamp stamp{.stage = name, .state = StageStamp::kRunning, .options = StageOptions(stage, pipeline.settings), .inputs = stage.inputs(pipeline)};

@@ -24,11 +24,11 @@ struct Stage {
   // Of those, options that change nothing in its results.
   std::vector<std::string> without_effect = {};
   // Files it cannot begin without, and the stages that make them.
-  struct Need {
+  struct Input {
     std::filesystem::path (*file)(const Project& project);
     std::string stage;
   };
-  std::vector<Need> needs = {};
+  std::vector<Input> inputs = {};
   // Throws base::InputError when one of them is damaged, before anything is changed; null: the body finds out.
   void (*check)(const Project& project) = nullptr;
   // Identity of what it reads, by name.

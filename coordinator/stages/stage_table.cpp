@@ -82,7 +82,7 @@ std::vector<Stage> MakeTable() {
        .on_new_inputs = OnNewInputs::kRefuse},
       {.name = "partition",
        .options = {"partition.", "run.image_width"},
-       .needs = {{SurveyFile, "prepare"}},
+       .inputs = {{SurveyFile, "prepare"}},
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"survey", SurveyIdentity(pipeline.project)}};
@@ -95,7 +95,7 @@ std::vector<Stage> MakeTable() {
        .options = {"brightness.", "context.", "train.", "run.image_width", "run.time_budget_s", "run.context_share", "run.seed"},
        // How often a field is saved changes nothing in it.
        .without_effect = {"context.checkpoint_every_s", "train.checkpoint_every_s"},
-       .needs = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},
+       .inputs = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"survey", SurveyIdentity(pipeline.project)}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
@@ -110,7 +110,7 @@ std::vector<Stage> MakeTable() {
        .on_new_inputs = OnNewInputs::kRefuse},
       {.name = "merge",
        .options = {"merge."},
-       .needs = {{BlocksFile, "partition"}, {TrainReportFile, "train"}},
+       .inputs = {{BlocksFile, "partition"}, {TrainReportFile, "train"}},
        .check = [](const Project& p) { scene::ReadTrainReport(p.TrainReport()); },
        .inputs =
            [](const Pipeline& pipeline) {
@@ -124,7 +124,7 @@ std::vector<Stage> MakeTable() {
        .body = MergeBody},
       {.name = "products",
        .options = {"products."},
-       .needs = {{SceneFile, "merge"}},
+       .inputs = {{SceneFile, "merge"}},
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))}};
@@ -137,7 +137,7 @@ std::vector<Stage> MakeTable() {
        .body = ProductsBody},
       {.name = "evaluate",
        .options = {"evaluate.", "run.image_width"},
-       .needs = {{SceneFile, "merge"}},
+       .inputs = {{SceneFile, "merge"}},
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))},

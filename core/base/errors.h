@@ -1,6 +1,6 @@
 // Errors that end a command, each with the exit status a shell sees.
 //   UsageError   2  wrong option or configuration
-//   InputError   3  a file or its content cannot be used; names file, finding and mend
+//   InputError   3  a file or its content cannot be used; names file, finding and how to fix it
 //   BlockError   4  a block failed after its retries
 //   FailedCheck  5  something that was put to the test does not hold
 //   Interrupted 130 a signal asked to stop; the work is saved and can be resumed
@@ -20,8 +20,8 @@ class UsageError : public std::runtime_error {
 
 class InputError : public std::runtime_error {
  public:
-  InputError(const std::filesystem::path& file, const std::string& found, const std::string& mend)
-      : InputError(file, found + (mend.empty() ? "" : ". " + mend)) {}
+  InputError(const std::filesystem::path& file, const std::string& found, const std::string& fix)
+      : InputError(file, found + (fix.empty() ? "" : ". " + fix)) {}
   const std::filesystem::path& file() const { return file_; }
   // What was found and how to fix it: the message without the file's name.
   const std::string& finding() const { return finding_; }

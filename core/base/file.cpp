@@ -38,7 +38,7 @@ class Descriptor {
   int value_;
 };
 
-std::string MendOf(int code) {
+std::string FixOf(int code) {
   switch (code) {
     case ENOSPC:
     case EDQUOT:
@@ -87,7 +87,7 @@ int WriteAndSync(const fs::path& file, std::string_view content) {
 }  // namespace
 
 void ThrowFileError(const fs::path& file, const std::string& finding, int code) {
-  throw InputError(file, finding + ": " + std::generic_category().message(code), MendOf(code));
+  throw InputError(file, finding + ": " + std::generic_category().message(code), FixOf(code));
 }
 
 std::string ReadFile(const fs::path& file) {

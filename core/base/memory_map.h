@@ -1,4 +1,4 @@
-// A read-only view of a whole file; pages come and go by need, so files may exceed memory.
+// A read-only view of a whole file; pages come and go on demand, so files may exceed memory.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The hidden light of a badly exposed survey (tidal-flat paper, after Aleth-NeRF). One density, one colour, and a factor Omega in (0, 1) for
+// The concealing field of a badly exposed survey (tidal-flat paper, after Aleth-NeRF). One density, one colour, and a factor Omega in (0, 1) for
 // every sample; two renderings come from them. The plain one has the field's own colours; in the concealed one the samples' light is held
 // back by Omega. Under-exposed: the concealed rendering is what the photos recorded and the plain one shows the scene as it should look.
 // Over-exposed: the other way round.

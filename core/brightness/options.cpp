@@ -30,7 +30,7 @@ void RequireOneOf(const std::string& key, const std::string& given, const std::v
 void BrightnessOptions::Visit(config::OptionVisitor& v) {
   v.Field("correction", correction,
           "none, or any of exif (shutter, aperture and ISO of each photo), gain (what they miss, learned per photo and colour), vignette (darker "
-          "corners, learned per camera), luminance (hidden light of under- or over-exposed surveys), separated by commas");
+          "corners, learned per camera), luminance (concealing field of under- or over-exposed surveys), separated by commas");
   v.Field("luminance_mode", luminance_mode, "under, over, or auto: what the photos' brightness says; normally exposed surveys then do without");
   v.Field("target_brightness", target_brightness, "mean display value that the luminance field brings a survey to, 0.1..0.9");
   v.Field("luminance_form", luminance_form, "gain: each sample's own factor; product: factors multiply along the ray (tidal-flat paper, eq. 13)");

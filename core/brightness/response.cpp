@@ -12,7 +12,7 @@ constexpr const char* kReference = "reference_exposure";
 constexpr const char* kExif = "response/exif_gain";
 constexpr const char* kGain = "response/log_gain";
 constexpr const char* kCamera = "response/camera";
-constexpr const char* kFalloff = "response/falloff";
+constexpr const char* kVignetting = "response/vignetting";
 constexpr const char* kNames = "response/names";
 
 }  // namespace
@@ -22,17 +22,17 @@ Response Response::Plain(size_t photos, size_t cameras) {
   response.exif_gain.assign(photos, 1.0F);
   response.log_gain.assign(3 * photos, 0.0F);
   response.camera.assign(photos, 0);
-  response.falloff.assign(3 * cameras, 0.0F);
+  response.vignetting.assign(3 * cameras, 0.0F);
   return response;
 }
 
-float Response::LogFalloff(size_t photo, float radius2) const {
-  const float* f = falloff.data() + 3 * static_cast<size_t>(camera[photo]);
+float Response::LogVignetting(size_t photo, float radius2) const {
+  const float* f = vignetting.data() + 3 * static_cast<size_t>(camera[photo]);
   return radius2 * (f[0] + radius2 * (f[1] + radius2 * f[2]));
 }
 
 std::array<float, 3> Response::LogGain(size_t photo, float radius2) const {
-  const float common = (exif_gain[photo] == 1.0F ? 0.0F : std::log(exif_gain[photo])) + LogFalloff(photo, radius2);
+  const float common = (exif_gain[photo] == 1.0F ? 0.0F : std::log(exif_gain[photo])) + LogVignetting(photo, radius2);
   std::array<float, 3> sum{};
   for (size_t c = 0; c < 3; ++c) sum[c] = common + log_gain[3 * photo + c];
   return sum;
@@ -43,10 +43,10 @@ std::array<Exposure, 3> Response::ExposureOf(size_t photo) const {
   return {Exposure::FromLogGain(log[0]), Exposure::FromLogGain(log[1]), Exposure::FromLogGain(log[2])};
 }
 
-std::array<Exposure, 3> Response::FallenOff(std::array<Exposure, 3> exposure, float log_falloff) {
-  if (log_falloff == 0.0F) return exposure;
-  const Exposure falloff = Exposure::FromLogGain(log_falloff);
-  for (Exposure& one : exposure) one = {one.log_gain + log_falloff, one.gain * falloff.gain, one.root * falloff.root};
+std::array<Exposure, 3> Response::FallenOff(std::array<Exposure, 3> exposure, float log_vignetting) {
+  if (log_vignetting == 0.0F) return exposure;
+  const Exposure vignetting = Exposure::FromLogGain(log_vignetting);
+  for (Exposure& one : exposure) one = {one.log_gain + log_vignetting, one.gain * vignetting.gain, one.root * vignetting.root};
   return exposure;
 }
 
@@ -73,7 +73,7 @@ void PutResponse(const Response& response, checkpoint::ArchiveWriter& writer) {
   writer.Put(kExif, response.exif_gain);
   writer.Put(kGain, response.log_gain, {photos, 3});
   writer.Put(kCamera, response.camera);
-  writer.Put(kFalloff, response.falloff, {static_cast<int64_t>(response.falloff.size() / 3), 3});
+  writer.Put(kVignetting, response.vignetting, {static_cast<int64_t>(response.vignetting.size() / 3), 3});
   writer.Put(kNames, response.names);
 }
 
@@ -84,9 +84,9 @@ Response GetResponse(const checkpoint::ArchiveReader& reader, const std::filesys
   response.exif_gain = reader.Floats(kExif);
   response.log_gain = reader.Floats(kGain);
   response.camera = reader.Ints(kCamera);
-  response.falloff = reader.Floats(kFalloff);
+  response.vignetting = reader.Floats(kVignetting);
   response.names = reader.Bytes(kNames);
-  const auto cameras = static_cast<int64_t>(response.falloff.size() / 3);
+  const auto cameras = static_cast<int64_t>(response.vignetting.size() / 3);
   const bool fits = response.log_gain.size() == 3 * response.photos() && response.camera.size() == response.photos() &&
                     std::all_of(response.camera.begin(), response.camera.end(), [&](int64_t c) { return c >= 0 && c < cameras; });
   if (!fits) throw base::InputError(file, "what it says about the photos' brightness disagrees with itself", "Train it again with --restart");

@@ -24,7 +24,7 @@ double RateAt(double progress, double first, double last) {
 ResponseLearner::ResponseLearner(Response& response, const LearnerOptions& options) : response_(response), options_(options) {
   const size_t photos = response.photos();
   SKYQUILT_CHECK(options.learns_gain.size() == photos, "one flag per photo");
-  SKYQUILT_CHECK(options.belief.empty() || options.belief.size() == photos, "a belief per photo, or none");
+  SKYQUILT_CHECK(options.tag_weight.empty() || options.tag_weight.size() == photos, "a tag weight per photo, or none");
   active_ = options.Gains();
   for (auto* moment : {&moment1_, &moment2_}) moment->assign(3 * photos, 0.0F);
   steps_.assign(photos, 0);
@@ -41,8 +41,8 @@ void ResponseLearner::Add(size_t photo, const float gradient[3], float weight) {
 }
 
 void ResponseLearner::Step(double progress) {
-  for (size_t i = 0; i < options_.belief.size(); ++i) {
-    const double pull = kSquaredPerLog * static_cast<double>(options_.belief[i]) * weight_[i];
+  for (size_t i = 0; i < options_.tag_weight.size(); ++i) {
+    const double pull = kSquaredPerLog * static_cast<double>(options_.tag_weight[i]) * weight_[i];
     for (size_t k = 3 * i; k < 3 * i + 3; ++k) gradient_[k] += pull * static_cast<double>(response_.log_gain[k]);
   }
   Update(static_cast<float>(RateAt(progress, kGainRate, kLastGainRate)));

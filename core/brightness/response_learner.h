@@ -1,6 +1,6 @@
 // Learns what tags do not tell about the photos' brightness, beside the field: gains per photo and colour. Adam in the logarithm of light; photos
-// without a gradient in a step keep their gains and moments. Falloff is not learned so: a field that is still learning is worse in the corners of
-// photos, where fewer of them overlap, and that looks like falloff.
+// without a gradient in a step keep their gains and moments. Vignetting is not learned so: a field that is still learning is worse in the corners of
+// photos, where fewer of them overlap, and that looks like vignetting.
 // Gains and the field's colours are known up to a common factor only. Where every training photo learns, their mean logarithm is therefore
 // taken off after every step: a projection, because a penalty would let field and gains drift apart into opposite casts.
 #pragma once
@@ -17,11 +17,11 @@ namespace skyquilt::brightness {
 
 struct LearnerOptions {
   std::vector<uint8_t> learns_gain;  // per photo
-  // Per photo: weight of the belief that its tags tell all, in pixels per pixel of it that training sees. What neighbouring photos show
-  // outweighs a hundredth of that; what only drifts along over a whole survey, such as light on water, does not. Empty: none.
-  std::vector<float> belief;
-  bool anchored = false;  // some training photos keep their gains, so the others have no common factor to drift by
-  bool falloff = false;   // of the cameras, from tie points alone
+  // Per photo: tag weight: how strongly its gain is drawn to what its tags say, in pixels per pixel of it that training sees. What neighbouring
+  // photos show outweighs a hundredth of that; what only drifts along over a whole survey, such as light on water, does not. Empty: none.
+  std::vector<float> tag_weight;
+  bool anchored = false;    // some training photos keep their gains, so the others have no common factor to drift by
+  bool vignetting = false;  // of the cameras, from tie points alone
 
   bool Gains() const { return std::find(learns_gain.begin(), learns_gain.end(), uint8_t{1}) != learns_gain.end(); }
 };

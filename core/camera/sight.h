@@ -2,7 +2,7 @@
 // rays that meet a box instead). Who counts asks for different things on purpose:
 //   partition/survey_area  which ground is covered: middles of raster cells, and not from far away, where oblique views blur into the horizon.
 //                          A place on any edge of the frame counts. Masks are not read yet.
-//   worker/few_views       what could be learned: balls around groups of cells, since a photo that shows but the rim of a group still teaches it.
+//   worker/view_count      what could be learned: balls around groups of cells, since a photo that shows but the rim of a group still teaches it.
 //                          A ball that the camera stands in or next to counts wherever it looks. No limit of distance, no masks.
 //   evaluate/coverage      which pixels may be scored: points of the surface, which must have been trained on and so lie on unmasked pixels.
 //                          No limit of distance; places outside the cone of the frame are turned away before.

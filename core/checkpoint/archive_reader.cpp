@@ -16,8 +16,8 @@ namespace {
 
 using base::InputError;
 
-constexpr const char* kMendVersion = "It comes from another version of the program; run the stage that writes it again with --restart";
-constexpr const char* kMendDamaged = "Remove it and run the same command again, or bring back a copy";
+constexpr const char* kFixVersion = "It comes from another version of the program; run the stage that writes it again with --restart";
+constexpr const char* kFixDamaged = "Remove it and run the same command again, or bring back a copy";
 
 struct ArrayInfo {
   ElementType type = ElementType::kUint8;
@@ -54,7 +54,7 @@ struct ArchiveReader::Impl {
   }
 
   [[noreturn]] void Damaged(const std::string& where) const {
-    throw InputError(path, "is damaged: " + where + " (" + HdfErrorText() + ")", kMendDamaged);
+    throw InputError(path, "is damaged: " + where + " (" + HdfErrorText() + ")", kFixDamaged);
   }
 
   void Open() {
@@ -67,7 +67,7 @@ struct ArchiveReader::Impl {
     if (!file.Valid()) Damaged("HDF5 cannot open it");
     ReadAttributes();
     ReadDirectory();
-    if (block != UserBlockText(kind, version, guard)) throw InputError(path, "is damaged: its first bytes do not fit its content", kMendDamaged);
+    if (block != UserBlockText(kind, version, guard)) throw InputError(path, "is damaged: its first bytes do not fit its content", kFixDamaged);
   }
 
   void ReadAttributes() {
@@ -79,7 +79,7 @@ struct ArchiveReader::Impl {
     const auto version_at = attributes.find("skyquilt.version");
     if (kind_at == attributes.end() || version_at == attributes.end() || !std::holds_alternative<std::string>(kind_at->second) ||
         !std::holds_alternative<int64_t>(version_at->second)) {
-      throw InputError(path, "does not say what kind of archive it is", kMendDamaged);
+      throw InputError(path, "does not say what kind of archive it is", kFixDamaged);
     }
     kind = std::get<std::string>(kind_at->second);
     version = static_cast<int>(std::get<int64_t>(version_at->second));
@@ -150,7 +150,7 @@ struct ArchiveReader::Impl {
 
   const ArrayInfo& Info(const std::string& name) const {
     const auto at = arrays.find(name);
-    if (at == arrays.end()) throw InputError(path, "holds no array '" + name + "'", kMendVersion);
+    if (at == arrays.end()) throw InputError(path, "holds no array '" + name + "'", kFixVersion);
     return at->second;
   }
 
@@ -159,7 +159,7 @@ struct ArchiveReader::Impl {
     const ArrayInfo& info = Info(name);
     if (info.type != type) {
       throw InputError(path, "holds array '" + name + "' as " + ElementName(info.type) + " where " + ElementName(type) + " is expected",
-                       kMendVersion);
+                       kFixVersion);
     }
     std::vector<T> values(info.n_values);
     if (values.empty()) return values;
@@ -172,9 +172,9 @@ struct ArchiveReader::Impl {
   template <typename T>
   const T& Get(const std::string& name, const char* type_name) const {
     const auto at = attributes.find(name);
-    if (at == attributes.end()) throw InputError(path, "holds no attribute '" + name + "'", kMendVersion);
+    if (at == attributes.end()) throw InputError(path, "holds no attribute '" + name + "'", kFixVersion);
     const T* value = std::get_if<T>(&at->second);
-    if (value == nullptr) throw InputError(path, "holds attribute '" + name + "', but not as a " + type_name, kMendVersion);
+    if (value == nullptr) throw InputError(path, "holds attribute '" + name + "', but not as a " + type_name, kFixVersion);
     return *value;
   }
 };

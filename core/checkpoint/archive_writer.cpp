@@ -30,12 +30,12 @@ using base::InputError;
 
 constexpr std::chrono::hours kAbandonedAfter{1};
 constexpr size_t kMaxChunkBytes = size_t{1} << 20U;
-constexpr const char* kMendDisk = "Free disk space or choose an output folder that can be written, then run the same command again";
+constexpr const char* kFixDisk = "Free disk space or choose an output folder that can be written, then run the same command again";
 
 using Attribute = std::variant<std::string, double, int64_t>;
 
 [[noreturn]] void Fail(const std::filesystem::path& file, const std::string& what) {
-  throw InputError(file, what + " (" + HdfErrorText() + ")", kMendDisk);
+  throw InputError(file, what + " (" + HdfErrorText() + ")", kFixDisk);
 }
 
 // Halves the slowest dimensions until a chunk holds at most kMaxChunkBytes.
@@ -124,7 +124,7 @@ struct RemoveOnExit {
 };
 
 void Rename(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (std::rename(from.c_str(), to.c_str()) != 0) throw InputError(to, "cannot be replaced (" + std::string(std::strerror(errno)) + ")", kMendDisk);
+  if (std::rename(from.c_str(), to.c_str()) != 0) throw InputError(to, "cannot be replaced (" + std::string(std::strerror(errno)) + ")", kFixDisk);
 }
 
 // Another process may write the same file at this moment: a rank on a host that was cut off does not know that its job was started again.

@@ -15,7 +15,7 @@ using base::InputError;
 
 constexpr char kMagic[] = "SKYQUILT ARCHIVE ";
 constexpr int kFormat = 1;
-constexpr const char* kMend = "Remove it and run the same command again, or bring back a copy";
+constexpr const char* kFix = "Remove it and run the same command again, or bring back a copy";
 
 std::ifstream OpenForReading(const std::filesystem::path& file) {
   std::error_code error;
@@ -77,10 +77,10 @@ std::string VerifiedUserBlock(const std::filesystem::path& file, FileGuard* guar
     throw InputError(file, "is an HDF5 file that Skyquilt did not write", "Give a checkpoint or a scene written by skyquilt");
   }
   if (text.compare(0, sizeof(kMagic) - 1, kMagic) != 0) {
-    throw InputError(file, "is not a Skyquilt archive, or its beginning is damaged", kMend);
+    throw InputError(file, "is not a Skyquilt archive, or its beginning is damaged", kFix);
   }
   if (text.size() < kUserBlockBytes)
-    throw InputError(file, "is damaged: it ends within its first " + std::to_string(kUserBlockBytes) + " bytes", kMend);
+    throw InputError(file, "is damaged: it ends within its first " + std::to_string(kUserBlockBytes) + " bytes", kFix);
   int format = 0;
   FileGuard stored;
   const int n_read =
@@ -90,13 +90,13 @@ std::string VerifiedUserBlock(const std::filesystem::path& file, FileGuard* guar
         file, "was written by a newer Skyquilt (archive format " + std::to_string(format) + ", this program knows " + std::to_string(kFormat) + ")",
         "Update the program");
   }
-  if (n_read != 3) throw InputError(file, "is damaged: its first " + std::to_string(kUserBlockBytes) + " bytes cannot be understood", kMend);
+  if (n_read != 3) throw InputError(file, "is damaged: its first " + std::to_string(kUserBlockBytes) + " bytes cannot be understood", kFix);
   *guard = MeasureFile(file);
   if (guard->n_bytes != stored.n_bytes) {
     throw InputError(
-        file, "is damaged: it has " + std::to_string(guard->n_bytes) + " bytes where " + std::to_string(stored.n_bytes) + " were written", kMend);
+        file, "is damaged: it has " + std::to_string(guard->n_bytes) + " bytes where " + std::to_string(stored.n_bytes) + " were written", kFix);
   }
-  if (guard->digest != stored.digest) throw InputError(file, "is damaged: its checksum does not fit its content", kMend);
+  if (guard->digest != stored.digest) throw InputError(file, "is damaged: its checksum does not fit its content", kFix);
   return text;
 }
 

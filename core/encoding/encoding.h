@@ -1,5 +1,5 @@
 // Positions to features: the part of a field that differs between hash grids and the baselines they are compared with.
-// An encoding is a list of parts. Each has its own stretch of one flat parameter buffer (maybe empty) and writes its own rows of the features, so
+// An encoding is a list of parts. Each has its own range of one flat parameter buffer (maybe empty) and writes its own rows of the features, so
 // that parts can be worked on by different threads, and one part's table at a time stays in cache. Calls are per part and batch, never per sample.
 // Batches are structures of arrays (core/kernel/kernels.h), positions in [0, extent]; what lies outside is clamped, NaN counts as 0.
 // Functions are const, keep nothing between calls and give the same bits on every call.
@@ -56,7 +56,7 @@ class Encoding {
 
   // Start values of all ParameterCount() parameters. By default uniform in +-1e-4 (Mueller et al. 2022, section 4).
   virtual void Initialize(base::Random& random, std::span<float> parameters) const;
-  // The part's rows for n positions (any n). table: the part's stretch of the parameters. out: its first row.
+  // The part's rows for n positions (any n). table: the part's range of the parameters. out: its first row.
   virtual void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
                        size_t out_stride) const = 0;
   // Adds the gradient of Forward to table_gradient and sets touched[line] = 1 for every line of kernel::kLineFloats that it writes to. Samples with

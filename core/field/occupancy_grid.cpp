@@ -12,7 +12,7 @@ OccupancyGrid OccupancyGrid::Make(const double extent[3], double wanted_cell, in
   while (cells_along(0) * cells_along(1) * cells_along(2) > max_cells) cell *= 1.1;
   for (int axis = 0; axis < 3; ++axis) grid.size[axis] = static_cast<int>(cells_along(axis));
   grid.cell = static_cast<float>(cell);
-  grid.depth.assign(static_cast<size_t>(grid.CellCount()), 0.0F);
+  grid.tau.assign(static_cast<size_t>(grid.CellCount()), 0.0F);
   grid.occupied.assign(static_cast<size_t>(grid.CellCount()), 1);
   return grid;
 }
@@ -29,12 +29,12 @@ void OccupancyGrid::WakeNeighbours(float solid, float wake) {
     for (int y = 0; y < size[1]; ++y) {
       for (int x = 0; x < size[0]; ++x) {
         const int64_t index = Index(x, y, z);
-        if (!(depth[static_cast<size_t>(index)] > solid)) continue;
+        if (!(tau[static_cast<size_t>(index)] > solid)) continue;
         const int at[3] = {x, y, z};
         for (int axis = 0; axis < 3; ++axis) {
           for (const int side : {-1, 1}) {
             if (at[axis] + side < 0 || at[axis] + side >= size[axis]) continue;
-            float& neighbour = depth[static_cast<size_t>(index + side * strides[axis])];
+            float& neighbour = tau[static_cast<size_t>(index + side * strides[axis])];
             if (neighbour >= 0.0F) neighbour = std::max(neighbour, wake);
           }
         }
@@ -46,21 +46,21 @@ void OccupancyGrid::WakeNeighbours(float solid, float wake) {
 double OccupancyGrid::Refresh(float limit) {
   double sum = 0.0;
   int64_t seen = 0;
-  for (const float value : depth) {
+  for (const float value : tau) {
     if (value >= 0.0F) {
       sum += static_cast<double>(value);
       ++seen;
     }
   }
   const float threshold = std::min(limit, seen > 0 ? static_cast<float>(sum / static_cast<double>(seen)) : 0.0F);
-  for (size_t i = 0; i < depth.size(); ++i) occupied[i] = depth[i] > threshold ? 1 : 0;
+  for (size_t i = 0; i < tau.size(); ++i) occupied[i] = tau[i] > threshold ? 1 : 0;
   return OccupiedShare();
 }
 
 void OccupancyGrid::ForgetUnsampled(float start) {
-  for (size_t i = 0; i < depth.size(); ++i) {
-    if (depth[i] != start) continue;
-    depth[i] = -1.0F;
+  for (size_t i = 0; i < tau.size(); ++i) {
+    if (tau[i] != start) continue;
+    tau[i] = -1.0F;
     occupied[i] = 0;
   }
 }
@@ -92,7 +92,7 @@ void OccupancyGrid::Dilate(int cells) {
     }
     source = std::move(result);
   }
-  for (size_t i = 0; i < source.size(); ++i) occupied[i] = source[i] != 0 && depth[i] >= 0.0F ? 1 : 0;
+  for (size_t i = 0; i < source.size(); ++i) occupied[i] = source[i] != 0 && tau[i] >= 0.0F ? 1 : 0;
 }
 
 }  // namespace skyquilt::field

@@ -16,7 +16,7 @@ struct OccupancyGrid {
 
   int size[3] = {0, 0, 0};        // cells per axis
   float cell = 1.0F;              // edge, unit lengths; the same on all axes
-  std::vector<float> depth;       // decaying maximum per cell; negative: never seen, never sampled
+  std::vector<float> tau;         // decaying maximum per cell; negative: never seen, never sampled
   std::vector<uint8_t> occupied;  // 0 or 1 per cell
 
   // Covers [0, extent] with cells of about `wanted_cell`; everything occupied. At most max_cells cells (cells grow instead).
@@ -26,15 +26,15 @@ struct OccupancyGrid {
   // Cell of a position, clamped into the grid.
   int64_t IndexAt(float x, float y, float z) const;
   // A sample of the optical depth of one step at a position of a seen cell.
-  void Observe(int64_t index, float step_depth) {
-    float& cell_depth = depth[static_cast<size_t>(index)];
-    if (cell_depth >= 0.0F) cell_depth = std::max(kDecay * cell_depth, step_depth);
+  void Observe(int64_t index, float step_tau) {
+    float& cell_tau = tau[static_cast<size_t>(index)];
+    if (cell_tau >= 0.0F) cell_tau = std::max(kDecay * cell_tau, step_tau);
   }
   // The six neighbours of every cell deeper than `solid` get at least `wake`, so that a surface can grow into them. Never seen ones do not.
   void WakeNeighbours(float solid, float wake);
-  // Marks cells with depth above the threshold: min(limit, mean over seen cells). Returns the share occupied.
+  // Marks cells with tau above the threshold: min(limit, mean over seen cells). Returns the share occupied.
   double Refresh(float limit);
-  // Cells whose depth is still exactly `start` were never sampled: nothing is known about them, so they count as never seen.
+  // Cells whose tau is still exactly `start` were never sampled: nothing is known about them, so they count as never seen.
   void ForgetUnsampled(float start);
   double OccupiedShare() const;
   // Every cell within `cells` (max norm) of an occupied one becomes occupied, unless never seen.

@@ -14,9 +14,9 @@ void TrainableState::Allocate(const HashField& field) {
 }
 
 void AddPartGradient(const HashField& field, int part, const float* table, const float* x, const float* y, const float* z,
-                     std::span<const GridGradient> stretches, float* table_gradient, uint8_t* touched) {
+                     std::span<const GridGradient> segments, float* table_gradient, uint8_t* touched) {
   const auto first_row = static_cast<size_t>(field.encoding().FirstRow(part));
-  for (const GridGradient& s : stretches) {
+  for (const GridGradient& s : segments) {
     field.encoding().Backward(part, table, x + s.begin, y + s.begin, z + s.begin, s.count, s.gradient + first_row * s.stride, s.stride,
                               table_gradient, touched);
   }
@@ -25,7 +25,7 @@ void AddPartGradient(const HashField& field, int part, const float* table, const
 Optimizer::Optimizer(const HashField& field, base::ThreadPool& threads)
     : field_(field), threads_(threads), scratch_(static_cast<size_t>(threads.size())) {}
 
-void Optimizer::Update(const float* x, const float* y, const float* z, std::span<const GridGradient> stretches, double learning_rate,
+void Optimizer::Update(const float* x, const float* y, const float* z, std::span<const GridGradient> segments, double learning_rate,
                        double network_l2, Parameters& parameters, TrainableState& state, const TaskClock& scattered, const TaskClock& applied) {
   ++state.step;
   kernel::AdamStep step;
@@ -50,7 +50,7 @@ void Optimizer::Update(const float* x, const float* y, const float* z, std::span
     const int64_t offset = encoding.Offset(part);
     float* table = parameters.grid.data() + offset;
     const auto began = std::chrono::steady_clock::now();
-    AddPartGradient(field_, part, table, x, y, z, stretches, scratch.gradient.data(), scratch.touched.data());
+    AddPartGradient(field_, part, table, x, y, z, segments, scratch.gradient.data(), scratch.touched.data());
     if (scattered) scattered(thread, began);
     const auto then = std::chrono::steady_clock::now();
     kernel::AdamTouched(step, (encoding.Offset(part + 1) - offset) / kernel::kLineFloats, scratch.touched.data(), table, scratch.gradient.data(),

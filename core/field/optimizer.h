@@ -24,7 +24,7 @@ struct TrainableState {
   void Allocate(const HashField& field);
 };
 
-// Samples of one batch in stretches, as packets leave them.
+// Samples of one batch in segments, as packets leave them.
 struct GridGradient {
   int64_t begin = 0, count = 0;     // in x, y, z
   const float* gradient = nullptr;  // FeatureRows() rows
@@ -33,7 +33,7 @@ struct GridGradient {
 // Adds the gradient of the samples' features to the table gradient of one part of the encoding, whose parameters begin at `table`, and marks the
 // lines written to (encoding::Encoding::Backward).
 void AddPartGradient(const HashField& field, int part, const float* table, const float* x, const float* y, const float* z,
-                     std::span<const GridGradient> stretches, float* table_gradient, uint8_t* touched);
+                     std::span<const GridGradient> segments, float* table_gradient, uint8_t* touched);
 
 // Told at the end of a piece of work which thread did it and when it began; may be empty.
 using TaskClock = std::function<void(int thread, std::chrono::steady_clock::time_point began)>;
@@ -43,9 +43,9 @@ using TaskClock = std::function<void(int thread, std::chrono::steady_clock::time
 class Optimizer {
  public:
   Optimizer(const HashField& field, base::ThreadPool& threads);
-  // One step of Adam with state.network_gradient, which is cleared, and the grid gradient of the stretches. network_l2 is the weight decay of
+  // One step of Adam with state.network_gradient, which is cleared, and the grid gradient of the segments. network_l2 is the weight decay of
   // the networks.
-  void Update(const float* x, const float* y, const float* z, std::span<const GridGradient> stretches, double learning_rate, double network_l2,
+  void Update(const float* x, const float* y, const float* z, std::span<const GridGradient> segments, double learning_rate, double network_l2,
               Parameters& parameters, TrainableState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
 
  private:

@@ -10,7 +10,7 @@
 namespace skyquilt::geo {
 
 // A part of a ray, in lengths of its direction from its origin.
-struct Stretch {
+struct Interval {
   double t_near = 0.0;
   double t_far = 0.0;
   bool Empty() const { return !(t_far > t_near); }
@@ -19,8 +19,9 @@ struct Stretch {
 namespace internal {
 
 // Where the half-line t >= 0 is between all three pairs of faces; t_far < t_near when nowhere, t_far = t_near when it only touches the box.
-inline Stretch BetweenFaces(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
-  constexpr Stretch kNowhere = {0.0, -1.0};
+inline Interval BetweenFaces(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min,
+                             const Eigen::Vector3d& max) {
+  constexpr Interval kNowhere = {0.0, -1.0};
   double t_near = 0.0;
   double t_far = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -40,17 +41,17 @@ inline Stretch BetweenFaces(const Eigen::Vector3d& origin, const Eigen::Vector3d
 
 }  // namespace internal
 
-// The stretch inside the box, for those who walk along it: of no length, and then {0, 0}, when the ray misses the box or only touches it.
-inline Stretch RayBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
-  const Stretch inside = internal::BetweenFaces(origin, direction, min, max);
-  return inside.Empty() ? Stretch{} : inside;
+// The interval inside the box, for those who walk along it: of no length, and then {0, 0}, when the ray misses the box or only touches it.
+inline Interval RayBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+  const Interval inside = internal::BetweenFaces(origin, direction, min, max);
+  return inside.Empty() ? Interval{} : inside;
 }
 
 // Whether the half-line meets the closed box, for those who ask what can be seen: touching an edge or a corner is enough, a box may be flat.
 // False when anything is NaN, and for rays that are not finite.
 inline bool RayMeetsBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
   if (!origin.allFinite() || !direction.allFinite() || min.hasNaN() || max.hasNaN()) return false;
-  const Stretch inside = internal::BetweenFaces(origin, direction, min, max);
+  const Interval inside = internal::BetweenFaces(origin, direction, min, max);
   return inside.t_near <= inside.t_far;
 }
 

@@ -33,7 +33,7 @@ using ImageF = BasicImage<float>;
 // RGB, 8 bits. Grey becomes three equal channels, 16 bits are scaled to 8, alpha is dropped (the first such file of a process is
 // named in a warning); EXIF rotation is NOT applied (the camera model refers to stored pixels). A JPEG that ends early is refused, not
 // half-decoded.
-// Throws base::InputError naming file, finding and mend.
+// Throws base::InputError naming file, finding and how to fix it.
 Image8 LoadRgb8(const std::filesystem::path& file);
 // Width and height from the header alone. Throws base::InputError.
 void ReadImageSize(const std::filesystem::path& file, int* width, int* height);

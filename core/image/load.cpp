@@ -16,7 +16,7 @@ namespace {
 
 using base::InputError;
 
-constexpr const char* kMendDamaged = "Copy it again from the card or take it out of the set";
+constexpr const char* kFixDamaged = "Copy it again from the card or take it out of the set";
 
 std::span<const uint8_t> AsBytes(const std::string& content) {
   return {reinterpret_cast<const uint8_t*>(content.data()), content.size()};
@@ -34,18 +34,18 @@ bool LooksLikeImage(const std::string& content) {
 
 // Decodes to whatever the file holds; BGR(A) order.
 cv::Mat Decode(const std::string& content, const std::filesystem::path& file) {
-  if (content.empty()) throw InputError(file, "is empty", kMendDamaged);
+  if (content.empty()) throw InputError(file, "is empty", kFixDamaged);
   const JpegStructure jpeg = ParseJpeg(AsBytes(content), false);
-  if (jpeg.is_jpeg && !jpeg.complete) throw InputError(file, "ends early (truncated JPEG)", kMendDamaged);
+  if (jpeg.is_jpeg && !jpeg.complete) throw InputError(file, "ends early (truncated JPEG)", kFixDamaged);
   cv::Mat pixels;
   try {
     const cv::Mat wrapped(1, static_cast<int>(std::min<size_t>(content.size(), INT32_MAX)), CV_8UC1, const_cast<char*>(content.data()));
     pixels = cv::imdecode(wrapped, cv::IMREAD_UNCHANGED);  // UNCHANGED leaves the EXIF orientation alone as well
   } catch (const cv::Exception& error) {
-    throw InputError(file, "cannot be decoded (" + error.err + ")", kMendDamaged);
+    throw InputError(file, "cannot be decoded (" + error.err + ")", kFixDamaged);
   }
   if (pixels.empty()) {
-    if (LooksLikeImage(content)) throw InputError(file, "cannot be decoded (damaged or of an unsupported kind)", kMendDamaged);
+    if (LooksLikeImage(content)) throw InputError(file, "cannot be decoded (damaged or of an unsupported kind)", kFixDamaged);
     throw InputError(file, "is not an image", "Give JPEG, PNG or TIFF photos and keep other files out of the folder");
   }
   return pixels;
@@ -114,7 +114,7 @@ void ReadImageSize(const std::filesystem::path& file, int* width, int* height) {
     *width = pixels.cols;
     *height = pixels.rows;
   }
-  if (*width <= 0 || *height <= 0) throw InputError(file, "has no image size in its header (ends early or damaged)", kMendDamaged);
+  if (*width <= 0 || *height <= 0) throw InputError(file, "has no image size in its header (ends early or damaged)", kFixDamaged);
 }
 
 Image8 LoadMask(const std::filesystem::path& file) {

@@ -14,7 +14,7 @@ namespace {
 
 using base::InputError;
 
-constexpr const char* kMend = "Give a network with two inputs of 1 x 3 x H x W and one output of one number, or leave LPIPS out";
+constexpr const char* kFix = "Give a network with two inputs of 1 x 3 x H x W and one output of one number, or leave LPIPS out";
 
 // [0,1] interleaved to [-1,1] planar; 0, mid-grey, where ignored or not a number.
 cv::Mat ToBlob(const image::ImageF& image, const image::Image8* mask) {
@@ -52,9 +52,9 @@ struct Lpips::Impl {
       net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
     } catch (const cv::Exception& error) {
       throw InputError(file, "cannot be loaded for images of " + std::to_string(width) + "x" + std::to_string(height) + " (" + error.err + ")",
-                       kMend);
+                       kFix);
     }
-    if (net.empty()) throw InputError(file, "cannot be loaded", kMend);
+    if (net.empty()) throw InputError(file, "cannot be loaded", kFix);
     net_width = width;
     net_height = height;
   }
@@ -64,19 +64,19 @@ Lpips::Lpips(const std::filesystem::path& onnx_file) : impl_(std::make_unique<Im
   impl_->file = onnx_file;
   impl_->model = base::ReadFile(onnx_file);
   impl_->inputs = OnnxInputs(impl_->model);
-  if (impl_->inputs.empty()) throw InputError(onnx_file, "is not an ONNX network", kMend);
-  if (impl_->inputs.size() != 2) throw InputError(onnx_file, "is a network with " + std::to_string(impl_->inputs.size()) + " inputs", kMend);
+  if (impl_->inputs.empty()) throw InputError(onnx_file, "is not an ONNX network", kFix);
+  if (impl_->inputs.size() != 2) throw InputError(onnx_file, "is a network with " + std::to_string(impl_->inputs.size()) + " inputs", kFix);
   for (const OnnxInput& input : impl_->inputs) {
     const std::vector<int64_t>& shape = input.shape;
     if (shape.size() != 4 || shape[0] > 1 || (shape[1] != 0 && shape[1] != 3) || shape != impl_->inputs[0].shape) {
-      throw InputError(onnx_file, "has an input '" + input.name + "' that is not 1 x 3 x H x W", kMend);
+      throw InputError(onnx_file, "has an input '" + input.name + "' that is not 1 x 3 x H x W", kFix);
     }
   }
   // Tries the network at once, so that a file that cannot work is refused before hours of training and not after.
   const std::vector<int64_t>& shape = impl_->inputs[0].shape;
   impl_->Load(shape[3] > 0 ? static_cast<int>(shape[3]) : 64, shape[2] > 0 ? static_cast<int>(shape[2]) : 64);
   const size_t n_outputs = impl_->net.getUnconnectedOutLayers().size();
-  if (n_outputs != 1) throw InputError(onnx_file, "is a network with " + std::to_string(n_outputs) + " outputs", kMend);
+  if (n_outputs != 1) throw InputError(onnx_file, "is a network with " + std::to_string(n_outputs) + " outputs", kFix);
 }
 
 Lpips::~Lpips() = default;
@@ -98,11 +98,11 @@ double Lpips::Distance(const image::ImageF& a, const image::ImageF& b, const ima
     impl_->net.setInput(ToBlob(b, mask), impl_->inputs[1].name);
     result = impl_->net.forward();
   } catch (const cv::Exception& error) {
-    throw InputError(impl_->file, "does not run on images of " + ShapeText(a) + " (" + error.err + ")", kMend);
+    throw InputError(impl_->file, "does not run on images of " + ShapeText(a) + " (" + error.err + ")", kFix);
   }
-  if (result.total() != 1 || result.type() != CV_32F) throw InputError(impl_->file, "gives " + std::to_string(result.total()) + " numbers", kMend);
+  if (result.total() != 1 || result.type() != CV_32F) throw InputError(impl_->file, "gives " + std::to_string(result.total()) + " numbers", kFix);
   const auto distance = static_cast<double>(*result.ptr<float>());
-  if (!std::isfinite(distance)) throw InputError(impl_->file, "gives no finite number for images of " + ShapeText(a), kMend);
+  if (!std::isfinite(distance)) throw InputError(impl_->file, "gives no finite number for images of " + ShapeText(a), kFix);
   return distance;
 }
 

@@ -14,7 +14,7 @@ EngineOptions EngineOptions::For(const brightness::Luminance& luminance) {
   return options;
 }
 
-geo::Stretch BlendStretch(const TrainedField& block, const Ray& ray) {
+geo::Interval BlendInterval(const TrainedField& block, const Ray& ray) {
   constexpr double kEver = std::numeric_limits<double>::infinity();
   const Eigen::Vector3d reach(block.blend_m, block.blend_m, kEver);
   return geo::RayBox(ray.origin_enu, ray.direction_enu, block.box.min_enu - reach, block.box.max_enu + reach);

@@ -1,4 +1,4 @@
-// Sample positions along a ray: uniform steps on a lattice that starts at the stretch's near end (shifted by `jitter` in [0, 1) of a
+// Sample positions along a ray: uniform steps on a lattice that starts at the interval's near end (shifted by `jitter` in [0, 1) of a
 // step), kept only in occupied cells. In a contracted frame the step grows as the frame shrinks.
 #pragma once
 
@@ -13,7 +13,7 @@
 namespace skyquilt::render {
 
 // Where a ray can meet the field: its box, or its slab out to where the contracted frame has no cells left.
-inline geo::Stretch FieldStretch(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+inline geo::Interval FieldInterval(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   if (!map.contracted()) return geo::RayBox(origin, direction, map.min_enu(), map.max_enu());
   const Eigen::Vector3d centre = 0.5 * (map.min_enu() + map.max_enu());
   const double reach = 20.0 * 0.5 * (map.max_enu() - map.min_enu()).head<2>().maxCoeff();
@@ -22,7 +22,7 @@ inline geo::Stretch FieldStretch(const encoding::SpaceMap& map, const Eigen::Vec
 }
 
 // The part of a ray over (or under) the ground plan of an uncontracted field. Inside it only the field itself, never the context, has matter.
-inline geo::Stretch PlanStretch(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+inline geo::Interval PlanInterval(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   constexpr double kEver = std::numeric_limits<double>::infinity();
   const Eigen::Vector3d& low = map.min_enu();
   const Eigen::Vector3d& high = map.max_enu();
@@ -49,13 +49,13 @@ class UnitRay {
 namespace internal {
 
 // Walks the cells of an uncontracted field in ray order (Amanatides and Woo 1987): visit(at, leave, cell) -> bool for every occupied one,
-// distances from the stretch's near end. False ends the walk.
+// distances from the interval's near end. False ends the walk.
 template <typename Visit>
-void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, Visit&& visit) {
+void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, Visit&& visit) {
   const field::OccupancyGrid& grid = f.occupancy;
   const double cell_m = static_cast<double>(grid.cell) / f.map.units_per_metre();
-  const Eigen::Vector3d entry = origin + stretch.t_near * direction - f.map.min_enu();
-  const double length = stretch.t_far - stretch.t_near;
+  const Eigen::Vector3d entry = origin + interval.t_near * direction - f.map.min_enu();
+  const double length = interval.t_far - interval.t_near;
   int cell[3], increment[3];
   int64_t index_increment[3] = {1, grid.size[0], static_cast<int64_t>(grid.size[0]) * grid.size[1]};
   double next[3], delta[3];
@@ -87,37 +87,37 @@ void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen
 
 // Emits the lattice points (k + jitter) * step inside occupied cells.
 template <typename Emit>
-void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, double step_m,
+void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
                 float jitter, Emit&& emit) {
-  WalkCells(f, origin, direction, stretch, [&](double at, double leave, int64_t cell) {
+  WalkCells(f, origin, direction, interval, [&](double at, double leave, int64_t cell) {
     auto k = static_cast<int64_t>(std::ceil(at / step_m - static_cast<double>(jitter)));
     for (;; ++k) {
       const double t = (static_cast<double>(k) + static_cast<double>(jitter)) * step_m;
       if (!(t < leave)) return true;
-      if (t >= at && !emit(stretch.t_near + t, step_m, step_m, cell)) return false;
+      if (t >= at && !emit(interval.t_near + t, step_m, step_m, cell)) return false;
     }
   });
 }
 
-// The same walk with one sample for every stretch of at most `step_m` inside occupied cells, at its middle: with steps longer than a cell
+// The same walk with one sample for every interval of at most `step_m` inside occupied cells, at its middle: with steps longer than a cell
 // a lattice would pass over thin surfaces.
 template <typename Emit>
-void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, double step_m,
+void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
                    Emit&& emit) {
   double run_begin = 0.0, run_end = -1.0;  // empty
   bool more = true;
   const auto flush = [&] {
     const double length = run_end - run_begin;
-    if (more && length > 0.0) more = emit(stretch.t_near + 0.5 * (run_begin + run_end), length, length);
+    if (more && length > 0.0) more = emit(interval.t_near + 0.5 * (run_begin + run_end), length, length);
     run_end = -1.0;
   };
-  WalkCells(f, origin, direction, stretch, [&](double at, double leave, int64_t) {
+  WalkCells(f, origin, direction, interval, [&](double at, double leave, int64_t) {
     // Cells follow each other without gaps only while rounding agrees: compare with a tolerance.
     if (run_end >= 0.0 && at > run_end + 1e-9 * step_m) flush();
     if (run_end < 0.0) run_begin = at;
     run_end = leave;
     while (more && run_end - run_begin > step_m) {
-      more = emit(stretch.t_near + run_begin + 0.5 * step_m, step_m, step_m);
+      more = emit(interval.t_near + run_begin + 0.5 * step_m, step_m, step_m);
       run_begin += step_m;
     }
     return more;
@@ -126,14 +126,14 @@ void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const E
 }
 
 template <typename Emit>
-void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, double step_m,
+void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
                      float jitter, Emit&& emit) {
-  double at = stretch.t_near;
-  while (at < stretch.t_far) {
+  double at = interval.t_near;
+  while (at < interval.t_far) {
     const double scale = f.map.LocalScale(origin + at * direction);
     const double step = step_m / scale;
     const double t = at + static_cast<double>(jitter) * step;
-    if (t < stretch.t_far) {
+    if (t < interval.t_far) {
       const Eigen::Vector3f x = f.map.UnitFromEnu(origin + t * direction);
       const int64_t cell = f.occupancy.IndexAt(x.x(), x.y(), x.z());
       if (f.occupancy.occupied[static_cast<size_t>(cell)] != 0 && !emit(t, step, step_m, cell)) return;
@@ -146,27 +146,27 @@ void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const
 
 // Steps longer than the field's own: for pixels that cover more than the field's finest detail. emit(t, length_m, unit_length_m) as below.
 template <typename Emit>
-void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, double step_m,
+void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
                  Emit&& emit) {
-  if (stretch.Empty()) return;
+  if (interval.Empty()) return;
   if (f.map.contracted()) {
-    internal::MarchContracted(f, origin, direction, stretch, step_m, 0.5F,
+    internal::MarchContracted(f, origin, direction, interval, step_m, 0.5F,
                               [&](double t, double length_m, double unit_length_m, int64_t) { return emit(t, length_m, unit_length_m); });
   } else {
-    internal::MarchCellRuns(f, origin, direction, stretch, step_m, emit);
+    internal::MarchCellRuns(f, origin, direction, interval, step_m, emit);
   }
 }
 
 // emit(t, length_m, unit_length_m, cell) -> bool: distance along the ray, length of the interval, that length measured in the uncontracted
 // part's metres (what the log density refers to), and the occupancy cell. Return false to stop.
 template <typename Emit>
-void March(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Stretch stretch, double step_m, float jitter,
-           Emit&& emit) {
-  if (stretch.Empty()) return;
+void March(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
+           float jitter, Emit&& emit) {
+  if (interval.Empty()) return;
   if (f.map.contracted()) {
-    internal::MarchContracted(f, origin, direction, stretch, step_m, jitter, emit);
+    internal::MarchContracted(f, origin, direction, interval, step_m, jitter, emit);
   } else {
-    internal::MarchCells(f, origin, direction, stretch, step_m, jitter, emit);
+    internal::MarchCells(f, origin, direction, interval, step_m, jitter, emit);
   }
 }
 

@@ -5,7 +5,7 @@
 
 namespace skyquilt::render {
 
-// One ray. Direction of length 1. The stretch outside [t_near, t_far] is not evaluated (0 and infinity for all).
+// One ray. Direction of length 1. The interval outside [t_near, t_far] is not evaluated (0 and infinity for all).
 struct Ray {
   Eigen::Vector3d origin_enu;
   Eigen::Vector3d direction_enu;

@@ -104,7 +104,7 @@ class RayRenderer::Group {
     for (int k = 0; k < context_index_; ++k) {
       const TrainedField& f = *all_[static_cast<size_t>(k)];
       // Over its plan a block has its say even above its box: there is nothing there.
-      if (PlanStretch(f.map, ray.origin_enu, ray.direction_enu).Empty()) continue;
+      if (PlanInterval(f.map, ray.origin_enu, ray.direction_enu).Empty()) continue;
       candidates_.push_back(k);
       if (with_context) CutCore(f, ray);
     }
@@ -114,10 +114,10 @@ class RayRenderer::Group {
     for (size_t c = 0; c < candidates_.size(); ++c) {
       const int k = candidates_[c];
       const TrainedField& f = *all_[static_cast<size_t>(k)];
-      if (!window.Meets(BlendStretch(f, ray))) continue;
+      if (!window.Meets(BlendInterval(f, ray))) continue;
       marched += MarchField(ray, window, k, static_cast<int>(c), Clip(ray, f)) ? 1 : 0;
     }
-    for (const geo::Stretch& gap : gaps_) {
+    for (const geo::Interval& gap : gaps_) {
       if (window.Meets(gap)) marched += MarchField(ray, window, context_index_, -1, gap) ? 1 : 0;
     }
     if (marched < 2) return;  // in order already
@@ -125,15 +125,15 @@ class RayRenderer::Group {
     std::stable_sort(first, samples_.end(), [](const Sample& a, const Sample& b) { return a.t < b.t; });
   }
 
-  static geo::Stretch Clip(const Ray& ray, const TrainedField& f) {
-    geo::Stretch stretch = FieldStretch(f.map, ray.origin_enu, ray.direction_enu);
-    stretch.t_near = std::max(stretch.t_near, ray.t_near);
-    stretch.t_far = std::min(stretch.t_far, ray.t_far);
-    return stretch;
+  static geo::Interval Clip(const Ray& ray, const TrainedField& f) {
+    geo::Interval interval = FieldInterval(f.map, ray.origin_enu, ray.direction_enu);
+    interval.t_near = std::max(interval.t_near, ray.t_near);
+    interval.t_far = std::min(interval.t_far, ray.t_far);
+    return interval;
   }
 
   // Where a block alone has all the weight.
-  static geo::Stretch CoreStretch(const TrainedField& f, const Ray& ray) {
+  static geo::Interval CoreInterval(const TrainedField& f, const Ray& ray) {
     constexpr double kEver = std::numeric_limits<double>::infinity();
     const double m = f.blend_m;
     return geo::RayBox(ray.origin_enu, ray.direction_enu, {f.box.min_enu.x() + m, f.box.min_enu.y() + m, -kEver},
@@ -142,11 +142,11 @@ class RayRenderer::Group {
 
   // There the context need not be marched.
   void CutCore(const TrainedField& f, const Ray& ray) {
-    const geo::Stretch core = CoreStretch(f, ray);
+    const geo::Interval core = CoreInterval(f, ray);
     if (core.Empty()) return;
     const size_t n = gaps_.size();
     for (size_t i = 0; i < n; ++i) {
-      const geo::Stretch gap = gaps_[i];
+      const geo::Interval gap = gaps_[i];
       if (core.t_far <= gap.t_near || core.t_near >= gap.t_far) continue;
       gaps_[i].t_far = std::min(gap.t_far, core.t_near);
       if (gap.t_far > core.t_far) gaps_.push_back({core.t_far, gap.t_far});
@@ -154,19 +154,19 @@ class RayRenderer::Group {
   }
 
   // Steps grow with the pixel: what is finer than it cannot be seen.
-  double StepScale(const Ray& ray, const TrainedField& f, const geo::Stretch& stretch) const {
-    const double pixel_m = 2.0 * static_cast<double>(ray.pixel_radius) * stretch.t_near;
+  double StepScale(const Ray& ray, const TrainedField& f, const geo::Interval& interval) const {
+    const double pixel_m = 2.0 * static_cast<double>(ray.pixel_radius) * interval.t_near;
     return std::max(options_.step_scale, kPixelsPerStep * pixel_m / f.step_m);
   }
 
   // True when samples were added.
-  bool MarchField(const Ray& ray, const Window& window, int k, int candidate, const geo::Stretch& stretch) {
+  bool MarchField(const Ray& ray, const Window& window, int k, int candidate, const geo::Interval& interval) {
     const TrainedField& f = *all_[static_cast<size_t>(k)];
     SKYQUILT_CHECK(f.field != nullptr, "field '" + f.name + "' is not loaded");
     const size_t before = samples_.size();
     const UnitRay unit(f.map, ray.origin_enu, ray.direction_enu);
     // Where this block alone has all the weight nothing needs blending.
-    const geo::Stretch alone = candidate < 0 ? geo::Stretch{} : CoreStretch(f, ray);
+    const geo::Interval alone = candidate < 0 ? geo::Interval{} : CoreInterval(f, ray);
     int count = 0;
     // Samples lie where they would lie without a window, so that it does not matter how a ray is cut.
     const auto emit = [&](double t, double length, double unit_length) {
@@ -185,11 +185,11 @@ class RayRenderer::Group {
       }
       return ++count < kMaxRaySamples;
     };
-    const double step_m = f.step_m * StepScale(ray, f, stretch);
+    const double step_m = f.step_m * StepScale(ray, f, interval);
     if (step_m > 1.01 * f.step_m) {
-      MarchCoarse(f, ray.origin_enu, ray.direction_enu, stretch, step_m, emit);
+      MarchCoarse(f, ray.origin_enu, ray.direction_enu, interval, step_m, emit);
     } else {
-      March(f, ray.origin_enu, ray.direction_enu, stretch, step_m, 0.5F,
+      March(f, ray.origin_enu, ray.direction_enu, interval, step_m, 0.5F,
             [&](double t, double length, double unit_length, int64_t) { return emit(t, length, unit_length); });
     }
     return samples_.size() > before;
@@ -352,7 +352,7 @@ class RayRenderer::Group {
   std::vector<Sample> samples_;
   std::vector<Progress> progress_;
   std::vector<size_t> alive_;
-  std::vector<geo::Stretch> gaps_;  // where the context counts
+  std::vector<geo::Interval> gaps_;  // where the context counts
   std::vector<int> candidates_;
   std::vector<double> block_weights_;
 };

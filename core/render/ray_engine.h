@@ -23,7 +23,7 @@ struct FieldSet {
 };
 
 struct EngineOptions {
-  // What fields with this hidden light need.
+  // What fields with this concealing field need.
   static EngineOptions For(const brightness::Luminance& luminance);
 
   bool operator==(const EngineOptions&) const = default;
@@ -34,7 +34,7 @@ struct EngineOptions {
 };
 
 // Where a block has weight along a ray: its core box widened by the ramp, of any height.
-geo::Stretch BlendStretch(const TrainedField& block, const Ray& ray);
+geo::Interval BlendInterval(const TrainedField& block, const Ray& ray);
 
 // Blend weights of the set at a place: one per block, and the context's share in the return value. Sums to 1 inside any core box.
 double BlendWeights(const FieldSet& fields, std::span<const int> candidates, double x, double y, std::span<double> weights);

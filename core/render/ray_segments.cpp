@@ -10,17 +10,17 @@ RaySegments::RaySegments(std::vector<const TrainedField*> blocks) : blocks_(std:
 
 void RaySegments::Split(const Ray& ray, std::vector<RaySegment>* segments) const {
   constexpr double kEver = std::numeric_limits<double>::infinity();
-  thread_local std::vector<std::pair<geo::Stretch, int>> over;
+  thread_local std::vector<std::pair<geo::Interval, int>> over;
   thread_local std::vector<double> changes;
   thread_local std::vector<int> here;
   over.clear();
   changes.assign({0.0, kEver});
   for (size_t k = 0; k < blocks_.size(); ++k) {
-    const geo::Stretch stretch = BlendStretch(*blocks_[k], ray);
-    if (stretch.Empty()) continue;
-    over.emplace_back(stretch, static_cast<int>(k));
-    changes.push_back(stretch.t_near);
-    changes.push_back(stretch.t_far);
+    const geo::Interval interval = BlendInterval(*blocks_[k], ray);
+    if (interval.Empty()) continue;
+    over.emplace_back(interval, static_cast<int>(k));
+    changes.push_back(interval.t_near);
+    changes.push_back(interval.t_far);
   }
   std::sort(changes.begin(), changes.end());
   changes.erase(std::unique(changes.begin(), changes.end()), changes.end());
@@ -28,8 +28,8 @@ void RaySegments::Split(const Ray& ray, std::vector<RaySegment>* segments) const
   for (size_t i = 0; i + 1 < changes.size(); ++i) {
     here.clear();
     const Window window{changes[i], changes[i + 1]};
-    for (const auto& [stretch, k] : over) {
-      if (window.Meets(stretch)) here.push_back(k);
+    for (const auto& [interval, k] : over) {
+      if (window.Meets(interval)) here.push_back(k);
     }
     const int set = SetOf(here);
     if (segments->size() > first && segments->back().set == set) {

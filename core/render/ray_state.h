@@ -23,11 +23,11 @@ struct RayState {
 };
 static_assert(std::is_trivially_copyable_v<RayState>);
 
-// A stretch [from, to) of a ray, metres.
+// An interval [from, to) of a ray, metres.
 struct Window {
   double from = 0.0;
   double to = std::numeric_limits<double>::infinity();
-  bool Meets(const geo::Stretch& stretch) const { return !stretch.Empty() && stretch.t_far > from && stretch.t_near < to; }
+  bool Meets(const geo::Interval& interval) const { return !interval.Empty() && interval.t_far > from && interval.t_near < to; }
 };
 
 // What a ray shows that goes no farther. What was gathered by one that ended early is taken for all.

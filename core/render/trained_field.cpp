@@ -2,7 +2,7 @@
 
 namespace skyquilt::render {
 
-void TrainedField::Finish() {
+void TrainedField::BuildNetworks() {
   field = std::make_unique<field::HashField>(config);
   weights = field->Prepare(parameters.networks);
   blend_m = box.margin_m;

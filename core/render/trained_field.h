@@ -17,7 +17,7 @@ struct TrainedField {
   field::FieldConfig config;
   encoding::SpaceMap map;
   geo::BlockBox box;     // whose ground it answers for; of a block, the map spans it with its margin
-  double blend_m = 0.0;  // half width of the ramp at its faces; Finish() makes it the margin, 0 is a hard border
+  double blend_m = 0.0;  // half width of the ramp at its faces; BuildNetworks() makes it the margin, 0 is a hard border
   double step_m = 0.1;   // marching step inside the uncontracted part = the length that log density refers to
   field::Parameters parameters;
   field::OccupancyGrid occupancy;
@@ -26,10 +26,10 @@ struct TrainedField {
   double seconds = 0.0;
   int64_t samples = 0;
 
-  // Built from the above by Finish().
+  // Built from the above by BuildNetworks().
   std::unique_ptr<field::HashField> field;
   field::NetworkWeights weights;
-  void Finish();
+  void BuildNetworks();
   int64_t ParameterCount() const { return static_cast<int64_t>(parameters.Count()); }
 };
 

@@ -13,7 +13,7 @@
 namespace skyquilt::scene {
 namespace {
 
-constexpr const char* kMend = "Train it again with --restart";
+constexpr const char* kFix = "Train it again with --restart";
 constexpr int64_t kMaxCellsPerAxis = int64_t{1} << 20;
 
 // The box that a field is trained in, as its map was made from.
@@ -110,7 +110,7 @@ bool SetSize(const std::vector<int64_t>& size, field::OccupancyGrid* occupancy) 
 
 }  // namespace
 
-void PutOutline(const render::TrainedField& f, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
+void PutDescription(const render::TrainedField& f, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
   writer.SetAttribute(prefix + "name", f.name);
   writer.SetAttribute(prefix + "steps", f.steps);
   writer.SetAttribute(prefix + "seconds", f.seconds);
@@ -124,27 +124,27 @@ void PutOutline(const render::TrainedField& f, const std::string& prefix, checkp
 }
 
 void PutField(const render::TrainedField& f, const std::string& prefix, checkpoint::ArchiveWriter& writer) {
-  PutOutline(f, prefix, writer);
+  PutDescription(f, prefix, writer);
   writer.Put(prefix + "grid", f.parameters.grid);
   writer.Put(prefix + "networks", f.parameters.networks);
   const std::vector<int64_t> shape = {f.occupancy.size[2], f.occupancy.size[1], f.occupancy.size[0]};
   writer.Put(prefix + "occupied", f.occupancy.occupied, shape);
-  writer.Put(prefix + "occupancy_depth", f.occupancy.depth, shape);
+  writer.Put(prefix + "occupancy_tau", f.occupancy.tau, shape);
 }
 
-void PutFieldOf(const render::TrainedField& outline, const std::filesystem::path& checkpoint, const std::string& prefix,
+void PutFieldOf(const render::TrainedField& description, const std::filesystem::path& checkpoint, const std::string& prefix,
                 checkpoint::ArchiveWriter& writer, checkpoint::Precision tables) {
-  PutOutline(outline, prefix, writer);
+  PutDescription(description, prefix, writer);
   const checkpoint::ArchiveReader reader(checkpoint);
   const std::vector<int64_t> size = StoredSize(reader, "");
-  field::OccupancyGrid occupancy = outline.occupancy;
+  field::OccupancyGrid occupancy = description.occupancy;
   occupancy.occupied = reader.Bytes("occupied");
   if (!(occupancy.cell > 0.0F) || !SetSize(size, &occupancy) || occupancy.CellCount() != static_cast<int64_t>(occupancy.occupied.size()))
-    throw base::InputError(checkpoint, "its occupancy has no shape", kMend);
-  if (outline.config.encoding == encoding::Kind::kHash) {
-    const encoding::HashGrid grid(outline.config.grid);
+    throw base::InputError(checkpoint, "its occupancy has no shape", kFix);
+  if (description.config.encoding == encoding::Kind::kHash) {
+    const encoding::HashGrid grid(description.config.grid);
     if (reader.Shape("grid") != std::vector<int64_t>{grid.ParameterCount()}) {
-      throw base::InputError(checkpoint, "its tables and their configuration disagree", kMend);
+      throw base::InputError(checkpoint, "its tables and their configuration disagree", kFix);
     }
     writer.PutKept(prefix + "grid", checkpoint, "grid", field::ReachedEntries(grid, occupancy), grid.features(), tables);
   } else {
@@ -156,7 +156,7 @@ void PutFieldOf(const render::TrainedField& outline, const std::filesystem::path
   writer.PutOwned(prefix + "occupancy_size", size);
 }
 
-render::TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
+render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
   render::TrainedField f;
   f.name = reader.StringAttribute(prefix + "name");
   f.steps = reader.IntAttribute(prefix + "steps");
@@ -176,7 +176,7 @@ render::TrainedField GetOutline(const checkpoint::ArchiveReader& reader, const s
     }
     f.map = box.contracted ? encoding::SpaceMap::Slab(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu, box.max_enu);
   } catch (const std::invalid_argument& error) {
-    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);
+    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kFix);
   }
   return f;
 }
@@ -185,8 +185,8 @@ int64_t StoredParameters(const checkpoint::ArchiveReader& reader, const std::str
   return reader.Shape(prefix + "grid").at(0) + reader.Shape(prefix + "networks").at(0);
 }
 
-int64_t HeldParameters(const render::TrainedField& outline) {
-  const field::HashField field(outline.config);
+int64_t HeldParameters(const render::TrainedField& description) {
+  const field::HashField field(description.config);
   return field.GridParameters() + field.NetworkParameters();
 }
 
@@ -196,13 +196,13 @@ int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& 
 }
 
 render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
-  render::TrainedField f = GetOutline(reader, file, prefix);
+  render::TrainedField f = GetDescription(reader, file, prefix);
   try {
     f.parameters.grid = reader.KeptFloats(prefix + "grid");
     f.parameters.networks = reader.Floats(prefix + "networks");
-    f.Finish();
+    f.BuildNetworks();
   } catch (const std::invalid_argument& error) {
-    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kMend);
+    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kFix);
   }
   const std::vector<int64_t> size = StoredSize(reader, prefix);
   bool fits = SetSize(size, &f.occupancy);
@@ -213,12 +213,12 @@ render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std
     if (fits) f.occupancy.occupied = UnpackBits(bits, cells);
   } else {
     f.occupancy.occupied = reader.Bytes(prefix + "occupied");
-    f.occupancy.depth = reader.Floats(prefix + "occupancy_depth");
-    fits = fits && f.occupancy.occupied.size() == cells && f.occupancy.depth.size() == cells;
+    f.occupancy.tau = reader.Floats(prefix + "occupancy_tau");
+    fits = fits && f.occupancy.occupied.size() == cells && f.occupancy.tau.size() == cells;
   }
   if (!fits || static_cast<int64_t>(f.parameters.grid.size()) != f.field->GridParameters() ||
       static_cast<int64_t>(f.parameters.networks.size()) != f.field->NetworkParameters() || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {
-    throw base::InputError(file, "arrays and configuration of field '" + f.name + "' disagree", kMend);
+    throw base::InputError(file, "arrays and configuration of field '" + f.name + "' disagree", kFix);
   }
   return f;
 }

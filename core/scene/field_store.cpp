@@ -14,15 +14,15 @@ namespace skyquilt::scene {
 FieldStore::FieldStore(checkpoint::ArchiveReader reader, const std::filesystem::path& file, double memory_bytes, bool hard_borders)
     : reader_(std::move(reader)), file_(file), memory_bytes_(memory_bytes), hard_borders_(hard_borders) {
   const int64_t n_blocks = reader_.IntAttribute("blocks");
-  for (int64_t i = 0; i < n_blocks; ++i) entries_.push_back(Outline(BlockPrefix(i)));
+  for (int64_t i = 0; i < n_blocks; ++i) entries_.push_back(ReadDescription(BlockPrefix(i)));
   has_context_ = reader_.HasAttribute(std::string(kContextPrefix) + "name");
-  if (has_context_) context_ = Outline(kContextPrefix);
+  if (has_context_) context_ = ReadDescription(kContextPrefix);
 }
 
-FieldStore::Entry FieldStore::Outline(const std::string& prefix) const {
+FieldStore::Entry FieldStore::ReadDescription(const std::string& prefix) const {
   Entry entry;
   entry.prefix = prefix;
-  entry.field = std::make_unique<render::TrainedField>(GetOutline(reader_, file_, prefix));
+  entry.field = std::make_unique<render::TrainedField>(GetDescription(reader_, file_, prefix));
   if (hard_borders_) entry.field->blend_m = 0.0;
   entry.parameters = StoredParameters(reader_, prefix);
   entry.bytes = 4.0 * static_cast<double>(HeldParameters(*entry.field)) + static_cast<double>(StoredCells(reader_, prefix));
@@ -43,7 +43,7 @@ bool FieldStore::AllFit() const {
 
 void FieldStore::Load(Entry* entry) {
   render::TrainedField field = GetField(reader_, file_, entry->prefix);
-  field.occupancy.depth = {};  // for training only
+  field.occupancy.tau = {};  // for training only
   field.blend_m = entry->field->blend_m;
   *entry->field = std::move(field);
   entry->loaded = true;
@@ -52,21 +52,21 @@ void FieldStore::Load(Entry* entry) {
   ++loads_;
 }
 
-void FieldStore::Drop(Entry* entry) {
+void FieldStore::Unload(Entry* entry) {
   const double blend_m = entry->field->blend_m;
-  *entry->field = GetOutline(reader_, file_, entry->prefix);
+  *entry->field = GetDescription(reader_, file_, entry->prefix);
   entry->field->blend_m = blend_m;
   entry->loaded = false;
   in_use_ -= entry->bytes;
 }
 
-void FieldStore::Need(std::span<const int> blocks) {
-  ++needs_;
+void FieldStore::EnsureLoaded(std::span<const int> blocks) {
+  ++calls_;
   double missing = has_context_ && !context_.loaded ? context_.bytes : 0.0;
   double together = context_.bytes;
   for (const int k : blocks) {
     Entry& entry = entries_[static_cast<size_t>(k)];
-    entry.used = needs_;
+    entry.used = calls_;
     together += entry.bytes;
     if (!entry.loaded) missing += entry.bytes;
   }
@@ -79,10 +79,10 @@ void FieldStore::Need(std::span<const int> blocks) {
     while (in_use_ + missing > memory_bytes_) {
       Entry* oldest = nullptr;
       for (Entry& entry : entries_) {
-        if (entry.loaded && entry.used != needs_ && (oldest == nullptr || entry.used < oldest->used)) oldest = &entry;
+        if (entry.loaded && entry.used != calls_ && (oldest == nullptr || entry.used < oldest->used)) oldest = &entry;
       }
-      SKYQUILT_CHECK(oldest != nullptr, "nothing left to drop");
-      Drop(oldest);
+      SKYQUILT_CHECK(oldest != nullptr, "nothing left to unload");
+      Unload(oldest);
     }
   }
   if (has_context_ && !context_.loaded) Load(&context_);
@@ -91,10 +91,10 @@ void FieldStore::Need(std::span<const int> blocks) {
   }
 }
 
-void FieldStore::NeedAll() {
+void FieldStore::EnsureAllLoaded() {
   std::vector<int> all(entries_.size());
   std::iota(all.begin(), all.end(), 0);
-  Need(all);
+  EnsureLoaded(all);
 }
 
 }  // namespace skyquilt::scene

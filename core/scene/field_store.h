@@ -14,13 +14,13 @@ namespace skyquilt::scene {
 
 class FieldStore {
  public:
-  // Reads outlines only. `memory_bytes` bounds the fields in memory; 0: no bound. With hard borders blocks do not blend.
+  // Reads descriptions only. `memory_bytes` bounds the fields in memory; 0: no bound. With hard borders blocks do not blend.
   // Throws base::InputError for a damaged file.
   FieldStore(checkpoint::ArchiveReader reader, const std::filesystem::path& file, double memory_bytes, bool hard_borders);
 
   int size() const { return static_cast<int>(entries_.size()); }  // blocks
   bool HasContext() const { return has_context_; }
-  // Blocks 0 to size() - 1. Without arrays unless IsLoaded. The reference stays good; what it refers to changes with Need.
+  // Blocks 0 to size() - 1. Without arrays unless IsLoaded. The reference stays good; what it refers to changes with EnsureLoaded.
   const render::TrainedField& block(int k) const { return *entries_[static_cast<size_t>(k)].field; }
   std::vector<const render::TrainedField*> Blocks() const;
   const render::TrainedField& context() const { return *context_.field; }
@@ -35,8 +35,8 @@ class FieldStore {
 
   // Loads these blocks and the context, and drops others, the longest unused first, as far as they must go. Not while somebody renders.
   // Throws base::UsageError when they alone exceed the memory, base::InputError for a damaged file.
-  void Need(std::span<const int> blocks);
-  void NeedAll();
+  void EnsureLoaded(std::span<const int> blocks);
+  void EnsureAllLoaded();
 
   int64_t loads() const { return loads_; }         // of fields so far; grows whenever what is loaded changes
   double loaded_bytes() const { return in_use_; }  // in memory now
@@ -49,11 +49,11 @@ class FieldStore {
     int64_t parameters = 0;
     double bytes = 0.0;
     bool loaded = false;
-    int64_t used = 0;  // number of the last Need that named it
+    int64_t used = 0;  // number of the last EnsureLoaded that named it
   };
-  Entry Outline(const std::string& prefix) const;
+  Entry ReadDescription(const std::string& prefix) const;
   void Load(Entry* entry);
-  void Drop(Entry* entry);
+  void Unload(Entry* entry);
 
   checkpoint::ArchiveReader reader_;
   std::filesystem::path file_;
@@ -62,7 +62,7 @@ class FieldStore {
   std::vector<Entry> entries_;
   Entry context_;
   bool has_context_ = false;
-  int64_t needs_ = 0;
+  int64_t calls_ = 0;
   int64_t loads_ = 0;
   double in_use_ = 0.0;
   double most_ = 0.0;

@@ -78,7 +78,7 @@ int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<RayInFl
   SKYQUILT_CHECK(rays.size() == in_flight.size(), "one state in flight per ray");
   const size_t n = rays.size();
   if (!owner && store_.AllFit()) {
-    store_.NeedAll();
+    store_.EnsureAllLoaded();
     return RunTogether(rays, in_flight, options);
   }
   std::vector<Way> ways(n);
@@ -119,7 +119,7 @@ int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<RayInFl
     const auto next = std::max_element(waiting.begin(), waiting.end(), [&](const auto& a, const auto& b) {
       return std::pair(loaded(a.first), a.second) < std::pair(loaded(b.first), b.second);
     });
-    store_.Need(segments_.Blocks(next->first));
+    store_.EnsureLoaded(segments_.Blocks(next->first));
     std::map<int, bool> carried;  // sets that the loaded fields carry
     const auto carries = [&](int set) {
       const auto at = carried.find(set);

@@ -8,7 +8,7 @@
 #include "core/image/srgb.h"
 #include "core/render/ray_engine.h"
 #include "core/render/ray_segments.h"
-#include "core/scene/backdrop.h"
+#include "core/scene/background.h"
 #include "core/scene/field_store.h"
 #include "core/scene/paged_rays.h"
 #include "core/scene/ray_service.h"
@@ -46,8 +46,8 @@ struct Scene::Impl {
     return look == Look::kNormal ? info.luminance.mode == brightness::LuminanceMode::kOver : info.luminance.mode == brightness::LuminanceMode::kUnder;
   }
   render::EngineOptions Options(Look look) const { return Conceals(look) ? render::EngineOptions::For(info.luminance) : render::EngineOptions{}; }
-  // Light of the backdrop, which has the photos' colours, over what a look shows of it.
-  float BackdropGain(Look look) const {
+  // Light of the background, which has the photos' colours, over what a look shows of it.
+  float BackgroundGain(Look look) const {
     if (look == Look::kRecorded || !info.luminance.On()) return 1.0F;
     const double sign = info.luminance.mode == brightness::LuminanceMode::kUnder ? -1.0 : 1.0;
     return static_cast<float>(std::exp(sign * info.luminance_state.mean_log_gain));
@@ -71,7 +71,7 @@ struct Scene::Impl {
   }
 
   SceneInfo info;
-  Backdrop backdrop;
+  Background background;
   std::unique_ptr<FieldStore> store;
   std::unique_ptr<render::RaySegments> segments;
   std::unique_ptr<PagedRays> pager;  // for pager_threads
@@ -109,7 +109,7 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
   info.config = reader.StringAttribute("config");
   info.gsd_m = reader.DoubleAttribute("gsd_m");
   info.borders = BordersOf(reader);
-  impl.backdrop = GetBackdrop(reader, scene_h5);
+  impl.background = GetBackground(reader, scene_h5);
   impl.store = std::make_unique<FieldStore>(std::move(reader), scene_h5, options.memory_bytes, info.borders == Borders::kHard);
   const FieldStore& store = *impl.store;
   if (store.size() == 0) throw base::InputError(scene_h5, "holds no blocks", "Train at least one block, then merge again");
@@ -130,7 +130,7 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
   }
   if (impl.service != nullptr) impl.service->Begin(store, *impl.segments);
   // What is damaged is to be found now, not in the middle of a rendering.
-  if (impl.service == nullptr && store.AllFit()) impl.store->NeedAll();
+  if (impl.service == nullptr && store.AllFit()) impl.store->EnsureAllLoaded();
   return scene;
 }
 
@@ -150,7 +150,7 @@ std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, 
   // Square tiles: rays that are rendered together look at the same places, so table entries are in cache.
   const int tile_columns = (camera.width + kTile - 1) / kTile;
   const int n_tiles = tile_columns * ((camera.height + kTile - 1) / kTile);
-  const float backdrop_gain = impl_->BackdropGain(look);
+  const float background_gain = impl_->BackgroundGain(look);
   std::vector<size_t> pixels;
   std::vector<render::Ray> rays;
   std::vector<render::RayColor> colors;
@@ -181,9 +181,9 @@ std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, 
     impl_->Answer(rays, colors, look, threads);
     for (size_t i = 0; i < colors.size(); ++i) {
       if (colors[i].opacity >= 1.0F) continue;
-      std::array<float, 3> behind = impl_->backdrop.Color(rays[i].origin_enu, rays[i].direction_enu);
-      if (backdrop_gain != 1.0F) {
-        for (float& value : behind) value = image::SrgbFromLinear(backdrop_gain * image::LinearFromSrgb(value));
+      std::array<float, 3> behind = impl_->background.Color(rays[i].origin_enu, rays[i].direction_enu);
+      if (background_gain != 1.0F) {
+        for (float& value : behind) value = image::SrgbFromLinear(background_gain * image::LinearFromSrgb(value));
       }
       for (size_t c = 0; c < 3; ++c) colors[i].rgb_srgb[c] += (1.0F - colors[i].opacity) * behind[c];
     }

@@ -46,7 +46,7 @@ struct SceneInfo {
   std::vector<SceneBlock> blocks;    // non-empty ones
   Eigen::Vector3d min_enu, max_enu;  // union of the core boxes
   brightness::Response response;     // of the photos, relative to light at reference exposure
-  brightness::Luminance luminance;   // hidden light, for badly exposed surveys
+  brightness::Luminance luminance;   // concealing field, for badly exposed surveys
   brightness::LuminanceState luminance_state;
   int64_t parameters = 0;  // of all fields, context included
   double context_seconds = 0.0;
@@ -56,7 +56,7 @@ struct SceneInfo {
   std::string config;  // TOML text it was trained with
 };
 
-// The two renderings of a scene with hidden light; of any other scene they are the same.
+// The two renderings of a scene with concealing field; of any other scene they are the same.
 enum class Look {
   kNormal,    // what is shown to people
   kRecorded,  // what a photo at reference exposure would have recorded
@@ -83,7 +83,7 @@ struct RenderStatistics {
 class RayService;
 
 struct SceneOptions {
-  double memory_bytes = 0.0;      // fields that do not fit are loaded by need; 0: all are loaded
+  double memory_bytes = 0.0;      // fields that do not fit are loaded on demand; 0: all are loaded
   RayService* service = nullptr;  // who answers rays instead of this process, which then loads no field; must outlive the scene
 };
 
@@ -100,7 +100,7 @@ class Scene {
   // Any number of rays, 0 included; out has the same length. Deterministic, for any memory and service.
   // Throws base::Interrupted when cancelled, base::UsageError when not even the blocks that meet at one place fit in memory.
   void RenderRays(std::span<const render::Ray> rays, std::span<render::RayColor> out, const Appearance& appearance, base::ThreadPool& threads) const;
-  // All pixels of a camera, row-major, width * height results, colours over the scene's backdrop. Opacity tells where that shows.
+  // All pixels of a camera, row-major, width * height results, colours over the scene's background. Opacity tells where that shows.
   std::vector<render::RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, const Appearance& appearance,
                                              base::ThreadPool& threads) const;
 

@@ -52,9 +52,9 @@ FieldTraining FieldFrom(const Json& json) {
   field.rank = static_cast<int>(Integer(json, "rank"));
   field.threads = static_cast<int>(Integer(json, "threads"));
   field.peak_rss_bytes = Integer(json, "peak_rss_bytes");
-  if (const auto stages = json.find("stage_seconds"); stages != json.end() && stages->is_object()) {
-    for (const auto& [stage, seconds] : stages->items()) {
-      if (seconds.is_number()) field.stage_seconds[stage] = seconds.get<double>();
+  if (const auto phases = json.find("phase_seconds"); phases != json.end() && phases->is_object()) {
+    for (const auto& [phase, seconds] : phases->items()) {
+      if (seconds.is_number()) field.phase_seconds[phase] = seconds.get<double>();
     }
   }
   return field;
@@ -77,7 +77,7 @@ Json ToJson(const FieldTraining& field) {
           {"rank", field.rank},
           {"threads", field.threads},
           {"peak_rss_bytes", field.peak_rss_bytes},
-          {"stage_seconds", field.stage_seconds}};
+          {"phase_seconds", field.phase_seconds}};
 }
 
 template <typename Member>

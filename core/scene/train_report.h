@@ -27,7 +27,7 @@ struct FieldTraining {
   int rank = 0;
   int threads = 0;
   int64_t peak_rss_bytes = 0;
-  std::map<std::string, double> stage_seconds = {};  // work per stage of a step, summed over threads
+  std::map<std::string, double> phase_seconds = {};  // work per phase of a step, summed over threads
 };
 
 struct TrainReport {

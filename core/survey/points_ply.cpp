@@ -43,20 +43,20 @@ void WritePointsPly(const std::vector<SparsePoint>& points, const std::filesyste
 std::vector<SparsePoint> ReadPointsPly(const std::filesystem::path& file) {
   const base::MemoryMap map(file);
   const std::string_view content(reinterpret_cast<const char*>(map.bytes().data()), map.bytes().size());
-  const std::string mend = "Run 'skyquilt prepare' again";
+  const std::string fix = "Run 'skyquilt prepare' again";
   const size_t header_end = content.substr(0, 1024).find(kAfter);
   if (!content.starts_with(kBefore) || header_end == std::string_view::npos || header_end - kBefore.size() > 12) {
-    throw base::InputError(file, "is not a file of sparse points written by prepare", mend);
+    throw base::InputError(file, "is not a file of sparse points written by prepare", fix);
   }
   size_t n_points = 0;
   for (const char digit : content.substr(kBefore.size(), header_end - kBefore.size())) {
-    if (digit < '0' || digit > '9') throw base::InputError(file, "has a damaged header", mend);
+    if (digit < '0' || digit > '9') throw base::InputError(file, "has a damaged header", fix);
     n_points = n_points * 10 + static_cast<size_t>(digit - '0');
   }
   const std::string_view body = content.substr(header_end + kAfter.size());
   if (body.size() != n_points * kRecordBytes) {
     throw base::InputError(
-        file, "holds " + std::to_string(body.size()) + " bytes of points where " + std::to_string(n_points * kRecordBytes) + " are announced", mend);
+        file, "holds " + std::to_string(body.size()) + " bytes of points where " + std::to_string(n_points * kRecordBytes) + " are announced", fix);
   }
   std::vector<SparsePoint> points(n_points);
   const char* at = body.data();
@@ -71,7 +71,7 @@ std::vector<SparsePoint> ReadPointsPly(const std::filesystem::path& file) {
     int32_t track = 0;
     get(&track, 4);
     point.track_length = track;
-    if (!point.x_in_enu.allFinite()) throw base::InputError(file, "has a point whose coordinates are not numbers", mend);
+    if (!point.x_in_enu.allFinite()) throw base::InputError(file, "has a point whose coordinates are not numbers", fix);
   }
   return points;
 }

@@ -103,7 +103,7 @@ TEST(CommandLine, MissingThingsAreInputErrors) {
 
 TEST(CommandLine, RunNeedsPhotosOrAPresetAndNotBoth) {
   EXPECT_EQ(Call({"run", "-o", "x"}).status, 2);
-  EXPECT_EQ(Call({"run", "photos", "--preset", "hamlet", "-o", "x"}).status, 2);
+  EXPECT_EQ(Call({"run", "photos", "--place", "hamlet", "-o", "x"}).status, 2);
 }
 
 TEST(CommandLine, AFailedNumericCaseIsStatusFive) {

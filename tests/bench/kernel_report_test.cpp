@@ -22,8 +22,8 @@ KernelSpeed SpeedOf(int threads, double train, double limit) {
   s.network_limit_s = 466.25e-9;
   s.gather_limit_s = 171.5e-9;
   s.scatter_limit_s = 262.75e-9;
-  s.train_share[static_cast<size_t>(worker::Stage::kEncode)] = 0.25;
-  s.train_share[static_cast<size_t>(worker::Stage::kScatter)] = 0.625;
+  s.train_share[static_cast<size_t>(worker::Phase::kEncode)] = 0.25;
+  s.train_share[static_cast<size_t>(worker::Phase::kScatter)] = 0.625;
   s.waiting_share = 0.125;
   return s;
 }

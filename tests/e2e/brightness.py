@@ -23,7 +23,7 @@ def test(skyquilt, folder):
     expect(abs(sum(trained)) / len(trained) < 1e-3, "learned gains have no common factor")
     expect("<h2" in (project / "report" / "index.html").read_text().split("Brightness", 1)[1], "the report goes on after Brightness")
     metrics = metrics_of(project)
-    for key in ("psnr_exif_gain", "psnr_right_half", "psnr_right_half_fitted", "footprint_step"):
+    for key in ("psnr_exif_gain", "psnr_right_half", "psnr_right_half_fitted", "exposure_seam"):
         expect(isinstance(metrics[key], float), f"{key} = {metrics[key]}")
     expect(metrics["psnr_normal"] is None, "nothing to compare normal brightness with")
 

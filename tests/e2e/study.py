@@ -38,8 +38,8 @@ def test(skyquilt, folder):
     expect(names == ["guided", "single_small", "single_large", "independent", "shared_height", "everywhere", "shared_everywhere"], names)
     for variant in result["results"]:
         expect("failure" not in variant, variant)
-        expect(variant["psnr_db"] > 8.0 and variant["train_seconds"] > 0.0 and variant["parameters"] > 0 and variant["air_opacity"] is not None, variant)
-        expect([place[0] for place in variant["air_profile"]] == [1, 2, 5, 10, 20] and variant["air_profile"][0][1] >= variant["air_profile"][3][1], variant)
+        expect(variant["psnr_db"] > 8.0 and variant["train_seconds"] > 0.0 and variant["parameters"] > 0 and variant["floater_opacity"] is not None, variant)
+        expect([place[0] for place in variant["floater_profile"]] == [1, 2, 5, 10, 20] and variant["floater_profile"][0][1] >= variant["floater_profile"][3][1], variant)
         expect(variant["blocks"] == (1 if variant["name"].startswith("single") else 2), variant)
         expect(not (out / "runs" / variant["name"] / "checkpoints").exists(), "large files were kept")
         expect((out / variant["report"]).is_file(), "the variant's report is gone")
@@ -49,7 +49,7 @@ def test(skyquilt, folder):
     text = skyquilt.call(*words, "--set", "train.hidden=32", status=2)
     expect("other settings" in text, text)
     skyquilt.call("bench", "blocks", "--survey", folder / "nowhere", "-o", folder / "none", status=3)
-    skyquilt.call("bench", "blocks", "--survey", survey, "--preset", "town", "-o", folder / "none", status=2)
+    skyquilt.call("bench", "blocks", "--survey", survey, "--place", "town", "-o", folder / "none", status=2)
 
     # What the scene keeps of what was trained.
     out = folder / "capacity"

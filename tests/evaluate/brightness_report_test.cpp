@@ -82,7 +82,7 @@ TEST(CollectBrightness, GainsTakeDifferencesOfExposureOut) {
   const auto foot = static_cast<std::ptrdiff_t>(kBrightnessBins / 4 - 1);
   EXPECT_GT(std::accumulate(report.histogram_before.begin(), report.histogram_before.begin() + foot, 0.0), 0.04);
   EXPECT_EQ(std::accumulate(report.histogram_after.begin(), report.histogram_after.begin() + foot, 0.0), 0.0);
-  EXPECT_TRUE(report.falloff.empty());
+  EXPECT_TRUE(report.vignetting.empty());
   EXPECT_TRUE(report.luminance.empty());
   EXPECT_TRUE(report.views.empty());
 }
@@ -124,17 +124,17 @@ TEST(CollectBrightness, WhatIsBrighterThanWhiteIsInTheLastBin) {
   EXPECT_NEAR(small.Collect().histogram_after.back(), 1.0, 1e-9);
 }
 
-TEST(CollectBrightness, TellsFalloffAndHiddenLight) {
+TEST(CollectBrightness, TellsVignettingAndConcealingField) {
   SlopeSurvey small({0.0, 0.0});
-  small.info.response.falloff = {-0.5F, 0.0F, 0.0F};
+  small.info.response.vignetting = {-0.5F, 0.0F, 0.0F};
   small.info.luminance.mode = brightness::LuminanceMode::kUnder;
   small.info.luminance.target = 0.4;
   small.info.luminance_state.mean_log_gain = -2.0 * std::numbers::ln2;
   const BrightnessReport report = small.Collect();
-  ASSERT_EQ(report.falloff.size(), 1U);
-  EXPECT_EQ(report.falloff[0].front(), 1.0);
-  EXPECT_NEAR(report.falloff[0][5], std::exp(-0.125), 1e-6);
-  EXPECT_NEAR(report.falloff[0].back(), std::exp(-0.5), 1e-6);
+  ASSERT_EQ(report.vignetting.size(), 1U);
+  EXPECT_EQ(report.vignetting[0].front(), 1.0);
+  EXPECT_NEAR(report.vignetting[0][5], std::exp(-0.125), 1e-6);
+  EXPECT_NEAR(report.vignetting[0].back(), std::exp(-0.5), 1e-6);
   EXPECT_NE(report.luminance.find("too dark"), std::string::npos);
   EXPECT_NE(report.luminance.find("0.40"), std::string::npos);
   EXPECT_NE(report.luminance.find("2.00"), std::string::npos);

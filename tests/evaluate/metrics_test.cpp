@@ -36,7 +36,7 @@ TEST(MetricsJson, HasEveryPromisedKeyEvenWhenNothingWasMeasured) {
   }
   EXPECT_TRUE(json["psnr_per_image"].is_object());
   EXPECT_FALSE(json.contains("depth_rmse_m"));
-  EXPECT_FALSE(json.contains("air_opacity"));
+  EXPECT_FALSE(json.contains("floater_opacity"));
 }
 
 TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
@@ -44,8 +44,8 @@ TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   metrics.psnr = 27.5;
   metrics.has_truth = true;
   metrics.depth_rmse_m = 0.75;
-  metrics.air_opacity = 0.02;
-  metrics.air_profile = {{1.0, 0.03}, {10.0, kNotMeasured}};
+  metrics.floater_opacity = 0.02;
+  metrics.floater_profile = {{1.0, 0.03}, {10.0, kNotMeasured}};
   PhotoScore good, blank, equal;
   good.name = "a/one.jpg";
   good.psnr_db = 27.5;
@@ -60,10 +60,10 @@ TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   EXPECT_DOUBLE_EQ(json["psnr"].get<double>(), 27.5);
   EXPECT_DOUBLE_EQ(json["depth_rmse_m"].get<double>(), 0.75);
   EXPECT_TRUE(json["depth_median_abs_m"].is_null());
-  EXPECT_DOUBLE_EQ(json["air_opacity"].get<double>(), 0.02);
-  EXPECT_DOUBLE_EQ(json["air_profile"][0]["opacity"].get<double>(), 0.03);
-  EXPECT_DOUBLE_EQ(json["air_profile"][1]["clearance_m"].get<double>(), 10.0);
-  EXPECT_TRUE(json["air_profile"][1]["opacity"].is_null());
+  EXPECT_DOUBLE_EQ(json["floater_opacity"].get<double>(), 0.02);
+  EXPECT_DOUBLE_EQ(json["floater_profile"][0]["opacity"].get<double>(), 0.03);
+  EXPECT_DOUBLE_EQ(json["floater_profile"][1]["clearance_m"].get<double>(), 10.0);
+  EXPECT_TRUE(json["floater_profile"][1]["opacity"].is_null());
   EXPECT_DOUBLE_EQ(json["psnr_per_image"]["a/one.jpg"].get<double>(), 27.5);
   EXPECT_TRUE(json["psnr_per_image"]["two.jpg"].is_null());
   EXPECT_TRUE(json["psnr_per_image"]["three.jpg"].is_null());
@@ -78,8 +78,8 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   metrics.seam_psnr_gap_db = -0.125;
   metrics.has_truth = true;
   metrics.depth_median_abs_m = 0.1;
-  metrics.air_opacity = 0.02;
-  metrics.air_profile = {{1.0, 0.03}, {10.0, kNotMeasured}};
+  metrics.floater_opacity = 0.02;
+  metrics.floater_profile = {{1.0, 0.03}, {10.0, kNotMeasured}};
   metrics.blocks = {{"r0c0", 28.0, 100}, {"r0c1", kNotMeasured, 0}};
   metrics.train_seconds = 12.5;
   metrics.peak_rss_bytes = 123456789012;
@@ -94,10 +94,10 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   EXPECT_EQ(back.seam_psnr_gap_db, metrics.seam_psnr_gap_db);
   EXPECT_TRUE(back.has_truth);
   EXPECT_EQ(back.depth_median_abs_m, metrics.depth_median_abs_m);
-  EXPECT_EQ(back.air_opacity, metrics.air_opacity);
-  ASSERT_EQ(back.air_profile.size(), 2U);
-  EXPECT_EQ(back.air_profile[0], metrics.air_profile[0]);
-  EXPECT_TRUE(std::isnan(back.air_profile[1].second));
+  EXPECT_EQ(back.floater_opacity, metrics.floater_opacity);
+  ASSERT_EQ(back.floater_profile.size(), 2U);
+  EXPECT_EQ(back.floater_profile[0], metrics.floater_profile[0]);
+  EXPECT_TRUE(std::isnan(back.floater_profile[1].second));
   ASSERT_EQ(back.blocks.size(), 2U);
   EXPECT_EQ(back.blocks[0].name, "r0c0");
   EXPECT_EQ(back.blocks[0].pixels, 100);

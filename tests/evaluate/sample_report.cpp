@@ -65,7 +65,7 @@ scene::FieldTraining TrainedField(const std::string& name, int block, double sec
   field.samples = field.steps * 61000;
   field.parameters = name == "context" ? 1180672 : 4326400;
   field.psnr_db = final_psnr_db;
-  field.stage_seconds = {{"hash forward", 0.4 * seconds}, {"network backward", 0.9 * seconds}, {"optimiser", 0.2 * seconds}};
+  field.phase_seconds = {{"hash forward", 0.4 * seconds}, {"network backward", 0.9 * seconds}, {"optimiser", 0.2 * seconds}};
   for (int i = 1; i <= 400; ++i) {
     const double t = seconds * i / 400.0;
     const double psnr_db = final_psnr_db - 14.0 * std::exp(-6.0 * t / seconds) - 2.0 * std::exp(-t / seconds) + 0.25 * random.Normal();
@@ -103,8 +103,8 @@ BrightnessReport CloudyFlight(const survey::Survey& survey, const std::filesyste
   };
   report.histogram_before = bell(0.45, 0.28);
   report.histogram_after = bell(0.5, 0.2);
-  FalloffCurve& falloff = report.falloff.emplace_back();
-  for (size_t i = 0; i < falloff.size(); ++i) falloff[i] = std::exp(-0.004 * static_cast<double>(i * i));
+  VignettingCurve& vignetting = report.vignetting.emplace_back();
+  for (size_t i = 0; i < vignetting.size(); ++i) vignetting[i] = std::exp(-0.004 * static_cast<double>(i * i));
   report.luminance = "Concealing field <none>.";
   for (const size_t i : {size_t{0}, size_t{24}}) {
     const double stops = i == 0 ? -0.71 : 1.23;
@@ -251,9 +251,9 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.seam_psnr_gap_db = 0.12;
   metrics.depth_rmse_m = 1.12;
   metrics.depth_median_abs_m = 0.21;
-  metrics.air_opacity = 0.0184;
-  metrics.footprint_step = 0.0031;
-  metrics.footprint_step_control = 0.0027;
+  metrics.floater_opacity = 0.0184;
+  metrics.exposure_seam = 0.0031;
+  metrics.exposure_seam_control = 0.0027;
   metrics.train_seconds = training.TrainSeconds();
   metrics.samples_per_second = training.SamplesPerSecond();
   metrics.peak_rss_bytes = training.PeakRssBytes();

@@ -12,7 +12,7 @@ TEST(FindViews, CountsTheShareOfANadirPhoto) {
   survey.photos = {NadirPhoto({0, 0, 100}, "a.jpg")};
   // The image spans 114.3 x 85.7 m of the ground; the western half of it.
   const std::vector<Box> boxes = {{{-1000, -1000, -0.001}, {0, 1000, 0}}, {{500, 500, -1}, {600, 600, 0}}, {{-0.4, -0.3, -0.1}, {-0.2, -0.1, 0}}};
-  const std::vector<BoxViews> views = FindViews(survey, boxes, 0);
+  const std::vector<BlockViews> views = FindViews(survey, boxes, 0);
   EXPECT_NEAR(views[0].training_pixels, 240000.0, 1.0);
   EXPECT_TRUE(views[1].photos.empty());
   ASSERT_EQ(views[2].photos.size(), 1U) << "smaller than the gap between rays";
@@ -25,7 +25,7 @@ TEST(FindViews, TestPhotosBelongButDoNotCount) {
   survey::Survey survey = FlySurvey({});
   survey.photos = {NadirPhoto({0, 0, 100}, "a.jpg"), NadirPhoto({1, 0, 100}, "b.jpg")};
   survey.photos[1].is_test = true;
-  const BoxViews views = FindViews(survey, {{{-5, -5, -1}, {5, 5, 0}}}, 0).front();
+  const BlockViews views = FindViews(survey, {{{-5, -5, -1}, {5, 5, 0}}}, 0).front();
   EXPECT_EQ(views.photos, (std::vector<int>{0, 1}));
   EXPECT_EQ(views.n_training, 1);
 }

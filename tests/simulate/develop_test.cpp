@@ -128,14 +128,14 @@ TEST_F(SurveyFiles, PhotosCarryExposureTagsOnlyWhereThePlanHasThem) {
 
 TEST_F(SurveyFiles, TruthTellsTheLightThatNoTagTells) {
   SimulateOptions options;
-  options.preset = "hamlet";
+  options.place = "hamlet";
   options.exposure_offset_stops = -1.0;
   options.exposure_error_stops = 0.3;
   options.color_drift_stops = 0.4;
   options.vignetting = 0.2;
-  const Preset preset = ResolvePreset(options);
-  const std::vector<PhotoPlan> photos = PlanFlight(preset, 0.0);
-  WriteExposureTruth(root_, photos, preset);
+  const PlaceSpec place = ResolvePlace(options);
+  const std::vector<PhotoPlan> photos = PlanFlight(place, 0.0);
+  WriteExposureTruth(root_, photos, place);
   const auto truth = nlohmann::json::parse(base::ReadFile(root_ / "truth" / "exposure.json"));
   EXPECT_EQ(truth["vignetting"], 0.2);
   ASSERT_EQ(truth["photos"].size(), photos.size());
@@ -146,7 +146,7 @@ TEST_F(SurveyFiles, TruthTellsTheLightThatNoTagTells) {
     EXPECT_EQ(told["gain"], photos[i].gain);
     EXPECT_EQ((told["light_rgb"].get<std::array<double, 3>>()), LightRgb(photos[i]));
     const double green = told["light_rgb"][1].get<double>();
-    largest_error = std::max(largest_error, std::abs(std::log2(green / photos[i].gain) - preset.exposure_offset_stops));
+    largest_error = std::max(largest_error, std::abs(std::log2(green / photos[i].gain) - place.exposure_offset_stops));
   }
   EXPECT_GT(largest_error, 0.3);
 }

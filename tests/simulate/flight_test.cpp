@@ -12,12 +12,12 @@
 namespace skyquilt::simulate {
 namespace {
 
-Preset Resolve(const std::string& name, double forward, double side) {
+PlaceSpec Resolve(const std::string& name, double forward, double side) {
   SimulateOptions options;
-  options.preset = name;
+  options.place = name;
   options.forward_overlap = forward;
   options.side_overlap = side;
-  return ResolvePreset(options);
+  return ResolvePlace(options);
 }
 
 std::map<int, std::vector<Eigen::Vector3d>> NadirLines(const std::vector<PhotoPlan>& photos) {
@@ -32,22 +32,22 @@ std::map<int, std::vector<Eigen::Vector3d>> NadirLines(const std::vector<PhotoPl
 TEST(Flight, OverlapsAreAsRequested) {
   for (const double forward : {0.6, 0.8}) {
     for (const double side : {0.5, 0.7}) {
-      const Preset preset = Resolve("town", forward, side);
-      const auto lines = NadirLines(PlanFlight(preset, 3.0));
+      const PlaceSpec place = Resolve("town", forward, side);
+      const auto lines = NadirLines(PlanFlight(place, 3.0));
       ASSERT_GE(lines.size(), 2U);
-      const double altitude = preset.altitudes_agl_m.front();
+      const double altitude = place.altitudes_agl_m.front();
       double previous_east = 0.0;
       for (const auto& [line, positions] : lines) {
         ASSERT_GE(positions.size(), 2U);
         const double step = (positions.back() - positions.front()).head<2>().norm() / static_cast<double>(positions.size() - 1);
-        EXPECT_NEAR(1.0 - step * preset.camera.FocalY() / (altitude * preset.camera.height), forward, 0.01);
+        EXPECT_NEAR(1.0 - step * place.camera.FocalY() / (altitude * place.camera.height), forward, 0.01);
         double east = 0.0;
         for (const Eigen::Vector3d& p : positions) {
           east += p.x() / static_cast<double>(positions.size());
           EXPECT_NEAR(p.z(), altitude + 3.0, 1.5);
         }
         if (line > 0) {
-          EXPECT_NEAR(1.0 - (east - previous_east) * preset.camera.FocalX() / (altitude * preset.camera.width), side, 0.01);
+          EXPECT_NEAR(1.0 - (east - previous_east) * place.camera.FocalX() / (altitude * place.camera.width), side, 0.01);
         }
         previous_east = east;
       }
@@ -74,8 +74,8 @@ TEST(Flight, GimbalAnglesGiveThePose) {
 }
 
 TEST(Flight, GainsAreRelativeToTheMedianAndMatchTheTags) {
-  const Preset preset = Resolve("tidalflat", -1.0, -1.0);
-  const std::vector<PhotoPlan> photos = PlanFlight(preset, 0.0);
+  const PlaceSpec place = Resolve("tidalflat", -1.0, -1.0);
+  const std::vector<PhotoPlan> photos = PlanFlight(place, 0.0);
   std::vector<double> gains;
   double largest_step = 0.0;
   for (const PhotoPlan& photo : photos) {
@@ -93,9 +93,9 @@ TEST(Flight, GainsAreRelativeToTheMedianAndMatchTheTags) {
 
 std::vector<PhotoPlan> TownFlight(const std::function<void(SimulateOptions&)>& change) {
   SimulateOptions options;
-  options.preset = "town";
+  options.place = "town";
   change(options);
-  return PlanFlight(ResolvePreset(options), 0.0);
+  return PlanFlight(ResolvePlace(options), 0.0);
 }
 
 double TaggedExposure(const PhotoPlan& photo) {
@@ -203,9 +203,9 @@ TEST(Flight, ExposureTagsAreLeftOutAsAsked) {
 
 TEST(Flight, GpsNoiseHasTheStatedSize) {
   SimulateOptions options;
-  options.preset = "town";
+  options.place = "town";
   options.gps_noise_m = 2.0;
-  const std::vector<PhotoPlan> photos = PlanFlight(ResolvePreset(options), 0.0);
+  const std::vector<PhotoPlan> photos = PlanFlight(ResolvePlace(options), 0.0);
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   for (const PhotoPlan& photo : photos) squares += (photo.tagged_position - photo.cam_from_enu.OriginInSource()).cwiseAbs2();
   const Eigen::Vector3d sigma = (squares / static_cast<double>(photos.size())).cwiseSqrt();
@@ -216,19 +216,19 @@ TEST(Flight, GpsNoiseHasTheStatedSize) {
 }
 
 TEST(Flight, BlocksAreFlownAtTheirOwnAltitudes) {
-  const Preset preset = Resolve("smallcity", -1.0, -1.0);
-  const std::vector<PhotoPlan> photos = PlanFlight(preset, 0.0);
-  const Eigen::Vector2d block = (preset.area_max - preset.area_min).cwiseQuotient(Eigen::Vector2d(preset.columns, preset.rows));
-  std::vector<int> seen(preset.altitudes_agl_m.size(), 0);
+  const PlaceSpec place = Resolve("smallcity", -1.0, -1.0);
+  const std::vector<PhotoPlan> photos = PlanFlight(place, 0.0);
+  const Eigen::Vector2d block = (place.area_max - place.area_min).cwiseQuotient(Eigen::Vector2d(place.columns, place.rows));
+  std::vector<int> seen(place.altitudes_agl_m.size(), 0);
   for (const PhotoPlan& photo : photos) {
     const Eigen::Vector3d p = photo.cam_from_enu.OriginInSource();
-    const Eigen::Vector2d cell = (p.head<2>() - preset.area_min).cwiseQuotient(block);
+    const Eigen::Vector2d cell = (p.head<2>() - place.area_min).cwiseQuotient(block);
     // Lines may stand just outside their block; look only at photos well inside.
     const Eigen::Vector2d inside = cell - Eigen::Vector2d(std::floor(cell.x()), std::floor(cell.y()));
     if (inside.minCoeff() < 0.14 || inside.maxCoeff() > 0.86) continue;
-    const auto index = static_cast<size_t>(std::floor(cell.y()) * preset.columns + std::floor(cell.x()));
+    const auto index = static_cast<size_t>(std::floor(cell.y()) * place.columns + std::floor(cell.x()));
     ASSERT_LT(index, seen.size());
-    EXPECT_NEAR(p.z(), preset.altitudes_agl_m[index], 2.0);
+    EXPECT_NEAR(p.z(), place.altitudes_agl_m[index], 2.0);
     ++seen[index];
   }
   for (const int n : seen) EXPECT_GT(n, 0);

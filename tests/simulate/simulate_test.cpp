@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 SimulateOptions Hamlet() {
   SimulateOptions options;
-  options.preset = "hamlet";
+  options.place = "hamlet";
   options.seed = 5;
   return options;
 }
@@ -77,7 +77,7 @@ TEST_F(HamletSurvey, SameSeedSameBytesForAnyNumberOfThreads) {
 
 TEST_F(HamletSurvey, LayoutIsComplete) {
   const auto summary = Json("simulate.json");
-  EXPECT_EQ(summary["preset"], "hamlet");
+  EXPECT_EQ(summary["place"], "hamlet");
   EXPECT_EQ(summary["photos"], summary_.n_photos);
   EXPECT_EQ(summary["blocks"]["rows"].get<size_t>() * summary["blocks"]["columns"].get<size_t>(), summary["blocks"]["altitudes_agl_m"].size());
   EXPECT_GE(summary_.n_photos, 20);
@@ -218,7 +218,7 @@ TEST(Simulate, LeavesForeignPhotosAlone) {
 TEST(Simulate, BadOptionsLeaveNoFolder) {
   const fs::path root = fs::temp_directory_path() / ("skyquilt_simulate_bad_" + std::to_string(getpid()));
   SimulateOptions options;
-  options.preset = "nowhere";
+  options.place = "nowhere";
   base::ThreadPool threads(1);
   EXPECT_THROW(Simulate(options, root, threads), base::UsageError);
   EXPECT_FALSE(fs::exists(root));

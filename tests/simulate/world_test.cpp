@@ -10,21 +10,21 @@
 namespace skyquilt::simulate {
 namespace {
 
-Preset Resolve(const std::string& name) {
+PlaceSpec Resolve(const std::string& name) {
   SimulateOptions options;
-  options.preset = name;
-  return ResolvePreset(options);
+  options.place = name;
+  return ResolvePlace(options);
 }
 
 class TownWorld : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     threads_ = new base::ThreadPool(2);
-    Preset preset = Resolve("town");
+    PlaceSpec place = Resolve("town");
     // Neither leaves above the roofs nor fine light matter here.
-    preset.city.tree_detail = 0;
-    preset.ambient_voxel_m = 12.0;
-    world_ = new World(preset, 1.0, *threads_);
+    place.city.tree_detail = 0;
+    place.ambient_voxel_m = 12.0;
+    world_ = new World(place, 1.0, *threads_);
   }
   static void TearDownTestSuite() {
     delete world_;

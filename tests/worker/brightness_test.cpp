@@ -1,4 +1,4 @@
-// Brightness learned beside the field: gains, falloff and hidden light, on photos made with known ones and on photos that say next to nothing.
+// Brightness learned beside the field: gains, vignetting and concealing field, on photos made with known ones and on photos that say next to nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,10 +36,10 @@ class BrightnessTest : public SmallSurvey {
       }
     }
   }
-  TrainJob Learning(const std::string& name, int steps, bool falloff) const {
+  TrainJob Learning(const std::string& name, int steps, bool vignetting) const {
     TrainJob job = Job(name, steps);
     for (size_t i = 0; i < survey_.photos.size(); ++i) job.learn.learns_gain[i] = survey_.photos[i].is_test ? 0 : 1;
-    job.learn.falloff = falloff;
+    job.learn.vignetting = vignetting;
     return job;
   }
   TrainJob JobWithLight(LuminanceMode mode, double start_log_gain, int steps) const {
@@ -119,12 +119,12 @@ TEST_F(BrightnessTest, TiePointsKnowTheGains) {
   }
 }
 
-TEST_F(BrightnessTest, TiePointsKnowTheFalloff) {
+TEST_F(BrightnessTest, TiePointsKnowTheVignetting) {
   Photograph([](int photo, int, double value, double r2) { return Exposed(0.6 * value, std::exp2(Stops(photo)) * std::exp(-0.5 * r2)); });
   AddGroundPoints();
   const brightness::Response response = FromTiePoints(Learning("context.h5", 1, true));
   EXPECT_LT(RmsStops(response, [](int photo, int) { return Stops(photo); }), 0.05);
-  for (const float r2 : {0.2F, 0.5F, 0.9F}) EXPECT_NEAR(response.LogFalloff(0, r2), -0.5F * r2, 0.05F) << r2;
+  for (const float r2 : {0.2F, 0.5F, 0.9F}) EXPECT_NEAR(response.LogVignetting(0, r2), -0.5F * r2, 0.05F) << r2;
 }
 
 TEST_F(BrightnessTest, WithoutPointsNothingIsKnown) {

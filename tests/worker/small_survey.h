@@ -32,7 +32,7 @@ struct SmallWorld {
   // Colour of the surface a ray meets: ground z = 0 with a smooth pattern; a 6 x 6 x 4 m red box in the middle, patterned too: a roof of one
   // colour could hang at any height inside the silhouettes.
   static Eigen::Vector3d Shade(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-    const geo::Stretch box = geo::RayBox(origin, direction, {-3, -3, 0}, {3, 3, 4});
+    const geo::Interval box = geo::RayBox(origin, direction, {-3, -3, 0}, {3, 3, 4});
     if (!box.Empty()) {
       const Eigen::Vector3d p = origin + box.t_near * direction;
       return {0.75 + 0.2 * std::sin(1.8 * p.x() + p.z()) * std::cos(1.6 * p.y()), 0.2, 0.15 + 0.1 * std::sin(1.5 * p.y())};

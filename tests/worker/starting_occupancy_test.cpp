@@ -62,7 +62,7 @@ TEST(StartingOccupancy, WithoutPointsEverythingSeenStays) {
   render::TrainedField f = EmptyField();
   const size_t hidden = static_cast<size_t>(f.occupancy.Index(3, 3, 3));
   f.occupancy.occupied[hidden] = 0;
-  f.occupancy.depth[hidden] = -1.0F;
+  f.occupancy.tau[hidden] = -1.0F;
   const std::vector<uint8_t> before = f.occupancy.occupied;
   StartFromPoints(survey::Survey{}, f);
   EXPECT_EQ(f.occupancy.occupied, before);
@@ -72,11 +72,11 @@ TEST(StartingOccupancy, EverywhereIsAllThatIsSeen) {
   render::TrainedField target;
   const double extent[3] = {1.0, 1.0, 0.5};
   target.occupancy = field::OccupancyGrid::Make(extent, 0.25, 1000);
-  target.occupancy.depth[3] = -1.0F;
+  target.occupancy.tau[3] = -1.0F;
   target.occupancy.occupied[3] = 0;
   StartEverywhere(target);
-  for (size_t i = 0; i < target.occupancy.depth.size(); ++i) {
-    EXPECT_EQ(target.occupancy.depth[i], i == 3 ? -1.0F : kStartDepth) << i;
+  for (size_t i = 0; i < target.occupancy.tau.size(); ++i) {
+    EXPECT_EQ(target.occupancy.tau[i], i == 3 ? -1.0F : kStartTau) << i;
     EXPECT_EQ(target.occupancy.occupied[i], i == 3 ? 0 : 1) << i;
   }
 }
@@ -86,10 +86,10 @@ TEST(StartingOccupancy, NeverSeenCellsStayNeverSeen) {
   const Eigen::Vector3f unit = f.map.UnitFromEnu({8.0, 30.0, 3.0});
   const auto hidden = static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()));
   f.occupancy.occupied[hidden] = 0;
-  f.occupancy.depth[hidden] = -1.0F;
+  f.occupancy.tau[hidden] = -1.0F;
   StartFromPoints(TownOfOneTower(), f);
   EXPECT_EQ(f.occupancy.occupied[hidden], 0);
-  EXPECT_FLOAT_EQ(f.occupancy.depth[hidden], -1.0F);
+  EXPECT_FLOAT_EQ(f.occupancy.tau[hidden], -1.0F);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 //   2. Give it a weight: a constant in LossWeights, or a member of StepOptions where the weight changes during training. Weight 0 means that the
 //      function is not called. Losses that judge photos directly (photo_loss.h) have weight 1: the others are measured by them.
 //   3. Call it where its inputs are. Losses of what a ray was composed to: worker/ray_loss.cpp, or worker/concealed_ray_loss.cpp for fields with
-//      hidden light; add the gradient to a member of what is returned there, and the scatter to the samples is done already. Losses of the
+//      concealing field; add the gradient to a member of what is returned there, and the scatter to the samples is done already. Losses of the
 //      samples' compositing weights: beside PacketTrainer::AddDistortion, into its gradient by them. Losses of a group: as LossOfShares does.
 //   4. Check it in tests/worker/losses_test.cpp: ExpectLossGradient holds its derivatives against differences in double.
 #pragma once

@@ -25,7 +25,7 @@ FieldOutcome Outcome(const FieldJob& job, bool ok) {
   return outcome;
 }
 
-TEST(BlockQueue, HandsOutEachBlockOnceDearestFirst) {
+TEST(BlockQueue, HandsOutEachBlockOnceMostExpensiveFirst) {
   base::Random random(7);
   for (int trial = 0; trial < 50; ++trial) {
     const int n = static_cast<int>(random.Below(12));
@@ -38,7 +38,7 @@ TEST(BlockQueue, HandsOutEachBlockOnceDearestFirst) {
       EXPECT_LE(queue.Cost(job.block), last_cost);
       last_cost = queue.Cost(job.block);
       EXPECT_EQ(job.steps, 10);
-      EXPECT_FALSE(queue.Finish(Outcome(job, true)));
+      EXPECT_FALSE(queue.Record(Outcome(job, true)));
     }
     EXPECT_EQ(static_cast<int>(seen.size()), n);
   }
@@ -62,7 +62,7 @@ TEST(BlockQueue, FailedBlockIsTriedThreeTimesWithOtherSeedAndHalfTheRate) {
     EXPECT_DOUBLE_EQ(job.rate_factor, rate / 2.0);
     rate = job.rate_factor;
     EXPECT_TRUE(seeds.insert(job.seed).second);
-    EXPECT_EQ(queue.Finish(Outcome(job, false)), attempt < 2);
+    EXPECT_EQ(queue.Record(Outcome(job, false)), attempt < 2);
   }
   EXPECT_FALSE(queue.HasWaiting());
   ASSERT_EQ(queue.outcomes().size(), 1U);
@@ -90,7 +90,7 @@ double PlayedEnd(BlockQueue& queue, int n_workers, double start_s) {
     }
     const FieldJob job = queue.Take(*next, busy);
     *next += job.seconds;
-    queue.Finish(Outcome(job, true));
+    queue.Record(Outcome(job, true));
   }
   return *std::max_element(free_at.begin(), free_at.end());
 }

@@ -33,13 +33,13 @@ TEST(FieldJob, OutcomeTravelsUnchangedEvenWithStrangeText) {
   outcome.result.samples = (int64_t{1} << 60) + 1;
   outcome.result.final_psnr_db = std::numeric_limits<double>::quiet_NaN();
   outcome.peak_rss_bytes = 123456789012;
-  outcome.result.stage_seconds[3] = 1.5;
+  outcome.result.phase_seconds[3] = 1.5;
   const FieldOutcome back = OutcomeFromText(ToText(outcome));
   EXPECT_EQ(back.failure.kind, Failure::kInput);
   EXPECT_NE(back.failure.reason.find("\"quoted\"\nsecond line"), std::string::npos);
   EXPECT_EQ(back.result.samples, outcome.result.samples);
   EXPECT_EQ(back.peak_rss_bytes, outcome.peak_rss_bytes);
-  EXPECT_EQ(back.result.stage_seconds, outcome.result.stage_seconds);
+  EXPECT_EQ(back.result.phase_seconds, outcome.result.phase_seconds);
 }
 
 TEST(FieldJob, OutcomeOfAnEarlierVersionsLedgerIsRead) {

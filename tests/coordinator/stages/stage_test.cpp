@@ -49,7 +49,7 @@ TEST(Stages, StagesDependOnTheirOwnOptionsOnly) {
 TEST(Stages, HaveEachItsOwnNameAndNeedOnlyEarlierOnes) {
   std::set<std::string> names;
   for (const Stage& stage : Stages()) {
-    for (const Stage::Need& need : stage.needs) EXPECT_TRUE(names.contains(need.stage)) << stage.name << " needs " << need.stage;
+    for (const Stage::Input& input : stage.inputs) EXPECT_TRUE(names.contains(input.stage)) << stage.name << " needs " << input.stage;
     EXPECT_TRUE(names.insert(stage.name).second) << stage.name;
     EXPECT_TRUE(stage.inputs != nullptr && stage.outputs != nullptr && stage.proof != nullptr && stage.body != nullptr) << stage.name;
   }

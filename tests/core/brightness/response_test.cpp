@@ -18,7 +18,7 @@ Response Sample() {
   response.exif_gain = {1.0F, 2.0F, 0.5F};
   response.log_gain = {0.0F, 0.0F, 0.0F, 0.1F, 0.2F, 0.3F, -0.1F, -0.2F, -0.3F};
   response.camera = {0, 1, 0};
-  response.falloff = {0.0F, 0.0F, 0.0F, -0.4F, 0.1F, -0.05F};
+  response.vignetting = {0.0F, 0.0F, 0.0F, -0.4F, 0.1F, -0.05F};
   const std::string names = "a/one.jpg\nb/two.jpg\nb/one.jpg\n";
   response.names.assign(names.begin(), names.end());
   return response;
@@ -51,7 +51,7 @@ TEST(Response, SurvivesItsFile) {
   const Response back = GetResponse(reader, folder.path() / "r.h5");
   EXPECT_EQ(back.exif_gain, response.exif_gain);
   EXPECT_EQ(back.log_gain, response.log_gain);
-  EXPECT_EQ(back.falloff, response.falloff);
+  EXPECT_EQ(back.vignetting, response.vignetting);
   EXPECT_EQ(back.names, response.names);
 }
 
@@ -93,7 +93,7 @@ TEST(ResponseLearner, FindsGainsAndKeepsTheirMeanAtZero) {
   }
 }
 
-TEST(ResponseLearner, ABeliefInTagsHoldsWhatNothingSupports) {
+TEST(ResponseLearner, TagWeightHoldsWhatNothingSupports) {
   Response response = Response::Plain(2, 1);
   response.log_gain = {0.5F, 0.5F, 0.5F, -0.5F, -0.5F, -0.5F};
   ResponseLearner learner(response, {{1, 1}, {0.02F, 0.0F}, true, false});
@@ -126,7 +126,7 @@ TEST(ResponseLearner, LeavesAnchorsAndUnseenPhotosAlone) {
   EXPECT_EQ(response.log_gain[0], 0.0F);
   EXPECT_GT(response.log_gain[3], 0.1F);
   EXPECT_EQ(response.log_gain[6], 0.0F);
-  EXPECT_EQ(response.falloff[0], 0.0F);
+  EXPECT_EQ(response.vignetting[0], 0.0F);
 }
 
 TEST(ResponseLearner, StaysFiniteAndWithinTenStops) {
@@ -139,7 +139,7 @@ TEST(ResponseLearner, StaysFiniteAndWithinTenStops) {
     learner.Step(0.0);
   }
   for (const float gain : response.log_gain) EXPECT_LE(std::abs(gain), kMaxLogGain);
-  for (const float a : response.falloff) EXPECT_TRUE(std::isfinite(a));
+  for (const float a : response.vignetting) EXPECT_TRUE(std::isfinite(a));
   EXPECT_EQ(response.log_gain[3], 0.0F);
 }
 
@@ -164,7 +164,7 @@ TEST(ResponseLearner, GoesOnFromItsFileAsIfNothingHappened) {
   second.Get(reader, folder.path() / "c.h5");
   Learn(truth, 20, second, again);
   EXPECT_EQ(again.log_gain, undisturbed.log_gain);
-  EXPECT_EQ(again.falloff, undisturbed.falloff);
+  EXPECT_EQ(again.vignetting, undisturbed.vignetting);
 }
 
 }  // namespace

@@ -101,13 +101,13 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   }
   field.Color(weights, a.color_in, a.stride, padded, a.color_hidden, a.stride, a.color_raw, a.stride);
   field.Backward(weights, a, features.data(), stride, padded, state.network_gradient.data());
-  // Two stretches, as two packets leave them.
-  const GridGradient stretches[2] = {{0, 2, features.data(), stride}, {2, n - 2, features.data() + 2, stride}};
+  // Two segments, as two packets leave them.
+  const GridGradient segments[2] = {{0, 2, features.data(), stride}, {2, n - 2, features.data() + 2, stride}};
   std::vector<float> grid_gradient(parameters.grid.size(), 0.0F);
   std::vector<uint8_t> touched(parameters.grid.size() / kernel::kLineFloats, 0);
   for (int part = 0; part < field.encoding().parts(); ++part) {
     const int64_t offset = field.encoding().Offset(part);
-    AddPartGradient(field, part, parameters.grid.data() + offset, x.data(), y.data(), z.data(), stretches, grid_gradient.data() + offset,
+    AddPartGradient(field, part, parameters.grid.data() + offset, x.data(), y.data(), z.data(), segments, grid_gradient.data() + offset,
                     touched.data() + offset / kernel::kLineFloats);
   }
 
@@ -212,8 +212,8 @@ TEST(Optimizer, MovesWhatSamplesTouchedOnAnyNumberOfThreads) {
     std::vector<float> gradient(static_cast<size_t>(field.FeatureRows()) * 2, 0.0F);
     for (size_t row = 0; row < static_cast<size_t>(field.FeatureRows()); ++row) gradient[2 * row] = 1.0F;  // the second sample has none
     state.network_gradient[5] = 1.0F;
-    const GridGradient stretch{0, 2, gradient.data(), 2};
-    optimizer.Update(x, y, z, {&stretch, 1}, 0.01, 0.0, parameters, state);
+    const GridGradient segment{0, 2, gradient.data(), 2};
+    optimizer.Update(x, y, z, {&segment, 1}, 0.01, 0.0, parameters, state);
     EXPECT_EQ(state.step, 1);
     EXPECT_NEAR(parameters.networks[5], -0.01F, 1e-6F);
     EXPECT_EQ(state.network_gradient[5], 0.0F);
@@ -245,8 +245,8 @@ TEST(Optimizer, TrainsNetworksWhereTheEncodingHasNoParameters) {
   state.network_gradient[5] = 1.0F;
   const float x[2] = {0.1F, 0.6F};
   const std::vector<float> gradient(static_cast<size_t>(field.FeatureRows()) * 2, 1.0F);
-  const GridGradient stretch{0, 2, gradient.data(), 2};
-  Optimizer(field, threads).Update(x, x, x, {&stretch, 1}, 0.01, 0.0, parameters, state);
+  const GridGradient segment{0, 2, gradient.data(), 2};
+  Optimizer(field, threads).Update(x, x, x, {&segment, 1}, 0.01, 0.0, parameters, state);
   EXPECT_NEAR(parameters.networks[5], -0.01F, 1e-6F);
 }
 

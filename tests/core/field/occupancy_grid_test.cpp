@@ -26,7 +26,7 @@ TEST(OccupancyGrid, PositionsOutsideLandInTheNearestCell) {
 TEST(OccupancyGrid, RefreshKeepsDenseCellsAndNeverUnseenOnes) {
   const double extent[3] = {1.0, 1.0, 1.0};
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 1000);
-  grid.depth = {0.5F, 0.0F, -1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.001F};
+  grid.tau = {0.5F, 0.0F, -1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.001F};
   grid.Refresh(0.01F);
   EXPECT_EQ(grid.occupied[0], 1);
   EXPECT_EQ(grid.occupied[2], 0);
@@ -38,8 +38,8 @@ TEST(OccupancyGrid, RefreshKeepsDenseCellsAndNeverUnseenOnes) {
 TEST(OccupancyGrid, EmptySamplesFreeACellAndDenseOnesKeepIt) {
   const double extent[3] = {1.0, 1.0, 1.0};
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 1000);
-  grid.depth.assign(8, 0.1F);
-  grid.depth[5] = -1.0F;
+  grid.tau.assign(8, 0.1F);
+  grid.tau[5] = -1.0F;
   for (int i = 0; i < 60; ++i) {
     grid.Observe(0, 0.001F);
     grid.Observe(1, i % 10 == 0 ? 3.0F : 0.0F);  // a thin surface that one sample in ten meets
@@ -50,23 +50,23 @@ TEST(OccupancyGrid, EmptySamplesFreeACellAndDenseOnesKeepIt) {
   EXPECT_EQ(grid.occupied[1], 1);
   EXPECT_EQ(grid.occupied[2], 1) << "no sample, no news";
   EXPECT_EQ(grid.occupied[5], 0) << "never seen cells stay so";
-  EXPECT_FLOAT_EQ(grid.depth[5], -1.0F);
+  EXPECT_FLOAT_EQ(grid.tau[5], -1.0F);
 }
 
 TEST(OccupancyGrid, SurfacesWakeTheirSixNeighbours) {
   const double extent[3] = {1.0, 1.0, 1.0};
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.2, 1000);
-  grid.depth.assign(grid.depth.size(), 0.0F);
-  grid.depth[static_cast<size_t>(grid.Index(2, 2, 2))] = 2.0F;
-  grid.depth[static_cast<size_t>(grid.Index(0, 4, 4))] = 2.0F;  // at the rim
-  grid.depth[static_cast<size_t>(grid.Index(2, 2, 3))] = -1.0F;
+  grid.tau.assign(grid.tau.size(), 0.0F);
+  grid.tau[static_cast<size_t>(grid.Index(2, 2, 2))] = 2.0F;
+  grid.tau[static_cast<size_t>(grid.Index(0, 4, 4))] = 2.0F;  // at the rim
+  grid.tau[static_cast<size_t>(grid.Index(2, 2, 3))] = -1.0F;
   grid.WakeNeighbours(0.4F, 0.03F);
   int awake = 0;
-  for (const float depth : grid.depth) awake += depth == 0.03F ? 1 : 0;
+  for (const float tau : grid.tau) awake += tau == 0.03F ? 1 : 0;
   EXPECT_EQ(awake, 5 + 3);
-  EXPECT_FLOAT_EQ(grid.depth[static_cast<size_t>(grid.Index(3, 2, 2))], 0.03F);
-  EXPECT_FLOAT_EQ(grid.depth[static_cast<size_t>(grid.Index(2, 2, 3))], -1.0F);
-  EXPECT_FLOAT_EQ(grid.depth[static_cast<size_t>(grid.Index(4, 2, 2))], 0.0F);
+  EXPECT_FLOAT_EQ(grid.tau[static_cast<size_t>(grid.Index(3, 2, 2))], 0.03F);
+  EXPECT_FLOAT_EQ(grid.tau[static_cast<size_t>(grid.Index(2, 2, 3))], -1.0F);
+  EXPECT_FLOAT_EQ(grid.tau[static_cast<size_t>(grid.Index(4, 2, 2))], 0.0F);
 }
 
 TEST(OccupancyGrid, DilateReachesExactlyItsDistance) {
@@ -83,12 +83,12 @@ TEST(OccupancyGrid, DilateReachesExactlyItsDistance) {
 TEST(OccupancyGrid, ForgetsCellsThatWereNeverSampled) {
   const double extent[3] = {1.0, 1.0, 1.0};
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 8);
-  std::fill(grid.depth.begin(), grid.depth.end(), 0.1F);
+  std::fill(grid.tau.begin(), grid.tau.end(), 0.1F);
   grid.Observe(3, 0.5F);
   grid.Observe(4, 0.0F);
   grid.ForgetUnsampled(0.1F);
   for (int64_t i = 0; i < 8; ++i) {
-    EXPECT_EQ(grid.depth[static_cast<size_t>(i)] < 0.0F, i != 3 && i != 4) << i;
+    EXPECT_EQ(grid.tau[static_cast<size_t>(i)] < 0.0F, i != 3 && i != 4) << i;
     EXPECT_EQ(grid.occupied[static_cast<size_t>(i)], i == 3 || i == 4 ? 1 : 0) << i;
   }
 }

@@ -24,13 +24,13 @@ Eigen::Vector3d Anywhere(double reach) {
   return {Between(-reach, reach), Between(-reach, reach), Between(-reach, reach)};
 }
 
-TEST(RayBox, StretchEndsLieOnTheBox) {
+TEST(RayBox, IntervalEndsLieOnTheBox) {
   base::Random random(37);
   int hits = 0;
   for (int i = 0; i < 5000; ++i) {
     const Eigen::Vector3d origin(random.Uniform(-10, 10), random.Uniform(-10, 10), random.Uniform(-10, 10));
     const Eigen::Vector3d direction = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
-    const Stretch s = RayBox(origin, direction, kMin, kMax);
+    const Interval s = RayBox(origin, direction, kMin, kMax);
     if (s.Empty()) {
       // No point of the ray is inside.
       for (double t = 0.0; t < 30.0; t += 0.05) {

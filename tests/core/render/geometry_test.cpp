@@ -40,7 +40,7 @@ TEST(March, FullOccupancyGivesEveryLatticePointOnce) {
     const Eigen::Vector3d origin(random.Uniform(-6, 6), random.Uniform(-6, 6), random.Uniform(-3, 9));
     const Eigen::Vector3d target(random.Uniform(-1, 3), random.Uniform(-2, 2), random.Uniform(0, 5));
     const Eigen::Vector3d direction = (target - origin).normalized();
-    const geo::Stretch s = FieldStretch(f.map, origin, direction);
+    const geo::Interval s = FieldInterval(f.map, origin, direction);
     if (s.Empty()) continue;
     std::vector<double> ts;
     March(f, origin, direction, s, f.step_m, 0.5F, [&](double t, double, double, int64_t) {
@@ -69,7 +69,7 @@ RC_GTEST_PROP(March, LongStepsMissNothing, ()) {
   const double slope = *rc::gen::inRange(-5, 6) / 100.0;
   const Eigen::Vector3d origin(x, y, 12.0), direction = Eigen::Vector3d(slope, 0.0, -1.0).normalized();
   const double step_m = *rc::gen::inRange(1, 40) / 10.0;
-  const geo::Stretch s = geo::RayBox(origin, direction, f.map.min_enu(), f.map.max_enu());
+  const geo::Interval s = geo::RayBox(origin, direction, f.map.min_enu(), f.map.max_enu());
   double length = 0.0, last = 0.0;
   MarchCoarse(f, origin, direction, s, step_m, [&](double t, double sample_m, double) {
     RC_ASSERT(sample_m <= step_m * 1.000001);
@@ -90,7 +90,7 @@ TEST(March, SamplesLieInOccupiedCellsOnly) {
   for (int i = 0; i < 300; ++i) {
     const Eigen::Vector3d origin(random.Uniform(-6, 6), random.Uniform(-6, 6), 8.0);
     const Eigen::Vector3d direction = Eigen::Vector3d(random.Uniform(-0.5, 0.5), random.Uniform(-0.5, 0.5), -1.0).normalized();
-    const geo::Stretch s = FieldStretch(f.map, origin, direction);
+    const geo::Interval s = FieldInterval(f.map, origin, direction);
     std::set<int64_t> expected, got;
     // Every lattice point tested one by one; points within rounding of a cell face may fall either way.
     int64_t k = 0;

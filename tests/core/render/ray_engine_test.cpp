@@ -30,7 +30,7 @@ Plain WalkPlainly(const FieldSet& set, const Ray& ray) {
   std::vector<double> weights(all.size());
   for (size_t k = 0; k < all.size(); ++k) {
     const TrainedField& f = *set.blocks[k];
-    March(f, ray.origin_enu, ray.direction_enu, FieldStretch(f.map, ray.origin_enu, ray.direction_enu), f.step_m, 0.5F,
+    March(f, ray.origin_enu, ray.direction_enu, FieldInterval(f.map, ray.origin_enu, ray.direction_enu), f.step_m, 0.5F,
           [&](double t, double length, double, int64_t) {
             const Eigen::Vector3d p = ray.origin_enu + t * ray.direction_enu;
             BlendWeights(set, all, p.x(), p.y(), weights);

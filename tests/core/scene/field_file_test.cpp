@@ -175,11 +175,11 @@ TEST_F(TrainedFieldFile, HasANameForEveryNumber) {
     before.config.color_hidden_layers = 2;
     before.config.color_range = 1.125;
     checkpoint::ArchiveWriter writer("block", 1);
-    PutOutline(before, "a/", writer);
-    const fs::path file = folder_.path() / "outline.h5";
+    PutDescription(before, "a/", writer);
+    const fs::path file = folder_.path() / "description.h5";
     writer.Commit(file);
     const checkpoint::ArchiveReader reader(file);
-    EXPECT_EQ(Numbered(GetOutline(reader, file, "a/")), Numbered(before));
+    EXPECT_EQ(Numbered(GetDescription(reader, file, "a/")), Numbered(before));
     for (size_t i = 0; i < kNames.size(); ++i) {
       const std::string name = "a/" + kNames[i];
       const bool whole = i < 3 || (i >= 8 && i <= 10) || i == 13;

@@ -52,7 +52,7 @@ class PagedRaysTest : public ::testing::TestWithParam<std::tuple<double, bool, d
     hard_ = hard;
     WriteRandomScene(folder_ / "scene.h5", kRows, kColumns, margin_m, bias, true);
     store_ = std::make_unique<FieldStore>(checkpoint::ArchiveReader(folder_ / "scene.h5"), folder_ / "scene.h5", 0.0, hard);
-    store_->NeedAll();
+    store_->EnsureAllLoaded();
     fields_.blocks = store_->Blocks();
     fields_.context = &store_->context();
   }

@@ -22,7 +22,7 @@ TEST_F(TrainReportFile, IsReadBackAsItWasWritten) {
   TrainReport report{.ranks = 3, .threads = 2, .wall_seconds = 31.5, .config_hash = "abc", .fields = {}};
   FieldTraining context{.name = "context", .ok = true, .steps = 10, .seconds = 20.25, .samples = (int64_t{1} << 60) + 1, .rays = 100};
   context.peak_rss_bytes = 1000;
-  context.stage_seconds = {{"compose", 0.5}, {"hash forward", 1.5}};
+  context.phase_seconds = {{"compose", 0.5}, {"hash forward", 1.5}};
   FieldTraining failed{.name = "r0c1", .block = 1, .reason = "diverged", .psnr_db = std::nan(""), .attempts = 3, .rank = 2};
   report.fields = {context, failed};
   WriteTrainReport(report, file_);
@@ -34,7 +34,7 @@ TEST_F(TrainReportFile, IsReadBackAsItWasWritten) {
   ASSERT_EQ(back.fields.size(), 2U);
   EXPECT_EQ(back.Find("context")->samples, context.samples);
   EXPECT_EQ(back.Find("context")->block, -1);
-  EXPECT_EQ(back.Find("context")->stage_seconds, context.stage_seconds);
+  EXPECT_EQ(back.Find("context")->phase_seconds, context.phase_seconds);
   EXPECT_TRUE(std::isnan(back.Find("r0c1")->psnr_db));
   EXPECT_EQ(back.Find("r0c1")->attempts, 3);
   EXPECT_EQ(back.Find("r9c9"), nullptr);
@@ -59,12 +59,12 @@ TEST_F(TrainReportFile, MissingOrDamagedIsAnErrorThatNamesTheFile) {
 TEST_F(TrainReportFile, LeavesOutWhatIsOfAnotherKind) {
   Write(R"({"ranks":2,"threads":"four","wall_seconds":50,"fields":[
     {"name":"context","ok":true,"seconds":20,"samples":1000,"rays":100,"parameters":7,"psnr_db":21.5,
-     "stage_seconds":{"hash forward":1.5,"compose":null}}, 5,
+     "phase_seconds":{"hash forward":1.5,"compose":null}}, 5,
     {"name":"r0c0","ok":false,"reason":"loss not finite","seconds":30,"samples":3000,"psnr_db":null}]})");
   const TrainReport report = ReadTrainReport(file_);
   ASSERT_EQ(report.fields.size(), 2U);
   EXPECT_EQ(report.threads, 0);
-  EXPECT_EQ(report.fields[0].stage_seconds, (std::map<std::string, double>{{"hash forward", 1.5}}));
+  EXPECT_EQ(report.fields[0].phase_seconds, (std::map<std::string, double>{{"hash forward", 1.5}}));
   EXPECT_TRUE(std::isnan(report.fields[1].psnr_db));
   EXPECT_DOUBLE_EQ(report.SamplesPerRay(), 40.0);
   EXPECT_DOUBLE_EQ(report.TrainSeconds(), 50.0);

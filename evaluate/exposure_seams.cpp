@@ -1,4 +1,4 @@
-#include "evaluate/footprint_steps.h"
+#include "evaluate/exposure_seams.h"
 
 #include <algorithm>
 #include <array>
@@ -78,7 +78,7 @@ std::optional<double> StepAcross(const scene::Scene& scene, const TrainingView& 
 
 }  // namespace
 
-FootprintSteps MeasureFootprintSteps(const scene::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads) {
+ExposureSeams MeasureExposureSeams(const scene::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads) {
   std::vector<double> border, control;
   for (const size_t place : SpreadPlaces(views.size(), kFootprints)) {
     const TrainingView& view = views[place];

@@ -1,4 +1,4 @@
-#include "coordinator/rendering/ray_parcel.h"
+#include "coordinator/rendering/ray_request.h"
 
 #include <algorithm>
 #include <cstring>
@@ -62,7 +62,7 @@ class Unpacker {
   void End() const {
     if (at_ != bytes_.size()) Fail();
   }
-  [[noreturn]] static void Fail() { throw std::runtime_error("a parcel of rays is not as it should be: do all ranks run the same program?"); }
+  [[noreturn]] static void Fail() { throw std::runtime_error("a request of rays is not as it should be: do all ranks run the same program?"); }
 
  private:
   void Require(size_t n) const {
@@ -131,15 +131,15 @@ scene::RayInFlight TakeRayInFlight(Unpacker* unpacker) {
 
 }  // namespace
 
-std::string ToBytes(const RayParcel& parcel) {
+std::string ToBytes(const RayRequest& request) {
   Packer packer;
-  packer.Add(parcel.id);
-  packer.Add(parcel.options.step_scale);
-  packer.Add(parcel.options.colour_threshold);
-  packer.Add(parcel.options.concealing);
-  const auto& rays = parcel.rays;
+  packer.Add(request.id);
+  packer.Add(request.options.step_scale);
+  packer.Add(request.options.colour_threshold);
+  packer.Add(request.options.concealing);
+  const auto& rays = request.rays;
   const bool shared = std::all_of(rays.begin(), rays.end(), [&](const render::Ray& ray) { return Same(ray, rays.front()); });
-  const bool fresh = std::all_of(parcel.in_flight.begin(), parcel.in_flight.end(), Fresh);
+  const bool fresh = std::all_of(request.in_flight.begin(), request.in_flight.end(), Fresh);
   packer.Add(shared);
   packer.Add(fresh);
   packer.Add(static_cast<uint64_t>(rays.size()));
@@ -149,18 +149,18 @@ std::string ToBytes(const RayParcel& parcel) {
     if (!shared) packer.Add(CommonOf(ray));
   }
   if (!fresh) {
-    for (const scene::RayInFlight& ray_in_flight : parcel.in_flight) AddRayInFlight(ray_in_flight, &packer);
+    for (const scene::RayInFlight& ray_in_flight : request.in_flight) AddRayInFlight(ray_in_flight, &packer);
   }
   return packer.Take();
 }
 
-RayParcel RayParcelFromBytes(const std::string& bytes) {
+RayRequest RayRequestFromBytes(const std::string& bytes) {
   Unpacker unpacker(bytes);
-  RayParcel parcel;
-  parcel.id = unpacker.Take<uint64_t>();
-  parcel.options.step_scale = unpacker.Take<double>();
-  parcel.options.colour_threshold = unpacker.Take<float>();
-  parcel.options.concealing = unpacker.Take<render::Concealing>();
+  RayRequest request;
+  request.id = unpacker.Take<uint64_t>();
+  request.options.step_scale = unpacker.Take<double>();
+  request.options.colour_threshold = unpacker.Take<float>();
+  request.options.concealing = unpacker.Take<render::Concealing>();
   const bool shared = unpacker.Take<bool>();
   const bool fresh = unpacker.Take<bool>();
   const size_t n = unpacker.TakeCount(3 * sizeof(double));
@@ -174,29 +174,29 @@ RayParcel RayParcelFromBytes(const std::string& bytes) {
     ray.t_near = common.t_near;
     ray.t_far = common.t_far;
     ray.pixel_radius = common.pixel_radius;
-    parcel.rays.push_back(ray);
+    request.rays.push_back(ray);
   }
-  parcel.in_flight.resize(n);
+  request.in_flight.resize(n);
   if (!fresh) {
-    for (scene::RayInFlight& ray_in_flight : parcel.in_flight) ray_in_flight = TakeRayInFlight(&unpacker);
+    for (scene::RayInFlight& ray_in_flight : request.in_flight) ray_in_flight = TakeRayInFlight(&unpacker);
   }
   unpacker.End();
-  return parcel;
+  return request;
 }
 
-std::string ToBytes(const CarriedParcel& parcel) {
+std::string ToBytes(const RayReply& request) {
   Packer packer;
-  packer.Add(parcel.id);
-  packer.Add(parcel.samples);
-  packer.Add(parcel.field_loads);
-  packer.AddText(ToJson(parcel.failure).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  packer.Add(static_cast<uint64_t>(parcel.in_flight.size()));
+  packer.Add(request.id);
+  packer.Add(request.samples);
+  packer.Add(request.field_loads);
+  packer.AddText(ToJson(request.failure).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  packer.Add(static_cast<uint64_t>(request.in_flight.size()));
   size_t color = 0;
-  for (const scene::RayInFlight& ray_in_flight : parcel.in_flight) {
+  for (const scene::RayInFlight& ray_in_flight : request.in_flight) {
     const bool arrived = ray_in_flight.owner == scene::kArrived;
     packer.Add(arrived);
     if (arrived) {
-      packer.Add(parcel.colors.at(color++));
+      packer.Add(request.colors.at(color++));
     } else {
       AddRayInFlight(ray_in_flight, &packer);
     }
@@ -204,26 +204,26 @@ std::string ToBytes(const CarriedParcel& parcel) {
   return packer.Take();
 }
 
-CarriedParcel CarriedParcelFromBytes(const std::string& bytes) {
+RayReply RayReplyFromBytes(const std::string& bytes) {
   Unpacker unpacker(bytes);
-  CarriedParcel parcel;
-  parcel.id = unpacker.Take<uint64_t>();
-  parcel.samples = unpacker.Take<int64_t>();
-  parcel.field_loads = unpacker.Take<int64_t>();
-  parcel.failure = unpacker.TakeFailure();
+  RayReply request;
+  request.id = unpacker.Take<uint64_t>();
+  request.samples = unpacker.Take<int64_t>();
+  request.field_loads = unpacker.Take<int64_t>();
+  request.failure = unpacker.TakeFailure();
   const size_t n = unpacker.TakeCount(sizeof(bool));
   for (size_t i = 0; i < n; ++i) {
     scene::RayInFlight ray_in_flight;
     if (unpacker.Take<bool>()) {
       ray_in_flight.owner = scene::kArrived;
-      parcel.colors.push_back(unpacker.Take<render::RayColor>());
+      request.colors.push_back(unpacker.Take<render::RayColor>());
     } else {
       ray_in_flight = TakeRayInFlight(&unpacker);
     }
-    parcel.in_flight.push_back(ray_in_flight);
+    request.in_flight.push_back(ray_in_flight);
   }
   unpacker.End();
-  return parcel;
+  return request;
 }
 
 }  // namespace skyquilt::coordinator

@@ -1,4 +1,4 @@
-#include "evaluate/air_opacity.h"
+#include "evaluate/floater_opacity.h"
 
 #include <cmath>
 
@@ -12,7 +12,7 @@ constexpr int kEvery = 4;  // pixels between rays, on both axes
 
 }  // namespace
 
-AirOpacity& AirOpacity::operator+=(const AirOpacity& other) {
+FloaterOpacity& FloaterOpacity::operator+=(const FloaterOpacity& other) {
   for (size_t i = 0; i < sum.size(); ++i) {
     sum[i] += other.sum[i];
     rays[i] += other.rays[i];
@@ -20,17 +20,17 @@ AirOpacity& AirOpacity::operator+=(const AirOpacity& other) {
   return *this;
 }
 
-double AirOpacity::Mean(size_t clearance) const {
+double FloaterOpacity::Mean(size_t clearance) const {
   return rays[clearance] > 0 ? sum[clearance] / static_cast<double>(rays[clearance]) : kNotMeasured;
 }
 
-std::vector<std::pair<double, double>> AirOpacity::Profile() const {
+std::vector<std::pair<double, double>> FloaterOpacity::Profile() const {
   std::vector<std::pair<double, double>> profile;
-  for (size_t i = 0; i < sum.size(); ++i) profile.emplace_back(kAirProfile_m[i], Mean(i));
+  for (size_t i = 0; i < sum.size(); ++i) profile.emplace_back(kFloaterProfile_m[i], Mean(i));
   return profile;
 }
 
-AirOpacity MeasureAirOpacity(const scene::Scene& scene, const PhotoTask& task, const PhotoFindings& findings, base::ThreadPool& threads) {
+FloaterOpacity MeasureFloaterOpacity(const scene::Scene& scene, const PhotoTask& task, const PhotoFindings& findings, base::ThreadPool& threads) {
   SKYQUILT_CHECK(!findings.true_depth.Empty(), "a photo with true depth");
   const geo::Rigid3d enu_from_cam = task.cam_from_enu.Inverse();
   // Whole rays for every clearance: pieces of rays, shorter than a marching step, would be weighed differently.
@@ -43,8 +43,8 @@ AirOpacity MeasureAirOpacity(const scene::Scene& scene, const PhotoTask& task, c
       const Eigen::Vector3d direction_in_cam = task.camera.RayFromImg({x + 0.5, y + 0.5});
       const double surface_m = depth_m / direction_in_cam.z();
       render::Ray ray{.origin_enu = task.cam_from_enu.OriginInSource(), .direction_enu = enu_from_cam.rotation * direction_in_cam};
-      for (size_t i = 0; i < kAirProfile_m.size() && surface_m > kAirProfile_m[i]; ++i) {
-        ray.t_far = surface_m - kAirProfile_m[i];
+      for (size_t i = 0; i < kFloaterProfile_m.size() && surface_m > kFloaterProfile_m[i]; ++i) {
+        ray.t_far = surface_m - kFloaterProfile_m[i];
         rays.push_back(ray);
         clearance_of.push_back(i);
       }
@@ -52,7 +52,7 @@ AirOpacity MeasureAirOpacity(const scene::Scene& scene, const PhotoTask& task, c
   }
   std::vector<render::RayColor> colors(rays.size());
   scene.RenderRays(rays, colors, {}, threads);
-  AirOpacity air;
+  FloaterOpacity air;
   for (size_t k = 0; k < rays.size(); ++k) {
     air.sum[clearance_of[k]] += static_cast<double>(colors[k].opacity);
     ++air.rays[clearance_of[k]];

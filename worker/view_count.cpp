@@ -1,4 +1,4 @@
-#include "worker/few_views.h"
+#include "worker/view_count.h"
 
 #include "core/camera/sight.h"
 
@@ -16,8 +16,8 @@ int CountViews(const RaySource& source, const survey::Survey& survey, const std:
   return views;
 }
 
-std::vector<Tile> TilesInCompany(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
-                                 const scene::PlanSurface& surface, int min_views) {
+std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
+                                       const scene::HeightMap& surface, int min_views) {
   std::vector<Tile> all = TrainingTiles(survey, photos);
   if (surface.Empty() || min_views < 2) return all;
   std::vector<Tile> kept;

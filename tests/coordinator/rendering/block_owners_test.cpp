@@ -1,4 +1,4 @@
-#include "coordinator/rendering/block_shares.h"
+#include "coordinator/rendering/block_owners.h"
 
 #include <gtest/gtest.h>
 
@@ -50,28 +50,28 @@ TEST_F(BlockShares, AShareHoldsTheNeighboursItBlendsWith) {
   EXPECT_TRUE(lower[0].empty());
   EXPECT_EQ(lower[5], (std::vector<int>{0, 1, 2, 4}));
   const std::vector<int> one(static_cast<size_t>(store_->size()), 0);
-  EXPECT_NEAR(LargestShareBytes(*store_, lower, one, 1), AllBytes(), 1.0);
+  EXPECT_NEAR(LargestPartBytes(*store_, lower, one, 1), AllBytes(), 1.0);
   const std::vector<int> own = [] {
     std::vector<int> numbers(kRows * kColumns);
     std::iota(numbers.begin(), numbers.end(), 0);
     return numbers;
   }();
   // Itself and the up to four neighbours of higher number.
-  EXPECT_NEAR(LargestShareBytes(*store_, lower, own, kRows * kColumns), store_->ContextBytes() + 5.0 * store_->Bytes(0), 0.2 * store_->Bytes(0));
+  EXPECT_NEAR(LargestPartBytes(*store_, lower, own, kRows * kColumns), store_->ContextBytes() + 5.0 * store_->Bytes(0), 0.2 * store_->Bytes(0));
 }
 
 TEST_F(BlockShares, RanksThatHoldTheWholeSceneWorkAlone) {
   const std::vector<int> ranks = {1, 2, 3, 4, 5};
-  const std::vector<RankGroup> plenty = MakeGroups(*store_, ranks, std::vector<double>(5, 2.0 * AllBytes()));
+  const std::vector<SceneHolders> plenty = MakeGroups(*store_, ranks, std::vector<double>(5, 2.0 * AllBytes()));
   EXPECT_EQ(plenty.size(), 5U);
-  const std::vector<RankGroup> half = MakeGroups(*store_, ranks, std::vector<double>(5, 0.85 * AllBytes()));
+  const std::vector<SceneHolders> half = MakeGroups(*store_, ranks, std::vector<double>(5, 0.85 * AllBytes()));
   ASSERT_EQ(half.size(), 2U);
   EXPECT_EQ(half[0].ranks.size() + half[1].ranks.size(), 5U) << "every rank has a place";
-  const std::vector<RankGroup> scarce = MakeGroups(*store_, ranks, std::vector<double>(5, 0.01 * AllBytes()));
+  const std::vector<SceneHolders> scarce = MakeGroups(*store_, ranks, std::vector<double>(5, 0.01 * AllBytes()));
   ASSERT_EQ(scarce.size(), 1U);
   EXPECT_EQ(scarce[0].ranks, ranks);
-  for (const std::vector<RankGroup>& groups : {plenty, half, scarce}) {
-    for (const RankGroup& group : groups) {
+  for (const std::vector<SceneHolders>& groups : {plenty, half, scarce}) {
+    for (const SceneHolders& group : groups) {
       ASSERT_EQ(group.owner.size(), static_cast<size_t>(store_->size()));
       for (const int owner : group.owner) EXPECT_LT(owner, static_cast<int>(group.ranks.size()));
     }

@@ -8,12 +8,12 @@
 
 namespace skyquilt::scene {
 
-class PlanSurface {
+class HeightMap {
  public:
-  PlanSurface() = default;  // empty
+  HeightMap() = default;  // empty
   // heights: [row][column], cell centres at min + (index + 0.5) * cell_m; columns east, rows north.
   // Throws std::invalid_argument when their number is not columns * rows or cell_m is not positive.
-  PlanSurface(double min_x, double min_y, double cell_m, int columns, int rows, std::vector<double> heights);
+  HeightMap(double min_x, double min_y, double cell_m, int columns, int rows, std::vector<double> heights);
 
   bool Empty() const { return heights_.empty(); }
   double min_x() const { return min_x_; }

@@ -11,19 +11,19 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/ranks/crew.h"
-#include "coordinator/rendering/block_shares.h"
-#include "coordinator/rendering/ray_parcel.h"
+#include "coordinator/ranks/rank_group.h"
+#include "coordinator/rendering/block_owners.h"
+#include "coordinator/rendering/ray_request.h"
 #include "core/comm/communicator.h"
 #include "core/scene/ray_service.h"
 
 namespace skyquilt::coordinator {
 
-class RayFarm : public scene::RayService {
+class RemoteRenderer : public scene::RayService {
  public:
   // Calls the other ranks together (at least one); they open the scene file. Its destructor sends them back.
   // `setup` is for ServeRays, see serve_rays.h.
-  RayFarm(comm::Communicator& comm, const std::string& setup);
+  RemoteRenderer(comm::Communicator& comm, const std::string& setup);
 
   void Begin(const scene::FieldStore& store, const render::RaySegments& segments) override;
   void Render(std::span<const render::Ray> rays, std::span<render::RayColor> out, const render::EngineOptions& options) override;
@@ -32,7 +32,7 @@ class RayFarm : public scene::RayService {
 
  private:
   // Rays that wait for a rank, or are with one.
-  struct Parcel {
+  struct Request {
     size_t group = 0;
     std::vector<size_t> rays;  // indices into the call's rays
   };
@@ -40,15 +40,15 @@ class RayFarm : public scene::RayService {
 
   void HandOut(Work& work);
   void AddChunk(Work& work, size_t group);
-  void Queue(Work& work, int rank, Parcel parcel);
+  void Queue(Work& work, int rank, Request request);
   void Send(Work& work, int rank);
   void TakeBack(Work& work, const comm::Message& message);
 
   comm::Communicator& comm_;
-  Crew crew_;
+  RankGroup group_;
   const scene::FieldStore* store_ = nullptr;
   const render::RaySegments* segments_ = nullptr;
-  std::vector<RankGroup> groups_;
+  std::vector<SceneHolders> groups_;
   uint64_t next_id_ = 1;
   std::map<int, int64_t> loads_;  // per rank
   scene::RenderStatistics statistics_;

@@ -1,4 +1,4 @@
-#include "coordinator/rendering/block_shares.h"
+#include "coordinator/rendering/block_owners.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -74,7 +74,7 @@ std::vector<std::vector<int>> LowerNeighbours(const scene::FieldStore& store) {
   return lower;
 }
 
-double LargestShareBytes(const scene::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n) {
+double LargestPartBytes(const scene::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n) {
   std::vector<double> bytes(static_cast<size_t>(n), 0.0);
   std::set<int> holders;
   for (size_t k = 0; k < owner.size(); ++k) {
@@ -86,17 +86,17 @@ double LargestShareBytes(const scene::FieldStore& store, const std::vector<std::
   return *std::max_element(bytes.begin(), bytes.end()) + store.ContextBytes();
 }
 
-std::vector<RankGroup> MakeGroups(const scene::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes) {
+std::vector<SceneHolders> MakeGroups(const scene::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes) {
   SKYQUILT_CHECK(!ranks.empty() && ranks.size() == memory_bytes.size(), "one memory size per rank");
   const double least = *std::min_element(memory_bytes.begin(), memory_bytes.end());
   const auto n = static_cast<int>(ranks.size());
   int size = 1;
   const std::vector<std::vector<int>> neighbours = LowerNeighbours(store);
-  while (size < n && LargestShareBytes(store, neighbours, DealBlocks(store, size), size) > least) ++size;
+  while (size < n && LargestPartBytes(store, neighbours, DealBlocks(store, size), size) > least) ++size;
   const int n_groups = n / size;
-  std::vector<RankGroup> groups(static_cast<size_t>(n_groups));
+  std::vector<SceneHolders> groups(static_cast<size_t>(n_groups));
   for (int i = 0; i < n; ++i) groups[static_cast<size_t>(i % n_groups)].ranks.push_back(ranks[static_cast<size_t>(i)]);
-  for (RankGroup& group : groups) group.owner = DealBlocks(store, static_cast<int>(group.ranks.size()));
+  for (SceneHolders& group : groups) group.owner = DealBlocks(store, static_cast<int>(group.ranks.size()));
   return groups;
 }
 

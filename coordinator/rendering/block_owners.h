@@ -9,7 +9,7 @@
 namespace skyquilt::coordinator {
 
 // Ranks that hold a scene together; every group can answer any ray. Numbers within a group from 0.
-struct RankGroup {
+struct SceneHolders {
   std::vector<int> ranks;
   std::vector<int> owner;  // per block: number within the group
 };
@@ -22,11 +22,11 @@ std::vector<int> DealBlocks(const scene::FieldStore& store, int n);
 std::vector<std::vector<int>> LowerNeighbours(const scene::FieldStore& store);
 
 // Bytes that the owner with most of them needs at once, the context and the neighbours included that its blocks are blended with.
-double LargestShareBytes(const scene::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n);
+double LargestPartBytes(const scene::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n);
 
 // As many groups as there can be such that everybody's share fits its memory; one group of all when not even that is enough.
 // memory_bytes[i] belongs to ranks[i]; both have the same length, at least 1.
-std::vector<RankGroup> MakeGroups(const scene::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes);
+std::vector<SceneHolders> MakeGroups(const scene::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes);
 
 // Who renders where these blocks meet; `otherwise` where there are none.
 inline int OwnerOf(std::span<const int> owner, std::span<const int> blocks, int otherwise) {

@@ -1,4 +1,4 @@
-#include "coordinator/rendering/ray_farm.h"
+#include "coordinator/rendering/remote_renderer.h"
 
 #include <algorithm>
 #include <limits>
@@ -17,13 +17,13 @@ using scene::RayInFlight;
 // Rays that are handed out together: enough to keep a rank's cores busy while the next ones travel, few enough that all ranks have some.
 constexpr size_t kMostRays = 1 << 14;
 constexpr size_t kFewestRays = 1 << 11;
-// Parcels with a rank at a time: one to work on and one to go on with.
+// Requests with a rank at a time: one to work on and one to go on with.
 constexpr size_t kWithRank = 2;
 
 }  // namespace
 
 // One call of Render.
-struct RayFarm::Work {
+struct RemoteRenderer::Work {
   std::span<const render::Ray> rays;
   std::span<render::RayColor> out;
   render::EngineOptions options;
@@ -31,29 +31,29 @@ struct RayFarm::Work {
   size_t chunk = kMostRays;
   size_t next_ray = 0;  // of those that no group has yet
   size_t arrived = 0;
-  std::map<int, std::deque<Parcel>> waiting;            // per rank
-  std::map<int, std::map<uint64_t, Parcel>> with_rank;  // per rank and number
-  std::vector<size_t> in_group;                         // rays per group that have not arrived
+  std::map<int, std::deque<Request>> waiting;            // per rank
+  std::map<int, std::map<uint64_t, Request>> with_rank;  // per rank and number
+  std::vector<size_t> in_group;                          // rays per group that have not arrived
 };
 
-RayFarm::RayFarm(comm::Communicator& comm, const std::string& setup) : comm_(comm), crew_(comm, kTagScene, setup) {
-  SKYQUILT_CHECK(comm.size() > 1, "a farm of other ranks");
+RemoteRenderer::RemoteRenderer(comm::Communicator& comm, const std::string& setup) : comm_(comm), group_(comm, kTagScene, setup) {
+  SKYQUILT_CHECK(comm.size() > 1, "rendering by other ranks");
 }
 
-void RayFarm::Begin(const scene::FieldStore& store, const render::RaySegments& segments) {
+void RemoteRenderer::Begin(const scene::FieldStore& store, const render::RaySegments& segments) {
   store_ = &store;
   segments_ = &segments;
-  const std::vector<CrewMember> members = crew_.Muster();
+  const std::vector<GroupMember> members = group_.WaitForRanks();
   std::vector<int> ranks;
   std::vector<double> memory;
-  for (const CrewMember& member : members) {
+  for (const GroupMember& member : members) {
     ranks.push_back(member.rank);
     memory.push_back(member.memory_bytes);
   }
   groups_ = MakeGroups(store, ranks, memory);
-  for (const RankGroup& group : groups_) {
+  for (const SceneHolders& group : groups_) {
     for (size_t number = 0; number < group.ranks.size(); ++number) {
-      const auto member = std::find_if(members.begin(), members.end(), [&](const CrewMember& one) { return one.rank == group.ranks[number]; });
+      const auto member = std::find_if(members.begin(), members.end(), [&](const GroupMember& one) { return one.rank == group.ranks[number]; });
       const nlohmann::json part = {{"threads", member->threads}, {"memory_bytes", member->memory_bytes}, {"number", number}, {"owner", group.owner}};
       comm_.Send(member->rank, kTagPart, part.dump());
     }
@@ -62,7 +62,7 @@ void RayFarm::Begin(const scene::FieldStore& store, const render::RaySegments& s
   statistics_.groups = static_cast<int>(groups_.size());
 }
 
-void RayFarm::Render(std::span<const render::Ray> rays, std::span<render::RayColor> out, const render::EngineOptions& options) {
+void RemoteRenderer::Render(std::span<const render::Ray> rays, std::span<render::RayColor> out, const render::EngineOptions& options) {
   SKYQUILT_CHECK(store_ != nullptr, "Begin comes first");
   Work work;
   work.rays = rays;
@@ -75,12 +75,12 @@ void RayFarm::Render(std::span<const render::Ray> rays, std::span<render::RayCol
   while (work.arrived < rays.size()) {
     HandOut(work);
     const comm::Message message = comm_.Receive();
-    if (message.tag == kTagCarried) TakeBack(work, message);
+    if (message.tag == kTagRayReply) TakeBack(work, message);
   }
 }
 
 // New rays go to the group with least to do for its size; ranks get what waits for them.
-void RayFarm::HandOut(Work& work) {
+void RemoteRenderer::HandOut(Work& work) {
   while (work.next_ray < work.rays.size()) {
     const auto load = [&](size_t group) { return static_cast<double>(work.in_group[group]) / static_cast<double>(groups_[group].ranks.size()); };
     size_t least = 0;
@@ -91,14 +91,14 @@ void RayFarm::HandOut(Work& work) {
     if (load(least) >= static_cast<double>(kWithRank * work.chunk)) break;
     AddChunk(work, least);
   }
-  for (auto& [rank, parcels] : work.waiting) {
-    while (!parcels.empty() && work.with_rank[rank].size() < kWithRank) Send(work, rank);
+  for (auto& [rank, requests] : work.waiting) {
+    while (!requests.empty() && work.with_rank[rank].size() < kWithRank) Send(work, rank);
   }
 }
 
-void RayFarm::AddChunk(Work& work, size_t group) {
-  const RankGroup& members = groups_[group];
-  std::map<int, Parcel> parcels;  // per rank
+void RemoteRenderer::AddChunk(Work& work, size_t group) {
+  const SceneHolders& members = groups_[group];
+  std::map<int, Request> requests;  // per rank
   std::vector<render::RaySegment> segments;
   const size_t end = std::min(work.rays.size(), work.next_ray + work.chunk);
   const auto anyone = static_cast<int>((work.next_ray / work.chunk) % members.ranks.size());
@@ -111,72 +111,72 @@ void RayFarm::AddChunk(Work& work, size_t group) {
       const auto first = std::find_if(segments.begin(), segments.end(), [&](const auto& segment) { return !segments_->Blocks(segment.set).empty(); });
       if (first != segments.end()) owner = OwnerOf(members.owner, segments_->Blocks(first->set), anyone);
     }
-    parcels[members.ranks[static_cast<size_t>(owner)]].rays.push_back(i);
+    requests[members.ranks[static_cast<size_t>(owner)]].rays.push_back(i);
   }
   work.in_group[group] += end - work.next_ray;
   work.next_ray = end;
-  for (auto& [rank, parcel] : parcels) {
-    parcel.group = group;
-    Queue(work, rank, std::move(parcel));
+  for (auto& [rank, request] : requests) {
+    request.group = group;
+    Queue(work, rank, std::move(request));
   }
 }
 
-// Small parcels of one group become one.
-void RayFarm::Queue(Work& work, int rank, Parcel parcel) {
-  std::deque<Parcel>& waiting = work.waiting[rank];
-  if (!waiting.empty() && waiting.back().rays.size() + parcel.rays.size() <= work.chunk) {
-    waiting.back().rays.insert(waiting.back().rays.end(), parcel.rays.begin(), parcel.rays.end());
+// Small requests of one group become one.
+void RemoteRenderer::Queue(Work& work, int rank, Request request) {
+  std::deque<Request>& waiting = work.waiting[rank];
+  if (!waiting.empty() && waiting.back().rays.size() + request.rays.size() <= work.chunk) {
+    waiting.back().rays.insert(waiting.back().rays.end(), request.rays.begin(), request.rays.end());
   } else {
-    waiting.push_back(std::move(parcel));
+    waiting.push_back(std::move(request));
   }
 }
 
-void RayFarm::Send(Work& work, int rank) {
-  Parcel parcel = std::move(work.waiting[rank].front());
+void RemoteRenderer::Send(Work& work, int rank) {
+  Request request = std::move(work.waiting[rank].front());
   work.waiting[rank].pop_front();
-  RayParcel message{.id = next_id_++, .options = work.options, .rays = {}, .in_flight = {}};
-  for (const size_t i : parcel.rays) {
+  RayRequest message{.id = next_id_++, .options = work.options, .rays = {}, .in_flight = {}};
+  for (const size_t i : request.rays) {
     message.rays.push_back(work.rays[i]);
     message.in_flight.push_back(work.in_flight[i]);
   }
   const std::string bytes = ToBytes(message);
   statistics_.bytes_sent += static_cast<int64_t>(bytes.size());
   comm_.Send(rank, kTagRays, bytes);
-  work.with_rank[rank].emplace(message.id, std::move(parcel));
+  work.with_rank[rank].emplace(message.id, std::move(request));
 }
 
-void RayFarm::TakeBack(Work& work, const comm::Message& message) {
+void RemoteRenderer::TakeBack(Work& work, const comm::Message& message) {
   const int rank = message.source;
-  const CarriedParcel carried = CarriedParcelFromBytes(message.bytes);
-  std::map<uint64_t, Parcel>& with_rank = work.with_rank[rank];
-  const auto at = with_rank.find(carried.id);
+  const RayReply reply = RayReplyFromBytes(message.bytes);
+  std::map<uint64_t, Request>& with_rank = work.with_rank[rank];
+  const auto at = with_rank.find(reply.id);
   if (at == with_rank.end()) return;  // of a call that was given up
-  if (carried.failure) Throw(carried.failure, "rank " + std::to_string(rank));
-  const Parcel parcel = std::move(at->second);
+  if (reply.failure) Throw(reply.failure, "rank " + std::to_string(rank));
+  const Request request = std::move(at->second);
   with_rank.erase(at);
-  SKYQUILT_CHECK(carried.in_flight.size() == parcel.rays.size(), "a parcel comes back whole");
+  SKYQUILT_CHECK(reply.in_flight.size() == request.rays.size(), "a request comes back whole");
   statistics_.bytes_received += static_cast<int64_t>(message.bytes.size());
-  statistics_.samples += carried.samples;
-  statistics_.field_loads += carried.field_loads - std::exchange(loads_[rank], carried.field_loads);
-  const RankGroup& group = groups_[parcel.group];
-  std::map<int, Parcel> onward;  // per rank
+  statistics_.samples += reply.samples;
+  statistics_.field_loads += reply.field_loads - std::exchange(loads_[rank], reply.field_loads);
+  const SceneHolders& group = groups_[request.group];
+  std::map<int, Request> onward;  // per rank
   size_t color = 0;
-  for (size_t k = 0; k < parcel.rays.size(); ++k) {
-    const size_t i = parcel.rays[k];
-    if (carried.in_flight[k].owner == kArrived) {
-      work.out[i] = carried.colors.at(color++);
+  for (size_t k = 0; k < request.rays.size(); ++k) {
+    const size_t i = request.rays[k];
+    if (reply.in_flight[k].owner == kArrived) {
+      work.out[i] = reply.colors.at(color++);
       ++work.arrived;
-      --work.in_group[parcel.group];
+      --work.in_group[request.group];
       continue;
     }
-    work.in_flight[i] = carried.in_flight[k];
-    const int next = group.ranks.at(static_cast<size_t>(carried.in_flight[k].owner));
+    work.in_flight[i] = reply.in_flight[k];
+    const int next = group.ranks.at(static_cast<size_t>(reply.in_flight[k].owner));
     SKYQUILT_CHECK(next != rank, "a ray that its rank did not take on");
     onward[next].rays.push_back(i);
     ++statistics_.handovers;
   }
   for (auto& [next, more] : onward) {
-    more.group = parcel.group;
+    more.group = request.group;
     Queue(work, next, std::move(more));
   }
 }

@@ -9,7 +9,7 @@
 
 namespace skyquilt::evaluate {
 
-struct FootprintSteps {
+struct ExposureSeams {
   // Medians over photos of |mean outside - mean inside| in display values (1 = white), colours averaged; NaN without photos.
   double border = kNotMeasured;
   double control = kNotMeasured;  // the same across lines a little further inside, where no border runs: what texture alone gives
@@ -18,6 +18,6 @@ struct FootprintSteps {
 
 // At most kFootprints of the views, evenly spread.
 constexpr int kFootprints = 96;
-FootprintSteps MeasureFootprintSteps(const scene::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads);
+ExposureSeams MeasureExposureSeams(const scene::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads);
 
 }  // namespace skyquilt::evaluate

@@ -1,4 +1,4 @@
-#include "coordinator/ranks/crew.h"
+#include "coordinator/ranks/rank_group.h"
 
 #include <algorithm>
 #include <map>
@@ -18,15 +18,15 @@ struct SentBack {};
 
 }  // namespace
 
-Crew::Crew(comm::Communicator& comm, int tag, const std::string& setup) : comm_(comm) {
+RankGroup::RankGroup(comm::Communicator& comm, int tag, const std::string& setup) : comm_(comm) {
   for (int rank = 1; rank < comm.size(); ++rank) comm.Send(rank, tag, setup);
 }
 
-Crew::~Crew() {
+RankGroup::~RankGroup() {
   for (int rank = 1; rank < comm_.size(); ++rank) comm_.Send(rank, kTagDone, "");
 }
 
-std::vector<CrewMember> Crew::Muster() {
+std::vector<GroupMember> RankGroup::WaitForRanks() {
   std::vector<json> hello(static_cast<size_t>(comm_.size()));
   std::map<std::string, int> ranks_on;
   for (int n = 1; n < comm_.size();) {
@@ -39,10 +39,10 @@ std::vector<CrewMember> Crew::Muster() {
     hello[static_cast<size_t>(message.source)] = std::move(one);
     ++n;
   }
-  std::vector<CrewMember> members;
+  std::vector<GroupMember> members;
   for (int rank = 1; rank < comm_.size(); ++rank) {
     const json& one = hello[static_cast<size_t>(rank)];
-    CrewMember member{.rank = rank, .host = one.at("host").get<std::string>()};
+    GroupMember member{.rank = rank, .host = one.at("host").get<std::string>()};
     member.sharing = ranks_on[member.host];
     member.threads = std::max(1, one.at("threads").get<int>() / member.sharing);
     member.memory_bytes = one.value("memory_bytes", 0.0) / member.sharing;
@@ -51,7 +51,7 @@ std::vector<CrewMember> Crew::Muster() {
   return members;
 }
 
-std::string Enlist(comm::Communicator& comm, const json& hello, int tag) {
+std::string Register(comm::Communicator& comm, const json& hello, int tag) {
   comm.Send(0, kTagHello, hello.dump());
   while (true) {
     comm::Message message = WaitForMessage(comm);
@@ -60,7 +60,7 @@ std::string Enlist(comm::Communicator& comm, const json& hello, int tag) {
   }
 }
 
-void ServeCrew(comm::Communicator& comm, const std::function<void(json& hello)>& body) {
+void ServeRankGroup(comm::Communicator& comm, const std::function<void(json& hello)>& body) {
   json hello = {{"host", base::HostName()}};
   try {
     body(hello);

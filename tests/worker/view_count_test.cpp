@@ -1,5 +1,5 @@
 // Photos that look straight down from 50 m onto flat ground at 2 m: which tiles and cells too few of them see, and what shows there instead.
-#include "worker/few_views.h"
+#include "worker/view_count.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "core/image/image.h"
 #include "tests/support/nadir_photo.h"
 #include "tests/support/temporary_folder.h"
-#include "worker/make_backdrop.h"
+#include "worker/make_background.h"
 #include "worker/point_surface.h"
 #include "worker/starting_occupancy.h"
 
@@ -19,7 +19,7 @@ namespace {
 constexpr int kWidth = 96, kHeight = 72;
 constexpr double kGround = 2.0;
 
-class FewViewsTest : public ::testing::Test {
+class ViewCountTest : public ::testing::Test {
  protected:
   // Photos at x = 0 and x = shift; focal length 48 pixels: each shows 96 x 72 m of ground.
   void Photograph(double shift_m) {
@@ -62,9 +62,9 @@ class FewViewsTest : public ::testing::Test {
   std::unique_ptr<RaySource> source_;
 };
 
-TEST_F(FewViewsTest, TilesThatOtherPhotosSeeAreInCompany) {
+TEST_F(ViewCountTest, TilesThatOtherPhotosSeeAreKept) {
   Photograph(48.0);
-  const std::vector<Tile> tiles = TilesInCompany(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2);
+  const std::vector<Tile> tiles = TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2);
   std::set<std::pair<int, int>> columns;
   for (const Tile& tile : tiles) columns.insert({tile.photo, tile.column});
   // The second photo begins at x = 0 m, the first photo's middle.
@@ -75,26 +75,26 @@ TEST_F(FewViewsTest, TilesThatOtherPhotosSeeAreInCompany) {
   EXPECT_EQ(tiles.size(), static_cast<size_t>(kTileColumns * kTileRows));
 }
 
-TEST_F(FewViewsTest, OneViewIsEnoughWhenAskedFor) {
+TEST_F(ViewCountTest, OneViewIsEnoughWhenAskedFor) {
   Photograph(48.0);
-  EXPECT_EQ(TilesInCompany(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 1).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
+  EXPECT_EQ(TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 1).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
 }
 
-TEST_F(FewViewsTest, AHeldOutPhotoIsNoCompanyAndNothingBesideItIsBetterThanNothing) {
+TEST_F(ViewCountTest, AHeldOutPhotoDoesNotCountAndAllTilesAreKeptWhenNoneHasEnough) {
   Photograph(48.0);
   survey_.photos[1].is_test = true;
-  const std::vector<Tile> tiles = TilesInCompany(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2);
+  const std::vector<Tile> tiles = TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2);
   EXPECT_EQ(tiles.size(), static_cast<size_t>(kTileColumns * kTileRows)) << "all tiles of the only training photo";
 }
 
-TEST_F(FewViewsTest, WithoutPointsEveryTileCounts) {
+TEST_F(ViewCountTest, WithoutPointsEveryTileCounts) {
   Photograph(48.0);
   survey_.points.clear();
   EXPECT_TRUE(SurfaceOfPoints(survey_).Empty());
-  EXPECT_EQ(TilesInCompany(*source_, survey_, {0, 1}, {}, 2).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
+  EXPECT_EQ(TilesWithEnoughViews(*source_, survey_, {0, 1}, {}, 2).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
 }
 
-TEST_F(FewViewsTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
+TEST_F(ViewCountTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
   Photograph(48.0);
   base::ThreadPool threads(2);
   const auto seen = [&](int min_views, double x, double z) {
@@ -105,7 +105,7 @@ TEST_F(FewViewsTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
     f.occupancy = field::OccupancyGrid::Make(extent, 0.5 * f.map.units_per_metre(), 4'000'000);
     MarkUnseen(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), min_views, f, threads);
     const Eigen::Vector3f unit = f.map.UnitFromEnu({x, 0.0, z});
-    return f.occupancy.depth[static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] >= 0.0F;
+    return f.occupancy.tau[static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] >= 0.0F;
   };
   EXPECT_TRUE(seen(2, 24.0, 3.0)) << "in both photos";
   EXPECT_TRUE(seen(2, 24.0, 15.0));
@@ -117,21 +117,21 @@ TEST_F(FewViewsTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
   EXPECT_TRUE(seen(2, -24.0, 3.0)) << "a lone photo still shows what it sees";
 }
 
-TEST_F(FewViewsTest, TheBackdropShowsCoarseColoursWhereOnePhotoLookedAndNearOnesWhereNoneDid) {
+TEST_F(ViewCountTest, TheBackgroundShowsCoarseColoursWhereOnePhotoLookedAndNearOnesWhereNoneDid) {
   Photograph(48.0);
-  const scene::Backdrop backdrop = MakeBackdrop(*source_, survey_, SurfaceOfPoints(survey_), 1);
-  const auto down_at = [&](double x) { return backdrop.Color({x, 0.0, 50.0}, {0.0, 0.0, -1.0}); };
+  const scene::Background background = MakeBackground(*source_, survey_, SurfaceOfPoints(survey_), 1);
+  const auto down_at = [&](double x) { return background.Color({x, 0.0, 50.0}, {0.0, 0.0, -1.0}); };
   EXPECT_NEAR(down_at(-24.0)[0], 150.0F / 255.0F, 0.01F) << "the check is blurred";
   EXPECT_NEAR(down_at(-24.0)[1], 80.0F / 255.0F, 0.01F);
   EXPECT_NEAR(down_at(24.0)[1], 0.0F, 0.01F);
   EXPECT_NEAR(down_at(80.0)[1], 80.0F / 255.0F, 0.01F);
   EXPECT_NEAR(down_at(-300.0)[1], 80.0F / 255.0F, 0.02F) << "beyond the photos their edge goes on";
-  EXPECT_EQ(backdrop.Color({0.0, 0.0, 50.0}, {1.0, 0.0, 0.1}), backdrop.mean_srgb) << "the sky";
-  const scene::Backdrop flat = MakeBackdrop(*source_, survey_, {}, 1);
+  EXPECT_EQ(background.Color({0.0, 0.0, 50.0}, {1.0, 0.0, 0.1}), background.mean_srgb) << "the sky";
+  const scene::Background flat = MakeBackground(*source_, survey_, {}, 1);
   EXPECT_EQ(flat.Color({0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}), flat.mean_srgb) << "without points";
 }
 
-TEST_F(FewViewsTest, MeanColourIsTakenInLinearLight) {
+TEST_F(ViewCountTest, MeanColourIsTakenInLinearLight) {
   Photograph(48.0);
   const std::array<float, 3> mean = source_->MeanColor(1);
   const auto linear = [](double v) { return std::pow((v / 255.0 + 0.055) / 1.055, 2.4); };
@@ -150,7 +150,7 @@ TEST(SurfaceOfPoints, FollowsTheGroundAndReachesBeyondThePoints) {
     point.x_in_enu = {x, y, x < 40.0 ? 5.0 : 25.0};
     survey.points.push_back(point);
   }
-  const scene::PlanSurface surface = SurfaceOfPoints(survey);
+  const scene::HeightMap surface = SurfaceOfPoints(survey);
   EXPECT_DOUBLE_EQ(surface.At(10.0, 20.0), 5.0);
   EXPECT_DOUBLE_EQ(surface.At(70.0, 20.0), 25.0);
   EXPECT_DOUBLE_EQ(surface.At(-500.0, 900.0), 5.0);

@@ -1,4 +1,4 @@
-#include "core/scene/plan_surface.h"
+#include "core/scene/height_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ Along Between(double position, int count) {
 
 }  // namespace
 
-PlanSurface::PlanSurface(double min_x, double min_y, double cell_m, int columns, int rows, std::vector<double> heights)
+HeightMap::HeightMap(double min_x, double min_y, double cell_m, int columns, int rows, std::vector<double> heights)
     : min_x_(min_x), min_y_(min_y), cell_m_(cell_m), columns_(columns), rows_(rows), heights_(std::move(heights)) {
   if (columns < 1 || rows < 1 || !(cell_m > 0.0) || heights_.size() != static_cast<size_t>(columns) * static_cast<size_t>(rows)) {
     throw std::invalid_argument("a surface of " + std::to_string(columns) + " x " + std::to_string(rows) + " cells with " +
@@ -29,7 +29,7 @@ PlanSurface::PlanSurface(double min_x, double min_y, double cell_m, int columns,
   }
 }
 
-PlanSurface::Corners PlanSurface::Around(double x, double y) const {
+HeightMap::Corners HeightMap::Around(double x, double y) const {
   const Along u = Between((x - min_x_) / cell_m_, columns_);
   const Along v = Between((y - min_y_) / cell_m_, rows_);
   const auto index = [&](int row, int column) { return static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column); };
@@ -37,14 +37,14 @@ PlanSurface::Corners PlanSurface::Around(double x, double y) const {
           {(1.0 - v.share) * (1.0 - u.share), (1.0 - v.share) * u.share, v.share * (1.0 - u.share), v.share * u.share}};
 }
 
-double PlanSurface::At(double x, double y) const {
+double HeightMap::At(double x, double y) const {
   const Corners corners = Around(x, y);
   double height = 0.0;
   for (size_t i = 0; i < 4; ++i) height += corners.weight[i] * heights_[corners.cell[i]];
   return height;
 }
 
-bool PlanSurface::Meet(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Eigen::Vector3d* x_in_enu) const {
+bool HeightMap::Meet(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Eigen::Vector3d* x_in_enu) const {
   constexpr double kShallowest = -0.05;  // nearly level rays meet the ground where nobody knows its height
   constexpr int kRounds = 6;
   if (Empty() || !(direction.z() < kShallowest)) return false;

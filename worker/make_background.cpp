@@ -1,4 +1,4 @@
-#include "worker/make_backdrop.h"
+#include "worker/make_background.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 namespace skyquilt::worker {
 namespace {
 
-constexpr int kMostBackdropCells = 384;  // along an axis
-constexpr int kReach = 1;                // cells on each side that colours are averaged over
-constexpr double kSteepEnough = 0.35;    // rays nearer to the horizon carry one colour over hundreds of metres
+constexpr int kMostBackgroundCells = 384;  // along an axis
+constexpr int kReach = 1;                  // cells on each side that colours are averaged over
+constexpr double kSteepEnough = 0.35;      // rays nearer to the horizon carry one colour over hundreds of metres
 
 struct Splat {
   Eigen::Vector3d x;
@@ -21,10 +21,10 @@ struct Splat {
 
 }  // namespace
 
-scene::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& survey, const scene::PlanSurface& points, uint64_t seed) {
-  scene::Backdrop backdrop;
-  backdrop.mean_srgb = source.MeanColor(seed);
-  if (points.Empty()) return backdrop;
+scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, uint64_t seed) {
+  scene::Background background;
+  background.mean_srgb = source.MeanColor(seed);
+  if (points.Empty()) return background;
   std::vector<int> photos;
   for (size_t i = 0; i < survey.photos.size(); ++i) photos.push_back(static_cast<int>(i));
   std::vector<Splat> splats;
@@ -42,15 +42,15 @@ scene::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& surv
     if (tile.column > 0 && !splats.empty()) spacing.push_back((splat.x - splats.back().x).head<2>().norm());
     splats.push_back(splat);
   }
-  if (spacing.empty()) return backdrop;
+  if (spacing.empty()) return background;
   Eigen::Vector2d low = splats.front().x.head<2>(), high = low;
   for (const Splat& splat : splats) {
     low = low.cwiseMin(splat.x.head<2>());
     high = high.cwiseMax(splat.x.head<2>());
   }
   const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
-  const double cell_m = std::max(base::UpperMedian(spacing), size.maxCoeff() / kMostBackdropCells);
-  if (!(cell_m > 0.0)) return backdrop;
+  const double cell_m = std::max(base::UpperMedian(spacing), size.maxCoeff() / kMostBackgroundCells);
+  if (!(cell_m > 0.0)) return background;
   const int columns = static_cast<int>(size.x() / cell_m) + 1, rows = static_cast<int>(size.y() / cell_m) + 1;
   const size_t cells = static_cast<size_t>(columns) * static_cast<size_t>(rows);
   std::vector<double> sum(3 * cells, 0.0), count(cells, 0.0);
@@ -72,9 +72,9 @@ scene::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& surv
     for (int column = 0; column < columns; ++column) heights.push_back(points.At(low.x() + (column + 0.5) * cell_m, low.y() + (row + 0.5) * cell_m));
   }
   scene::FillFromSurroundings(columns, rows, 3, &sum, std::move(count));
-  backdrop.surface = scene::PlanSurface(low.x(), low.y(), cell_m, columns, rows, std::move(heights));
-  backdrop.rgb_srgb.assign(sum.begin(), sum.end());
-  return backdrop;
+  background.surface = scene::HeightMap(low.x(), low.y(), cell_m, columns, rows, std::move(heights));
+  background.rgb_srgb.assign(sum.begin(), sum.end());
+  return background;
 }
 
 }  // namespace skyquilt::worker

@@ -1,4 +1,4 @@
-// The simulated places: numbers only. Options are laid over a preset once, checked, and everything after works from the result.
+// The simulated places: numbers only. Options are laid over a place once, checked, and everything after works from the result.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +27,7 @@ struct CityPlan {
   int tree_detail = 2;    // subdivisions of each crown
 };
 
-struct Preset {
+struct PlaceSpec {
   std::string name;
   Landscape landscape = Landscape::kCity;
   uint32_t seed = 1;
@@ -62,7 +62,7 @@ struct Preset {
   double sky_clouds = 0.0;  // 0..1, contrast of the clouds that wet surfaces mirror
 };
 
-// The preset with the options laid over it. Throws base::UsageError naming the option, what was given and what is allowed.
-Preset ResolvePreset(const SimulateOptions& options);
+// The place with the options laid over it. Throws base::UsageError naming the option, what was given and what is allowed.
+PlaceSpec ResolvePlace(const SimulateOptions& options);
 
 }  // namespace skyquilt::simulate

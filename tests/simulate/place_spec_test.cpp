@@ -1,4 +1,4 @@
-#include "simulate/preset.h"
+#include "simulate/place_spec.h"
 
 #include <gtest/gtest.h>
 
@@ -14,44 +14,44 @@ namespace skyquilt::simulate {
 namespace {
 
 TEST(Presets, EveryNameResolvesToUsableNumbers) {
-  const std::vector<std::string> names = PresetNames();
+  const std::vector<std::string> names = PlaceNames();
   for (const char* wanted : {"hamlet", "town", "smallcity", "tidalflat"}) EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end());
   for (const std::string& name : names) {
     SimulateOptions options;
-    options.preset = name;
-    const Preset preset = ResolvePreset(options);
-    EXPECT_EQ(preset.name, name);
-    EXPECT_EQ(preset.camera.Problem(), "");
-    EXPECT_EQ(preset.altitudes_agl_m.size(), static_cast<size_t>(preset.rows * preset.columns));
+    options.place = name;
+    const PlaceSpec place = ResolvePlace(options);
+    EXPECT_EQ(place.name, name);
+    EXPECT_EQ(place.camera.Problem(), "");
+    EXPECT_EQ(place.altitudes_agl_m.size(), static_cast<size_t>(place.rows * place.columns));
   }
 }
 
 TEST(Presets, SmallCityFliesTheMatrixCityHeights) {
   SimulateOptions options;
-  options.preset = "smallcity";
-  EXPECT_EQ(ResolvePreset(options).altitudes_agl_m, (std::vector<double>{150, 150, 300, 500, 450, 450, 350, 350, 250, 200}));
+  options.place = "smallcity";
+  EXPECT_EQ(ResolvePlace(options).altitudes_agl_m, (std::vector<double>{150, 150, 300, 500, 450, 450, 350, 350, 250, 200}));
 }
 
 TEST(Presets, OptionsAreLaidOver) {
   SimulateOptions options;
-  options.preset = "town";
+  options.place = "town";
   options.image_width = 320;
   options.forward_overlap = 0.6;
   options.altitudes = {120.0};
   options.gps_noise_m = 0.0;
   options.oblique = false;
-  const Preset preset = ResolvePreset(options);
-  EXPECT_EQ(preset.camera.width, 320);
-  EXPECT_EQ(preset.camera.height, 180);
-  EXPECT_EQ(preset.forward_overlap, 0.6);
-  EXPECT_EQ(preset.altitudes_agl_m, (std::vector<double>{120.0, 120.0, 120.0, 120.0}));
-  EXPECT_EQ(preset.gps_noise_m, 0.0);
-  EXPECT_EQ(preset.oblique_lines, 0);
+  const PlaceSpec place = ResolvePlace(options);
+  EXPECT_EQ(place.camera.width, 320);
+  EXPECT_EQ(place.camera.height, 180);
+  EXPECT_EQ(place.forward_overlap, 0.6);
+  EXPECT_EQ(place.altitudes_agl_m, (std::vector<double>{120.0, 120.0, 120.0, 120.0}));
+  EXPECT_EQ(place.gps_noise_m, 0.0);
+  EXPECT_EQ(place.oblique_lines, 0);
 }
 
 TEST(Presets, LightIsAsTheTagsTellUnlessAskedFor) {
   SimulateOptions options;
-  const Preset plain = ResolvePreset(options);
+  const PlaceSpec plain = ResolvePlace(options);
   EXPECT_EQ(plain.exposure_offset_stops, 0.0);
   EXPECT_EQ(plain.exposure_error_stops, 0.0);
   EXPECT_EQ(plain.color_drift_stops, 0.0);
@@ -62,27 +62,27 @@ TEST(Presets, LightIsAsTheTagsTellUnlessAskedFor) {
   options.color_drift_stops = 0.5;
   options.vignetting = 0.9;
   options.exposure_tags = "half";
-  const Preset changed = ResolvePreset(options);
+  const PlaceSpec changed = ResolvePlace(options);
   EXPECT_EQ(changed.exposure_offset_stops, -10.0);
   EXPECT_EQ(changed.exposure_error_stops, 3.0);
   EXPECT_EQ(changed.color_drift_stops, 0.5);
   EXPECT_EQ(changed.vignetting, 0.9);
   EXPECT_EQ(changed.exposure_tags, ExposureTags::kHalf);
   options.exposure_tags = "none";
-  EXPECT_EQ(ResolvePreset(options).exposure_tags, ExposureTags::kNone);
+  EXPECT_EQ(ResolvePlace(options).exposure_tags, ExposureTags::kNone);
 }
 
 void ExpectRefused(const std::string& named, const std::function<void(SimulateOptions&)>& change) {
   SimulateOptions options;
-  options.preset = "town";
+  options.place = "town";
   change(options);
-  const std::string error = UsageErrorOf([&] { ResolvePreset(options); });
+  const std::string error = UsageErrorOf([&] { ResolvePlace(options); });
   EXPECT_NE(error.find(named), std::string::npos) << named << ": " << error;
 }
 
 TEST(Presets, BadOptionsAreRefusedByName) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  ExpectRefused("preset", [](SimulateOptions& o) { o.preset = "metropolis"; });
+  ExpectRefused("place", [](SimulateOptions& o) { o.place = "metropolis"; });
   ExpectRefused("seed", [](SimulateOptions& o) { o.seed = -1; });
   ExpectRefused("image_width", [](SimulateOptions& o) { o.image_width = 3; });
   ExpectRefused("image_width", [](SimulateOptions& o) { o.image_width = -640; });
@@ -114,7 +114,7 @@ TEST(Presets, BadOptionsAreRefusedByName) {
   ExpectRefused("light_intensity", [](SimulateOptions& o) { o.light_intensity = 0.0; });
   ExpectRefused("jpeg_quality", [](SimulateOptions& o) { o.jpeg_quality = 101; });
   ExpectRefused("moving_cars", [](SimulateOptions& o) {
-    o.preset = "tidalflat";
+    o.place = "tidalflat";
     o.moving_cars = 2;
   });
 }

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "core/checkpoint/archive.h"
-#include "core/scene/plan_surface.h"
+#include "core/scene/height_map.h"
 
 namespace skyquilt::scene {
 
-struct Backdrop {
-  PlanSurface surface;                                  // empty: the mean colour everywhere
+struct Background {
+  HeightMap surface;                                    // empty: the mean colour everywhere
   std::vector<float> rgb_srgb;                          // [row][column][channel] of the surface's cells, display values at reference exposure
   std::array<float, 3> mean_srgb = {0.0F, 0.0F, 0.0F};  // the survey's mean colour: sky, level rays
 
@@ -21,9 +21,9 @@ struct Backdrop {
   std::array<float, 3> Color(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu) const;
 };
 
-// The backdrop must outlive the writer's Commit.
-void PutBackdrop(const Backdrop& backdrop, checkpoint::ArchiveWriter& writer);
+// The background must outlive the writer's Commit.
+void PutBackground(const Background& background, checkpoint::ArchiveWriter& writer);
 // Black where the file has none. Throws base::InputError when arrays and attributes disagree.
-Backdrop GetBackdrop(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file);
+Background GetBackground(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file);
 
 }  // namespace skyquilt::scene

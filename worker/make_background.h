@@ -1,7 +1,7 @@
-// The survey's backdrop from its training photos.
+// The survey's background from its training photos.
 #pragma once
 
-#include "core/scene/backdrop.h"
+#include "core/scene/background.h"
 #include "core/survey/survey.h"
 #include "worker/ray_source.h"
 
@@ -9,6 +9,6 @@ namespace skyquilt::worker {
 
 // Colours of the photos' tiles laid on the surface of the sparse points, blurred by about three tiles (heights are not known better), and
 // continued to where no photo looked. Without points only the mean colour.
-scene::Backdrop MakeBackdrop(const RaySource& source, const survey::Survey& survey, const scene::PlanSurface& points, uint64_t seed);
+scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, uint64_t seed);
 
 }  // namespace skyquilt::worker

@@ -1,4 +1,4 @@
-#include "coordinator/rendering/ray_parcel.h"
+#include "coordinator/rendering/ray_request.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -14,15 +14,15 @@ namespace {
 using render::Ray;
 using scene::RayInFlight;
 
-RayParcel Parcel(int n, bool one_camera, bool fresh, uint64_t seed) {
+RayRequest Request(int n, bool one_camera, bool fresh, uint64_t seed) {
   base::Random random(seed);
-  RayParcel parcel{.id = seed, .options = {.step_scale = 2.0, .concealing = render::Concealing::kGain}, .rays = {}, .in_flight = {}};
+  RayRequest request{.id = seed, .options = {.step_scale = 2.0, .concealing = render::Concealing::kGain}, .rays = {}, .in_flight = {}};
   for (int i = 0; i < n; ++i) {
     Ray ray;
     ray.origin_enu = one_camera ? Eigen::Vector3d(1.0, 2.0, 3.0) : Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal());
     ray.direction_enu = {random.Normal(), random.Normal(), random.Normal()};
     ray.pixel_radius = 0.001F;
-    parcel.rays.push_back(ray);
+    request.rays.push_back(ray);
     RayInFlight ray_in_flight;
     if (!fresh) {
       ray_in_flight.at = random.Uniform(0.1, 9.0);
@@ -32,15 +32,15 @@ RayParcel Parcel(int n, bool one_camera, bool fresh, uint64_t seed) {
       ray_in_flight.state.light_passed = 0.75F;
       ray_in_flight.owner = i % 3;
     }
-    parcel.in_flight.push_back(ray_in_flight);
+    request.in_flight.push_back(ray_in_flight);
   }
-  return parcel;
+  return request;
 }
 
-RC_GTEST_PROP(RayParcelProperty, TravelsUnchanged, ()) {
-  const RayParcel sent =
-      Parcel(*rc::gen::inRange(0, 20), *rc::gen::arbitrary<bool>(), *rc::gen::arbitrary<bool>(), *rc::gen::inRange<uint64_t>(1, 99));
-  const RayParcel got = RayParcelFromBytes(ToBytes(sent));
+RC_GTEST_PROP(RayRequestProperty, TravelsUnchanged, ()) {
+  const RayRequest sent =
+      Request(*rc::gen::inRange(0, 20), *rc::gen::arbitrary<bool>(), *rc::gen::arbitrary<bool>(), *rc::gen::inRange<uint64_t>(1, 99));
+  const RayRequest got = RayRequestFromBytes(ToBytes(sent));
   RC_ASSERT(got.id == sent.id);
   RC_ASSERT(got.options.step_scale == sent.options.step_scale);
   RC_ASSERT(got.options.colour_threshold == sent.options.colour_threshold);
@@ -60,8 +60,8 @@ RC_GTEST_PROP(RayParcelProperty, TravelsUnchanged, ()) {
   }
 }
 
-RC_GTEST_PROP(RayParcelProperty, ComesBackUnchanged, ()) {
-  CarriedParcel sent{.id = 7, .samples = 123, .field_loads = 4, .in_flight = {}, .colors = {}, .failure = {Failure::kInput, "why", "scene.h5"}};
+RC_GTEST_PROP(RayRequestProperty, ComesBackUnchanged, ()) {
+  RayReply sent{.id = 7, .samples = 123, .field_loads = 4, .in_flight = {}, .colors = {}, .failure = {Failure::kInput, "why", "scene.h5"}};
   const int n = *rc::gen::inRange(0, 20);
   for (int i = 0; i < n; ++i) {
     RayInFlight ray_in_flight;
@@ -70,7 +70,7 @@ RC_GTEST_PROP(RayParcelProperty, ComesBackUnchanged, ()) {
     sent.in_flight.push_back(ray_in_flight);
     if (ray_in_flight.owner == scene::kArrived) sent.colors.push_back({.opacity = 0.01F * static_cast<float>(i)});
   }
-  const CarriedParcel got = CarriedParcelFromBytes(ToBytes(sent));
+  const RayReply got = RayReplyFromBytes(ToBytes(sent));
   RC_ASSERT(got.id == 7U && got.samples == 123 && got.field_loads == 4 && got.failure.kind == Failure::kInput && got.failure.reason == "why" &&
             got.failure.file == "scene.h5");
   RC_ASSERT(got.in_flight.size() == sent.in_flight.size() && got.colors.size() == sent.colors.size());
@@ -78,20 +78,20 @@ RC_GTEST_PROP(RayParcelProperty, ComesBackUnchanged, ()) {
   for (size_t i = 0; i < sent.colors.size(); ++i) RC_ASSERT(got.colors[i].opacity == sent.colors[i].opacity);
 }
 
-TEST(RayParcel, RaysOfOneCameraAreSmall) {
-  const size_t of_camera = ToBytes(Parcel(1000, true, true, 1)).size();
+TEST(RayRequest, RaysOfOneCameraAreSmall) {
+  const size_t of_camera = ToBytes(Request(1000, true, true, 1)).size();
   EXPECT_LT(of_camera, 1000U * 24U + 200U);
-  EXPECT_GT(ToBytes(Parcel(1000, false, false, 1)).size(), 3 * of_camera);
+  EXPECT_GT(ToBytes(Request(1000, false, false, 1)).size(), 3 * of_camera);
 }
 
-TEST(RayParcel, RefusesWhatIsNone) {
-  const std::string good = ToBytes(Parcel(5, false, false, 2));
-  for (size_t n = 0; n < good.size(); ++n) EXPECT_THROW(RayParcelFromBytes(good.substr(0, n)), std::runtime_error) << n;
-  EXPECT_THROW(RayParcelFromBytes(good + "x"), std::runtime_error);
+TEST(RayRequest, RefusesWhatIsNone) {
+  const std::string good = ToBytes(Request(5, false, false, 2));
+  for (size_t n = 0; n < good.size(); ++n) EXPECT_THROW(RayRequestFromBytes(good.substr(0, n)), std::runtime_error) << n;
+  EXPECT_THROW(RayRequestFromBytes(good + "x"), std::runtime_error);
   std::string many = good;
   // The count of rays follows id, options and two flags.
   for (size_t i = 0; i < 8; ++i) many[8 + 8 + 4 + sizeof(render::Concealing) + 2 + i] = '\x7f';
-  EXPECT_THROW(RayParcelFromBytes(many), std::runtime_error);
+  EXPECT_THROW(RayRequestFromBytes(many), std::runtime_error);
 }
 
 }  // namespace

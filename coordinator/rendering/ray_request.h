@@ -11,15 +11,15 @@
 namespace skyquilt::coordinator {
 
 // To a rank: take these rays on.
-struct RayParcel {
+struct RayRequest {
   uint64_t id = 0;
   render::EngineOptions options;
   std::vector<render::Ray> rays;
   std::vector<scene::RayInFlight> in_flight;  // one per ray
 };
 
-// Back from it: in the order of the parcel's rays.
-struct CarriedParcel {
+// Back from it: in the order of the request's rays.
+struct RayReply {
   uint64_t id = 0;
   int64_t samples = 0;
   int64_t field_loads = 0;                    // of the rank, so far
@@ -29,10 +29,10 @@ struct CarriedParcel {
 };
 
 // Rays of one camera share most numbers, and fresh ones need none: 24 bytes per ray then, at most 152.
-std::string ToBytes(const RayParcel& parcel);
-std::string ToBytes(const CarriedParcel& parcel);
+std::string ToBytes(const RayRequest& request);
+std::string ToBytes(const RayReply& request);
 // Throw std::runtime_error on bytes that are not theirs.
-RayParcel RayParcelFromBytes(const std::string& bytes);
-CarriedParcel CarriedParcelFromBytes(const std::string& bytes);
+RayRequest RayRequestFromBytes(const std::string& bytes);
+RayReply RayReplyFromBytes(const std::string& bytes);
 
 }  // namespace skyquilt::coordinator

@@ -1,5 +1,5 @@
-// The surface under a backdrop: bilinear heights, where rays meet it, filling of gaps, and its place in a file.
-#include "core/scene/backdrop.h"
+// The surface under a background: bilinear heights, where rays meet it, filling of gaps, and its place in a file.
+#include "core/scene/background.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -14,7 +14,7 @@ namespace skyquilt::scene {
 namespace {
 
 // z = 10 + x / 4 over 40 x 20 m.
-PlanSurface Slope() {
+HeightMap Slope() {
   std::vector<double> heights;
   for (int row = 0; row < 10; ++row) {
     for (int column = 0; column < 20; ++column) heights.push_back(10.0 + (column + 0.5) * 2.0 / 4.0);
@@ -22,25 +22,25 @@ PlanSurface Slope() {
   return {0.0, 0.0, 2.0, 20, 10, heights};
 }
 
-RC_GTEST_PROP(PlanSurface, IsExactOnASlopeAndLevelBeyondIt, ()) {
+RC_GTEST_PROP(HeightMap, IsExactOnASlopeAndLevelBeyondIt, ()) {
   const double x = *rc::gen::inRange(-100, 500) * 0.1, y = *rc::gen::inRange(-1000, 1000) * 0.1;
   RC_ASSERT(std::abs(Slope().At(x, y) - (10.0 + std::clamp(x, 1.0, 39.0) / 4.0)) < 1e-9);
 }
 
-TEST(PlanSurface, IsMetByRaysThatGoDown) {
+TEST(HeightMap, IsMetByRaysThatGoDown) {
   Eigen::Vector3d x;
   const Eigen::Vector3d direction = Eigen::Vector3d(0.3, 0.1, -1.0).normalized();
   ASSERT_TRUE(Slope().Meet({10.0, 10.0, 60.0}, direction, &x));
   EXPECT_NEAR(x.z(), Slope().At(x.x(), x.y()), 0.05);
   EXPECT_FALSE(Slope().Meet({10.0, 10.0, 60.0}, {1.0, 0.0, 0.0}, &x)) << "level";
   EXPECT_FALSE(Slope().Meet({10.0, 10.0, 5.0}, direction, &x)) << "below it";
-  EXPECT_FALSE(PlanSurface().Meet({10.0, 10.0, 60.0}, direction, &x));
+  EXPECT_FALSE(HeightMap().Meet({10.0, 10.0, 60.0}, direction, &x));
 }
 
-TEST(PlanSurface, RefusesNumbersThatDoNotFit) {
-  EXPECT_THROW(PlanSurface(0.0, 0.0, 1.0, 2, 2, {1.0}), std::invalid_argument);
-  EXPECT_THROW(PlanSurface(0.0, 0.0, 0.0, 1, 1, {1.0}), std::invalid_argument);
-  EXPECT_THROW(PlanSurface(0.0, 0.0, std::nan(""), 1, 1, {1.0}), std::invalid_argument);
+TEST(HeightMap, RefusesNumbersThatDoNotFit) {
+  EXPECT_THROW(HeightMap(0.0, 0.0, 1.0, 2, 2, {1.0}), std::invalid_argument);
+  EXPECT_THROW(HeightMap(0.0, 0.0, 0.0, 1, 1, {1.0}), std::invalid_argument);
+  EXPECT_THROW(HeightMap(0.0, 0.0, std::nan(""), 1, 1, {1.0}), std::invalid_argument);
 }
 
 RC_GTEST_PROP(FillFromSurroundings, KeepsWhatIsKnownAndStaysBetweenIt, ()) {
@@ -76,44 +76,44 @@ TEST(FillFromSurroundings, PrefersTheNearest) {
   EXPECT_GT(values[58], 4.0);
 }
 
-class BackdropFile : public ::testing::Test {
+class BackgroundFile : public ::testing::Test {
  protected:
-  void Write(const Backdrop& backdrop) const {
+  void Write(const Background& background) const {
     checkpoint::ArchiveWriter writer("scene", 1);
-    PutBackdrop(backdrop, writer);
+    PutBackground(background, writer);
     writer.Commit(file_);
   }
   TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "s.h5";
 };
 
-TEST_F(BackdropFile, BringsBackTheSameColours) {
-  Backdrop backdrop{Slope(), {}, {0.25F, 0.5F, 0.75F}};
-  for (int i = 0; i < 600; ++i) backdrop.rgb_srgb.push_back(static_cast<float>(i) / 600.0F);
-  Write(backdrop);
-  const Backdrop read = GetBackdrop(checkpoint::ArchiveReader(file_), file_);
+TEST_F(BackgroundFile, BringsBackTheSameColours) {
+  Background background{Slope(), {}, {0.25F, 0.5F, 0.75F}};
+  for (int i = 0; i < 600; ++i) background.rgb_srgb.push_back(static_cast<float>(i) / 600.0F);
+  Write(background);
+  const Background read = GetBackground(checkpoint::ArchiveReader(file_), file_);
   for (const Eigen::Vector3d& direction : {Eigen::Vector3d(0.0, 0.0, -1.0), Eigen::Vector3d(0.6, 0.0, -0.8), Eigen::Vector3d(0.0, 0.0, 1.0)}) {
-    EXPECT_EQ(read.Color({7.0, 8.0, 50.0}, direction), backdrop.Color({7.0, 8.0, 50.0}, direction));
+    EXPECT_EQ(read.Color({7.0, 8.0, 50.0}, direction), background.Color({7.0, 8.0, 50.0}, direction));
   }
 }
 
-TEST_F(BackdropFile, MayHoldNoSurfaceOrNothing) {
+TEST_F(BackgroundFile, MayHoldNoSurfaceOrNothing) {
   Write({{}, {}, {0.25F, 0.5F, 0.75F}});
-  const Backdrop read = GetBackdrop(checkpoint::ArchiveReader(file_), file_);
+  const Background read = GetBackground(checkpoint::ArchiveReader(file_), file_);
   EXPECT_TRUE(read.surface.Empty());
   EXPECT_EQ(read.Color({0.0, 0.0, 9.0}, {0.0, 0.0, -1.0})[1], 0.5F);
   checkpoint::ArchiveWriter("scene", 1).Commit(file_);
-  EXPECT_EQ(GetBackdrop(checkpoint::ArchiveReader(file_), file_).mean_srgb[0], 0.0F);
+  EXPECT_EQ(GetBackground(checkpoint::ArchiveReader(file_), file_).mean_srgb[0], 0.0F);
 }
 
-TEST_F(BackdropFile, IsRefusedWhenItsPartsDisagree) {
-  Backdrop backdrop{Slope(), std::vector<float>(600), {}};
+TEST_F(BackgroundFile, IsRefusedWhenItsPartsDisagree) {
+  Background background{Slope(), std::vector<float>(600), {}};
   const std::vector<double> heights(12, 1.0);
   checkpoint::ArchiveWriter writer("scene", 1);
-  writer.Put("backdrop/heights", heights, {4, 3});
-  writer.Put("backdrop/colors", backdrop.rgb_srgb, {10, 20, 3});
+  writer.Put("background/heights", heights, {4, 3});
+  writer.Put("background/colors", background.rgb_srgb, {10, 20, 3});
   writer.Commit(file_);
-  EXPECT_THROW(GetBackdrop(checkpoint::ArchiveReader(file_), file_), base::InputError);
+  EXPECT_THROW(GetBackground(checkpoint::ArchiveReader(file_), file_), base::InputError);
 }
 
 }  // namespace

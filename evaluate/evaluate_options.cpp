@@ -26,10 +26,12 @@ std::vector<config::Field<EvaluateOptions>> EvaluateOptions::Fields() {
 
 void EvaluateOptions::RequireFiles() const {
   if (!lpips_network.empty() && !std::filesystem::is_regular_file(lpips_network)) {
-    throw base::InputError(lpips_network, "no such file", "Give an ONNX file as evaluate.lpips_network, or leave it empty: LPIPS is not measured then");
+    throw base::InputError(lpips_network, "no such file",
+                           "Give an ONNX file as evaluate.lpips_network, or leave it empty: LPIPS is not measured then");
   }
   if (!normal_photos.empty() && !std::filesystem::is_directory(normal_photos)) {
-    throw base::InputError(normal_photos, "no such folder", "Give the folder of the normally exposed photos as evaluate.normal_photos, or leave it empty");
+    throw base::InputError(normal_photos, "no such folder",
+                           "Give the folder of the normally exposed photos as evaluate.normal_photos, or leave it empty");
   }
 }
 

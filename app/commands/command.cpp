@@ -75,9 +75,6 @@ coordinator::Pipeline CommandState::BeginIn(const std::string& folder, const std
   return Begin(project, Load(ProjectConfig(project), flags), restart);
 }
 
-namespace {
-
-// What an option may be, as help and configuration files show it.
 std::string AllowedText(const std::string& key) {
   coordinator::Settings settings;
   const config::Sections sections = settings.AllSections();
@@ -86,8 +83,6 @@ std::string AllowedText(const std::string& key) {
   const std::string range = option->range.Text();
   return range.empty() ? "" : " (" + range + ")";
 }
-
-}  // namespace
 
 void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help) {
   command.add_option_function<std::string>(

@@ -40,6 +40,8 @@ struct CommandState {
 
 using Overrides = std::shared_ptr<std::vector<config::Override>>;
 
+// What an option may be, for the help of a flag: " (1 to 16)"; empty when anything goes.
+std::string AllowedText(const std::string& key);
 // A flag with a value that sets one option, "section.key".
 void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help);
 // The flag of commands that simulate: `take` gets the name of the place. Its name in earlier versions, --preset, is still taken, with a warning.

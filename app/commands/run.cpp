@@ -4,8 +4,6 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
-#include "core/base/text.h"
-#include "simulate/simulate.h"
 
 namespace skyquilt::app {
 namespace {
@@ -61,7 +59,7 @@ void AddRun(CLI::App& app, CommandState& state) {
         flags->place = name;
         overrides->push_back({"simulate.place", name});
       },
-      "simulate a place instead: " + base::Join(simulate::PlaceNames()));
+      "simulate a place instead" + AllowedText("simulate.place") + " [simulate.place]");
   command->add_option("--model", flags->model, "COLMAP model of the photos (text or binary); without it COLMAP is run")->type_name("FOLDER");
   AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns as 2x2, size:<metres>, or auto");
   AddOverride(*command, overrides, "--altitudes", "partition.altitudes",

@@ -1,9 +1,6 @@
-#include "simulate/simulate.h"
-
 #include <CLI/CLI.hpp>
 
 #include "app/commands/command.h"
-#include "core/base/text.h"
 
 namespace skyquilt::app {
 
@@ -20,7 +17,7 @@ void AddSimulate(CLI::App& app, CommandState& state) {
       [overrides](const std::string& name) {
         overrides->push_back({"simulate.place", name});
       },
-      "which place: " + base::Join(simulate::PlaceNames()) + " [simulate.place]");
+      "which place" + AllowedText("simulate.place") + " [simulate.place]");
   command->add_option("-o,--out", flags->out, "folder for the survey; made if needed")->required()->type_name("FOLDER");
   AddOverride(*command, overrides, "--seed", "simulate.seed", "another place of the same kind");
   AddOverride(*command, overrides, "--image-width", "simulate.image_width", "pixels");

@@ -51,8 +51,9 @@ std::vector<Option> OptionsOf(Options& options) {
   return list;
 }
 
-// Whether its range contains its value; of a list, every number.
-bool IsAllowed(const Option& option);
+// What is wrong with its value, for a message: " = 40 is not allowed: it must be 1 to 16", in lists "[1] = ..."; empty for one that its range
+// contains.
+std::string WhyForbidden(const Option& option);
 // Throws base::UsageError naming section, key, value and range of the first option that is not allowed.
 void CheckRanges(const std::string& section, const std::vector<Option>& options);
 template <typename Options>

@@ -4,22 +4,30 @@
 
 namespace skyquilt::config {
 
-bool IsAllowed(const Option& option) {
-  if (const auto* number = std::get_if<int*>(&option.value)) return option.range.Contains(static_cast<double>(**number));
-  if (const auto* number = std::get_if<double*>(&option.value)) return option.range.Contains(**number);
-  if (const auto* text = std::get_if<std::string*>(&option.value)) return option.range.Contains(**text);
-  if (const auto* numbers = std::get_if<std::vector<double>*>(&option.value)) {
-    for (const double number : **numbers) {
-      if (!option.range.Contains(number)) return false;
+std::string WhyForbidden(const Option& option) {
+  bool is_allowed = true;
+  Value value = option.value;
+  std::string place;
+  if (const auto* number = std::get_if<int*>(&option.value)) {
+    is_allowed = option.range.Contains(static_cast<double>(**number));
+  } else if (const auto* real = std::get_if<double*>(&option.value)) {
+    is_allowed = option.range.Contains(**real);
+  } else if (const auto* text = std::get_if<std::string*>(&option.value)) {
+    is_allowed = option.range.Contains(**text);
+  } else if (const auto* numbers = std::get_if<std::vector<double>*>(&option.value)) {
+    for (size_t i = 0; i < (*numbers)->size() && is_allowed; ++i) {
+      is_allowed = option.range.Contains((**numbers)[i]);
+      value = &(**numbers)[i];
+      place = "[" + std::to_string(i) + "]";
     }
   }
-  return true;
+  return is_allowed ? "" : place + " = " + TomlText(value) + " is not allowed: it must be " + option.range.Text();
 }
 
 void CheckRanges(const std::string& section, const std::vector<Option>& options) {
   for (const Option& option : options) {
-    if (IsAllowed(option)) continue;
-    throw base::UsageError(section + "." + option.key + " = " + TomlText(option.value) + " is not allowed: it must be " + option.range.Text());
+    const std::string why = WhyForbidden(option);
+    if (!why.empty()) throw base::UsageError(section + "." + option.key + why);
   }
 }
 

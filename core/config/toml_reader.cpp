@@ -193,10 +193,8 @@ void ReadTomlText(const std::string& text, const std::string& origin, const Sect
   for (const auto& [name, node] : leaves) {
     const Option& option = *sections.Find(name);
     std::visit(Assign{origin, name, *node}, option.value);
-    if (!IsAllowed(option)) {
-      throw base::UsageError(From(origin) + name + " = " + TomlText(option.value) + " is not allowed: it must be " + option.range.Text() +
-                             LineOf(*node));
-    }
+    const std::string why = WhyForbidden(option);
+    if (!why.empty()) throw base::UsageError(From(origin) + name + why + LineOf(*node));
   }
 }
 

@@ -38,7 +38,7 @@ TEST(Settings, TomlOfAnySettingsReadsBackTheSame) {
 TEST(Settings, UnknownNamesSuggestTheNearest) {
   EXPECT_NE(UsageErrorOf([] { LoadSettings({}, {{"train.levles", "4"}}); }).find("train.levels"), std::string::npos);
   EXPECT_NE(UsageErrorOf([] { LoadSettings({}, {{"trian.levels", "4"}}); }).find("'train'"), std::string::npos);
-  EXPECT_NE(UsageErrorOf([] { LoadSettings({}, {{"levels", "4"}}); }).find("section"), std::string::npos);
+  EXPECT_NE(UsageErrorOf([] { LoadSettings({}, {{"levels", "4"}}); }).find(".levels'"), std::string::npos);
   EXPECT_NE(UsageErrorOf([] { config::ParseOverride("train.levels"); }).find("section.key=value"), std::string::npos);
 }
 

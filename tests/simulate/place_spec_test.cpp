@@ -107,7 +107,7 @@ TEST(Presets, BadOptionsAreRefusedByName) {
   ExpectRefused("vignetting", [](SimulateOptions& o) { o.vignetting = 0.95; });
   ExpectRefused("vignetting", [](SimulateOptions& o) { o.vignetting = -0.1; });
   ExpectRefused("exposure_tags", [](SimulateOptions& o) { o.exposure_tags = "some"; });
-  ExpectRefused("all, none, half", [](SimulateOptions& o) { o.exposure_tags = ""; });
+  ExpectRefused("all, half or none", [](SimulateOptions& o) { o.exposure_tags = ""; });
   ExpectRefused("latitude_deg", [](SimulateOptions& o) { o.latitude_deg = 91.0; });
   ExpectRefused("test_every", [](SimulateOptions& o) { o.test_every = 0; });
   ExpectRefused("samples_per_pixel", [](SimulateOptions& o) { o.samples_per_pixel = 5; });

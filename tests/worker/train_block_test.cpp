@@ -100,11 +100,11 @@ TEST(TrainOptions, RefusesImpossibleValuesByName) {
   };
   options = {};
   options.encoding = "cubes";
-  EXPECT_EQ(refusal(options), "context.encoding must be one of \"hash\", \"voxels\", \"planes\", \"frequency\", got \"cubes\"");
+  EXPECT_EQ(refusal(options), "context.encoding = \"cubes\" is not allowed: it must be hash, voxels, planes or frequency");
   for (const int layers : {0, 9}) {
     options = {};
     options.density_hidden_layers = layers;
-    EXPECT_NE(refusal(options).find("context.density_hidden_layers must be 1..8"), std::string::npos) << refusal(options);
+    EXPECT_NE(refusal(options).find("is not allowed: it must be 1 to 8"), std::string::npos) << refusal(options);
   }
   EXPECT_NO_THROW(TrainOptions{}.Check("train"));
 }

@@ -103,7 +103,7 @@ TEST(Toml, AValueOutOfRangeIsRefusedWithItsLineAndRange) {
   EXPECT_EQ(MessageOf<base::UsageError>("[products.render]\nwidth = 17\n"),
             "skyquilt.toml: products.render.width = 17 is not allowed: it must be 0 or 16 to 4096 in steps of 2 (line 2)");
   EXPECT_EQ(MessageOf<base::UsageError>("[products.render]\nheights_m = [1, 0.25]\n"),
-            "skyquilt.toml: products.render.heights_m = [1.0, 0.25] is not allowed: it must be 0.5 to 100 (line 2)");
+            "skyquilt.toml: products.render.heights_m[1] = 0.25 is not allowed: it must be 0.5 to 100 (line 2)");
   EXPECT_NE(MessageOf<base::UsageError>("[products.render]\nexposure_stops = inf\n").find("-10 to 10"), std::string::npos);
   EXPECT_EQ(MessageOf<base::UsageError>("[products.render]\nshape = \"oval\"\n"),
             "skyquilt.toml: products.render.shape = \"oval\" is not allowed: it must be round or square (line 2)");

@@ -20,7 +20,7 @@ class StderrSink : public spdlog::sinks::stderr_color_sink_mt {
   }
 };
 
-// The prefix is kept as the logger's name (%n).
+// The prefix is stored as the logger's name (%n).
 std::string Pattern(const std::string& time, bool with_name) {
   return "[" + time + "] " + (with_name ? "%n " : "") + "%^%l%$: %v";
 }

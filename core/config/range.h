@@ -18,7 +18,7 @@ class Range {
 
   // Also allows this number: Range{32, 8192}.Or(0) for an option where 0 means "no change".
   Range Or(double special) const;
-  // Also allows every negative number, for options where it means "automatic".
+  // Also allows every negative number, for options where it means "not set".
   Range OrNegative() const;
   // Allows only multiples of `step` between min and max.
   Range MultipleOf(int step) const;

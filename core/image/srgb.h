@@ -1,4 +1,4 @@
-// sRGB transfer function (IEC 61966-2-1), extended past 1 by the same power law so that over-range light stays ordered.
+// Converts between linear light and sRGB values (IEC 61966-2-1). Values above 1 follow the same power law, so that their order is kept.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ inline float LinearFromSrgb(float srgb) {
 inline float SrgbFromLinear(float linear) {
   return linear <= 0.0031308F ? linear * 12.92F : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
 }
-// d srgb / d linear and d linear / d srgb.
+// Derivatives of the two: d srgb / d linear and d linear / d srgb.
 inline float SrgbSlope(float linear) {
   return linear <= 0.0031308F ? 12.92F : (1.055F / 2.4F) * std::pow(linear, 1.0F / 2.4F - 1.0F);
 }

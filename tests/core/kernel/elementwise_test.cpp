@@ -18,7 +18,7 @@ SKYQUILT_EACH_INSTRUCTION_SET(ElementwiseKernels);
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-TEST_P(ElementwiseKernels, ExpIsCutAtItsLimit) {
+TEST_P(ElementwiseKernels, ExpIsLimited) {
   std::vector<float> x(48), out(48);
   for (size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>(i) - 24.0F;
   x[0] = -1e4F;
@@ -48,7 +48,7 @@ TEST_P(ElementwiseKernels, SineAndCosineOfWholeTurnsAndFractionsOfManyTurns) {
   base::Random random(23);
   std::vector<float> turns(4096), sine(turns.size()), cosine(turns.size());
   for (size_t i = 0; i < turns.size(); ++i) turns[i] = (random.Uniform() - 0.5F) * static_cast<float>(1 << (i % 18));
-  for (size_t i = 0; i < 17; ++i) turns[i] = 0.125F * static_cast<float>(i) - 1.0F;  // zeros, extremes, and where branches of the series meet
+  for (size_t i = 0; i < 17; ++i) turns[i] = 0.125F * static_cast<float>(i) - 1.0F;  // zeros, extremes, and the ends of the series' interval
   SineCosine(turns.data(), static_cast<int64_t>(turns.size()), sine.data(), cosine.data());
   for (size_t i = 0; i < turns.size(); ++i) {
     const double angle = 2.0 * M_PI * std::fmod(static_cast<double>(turns[i]), 1.0);
@@ -91,8 +91,8 @@ TEST_P(ElementwiseKernels, AllFiniteFindsOneBadValueAnywhere) {
   }
 }
 
-// Where they would read and write past the end.
-TEST_P(ElementwiseKernels, RefuseWhatIsNotPadded) {
+// They would read and write past the end.
+TEST_P(ElementwiseKernels, RefuseUnpaddedLengths) {
   std::vector<float> in(64, 1.0F), out(64), more(64);
   for (const int64_t n : {int64_t{-16}, int64_t{1}, int64_t{15}, int64_t{47}}) {
     EXPECT_THROW(ExpShifted(in.data(), n, 0.0F, 1.0F, out.data()), std::logic_error) << n;
@@ -110,10 +110,10 @@ TEST_P(ElementwiseKernels, RefuseWhatIsNotPadded) {
 using ForcedInstructionSet = testing::EachInstructionSet;
 SKYQUILT_EACH_INSTRUCTION_SET(ForcedInstructionSet);
 
-TEST_P(ForcedInstructionSet, StaysWhenItsChoicesAreAskedFor) {
+TEST_P(ForcedInstructionSet, IsNotChangedByListingTheOthers) {
   bool stayed = true;
   std::atomic<bool> done{false};
-  // Another thread never sees it change either.
+  // Another thread does not see it change either.
   std::thread watch([&] {
     while (!done) stayed = stayed && ActiveInstructionSet() == GetParam();
   });

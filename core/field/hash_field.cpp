@@ -55,7 +55,7 @@ void HashField::Initialize(base::Random& random, std::span<float> grid, std::spa
 
 NetworkWeights HashField::Prepare(std::span<const float> networks) const {
   if (static_cast<int64_t>(networks.size()) != NetworkParameters()) {
-    throw std::invalid_argument("the networks have " + std::to_string(networks.size()) + " parameters, but their configuration needs " +
+    throw std::invalid_argument("the " + std::to_string(networks.size()) + " network parameters disagree with the configuration, which needs " +
                                 std::to_string(NetworkParameters()));
   }
   NetworkWeights weights;

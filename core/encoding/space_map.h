@@ -1,9 +1,8 @@
 // Maps survey ENU metres to the unit box in which a field is evaluated. Computed in double and rounded to float once.
 //   Box:   for blocks. x_unit = (x - min) / longest edge; the box maps to [0, extent].
-//   Slab:  for the context, which covers all distances. Let u be the horizontal position relative to the survey's square (-1 to 1). Inside the square
-//   u is
-//          kept, outside it is contracted to u (2 - 1/|u|) / |u| (mip-NeRF 360, eq. 10, with the max norm over x and y). The contracted square [-2,
-//          2] maps to [0, 1]. Heights are mapped linearly.
+//   Slab:  for the context, which covers all distances. Heights are mapped linearly. Let u be the horizontal position relative to the survey, -1 to 1
+//          inside its square. Inside, u is kept; outside it is contracted to u (2 - 1/|u|) / |u| (mip-NeRF 360, eq. 10, max norm over x and y).
+//          The contracted square [-2, 2] maps to [0, 1].
 #pragma once
 
 #include <Eigen/Core>

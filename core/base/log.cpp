@@ -43,7 +43,7 @@ void AddLogFile(const std::filesystem::path& file) {
     sink->set_pattern(Pattern("%Y-%m-%d %H:%M:%S", !logger->name().empty()));
     logger->sinks().push_back(sink);
   } catch (const spdlog::spdlog_ex& error) {
-    throw InputError(file, std::string("cannot open the log: ") + error.what(), "Choose a folder you may write to with -o");
+    throw InputError(file, std::string("cannot open the log: ") + error.what(), "Choose an output folder with write permission (-o)");
   }
 }
 

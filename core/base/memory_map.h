@@ -20,8 +20,7 @@ class MemoryMap {
   MemoryMap& operator=(const MemoryMap&) = delete;
 
   std::span<const uint8_t> bytes() const { return {data_, size_}; }
-  // Copies bytes with a file read instead of through mapped pages: slower than bytes(), but the file takes no memory in this process. Throws
-  // InputError.
+  // Copies bytes with a file read instead of through mapped pages: slower than bytes(), but takes no memory. Throws InputError.
   void ReadAt(size_t offset, std::span<uint8_t> to) const;
 
  private:

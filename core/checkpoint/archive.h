@@ -1,9 +1,10 @@
-// Stores named arrays and attributes in an HDF5 file, for checkpoints and scenes: a crash or a full disk never leaves an incomplete file, and damage
-// is always noticed. Writing: write <file>.tmp.<host>.<process>, fsync, reopen and compare with memory, keep the previous file as <file>.prev,
-// rename, fsync the folder. At any moment at least one complete file exists. The same content gives the same bytes. Format: all datasets are chunked
-// with fletcher32 checksums, for other HDF5 tools. The first 512 bytes (an HDF5 user block) are plain text: the kind of file, its length and the
-// XXH64 digest of all bytes after them. A flipped bit is found before HDF5 opens the file. One lock serialises all calls, because HDF5 is not
-// thread-safe.
+// Stores named arrays and attributes in an HDF5 file, for checkpoints and scenes. A crash or a full disk never leaves an incomplete file, and damage
+// is always noticed.
+// Writing: write <file>.tmp.<host>.<process>, fsync, reopen and compare with memory, keep the previous file as <file>.prev, rename, fsync the folder.
+// At any moment at least one complete file exists. The same content gives the same bytes.
+// Format: the first 512 bytes (an HDF5 user block) are plain text: the kind of file, its length and the XXH64 digest of all bytes after them, so that
+// a flipped bit is found before HDF5 opens the file. All datasets are chunked with fletcher32 checksums, for other HDF5 tools.
+// One lock serialises all calls, because HDF5 is not thread-safe.
 #pragma once
 
 #include <cstdint>

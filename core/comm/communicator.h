@@ -30,8 +30,7 @@ class Communicator {
   virtual void Send(int destination, int tag, const std::string& bytes) = 0;
   // The next message that has arrived from any rank; nothing if there is none.
   virtual std::optional<Message> TryReceive() = 0;
-  // How long a loop that waits for a message should sleep between two calls of TryReceive; 0 while a message is being received, which needs many
-  // calls.
+  // How long a loop that waits for a message should sleep between two calls of TryReceive; 0 while one is being received (takes many calls).
   virtual std::chrono::microseconds Nap() const { return std::chrono::milliseconds(1); }
   // Waits until everything sent so far is transferred; messages that arrive in the meantime are kept. Call before long work without other calls.
   virtual void Flush() {}

@@ -50,8 +50,7 @@ struct NetworkWeights {
 };
 
 // Activations and gradients of a packet of samples, kept between the forward and the backward pass. One object per thread.
-// Rows of `stride` floats. The layers of `density_hidden` and then `geometry` are consecutive, so that one kernel::Compact drops samples from all of
-// them.
+// Rows of `stride` floats. The layers of `density_hidden` and then `geometry` are consecutive, so that one kernel::Compact drops samples from all.
 class Activations {
  public:
   // Makes room for n samples (any n). The content is lost when the stride grows.

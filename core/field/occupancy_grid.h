@@ -30,8 +30,7 @@ struct OccupancyGrid {
     float& cell_tau = tau[static_cast<size_t>(index)];
     if (cell_tau >= 0.0F) cell_tau = std::max(kDecay * cell_tau, step_tau);
   }
-  // Raises tau of the six neighbours of every cell with tau > solid to at least `wake`, so that a surface can grow into them. Cells never seen do not
-  // change.
+  // Raises tau of the six neighbours of every cell with tau > solid to at least `wake`, so that a surface can grow into them. Cells never seen stay.
   void WakeNeighbours(float solid, float wake);
   // Sets `occupied` where tau is above min(limit, mean over seen cells). Returns OccupiedShare().
   double Refresh(float limit);

@@ -8,8 +8,7 @@
 
 namespace skyquilt::field {
 
-// Replaces *table by n zeros, on huge pages where the system has them: with pages of 4 KiB, almost every random access to a large table misses the
-// TLB.
+// Replaces *table by n zeros, on huge pages where the system has them: with pages of 4 KiB, most random accesses to a large table miss the TLB.
 void AssignTable(std::vector<float>* table, size_t n);
 
 struct Parameters {

@@ -12,8 +12,7 @@ struct BlockBox {
   // above the highest roof.
   Eigen::Vector3d min_enu = Eigen::Vector3d::Zero();
   Eigen::Vector3d max_enu = Eigen::Vector3d::Zero();
-  // Width of the margin on each horizontal side. The field is trained there too, so that neighbours overlap and can be blended; there is no vertical
-  // margin.
+  // Width of the margin on each horizontal side. The field is trained there too, so that neighbours overlap and can be blended. None above and below.
   double margin_m = 0.0;
 
   // Opposite corners of the box with its margin.

@@ -30,8 +30,7 @@ constexpr int PaddedRows(int n) {
   return (n + kRowPad - 1) / kRowPad * kRowPad;
 }
 
-// Floats per line of a parameter table (one cache line). Training records per line whether its gradient was written. Tables are whole numbers of
-// lines.
+// Floats per line of a parameter table (one cache line). Training records per line whether its gradient was written. Tables have whole lines.
 constexpr int kLineFloats = 16;
 
 // Name of the instruction set in use: "avx3_zen4", "avx3", "avx2", "sse4", ...

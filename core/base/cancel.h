@@ -1,5 +1,5 @@
-// Asking a long run to stop at its next safe point. SIGINT, SIGTERM and SIGUSR1 (a batch system's warning) set the flag;
-// a second SIGINT ends the process at once.
+// Lets a long run stop at its next safe point, after it has saved its work. A process-wide flag asks for it: RequestCancel sets it, and so do SIGINT,
+// SIGTERM and SIGUSR1 (which batch systems send shortly before they kill a job). A second SIGINT ends the process at once with status 130.
 #pragma once
 
 namespace skyquilt::base {
@@ -7,9 +7,9 @@ namespace skyquilt::base {
 void InstallSignalHandlers();
 bool CancelRequested();
 void RequestCancel();
-// Takes RequestCancel back, but no signal.
+// Undoes RequestCancel; a flag set by a signal stays set.
 void WithdrawRequest();
-// Forgets both.
+// Clears the flag, whoever set it, and forgets earlier SIGINTs.
 void ClearCancel();
 // Throws Interrupted when the flag is set.
 void ThrowIfCancelled();

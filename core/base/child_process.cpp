@@ -76,14 +76,14 @@ ssize_t ReadAgain(int descriptor, void* bytes, size_t size) {
   return n_read;
 }
 
-// errno as the child met it when it could not become the program; 0 when it did, for then its end of the pipe closed by itself.
+// The child's errno when execve failed. 0 when it succeeded: execve then closes the child's end of the pipe.
 int ExecutionError(int pipe) {
   int code = 0;
   return ReadAgain(pipe, &code, sizeof(code)) == static_cast<ssize_t>(sizeof(code)) ? code : 0;
 }
 
 ChildEnd WaitFor(pid_t process) {
-  // waitpid would take any child for it.
+  // waitpid would wait for any child.
   if (process <= 0) return {.wait_error = ECHILD};
   int status = 0;
   while (waitpid(process, &status, 0) < 0) {
@@ -151,13 +151,13 @@ ChildProcess ChildProcess::StartWriting(const Command& command) {
 
 ChildProcess ChildProcess::Start(const Command& command, bool reading) {
   std::array<int, 2> ends{}, pipe_ends{};
-  // To write to it a socket instead of a pipe: send() can be told not to raise SIGPIPE when the program dies.
+  // For writing use a socket instead of a pipe: send() can be told not to raise SIGPIPE when the program has ended.
   if ((reading ? pipe2(ends.data(), O_CLOEXEC) : socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data())) != 0)
     throw StartError(StartError::Missing::kChannel, errno);
   ChannelEnd ours(ends[0]), its(ends[1]);
   if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) throw StartError(StartError::Missing::kChannel, errno);
   ChannelEnd failure(pipe_ends[0]), its_failure(pipe_ends[1]);
-  // Everything the child needs is made before the fork: after it only async-signal-safe calls are allowed, as other threads may hold locks.
+  // Allocate before the fork: after it only async-signal-safe calls are allowed in the child, as other threads may have held locks.
   std::vector<std::string> arguments = {command.program.string()};
   arguments.insert(arguments.end(), command.arguments.begin(), command.arguments.end());
   std::vector<std::string> environment = Environment(command.environment);
@@ -282,8 +282,8 @@ int RunLogged(const Command& command, const fs::path& log_file, const std::funct
   } catch (const StartError& error) {
     if (error.missing() == StartError::Missing::kProgram) return LogEnd(log, kCannotExecute);
     const bool channel = error.missing() == StartError::Missing::kChannel;
-    throw InputError(command.program, std::string(channel ? "no pipe: " : "cannot be started: ") + error.what(),
-                     channel ? "Close other programs" : "Close other programs or free memory");
+    throw InputError(command.program, std::string(channel ? "cannot be started, no pipe could be created: " : "cannot be started: ") + error.what(),
+                     channel ? "Raise the limit of open files (ulimit -n) or close other programs" : "Close other programs or free memory");
   }
 }
 

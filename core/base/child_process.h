@@ -1,4 +1,5 @@
-// Another program, run while we live: it dies with us (with the thread that started it). Either we read what it says, or we write what it reads.
+// Runs another program (for instance COLMAP or ffmpeg) and either reads its output or writes its input. The program is killed when the thread that
+// started it ends, so that nothing keeps running after us.
 #pragma once
 
 #include <sys/types.h>
@@ -13,21 +14,21 @@
 
 namespace skyquilt::base {
 
-// A bare name is looked up on the PATH. Empty when there is no such executable.
+// Full path of an executable; a name without '/' is looked up on the PATH. Empty when there is none.
 std::filesystem::path FindProgram(const std::string& program);
 
 struct Command {
-  std::filesystem::path program;              // as FindProgram gives it
+  std::filesystem::path program;              // full path, from FindProgram
   std::vector<std::string> arguments;         // without the program's own name
   std::vector<std::string> environment = {};  // "NAME=value", in addition to our own
 };
 
-// Why a program does not run. what() is the system's word for it.
+// A program could not be started; what() is the system's error message.
 class StartError : public std::runtime_error {
  public:
   enum class Missing {
-    kChannel,  // no pipe or socket to talk to it
-    kProcess,  // no process to run it in
+    kChannel,  // the pipe or socket for its data could not be created
+    kProcess,  // fork failed
     kProgram,  // the file cannot be executed
   };
   StartError(Missing missing, int code);
@@ -39,36 +40,37 @@ class StartError : public std::runtime_error {
   int code_;
 };
 
+// How a program ended.
 struct ChildEnd {
   int status = 0;      // exit status
-  int signal = 0;      // that ended it, 0: none did
-  int wait_error = 0;  // errno when nobody knows how it ended
-  // As a shell counts: 128 + signal when a signal ended it.
+  int signal = 0;      // the signal that ended it; 0: none
+  int wait_error = 0;  // errno when waiting for it failed, so that its status is unknown
+  // The status that a shell would show: 128 + signal when a signal ended it.
   int ShellStatus() const { return signal == 0 ? status : 128 + signal; }
-  // Empty when it went well, otherwise a sentence about `name`.
+  // Empty on success, otherwise the reason of the failure in words; `name` is the program's name.
   std::string Text(const std::string& name) const;
 };
 
 class ChildProcess {
  public:
-  // What it prints (stdout and stderr) comes to us, its input is empty. It leads a process group, so that what it starts ends with it.
-  // Throws StartError.
+  // Its output (stdout and stderr) is read with Receive, its input is empty. It leads a process group of its own, so that the processes it starts are
+  // ended with it. Throws StartError.
   static ChildProcess StartReading(const Command& command);
-  // We write its input; what it prints goes where our own does. It stays in our process group: a signal from the terminal reaches it too.
-  // Throws StartError.
+  // Its input is written with Send, its output goes where our own goes. It stays in our process group: a signal from the terminal (Ctrl-C) reaches it
+  // too. Throws StartError.
   static ChildProcess StartWriting(const Command& command);
 
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&& other) noexcept;
-  ~ChildProcess();  // kills it if it still runs
+  ~ChildProcess();  // kills the program if it still runs
 
-  // Appends what it printed since, perhaps nothing: waits 0.2 s for it. False at the end of its output.
+  // Appends new output to `text`; waits at most 0.2 s for it, so it may append nothing. False at the end of the output.
   bool Receive(std::string* text);
-  // False when the program went away; Wait then tells why. Never raises SIGPIPE.
+  // Blocks until all bytes are written. False when the program has ended; Wait then tells why. Never raises SIGPIPE.
   bool Send(std::span<const uint8_t> bytes);
-  // Closes our side of the channel and waits for the end.
+  // Closes our end of the pipe or socket and waits until the program ends.
   ChildEnd Wait();
-  // Asks it to end, and kills it after 5 s.
+  // Sends SIGTERM, and SIGKILL if the program still runs after 5 s.
   void Terminate();
 
  private:
@@ -82,9 +84,9 @@ class ChildProcess {
   bool leads_group_ = false;
 };
 
-// Runs a program to its end; what it prints is appended to `log` and told line by line (on_line may be empty). Exit status as a shell counts: 128 +
-// signal, 127 for a file that cannot be executed. When CancelRequested() is seen (within 0.2 s) the program is terminated and Interrupted thrown.
-// Throws InputError if it cannot be started or the log not be written.
+// Runs a program to its end. Its output is appended to the file `log`, and every line of it is passed to on_line (may be empty). Returns the exit
+// status as a shell shows it: 128 + signal, or 127 for a file that cannot be executed. When CancelRequested() becomes true, the program is terminated
+// (within 0.2 s plus the 5 s of Terminate) and Interrupted thrown. Throws InputError if the program cannot be started or the log cannot be written.
 int RunLogged(const Command& command, const std::filesystem::path& log, const std::function<void(const std::string& line)>& on_line);
 
 }  // namespace skyquilt::base

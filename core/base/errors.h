@@ -1,10 +1,10 @@
-// Errors that end a command, each with the exit status a shell sees.
+// Errors that end a command. Each type has its own exit status, so that scripts can tell them apart:
 //   UsageError   2  wrong option or configuration
-//   InputError   3  a file or its content cannot be used; names file, finding and how to fix it
-//   BlockError   4  a block failed after its retries
-//   FailedCheck  5  something that was put to the test does not hold
+//   InputError   3  a file or its content cannot be used; the message names the file, what was found and how to fix it
+//   BlockError   4  the training of a block failed after its retries
+//   FailedCheck  5  a benchmark or check of the program itself found a wrong result
 //   Interrupted 130 a signal asked to stop; the work is saved and can be resumed
-// Wrong use of our own code throws std::logic_error through SKYQUILT_CHECK and is a bug, never a user's message.
+// SKYQUILT_CHECK is for bugs in our own code: it throws std::logic_error, which is not meant for users.
 #pragma once
 
 #include <filesystem>

@@ -52,7 +52,7 @@ std::string FixOf(int code) {
     case EISDIR:
       return "Check the path";
     case EIO:
-      return "The disk or its connection fails; check it before going on";
+      return "The disk or its connection has errors; check it before running the command again";
     default:
       return "";
   }
@@ -121,7 +121,7 @@ void SyncPath(const fs::path& path) {
   const Descriptor descriptor(path, O_RDONLY);
   if (descriptor.value() < 0) ThrowFileError(path, "cannot open", errno);
   if (fsync(descriptor.value()) == 0) return;
-  // Some file systems cannot sync a folder and say so with EINVAL; their renames are as durable as they get.
+  // Some file systems cannot sync a folder and return EINVAL; nothing more can be done there.
   if (errno == EINVAL || errno == ENOTSUP) return;
   ThrowFileError(path, "cannot write to disk", errno);
 }
@@ -130,7 +130,7 @@ void RequireWritableFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) ThrowFileError(folder, "cannot create the folder", error.value());
-  if (!fs::is_directory(folder)) throw InputError(folder, "is a file, a folder is needed", "Choose another folder with -o");
+  if (!fs::is_directory(folder)) throw InputError(folder, "is a file, but a folder is needed", "Choose another folder with -o");
   const fs::path probe = TemporaryBeside(folder / "probe");
   const int code = WriteAndSync(probe, "probe");
   unlink(probe.c_str());

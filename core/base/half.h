@@ -1,6 +1,6 @@
-// 16-bit storage of 32-bit floats: bfloat16 (8 exponent bits, 8 bits of mantissa with the hidden one) and IEEE 754 binary16 (5 and 11).
-// Rounded to nearest, ties to even. What is too large for the format becomes its largest finite number, never infinity: one such parameter
-// would turn a whole field into NaN. NaN stays NaN.
+// 16-bit storage of 32-bit floats, to halve the size of a scene file: bfloat16 (8 exponent bits, 8 mantissa bits with the hidden one) and IEEE 754
+// binary16 (5 and 11). Rounds to nearest, ties to even. Values too large for the format become its largest finite number, not infinity: a single
+// infinite parameter would turn a whole field into NaN. NaN stays NaN.
 #pragma once
 
 #include <bit>
@@ -30,7 +30,7 @@ inline float FloatFromFloat16(uint16_t half) {
   const uint32_t mantissa = half & 0x3FFU;
   if (exponent == 0x1FU) return std::bit_cast<float>(sign | 0x7F800000U | mantissa << 13U);
   if (exponent == 0) {
-    // Subnormal: a whole number of 2^-24.
+    // Subnormal: a multiple of 2^-24.
     const float magnitude = static_cast<float>(mantissa) * 0x1p-24F;
     return sign != 0 ? -magnitude : magnitude;
   }
@@ -43,7 +43,7 @@ inline uint16_t Float16FromFloat(float value) {
   const uint32_t sign = bits >> 16U & 0x8000U;
   if (magnitude > 0x7F800000U) return static_cast<uint16_t>(sign | 0x7E00U);
   if (magnitude < 0x38800000U) {
-    // Below 2^-14: adding 0.5 leaves the number of 2^-24 in the low bits, rounded by the addition itself.
+    // Below 2^-14 the result is subnormal, a multiple of 2^-24. Adding 0.5 puts the rounded multiple into the low bits of the sum.
     const float shifted = std::bit_cast<float>(magnitude) + 0.5F;
     return static_cast<uint16_t>(sign | (std::bit_cast<uint32_t>(shifted) - 0x3F000000U));
   }

@@ -20,7 +20,7 @@ class StderrSink : public spdlog::sinks::stderr_color_sink_mt {
   }
 };
 
-// The prefix is kept as the logger's name (%n).
+// The prefix is stored as the logger's name (%n).
 std::string Pattern(const std::string& time, bool with_name) {
   return "[" + time + "] " + (with_name ? "%n " : "") + "%^%l%$: %v";
 }
@@ -43,7 +43,7 @@ void AddLogFile(const std::filesystem::path& file) {
     sink->set_pattern(Pattern("%Y-%m-%d %H:%M:%S", !logger->name().empty()));
     logger->sinks().push_back(sink);
   } catch (const spdlog::spdlog_ex& error) {
-    throw InputError(file, std::string("cannot open the log: ") + error.what(), "Choose a folder you may write to with -o");
+    throw InputError(file, std::string("cannot open the log: ") + error.what(), "Choose an output folder with write permission (-o)");
   }
 }
 

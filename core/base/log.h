@@ -8,9 +8,9 @@
 
 namespace skyquilt::base {
 
-// Sets pattern and level. `prefix` (for instance "rank 1") is shown with every line when not empty.
+// Sets the line format and the level (debug if verbose, else info). `prefix` (for instance "rank 1") is shown on every line when not empty.
 void InitLog(bool verbose, const std::string& prefix = "");
-// Adds a file that receives everything from here on (appended). Throws InputError if it cannot be opened.
+// Also appends all later messages to this file. Throws InputError if it cannot be opened.
 void AddLogFile(const std::filesystem::path& file);
 
 }  // namespace skyquilt::base

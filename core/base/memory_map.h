@@ -1,4 +1,4 @@
-// A read-only view of a whole file; pages come and go on demand, so files may exceed memory.
+// A read-only view of a whole file. The system loads and drops pages on demand, so a file may be larger than memory.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ class MemoryMap {
   MemoryMap& operator=(const MemoryMap&) = delete;
 
   std::span<const uint8_t> bytes() const { return {data_, size_}; }
-  // Copies bytes without keeping their pages in this process: slower than bytes(), but costs no memory. Throws InputError.
+  // Copies bytes with a file read instead of through mapped pages: slower than bytes(), but takes no memory. Throws InputError.
   void ReadAt(size_t offset, std::span<uint8_t> to) const;
 
  private:

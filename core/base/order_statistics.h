@@ -10,7 +10,7 @@
 
 namespace skyquilt::base {
 
-// The value of this rank, counted from 0 upwards; reorders the values. index < values.size().
+// The index-th smallest value, counted from 0; index < values.size(). Reorders the values.
 template <typename T>
 const T& OrderStatistic(std::vector<T>& values, size_t index) {
   const auto nth = values.begin() + static_cast<std::ptrdiff_t>(index);
@@ -18,19 +18,20 @@ const T& OrderStatistic(std::vector<T>& values, size_t index) {
   return *nth;
 }
 
-// The middle value, the upper one of an even number; reorders the values, of which there must be one at least.
+// The median; for an even number of values the upper of the two middle ones. Reorders the values; there must be at least one.
 template <typename T>
 const T& UpperMedian(std::vector<T>& values) {
   return OrderStatistic(values, values.size() / 2);
 }
 
-// The value of the rank nearest to share * (n - 1), share in [0, 1]; reorders the values, of which there must be one at least.
+// The share quantile without interpolation: the value whose rank is nearest to share * (n - 1), share in [0, 1]. Reorders the values; there must be
+// at least one.
 template <typename T>
 const T& NearestRank(std::vector<T>& values, double share) {
   return OrderStatistic(values, static_cast<size_t>(std::lround(share * static_cast<double>(values.size() - 1))));
 }
 
-// Linear between neighbouring ranks, share in [0, 1] (beyond: its nearest end); NaN when there are no values. Takes a copy because it reorders.
+// The share quantile, linear between neighbouring ranks; share is clamped to [0, 1]. NaN when there are no values. Takes a copy because it reorders.
 inline double Quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const double position = std::clamp(share, 0.0, 1.0) * static_cast<double>(values.size() - 1);

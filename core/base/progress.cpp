@@ -21,7 +21,7 @@ constexpr int kBarWidth = 24;
 
 std::atomic<bool> quiet_everywhere{false};
 
-// Standard error is one device: a bar being drawn, and whether it occupies the line now.
+// All progress lines share standard error: guards line_drawn, which is true while a terminal's current line shows one.
 std::mutex terminal_mutex;
 bool line_drawn = false;
 
@@ -99,7 +99,7 @@ Progress::Progress(const std::string& label, double total, const std::string& un
 
 Progress::~Progress() {
   if (state_->finished) return;
-  // Left by an exception: the line stays as it is, without claiming an end.
+  // Finish was not called, because of an exception: the line keeps its last state.
   const std::lock_guard lock(terminal_mutex);
   if (state_->is_terminal && line_drawn) std::fputc('\n', stderr);
   line_drawn = false;
@@ -154,7 +154,7 @@ std::string FormatCount(double count) {
   static constexpr std::array<const char*, 5> kUnits = {"", " k", " M", " G", " T"};
   double value = count;
   size_t unit = 0;
-  // 999.5 would be shown as 1000 of the smaller unit.
+  // 999.5 would be rounded to 1000 in the smaller unit.
   while (std::abs(value) >= 999.5 && unit + 1 < kUnits.size()) {
     value /= 1000.0;
     ++unit;

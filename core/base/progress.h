@@ -1,5 +1,5 @@
-// One line of progress for long work: bar, percentage, rate, elapsed and remaining time, and a free text.
-// On a terminal the line is redrawn in place; in a file one line appears about every 10 s. Silent when quiet. Thread-safe.
+// Shows the progress of long work in one line: bar, percentage, rate, elapsed and remaining time, and a free text.
+// On a terminal the line is redrawn in place; in a file a new line is written about every 10 s. Nothing is shown when quiet. Thread-safe.
 #pragma once
 
 #include <memory>
@@ -9,12 +9,13 @@ namespace skyquilt::base {
 
 class Progress {
  public:
-  // `unit` is shown with the rate ("photos", "rays"); total <= 0 means unknown.
+  // `unit` is shown with the rate ("photos", "rays"). total <= 0: unknown, then a count is shown instead of bar and percentage.
   Progress(const std::string& label, double total, const std::string& unit);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  // `done` counts from 0 to the total. An empty `detail` keeps the text shown before.
   void Update(double done, const std::string& detail = "");
   void Advance(double by = 1.0, const std::string& detail = "");
   // Draws the final state and ends the line; later calls do nothing.
@@ -27,7 +28,7 @@ class Progress {
   std::unique_ptr<State> state_;
 };
 
-// Wipes the line being drawn on a terminal, so that other output to standard error starts clean; the next update draws it again.
+// Erases the progress line on a terminal, so that other output to standard error starts on an empty line; the next update draws it again.
 void ClearProgressLine();
 // "1h02m", "3m20s", "12.3s"
 std::string FormatDuration(double seconds);

@@ -6,7 +6,7 @@
 namespace skyquilt::base {
 
 double Random::Normal() {
-  // 1 - u lies in (0, 1], so the logarithm is finite.
+  // 1 - u is in (0, 1], so the logarithm is finite.
   const double radius = std::sqrt(-2.0 * std::log(1.0 - UniformDouble()));
   return radius * std::cos(2.0 * std::numbers::pi * UniformDouble());
 }

@@ -1,5 +1,5 @@
-// PCG32 (O'Neill 2014): 64-bit state, 32-bit output, one independent stream per `stream`.
-// Always passed as an argument; same seed and stream give the same numbers on every machine.
+// PCG32 random generator (O'Neill 2014): 64-bit state, 32-bit output, one independent sequence per `stream`.
+// The same seed and stream give the same numbers on every machine. There is no global generator: it is always passed as an argument.
 #pragma once
 
 #include <cstdint>
@@ -31,10 +31,10 @@ class Random {
   double Uniform(double low, double high) { return low + (high - low) * UniformDouble(); }
   // Uniform in [0, n); n = 0 gives 0. The bias is below n / 2^32.
   uint32_t Below(uint32_t n) { return static_cast<uint32_t>((static_cast<uint64_t>(NextU32()) * n) >> 32U); }
-  // Standard normal (Box-Muller, one of the pair).
+  // Standard normal distribution (Box-Muller; the second value of each pair is not used).
   double Normal();
 
-  // For checkpoints: a generator rebuilt from both numbers continues the sequence.
+  // For checkpoints: Restore with both numbers continues the sequence.
   uint64_t state() const { return state_; }
   uint64_t increment() const { return increment_; }
   void Restore(uint64_t state, uint64_t increment) {

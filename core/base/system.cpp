@@ -29,7 +29,7 @@ std::optional<std::string> FirstLine(const fs::path& file) {
   return line;
 }
 
-// The folders of this process's cgroup (version 2), from its own up to the root.
+// The folders of this process's cgroup (version 2) and of its parents up to the root.
 std::vector<fs::path> CgroupFolders() {
   const fs::path root = "/sys/fs/cgroup";
   std::vector<fs::path> folders;
@@ -42,7 +42,7 @@ std::vector<fs::path> CgroupFolders() {
   return folders;
 }
 
-// The tightest of the limits that `read` finds in the first line of a file of every cgroup folder.
+// The smallest limit in a file of the cgroup folders; `read` parses the file's first line.
 template <typename Limit>
 std::optional<Limit> TightestLimit(const char* file, std::optional<Limit> (*read)(std::istream& words)) {
   std::optional<Limit> tightest;
@@ -74,7 +74,7 @@ std::optional<int64_t> CgroupMemoryBytes() {
   });
 }
 
-// A processor set that is large enough for this machine, or null.
+// A set of n processors; `set` is null when it could not be allocated.
 struct CpuSet {
   int n_cpus;
   size_t bytes;
@@ -125,7 +125,7 @@ void ReleaseAffinity() {
   CpuSet cpus(n);
   if (cpus.set == nullptr) return;
   for (int cpu = 0; cpu < n; ++cpu) CPU_SET_S(static_cast<size_t>(cpu), cpus.bytes, cpus.set);
-  // The kernel keeps only what the cgroup allows. A refusal leaves us with fewer cores, which is no error.
+  // The kernel drops cores that the cgroup does not allow. If the call fails, we only have fewer cores.
   (void)sched_setaffinity(0, cpus.bytes, cpus.set);
 }
 
@@ -145,7 +145,7 @@ void AdviseHugePages(void* begin, size_t bytes) {
 }
 
 int64_t PeakRssBytes() {
-  // VmHWM belongs to this program alone; ru_maxrss survives exec and may show the launcher's peak.
+  // ru_maxrss survives exec and may be the launcher's peak; VmHWM is this program's own.
   std::istringstream words(ProcValue("/proc/self/status", "VmHWM"));
   int64_t kib = 0;
   if (words >> kib) return kib * 1024;

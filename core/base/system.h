@@ -1,4 +1,4 @@
-// What this process runs on.
+// The machine this process runs on: cores, memory, host name, time.
 #pragma once
 
 #include <cstddef>
@@ -7,15 +7,17 @@
 
 namespace skyquilt::base {
 
-// Cores this process may use (after ReleaseAffinity: of its cgroup), at least 1.
+// Cores this process may use, at least 1: limited by its CPU affinity and its cgroup.
 int UsableCores();
-// mpirun pins ranks to single cores; a rank that starts threads lifts that for itself.
+// Removes the CPU affinity of this process: mpirun pins each rank to one core, which would keep its threads on that core.
 void ReleaseAffinity();
+// Memory of the machine, or of the cgroup when its limit is smaller.
 int64_t TotalMemoryBytes();
+// Largest resident memory of this process so far.
 int64_t PeakRssBytes();
-// From now on the peak is that of what follows, where the system can do that (Linux).
+// Starts a new peak at the current resident memory (Linux; elsewhere nothing happens).
 void ResetPeakRss();
-// Asks for large pages behind this range, before it is first written. Only a hint.
+// Asks the system for large pages in this range; call before it is first written. Only a hint.
 void AdviseHugePages(void* begin, size_t bytes);
 std::string HostName();
 // "AMD EPYC, 2 cores, 24 GiB, Linux 6.1": for reports.

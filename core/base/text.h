@@ -1,11 +1,11 @@
-// Small texts from lists.
+// Joins a list of words into one text, for messages.
 #pragma once
 
 #include <string>
 
 namespace skyquilt::base {
 
-// The words one after the other, `between` two of them.
+// "a, b, c": `between` is put between neighbouring words. Empty for an empty list.
 template <typename Words>
 std::string Join(const Words& words, const std::string& between = ", ") {
   std::string text;

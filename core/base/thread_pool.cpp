@@ -15,7 +15,7 @@
 namespace skyquilt::base {
 namespace {
 
-// Loops are often about a millisecond long and follow each other closely: a short spin saves most of the sleeps.
+// Loops are often about a millisecond long and follow each other closely: waiting actively for a moment avoids most sleeps.
 constexpr std::chrono::microseconds kSpin{20};
 
 void Relax() {
@@ -42,7 +42,7 @@ struct ThreadPool::State {
   std::atomic<bool> stop{false};
   std::atomic<bool> running{false};
   std::atomic<int> n_active{0};  // threads inside the open loop, the caller not counted; changed under the mutex
-  bool open = false;             // a loop may still be joined; under the mutex
+  bool open = false;             // threads may still join the loop; under the mutex
   int64_t n_tasks = 0;
   const std::function<void(int64_t, int)>* body = nullptr;
   std::exception_ptr error;  // the first; under the mutex
@@ -71,7 +71,7 @@ struct ThreadPool::State {
         start.wait(lock, called);
         if (stop.load()) return;
         seen = generation.load();
-        // Too late for this loop: the others have finished it already.
+        // The other threads have already finished this loop.
         if (!open) continue;
         n_active.fetch_add(1);
       }

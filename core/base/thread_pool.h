@@ -1,5 +1,5 @@
-// A fixed set of threads that run the tasks of one loop at a time.
-// Tasks are taken dynamically, so results must not depend on which thread runs a task; write to slots indexed by task.
+// Parallel loops: a fixed set of threads that run the tasks of one loop at a time.
+// Which thread runs a task changes from run to run. For reproducible results write to places indexed by task, not by thread.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace skyquilt::base {
 
 class ThreadPool {
  public:
-  // n_threads <= 0: one per usable core. The calling thread is one of them.
+  // n_threads <= 0: one per usable core. The thread that calls ParallelFor counts as one of them.
   explicit ThreadPool(int n_threads = 0);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;

@@ -34,7 +34,7 @@ const ModelInfo& Info(CameraModel model) {
   return kModels[index];
 }
 
-// Fewer parameters than the model has would be read past their end.
+// Checks the number of parameters, so that none is read past the end of the list.
 const ModelInfo& CheckedInfo(const Camera& camera) {
   const ModelInfo& info = Info(camera.model);
   SKYQUILT_CHECK(camera.params.size() == static_cast<size_t>(info.n_params),
@@ -149,7 +149,7 @@ std::optional<Eigen::Vector2d> Camera::ImgFromCam(const Eigen::Vector3d& x_in_ca
   const std::optional<Eigen::Vector2d> distorted = DistortionOf(*this).Distort(x_in_cam);
   if (!distorted) return std::nullopt;
   const Eigen::Vector2d pixel = distorted->cwiseProduct(focal) + PrincipalPoint();
-  // A point a hair in front of the camera plane overflows.
+  // Overflow for points very close to the camera plane.
   if (!pixel.allFinite()) return std::nullopt;
   return pixel;
 }
@@ -165,7 +165,7 @@ Camera Camera::Resized(int new_width, int new_height) const {
   const double scale_x = static_cast<double>(new_width) / width;
   const double scale_y = static_cast<double>(new_height) / height;
   const bool one_focal_length = CheckedInfo(*this).one_focal_length;
-  // Rounded sizes rarely keep the aspect exactly; one focal length could then not serve both axes.
+  // Rounded sizes rarely keep the aspect ratio exactly; both axes then need their own focal length.
   const bool splits = one_focal_length && static_cast<int64_t>(new_width) * height != static_cast<int64_t>(new_height) * width;
   Camera resized = splits ? WithTwoFocalLengths(*this) : *this;
   resized.width = new_width;

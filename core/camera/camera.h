@@ -1,4 +1,4 @@
-// Intrinsics and lens distortion of COLMAP's camera models, without resampling any image.
+// Camera models of COLMAP: maps between pixels and rays with intrinsics and lens distortion, so that photos need not be undistorted first.
 // Pixels: the image corner is (0, 0), the centre of the first pixel (0.5, 0.5). Camera frame: x right, y down, z forward.
 // Parameter order per model is COLMAP's (src/colmap/sensor/models.h):
 //   SIMPLE_PINHOLE f cx cy | PINHOLE fx fy cx cy | SIMPLE_RADIAL f cx cy k | RADIAL f cx cy k1 k2
@@ -14,7 +14,7 @@ namespace skyquilt::camera {
 
 enum class CameraModel { kSimplePinhole = 0, kPinhole = 1, kSimpleRadial = 2, kRadial = 3, kOpencv = 4, kOpencvFisheye = 5, kFullOpencv = 6 };
 
-// COLMAP's name and number of parameters. FromName / FromId return nothing for models we do not support.
+// COLMAP's name, number of parameters and id of a model. FromName / FromId return nothing for models we do not support.
 std::string ModelName(CameraModel model);
 int ModelParamCount(CameraModel model);
 std::optional<CameraModel> ModelFromName(const std::string& name);
@@ -26,27 +26,27 @@ struct Camera {
   int height = 0;  // pixels
   std::vector<double> params;
 
-  // Empty when usable, otherwise what is wrong (size, parameter count, focal length, not finite).
+  // Empty when the camera can be used, otherwise the problem in words (size, number of parameters, focal length, not finite).
   std::string Problem() const;
   double FocalX() const;
   double FocalY() const;
   Eigen::Vector2d PrincipalPoint() const;
-  // Pixels from the principal point to the farthest corner of the image.
+  // Distance from the principal point to the farthest image corner, pixels.
   double FarthestCorner() const;
 
-  // Pixel of a point in the camera frame; nothing when it is not in front of the camera (fisheye: also none at the centre), nor when it
-  // lies beyond the first fold of the distortion, where its polynomial would mirror far-off points back into the image.
+  // Projects a point in the camera frame to its pixel, which may be outside the image. Nothing when z <= 0 (fisheye models too), and beyond the
+  // radius where the distortion stops growing: there its polynomial would map far-off points back into the image.
   std::optional<Eigen::Vector2d> ImgFromCam(const Eigen::Vector3d& x_in_cam) const;
-  // Unit direction of a pixel's ray in the camera frame. Distortion is inverted by Newton steps with a fixed-point fallback;
-  // outside the invertible region the nearest converged direction is returned, never NaN.
+  // Unit direction of a pixel's ray in the camera frame. Distortion is inverted with Newton steps and a slower fallback;
+  // outside the invertible region the nearest direction found is returned, never NaN.
   Eigen::Vector3d RayFromImg(const Eigen::Vector2d& pixel) const;
 
-  // The same lens on an image of another size (focal lengths and principal point scale, distortion stays).
-  // A change of aspect turns a model with one focal length into the same lens with two (PINHOLE, OPENCV).
+  // The camera of the resized image: focal lengths and principal point are scaled, distortion stays.
+  // If the aspect ratio changes, a model with one focal length becomes the same lens with two (PINHOLE, OPENCV).
   Camera Resized(int new_width, int new_height) const;
 };
 
-// Metres per pixel on flat ground straight below, for a camera `agl_m` above it.
+// GSD: metres per pixel on flat ground straight below a camera that is `agl_m` above it.
 double GroundSamplingDistance(const Camera& camera, double agl_m);
 
 }  // namespace skyquilt::camera

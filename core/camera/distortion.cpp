@@ -11,9 +11,9 @@ namespace {
 constexpr int kNewtonSteps = 20;
 // In units of the plane z = 1: 1e-13 of a focal length, far below a millionth of a pixel.
 constexpr double kTolerance = 1e-13;
-// A ray 89.4 degrees off the axis; no perspective lens model means anything beyond.
+// A ray 89.4 degrees off the axis; perspective models are meaningless beyond.
 constexpr double kMaxPlaneRadius = 100.0;
-// Folds of real lenses lie far outside the image; below this radius a growing end point vouches for the way to it.
+// Real lenses fold far outside the image; up to this radius only the end point is checked, not the radii before it.
 constexpr double kUncheckedRadius = 0.5;
 constexpr int kGrowthSamples = 8;
 constexpr double kScanStep = 0.01;
@@ -70,7 +70,7 @@ double Distortion::InvertProfile(double distorted_radius) const {
 
 double Distortion::InvertProfileSlowly(double distorted_radius) const {
   const double limit = is_fisheye_ ? std::numbers::pi : kMaxPlaneRadius;
-  // Walks out from the centre to the first radius that is far enough or past the fold, then halves the last step.
+  // Scans from the centre to the first radius that is large enough or past the fold, then bisects the last step.
   const auto is_beyond = [&](double r) {
     const Jet at = Profile(r);
     return !(at.slope > 0.0) || !(at.value >= 0.0) || !(at.value < distorted_radius);
@@ -78,7 +78,7 @@ double Distortion::InvertProfileSlowly(double distorted_radius) const {
   double low = 0.0;
   double high = 0.0;
   while (high < limit) {
-    // Steps grow with the radius: folds near the axis need the fine ones.
+    // Steps grow with the radius: only folds near the axis need fine ones.
     high = std::min(limit, low + kScanStep * (1.0 + low));
     if (is_beyond(high)) break;
     low = high;
@@ -125,14 +125,14 @@ std::optional<Eigen::Vector2d> Distortion::Distort(const Eigen::Vector3d& direct
 Eigen::Vector2d Distortion::UndistortPlane(const Eigen::Vector2d& distorted) const {
   const double distorted_radius = distorted.stableNorm();
   if (distorted_radius < 1e-300) return distorted;
-  // The radial part alone is inverted safely in one dimension; the tangential part is a small correction to it.
+  // Start from the inverse of the radial part, which is safe in one dimension; the tangential part is a small correction.
   Eigen::Vector2d ideal = distorted * (InvertProfile(distorted_radius) / distorted_radius);
   if (p1_ == 0.0 && p2_ == 0.0) return ideal;
 
   Eigen::Matrix2d jacobian;
   Eigen::Vector2d residual = DistortPlane(ideal, &jacobian) - distorted;
   for (int step = 0; step < kNewtonSteps && residual.norm() > kTolerance * (1.0 + distorted_radius); ++step) {
-    // Near a fold the Newton direction is worthless and the plain residual (a fixed-point step) is safer.
+    // Near a fold the Newton direction is unreliable; the residual itself (a fixed-point step) is safer.
     const bool is_regular = jacobian.determinant() > 1e-6;
     const Eigen::Vector2d direction = is_regular ? Eigen::Vector2d(jacobian.inverse() * residual) : residual;
     bool improved = false;
@@ -160,7 +160,7 @@ Eigen::Vector3d Distortion::Undistort(const Eigen::Vector2d& distorted) const {
     const Eigen::Vector2d across = distorted * (std::sin(theta) / distorted_radius);
     return {across.x(), across.y(), std::cos(theta)};
   }
-  // stableNormalized: squares of the coordinates of far-off pixels may overflow.
+  // stableNormalized: for far-off pixels the squared coordinates may overflow.
   return (is_ideal_ ? distorted : UndistortPlane(distorted)).homogeneous().stableNormalized();
 }
 

@@ -27,7 +27,7 @@ bool Shows(const Camera& camera, const geo::Rigid3d& cam_from_enu, const Eigen::
   const double radius_m = rule.radius_m;
   if (radius_m > 0.0) {
     if (in_cam.z() < -radius_m) return false;
-    // The ball surrounds the camera or nearly so.
+    // The ball intersects the camera plane, so that its centre may have no pixel.
     if (in_cam.z() <= radius_m) return in_cam.norm() < 4.0 * radius_m;
   }
   const auto pixel = camera.ImgFromCam(in_cam);

@@ -1,4 +1,5 @@
-// Arrays on their way into an archive, also those of other archives and those stored with fewer bits. Private to this room's .cpp files.
+// Arrays that ArchiveWriter is about to write: from memory or from other archives, whole or in part, possibly as 16-bit floats. Private to
+// core/checkpoint.
 #pragma once
 
 #include <cstddef>
@@ -18,13 +19,13 @@ struct Array {
   const void* data = nullptr;
   std::vector<HdfSize> shape;
   size_t n_bytes = 0;                 // in the file
-  std::filesystem::path copied_from;  // instead of data: an array of another archive
-  std::string copied_array;
-  std::span<const uint8_t> keep;  // of a copy: one bit for each `group` floats; group 0: all are kept
-  int64_t group = 0;
+  std::filesystem::path copied_from;  // the other archive, if the array is a copy; data is then null
+  std::string copied_array;           // its name there
+  std::span<const uint8_t> keep;      // for a copy: the groups to store, one bit each
+  int64_t group = 0;                  // floats per group; 0: store all
 };
 
-// Names of what PutKept stores beside an array.
+// Names of the two arrays that PutKept stores in addition.
 inline std::string KeepBitsName(const std::string& name) {
   return name + "_keep";
 }
@@ -35,24 +36,24 @@ inline bool IsKept(std::span<const uint8_t> keep, int64_t group) {
   return (keep[static_cast<size_t>(group / 8)] >> static_cast<unsigned>(group % 8) & 1U) != 0;
 }
 int64_t CountKept(std::span<const uint8_t> keep, int64_t groups);
-// Kept groups to their places among `total` numbers, zero elsewhere.
+// Puts the kept groups at their places in an array of `total` floats, with zeros elsewhere.
 std::vector<float> Spread(const std::vector<float>& kept, std::span<const uint8_t> keep, int64_t group, int64_t total);
 
-// ElementName and its inverse for what TypeName gave.
+// The inverse of ElementName.
 ElementType ElementOf(const std::string& name);
-// What an array becomes when floats are to have this precision.
+// The type in the file of an array that is stored with this precision.
 ElementType StoredAs(ElementType type, Precision precision);
 bool IsShortFloat(ElementType type);
 
-// An archive's array as the bytes that a file with this element type holds: floats are shortened when the type is a short float.
+// The bytes of an archive's array when stored as this element type: floats are converted if it is a 16-bit float.
 std::vector<std::byte> AsStored(const ArchiveReader& reader, const std::string& name, ElementType type);
 std::vector<float> FloatsOf(const std::vector<uint16_t>& stored, ElementType type);
 
-// Arrays of other archives; one file is open and one array in memory at a time.
+// Reads arrays of other archives; keeps one file open and one array in memory at a time.
 class Copies {
  public:
   const ArchiveReader& Reader(const std::filesystem::path& file);
-  // The array's bytes as they are stored; good until the next call.
+  // The bytes to store; valid until the next call.
   const void* Data(const Array& array);
 
  private:

@@ -17,7 +17,7 @@ namespace {
 using base::InputError;
 
 constexpr const char* kFixVersion = "It comes from another version of the program; run the stage that writes it again with --restart";
-constexpr const char* kFixDamaged = "Remove it and run the same command again, or bring back a copy";
+constexpr const char* kFixDamaged = "Remove it and run the same command again, or restore a copy";
 
 struct ArrayInfo {
   ElementType type = ElementType::kUint8;
@@ -27,7 +27,7 @@ struct ArrayInfo {
 
 using Attribute = std::variant<std::string, double, int64_t>;
 
-// Callbacks from C must not throw: they collect names and everything else happens afterwards.
+// C callbacks must not throw, so they only collect names.
 herr_t CollectDatasets(hid_t, const char* name, const H5O_info_t* info, void* names) {
   if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(names)->emplace_back(name);
   return 0;
@@ -67,7 +67,8 @@ struct ArchiveReader::Impl {
     if (!file.Valid()) Damaged("HDF5 cannot open it");
     ReadAttributes();
     ReadDirectory();
-    if (block != UserBlockText(kind, version, guard)) throw InputError(path, "is damaged: its first bytes do not fit its content", kFixDamaged);
+    if (block != UserBlockText(kind, version, guard))
+      throw InputError(path, "is damaged: the description in its first bytes does not match its content", kFixDamaged);
   }
 
   void ReadAttributes() {
@@ -79,7 +80,7 @@ struct ArchiveReader::Impl {
     const auto version_at = attributes.find("skyquilt.version");
     if (kind_at == attributes.end() || version_at == attributes.end() || !std::holds_alternative<std::string>(kind_at->second) ||
         !std::holds_alternative<int64_t>(version_at->second)) {
-      throw InputError(path, "does not say what kind of archive it is", kFixDamaged);
+      throw InputError(path, "has no attributes with its kind and version", kFixDamaged);
     }
     kind = std::get<std::string>(kind_at->second);
     version = static_cast<int>(std::get<int64_t>(version_at->second));
@@ -139,18 +140,18 @@ struct ArchiveReader::Impl {
     if (H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr) != rank) Damaged("array " + name);
     info.n_values = 1;
     for (const hsize_t size : sizes) {
-      // Nothing is compressed, so an array cannot be larger than its file: checked before memory is asked for.
-      if (size != 0 && info.n_values > n_file_bytes / size) Damaged("array " + name + " claims more values than the file has bytes");
+      // Nothing is compressed, so an array cannot be larger than its file. Check this before allocating memory.
+      if (size != 0 && info.n_values > n_file_bytes / size) Damaged("array " + name + " has more values than the file has bytes");
       info.n_values *= size;
       info.shape.push_back(static_cast<int64_t>(size));
     }
-    if (info.n_values * ElementBytes(info.type) > n_file_bytes) Damaged("array " + name + " claims more bytes than the file has");
+    if (info.n_values * ElementBytes(info.type) > n_file_bytes) Damaged("array " + name + " is larger than the file");
     return info;
   }
 
   const ArrayInfo& Info(const std::string& name) const {
     const auto at = arrays.find(name);
-    if (at == arrays.end()) throw InputError(path, "holds no array '" + name + "'", kFixVersion);
+    if (at == arrays.end()) throw InputError(path, "has no array '" + name + "'", kFixVersion);
     return at->second;
   }
 
@@ -158,7 +159,7 @@ struct ArchiveReader::Impl {
   std::vector<T> Read(const std::string& name, ElementType type) const {
     const ArrayInfo& info = Info(name);
     if (info.type != type) {
-      throw InputError(path, "holds array '" + name + "' as " + ElementName(info.type) + " where " + ElementName(type) + " is expected", kFixVersion);
+      throw InputError(path, "has array '" + name + "' as " + ElementName(info.type) + " where " + ElementName(type) + " is expected", kFixVersion);
     }
     std::vector<T> values(info.n_values);
     if (values.empty()) return values;
@@ -171,9 +172,9 @@ struct ArchiveReader::Impl {
   template <typename T>
   const T& Get(const std::string& name, const char* type_name) const {
     const auto at = attributes.find(name);
-    if (at == attributes.end()) throw InputError(path, "holds no attribute '" + name + "'", kFixVersion);
+    if (at == attributes.end()) throw InputError(path, "has no attribute '" + name + "'", kFixVersion);
     const T* value = std::get_if<T>(&at->second);
-    if (value == nullptr) throw InputError(path, "holds attribute '" + name + "', but not as a " + type_name, kFixVersion);
+    if (value == nullptr) throw InputError(path, "has attribute '" + name + "', but not as a " + type_name, kFixVersion);
     return *value;
   }
 };
@@ -196,8 +197,8 @@ void ArchiveReader::RequireVersion(int expected) const {
   if (impl_->version == expected) return;
   throw InputError(
       impl_->path,
-      "has layout " + std::to_string(impl_->version) + " of " + impl_->kind + " files, this program reads layout " + std::to_string(expected),
-      "Use the version of the program that wrote it, or make it again with --restart");
+      "is a " + impl_->kind + " file of version " + std::to_string(impl_->version) + ", but this program reads version " + std::to_string(expected),
+      "Use the program version that wrote it, or run the stage that writes it again with --restart");
 }
 
 std::vector<std::string> ArchiveReader::Names() const {
@@ -236,7 +237,7 @@ std::vector<float> ArchiveReader::KeptFloats(const std::string& name) const {
   const bool plausible = sizes.size() == 2 && sizes[0] > 0 && sizes[1] >= 0 && sizes[1] % sizes[0] == 0 &&
                          static_cast<int64_t>(keep.size()) == (sizes[1] / sizes[0] + 7) / 8;
   if (!plausible || CountKept(keep, sizes[1] / sizes[0]) * sizes[0] != static_cast<int64_t>(kept.size())) {
-    throw InputError(impl_->path, "array " + name + " and what says where its numbers belong disagree", "Make the file again");
+    throw InputError(impl_->path, "array " + name + " does not match the list of its stored groups", kFixDamaged);
   }
   return Spread(kept, keep, sizes[0], sizes[1]);
 }
@@ -266,7 +267,7 @@ std::filesystem::path NewestUsable(const std::filesystem::path& file, const std:
     try {
       const ArchiveReader reader(candidate);
       if (reader.kind() == kind) {
-        if (candidate == previous) spdlog::warn("{}; continuing from {}", reasons, previous.string());
+        if (candidate == previous) spdlog::warn("{}; using the previous file {} instead", reasons, previous.string());
         return candidate;
       }
       throw InputError(candidate, "is an archive of kind '" + reader.kind() + "' where '" + kind + "' is expected", "");

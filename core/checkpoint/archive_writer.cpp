@@ -60,7 +60,7 @@ void WriteArray(hid_t file, const std::string& name, const Array& array, const v
     const std::vector<hsize_t> chunk = ChunkShape(array);
     SKYQUILT_CHECK(H5Pset_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data()) >= 0, HdfErrorText());
     SKYQUILT_CHECK(H5Pset_fletcher32(creation.id()) >= 0, HdfErrorText());
-    // Every chunk is written whole, so filling it first would only cost time.
+    // Every chunk is written completely, so it need not be filled first.
     SKYQUILT_CHECK(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER) >= 0, HdfErrorText());
   }
   Handle dataset(H5Dcreate2(file, name.c_str(), FileType(array.type), space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
@@ -78,7 +78,7 @@ void WriteAttribute(hid_t file, const std::string& name, const Attribute& value,
   hid_t memory_type = H5T_NATIVE_DOUBLE;
   const void* data = nullptr;
   if (const auto* text = std::get_if<std::string>(&value)) {
-    // The terminating zero is stored too: HDF5 has no empty strings, and the length stays exact.
+    // Store the terminating zero too, because HDF5 has no empty strings.
     string_type = Handle(H5Tcopy(H5T_C_S1), H5Tclose);
     SKYQUILT_CHECK(H5Tset_size(string_type.id(), text->size() + 1) >= 0 && H5Tset_cset(string_type.id(), H5T_CSET_UTF8) >= 0, HdfErrorText());
     type = memory_type = string_type.id();
@@ -95,7 +95,7 @@ void WriteAttribute(hid_t file, const std::string& name, const Attribute& value,
     Fail(path, "cannot be written at attribute " + name);
 }
 
-// Groups are made one by one because only an explicit creation list keeps the time of day out of the file.
+// Creates the groups explicitly, with a property list that keeps the current time out of the file.
 void WriteGroups(hid_t file, const std::set<std::string>& groups, const std::filesystem::path& path) {
   const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
   SKYQUILT_CHECK(creation.Valid() && H5Pset_obj_track_times(creation.id(), false) >= 0, HdfErrorText());
@@ -112,8 +112,8 @@ std::set<std::string> GroupsOf(const std::string& name) {
   return groups;
 }
 
-// Removes the unfinished file unless it was renamed away. Emptied first: after a failed write HDF5 may still hold it open, and with it the disk
-// space.
+// Removes the temporary file if it still exists. Empties it first: after a failed write HDF5 may still have it open, which would keep the disk space
+// in use.
 struct RemoveOnExit {
   std::filesystem::path file;
   ~RemoveOnExit() {
@@ -127,12 +127,13 @@ void Rename(const std::filesystem::path& from, const std::filesystem::path& to) 
   if (std::rename(from.c_str(), to.c_str()) != 0) throw InputError(to, "cannot be replaced (" + std::string(std::strerror(errno)) + ")", kFixDisk);
 }
 
-// Another process may write the same file at this moment: a rank on a host that was cut off does not know that its job was started again.
+// Unique per process: another one may write the same file at the same time, for instance a rank on a host that lost its connection after its job was
+// started again.
 std::filesystem::path TemporaryOf(const std::filesystem::path& file) {
   return file.string() + ".tmp." + base::HostName() + "." + std::to_string(getpid());
 }
 
-// Temporary files of writers that were killed: of this host and no longer running, or older than any write takes.
+// Removes temporary files of killed writers: their process on this host no longer exists, or the file is older than any write takes.
 void RemoveAbandoned(const std::filesystem::path& file) {
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   const std::string start = file.filename().string() + ".tmp.";
@@ -148,7 +149,7 @@ void RemoveAbandoned(const std::filesystem::path& file) {
   }
 }
 
-// The old file gets a second name before the new one takes the first, so that a kill at any point leaves a complete file.
+// Gives the old file a second name before the rename, so that a complete file exists even if the process is killed in between.
 void ReplaceKeepingPrevious(const std::filesystem::path& temporary, const std::filesystem::path& file) {
   const std::filesystem::path previous = file.string() + ".prev";
   std::filesystem::path new_previous = temporary;
@@ -179,7 +180,7 @@ struct ArchiveWriter::Impl {
 
   void Put(const std::string& name, ElementType type, const void* data, size_t n, const std::vector<int64_t>& shape) {
     SKYQUILT_CHECK(!name.empty() && name.front() != '/' && name.back() != '/' && name.find("//") == std::string::npos, "array name '" + name + "'");
-    SKYQUILT_CHECK(!arrays.contains(name), "array " + name + " is put twice");
+    SKYQUILT_CHECK(!arrays.contains(name), "two arrays have the name " + name);
     for (const auto& [other, unused] : arrays) {
       const bool clash = GroupsOf(other).contains(name) || GroupsOf(name).contains(other);
       SKYQUILT_CHECK(!clash, std::string("array ").append(name).append(" clashes with array ").append(other));
@@ -211,7 +212,7 @@ struct ArchiveWriter::Impl {
     try {
       WriteAll(path, &outcome);
     } catch (const InputError&) {
-      // The system's own reason says more than what HDF5 made of it.
+      // The system's error number is more precise than HDF5's message.
       if (outcome.error == 0) throw;
     }
     if (outcome.error != 0) base::ThrowFileError(path, "cannot be written", outcome.error);
@@ -238,7 +239,7 @@ struct ArchiveWriter::Impl {
     if (!file.Close()) Fail(path, "cannot be written");
   }
 
-  // Reopens through the public reader and compares every byte with what was put.
+  // Reopens the file with ArchiveReader and compares every byte with the original values.
   void Verify(const std::filesystem::path& path) const {
     const ArchiveReader reader(path);
     bool same = reader.kind() == kind && reader.version() == version && reader.Names().size() == arrays.size() &&
@@ -251,7 +252,7 @@ struct ArchiveWriter::Impl {
       if (!same) break;
       same = array.n_bytes == 0 || std::memcmp(AsStored(reader, name, array.type).data(), copies.Data(array), array.n_bytes) == 0;
     }
-    if (!same) throw InputError(path, "does not read back as it was written", "Check the disk");
+    if (!same) throw InputError(path, "has other content than was written", "Check the disk, then run the same command again");
   }
 };
 
@@ -294,10 +295,11 @@ void ArchiveWriter::PutKept(const std::string& name, const std::filesystem::path
   const ArchiveReader& reader = impl_->copies.Reader(file);
   const std::vector<int64_t> shape = reader.Shape(array);
   const ElementType type = ElementOf(reader.TypeName(array));
-  SKYQUILT_CHECK(shape.size() == 1 && (type == ElementType::kFloat32 || IsShortFloat(type)), "array " + array + " is not one list of floats");
+  SKYQUILT_CHECK(shape.size() == 1 && (type == ElementType::kFloat32 || IsShortFloat(type)),
+                 "array " + array + " is not a one-dimensional array of floats");
   const int64_t total = shape[0];
   SKYQUILT_CHECK(group > 0 && total % group == 0 && static_cast<int64_t>(keep.size()) == (total / group + 7) / 8,
-                 "array " + array + " of " + std::to_string(total) + " numbers has no groups of " + std::to_string(group));
+                 "array " + array + " of " + std::to_string(total) + " floats cannot be divided into groups of " + std::to_string(group));
   const auto& bits = std::get<std::vector<uint8_t>>(impl_->owned.emplace_back(std::move(keep)));
   impl_->Put(name, StoredAs(type, precision), nullptr, static_cast<size_t>(CountKept(bits, total / group) * group), {});
   Array& kept = impl_->arrays.at(name);

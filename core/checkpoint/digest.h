@@ -1,5 +1,5 @@
-// XXH64 with seed 0, streamed: finds accidental damage at memory speed; no defence against attackers.
-// Any change within one 8-byte word changes the digest with certainty, every other change with probability 1 - 2^-64.
+// The XXH64 hash with seed 0, computed piece by piece, to find damaged files. About as fast as reading memory; not safe against attackers.
+// A change within one 8-byte word always changes the digest, any other change with probability 1 - 2^-64.
 // Source: Y. Collet, xxHash fast digest algorithm, specification 0.1.1.
 #pragma once
 

@@ -18,13 +18,13 @@
 namespace skyquilt::checkpoint {
 namespace {
 
-// What the access list carries; HDF5 copies it as bytes.
+// The driver's data in the access property list; HDF5 copies it as bytes.
 struct DriverInfo {
   WriteOutcome* outcome = nullptr;
 };
 
 struct GuardedFile {
-  H5FD_t base{};  // first, for HDF5 sees only this
+  H5FD_t base{};  // must be first: HDF5 has a pointer to it
   WriteOutcome* outcome = nullptr;
   int descriptor = -1;
   haddr_t end_of_allocation = 0;
@@ -54,7 +54,7 @@ H5FD_t* Open(const char* name, unsigned flags, hid_t access, haddr_t) {
   file->outcome = info->outcome;
   file->descriptor = open(name, mode | O_CLOEXEC, 0666);
   if (file->descriptor < 0) {
-    // HDF5 first tries whether the file exists; only the attempt to create it counts.
+    // HDF5 first tests whether the file exists; only a failure to create it is an error.
     if ((flags & H5F_ACC_CREAT) != 0) Remember(file->outcome, errno);
     return nullptr;
   }
@@ -87,7 +87,7 @@ herr_t SetEndOfAllocation(H5FD_t* base, H5FD_mem_t, haddr_t address) {
 haddr_t EndOfFile(const H5FD_t* base, H5FD_mem_t) {
   const off_t end = lseek(Ours(base)->descriptor, 0, SEEK_END);
   const haddr_t present = end > 0 ? static_cast<haddr_t>(end) : 0;
-  // After a failure the file is as long as HDF5 believes.
+  // After an error, report the length that HDF5 expects.
   return Ours(base)->outcome->error == 0 ? present : std::max(present, Ours(base)->end_of_allocation);
 }
 

@@ -1,6 +1,6 @@
-// An HDF5 file driver for writing that keeps failed writes from the library: HDF5 cannot close a file whose last writes fail (disk full),
-// keeps it open for good and crashes when the process ends. Here the first failure is remembered, everything after it is pretended,
-// HDF5 closes in peace, and the writer throws the file away.
+// An HDF5 file driver that hides failed writes from the library. If a write fails (disk full), HDF5 cannot close the file, keeps it open and crashes
+// when the process ends. This driver records the first error and reports success for all later operations, so that HDF5 closes normally; the writer
+// then discards the file.
 #pragma once
 
 #include "core/checkpoint/hdf5_handle.h"
@@ -8,10 +8,10 @@
 namespace skyquilt::checkpoint {
 
 struct WriteOutcome {
-  int error = 0;  // the system's number of the first failure, 0 while all is well
+  int error = 0;  // errno of the first failed operation, 0 if none failed
 };
 
-// Makes files created with this access list use the driver. `outcome` must live until the file is closed. Call under HdfLock.
+// Makes files created with this access property list use the driver. `outcome` must exist until the file is closed. Call under HdfLock.
 void UseGuardedDriver(const Handle& file_access, WriteOutcome* outcome);
 
 }  // namespace skyquilt::checkpoint

@@ -21,7 +21,7 @@ herr_t KeepDescription(unsigned, const H5E_error2_t* error, void* text) {
   return 0;
 }
 
-// A float of 16 bits made from one of 32, in its byte order. Made once, under the library's lock, and kept.
+// A 16-bit float type with the byte order of the 32-bit type `single`.
 hid_t Float16Of(hid_t single, size_t exponent_bits, size_t bias) {
   const hid_t type = H5Tcopy(single);
   const size_t mantissa_bits = 15 - exponent_bits;
@@ -38,7 +38,7 @@ HdfLock::HdfLock() : lock_(LibraryMutex()) {
 }
 
 std::string HdfErrorText() {
-  std::string text = "HDF5 gives no reason";
+  std::string text = "no message from HDF5";
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, KeepDescription, &text);
   return text;
 }

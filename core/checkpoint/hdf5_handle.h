@@ -1,5 +1,5 @@
-// HDF5 identifiers that close themselves, one lock for the library, and its last error as text. Private to this room's .cpp files;
-// spelled with plain integers so that hdf5.h stays in those (hdf5_handle.cpp asserts that they are the library's types).
+// RAII for HDF5 identifiers, the lock of the library, and its last error as text. Private to core/checkpoint. Uses plain integer types, so that only
+// .cpp files include hdf5.h (hdf5_handle.cpp asserts that they are the library's types).
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace skyquilt::checkpoint {
 using HdfId = int64_t;               // hid_t
 using HdfSize = unsigned long long;  // hsize_t
 
-// Holds the library's lock and silences its own error printing.
+// Holds the library's lock while it exists, and turns off the library's own error messages.
 class HdfLock {
  public:
   HdfLock();
@@ -23,6 +23,7 @@ class HdfLock {
   std::lock_guard<std::recursive_mutex> lock_;
 };
 
+// Owns an identifier and closes it with its closing function (H5Fclose, H5Dclose, ...).
 class Handle {
  public:
   using Closer = int (*)(HdfId);
@@ -40,7 +41,7 @@ class Handle {
 
   bool Valid() const { return id_ >= 0; }
   HdfId id() const { return id_; }
-  // False if closing failed, as it does when buffered data meets a full disk.
+  // False if closing failed, for instance because buffered data cannot be written to a full disk.
   bool Close() {
     if (id_ < 0) return true;
     return closer_(std::exchange(id_, -1)) >= 0;
@@ -51,19 +52,20 @@ class Handle {
   Closer closer_ = nullptr;
 };
 
-// The innermost description on the library's error stack.
+// The most specific message on the library's error stack.
 std::string HdfErrorText();
 
 // The element types of an archive.
 enum class ElementType { kFloat32, kFloat64, kUint8, kInt64, kBfloat16, kFloat16 };
 size_t ElementBytes(ElementType type);
 const char* ElementName(ElementType type);
-HdfId FileType(ElementType type);    // little-endian, never closed
-HdfId MemoryType(ElementType type);  // native, never closed
+// HDF5 types for the file (little-endian) and for memory (native); do not close them.
+HdfId FileType(ElementType type);
+HdfId MemoryType(ElementType type);
 
-// File access: format of HDF5 1.10 (checksummed metadata), no file locks (parallel file systems often lack them).
+// File access properties: format of HDF5 1.10 (metadata with checksums), no file locks (many parallel file systems do not support them).
 Handle FileAccess();
-// rank 0 is not used; `shape` has at least one dimension.
+// Dataspace of an array; `shape` has at least one dimension.
 Handle SimpleSpace(const std::vector<HdfSize>& shape);
 
 }  // namespace skyquilt::checkpoint

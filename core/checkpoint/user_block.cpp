@@ -15,7 +15,7 @@ using base::InputError;
 
 constexpr char kMagic[] = "SKYQUILT ARCHIVE ";
 constexpr int kFormat = 1;
-constexpr const char* kFix = "Remove it and run the same command again, or bring back a copy";
+constexpr const char* kFix = "Remove it and run the same command again, or restore a copy";
 
 std::ifstream OpenForReading(const std::filesystem::path& file) {
   std::error_code error;
@@ -41,7 +41,7 @@ FileGuard MeasureFile(const std::filesystem::path& file) {
     digest.Update({reinterpret_cast<const uint8_t*>(buffer.data()), n});
     guard.n_bytes += n;
   }
-  if (stream.bad()) throw InputError(file, "cannot be read to its end", "Check the disk it lies on");
+  if (stream.bad()) throw InputError(file, "cannot be read completely", "Check the disk, then run the same command again");
   guard.digest = digest.Value();
   return guard;
 }
@@ -87,16 +87,16 @@ std::string VerifiedUserBlock(const std::filesystem::path& file, FileGuard* guar
       std::sscanf(text.c_str() + sizeof(kMagic) - 1, "%3d bytes %20" SCNu64 " xxh64 %16" SCNx64, &format, &stored.n_bytes, &stored.digest);
   if (n_read >= 1 && format > kFormat) {
     throw InputError(
-        file, "was written by a newer Skyquilt (archive format " + std::to_string(format) + ", this program knows " + std::to_string(kFormat) + ")",
+        file, "was written by a newer Skyquilt (archive format " + std::to_string(format) + ", this program reads " + std::to_string(kFormat) + ")",
         "Update the program");
   }
-  if (n_read != 3) throw InputError(file, "is damaged: its first " + std::to_string(kUserBlockBytes) + " bytes cannot be understood", kFix);
+  if (n_read != 3) throw InputError(file, "is damaged: its first " + std::to_string(kUserBlockBytes) + " bytes cannot be parsed", kFix);
   *guard = MeasureFile(file);
   if (guard->n_bytes != stored.n_bytes) {
-    throw InputError(
-        file, "is damaged: it has " + std::to_string(guard->n_bytes) + " bytes where " + std::to_string(stored.n_bytes) + " were written", kFix);
+    throw InputError(file, "is damaged: it has " + std::to_string(guard->n_bytes) + " bytes, but " + std::to_string(stored.n_bytes) + " were written",
+                     kFix);
   }
-  if (guard->digest != stored.digest) throw InputError(file, "is damaged: its checksum does not fit its content", kFix);
+  if (guard->digest != stored.digest) throw InputError(file, "is damaged: its checksum does not match its content", kFix);
   return text;
 }
 

@@ -1,7 +1,7 @@
-// Ranks that send bytes. One process alone has the same interface without MPI traffic. Only this room includes mpi.h.
-// Waiting polls with short sleeps, so idle ranks leave their core to those that work.
-// Only the thread that called Connect may use a communicator. A large message travels while both sides call Send or TryReceive now and then.
-// Destroying it is the orderly end, which every rank must reach: what was sent and not yet received is thrown away. A rank that fails calls Abort.
+// Messages of bytes between ranks (MPI processes). A single process has the same interface without MPI, so that callers need not tell the two apart.
+// Only core/comm includes mpi.h. Waiting polls with short sleeps, so that waiting ranks do not use a core that others need.
+// Only the thread that called Connect may use a communicator. A large message is transferred only while both sides call Send, TryReceive or Flush.
+// The destructor waits for all ranks and drops messages that were not received. A rank that fails must call Abort instead.
 #pragma once
 
 #include <chrono>
@@ -23,29 +23,29 @@ class Communicator {
   virtual ~Communicator() = default;
   virtual int rank() const = 0;
   virtual int size() const = 0;
-  // Ranks that share this node, this one included.
+  // Number of ranks on this node, including this one.
   virtual int local_size() const = 0;
-  // Reliable and ordered per (source, tag). Never blocks on the receiver; a rank may send to itself. tag: 0 to 32767; at most 2 GiB.
-  // Throws std::runtime_error on a broken link.
+  // Messages of the same source and tag arrive in order. Does not wait for the receiver; a rank may send to itself. tag: 0 to 32767; at most 2 GiB.
+  // Throws std::runtime_error when the connection fails.
   virtual void Send(int destination, int tag, const std::string& bytes) = 0;
-  // The next message from anyone, if one has arrived.
+  // The next message that has arrived from any rank; nothing if there is none.
   virtual std::optional<Message> TryReceive() = 0;
-  // How long somebody who waits for a message may sleep between two looks: not at all while one is arriving, for it comes piece by piece.
+  // How long a loop that waits for a message should sleep between two calls of TryReceive; 0 while one is being received (takes many calls).
   virtual std::chrono::microseconds Nap() const { return std::chrono::milliseconds(1); }
-  // Waits until everything sent so far has left; what arrives meanwhile is kept. For a rank that will not look here for a while.
+  // Waits until everything sent so far is transferred; messages that arrive in the meantime are kept. Call before long work without other calls.
   virtual void Flush() {}
-  // Waits for a message; throws base::Interrupted when a cancel is requested and nothing arrives.
+  // Waits for a message. Throws base::Interrupted when cancelled and no message has arrived.
   Message Receive();
-  // Collective: everybody gets rank 0's bytes. Neither this nor Barrier heeds a cancel: all ranks must come.
+  // Collective calls: all ranks must make them, and they cannot be cancelled. Broadcast returns rank 0's bytes on every rank.
   virtual std::string Broadcast(const std::string& bytes_on_root) = 0;
   virtual void Barrier() = 0;
   virtual int64_t bytes_sent() const = 0;
-  // Ends all ranks with this status.
+  // Ends all ranks at once with this exit status.
   [[noreturn]] virtual void Abort(int exit_status) = 0;
 };
 
-// Under an MPI launcher (OMPI_COMM_WORLD_SIZE, PMI_SIZE or PMIX_RANK in the environment) an MPI communicator, otherwise a one-process one.
-// Finalises MPI when destroyed.
+// An MPI communicator when started by an MPI launcher (OMPI_COMM_WORLD_SIZE, PMI_SIZE or PMIX_RANK in the environment), otherwise one for a single
+// process. Its destructor finalises MPI.
 std::unique_ptr<Communicator> Connect();
 
 }  // namespace skyquilt::comm

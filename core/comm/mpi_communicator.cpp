@@ -32,11 +32,11 @@ void SleepShortly() {
 }
 
 int Count(size_t n_bytes) {
-  SKYQUILT_CHECK(n_bytes <= INT_MAX, "a message of " + std::to_string(n_bytes) + " bytes; MPI counts to " + std::to_string(INT_MAX));
+  SKYQUILT_CHECK(n_bytes <= INT_MAX, "a message of " + std::to_string(n_bytes) + " bytes; MPI allows at most " + std::to_string(INT_MAX));
   return static_cast<int>(n_bytes);
 }
 
-// A message under way, in or out; the buffer must keep its address until the request is done.
+// A message being sent or received; its buffer must keep its address until the request is done.
 struct Transfer {
   MPI_Request request = MPI_REQUEST_NULL;
   Message message;
@@ -58,7 +58,7 @@ class MpiCommunicator : public Communicator {
     int already = 0;
     MPI_Initialized(&already);
     SKYQUILT_CHECK(already == 0, "Connect may be called once per process");
-    // Copying straight between processes needs ptrace rights, which containers often withhold; Open MPI then fails on large messages.
+    // Direct copies between processes need ptrace permission, which containers often lack; Open MPI then fails on large messages.
     setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 0);
     int provided = 0;
     Check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "start");
@@ -74,7 +74,7 @@ class MpiCommunicator : public Communicator {
 
   ~MpiCommunicator() override {
     try {
-      // Receiving while waiting lets ranks that still send to each other end together.
+      // Receive while waiting, because other ranks may still be sending to this one.
       while (!outgoing_.empty()) {
         Discard();
         SleepShortly();
@@ -116,7 +116,7 @@ class MpiCommunicator : public Communicator {
 
   std::optional<Message> TryReceive() override {
     Progress();
-    // A small message may overtake a large one, but not one of the same source and tag.
+    // A small message may be returned before a large one that arrived earlier, but not if both have the same source and tag.
     std::set<std::pair<int, int>> held_up;
     for (auto at = incoming_.begin(); at != incoming_.end(); ++at) {
       const std::pair<int, int> stream = {at->message.source, at->message.tag};
@@ -168,8 +168,7 @@ class MpiCommunicator : public Communicator {
   }
 
  private:
-  // Starts receiving whatever was announced and forgets what has been sent. A receive is only started here, never waited for:
-  // a sender that is busy computing must not hold up this rank.
+  // Starts to receive all incoming messages and removes outgoing ones that are complete. Never waits for a message: its sender may be busy computing.
   void Progress() {
     for (;;) {
       int found = 0;
@@ -191,7 +190,7 @@ class MpiCommunicator : public Communicator {
     }
   }
 
-  // Point-to-point traffic goes on while a collective is awaited.
+  // Waits for a collective call; other messages are transferred in the meantime.
   void Wait(MPI_Request* request, const char* what) {
     for (;;) {
       int done = 0;

@@ -1,4 +1,4 @@
-// Ranks of an MPI launcher. mpi.h stays in the .cpp file.
+// The communicator for ranks of an MPI launcher; only its .cpp file includes mpi.h.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// toml++ with its own checks left on. Version 3.3 takes some malformed keys ("[|a") for impossible; it then aborts, or with NDEBUG promises the
-// compiler what is not so. Here a failed check of its own is an exception. Private to this room; include before anything else of toml++.
+// Includes toml++ with its internal assertions turned into exceptions. In version 3.3 some malformed keys ("[|a") fail an assertion: the program
+// would abort, or with NDEBUG have undefined behaviour. Private to core/config; include before any other header of toml++.
 #pragma once
 
 #include <stdexcept>
@@ -20,7 +20,7 @@ struct FailedTomlCheck : std::logic_error {
 #ifdef __GNUC__
 #pragma GCC diagnostic push
 #ifndef __clang__
-#pragma GCC diagnostic ignored "-Wterminate"  // checks in functions that do not throw end the program, as they did
+#pragma GCC diagnostic ignored "-Wterminate"  // in noexcept functions a failed assertion still ends the program
 #endif
 #endif
 #include <toml++/toml.h>

@@ -8,7 +8,7 @@ namespace skyquilt::config {
 
 namespace {
 
-// Insertions, deletions, replacements and swaps of neighbours (optimal string alignment): a swap is the commonest typing error.
+// Number of insertions, deletions, replacements and swaps of neighbouring letters (optimal string alignment); swaps are common typing errors.
 size_t EditDistance(const std::string& a, const std::string& b) {
   std::vector<size_t> before_last(b.size() + 1);
   std::vector<size_t> last(b.size() + 1);

@@ -1,12 +1,13 @@
-// Options of the rooms. One description per option serves the TOML files, --set, the command line's help, the check of its value, the
-// documentation and the configuration hash. A room's options are a plain struct with defaults in place and two functions:
+// Configuration options. Each option is described once, and this description is used to read TOML files and --set, to check the value, and for the
+// help, the documentation and the configuration hash. The options of one part of the program are a plain struct with default values and two
+// functions:
 //
 //   std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
 //     return {{"levels", &TrainOptions::levels, Range{1, 16}, "resolutions of the hash grid"}, ...};
 //   }
-//   void TrainOptions::Check() const {  // or with the section's name, where several sections hold such a struct
+//   void TrainOptions::Check() const {  // takes the section's name as argument when several sections use the struct
 //     config::CheckRanges("train", *this);
-//     // ... and the rules that concern several options together
+//     // ... and rules between several options
 //   }
 #pragma once
 
@@ -22,7 +23,7 @@
 
 namespace skyquilt::config {
 
-// One option of a struct: its key in the configuration, its member, what it may be, and what it is for (unit, special values).
+// Describes one option of a struct: its key in the configuration, its member, its allowed values, and its help text (meaning, unit, special values).
 template <typename Options>
 struct Field {
   std::string key;
@@ -31,9 +32,9 @@ struct Field {
   std::string help;
 };
 
-using Value = std::variant<bool*, int*, double*, std::string*, std::vector<double>*>;
+using Value = std::variant<bool*, int*, double*, std::string*, std::vector<double>*>;  // points to the option's member
 
-// One option of one object, which must outlive it.
+// The same for one object, which must outlive it: Field with the member's address.
 struct Option {
   std::string key;
   Value value;
@@ -62,7 +63,7 @@ void CheckRanges(const std::string& section, const Options& options) {
   CheckRanges(section, OptionsOf(copy));
 }
 
-// Named sections in file order. Holds references: the structs must outlive it.
+// All options of a configuration, as named sections in file order. Holds references: the structs must outlive it.
 class Sections {
  public:
   template <typename Options>
@@ -85,15 +86,15 @@ class Sections {
   // The option with this "section.key"; null when there is none.
   const Option* Find(const std::string& key) const;
 
-  // Throws base::UsageError for values that cannot be, alone or together with others of their section.
+  // Calls the Check of every section's struct. Throws base::UsageError for a value that is not allowed, alone or in combination.
   void Check() const;
 
-  // Options of earlier versions, as "section.key". Both are still taken wherever they are set, with a warning:
-  void Retire(const std::string& key, const std::string& why) { retired_[key] = why; }          // without effect
-  void Rename(const std::string& old_key, const std::string& key) { renamed_[old_key] = key; }  // for the new key
-  // True for a retired option, which is then warned of; `origin`: where it was set.
+  // Options of earlier versions, as "section.key". Old configurations may still contain them; a warning is logged then.
+  void Retire(const std::string& key, const std::string& why) { retired_[key] = why; }          // ignored
+  void Rename(const std::string& old_key, const std::string& key) { renamed_[old_key] = key; }  // sets `key` instead
+  // True for a retired option; then logs a warning. `origin`: the file or flag that set it.
   bool IsRetired(const std::string& key, const std::string& origin) const;
-  // The new key of a renamed option, which is then warned of unless `origin` is empty; otherwise the key itself.
+  // The new key of a renamed option, otherwise the key itself. Logs a warning for a renamed option unless `origin` is empty.
   std::string CurrentName(const std::string& key, const std::string& origin) const;
 
  private:
@@ -102,21 +103,22 @@ class Sections {
   std::map<std::string, std::string> renamed_;
 };
 
-// Reads a TOML file into the sections. Throws base::InputError for a file that cannot be read or parsed (line named), base::UsageError for an
-// unknown section or key (naming the nearest known one), a value of the wrong type, or one that its range does not contain.
+// Reads a TOML file into the sections; options that the file does not contain keep their values. Throws base::InputError for a file that cannot be
+// read or parsed (with the line), base::UsageError for an unknown section or key (with the nearest known one), a value of the wrong type or outside
+// its range. `origin`: the file's name for messages.
 void ReadToml(const std::filesystem::path& file, const Sections& sections);
 void ReadTomlText(const std::string& text, const std::string& origin, const Sections& sections);
-// Every option with its value; help and range as comments.
+// A TOML file with every option and its value; help and range are comments.
 std::string WriteToml(const Sections& sections);
-// One value as TOML writes it; numbers in the shortest form that reads back to the same bits.
+// One value in TOML syntax; numbers in the shortest form that reads back to the same bits.
 std::string TomlText(const Value& value);
-// "section.key" = value lines, sorted: canonical text for hashing and for naming differences.
+// All options as "section.key" -> value in TOML syntax: a canonical form for hashing and comparing configurations.
 std::map<std::string, std::string> Flatten(const Sections& sections);
 // 16 hex digits.
 std::string Hash(const std::map<std::string, std::string>& flat);
 // "worker.steps: 2000 -> 4000" for every key that differs or exists on one side only.
 std::vector<std::string> Differences(const std::map<std::string, std::string>& before, const std::map<std::string, std::string>& after);
-// The candidate with the smallest edit distance; empty when none is near (distance > max(2, length / 3)).
+// The candidate with the smallest edit distance; empty when that distance is above max(2, length of word / 3).
 std::string Nearest(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace skyquilt::config

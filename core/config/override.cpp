@@ -17,7 +17,7 @@ bool Encloses(const std::string& text, char open, char close) {
   return text.size() >= 2 && text.front() == open && text.back() == close;
 }
 
-// The typed value with the quotes or brackets that TOML wants around one of this option's type.
+// The value with the quotes or brackets that TOML needs for this option's type.
 std::string InToml(const std::string& value, const Value& type) {
   if (std::holds_alternative<std::string*>(type) && !Encloses(value, '"', '"')) {
     std::string text = value;
@@ -32,7 +32,7 @@ std::string InToml(const std::string& value, const Value& type) {
 Override ParseOverride(const std::string& text) {
   const size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw base::UsageError("--set " + text + " is not understood: section.key=value is needed, for instance --set train.steps=4000");
+    throw base::UsageError("--set " + text + " is not understood: write section.key=value, for instance --set train.steps=4000");
   }
   return {Trim(text.substr(0, equals)), Trim(text.substr(equals + 1))};
 }
@@ -43,7 +43,7 @@ void ApplyOverride(const Override& entry, const Sections& sections) {
   try {
     ReadTomlText(entry.key + " = " + value, "", sections);
   } catch (const base::InputError&) {
-    throw base::UsageError(entry.key + " = '" + entry.value + "' is not understood: the value must be written as in a TOML file, for instance " +
+    throw base::UsageError(entry.key + " = '" + entry.value + "' is not understood: write the value as in a TOML file, for instance " +
                            (option == nullptr ? "train.steps = 4000" : entry.key + " = " + TomlText(option->value)));
   }
 }

@@ -1,4 +1,4 @@
-// Single options as typed on a command line, in place of a file's.
+// Sets single options from the command line (--set section.key=value); they win over configuration files.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 
 namespace skyquilt::config {
 
-// An option as typed: "train.steps=4000".
+// From the text "train.steps=4000".
 struct Override {
   std::string key;    // "section.key"
-  std::string value;  // as in TOML; texts may stand without quotes, lists without brackets
+  std::string value;  // in TOML syntax; quotes around a text and brackets around a list may be omitted
 };
-// Throws base::UsageError when the text has no '='.
+// Throws base::UsageError when the text has no '=' or nothing before it.
 Override ParseOverride(const std::string& text);
-// Reads it as the line "key = value" of a TOML file would be. Throws base::UsageError for an unknown section or key (naming the nearest), a value
-// of the wrong type, or one that is not allowed.
+// Sets the option as the line "key = value" of a TOML file would. Throws base::UsageError for an unknown section or key (with the nearest known one),
+// a value of the wrong type, or one outside its range.
 void ApplyOverride(const Override& entry, const Sections& sections);
 
 }  // namespace skyquilt::config

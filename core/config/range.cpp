@@ -15,7 +15,7 @@ namespace {
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 std::string NumberText(double value) {
-  // Limits are round numbers: 4096, not 4.096e+03.
+  // Writes 4096, not 4.096e+03.
   std::array<char, 400> buffer;
   const bool plain = value == 0.0 || (std::abs(value) >= 1e-4 && std::abs(value) < 1e7);
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, plain ? std::chars_format::fixed : std::chars_format::general);
@@ -34,7 +34,7 @@ std::string Alternatives(const std::vector<std::string>& words) {
 }  // namespace
 
 Range::Range(double min, double max) : kind_(Kind::kNumbers), min_(min), max_(max) {
-  SKYQUILT_CHECK(min <= max, "a range from its lower to its upper end");
+  SKYQUILT_CHECK(min <= max, "the minimum of a range is above its maximum");
 }
 
 Range Range::AtLeast(double min) {

@@ -13,7 +13,7 @@
 namespace skyquilt::config {
 namespace {
 
-// Nothing for single options, which have no file.
+// " (line 3)"; empty for --set, which has no file.
 std::string LineOf(const toml::node& node) {
   if (node.source().path == nullptr || node.source().path->empty()) return "";
   const auto line = node.source().begin.line;
@@ -25,13 +25,13 @@ std::string KindOf(const toml::node& node) {
     case toml::node_type::table:
       return "a table";
     case toml::node_type::array:
-      return "an array";
+      return "a list";
     case toml::node_type::string:
-      return "a string";
+      return "a text in quotes";
     case toml::node_type::integer:
-      return "an integer";
+      return "a whole number";
     case toml::node_type::floating_point:
-      return "a number with a point";
+      return "a decimal number";
     case toml::node_type::boolean:
       return "true or false";
     default:
@@ -39,14 +39,14 @@ std::string KindOf(const toml::node& node) {
   }
 }
 
-// Every option of the sections, and every table that may hold one ("a" and "a.b" for section "a.b").
+// All known keys, and all tables that may contain one ("a" and "a.b" for section "a.b").
 struct Known {
   std::vector<std::string> keys;
   std::vector<std::string> section_of_key;  // parallel to keys
   std::set<std::string> tables;
 };
 
-// "my.toml: " in front of a message; nothing for single options, which name themselves.
+// "my.toml: " at the start of a message; empty for --set, where the option's name is enough.
 std::string From(const std::string& origin) {
   return origin.empty() ? "" : origin + ": ";
 }
@@ -61,7 +61,7 @@ struct Assign {
   void operator()(int* value) const {
     const auto wide = Exact<int64_t>("a whole number");
     if (wide < std::numeric_limits<int>::min() || wide > std::numeric_limits<int>::max()) {
-      throw base::UsageError(From(origin) + name + " = " + std::to_string(wide) + " is too large" + LineOf(node));
+      throw base::UsageError(From(origin) + name + " = " + std::to_string(wide) + " is too large or too small" + LineOf(node));
     }
     *value = static_cast<int>(wide);
   }
@@ -90,7 +90,7 @@ struct Assign {
     if (const auto* integer = found.as_integer()) return static_cast<double>(integer->get());
     const auto* number = found.as_floating_point();
     if (number == nullptr) Refuse(found, wanted);
-    if (std::isnan(number->get())) throw base::UsageError(From(origin) + name + " is nan" + LineOf(found));
+    if (std::isnan(number->get())) throw base::UsageError(From(origin) + name + " must be a number, found nan" + LineOf(found));
     return number->get();
   }
 };
@@ -121,7 +121,7 @@ Known Describe(const Sections& sections) {
   const size_t dot = name.rfind('.');
   const std::string section = dot == std::string::npos ? "" : name.substr(0, dot);
   const std::string bare = dot == std::string::npos ? name : name.substr(dot + 1);
-  // First a misspelling within the section, then the right word in the wrong section, then anything near.
+  // Suggest a similar key of the section, else the same key of another section, else any similar key.
   std::vector<std::string> here;
   std::string elsewhere;
   for (size_t i = 0; i < known.keys.size(); ++i) {
@@ -138,12 +138,12 @@ Known Describe(const Sections& sections) {
   if (!nearest.empty()) {
     advice = "; did you mean '" + nearest + "'?";
   } else if (!here.empty()) {
-    advice = "; known here: " + base::Join(here);
+    advice = "; this section has: " + base::Join(here);
   }
   throw base::UsageError(From(origin) + "unknown key '" + name + "'" + advice + LineOf(node));
 }
 
-// Every value of the document by its dotted name; refuses tables that no section knows.
+// Collects every value of the document under its dotted name; throws for unknown tables and keys.
 void CollectLeaves(const std::string& origin, const toml::table& table, const std::string& prefix, const Sections& sections, const Known& known,
                    std::map<std::string, const toml::node*>& leaves) {
   for (const auto& [key, node] : table) {
@@ -158,7 +158,7 @@ void CollectLeaves(const std::string& origin, const toml::table& table, const st
         leaves[current] = &node;
       } else {
         sections.CurrentName(name, origin.empty() ? "--set" : origin);
-        leaves.try_emplace(current, &node);  // the new name counts where both are given
+        leaves.try_emplace(current, &node);  // the new name wins when both are given
       }
       continue;
     }
@@ -175,7 +175,7 @@ toml::table Parse(const std::string& text, const std::string& origin) {
     finding << "line " << error.source().begin.line << ", column " << error.source().begin.column << ": " << error.description();
     throw base::InputError(origin, finding.str(), "Correct the line; text values need quotes");
   } catch (const FailedTomlCheck&) {
-    throw base::InputError(origin, "is not TOML: a key or a value begins with a character that cannot begin one",
+    throw base::InputError(origin, "is not valid TOML: a key or a value begins with a character that is not allowed there",
                            "Compare it with configs/default.toml");
   }
 }

@@ -23,7 +23,7 @@ std::string ValueText(double value) {
   std::array<char, 40> buffer;
   const std::to_chars_result end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
   std::string text(buffer.data(), end.ptr);
-  // Without a point it would be an integer to other readers.
+  // Without a decimal point it would be an integer in TOML.
   if (text.find_first_not_of("-0123456789") == std::string::npos) text += ".0";
   return text;
 }

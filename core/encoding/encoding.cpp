@@ -48,8 +48,8 @@ void HashGridConfig::Check() const {
   RequireGrid(levels * features % kernel::kRowPad == 0, "levels * features must be a multiple of 4");
   RequireGrid(log2_table_size >= 1 && log2_table_size <= 24, "log2_table_size must be 1..24, got " + std::to_string(log2_table_size));
   RequireGrid(base_resolution >= 1.0 && std::isfinite(base_resolution), "base_resolution must be at least 1");
-  RequireGrid(finest_resolution >= base_resolution && finest_resolution <= 1e6, "finest_resolution must lie in base_resolution..1e6");
-  for (const double edge : extent) RequireGrid(edge > 0.0 && edge <= 1.0, "extent must lie in (0, 1]");
+  RequireGrid(finest_resolution >= base_resolution && finest_resolution <= 1e6, "finest_resolution must be from base_resolution to 1e6");
+  for (const double edge : extent) RequireGrid(edge > 0.0 && edge <= 1.0, "extent must be in (0, 1]");
 }
 
 void Encoding::Initialize(base::Random& random, std::span<float> parameters) const {

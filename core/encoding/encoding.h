@@ -1,8 +1,9 @@
-// Positions to features: the part of a field that differs between hash grids and the baselines they are compared with.
-// An encoding is a list of parts. Each has its own range of one flat parameter buffer (maybe empty) and writes its own rows of the features, so
-// that parts can be worked on by different threads, and one part's table at a time stays in cache. Calls are per part and batch, never per sample.
-// Batches are structures of arrays (core/kernel/kernels.h), positions in [0, extent]; what lies outside is clamped, NaN counts as 0.
-// Functions are const, keep nothing between calls and give the same bits on every call.
+// Interface of the encodings, which map a position to the features that are the input of the density network: the hash grid, and baselines to compare
+// it with. A new encoding is a new subclass.
+// An encoding consists of parts (for a hash grid its levels). Each part has its own range of one flat parameter buffer (maybe empty) and writes its
+// own rows of the features, so that different threads can work on different parts and the table of one part stays in cache. Batches are structures of
+// arrays (core/kernel/kernels.h), positions in [0, extent]; positions outside are clamped, NaN counts as 0. Functions are const, keep no state and
+// give the same bits on every call.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +29,7 @@ std::string Name(Kind kind);
 // Throws std::invalid_argument that lists the choices.
 Kind KindNamed(const std::string& name);
 
-// Describes a hash grid; the other kinds take their size from it, so that fields of equal configuration are comparable.
+// Describes a hash grid. The other kinds derive their size from it, so that fields with the same configuration are comparable.
 struct HashGridConfig {
   int levels = 8;                      // 1..16
   int features = 4;                    // per entry: 2 or 4
@@ -37,7 +38,7 @@ struct HashGridConfig {
   double finest_resolution = 512;      // of the finest, >= base
   double extent[3] = {1.0, 1.0, 1.0};  // box edges in (0, 1], the longest is 1
 
-  // Throws std::invalid_argument naming the field that is out of range.
+  // Throws std::invalid_argument with the member that is out of range.
   void Check() const;
 };
 
@@ -47,25 +48,25 @@ class Encoding {
 
   virtual Kind kind() const = 0;
   int parts() const { return static_cast<int>(rows_.size()) - 1; }
-  // First row of a part among the features; FirstRow(parts()) is the number of all rows, a multiple of kernel::kRowPad.
+  // First feature row of a part; FirstRow(parts()) is the number of all rows, a multiple of kernel::kRowPad.
   int FirstRow(int part) const { return rows_[static_cast<size_t>(part)]; }
   int OutputRows() const { return rows_.back(); }
-  // Start of a part in the flat parameter buffer, in floats: a multiple of kernel::kLineFloats, the gap before it is never used.
+  // Start of a part in the flat parameter buffer, in floats; a multiple of kernel::kLineFloats. The padding before it is never used.
   int64_t Offset(int part) const { return offsets_[static_cast<size_t>(part)]; }
   int64_t ParameterCount() const { return offsets_.back(); }
 
-  // Start values of all ParameterCount() parameters. By default uniform in +-1e-4 (Mueller et al. 2022, section 4).
+  // Sets the initial values of all ParameterCount() parameters. By default uniform in +-1e-4 (Mueller et al. 2022, section 4).
   virtual void Initialize(base::Random& random, std::span<float> parameters) const;
-  // The part's rows for n positions (any n). table: the part's range of the parameters. out: its first row.
+  // Computes the part's feature rows for n positions (any n). table: the part's parameters. out: the part's first row.
   virtual void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
                        size_t out_stride) const = 0;
-  // Adds the gradient of Forward to table_gradient and sets touched[line] = 1 for every line of kernel::kLineFloats that it writes to. Samples with
-  // an all-zero gradient are skipped. table as in Forward; out_gradient: the part's first row.
+  // Backward pass: adds to table_gradient and sets touched[line] = 1 for every line of kernel::kLineFloats that it writes to. Samples whose gradient
+  // is all zero are skipped. table as in Forward; out_gradient: the part's first row.
   virtual void Backward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
                         size_t out_stride, float* table_gradient, uint8_t* touched) const = 0;
 
  protected:
-  // `floats` of parameters, rounded up to whole lines so that optimiser and gradients work line by line.
+  // For constructors: appends a part with this many feature rows and parameters (rounded up to whole lines of kernel::kLineFloats).
   void AddPart(int rows, int64_t floats);
 
  private:
@@ -73,7 +74,7 @@ class Encoding {
   std::vector<int64_t> offsets_ = {0};  // parts + 1
 };
 
-// Throws std::invalid_argument naming the field of the configuration that is out of range.
+// Throws std::invalid_argument with the member of the configuration that is out of range.
 std::unique_ptr<const Encoding> MakeEncoding(Kind kind, const HashGridConfig& config);
 
 }  // namespace skyquilt::encoding

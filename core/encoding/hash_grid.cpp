@@ -27,7 +27,7 @@ void HashGrid::MarkReached(const float low[3], const float high[3], std::span<ui
     const kernel::HashLevel& lattice = level(l);
     uint32_t first[3], last[3];
     for (size_t axis = 0; axis < 3; ++axis) {
-      // Of cells as Forward finds them, then their corners.
+      // First and last cell, computed as in Forward; the last lattice point is one after the last cell.
       const float scale = lattice.cells_per_unit;
       const int32_t cells = lattice.size[axis] - 1;
       const auto cell = [&](float at) { return std::clamp(static_cast<int32_t>(std::floor(at * scale)), 0, cells - 1); };

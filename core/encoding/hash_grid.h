@@ -1,5 +1,5 @@
-// Multi-resolution hash grid over a box with edges `extent` (longest 1): levels between a base and a finest resolution grow geometrically; a level
-// whose lattice fits its table is dense (Mueller et al. 2022, eq. 2-4). One part per level.
+// Multi-resolution hash grid (Mueller et al. 2022, eq. 2-4), the encoding used by default, over a box with edges `extent` (longest 1). The resolution
+// of the levels grows geometrically from base to finest; a level whose lattice points fit into its table is dense. One part per level.
 #pragma once
 
 #include <vector>
@@ -10,13 +10,13 @@ namespace skyquilt::encoding {
 
 class HashGrid : public Encoding {
  public:
-  // Throws std::invalid_argument naming the field that is out of range.
+  // Throws std::invalid_argument with the member that is out of range.
   explicit HashGrid(const HashGridConfig& config);
 
   int levels() const { return parts(); }
   const kernel::HashLevel& level(int l) const { return levels_[static_cast<size_t>(l)]; }
   int features() const { return features_; }
-  // Sets reached[Offset(l) / features + e] = 1 for every entry e of every level l that Forward reads at some position in the box [low, high].
+  // Sets reached[Offset(l) / features + e] = 1 for every entry e of every level l that Forward may read for positions in the box [low, high].
   void MarkReached(const float low[3], const float high[3], std::span<uint8_t> reached) const;
 
   Kind kind() const override { return Kind::kHash; }

@@ -1,4 +1,4 @@
-// Regular lattices over a box with edges `extent`, shared by the encodings that have tables.
+// Regular lattices over a box with edges `extent`, for the encodings that have tables.
 #pragma once
 
 #include <functional>
@@ -7,11 +7,11 @@
 
 namespace skyquilt::encoding {
 
-// `resolution` cells per unit length, at least one cell per axis; the level is marked dense, its entries are left to the caller.
+// A dense lattice with `resolution` cells per unit length, at least one cell per axis. The caller sets `entries`.
 kernel::HashLevel DenseLattice(const double extent[3], double resolution);
-// Lattice points of a level; more than 32 bits hold for fine ones.
+// Number of lattice points of a level; may exceed 32 bits.
 double LatticePoints(const kernel::HashLevel& level);
-// The largest resolution in [1, finest] whose count(resolution), which never falls, is at most `budget`; 1 when none is.
+// The largest resolution in [1, finest] with count(resolution) <= budget, for a count that never decreases; 1 when there is none.
 double FittingResolution(double budget, double finest, const std::function<double(double)>& count);
 
 }  // namespace skyquilt::encoding

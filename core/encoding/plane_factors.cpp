@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kPlaneBlock = 256;
 
-// The two lattice points next to a position along one axis: the lower one and its neighbour's weight.
+// The two lattice points next to a position along one axis: the lower one, and the weight of the upper one.
 struct Cell {
   int32_t low;
   float fraction;
@@ -38,11 +38,11 @@ Eigen::Map<const Group> EntryAt(const float* table, int64_t entry) {
 
 }  // namespace
 
-// Entries and weights of the samples of a block.
+// Table entries and interpolation weights for up to kPlaneBlock samples.
 struct PlaneFactors::Block {
   int64_t plane[kPlaneBlock][4];
   float plane_weight[kPlaneBlock][4];
-  int64_t line[kPlaneBlock];  // the other one follows
+  int64_t line[kPlaneBlock];  // the lower entry; the upper one is the next
   float line_weight[kPlaneBlock][2];
 
   Group Plane(const float* table, int s) const {
@@ -132,7 +132,7 @@ void PlaneFactors::Backward(int part, const float* table, const float* x, const 
       Group gradient;
       for (int c = 0; c < kGroup; ++c) gradient[c] = out_gradient[static_cast<size_t>(c) * out_stride + static_cast<size_t>(begin + s)];
       if ((gradient == 0.0F).all()) continue;
-      // Product rule: what reaches the plane has passed the line, and the other way round.
+      // Product rule.
       const Group to_plane = gradient * block.Line(table, s);
       const Group to_line = gradient * block.Plane(table, s);
       for (int k = 0; k < 4; ++k) add(block.plane[s][k], block.plane_weight[s][k], to_plane);

@@ -1,8 +1,9 @@
-// Vector-matrix factors (Chen et al. 2022, TensoRF, eq. 3 and section 4): for each axis w with the other two axes u and v,
-//   feature_c(x) = plane_c(u, v) * line_c(w)      planes bilinear, lines linear; channels c of the three axes one after the other
-// Channels per axis are the multiple of four nearest to a third of the features of a hash grid of the same configuration; the resolution, the same
-// along all axes, is the largest that needs no more parameters than that hash grid, and never finer than its finest level.
-// A part holds kGroup channels of one axis: plane entries (u + v * points of u), then line entries, of kGroup floats each.
+// Baseline: the vector-matrix factorisation of TensoRF (Chen et al. 2022, eq. 3 and section 4). For each axis w with the other two axes u and v,
+//   feature_c(x) = plane_c(u, v) * line_c(w)
+// Planes are interpolated bilinearly, lines linearly; the channels c of the three axes follow each other.
+// The number of channels per axis is the multiple of four nearest to a third of the features of a hash grid of the same configuration. The
+// resolution, equal along all axes, is the largest that needs no more parameters than that hash grid and is not finer than its finest level. A part
+// has kGroup channels of one axis: plane entries (index u + v * points along u), then line entries, of kGroup floats each.
 #pragma once
 
 #include "core/encoding/encoding.h"
@@ -13,10 +14,10 @@ class PlaneFactors : public Encoding {
  public:
   static constexpr int kGroup = 4;  // channels per part
 
-  // Throws std::invalid_argument naming the field that is out of range.
+  // Throws std::invalid_argument with the member that is out of range.
   explicit PlaneFactors(const HashGridConfig& config);
 
-  // Points per axis and resolution; its entries are not used.
+  // Resolution and points per axis; `entries` is not used.
   const kernel::HashLevel& lattice() const { return lattice_; }
   // Axes of a part, 0 to 2: {u, v} of its plane, w of its line.
   struct Axes {
@@ -26,8 +27,9 @@ class PlaneFactors : public Encoding {
   int64_t PlaneEntries(int part) const;
 
   Kind kind() const override { return Kind::kPlanes; }
-  // Planes as other tables, lines one: features start as planes alone, and gradients pass whole. The authors' normal numbers of deviation 0.1 for
-  // both need their coarse start and many thousand steps: products of noise have to be unlearned, and small factors learn slowly.
+  // Planes are initialised like other tables, lines with 1: at first the features equal the planes, and gradients reach the planes unchanged. The
+  // paper's initialisation (normal, standard deviation 0.1, for both) needs its coarse-to-fine schedule and many thousand steps: products of noise
+  // must be unlearned, and small factors learn slowly.
   void Initialize(base::Random& random, std::span<float> parameters) const override;
   void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out, size_t out_stride) const override;
   void Backward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient, size_t out_stride,

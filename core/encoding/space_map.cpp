@@ -34,7 +34,7 @@ SpaceMap SpaceMap::Slab(const Eigen::Vector3d& min_enu, const Eigen::Vector3d& m
   map.centre_ = 0.5 * (min_enu + max_enu).head<2>();
   map.half_size_m_ = 0.5 * (max_enu - min_enu).head<2>().maxCoeff();
   const double height = max_enu.z() - min_enu.z();
-  // A slab taller than the contracted square is wide sets the unit itself.
+  // If the slab is higher than the contracted square is wide, its height determines the unit.
   map.units_per_metre_ = std::min(0.25 / map.half_size_m_, 1.0 / height);
   map.extent_ = Eigen::Vector3d(1.0, 1.0, height * map.units_per_metre_);
   return map;

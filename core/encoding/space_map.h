@@ -1,8 +1,8 @@
-// Survey ENU metres to a field's own unit box, computed in double and rounded to float once.
-//   Box:   x_unit = (x - min) / longest edge; the box maps to [0, extent].
-//   Slab:  for the context: horizontally the survey square |u|_inf <= 1 is kept and everything beyond is contracted,
-//          u (2 - 1/|u|) / |u| (mip-NeRF 360, eq. 10, in the max norm over x and y); vertically linear between two heights. The contracted
-//          square [-2, 2] maps to [0, 1].
+// Maps survey ENU metres to the unit box in which a field is evaluated. Computed in double and rounded to float once.
+//   Box:   for blocks. x_unit = (x - min) / longest edge; the box maps to [0, extent].
+//   Slab:  for the context, which covers all distances. Heights are mapped linearly. Let u be the horizontal position relative to the survey, -1 to 1
+//          inside its square. Inside, u is kept; outside it is contracted to u (2 - 1/|u|) / |u| (mip-NeRF 360, eq. 10, max norm over x and y).
+//          The contracted square [-2, 2] maps to [0, 1].
 #pragma once
 
 #include <Eigen/Core>
@@ -20,12 +20,12 @@ class SpaceMap {
   const Eigen::Vector3d& max_enu() const { return max_enu_; }
   // Edges of the unit box; the longest is 1.
   const Eigen::Vector3d& extent() const { return extent_; }
-  // Unit lengths per metre (inside the uncontracted part).
+  // Unit lengths per metre where space is not contracted.
   double units_per_metre() const { return units_per_metre_; }
 
   Eigen::Vector3f UnitFromEnu(const Eigen::Vector3d& x_in_enu) const;
   Eigen::Vector3d EnuFromUnit(const Eigen::Vector3d& x_in_unit) const;
-  // How much a metre shrinks against the uncontracted part at this place, in (0, 1].
+  // Length of a radial metre here relative to one in the uncontracted part, in (0, 1].
   double LocalScale(const Eigen::Vector3d& x_in_enu) const;
 
  private:

@@ -1,4 +1,4 @@
-// Real spherical harmonics up to degree 4 (bands 0..3, 16 values) of a unit direction, in the order and sign of
+// Encodes a unit direction in real spherical harmonics up to degree 4 (bands 0..3, 16 values), for view-dependent colour. Order and signs as in
 // Sloan, "Efficient Spherical Harmonic Evaluation", 2013, appendix A2; band 0 is 0.28209479.
 #pragma once
 

@@ -1,6 +1,6 @@
-// One dense lattice with as many channels as a hash grid of the same configuration has features, looked up trilinearly (Sun et al. 2022, DVGO,
-// section 4). Its resolution is the largest that needs no more parameters than that hash grid, and never finer than the finest level.
-// A part holds `features` channels of every lattice point.
+// Baseline: one dense voxel grid with trilinear interpolation (Sun et al. 2022, DVGO, section 4). It has as many channels as a hash grid of the same
+// configuration has features; its resolution is the largest that needs no more parameters than that hash grid and is not finer than its finest level.
+// A part has `features` channels of every lattice point.
 #pragma once
 
 #include "core/encoding/encoding.h"
@@ -9,10 +9,10 @@ namespace skyquilt::encoding {
 
 class VoxelGrid : public Encoding {
  public:
-  // Throws std::invalid_argument naming the field that is out of range.
+  // Throws std::invalid_argument with the member that is out of range.
   explicit VoxelGrid(const HashGridConfig& config);
 
-  // Of every part.
+  // The lattice, the same for every part.
   const kernel::HashLevel& lattice() const { return lattice_; }
 
   Kind kind() const override { return Kind::kVoxels; }

@@ -55,7 +55,7 @@ void HashField::Initialize(base::Random& random, std::span<float> grid, std::spa
 
 NetworkWeights HashField::Prepare(std::span<const float> networks) const {
   if (static_cast<int64_t>(networks.size()) != NetworkParameters()) {
-    throw std::invalid_argument("networks of " + std::to_string(networks.size()) + " numbers disagree with a configuration that needs " +
+    throw std::invalid_argument("the " + std::to_string(networks.size()) + " network parameters disagree with the configuration, which needs " +
                                 std::to_string(NetworkParameters()));
   }
   NetworkWeights weights;
@@ -118,7 +118,7 @@ void HashField::Backward(const NetworkWeights& weights, Activations& a, float* f
   const size_t stride = a.stride;
   const int hidden = config_.hidden;
   const auto gradient_of = [&](size_t layer) { return network_gradient + network_offsets_[layer]; };
-  // Colour network, from its output to [geometry, SH].
+  // Colour network, from its output back to [geometry, SH].
   const int top = config_.color_hidden_layers - 1;
   float* current = a.hidden_gradient[0];
   float* next = a.hidden_gradient[1];
@@ -131,7 +131,7 @@ void HashField::Backward(const NetworkWeights& weights, Activations& a, float* f
     std::swap(current, next);
   }
   kernel::DenseWeightGradient(current, stride, hidden, a.color_in, stride, color_inputs_, n, gradient_of(ColorInput()));
-  // Only the geometry rows go on: the direction has no parameters.
+  // Only the geometry rows need a gradient: the direction has no parameters.
   kernel::Dense(weights.transposed[ColorInput()].data(), kGeometryRows, hidden, current, stride, n, false, a.geometry_gradient, stride);
   for (int64_t s = 0; s < n; ++s) a.geometry_gradient[s] += a.log_density_gradient[s];
   // Density network.
@@ -157,7 +157,7 @@ double HashField::ForwardFlops() const {
 }
 
 double HashField::TrainFlops() const {
-  // Twice more for the gradients of weights and inputs; the direction's input needs none.
+  // Twice as many again for the gradients of weights and inputs; the direction needs no gradient.
   return 3.0 * ForwardFlops() - 2.0 * config_.sh_degree * config_.sh_degree * config_.hidden;
 }
 

@@ -24,7 +24,7 @@ int64_t OccupancyGrid::IndexAt(float x, float y, float z) const {
 
 void OccupancyGrid::WakeNeighbours(float solid, float wake) {
   const int64_t strides[3] = {1, size[0], static_cast<int64_t>(size[0]) * size[1]};
-  // A woken cell is not solid, so waking in place wakes nobody twice.
+  // Raised cells stay below `solid`, so this can be done in place.
   for (int z = 0; z < size[2]; ++z) {
     for (int y = 0; y < size[1]; ++y) {
       for (int x = 0; x < size[0]; ++x) {
@@ -73,7 +73,7 @@ double OccupancyGrid::OccupiedShare() const {
 }
 
 void OccupancyGrid::Dilate(int cells) {
-  // The box is separable: one pass per axis.
+  // Dilation by a box is separable: one pass per axis.
   std::vector<uint8_t> source = occupied;
   const int64_t strides[3] = {1, size[0], static_cast<int64_t>(size[0]) * size[1]};
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,6 +1,6 @@
-// Which cells of a field's box may hold matter. A cell keeps a decaying maximum of the optical depth of one marching step
-// (Mueller et al. 2022, appendix E.2) and is occupied while that exceeds a threshold. Cells no camera sees stay empty for ever.
-// Unit frame of the field; x fastest.
+// Marks the cells of a field's box that may contain something, so that samples in free space are skipped. Each cell keeps a decaying maximum of the
+// optical depth of one marching step (Mueller et al. 2022, appendix E.2) and is occupied while that is above a threshold. Cells that no camera sees
+// are never occupied. Unit frame of the field; x fastest.
 #pragma once
 
 #include <algorithm>
@@ -11,33 +11,34 @@
 namespace skyquilt::field {
 
 struct OccupancyGrid {
-  // Per sample: some dozens of samples that find nothing free a cell, yet a surface that fills a tenth of a cell keeps it.
+  // Decay per sample: a few dozen empty samples free a cell, but one sample in ten on a thin surface keeps it occupied.
   static constexpr float kDecay = 0.9F;
 
   int size[3] = {0, 0, 0};        // cells per axis
-  float cell = 1.0F;              // edge, unit lengths; the same on all axes
-  std::vector<float> tau;         // decaying maximum per cell; negative: never seen, never sampled
+  float cell = 1.0F;              // edge of a cell, unit lengths; the same on all axes
+  std::vector<float> tau;         // per cell: decaying maximum of the optical depth of a step; negative: no camera sees the cell
   std::vector<uint8_t> occupied;  // 0 or 1 per cell
 
-  // Covers [0, extent] with cells of about `wanted_cell`; everything occupied. At most max_cells cells (cells grow instead).
+  // Covers [0, extent] with cells of edge `wanted_cell`, or larger so that there are at most max_cells; all cells occupied.
   static OccupancyGrid Make(const double extent[3], double wanted_cell, int64_t max_cells);
   int64_t CellCount() const { return static_cast<int64_t>(size[0]) * size[1] * size[2]; }
   int64_t Index(int x, int y, int z) const { return (static_cast<int64_t>(z) * size[1] + y) * size[0] + x; }
   // Cell of a position, clamped into the grid.
   int64_t IndexAt(float x, float y, float z) const;
-  // A sample of the optical depth of one step at a position of a seen cell.
+  // Updates the decaying maximum of a cell with the optical depth of one step in it; cells never seen do not change.
   void Observe(int64_t index, float step_tau) {
     float& cell_tau = tau[static_cast<size_t>(index)];
     if (cell_tau >= 0.0F) cell_tau = std::max(kDecay * cell_tau, step_tau);
   }
-  // The six neighbours of every cell deeper than `solid` get at least `wake`, so that a surface can grow into them. Never seen ones do not.
+  // Raises tau of the six neighbours of every cell with tau > solid to at least `wake`, so that a surface can grow into them. Cells never seen stay.
   void WakeNeighbours(float solid, float wake);
-  // Marks cells with tau above the threshold: min(limit, mean over seen cells). Returns the share occupied.
+  // Sets `occupied` where tau is above min(limit, mean over seen cells). Returns OccupiedShare().
   double Refresh(float limit);
-  // Cells whose tau is still exactly `start` were never sampled: nothing is known about them, so they count as never seen.
+  // Treats cells whose tau still has its initial value `start` as never seen: no sample was in them, so nothing was learned there.
   void ForgetUnsampled(float start);
+  // Share of all cells that are occupied, 0 to 1.
   double OccupiedShare() const;
-  // Every cell within `cells` (max norm) of an occupied one becomes occupied, unless never seen.
+  // Occupies every cell within `cells` (max norm) of an occupied one, unless it was never seen.
   void Dilate(int cells);
 };
 

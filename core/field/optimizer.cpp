@@ -45,7 +45,7 @@ void Optimizer::Update(const float* x, const float* y, const float* z, std::span
       AssignTable(&scratch.gradient, static_cast<size_t>(largest));
       scratch.touched.assign(static_cast<size_t>(largest / kernel::kLineFloats), 0);
     }
-    // A hash grid's finest levels, its last, cost most: start with them.
+    // The last parts, a hash grid's finest levels, take longest: start with them.
     const int part = encoding.parts() - 1 - static_cast<int>(task);
     const int64_t offset = encoding.Offset(part);
     float* table = parameters.grid.data() + offset;

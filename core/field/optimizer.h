@@ -1,5 +1,5 @@
-// Adam over the two parameter groups of a field. Grid entries without a gradient in a step keep their parameters and moments
-// (tiny-cuda-nn's rule); the networks carry a small L2 term.
+// Trains the parameters of a field with Adam. Grid parameters without a gradient in a step keep their value and moments (as in tiny-cuda-nn); the
+// networks have a small L2 decay.
 #pragma once
 
 #include <chrono>
@@ -14,37 +14,37 @@
 
 namespace skyquilt::field {
 
-// What training keeps beside a field's parameters: their moments and the gradient buffer.
+// State of the optimiser: the moments of all parameters, and the gradient of the networks.
 struct TrainableState {
   std::vector<float> grid_moment1, grid_moment2, network_moment1, network_moment2;
   int64_t step = 0;  // updates done
 
-  std::vector<float> network_gradient;  // not saved: zero between steps
+  std::vector<float> network_gradient;  // zero between steps, so not saved
 
   void Allocate(const HashField& field);
 };
 
-// Samples of one batch in segments, as packets leave them.
+// Gradient with respect to the features of a packet of samples; a batch consists of several.
 struct GridGradient {
   int64_t begin = 0, count = 0;     // in x, y, z
   const float* gradient = nullptr;  // FeatureRows() rows
   size_t stride = 0;
 };
-// Adds the gradient of the samples' features to the table gradient of one part of the encoding, whose parameters begin at `table`, and marks the
-// lines written to (encoding::Encoding::Backward).
+// Backward pass of one part of the encoding over all segments of a batch; table, table_gradient and touched as in encoding::Encoding::Backward.
 void AddPartGradient(const HashField& field, int part, const float* table, const float* x, const float* y, const float* z,
                      std::span<const GridGradient> segments, float* table_gradient, uint8_t* touched);
 
-// Told at the end of a piece of work which thread did it and when it began; may be empty.
+// Called at the end of a task with its thread and start time, to measure times per phase; may be empty.
 using TaskClock = std::function<void(int thread, std::chrono::steady_clock::time_point began)>;
 
-// Updates a field from a batch. The gradient of a part of the encoding (a level of a hash grid) lives only from its samples to its parameters, in one
-// buffer per thread that stays in cache from part to part. Each part belongs to one thread, so bits do not depend on their number.
+// Updates a field from a batch. A full gradient of the encoding is never stored: each thread takes one part (a level of a hash grid), collects the
+// part's gradient in a buffer that stays in cache, and updates the part's parameters. Each part is processed by one thread, so that the result does
+// not depend on the number of threads.
 class Optimizer {
  public:
   Optimizer(const HashField& field, base::ThreadPool& threads);
-  // One step of Adam with state.network_gradient, which is cleared, and the grid gradient of the segments. network_l2 is the weight decay of
-  // the networks.
+  // One step of Adam with state.network_gradient, which is then set to zero, and the grid gradient of the segments. x, y, z: positions of the batch.
+  // network_l2: weight decay of the networks. `scattered` and `applied` time the backward pass and Adam of each part.
   void Update(const float* x, const float* y, const float* z, std::span<const GridGradient> segments, double learning_rate, double network_l2,
               Parameters& parameters, TrainableState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
 

@@ -1,5 +1,4 @@
-// The learned numbers of one field. In the program their one owner is render::TrainedField; training and rendering read
-// them there.
+// The learned parameters of one field. They are owned by render::TrainedField; training and rendering use them there.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +8,14 @@
 
 namespace skyquilt::field {
 
-// A buffer of n zeros on huge pages where the system has them: random access to tables of megabytes misses the TLB at every corner on pages of
-// 4 KiB. What was in it is lost.
+// Replaces *table by n zeros, on huge pages where the system has them: with pages of 4 KiB, most random accesses to a large table miss the TLB.
 void AssignTable(std::vector<float>* table, size_t n);
 
 struct Parameters {
   std::vector<float> grid;      // HashField::GridParameters()
   std::vector<float> networks;  // HashField::NetworkParameters()
 
-  // All zero, laid out for training. To keep that, copy into the buffers instead of replacing them.
+  // Allocates both with zeros, the grid by AssignTable. To keep its huge pages, copy into the buffers instead of replacing them.
   void Allocate(const HashField& field);
   size_t Count() const { return grid.size() + networks.size(); }
 };

@@ -3,7 +3,7 @@
 namespace skyquilt::field {
 namespace {
 
-// Rays find cells in double and positions are rounded to float: a sample may lie so far outside its cell, in unit lengths.
+// Cells are found in double and positions are rounded to float: a sample may be this far outside its cell, in unit lengths.
 constexpr float kRounding = 1e-6F;
 
 }  // namespace
@@ -13,7 +13,7 @@ std::vector<uint8_t> ReachedEntries(const encoding::HashGrid& grid, const Occupa
   int64_t index = 0;
   for (int z = 0; z < occupancy.size[2]; ++z) {
     for (int y = 0; y < occupancy.size[1]; ++y) {
-      // Neighbours in a row share most corners: one box for all of them.
+      // Neighbours in a row have most corners in common: use one box for all of them.
       for (int x = 0; x < occupancy.size[0]; ++index) {
         const int begin = x++;
         if (occupancy.occupied[static_cast<size_t>(index)] == 0) continue;

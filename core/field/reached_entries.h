@@ -1,5 +1,5 @@
-// Which entries of a hash grid rendering can read: those at the corners of lattice cells that occupied cells touch. The others are what training
-// passed through on its way, or never came to; without them a field looks the same to the bit.
+// Finds the entries of a hash grid that rendering can read, so that a scene file need not store the others: entries at the corners of lattice cells
+// that overlap occupied cells. Rendering gives the same bits without the others, which were used only early in training or never.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace skyquilt::field {
 
-// One bit per `features` numbers of the flat parameter buffer, the first in the lowest bit of the first byte. Only size, cell and occupied of the
-// occupancy are read.
+// One bit per entry (`features` floats of the flat parameter buffer), the first in the lowest bit of the first byte. Of the occupancy grid only size,
+// cell and occupied are used.
 std::vector<uint8_t> ReachedEntries(const encoding::HashGrid& grid, const OccupancyGrid& occupancy);
 
 }  // namespace skyquilt::field

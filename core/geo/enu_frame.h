@@ -1,5 +1,5 @@
-// The survey-wide local frame: x east, y north, z up, metres, about a stored WGS84 origin.
-// Double precision throughout; valid anywhere on Earth, poles and the date line included.
+// The local frame in which a whole survey is processed: x east, y north, z up, metres, about a stored WGS84 origin.
+// Double precision; valid anywhere on Earth, including the poles and the date line.
 // Source: GeographicLib::LocalCartesian (Karney).
 #pragma once
 

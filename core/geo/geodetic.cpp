@@ -10,7 +10,7 @@ bool IsValid(const Geodetic& position) {
 }
 
 double WrapLongitudeDeg(double longitude_deg) {
-  // remainder is exact and lies in [-180, 180].
+  // std::remainder is exact and its result is in [-180, 180].
   const double wrapped = std::remainder(longitude_deg, 360.0);
   return wrapped == 180.0 ? -180.0 : wrapped;
 }

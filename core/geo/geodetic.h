@@ -9,7 +9,7 @@ struct Geodetic {
   double height_m = 0.0;       // ellipsoidal
 };
 
-// True when all three are finite and the latitude lies in [-90, 90].
+// True when all three values are finite and the latitude is in [-90, 90].
 bool IsValid(const Geodetic& position);
 // Wraps to [-180, 180).
 double WrapLongitudeDeg(double longitude_deg);

@@ -1,5 +1,5 @@
-// A ray against an axis-aligned box (slab method, Kay and Kajiya 1986). Never NaN: rays along a face count as inside, zero direction components
-// and infinite boxes are legal.
+// Intersects a ray with an axis-aligned box (slab method, Kay and Kajiya 1986). The result is never NaN: rays along a face count as inside, direction
+// components may be zero and boxes infinite.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace skyquilt::geo {
 
-// A part of a ray, in lengths of its direction from its origin.
+// A part of a ray: points origin + t * direction with t_near <= t <= t_far. t is in metres when the direction has length 1.
 struct Interval {
   double t_near = 0.0;
   double t_far = 0.0;
@@ -18,7 +18,7 @@ struct Interval {
 
 namespace internal {
 
-// Where the half-line t >= 0 is between all three pairs of faces; t_far < t_near when nowhere, t_far = t_near when it only touches the box.
+// The interval with t >= 0 inside all three slabs. t_far < t_near when the ray misses the box, t_far = t_near when it only touches it.
 inline Interval BetweenFaces(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min,
                              const Eigen::Vector3d& max) {
   constexpr Interval kNowhere = {0.0, -1.0};
@@ -41,13 +41,13 @@ inline Interval BetweenFaces(const Eigen::Vector3d& origin, const Eigen::Vector3
 
 }  // namespace internal
 
-// The interval inside the box, for those who walk along it: of no length, and then {0, 0}, when the ray misses the box or only touches it.
+// The interval inside the box, for sampling along the ray; {0, 0} when the ray misses the box or only touches it.
 inline Interval RayBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
   const Interval inside = internal::BetweenFaces(origin, direction, min, max);
   return inside.Empty() ? Interval{} : inside;
 }
 
-// Whether the half-line meets the closed box, for those who ask what can be seen: touching an edge or a corner is enough, a box may be flat.
+// Whether the ray (t >= 0) hits the box, for visibility tests: touching an edge or a corner is enough, and the box may be flat.
 // False when anything is NaN, and for rays that are not finite.
 inline bool RayMeetsBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
   if (!origin.allFinite() || !direction.allFinite() || min.hasNaN() || max.hasNaN()) return false;

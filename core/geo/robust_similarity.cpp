@@ -16,11 +16,11 @@ namespace {
 using Points = Eigen::Matrix3Xd;
 
 constexpr const char* kTooFew = "fewer than 3 matches with finite positions";
-constexpr const char* kOnePlace = "all matches lie at one place, so scale and rotation are undetermined";
-constexpr const char* kOneLine = "all matches lie on one line, so the rotation about it is undetermined";
-constexpr const char* kNoAgreement = "no 3 matches agree with one similarity";
+constexpr const char* kOnePlace = "all matches are at one place, so scale and rotation are undetermined";
+constexpr const char* kOneLine = "all matches are on one line, so the rotation about it is undetermined";
+constexpr const char* kNoAgreement = "no 3 matches agree on one similarity transform";
 
-// Spread across relative to spread along below which three or more points count as a line.
+// Points count as a line when their second largest spread is below this part of their largest.
 constexpr double kLineRatio = 1e-4;
 constexpr double kSampleLineRatio = 1e-3;
 // Largest accepted standard error of the roll about the longest direction (radians) and of the scale (relative).
@@ -37,10 +37,10 @@ Eigen::Vector3d Spread(const Points& points) {
   return spread / std::sqrt(static_cast<double>(points.cols()));
 }
 
-// What is missing for a similarity, from the shape of the points alone; null when nothing is.
+// Why points of this shape cannot determine a similarity; null when they can.
 const char* ShapeProblem(const Points& points, double line_ratio) {
   const Eigen::Vector3d spread = Spread(points);
-  // Below rounding of the coordinates themselves there is no shape.
+  // A spread below the rounding error of the coordinates.
   if (!(spread[0] > 1e-12 * points.cwiseAbs().maxCoeff())) return kOnePlace;
   if (!(spread[1] > line_ratio * spread[0])) return kOneLine;
   return nullptr;
@@ -67,7 +67,7 @@ Points Columns(const Points& points, const std::vector<Eigen::Index>& columns) {
 struct Candidate {
   Similarity3d fit;
   std::vector<Eigen::Index> inliers;
-  // Sum of squared residuals, each cut at the threshold (MSAC): unlike a count it prefers the better of two fits.
+  // Sum of squared residuals, each limited to the threshold (MSAC). Unlike the number of inliers it also measures how well they fit.
   double cost = std::numeric_limits<double>::infinity();
 };
 
@@ -112,7 +112,7 @@ class Search {
   Candidate best_;
 };
 
-// Draws after which a sample of three inliers has been seen with the wanted confidence.
+// Number of samples after which one of three inliers has been drawn with probability kConfidence.
 double DrawsNeeded(double inlier_share) {
   const double hit = inlier_share * inlier_share * inlier_share;
   if (hit >= 1.0) return 1.0;
@@ -120,7 +120,7 @@ double DrawsNeeded(double inlier_share) {
   return std::log(1.0 - kConfidence) / std::log1p(-hit);
 }
 
-// Whether the inliers determine scale and rotation beyond their own noise; null when they do.
+// Why the inliers do not determine scale and rotation, given their noise; null when they do.
 const char* FitProblem(const Points& a, const Points& b, double scale, double rmse_m) {
   for (const Points* points : {&a, &b}) {
     if (const char* problem = ShapeProblem(*points, kLineRatio)) return problem;

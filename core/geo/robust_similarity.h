@@ -1,4 +1,5 @@
-// Robust fit of a similarity between matched points: RANSAC over Eigen::umeyama (Umeyama 1991), then a refit on the inliers.
+// Fits a similarity transform to matched points of which some are wrong, for instance camera centres of a reconstruction to GPS tags with outliers.
+// RANSAC over Eigen::umeyama (Umeyama 1991), then a refit on the inliers.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,14 +11,14 @@
 namespace skyquilt::geo {
 
 struct RobustSimilarityOptions {
-  double inlier_threshold_m = 10.0;  // > 0; residual below which a match counts
-  int iterations = 2000;
+  double inlier_threshold_m = 10.0;  // > 0; matches with a residual up to this are inliers
+  int iterations = 2000;             // at most; fewer when many matches agree
   uint64_t seed = 1;
 };
 
 struct RobustSimilarityFit {
-  bool ok = false;  // false: fewer than 3 matches, or all on one line or point
-  const char* reason = "";
+  bool ok = false;          // false: fewer than 3 matches, no 3 of them agree, or they do not determine scale and rotation
+  const char* reason = "";  // why not ok
   Similarity3d b_from_a;
   std::vector<char> inlier;        // per match
   std::vector<double> residual_m;  // per match, |b - b_from_a * a|
@@ -25,7 +26,8 @@ struct RobustSimilarityFit {
   int n_inliers = 0;
 };
 
-// points_in_a and points_in_b have the same length (throws std::logic_error otherwise). Non-finite matches are never inliers.
+// Match i is points_in_a[i] with points_in_b[i]; throws std::logic_error for different lengths. Non-finite matches are never inliers.
+// The same seed gives the same bits.
 RobustSimilarityFit FitSimilarityRobustly(const std::vector<Eigen::Vector3d>& points_in_a, const std::vector<Eigen::Vector3d>& points_in_b,
                                           const RobustSimilarityOptions& options);
 

@@ -3,7 +3,7 @@
 namespace skyquilt::geo {
 
 Rigid3d ChangeWorld(const Rigid3d& cam_from_a, const Similarity3d& b_from_a) {
-  // s x_cam = R_ca R_ba^T (x_b - t_ba) + s t_ca
+  // With c the camera and s the scale: s x_c = R_ca R_ba^T (x_b - t_ba) + s t_ca.
   Rigid3d cam_from_b;
   cam_from_b.rotation = (cam_from_a.rotation * b_from_a.rotation.conjugate()).normalized();
   cam_from_b.translation = b_from_a.scale * cam_from_a.translation - cam_from_b.rotation * b_from_a.translation;

@@ -15,7 +15,7 @@ struct Rigid3d {
     const Eigen::Quaterniond inverse = rotation.conjugate();
     return {inverse, -(inverse * translation)};
   }
-  // For cam_from_world: where the camera is, in world.
+  // For cam_from_world: the camera centre in world coordinates.
   Eigen::Vector3d OriginInSource() const { return -(rotation.conjugate() * translation); }
 };
 
@@ -27,7 +27,7 @@ struct Similarity3d {
   Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return scale * (rotation * x) + translation; }
 };
 
-// cam_from_b from cam_from_a and b_from_a; the camera frame becomes metric when b is.
+// cam_from_b from cam_from_a and b_from_a. The camera frame is scaled too: it is in metres when b is.
 Rigid3d ChangeWorld(const Rigid3d& cam_from_a, const Similarity3d& b_from_a);
 
 }  // namespace skyquilt::geo

@@ -8,8 +8,8 @@
 namespace skyquilt::geo {
 namespace {
 
-// UTMUPS refuses points beyond a zone's edge and switches hemispheres by itself; a map that crosses either needs one
-// continuous frame, so the projections below it are used with the false eastings and northings of NGA.SIG.0012.
+// GeographicLib's UTMUPS refuses points far outside a zone and changes the hemisphere by itself. A map that crosses a border needs one continuous
+// frame, so we use the underlying projections with the false eastings and northings of NGA.SIG.0012.
 constexpr double kUtmFalseEasting_m = 500e3;
 constexpr double kUtmFalseNorthingSouth_m = 10000e3;
 constexpr double kUpsFalseOrigin_m = 2000e3;

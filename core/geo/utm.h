@@ -1,4 +1,4 @@
-// UTM (UPS beyond 84 N / 80 S): the projected frame of map products.
+// UTM coordinates, the projected frame of orthophotos and DSMs; UPS beyond 84 N / 80 S.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,9 +16,9 @@ struct UtmZone {
   std::string Name() const;  // "UTM 15N", "UPS N"
 };
 
-// Norway and Svalbard exceptions included. Throws std::invalid_argument for an invalid position.
+// The standard zone, with the exceptions for Norway and Svalbard. Throws std::invalid_argument for an invalid position.
 UtmZone UtmZoneOf(const Geodetic& position);
-// Easting, northing in metres, in the given zone (also just outside it).
+// Easting and northing in metres in the given zone; the position may be outside the zone or on the other hemisphere.
 Eigen::Vector2d UtmFromGeodetic(const Geodetic& position, const UtmZone& zone);
 Geodetic GeodeticFromUtm(const Eigen::Vector2d& easting_northing, double height_m, const UtmZone& zone);
 

@@ -14,7 +14,7 @@ struct SourceRange {
   int end = 0;
 };
 
-// The source pixels that the reduced pixel `at` touches, in exact integer arithmetic.
+// The source pixels that the reduced pixel `at` overlaps, in exact integer arithmetic.
 SourceRange Under(int at, int source_size, int reduced_size) {
   const int64_t begin = static_cast<int64_t>(at) * source_size / reduced_size;
   const int64_t end = (static_cast<int64_t>(at + 1) * source_size + reduced_size - 1) / reduced_size;

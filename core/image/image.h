@@ -1,4 +1,4 @@
-// Images in memory: row-major, channels interleaved, row 0 at the top.
+// Images in memory, and reading, writing and resizing them. Row-major, channels interleaved, row 0 at the top.
 #pragma once
 
 #include <cstddef>
@@ -30,16 +30,16 @@ struct BasicImage {
 using Image8 = BasicImage<uint8_t>;
 using ImageF = BasicImage<float>;
 
-// RGB, 8 bits. Grey becomes three equal channels, 16 bits are scaled to 8, alpha is dropped (the first such file of a process is
-// named in a warning); EXIF rotation is NOT applied (the camera model refers to stored pixels). A JPEG that ends early is refused, not
-// half-decoded.
-// Throws base::InputError naming file, finding and how to fix it.
+// Loads a photo as 8-bit RGB. Grey becomes three equal channels, 16 bits are scaled to 8, alpha is dropped (with one warning per process). EXIF
+// rotation is NOT applied, because camera models refer to stored pixels. A truncated JPEG is an error: decoders would fill the missing rows with
+// grey. Throws base::InputError.
 Image8 LoadRgb8(const std::filesystem::path& file);
-// Width and height from the header alone. Throws base::InputError.
+// Width and height; JPEG and PNG are not decoded for it. Throws base::InputError.
 void ReadImageSize(const std::filesystem::path& file, int* width, int* height);
-// One channel of 0 = ignore and 255 = use; a pixel is used when any of its colour channels is not 0 (alpha does not count).
+// Loads a mask as one channel, 0 = ignore and 255 = use. A pixel is used when any of its colour channels is not 0 (alpha does not count).
+// Throws base::InputError.
 Image8 LoadMask(const std::filesystem::path& file);
-// Float TIFF, one channel (true depth of simulated surveys, rendered depth). NaN and infinities survive bit by bit.
+// Float TIFF with one channel, for depth images. NaN and infinity are kept bit by bit.
 // Throws base::InputError for other pixel types and unreadable files.
 ImageF LoadFloatTiff(const std::filesystem::path& file);
 void SaveFloatTiff(const ImageF& image, const std::filesystem::path& file);
@@ -49,16 +49,16 @@ void SavePng(const Image8& image, const std::filesystem::path& file);  // 1 or 3
 std::vector<uint8_t> EncodeJpeg(const Image8& image, int quality);
 void SaveJpeg(const Image8& image, const std::filesystem::path& file, int quality);
 
-// Area-averaging resize (in display values, like the photos' own reduced copies would be); bilinear where it enlarges.
+// Reduces by averaging areas (of sRGB values, as other image programs do); enlarges bilinearly.
 Image8 Resize(const Image8& image, int width, int height);
-// Mask resize: a reduced pixel is usable (255) only if every source pixel under it, even in part, is.
+// Resizes a mask: a pixel is used (255) only if all source pixels that it overlaps are used.
 Image8 ResizeMask(const Image8& mask, int width, int height);
-// Height that keeps the aspect ratio at `new_width`, at least 1.
+// The height for `new_width` that keeps the aspect ratio, at least 1.
 int ScaledHeight(int width, int height, int new_width);
-// Float RGB in [0,1] (clamped, NaN becomes 0) to 8 bits and back.
+// Float values in [0, 1] (clamped, NaN becomes 0) to 8 bits and back.
 Image8 ToImage8(const ImageF& image);
 ImageF ToImageF(const Image8& image);
-// One-channel values to a perceptual colour map (viridis) between low and high, clamped; non-finite becomes black.
+// Shows one channel in the viridis colour map, values clamped to [low, high]; non-finite values become black.
 Image8 Colorize(const ImageF& image, float low, float high);
 
 }  // namespace skyquilt::image

@@ -17,7 +17,7 @@ bool StandsAlone(uint8_t marker) {
   return (marker >= 0xD0 && marker <= 0xD7) || marker == 0x01;
 }
 
-// First position at or after `at` of a marker that is neither stuffing nor a restart; size() if there is none.
+// Position of the first marker at or after `at` that ends the compressed data (not a stuffed byte or a restart marker); size() if there is none.
 size_t EndOfEntropyData(std::span<const uint8_t> bytes, size_t at) {
   while (at + 1 < bytes.size()) {
     if (bytes[at] == 0xFF && bytes[at + 1] != 0x00 && bytes[at + 1] != 0xFF && !StandsAlone(bytes[at + 1])) return at;
@@ -36,7 +36,7 @@ JpegStructure ParseJpeg(std::span<const uint8_t> bytes, bool headers_only) {
   size_t at = 2;
   while (at + 1 < bytes.size()) {
     if (bytes[at] != 0xFF || bytes[at + 1] == 0xFF || bytes[at + 1] == 0x00) {
-      ++at;  // fill bytes, or rubbish between segments, which decoders skip too
+      ++at;  // fill bytes, or invalid bytes between segments, which decoders skip too
       continue;
     }
     const uint8_t marker = bytes[at + 1];

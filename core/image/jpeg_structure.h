@@ -1,5 +1,5 @@
-// Reads the marker structure of a JPEG (ITU-T T.81 annex B) without decoding it: its size, and whether it is all there.
-// Decoders paint missing rows grey and only warn; a survey photo must not be trained on grey.
+// Finds truncated JPEGs, and the image size, from the markers (ITU-T T.81 annex B) without decoding the image. Decoders fill missing rows with grey
+// and only warn; training must not use such rows.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@ namespace skyquilt::image {
 
 struct JpegStructure {
   bool is_jpeg = false;  // starts with the SOI marker
-  int width = 0;         // 0 until a frame header was met
+  int width = 0;         // 0 if there is no frame header
   int height = 0;
-  bool complete = false;  // the end marker of the first image follows its scans; what comes after it (previews, maker data) is not looked at
+  bool complete = false;  // the first image has a scan and an end marker; data after it (previews, maker data) is not read
 };
 
-// Any bytes are legal, also none. With headers_only the walk ends at the frame header and `complete` stays false.
+// Accepts any bytes, even none. With headers_only it stops at the frame header and `complete` stays false.
 JpegStructure ParseJpeg(std::span<const uint8_t> bytes, bool headers_only);
 
 }  // namespace skyquilt::image

@@ -16,7 +16,7 @@ namespace {
 
 using base::InputError;
 
-constexpr const char* kFixDamaged = "Copy it again from the card or take it out of the set";
+constexpr const char* kFixDamaged = "Copy it again from the memory card, or remove it from the folder";
 
 std::span<const uint8_t> AsBytes(const std::string& content) {
   return {reinterpret_cast<const uint8_t*>(content.data()), content.size()};
@@ -32,7 +32,7 @@ bool LooksLikeImage(const std::string& content) {
          StartsWith(content, "MM\0*"sv);
 }
 
-// Decodes to whatever the file holds; BGR(A) order.
+// Decodes without conversion: bit depth and channels as in the file, BGR(A) order.
 cv::Mat Decode(const std::string& content, const std::filesystem::path& file) {
   if (content.empty()) throw InputError(file, "is empty", kFixDamaged);
   const JpegStructure jpeg = ParseJpeg(AsBytes(content), false);
@@ -40,7 +40,7 @@ cv::Mat Decode(const std::string& content, const std::filesystem::path& file) {
   cv::Mat pixels;
   try {
     const cv::Mat wrapped(1, static_cast<int>(std::min<size_t>(content.size(), INT32_MAX)), CV_8UC1, const_cast<char*>(content.data()));
-    pixels = cv::imdecode(wrapped, cv::IMREAD_UNCHANGED);  // UNCHANGED leaves the EXIF orientation alone as well
+    pixels = cv::imdecode(wrapped, cv::IMREAD_UNCHANGED);  // UNCHANGED does not apply the EXIF orientation either
   } catch (const cv::Exception& error) {
     throw InputError(file, "cannot be decoded (" + error.err + ")", kFixDamaged);
   }
@@ -51,7 +51,7 @@ cv::Mat Decode(const std::string& content, const std::filesystem::path& file) {
   return pixels;
 }
 
-// The first 256 KiB, where the sizes of nearly all photos stand; nothing if the file cannot be opened.
+// The first 256 KiB, which contain the size of nearly all photos; empty if the file cannot be opened.
 std::string ReadStart(const std::filesystem::path& file) {
   std::string content(256 * 1024, '\0');
   std::ifstream stream(file, std::ios::binary);
@@ -63,7 +63,7 @@ std::string ReadStart(const std::filesystem::path& file) {
 void WarnAboutAlpha(const std::filesystem::path& file) {
   static std::once_flag once;
   std::call_once(once, [&] {
-    spdlog::warn("{}: has an alpha channel; it is ignored, here and in further photos (use masks to leave pixels out)", file.string());
+    spdlog::warn("{}: has an alpha channel, which is ignored in this and all other photos; use masks to leave out pixels", file.string());
   });
 }
 

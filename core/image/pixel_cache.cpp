@@ -28,7 +28,7 @@ T Load(std::span<const uint8_t> bytes, size_t at) {
   return value;
 }
 
-// True if width x height x channels bytes at `offset` lie before `end`.
+// True if width x height x channels bytes at `offset` end before `end`.
 bool Fits(const PixelCache::Entry& entry, size_t offset, size_t channels, size_t end) {
   const size_t bytes = static_cast<size_t>(entry.width) * static_cast<size_t>(entry.height) * channels;
   return offset >= kPixelCacheHeaderBytes && offset <= end && bytes <= end - offset;
@@ -57,7 +57,7 @@ std::string PixelCacheKey(const std::vector<PixelSource>& sources, int image_wid
       try {
         stamps.push_back(Stamp(path));
       } catch (const std::filesystem::filesystem_error& error) {
-        errors.emplace_back(path, "cannot be read (" + error.code().message() + ")", "Put it back, or run prepare again without it");
+        errors.emplace_back(path, "cannot be read (" + error.code().message() + ")", "Restore the file, or run 'skyquilt prepare' again without it");
       }
     }
   }
@@ -120,7 +120,7 @@ PixelCache PixelCache::Open(const std::filesystem::path& file, const std::vector
     }
     if (attempt == 0) BuildPixelCache(file, key, sources, image_width, threads);
   }
-  throw base::InputError(file, "changed while it was being opened", "Let only one command at a time work on this project folder");
+  throw base::InputError(file, "changed while it was being opened", "Run only one command at a time on this project folder");
 }
 
 std::span<const uint8_t> PixelCache::Rgb(size_t photo) const {

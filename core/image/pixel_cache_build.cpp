@@ -22,7 +22,7 @@ namespace {
 
 using base::InputError;
 
-// The unfinished cache beside the final one. Ranks of one node take turns by its lock; it is removed unless finished.
+// The cache under construction, in a temporary file. Its lock lets only one rank of a node build it; it is removed unless finished.
 class PartialFile {
  public:
   explicit PartialFile(const std::filesystem::path& final_file) : final_(final_file), partial_(final_file.string() + ".tmp") {
@@ -71,7 +71,7 @@ class PartialFile {
   size_t size() const { return size_; }
 
  private:
-  // False if another process finished or removed this file while we waited, so that our lock guards nothing.
+  // False if another process renamed or removed this file while we waited for the lock.
   bool IsStillNamed() const {
     struct stat ours {};
     struct stat named {};
@@ -83,8 +83,7 @@ class PartialFile {
   }
   [[noreturn]] void Fail(const std::string& what) const {
     const std::string reason = std::strerror(errno);
-    throw InputError(partial_, what + " (" + reason + ")",
-                     "Free disk space or choose an output folder that can be written; a smaller image width needs less");
+    throw InputError(partial_, what + " (" + reason + ")", "Free disk space, choose another output folder, or use a smaller image width");
   }
 
   std::filesystem::path final_;
@@ -143,7 +142,7 @@ void BuildPixelCache(const std::filesystem::path& file, const std::string& key, 
   index.key = key;
   std::vector<std::pair<size_t, InputError>> failed;
   base::Progress progress("decoding photos", static_cast<double>(sources.size()), "photos");
-  const size_t group = 2 * static_cast<size_t>(threads.size());  // bounds memory, yet keeps all threads busy
+  const size_t group = 2 * static_cast<size_t>(threads.size());  // limits memory, but keeps all threads busy
   for (size_t first = 0; first < sources.size(); first += group) {
     base::ThrowIfCancelled();
     const size_t n = std::min(group, sources.size() - first);

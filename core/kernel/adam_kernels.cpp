@@ -40,7 +40,7 @@ void AdamTouchedImpl(const AdamStep& step, int64_t lines, uint8_t* touched, floa
   const auto lanes = static_cast<int64_t>(hn::Lanes(d));
   const auto zero = hn::Zero(d);
   for (int64_t line = 0; line < lines; ++line) {
-    // Eight marks at a time: most lines of a fine level rest.
+    // Check eight lines at once: most lines of a fine level are not touched.
     if (line % 8 == 0 && line + 8 <= lines) {
       uint64_t marks = 0;
       std::memcpy(&marks, touched + line, sizeof(marks));

@@ -20,10 +20,10 @@ using FloatTag = hn::ScalableTag<float>;
 using FloatVector = hn::Vec<FloatTag>;
 static_assert(HWY_HAVE_SCALABLE || kPad % hn::MaxLanes(FloatTag()) == 0, "a padded batch is a whole number of vectors");
 
-// Vectors of samples per register tile: 4 x 4 accumulators need 32 registers, 4 x 3 with their operands fill 16.
+// Vectors of samples per register tile: 4 x 4 accumulators need the 32 registers of AVX-512, 4 x 3 and their operands fit into 16.
 constexpr int kTileVectors = (HWY_TARGET <= HWY_AVX3) ? 4 : 3;
 
-// What becomes of a sum before it is stored: as it is, cut at zero, or kept where `gate` is positive (the backward of cutting at zero).
+// How a sum is stored: unchanged, after relu, or only where `gate` is positive (the backward pass of relu).
 struct Store {
   bool relu;
   const float* gate;
@@ -88,7 +88,7 @@ void DenseImpl(const float* weights, int n_out, int n_in, const float* in, size_
 
 #if HWY_TARGET <= HWY_AVX3
 constexpr int kColumns = 4;
-// Sums of the lanes of four vectors as one vector of four: half the shuffles of four separate sums.
+// Sums the lanes of four vectors into one vector of four; needs half the shuffles of four separate sums.
 HWY_INLINE void AddLaneSums(const FloatVector* v, float* to) {
   const FloatTag d;
   const hn::Repartition<double, FloatTag> d64;
@@ -141,7 +141,7 @@ HWY_INLINE void WeightTile(const float* HWY_RESTRICT out_gradient, size_t out_st
 
 void DenseWeightGradientImpl(const float* out_gradient, size_t out_stride, int n_out, const float* in, size_t in_stride, int n_in, int64_t n,
                              float* weight_gradient) {
-  // A few input rows stay in the first-level cache while all output rows pass.
+  // Loop over the output rows inside, so that a few input rows stay in the first-level cache.
   const auto columns = [&](auto count, int i) {
     for (int o = 0; o < n_out; o += 4) {
       WeightTile<decltype(count)::value>(out_gradient + static_cast<size_t>(o) * out_stride, out_stride, in + static_cast<size_t>(i) * in_stride,

@@ -14,15 +14,15 @@ std::string Lower(std::string text) {
   return text;
 }
 
-// Names of CPU features as users know them, for Highway's own.
+// The common name of one of Highway's instruction sets.
 std::string CommonName(int64_t target) {
   if (target <= HWY_AVX3) return "avx512";
   if (target == HWY_AVX2) return "avx2";
   return Lower(hwy::TargetName(target));
 }
 
-// Sets of instructions the program was built for and this processor has, best first. Looked up once, before one is forced: afterwards Highway knows
-// only that one, and could be asked for the others only by taking it back while kernels may run.
+// Instruction sets that the program was built for and this processor has, best first. Read once, before one is forced: afterwards Highway reports
+// only the forced one.
 const std::vector<int64_t>& UsableTargets() {
   static const std::vector<int64_t> usable = [] {
     std::vector<int64_t> found;
@@ -52,14 +52,15 @@ void ForceInstructionSet(const std::string& name) {
     const std::string own = Lower(hwy::TargetName(target));
     const bool portable = name == "portable" && target == usable.back();
     if (name == own || name == CommonName(target) || portable) {
-      // A target's bit and those of all that are worse: the lowest set bit is the one chosen.
+      // Highway chooses the lowest set bit, which is then this target.
       hwy::SetSupportedTargetsForTest(target);
       hwy::GetChosenTarget().Update(target);
       return;
     }
     known += (known.empty() ? "" : ", ") + own;
   }
-  throw std::invalid_argument("instruction set '" + name + "' is not one of " + known + ", avx512, avx2 or portable that this processor has");
+  throw std::invalid_argument("instruction set '" + name + "' is not available on this processor; choose one of " + known +
+                              ", or avx512, avx2, portable");
 }
 
 }  // namespace skyquilt::kernel

@@ -32,7 +32,7 @@ void SigmoidImpl(const float* x, int64_t n, float range, float* out) {
   const auto lanes = static_cast<int64_t>(hn::Lanes(d));
   const auto one = hn::Set(d, 1.0F);
   for (int64_t s = 0; s < n; s += lanes) {
-    // exp(80) is finite in float, and 1 / (1 + exp(80)) is zero to the last bit of any colour.
+    // exp(80) is finite in float, and 1 / (1 + exp(80)) is zero for any colour.
     const auto exponent = hn::Min(hn::Set(d, 80.0F), hn::Neg(hn::LoadU(d, x + s)));
     hn::StoreU(hn::Div(hn::Set(d, range), hn::Add(one, hn::Exp(d, exponent))), d, out + s);
   }
@@ -55,7 +55,7 @@ void SineCosineImpl(const float* turns, int64_t n, float* sine, float* cosine) {
     const auto turn = hn::LoadU(d, turns + s);
     const auto t = hn::Sub(turn, hn::Round(turn));  // exact, in [-1/2, 1/2]
     const auto size = hn::Abs(t);
-    // The sine is even about a quarter turn.
+    // The sine is symmetric about a quarter turn.
     const auto near_zero = hn::Min(size, hn::Sub(hn::Set(d, 0.5F), size));
     hn::StoreU(SineOfQuarter(d, hn::CopySignToAbs(near_zero, t)), d, sine + s);
     hn::StoreU(SineOfQuarter(d, hn::Sub(hn::Set(d, 0.25F), size)), d, cosine + s);
@@ -65,7 +65,7 @@ void SineCosineImpl(const float* turns, int64_t n, float* sine, float* cosine) {
 bool AllFiniteImpl(const float* values, int64_t n) {
   const FloatTag d;
   const auto lanes = static_cast<int64_t>(hn::Lanes(d));
-  // x - x is zero for finite x only, and NaN stays NaN in a sum.
+  // x - x is 0 for finite x and NaN otherwise, and a NaN makes the sum NaN.
   auto sum = hn::Zero(d);
   int64_t i = 0;
   for (; i + lanes <= n; i += lanes) {
@@ -109,7 +109,7 @@ HWY_EXPORT(CompactImpl);
 
 namespace {
 
-// The loops above load and store whole vectors, and would go past the end of anything else.
+// The loops above load and store whole vectors; for other lengths they would go past the end of the buffers.
 void CheckWholeVectors(int64_t n) {
   SKYQUILT_CHECK(n >= 0 && n % kPad == 0, std::to_string(n) + " samples");
 }

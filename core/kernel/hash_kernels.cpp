@@ -28,7 +28,7 @@ struct Corners {
   HWY_ALIGN float weight[8 * kHashBlock];
 };
 
-// Lowest lattice coordinate and fraction along one axis. NaN compares false and lands at 0.
+// Lower lattice coordinate and fraction along one axis. NaN fails the comparison and becomes 0.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void SplitAxis(D d, V position, float cells_per_unit, int32_t size, hn::Vec<hn::Rebind<int32_t, D>>& cell, V& fraction) {
   const hn::Rebind<int32_t, D> di;
@@ -95,14 +95,14 @@ void FindCorners(const HashLevel& level, const float* x, const float* y, const f
   }
 }
 
-// One table entry as one vector where the instruction set has that width, as single lanes on the scalar path.
+// A vector of one table entry; of one lane on the scalar path.
 template <int kFeatures>
 using EntryTag = hn::CappedTag<float, kFeatures>;
 template <int kFeatures>
 constexpr int kEntryLanes = static_cast<int>(hn::MaxLanes(EntryTag<kFeatures>()));
 
-// A block's features sample by sample, as table entries are: gathering writes whole entries, and rows come out by whole vectors.
-// (Two four-byte stores read back as one of eight would stall every sample.)
+// Converts features from one entry per sample (packed) to one row per feature. The lookup stores whole entries and this writes whole vectors: storing
+// single floats and loading them as a wider vector would stall the processor for every sample.
 template <int kFeatures>
 void UnpackRows(const float* packed, int n, float* out, size_t out_stride) {
   const FloatTag d;
@@ -122,7 +122,7 @@ void UnpackRows(const float* packed, int n, float* out, size_t out_stride) {
   }
 }
 
-// The way back; size[s] is 0 exactly where all features are.
+// The inverse of UnpackRows. size[s] is the sum of the features' absolute values: 0 exactly where all are 0.
 template <int kFeatures>
 void PackRows(const float* in, size_t in_stride, int n, float* packed, float* size) {
   const FloatTag d;

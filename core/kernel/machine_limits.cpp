@@ -19,9 +19,9 @@ namespace skyquilt::kernel::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int kChains = 12;  // more than latency times throughput of any processor's multiply-add
+constexpr int kChains = 12;  // independent sums; more than latency times throughput of any processor's multiply-add
 
-// Operations done by `rounds` rounds; the result goes to *sink so that nothing is left out.
+// Returns the number of operations in `rounds` rounds. The result is added to *sink so that the compiler keeps the loop.
 double FmaRoundsImpl(int64_t rounds, float* sink) {
   const hn::ScalableTag<float> d;
   const auto factor = hn::Set(d, 0.999999F);
@@ -101,7 +101,7 @@ double SecondsPerCall(double seconds, Work&& work) {
   return (now - start) / static_cast<double>(calls);
 }
 
-volatile float kept_result;  // what keeps the loops from being removed
+volatile float kept_result;  // written so that the compiler does not remove the loops
 
 }  // namespace
 
@@ -120,7 +120,7 @@ AccessTimes MeasureAccess(uint32_t entries, int features, double seconds) {
   table.reserve(static_cast<size_t>(entries) * static_cast<size_t>(features));
   base::AdviseHugePages(table.data(), table.capacity() * sizeof(float));
   table.assign(static_cast<size_t>(entries) * static_cast<size_t>(features), 0.0F);
-  // Enough different lists that a list's entries are not all in the first-level cache when it comes around again.
+  // Several lists of indices, so that a list's entries are no longer all in the first-level cache when it is used again.
   const size_t lists = std::clamp<size_t>(entries / kIndices, 1, 64);
   std::vector<uint32_t> index(kIndices * lists);
   base::Random random(entries);

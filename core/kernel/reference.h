@@ -1,4 +1,5 @@
-// Scalar twins of the kernels in any floating type: the reference they are tested against, and what finite differences check in double.
+// Scalar versions of the kernels for float or double. The kernels are tested against them, and their gradients are checked in double by finite
+// differences.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +24,7 @@ std::vector<T> Dense(const std::vector<T>& weights, int n_out, const std::vector
   return out;
 }
 
-// Gradients of Dense for one sample: overwrites in_gradient, adds to weight_gradient. out is Dense's result.
+// Backward pass of Dense for one sample: overwrites in_gradient, adds to weight_gradient. `out` is the result of Dense.
 template <typename T>
 void DenseBackward(const std::vector<T>& weights, const std::vector<T>& in, const std::vector<T>& out, bool relu, std::vector<T> out_gradient,
                    std::vector<T>* in_gradient, std::vector<T>* weight_gradient) {
@@ -43,7 +44,7 @@ struct Corner {
   T weight;
 };
 
-// The eight corners of a position's cell with trilinear weights; positions are clamped into the lattice.
+// The eight corners of the cell that contains a position, with trilinear weights; positions are clamped into the lattice.
 template <typename T>
 std::vector<Corner<T>> Corners(const HashLevel& level, const T position[3]) {
   uint32_t cell[3];

@@ -25,11 +25,11 @@ class Cursor {
     return value;
   }
 
-  // A number of records of at least `min_bytes` each: a damaged count must not become a huge allocation.
+  // Reads a number of records of at least `min_bytes` each, and checks it against the file size before memory is allocated.
   size_t ReadCount(size_t min_bytes, const char* what) {
     const auto count = Read<uint64_t>(what);
     if (count > rest_.size() / min_bytes) {
-      Fail("claims " + std::to_string(count) + " " + what + ", but only " + std::to_string(rest_.size()) + " bytes follow");
+      Fail("has a count of " + std::to_string(count) + " " + what + ", but only " + std::to_string(rest_.size()) + " bytes follow");
     }
     return static_cast<size_t>(count);
   }

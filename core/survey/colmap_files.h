@@ -1,4 +1,4 @@
-// The two encodings of a COLMAP model, each read without judging the content; ReadColmapModel checks it.
+// Readers of COLMAP's two file formats, binary and text. They check the format only; ReadColmapModel checks the content.
 #pragma once
 
 #include <array>
@@ -8,11 +8,11 @@
 
 namespace skyquilt::survey {
 
-// Throw base::InputError: missing file, truncation, counts that the file's size cannot hold, unsupported camera model, lines that cannot be read.
+// Throw base::InputError: missing file, truncation, counts too large for the file, unsupported camera model, invalid lines.
 ColmapModel ReadColmapBinary(const std::filesystem::path& folder);
 ColmapModel ReadColmapTextFiles(const std::filesystem::path& folder);
 
-// From its numbers as both encodings order them: quaternion w x y z, translation. Not normalized.
+// Pose from the seven numbers of both formats: quaternion w x y z, then translation. The quaternion is not normalized.
 inline geo::Rigid3d PoseOf(const std::array<double, 7>& numbers) {
   return {Eigen::Quaterniond(numbers[0], numbers[1], numbers[2], numbers[3]), Eigen::Vector3d(numbers[4], numbers[5], numbers[6])};
 }

@@ -32,11 +32,11 @@ void CheckImages(const std::filesystem::path& folder, ColmapModel& model) {
   std::set<std::string> names;
   std::set<uint32_t> ids;
   for (ColmapImage& image : model.images) {
-    // Models made on Windows.
+    // Paths of models that were made on Windows.
     std::replace(image.name.begin(), image.name.end(), '\\', '/');
     geo::Rigid3d& pose = image.cam_from_world;
     if (!pose.rotation.coeffs().allFinite() || !pose.translation.allFinite() || !(pose.rotation.norm() > 1e-6)) {
-      throw base::InputError(folder, "the pose of photo '" + image.name + "' is not a number",
+      throw base::InputError(folder, "the pose of photo '" + image.name + "' has NaN or infinity, or a rotation of length 0",
                              "Remove that photo from the model (colmap image_deleter) or run the mapper again");
     }
     pose.rotation.normalize();
@@ -45,7 +45,8 @@ void CheckImages(const std::filesystem::path& folder, ColmapModel& model) {
     if (!ids.insert(image.id).second)
       throw base::InputError(folder, "image id " + std::to_string(image.id) + " appears twice", "Export the model again");
     if (!model.cameras.contains(image.camera_id)) {
-      throw base::InputError(folder, "photo '" + image.name + "' names camera " + std::to_string(image.camera_id) + ", which the model does not have",
+      throw base::InputError(folder,
+                             "photo '" + image.name + "' refers to camera " + std::to_string(image.camera_id) + ", which the model does not have",
                              "Take cameras, images and points from the same model");
     }
   }
@@ -57,7 +58,7 @@ ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder)) throw base::InputError(folder, "no such folder", "Give the folder with cameras, images and points3D");
   const bool binary = HasAll(folder, ".bin");
   if (!binary && !HasAll(folder, ".txt")) {
-    throw base::InputError(folder, "does not hold cameras, images and points3D as .bin or .txt",
+    throw base::InputError(folder, "does not contain cameras, images and points3D as .bin or .txt",
                            "Give the folder of one COLMAP model, usually sparse/0");
   }
   ColmapModel model = binary ? ReadColmapBinary(folder) : ReadColmapTextFiles(folder);
@@ -65,7 +66,9 @@ ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
   CheckImages(folder, model);
   if (model.images.empty()) throw base::InputError(folder, "the model has no registered photo", "Run the reconstruction again");
   const size_t n_dropped = std::erase_if(model.points, [](const ColmapPoint& point) { return !point.x_in_world.allFinite(); });
-  if (n_dropped > 0) spdlog::warn("{}: {} sparse points without finite coordinates left out", folder.string(), n_dropped);
+  if (n_dropped > 0)
+    spdlog::warn("{}: {} sparse points have no finite coordinates and are ignored; if there are many, run the reconstruction again", folder.string(),
+                 n_dropped);
   return model;
 }
 

@@ -1,5 +1,5 @@
-// COLMAP sparse models, text and binary (cameras, images, points3D), as COLMAP 3.8 writes them.
-// Frame: the model's own; cam_from_world, camera looks along +z, y down.
+// Reads and writes the sparse models of COLMAP 3.8 (cameras, images, points3D), which give the poses of the photos.
+// Frame: the model's own, of any scale; cam_from_world, camera looks along +z, y down.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +27,7 @@ struct ColmapPoint {
   Eigen::Vector3d x_in_world = Eigen::Vector3d::Zero();
   std::array<uint8_t, 3> rgb{};
   double error_px = 0.0;
-  std::vector<uint32_t> image_ids;  // track, one entry per observation
+  std::vector<uint32_t> image_ids;  // the track: one image id per observation
 };
 
 struct ColmapModel {
@@ -36,9 +36,11 @@ struct ColmapModel {
   std::vector<ColmapPoint> points;
 };
 
-// `folder` holds cameras/images/points3D as .bin (preferred) or .txt. 2-D observations are skipped.
-// Throws base::InputError: missing files, truncation, unsupported camera model, sizes that cannot be, NaN in a pose (names the image).
+// Reads cameras, images and points3D from `folder`, as .bin (preferred) or .txt. 2-D observations are skipped, points with NaN are dropped with a
+// warning. Throws base::InputError: missing files, truncation, unsupported camera model, impossible sizes, NaN in a pose (names the image),
+// contradictions.
 ColmapModel ReadColmapModel(const std::filesystem::path& folder);
+// Throws base::InputError when the folder cannot be written.
 void WriteColmapText(const ColmapModel& model, const std::filesystem::path& folder);
 
 }  // namespace skyquilt::survey

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r";
 
-// Line by line, with the line number for messages.
+// Reads a file line by line and word by word; keeps the line number for messages.
 class Lines {
  public:
   explicit Lines(const std::filesystem::path& file) : file_(file), in_(file) {
@@ -45,7 +45,7 @@ class Lines {
     return word;
   }
 
-  // Reads "nan" and "inf" too: the caller says which photo they belong to.
+  // Accepts "nan" and "inf": CheckImages refuses them later, with the photo's name.
   template <typename T>
   T Number(const char* what) {
     std::string_view word = Word(what);
@@ -56,7 +56,7 @@ class Lines {
     return value;
   }
 
-  // The rest of the line: photo names may hold spaces.
+  // The rest of the line, because photo names may contain spaces.
   std::string Remainder(const char* what) {
     const size_t first = rest_.find_first_not_of(kBlank);
     if (first == std::string_view::npos) Fail("ends before " + std::string(what));
@@ -93,7 +93,7 @@ void ParseCameras(const std::filesystem::path& file, ColmapModel& model) {
     camera.width = in.Number<int>("a width");
     camera.height = in.Number<int>("a height");
     for (int p = 0; p < camera::ModelParamCount(*camera_model); ++p) camera.params.push_back(in.Number<double>("a camera parameter"));
-    if (!model.cameras.emplace(id, std::move(camera)).second) in.Fail("has camera " + std::to_string(id) + " for the second time");
+    if (!model.cameras.emplace(id, std::move(camera)).second) in.Fail("has camera " + std::to_string(id) + " twice");
   }
 }
 
@@ -108,7 +108,7 @@ void ParseImages(const std::filesystem::path& file, ColmapModel& model) {
     image.camera_id = in.Number<uint32_t>("a camera id");
     image.name = in.Remainder("a photo name");
     model.images.push_back(std::move(image));
-    // The observations: always one line, empty when there are none.
+    // Skip the observations: always one line, empty when there are none.
     in.Next();
   }
 }

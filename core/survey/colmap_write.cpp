@@ -21,7 +21,7 @@ struct Observation {
 
 }  // namespace
 
-// Our model keeps no 2-D observations; COLMAP's own tools need each track entry to name one, so the points' projections are written.
+// COLMAP's tools need a 2-D observation for each track entry. Our model has none, so the points' projections are written instead.
 void WriteColmapText(const ColmapModel& model, const std::filesystem::path& folder) {
   base::RequireWritableFolder(folder);
 

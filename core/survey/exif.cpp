@@ -20,14 +20,14 @@ std::optional<double> Finite(double value) {
   return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
 
-// Component `index` of a rational or integer tag; nothing for 0/0, n/0, a wrong type or a short array.
+// Component `index` of a number tag; nothing for 0/0, n/0, a wrong type or too few components.
 std::optional<double> ExifNumber(const Exiv2::ExifData& exif, const char* key, long index = 0) {
   const auto found = exif.findKey(Exiv2::ExifKey(key));
   if (found == exif.end() || index >= found->count()) return std::nullopt;
   switch (found->typeId()) {
     case Exiv2::unsignedRational:
     case Exiv2::signedRational: {
-      // As signed 32-bit pairs Exiv2 would show numerators above 2^31 as negative.
+      // Exiv2 returns signed 32-bit numbers: unsigned values above 2^31 would be negative.
       const bool is_unsigned = found->typeId() == Exiv2::unsignedRational;
       const Exiv2::Rational pair = found->toRational(index);
       const double numerator = is_unsigned ? static_cast<double>(static_cast<uint32_t>(pair.first)) : static_cast<double>(pair.first);
@@ -57,7 +57,7 @@ std::string ExifText(const Exiv2::ExifData& exif, const char* key) {
   return text;
 }
 
-// Compared by the local name: the prefix of the namespace is the file's own choice.
+// Compares the name without its namespace prefix, which files may choose freely.
 std::string XmpText(const Exiv2::XmpData& xmp, std::string_view name) {
   for (const Exiv2::Xmpdatum& datum : xmp) {
     if (datum.tagName() == name) return datum.toString();
@@ -84,7 +84,7 @@ std::optional<double> XmpNumber(const Exiv2::XmpData& xmp, std::string_view name
 std::optional<double> ExifAngle(const Exiv2::ExifData& exif, const char* value_key, const char* reference_key, char negative) {
   const auto degrees = ExifNumber(exif, value_key, 0);
   if (!degrees) return std::nullopt;
-  // Minutes or seconds are 0/0 in some writers that put everything into the first rational.
+  // Some programs put everything into the degrees and write 0/0 for minutes or seconds.
   const double angle = *degrees + ExifNumber(exif, value_key, 1).value_or(0.0) / 60.0 + ExifNumber(exif, value_key, 2).value_or(0.0) / 3600.0;
   const std::string reference = ExifText(exif, reference_key);
   return !reference.empty() && (reference[0] == negative || reference[0] == negative + ('a' - 'A')) ? -angle : angle;
@@ -102,12 +102,12 @@ bool IsPlausible(double latitude_deg, double longitude_deg) {
   return !no_fix && std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 360.0;
 }
 
-// XMP first: it carries more digits than the EXIF of some firmware. XMP altitude may come without XMP latitude and the other way round.
+// XMP first, because the EXIF of some firmware has fewer digits. XMP altitude and XMP latitude may each be present without the other.
 std::optional<geo::Geodetic> ReadPosition(const Exiv2::ExifData& exif, const Exiv2::XmpData& xmp, const std::optional<double>& absolute_altitude_m) {
   auto latitude = XmpNumber(xmp, "GpsLatitude");
   if (!latitude) latitude = XmpNumber(xmp, "Latitude");
   auto longitude = XmpNumber(xmp, "GpsLongitude");
-  // DJI's own spelling mistake in years of firmware.
+  // A spelling mistake in many versions of DJI's firmware.
   if (!longitude) longitude = XmpNumber(xmp, "GpsLongtitude");
   if (!longitude) longitude = XmpNumber(xmp, "Longitude");
   if (!latitude || !longitude || !IsPlausible(*latitude, *longitude)) {
@@ -132,7 +132,7 @@ ExposureSettings ReadExposure(const Exiv2::ExifData& exif) {
     if (const auto apex = ExifNumber(exif, "Exif.Photo.ApertureValue")) exposure.f_number = positive(Finite(std::exp2(*apex / 2.0)));
   }
   exposure.iso = positive(ExifNumber(exif, "Exif.Photo.ISOSpeedRatings"));
-  // 65535 means "see the long tags" (EXIF 2.3).
+  // 65535 means that the value is in one of the 32-bit tags (EXIF 2.3).
   if (!exposure.iso || *exposure.iso >= 65535.0) {
     for (const char* key : {"Exif.Photo.RecommendedExposureIndex", "Exif.Photo.ISOSpeed", "Exif.Photo.StandardOutputSensitivity"}) {
       if (const auto iso = positive(ExifNumber(exif, key))) {

@@ -13,7 +13,7 @@ std::unique_lock<std::mutex> LockExiv2() {
   static std::mutex mutex;
   std::unique_lock<std::mutex> lock(mutex);
   static const bool ready = [] {
-    // Maker notes of every vendor trip warnings that say nothing about the photo.
+    // Vendors' maker notes cause many irrelevant warnings.
     Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
     Exiv2::XmpParser::initialize();
     Exiv2::XmpProperties::registerNs("http://www.dji.com/drone-dji/1.0/", "drone-dji");

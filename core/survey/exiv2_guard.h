@@ -1,11 +1,11 @@
-// Exiv2's XMP parser keeps process-wide tables; every use of the library holds this lock.
+// A lock for Exiv2, whose XMP parser has process-wide tables and is not thread-safe. Hold it during every use of the library.
 #pragma once
 
 #include <mutex>
 
 namespace skyquilt::survey {
 
-// Also sets the library up at the first call: quiet, and with DJI's namespace known.
+// The first call also initialises the library: turns off its messages and registers DJI's namespace.
 std::unique_lock<std::mutex> LockExiv2();
 
 }  // namespace skyquilt::survey

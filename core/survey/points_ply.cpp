@@ -56,7 +56,7 @@ std::vector<SparsePoint> ReadPointsPly(const std::filesystem::path& file) {
   const std::string_view body = content.substr(header_end + kAfter.size());
   if (body.size() != n_points * kRecordBytes) {
     throw base::InputError(
-        file, "holds " + std::to_string(body.size()) + " bytes of points where " + std::to_string(n_points * kRecordBytes) + " are announced", fix);
+        file, "has " + std::to_string(body.size()) + " bytes of points, but its header says " + std::to_string(n_points * kRecordBytes), fix);
   }
   std::vector<SparsePoint> points(n_points);
   const char* at = body.data();
@@ -71,7 +71,7 @@ std::vector<SparsePoint> ReadPointsPly(const std::filesystem::path& file) {
     int32_t track = 0;
     get(&track, 4);
     point.track_length = track;
-    if (!point.x_in_enu.allFinite()) throw base::InputError(file, "has a point whose coordinates are not numbers", fix);
+    if (!point.x_in_enu.allFinite()) throw base::InputError(file, "has a point with NaN or infinity in its coordinates", fix);
   }
   return points;
 }

@@ -1,4 +1,5 @@
-// Sparse points as a binary little-endian PLY: double x y z, uchar red green blue, float error, int track.
+// Stores sparse points in a file that any point-cloud viewer opens: binary little-endian PLY with double x y z, uchar red green blue, float error,
+// int track.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +9,7 @@
 
 namespace skyquilt::survey {
 
-// Throw base::InputError: cannot be written, or not the file that WritePointsPly writes (header, size, coordinates that are not numbers).
+// Throw base::InputError: cannot be written, or not a file from WritePointsPly (header, size, coordinates that are not finite).
 void WritePointsPly(const std::vector<SparsePoint>& points, const std::filesystem::path& file);
 std::vector<SparsePoint> ReadPointsPly(const std::filesystem::path& file);
 

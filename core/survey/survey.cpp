@@ -92,7 +92,7 @@ Photo PhotoFromJson(const json& value) {
   photo.cam_from_enu.translation = Eigen::Vector3d(NanIfNull(t[0]), NanIfNull(t[1]), NanIfNull(t[2]));
   const double norm = photo.cam_from_enu.rotation.norm();
   if (!photo.cam_from_enu.translation.allFinite() || !(std::abs(norm - 1.0) < 1e-6)) {
-    throw std::invalid_argument("the pose of photo '" + photo.name + "' is not a number or not a rotation");
+    throw std::invalid_argument("the pose of photo '" + photo.name + "' has NaN, or a rotation that is not of length 1");
   }
   if (!value.at("gps").is_null()) photo.gps = GeodeticFromJson(value.at("gps"));
   photo.relative_altitude_m = OptionalNumber(value.at("relative_altitude_m"));
@@ -134,14 +134,14 @@ Survey SurveyFromJson(const json& value) {
   Survey survey;
   survey.origin = GeodeticFromJson(value.at("origin"));
   survey.georeferenced = value.at("georeferenced").get<bool>();
-  if (!geo::IsValid(survey.origin)) throw std::invalid_argument("has an origin that is not on Earth");
+  if (!geo::IsValid(survey.origin)) throw std::invalid_argument("has an origin that is not a position on Earth");
   survey.photo_root = value.at("photo_root").get<std::string>();
   for (const json& camera : value.at("cameras")) survey.cameras.push_back(CameraFromJson(camera));
   std::set<std::string> names;
   for (const json& entry : value.at("photos")) {
     Photo photo = PhotoFromJson(entry);
     if (photo.camera < 0 || static_cast<size_t>(photo.camera) >= survey.cameras.size()) {
-      throw std::invalid_argument("photo '" + photo.name + "' names camera " + std::to_string(photo.camera) + " of " +
+      throw std::invalid_argument("photo '" + photo.name + "' refers to camera " + std::to_string(photo.camera) + ", but there are " +
                                   std::to_string(survey.cameras.size()));
     }
     if (!names.insert(photo.name).second) throw std::invalid_argument("photo '" + photo.name + "' appears twice");
@@ -193,7 +193,7 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
   }
   for (const camera::Camera& camera : survey.cameras) value["cameras"].push_back(ToJson(camera));
   for (const Photo& photo : survey.photos) value["photos"].push_back(ToJson(photo));
-  // The description comes last: where it exists, the points are complete.
+  // survey.json is written last: if it exists, the points are complete.
   WritePointsPly(survey.points, folder / "points.ply");
   base::WriteFileAtomically(folder / "survey.json", value.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
@@ -216,7 +216,7 @@ Survey LoadSurvey(const std::filesystem::path& folder) {
   survey.points = ReadPointsPly(folder / "points.ply");
   if (survey.points.size() != n_points) {
     throw base::InputError(folder / "points.ply",
-                           "holds " + std::to_string(survey.points.size()) + " points, survey.json announces " + std::to_string(n_points),
+                           "has " + std::to_string(survey.points.size()) + " points, but survey.json says " + std::to_string(n_points),
                            "The two files are from different runs: run 'skyquilt prepare' again");
   }
   return survey;

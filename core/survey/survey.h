@@ -1,5 +1,5 @@
-// A prepared survey: photos with pose, time and exposure in one local ENU frame, their cameras and the sparse points.
-// On disk a folder: survey.json (everything but the points, readable by people) and points.ply (opens in any viewer).
+// A prepared survey, the result of the prepare stage and the input of all later ones: photos with pose, time and exposure in one local ENU frame,
+// their cameras and the sparse points. On disk it is a folder with survey.json (readable text) and points.ply (the points, for any viewer).
 #pragma once
 
 #include <Eigen/Core>
@@ -27,15 +27,15 @@ struct Photo {
   std::string mask;                           // absolute path of the mask or empty
   int camera = 0;                             // index into Survey::cameras
   geo::Rigid3d cam_from_enu;                  // camera looks along +z, y down; metres
-  std::optional<geo::Geodetic> gps;           // as tagged (XMP preferred), height as tagged
-  std::optional<double> relative_altitude_m;  // XMP, above take-off: a cross-check, not truth
+  std::optional<geo::Geodetic> gps;           // from the photo's tags, without correction
+  std::optional<double> relative_altitude_m;  // XMP tag, above take-off; only for checks
   std::optional<double> time_s;               // seconds since the first photo's capture
   ExposureSettings exposure;
   double agl_m = 0.0;           // camera height above the sparse points below it; NaN when unknown
-  double gps_residual_m = 0.0;  // |fitted - tagged| camera centre; NaN without GPS
-  bool gps_inlier = false;
-  int flight = 0;        // index of the flight the photo belongs to
-  bool is_test = false;  // held out: never trained on
+  double gps_residual_m = 0.0;  // distance between the camera centre and its GPS tag after the fit; NaN without GPS
+  bool gps_inlier = false;      // the residual is below the threshold of the fit
+  int flight = 0;               // index of the flight the photo belongs to
+  bool is_test = false;         // held out for evaluation: never trained on
 };
 
 struct SparsePoint {
@@ -45,6 +45,7 @@ struct SparsePoint {
   int track_length = 0;
 };
 
+// How well the reconstruction fits the GPS tags.
 struct GeoFit {
   int n_matches = 0;  // photos with GPS and pose
   int n_inliers = 0;
@@ -52,19 +53,19 @@ struct GeoFit {
   double rmse_horizontal_m = 0.0;
   double rmse_vertical_m = 0.0;
   double scale = 1.0;                            // metres per model unit
-  std::vector<double> flight_vertical_offset_m;  // added to the tags of flight i before the fit; empty: one flight, none needed
+  std::vector<double> flight_vertical_offset_m;  // added to the GPS heights of flight i; empty: no correction
 };
 
-// Where a simulated survey keeps its ground truth; folders relative to nothing (absolute).
+// Ground truth of a simulated survey; absolute paths.
 struct Truth {
-  std::filesystem::path depth_folder;  // <photo stem>.tiff, metres along z of the camera ("z_depth"), NaN = sky
+  std::filesystem::path depth_folder;  // <photo stem>.tiff, z-depth (along the camera's z axis) in metres, NaN = sky
   std::filesystem::path buildings_json;
   std::filesystem::path exposure_json;
 };
 
 struct Survey {
   geo::Geodetic origin;              // of the ENU frame
-  bool georeferenced = false;        // false: local frame, unknown scale, origin meaningless
+  bool georeferenced = false;        // false: local frame of unknown scale, the origin has no meaning
   std::filesystem::path photo_root;  // absolute
   std::vector<camera::Camera> cameras;
   std::vector<Photo> photos;              // registered photos only, in name order
@@ -76,7 +77,7 @@ struct Survey {
   double MedianAgl() const;  // metres; NaN when no photo has one
 };
 
-// Throws base::InputError if the folder cannot be written / read or the content is damaged (NaN pose included).
+// Throw base::InputError if the folder cannot be written or read, or its content is damaged (NaN in a pose included).
 void SaveSurvey(const Survey& survey, const std::filesystem::path& folder);
 Survey LoadSurvey(const std::filesystem::path& folder);
 

@@ -1,4 +1,4 @@
-// Runs the program's command line within the test's own process.
+// Runs a command line of the program inside the test's process, and captures its output.
 #pragma once
 
 #include <gtest/gtest.h>

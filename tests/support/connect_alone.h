@@ -1,4 +1,4 @@
-// A communicator of one process, even when the test programs themselves run under a launcher.
+// A communicator of one process, even when the tests run under an MPI launcher.
 #pragma once
 
 #include <cstdlib>

@@ -1,5 +1,7 @@
-// Runs a test once per instruction set this processor has, the portable one included: TEST_P(Fixture, Name) with
-// using Fixture = EachInstructionSet; SKYQUILT_EACH_INSTRUCTION_SET(Fixture);
+// Runs a test once per instruction set of this processor, including the portable one:
+//   using Fixture = EachInstructionSet;
+//   TEST_P(Fixture, Name) { ... }
+//   SKYQUILT_EACH_INSTRUCTION_SET(Fixture);
 #pragma once
 
 #include <gtest/gtest.h>

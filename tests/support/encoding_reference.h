@@ -1,4 +1,4 @@
-// Every encoding in double and in the plainest way, one position at a time: what the fast ones are tested against.
+// Reference versions of all encodings, in double and one position at a time, to test the fast ones.
 #pragma once
 
 #include <algorithm>
@@ -50,7 +50,7 @@ inline std::vector<double> LookUpFactors(const kernel::HashLevel& lattice, const
   return out;
 }
 
-// All rows of the features at x. config: what the encoding was made from.
+// All feature rows at x. config: the configuration of the encoding.
 inline std::vector<double> EncodeInDouble(const encoding::Encoding& any, const encoding::HashGridConfig& config,
                                           const std::vector<double>& parameters, const double x[3]) {
   std::vector<double> rows;

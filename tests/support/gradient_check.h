@@ -1,4 +1,4 @@
-// Central differences in double against an analytic gradient.
+// Checks an analytic gradient against central differences in double.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 
 namespace skyquilt::testing {
 
-// value(x) is differentiated at x; every entry of `analytic` must agree within tolerance, relative to the larger of 1 and its size.
-// The best of several step sizes counts: too large bends, too small rounds.
+// Every entry of `analytic`, the gradient of value at x, must agree within tolerance, relative to the larger of 1 and its size. Uses the best of
+// several step sizes: large ones have truncation errors, small ones rounding errors.
 inline void ExpectGradient(const std::function<double(const std::vector<double>&)>& value, std::vector<double> x, const std::vector<double>& analytic,
                            double tolerance = 1e-6) {
   ASSERT_EQ(x.size(), analytic.size());

@@ -1,4 +1,4 @@
-// One checker for all training losses (worker/losses/): analytic derivatives against central differences in double, at random inputs.
+// A checker for all training losses (worker/losses/): compares analytic derivatives with central differences in double, at random inputs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,13 +18,13 @@ struct CheckedLoss {
   std::vector<double> gradient;  // by every input
 };
 
-// Where inputs are drawn from, all of them alike; keep away from places where the loss has a kink.
+// Range of the random inputs, the same for all; should not contain points where the loss is not differentiable.
 struct InputRange {
   size_t count = 1;
   double low = 0.0, high = 1.0;
 };
 
-// loss(weight, inputs) is checked at `trials` random inputs, with random weights. It must also grow with its weight and be zero without: what
+// Checks loss(weight, inputs) at `trials` random inputs with random weights. The loss must also be proportional to its weight, so that weight 0
 // switches it off.
 inline void ExpectLossGradient(const std::function<CheckedLoss(double weight, const std::vector<double>& inputs)>& loss, const InputRange& range,
                                int trials = 50, double tolerance = 1e-6) {

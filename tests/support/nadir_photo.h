@@ -1,4 +1,4 @@
-// A photo for made-up surveys, taken straight down.
+// A photo that looks straight down, for surveys in tests.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace skyquilt {
 
-// From `eye`, metres; camera x = east, y = south, z = down.
+// `eye`: camera centre in ENU, metres. Camera x = east, y = south, z = down.
 inline survey::Photo NadirPhoto(const Eigen::Vector3d& eye, const std::string& name) {
   survey::Photo photo;
   photo.name = name;

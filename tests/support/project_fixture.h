@@ -1,4 +1,4 @@
-// A test with a project folder of its own, and stages that claim to be finished in it.
+// A test fixture with its own project folder, in which stages can be marked as finished.
 #pragma once
 
 #include <gtest/gtest.h>

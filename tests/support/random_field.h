@@ -1,4 +1,4 @@
-// Fields with random parameters and occupancy: no scene to look at, but everything that rendering has to get right.
+// Fields with random parameters and occupancy, for tests of rendering that need no trained scene.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace skyquilt::render {
 
-// A block with a core box [low, high], metres; larger density biases make denser matter. `contracted`: like a context.
+// A block with the core box [low, high], metres. A larger density_bias gives higher densities. `contracted`: mapped like a context.
 inline TrainedField RandomField(uint64_t seed, const Eigen::Vector3d& low, const Eigen::Vector3d& high, double margin_m, double density_bias,
                                 bool contracted = false, encoding::Kind encoding = encoding::Kind::kHash, int density_hidden_layers = 1) {
   TrainedField f;

@@ -1,4 +1,4 @@
-// A scene file of random fields side by side, with a context around them.
+// Writes a scene file of random fields side by side, with a context around them.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace skyquilt::scene {
 
 constexpr double kRandomBlock_m = 5.0;  // edge of a block
 
-// rows x columns blocks from (0, 0) eastwards, row by row from the south; 4 m high. The file has what FieldStore reads.
+// rows x columns blocks, 4 m high, starting at (0, 0): eastwards, row by row from the south. The file contains everything that FieldStore reads.
 inline void WriteRandomScene(const std::filesystem::path& file, int rows, int columns, double margin_m, double density_bias, bool with_context) {
   std::vector<render::TrainedField> blocks;
   for (int row = 0; row < rows; ++row) {

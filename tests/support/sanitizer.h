@@ -1,4 +1,4 @@
-// Which sanitizer the test is built with, for gcc and clang.
+// Defines a macro for the sanitizer the test is built with, for gcc and clang.
 #pragma once
 
 #if defined(__SANITIZE_ADDRESS__)

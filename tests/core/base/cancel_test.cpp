@@ -10,7 +10,7 @@
 namespace skyquilt::base {
 namespace {
 
-TEST(Cancel, FlagIsSetSeenAndCleared) {
+TEST(Cancel, FlagIsSetAndCleared) {
   ClearCancel();
   EXPECT_FALSE(CancelRequested());
   EXPECT_NO_THROW(ThrowIfCancelled());
@@ -21,7 +21,7 @@ TEST(Cancel, FlagIsSetSeenAndCleared) {
   EXPECT_FALSE(CancelRequested());
 }
 
-TEST(Cancel, ARequestCanBeTakenBackButNoSignal) {
+TEST(Cancel, ARequestCanBeWithdrawnButNotASignal) {
   ClearCancel();
   RequestCancel();
   WithdrawRequest();
@@ -35,7 +35,7 @@ TEST(Cancel, ARequestCanBeTakenBackButNoSignal) {
   EXPECT_FALSE(CancelRequested());
 }
 
-// Exit status 0 proves that the process survived every signal before it and saw each of them.
+// Exits with status 0 if no signal ended the process and each one set the flag.
 void SurviveEachSignalOnce() {
   InstallSignalHandlers();
   for (const int signal_number : {SIGTERM, SIGTERM, SIGUSR1, SIGINT}) {

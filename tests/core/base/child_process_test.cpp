@@ -17,7 +17,7 @@ Command Shell(const std::string& script) {
   return {FindProgram("sh"), {"-c", script}};
 }
 
-// Its number is gone, or it is a corpse that nobody has collected yet.
+// True when the process no longer exists, or is a zombie.
 bool HasEnded(const std::string& process) {
   const std::string stat = "/proc/" + process + "/stat";
   const std::string text = std::filesystem::exists(stat) ? ReadFile(stat) : ") Z";
@@ -37,14 +37,14 @@ TEST(RunLogged, ReportsStatusLinesAndLog) {
   EXPECT_EQ(RunLogged(Shell("kill -9 $$"), folder / "log", {}), 128 + SIGKILL);
 }
 
-TEST(RunLogged, AFileThatCannotBeExecutedHasTheShellsStatus) {
+TEST(RunLogged, AFileThatCannotBeExecutedHasStatus127) {
   const TemporaryFolder folder;
   WriteFileAtomically(folder / "script", "#!/no/such/interpreter\n");
   std::filesystem::permissions(folder / "script", std::filesystem::perms::owner_all);
   EXPECT_EQ(RunLogged({FindProgram((folder / "script").string()), {}}, folder / "log", {}), 127);
 }
 
-TEST(RunLogged, CancellingEndsTheChildAndWhatItStarted) {
+TEST(RunLogged, CancellingEndsTheProgramAndItsChildren) {
   const TemporaryFolder folder;
   std::string grandchild;
   EXPECT_THROW(RunLogged(Shell("sleep 600 & echo $!; wait"), folder / "log",
@@ -62,7 +62,7 @@ TEST(RunLogged, CancellingEndsTheChildAndWhatItStarted) {
   EXPECT_TRUE(ended);
 }
 
-TEST(FindProgram, FindsNothingWhereNothingIs) {
+TEST(FindProgram, IsEmptyForMissingPrograms) {
   EXPECT_TRUE(FindProgram("no-such-program-anywhere").empty());
   EXPECT_TRUE(FindProgram("/no/such/program").empty());
   EXPECT_FALSE(FindProgram("sh").empty());
@@ -70,7 +70,7 @@ TEST(FindProgram, FindsNothingWhereNothingIs) {
 
 TEST(ChildProcess, ReadsWhatIsWrittenToIt) {
   const TemporaryFolder folder;
-  // More than a socket holds at once.
+  // More than a socket's buffer.
   const std::vector<uint8_t> bytes(3'000'000, 'x');
   ChildProcess child = ChildProcess::StartWriting(Shell("cat > '" + (folder / "copy").string() + "'"));
   EXPECT_TRUE(child.Send(bytes));
@@ -79,7 +79,7 @@ TEST(ChildProcess, ReadsWhatIsWrittenToIt) {
   EXPECT_EQ(ReadFile(folder / "copy"), std::string(bytes.size(), 'x') + "y");
 }
 
-TEST(ChildProcess, SaysThatItWentAwayAndHow) {
+TEST(ChildProcess, ReportsThatTheProgramEndedAndHow) {
   const std::vector<uint8_t> bytes(3'000'000, 'x');
   ChildProcess failing = ChildProcess::StartWriting(Shell("exit 3"));
   EXPECT_FALSE(failing.Send(bytes));
@@ -89,7 +89,7 @@ TEST(ChildProcess, SaysThatItWentAwayAndHow) {
   EXPECT_EQ(killed.Wait().Text("sh"), "sh was ended by signal 9");
 }
 
-TEST(ChildProcess, IsKilledWhenNobodyWaitsForIt) {
+TEST(ChildProcess, IsKilledByTheDestructor) {
   std::string number;
   {
     ChildProcess child = ChildProcess::StartReading(Shell("echo $$; exec sleep 600"));
@@ -101,7 +101,7 @@ TEST(ChildProcess, IsKilledWhenNobodyWaitsForIt) {
   EXPECT_TRUE(HasEnded(number));
 }
 
-TEST(ChildProcess, SaysWhyAFileIsNotAProgram) {
+TEST(ChildProcess, ReportsWhyAFileCannotBeExecuted) {
   const TemporaryFolder folder;
   WriteFileAtomically(folder / "text", "no program\n");
   try {

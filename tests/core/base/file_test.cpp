@@ -20,7 +20,7 @@ size_t CountEntries(const fs::path& folder) {
   return static_cast<size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-TEST(File, ContentComesBackByteForByte) {
+TEST(File, ContentIsReadBackUnchanged) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "bytes";
   for (const size_t size : {size_t{0}, size_t{1}, size_t{65536}, size_t{200003}}) {
@@ -48,7 +48,7 @@ TEST(File, ErrorsNameTheFileAndHowToFixIt) {
   EXPECT_THROW(SyncPath(missing), InputError);
 }
 
-TEST(File, FailedReplacementLeavesATargetFolderAlone) {
+TEST(File, AFolderIsNotReplacedByAFile) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "taken" / "inner");
   EXPECT_THROW(WriteFileAtomically(folder.path() / "taken", "x"), InputError);
@@ -56,7 +56,7 @@ TEST(File, FailedReplacementLeavesATargetFolderAlone) {
   EXPECT_EQ(CountEntries(folder.path()), 1U);
 }
 
-// A file size limit stands in for a full disk: both make write() fail half-way.
+// A limit on the file size makes write() fail half-way, like a full disk.
 void WriteBeyondTheLimit(const fs::path& file) {
   signal(SIGXFSZ, SIG_IGN);
   const struct rlimit limit = {100000, 100000};
@@ -69,7 +69,7 @@ void WriteBeyondTheLimit(const fs::path& file) {
   std::_Exit(0);
 }
 
-TEST(FileDeathTest, FailedWriteKeepsTheOldFileWhole) {
+TEST(FileDeathTest, FailedWriteKeepsTheOldFile) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "kept";
   WriteFileAtomically(file, "old");
@@ -104,7 +104,7 @@ TEST(HashHex, MatchesPublishedVectors) {
   EXPECT_EQ(HashHex("foobar"), "85944171f73967e8");
 }
 
-TEST(Check, NamesConditionAndPlace) {
+TEST(Check, NamesConditionAndLine) {
   EXPECT_NO_THROW(SKYQUILT_CHECK(1 + 1 == 2, "fine"));
   try {
     SKYQUILT_CHECK(1 + 1 == 3, "two against three");

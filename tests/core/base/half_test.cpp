@@ -26,15 +26,15 @@ void ExpectEveryHalfComesBack(ToHalf to_half, ToFloat to_float, float largest) {
   }
 }
 
-TEST(Half, EveryFloat16SurvivesTheWayThroughFloat) {
+TEST(Half, EveryFloat16IsUnchangedByConversionToFloatAndBack) {
   ExpectEveryHalfComesBack(Float16FromFloat, FloatFromFloat16, kLargestFloat16);
 }
 
-TEST(Half, EveryBfloat16SurvivesTheWayThroughFloat) {
+TEST(Half, EveryBfloat16IsUnchangedByConversionToFloatAndBack) {
   ExpectEveryHalfComesBack(Bfloat16FromFloat, FloatFromBfloat16, kLargestBfloat16);
 }
 
-// The neighbour in the format that is nearest to any float, found by trying the result's own neighbours.
+// Checks that the result is the nearest number of the format, by comparing it with its two neighbours.
 template <typename ToHalf, typename ToFloat>
 void ExpectNearest(float value, ToHalf to_half, ToFloat to_float) {
   const uint16_t half = to_half(value);

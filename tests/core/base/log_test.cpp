@@ -9,7 +9,7 @@
 namespace skyquilt::base {
 namespace {
 
-TEST(Log, FileReceivesEverythingFromThereOn) {
+TEST(Log, FileReceivesLaterMessages) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "log.txt";
   WriteFileAtomically(file, "before\n");

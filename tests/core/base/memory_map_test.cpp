@@ -23,7 +23,7 @@ TEST(MemoryMap, ShowsTheWholeFile) {
   EXPECT_EQ(Text(MemoryMap(folder.path() / "file")), content);
 }
 
-TEST(MemoryMap, OutlivesTheReplacementOfItsFile) {
+TEST(MemoryMap, StaysValidWhenItsFileIsReplaced) {
   const TemporaryFolder folder;
   WriteFileAtomically(folder.path() / "file", "first");
   const MemoryMap map(folder.path() / "file");

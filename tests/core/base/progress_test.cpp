@@ -42,7 +42,7 @@ TEST(Progress, UnknownTotalShowsTheCount) {
   EXPECT_EQ(text.find('%'), std::string::npos) << text;
 }
 
-TEST(Progress, NeverClaimsMoreThanAll) {
+TEST(Progress, NeverShowsMoreThan100Percent) {
   testing::internal::CaptureStderr();
   {
     Progress progress("over", 10.0, "steps");

@@ -10,7 +10,7 @@
 namespace skyquilt::base {
 namespace {
 
-// In a process of its own, so that the other tests keep their processors.
+// Runs in a separate process, so that the other tests can use all cores.
 void PinAndRelease() {
   const int before = UsableCores();
   const int here = sched_getcpu();
@@ -28,7 +28,7 @@ TEST(SystemDeathTest, ReleaseUndoesPinning) {
   EXPECT_EXIT(PinAndRelease(), testing::ExitedWithCode(0), "");
 }
 
-TEST(System, PeakMemoryFollowsWhatIsTouched) {
+TEST(System, PeakMemoryIncludesWrittenPages) {
   const int64_t before = PeakRssBytes();
   EXPECT_GT(before, 0);
   constexpr size_t kBytes = size_t{256} << 20U;

@@ -37,7 +37,7 @@ TEST_P(ThreadPoolSizes, OneTaskAtATimePerThreadNumber) {
   EXPECT_FALSE(shared);
 }
 
-// A late thread must neither miss a loop nor join one that is over, whose body no longer exists.
+// A late thread must neither miss a loop nor join a finished one, whose body no longer exists.
 TEST_P(ThreadPoolSizes, ManyShortLoopsInARow) {
   ThreadPool pool(GetParam());
   std::vector<int64_t> out(5);
@@ -71,7 +71,7 @@ TEST_P(ThreadPoolSizes, NestedLoopIsRefused) {
 TEST(ThreadPool, UsesEveryThreadWhenTasksWait) {
   ThreadPool pool(3);
   std::atomic<int> n_inside{0};
-  // Each task waits for the two others: with fewer than three threads this would never end.
+  // Each task waits for the two others, so this needs three threads.
   pool.ParallelFor(3, [&](int64_t, int) {
     ++n_inside;
     while (n_inside < 3) std::this_thread::yield();

@@ -1,4 +1,5 @@
-// Keeps the rooms apart: reads every #include line of the program and compares it with the plan of the house.
+// Tests the architecture: compares every #include line of the program with the allowed dependencies between its folders ("rooms"), and lets each
+// third-party library be used by one room only.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,9 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Every room, with the rooms it may include besides itself. "core" stands for all rooms of core.
-const std::map<std::string, std::set<std::string>>& Arrows() {
-  static const std::map<std::string, std::set<std::string>> arrows = {
+// Every room, with the other rooms that it may include. "core" means all rooms of core.
+const std::map<std::string, std::set<std::string>>& AllowedIncludes() {
+  static const std::map<std::string, std::set<std::string>> allowed = {
       {"app", {"bench", "coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "evaluate", "core"}},
       {"bench", {"coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "evaluate", "core"}},
       {"coordinator", {"simulate", "prepare", "partition", "worker", "merge", "products", "evaluate", "core"}},
@@ -49,17 +50,17 @@ const std::map<std::string, std::set<std::string>>& Arrows() {
       {"core/raytrace", {"core/base"}},
       {"core/page", {"core/base"}},
   };
-  return arrows;
+  return allowed;
 }
 
-struct Wall {
-  std::string what;
+struct Library {
+  std::string name;
   std::regex header;
-  std::string room;
+  std::string room;  // the only one that may include it
 };
 
-const std::vector<Wall>& Walls() {
-  static const std::vector<Wall> walls = {
+const std::vector<Library>& Libraries() {
+  static const std::vector<Library> libraries = {
       {"MPI", std::regex("(.*/)?mpi\\.h"), "core/comm"},
       {"HDF5", std::regex("(.*/)?(hdf5(_hl)?\\.h|H5[^/]*\\.h|highfive/.*)"), "core/checkpoint"},
       {"GeographicLib", std::regex("GeographicLib/.*"), "core/geo"},
@@ -70,7 +71,7 @@ const std::vector<Wall>& Walls() {
       {"GDAL", std::regex("(gdal/)?(gdal|ogr_|ogrsf|cpl_|vrt)[^/]*\\.h"), "core/gis"},
       {"toml++", std::regex("toml\\+\\+/.*|toml\\.hpp"), "core/config"},
   };
-  return walls;
+  return libraries;
 }
 
 // The first folder of a path, in core the first two: "core/geo", "simulate".
@@ -80,56 +81,56 @@ std::string RoomOf(const std::string& path) {
   return path.substr(0, path.starts_with("core/") ? path.find('/', first + 1) : first);
 }
 
-bool IsHouse(const std::string& folder) {
-  return std::any_of(Arrows().begin(), Arrows().end(),
-                     [&](const auto& arrow) { return arrow.first == folder || arrow.first.starts_with(folder + "/"); });
+bool IsOurs(const std::string& folder) {
+  return std::any_of(AllowedIncludes().begin(), AllowedIncludes().end(),
+                     [&](const auto& room) { return room.first == folder || room.first.starts_with(folder + "/"); });
 }
 
-// What is wrong with `file` including `header`; empty when nothing is.
-std::string Offence(const std::string& file, const std::string& header) {
+// Why `file` may not include `header`; empty when it may.
+std::string Violation(const std::string& file, const std::string& header) {
   const std::string room = RoomOf(file);
-  for (const Wall& wall : Walls()) {
-    if (std::regex_match(header, wall.header) && room != wall.room) return wall.what + " belongs to " + wall.room;
+  for (const Library& library : Libraries()) {
+    if (std::regex_match(header, library.header) && room != library.room) return library.name + " belongs to " + library.room;
   }
   if (header.find("..") != std::string::npos) return "relative path";
-  if (!IsHouse(header.substr(0, header.find('/')))) return "";
-  const auto arrows = Arrows().find(room);
-  if (arrows == Arrows().end()) return room + " is not in the plan";
+  if (!IsOurs(header.substr(0, header.find('/')))) return "";
+  const auto allowed = AllowedIncludes().find(room);
+  if (allowed == AllowedIncludes().end()) return room + " is not a room of AllowedIncludes";
   const std::string other = RoomOf(header);
-  if (other == room || arrows->second.contains(other)) return "";
-  if (other.starts_with("core/") && arrows->second.contains("core") && Arrows().contains(other)) return "";
-  return "no arrow from " + room + " to " + other;
+  if (other == room || allowed->second.contains(other)) return "";
+  if (other.starts_with("core/") && allowed->second.contains("core") && AllowedIncludes().contains(other)) return "";
+  return room + " may not include " + other;
 }
 
-// "file:line: include (offence)" for every include line of a source text that breaks a wall.
-std::vector<std::string> Offences(const std::string& file, std::istream& text) {
+// "file:line: include (violation)" for every forbidden include line of a source text.
+std::vector<std::string> Violations(const std::string& file, std::istream& text) {
   static const std::regex include_line("^\\s*#\\s*include\\s*[<\"]([^>\"]+)[>\"].*");
-  std::vector<std::string> offences;
+  std::vector<std::string> violations;
   int number = 0;
   for (std::string line; std::getline(text, line);) {
     ++number;
     std::smatch match;
     if (!std::regex_match(line, match, include_line)) continue;
-    const std::string offence = Offence(file, match[1]);
-    if (offence.empty()) continue;
+    const std::string violation = Violation(file, match[1]);
+    if (violation.empty()) continue;
     std::ostringstream message;
-    message << file << ":" << number << ": " << match[1] << " (" << offence << ")";
-    offences.push_back(message.str());
+    message << file << ":" << number << ": " << match[1] << " (" << violation << ")";
+    violations.push_back(message.str());
   }
-  return offences;
+  return violations;
 }
 
-std::vector<std::string> OffencesIn(const std::string& file, const std::string& text) {
+std::vector<std::string> ViolationsIn(const std::string& file, const std::string& text) {
   std::istringstream in(text);
-  return Offences(file, in);
+  return Violations(file, in);
 }
 
-// Of all rooms of the plan, relative to the source folder.
+// The source files of all rooms, relative to the source folder.
 std::vector<fs::path> Sources() {
   static const std::set<std::string> kExtensions = {".h", ".hpp", ".cpp", ".cc", ".cu", ".inl"};
   const fs::path source = SKYQUILT_SOURCE_DIR;
   std::vector<fs::path> files;
-  for (const auto& [room, ignored] : Arrows()) {
+  for (const auto& [room, ignored] : AllowedIncludes()) {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source / room)) {
       if (entry.is_regular_file() && kExtensions.contains(entry.path().extension().string())) files.push_back(fs::relative(entry.path(), source));
     }
@@ -137,36 +138,36 @@ std::vector<fs::path> Sources() {
   return files;
 }
 
-TEST(Walls, ArrowsGoOneWay) {
-  // Takes away rooms that point to none of those left, until none is left.
-  std::map<std::string, std::set<std::string>> left = Arrows();
+TEST(Rooms, HaveNoCyclicIncludes) {
+  // Removes rooms that include none of those left, until none is left.
+  std::map<std::string, std::set<std::string>> left = AllowedIncludes();
   for (auto& [room, others] : left) {
     if (others.erase("core") == 0) continue;
-    for (const auto& [other, ignored] : Arrows()) {
+    for (const auto& [other, ignored] : AllowedIncludes()) {
       if (other.starts_with("core/")) others.insert(other);
     }
   }
   while (!left.empty()) {
-    const auto end = std::find_if(left.begin(), left.end(), [](const auto& arrow) { return arrow.second.empty(); });
-    ASSERT_NE(end, left.end()) << "a circle through " << left.begin()->first;
+    const auto end = std::find_if(left.begin(), left.end(), [](const auto& room) { return room.second.empty(); });
+    ASSERT_NE(end, left.end()) << "a cycle with " << left.begin()->first;
     const std::string room = end->first;
     left.erase(end);
     for (auto& [other, others] : left) others.erase(room);
   }
 }
 
-TEST(Walls, AFolderWithCodeIsARoom) {
+TEST(Rooms, EveryFolderWithCodeIsOne) {
   const fs::path source = SKYQUILT_SOURCE_DIR;
   for (const char* parent : {".", "core"}) {
     for (const fs::directory_entry& entry : fs::directory_iterator(source / parent)) {
       const std::string folder = fs::relative(entry.path(), source).generic_string();
       if (!entry.is_directory() || folder == "core" || folder == "tests" || !fs::exists(entry.path() / "CMakeLists.txt")) continue;
-      EXPECT_TRUE(Arrows().contains(folder)) << folder << " has no place in the plan above";
+      EXPECT_TRUE(AllowedIncludes().contains(folder)) << folder << " is missing in AllowedIncludes";
     }
   }
 }
 
-TEST(Walls, ANamespaceIsNamedAfterItsRoom) {
+TEST(Rooms, NamespacesAreNamedAfterThem) {
   static const std::regex kNamespace("^namespace skyquilt::(\\w+).*");
   size_t n_named = 0;
   for (const fs::path& file : Sources()) {
@@ -183,7 +184,7 @@ TEST(Walls, ANamespaceIsNamedAfterItsRoom) {
   EXPECT_GT(n_named, 100U);
 }
 
-TEST(Walls, StandInEveryRoom) {
+TEST(Rooms, IncludeOnlyWhatIsAllowed) {
   const fs::path source = SKYQUILT_SOURCE_DIR;
   size_t n_files = 0;
   std::string report;
@@ -191,14 +192,14 @@ TEST(Walls, StandInEveryRoom) {
     ++n_files;
     std::ifstream in(source / file);
     ASSERT_TRUE(in.good()) << file;
-    for (const std::string& line : Offences(file.generic_string(), in)) report += line + "\n";
+    for (const std::string& line : Violations(file.generic_string(), in)) report += line + "\n";
   }
   EXPECT_GT(n_files, 20U) << "hardly any source found under " << source;
   EXPECT_EQ(report, "");
 }
 
-TEST(Walls, CatchKnownOffences) {
-  const std::vector<std::pair<std::string, std::string>> offenders = {
+TEST(Rooms, ForbiddenIncludesAreFound) {
+  const std::vector<std::pair<std::string, std::string>> violators = {
       {"worker/trainer.cpp", "#include <mpi.h>"},
       {"core/checkpoint/writer.cpp", "#include <mpi.h>"},
       {"core/field/save.cpp", "#include <hdf5.h>"},
@@ -233,15 +234,15 @@ TEST(Walls, CatchKnownOffences) {
       {"core/camera/a.cpp", "#include \"../render/scene.h\""},
       {"core/extra/a.cpp", "#include \"core/base/errors.h\""},
   };
-  for (const auto& [file, line] : offenders) {
-    const std::vector<std::string> found = OffencesIn(file, "#include <vector>\n" + line + "  // why\nint x;\n");
+  for (const auto& [file, line] : violators) {
+    const std::vector<std::string> found = ViolationsIn(file, "#include <vector>\n" + line + "  // why\nint x;\n");
     ASSERT_EQ(found.size(), 1U) << file << ": " << line;
     EXPECT_TRUE(found[0].starts_with(file + ":2: ")) << found[0];
   }
 }
 
-TEST(Walls, LetTheOwnersPass) {
-  const std::vector<std::pair<std::string, std::string>> owners = {
+TEST(Rooms, AllowedIncludesAreAccepted) {
+  const std::vector<std::pair<std::string, std::string>> accepted = {
       {"core/comm/mpi_comm.cpp", "#include <mpi.h>"},
       {"core/checkpoint/file.cpp", "#include <hdf5.h>"},
       {"core/geo/utm.cpp", "#include <GeographicLib/UTMUPS.hpp>"},
@@ -259,7 +260,7 @@ TEST(Walls, LetTheOwnersPass) {
       {"evaluate/a.cpp", "#include \"partition/block.h\""},
       {"core/field/a.cpp", "// #include <mpi.h>"},
   };
-  for (const auto& [file, line] : owners) EXPECT_TRUE(OffencesIn(file, line + "\n").empty()) << file << ": " << line;
+  for (const auto& [file, line] : accepted) EXPECT_TRUE(ViolationsIn(file, line + "\n").empty()) << file << ": " << line;
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace skyquilt::camera {
 namespace {
 
-// One lens per model with parameters of the size that drone cameras have (fisheye: an action camera).
+// One lens per model, with parameters typical of drone cameras (fisheye: an action camera).
 std::vector<Camera> RealisticCameras() {
   return {
       {CameraModel::kSimplePinhole, 4000, 3000, {2850.0, 2003.0, 1497.0}},
@@ -31,7 +31,7 @@ TEST(Camera, EveryPixelComesBack) {
     ASSERT_EQ(camera.Problem(), "");
     for (int i = 0; i <= 40; ++i) {
       for (int j = 0; j <= 30; ++j) {
-        // A tenth of the image beyond each edge included: footprints ask there.
+        // Also a tenth of the image beyond each edge, as footprints need.
         const Eigen::Vector2d pixel(camera.width * (-0.1 + 1.2 * i / 40.0), camera.height * (-0.1 + 1.2 * j / 30.0));
         const Eigen::Vector3d ray = camera.RayFromImg(pixel);
         ASSERT_NEAR(ray.norm(), 1.0, 1e-12);
@@ -55,7 +55,7 @@ TEST(Camera, EveryDirectionComesBack) {
   }
 }
 
-TEST(Camera, CentreLooksForward) {
+TEST(Camera, RayOfThePrincipalPointIsForward) {
   for (const Camera& camera : RealisticCameras()) {
     EXPECT_LT((camera.RayFromImg(camera.PrincipalPoint()) - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
     EXPECT_LT((*camera.ImgFromCam({0.0, 0.0, 3.0}) - camera.PrincipalPoint()).norm(), 1e-12);
@@ -93,7 +93,7 @@ TEST(Camera, MatchesTheFormulasByHand) {
   expect(CameraModel::kOpencvFisheye, {800, 700, 510, 490, 0.1, -0.02, 0.03, -0.004}, 0.5 * bent, 0.25 * bent);
 }
 
-TEST(Camera, NothingBehindTheCamera) {
+TEST(Camera, PointsBehindTheCameraAreNotProjected) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Camera& camera : RealisticCameras()) {
     for (const Eigen::Vector3d& x : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1, 1, 0), Eigen::Vector3d(0.1, 0.1, -1),
@@ -103,8 +103,8 @@ TEST(Camera, NothingBehindTheCamera) {
   }
 }
 
-// r (1 + k r^2) with k = -0.5 folds at r = sqrt(2/3), where it reaches 0.5443; beyond, far-off points would show up inside the image.
-TEST(Camera, BeyondTheFoldNothingIsMirroredBack) {
+// r (1 + k r^2) with k = -0.5 folds at r = sqrt(2/3), where its value is 0.5443; points beyond would be projected into the image.
+TEST(Camera, PointsBeyondTheFoldAreNotProjected) {
   const Camera camera{CameraModel::kSimpleRadial, 2000, 2000, {1000.0, 1000.0, 1000.0, -0.5}};
   const double fold = std::sqrt(2.0 / 3.0);
   EXPECT_TRUE(camera.ImgFromCam({0.999 * fold, 0.0, 1.0}).has_value());
@@ -117,7 +117,7 @@ TEST(Camera, BeyondTheFoldNothingIsMirroredBack) {
   }
 }
 
-// k1 < 0 and k2 > 0: the radius stops growing, then grows again; only the first branch is the lens.
+// k1 < 0 and k2 > 0: the radius stops growing, then grows again; only the first branch describes the lens.
 TEST(Camera, SecondBranchIsNotTaken) {
   const Camera camera{CameraModel::kRadial, 2000, 2000, {1000.0, 1000.0, 1000.0, -0.6, 0.15}};
   EXPECT_FALSE(camera.ImgFromCam({1.9, 0.0, 1.0}).has_value());
@@ -150,7 +150,7 @@ TEST(Camera, RaysAreNeverNan) {
   }
 }
 
-TEST(Camera, ResizedSeesTheSameRays) {
+TEST(Camera, ResizedCameraHasTheSameRays) {
   for (const Camera& camera : RealisticCameras()) {
     // A quarter exactly, and a size whose rounding changes the aspect.
     for (const auto& [width, height] : {std::pair(camera.width / 4, camera.height / 4), std::pair(641, 487)}) {
@@ -185,7 +185,7 @@ TEST(Camera, ProblemsAreNamed) {
   EXPECT_NE(bad.Problem().find("finite"), std::string::npos);
 }
 
-TEST(CameraModel, NamesAndIdsAreColmaps) {
+TEST(CameraModel, NamesAndIdsAreThoseOfColmap) {
   // Ids and counts of COLMAP src/colmap/sensor/models.h.
   const std::vector<std::pair<std::string, int>> colmap = {{"SIMPLE_PINHOLE", 3}, {"PINHOLE", 4},        {"SIMPLE_RADIAL", 4}, {"RADIAL", 5},
                                                            {"OPENCV", 8},         {"OPENCV_FISHEYE", 8}, {"FULL_OPENCV", 12}};

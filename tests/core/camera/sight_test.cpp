@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Looks straight down from 100 m above the origin: the frame spans 100 m east and 80 m north of ground at z = 0.
+// Looks straight down from 100 m above the origin: the frame covers 100 m from west to east and 80 m from south to north at z = 0.
 const Camera kLens{CameraModel::kPinhole, 100, 80, {100.0, 100.0, 50.0, 40.0}};
 geo::Rigid3d Down() {
   geo::Rigid3d cam_from_enu;
@@ -24,18 +24,18 @@ bool Seen(const Eigen::Vector3d& x, const SightRule& rule = {}) {
   return Shows(kLens, Down(), x, rule);
 }
 
-TEST(Shows, WhatLiesInTheFrame) {
+TEST(Shows, PlacesInTheFrame) {
   EXPECT_TRUE(Seen({0, 0, 0}));
   EXPECT_TRUE(Seen({-49.9, 39.9, 0}));
   EXPECT_FALSE(Seen({-50.1, 0, 0}));
   EXPECT_FALSE(Seen({0, 40.1, 0}));
-  EXPECT_FALSE(Seen({0, 0, 100})) << "the camera's own place";
-  EXPECT_FALSE(Seen({0, 0, 110})) << "behind it";
+  EXPECT_FALSE(Seen({0, 0, 100})) << "at the camera";
+  EXPECT_FALSE(Seen({0, 0, 110})) << "behind the camera";
   EXPECT_FALSE(Seen({std::nan(""), 0, 0}));
   EXPECT_FALSE(Seen({0, 0, -kInfinity}));
 }
 
-TEST(Shows, FarEdgesOnlyWhereTheyBelong) {
+TEST(Shows, FarEdgesOnlyWhenAskedFor) {
   EXPECT_TRUE(Seen({-50, 40, 0})) << "left and upper edge";
   EXPECT_FALSE(Seen({50, 0, 0}));
   EXPECT_FALSE(Seen({0, -40, 0}));
@@ -46,7 +46,7 @@ TEST(Shows, BallsThatReachIntoTheFrame) {
   EXPECT_TRUE(Seen({52, 0, 0}, {.radius_m = 2.5}));
   EXPECT_FALSE(Seen({53, 0, 0}, {.radius_m = 2.5}));
   EXPECT_TRUE(Seen({0, 0, 101}, {.radius_m = 2.0})) << "around the camera";
-  EXPECT_TRUE(Seen({6, 0, 100}, {.radius_m = 2.0})) << "next to it";
+  EXPECT_TRUE(Seen({6, 0, 100}, {.radius_m = 2.0})) << "next to the camera";
   EXPECT_FALSE(Seen({9, 0, 100}, {.radius_m = 2.0}));
   EXPECT_FALSE(Seen({0, 0, 103}, {.radius_m = 2.0}));
 }
@@ -56,17 +56,16 @@ TEST(Shows, NotBeyondReach) {
   EXPECT_FALSE(Seen({30, 40, 0}, {.reach_m = 111.7, .far_edges = true}));
 }
 
-TEST(Shows, NotBehindTheMask) {
+TEST(Shows, NotOnIgnoredPixels) {
   std::vector<uint8_t> mask(8000, 1);
   mask[20 * 100 + 30] = 0;
   EXPECT_FALSE(Seen({-19.5, 19.5, 0}, {.mask = mask}));
   EXPECT_TRUE(Seen({-18.5, 19.5, 0}, {.mask = mask}));
   mask[99] = 0;
-  EXPECT_FALSE(Seen({51, 41, 0}, {.radius_m = 2.0, .mask = mask})) << "beyond the corner the corner's pixel decides";
+  EXPECT_FALSE(Seen({51, 41, 0}, {.radius_m = 2.0, .mask = mask})) << "outside the frame the mask of the nearest pixel is used";
 }
 
-// The rules as they were written before they shared this one: which ground is cut into blocks, what is trained and which pixels are scored must
-// not depend on how the rule is written.
+// The three rules of the callers, written out separately: Shows must agree with each of them.
 bool GroundRule(const Camera& camera, const geo::Rigid3d& cam_from_enu, const Eigen::Vector3d& x, double reach) {
   if ((x - cam_from_enu.OriginInSource()).squaredNorm() > reach * reach) return false;
   const auto pixel = camera.ImgFromCam(cam_from_enu * x);
@@ -92,12 +91,12 @@ double Between(int low, int high) {
   return *rc::gen::inRange(16 * low, 16 * high + 1) / 16.0;
 }
 
-RC_GTEST_PROP(Shows, AgreesWithTheRulesItReplaced, ()) {
+RC_GTEST_PROP(Shows, AgreesWithTheRulesOfItsCallers, ()) {
   const Camera curved{CameraModel::kOpencv, 100, 80, {90.0, 95.0, 48.0, 41.0, -0.2, 0.05, 1e-3, -2e-3}};
   std::vector<uint8_t> mask(8000);
   for (size_t i = 0; i < mask.size(); ++i) mask[i] = i % 3 == 0 || i / 1000 == 5 ? 0 : 1;
   for (int i = 0; i < 100; ++i) {
-    // Half of the poses look straight down, and places lie on a lattice: many fall onto edges of the frame and of pixels.
+    // Half of the poses look straight down and places are on a lattice, so that many are exactly on edges of the frame and of pixels.
     const bool plain = *rc::gen::arbitrary<bool>();
     const Camera& camera = plain ? kLens : curved;
     geo::Rigid3d pose = Down();

@@ -18,7 +18,7 @@
 #include "tests/support/temporary_folder.h"
 
 #ifdef SKYQUILT_ADDRESS_SANITIZER
-// HDF5 1.10 forgets some of its own memory when it meets damaged metadata.
+// HDF5 1.10 leaks memory when metadata is damaged.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libhdf5";
 }
@@ -31,7 +31,7 @@ void WriteBytes(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-// Everything an archive can hold: odd values, several chunks, groups, empty arrays.
+// All that an archive can contain: special values, several chunks, groups, empty arrays.
 struct Content {
   std::vector<float> table;
   std::vector<double> matrix = {1.0, -0.0, 1e-300, std::numeric_limits<double>::infinity(), 5.0, 6.0};
@@ -62,7 +62,7 @@ struct Content {
   }
 };
 
-// Makes length and digest in the user block fit the changed bytes again.
+// Updates length and digest in the user block after a change of the bytes.
 void Resign(std::string* bytes) {
   Digest digest;
   digest.Update({reinterpret_cast<const uint8_t*>(bytes->data()) + kUserBlockBytes, bytes->size() - kUserBlockBytes});
@@ -83,10 +83,10 @@ bool Holds(const ArchiveReader& reader, const Content& content) {
          reader.IntAttribute("small") == 5;
 }
 
-TEST(Archive, GivesBackEveryBit) {
+TEST(Archive, KeepsEveryBit) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "block.h5";
-  for (const size_t n : {size_t{0}, size_t{1}, size_t{1000}, size_t{1500001}}) {  // none, one, some, several chunks with a ragged end
+  for (const size_t n : {size_t{0}, size_t{1}, size_t{1000}, size_t{1500001}}) {  // none, one, some, several chunks with an incomplete last one
     const Content content(n);
     content.Writer().Commit(file);
     const ArchiveReader reader(file);
@@ -95,7 +95,7 @@ TEST(Archive, GivesBackEveryBit) {
   }
 }
 
-TEST(Archive, TellsWhatItHolds) {
+TEST(Archive, ListsItsContent) {
   const TemporaryFolder folder;
   const Content content;
   content.Writer().Commit(folder.path() / "a.h5");
@@ -131,7 +131,7 @@ TEST(Archive, SameContentGivesTheSameBytes) {
   EXPECT_EQ(base::ReadFile(folder.path() / "a.h5"), base::ReadFile(folder.path() / "b.h5"));
 }
 
-TEST(Archive, RefusesWhatIsAbsentOrOfAnotherType) {
+TEST(Archive, RefusesNamesThatAreAbsentOrOfAnotherType) {
   const TemporaryFolder folder;
   Content().Writer().Commit(folder.path() / "a.h5");
   const ArchiveReader reader(folder.path() / "a.h5");
@@ -155,7 +155,7 @@ TEST(Archive, MisuseIsABug) {
   EXPECT_THROW(writer.SetAttribute("skyquilt.kind", 1), std::logic_error);
 }
 
-TEST(ArchiveReader, SaysWhyAFileIsNoArchive) {
+TEST(ArchiveReader, NamesTheReasonWhyAFileIsNoArchive) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "a.h5";
   const auto message = [&](const std::string& bytes) {
@@ -179,7 +179,7 @@ TEST(ArchiveReader, NoticesEveryFlippedBit) {
   base::Random random(2024);
   for (int i = 0; i < 300; ++i) {
     std::string bad = good;
-    // A third of the flips hits the first 1.5 kB, where the guard and HDF5's own header are.
+    // A third of the flips are in the first 1.5 kB, with the user block and HDF5's header.
     const size_t at = random.Below(static_cast<uint32_t>(i % 3 == 0 ? 1536 : bad.size()));
     bad[at] = static_cast<char>(bad[at] ^ (1 << random.Below(8)));
     WriteBytes(file, bad);
@@ -202,7 +202,7 @@ TEST(ArchiveReader, NoticesEveryTruncationAndAddition) {
   EXPECT_NE(InputErrorOf([&] { const ArchiveReader reader(file); }), "");
 }
 
-// Damage that a matching digest hides (as a program's own mistake would) still meets HDF5's checks and ours: an error or the truth, never a crash.
+// Damage with a matching digest, as from a bug in a program: HDF5's checks and ours give an error or the right content, never a crash.
 TEST(ArchiveReader, SurvivesDamageBehindAValidDigest) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "a.h5";
@@ -227,7 +227,7 @@ TEST(ArchiveReader, SurvivesDamageBehindAValidDigest) {
   EXPECT_GT(n_refused, 50);
 }
 
-TEST(ArchiveCopies, ArraysOfOtherFilesAreAsIfTheyHadBeenPut) {
+TEST(ArchiveCopies, ArraysOfOtherFilesAreStoredLikeThoseInMemory) {
   const TemporaryFolder folder;
   const Content content(300'000);
   content.Writer().Commit(folder / "part.h5");
@@ -251,7 +251,7 @@ TEST(ArchiveCopies, ArraysOfOtherFilesAreAsIfTheyHadBeenPut) {
   EXPECT_TRUE(joined(true) == joined(false));
 }
 
-TEST(ArchiveCopies, FloatsMayBeStoredShorter) {
+TEST(ArchiveCopies, FloatsMayBeStoredIn16Bits) {
   const TemporaryFolder folder;
   const Content content(300'000);
   content.Writer().Commit(folder / "part.h5");
@@ -273,7 +273,7 @@ TEST(ArchiveCopies, FloatsMayBeStoredShorter) {
     const float error = std::vector<float>{0.0F, 0x1p-8F, 0x1p-11F}[which];
     EXPECT_TRUE(std::isnan(table[0]));
     for (size_t i = 1; i < table.size(); ++i) ASSERT_NEAR(table[i], content.table[i], error * std::abs(content.table[i]) + 1e-7F) << i;
-    // Another archive takes them over as they are.
+    // A copy in another archive keeps them unchanged.
     ArchiveWriter again("scene", 1);
     again.PutCopy("t", file, "table/level0");
     again.Commit(folder / "again.h5");
@@ -284,7 +284,7 @@ TEST(ArchiveCopies, FloatsMayBeStoredShorter) {
   EXPECT_EQ(bytes[1], bytes[2]);
 }
 
-TEST(ArchiveCopies, KeepOnlyTheGroupsThatAreAskedFor) {
+TEST(ArchiveCopies, KeepOnlyTheChosenGroups) {
   const TemporaryFolder folder;
   base::Random random(3);
   std::vector<float> values(4 * 1001);
@@ -309,7 +309,7 @@ TEST(ArchiveCopies, KeepOnlyTheGroupsThatAreAskedFor) {
     }
     EXPECT_EQ(reader.KeptFloats("nothing"), std::vector<float>(values.size(), 0.0F));
   }
-  // Arrays that were put whole are read whole.
+  // Arrays stored whole are read whole.
   EXPECT_EQ(ArchiveReader(folder / "part.h5").KeptFloats("grid"), values);
   ArchiveWriter writer("scene", 1);
   EXPECT_THROW(writer.PutKept("a", folder / "part.h5", "grid", keep, 3), std::logic_error);
@@ -317,7 +317,7 @@ TEST(ArchiveCopies, KeepOnlyTheGroupsThatAreAskedFor) {
   EXPECT_THROW(writer.PutKept("a", folder / "part.h5", "absent", keep, 4), base::InputError);
 }
 
-TEST(ArchiveCopies, BitsThatDoNotFitWhatWasKeptAreRefused) {
+TEST(ArchiveCopies, BitsThatDoNotMatchTheStoredGroupsAreRefused) {
   const TemporaryFolder folder;
   const auto refused = [&](const std::vector<float>& kept, const std::vector<uint8_t>& bits, const std::vector<int64_t>& sizes) {
     ArchiveWriter writer("scene", 1);
@@ -335,13 +335,13 @@ TEST(ArchiveCopies, BitsThatDoNotFitWhatWasKeptAreRefused) {
   refused({1, 2, 3, 4}, {1}, {4});
 }
 
-TEST(ArchiveCopies, SaysWhatIsMissing) {
+TEST(ArchiveCopies, NamesMissingFilesAndArrays) {
   const TemporaryFolder folder;
   Content(10).Writer().Commit(folder / "part.h5");
   ArchiveWriter writer("scene", 1);
   EXPECT_THROW(writer.PutCopy("a", folder / "absent.h5", "random"), base::InputError);
   EXPECT_THROW(writer.PutCopy("a", folder / "part.h5", "absent"), base::InputError);
-  // Gone between being named and being needed: nothing is written.
+  // The source file is removed before Commit: nothing is written.
   writer.PutCopy("a", folder / "part.h5", "random");
   writer.PutCopy("b", folder / "part.h5", "occupancy");
   ArchiveWriter other("scene", 1);

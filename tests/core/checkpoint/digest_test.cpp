@@ -21,7 +21,7 @@ TEST(Digest, AgreesWithTheReference) {
   EXPECT_EQ(DigestOf("Nobody inspects the spammish repetition"), 0xFBCEA83C8A378BF1ULL);
 }
 
-TEST(Digest, DoesNotDependOnHowBytesAreCut) {
+TEST(Digest, DoesNotDependOnHowBytesAreDivided) {
   std::string text;
   for (int i = 0; i < 300; ++i) text.push_back(static_cast<char>(i * 37));
   for (size_t step = 1; step < 70; ++step) {
@@ -34,7 +34,7 @@ TEST(Digest, DoesNotDependOnHowBytesAreCut) {
   }
 }
 
-TEST(Digest, SeesEverySingleBit) {
+TEST(Digest, ChangesWithEverySingleBit) {
   const std::string text(100, '\x3C');
   const uint64_t before = DigestOf(text);
   for (size_t i = 0; i < text.size(); ++i) {

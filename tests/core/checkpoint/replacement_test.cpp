@@ -1,4 +1,4 @@
-// How an archive takes the place of the one before: complete or absent, whatever happens meanwhile.
+// Replacing an archive by a new one: at any moment, even after a kill or with a full disk, a complete file exists.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -55,7 +55,7 @@ class Replacement : public testing::Test {
   std::filesystem::path previous_ = folder_.path() / "block.h5.prev";
 };
 
-TEST_F(Replacement, KeepsTheOneBefore) {
+TEST_F(Replacement, KeepsThePreviousFile) {
   Commit(file_, 1);
   EXPECT_EQ(FilesInFolder(), 1U);
   Commit(file_, 2);
@@ -104,18 +104,18 @@ TEST_F(Replacement, LeftoversOfAKilledWriterDoNoHarm) {
   EXPECT_EQ(StepOf(file_), 2);
   EXPECT_EQ(StepOf(previous_), 1);
   EXPECT_EQ(FilesInFolder(), 3U);
-  // A host that fell silent long ago.
+  // The temporary file of a host that has not written for long.
   std::filesystem::last_write_time(at_work, std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
   Commit(file_, 3);
   EXPECT_EQ(FilesInFolder(), 2U);
 }
 
-// Runs in a process of its own, so that what HDF5 does at its end counts too.
-TEST_F(Replacement, AFullDiskAtAnyByteLeavesTheOldFileAlone) {
+// Runs in a separate process, to test also what HDF5 does when a process ends.
+TEST_F(Replacement, AFullDiskAtAnyByteKeepsTheOldFile) {
   Commit(file_, 1);
   const pid_t child = fork();
   if (child == 0) {
-    // A limit on the size of files fails a write just as a full disk does.
+    // A limit on the file size makes writes fail like a full disk.
     std::signal(SIGXFSZ, SIG_IGN);
     rlimit before{};
     getrlimit(RLIMIT_FSIZE, &before);
@@ -150,7 +150,7 @@ TEST_F(Replacement, AFullDiskAtAnyByteLeavesTheOldFileAlone) {
   EXPECT_EQ(StepOf(file_), 3);
 }
 
-TEST_F(Replacement, AFolderThatIsNotThereIsNamed) {
+TEST_F(Replacement, AMissingFolderIsNamed) {
   EXPECT_NE(InputErrorOf([&] { Commit(folder_.path() / "absent/block.h5", 1); }).find("absent/block.h5"), std::string::npos);
 }
 

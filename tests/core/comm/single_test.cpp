@@ -7,7 +7,7 @@
 namespace skyquilt::comm {
 namespace {
 
-TEST(SingleRank, IsAllThereIs) {
+TEST(SingleRank, IsRankZeroOfOne) {
   const auto ranks = ConnectAlone();
   EXPECT_EQ(ranks->rank(), 0);
   EXPECT_EQ(ranks->size(), 1);
@@ -32,11 +32,11 @@ TEST(SingleRank, ReceivesItsOwnMessagesInOrder) {
   EXPECT_FALSE(ranks->TryReceive().has_value());
 }
 
-TEST(SingleRank, HasNoNeighbour) {
+TEST(SingleRank, RefusesToSendToOtherRanks) {
   EXPECT_THROW(ConnectAlone()->Send(1, 0, "nobody"), std::logic_error);
 }
 
-TEST(SingleRank, StopsWaitingOnCancelButFirstDeliversWhatIsThere) {
+TEST(SingleRank, DeliversWaitingMessagesBeforeItStopsOnCancel) {
   const auto ranks = ConnectAlone();
   base::RequestCancel();
   ranks->Send(0, 1, "still delivered");

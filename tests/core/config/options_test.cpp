@@ -51,7 +51,7 @@ struct RenderOptions {
         {"heights_m", &O::heights_m, Range{0.5, 100}, "of the cameras"},
     };
   }
-  // Takes the name of its section: several sections may hold such a struct.
+  // Takes the section's name, because several sections may use the struct.
   void Check(const std::string& section) const {
     CheckRanges(section, *this);
     if (supersample > 1 && exposure_stops > 5.0) throw base::UsageError(section + ".supersample is not allowed with so much light");
@@ -74,7 +74,7 @@ std::string MessageOf(const std::string& text) {
   return ErrorOf<Error>([&] { ReadTomlText(text, "skyquilt.toml", all.sections); });
 }
 
-TEST(Toml, ARetiredOptionIsTakenWithoutEffect) {
+TEST(Toml, ARetiredOptionIsAcceptedWithoutEffect) {
   All all;
   all.sections.Retire("train.gone", "nothing needs it");
   ReadTomlText("[train]\ngone = 3\nsteps = 7\n", "old.toml", all.sections);
@@ -84,14 +84,14 @@ TEST(Toml, ARetiredOptionIsTakenWithoutEffect) {
   EXPECT_EQ(WriteToml(all.sections).find("gone"), std::string::npos);
 }
 
-TEST(Toml, ARenamedOptionIsTakenUnderItsNewName) {
+TEST(Toml, ARenamedOptionSetsTheNewOne) {
   All all;
   all.sections.Rename("train.strides", "train.steps");
   ReadTomlText("[train]\nstrides = 7\n", "old.toml", all.sections);
   EXPECT_EQ(all.train.steps, 7);
   ApplyOverride({"train.strides", "8"}, all.sections);
   EXPECT_EQ(all.train.steps, 8);
-  // The new name counts where both are given, whatever their order.
+  // The new name wins when both are given, in any order.
   ReadTomlText("[train]\nsteps = 9\nstrides = 10\n", "old.toml", all.sections);
   EXPECT_EQ(all.train.steps, 9);
   EXPECT_EQ(WriteToml(all.sections).find("strides"), std::string::npos);
@@ -109,7 +109,7 @@ TEST(Toml, AValueOutOfRangeIsRefusedWithItsLineAndRange) {
             "skyquilt.toml: products.render.shape = \"oval\" is not allowed: it must be round or square (line 2)");
 }
 
-TEST(Override, IsReadAsALineOfAFileWouldBe) {
+TEST(Override, IsReadLikeALineOfAFile) {
   All all;
   const auto set = [&](const std::string& text) { ApplyOverride(ParseOverride(text), all.sections); };
   const auto refusal = [&](const std::string& text) { return ErrorOf<base::UsageError>([&] { set(text); }); };
@@ -125,15 +125,15 @@ TEST(Override, IsReadAsALineOfAFileWouldBe) {
   EXPECT_FALSE(all.train.guided);
   set("products.render.shape=square");
   EXPECT_EQ(all.render.shape, "square");
-  // Single options have no file and no line.
+  // Options of --set have no file and no line.
   EXPECT_EQ(refusal("products.render.supersample=0"), "products.render.supersample = 0 is not allowed: it must be 1 to 8");
-  EXPECT_EQ(refusal("train.steps=3.5"), "train.steps must be a whole number, found a number with a point");
+  EXPECT_EQ(refusal("train.steps=3.5"), "train.steps must be a whole number, found a decimal number");
   EXPECT_NE(refusal("train.steps=many").find("train.steps = 'many' is not understood"), std::string::npos);
   EXPECT_NE(refusal("train.stepz=3").find("'train.steps'"), std::string::npos);
   EXPECT_NE(refusal("train.steps=").find("train.steps"), std::string::npos);
 }
 
-TEST(Sections, CheckNamesSectionAndRangeOfWhatAProgramSet) {
+TEST(Sections, CheckNamesSectionAndRange) {
   All all;
   EXPECT_NO_THROW(all.sections.Check());
   all.render.width = 15;
@@ -208,10 +208,10 @@ TEST(Toml, IntegersServeAsNumbers) {
 TEST(Toml, UnknownNamesAreRefusedWithTheNearest) {
   EXPECT_EQ(MessageOf<base::UsageError>("[train]\nstepz = 3\n"), "skyquilt.toml: unknown key 'train.stepz'; did you mean 'train.steps'? (line 2)");
   EXPECT_EQ(MessageOf<base::UsageError>("[trian]\nsteps = 3\n"), "skyquilt.toml: unknown section 'trian'; did you mean 'train'? (line 1)");
-  // The right word in the wrong section.
+  // The right key in the wrong section.
   EXPECT_NE(MessageOf<base::UsageError>("[train]\nsupersample = 3\n").find("'products.render.supersample'"), std::string::npos);
   EXPECT_NE(MessageOf<base::UsageError>("steps = 3\n").find("'train.steps'"), std::string::npos);
-  // Nothing near: what there is.
+  // No similar name: lists the known ones.
   EXPECT_NE(MessageOf<base::UsageError>("[train]\nxxxxxxxxxx = 3\n").find("guided"), std::string::npos);
   EXPECT_NE(MessageOf<base::UsageError>("[zzzzzzzzzz]\n").find("products.render"), std::string::npos);
   EXPECT_NE(MessageOf<base::UsageError>("[train.deeper]\nsteps = 1\n").find("unknown section 'train.deeper'"), std::string::npos);

@@ -9,7 +9,7 @@
 namespace skyquilt::config {
 namespace {
 
-TEST(Range, TellsWhatItContains) {
+TEST(Range, TextDescribesTheAllowedValues) {
   EXPECT_EQ(Range().Text(), "");
   EXPECT_EQ((Range{0.25, 16}.Text()), "0.25 to 16");
   EXPECT_EQ((Range{256, 4194304}.Text()), "256 to 4194304");
@@ -22,7 +22,7 @@ TEST(Range, TellsWhatItContains) {
   EXPECT_EQ(Range::OneOf({"fp32", "bf16", "fp16"}).Text(), "fp32, bf16 or fp16");
 }
 
-TEST(Range, ItsEndsBelongToItAndNothingBeyondThem) {
+TEST(Range, IncludesItsEndsAndNothingBeyond) {
   const Range range{0.25, 16};
   EXPECT_TRUE(range.Contains(0.25));
   EXPECT_TRUE(range.Contains(16));
@@ -46,7 +46,7 @@ TEST(Range, OfNumbersHoldsNeitherNanNorInfinity) {
   EXPECT_TRUE(Range().Contains(infinity));
 }
 
-RC_GTEST_PROP(RangeProperty, ContainsWhatLiesBetweenItsEnds, (double a, double b, double value)) {
+RC_GTEST_PROP(RangeProperty, ContainsNumbersBetweenItsEnds, (double a, double b, double value)) {
   RC_PRE(std::isfinite(a) && std::isfinite(b));
   const Range range{std::min(a, b), std::max(a, b)};
   RC_ASSERT(range.Contains(value) == (std::isfinite(value) && value >= std::min(a, b) && value <= std::max(a, b)));

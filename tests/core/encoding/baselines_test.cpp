@@ -1,4 +1,4 @@
-// What every encoding has to get right, and what tells them apart.
+// Tests that every encoding must pass, and tests of the baselines' own properties.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ class EveryEncoding : public ::testing::TestWithParam<Kind> {
     base::Random random(3);
     for (float& value : parameters_) value = random.Uniform() - 0.5F;
   }
-  // n positions, a little outside the box too.
+  // n positions, some slightly outside the box.
   void Place(int64_t n) {
     base::Random random(5);
     for (auto* axis : {&x_, &y_, &z_}) axis->clear();
@@ -73,7 +73,7 @@ TEST_P(EveryEncoding, ForwardAgreesWithDoubleAtEveryLength) {
       const std::vector<double> expected = Reference(parameters, s);
       ASSERT_EQ(static_cast<int>(expected.size()), encoding_->OutputRows());
       for (size_t row = 0; row < expected.size(); ++row) {
-        // Positions and weights in float: a step of 1e-7 in a cell of one in twenty-four, or of a turn in twelve.
+        // Positions and weights in float: a rounding of 1e-7 in a cell of 1/24, or in 1/12 of a turn.
         EXPECT_NEAR(static_cast<double>(out[row * stride + s]), expected[row], 1e-5) << "row " << row << " of sample " << s;
       }
     }
@@ -123,7 +123,7 @@ TEST_P(EveryEncoding, GradientMatchesFiniteDifferencesAndMarksExactlyTheLinesItW
   }
   if (GetParam() == Kind::kFrequency) return;
   EXPECT_GT(written_lines, 10U);
-  // A line is also marked when all it gets comes with weight zero: never more than the samples' corners.
+  // A line is also marked when all its weights are zero, but there are never more than the samples' corners.
   size_t marked = 0;
   for (const uint8_t mark : touched) marked += mark;
   EXPECT_LE(marked, static_cast<size_t>(encoding_->parts()) * (n - 1) * 8);
@@ -176,8 +176,8 @@ TEST_P(TableEncoding, HasAboutTheParametersOfAHashGridButNeverFinerCells) {
         const kernel::HashLevel& lattice = voxels != nullptr ? voxels->lattice() : dynamic_cast<const PlaneFactors&>(*encoding).lattice();
         EXPECT_LE(static_cast<double>(lattice.cells_per_unit), finest);
         const double share = static_cast<double>(encoding->ParameterCount()) / budget;
-        EXPECT_LE(share, 1.02) << "lines are filled up";
-        // Whole cells along three axes leave some of a small budget over.
+        EXPECT_LE(share, 1.02) << "lines are padded";
+        // With whole cells along three axes a part of a small budget stays unused.
         if (static_cast<double>(lattice.cells_per_unit) < finest) {
           EXPECT_GT(share, budget < 1e5 ? 0.7 : 0.9) << log2_table_size << " " << levels;
         }

@@ -22,7 +22,7 @@ TEST(SphericalHarmonics, MatchClosedForms) {
 }
 
 TEST(SphericalHarmonics, AreOrthonormalOnTheSphere) {
-  // Gauss-like product rule: exact enough for band 3 with 64 x 64 nodes.
+  // Product quadrature with 64 x 64 nodes, accurate enough for band 3.
   double gram[16][16] = {};
   const int n = 64;
   for (int i = 0; i < n; ++i) {

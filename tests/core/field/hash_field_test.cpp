@@ -27,7 +27,7 @@ FieldConfig SmallConfig(int color_hidden_layers) {
   return config;
 }
 
-// The same field, one sample, in double and in the plainest way.
+// Reference: the same field for one sample, in double and without optimisation.
 struct Reference {
   const HashField& field;
   std::vector<double> Forward(const std::vector<double>& grid, const std::vector<double>& networks, const double x[3], const double d[3]) const {
@@ -101,7 +101,7 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   }
   field.Color(weights, a.color_in, a.stride, padded, a.color_hidden, a.stride, a.color_raw, a.stride);
   field.Backward(weights, a, features.data(), stride, padded, state.network_gradient.data());
-  // Two segments, as two packets leave them.
+  // Two segments, as from two packets.
   const GridGradient segments[2] = {{0, 2, features.data(), stride}, {2, n - 2, features.data() + 2, stride}};
   std::vector<float> grid_gradient(parameters.grid.size(), 0.0F);
   std::vector<uint8_t> touched(parameters.grid.size() / kernel::kLineFloats, 0);
@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, HashFieldGradient,
                                   std::to_string(of.param.color_hidden_layers);
                          });
 
-// Eight layers are as deep as the authors of the frequency encoding went.
+// Eight layers, as in the NeRF paper, for the frequency encoding.
 TEST(HashField, DeepNetworksHaveAllTheirParametersAndOperations) {
   FieldConfig config = SmallConfig(1);
   config.encoding = encoding::Kind::kFrequency;
@@ -177,7 +177,8 @@ TEST(HashField, DeepNetworksHaveAllTheirParametersAndOperations) {
   EXPECT_EQ(deep.DensityHiddenRows(), 8 * 256);
   Activations a;
   a.Reserve(deep, 100);
-  EXPECT_EQ(a.geometry(), a.density_hidden + static_cast<size_t>(deep.DensityHiddenRows()) * a.stride) << "dropped together, so one after the other";
+  EXPECT_EQ(a.geometry(), a.density_hidden + static_cast<size_t>(deep.DensityHiddenRows()) * a.stride)
+      << "must be consecutive, because samples are dropped from both at once";
   EXPECT_EQ(a.kept_rows, deep.DensityHiddenRows() + kGeometryRows);
 }
 

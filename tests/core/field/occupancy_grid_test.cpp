@@ -16,7 +16,7 @@ TEST(OccupancyGrid, CoversTheBoxWithinItsBudget) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_GE(static_cast<double>(bounded.cell) * bounded.size[axis], extent[axis] - 1e-6);
 }
 
-TEST(OccupancyGrid, PositionsOutsideLandInTheNearestCell) {
+TEST(OccupancyGrid, PositionsOutsideUseTheNearestCell) {
   const double extent[3] = {1.0, 1.0, 1.0};
   const OccupancyGrid grid = OccupancyGrid::Make(extent, 0.25, 1000);
   EXPECT_EQ(grid.IndexAt(-3.0F, -1.0F, 0.0F), grid.Index(0, 0, 0));
@@ -42,23 +42,23 @@ TEST(OccupancyGrid, EmptySamplesFreeACellAndDenseOnesKeepIt) {
   grid.tau[5] = -1.0F;
   for (int i = 0; i < 60; ++i) {
     grid.Observe(0, 0.001F);
-    grid.Observe(1, i % 10 == 0 ? 3.0F : 0.0F);  // a thin surface that one sample in ten meets
+    grid.Observe(1, i % 10 == 0 ? 3.0F : 0.0F);  // a thin surface that one sample in ten hits
     grid.Observe(5, 3.0F);
   }
   grid.Refresh(0.01F);
   EXPECT_EQ(grid.occupied[0], 0);
   EXPECT_EQ(grid.occupied[1], 1);
-  EXPECT_EQ(grid.occupied[2], 1) << "no sample, no news";
-  EXPECT_EQ(grid.occupied[5], 0) << "never seen cells stay so";
+  EXPECT_EQ(grid.occupied[2], 1) << "not sampled, so unchanged";
+  EXPECT_EQ(grid.occupied[5], 0) << "cells never seen stay empty";
   EXPECT_FLOAT_EQ(grid.tau[5], -1.0F);
 }
 
-TEST(OccupancyGrid, SurfacesWakeTheirSixNeighbours) {
+TEST(OccupancyGrid, SurfacesRaiseTheirSixNeighbours) {
   const double extent[3] = {1.0, 1.0, 1.0};
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.2, 1000);
   grid.tau.assign(grid.tau.size(), 0.0F);
   grid.tau[static_cast<size_t>(grid.Index(2, 2, 2))] = 2.0F;
-  grid.tau[static_cast<size_t>(grid.Index(0, 4, 4))] = 2.0F;  // at the rim
+  grid.tau[static_cast<size_t>(grid.Index(0, 4, 4))] = 2.0F;  // at the edge of the grid
   grid.tau[static_cast<size_t>(grid.Index(2, 2, 3))] = -1.0F;
   grid.WakeNeighbours(0.4F, 0.03F);
   int awake = 0;

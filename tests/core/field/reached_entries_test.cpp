@@ -40,7 +40,7 @@ size_t Count(const std::vector<uint8_t>& bits) {
 }
 
 // Corners of random positions inside occupied cells, faces included.
-TEST(ReachedEntries, HoldsWhateverPositionsInOccupiedCellsRead) {
+TEST(ReachedEntries, ContainAllThatPositionsInOccupiedCellsRead) {
   for (const int log2_table_size : {6, 12, 20}) {
     const encoding::HashGrid grid = Grid(log2_table_size);
     const OccupancyGrid occupancy = Occupancy(7, 0.1);
@@ -72,7 +72,7 @@ TEST(ReachedEntries, HoldsWhateverPositionsInOccupiedCellsRead) {
   }
 }
 
-TEST(ReachedEntries, LeavesOutWhatIsFarFromOccupiedCells) {
+TEST(ReachedEntries, OmitThoseFarFromOccupiedCells) {
   const encoding::HashGrid grid = Grid(20);
   OccupancyGrid occupancy = Occupancy(7, 0.0);
   EXPECT_EQ(Count(ReachedEntries(grid, occupancy)), 0U);
@@ -80,7 +80,7 @@ TEST(ReachedEntries, LeavesOutWhatIsFarFromOccupiedCells) {
   const std::vector<uint8_t> bits = ReachedEntries(grid, occupancy);
   size_t most = 0;
   for (int l = 0; l < grid.levels(); ++l) {
-    // Cells that the box may cut per axis, and one more corner than cells.
+    // Number of cells per axis that the box may overlap, and one more corner than cells.
     const auto corners = static_cast<size_t>(occupancy.cell * grid.level(l).cells_per_unit) + 3;
     most += corners * corners * corners;
   }

@@ -30,7 +30,7 @@ Eigen::Vector3d ReferenceEnu(const Geodetic& origin, const Geodetic& position) {
   return {difference.dot(east), difference.dot(up.cross(east)), difference.dot(up)};
 }
 
-// Rounding of Earth-centred metres is 1e-9 m per operation; a micrometre leaves room for a few hundred of them.
+// Earth-centred metres are rounded by 1e-9 m per operation; a micrometre allows for a few hundred operations.
 constexpr double kTolerance_m = 1e-6;
 
 RC_GTEST_PROP(EnuFrame, AgreesWithTheClosedForm, ()) {

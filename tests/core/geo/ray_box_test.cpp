@@ -24,7 +24,7 @@ Eigen::Vector3d Anywhere(double reach) {
   return {Between(-reach, reach), Between(-reach, reach), Between(-reach, reach)};
 }
 
-TEST(RayBox, IntervalEndsLieOnTheBox) {
+TEST(RayBox, IntervalEndsAreOnTheBox) {
   base::Random random(37);
   int hits = 0;
   for (int i = 0; i < 5000; ++i) {
@@ -62,7 +62,7 @@ RC_GTEST_PROP(RayMeetsBox, TowardsAPointInside, ()) {
   const Eigen::Vector3d target(Between(-0.99, 3.99), Between(-1.99, 4.99), Between(-2.99, 5.99));
   RC_PRE((target - origin).norm() > 1e-3);
   RC_ASSERT(RayMeetsBox(origin, (target - origin).normalized(), kLow, kHigh));
-  // Away from it only when it starts inside.
+  // In the opposite direction only when it starts inside.
   const bool starts_inside = (origin.array() >= kLow.array()).all() && (origin.array() <= kHigh.array()).all();
   RC_ASSERT(RayMeetsBox(origin, (origin - target).normalized(), kLow, kHigh) == starts_inside);
 }
@@ -94,11 +94,11 @@ TEST(RayMeetsBox, AtItsFacesAndBehind) {
   EXPECT_FALSE(RayMeetsBox({0, 0, 0}, {std::nan(""), 0, 0}, kLow, kHigh));
   EXPECT_FALSE(RayMeetsBox({0, 0, 0}, {1, 0, 0}, {kNan, -2, -3}, kHigh));
   EXPECT_FALSE(RayMeetsBox({0, 0, 0}, {1, 0, 0}, kLow, {kNan, 5, 6}));
-  EXPECT_TRUE(RayMeetsBox({-5, 0, 0}, {1, 0, 0}, {1, -2, -3}, {1, 5, 6})) << "a box without depth";
+  EXPECT_TRUE(RayMeetsBox({-5, 0, 0}, {1, 0, 0}, {1, -2, -3}, {1, 5, 6})) << "a flat box";
   EXPECT_TRUE(RayBox({-5, 0, 0}, {1, 0, 0}, {1, -2, -3}, {1, 5, 6}).Empty());
 }
 
-// Fewer and rounder numbers than there are, so that rays along faces, through corners and flat, inside-out and endless boxes all occur.
+// Few, round numbers, so that rays along faces and through corners occur, and flat, inverted and infinite boxes.
 Eigen::Vector3d Round(bool may_be_infinite) {
   Eigen::Vector3d x;
   for (int axis = 0; axis < 3; ++axis) {
@@ -108,8 +108,8 @@ Eigen::Vector3d Round(bool may_be_infinite) {
   return x;
 }
 
-// The rule as it was when it had slabs of its own: what a survey is cut into must not depend on how it is written.
-bool MeetsByOwnSlabs(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+// The slab method written out separately, as reference.
+bool ReferenceSlabTest(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   if (!origin.allFinite() || !direction.allFinite()) return false;
   double t_near = 0.0;
   double t_far = kInfinity;
@@ -126,16 +126,16 @@ bool MeetsByOwnSlabs(const Eigen::Vector3d& origin, const Eigen::Vector3d& direc
   return t_near <= t_far;
 }
 
-RC_GTEST_PROP(RayMeetsBox, AgreesWithItsFormerSelf, ()) {
+RC_GTEST_PROP(RayMeetsBox, AgreesWithAnIndependentSlabTest, ()) {
   for (int i = 0; i < 200; ++i) {
     const bool round = *rc::gen::arbitrary<bool>();
     const Eigen::Vector3d low = Round(true), high = Round(true);
     const Eigen::Vector3d origin = round ? Round(false) : Anywhere(6.0), direction = round ? Round(false) : Anywhere(1.0);
-    RC_ASSERT(RayMeetsBox(origin, direction, low, high) == MeetsByOwnSlabs(origin, direction, low, high));
+    RC_ASSERT(RayMeetsBox(origin, direction, low, high) == ReferenceSlabTest(origin, direction, low, high));
   }
 }
 
-// The two ask the same faces: who walks finds length only where the box is met, and the box is met wherever there is length.
+// A non-empty interval implies that RayMeetsBox is true.
 RC_GTEST_PROP(RayBox, HasLengthOnlyWhereTheBoxIsMet, ()) {
   const Eigen::Vector3d origin = Round(false), direction = Round(false), low = Round(false), high = Round(false);
   RC_ASSERT(RayBox(origin, direction, low, high).Empty() || RayMeetsBox(origin, direction, low, high));

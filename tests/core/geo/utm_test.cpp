@@ -18,7 +18,7 @@ RC_GTEST_PROP(Utm, PositionsComeBack, ()) {
   RC_ASSERT((UtmFromGeodetic(back, zone) - plane).norm() < 1e-6);
 }
 
-// A survey on a zone's edge is mapped whole in the zone of its origin.
+// A survey across a zone's edge is mapped in the zone of its origin.
 RC_GTEST_PROP(Utm, NeighbouringZonesAndTheOtherHemisphereComeBack, ()) {
   const UtmZone zone{*rc::gen::inRange(1, 61), *rc::gen::element(true, false)};
   const double latitude = *Between(-80.0, 80.0);

@@ -30,19 +30,19 @@ TEST(Resize, KeepsFlatColourAtAwkwardSizes) {
   }
 }
 
-TEST(ResizeMask, UsesAPixelOnlyIfAllUnderItCount) {
+TEST(ResizeMask, UsesAPixelOnlyIfItsWholeAreaIsUsed) {
   Image8 mask(9, 6, 1, 200);
   *mask.At(4, 3) = 0;
   const Image8 third = ResizeMask(mask, 3, 2);
   EXPECT_EQ(third.data, (std::vector<uint8_t>{255, 255, 255, 255, 0, 255}));
-  // At 9 -> 2 columns the source column 4 lies half under each.
+  // From 9 to 2 columns, both overlap half of source column 4.
   EXPECT_EQ(ResizeMask(mask, 2, 1).data, (std::vector<uint8_t>{0, 0}));
   const Image8 same = ResizeMask(mask, 9, 6);
   EXPECT_EQ(*same.At(4, 3), 0);
   EXPECT_EQ(*same.At(3, 3), 255);
 }
 
-TEST(ResizeMask, NeverUsesWhatTouchesAnIgnoredPixel) {
+TEST(ResizeMask, NeverUsesAPixelThatOverlapsAnIgnoredOne) {
   for (int width = 1; width <= 31; ++width) {
     for (int hole = 0; hole < 31; ++hole) {
       Image8 mask(31, 1, 1, 255);
@@ -117,7 +117,7 @@ TEST(Save, ToAMissingFolderNamesTheFile) {
   EXPECT_NE(InputErrorOf([&] { SavePng(Pattern(4, 4), folder.path() / "absent/a.png"); }).find("a.png"), std::string::npos);
 }
 
-TEST(Save, RefusesShapesThatNoFileHolds) {
+TEST(Save, RefusesUnsupportedShapes) {
   const TemporaryFolder folder;
   EXPECT_THROW(SavePng(Image8(), folder.path() / "a.png"), std::logic_error);
   EXPECT_THROW(SavePng(Image8(4, 4, 2), folder.path() / "a.png"), std::logic_error);

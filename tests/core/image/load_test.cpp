@@ -20,7 +20,7 @@ std::string JpegOf(const Image8& image, int quality = 95) {
   return {bytes.begin(), bytes.end()};
 }
 
-TEST(LoadRgb8, GivesBackEveryPixelOfAPng) {
+TEST(LoadRgb8, ReadsEveryPixelOfAPng) {
   const TemporaryFolder folder;
   const Image8 image = Pattern(37, 23);
   WriteBytes(folder.path() / "a.png", PngBytes({37, 23, 8, 2, image.data}));
@@ -52,7 +52,7 @@ TEST(LoadRgb8, DropsAlphaWithoutTouchingColour) {
   EXPECT_EQ(LoadRgb8(folder.path() / "grey_alpha.png").data, (std::vector<uint8_t>{77, 77, 77}));
 }
 
-TEST(LoadRgb8, LeavesExifOrientationAlone) {
+TEST(LoadRgb8, DoesNotApplyExifOrientation) {
   const TemporaryFolder folder;
   const std::string plain = JpegOf(Pattern(48, 16));
   // APP1: little-endian TIFF with the one tag Orientation (0x0112) = 6, a quarter turn.
@@ -93,7 +93,7 @@ TEST(LoadRgb8, AcceptsDataBehindTheEndOfAJpeg) {
   EXPECT_EQ(LoadRgb8(folder.path() / "more.jpg").data, LoadRgb8(folder.path() / "whole.jpg").data);
 }
 
-TEST(LoadRgb8, NamesTheTroubleOfEveryBadFile) {
+TEST(LoadRgb8, NamesTheProblemOfEveryBadFile) {
   const TemporaryFolder folder;
   const auto message = [&](const std::string& name, const std::string& bytes) {
     WriteBytes(folder.path() / name, bytes);
@@ -113,7 +113,7 @@ TEST(ReadImageSize, AgreesWithDecodingForEveryKind) {
   SaveFloatTiff(ImageF(31, 17, 1, 2.5F), folder.path() / "a.tif");
   const std::string jpeg = JpegOf(Pattern(31, 17));
   WriteBytes(folder.path() / "a.jpg", jpeg);
-  // Maker notes can push the frame header far back.
+  // Maker notes can put the frame header far into the file.
   std::string app;
   for (int i = 0; i < 8; ++i) app += std::string("\xFF\xE4\xFF\xFF", 4) + std::string(65533, '\x5A');
   WriteBytes(folder.path() / "far.jpg", jpeg.substr(0, 2) + app + jpeg.substr(2));
@@ -126,7 +126,7 @@ TEST(ReadImageSize, AgreesWithDecodingForEveryKind) {
   }
 }
 
-TEST(ReadImageSize, RefusesWhatIsNoImage) {
+TEST(ReadImageSize, RefusesFilesThatAreNoImages) {
   const TemporaryFolder folder;
   int width = 0;
   int height = 0;
@@ -172,7 +172,7 @@ TEST(FloatTiff, RefusesOtherPixels) {
 
 TEST(ParseJpeg, SurvivesAnyBytes) {
   const std::string whole = JpegOf(Pattern(40, 30));
-  // Every byte once replaced by each of a few values that mean something in a JPEG.
+  // Replaces each byte by a few values with a meaning in JPEG.
   for (size_t i = 0; i < whole.size(); ++i) {
     for (const char value : {'\0', '\xFF', '\xD9', '\xDA'}) {
       std::string changed = whole;

@@ -53,7 +53,7 @@ class PixelCacheTest : public testing::Test {
   base::ThreadPool threads_{2};
 };
 
-TEST_F(PixelCacheTest, HoldsWhatLoadingAndResizingGives) {
+TEST_F(PixelCacheTest, HoldsTheLoadedAndResizedPhotos) {
   const PixelCache cache = Open(40);
   ASSERT_EQ(cache.size(), sources_.size());
   for (size_t i = 0; i < sources_.size(); ++i) {
@@ -164,7 +164,7 @@ TEST_F(PixelCacheTest, MayBeEmpty) {
   EXPECT_EQ(Open(40).size(), 0U);
 }
 
-TEST_F(PixelCacheTest, StopsOnCancelWithoutLeavingAnything) {
+TEST_F(PixelCacheTest, StopsOnCancelWithoutLeavingAFile) {
   base::RequestCancel();
   EXPECT_THROW(Open(40), base::Interrupted);
   base::ClearCancel();
@@ -173,7 +173,7 @@ TEST_F(PixelCacheTest, StopsOnCancelWithoutLeavingAnything) {
 }
 
 TEST_F(PixelCacheTest, RemovesThePartialFileWhenTheDiskIsFull) {
-  // A limit on the size of files fails a write just as a full disk does.
+  // A limit on the file size makes writes fail like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);

@@ -96,7 +96,7 @@ TEST(Dense, RefusesUnpaddedShapes) {
   EXPECT_THROW(DenseWeightGradient(buffer, 16, 4, buffer, 16, 3, 16, buffer), std::logic_error);
 }
 
-TEST_P(DenseKernels, GateStopsWhatTheUnitStopped) {
+TEST_P(DenseKernels, GateIsTheBackwardPassOfRelu) {
   constexpr size_t kN = 48;
   std::vector<float> weights(16), in(4 * kN, 1.0F), gate(4 * kN, 1.0F), out(4 * kN);
   for (size_t i = 0; i < 16; ++i) weights[i] = static_cast<float>(i + 1);

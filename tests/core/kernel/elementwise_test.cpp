@@ -52,8 +52,8 @@ TEST_P(ElementwiseKernels, AllFiniteFindsOneBadValueAnywhere) {
   }
 }
 
-// Where they would read and write past the end.
-TEST_P(ElementwiseKernels, RefuseWhatIsNotPadded) {
+// They would read and write past the end.
+TEST_P(ElementwiseKernels, RefuseUnpaddedLengths) {
   std::vector<float> in(64, 1.0F), out(64), more(64);
   for (const int64_t n : {int64_t{-16}, int64_t{1}, int64_t{15}, int64_t{47}}) {
     EXPECT_THROW(ExpShifted(in.data(), n, 0.0F, 1.0F, out.data()), std::logic_error) << n;
@@ -71,10 +71,10 @@ TEST_P(ElementwiseKernels, RefuseWhatIsNotPadded) {
 using ForcedInstructionSet = testing::EachInstructionSet;
 SKYQUILT_EACH_INSTRUCTION_SET(ForcedInstructionSet);
 
-TEST_P(ForcedInstructionSet, StaysWhenItsChoicesAreAskedFor) {
+TEST_P(ForcedInstructionSet, IsNotChangedByListingTheOthers) {
   bool stayed = true;
   std::atomic<bool> done{false};
-  // Another thread never sees it change either.
+  // Another thread does not see it change either.
   std::thread watch([&] {
     while (!done) stayed = stayed && ActiveInstructionSet() == GetParam();
   });

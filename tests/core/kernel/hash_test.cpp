@@ -135,7 +135,7 @@ TEST_P(HashKernels, BackwardAgreesWithReferenceAndMarksExactlyTheLinesItWrote) {
 }
 
 TEST_P(HashKernels, AdamMovesOnlyParametersWithAGradient) {
-  constexpr size_t kLines = 11;  // more than one look at eight marks
+  constexpr size_t kLines = 11;  // more than the eight lines checked at once
   std::vector<float> table(kLines * kLineFloats, 1.0F), gradient(table.size(), 0.0F), m(table.size(), 0.0F), v(table.size(), 0.0F);
   std::vector<uint8_t> touched(kLines, 0);
   constexpr size_t kUp = 9 * kLineFloats + 4, kDown = 9 * kLineFloats + 5, kUnmarked = 3 * kLineFloats;

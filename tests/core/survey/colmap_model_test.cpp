@@ -133,7 +133,7 @@ TEST(ColmapModel, TextAndBinaryGiveTheSameModel) {
   }
 }
 
-TEST(ColmapModel, TextWithCommentsBlankLinesAndWindowsEndsIsRead) {
+TEST(ColmapModel, TextWithCommentsBlankLinesAndWindowsLineEndsIsRead) {
   const TemporaryFolder folder;
   base::WriteFileAtomically(folder / "cameras.txt", "# a comment\r\n\r\n  # another\r\n1 PINHOLE 10 8 9 9 5 4\r\n");
   base::WriteFileAtomically(
@@ -145,7 +145,7 @@ TEST(ColmapModel, TextWithCommentsBlankLinesAndWindowsEndsIsRead) {
   EXPECT_EQ(model.images[1].name, "sub/b.jpg");
   EXPECT_EQ(model.images[1].cam_from_world.translation.x(), 1.5);
   EXPECT_EQ(model.images[2].name, "c.jpg");
-  ASSERT_EQ(model.points.size(), 1U);  // the one without a number is left out
+  ASSERT_EQ(model.points.size(), 1U);  // the point with nan is dropped
   EXPECT_EQ(model.points[0].image_ids, (std::vector<uint32_t>{1, 2}));
 }
 
@@ -160,7 +160,7 @@ TEST(ColmapModel, EveryTruncationOfABinaryFileIsRefused) {
       ASSERT_THROW(ReadColmapModel(folder.path()), base::InputError) << name << " cut to " << length;
     }
     std::ofstream(folder / name, std::ios::binary | std::ios::trunc) << whole + "x";
-    EXPECT_THROW(ReadColmapModel(folder.path()), base::InputError) << name << " with a byte too much";
+    EXPECT_THROW(ReadColmapModel(folder.path()), base::InputError) << name << " with an extra byte";
   }
 }
 

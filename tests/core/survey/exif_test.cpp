@@ -28,7 +28,7 @@ PhotoTags RoundTrip(const PhotoTags& tags) {
   return ReadPhotoTags(file);
 }
 
-// Sets raw tags as some other program would have left them.
+// Sets tags directly through Exiv2, as other programs write them.
 template <typename Edit>
 PhotoTags ReadForged(const Edit& edit) {
   const TemporaryFolder folder;

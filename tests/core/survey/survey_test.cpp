@@ -115,7 +115,7 @@ TEST(Survey, DamagedDescriptionsAreRefusedWithTheReason) {
   ExpectRefused("origin", [](nlohmann::json& json) { json["origin"]["latitude_deg"] = 91.0; });
   ExpectRefused("another version", [](nlohmann::json& json) { json["version"] = 99; });
   ExpectRefused("damaged", [](nlohmann::json& json) { json.erase("fit"); });
-  ExpectRefused("announces", [](nlohmann::json& json) { json["n_points"] = 6; });
+  ExpectRefused("survey.json says", [](nlohmann::json& json) { json["n_points"] = 6; });
 }
 
 TEST(Survey, DamagedPointFilesAreRefused) {

@@ -16,7 +16,7 @@ namespace skyquilt::render {
 namespace {
 
 constexpr int64_t kGroupRays = 1024;  // one task: enough samples that a level's table stays in cache
-constexpr int kMaxRaySamples = 2048;  // per ray and field; the field ends there
+constexpr int kMaxRaySamples = 2048;  // per ray and field; later ones are left out
 // Samples of a ray that are evaluated together. Opaque rays take no part in later rounds, which saves the samples behind surfaces.
 constexpr size_t kRoundSamples = 8;
 constexpr float kMaxLogTau = 30.0F;  // exp of it times any length is finite

@@ -18,7 +18,7 @@ struct TrainedField {
   encoding::SpaceMap map;
   geo::BlockBox box;     // its core box; the map of a block covers the core box and its margin
   double blend_m = 0.0;  // half width of the blending ramp at the faces of the core box; BuildNetworks() sets it to the margin; 0: hard border
-  double step_m = 0.1;   // marching step without contraction, metres; log density is per step
+  double step_m = 0.1;   // marching step without contraction, metres; log density refers to this length
   field::Parameters parameters;
   field::OccupancyGrid occupancy;
   // Training record.

@@ -144,7 +144,7 @@ void PutFieldOf(const render::TrainedField& description, const std::filesystem::
   if (description.config.encoding == encoding::Kind::kHash) {
     const encoding::HashGrid grid(description.config.grid);
     if (reader.Shape("grid") != std::vector<int64_t>{grid.ParameterCount()}) {
-      throw base::InputError(checkpoint, "the size of its hash tables does not fit its configuration", kFix);
+      throw base::InputError(checkpoint, "the size of its hash tables disagrees with its configuration", kFix);
     }
     writer.PutKept(prefix + "grid", checkpoint, "grid", field::ReachedEntries(grid, occupancy), grid.features(), tables);
   } else {
@@ -218,7 +218,7 @@ render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std
   }
   if (!fits || static_cast<int64_t>(f.parameters.grid.size()) != f.field->GridParameters() ||
       static_cast<int64_t>(f.parameters.networks.size()) != f.field->NetworkParameters() || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {
-    throw base::InputError(file, "the sizes of the arrays of field '" + f.name + "' do not fit its configuration", kFix);
+    throw base::InputError(file, "the sizes of the arrays of field '" + f.name + "' disagree with its configuration", kFix);
   }
   return f;
 }

@@ -1,5 +1,4 @@
-// Makes the field transparent along rays that are known to meet no surface in it; otherwise blocks grow floaters in front of their neighbours'
-// surfaces.
+// Makes the field transparent along rays that are known to meet no surface in it, so that no floaters remain there.
 #pragma once
 
 #include "worker/losses/loss.h"

@@ -48,7 +48,7 @@ class TrainedFieldFile : public ::testing::Test {
     writer.Commit(rewritten);
     return rewritten;
   }
-  // Its type is found by asking.
+  // The type is found by trying.
   static void CopyAttribute(const checkpoint::ArchiveReader& reader, const std::string& name, checkpoint::ArchiveWriter& writer) {
     try {
       return writer.SetAttribute(name, reader.StringAttribute(name));
@@ -71,7 +71,7 @@ class TrainedFieldFile : public ::testing::Test {
     return out;
   }
 
-  // The same to the bit, and something to see: some ray is at least so opaque.
+  // Both render the same bits, and at least one ray has this opacity.
   static void ExpectSameLook(const render::TrainedField& before, const render::TrainedField& after, float least) {
     const std::vector<render::RayColor> seen_before = Look(before), seen_after = Look(after);
     float most = 0.0F;
@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, TrainedFieldOf,
                          ::testing::Values(encoding::Kind::kHash, encoding::Kind::kVoxels, encoding::Kind::kPlanes, encoding::Kind::kFrequency),
                          [](const auto& of) { return encoding::Name(of.param); });
 
-TEST_F(TrainedFieldFile, FromBeforeThereWereOtherEncodingsAreHashGridsOfOneLayer) {
+TEST_F(TrainedFieldFile, WithoutAnEncodingAreHashGridsOfOneLayer) {
   const render::TrainedField before = Make(encoding::Kind::kHash, 1);
   const fs::path old = Rewrite(Write(before, "field.h5"), {"a/encoding", "a/density_hidden_layers"});
   ASSERT_FALSE(checkpoint::ArchiveReader(old).HasAttribute("a/encoding"));
@@ -116,7 +116,7 @@ TEST_F(TrainedFieldFile, FromBeforeThereWereOtherEncodingsAreHashGridsOfOneLayer
   EXPECT_EQ(after.parameters.networks, before.parameters.networks);
 }
 
-// The numbers that rebuild a field, as files held them when they had no names: describe0, describe1, ...
+// The numbers that rebuild a field as older files store them, without names: describe0, describe1, ...
 std::vector<double> Numbered(const render::TrainedField& f) {
   const auto& g = f.config.grid;
   std::vector<double> numbers = {static_cast<double>(g.levels),
@@ -146,14 +146,14 @@ void SetNumbered(const render::TrainedField& f, const std::string& prefix, check
   for (size_t i = 0; i < numbers.size(); ++i) writer.SetAttribute(prefix + "describe" + std::to_string(i), numbers[i]);
 }
 
-// Their names today, in the same order.
+// Their names now, in the same order.
 const std::vector<std::string> kNames = {
     "levels",         "features",       "log2_table_size",     "base_resolution", "finest_resolution", "extent_x",     "extent_y",
     "extent_z",       "hidden",         "color_hidden_layers", "sh_degree",       "color_range",       "density_bias", "contracted",
     "min_enu_x",      "min_enu_y",      "min_enu_z",           "max_enu_x",       "max_enu_y",         "max_enu_z",    "core_min_enu_x",
     "core_min_enu_y", "core_min_enu_z", "core_max_enu_x",      "core_max_enu_y",  "core_max_enu_z",    "margin_m",     "step_m"};
 
-TEST_F(TrainedFieldFile, FromBeforeItsNumbersHadNamesComesBackAsItWas) {
+TEST_F(TrainedFieldFile, WithUnnamedNumbersComesBackAsItWas) {
   const render::TrainedField before = Make(encoding::Kind::kHash, 3);
   std::vector<std::string> names;
   for (const std::string& name : kNames) names.push_back("a/" + name);
@@ -170,7 +170,7 @@ TEST_F(TrainedFieldFile, FromBeforeItsNumbersHadNamesComesBackAsItWas) {
 TEST_F(TrainedFieldFile, HasANameForEveryNumber) {
   for (const bool contracted : {false, true}) {
     render::TrainedField before = render::RandomField(4, {1, 2, 3}, {6, 6.5, 7}, 0.8, -1.0, contracted);
-    // No two of a kind alike: none may take another's place.
+    // All values differ, so that exchanged numbers are noticed.
     before.config.grid.features = 2;
     before.config.color_hidden_layers = 2;
     before.config.color_range = 1.125;
@@ -188,8 +188,8 @@ TEST_F(TrainedFieldFile, HasANameForEveryNumber) {
   }
 }
 
-// What a scene leaves out may be anything: nothing looks at it.
-TEST_P(TrainedFieldOf, LooksTheSameWithoutWhatNothingReads) {
+// Table entries that a scene leaves out are never read.
+TEST_P(TrainedFieldOf, RendersTheSameWithoutUnreadEntries) {
   render::TrainedField before = Make(GetParam(), 1);
   base::Random random(8);
   for (uint8_t& cell : before.occupancy.occupied) cell = random.Uniform() < 0.05F ? 1 : 0;
@@ -208,7 +208,7 @@ TEST_P(TrainedFieldOf, LooksTheSameWithoutWhatNothingReads) {
   } else {
     EXPECT_EQ(StoredParameters(reader, "a/"), before.ParameterCount());
   }
-  // Zero was read back for what is not in the file: no entry of the random field is.
+  // Entries that are not in the file are read as zero; the random field has no zero entries.
   ASSERT_EQ(after.parameters.grid.size(), before.parameters.grid.size());
   for (size_t i = 0; i < after.parameters.grid.size(); ++i) {
     if (after.parameters.grid[i] == 0.0F) {
@@ -220,7 +220,7 @@ TEST_P(TrainedFieldOf, LooksTheSameWithoutWhatNothingReads) {
   ExpectSameLook(before, after, 0.01F);
 }
 
-TEST_F(TrainedFieldFile, ThatCannotBeAreRefusedByName) {
+TEST_F(TrainedFieldFile, WithImpossibleValuesAreRefusedByName) {
   const auto refused = [&](const fs::path& file, const std::string& why) {
     const std::string error = InputErrorOf([&] { Read(file); });
     EXPECT_NE(error.find("rewritten.h5"), std::string::npos) << why << ": " << error;

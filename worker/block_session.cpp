@@ -34,7 +34,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   writer.SetAttribute("origin_latitude_deg", job.survey->origin.latitude_deg);
   writer.SetAttribute("origin_longitude_deg", job.survey->origin.longitude_deg);
   writer.SetAttribute("origin_height_m", job.survey->origin.height_m);
-  std::vector<float> numbers;  // the writer reads it when it commits
+  std::vector<float> numbers;  // must exist until Commit
   if (extras != nullptr) {
     brightness::PutResponse(*extras->response, writer);
     extras->learner->Put(writer);
@@ -53,14 +53,14 @@ std::optional<SavedSession> OpenSession(const std::string& kind, const TrainJob&
   std::string why;
   const std::filesystem::path usable = checkpoint::NewestUsable(job.checkpoint, kind, &why);
   if (usable.empty()) {
-    spdlog::warn("{}: cannot be used ({}); training this field from the start", job.checkpoint.string(), why);
+    spdlog::warn("{}: cannot be used ({}); training this field from the beginning", job.checkpoint.string(), why);
     return std::nullopt;
   }
   checkpoint::ArchiveReader reader(usable);
   reader.RequireVersion(scene::kCheckpointVersion);
   if (reader.StringAttribute("config_hash") != job.config_hash) {
     throw base::UsageError(usable.string() +
-                           ": was trained with another configuration. Use the configuration it was trained with, or --restart to train anew");
+                           ": was trained with another configuration. Use that configuration again, or --restart to train from the beginning");
   }
   return SavedSession{usable, std::move(reader)};
 }
@@ -111,9 +111,12 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
   field::TrainableState& state = trainer.state();
   const auto take = [&](std::vector<float>& to, std::vector<float> from, const char* name) {
     if (from.size() != to.size()) {
-      throw base::InputError(usable, std::string("array '") + name + "' has another size than this configuration", "Train again with --restart");
+      throw base::InputError(usable,
+                             std::string("array '") + name + "' has " + std::to_string(from.size()) + " numbers, but this configuration needs " +
+                                 std::to_string(to.size()),
+                             "Train again with --restart");
     }
-    std::copy(from.begin(), from.end(), to.begin());  // the buffers were laid out for random access
+    std::copy(from.begin(), from.end(), to.begin());  // copied, not moved: the target's buffers are aligned for random access
   };
   take(target.parameters.grid, std::move(loaded.parameters.grid), "grid");
   take(target.parameters.networks, std::move(loaded.parameters.networks), "networks");
@@ -136,7 +139,7 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
 LoadedContext LoadContext(const std::filesystem::path& checkpoint) {
   std::string why;
   const std::filesystem::path usable = checkpoint::NewestUsable(checkpoint, "context", &why);
-  if (usable.empty()) throw base::InputError(checkpoint, "the context cannot be read (" + why + ")", "Train it again with --restart");
+  if (usable.empty()) throw base::InputError(checkpoint, "cannot be read (" + why + ")", "Train it again with --restart");
   const checkpoint::ArchiveReader reader(usable);
   reader.RequireVersion(scene::kCheckpointVersion);
   LoadedContext context{scene::GetField(reader, usable, ""), brightness::GetResponse(reader, usable), {}, {}, {}};

@@ -1,5 +1,6 @@
-// The life of one field on disk: parameters, moments, occupancy, step, adaptive batch and the configuration hash.
-// Random numbers are functions of (seed, step), so the step is all their state.
+// Saves and loads the complete training state of one field, so that an interrupted training can be resumed with the same bits: parameters, Adam
+// moments, occupancy, step, rays per step, and the hash of the configuration. Random numbers are functions of (seed, step), so the step is all of
+// their state.
 #pragma once
 
 #include <filesystem>
@@ -15,46 +16,48 @@
 
 namespace skyquilt::worker {
 
+// Progress of a training, over all its runs.
 struct SessionRecord {
   double seconds = 0.0;
   int64_t samples = 0;
   int64_t rays = 0;
-  int dropped_steps = 0;
-  double mean_squared_error = 0.0;  // running mean of training rays
-  bool complete = false;
+  int dropped_steps = 0;            // steps left out because they were not finite
+  double mean_squared_error = 0.0;  // running mean over training rays, display values
+  bool complete = false;            // the training is finished
 };
 
-// What the context has beside its field.
+// State of the context's training that blocks do not have.
 struct ContextExtras {
   brightness::Response* response = nullptr;
   brightness::ResponseLearner* learner = nullptr;
 };
 
-// kind: "context" or "block". extras: the context's, null for blocks. findings: the finished context's, else null. Throws base::InputError.
+// Writes job.checkpoint. kind: "context" or "block". extras: null for blocks. findings: of a finished context, otherwise null. Throws
+// base::InputError when the file cannot be written.
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
                  const ContextExtras* extras, const ContextFindings* findings);
 
 // PSNR of recent training rays.
 double RunningPsnr(const SessionRecord& record);
 
-// A whole checkpoint of this configuration.
+// An undamaged checkpoint of this configuration.
 struct SavedSession {
   std::filesystem::path file;
   checkpoint::ArchiveReader reader;
 };
 
-// Damaged files fall back to the previous one with a warning; nothing when there is none, or (with a warning) when both are damaged: training
-// starts anew then. Throws base::UsageError when the file belongs to another configuration.
+// Opens job.checkpoint, or the previous checkpoint with a warning when it is damaged. Empty when there is none, or (with a warning) when both are
+// damaged: training then starts from the beginning. Throws base::UsageError when the file was made with another configuration.
 std::optional<SavedSession> OpenSession(const std::string& kind, const TrainJob& job);
 
-// What it came to, when it is of a finished field: asked before anything else is loaded, so that a resumed training passes over those quickly.
+// The result of a finished training, otherwise empty. Reads only attributes, so that a resumed run skips finished fields quickly.
 std::optional<TrainResult> FinishedResult(const SavedSession& session);
 
-// Throws base::InputError when it does not fit the field.
+// Restores the state. Throws base::InputError when the sizes of the arrays do not fit the field.
 void LoadSession(const SavedSession& session, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
                  const ContextExtras* extras);
 
-// Throws base::InputError when neither the file nor its predecessor can be read.
+// Loads a context for training blocks. Throws base::InputError when neither the checkpoint nor the previous one can be read.
 LoadedContext LoadContext(const std::filesystem::path& checkpoint);
 
 }  // namespace skyquilt::worker

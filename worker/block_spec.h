@@ -1,4 +1,5 @@
-// What the trainer needs to know of a block; filled by the coordinator from partition::Block.
+// Where a block is and how finely it is modelled, as the trainer needs it. The coordinator fills it from partition::Block, so that worker does not
+// depend on partition.
 #pragma once
 
 #include <string>
@@ -11,9 +12,9 @@ namespace skyquilt::worker {
 struct BlockSpec {
   std::string name;
   geo::BlockBox box;
-  double finest_voxel_m = 0.1;  // finest level of the encoding
-  int log2_table_size = 17;
-  std::vector<int> photos;  // indices into Survey::photos that see it
+  double finest_voxel_m = 0.1;  // cell size of the finest level of the encoding
+  int log2_table_size = 17;     // log2 of the entries per level of the hash grid
+  std::vector<int> photos;      // photos that see the block, as indices into Survey::photos
 };
 
 }  // namespace skyquilt::worker

@@ -11,7 +11,7 @@
 namespace skyquilt::worker {
 namespace {
 
-// Linear light of a recorded ray as display value, with its derivatives by the light and by the logarithm of the gain.
+// The display value that a photo records of linear light, with its derivatives by the light and by the log gain.
 brightness::Exposed RecordLight(float light, const brightness::Exposure& exposure) {
   const float recorded = exposure.gain * std::max(light, 0.0F);
   const float slope = image::SrgbSlope(recorded);
@@ -22,7 +22,7 @@ brightness::Exposed RecordLight(float light, const brightness::Exposure& exposur
 
 float MeanBrightnessPull(float weight, double mean_shown, double target) {
   if (weight == 0.0F) return 0.0F;
-  return MeanLoss(weight, static_cast<float>(mean_shown - target)).gradient / 3.0F;  // three colours make the mean of a ray
+  return MeanLoss(weight, static_cast<float>(mean_shown - target)).gradient / 3.0F;  // the mean of a ray is over three colours
 }
 
 ConcealedGradient LossOfConcealedRay(const BatchRay& ray, const RayView& view, const ConcealedRay& composed, const ConcealedTask& task,
@@ -69,7 +69,7 @@ float LossOfShares(std::span<const ConcealedRay> rays, size_t k, float mean_log_
     gradient = mean.gradient;
   }
   if constexpr (kLossWeights.smoothness > 0.0F) {
-    for (const size_t other : {k - 1, k + 1}) {  // before the first: wraps to a number past the last
+    for (const size_t other : {k - 1, k + 1}) {  // k - 1 of the first ray wraps around and is skipped
       if (other >= rays.size() || !rays[other].solid || rays[other].patch != ray.patch) continue;
       AddSmoothnessLoss(kLossWeights.smoothness, ray.log_share, rays[other].log_share, &sums.loss, &gradient);
     }

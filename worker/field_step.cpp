@@ -6,11 +6,11 @@
 namespace skyquilt::worker {
 namespace {
 
-constexpr int64_t kEncodePackets = 16;  // one task: enough work, and a part's table stays in cache meanwhile
-constexpr double kMeansFollow = 0.1;    // share of a new batch in the running means
+constexpr int64_t kEncodePackets = 16;  // packets per task: enough work, and the table stays in cache
+constexpr double kMeansFollow = 0.1;    // weight of a new batch in the running means
 
-// Reads a part's table once in order. Corners read it at random, and memory is several times slower at that than at one pass in front of it.
-// The sum only keeps the compiler from leaving it out.
+// Loads the table of a part into the cache by reading it once in order, which is several times faster than the random reads of the encoding. The sum
+// keeps the compiler from removing the loop.
 float ReadAhead(const float* table, int64_t floats) {
   float sum = 0.0F;
   for (int64_t i = 0; i < floats; i += kernel::kLineFloats) sum += table[i];
@@ -47,7 +47,7 @@ void FieldStep::Encode(const RayBatch& batch, std::span<const float> grid) {
     const int64_t run = task % runs;
     const int64_t floats = encoding.Offset(part + 1) - encoding.Offset(part);
     const int64_t readers = std::min<int64_t>(threads_.size(), runs);
-    // Worth it when the samples will want most of the table.
+    // Only when the samples will read most of the table.
     if (run < readers && 4 * batch.n_samples > floats / kernel::kLineFloats) {
       const int64_t length = floats / readers / kernel::kLineFloats * kernel::kLineFloats;
       read_ahead_[static_cast<size_t>(thread)] = ReadAhead(table + run * length, length);

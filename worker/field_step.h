@@ -1,6 +1,8 @@
-// One optimiser step of one field on a drawn batch: encoding part by part (a hash grid's levels) over the whole batch, then every packet from density
-// to gradient while its activations are in cache (packet_trainer.h), then the gradient's way back into the tables and Adam. Bits do not depend on the
-// number of threads: parts have one writer each and network gradients are summed in fixed slots.
+// One optimiser step of one field on a batch of rays, ordered for the cache:
+//   1. encode all samples, one part of the encoding (a level of the hash grid) after the other
+//   2. per packet of rays: densities, colours, loss and their gradients, while activations are in cache (packet_trainer.h)
+//   3. scatter the gradients into the tables, Adam
+// Same bits for any number of threads: every part has one writer, and network gradients are summed in fixed slots.
 #pragma once
 
 #include <array>
@@ -20,11 +22,11 @@
 
 namespace skyquilt::worker {
 
-// What the photos' brightness asks of a field beside its colours.
+// How a field is trained when the survey has a concealing field (core/brightness/luminance.h).
 struct LuminancePlan {
   brightness::Luminance luminance;
-  brightness::LuminanceState start;  // what the context found, for blocks; where the context starts
-  bool controls_mean = false;        // brings the mean brightness of what is shown to the target; else keeps to start.mean_log_gain
+  brightness::LuminanceState start;  // of the context: initial values; of blocks: the trained context's values
+  bool controls_mean = false;  // true: brings the mean brightness shown to people to the target; false: keeps log Omega near start.mean_log_gain
 };
 
 struct StepOptions {
@@ -36,38 +38,38 @@ struct StepOptions {
 struct StepResult {
   int n_rays = 0;
   int64_t n_samples = 0;       // evaluated for density
-  int64_t n_live = 0;          // with colour and gradient
+  int64_t n_live = 0;          // of these with colour and gradient: those that light reaches
   double loss = 0.0;           // mean over rays
   double squared_error = 0.0;  // mean over colour rays and channels, display values
-  bool finite = true;          // false: the step was dropped
+  bool finite = true;          // false: the step was left out
 };
 
 class FieldStep {
  public:
-  // target's map, step and colour range are read; parameters are handed to every step. context may be null; it is frozen.
+  // Of `target` only map, step and colour range are read; its parameters are given to every step. context: not trained; may be null.
   FieldStep(const render::TrainedField& target, const field::HashField& field, const render::TrainedField* context, const LuminancePlan& luminance,
             base::ThreadPool& threads, PhaseTimes& times);
 
   FieldStep(const FieldStep&) = delete;  // packet trainers refer to it
   FieldStep& operator=(const FieldStep&) = delete;
 
-  // Learns from the batch; positions of its dropped samples are lost. Non-finite gradients leave parameters and state as they were. What the rays say
-  // about their photos' brightness is added to the learner, when there is one; its step is the caller's.
+  // One step on the batch; overwrites positions of the batch. When the gradients are not finite, parameters and moments stay as they were. Gradients
+  // by the photos' gains are added to the learner, which may be null; the caller makes its step.
   StepResult Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::TrainableState& state,
                    brightness::ResponseLearner* learner);
-  // Density and colour of every sample, for timing: the forward half alone.
+  // Only density and colour of every sample, for timing.
   void Infer(RayBatch& batch, const field::Parameters& parameters);
-  // Running means of a field with luminance; part of what a checkpoint holds.
+  // Running means with luminance; part of the checkpoint.
   brightness::LuminanceState& luminance_state() { return state_; }
-  // Optical depth of one marching step per sample of the last Train, 0 where no light arrived.
+  // Optical depth (tau) of one marching step per sample of the last Train; 0 where no light arrives.
   const std::vector<float>& ObservedDepths() const { return observed_; }
 
  private:
-  // Network gradients are summed in so many places, packet k in place k modulo that.
+  // Number of buffers that network gradients are summed in: packet k in buffer k modulo this.
   static constexpr size_t kGradientSlots = 16;
 
   void Encode(const RayBatch& batch, std::span<const float> grid);
-  // What the packets left behind, in their order.
+  // Sums the packets' results in their order.
   LossSums SumResults(const RayBatch& batch, StepResult* result);
   // Adds the slots' gradients to the state's; false when one is not finite.
   bool SumNetworkGradients(field::TrainableState& state) const;
@@ -83,11 +85,11 @@ class FieldStep {
   field::NetworkWeights weights_;
   std::vector<std::unique_ptr<PacketTrainer>> trainers_;  // per thread
   std::vector<float> read_ahead_;                         // per thread
-  std::vector<float> features_;                           // per packet, then the gradient in its place
+  std::vector<float> features_;                           // per packet; overwritten by their gradient
   std::vector<float> observed_;
   std::vector<PacketResult> results_;
   std::vector<float> slot_gradients_;
-  std::vector<std::array<float, 3>> gain_gradients_;  // per ray, by the logarithm of its gains; empty: nobody learns from them
+  std::vector<std::array<float, 3>> gain_gradients_;  // per ray, by its log gains; empty without a learner
   std::vector<field::GridGradient> gradient_segments_;
 };
 

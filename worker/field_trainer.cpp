@@ -6,15 +6,16 @@
 namespace skyquilt::worker {
 namespace {
 
-// Matter is drawn together once photos have said roughly where it is; sooner, it would settle in the wrong place.
+// The distortion loss starts when surfaces are roughly known; earlier it would concentrate density at wrong distances.
 constexpr double kDistortionFrom = 0.05, kDistortionTo = 0.5;
 constexpr double kDecayFrom = 0.2;  // of the learning rate
 constexpr double kWarmUpSteps = 50.0;
 constexpr float kOccupancyLimit = 0.01F;
-// A surface stops a third of the light in a step; a woken cell falls asleep again after a dozen samples that find nothing.
-constexpr float kSolidDepth = 0.4F, kWakeDepth = 0.03F;
+// tau of a step. A cell above kSolidTau (a third of the light stopped in a step) is a surface. Its neighbours get kWakeTau: they are free again after
+// about a dozen samples that find no density.
+constexpr float kSolidTau = 0.4F, kWakeTau = 0.03F;
 constexpr int kFewestRays = 64;
-// Streams of the random generator, so that cells and parameters never share numbers with each other or with rays.
+// Streams of the random generator, so that cells, parameters and rays use independent random numbers.
 constexpr uint64_t kCellStream = 2, kInitStream = 3;
 
 Neighbours NeighboursOf(const brightness::Luminance& luminance) {
@@ -66,7 +67,7 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
     source_.UpdateExposures();
   }
   ObserveSamples();
-  // The next step's rays fill the batch at this step's samples per ray, changing slowly.
+  // Chooses the next number of rays so that the batch is full at this step's samples per ray; it changes by a quarter at most.
   if (result.n_rays > 0 && result.n_samples > 0) {
     const double wanted = static_cast<double>(options_.batch_samples) * result.n_rays / static_cast<double>(result.n_samples);
     const double next = std::clamp(wanted, 0.8 * rays_per_step_, 1.25 * rays_per_step_);
@@ -75,8 +76,8 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   return result;
 }
 
-// Training samples tell about occupied cells. Each task looks after a range of cells, in the samples' order, so that bits do not
-// depend on threads. A cell that only ever lies behind surfaces is let go like an empty one.
+// Updates the occupancy of sampled cells. Each task updates a range of cells in the order of the samples, so that bits do not depend on threads. A
+// cell that is always behind surfaces becomes free like an empty one.
 void FieldTrainer::ObserveSamples() {
   field::OccupancyGrid& grid = target_.occupancy;
   const std::vector<float>& depth = step_.ObservedDepths();
@@ -125,7 +126,7 @@ void FieldTrainer::UpdateOccupancy(bool grow) {
   base::Random random(MixSeed(seed_, static_cast<uint64_t>(state_.step), 0), kCellStream);
   std::vector<int64_t> chosen;
   std::vector<float> x, y, z, depth;
-  // A few random samples look whether matter has come up where training does not sample.
+  // Random samples in free cells find density that has appeared where rays are not sampled.
   const int64_t budget = options_.batch_samples / 2;
   for (int64_t i = 0; i < budget; ++i) {
     const int64_t index = random.Below(static_cast<uint32_t>(grid.CellCount()));
@@ -139,7 +140,7 @@ void FieldTrainer::UpdateOccupancy(bool grow) {
   StepDepths(x, y, z, &depth);
   const auto start = PhaseTimes::Clock::now();
   for (size_t i = 0; i < chosen.size(); ++i) grid.Observe(chosen[i], depth[i]);
-  if (grow) grid.WakeNeighbours(kSolidDepth, kWakeDepth);
+  if (grow) grid.WakeNeighbours(kSolidTau, kWakeTau);
   grid.Refresh(kOccupancyLimit);
   times_.Add(0, Phase::kOccupancy, start);
 }

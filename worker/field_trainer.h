@@ -1,5 +1,5 @@
-// Trains one field step by step: draws rays, lets FieldStep learn from them, keeps occupancy and batch size up to date.
-// Bits do not depend on the number of threads.
+// Trains one field step by step: draws rays, makes an optimiser step on them (field_step.h), and updates occupancy and batch size.
+// Same bits for any number of threads.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ namespace skyquilt::worker {
 
 class FieldTrainer {
  public:
-  // Trains target.parameters in place; they are allocated here, and all zero until InitializeParameters() or a checkpoint fills them. context may
-  // be null, and so may learner: the photos' brightness then stays as it is.
+  // Trains target.parameters in place. They are allocated here and are zero until InitializeParameters() or LoadSession() sets them. context may be
+  // null. learner may be null: the photos' gains are then not learned.
   FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options, uint64_t seed,
                const LuminancePlan& luminance, brightness::ResponseLearner* learner, base::ThreadPool& threads);
 
@@ -28,16 +28,16 @@ class FieldTrainer {
   brightness::LuminanceState& luminance_state() { return step_.luminance_state(); }
   void InitializeParameters();
 
-  // progress in [0, 1] of the budget sets learning rate and distortion loss.
+  // One step. progress: of the budget, 0..1, sets learning rate and distortion loss.
   StepResult Step(double progress, double learning_rate_scale);
-  // Looks for matter in cells that are not sampled, then decides which cells are. `grow` also wakes the cells around surfaces.
+  // Samples the density of some free cells, then decides which cells are occupied. grow: also marks the cells around surfaces as occupied.
   void UpdateOccupancy(bool grow);
-  // Seconds of work per phase (kPhaseNames) since the start, summed over threads.
+  // Working time per phase (kPhaseNames) since construction in seconds, summed over threads.
   std::array<double, kPhases> PhaseSeconds() const { return times_.Seconds(); }
 
  private:
   void ObserveSamples();
-  // Optical depth of one marching step at unit positions (SoA, n).
+  // Writes tau of one marching step at each position (unit frame, structure of arrays).
   void StepDepths(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth);
 
   render::TrainedField& target_;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int64_t kTapReach = field::kLuminanceTaps / 2;
 constexpr auto kTaps = static_cast<size_t>(field::kLuminanceTaps);
-// Omega stays inside (0, 1), so that its inverse is finite.
+// Keeps Omega above 0, so that its inverse is finite.
 constexpr float kLargestLogit = 16.0F;
 
 }  // namespace
@@ -19,7 +19,7 @@ void LuminanceConvolution::Pair(std::span<const ConvolvedRay> rays, const float*
   for (int64_t k = 0; k < n_rays; ++k) {
     const ConvolvedRay& ray = rays[static_cast<size_t>(k)];
     for (int64_t tap = -kTapReach; tap <= kTapReach; ++tap) {
-      // The farthest ray of the same patch in this direction, at most `tap` away, that has samples at all.
+      // The farthest ray with samples in this direction, at most |tap| rays away and in the same patch.
       int64_t other = k;
       for (int64_t step = 1; step <= std::abs(tap); ++step) {
         const int64_t next = k + (tap < 0 ? -step : step);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostBackgroundCells = 384;  // along an axis
 constexpr int kReach = 1;                  // cells on each side that colours are averaged over
-constexpr double kSteepEnough = 0.35;      // rays nearer to the horizon carry one colour over hundreds of metres
+constexpr double kSteepEnough = 0.35;      // rays closer to the horizon would spread one colour over hundreds of metres
 
 struct Splat {
   Eigen::Vector3d x;

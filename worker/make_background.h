@@ -1,4 +1,4 @@
-// The survey's background from its training photos.
+// Makes the survey's background (core/scene/background.h) from its training photos.
 #pragma once
 
 #include "core/scene/background.h"
@@ -7,8 +7,8 @@
 
 namespace skyquilt::worker {
 
-// Colours of the photos' tiles laid on the surface of the sparse points, blurred by about three tiles (heights are not known better), and
-// continued to where no photo looked. Without points only the mean colour.
+// Projects the mean colours of the training photos' tiles onto `points`, the height map of the sparse points, blurs them over about three tiles (the
+// heights are not more accurate), and interpolates where no photo sees the ground. When the height map is empty, only the mean colour is set.
 scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, uint64_t seed);
 
 }  // namespace skyquilt::worker

@@ -6,8 +6,8 @@
 namespace skyquilt::worker {
 namespace {
 
-// Where less light than this arrives, a sample gets neither colour nor gradient.
-const float kHiddenDepth = -std::log(1e-3F);
+// tau in front of a sample beyond which it gets neither colour nor gradient: less than 0.1 % of the light arrives.
+const float kHiddenTau = -std::log(1e-3F);
 
 }  // namespace
 
@@ -61,7 +61,7 @@ void PacketTrainer::Begin(const PacketStep& step, const Packet& packet) {
   views_.assign(static_cast<size_t>(packet.n_rays), {});
 }
 
-// Padding takes part in the networks' sums: it must be finite.
+// The networks' sums include padding, so it must be finite.
 void PacketTrainer::ZeroPadding(float* rows, int n_rows, size_t stride) const {
   const int64_t end = kernel::Padded(live_);
   for (int row = 0; row < n_rows; ++row) {
@@ -85,7 +85,7 @@ void PacketTrainer::KeepAll() {
   }
 }
 
-// Keeps the samples that light still reaches; what lies behind an opaque surface gets neither colour nor gradient.
+// Keeps only the samples that light reaches: samples behind an opaque surface get neither colour nor gradient.
 void PacketTrainer::DropHidden() {
   int64_t live = 0;
   for (size_t k = 0; k < views_.size(); ++k) live += LiveSamples(k, live);
@@ -104,14 +104,14 @@ void PacketTrainer::DropHidden() {
   ZeroPadding(a_.density_hidden, a_.kept_rows, a_.stride);
 }
 
-// Finds a ray's samples that light reaches, whose optical depths go to tau_ from first_live on; how many there are.
+// Finds the samples of a ray that light reaches and writes their optical depths to tau_ from first_live. Returns their number.
 int64_t PacketTrainer::LiveSamples(size_t view, int64_t first_live) {
   const BatchRay& r = Ray(view);
   const float* unit_length = step_->batch.unit_length.data();
   int64_t live = first_live;
   float passed = 0.0F;
   int64_t i = 0;
-  for (; i < r.count && passed < kHiddenDepth; ++i) {
+  for (; i < r.count && passed < kHiddenTau; ++i) {
     const auto s = static_cast<size_t>(r.begin + i);
     const auto local = static_cast<size_t>(r.begin + i - packet_->begin);
     const float tau = depth_[local] * unit_length[s];
@@ -143,7 +143,7 @@ void PacketTrainer::Color() {
   }
 }
 
-// Leaves the features' gradient in their place; false when it is not finite.
+// Replaces the features by their gradient; false when it is not finite.
 bool PacketTrainer::Backward(float* network_gradient) {
   float* features = Features();
   shared_.field.Backward(shared_.weights, a_, features, packet_->stride, kernel::Padded(live_), network_gradient);

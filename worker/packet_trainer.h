@@ -1,5 +1,5 @@
-// One thread's share of a training step: takes one packet after the other from density to the gradient of its features, in a workspace of its own
-// that stays in cache.
+// The part of a training step that one thread computes: for one packet of rays after the other densities, colours, loss, and the gradient of the
+// packet's features, in a workspace small enough to stay in cache.
 #pragma once
 
 #include <array>
@@ -21,44 +21,44 @@
 
 namespace skyquilt::worker {
 
-// Densities are exp of at most this, so that they and their gradients stay finite.
+// Upper limit of the logarithm of tau of a step, so that densities and their gradients stay finite.
 constexpr float kMaxLogDepth = 15.0F;
 
-// What every packet of every step reads.
+// Read by every packet of every step.
 struct PacketShared {
   const render::TrainedField& target;  // map, step and colour range; not its parameters
   const field::HashField& field;
-  const render::TrainedField* context;  // frozen; may be null
+  const render::TrainedField* context;  // not trained; may be null
   const field::NetworkWeights& weights;
   const brightness::Luminance& luminance;
   const brightness::LuminanceState& means;
-  bool controls_mean;  // of luminance: LuminancePlan::controls_mean
+  bool controls_mean;  // LuminancePlan::controls_mean
 };
 
-// What the packets of one step share. Each packet writes to its own places alone.
+// Used by all packets of one step. Each packet writes only to its own ranges of the arrays.
 struct PacketStep {
-  RayBatch& batch;  // x, y, z and t of hidden samples are lost
-  float* features;  // at Packet::features; their gradient takes their place
-  float* observed;  // per sample: optical depth of a marching step, 0 where no light arrives; not used by Infer
-  float ray_share;  // 1 / rays of the batch
-  double distortion;
-  std::array<float, 3>* gain_gradients;  // per ray, by the logarithm of its gains; null: nobody learns from them
+  RayBatch& batch;                       // x, y, z and t of hidden samples are overwritten
+  float* features;                       // at Packet::features; overwritten by their gradient
+  float* observed;                       // per sample: tau of a marching step, 0 where no light arrives; not used by Infer
+  float ray_share;                       // 1 / rays of the batch
+  double distortion;                     // weight of the distortion loss
+  std::array<float, 3>* gain_gradients;  // per ray, by its log gains; null without a learner
 };
 
 struct PacketResult {
   LossSums sums;
-  int64_t live = 0;    // samples that light reaches; they come first
-  bool finite = true;  // the features' gradient
+  int64_t live = 0;    // samples that light reaches; they are moved to the front
+  bool finite = true;  // whether the features' gradient is finite
 };
 
 class PacketTrainer {
  public:
-  // times: charged to `thread`. All references must outlive it.
+  // times: counted for `thread`. All references must outlive it.
   PacketTrainer(const PacketShared& shared, PhaseTimes& times, int thread);
 
-  // Leaves the features' gradient and adds to network_gradient (HashField::NetworkParameters()).
+  // Replaces the packet's features by their gradient and adds to network_gradient (HashField::NetworkParameters() numbers).
   PacketResult Train(const PacketStep& step, const Packet& packet, float* network_gradient);
-  // Density and colour of all samples.
+  // Computes only density and colour, of all samples.
   void Infer(const PacketStep& step, const Packet& packet);
 
  private:
@@ -74,23 +74,23 @@ class PacketTrainer {
   void Color();
   bool Backward(float* network_gradient);
 
-  // packet_trainer_context.cpp: what the frozen context shows in front of the box's ground plan and, where light passes through, behind it.
+  // packet_trainer_context.cpp: renders the context in front of the block's ground plan and, where light passes through the block, behind it.
   void LookThroughContext();
   void AddPieces(size_t view);
   void TakeColors();
 
-  // packet_trainer_compose.cpp: losses, and back to the networks' outputs.
+  // packet_trainer_compose.cpp: losses, and their gradients by the networks' outputs.
   void ComposeAndLoss(LossSums& sums);
   ComposedRay Compose(const RayView& view);
-  // From what a ray came to back to its samples' optical depths and colours. weight_gradient: by the compositing weights, or null.
+  // Gradients by the optical depths and colours of a ray's samples. weight_gradient: further gradients by the compositing weights, or null.
   void ScatterComposed(const RayView& view, const ComposedRay& composed, const ComposedGradient& gradient, const float* weight_gradient);
   void KeepGainGradient(size_t view, const ComposedGradient& gradient) const;
   // Distortion loss of one ray; its gradient is added to weight_gradient_.
   void AddDistortion(const RayView& view, LossSums& sums);
-  // From gradients of optical depths and colours to those of the networks' outputs.
+  // Turns gradients by optical depths and colours into gradients by the networks' outputs.
   void FinishGradients();
 
-  // packet_trainer_luminance.cpp: the same for fields with concealing field.
+  // packet_trainer_luminance.cpp: the same with a concealing field.
   void ConcealAndLoss(float* network_gradient, LossSums& sums);
   ConcealedTask TaskOfRays() const;
   void ComposeConcealed();
@@ -100,7 +100,7 @@ class PacketTrainer {
   PacketShared shared_;
   PhaseTimes& times_;
   int thread_;
-  // The packet at hand.
+  // The current packet.
   const PacketStep* step_ = nullptr;
   const Packet* packet_ = nullptr;
   int64_t live_ = 0;  // its samples that light reaches; all of them until DropHidden
@@ -109,15 +109,15 @@ class PacketTrainer {
   std::vector<float> depth_, keep_, tau_, weight_, rgb_, weight_gradient_;
   DistortionScratch<float> distortion_;
   std::vector<RayView> views_;  // rays of the packet
-  // The context's intervals of rays.
+  // Intervals of rays that are rendered from the context.
   std::unique_ptr<render::RayRenderer> context_;
   std::vector<render::Ray> pieces_;
   std::vector<render::RayColor> colors_;
-  std::vector<std::pair<size_t, bool>> owner_;  // view, is it the piece behind
+  std::vector<std::pair<size_t, bool>> owner_;  // view, and whether its interval is behind the block
   // With luminance only.
   LuminanceConvolution convolution_;
   std::vector<float> share_, share_gradient_, omega_gradient_;  // per sample
-  std::vector<float> light_, light_slope_;                      // linear light of the samples and its slope by display value, rows as rgb
+  std::vector<float> light_, light_slope_;                      // linear light of the samples and its derivative by display value; rows as rgb_
   std::vector<ConvolvedRay> rays_;                              // per view
   std::vector<ConcealedRay> concealed_;                         // per view
 };

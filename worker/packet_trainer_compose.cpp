@@ -1,4 +1,4 @@
-// From the samples' densities and colours to the loss of every ray and back.
+// Computes the loss of every ray from its samples' densities and colours, and the gradients by these.
 #include <algorithm>
 
 #include "core/render/composite.h"
@@ -70,8 +70,8 @@ void PacketTrainer::FinishGradients() {
   const auto range = static_cast<float>(shared_.target.config.color_range);
   const auto live = static_cast<size_t>(live_);
   const auto padded = static_cast<size_t>(kernel::Padded(live_));
-  // d tau / d log density = tau; d rgb / d raw = rgb (1 - rgb / range), and never nothing: colours of a dark or bright survey that overshoot the end
-  // of the scale in the first steps would never come back.
+  // d tau / d log density = tau; d rgb / d raw = rgb (1 - rgb / range), but at least kLeastColorSlope: in a dark or bright survey colours that reach
+  // the end of their range in the first steps would otherwise get no gradient and stay there.
   for (size_t i = 0; i < live; ++i) a_.log_density_gradient[i] *= tau_[i];
   std::fill(a_.log_density_gradient + live, a_.log_density_gradient + padded, 0.0F);
   for (size_t c = 0; c < 3; ++c) {

@@ -1,12 +1,12 @@
-// What the frozen context shows of a packet's rays in front of the box's ground plan and, where light passes through, behind it.
+// Renders the context along a packet's rays in front of the block's ground plan and, where light passes through the block, behind it.
 #include "core/render/march.h"
 #include "worker/packet_trainer.h"
 
 namespace skyquilt::worker {
 namespace {
 
-// Behind this optical depth the context is not looked at: it would show through at less than 2 %.
-constexpr float kOpaqueDepth = 4.0F;
+// tau of a block's samples beyond which the context behind is not rendered: less than 2 % of it would show through.
+constexpr float kOpaqueTau = 4.0F;
 
 }  // namespace
 
@@ -31,9 +31,9 @@ void PacketTrainer::AddPieces(size_t view) {
     pieces_.push_back({ray.origin_enu, ray.direction_enu, all.t_near, plan.t_near, 0.0F});
     owner_.emplace_back(view, false);
   }
-  float depth = 0.0F;
-  for (int64_t i = 0; i < views_[view].count; ++i) depth += tau_[static_cast<size_t>(views_[view].begin + i)];
-  if (depth < kOpaqueDepth && all.t_far > plan.t_far) {
+  float tau = 0.0F;
+  for (int64_t i = 0; i < views_[view].count; ++i) tau += tau_[static_cast<size_t>(views_[view].begin + i)];
+  if (tau < kOpaqueTau && all.t_far > plan.t_far) {
     pieces_.push_back({ray.origin_enu, ray.direction_enu, plan.t_far, all.t_far, 0.0F});
     owner_.emplace_back(view, true);
   }
@@ -47,7 +47,7 @@ void PacketTrainer::TakeColors() {
       (behind ? view.behind_rgb : view.front_rgb)[c] = colors_[i].rgb_srgb[c];
       (behind ? view.behind_light : view.front_light)[c] = colors_[i].concealed_light[c];
     }
-    // Whatever the context leaves open behind shows the random background.
+    // Behind the context there is the random background colour.
     (behind ? view.background_share : view.front_transmittance) = 1.0F - colors_[i].opacity;
   }
 }

@@ -1,4 +1,4 @@
-// From the samples of fields with concealing field (core/brightness/luminance.h) to the loss of every ray and back.
+// With a concealing field (core/brightness/luminance.h): computes the loss of every ray from its samples, and the gradients by these.
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +10,7 @@
 namespace skyquilt::worker {
 namespace {
 
+// A ray below this opacity has no meaningful mean share.
 constexpr float kSolidOpacity = 0.2F;
 
 render::Concealing ConcealingOf(const brightness::Luminance& luminance) {
@@ -18,7 +19,7 @@ render::Concealing ConcealingOf(const brightness::Luminance& luminance) {
 
 }  // namespace
 
-// Omega of the samples, their linear light, and what all rays come to.
+// Computes Omega and linear light of the samples, and both renderings of every ray.
 void PacketTrainer::ComposeConcealed() {
   const auto live = static_cast<size_t>(live_);
   rays_.clear();
@@ -62,7 +63,7 @@ ConcealedTask PacketTrainer::TaskOfRays() const {
   task.under = shared_.luminance.mode == brightness::LuminanceMode::kUnder;
   task.mean_share = static_cast<float>(std::exp(shared_.means.mean_log_gain));
   task.mean_log_gain = static_cast<float>(shared_.means.mean_log_gain);
-  // Only the context looks after the mean; blocks keep to what it found.
+  // Only the context controls the mean brightness; blocks keep the context's.
   task.pull = MeanBrightnessPull(shared_.controls_mean ? kLossWeights.mean_brightness : 0.0F, shared_.means.mean_shown, shared_.luminance.target);
   return task;
 }
@@ -95,7 +96,7 @@ void PacketTrainer::ConcealAndLoss(float* network_gradient, LossSums& sums) {
   FinishGradients();
 }
 
-// weight_gradient_ holds the distortion loss's share already, or zeros.
+// weight_gradient_ already holds the gradient of the distortion loss, or zeros.
 void PacketTrainer::ScatterConcealed(const RayView& view, const ConcealedRay& composed, const ConcealedGradient& gradient) {
   const auto begin = static_cast<size_t>(view.begin), count = static_cast<size_t>(view.count);
   const float* weights = weight_.data() + begin;

@@ -1,4 +1,4 @@
-// Where the time of a training step goes: seconds of work per phase, summed over threads.
+// Measures how long the phases of a training step take: working time per phase in seconds, summed over threads.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ class PhaseTimes {
 
   explicit PhaseTimes(int n_threads) : slots_(static_cast<size_t>(n_threads)) {}
 
-  // Adds the time since `from` to a thread's account and returns now.
+  // Adds the time since `from` to a phase of a thread and returns the current time.
   Clock::time_point Add(int thread, Phase phase, Clock::time_point from) {
     const Clock::time_point now = Clock::now();
     slots_[static_cast<size_t>(thread)].seconds[static_cast<size_t>(phase)] += std::chrono::duration<double>(now - from).count();
@@ -35,7 +35,7 @@ class PhaseTimes {
   void Clear() { slots_.assign(slots_.size(), Slot{}); }
 
  private:
-  struct alignas(64) Slot {  // a cache line or two per thread, never shared
+  struct alignas(64) Slot {  // cache lines of its own for every thread
     std::array<double, kPhases> seconds = {};
   };
   std::vector<Slot> slots_;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPointsPerCell = 16.0;
 constexpr int kMostCells = 256;    // along an axis
-constexpr double kStrays = 0.002;  // share of points on each side that does not widen the grid
+constexpr double kStrays = 0.002;  // share of points beyond each side of the grid, so that outliers do not enlarge it
 
 double QuantileOf(const std::vector<survey::SparsePoint>& points, int axis, double share) {
   std::vector<double> values;

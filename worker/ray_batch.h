@@ -1,4 +1,5 @@
-// The rays of one optimiser step and their samples, cut into packets of whole rays that one thread works on from density to gradient.
+// The rays of one optimiser step and their samples. They are divided into packets of whole rays: one thread computes everything from density to
+// gradient for a packet while its data is in cache.
 #pragma once
 
 #include <cstdint>
@@ -14,56 +15,57 @@ namespace skyquilt::worker {
 
 struct BatchRay {
   PixelRay ray;
-  int64_t begin = 0, count = 0;     // samples
-  float background[3] = {0, 0, 0};  // random colour behind everything
-  int64_t patch = 0;                // rays of one patch stand together
+  int64_t begin = 0, count = 0;     // its samples in the batch
+  float background[3] = {0, 0, 0};  // random colour behind everything, so that surfaces must become opaque
+  int64_t patch = 0;                // rays of one patch are neighbours and follow each other
 };
 
 struct Packet {
   int64_t first_ray = 0, n_rays = 0;
-  int64_t begin = 0, count = 0;  // samples
+  int64_t begin = 0, count = 0;  // its samples in the batch
   size_t stride = 0;             // of its feature rows
-  size_t features = 0;           // where they start, in rows-times-stride floats
+  size_t features = 0;           // offset of its feature rows, in floats
 };
 
-// Structures of arrays; the samples of a packet start at a multiple of kernel::kPad.
+// Structure of arrays; the samples of a packet start at a multiple of kernel::kPad.
 struct RayBatch {
   std::vector<BatchRay> rays;
   std::vector<Packet> packets;
   std::vector<float> x, y, z;                                      // unit frame of the field
   std::vector<float> t;                                            // metres from the camera
-  std::vector<float> unit_length;                                  // interval, in marching steps
-  std::vector<int32_t> cell;                                       // of the occupancy grid
+  std::vector<float> unit_length;                                  // length of the interval in marching steps
+  std::vector<int32_t> cell;                                       // index in the occupancy grid
   int64_t n_samples = 0;                                           // without padding
   int64_t Size() const { return static_cast<int64_t>(x.size()); }  // with padding
 
   void Clear();
-  // One more ray with its samples; rays of more than a packet's samples get one of their own.
+  // Appends a ray with ray.count samples. A ray with more samples than a packet holds gets a packet of its own.
   void Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* t_in, const float* unit_length_in,
               const int32_t* cell_in);
-  // Closes the last packet and lays out feature rows (`rows` per sample).
+  // Completes the last packet and sets the packets' feature ranges, for `rows` features per sample.
   void LayOutFeatures(int rows);
 };
 
-// Which rays count as neighbours in BatchRay::patch.
+// Which rays are neighbours (BatchRay::patch), for the convolution of a concealing field.
 enum class Neighbours {
-  kNone,   // every ray is alone
-  kPatch,  // pixels are drawn in rows of kPatchPixels
-  kBatch,  // unrelated rays that happen to be drawn one after the other
+  kNone,   // none
+  kPatch,  // rows of kPatchPixels neighbouring pixels
+  kBatch,  // unrelated rays in the order in which they were drawn
 };
 constexpr int kPatchPixels = 8;
 
-// Draws n_rays pixels and marches them through the occupied cells. A pure function of (seed, step), whatever the threads.
+// Draws the pixels of a batch and samples their rays in occupied cells. A pure function of (seed, step) for any number of threads.
 class RayDrawer {
  public:
-  // stratified: a ray's samples begin anywhere in its first step, else in the middle of it.
+  // stratified: true: a ray's samples are shifted by a random part of a step; false: they are in the middle of the steps.
   RayDrawer(const render::TrainedField& target, const RaySource& source, uint64_t seed, Neighbours neighbours, bool stratified,
             base::ThreadPool& threads, PhaseTimes& times)
       : target_(target), source_(source), seed_(seed), neighbours_(neighbours), stratified_(stratified), threads_(threads), times_(times) {}
+  // About n_rays rays: masked pixels and rays that miss the field are left out.
   void Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch);
 
  private:
-  // What one task draws; the first `count` places of the arrays are filled.
+  // The rays of one task; the first `count` elements of the arrays are used.
   struct Group {
     std::vector<BatchRay> rays;
     std::vector<float> x, y, z, t, unit_length;
@@ -82,7 +84,7 @@ class RayDrawer {
   std::vector<Group> groups_;
 };
 
-// Mixes seed, step and index into the seed of one random sequence.
+// Hashes seed, step and index into the seed of one random sequence.
 uint64_t MixSeed(uint64_t seed, uint64_t step, uint64_t index);
 
 }  // namespace skyquilt::worker

@@ -7,7 +7,7 @@
 namespace skyquilt::worker {
 namespace {
 
-// Pixels of a tile that its mean colour is taken from, along each axis.
+// Number of pixels along each axis of a tile from which its mean colour is computed.
 constexpr int kColorPixels = 4;
 
 }  // namespace
@@ -62,7 +62,7 @@ int RaySource::DrawPatch(base::Random& random, int n, PixelRay* rays) const {
   const std::vector<Tile>& tiles = empty ? empty_ : inside_;
   const Tile& tile = tiles[random.Below(static_cast<uint32_t>(tiles.size()))];
   const auto photo = static_cast<size_t>(tile.photo);
-  // First of `run` pixels in a row of them that stay inside the tile.
+  // First of `run` neighbouring pixels inside the tile, along one axis; `run` is shortened to the size of the tile.
   const auto along = [&](int index, int count, int size, int* run) {
     const int begin = index * size / count;
     const int end = std::max(begin + 1, (index + 1) * size / count);

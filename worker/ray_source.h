@@ -1,5 +1,6 @@
-// Draws training rays. Photos are cut into tiles; a field is given the tiles it should learn from, so that a block spends its rays on
-// pixels that show it. Drawing is a pure function of (seed, step, index): nothing to save, any thread may draw any ray.
+// Draws training rays. Photos are cut into tiles, and a field is given the tiles it should learn from, so that a block trains only on pixels that
+// show it. Drawing depends only on the random generator given to it, so there is no state to save. Thread-safe except for UpdateExposures and
+// SetTiles.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,13 +18,14 @@ namespace skyquilt::worker {
 
 struct PixelRay {
   Eigen::Vector3d origin_enu;
-  Eigen::Vector3d direction_enu;  // length 1
-  float target_srgb[3] = {0, 0, 0};
-  std::array<brightness::Exposure, 3> exposure;  // recorded light over light at reference exposure, per colour
+  Eigen::Vector3d direction_enu;                 // length 1
+  float target_srgb[3] = {0, 0, 0};              // recorded display value, 0..1
+  std::array<brightness::Exposure, 3> exposure;  // recorded light divided by light at reference exposure, per colour
   int photo = 0;
-  bool empty = false;  // the surface lies behind the field: it must be transparent here
+  bool empty = false;  // the surface is behind the field, so the field must be transparent along this ray
 };
 
+// Tiles per photo.
 constexpr int kTileColumns = 48;
 constexpr int kTileRows = 36;
 
@@ -37,32 +39,33 @@ class RaySource {
   // response: of the survey's photos; must outlive the source. The cache's image sizes decide the pixel grid.
   RaySource(const survey::Survey& survey, const image::PixelCache& pixels, const brightness::Response& response);
 
-  // Takes over what the response says by now.
+  // Call it after the response has changed.
   void UpdateExposures();
 
-  // Rays come from `inside` tiles, a share of them from `empty` tiles as emptiness rays. Tiles count by their number of pixels.
+  // Sets the tiles to draw from: `empty_share` of the rays come from `empty` tiles (PixelRay::empty is then true), the others from `inside` tiles.
+  // All tiles of a list are equally likely.
   void SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, double empty_share);
-  // Mean display value of all training rays at the reference exposure.
+  // Mean colour of the training rays, taken in linear light, as display values at reference exposure.
   std::array<float, 3> MeanColor(uint64_t seed) const;
   bool HasRays() const { return !inside_.empty(); }
-  // False when an ignored (masked) pixel was drawn several times in a row.
+  // Draws a ray; false when masked pixels were drawn several times in a row.
   bool Draw(base::Random& random, PixelRay* ray) const;
-  // Up to n neighbouring pixels of one row of a tile, from left to right, without ignored ones. Returns how many.
+  // Draws up to n neighbouring pixels of one row of a tile, from left to right, without masked ones. Returns their number.
   int DrawPatch(base::Random& random, int n, PixelRay* rays) const;
 
-  // Camera reduced to the cached size, and the ray through a pixel position.
+  // The camera at the cached image size.
   const camera::Camera& CameraOf(int photo) const { return cameras_[static_cast<size_t>(photo)]; }
+  // The ray through a position in the cached image, pixels.
   void RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vector3d* origin_enu, Eigen::Vector3d* direction_enu) const;
-  // Mean display values of a photo's tiles at the reference exposure, each from a few of its pixels; NaN where all of them are ignored (masked).
-  // [row][column].
+  // Mean display values of a photo's tiles at reference exposure, [row][column], each from a few of its pixels; NaN where all of them are masked.
   std::vector<Eigen::Vector3f> TileColors(int photo) const;
-  // Squared distance of a pixel from its photo's principal point, 1 at the farthest corner.
+  // Squared distance from the principal point, relative to that of the farthest corner.
   float Radius2(int photo, const Eigen::Vector2d& pixel) const;
   // Pixel position of a tile's centre.
   Eigen::Vector2d TileCentre(const Tile& tile) const;
 
  private:
-  // False for an ignored pixel.
+  // False for a masked pixel.
   bool RayOf(int photo, int x, int y, bool empty, PixelRay* ray) const;
 
   const survey::Survey& survey_;
@@ -76,7 +79,7 @@ class RaySource {
   double empty_share_ = 0.0;
 };
 
-// Every tile of the given photos that are not held out.
+// All tiles of those of the given photos that are not held out.
 std::vector<Tile> TrainingTiles(const survey::Survey& survey, const std::vector<int>& photos);
 
 }  // namespace skyquilt::worker

@@ -14,8 +14,9 @@ namespace {
 constexpr int kGroup = 4;
 // Columns are wide enough to hold some points on average.
 constexpr double kPointsPerColumn = 4.0;
-// Columns over which the lowest point counts (at the edge of a survey only roofs may have points), and the highest one for a column without its
-// own: foliage and smooth ground have few features to match, and matter put too high or too low there is what unseen views suffer from most.
+// Size of the neighbourhood of a column, in columns on each side. The lowest point is taken from it because at the edge of a survey only roofs may
+// have points. The highest point is taken from it for columns without points: foliage and smooth ground have few features to match, and density too
+// high or too low there harms unseen views most.
 constexpr int kGroundReach = 6;
 
 }  // namespace
@@ -32,22 +33,22 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
     return 0.87 * kGroup * static_cast<double>(grid.cell) / (target.map.units_per_metre() * std::max(1e-6, target.map.LocalScale(x)));
   };
   // Columns of groups whose ground enough photos see.
-  std::vector<uint8_t> in_company(static_cast<size_t>(groups[0]) * static_cast<size_t>(groups[1]), 1);
+  std::vector<uint8_t> enough_views(static_cast<size_t>(groups[0]) * static_cast<size_t>(groups[1]), 1);
   if (!surface.Empty() && min_views > 1) {
     threads.ParallelFor(groups[1], [&](int64_t gy, int) {
       for (int gx = 0; gx < groups[0]; ++gx) {
         Eigen::Vector3d ground = centre_of(gx, static_cast<int>(gy), groups[2] / 2);
         ground.z() = surface.At(ground.x(), ground.y());
-        in_company[static_cast<size_t>(gy) * static_cast<size_t>(groups[0]) + static_cast<size_t>(gx)] =
+        enough_views[static_cast<size_t>(gy) * static_cast<size_t>(groups[0]) + static_cast<size_t>(gx)] =
             CountViews(source, survey, photos, ground, 0.5 * radius_at(ground), min_views) >= min_views ? 1 : 0;
       }
     });
-    if (std::ranges::count(in_company, 1) == 0) std::ranges::fill(in_company, uint8_t{1});
+    if (std::ranges::count(enough_views, 1) == 0) std::ranges::fill(enough_views, uint8_t{1});
   }
   threads.ParallelFor(groups[2], [&](int64_t gz, int) {
     for (int gy = 0; gy < groups[1]; ++gy) {
       for (int gx = 0; gx < groups[0]; ++gx) {
-        if (in_company[static_cast<size_t>(gy) * static_cast<size_t>(groups[0]) + static_cast<size_t>(gx)] != 0) {
+        if (enough_views[static_cast<size_t>(gy) * static_cast<size_t>(groups[0]) + static_cast<size_t>(gx)] != 0) {
           const Eigen::Vector3d centre = centre_of(gx, gy, static_cast<int>(gz));
           if (CountViews(source, survey, photos, centre, radius_at(centre), 1) > 0) continue;
         }
@@ -129,7 +130,7 @@ void StartFromBands(const RaySource& source, const survey::Survey& survey, const
   const std::vector<uint8_t> before = grid.occupied;
   std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
   const double cell_m = static_cast<double>(grid.cell) / target.map.units_per_metre();
-  // The context is blurred by about one of its own steps.
+  // The context's surfaces are blurred by about one of its marching steps.
   const double pad_m = context.field.step_m;
   for (const Tile& tile : tiles) {
     const SurfaceBand& band = context.Band(tile.photo, tile.row, tile.column);

@@ -1,5 +1,5 @@
-// Where a field looks for matter when it starts: cells that cameras see, between the sparse points or in the bands where the context sees
-// surfaces.
+// Chooses the cells that are occupied, and therefore sampled, when training of a field starts. Fewer cells mean fewer samples per ray and fewer
+// floaters. Only cells that cameras see are chosen: for the context those between the sparse points, for blocks those near surfaces of the context.
 #pragma once
 
 #include <vector>
@@ -11,20 +11,22 @@
 
 namespace skyquilt::worker {
 
-// Depth of a cell that has not been sampled yet: above every threshold for some dozens of samples.
+// Initial tau of an occupied cell: it stays above the occupancy threshold for some dozens of samples even when they find no density.
 constexpr float kStartTau = 0.1F;
 
-// Cells in view of none of the photos become "never seen", and so do all cells above and below ground that fewer than min_views training photos
-// show (unless that would leave none; empty surface: nothing is known of the ground). Tested per group of 4 x 4 x 4 cells, generously.
+// Marks cells as never seen (negative tau): those that no training photo sees, and all cells above and below ground that fewer than min_views
+// training photos see. The second rule is not applied when it would leave no cells, or when `surface` is empty. Tested for groups of 4 x 4 x 4 cells,
+// enlarged to be on the safe side.
 void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const scene::HeightMap& surface, int min_views,
                 render::TrainedField& target, base::ThreadPool& threads);
-// Every cell that may be seen is looked at: what fields without any knowledge of the survey do, for comparison.
+// Keeps all cells that are not marked as never seen, for comparison.
 void StartEverywhere(render::TrainedField& target);
-// Leaves only cells between the sparse points: in each column of the ground from the lowest point near it to one cell above the highest point
-// next to it. Columns without points of their own keep their whole height, and what lies outside the field's box stays as it is.
+// Keeps only cells at heights where there are sparse points: in every column of the ground from one cell below the lowest point in its neighbourhood
+// to one cell above the highest point of the column and its direct neighbours, or of the neighbourhood when the column has no points. Columns without
+// points in their neighbourhood keep all cells. Cells outside the field's uncontracted box are not changed.
 void StartFromPoints(const survey::Survey& survey, render::TrainedField& target);
-// Leaves only cells in the bands where the context's light ends, as the tiles see them, and those of sparse points. Cells outside
-// sleep until surfaces grow into them. Does nothing for a context without bands.
+// Keeps only cells near the surfaces that the context shows in the given tiles (surface_band.h), and cells with sparse points. Other cells are free
+// until surfaces grow into them. Does nothing when the context has no bands.
 void StartFromBands(const RaySource& source, const survey::Survey& survey, const std::vector<Tile>& tiles, const LoadedContext& context,
                     render::TrainedField& target);
 

@@ -46,7 +46,7 @@ void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, c
       if (!render::FieldInterval(target.map, origin, direction).Empty()) inside.push_back(tile);
       continue;
     }
-    // A tile counts when its own or a neighbouring tile's surface lies above the block's ground plan.
+    // A tile is inside when its own or a neighbouring tile's surface is inside the block's ground plan.
     bool any_inside = false, all_behind = true;
     for (int row = std::max(0, tile.row - 1); row <= std::min(kTileRows - 1, tile.row + 1); ++row) {
       for (int column = std::max(0, tile.column - 1); column <= std::min(kTileColumns - 1, tile.column + 1); ++column) {
@@ -56,7 +56,7 @@ void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, c
         const auto depth = static_cast<double>(context->Band(tile.photo, row, column).median);
         const geo::Interval interval = render::FieldInterval(target.map, o, d);
         if (!std::isfinite(depth)) {
-          // Nothing known: as good as inside when the ray leaves through the ground.
+          // The context shows no surface: inside when the ray leaves the box through its bottom.
           const double out_z = o.z() + interval.t_far * d.z();
           if (!interval.Empty() && out_z <= low.z() + 1e-6) any_inside = true;
           all_behind = false;

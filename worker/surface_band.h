@@ -1,5 +1,5 @@
-// Where the context sees surfaces: for the centre of every tile of every photo the interval of the ray in which the light ends.
-// Blocks choose their pixels by it and start their occupancy from it.
+// Surfaces as the trained context shows them: for the centre of every tile of every photo the interval of the ray in which the transmittance falls.
+// Blocks use it to choose their tiles and their initial occupancy.
 #pragma once
 
 #include <vector>
@@ -14,19 +14,20 @@
 
 namespace skyquilt::worker {
 
-// Metres along the ray; NaN where the light never gets that faint.
+// Metres along the ray; NaN when the transmittance stays above the threshold.
 struct SurfaceBand {
-  float front = 0.0F;   // transmittance passes 0.85
-  float median = 0.0F;  // 0.5
-  float back = 0.0F;    // 0.15
+  float front = 0.0F;   // transmittance falls below 0.85
+  float median = 0.0F;  // transmittance falls below 0.5
+  float back = 0.0F;    // transmittance falls below 0.15
 };
 
-// What the context stage finds out beside its field.
+// Results of a finished context in addition to its field.
 struct ContextFindings {
   std::vector<SurfaceBand> bands;  // [photo][row][column], kTileRows x kTileColumns per photo
   scene::Background background;
 };
 
+// A trained context, as the training of blocks uses it.
 struct LoadedContext {
   render::TrainedField field;
   brightness::Response response;
@@ -37,15 +38,16 @@ struct LoadedContext {
   const SurfaceBand& Band(int photo, int row, int column) const {
     return bands[(static_cast<size_t>(photo) * kTileRows + static_cast<size_t>(row)) * kTileColumns + static_cast<size_t>(column)];
   }
+  // Whether `bands` has an entry for every tile of the survey.
   bool KnowsBands(const survey::Survey& survey) const { return bands.size() == survey.photos.size() * kTileRows * kTileColumns; }
 };
 
-// Renders the context through every tile centre of all photos. Calls context.BuildNetworks().
+// Renders the depth of the context at every tile centre of all photos. Calls context.BuildNetworks().
 std::vector<SurfaceBand> SurfaceBands(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
                                       base::ThreadPool& threads);
 
-// Gives the source the block's part of `tiles`: those whose surface lies over the block's ground plan, and those that end behind the block and
-// teach emptiness only. Without a context (null) every tile whose ray crosses the box.
+// Sets the tiles from which the source draws a block's rays: those of `tiles` whose surface is inside the block's ground plan, and as empty tiles
+// those whose surface is behind the block. Without a context (null) all tiles whose centre ray crosses the block's box.
 void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, const render::TrainedField& target, const LoadedContext* context,
                  double empty_ray_share, RaySource& source);
 

@@ -12,17 +12,17 @@ namespace skyquilt::worker {
 namespace {
 
 constexpr size_t kMostPoints = 12'000;
-constexpr int kPointReach = 1;               // pixels around a point's that are averaged
-constexpr int kFewestSightings = 8;          // a photo's shared points: fewer say nothing
+constexpr int kPointReach = 1;               // pixels on each side of a point's pixel that are averaged
+constexpr int kFewestSightings = 8;          // points per photo: with fewer its gain is not estimated
 constexpr int kRounds = 6;                   // of reweighting
 constexpr int kMostSteps = 200;              // of conjugate gradients
-constexpr double kScatter = 0.15;            // log light beyond which a sighting counts less
-constexpr double kVignettingExplains = 0.1;  // of the squares
-constexpr double kNearlyAll = 0.95;          // of the photos
-constexpr double kVignettingRidge = 1.0;     // in sightings
-constexpr double kTrace = 1e-3;              // in sightings
+constexpr double kScatter = 0.15;            // residual in log light at which the weight of a sighting is halved
+constexpr double kVignettingExplains = 0.1;  // share of the squared residuals that vignetting must explain
+constexpr double kNearlyAll = 0.95;          // share of the photos
+constexpr double kVignettingRidge = 1.0;     // damping of vignetting, as a number of sightings
+constexpr double kTrace = 1e-3;              // damping of gains, as a number of sightings
 
-// One point in one photo: logarithm of recorded light without what tags explain.
+// One point in one photo. log_light: logarithm of the recorded light divided by the gain from tags.
 struct Sighting {
   int point = 0, photo = 0;
   float radius2 = 0.0F;
@@ -34,7 +34,7 @@ Eigen::Vector3d Powers(float radius2) {
   return {r2, r2 * r2, r2 * r2 * r2};
 }
 
-// Mean recorded light of the pixels around a position; false where they leave the photo, are masked, or at an end of the scale.
+// Mean recorded light of the pixels around a position; false when one of them is outside the photo, masked, nearly black or saturated.
 bool LightAround(const image::PixelCache& pixels, size_t photo, const Eigen::Vector2d& position, std::array<double, 3>* light) {
   const int x = static_cast<int>(position.x()), y = static_cast<int>(position.y());
   const int width = pixels.Width(photo), height = pixels.Height(photo);
@@ -81,7 +81,7 @@ std::vector<Sighting> Look(const survey::Survey& survey, const image::PixelCache
   return all;
 }
 
-// Weighted means of a quantity over the sightings of each point, handed to `each` with the point's range.
+// Calls each(first, last, mean) for every point with the range of its sightings and the weighted mean of a quantity over them.
 template <typename Value, typename Each>
 void ForEachPoint(std::span<const Sighting> sightings, const std::vector<double>& weight, const Value& value, const Each& each) {
   for (size_t first = 0, last = 0; first < sightings.size(); first = last) {
@@ -97,8 +97,8 @@ void ForEachPoint(std::span<const Sighting> sightings, const std::vector<double>
   }
 }
 
-// One colour: gains that minimise the weighted squares, points eliminated, by conjugate gradients without ever writing the matrix down: it has an
-// entry for every two photos that share a point. Photos that do not learn stand still.
+// Log gains of one colour that minimise the weighted squares. The points' light is eliminated; the remaining system has an entry for every two photos
+// that share a point, so it is solved by conjugate gradients without storing the matrix. Photos that do not learn keep their gains.
 Eigen::VectorXd Solve(std::span<const Sighting> sightings, const std::vector<double>& weight, size_t colour, const brightness::LearnerOptions& learn,
                       const Eigen::VectorXd& before) {
   const Eigen::Index n = before.size();
@@ -107,10 +107,10 @@ Eigen::VectorXd Solve(std::span<const Sighting> sightings, const std::vector<dou
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto photo = static_cast<size_t>(i);
     moves[i] = learn.learns_gain[photo] != 0 ? 1.0 : 0.0;
-    // Towards what tags say; a trace even without, because all photos together have no place of their own.
+    // Damping towards the tags' gains; a little even without tags, because the common factor of all photos is undetermined.
     damping[i] = kTrace + (learn.tag_weight.empty() ? 0.0 : static_cast<double>(learn.tag_weight[photo])) * diagonal[i];
   }
-  // Sum over a photo's sightings of a quantity's distance from its mean over each point.
+  // Per photo: weighted sum over its sightings of a quantity minus its mean over the point.
   const auto about_points = [&](const auto& value) {
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(n);
     ForEachPoint(sightings, weight, value, [&](size_t first, size_t last, double mean) {
@@ -139,8 +139,8 @@ Eigen::VectorXd Solve(std::span<const Sighting> sightings, const std::vector<dou
   return gains;
 }
 
-// Vignetting of every camera that explains best what the gains leave, all colours together; none where it hardly explains any of that, for light
-// that depends on the angle of view looks a little like it.
+// Fits the vignetting of every camera to the residuals of the gains, all colours together. It stays zero when it explains only a small part of the
+// residuals, because reflection that depends on the viewing angle looks similar.
 void SolveVignetting(std::span<const Sighting> sightings, const std::array<std::vector<double>, 3>& weight,
                      const std::array<Eigen::VectorXd, 3>& gains, brightness::Response& response) {
   const size_t cameras = response.vignetting.size() / 3;
@@ -148,7 +148,7 @@ void SolveVignetting(std::span<const Sighting> sightings, const std::array<std::
   std::vector<Eigen::Vector3d> right(cameras, Eigen::Vector3d::Zero());
   std::vector<double> squares(cameras, 0.0);
   for (size_t c = 0; c < 3; ++c) {
-    // Light and powers of the radius together, about their means over each point.
+    // Powers of the radius and residual log light, whose means over each point are subtracted below.
     const auto row = [&](size_t s) {
       Eigen::Vector4d values;
       values << Powers(sightings[s].radius2), sightings[s].log_light[c] - gains[c][sightings[s].photo];
@@ -171,7 +171,7 @@ void SolveVignetting(std::span<const Sighting> sightings, const std::array<std::
   }
 }
 
-// Takes over the gains of photos that share enough points; what all have in common goes where nothing anchors it.
+// Stores the gains of photos with enough points, and subtracts their mean when no photo anchors it.
 bool KeepGains(const std::array<Eigen::VectorXd, 3>& gains, std::span<const Sighting> sightings, const brightness::LearnerOptions& learn,
                brightness::Response& response) {
   std::vector<int> count(response.photos(), 0);
@@ -224,7 +224,7 @@ bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& p
       const auto c = static_cast<size_t>(colour);
       gains[c] = Solve(flat, weight[c], c, learn, gains[c]);
       const auto light = [&](size_t s) { return flat[s].log_light[c] - gains[c][flat[s].photo]; };
-      // Cauchy weights about each point's own mean.
+      // Cauchy weights of the residuals from each point's mean.
       ForEachPoint(flat, weight[c], light, [&](size_t first, size_t last, double mean) {
         for (size_t s = first; s < last; ++s) {
           const double off = (light(s) - mean) / kScatter;

@@ -1,7 +1,8 @@
-// Photos' gains from what they recorded of the same places: sparse points are looked up in every training photo that shows them, and
-//   log recorded light = log light of the point + log gain of the photo + log vignetting of its camera there
-// is solved for all by weighted least squares, robustly, because points are hidden in some photos (Brown and Lowe 2007, section 6, in the
-// logarithm). Where training starts from: gradients would need many steps to align photos that hardly overlap.
+// Estimates the photos' gains before training from sparse points that several photos show, because gradients would need many steps to align photos
+// that hardly overlap. The pixels at each point are read from every training photo that shows it, and
+//   log recorded light = log light of the point + log gain of the photo + log vignetting of its camera at the pixel
+// is solved for all unknowns by robust weighted least squares (Brown and Lowe 2007, section 6, in the logarithm); robust, because points are hidden
+// in some photos.
 #pragma once
 
 #include "core/brightness/response.h"
@@ -12,9 +13,9 @@
 
 namespace skyquilt::worker {
 
-// True when nearly all photos that learn share enough points, so that little is left to learn. Sets response.log_gain of the photos that learn, and
-// response.vignetting when that is learned; other photos' gains stay and anchor them. Without photos that stay, the mean is zero. Photos that share
-// fewer than a few points with others keep what they have.
+// Sets response.log_gain of the photos that learn their gain (learn.learns_gain), and response.vignetting when learn.vignetting is true. The other
+// photos keep their gains and fix the common factor; when learn.anchored is false, the mean log gain is zero. Photos with fewer than 8 usable points
+// keep their gains. Returns true when at least 95 % of the photos that learn have enough points, so that training need not learn gains.
 bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
                         const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads);
 

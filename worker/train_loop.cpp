@@ -10,10 +10,10 @@
 namespace skyquilt::worker {
 namespace {
 
-constexpr int kOccupancyEvery = 16;
-constexpr int kGrowEvery = 128;
-constexpr double kGrowUntil = 0.6;       // of the budget; later, cells that hold nothing only cost samples
-constexpr double kVisitsToJudge = 16.0;  // samples per occupied cell: fewer, and chance alone leaves cells out
+constexpr int kOccupancyEvery = 16;      // steps
+constexpr int kGrowEvery = 128;          // steps
+constexpr double kGrowUntil = 0.6;       // share of the budget; later, new cells would mostly be empty and only cost samples
+constexpr double kVisitsToJudge = 16.0;  // samples per occupied cell: with fewer, cells may be unsampled by chance
 constexpr int kMaxDroppedInARow = 20;
 constexpr double kReportEvery_s = 0.5;
 
@@ -82,7 +82,7 @@ bool TrainLoop::Step(double fraction) {
   return true;
 }
 
-// The running mean of the error, and how many steps failed in a row: false when they are too many.
+// Updates the running mean of the error and the number of non-finite steps in a row; false when there are too many of these.
 bool TrainLoop::KeepError(const StepResult& step) {
   if (!step.finite) {
     ++record_.dropped_steps;
@@ -136,7 +136,7 @@ void TrainLoop::SaveAtTimes() {
   last_ = last_save_ = Now();  // saving is not training
 }
 
-// Cells at the edge of view that no ray happened to cross would show whatever the tables hold there.
+// Frees cells at the edge of the photos that no ray has crossed: their densities and colours were never trained.
 void TrainLoop::ForgetUnseenCells() {
   field::OccupancyGrid& cells = target_.occupancy;
   if (static_cast<double>(record_.samples) > kVisitsToJudge * cells.OccupiedShare() * static_cast<double>(cells.CellCount())) {

@@ -1,4 +1,4 @@
-// The loop that fields of both kinds share: steps until the budget is used up, with reports and checkpoints on the way.
+// The training loop of context and blocks: steps until the budget is used up, with progress reports and checkpoints.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,25 @@ namespace skyquilt::worker {
 
 class TrainLoop {
  public:
-  // kind and extras as SaveSession takes them; record: how far an earlier run came. All references must outlive the loop.
+  // kind, extras: as for SaveSession. record: progress of earlier runs. All references must outlive the loop.
   TrainLoop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const ContextExtras* extras,
             const SessionRecord& record, const Reporter& report);
 
-  // False when steps kept failing: the result is then Failure(). Throws base::Interrupted after saving when cancelled, base::InputError for a
-  // checkpoint that cannot be written.
+  // False when too many steps in a row were not finite: the result is then Failure(). Throws base::Interrupted after saving when cancelled,
+  // base::InputError when a checkpoint cannot be written.
   bool Run();
-  // Saves the field as complete. findings: of the context, null for blocks. Throws base::InputError.
+  // Saves the field as complete. findings: null for blocks. Throws base::InputError when the checkpoint cannot be written.
   TrainResult SaveResult(const ContextFindings* findings);
   TrainResult Failure() const;
 
  private:
-  // What happened since the last report.
+  // Counts since the last report.
   struct Recent {
     double rays = 0.0, samples = 0.0, seconds = 0.0;
   };
 
-  double Fraction() const;
-  // One step and its bookkeeping; false when too many failed in a row.
+  double Fraction() const;  // of the budget used so far
+  // One step, with occupancy and counts; false when too many steps in a row were not finite.
   bool Step(double fraction);
   bool KeepError(const StepResult& step);
   void KeepCounts(const StepResult& step);
@@ -46,7 +46,7 @@ class TrainLoop {
   SessionRecord record_;
   const Reporter& report_;
   int64_t total_steps_;  // 0: a time budget decides
-  // Seconds of a steady clock: when the last step ended, and what else happened when.
+  // Times of the last step's end, the last checkpoint and the last report, in seconds of a steady clock.
   double last_ = 0.0, last_save_ = 0.0, last_report_ = 0.0;
   int dropped_in_a_row_ = 0;
   double loss_ = 0.0;  // of the last step

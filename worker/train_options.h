@@ -1,4 +1,5 @@
-// Options of training one field: [context] and [train] in the configuration.
+// Options for training one field. [context] has them for the coarse field of the whole survey, [train] for every block: both are trained by the same
+// code, with different budgets and sizes. Allowed values are in Fields(), and are shown in the written configuration.
 #pragma once
 
 #include <string>
@@ -9,33 +10,43 @@
 namespace skyquilt::worker {
 
 struct TrainOptions {
-  int steps = 0;              // > 0: exactly this many
-  double seconds = 0.0;       // time budget of this field when steps = 0; both 0: kDefaultSteps
-  int batch_samples = 32768;  // samples per step; the number of rays adapts to it
-  std::string encoding = "hash";
-  int levels = 8;
-  int features = 4;
-  int base_resolution = 16;
-  int hidden = 64;
+  // Budget. With both 0: kDefaultSteps.
+  int steps = 0;         // optimiser steps; 0: `seconds` decides
+  double seconds = 0.0;  // training time of this field
+
+  int batch_samples = 32768;  // samples per step; the number of rays per step adapts to it
+
+  // Encoding of positions (core/encoding) and networks (core/field).
+  std::string encoding = "hash";  // hash, voxels, planes or frequency
+  int levels = 8;                 // resolutions of the hash grid
+  int features = 4;               // numbers per entry of the hash grid
+  int base_resolution = 16;       // cells along the longest edge at the coarsest level; the finest one follows from the block's voxel size
+  int hidden = 64;                // width of the hidden layers of both networks
   int density_hidden_layers = 1;
   int color_hidden_layers = 1;
-  int sh_degree = 3;
-  double learning_rate = 3e-2;
-  double final_learning_rate_share = 0.1;
-  double step_voxels = 2.0;
-  bool stratified = true;
-  double network_l2 = 1e-6;
-  double distortion = 1e-2;
-  double empty_ray_share = 0.05;
+  int sh_degree = 3;  // of the spherical harmonics of the viewing direction; 1: colour does not depend on it
+
+  // Adam. The rate rises over the first 50 steps, then is constant, then falls geometrically.
+  double learning_rate = 3e-2;             // highest rate
+  double final_learning_rate_share = 0.1;  // rate at the end divided by learning_rate
+
+  // Rays and losses.
+  double step_voxels = 2.0;       // distance between the samples of a ray, in finest voxels
+  bool stratified = true;         // samples of a ray are shifted by a random part of a step
+  double network_l2 = 1e-6;       // weight decay of the networks
+  double distortion = 1e-2;       // weight of the distortion loss (worker/losses/distortion_loss.h)
+  double empty_ray_share = 0.05;  // share of a block's rays whose surface is behind the block: it must be transparent there
+
   double checkpoint_every_s = 20.0;
-  std::string coupling = "guided";
-  std::string start = "surfaces";
+  std::string coupling = "guided";  // guided: blocks render the context outside their ground plan; independent: they do not use its field
+  std::string start = "surfaces";   // cells that are sampled first: near known surfaces, or everywhere that photos see
 
   static std::vector<config::Field<TrainOptions>> Fields();
-  // Throws base::UsageError naming the option and the rule it broke; `section` is its name in the configuration.
+  // Throws base::UsageError that names the option and its rule. section: "context" or "train".
   void Check(const std::string& section) const;
 };
 
+// Steps per field when neither steps nor seconds is set.
 constexpr int kDefaultSteps = 2000;
 
 }  // namespace skyquilt::worker

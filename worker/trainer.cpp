@@ -23,11 +23,11 @@ namespace {
 
 constexpr int64_t kMaxOccupancyCells = 4'000'000;
 constexpr double kCellPerVoxel = 3.0;
-// Largest display value of a field whose photos' gains are learned: white in a photo of a stop less.
+// Largest display value of a field's colours when gains are learned: white in a photo that was exposed one stop less.
 constexpr double kLearnedRange = 1.4;
 constexpr double kLuminanceRange = 2.0;
 
-// Largest display value that the training photos, brought to reference exposure, can ask for.
+// Largest display value that the training photos can have at reference exposure.
 double ColorRange(const survey::Survey& survey, const brightness::Response& response) {
   std::vector<float> gains;
   for (size_t i = 0; i < survey.photos.size(); ++i) {
@@ -38,7 +38,7 @@ double ColorRange(const survey::Survey& survey, const brightness::Response& resp
   return brightness::ColorRange(gains);
 }
 
-// response: as far as it is known; `learning` when more is to be found out while the field trains.
+// A field without parameters. response: as known so far; learning: whether gains are learned while the field trains.
 render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool is_context, const brightness::Luminance& luminance,
                                 const brightness::Response& response, bool learning) {
   const TrainOptions& options = job.options;
@@ -62,7 +62,7 @@ render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool
   f.config.color_range = ColorRange(*job.survey, response);
   if (learning) f.config.color_range = std::max(f.config.color_range, kLearnedRange);
   f.config.luminance = luminance.On();
-  // What is shown brighter than the photos, or was brighter than they could say.
+  // Light that is shown brighter than in the photos, or that was too bright for them.
   if (luminance.On()) f.config.color_range = std::max(f.config.color_range, kLuminanceRange);
   f.occupancy = field::OccupancyGrid::Make(grid.extent, kCellPerVoxel * spec.finest_voxel_m * f.map.units_per_metre(), kMaxOccupancyCells);
   return f;
@@ -94,7 +94,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   source.SetTiles(TilesWithEnoughViews(source, *job.survey, area.photos, surface, job.min_views), {}, 0.0);
   if (!source.HasRays()) {
     TrainResult none;
-    none.reason = "no training photo sees the survey area";
+    none.reason = "no training photo sees the survey area; check the poses in the survey";
     return none;
   }
   if (GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads)) learner.Rest();
@@ -130,11 +130,14 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
   if (saved) {
     if (const std::optional<TrainResult> finished = FinishedResult(*saved)) return *finished;
   }
-  // Even blocks that do not look at the context share its brightness.
+  // Even independent blocks use the context's brightness.
   LoadedContext loaded = LoadContext(context_checkpoint);
   const LoadedContext* context = job.options.coupling == "guided" ? &loaded : nullptr;
   if (loaded.response.photos() != job.survey->photos.size()) {
-    throw base::InputError(context_checkpoint, "belongs to a survey of another number of photos", "Train it again with --restart");
+    throw base::InputError(
+        context_checkpoint,
+        "was trained with " + std::to_string(loaded.response.photos()) + " photos, but the survey has " + std::to_string(job.survey->photos.size()),
+        "Train it again with --restart");
   }
   render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false);
   RaySource source(*job.survey, *job.pixels, loaded.response);

@@ -1,5 +1,6 @@
-// Places that too few training photos see. A single photo says nothing about depth: what is learned from it alone hangs somewhere along its
-// rays and comes out as shards from any other place. Fields learn nothing there; the background shows its coarse colours.
+// Finds places that too few training photos see. A single photo does not determine depth: a field fits it with density at any distance along the
+// rays, which shows as floaters from every other viewpoint. Fields are therefore not trained on such places, and the background shows their coarse
+// colours (core/scene/background.h).
 #pragma once
 
 #include <vector>
@@ -10,12 +11,14 @@
 
 namespace skyquilt::worker {
 
-// Training photos among `photos` whose frame shows the ball of radius_m around a place; counting stops at `enough`.
+// Number of training photos among `photos` whose image shows the ball of radius_m metres around x_in_enu, even partly or hidden behind surfaces.
+// Stops counting at `enough`.
 int CountViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const Eigen::Vector3d& x_in_enu,
                double radius_m, int enough);
 
-// The training tiles of the photos whose ground at least min_views training photos see, their own included. All tiles when that leaves none,
-// without a surface, and for min_views < 2.
+// The tiles of the training photos among `photos` whose ground at least min_views of these photos see, including their own. The ground of a tile is
+// where its centre ray meets `surface`; tiles that miss it are kept. All tiles when none has enough views, when `surface` is empty, and for min_views
+// < 2.
 std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
                                        const scene::HeightMap& surface, int min_views);
 

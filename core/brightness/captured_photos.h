@@ -1,4 +1,4 @@
-// A survey's photos as the prediction of gains wants them.
+// Turns a survey's photos into the input of PredictGains (predict_gains.h).
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace skyquilt::brightness {
 
-// Whether every photo says when it was taken.
+// Whether every photo has a capture time.
 bool AllTimed(const survey::Survey& survey);
-// One per photo: seconds of capture, or the place in the survey where not all are timed; a group per flight and camera; learned unless held
-// out; tagged with an exposure time.
+// One entry per photo of the survey. order: capture time in seconds, or the photo's index when not every photo has a time. group: one number per
+// flight and camera. learned: not held out. tagged: has a usable exposure time.
 std::vector<CapturedPhoto> CapturedPhotos(const survey::Survey& survey);
 
 }  // namespace skyquilt::brightness

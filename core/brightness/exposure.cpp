@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kSrgbOffset = 0.055F;
 constexpr float kSrgbPower = 2.4F;
-// Display values at and below this lie in sRGB's linear toe.
+// Display values at and below this are in sRGB's linear toe.
 constexpr float kToe = 0.04045F;
 
 }  // namespace
@@ -58,7 +58,7 @@ Exposure Exposure::FromLogGain(float log_gain) {
 Exposed Expose(float srgb_reference, const Exposure& exposure) {
   const float safe = std::max(srgb_reference, 0.0F);
   const float lifted = exposure.root * (safe + kSrgbOffset);
-  // Above the toe on both sides sRGB is a pure power law, and the gain a factor on the value plus its offset.
+  // When both values are above the toe, sRGB is a pure power law and the gain a factor on (display value + offset).
   if (safe > kToe && lifted > kToe + kSrgbOffset) return {lifted - kSrgbOffset, exposure.root, lifted / kSrgbPower};
   const float linear = exposure.gain * image::LinearFromSrgb(safe);
   const float encode_slope = image::SrgbSlope(linear);

@@ -1,6 +1,7 @@
-// Brightness from camera settings, and what a change of exposure does to a display value. A photo's exposure is E = t * ISO / (100 * N^2)
-// (linear light collected per unit of scene radiance); its gain is E over the survey's median E, so that gain * scene light = what the
-// photo recorded.
+// The same place is brighter in a photo with a longer exposure. To compare renderings with photos, this header computes a photo's gain from its
+// camera settings and applies a gain to display values.
+// Exposure: E = t * ISO / (100 * N^2), t shutter time in seconds, N f-number: linear light collected per unit of scene radiance.
+// Gain: E over the survey's median E, so that recorded linear light = gain * scene light.
 #pragma once
 
 #include <optional>
@@ -8,39 +9,39 @@
 
 namespace skyquilt::brightness {
 
-// Absent aperture or ISO count as constant over the survey (N = 1, ISO 100); nothing without a positive, finite shutter time.
+// E of a photo. A missing f-number or ISO is taken as constant over the survey (N = 1, ISO 100). Empty without a positive, finite shutter time.
 std::optional<double> ExifExposure(std::optional<double> time_s, std::optional<double> f_number, std::optional<double> iso);
 
-// Natural logarithm of the largest change of exposure that is believed: ten stops. Beyond, a tag is wrong.
+// Natural logarithm of the largest accepted gain: ten stops. Tags that ask for more are wrong.
 constexpr float kMaxLogGain = 6.9314718F;
 
 struct PhotoGains {
   double reference_exposure = 0.0;  // median E of the tagged photos; 0 when none is tagged, and all gains are 1
   std::vector<float> gain;          // per photo, > 0; 1 for photos without tags
-  std::vector<bool> known;          // per photo: from its tags
+  std::vector<bool> known;          // per photo: whether its gain comes from its tags
 };
 
-// Gains relative to the median, limited to kMaxLogGain.
+// Gains relative to the median exposure, limited to +-kMaxLogGain. One entry per photo; an empty exposure means no tags.
 PhotoGains GainsFromExif(const std::vector<std::optional<double>>& exposures);
 
-// Largest display value a field must be able to show so that the darkest-exposed photo can still be white; within [1, 4].
+// Largest display value a field's colours must reach so that the photo with the smallest gain can still record white; within [1.02, 4].
 double ColorRange(const std::vector<float>& gains);
 
-// A change of exposure: linear light times `gain`. Made once for many colours.
+// A change of exposure: multiplies linear light by `gain`. Computed once and applied to many colours.
 struct Exposure {
   float log_gain = 0.0F;
   float gain = 1.0F;
-  float root = 1.0F;  // gain^(1 / 2.4): what the gain does to display values above sRGB's linear toe
+  float root = 1.0F;  // gain^(1 / 2.4): factor on (display value + 0.055) above sRGB's linear toe
   static Exposure FromLogGain(float log_gain);
 };
 
-// One colour channel of a rendering (display value at reference exposure) as the photo would have recorded it, its derivative by that
-// display value, and by log_gain. Finite for any finite input; negative display values count as black.
+// One colour channel of a rendering as a photo with this exposure would have recorded it, with derivatives.
 struct Exposed {
-  float value;
-  float slope;
-  float log_gain_slope;
+  float value;           // display value
+  float slope;           // d value / d srgb_reference
+  float log_gain_slope;  // d value / d log_gain
 };
+// srgb_reference: display value at reference exposure; negative values count as black. Finite for any finite input.
 Exposed Expose(float srgb_reference, const Exposure& exposure);
 
 }  // namespace skyquilt::brightness

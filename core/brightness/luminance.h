@@ -1,7 +1,9 @@
-// The concealing field of a badly exposed survey (tidal-flat paper, after Aleth-NeRF). One density, one colour, and a factor Omega in (0, 1) for
-// every sample; two renderings come from them. The plain one has the field's own colours; in the concealed one the samples' light is held
-// back by Omega. Under-exposed: the concealed rendering is what the photos recorded and the plain one shows the scene as it should look.
-// Over-exposed: the other way round.
+// Photos of an under- or over-exposed survey are too dark or too bright to show as they are. The concealing field learns a second rendering with a
+// given mean brightness beside the one that matches the photos (tidal-flat paper, after Aleth-NeRF, Cui et al. 2024).
+// Every sample has one density, one colour and a factor Omega in (0, 1). The plain rendering uses the colours as they are; the concealed rendering
+// dims the light of the samples by Omega and is therefore darker.
+//   under-exposed: the concealed rendering matches the photos, the plain one is shown to people
+//   over-exposed:  the plain rendering matches the photos, the concealed one is shown to people
 #pragma once
 
 #include <cstdint>
@@ -16,30 +18,31 @@ enum class LuminanceMode { kNone, kUnder, kOver };
 
 struct Luminance {
   LuminanceMode mode = LuminanceMode::kNone;
-  bool product = false;         // Omegas multiply along the ray (eq. 13) instead of each holding back its own sample's light
-  bool patches = true;          // the convolution runs over neighbouring pixels instead of over unrelated ones
-  double target = 0.4;          // mean display value of the shown rendering
-  double start_log_gain = 0.0;  // natural logarithm of the Omega that brings the photos' mean to the target, < 0
+  bool product = false;         // true: the Omegas multiply along the ray (eq. 13); false: each Omega dims its own sample only
+  bool patches = true;          // true: the convolution runs over neighbouring pixels; false: over unrelated pixels
+  double target = 0.4;          // mean display value of the rendering shown to people, 0..1
+  double start_log_gain = 0.0;  // natural logarithm of the Omega that relates the photos' mean to the target, < 0
 
   bool On() const { return mode != LuminanceMode::kNone; }
 };
 
-// What a survey's photos look like.
+// Statistics of a survey's photos from which badly exposed surveys are recognised.
 struct BrightnessStatistics {
-  double mean_srgb = 0.0;  // display values as recorded
-  double clipped = 0.0;    // share of pixels with a colour at the top of the scale
+  double mean_srgb = 0.0;  // mean display value as recorded, 0..1
+  double clipped = 0.0;    // share of pixels with a saturated colour channel
 };
 
-// Mode as the options ask; "auto" takes under below a mean of 0.2 and over where the mean is above 0.75 or a tenth of the pixels is clipped.
+// Mode as set in the options. "auto": under when the mean is below 0.2; over when the mean is above 0.75 or more than a tenth of the pixels are
+// clipped; otherwise none.
 Luminance PlanLuminance(const BrightnessOptions& options, const BrightnessStatistics& statistics);
 
-// What training keeps track of, and renderings need: a running mean of the shown display values and of log Omega.
+// Running means over training rays, which renderings need as well.
 struct LuminanceState {
-  double mean_shown = 0.0;
-  double mean_log_gain = 0.0;
+  double mean_shown = 0.0;     // display value of the rendering shown to people
+  double mean_log_gain = 0.0;  // log Omega
 };
 
-// Under "luminance_..." attributes; files without them have LuminanceMode::kNone.
+// Stored as "luminance_..." attributes; files without them give LuminanceMode::kNone.
 void PutLuminance(const Luminance& luminance, const LuminanceState& state, checkpoint::ArchiveWriter& writer);
 void GetLuminance(const checkpoint::ArchiveReader& reader, Luminance* luminance, LuminanceState* state);
 

@@ -1,4 +1,5 @@
-// [brightness] in the configuration: what is done about exposure differences between photos.
+// [brightness] in the configuration: which differences in brightness between photos are corrected, and how. Without correction the field bakes them
+// into its colours or explains them with floaters.
 #pragma once
 
 #include <string>
@@ -9,23 +10,25 @@
 namespace skyquilt::brightness {
 
 struct BrightnessOptions {
-  std::string correction = "exif,gain,vignette";
-  std::string luminance_mode = "auto";
-  double target_brightness = 0.4;
-  std::string luminance_form = "gain";
-  std::string luminance_neighbours = "patch";
+  std::string correction = "exif,gain,vignette";  // list of exif, gain, vignette, luminance, separated by commas; or none
+  // The rest is for the concealing field (luminance.h), which `correction` turns on by "luminance".
+  std::string luminance_mode = "auto";         // under, over, or auto: decided from the photos
+  double target_brightness = 0.4;              // mean display value of the rendering shown to people
+  std::string luminance_form = "gain";         // gain: Omega dims its own sample only; product: the Omegas multiply along the ray
+  std::string luminance_neighbours = "patch";  // pixels that the convolution runs over: patch (neighbouring) or batch (unrelated)
 
   static std::vector<config::Field<BrightnessOptions>> Fields();
-  // Throws base::UsageError naming the option and what it may be.
+  // Throws base::UsageError that names the option and its allowed values.
   void Check() const;
 
+  // Whether `correction` lists ...
   bool Exif() const { return Has("exif"); }
   bool Gain() const { return Has("gain"); }
   bool Vignette() const { return Has("vignette"); }
   bool Luminance() const { return Has("luminance"); }
 
  private:
-  bool Has(const std::string& rung) const;
+  bool Has(const std::string& name) const;
 };
 
 }  // namespace skyquilt::brightness

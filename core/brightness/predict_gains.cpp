@@ -32,7 +32,7 @@ double LogExif(const Response& response, size_t photo) {
 }  // namespace
 
 double TrustInTags(const Response& response, const std::vector<CapturedPhoto>& photos) {
-  constexpr double kHardly = 1e-3;  // mean squared change of log exposure
+  constexpr double kHardly = 1e-3;  // mean squared change of log exposure below which tags count as constant
   double both = 0.0, tags = 0.0, pairs = 0.0;
   for (const std::vector<size_t>& sequence : Sequences(photos)) {
     const size_t none = photos.size();
@@ -55,8 +55,8 @@ double TrustInTags(const Response& response, const std::vector<CapturedPhoto>& p
 
 namespace {
 
-// What tags leave unexplained of the learned photos' gains, over time. Of tagged photos (tags = true) beyond the trusted part of their tags, and
-// between tagged ones; else of all photos, tags included.
+// The residual of the learned photos' log gains over time. tags = true: the part that the trusted tags do not explain, of tagged photos only;
+// tags = false: the whole log gain, tags included, of all photos.
 class RestOverTime {
  public:
   RestOverTime(const Response& response, const std::vector<CapturedPhoto>& photos, bool tags, double trust)
@@ -64,9 +64,9 @@ class RestOverTime {
 
   bool Counts(size_t photo) const { return photos_[photo].learned && (!tags_ || photos_[photo].tagged); }
   double Of(size_t photo, size_t c) const { return static_cast<double>(response_.log_gain[3 * photo + c]) + Unexplained(photo); }
-  // The part of the tags that is not taken to explain anything.
+  // The part of a photo's tagged log gain that is not trusted.
   double Unexplained(size_t photo) const { return (1.0 - explained_) * LogExif(response_, photo); }
-  // Interpolated at place k of a sequence between the nearest learned photos before and after it; its own is not used.
+  // The residual at position k of a sequence, interpolated between the nearest learned photos before and after it; the photo's own is not used.
   std::optional<std::array<double, 3>> At(const std::vector<size_t>& sequence, size_t k) const {
     std::optional<size_t> before, after;
     for (size_t i = k; i > 0 && !before; --i) {
@@ -102,8 +102,8 @@ void Predict(const std::vector<CapturedPhoto>& photos, bool tags, double trust, 
     n += 1.0;
   }
   for (double& value : mean) value /= std::max(n, 1.0);
-  // Light changes slowly, but what is off from one photo to the next has no memory: as much of the neighbours is used as would have predicted the
-  // learned photos best.
+  // Light changes slowly, but errors that jump from photo to photo cannot be interpolated. `memory` (0..1) is the least-squares factor on the
+  // interpolated deviation from the mean that predicts the learned photos best.
   double both = 0.0, neighbours = 0.0;
   for (const std::vector<size_t>& sequence : sequences) {
     for (size_t k = 0; k < sequence.size(); ++k) {

@@ -89,7 +89,7 @@ Response GetResponse(const checkpoint::ArchiveReader& reader, const std::filesys
   const auto cameras = static_cast<int64_t>(response.vignetting.size() / 3);
   const bool fits = response.log_gain.size() == 3 * response.photos() && response.camera.size() == response.photos() &&
                     std::all_of(response.camera.begin(), response.camera.end(), [&](int64_t c) { return c >= 0 && c < cameras; });
-  if (!fits) throw base::InputError(file, "what it says about the photos' brightness disagrees with itself", "Train it again with --restart");
+  if (!fits) throw base::InputError(file, "its arrays response/... have sizes that disagree with each other", "Train it again with --restart");
   return response;
 }
 

@@ -1,7 +1,8 @@
-// How the photos of a survey recorded light, relative to a camera at reference exposure:
+// The camera response of a survey: how bright each photo recorded the light of the scene, so that photos of different brightness can train one
+// field. Relative to a camera at reference exposure, in linear light:
 //   recorded = light * exif_gain[photo] * exp(log_gain[photo][colour]) * vignetting of its camera at the pixel
-// all in linear light. The vignetting is exp(a r^2 + b r^4 + c r^6), r the distance from the principal point over that of the farthest corner:
-// 1 on the axis, positive everywhere, and the radial polynomial of Goldman and Chen (2005, eq. 2) to first order.
+// Vignetting is exp(a r^2 + b r^4 + c r^6), r = distance from the principal point divided by that of the farthest corner: 1 on the optical axis,
+// positive everywhere, and to first order the radial polynomial of Goldman and Chen (2005, eq. 2).
 #pragma once
 
 #include <array>
@@ -17,30 +18,33 @@
 namespace skyquilt::brightness {
 
 struct Response {
-  double reference_exposure = 0.0;  // EXIF E that gain 1 stands for; 0 when unknown
-  std::vector<float> exif_gain;     // per photo, > 0; 1 where the tags say nothing or are not used
-  std::vector<float> log_gain;      // [photo][red, green, blue], natural logarithm; 0 for held-out photos
-  std::vector<int64_t> camera;      // per photo
+  double reference_exposure = 0.0;  // EXIF exposure E at gain 1 (exposure.h); 0 when unknown
+  std::vector<float> exif_gain;     // per photo, > 0; 1 where tags are missing or not used
+  std::vector<float> log_gain;      // [photo][red, green, blue], natural logarithm; 0 for held-out photos until PredictGains
+  std::vector<int64_t> camera;      // per photo: index into vignetting
   std::vector<float> vignetting;    // [camera][a, b, c]
-  std::vector<uint8_t> names;       // of the photos, one per line; empty when unknown
+  std::vector<uint8_t> names;       // of the photos, one per line, UTF-8; empty when unknown
 
+  // All gains 1, no vignetting, every photo of camera 0.
   static Response Plain(size_t photos, size_t cameras);
   size_t photos() const { return exif_gain.size(); }
-  // Natural logarithm of the vignetting of a photo's camera; radius2 = r^2 in [0, 1].
+  // Natural logarithm of the vignetting of a photo's camera. radius2: r^2, in [0, 1].
   float LogVignetting(size_t photo, float radius2) const;
-  // Natural logarithms of all three factors together; on the axis by default.
+  // Natural logarithm of the product of all three factors, per colour; on the optical axis by default.
   std::array<float, 3> LogGain(size_t photo, float radius2 = 0.0F) const;
+  // Per colour, on the optical axis.
   std::array<Exposure, 3> ExposureOf(size_t photo) const;
-  // The same at a pixel away from the axis.
+  // Per colour, at a pixel with this r^2.
   std::array<Exposure, 3> ExposureOf(size_t photo, float radius2) const { return FallenOff(ExposureOf(photo), LogVignetting(photo, radius2)); }
+  // Multiplies by a vignetting factor.
   static std::array<Exposure, 3> FallenOff(std::array<Exposure, 3> exposure, float log_vignetting);
-  // The photo of this name: as it is listed, or the only one whose file name it is.
+  // The photo with this name: its full name as listed, or its file name when only one photo has it.
   std::optional<size_t> Find(const std::string& name) const;
 };
 
-// Arrays under "response/". The response must outlive the writer's Commit.
+// Writes arrays under "response/". The response must outlive the writer's Commit.
 void PutResponse(const Response& response, checkpoint::ArchiveWriter& writer);
-// Throws base::InputError when arrays disagree. A file without them gives a response of no photos.
+// A file without these arrays gives a response of no photos. Throws base::InputError when the arrays' sizes disagree.
 Response GetResponse(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file);
 
 }  // namespace skyquilt::brightness

@@ -9,10 +9,10 @@
 namespace skyquilt::brightness {
 namespace {
 
-// Rates at the start and the end of training; between them geometrically. A stop is 0.69.
+// Learning rates at the start and the end of training, in log gain (a stop is 0.69); geometric in between.
 constexpr double kGainRate = 2e-2, kLastGainRate = 5e-4;
 constexpr float kBeta1 = 0.9F, kBeta2 = 0.99F;
-// Second derivative of a pixel's squared error by the logarithm of its gain, for a display value in the middle of the scale.
+// Second derivative of a pixel's squared error by its log gain, for a display value in the middle of the scale.
 constexpr double kSquaredPerLog = 0.1;
 
 double RateAt(double progress, double first, double last) {
@@ -95,7 +95,10 @@ void ResponseLearner::Put(checkpoint::ArchiveWriter& writer) const {
 void ResponseLearner::Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
   const auto take = [&](auto& to, auto from, const char* name) {
     if (from.size() != to.size()) {
-      throw base::InputError(file, std::string("array '") + name + "' belongs to another number of photos", "Train again with --restart");
+      throw base::InputError(
+          file,
+          std::string("array '") + name + "' has " + std::to_string(from.size()) + " numbers, but this survey needs " + std::to_string(to.size()),
+          "Train again with --restart");
     }
     to = std::move(from);
   };

@@ -1,8 +1,10 @@
-// Learns what tags do not tell about the photos' brightness, beside the field: gains per photo and colour. Adam in the logarithm of light; photos
-// without a gradient in a step keep their gains and moments. Vignetting is not learned so: a field that is still learning is worse in the corners of
-// photos, where fewer of them overlap, and that looks like vignetting.
-// Gains and the field's colours are known up to a common factor only. Where every training photo learns, their mean logarithm is therefore
-// taken off after every step: a projection, because a penalty would let field and gains drift apart into opposite casts.
+// Exposure tags do not explain all differences in brightness: clouds pass and white balance changes. The learner fits a gain per photo and colour
+// while the field trains, so that the field does not have to explain these differences.
+// Adam on the logarithm of the gains; photos without a gradient in a step keep their gains and moments.
+// Gains and the field's colours are determined only up to a common factor. When every training photo learns, the mean log gain is therefore
+// subtracted after every step. This is a projection and not a penalty: with a penalty, field and gains would drift into opposite colour casts.
+// Vignetting is not learned this way: an unfinished field has larger errors in the corners of photos, where fewer photos overlap, and that looks
+// like vignetting (worker/tie_point_gains.h solves for it instead).
 #pragma once
 
 #include <algorithm>
@@ -16,13 +18,15 @@
 namespace skyquilt::brightness {
 
 struct LearnerOptions {
-  std::vector<uint8_t> learns_gain;  // per photo
-  // Per photo: tag weight: how strongly its gain is drawn to what its tags say, in pixels per pixel of it that training sees. What neighbouring
-  // photos show outweighs a hundredth of that; what only drifts along over a whole survey, such as light on water, does not. Empty: none.
+  std::vector<uint8_t> learns_gain;  // per photo: 1 learns its gain, 0 keeps it
+  // Per photo, >= 0: strength of a quadratic prior that keeps log_gain near 0, that is, the total gain near what the tags say. 1 counts as much as
+  // the pixels of the photo themselves. At a weight of about 0.01 differences between overlapping photos still win over the prior, but a slow drift
+  // over the whole survey, such as light on water, does not. Empty: no prior.
   std::vector<float> tag_weight;
-  bool anchored = false;    // some training photos keep their gains, so the others have no common factor to drift by
-  bool vignetting = false;  // of the cameras, from tie points alone
+  bool anchored = false;    // some training photos keep their gains and fix the common factor: the mean is not subtracted
+  bool vignetting = false;  // also solve for the cameras' vignetting, from tie points only
 
+  // Whether any photo learns its gain.
   bool Gains() const { return std::find(learns_gain.begin(), learns_gain.end(), uint8_t{1}) != learns_gain.end(); }
 };
 
@@ -32,16 +36,17 @@ class ResponseLearner {
   ResponseLearner(Response& response, const LearnerOptions& options);
 
   bool active() const { return active_ && !resting_; }
-  // One more pixel: d loss / d log gain per colour, and the pixel's share of the loss.
+  // Adds the gradient of one pixel: d loss / d log gain per colour. weight: the pixel's share of the loss, 1 / rays of the batch.
   void Add(size_t photo, const float gradient[3], float weight);
-  // One step with what was added since the last; progress in [0, 1] of the training sets the rate. Not finite: nothing changes.
+  // One Adam step with the gradients added since the last step. progress: of the training, 0..1, sets the learning rate. Photos whose gradient is not
+  // finite keep their gains.
   void Step(double progress);
-  // What is to be learned is known already, and better than a field that is still learning could tell: nothing changes any more.
+  // Freezes the gains: call it when tie points have given better gains than an unfinished field could. From then on active() is false.
   void Rest() { resting_ = true; }
 
-  // Moments and counts under "learner/"; with the response they are all of the state.
+  // Writes moments and counts under "learner/". Together with the response they are the complete state.
   void Put(checkpoint::ArchiveWriter& writer) const;
-  // Throws base::InputError when they belong to another number of photos.
+  // Throws base::InputError when the file has another number of photos.
   void Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file);
 
  private:
@@ -52,10 +57,10 @@ class ResponseLearner {
   LearnerOptions options_;
   bool active_ = false, resting_ = false;
   std::vector<float> moment1_, moment2_;  // [photo][colour]
-  std::vector<int64_t> steps_;            // updates of each photo
+  std::vector<int64_t> steps_;            // number of updates per photo
   std::vector<double> gradient_;          // of this step
-  std::vector<uint8_t> touched_;          // photos with a gradient
-  std::vector<double> weight_;            // per photo, of this step's pixels
+  std::vector<uint8_t> touched_;          // per photo: has a gradient in this step
+  std::vector<double> weight_;            // per photo: sum of the weights of this step's pixels
 };
 
 }  // namespace skyquilt::brightness

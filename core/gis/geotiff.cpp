@@ -16,7 +16,7 @@
 namespace skyquilt::gis {
 namespace {
 
-// GDAL prints its errors itself unless told otherwise; ours go into exceptions.
+// Keeps GDAL from printing its errors: they are reported as exceptions.
 class QuietErrors {
  public:
   QuietErrors() {
@@ -35,7 +35,7 @@ using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 
 [[noreturn]] void Fail(const std::filesystem::path& file, const std::string& what) {
   const std::string reason = CPLGetLastErrorMsg();
-  throw base::InputError(file, what + (reason.empty() ? "" : ": " + reason), "Check free space and permissions of its folder");
+  throw base::InputError(file, what + (reason.empty() ? "" : ": " + reason), "Check the free space and permissions of its folder");
 }
 
 GDALDataType TypeOf(PixelType type) {
@@ -93,11 +93,12 @@ GeoTiffWriter::GeoTiffWriter(const std::filesystem::path& file, const GeoTiffSpe
   if (!impl_->dataset) Fail(file, "cannot be created");
   GDALDataset& dataset = *impl_->dataset;
   double transform[6] = {spec.grid.left, spec.grid.resolution_m, 0.0, spec.grid.top, 0.0, -spec.grid.resolution_m};
-  if (dataset.SetGeoTransform(transform) != CE_None) Fail(file, "cannot be placed on the map");
+  if (dataset.SetGeoTransform(transform) != CE_None) Fail(file, "cannot store its position");
   if (spec.grid.georeferenced) {
     OGRSpatialReference reference;
     if (reference.importFromEPSG(spec.grid.zone.Epsg()) != OGRERR_NONE) {
-      Fail(file, "needs the definition of EPSG:" + std::to_string(spec.grid.zone.Epsg()) + ", which PROJ does not find");
+      throw base::InputError(file, "needs the definition of EPSG:" + std::to_string(spec.grid.zone.Epsg()) + ", which PROJ cannot find",
+                             "Install PROJ's data files (proj.db)");
     }
     reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     if (dataset.SetSpatialRef(&reference) != CE_None) Fail(file, "cannot store its coordinate system");
@@ -118,10 +119,11 @@ GeoTiffWriter::GeoTiffWriter(GeoTiffWriter&&) noexcept = default;
 void GeoTiffWriter::Impl::Write(int first_row, int n_rows, const void* values, size_t count, PixelType type) {
   const QuietErrors quiet;
   const size_t expected = static_cast<size_t>(n_rows) * static_cast<size_t>(spec.grid.width) * static_cast<size_t>(spec.bands);
-  SKYQUILT_CHECK(dataset != nullptr && type == spec.type && count == expected, std::to_string(count) + " values, " + std::to_string(expected));
+  SKYQUILT_CHECK(dataset != nullptr && type == spec.type && count == expected,
+                 std::to_string(count) + " values instead of " + std::to_string(expected));
   const int size = GDALGetDataTypeSizeBytes(TypeOf(type));
   const GSpacing pixel = static_cast<GSpacing>(size) * spec.bands;
-  // GDAL's one call serves reading and writing; when writing it leaves the buffer alone.
+  // RasterIO both reads and writes, so its buffer is not const; it does not change the buffer when writing.
   const CPLErr error = dataset->RasterIO(GF_Write, 0, first_row, spec.grid.width, n_rows, const_cast<void*>(values), spec.grid.width, n_rows,
                                          TypeOf(type), spec.bands, nullptr, pixel, pixel * spec.grid.width, size, nullptr);
   if (error != CE_None) Fail(file, "cannot be written");
@@ -143,28 +145,32 @@ void GeoTiffWriter::Close() {
   if (!levels.empty() && impl_->dataset->BuildOverviews("AVERAGE", static_cast<int>(levels.size()), levels.data(), 0, nullptr,
                                                         ContinueUnlessCancelled, nullptr) != CE_None) {
     base::ThrowIfCancelled();
-    Fail(impl_->file, "cannot be given overviews");
+    Fail(impl_->file, "overviews cannot be added");
   }
-  // The last tiles reach the disk only when the file is closed; GDALClose reports nothing but the error state.
+  // The last tiles are written only when the file is closed; GDALClose reports failure only through the error state.
   CPLErrorReset();
   impl_->dataset.reset();
   if (CPLGetLastErrorType() >= CE_Failure) {
     const std::string reason = CPLGetLastErrorMsg();
     std::error_code ignored;
     std::filesystem::remove(impl_->partial, ignored);
-    throw base::InputError(impl_->file, "cannot be finished: " + reason, "Check free space of its folder");
+    throw base::InputError(impl_->file, "cannot be completed: " + reason, "Check the free space of its folder");
   }
   base::SyncPath(impl_->partial);
   std::error_code error;
   std::filesystem::rename(impl_->partial, impl_->file, error);
-  if (error) throw base::InputError(impl_->file, "cannot be put in place: " + error.message(), "Check permissions of its folder");
+  if (error)
+    throw base::InputError(impl_->file, "cannot be renamed from " + impl_->partial.string() + ": " + error.message(),
+                           "Check the permissions of its folder");
 }
 
 ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width) {
   const QuietErrors quiet;
   GDALRegister_GTiff();
   const Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
-  if (!dataset) throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), "Make the products again");
+  if (!dataset)
+    throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(),
+                           "Give a GeoTIFF that 'skyquilt products' wrote, or run that again");
   const int width = std::min(max_width, dataset->GetRasterXSize());
   const int height = std::max(1, static_cast<int>(std::lround(static_cast<double>(dataset->GetRasterYSize()) * width / dataset->GetRasterXSize())));
   const int bands = dataset->GetRasterCount();
@@ -178,7 +184,8 @@ ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width) {
   const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
   if (dataset->RasterIO(GF_Read, 0, 0, dataset->GetRasterXSize(), dataset->GetRasterYSize(), reduced.image.data.data(), width, height, GDT_Float32,
                         bands, nullptr, pixel, pixel * width, sizeof(float), &extra) != CE_None) {
-    throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), "Make the products again");
+    throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(),
+                           "Give a GeoTIFF that 'skyquilt products' wrote, or run that again");
   }
   int has_nodata = FALSE;
   const double nodata = dataset->GetRasterBand(1)->GetNoDataValue(&has_nodata);

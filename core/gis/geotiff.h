@@ -1,4 +1,4 @@
-// Writing and reading of GeoTIFF, row band by row band.
+// Writes maps as GeoTIFF, some rows at a time, so that maps larger than memory can be made; reads them at reduced size.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,41 +19,43 @@ namespace skyquilt::gis {
 enum class PixelType { kUint8, kFloat32 };
 
 struct GeoTiffSpec {
-  MapGrid grid;  // size, place and zone; without geo-reference no CRS is written
+  MapGrid grid;  // size, position and zone; without geo-reference no CRS is written
   PixelType type = PixelType::kUint8;
-  int bands = 1;  // four bands of bytes are red, green, blue, alpha
-  std::optional<double> nodata;
+  int bands = 1;                 // four bands of kUint8 are red, green, blue, alpha
+  std::optional<double> nodata;  // value of cells without data
   std::vector<std::string> band_names;
-  std::string unit;  // of the values, "" for none
+  std::string unit;  // of the values, for instance "m"; empty: none
   std::map<std::string, std::string> metadata;
 };
 
-// Tiled, deflate-compressed, with overviews down to 256 pixels. Written beside and renamed by Close: the file is whole or absent.
+// Tiled, deflate-compressed, with overviews down to 256 pixels. Written under another name and renamed by Close, so that the file is either complete
+// or missing.
 class GeoTiffWriter {
  public:
-  // Throws base::InputError here and below when the disk or GDAL refuses; the message names the file and GDAL's reason.
+  // Throws base::InputError when the disk or GDAL refuses, as do the functions below; the message names the file and GDAL's reason.
   GeoTiffWriter(const std::filesystem::path& file, const GeoTiffSpec& spec);
   ~GeoTiffWriter();
   GeoTiffWriter(GeoTiffWriter&&) noexcept;
 
-  // Rows [first_row, first_row + n_rows), interleaved by pixel: n_rows * width * bands values. The type must be the spec's.
+  // Writes rows [first_row, first_row + n_rows): n_rows * width * bands values, interleaved by pixel. Their type must be spec.type.
   void WriteRows(int first_row, int n_rows, std::span<const uint8_t> values);
   void WriteRows(int first_row, int n_rows, std::span<const float> values);
+  // Adds overviews and completes the file. Throws base::Interrupted when cancelled.
   void Close();
 
-  static constexpr int kTile = 256;  // rows per call that compress best
+  static constexpr int kTile = 256;  // rows of a tile: write a multiple of them per call
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-// The whole file reduced to at most max_width columns (averages), all bands interleaved as float; no-data cells are NaN.
 struct ReducedRaster {
-  image::ImageF image;
-  double scale = 1.0;  // cells of the file per pixel of the image, across
-  double scale_down = 1.0;
+  image::ImageF image;      // all bands interleaved as float; NaN: no data
+  double scale = 1.0;       // cells of the file per pixel of the image, horizontally
+  double scale_down = 1.0;  // the same, vertically
 };
+// The whole file averaged down to at most max_width columns. Throws base::InputError when it cannot be read.
 ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width);
 
 }  // namespace skyquilt::gis

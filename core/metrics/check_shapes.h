@@ -1,4 +1,4 @@
-// Shape checks shared by the metrics.
+// Checks the sizes of the images to be compared, for all metrics. Throws std::logic_error when they differ.
 #pragma once
 
 #include <string>

@@ -1,7 +1,8 @@
-// Errors of rendered depth against true depth, both in metres along the same rays.
-//   rendered, truth   one channel, equal sizes; NaN or infinity = no depth there
-//   mask              one channel, 0 = ignore; null: every pixel counts
-// A pixel is scored when both depths are finite and the mask allows it. Nothing scored gives NaN errors and n = 0.
+// How far rendered surfaces are from the true ones: errors of rendered depth against true depth, both in metres along the same rays.
+//   rendered, truth   one channel, equal sizes; NaN or infinity: no depth
+//   mask              one channel, 0: ignore; null: every pixel counts
+// A pixel is scored when both depths are finite and the mask does not ignore it. When nothing is scored, errors are NaN and n = 0. Different sizes
+// throw std::logic_error.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +16,10 @@ struct DepthErrors {
   double rmse_m = 0.0;
   double median_abs_m = 0.0;
   int64_t n = 0;          // scored pixels
-  int64_t n_missing = 0;  // pixels with true depth, allowed by the mask, for which nothing was rendered
+  int64_t n_missing = 0;  // pixels that the mask does not ignore, with true but without rendered depth
 };
 
-// Gathers several photos: the median is over all their pixels. Keeps four bytes per scored pixel.
+// Errors over several photos: the median is over the pixels of all of them. Needs four bytes of memory per scored pixel.
 class DepthErrorCollector {
  public:
   void Add(const image::ImageF& rendered, const image::ImageF& truth, const image::Image8* mask);
@@ -30,6 +31,7 @@ class DepthErrorCollector {
   int64_t n_missing_ = 0;
 };
 
+// Errors of one photo.
 DepthErrors CompareDepth(const image::ImageF& rendered, const image::ImageF& truth, const image::Image8* mask);
 
 }  // namespace skyquilt::metrics

@@ -16,7 +16,7 @@ using base::InputError;
 
 constexpr const char* kFix = "Give a network with two inputs of 1 x 3 x H x W and one output of one number, or leave LPIPS out";
 
-// [0,1] interleaved to [-1,1] planar; 0, mid-grey, where ignored or not a number.
+// Interleaved values in [0,1] to planar values in [-1,1]; 0 (mid-grey) where ignored or not finite.
 cv::Mat ToBlob(const image::ImageF& image, const image::Image8* mask) {
   const int shape[] = {1, 3, image.height, image.width};
   cv::Mat blob(4, shape, CV_32F, cv::Scalar(0.0));
@@ -71,7 +71,7 @@ Lpips::Lpips(const std::filesystem::path& onnx_file) : impl_(std::make_unique<Im
       throw InputError(onnx_file, "has an input '" + input.name + "' that is not 1 x 3 x H x W", kFix);
     }
   }
-  // Tries the network at once, so that a file that cannot work is refused before hours of training and not after.
+  // Tries the network now, so that an unusable file is refused before hours of training and not after.
   const std::vector<int64_t>& shape = impl_->inputs[0].shape;
   impl_->Load(shape[3] > 0 ? static_cast<int>(shape[3]) : 64, shape[2] > 0 ? static_cast<int>(shape[2]) : 64);
   const size_t n_outputs = impl_->net.getUnconnectedOutLayers().size();
@@ -99,7 +99,8 @@ double Lpips::Distance(const image::ImageF& a, const image::ImageF& b, const ima
   } catch (const cv::Exception& error) {
     throw InputError(impl_->file, "does not run on images of " + ShapeText(a) + " (" + error.err + ")", kFix);
   }
-  if (result.total() != 1 || result.type() != CV_32F) throw InputError(impl_->file, "gives " + std::to_string(result.total()) + " numbers", kFix);
+  if (result.total() != 1 || result.type() != CV_32F)
+    throw InputError(impl_->file, "gives " + std::to_string(result.total()) + " numbers instead of one", kFix);
   const auto distance = static_cast<double>(*result.ptr<float>());
   if (!std::isfinite(distance)) throw InputError(impl_->file, "gives no finite number for images of " + ShapeText(a), kFix);
   return distance;

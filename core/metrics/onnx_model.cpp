@@ -22,9 +22,9 @@ constexpr uint64_t kDimValue = 1;
 
 struct Field {
   uint64_t number = 0;
-  uint64_t value = 0;        // of varints
-  std::string_view content;  // of length-delimited fields
-  std::string_view raw;      // key included
+  uint64_t value = 0;        // for varints
+  std::string_view content;  // for length-delimited fields
+  std::string_view raw;      // all bytes, with the key
 };
 
 // Walks the fields of one protobuf message; stops at the end or at the first malformed one.
@@ -38,7 +38,7 @@ class FieldReader {
     if (!field) rest_ = start;
     return field;
   }
-  // What was not understood.
+  // The bytes after the last complete field.
   std::string_view rest() const { return rest_; }
 
  private:
@@ -159,7 +159,7 @@ std::string WithInputShape(std::string_view model, const std::vector<int64_t>& s
     const std::string new_tensor = NumberField(kTensorElementType, FieldOf(tensor, kTensorElementType).value) + TextField(kTensorShape, dims);
     new_graph += TextField(kGraphInput, TextField(kValueName, name) + TextField(kValueType, TextField(kTypeTensor, new_tensor)));
   }
-  new_graph.append(graph_reader.rest());  // for OpenCV to refuse
+  new_graph.append(graph_reader.rest());  // malformed: OpenCV refuses it
   std::string new_model;
   FieldReader model_reader(model);
   while (const std::optional<Field> field = model_reader.Next()) {

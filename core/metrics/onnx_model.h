@@ -1,5 +1,5 @@
-// The little of an ONNX file that OpenCV does not tell or cannot cope with: its inputs' names, and sizes left open.
-// Works on the file's bytes (protobuf); no network is run here.
+// Reads and changes the inputs of an ONNX model, because OpenCV neither tells their names nor supports inputs of free size.
+// Works on the bytes of the file (protobuf); no network is run here.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace skyquilt::metrics {
 
 struct OnnxInput {
   std::string name;
-  std::vector<int64_t> shape;  // 0: left open
+  std::vector<int64_t> shape;  // 0: free size
 };
 
-// The inputs of the model's graph in order, weights excluded; empty if the bytes are no ONNX model.
+// The inputs of the model's graph in order, without weights; empty when the bytes are not an ONNX model.
 std::vector<OnnxInput> OnnxInputs(std::string_view model);
 
-// The model with the shapes of its inputs (weights excluded) set to `shape`. OpenCV 4.6 bakes the sizes it meets while loading into
-// pooling layers, so that a network with open sizes gives NaN.
+// The model with the shapes of its inputs (without weights) set to `shape`. OpenCV 4.6 fixes the sizes of pooling layers while loading, so a network
+// with free sizes gives NaN.
 std::string WithInputShape(std::string_view model, const std::vector<int64_t>& shape);
 
 }  // namespace skyquilt::metrics

@@ -77,7 +77,7 @@ double Ssim(const image::ImageF& a, const image::ImageF& b, const image::Image8*
   const auto n_out = static_cast<size_t>(a.width - kWindow + 1);
   const auto n_channels = static_cast<size_t>(a.channels);
   std::vector<Moments> pixels(static_cast<size_t>(a.width));
-  // The last 11 filtered rows of every channel; row y lies in slot y mod 11.
+  // The last 11 filtered rows of every channel; row y is in slot y mod 11.
   std::vector<std::array<std::vector<Moments>, kWindow>> filtered(n_channels);
   for (auto& rows : filtered) rows.fill(std::vector<Moments>(n_out));
 

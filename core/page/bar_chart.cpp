@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kBarsWidth_px = 560.0, kAboveBars_px = 8.0, kBelowBars_px = 42.0;
 constexpr double kRow_px = 26.0, kThickness_px = 13.0, kThinnest_px = 1.5;
-constexpr double kLetter_px = 6.5;  // of the page's letters of 11.5 px, the wider ones
+constexpr double kLetter_px = 6.5;  // width of the wider letters at the page's 11.5 px
 constexpr size_t kLongestLabel = 34, kLongestShown = 24;
 
 bool StartsLetter(char c) {
@@ -26,7 +26,7 @@ size_t Letters(const std::string& text) {
   return static_cast<size_t>(std::count_if(text.begin(), text.end(), StartsLetter));
 }
 
-// At most `longest` letters, the last an ellipsis where some were left out. UTF-8.
+// At most `longest` letters of UTF-8; the last one is an ellipsis when letters were left out.
 std::string Shortened(const std::string& text, size_t longest) {
   size_t letters = 0, cut = text.size();
   for (size_t i = 0; i < text.size(); ++i) {
@@ -49,7 +49,7 @@ std::string Spoken(const Bar& bar, const BarChartOptions& options) {
   return HasLimit(bar) ? text + " (" + options.limit_name + ": " + ShownValue(bar.limit, bar.limit_shown) + ")" : text;
 }
 
-// Where bars begin and the longest one ends; `high` is what that one stands for, 0 when all are zero.
+// Horizontal positions of zero and of the largest value; `high` is that value, 0 when all are zero.
 struct BarSpan {
   double left_px = 0.0, right_px = 1.0, high = 0.0;
   double Px(double value) const { return left_px + (high > 0.0 ? value / high : 0.0) * (right_px - left_px); }

@@ -15,7 +15,7 @@ namespace skyquilt::page {
 
 namespace {
 
-// What is drawn of a curve, in the axes' own units (logarithms where they are logarithmic).
+// The points of a curve that are drawn, in axis units (logarithms on logarithmic axes).
 struct Line {
   std::vector<std::pair<double, double>> points;
   std::vector<std::string> labels;  // empty or one per point
@@ -33,7 +33,7 @@ Line ToLine(const Curve& curve, const ChartOptions& options) {
   return line;
 }
 
-// A frame that holds the lines; nothing when there is nothing to hold.
+// A frame that contains all lines; empty when there are no points.
 std::optional<PlotFrame> FrameOf(const std::vector<Line>& lines, bool marks, const ChartOptions& options) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   PlotFrame frame{.title = options.title,
@@ -49,7 +49,7 @@ std::optional<PlotFrame> FrameOf(const std::vector<Line>& lines, bool marks, con
   if (!options.log_x) frame.x.low = std::min(frame.x.low, 0.0);
   if (!(frame.x.high > frame.x.low)) frame.x.high = frame.x.low + 1.0;
   if (marks) {
-    // Marks stand clear of the edges.
+    // Keeps marks away from the edges.
     const double pad = 0.04 * (frame.x.high - frame.x.low);
     frame.x.high += pad;
     if (options.log_x) frame.x.low -= pad;
@@ -73,7 +73,7 @@ std::string DrawLine(const PlotFrame& frame, const Line& line, const Curve& curv
     html += fmt::format("<circle class=\"dot {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"><title>{}</title></circle>", color, x, y,
                         curve.emphasised ? 4.5 : 3.0, EscapeHtml(label.empty() ? curve.name : label));
     if (label.empty()) continue;
-    // Labels of marks near the right edge stand on the left.
+    // Labels of marks near the right edge are placed on the left.
     const bool left = x > 0.72 * frame.width_px;
     html += SvgText("mark", left ? x - 7.0 : x + 7.0, y + 4.0, left ? Anchor::kEnd : Anchor::kStart, label);
   }

@@ -13,8 +13,8 @@ struct Curve {
   bool emphasised = false;
   bool line = true;
   bool marks = false;                    // a mark on every point; all points are then drawn
-  bool band = false;                     // drawn wide and pale, to lie behind the curves that follow
-  std::vector<std::string> labels = {};  // of the marks, by point; may be empty
+  bool band = false;                     // drawn wide and pale, behind the later curves
+  std::vector<std::string> labels = {};  // one per point, for the marks; may be empty
 };
 
 struct ChartOptions {
@@ -22,11 +22,11 @@ struct ChartOptions {
   std::string x_label;  // with unit
   std::string y_label;
   bool log_y = false;       // points with y <= 0 are left out
-  size_t max_points = 240;  // per curve without marks; longer ones are thinned by averaging neighbours
+  size_t max_points = 240;  // per curve without marks; longer curves are thinned by averaging neighbours
   bool log_x = false;       // points with x <= 0 are left out
 };
 
-// A <figure>; says "no data" inside when no curve has a point.
+// A <figure>, with the text "No data" when no curve has a point.
 std::string CurveChart(const std::vector<Curve>& curves, const ChartOptions& options);
 // Averages runs of neighbours so that at most `max_points` remain; first and last stay in place.
 std::vector<std::pair<double, double>> Thin(const std::vector<std::pair<double, double>>& points, size_t max_points);

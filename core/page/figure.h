@@ -1,5 +1,5 @@
-// What every chart is made of: the figure around it, its lines and texts as inline SVG, its legend. Coloured by the page's style sheet.
-// Titles, names and texts are escaped here; lengths are in pixels of the drawing, y downwards.
+// The parts of every chart: the figure around it, lines and texts as inline SVG, and the legend. Coloured by the page's style sheet.
+// Titles, names and texts are escaped here. Lengths are in pixels of the drawing, y downwards.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@ namespace skyquilt::page {
 struct Figure {
   std::string title = {};
   double width_px = 560.0, height_px = 300.0;
-  std::string css_class = {};  // beside those of all charts
-  std::string spoken = {};     // read out instead of the title where that says too little
+  std::string css_class = {};  // in addition to the classes of all charts
+  std::string spoken = {};     // text for screen readers; empty: the title
 };
 
-// Up to the opened <svg>.
+// Opens the figure and its <svg>.
 std::string FigureBegin(const Figure& figure);
-// From the end of the <svg>; `legend` is HTML, of LegendEntry. Without it there is no legend.
+// Closes the <svg> and the figure. legend: HTML made by LegendEntry; empty: no legend.
 std::string FigureEnd(const std::string& legend = "");
-// A whole figure that says "no data".
+// A complete figure with the text "No data".
 std::string EmptyFigure(const std::string& title);
 std::string LegendEntry(const std::string& css_class, const std::string& name);
 
@@ -25,7 +25,7 @@ enum class Anchor { kStart, kMiddle, kEnd };
 
 std::string SvgLine(const char* css_class, double x1_px, double x2_px, double y1_px, double y2_px);
 std::string SvgText(const char* css_class, double x_px, double y_px, Anchor anchor, const std::string& text);
-// `steps` is the path's data; `title` shows where the mouse rests.
+// steps: path data in SVG syntax. title: shown as a tooltip.
 std::string SvgPath(const std::string& css_class, const std::string& steps, const std::string& title);
 
 }  // namespace skyquilt::page

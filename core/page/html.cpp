@@ -78,7 +78,7 @@ std::string FormatFixed(double value, int decimals, std::string_view unit) {
   if (std::isinf(value)) return value > 0 ? "\xE2\x88\x9E" : "\xE2\x88\x92\xE2\x88\x9E";
   std::string number = fmt::format("{:.{}f}", value, decimals);
   if (number.front() == '-') {
-    // "-0.00" says nothing that "0.00" does not.
+    // No minus sign for "-0.00".
     const bool zero = number.find_first_of("123456789") == std::string::npos;
     number.replace(0, 1, zero ? "" : "\xE2\x88\x92");
   }

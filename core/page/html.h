@@ -1,4 +1,4 @@
-// Small pieces of HTML: escaping, numbers with units, table cells.
+// Writes text, numbers with units and table cells as HTML.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace skyquilt::page {
 
 // Text for element content and quoted attributes: & < > " ' are replaced, control characters dropped, bytes that are not UTF-8 become U+FFFD.
 std::string EscapeHtml(std::string_view text);
-// Fixed decimals; an en dash for NaN, the infinity sign for infinity. Unit after a thin no-break space, left out when there is no number.
+// Fixed decimals; an en dash for NaN, the infinity sign for infinity. The unit follows a thin no-break space; it is left out without a number.
 std::string FormatFixed(double value, int decimals, std::string_view unit = "");
 // "0.93" as "93.0 %".
 std::string FormatPercent(double share, int decimals = 1);
@@ -19,7 +19,7 @@ std::string FormatBytes(int64_t bytes);
 std::string FormatInteger(int64_t value);
 // Large counts as "1.53 M"; an en dash for NaN.
 std::string FormatLarge(double value, std::string_view unit = "");
-// Right-aligned table cell that sorts by `value`.
+// Right-aligned table cell with the text `shown`; the table sorts by `value`.
 std::string NumberCell(double value, const std::string& shown);
 std::string TextCell(std::string_view text);
 

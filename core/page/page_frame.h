@@ -1,4 +1,5 @@
-// The frame of every page the program writes: head, bar with links, title, end. Style and script are inside, so that a page opens offline.
+// The frame of every HTML page the program writes: head, bar with links, title, end. Style and script are embedded, so that a page can be opened
+// offline.
 #pragma once
 
 #include <string>
@@ -9,15 +10,15 @@ namespace skyquilt::page {
 
 struct PageFrame {
   std::string title;
-  std::string window_title;                                  // of the browser's tab, behind the title
-  std::string subtitle;                                      // a line under the title
-  std::vector<std::pair<std::string, std::string>> anchors;  // id and name of the sections in the bar
+  std::string window_title;                                  // follows the title in the browser's tab
+  std::string subtitle;                                      // line under the title
+  std::vector<std::pair<std::string, std::string>> anchors;  // id and name of the sections linked in the bar
 };
 
-// Everything before and after the sections. Texts are escaped here.
+// Everything before and after the sections. The texts of `frame` are escaped here.
 std::string PageBegin(const PageFrame& frame);
 std::string PageEnd();
-// One figure of a row of key figures (section.kpis); `value` and `note` are HTML.
+// One number of a row of key figures (section.kpis); `value` and `note` are HTML, `label` is escaped.
 std::string KeyFigure(const std::string& label, const std::string& value, const std::string& note);
 
 std::string PageStyle();   // CSS

@@ -1,4 +1,4 @@
-// The frame of a chart with two axes: where values lie in the drawing, and the grid, ticks and labels around them.
+// The frame of a chart with two axes: maps values to pixels, and draws grid, ticks and labels.
 #pragma once
 
 #include <string>
@@ -8,31 +8,31 @@ namespace skyquilt::page {
 struct PlotAxis {
   std::string label = {};  // with unit
   double low = 0.0, high = 1.0;
-  int ticks = 5;             // about so many
-  bool logarithmic = false;  // low, high and all values to draw are then decimal logarithms
+  int ticks = 5;             // approximate number
+  bool logarithmic = false;  // low, high and all drawn values are decimal logarithms
 
-  void Include(double value);
-  void Pad(double by);  // at both ends
+  void Include(double value);  // extends the axis to the value
+  void Pad(double by);         // extends both ends
 };
 
 struct PlotFrame {
-  // Between the edges of the drawing and the axes.
+  // Distances from the edges of the drawing to the axes.
   static constexpr double kLeft_px = 52.0, kRight_px = 14.0, kTop_px = 14.0, kBottom_px = 42.0;
 
   std::string title = {};
   PlotAxis x = {}, y = {};
   double width_px = 560.0, height_px = 300.0;
   std::string css_class = {};
-  bool zero_stands_out = false;  // the line at y = 0 is drawn as an axis is
+  bool zero_stands_out = false;  // draw the line at y = 0 like an axis
 
   double right_px() const { return width_px - kRight_px; }
   double bottom_px() const { return height_px - kBottom_px; }
-  // The place of a value in the drawing.
+  // Position of a value in the drawing.
   double X(double value) const { return kLeft_px + (value - x.low) / (x.high - x.low) * (right_px() - kLeft_px); }
   double Y(double value) const { return bottom_px() - (value - y.low) / (y.high - y.low) * (bottom_px() - kTop_px); }
 };
 
-// Opens the figure and draws all but the data. After the data comes FigureEnd.
+// Opens the figure and draws everything but the data. Append the data, then FigureEnd.
 std::string PlotBegin(const PlotFrame& frame);
 
 }  // namespace skyquilt::page

@@ -36,7 +36,7 @@ std::vector<double> LogTicks(double low_log10, double high_log10) {
     }
   }
   if (ticks.size() >= 3 || high_log10 - low_log10 >= 1.0) return ticks;
-  // Less than a decade: round numbers between its ends say more than the one power of ten that may lie there.
+  // In less than a decade there is at most one power of ten: use round numbers instead.
   ticks = RoundTicks(std::pow(10.0, low_log10), std::pow(10.0, high_log10), 5);
   for (double& tick : ticks) tick = std::log10(tick);
   return ticks;

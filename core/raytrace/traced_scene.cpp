@@ -12,7 +12,7 @@ namespace skyquilt::raytrace {
 
 namespace {
 
-// One for the process: Embree runs out of devices at about a thousand. Never released, for scenes may live until the program ends.
+// One for the process, because Embree runs out of devices at about a thousand. Never released, because scenes may exist until the program ends.
 RTCDevice Device() {
   static RTCDevice device = rtcNewDevice("threads=1");
   SKYQUILT_CHECK(device != nullptr, "Embree error " + std::to_string(rtcGetDeviceError(nullptr)));
@@ -71,7 +71,7 @@ TracedScene::TracedScene(std::span<const Eigen::Vector3f> position, std::span<co
     : impl_(std::make_unique<Impl>()), empty_(triangle.empty()) {
   if (empty_) return;
   const RTCDevice device = Device();
-  rtcGetDeviceError(device);  // forgets what another scene of this thread may have left
+  rtcGetDeviceError(device);  // clears an earlier error of this thread
   impl_->scene = rtcNewScene(device);
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);

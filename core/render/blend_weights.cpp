@@ -9,14 +9,14 @@ EngineOptions EngineOptions::For(const brightness::Luminance& luminance) {
   EngineOptions options;
   if (!luminance.On()) return options;
   options.concealing = luminance.product ? Concealing::kProduct : Concealing::kGain;
-  // Along a product even what is hardly seen holds light back.
+  // In a product even samples of small weight dim those behind them.
   if (luminance.product) options.colour_threshold = -1.0F;
   return options;
 }
 
 geo::Interval BlendInterval(const TrainedField& block, const Ray& ray) {
-  constexpr double kEver = std::numeric_limits<double>::infinity();
-  const Eigen::Vector3d reach(block.blend_m, block.blend_m, kEver);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d reach(block.blend_m, block.blend_m, kInfinity);
   return geo::RayBox(ray.origin_enu, ray.direction_enu, block.box.min_enu - reach, block.box.max_enu + reach);
 }
 

@@ -1,7 +1,8 @@
-// Front-to-back emission-absorption along one ray, forward and backward.
+// Volume rendering of one ray: composites the samples' colours front to back, and propagates gradients back to them.
 //   T_0 = 1, T_{i+1} = T_i exp(-tau_i), w_i = T_i - T_{i+1}, C = sum_i w_i c_i            (Max 1995; Mildenhall et al. 2020, eq. 3)
 //   dL/dtau_i = T_{i+1} g_i - sum_{j>i} w_j g_j - T_n dL/dT_n,   g_i = dL/dC . c_i + dL/dw_i
-// tau >= 0 is the optical depth of an interval; infinite tau is legal. Colour rows have stride `stride`.
+// tau >= 0: optical depth of an interval; infinity is legal. T_n: transmittance behind the last sample. color: 3 rows, one per channel, of stride
+// `stride`.
 // In float the weight of a ray's first sample is within 4.6e-8, the transmittance behind it within 0.6 ulp. Weights are differences of
 // transmittances, not T_i (-expm1(-tau_i)): thin samples lose digits, those of tau < 2.9e-8 all, but the weights sum to 1 - T_n.
 #pragma once
@@ -11,7 +12,7 @@
 
 namespace skyquilt::render {
 
-// weights (n) out; returns the transmittance behind the last sample. n = 0 gives 1 and black.
+// Writes weights (n) and rgb; returns the transmittance behind the last sample. n = 0 gives 1 and black.
 template <typename T>
 T CompositeForward(int n, const T* tau, const T* color, size_t stride, T* weights, T rgb[3]) {
   T transmittance = T(1);
@@ -25,12 +26,12 @@ T CompositeForward(int n, const T* tau, const T* color, size_t stride, T* weight
   return transmittance;
 }
 
-// weights and final_transmittance from CompositeForward. weight_gradient (dL/dw_i) may be null.
-// Writes tau_gradient (n) and color_gradient (3 rows).
+// weights, final_transmittance: from CompositeForward. transmittance_gradient: dL/dT_n. weight_gradient: further dL/dw_i, may be null.
+// Writes tau_gradient (n) and color_gradient (3 rows of stride gradient_stride).
 template <typename T>
 void CompositeBackward(int n, const T* color, size_t stride, const T* weights, T final_transmittance, const T rgb_gradient[3],
                        T transmittance_gradient, const T* weight_gradient, T* tau_gradient, T* color_gradient, size_t gradient_stride) {
-  T behind = final_transmittance * transmittance_gradient;  // sum over everything behind of w_j g_j, background included
+  T behind = final_transmittance * transmittance_gradient;  // sum of w_j g_j over all samples behind, plus T_n dL/dT_n
   T after = final_transmittance;
   for (int i = n - 1; i >= 0; --i) {
     T g = weight_gradient != nullptr ? weight_gradient[i] : T(0);
@@ -44,8 +45,9 @@ void CompositeBackward(int n, const T* color, size_t stride, const T* weights, T
   }
 }
 
-// Distortion loss of one ray (Barron et al. 2022, eq. 15) with interval midpoints m and widths d, both scaled by the caller:
-//   sum_ij w_i w_j |m_i - m_j| + 1/3 sum_i w_i^2 d_i.  m ascending. Adds scale * dL/dw to weight_gradient; returns scale * loss.
+// Distortion loss of one ray (Barron et al. 2022, eq. 15), which concentrates the weights at one distance and so suppresses floaters:
+//   sum_ij w_i w_j |m_i - m_j| + 1/3 sum_i w_i^2 d_i,   m: interval midpoints, ascending; d: interval widths; both in the caller's unit.
+// Adds scale * dL/dw to weight_gradient; returns scale * loss.
 template <typename T>
 T DistortionLoss(int n, const T* weights, const T* mid, const T* width, T scale, T* weight_gradient) {
   T total_weight = T(0), total_moment = T(0);

@@ -1,7 +1,7 @@
-// Rendering with held-back light (tidal-flat paper, eq. 12-13): the samples' factors Omega turned into the share of light each sample shows.
-// Densities and compositing weights are the plain rendering's. Colours are linear light here.
-//   gain     share_i = Omega_i                 (what the published code of the method does)
-//   product  share_i = prod_{j < i} Omega_j    (eq. 13 as printed: what lies in front holds the light back)
+// The concealed rendering of a concealing field (core/brightness/luminance.h; tidal-flat paper, eq. 12-13): turns the samples' factors Omega into the
+// share of its light that each sample shows. Densities and compositing weights are those of the plain rendering. Colours are linear light here.
+//   gain     share_i = Omega_i                 (as in the published code of the method)
+//   product  share_i = prod_{j < i} Omega_j    (eq. 13 as printed: the samples in front dim the light of those behind)
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace skyquilt::render {
 
 enum class Concealing { kNone = 0, kGain = 1, kProduct = 2 };
 
-// n samples front to back.
+// omega, share: n samples, front to back.
 template <typename T>
 void LightShares(Concealing concealing, int n, const T* omega, T* share) {
   T passed = T(1);

@@ -1,5 +1,6 @@
-// Sample positions along a ray: uniform steps on a lattice that starts at the interval's near end (shifted by `jitter` in [0, 1) of a
-// step), kept only in occupied cells. In a contracted frame the step grows as the frame shrinks.
+// Ray marching: places samples along a ray at uniform steps, and skips cells of the occupancy grid that are free. The first step starts at the near
+// end of the interval; samples are shifted by `jitter` in [0, 1) of a step. In a contracted frame the step grows as the frame shrinks.
+// Rays are in survey ENU, metres.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +13,8 @@
 
 namespace skyquilt::render {
 
-// Where a ray can meet the field: its box, or its slab out to where the contracted frame has no cells left.
+// The interval of a ray inside the field: in its box, or for a contracted field in its slab up to 20 times its half width from the centre, beyond
+// which the contracted frame has no cells left. Empty when the ray misses it.
 inline geo::Interval FieldInterval(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   if (!map.contracted()) return geo::RayBox(origin, direction, map.min_enu(), map.max_enu());
   const Eigen::Vector3d centre = 0.5 * (map.min_enu() + map.max_enu());
@@ -21,15 +23,16 @@ inline geo::Interval FieldInterval(const encoding::SpaceMap& map, const Eigen::V
                      Eigen::Vector3d(centre.x() + reach, centre.y() + reach, map.max_enu().z()));
 }
 
-// The part of a ray over (or under) the ground plan of an uncontracted field. Inside it only the field itself, never the context, has matter.
+// The interval of a ray inside the field's ground plan (its box, extended infinitely up and down). There only the field itself has density, never the
+// context.
 inline geo::Interval PlanInterval(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  constexpr double kEver = std::numeric_limits<double>::infinity();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Eigen::Vector3d& low = map.min_enu();
   const Eigen::Vector3d& high = map.max_enu();
-  return geo::RayBox(origin, direction, Eigen::Vector3d(low.x(), low.y(), -kEver), Eigen::Vector3d(high.x(), high.y(), kEver));
+  return geo::RayBox(origin, direction, Eigen::Vector3d(low.x(), low.y(), -kInfinity), Eigen::Vector3d(high.x(), high.y(), kInfinity));
 }
 
-// Positions along a ray in a field's unit frame, computed in double: a line where the frame is not contracted.
+// Positions along a ray in a field's unit frame, computed in double. Without contraction the ray is a straight line there too, which is cheaper.
 class UnitRay {
  public:
   UnitRay(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction)
@@ -48,8 +51,8 @@ class UnitRay {
 
 namespace internal {
 
-// Walks the cells of an uncontracted field in ray order (Amanatides and Woo 1987): visit(at, leave, cell) -> bool for every occupied one,
-// distances from the interval's near end. False ends the walk.
+// Traverses the cells of an uncontracted field along a ray (Amanatides and Woo 1987). Calls visit(enter, leave, cell) -> bool for every occupied
+// cell; distances are metres from the near end of the interval. Stops when visit returns false.
 template <typename Visit>
 void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, Visit&& visit) {
   const field::OccupancyGrid& grid = f.occupancy;
@@ -85,7 +88,7 @@ void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen
   }
 }
 
-// Emits the lattice points (k + jitter) * step inside occupied cells.
+// Emits the samples at (k + jitter) * step inside occupied cells, k = 0, 1, ...
 template <typename Emit>
 void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
                 float jitter, Emit&& emit) {
@@ -99,8 +102,8 @@ void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eige
   });
 }
 
-// The same walk with one sample for every interval of at most `step_m` inside occupied cells, at its middle: with steps longer than a cell
-// a lattice would pass over thin surfaces.
+// Cuts the occupied part of the ray into intervals of at most `step_m` and emits one sample in the middle of each: with steps longer than a cell,
+// samples at fixed distances would skip thin surfaces.
 template <typename Emit>
 void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
                    Emit&& emit) {
@@ -112,7 +115,7 @@ void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const E
     run_end = -1.0;
   };
   WalkCells(f, origin, direction, interval, [&](double at, double leave, int64_t) {
-    // Cells follow each other without gaps only while rounding agrees: compare with a tolerance.
+    // The end of a cell and the start of the next one may differ by rounding: compare with a tolerance.
     if (run_end >= 0.0 && at > run_end + 1e-9 * step_m) flush();
     if (run_end < 0.0) run_begin = at;
     run_end = leave;
@@ -144,7 +147,8 @@ void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const
 
 }  // namespace internal
 
-// Steps longer than the field's own: for pixels that cover more than the field's finest detail. emit(t, length_m, unit_length_m) as below.
+// For steps longer than the field's own, for pixels that cover more than the field's finest detail. emit(t, length_m, unit_length_m) -> bool as for
+// March.
 template <typename Emit>
 void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
                  Emit&& emit) {
@@ -157,8 +161,8 @@ void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eig
   }
 }
 
-// emit(t, length_m, unit_length_m, cell) -> bool: distance along the ray, length of the interval, that length measured in the uncontracted
-// part's metres (what the log density refers to), and the occupancy cell. Return false to stop.
+// Calls emit(t, length_m, unit_length_m, cell) -> bool for every sample: its distance along the ray, the length of its interval, that length after
+// contraction (log density refers to it), and its occupancy cell. Stops when emit returns false.
 template <typename Emit>
 void March(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
            float jitter, Emit&& emit) {

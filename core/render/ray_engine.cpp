@@ -16,14 +16,13 @@ namespace skyquilt::render {
 namespace {
 
 constexpr int64_t kGroupRays = 1024;  // one task: enough samples that a level's table stays in cache
-constexpr int kMaxRaySamples = 2048;  // per ray and field; beyond, the ray ends
-// Samples of a ray that are evaluated together. Later rounds are for the rays that light still passes, so surfaces hide what lies behind.
+constexpr int kMaxRaySamples = 2048;  // per ray and field; later ones are left out
+// Samples of a ray that are evaluated together. Opaque rays take no part in later rounds, which saves the samples behind surfaces.
 constexpr size_t kRoundSamples = 8;
-constexpr float kMaxLogDepth = 30.0F;  // exp of it times any length is finite
-// A ray with less light than this ends, and what it has gathered is taken for all: about one step of an 8-bit colour (Mueller et al. 2022 stop at
-// 0.01).
+constexpr float kMaxLogTau = 30.0F;  // exp of it times any length is finite
+// A ray ends below this transmittance, and its colour is scaled to full opacity. About one step of an 8-bit colour; Mueller et al. 2022 stop at 0.01.
 constexpr double kDarkTransmittance = 5e-3;
-// A marching step in widths of a pixel, where that is longer than the field's own.
+// Marching step in widths of a pixel, used where it is longer than the field's own step.
 constexpr double kPixelsPerStep = 4.5;
 
 struct Sample {
@@ -31,8 +30,8 @@ struct Sample {
   float length, unit_length, blend;
   float x, y, z;  // unit frame of its field
   int field;
-  float weight;  // of its colour in the pixel
-  int local;     // in its field's batch
+  float weight;  // compositing weight
+  int local;     // index in its field's batch
 };
 
 // Samples of a ray: first, next to be evaluated, one past the last.
@@ -103,7 +102,7 @@ class RayRenderer::Group {
     if (with_context) gaps_.push_back(Clip(ray, *all_.back()));
     for (int k = 0; k < context_index_; ++k) {
       const TrainedField& f = *all_[static_cast<size_t>(k)];
-      // Over its plan a block has its say even above its box: there is nothing there.
+      // Inside its ground plan a block replaces the context even above its box, where there is free space.
       if (PlanInterval(f.map, ray.origin_enu, ray.direction_enu).Empty()) continue;
       candidates_.push_back(k);
       if (with_context) CutCore(f, ray);
@@ -132,15 +131,15 @@ class RayRenderer::Group {
     return interval;
   }
 
-  // Where a block alone has all the weight.
+  // The interval of a ray where the block's weight is 1.
   static geo::Interval CoreInterval(const TrainedField& f, const Ray& ray) {
-    constexpr double kEver = std::numeric_limits<double>::infinity();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const double m = f.blend_m;
-    return geo::RayBox(ray.origin_enu, ray.direction_enu, {f.box.min_enu.x() + m, f.box.min_enu.y() + m, -kEver},
-                       {f.box.max_enu.x() - m, f.box.max_enu.y() - m, kEver});
+    return geo::RayBox(ray.origin_enu, ray.direction_enu, {f.box.min_enu.x() + m, f.box.min_enu.y() + m, -kInfinity},
+                       {f.box.max_enu.x() - m, f.box.max_enu.y() - m, kInfinity});
   }
 
-  // There the context need not be marched.
+  // Takes that interval out of the context's intervals.
   void CutCore(const TrainedField& f, const Ray& ray) {
     const geo::Interval core = CoreInterval(f, ray);
     if (core.Empty()) return;
@@ -153,7 +152,7 @@ class RayRenderer::Group {
     }
   }
 
-  // Steps grow with the pixel: what is finer than it cannot be seen.
+  // Steps grow with the pixel: finer detail cannot be seen.
   double StepScale(const Ray& ray, const TrainedField& f, const geo::Interval& interval) const {
     const double pixel_m = 2.0 * static_cast<double>(ray.pixel_radius) * interval.t_near;
     return std::max(options_.step_scale, kPixelsPerStep * pixel_m / f.step_m);
@@ -165,10 +164,10 @@ class RayRenderer::Group {
     SKYQUILT_CHECK(f.field != nullptr, "field '" + f.name + "' is not loaded");
     const size_t before = samples_.size();
     const UnitRay unit(f.map, ray.origin_enu, ray.direction_enu);
-    // Where this block alone has all the weight nothing needs blending.
+    // No blending where the block's weight is 1.
     const geo::Interval alone = candidate < 0 ? geo::Interval{} : CoreInterval(f, ray);
     int count = 0;
-    // Samples lie where they would lie without a window, so that it does not matter how a ray is cut.
+    // Samples are at the same positions as without a window, so that the result does not depend on where a ray is cut.
     const auto emit = [&](double t, double length, double unit_length) {
       if (!(t < window.to)) return false;
       if (t < window.from) return ++count < kMaxRaySamples;
@@ -195,7 +194,7 @@ class RayRenderer::Group {
     return samples_.size() > before;
   }
 
-  // Densities of the next samples of every ray that light still passes.
+  // Evaluates the densities of the next samples of every ray that is not opaque yet.
   int64_t EvaluateRound() {
     for (FieldBatch& batch : batches_) {
       batch.x.clear();
@@ -236,10 +235,10 @@ class RayRenderer::Group {
                 scratch_[k].density_hidden, scratch_[k].stride, batch.geometry.data() + begin, batch.stride);
     }
     batch.step_depth.resize(std::max(batch.step_depth.size(), batch.stride));
-    kernel::ExpShifted(batch.geometry.data(), padded, static_cast<float>(all_[k]->config.density_bias), kMaxLogDepth, batch.step_depth.data());
+    kernel::ExpShifted(batch.geometry.data(), padded, static_cast<float>(all_[k]->config.density_bias), kMaxLogTau, batch.step_depth.data());
   }
 
-  // Takes in the round's samples in order of distance; false when the ray is done.
+  // Composites the samples of the round in order of distance; false when the ray is finished.
   bool ComposeRound(Progress& p, RayState& state) {
     constexpr double kPassed[3] = {0.85, 0.5, 0.15};
     float* const passed_at[3] = {&state.depth_front, &state.depth_median, &state.depth_back};
@@ -254,7 +253,7 @@ class RayRenderer::Group {
       state.depth_moment += weight * sample.t;
       for (size_t i = 0; i < 3; ++i) {
         if (!(state.transmittance > kPassed[i] && after <= kPassed[i])) continue;
-        // Inside the interval, where the transmittance passes the mark.
+        // Position inside the interval where the transmittance reaches the threshold.
         const double share = tau > 0.0 ? std::clamp(std::log(state.transmittance / kPassed[i]) / tau, 0.0, 1.0) : 0.5;
         *passed_at[i] = static_cast<float>(sample.t + static_cast<double>(sample.length) * (share - 0.5));
       }
@@ -296,7 +295,7 @@ class RayRenderer::Group {
     }
   }
 
-  // Visible samples get their places ray by ray, so that a ray's direction is encoded once.
+  // Orders visible samples by ray, so that the direction of a ray is encoded once.
   void FillColorInput(size_t k, std::span<const Ray> rays) {
     FieldBatch& batch = batches_[k];
     float* sh = batch.color_in.data() + static_cast<size_t>(field::kGeometryRows) * batch.visible_stride;
@@ -325,7 +324,7 @@ class RayRenderer::Group {
     if (options_.concealing != Concealing::kNone) ComposeConcealed(p, state);
   }
 
-  // A ray on its own is its own neighbour on both sides: the convolution sees seven times the same luminance.
+  // A rendered ray has no neighbours: all seven taps of the convolution get its own luminance.
   void ComposeConcealed(const Progress& p, RayState& state) const {
     for (size_t s = p.begin; s < p.next; ++s) {
       const Sample& sample = samples_[s];
@@ -352,7 +351,7 @@ class RayRenderer::Group {
   std::vector<Sample> samples_;
   std::vector<Progress> progress_;
   std::vector<size_t> alive_;
-  std::vector<geo::Interval> gaps_;  // where the context counts
+  std::vector<geo::Interval> gaps_;  // intervals where the context is marched
   std::vector<int> candidates_;
   std::vector<double> block_weights_;
 };

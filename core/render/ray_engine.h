@@ -1,5 +1,6 @@
-// Renders rays through any number of fields at once. Every field's density is multiplied by its blend weight at the sample; samples of all
-// fields on a ray are composed in order of distance, so a ray's optical depth is exactly the weighted sum of its fields' depths.
+// Renders rays through any number of overlapping fields at once, so that the borders of blocks do not show. The density of a field is multiplied by
+// its blend weight at the sample, and the samples of all fields are composited in order of distance. The optical depth of a ray is therefore exactly
+// the weighted sum of the optical depths of its fields.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,36 +19,36 @@
 namespace skyquilt::render {
 
 struct FieldSet {
-  std::vector<const TrainedField*> blocks;  // boxes; may be empty. Those a ray's window does not touch need no arrays
-  const TrainedField* context = nullptr;    // fills what no block covers; may be null
+  std::vector<const TrainedField*> blocks;  // may be empty; blocks outside the windows of all rays need not be loaded
+  const TrainedField* context = nullptr;    // is rendered where no block is; may be null
 };
 
 struct EngineOptions {
-  // What fields with this concealing field need.
+  // Options for the concealed rendering; the defaults when luminance is off.
   static EngineOptions For(const brightness::Luminance& luminance);
 
   bool operator==(const EngineOptions&) const = default;
 
-  double step_scale = 1.0;                    // marching step as a multiple of the field's own
-  float colour_threshold = 1e-4F;             // samples of smaller weight get no colour
-  Concealing concealing = Concealing::kNone;  // fields with luminance: fill RayColor::concealed_light
+  double step_scale = 1.0;                    // marching step as a multiple of the field's own step
+  float colour_threshold = 1e-4F;             // samples with a smaller compositing weight get no colour
+  Concealing concealing = Concealing::kNone;  // not kNone: fill RayColor::concealed_light (fields with luminance only)
 };
 
-// Where a block has weight along a ray: its core box widened by the ramp, of any height.
+// The interval of a ray where a block has a blend weight: in its core box widened by the ramp, at any height.
 geo::Interval BlendInterval(const TrainedField& block, const Ray& ray);
 
-// Blend weights of the set at a place: one per block, and the context's share in the return value. Sums to 1 inside any core box.
+// Writes the blend weight at (x, y) of each candidate (index into fields.blocks) and returns the context's weight. They sum to 1.
 double BlendWeights(const FieldSet& fields, std::span<const int> candidates, double x, double y, std::span<double> weights);
 
-// Renders on the calling thread; keeps its workspace between calls. The fields must outlive it. Not for two threads at once.
+// Renders on the calling thread and keeps its workspace between calls. The fields must outlive it. Not thread-safe.
 class RayRenderer {
  public:
   RayRenderer(const FieldSet& fields, const EngineOptions& options);
   ~RayRenderer();
-  // As RenderRays; returns the samples evaluated. Best with some hundreds of rays at a time.
+  // As RenderRays; returns the number of samples evaluated. Most efficient with some hundreds of rays per call.
   int64_t Render(std::span<const Ray> rays, std::span<RayColor> out);
-  // Goes on with rays through their windows (empty: through everything), front to back: cut into windows at any places, a ray gathers the same
-  // bits. Returns the samples evaluated. Throws std::logic_error when a window needs a field that has no arrays.
+  // Continues rays through their windows, front to back (no windows: to their ends). The result has the same bits wherever a ray is cut into windows.
+  // Returns the number of samples evaluated. Throws std::logic_error when a window needs a field that is not loaded.
   int64_t Continue(std::span<const Ray> rays, std::span<const Window> windows, std::span<RayState> states);
 
  private:
@@ -56,8 +57,8 @@ class RayRenderer {
   std::vector<RayState> states_;
 };
 
-// rays and out have the same length. Colours are display values at the reference exposure, premultiplied, over black. Samples evaluated are
-// added to *samples when not null. Deterministic for any number of threads. Throws base::Interrupted when cancelled.
+// rays and out have the same length. Adds the number of samples evaluated to *samples when not null. Same bits for any number of threads. Throws
+// base::Interrupted when cancelled.
 void RenderRays(const FieldSet& fields, std::span<const Ray> rays, std::span<RayColor> out, const EngineOptions& options, base::ThreadPool& threads,
                 int64_t* samples = nullptr);
 

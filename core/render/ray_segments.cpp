@@ -9,12 +9,12 @@ namespace skyquilt::render {
 RaySegments::RaySegments(std::vector<const TrainedField*> blocks) : blocks_(std::move(blocks)) {}
 
 void RaySegments::Split(const Ray& ray, std::vector<RaySegment>* segments) const {
-  constexpr double kEver = std::numeric_limits<double>::infinity();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   thread_local std::vector<std::pair<geo::Interval, int>> over;
   thread_local std::vector<double> changes;
   thread_local std::vector<int> here;
   over.clear();
-  changes.assign({0.0, kEver});
+  changes.assign({0.0, kInfinity});
   for (size_t k = 0; k < blocks_.size(); ++k) {
     const geo::Interval interval = BlendInterval(*blocks_[k], ray);
     if (interval.Empty()) continue;

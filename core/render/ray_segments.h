@@ -1,4 +1,4 @@
-// Where the blocks over a ray change: between two changes always the same fields are needed.
+// Cuts a ray into segments that need the same blocks each, so that a scene larger than memory can be rendered segment by segment.
 #pragma once
 
 #include <map>
@@ -11,19 +11,19 @@
 namespace skyquilt::render {
 
 struct RaySegment {
-  double t_far = 0.0;  // metres; the segment begins where the one before it ends, the first at 0, and the last ends at infinity
-  int set = 0;         // of blocks, see RaySegments::Blocks
+  double t_far = 0.0;  // metres; a segment begins at the end of the previous one, the first at 0; the last ends at infinity
+  int set = 0;         // number of its set of blocks, for RaySegments::Blocks
 };
 
-// Of one scene. Split may be called by many threads at once.
+// The segments of rays in one scene. Thread-safe.
 class RaySegments {
  public:
-  // Only places are looked at; the blocks must outlive this.
+  // Only the blocks' boxes are used, so they need not be loaded. They must outlive this.
   explicit RaySegments(std::vector<const TrainedField*> blocks);
 
-  // Appends the segments of a ray, front to back; at least one. Neighbours have different sets.
+  // Appends the segments of a ray, front to back; at least one. Successive segments have different sets.
   void Split(const Ray& ray, std::vector<RaySegment>* segments) const;
-  // Ascending; empty where only the context is. The span stays good.
+  // The blocks of a set, ascending; empty where only the context is. The span stays valid.
   std::span<const int> Blocks(int set) const;
 
  private:

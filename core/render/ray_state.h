@@ -1,5 +1,5 @@
-// What a ray has gathered on its way so far. It can be carried from field to field and from rank to rank: the exact composition
-// C = sum_k (prod_{i<k} T_i) C_k, done front to back without ever splitting a ray's sums.
+// The partial result of a ray that is rendered in several steps. It is passed from field to field and from rank to rank, and gives exactly the
+// composition C = sum_k (prod_{i<k} T_i) C_k over the parts k of the ray, because each part adds to the sums of the previous ones.
 #pragma once
 
 #include <limits>
@@ -12,14 +12,14 @@ namespace skyquilt::render {
 
 struct RayState {
   double transmittance = 1.0;
-  double depth_moment = 0.0;                                    // sum of weight times distance, metres
-  float rgb_srgb[3] = {0, 0, 0};                                // sum of weight times colour, display values
-  float concealed_light[3] = {0, 0, 0};                         // the same with held-back light, linear
-  float light_passed = 1.0F;                                    // product of the samples' factors that hold light back
+  double depth_moment = 0.0;                                    // sum of weight * t, metres
+  float rgb_srgb[3] = {0, 0, 0};                                // sum of weight * colour, display values
+  float concealed_light[3] = {0, 0, 0};                         // the same for the concealed rendering, linear light
+  float light_passed = 1.0F;                                    // product of the samples' Omegas (core/render/concealed.h)
   float depth_front = std::numeric_limits<float>::quiet_NaN();  // as in RayColor
   float depth_median = std::numeric_limits<float>::quiet_NaN();
   float depth_back = std::numeric_limits<float>::quiet_NaN();
-  bool ended = false;  // too little light is left to go on
+  bool ended = false;  // transmittance is too small to continue
 };
 static_assert(std::is_trivially_copyable_v<RayState>);
 
@@ -30,7 +30,7 @@ struct Window {
   bool Meets(const geo::Interval& interval) const { return !interval.Empty() && interval.t_far > from && interval.t_near < to; }
 };
 
-// What a ray shows that goes no farther. What was gathered by one that ended early is taken for all.
+// Final colour of a ray. A ray that ended early is scaled to opacity 1.
 RayColor Finished(const RayState& state);
 
 }  // namespace skyquilt::render

@@ -1,4 +1,4 @@
-// A field with its parameters, occupancy and place in the survey: what training leaves behind and rendering reads.
+// A radiance field with its parameters, occupancy grid and place in the survey: written by training, read by rendering.
 #pragma once
 
 #include <memory>
@@ -16,15 +16,15 @@ struct TrainedField {
   std::string name;
   field::FieldConfig config;
   encoding::SpaceMap map;
-  geo::BlockBox box;     // whose ground it answers for; of a block, the map spans it with its margin
-  double blend_m = 0.0;  // half width of the ramp at its faces; BuildNetworks() makes it the margin, 0 is a hard border
-  double step_m = 0.1;   // marching step inside the uncontracted part = the length that log density refers to
+  geo::BlockBox box;     // its core box; the map of a block covers the core box and its margin
+  double blend_m = 0.0;  // half width of the blending ramp at the faces of the core box; BuildNetworks() sets it to the margin; 0: hard border
+  double step_m = 0.1;   // marching step without contraction, metres; log density refers to this length
   field::Parameters parameters;
   field::OccupancyGrid occupancy;
   // Training record.
   int64_t steps = 0;
   double seconds = 0.0;
-  int64_t samples = 0;
+  int64_t samples = 0;  // evaluated in all steps together
 
   // Built from the above by BuildNetworks().
   std::unique_ptr<field::HashField> field;

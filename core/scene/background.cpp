@@ -44,14 +44,14 @@ Background GetBackground(const checkpoint::ArchiveReader& reader, const std::fil
   const std::string fix = "Train it again with --restart";
   const std::vector<int64_t> shape = reader.Shape(kHeights);
   if (shape.size() != 2 || reader.Shape(kColors) != std::vector<int64_t>{shape[0], shape[1], 3}) {
-    throw base::InputError(file, "heights and colours of the background disagree", fix);
+    throw base::InputError(file, "heights and colours of the background have different sizes", fix);
   }
   try {
     background.surface =
         HeightMap(reader.DoubleAttribute("background_min_x"), reader.DoubleAttribute("background_min_y"), reader.DoubleAttribute("background_cell_m"),
                   static_cast<int>(shape[1]), static_cast<int>(shape[0]), reader.Doubles(kHeights));
   } catch (const std::invalid_argument& error) {
-    throw base::InputError(file, std::string("holds an impossible background: ") + error.what(), fix);
+    throw base::InputError(file, std::string("its background is damaged: ") + error.what(), fix);
   }
   background.rgb_srgb = reader.Floats(kColors);
   return background;

@@ -1,5 +1,5 @@
-// What shows where no field has matter: a coarse plan of heights and blurred colours. A place that a single photo saw, or none, has no
-// geometry to learn, but its rough colour is known or can be guessed from around it; better than a hole, and never taken for a survey.
+// The colour behind all fields: a coarse height map with blurred colours. Where only one photo or none saw the ground, no geometry can be learned,
+// but a rough colour is known or can be interpolated. That looks better than a hole, and is too blurred to be mistaken for surveyed ground.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,10 +14,10 @@ namespace skyquilt::scene {
 
 struct Background {
   HeightMap surface;                                    // empty: the mean colour everywhere
-  std::vector<float> rgb_srgb;                          // [row][column][channel] of the surface's cells, display values at reference exposure
-  std::array<float, 3> mean_srgb = {0.0F, 0.0F, 0.0F};  // the survey's mean colour: sky, level rays
+  std::vector<float> rgb_srgb;                          // [row][column][channel] of the cells of `surface`, display values at reference exposure
+  std::array<float, 3> mean_srgb = {0.0F, 0.0F, 0.0F};  // the survey's mean colour, for rays that do not meet the surface
 
-  // Where the ray meets the surface; the mean colour when it does not.
+  // Display values where the ray meets the surface; the mean colour when it does not.
   std::array<float, 3> Color(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu) const;
 };
 

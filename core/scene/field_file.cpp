@@ -16,13 +16,13 @@ namespace {
 constexpr const char* kFix = "Train it again with --restart";
 constexpr int64_t kMaxCellsPerAxis = int64_t{1} << 20;
 
-// The box that a field is trained in, as its map was made from.
+// The box from which a field's map was made.
 struct Box {
   bool contracted = false;
   Eigen::Vector3d min_enu, max_enu;
 };
 
-// Calls visit(name, number) for the numbers that rebuild a field, int and double, each by reference.
+// Calls visit(name, number) for every number (int or double, by reference) that is needed to rebuild a field.
 template <typename Field, typename BoxOf, typename Visit>
 void VisitNumbers(Field& f, BoxOf& box, const Visit& visit) {
   const auto corner = [&visit](const std::string& name, auto& point) {
@@ -73,7 +73,7 @@ std::vector<int64_t> StoredSize(const checkpoint::ArchiveReader& reader, const s
   return {shape.rbegin(), shape.rend()};
 }
 
-// False for what no grid can be.
+// False for a size that no grid can have.
 bool SetSize(const std::vector<int64_t>& size, field::OccupancyGrid* occupancy) {
   if (size.size() != 3) return false;
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -115,18 +115,18 @@ void PutFieldOf(const render::TrainedField& description, const std::filesystem::
   field::OccupancyGrid occupancy = description.occupancy;
   occupancy.occupied = reader.Bytes("occupied");
   if (!(occupancy.cell > 0.0F) || !SetSize(size, &occupancy) || occupancy.CellCount() != static_cast<int64_t>(occupancy.occupied.size()))
-    throw base::InputError(checkpoint, "its occupancy has no shape", kFix);
+    throw base::InputError(checkpoint, "its occupancy grid has an impossible size", kFix);
   if (description.config.encoding == encoding::Kind::kHash) {
     const encoding::HashGrid grid(description.config.grid);
     if (reader.Shape("grid") != std::vector<int64_t>{grid.ParameterCount()}) {
-      throw base::InputError(checkpoint, "its tables and their configuration disagree", kFix);
+      throw base::InputError(checkpoint, "the size of its hash tables disagrees with its configuration", kFix);
     }
     writer.PutKept(prefix + "grid", checkpoint, "grid", field::ReachedEntries(grid, occupancy), grid.features(), tables);
   } else {
     writer.PutCopy(prefix + "grid", checkpoint, "grid", tables);
   }
   writer.PutCopy(prefix + "networks", checkpoint, "networks");
-  // Rendering asks only whether a cell is occupied.
+  // Rendering only needs to know whether a cell is occupied.
   writer.PutOwned(prefix + "occupied_bits", PackBits(occupancy.occupied));
   writer.PutOwned(prefix + "occupancy_size", size);
 }
@@ -154,7 +154,7 @@ render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, con
     f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));
     f.map = box.contracted ? encoding::SpaceMap::Slab(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu, box.max_enu);
   } catch (const std::invalid_argument& error) {
-    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kFix);
+    throw base::InputError(file, std::string("its field has an impossible configuration: ") + error.what(), kFix);
   }
   return f;
 }
@@ -180,7 +180,7 @@ render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std
     f.parameters.networks = reader.Floats(prefix + "networks");
     f.BuildNetworks();
   } catch (const std::invalid_argument& error) {
-    throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kFix);
+    throw base::InputError(file, std::string("its field has an impossible configuration: ") + error.what(), kFix);
   }
   const std::vector<int64_t> size = StoredSize(reader, prefix);
   bool fits = SetSize(size, &f.occupancy);
@@ -196,7 +196,7 @@ render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std
   }
   if (!fits || static_cast<int64_t>(f.parameters.grid.size()) != f.field->GridParameters() ||
       static_cast<int64_t>(f.parameters.networks.size()) != f.field->NetworkParameters() || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {
-    throw base::InputError(file, "arrays and configuration of field '" + f.name + "' disagree", kFix);
+    throw base::InputError(file, "the sizes of the arrays of field '" + f.name + "' disagree with its configuration", kFix);
   }
   return f;
 }

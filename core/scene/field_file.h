@@ -1,4 +1,4 @@
-// A field in an archive: the layout that checkpoints and scenes share.
+// Writes and reads a trained field in an HDF5 archive, in the layout that checkpoints and scenes share.
 #pragma once
 
 #include <cstdint>
@@ -10,26 +10,27 @@
 
 namespace skyquilt::scene {
 
-// Of the layout of checkpoints, of blocks and of the context.
+// Version of the layout of checkpoints, both of blocks and of the context.
 constexpr int kCheckpointVersion = 2;
 
-// Arrays under `prefix` ("" or "fields/r0c0/"). The field must outlive the writer's Commit.
+// Writes a whole field, for checkpoints. prefix: "", or for instance "blocks/0/". The field must outlive the writer's Commit.
 void PutField(const render::TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
-// What rendering needs of a field that a checkpoint holds (under no prefix), for scenes: tables and networks are copied from there at Commit, the
-// tables with this precision and without the entries that no occupied cell reads (field/reached_entries.h); of the occupancy only which cells are
-// occupied. Throws base::InputError when the checkpoint's arrays disagree.
+// Writes what rendering needs of a field, for scenes. Tables and networks are copied from the field's checkpoint at Commit: the tables with this
+// precision and without the entries that no occupied cell reads (field/reached_entries.h); of the occupancy only one bit per cell. Throws
+// base::InputError when the sizes of the checkpoint's arrays do not fit together.
 void PutFieldOf(const render::TrainedField& description, const std::filesystem::path& checkpoint, const std::string& prefix,
                 checkpoint::ArchiveWriter& writer, checkpoint::Precision tables = checkpoint::Precision::kFloat32);
-// The same without the arrays.
+// Writes box, configuration and training record of a field, without its arrays.
 void PutDescription(const render::TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
-// Place and shape of a field, without its arrays. Throws base::InputError for one that cannot be.
+// Reads them. Throws base::InputError for impossible values.
 render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix);
-// In memory, of a field of this shape.
+// Number of parameters of a field with this description in memory.
 int64_t HeldParameters(const render::TrainedField& description);
-// Of a field in a file, without reading its arrays.
+// Number of parameters, and of occupancy cells, of a field in a file, without reading its arrays.
 int64_t StoredParameters(const checkpoint::ArchiveReader& reader, const std::string& prefix);
 int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& prefix);
-// occupancy.tau is empty for a field from a scene. Throws base::InputError when arrays and configuration disagree.
+// Reads a whole field and builds its networks. occupancy.tau is empty for a field from a scene. Throws base::InputError when the sizes of its arrays
+// do not fit its configuration.
 render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix);
 
 }  // namespace skyquilt::scene

@@ -72,9 +72,9 @@ void FieldStore::EnsureLoaded(std::span<const int> blocks) {
   }
   if (memory_bytes_ > 0.0) {
     if (together > memory_bytes_) {
-      throw base::UsageError("rendering where " + std::to_string(blocks.size()) + " blocks of " + file_.string() + " meet needs " +
-                             base::FormatCount(together) + "B of memory for them and the context, but a rank may use " +
-                             base::FormatCount(memory_bytes_) + "B: raise --memory, or use fewer ranks on one machine");
+      throw base::UsageError(file_.string() + ": rendering needs " + std::to_string(blocks.size()) + " blocks and the context in memory together, " +
+                             base::FormatCount(together) + "B, but a rank may use " + base::FormatCount(memory_bytes_) +
+                             "B: raise --memory, or use fewer ranks on one machine");
     }
     while (in_use_ + missing > memory_bytes_) {
       Entry* oldest = nullptr;

@@ -1,4 +1,5 @@
-// The fields of a scene file, held in memory as far as they fit: all of them if they do, otherwise those that are asked for.
+// Holds the fields of a scene file in memory, so that a scene larger than memory can be rendered: all fields when they fit, otherwise those that are
+// needed at the time. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -14,33 +15,33 @@ namespace skyquilt::scene {
 
 class FieldStore {
  public:
-  // Reads descriptions only. `memory_bytes` bounds the fields in memory; 0: no bound. With hard borders blocks do not blend.
+  // Reads only the descriptions of the fields. memory_bytes: limit for the fields in memory; 0: no limit. hard_borders: blocks are not blended.
   // Throws base::InputError for a damaged file.
   FieldStore(checkpoint::ArchiveReader reader, const std::filesystem::path& file, double memory_bytes, bool hard_borders);
 
-  int size() const { return static_cast<int>(entries_.size()); }  // blocks
+  int size() const { return static_cast<int>(entries_.size()); }  // number of blocks
   bool HasContext() const { return has_context_; }
-  // Blocks 0 to size() - 1. Without arrays unless IsLoaded. The reference stays good; what it refers to changes with EnsureLoaded.
+  // Block 0 <= k < size(); without arrays unless IsLoaded(k). The reference stays valid, but EnsureLoaded changes the field.
   const render::TrainedField& block(int k) const { return *entries_[static_cast<size_t>(k)].field; }
   std::vector<const render::TrainedField*> Blocks() const;
   const render::TrainedField& context() const { return *context_.field; }
   bool IsLoaded(int k) const { return entries_[static_cast<size_t>(k)].loaded; }
   int64_t Parameters(int k) const { return entries_[static_cast<size_t>(k)].parameters; }
   int64_t ContextParameters() const { return context_.parameters; }
-  // In memory once loaded.
+  // Size in memory when loaded.
   double Bytes(int k) const { return entries_[static_cast<size_t>(k)].bytes; }
   double ContextBytes() const { return context_.bytes; }
-  // Whether everything fits at once.
+  // Whether all fields fit in memory together.
   bool AllFit() const;
 
-  // Loads these blocks and the context, and drops others, the longest unused first, as far as they must go. Not while somebody renders.
-  // Throws base::UsageError when they alone exceed the memory, base::InputError for a damaged file.
+  // Loads these blocks and the context. Unloads other blocks as far as memory requires, least recently used first. Not while rays are rendered.
+  // Throws base::UsageError when these blocks and the context alone exceed the memory, base::InputError for a damaged file.
   void EnsureLoaded(std::span<const int> blocks);
   void EnsureAllLoaded();
 
-  int64_t loads() const { return loads_; }         // of fields so far; grows whenever what is loaded changes
+  int64_t loads() const { return loads_; }         // fields loaded so far; when it is unchanged, so are the loaded fields
   double loaded_bytes() const { return in_use_; }  // in memory now
-  double most_bytes() const { return most_; }      // at any time so far
+  double most_bytes() const { return most_; }      // peak so far
 
  private:
   struct Entry {
@@ -49,7 +50,7 @@ class FieldStore {
     int64_t parameters = 0;
     double bytes = 0.0;
     bool loaded = false;
-    int64_t used = 0;  // number of the last EnsureLoaded that named it
+    int64_t used = 0;  // number of the last EnsureLoaded call that needed it
   };
   Entry ReadDescription(const std::string& prefix) const;
   void Load(Entry* entry);

@@ -8,9 +8,10 @@
 namespace skyquilt::scene {
 namespace {
 
+// Linear interpolation between two cells of an axis.
 struct Along {
   int first = 0, second = 0;
-  double share = 0.0;  // of the second
+  double share = 0.0;  // weight of the second
 };
 
 Along Between(double position, int count) {
@@ -24,7 +25,7 @@ Along Between(double position, int count) {
 HeightMap::HeightMap(double min_x, double min_y, double cell_m, int columns, int rows, std::vector<double> heights)
     : min_x_(min_x), min_y_(min_y), cell_m_(cell_m), columns_(columns), rows_(rows), heights_(std::move(heights)) {
   if (columns < 1 || rows < 1 || !(cell_m > 0.0) || heights_.size() != static_cast<size_t>(columns) * static_cast<size_t>(rows)) {
-    throw std::invalid_argument("a surface of " + std::to_string(columns) + " x " + std::to_string(rows) + " cells with " +
+    throw std::invalid_argument("a height map of " + std::to_string(columns) + " x " + std::to_string(rows) + " cells with " +
                                 std::to_string(heights_.size()) + " heights");
   }
 }
@@ -45,7 +46,7 @@ double HeightMap::At(double x, double y) const {
 }
 
 bool HeightMap::Meet(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Eigen::Vector3d* x_in_enu) const {
-  constexpr double kShallowest = -0.05;  // nearly level rays meet the ground where nobody knows its height
+  constexpr double kShallowest = -0.05;  // nearly level rays meet the ground far outside the survey
   constexpr int kRounds = 6;
   if (Empty() || !(direction.z() < kShallowest)) return false;
   double height = At(origin.x(), origin.y());

@@ -1,4 +1,4 @@
-// A surface z(x, y) on a coarse grid over the ground plan. Survey ENU, metres, double.
+// A coarse height map z(x, y) of the ground, known before any field is trained. Survey ENU, metres, double.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,8 +11,8 @@ namespace skyquilt::scene {
 class HeightMap {
  public:
   HeightMap() = default;  // empty
-  // heights: [row][column], cell centres at min + (index + 0.5) * cell_m; columns east, rows north.
-  // Throws std::invalid_argument when their number is not columns * rows or cell_m is not positive.
+  // heights: [row][column], at cell centres min + (index + 0.5) * cell_m; columns go east, rows north.
+  // Throws std::invalid_argument when there are not columns * rows heights, or cell_m is not positive.
   HeightMap(double min_x, double min_y, double cell_m, int columns, int rows, std::vector<double> heights);
 
   bool Empty() const { return heights_.empty(); }
@@ -23,15 +23,15 @@ class HeightMap {
   int rows() const { return rows_; }
   const std::vector<double>& heights() const { return heights_; }
 
-  // The four cells around a place and their bilinear weights, which sum to 1; beyond the grid those of its edge.
+  // The four cells around a position and their bilinear weights, which sum to 1. Positions outside the grid are clamped to its edge.
   struct Corners {
     std::array<size_t, 4> cell;
     std::array<double, 4> weight;
   };
   Corners Around(double x, double y) const;
-  // Bilinear; beyond the grid the height at its edge. Not empty.
+  // Height by bilinear interpolation; outside the grid that of its edge. The map must not be empty.
   double At(double x, double y) const;
-  // Where a ray that goes down meets the surface; false for level and rising rays, below the surface, and when there is none.
+  // Where a descending ray meets the surface. False for level and rising rays, for rays that start below the surface, and for an empty map.
   bool Meet(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Eigen::Vector3d* x_in_enu) const;
 
  private:
@@ -40,8 +40,8 @@ class HeightMap {
   std::vector<double> heights_;
 };
 
-// Gives cells without a value (weight 0) one from their surroundings, the nearest first, smoothly: averages over ever coarser grids, then back
-// (push-pull, Gortler et al. 1996). values: [row][column][channel]. Leaves them alone when no cell has a value.
+// Fills cells without a value (weight 0) smoothly from their neighbourhood, by averages over coarser and coarser grids (push-pull, Gortler et al.
+// 1996). values: [row][column][channel]; weights: [row][column]. Does nothing when no cell has a value.
 void FillFromSurroundings(int columns, int rows, int channels, std::vector<double>* values, std::vector<double> weights);
 
 }  // namespace skyquilt::scene

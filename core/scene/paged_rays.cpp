@@ -14,10 +14,10 @@ namespace {
 
 constexpr int64_t kPagedGroup = 1024;  // one task
 
-// One ray's way through the scene.
+// The segments of a ray, front to back.
 struct Way {
   std::vector<render::RaySegment> segments;
-  size_t at = 0;  // the segment where the ray is
+  size_t at = 0;  // the next segment to render
 };
 
 }  // namespace
@@ -33,7 +33,7 @@ void PagedRays::ForGroups(size_t n, const std::function<void(size_t begin, size_
   });
 }
 
-// Takes these rays through their windows, with what is loaded.
+// Continues these rays through their windows with the loaded fields.
 int64_t PagedRays::Carry(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options,
                          std::span<const size_t> going, std::span<const render::Window> windows) {
   if (store_.loads() != renderers_loads_ || !(options == renderers_options_)) {
@@ -94,7 +94,7 @@ int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<RayInFl
     if (at != owners.end()) return at->second;
     return owners[set] = owner ? owner(segments_.Blocks(set)) : me;
   };
-  // Who goes on with a ray that stands at its next segment.
+  // Sets the owner of a ray's next segment.
   const auto settle = [&](size_t i) {
     const Way& way = ways[i];
     const bool arrived = in_flight[i].state.ended || way.at >= way.segments.size();
@@ -115,12 +115,12 @@ int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<RayInFl
       const std::span<const int> blocks = segments_.Blocks(set);
       return std::all_of(blocks.begin(), blocks.end(), [this](int k) { return store_.IsLoaded(k); });
     };
-    // Where most rays wait; what is in memory goes first.
+    // The set that most rays wait for; loaded sets first.
     const auto next = std::max_element(waiting.begin(), waiting.end(), [&](const auto& a, const auto& b) {
       return std::pair(loaded(a.first), a.second) < std::pair(loaded(b.first), b.second);
     });
     store_.EnsureLoaded(segments_.Blocks(next->first));
-    std::map<int, bool> carried;  // sets that the loaded fields carry
+    std::map<int, bool> carried;  // whether a set is ours and loaded
     const auto carries = [&](int set) {
       const auto at = carried.find(set);
       if (at != carried.end()) return at->second;

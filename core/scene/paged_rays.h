@@ -1,4 +1,4 @@
-// Renders rays through more fields than fit in memory: as far as the loaded ones carry, then with others.
+// Renders rays through more fields than fit in memory: continues them as far as the loaded fields reach, then loads others.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,25 @@
 
 namespace skyquilt::scene {
 
-// A ray on its way through a scene.
+// A partly rendered ray.
 struct RayInFlight {
   render::RayState state;
-  double at = 0.0;  // metres along the ray: what lies before is gathered
-  int owner = 0;    // who goes on with it; kArrived when nobody needs to
+  double at = 0.0;  // metres along the ray up to which it has been rendered
+  int owner = 0;    // who continues it; kArrived: it is finished
 };
 constexpr int kArrived = -1;
 
 class PagedRays {
  public:
-  // Who renders where these blocks meet (a set of RaySegments): any numbers from 0. Empty: everything is for `me`.
+  // Returns who renders a segment that needs these blocks (a set of RaySegments): a rank or any other number from 0. Empty function: always `me`.
   using Owner = std::function<int(std::span<const int> blocks)>;
 
-  // All must outlive this.
+  // All arguments must outlive this.
   PagedRays(FieldStore& store, const render::RaySegments& segments, base::ThreadPool& threads);
 
-  // Takes every ray on until it arrives or comes to a place of another owner than `me`; rays of others are left as they are. The result does
-  // not depend on memory, owners or threads. Returns the samples evaluated. Throws base::UsageError (memory too small), base::Interrupted.
+  // Continues every ray whose owner is `me` until it is finished or reaches a segment of another owner; other rays are left as they are. The result
+  // does not depend on memory, owners or threads. Returns the number of samples evaluated. Throws base::UsageError when memory is too small,
+  // base::Interrupted when cancelled.
   int64_t Continue(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options, int me,
                    const Owner& owner);
 

@@ -1,4 +1,4 @@
-// Somebody else who answers rays for a scene: other ranks, which hold its fields.
+// Interface for rendering a scene's rays elsewhere: on other ranks, which hold its fields.
 #pragma once
 
 #include <span>
@@ -13,9 +13,10 @@ namespace skyquilt::scene {
 class RayService {
  public:
   virtual ~RayService() = default;
-  // Called once, before the first rays: the scene's outlines, which outlive the service's use.
+  // Called once before the first Render, with the descriptions of the scene's fields. Both arguments outlive the service.
   virtual void Begin(const FieldStore& store, const render::RaySegments& segments) = 0;
-  // As RenderRays of the whole scene, to the bit. Throws base::Interrupted, and what the others met as base::UsageError or base::InputError.
+  // As RenderRays of the whole scene, with the same bits. Throws base::Interrupted when cancelled; errors on other ranks as base::UsageError or
+  // base::InputError.
   virtual void Render(std::span<const render::Ray> rays, std::span<render::RayColor> out, const render::EngineOptions& options) = 0;
   virtual RenderStatistics statistics() const = 0;
 };

@@ -18,8 +18,8 @@ namespace skyquilt::scene {
 namespace {
 
 constexpr int kTile = 32;                // pixels
-constexpr int kBandTiles = 128;          // rays built at a time: memory does not grow with the image
-constexpr int kServiceBandTiles = 1024;  // others want more at a time, for they wait for each other at the end
+constexpr int kBandTiles = 128;          // tiles rendered at a time: memory does not grow with the image
+constexpr int kServiceBandTiles = 1024;  // with a service: more at a time, because its ranks wait for each other at the end of each band
 
 void Expose(const std::array<float, 3>& log_gain, std::span<render::RayColor> colors) {
   for (size_t c = 0; c < 3; ++c) {
@@ -29,7 +29,7 @@ void Expose(const std::array<float, 3>& log_gain, std::span<render::RayColor> co
   }
 }
 
-// Display values from the light that fields with luminance show; premultiplied as before.
+// Replaces the colours by the concealed rendering, as premultiplied display values.
 void ShowConcealed(std::span<render::RayColor> colors) {
   for (render::RayColor& color : colors) {
     for (size_t c = 0; c < 3; ++c) {
@@ -41,12 +41,12 @@ void ShowConcealed(std::span<render::RayColor> colors) {
 }  // namespace
 
 struct Scene::Impl {
-  // Whether a look is the rendering with held-back light.
+  // Whether a look is the concealed rendering.
   bool Conceals(Look look) const {
     return look == Look::kNormal ? info.luminance.mode == brightness::LuminanceMode::kOver : info.luminance.mode == brightness::LuminanceMode::kUnder;
   }
   render::EngineOptions Options(Look look) const { return Conceals(look) ? render::EngineOptions::For(info.luminance) : render::EngineOptions{}; }
-  // Light of the background, which has the photos' colours, over what a look shows of it.
+  // Factor from the light of the background, which has the photos' brightness, to that of a look.
   float BackgroundGain(Look look) const {
     if (look == Look::kRecorded || !info.luminance.On()) return 1.0F;
     const double sign = info.luminance.mode == brightness::LuminanceMode::kUnder ? -1.0 : 1.0;
@@ -112,7 +112,7 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
   impl.background = GetBackground(reader, scene_h5);
   impl.store = std::make_unique<FieldStore>(std::move(reader), scene_h5, options.memory_bytes, info.borders == Borders::kHard);
   const FieldStore& store = *impl.store;
-  if (store.size() == 0) throw base::InputError(scene_h5, "holds no blocks", "Train at least one block, then merge again");
+  if (store.size() == 0) throw base::InputError(scene_h5, "has no blocks", "Train at least one block, then merge again");
   info.min_enu = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   info.max_enu = -info.min_enu;
   for (int k = 0; k < store.size(); ++k) {
@@ -129,7 +129,7 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
     info.context_samples = store.context().samples;
   }
   if (impl.service != nullptr) impl.service->Begin(store, *impl.segments);
-  // What is damaged is to be found now, not in the middle of a rendering.
+  // A damaged file must be found now, not in the middle of a rendering.
   if (impl.service == nullptr && store.AllFit()) impl.store->EnsureAllLoaded();
   return scene;
 }
@@ -147,7 +147,7 @@ std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, 
   std::vector<render::RayColor> out(static_cast<size_t>(camera.width) * static_cast<size_t>(camera.height));
   const geo::Rigid3d enu_from_cam = cam_from_enu.Inverse();
   const float radius = static_cast<float>(0.5 / std::max(1e-9, camera.FocalX()));
-  // Square tiles: rays that are rendered together look at the same places, so table entries are in cache.
+  // Square tiles: rays that are rendered together see the same places, so the hash table entries they read are in cache.
   const int tile_columns = (camera.width + kTile - 1) / kTile;
   const int n_tiles = tile_columns * ((camera.height + kTile - 1) / kTile);
   const float background_gain = impl_->BackgroundGain(look);

@@ -1,6 +1,6 @@
-// The merged result: the context field and every block's field, ready to answer rays.
-// A sample's density is the sum of its blocks' densities times partition-of-unity weights (smooth across margins); outside all
-// ground plans the context answers. Frame: rays in survey ENU, metres, double; each field converts once into its own box.
+// The merged result of training: all blocks and the context, rendered as if they were one radiance field.
+// The density of a sample is the sum of its blocks' densities times blend weights that sum to 1 and change smoothly across margins; outside all
+// blocks the context is rendered. Rays are in survey ENU, metres, double; each field converts them once into its own box.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,13 +28,13 @@ struct SceneBlock : geo::BlockBox {
   int64_t parameters = 0;
   int64_t steps = 0;
   double train_seconds = 0.0;
-  int64_t samples = 0;  // trained
+  int64_t samples = 0;  // evaluated in training
 };
 
-// How blocks meet.
+// How neighbouring blocks are joined.
 enum class Borders {
-  kSmooth,  // blended by weights that sum to one across [face - margin, face + margin]
-  kHard,    // a block ends at its core box's face, where the next one or the context begins
+  kSmooth,  // blended across [face - margin, face + margin]
+  kHard,    // a block ends at the face of its core box, where the next block or the context begins
 };
 inline std::string NameOf(Borders borders) {
   return borders == Borders::kHard ? "hard" : "smooth";
@@ -43,48 +43,48 @@ inline std::string NameOf(Borders borders) {
 struct SceneInfo {
   geo::Geodetic origin;
   bool georeferenced = false;
-  std::vector<SceneBlock> blocks;    // non-empty ones
+  std::vector<SceneBlock> blocks;    // without empty ones
   Eigen::Vector3d min_enu, max_enu;  // union of the core boxes
   brightness::Response response;     // of the photos, relative to light at reference exposure
-  brightness::Luminance luminance;   // concealing field, for badly exposed surveys
+  brightness::Luminance luminance;   // concealing field, for under- or over-exposed surveys
   brightness::LuminanceState luminance_state;
   int64_t parameters = 0;  // of all fields, context included
   double context_seconds = 0.0;
   int64_t context_samples = 0;
-  double gsd_m = 0.0;  // finest of the blocks
+  double gsd_m = 0.0;  // ground sampling distance of the finest block
   Borders borders = Borders::kSmooth;
-  std::string config;  // TOML text it was trained with
+  std::string config;  // TOML text of the configuration it was trained with
 };
 
-// The two renderings of a scene with concealing field; of any other scene they are the same.
+// The two renderings of a scene with a concealing field. For other scenes they are the same.
 enum class Look {
-  kNormal,    // what is shown to people
-  kRecorded,  // what a photo at reference exposure would have recorded
+  kNormal,    // shown to people
+  kRecorded,  // as a photo at reference exposure would have recorded the scene
 };
 
-// How a rendering is to look: which of the two, and the change of exposure on top, natural logarithm in linear light per colour.
+// Brightness of a rendering.
 struct Appearance {
   Look look = Look::kNormal;
-  std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};
+  std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};  // additional exposure per colour: natural logarithm of a factor on linear light
 };
 
-// What answering rays has taken so far.
+// Counts of all rays rendered so far.
 struct RenderStatistics {
-  int ranks = 1;   // that render
-  int groups = 1;  // of ranks, each holding the scene
+  int ranks = 1;   // ranks that render
+  int groups = 1;  // groups of ranks; each group holds the whole scene
   int64_t rays = 0;
   int64_t samples = 0;
-  int64_t field_loads = 0;     // more than there are fields where memory is short, or several ranks hold one
-  int64_t handovers = 0;       // rays that went on to another rank
-  int64_t bytes_sent = 0;      // by the rank that asks
-  int64_t bytes_received = 0;  // by it
+  int64_t field_loads = 0;     // larger than the number of fields when memory is short or several ranks hold the same field
+  int64_t handovers = 0;       // rays passed on to another rank
+  int64_t bytes_sent = 0;      // by the rank that requests rays
+  int64_t bytes_received = 0;  // by the same rank
 };
 
 class RayService;
 
 struct SceneOptions {
-  double memory_bytes = 0.0;      // fields that do not fit are loaded on demand; 0: all are loaded
-  RayService* service = nullptr;  // who answers rays instead of this process, which then loads no field; must outlive the scene
+  double memory_bytes = 0.0;      // limit for the fields in memory; those that do not fit are loaded on demand; 0: no limit
+  RayService* service = nullptr;  // renders the rays instead of this process, which then loads no field; must outlive the scene
 };
 
 // Not for two threads at once.
@@ -97,10 +97,10 @@ class Scene {
 
   const SceneInfo& info() const;
   RenderStatistics statistics() const;
-  // Any number of rays, 0 included; out has the same length. Deterministic, for any memory and service.
-  // Throws base::Interrupted when cancelled, base::UsageError when not even the blocks that meet at one place fit in memory.
+  // Any number of rays, 0 included; out has the same length. Same bits for any memory, service and number of threads.
+  // Throws base::Interrupted when cancelled, base::UsageError when the overlapping blocks of one place do not fit in memory.
   void RenderRays(std::span<const render::Ray> rays, std::span<render::RayColor> out, const Appearance& appearance, base::ThreadPool& threads) const;
-  // All pixels of a camera, row-major, width * height results, colours over the scene's background. Opacity tells where that shows.
+  // All pixels of a camera, row-major, width * height results, composited over the scene's background, which shows where opacity is below 1.
   std::vector<render::RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, const Appearance& appearance,
                                              base::ThreadPool& threads) const;
 

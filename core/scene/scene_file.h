@@ -1,4 +1,4 @@
-// Layout of scene.h5, shared by the merge stage that writes it and Scene that reads it.
+// Names and version of the layout of scene.h5, shared by the merge stage that writes it and Scene that reads it.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@ namespace skyquilt::scene {
 
 constexpr const char* kSceneKind = "scene";
 constexpr int kSceneVersion = 3;
-constexpr const char* kBordersAttribute = "borders";  // of render::Borders; absent: smooth
+constexpr const char* kBordersAttribute = "borders";  // NameOf(Borders); missing: smooth
 constexpr const char* kContextPrefix = "context/";
 inline std::string BlockPrefix(int64_t i) {
   return "blocks/" + std::to_string(i) + "/";
 }
 
-// Throws base::InputError for a file that is not a scene, of another version, or damaged.
+// Throws base::InputError when the file is damaged, is not a scene, or has another version.
 checkpoint::ArchiveReader OpenScene(const std::filesystem::path& scene_h5);
 Borders BordersOf(const checkpoint::ArchiveReader& scene);
 

@@ -147,11 +147,11 @@ void WriteTrainReport(const TrainReport& report, const std::filesystem::path& fi
 }
 
 TrainReport ReadTrainReport(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) throw base::InputError(file, "is not there yet", "Run 'skyquilt train' first");
+  if (!std::filesystem::exists(file)) throw base::InputError(file, "does not exist", "Run 'skyquilt train' first");
   const Json json = Json::parse(base::ReadFile(file), nullptr, false);
   if (!json.is_object()) throw base::InputError(file, "is damaged: not valid JSON", kTrainAgain);
   const auto fields = json.find("fields");
-  if (fields == json.end() || !fields->is_array()) throw base::InputError(file, "is no report of a training: it has no fields", kTrainAgain);
+  if (fields == json.end() || !fields->is_array()) throw base::InputError(file, "is not a training record: it has no list 'fields'", kTrainAgain);
   TrainReport report;
   report.ranks = static_cast<int>(Integer(json, "ranks"));
   report.threads = static_cast<int>(Integer(json, "threads"));

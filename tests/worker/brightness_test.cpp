@@ -1,4 +1,4 @@
-// Brightness learned beside the field: gains, vignetting and concealing field, on photos made with known ones and on photos that say next to nothing.
+// Learning brightness together with a field: gains, vignetting and concealing field, on photos with known ones and on nearly useless photos.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ double Exposed(double display, double gain) {
   return static_cast<double>(image::SrgbFromLinear(static_cast<float>(gain) * image::LinearFromSrgb(static_cast<float>(display))));
 }
 
-// Stops of photo i: up to +-1.2, jumping.
+// Exposure of photo i in stops: jumps between photos, up to +-1.2.
 double Stops(int photo) {
   return 1.2 * std::sin(2.4 * photo);
 }
@@ -48,16 +48,16 @@ class BrightnessTest : public SmallSurvey {
     job.luminance.start_log_gain = start_log_gain;
     return job;
   }
-  // What the tie points say about the brightness that a job is to learn; whether they say anything, if `said` is given.
-  brightness::Response FromTiePoints(const TrainJob& job, bool* said = nullptr) const {
+  // The response estimated from tie points; *complete: result of GainsFromTiePoints, may be null.
+  brightness::Response FromTiePoints(const TrainJob& job, bool* complete = nullptr) const {
     brightness::Response response = job.response;
     const RaySource source(survey_, *pixels_, response);
     base::ThreadPool threads(2);
     const bool known = GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads);
-    if (said != nullptr) *said = known;
+    if (complete != nullptr) *complete = known;
     return response;
   }
-  // Root mean square error in stops of a response's gains against what the photos were made with, mean taken off, over the training photos.
+  // Root mean square error of the training photos' gains in stops, after subtracting the mean error.
   double RmsStops(const brightness::Response& response, const std::function<double(int, int)>& truth_stops) const {
     double squares = 0.0, n = 0.0;
     for (int c = 0; c < 3; ++c) {
@@ -78,7 +78,7 @@ class BrightnessTest : public SmallSurvey {
     }
     return std::sqrt(squares / n);
   }
-  // Straight down from 30 m, a metre apart, over the square about the survey's middle.
+  // Rays straight down from 30 m, a metre apart, over a square in the middle of the survey.
   static std::vector<render::Ray> RaysDown(double reach_m) {
     std::vector<render::Ray> rays;
     for (double x = -reach_m; x <= reach_m; x += 1.0) {
@@ -86,7 +86,7 @@ class BrightnessTest : public SmallSurvey {
     }
     return rays;
   }
-  // Mean display value of what the middle of the survey shows in one of the two renderings.
+  // Mean display value of the middle of the survey in one of the two renderings.
   double MeanShown(const LoadedContext& context, bool concealed, base::ThreadPool& threads) const {
     render::FieldSet set;
     set.context = &context.field;
@@ -104,13 +104,13 @@ class BrightnessTest : public SmallSurvey {
   }
 };
 
-TEST_F(BrightnessTest, TiePointsKnowTheGains) {
+TEST_F(BrightnessTest, TiePointsGiveTheGains) {
   const auto stops = [](int photo, int c) { return Stops(photo) + 0.2 * (c - 1) * std::sin(photo); };
   Photograph([&](int photo, int c, double value, double) { return Exposed(0.6 * value, std::exp2(stops(photo, c))); });
   AddGroundPoints();
-  bool said = false;
-  const brightness::Response response = FromTiePoints(Learning("context.h5", 1, false), &said);
-  EXPECT_TRUE(said);
+  bool complete = false;
+  const brightness::Response response = FromTiePoints(Learning("context.h5", 1, false), &complete);
+  EXPECT_TRUE(complete);
   EXPECT_LT(RmsStops(response, stops), 0.05);
   for (size_t c = 0; c < 3; ++c) {
     double mean = 0.0;
@@ -119,7 +119,7 @@ TEST_F(BrightnessTest, TiePointsKnowTheGains) {
   }
 }
 
-TEST_F(BrightnessTest, TiePointsKnowTheVignetting) {
+TEST_F(BrightnessTest, TiePointsGiveTheVignetting) {
   Photograph([](int photo, int, double value, double r2) { return Exposed(0.6 * value, std::exp2(Stops(photo)) * std::exp(-0.5 * r2)); });
   AddGroundPoints();
   const brightness::Response response = FromTiePoints(Learning("context.h5", 1, true));
@@ -127,14 +127,14 @@ TEST_F(BrightnessTest, TiePointsKnowTheVignetting) {
   for (const float r2 : {0.2F, 0.5F, 0.9F}) EXPECT_NEAR(response.LogVignetting(0, r2), -0.5F * r2, 0.05F) << r2;
 }
 
-TEST_F(BrightnessTest, WithoutPointsNothingIsKnown) {
-  bool said = true;
-  const brightness::Response response = FromTiePoints(Learning("context.h5", 1, true), &said);
-  EXPECT_FALSE(said);
+TEST_F(BrightnessTest, WithoutPointsNothingIsEstimated) {
+  bool complete = true;
+  const brightness::Response response = FromTiePoints(Learning("context.h5", 1, true), &complete);
+  EXPECT_FALSE(complete);
   for (const float gain : response.log_gain) EXPECT_EQ(gain, 0.0F);
 }
 
-TEST_F(BrightnessTest, TiePointsKeepToAnchors) {
+TEST_F(BrightnessTest, TiePointsKeepAnchors) {
   Photograph([&](int photo, int, double value, double) { return Exposed(0.6 * value, std::exp2(photo == 5 ? -1.0 : 0.5)); });
   AddGroundPoints();
   TrainJob job = Learning("context.h5", 1, false);
@@ -153,13 +153,13 @@ TEST_F(BrightnessTest, TrainingLearnsGainsWithoutTiePoints) {
   ASSERT_TRUE(result.ok) << result.reason;
   const LoadedContext context = LoadContext(folder_ / "context.h5");
   EXPECT_LT(RmsStops(context.response, [](int photo, int) { return 0.5 * Stops(photo); }), 0.1);
-  // Held-out photos got a prediction, and blocks take all of it over.
+  // The gains of held-out photos are predicted, and blocks use all gains.
   EXPECT_NE(context.response.log_gain[0], 0.0F);
   const TrainResult block = TrainBlock(Learning("block.h5", 50, true), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
   EXPECT_TRUE(block.ok) << block.reason;
 }
 
-TEST_F(BrightnessTest, LearningGoesOnAfterAnInterruptionBitForBit) {
+TEST_F(BrightnessTest, LearningResumesAfterAnInterruptionWithTheSameBits) {
   Photograph([](int photo, int, double value, double) { return Exposed(0.6 * value, std::exp2(0.5 * Stops(photo))); });
   base::ThreadPool one(1), three(3);
   TrainContext(Learning("a.h5", 80, true), Box(20.0, 0.0), three, {});
@@ -186,7 +186,7 @@ TEST_P(LuminanceTest, ShowsAnUnderExposedSurveyAtTheWantedBrightness) {
   const LoadedContext context = LoadContext(folder_ / "context.h5");
   EXPECT_LT(MeanShown(context, true, threads), 0.2);
   if (GetParam().product) {
-    // The first sample of a surface has nothing in front that could hold its light back, so this form brightens less.
+    // The first sample of a surface is not dimmed, because no sample is in front of it, so this form brightens less.
     EXPECT_GT(MeanShown(context, false, threads), 1.3 * MeanShown(context, true, threads));
     return;
   }
@@ -198,7 +198,7 @@ INSTANTIATE_TEST_SUITE_P(Forms, LuminanceTest, ::testing::Values(Form{false, tru
   return std::string(one.param.product ? "product" : "gain") + (one.param.patches ? "Patch" : "Batch");
 });
 
-// Colours that overshoot the end of their scale in the first steps must come back.
+// Colours that reach the end of their range in the first steps must still be learned.
 TEST_F(BrightnessTest, DarkAndBrightSurveysAreLearnedWithoutIt) {
   base::ThreadPool threads(2);
   for (const double gain : {0.02, 8.0}) {
@@ -227,7 +227,7 @@ TEST_F(BrightnessTest, ShowsAnOverExposedSurveyDarker) {
   EXPECT_NEAR(MeanShown(context, true, threads), 0.4, 0.08);
 }
 
-TEST_F(BrightnessTest, BlocksKeepToTheContextsLight) {
+TEST_F(BrightnessTest, BlocksUseTheContextsBrightness) {
   Photograph([](int, int, double value, double) { return Exposed(value, 0.08); });
   base::ThreadPool threads(2);
   ASSERT_TRUE(TrainContext(JobWithLight(LuminanceMode::kUnder, -2.0, 300), Box(20.0, 0.0), threads, {}).ok);
@@ -250,7 +250,7 @@ TEST_F(BrightnessTest, BlocksKeepToTheContextsLight) {
   EXPECT_NEAR(mean_shown(fine), mean_shown(coarse), 0.05);
 }
 
-// Photos that say next to nothing, or too much: training must end, finite.
+// Extreme photos: training must end with finite results.
 struct Odd {
   const char* name;
   double (*recorded)(int photo, double value);
@@ -299,7 +299,7 @@ TEST_F(BrightnessTest, ASinglePhotoLearnsNothingAboutItself) {
   base::ThreadPool threads(1);
   const TrainResult result = TrainContext(job, Box(20.0, 0.0), threads, {});
   ASSERT_TRUE(result.ok) << result.reason;
-  // Its gain and the field's colours are known up to a factor: the projection leaves it at 1.
+  // Its gain and the field's colours are determined only up to a common factor: the projection keeps the gain at 1.
   for (const float gain : LoadContext(job.checkpoint).response.log_gain) EXPECT_NEAR(gain, 0.0F, 1e-6F);
 }
 

@@ -28,19 +28,19 @@ TEST(Losses, SquaredPhotoLossHasItsGradient) {
 
 TEST(Losses, TonedPhotoLossHasItsGradient) {
   ExpectLossGradient([](double weight, const Inputs& x) { return Weighted(weight, TonedPhotoLoss(x[0], 0.62)); }, {1, 0.01, 0.99});
-  // Past the ends the curve is a straight line.
+  // Beyond its ends the curve is a straight line.
   ExpectLossGradient([](double weight, const Inputs& x) { return Weighted(weight, TonedPhotoLoss(x[0], 0.62)); }, {1, 1.01, 1.4});
   ExpectLossGradient([](double weight, const Inputs& x) { return Weighted(weight, TonedPhotoLoss(x[0], 0.62)); }, {1, -0.4, -0.01});
 }
 
-TEST(Losses, SaturatedAndBlackPixelsSayOnlyOneThing) {
+TEST(Losses, SaturatedAndBlackPixelsAreBounds) {
   for (const auto loss : {SquaredPhotoLoss<double>, TonedPhotoLoss<double>}) {
     for (const auto& [rendered, target, counts] : {std::tuple{1.2, 1.0, false}, {0.9, 1.0, true}, {-0.1, 0.0, false}, {0.1, 0.0, true}}) {
       const PhotoLoss<double> at = loss(rendered, target);
       EXPECT_EQ(at.counts, counts) << rendered;
       EXPECT_EQ(at.value > 0.0, counts) << rendered;
       EXPECT_EQ(at.gradient != 0.0, counts) << rendered;
-      EXPECT_NEAR(at.squared_error, (rendered - target) * (rendered - target), 1e-15) << "errors count all the same";
+      EXPECT_NEAR(at.squared_error, (rendered - target) * (rendered - target), 1e-15) << "the squared error is counted in any case";
     }
   }
 }
@@ -63,7 +63,7 @@ TEST(Losses, MeanLossHasItsGradient) {
       {1, -2.0, 2.0});
 }
 
-// A row of neighbours, each of which adds what it sees: together the sum over pairs.
+// A row of rays, each of which adds its half of the loss: together the sum over pairs.
 TEST(Losses, SmoothnessLossOfAGroupHasItsGradient) {
   const auto loss = [](double weight, const Inputs& x) {
     CheckedLoss sum{0.0, Inputs(x.size(), 0.0)};

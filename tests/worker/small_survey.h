@@ -1,5 +1,4 @@
-// A small synthetic survey on disk: a patterned ground with a box on it, seen by sixteen photos from straight above. What the photos record of
-// its light can be chosen.
+// A small synthetic survey on disk: patterned ground with a box on it, seen by sixteen nadir photos. A test can choose how the photos record light.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,8 +28,8 @@ namespace skyquilt::worker {
 constexpr int kSmallWidth = 64, kSmallHeight = 48;
 
 struct SmallWorld {
-  // Colour of the surface a ray meets: ground z = 0 with a smooth pattern; a 6 x 6 x 4 m red box in the middle, patterned too: a roof of one
-  // colour could hang at any height inside the silhouettes.
+  // Colour of the surface a ray meets: ground z = 0 with a smooth pattern, and a 6 x 6 x 4 m red box in the middle. The box is patterned too, because
+  // a roof of one colour could be at any height inside the silhouettes.
   static Eigen::Vector3d Shade(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
     const geo::Interval box = geo::RayBox(origin, direction, {-3, -3, 0}, {3, 3, 4});
     if (!box.Empty()) {
@@ -45,7 +44,7 @@ struct SmallWorld {
 
 class SmallSurvey : public ::testing::Test {
  protected:
-  // Display values of the world to what photo i records at a pixel, r2 = squared distance from the centre, 1 in the corners.
+  // From a display value of the world to the one that photo i records at a pixel. r2: squared distance from the centre, 1 in the corners.
   using Recording = std::function<double(int photo, int channel, double value, double r2)>;
 
   void SetUp() override {
@@ -119,7 +118,7 @@ class SmallSurvey : public ::testing::Test {
     for (int i = 0; i < 16; ++i) block.photos.push_back(i);
     return block;
   }
-  // Trains a job that is interrupted once it has saved its first step, then again until it comes to its end.
+  // Trains a job that is interrupted once it has saved its first step, then resumes it until it is finished.
   static void TrainInterrupted(TrainJob job, const std::function<void(const TrainJob&)>& train) {
     job.options.checkpoint_every_s = 0.0;  // saves after every step
     base::ClearCancel();

@@ -1,4 +1,4 @@
-// Where fields start to look: between the sparse points, or where the context's light ends.
+// Initially occupied cells: between the sparse points, or near the surfaces of the context.
 #include "worker/starting_occupancy.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ render::TrainedField EmptyField() {
   return f;
 }
 
-bool Awake(const render::TrainedField& f, double x, double y, double z) {
+bool Occupied(const render::TrainedField& f, double x, double y, double z) {
   const Eigen::Vector3f unit = f.map.UnitFromEnu({x, y, z});
   return f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] != 0;
 }
@@ -39,23 +39,23 @@ survey::Survey TownOfOneTower() {
     const bool tower = std::abs(x - 20.0) < 2.0 && std::abs(y - 20.0) < 2.0;
     survey.points.push_back(PointAt(x, y, tower ? 15.0 : 3.0));
   }
-  survey.points.push_back(PointAt(-5.0, 10.0, 19.0));  // outside the box: no news
+  survey.points.push_back(PointAt(-5.0, 10.0, 19.0));  // outside the box: must be ignored
   return survey;
 }
 
 TEST(StartingOccupancy, PointsBoundTheSurface) {
   render::TrainedField f = EmptyField();
   StartFromPoints(TownOfOneTower(), f);
-  EXPECT_TRUE(Awake(f, 8.0, 30.0, 3.0)) << "the ground";
-  EXPECT_FALSE(Awake(f, 8.0, 30.0, 6.0)) << "air over the ground";
-  EXPECT_FALSE(Awake(f, 1.0, 10.0, 18.0)) << "a point outside the box counts nothing";
-  EXPECT_TRUE(Awake(f, 20.0, 20.0, 15.0)) << "the roof";
-  EXPECT_TRUE(Awake(f, 20.0, 20.0, 9.0)) << "walls";
-  EXPECT_TRUE(Awake(f, 17.5, 20.0, 9.0)) << "beside the tower, where its points reach";
-  EXPECT_FALSE(Awake(f, 20.0, 20.0, 17.0)) << "air over the roof";
-  EXPECT_FALSE(Awake(f, 32.5, 30.0, 10.0)) << "a few columns beyond the points the ground is taken to go on";
-  EXPECT_TRUE(Awake(f, 32.5, 30.0, 3.0));
-  EXPECT_TRUE(Awake(f, 38.0, 20.0, 17.0)) << "nothing is known far from points";
+  EXPECT_TRUE(Occupied(f, 8.0, 30.0, 3.0)) << "the ground";
+  EXPECT_FALSE(Occupied(f, 8.0, 30.0, 6.0)) << "free space above the ground";
+  EXPECT_FALSE(Occupied(f, 1.0, 10.0, 18.0)) << "a point outside the box is ignored";
+  EXPECT_TRUE(Occupied(f, 20.0, 20.0, 15.0)) << "the roof";
+  EXPECT_TRUE(Occupied(f, 20.0, 20.0, 9.0)) << "walls";
+  EXPECT_TRUE(Occupied(f, 17.5, 20.0, 9.0)) << "next to the tower, in a neighbouring column";
+  EXPECT_FALSE(Occupied(f, 20.0, 20.0, 17.0)) << "free space above the roof";
+  EXPECT_FALSE(Occupied(f, 32.5, 30.0, 10.0)) << "the ground is continued for a few columns beyond the points";
+  EXPECT_TRUE(Occupied(f, 32.5, 30.0, 3.0));
+  EXPECT_TRUE(Occupied(f, 38.0, 20.0, 17.0)) << "nothing is known far from points";
 }
 
 TEST(StartingOccupancy, WithoutPointsEverythingSeenStays) {
@@ -68,7 +68,7 @@ TEST(StartingOccupancy, WithoutPointsEverythingSeenStays) {
   EXPECT_EQ(f.occupancy.occupied, before);
 }
 
-TEST(StartingOccupancy, EverywhereIsAllThatIsSeen) {
+TEST(StartingOccupancy, EverywhereKeepsAllSeenCells) {
   render::TrainedField target;
   const double extent[3] = {1.0, 1.0, 0.5};
   target.occupancy = field::OccupancyGrid::Make(extent, 0.25, 1000);

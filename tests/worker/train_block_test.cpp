@@ -48,12 +48,12 @@ TEST_F(TrainBlockTest, BitsDoNotDependOnThreadsNorOnInterruption) {
   TrainBlock(Job("a.h5", 90), Box(12.0, 1.0), folder_ / "context.h5", one, {});
   TrainBlock(Job("b.h5", 90), Box(12.0, 1.0), folder_ / "context.h5", three, {});
   EXPECT_EQ(Bytes("a.h5"), Bytes("b.h5"));
-  // Interrupted on the way, then continued by the same call.
+  // Interrupted, then resumed by the same call.
   TrainInterrupted(Job("c.h5", 90), [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", one, {}); });
   EXPECT_EQ(Bytes("a.h5"), Bytes("c.h5"));
 }
 
-TEST_F(TrainBlockTest, FinishedWorkIsNotDoneTwiceAndOtherConfigurationsAreRefused) {
+TEST_F(TrainBlockTest, FinishedFieldsAreNotTrainedAgainAndOtherConfigurationsAreRefused) {
   base::ThreadPool threads(1);
   TrainContext(Job("context.h5", 20), Box(20.0, 0.0), threads, {});
   const auto written = fs::last_write_time(folder_ / "context.h5");
@@ -64,7 +64,7 @@ TEST_F(TrainBlockTest, FinishedWorkIsNotDoneTwiceAndOtherConfigurationsAreRefuse
   EXPECT_THROW(TrainContext(other, Box(20.0, 0.0), threads, {}), base::UsageError);
 }
 
-TEST_F(TrainBlockTest, BlockNobodyPhotographedFailsWithItsReason) {
+TEST_F(TrainBlockTest, BlockWithoutPhotosFailsWithItsReason) {
   base::ThreadPool threads(1);
   TrainContext(Job("context.h5", 20), Box(20.0, 0.0), threads, {});
   BlockSpec far = Box(5.0, 0.0);
@@ -114,7 +114,7 @@ TEST_F(TrainBlockTest, BandsOfTheContextAreWhereABlockStarts) {
   RaySource source(survey_, *pixels_, response);
   LoadedContext context;
   context.field.step_m = 1.0;
-  // All photos look straight down from about 30 m; light ends between 2 m and 1 m of height at the ray's foot point.
+  // All photos look straight down from about 30 m; the surface band is from 2 m to 1 m above ground at the ray's foot point.
   std::vector<int> photos;
   for (size_t photo = 0; photo < survey_.photos.size(); ++photo) {
     photos.push_back(static_cast<int>(photo));
@@ -135,16 +135,16 @@ TEST_F(TrainBlockTest, BandsOfTheContextAreWhereABlockStarts) {
   survey_.points.emplace_back();
   survey_.points.back().x_in_enu = {4.2, 4.2, 12.2};
   StartFromBands(source, survey_, TrainingTiles(survey_, photos), context, target);
-  const auto awake = [&](double x, double y, double z) {
+  const auto occupied = [&](double x, double y, double z) {
     const Eigen::Vector3f unit = target.map.UnitFromEnu({x, y, z});
     return target.occupancy.occupied[static_cast<size_t>(target.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] != 0;
   };
   for (double x = -9.0; x < 9.5; x += 1.5) {
-    EXPECT_TRUE(awake(x, 2.0, 1.5)) << x;
-    EXPECT_FALSE(awake(x, 2.0, 6.0)) << x;
-    EXPECT_FALSE(awake(x, 2.0, -3.0)) << x;
+    EXPECT_TRUE(occupied(x, 2.0, 1.5)) << x;
+    EXPECT_FALSE(occupied(x, 2.0, 6.0)) << x;
+    EXPECT_FALSE(occupied(x, 2.0, -3.0)) << x;
   }
-  EXPECT_TRUE(awake(4.2, 4.2, 12.2)) << "a sparse point";
+  EXPECT_TRUE(occupied(4.2, 4.2, 12.2)) << "a sparse point";
 }
 
 }  // namespace

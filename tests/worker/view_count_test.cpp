@@ -1,4 +1,4 @@
-// Photos that look straight down from 50 m onto flat ground at 2 m: which tiles and cells too few of them see, and what shows there instead.
+// Nadir photos from 50 m above flat ground at 2 m: tiles and cells that too few of them see, and the background there.
 #include "worker/view_count.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ class ViewCountTest : public ::testing::Test {
       const survey::Photo photo = NadirPhoto({i * shift_m, 0.0, 50.0}, "p" + std::to_string(i) + ".png");
       image::Image8 picture(kWidth, kHeight, 3);
       for (int y = 0; y < kHeight; ++y) {
-        // A fine check in red; green where the first photo looks west and the second one east.
+        // A fine checkerboard in red; green in the west of the first photo and in the east of the second.
         for (int x = 0; x < kWidth; ++x) {
           picture.At(x, y)[0] = static_cast<uint8_t>((x + y) % 2 == 0 ? 200 : 100);
           picture.At(x, y)[1] = (x < kWidth / 2) == (i == 0) ? 80 : 0;
@@ -114,18 +114,18 @@ TEST_F(ViewCountTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
   EXPECT_TRUE(seen(1, -24.0, 3.0));
   EXPECT_FALSE(seen(1, -58.0, 3.0)) << "in none";
   survey_.photos[1].is_test = true;
-  EXPECT_TRUE(seen(2, -24.0, 3.0)) << "a lone photo still shows what it sees";
+  EXPECT_TRUE(seen(2, -24.0, 3.0)) << "a survey of one photo keeps all it sees";
 }
 
 TEST_F(ViewCountTest, TheBackgroundShowsCoarseColoursWhereOnePhotoLookedAndNearOnesWhereNoneDid) {
   Photograph(48.0);
   const scene::Background background = MakeBackground(*source_, survey_, SurfaceOfPoints(survey_), 1);
   const auto down_at = [&](double x) { return background.Color({x, 0.0, 50.0}, {0.0, 0.0, -1.0}); };
-  EXPECT_NEAR(down_at(-24.0)[0], 150.0F / 255.0F, 0.01F) << "the check is blurred";
+  EXPECT_NEAR(down_at(-24.0)[0], 150.0F / 255.0F, 0.01F) << "the checkerboard is blurred";
   EXPECT_NEAR(down_at(-24.0)[1], 80.0F / 255.0F, 0.01F);
   EXPECT_NEAR(down_at(24.0)[1], 0.0F, 0.01F);
   EXPECT_NEAR(down_at(80.0)[1], 80.0F / 255.0F, 0.01F);
-  EXPECT_NEAR(down_at(-300.0)[1], 80.0F / 255.0F, 0.02F) << "beyond the photos their edge goes on";
+  EXPECT_NEAR(down_at(-300.0)[1], 80.0F / 255.0F, 0.02F) << "beyond the photos the colour of their edge is continued";
   EXPECT_EQ(background.Color({0.0, 0.0, 50.0}, {1.0, 0.0, 0.1}), background.mean_srgb) << "the sky";
   const scene::Background flat = MakeBackground(*source_, survey_, {}, 1);
   EXPECT_EQ(flat.Color({0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}), flat.mean_srgb) << "without points";
@@ -155,7 +155,7 @@ TEST(SurfaceOfPoints, FollowsTheGroundAndReachesBeyondThePoints) {
   EXPECT_DOUBLE_EQ(surface.At(70.0, 20.0), 25.0);
   EXPECT_DOUBLE_EQ(surface.At(-500.0, 900.0), 5.0);
   EXPECT_TRUE(SurfaceOfPoints(survey::Survey()).Empty());
-  // Two points that a matcher got wrong do not make the grid coarse.
+  // Two outliers do not enlarge the grid.
   for (const double far : {-1e6, 1e6}) {
     survey::SparsePoint stray;
     stray.x_in_enu = {far, far, 1e4};

@@ -1,4 +1,4 @@
-// Draws the matter along a ray together (Barron et al. 2022, eq. 15), with distances in units of the caller's choice.
+// The distortion loss of a ray (Barron et al. 2022, eq. 15), which concentrates its density at one distance and so suppresses floaters.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace skyquilt::worker {
 
-// Kept between rays so that nothing is allocated for each.
+// Buffers kept between rays, so that nothing is allocated per ray.
 template <typename T>
 struct DistortionScratch {
   std::vector<T> mid, width;
 };
 
-// n >= 1 samples of one ray with compositing weights, at distances t (metres, ascending), all of them step_m long; per_metre: units per metre.
-// Adds the derivatives by the compositing weights to weight_gradient (n); returns the loss.
+// n >= 1 samples of one ray: compositing weights, and distances t (metres, ascending) of intervals of length step_m. per_metre: units of the loss's
+// distances per metre. Adds the derivatives by the compositing weights to weight_gradient (n); returns the loss. Both contain the factor `weight`.
 template <typename T>
 T AddDistortionLoss(T weight, size_t n, const T* weights, const T* t, T step_m, T per_metre, DistortionScratch<T>& scratch, T* weight_gradient) {
   scratch.mid.resize(n);

@@ -1,11 +1,11 @@
-// A ray that is known to meet nothing in the field should pass through it.
+// Makes the field transparent along rays that are known to meet no surface in it, so that no floaters remain there.
 #pragma once
 
 #include "worker/losses/loss.h"
 
 namespace skyquilt::worker {
 
-// weight * (1 - transmittance)^2, transmittance 0..1.
+// weight * (1 - transmittance)^2 and its derivative by transmittance, which is 0..1.
 template <typename T>
 Loss<T> EmptinessLoss(T weight, T transmittance) {
   const T opacity = T(1) - transmittance;

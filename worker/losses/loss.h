@@ -1,13 +1,16 @@
-// Losses of a ray, or of a group of rays, each in a file of its own in this folder. To add one:
-//   1. Write a small free function template over the scalar (float trains, double is for the test): what the rendering came to and the weight go
-//      in, the loss and its derivative by what went in come out - as a Loss, or added to places the caller names where a loss has many inputs
-//      or shares its places with others. No state, no allocation per ray: scratch is handed in.
-//   2. Give it a weight: a constant in LossWeights, or a member of StepOptions where the weight changes during training. Weight 0 means that the
-//      function is not called. Losses that judge photos directly (photo_loss.h) have weight 1: the others are measured by them.
-//   3. Call it where its inputs are. Losses of what a ray was composed to: worker/ray_loss.cpp, or worker/concealed_ray_loss.cpp for fields with
-//      concealing field; add the gradient to a member of what is returned there, and the scatter to the samples is done already. Losses of the
-//      samples' compositing weights: beside PacketTrainer::AddDistortion, into its gradient by them. Losses of a group: as LossOfShares does.
-//   4. Check it in tests/worker/losses_test.cpp: ExpectLossGradient holds its derivatives against differences in double.
+// What all losses have in common: the result type and the weights. Each loss of a ray, or of a group of rays, is in a file of its own in this folder.
+// To add a loss:
+//   1. Write a free function template over the scalar type (float for training, double for the test). It takes the rendered values and the weight,
+//   and
+//      returns the loss and its derivatives by the rendered values as a Loss; with many inputs it adds the derivatives to buffers of the caller. No
+//      state and no allocation per ray: buffers are arguments.
+//   2. Give it a weight: a constant in LossWeights, or a member of StepOptions when the weight changes during training. With weight 0 the function is
+//      not called. The photo losses (photo_loss.h) have weight 1; other weights are relative to them.
+//   3. Call it where its inputs are known. Losses of the rendered colour or transmittance of a ray: in worker/ray_loss.cpp, or with a concealing
+//   field
+//      in worker/concealed_ray_loss.cpp; add the derivatives to the returned gradient, which is propagated to the samples already. Losses of the
+//      compositing weights: next to PacketTrainer::AddDistortion. Losses of a group of rays: like LossOfShares.
+//   4. Test it in tests/worker/losses_test.cpp: ExpectLossGradient compares its derivatives with finite differences in double.
 #pragma once
 
 namespace skyquilt::worker {
@@ -19,12 +22,13 @@ struct Loss {
   T gradient = T(0);
 };
 
-// Weights beside the photo loss, all >= 0; 0: not evaluated. The distortion loss's changes from step to step: StepOptions::distortion.
+// Weights relative to the photo loss, all >= 0; 0: not evaluated. The weight of the distortion loss changes during training: StepOptions::distortion.
 struct LossWeights {
-  float emptiness = 1.0F;  // of rays that are known to meet nothing
-  // The wish for a mean brightness has a direction to itself, in which the photos do not care, so its size matters little.
+  float emptiness = 1.0F;  // for rays that are known to meet no surface in the field
+  // The others are for concealing fields only.
+  // The photos do not constrain the mean brightness of the rendering shown to people, so the size of this weight matters little.
   float mean_brightness = 0.1F;
-  // Omega of neighbouring rays should agree, and all should stay near the survey's mean: otherwise Omega takes over the scene's texture.
+  // Omega of neighbouring rays should be similar, and all should be near the survey's mean; otherwise Omega learns the scene's texture.
   float smoothness = 1e-2F;
   float mean_share = 1e-3F;
 };

@@ -1,12 +1,13 @@
-// How far one colour channel of a ray is from its pixel, both display values: squared, as it stands or after the tone curve that spreads dark and
-// bright values.
+// Compares one colour channel of a rendered ray with its pixel, both as display values: squared error, either directly or after the tone curve that
+// spreads dark and bright values (core/brightness/tone_curve.h), for badly exposed photos.
 #pragma once
 
 #include "core/brightness/tone_curve.h"
 
 namespace skyquilt::worker {
 
-// A saturated pixel says only "at least this bright", a black one "at most": true when that is satisfied. residual: rendering less pixel.
+// A saturated pixel is a lower bound of the light, a black pixel an upper bound: true when the rendering satisfies the bound. target: pixel, 0..1;
+// residual: rendering minus pixel.
 template <typename T>
 bool SaysLittle(T target, T residual) {
   return (target >= T(254.5F / 255.0F) && residual > T(0)) || (target <= T(0.5F / 255.0F) && residual < T(0));
@@ -15,12 +16,12 @@ bool SaysLittle(T target, T residual) {
 template <typename T>
 struct PhotoLoss {
   double value = 0.0;
-  T gradient = T(0);           // by the rendered value
-  double squared_error = 0.0;  // of display values, whatever the loss
-  bool counts = false;         // false: the pixel says little; value and gradient are zero
+  T gradient = T(0);           // by the rendered display value
+  double squared_error = 0.0;  // of display values, for any loss
+  bool counts = false;         // false: the bound of a saturated or black pixel is satisfied; value and gradient are zero
 };
 
-// target: 0..1.
+// rendered: any finite display value; target: pixel, 0..1.
 template <typename T>
 PhotoLoss<T> SquaredPhotoLoss(T rendered, T target) {
   const T residual = rendered - target;

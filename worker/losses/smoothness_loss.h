@@ -1,10 +1,10 @@
-// Neighbouring rays should agree about a number: a loss of a group of rays, summed over its pairs of neighbours.
+// Keeps a number similar between neighbouring rays: a loss of a group of rays, summed over pairs of neighbours.
 #pragma once
 
 namespace skyquilt::worker {
 
-// weight * (own - neighbour)^2 of one pair, as seen from one of its rays: adds half of it to *loss, because the neighbour adds the other half, and
-// the derivative of the whole by `own` to *gradient.
+// The loss weight * (own - neighbour)^2 of a pair, called once for each of its two rays: adds half of the loss to *loss, because the call for the
+// other ray adds the other half, and the derivative of the whole loss by `own` to *gradient.
 template <typename T>
 void AddSmoothnessLoss(T weight, T own, T neighbour, double* loss, T* gradient) {
   const T step = own - neighbour;

@@ -25,7 +25,7 @@ TEST(GainsFromExif, AreRelativeToTheMedian) {
   EXPECT_FLOAT_EQ(gains.gain[3], 1.0F);
 }
 
-TEST(GainsFromExif, SaysWhichPhotosHaveNoTags) {
+TEST(GainsFromExif, TellsPhotosWithoutTags) {
   const PhotoGains gains = GainsFromExif({0.01, std::nullopt, 0.02});
   EXPECT_EQ(gains.known, (std::vector<bool>{true, false, true}));
   EXPECT_EQ(gains.gain[1], 1.0F);
@@ -61,7 +61,7 @@ TEST(Expose, SlopesMatchFiniteDifferencesOverTenStops) {
   EXPECT_TRUE(std::isfinite(Expose(-0.5F, Exposure::FromLogGain(1.1F)).value));
 }
 
-// The short cut above the toe against the two transfer functions.
+// Compares the fast path above the toe with the two transfer functions.
 TEST(Expose, IsAGainInLinearLight) {
   for (const float gain : {1.0F / 1024.0F, 0.1F, 1.0F, 3.0F, 1024.0F}) {
     for (float value = 0.0F; value <= 2.0F; value += 0.01F) {

@@ -34,7 +34,7 @@ TEST(PredictGains, TrustsTagsThatExplainTheBrightness) {
   EXPECT_NEAR(flight.response.log_gain[3 * 5 + 1], 0.5, 0.05);
 }
 
-TEST(PredictGains, SetsTagsAsideWhereTheShutterFollowedTheLight) {
+TEST(PredictGains, IgnoresTagsWhereTheShutterFollowedTheLight) {
   Flight flight;
   for (size_t i = 0; i < 8; ++i) {
     if (flight.photos[i].learned) flight.Learn(i, -std::log(static_cast<double>(flight.response.exif_gain[i])));  // all equally bright
@@ -44,12 +44,12 @@ TEST(PredictGains, SetsTagsAsideWhereTheShutterFollowedTheLight) {
   for (size_t i = 0; i < 8; ++i) EXPECT_NEAR(flight.Total(i), 0.0, 0.05) << i;
 }
 
-TEST(PredictGains, DoesNotPassOnWhatHasNoMemory) {
+TEST(PredictGains, DoesNotInterpolateUncorrelatedGains) {
   Response response = Response::Plain(40, 1);
   std::vector<CapturedPhoto> photos;
   for (size_t i = 0; i < 40; ++i) {
     photos.push_back({static_cast<double>(i), 0, i % 8 != 3, true});
-    const float off = (i * 7919U) % 2 == 0 ? 0.5F : -0.5F;  // up, down, up, down
+    const float off = (i * 7919U) % 2 == 0 ? 0.5F : -0.5F;  // alternates
     for (size_t c = 0; c < 3; ++c) response.log_gain[3 * i + c] = photos[i].learned ? off : 0.0F;
   }
   PredictGains(photos, response);
@@ -57,7 +57,7 @@ TEST(PredictGains, DoesNotPassOnWhatHasNoMemory) {
 }
 
 TEST(PredictGains, TaggedPhotosDoNotTakeOverTheGainsOfUntaggedOnes) {
-  // Every second photo without tags; the survey rises by a tenth of a stop per photo and the tags are right.
+  // Every second photo has no tags; brightness rises by a tenth per photo in log light, and the tags are right.
   Response response = Response::Plain(16, 1);
   std::vector<CapturedPhoto> photos;
   for (size_t i = 0; i < 16; ++i) {
@@ -68,11 +68,11 @@ TEST(PredictGains, TaggedPhotosDoNotTakeOverTheGainsOfUntaggedOnes) {
     for (size_t c = 0; c < 3; ++c) response.log_gain[3 * i + c] = tagged || !learned ? 0.0F : light;
   }
   PredictGains(photos, response);
-  EXPECT_NEAR(response.LogGain(6)[0], 0.6F, 0.02F);  // tagged
-  EXPECT_NEAR(response.LogGain(9)[0], 0.9F, 0.05F);  // not
+  EXPECT_NEAR(response.LogGain(6)[0], 0.6F, 0.02F);  // with tags
+  EXPECT_NEAR(response.LogGain(9)[0], 0.9F, 0.05F);  // without
 }
 
-TEST(PredictGains, KeepsGroupsApartAndLonelyPhotosAsTheyAre) {
+TEST(PredictGains, KeepsGroupsApartAndSinglePhotosUnchanged) {
   Flight flight;
   for (size_t i = 0; i < 8; ++i) flight.response.exif_gain[i] = 1.0F;
   for (const size_t i : {0U, 2U, 3U}) flight.Learn(i, 0.5);

@@ -41,7 +41,7 @@ TEST(Response, FindsPhotosByPathOrUniqueFileName) {
   EXPECT_FALSE(Response::Plain(3, 1).Find("two.jpg"));
 }
 
-TEST(Response, SurvivesItsFile) {
+TEST(Response, IsReadBackAsWritten) {
   const TemporaryFolder folder;
   const Response response = Sample();
   checkpoint::ArchiveWriter writer("scene", 1);
@@ -66,7 +66,7 @@ TEST(Response, RefusesArraysThatDisagree) {
   EXPECT_THROW(GetResponse(reader, folder.path() / "r.h5"), base::InputError);
 }
 
-// Pulls every photo towards its own true gains through squared errors in the logarithm.
+// One step with squared errors of the log gains from every photo's true gains.
 void Learn(const std::vector<float>& truth, int steps, ResponseLearner& learner, Response& response) {
   for (int step = 0; step < steps; ++step) {
     for (size_t i = 0; i < response.photos(); ++i) {
@@ -93,7 +93,7 @@ TEST(ResponseLearner, FindsGainsAndKeepsTheirMeanAtZero) {
   }
 }
 
-TEST(ResponseLearner, TagWeightHoldsWhatNothingSupports) {
+TEST(ResponseLearner, TagWeightKeepsGainsThatNoPixelSupports) {
   Response response = Response::Plain(2, 1);
   response.log_gain = {0.5F, 0.5F, 0.5F, -0.5F, -0.5F, -0.5F};
   ResponseLearner learner(response, {{1, 1}, {0.02F, 0.0F}, true, false});
@@ -106,7 +106,7 @@ TEST(ResponseLearner, TagWeightHoldsWhatNothingSupports) {
   EXPECT_EQ(response.log_gain[3], -0.5F);
 }
 
-TEST(ResponseLearner, RestsOnceAllIsKnown) {
+TEST(ResponseLearner, IsFrozenByRest) {
   Response response = Response::Plain(1, 1);
   ResponseLearner learner(response, {{1}, {}, true, true});
   EXPECT_TRUE(learner.active());
@@ -143,7 +143,7 @@ TEST(ResponseLearner, StaysFiniteAndWithinTenStops) {
   EXPECT_EQ(response.log_gain[3], 0.0F);
 }
 
-TEST(ResponseLearner, GoesOnFromItsFileAsIfNothingHappened) {
+TEST(ResponseLearner, ResumesFromItsFileWithTheSameBits) {
   const TemporaryFolder folder;
   const std::vector<float> truth = {0.5F, 0.4F, 0.3F, -0.5F, -0.4F, -0.3F};
   const LearnerOptions options{{1, 1}, {}, false, true};

@@ -50,14 +50,14 @@ std::string Axes(const std::vector<uint64_t>& axes) {
   return Text(5, Text(1, "axes") + numbers + Number(20, 7));
 }
 
-// `input` divided by its length over the channels, as LPIPS does with features; the quotient is named prefix + "unit".
+// Nodes that divide `input` by its norm over the channels, as LPIPS does with features; the result is named prefix + "unit".
 std::string UnitLength(const std::string& input, const std::string& prefix) {
   return Text(1, Node("Mul", {input, input}, prefix + "square")) +
          Text(1, Node("ReduceSum", {prefix + "square"}, prefix + "sum", Axes({1}) + Flag("keepdims", 1))) +
          Text(1, Node("Sqrt", {prefix + "sum"}, prefix + "length")) + Text(1, Node("Div", {input, prefix + "length"}, prefix + "unit"));
 }
 
-// mean((in0 - in1)^2) over everything: a perceptual network reduced to its outer shape.
+// mean((in0 - in1)^2): the simplest network with the inputs and the output of LPIPS.
 std::string SquaredDifferenceModel(int height, int width, bool second_input = true) {
   const std::string other = second_input ? "in1" : "in0";
   const std::string mean = Axes({1, 2, 3}) + Flag("keepdims", 1);
@@ -92,7 +92,7 @@ TEST_F(LpipsTest, FeedsBothImagesInTheNetworksRange) {
   EXPECT_EQ(lpips.Distance(a, a, nullptr), 0.0);
 }
 
-TEST_F(LpipsTest, FollowsTheImagesWhenTheNetworkLeavesTheSizeOpen) {
+TEST_F(LpipsTest, TakesImagesOfAnySizeWhenTheNetworkDoes) {
   Lpips lpips(Write(SquaredDifferenceModel(-1, -2)));
   for (const auto& [width, height] : {std::pair{16, 12}, std::pair{33, 20}}) {
     EXPECT_NEAR(lpips.Distance(ImageF(width, height, 3, 0.25F), ImageF(width, height, 3, 0.75F), nullptr), 1.0, 1e-5) << width;
@@ -144,7 +144,7 @@ TEST_F(LpipsTest, MaskedPixelsDoNotDiffer) {
   EXPECT_GT(lpips.Distance(a, b, nullptr), 0.0);
 }
 
-TEST_F(LpipsTest, SaysWhatIsWrongWithAFile) {
+TEST_F(LpipsTest, ErrorsTellWhatIsWrongWithAFile) {
   const auto message = [&](const std::string& bytes) { return InputErrorOf([&] { Lpips lpips(Write(bytes)); }); };
   EXPECT_NE(InputErrorOf([&] { Lpips lpips(folder_.path() / "absent.onnx"); }).find("absent.onnx"), std::string::npos);
   EXPECT_NE(message("").find("is not an ONNX network"), std::string::npos);
@@ -154,7 +154,7 @@ TEST_F(LpipsTest, SaysWhatIsWrongWithAFile) {
   EXPECT_NE(message(good.substr(0, good.size() - 30)), "");
 }
 
-TEST_F(LpipsTest, RefusesALayerThatNobodyKnows) {
+TEST_F(LpipsTest, RefusesAnUnknownLayer) {
   std::string model = SquaredDifferenceModel(12, 16);
   const size_t at = model.find("ReduceMean");
   model.replace(at, 10, "NoSuchType");

@@ -13,7 +13,7 @@ namespace {
 using image::Image8;
 using image::ImageF;
 
-// The definition, window by window in long double: weighted means first, then weighted moments about them.
+// SSIM by its definition, window by window in long double: weighted means, then weighted moments about them.
 double NaiveSsimAt(const ImageF& a, const ImageF& b, const Image8* mask, int x, int y, int channel) {
   long double weight_sum = 0.0L;
   long double mean_a = 0.0L;

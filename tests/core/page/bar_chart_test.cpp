@@ -36,7 +36,7 @@ TEST(BarChart, IsAsLongAsItsValue) {
   const std::string html = BarChart({{"a", 1.0}, {"b", 4.0}, {"c", 2.0}}, {"t", "x"});
   const std::vector<double> lengths = BarLengths(html);
   ASSERT_EQ(lengths.size(), 3U);
-  EXPECT_NEAR(lengths[1], 4.0 * lengths[0], 0.3);  // a tenth of a pixel is written
+  EXPECT_NEAR(lengths[1], 4.0 * lengths[0], 0.3);  // lengths are written to a tenth of a pixel
   EXPECT_NEAR(lengths[1], 2.0 * lengths[2], 0.2);
   EXPECT_EQ(Count(html, "legend"), 0U) << "without limits there is nothing to explain";
 }
@@ -46,7 +46,7 @@ TEST(BarChart, SaysNoDataWithoutAnyNumber) {
   EXPECT_NE(BarChart({{"a", kNan}, {"b", kInfinity}}, {"t", "x"}).find("No data"), std::string::npos);
 }
 
-TEST(BarChart, DrawsNoBarForZeroAndNoNumber) {
+TEST(BarChart, DrawsNoBarForZeroAndNan) {
   const std::string zeros = BarChart({{"a", 0.0}, {"b", -0.0}}, {"t", "x"});
   EXPECT_EQ(zeros.find("No data"), std::string::npos);
   EXPECT_TRUE(BarLengths(zeros).empty());
@@ -69,13 +69,13 @@ TEST(BarChart, StaysInsideItsBoxBesideHugeValuesAndLongTexts) {
   ASSERT_EQ(lengths.size(), 3U);
   for (size_t i = 0; i < lengths.size(); ++i) {
     EXPECT_GT(starts[i], 0.0);
-    EXPECT_GE(lengths[i], 1.0) << "small beside a large value, but there";
+    EXPECT_GE(lengths[i], 1.0) << "small but visible";
     EXPECT_LT(starts[i] + lengths[i], 560.0);
   }
   EXPECT_GT(lengths[0], 50.0);
   EXPECT_NEAR(Numbers(html, "<line class=\"limit\"", "x1").at(0), starts[0] + 2.0 * lengths[0], 0.2);
   EXPECT_EQ(html.find(">" + label + "<"), std::string::npos) << "cut in the drawing";
-  EXPECT_NE(html.find("<title>" + label), std::string::npos) << "in full where the mouse rests";
+  EXPECT_NE(html.find("<title>" + label), std::string::npos) << "in full in the tooltip";
 }
 
 TEST(BarChart, CutsBetweenLetters) {
@@ -97,7 +97,7 @@ TEST(BarChart, MarksLimits) {
   EXPECT_NE(html.find("</i>allowed</span>"), std::string::npos);
 }
 
-TEST(BarChart, IsEscapedAndCanBeHeard) {
+TEST(BarChart, IsEscapedAndHasTextForScreenReaders) {
   const std::string html = BarChart({{"<a>", 1.0, "\"1\"", 2.0}}, {.title = "A & B", .x_label = "<x>", .value_name = "<v>", .limit_name = "<l>"});
   for (const char* raw : {"<a>", "<x>", "<v>", "<l>", "\"1\"", "A & B"}) EXPECT_EQ(html.find(raw), std::string::npos) << raw;
   EXPECT_NE(html.find("aria-label=\"A &amp; B. &lt;a&gt;: &quot;1&quot; (&lt;l&gt;: 2)\""), std::string::npos) << html;

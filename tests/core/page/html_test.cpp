@@ -23,7 +23,7 @@ TEST(EscapeHtml, KeepsUtf8AndRepairsTheRest) {
   EXPECT_EQ(EscapeHtml(std::string_view("a\0b\x1b", 4)), "ab");
 }
 
-TEST(FormatFixed, SaysNothingForNan) {
+TEST(FormatFixed, IsADashForNan) {
   EXPECT_EQ(FormatFixed(kNan, 2, "dB"), "\xE2\x80\x93");
   EXPECT_EQ(FormatFixed(28.126, 2, "dB"),
             "28.13\xE2\x80\xAF"
@@ -35,7 +35,7 @@ TEST(FormatFixed, SaysNothingForNan) {
   EXPECT_EQ(FormatFixed(std::numeric_limits<double>::infinity(), 2, "dB"), "\xE2\x88\x9E");
 }
 
-TEST(FormatCounts, UseUnitsPeopleRead) {
+TEST(FormatCounts, UseUnits) {
   EXPECT_EQ(FormatInteger(0), "0");
   EXPECT_EQ(FormatInteger(999), "999");
   EXPECT_EQ(FormatInteger(1234567),

@@ -7,7 +7,7 @@
 namespace skyquilt::page {
 namespace {
 
-TEST(PlotFrame, TheEndsOfTheAxesLieAtItsCorners) {
+TEST(PlotFrame, TheEndsOfTheAxesAreAtItsCorners) {
   const PlotFrame frame{.x = {.low = -2.0, .high = 2.0}, .y = {.low = 10.0, .high = 30.0}};
   EXPECT_DOUBLE_EQ(frame.X(-2.0), PlotFrame::kLeft_px);
   EXPECT_DOUBLE_EQ(frame.X(2.0), frame.right_px());

@@ -8,7 +8,7 @@
 namespace skyquilt::raytrace {
 namespace {
 
-// A square of two triangles at this height, [-1, 1] across.
+// Two triangles that form a square at this height; x and y in [-1, 1].
 TracedScene Square(float z) {
   const std::vector<Eigen::Vector3f> position = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}};
   const std::vector<std::array<uint32_t, 3>> triangle = {{0, 1, 2}, {0, 2, 3}};
@@ -50,7 +50,7 @@ TEST(TracedScene, WithoutTrianglesNothingIsHit) {
   EXPECT_EQ(scene.Occluded(rays), 0U);
 }
 
-// A device per scene ran out at about a thousand.
+// Embree allows only about a thousand devices, so scenes must share one.
 TEST(TracedScene, TwoThousandLiveAtOnceMadeByTwoThreads) {
   std::vector<std::vector<TracedScene>> scenes(2);
   std::vector<std::thread> threads;

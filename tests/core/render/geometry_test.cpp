@@ -33,7 +33,7 @@ TrainedField BoxField() {
   return f;
 }
 
-TEST(March, FullOccupancyGivesEveryLatticePointOnce) {
+TEST(March, FullOccupancyGivesEverySampleOnce) {
   const TrainedField f = BoxField();
   base::Random random(41);
   for (int i = 0; i < 300; ++i) {
@@ -52,7 +52,7 @@ TEST(March, FullOccupancyGivesEveryLatticePointOnce) {
   }
 }
 
-// Whatever the step, the samples' lengths add up to the way through occupied cells: nothing thin is passed over.
+// For any step, the samples' lengths add up to the length of the ray inside occupied cells: nothing thin is skipped.
 RC_GTEST_PROP(March, LongStepsMissNothing, ()) {
   TrainedField f;
   f.map = encoding::SpaceMap::Box({0.0, 0.0, 0.0}, {10.0, 10.0, 10.0});
@@ -82,7 +82,7 @@ RC_GTEST_PROP(March, LongStepsMissNothing, ()) {
   RC_ASSERT(std::abs(length - expected) < 1e-6);
 }
 
-TEST(March, SamplesLieInOccupiedCellsOnly) {
+TEST(March, SamplesAreInOccupiedCellsOnly) {
   TrainedField f = BoxField();
   base::Random random(43);
   for (uint8_t& cell : f.occupancy.occupied) cell = random.Below(3) == 0 ? 1 : 0;
@@ -92,7 +92,7 @@ TEST(March, SamplesLieInOccupiedCellsOnly) {
     const Eigen::Vector3d direction = Eigen::Vector3d(random.Uniform(-0.5, 0.5), random.Uniform(-0.5, 0.5), -1.0).normalized();
     const geo::Interval s = FieldInterval(f.map, origin, direction);
     std::set<int64_t> expected, got;
-    // Every lattice point tested one by one; points within rounding of a cell face may fall either way.
+    // Tests every sample position; positions within rounding of a cell face may be on either side.
     int64_t k = 0;
     for (double t = s.t_near + 0.05; t < s.t_far && !s.Empty(); t += f.step_m, ++k) {
       const Eigen::Vector3f p = f.map.UnitFromEnu(origin + t * direction);

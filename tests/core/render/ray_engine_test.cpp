@@ -1,4 +1,4 @@
-// Fields with random parameters: what the engine composes in rounds is what a plain walk along the ray gives.
+// Fields with random parameters: the engine, which composites in rounds, agrees with a simple loop along the ray.
 #include "core/render/ray_engine.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ struct Plain {
   double transmittance = 1.0;
 };
 
-// One sample after the other, in order of distance.
+// The simple loop: one sample after the other, in order of distance.
 Plain WalkPlainly(const FieldSet& set, const Ray& ray) {
   struct Point {
     double t, length, weight;
@@ -82,7 +82,7 @@ struct Matter {
 
 class RayEngine : public ::testing::TestWithParam<Matter> {};
 
-TEST_P(RayEngine, AgreesWithAPlainWalkThroughBlendedBlocks) {
+TEST_P(RayEngine, AgreesWithASimpleLoopThroughBlendedBlocks) {
   const auto [density_bias, encoding, density_hidden_layers] = GetParam();
   const TrainedField west = RandomField(1, {0, 0, 0}, {5, 5, 4}, 0.8, density_bias, false, encoding, density_hidden_layers);
   const TrainedField east = RandomField(2, {5, 0, 0}, {10, 5, 6}, 0.8, density_bias);
@@ -96,7 +96,7 @@ TEST_P(RayEngine, AgreesWithAPlainWalkThroughBlendedBlocks) {
   int dark = 0, clear = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     const Plain plain = WalkPlainly(set, rays[i]);
-    // A ray that ends early leaves at most 0.5 % of its light out, and counts as opaque.
+    // A ray that ends early leaves out at most 0.5 % of its light and counts as opaque.
     const bool ended = plain.transmittance < 5e-3;
     const double tolerance = ended ? 6e-3 : 5e-4;
     EXPECT_NEAR(static_cast<double>(out[i].opacity), ended ? 1.0 : 1.0 - plain.transmittance, tolerance) << i;
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(ThinAndDense, RayEngine,
                                            Matter{0.0, encoding::Kind::kHash, 3}, Matter{0.0, encoding::Kind::kVoxels, 1},
                                            Matter{0.0, encoding::Kind::kPlanes, 1}, Matter{0.0, encoding::Kind::kFrequency, 2}));
 
-TEST(RayEngineWork, SurfacesHideWhatLiesBehind) {
+TEST(RayEngineWork, SamplesBehindSurfacesAreSkipped) {
   base::ThreadPool threads(1);
   const std::vector<Ray> rays = RaysFromAbove(300);
   std::vector<RayColor> out(rays.size());
@@ -131,7 +131,7 @@ TEST(RayEngineWork, SurfacesHideWhatLiesBehind) {
   EXPECT_LT(3 * dense, 2 * thin);
 }
 
-TEST(RayEngineWork, WiderPixelsTakeFewerSamplesOfTheSameMatter) {
+TEST(RayEngineWork, WiderPixelsTakeFewerSamplesOfTheSameDensity) {
   base::ThreadPool threads(1);
   const TrainedField f = RandomField(4, {0, 0, 0}, {10, 5, 6}, 0.5, -2.0);
   FieldSet set;
@@ -148,7 +148,7 @@ TEST(RayEngineWork, WiderPixelsTakeFewerSamplesOfTheSameMatter) {
   EXPECT_LT(difference / static_cast<double>(rays.size()), 0.1);
 }
 
-TEST(RayEngineWork, ContextAloneAnswersOutsideAllBlocks) {
+TEST(RayEngineWork, OnlyTheContextIsRenderedOutsideAllBlocks) {
   base::ThreadPool threads(1);
   const TrainedField block = RandomField(1, {0, 0, 0}, {5, 5, 4}, 0.5, -1.0);
   const TrainedField context = RandomField(5, {-10, -10, 0}, {20, 20, 6}, 0.0, -2.0);
@@ -166,7 +166,7 @@ TEST(RayEngineWork, ContextAloneAnswersOutsideAllBlocks) {
   RenderRays(only_block, rays, plain, {}, threads);
   for (size_t c = 0; c < 3; ++c) {
     EXPECT_EQ(with[0].rgb_srgb[c], without[0].rgb_srgb[c]);
-    EXPECT_EQ(with[1].rgb_srgb[c], plain[1].rgb_srgb[c]) << "over a block's core the context shows nothing";
+    EXPECT_EQ(with[1].rgb_srgb[c], plain[1].rgb_srgb[c]) << "in a block's core the context is not rendered";
   }
   EXPECT_GT(with[0].opacity, 0.01F);
   EXPECT_EQ(plain[0].opacity, 0.0F);

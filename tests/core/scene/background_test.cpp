@@ -1,4 +1,4 @@
-// The surface under a background: bilinear heights, where rays meet it, filling of gaps, and its place in a file.
+// Height map and background: bilinear heights, where rays meet the surface, filling of gaps, and the file.
 #include "core/scene/background.h"
 
 #include <gtest/gtest.h>

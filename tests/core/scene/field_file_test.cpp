@@ -48,7 +48,7 @@ class TrainedFieldFile : public ::testing::Test {
     writer.Commit(rewritten);
     return rewritten;
   }
-  // Its type is found by asking.
+  // The type is found by trying.
   static void CopyAttribute(const checkpoint::ArchiveReader& reader, const std::string& name, checkpoint::ArchiveWriter& writer) {
     try {
       return writer.SetAttribute(name, reader.StringAttribute(name));
@@ -71,7 +71,7 @@ class TrainedFieldFile : public ::testing::Test {
     return out;
   }
 
-  // The same to the bit, and something to see: some ray is at least so opaque.
+  // Both render the same bits, and at least one ray has this opacity.
   static void ExpectSameLook(const render::TrainedField& before, const render::TrainedField& after, float least) {
     const std::vector<render::RayColor> seen_before = Look(before), seen_after = Look(after);
     float most = 0.0F;
@@ -149,7 +149,7 @@ const std::vector<std::string> kNames = {
 TEST_F(TrainedFieldFile, HasANameForEveryNumber) {
   for (const bool contracted : {false, true}) {
     render::TrainedField before = render::RandomField(4, {1, 2, 3}, {6, 6.5, 7}, 0.8, -1.0, contracted);
-    // No two of a kind alike: none may take another's place.
+    // All values differ, so that exchanged numbers are noticed.
     before.config.grid.features = 2;
     before.config.color_hidden_layers = 2;
     before.config.color_range = 1.125;
@@ -167,8 +167,8 @@ TEST_F(TrainedFieldFile, HasANameForEveryNumber) {
   }
 }
 
-// What a scene leaves out may be anything: nothing looks at it.
-TEST_P(TrainedFieldOf, LooksTheSameWithoutWhatNothingReads) {
+// Table entries that a scene leaves out are never read.
+TEST_P(TrainedFieldOf, RendersTheSameWithoutUnreadEntries) {
   render::TrainedField before = Make(GetParam(), 1);
   base::Random random(8);
   for (uint8_t& cell : before.occupancy.occupied) cell = random.Uniform() < 0.05F ? 1 : 0;
@@ -187,7 +187,7 @@ TEST_P(TrainedFieldOf, LooksTheSameWithoutWhatNothingReads) {
   } else {
     EXPECT_EQ(StoredParameters(reader, "a/"), before.ParameterCount());
   }
-  // Zero was read back for what is not in the file: no entry of the random field is.
+  // Entries that are not in the file are read as zero; the random field has no zero entries.
   ASSERT_EQ(after.parameters.grid.size(), before.parameters.grid.size());
   for (size_t i = 0; i < after.parameters.grid.size(); ++i) {
     if (after.parameters.grid[i] == 0.0F) {
@@ -199,7 +199,7 @@ TEST_P(TrainedFieldOf, LooksTheSameWithoutWhatNothingReads) {
   ExpectSameLook(before, after, 0.01F);
 }
 
-TEST_F(TrainedFieldFile, ThatCannotBeAreRefusedByName) {
+TEST_F(TrainedFieldFile, WithImpossibleValuesAreRefusedByName) {
   const auto refused = [&](const fs::path& file, const std::string& why) {
     const std::string error = InputErrorOf([&] { Read(file); });
     EXPECT_NE(error.find("rewritten.h5"), std::string::npos) << why << ": " << error;

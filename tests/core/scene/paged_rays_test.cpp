@@ -1,4 +1,4 @@
-// However a ray is cut, whoever renders its pieces and however little memory there is: the same bits.
+// A ray has the same bits however it is cut into windows, whoever renders them, and however little memory there is.
 #include "core/scene/paged_rays.h"
 
 #include <gtest/gtest.h>
@@ -94,7 +94,7 @@ TEST_P(PagedRaysTest, WindowsCutAnywhereGiveTheSameBits) {
 TEST_P(PagedRaysTest, LittleMemoryGivesTheSameBits) {
   const std::vector<render::Ray> rays = SlantedRays(300, 4);
   const std::vector<render::RayColor> whole = Whole(rays);
-  // Room for the context and the four blocks that meet at a corner.
+  // Memory for the context and the four blocks that overlap at a corner.
   const double enough = store_->ContextBytes() + 4.2 * store_->Bytes(0);
   FieldStore small = Small(enough);
   ASSERT_FALSE(small.AllFit());
@@ -106,7 +106,7 @@ TEST_P(PagedRaysTest, LittleMemoryGivesTheSameBits) {
     EXPECT_TRUE(SameBits(render::Finished(in_flight[i].state), whole[i])) << i;
   }
   EXPECT_LE(small.most_bytes(), enough);
-  EXPECT_GT(small.loads(), kRows * kColumns + 1) << "blocks come back when they are needed again";
+  EXPECT_GT(small.loads(), kRows * kColumns + 1) << "blocks are loaded again when they are needed";
 }
 
 TEST_P(PagedRaysTest, ManyOwnersGiveTheSameBits) {
@@ -123,9 +123,9 @@ TEST_P(PagedRaysTest, ManyOwnersGiveTheSameBits) {
   std::vector<RayInFlight> in_flight(rays.size());
   int rounds = 0;
   for (bool going = true; going; ++rounds) {
-    ASSERT_LT(rounds, 40) << "a ray goes round in circles";
+    ASSERT_LT(rounds, 40) << "a ray is passed around without end";
     for (int me = 0; me < kOwners; ++me) {
-      // Owners take on only what was handed to them.
+      // Owners continue only the rays that were given to them.
       std::vector<render::Ray> own;
       std::vector<RayInFlight> mine;
       std::vector<size_t> place;
@@ -143,16 +143,16 @@ TEST_P(PagedRaysTest, ManyOwnersGiveTheSameBits) {
     }
     going = std::any_of(in_flight.begin(), in_flight.end(), [](const RayInFlight& t) { return t.owner != kArrived; });
   }
-  EXPECT_GT(rounds, 1) << "no ray was ever handed over";
+  EXPECT_GT(rounds, 1) << "no ray was passed on";
   for (size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(SameBits(render::Finished(in_flight[i].state), whole[i])) << i;
   for (const auto& store : stores) {
     int loaded = 0;
     for (int k = 0; k < store->size(); ++k) loaded += store->IsLoaded(k) ? 1 : 0;
-    EXPECT_LT(loaded, store->size()) << "an owner loads only what its places need";
+    EXPECT_LT(loaded, store->size()) << "an owner loads only the blocks of its segments";
   }
 }
 
-TEST_P(PagedRaysTest, TooLittleMemorySaysHowMuchIsNeeded) {
+TEST_P(PagedRaysTest, TooLittleMemoryIsAUsageError) {
   FieldStore tiny = Small(0.5 * store_->Bytes(0));
   const render::RaySegments segments(tiny.Blocks());
   const std::vector<render::Ray> rays = SlantedRays(50, 6);
@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(BordersAndDensity, PagedRaysTest,
                          ::testing::Values(std::tuple(0.6, false, -2.0), std::tuple(0.6, true, -2.0), std::tuple(0.0, false, -3.0),
                                            std::tuple(1.0, false, 2.0)));
 
-RC_GTEST_PROP(RaySegmentsProperty, SegmentsCoverTheRayAndNameTheBlocksOverIt, ()) {
+RC_GTEST_PROP(RaySegmentsProperty, SegmentsCoverTheRayAndListItsBlocks, ()) {
   const int n = *rc::gen::inRange(0, 6);
   std::vector<render::TrainedField> blocks(static_cast<size_t>(n));
   for (render::TrainedField& block : blocks) {

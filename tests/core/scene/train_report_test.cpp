@@ -56,7 +56,7 @@ TEST_F(TrainReportFile, MissingOrDamagedIsAnErrorThatNamesTheFile) {
   }
 }
 
-TEST_F(TrainReportFile, LeavesOutWhatIsOfAnotherKind) {
+TEST_F(TrainReportFile, LeavesOutValuesOfTheWrongType) {
   Write(R"({"ranks":2,"threads":"four","wall_seconds":50,"fields":[
     {"name":"context","ok":true,"seconds":20,"samples":1000,"rays":100,"parameters":7,"psnr_db":21.5,
      "phase_seconds":{"hash forward":1.5,"compose":null}}, 5,
@@ -71,7 +71,7 @@ TEST_F(TrainReportFile, LeavesOutWhatIsOfAnotherKind) {
   EXPECT_DOUBLE_EQ(report.SamplesPerSecond(), 80.0);
 }
 
-TEST(TrainReport, ShortLastSessionDoesNotFlatterTheSpeed) {
+TEST(TrainReport, ShortLastSessionDoesNotInflateTheSpeed) {
   TrainReport report;
   EXPECT_TRUE(std::isnan(report.TrainSeconds()));
   EXPECT_TRUE(std::isnan(report.SamplesPerSecond()));

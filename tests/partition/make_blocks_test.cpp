@@ -211,7 +211,7 @@ TEST(MakeBlocks, EmptyBlocksAreNamedAndSkipped) {
   const Block& north_east = set.blocks[8];
   EXPECT_EQ(north_east.name, "r2c2");
   EXPECT_TRUE(north_east.empty);
-  EXPECT_EQ(north_east.empty_reason, "no sparse point lies in it");
+  EXPECT_EQ(north_east.empty_reason, "no sparse point is inside it");
   EXPECT_EQ(north_east.cost, 0.0);
   EXPECT_TRUE(north_east.photos.empty());
   EXPECT_FALSE(set.blocks[0].empty);

@@ -24,8 +24,8 @@ struct MergeInput {
   bool georeferenced = false;
   scene::Borders borders = scene::Borders::kSmooth;                 // how neighbouring blocks are joined
   checkpoint::Precision storage = checkpoint::Precision::kFloat32;  // of the hash tables
-  bool use_context = true;                                          // false: the scene has no context field, so places outside all blocks stay empty
-  std::string config_toml;                                          // the whole configuration; stored in the scene
+  bool use_context = true;  // false: leave the context field out, so that it does not fill places outside all blocks
+  std::string config_toml;  // the whole configuration; stored in the scene
   std::string config_hash;
   std::filesystem::path scene;  // out
 };

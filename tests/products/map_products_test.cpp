@@ -253,7 +253,7 @@ TEST(MapProducts, TooManyCellsAreRefusedOrCoarsened) {
   EXPECT_GT(coarse.resolution_m, 0.5);
   options.resolution_m = 0.25;
   const std::string error = UsageErrorOf([&] { PlanMapGrid(info, options); });
-  EXPECT_NE(error.find("use at least 1.0"), std::string::npos) << error;
+  EXPECT_NE(error.find("set it to at least 1.0"), std::string::npos) << error;
   options.resolution_m = -1.0;
   EXPECT_THROW(PlanMapGrid(info, options), base::UsageError);
   options.resolution_m = std::numeric_limits<double>::quiet_NaN();

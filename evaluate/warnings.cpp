@@ -28,19 +28,19 @@ std::vector<std::string> CollectWarnings(const survey::Survey& survey, const par
                                          const Metrics& metrics) {
   std::vector<std::string> warnings;
   if (!survey.unregistered.empty()) {
-    warnings.push_back(
-        fmt::format("{} could not be registered and took no part: {}", Photos(survey.unregistered.size()), Names(survey.unregistered)));
+    warnings.push_back(fmt::format("{} without a pose were not used (unreadable, or with too little overlap with other photos): {}",
+                                   Photos(survey.unregistered.size()), Names(survey.unregistered)));
   }
   if (!survey.georeferenced) {
     warnings.emplace_back(
-        "No geo-reference: too few photos carry usable GPS. Positions are in a local frame of unknown scale; lengths are not metres");
+        "No geo-reference, because too few photos have usable GPS tags. Positions are in a local frame of unknown scale; lengths are not metres");
   } else {
     std::vector<std::string> outliers;
     for (const survey::Photo& photo : survey.photos) {
       if (photo.gps && std::isfinite(photo.gps_residual_m) && !photo.gps_inlier) outliers.push_back(photo.name);
     }
     if (!outliers.empty()) {
-      warnings.push_back(fmt::format("The GPS tags of {} disagree with the reconstruction and were left out of the geo-reference: {}",
+      warnings.push_back(fmt::format("The GPS tags of {} do not fit the camera positions and were not used for the geo-reference: {}",
                                      Photos(outliers.size()), Names(outliers)));
     }
   }
@@ -52,25 +52,26 @@ std::vector<std::string> CollectWarnings(const survey::Survey& survey, const par
       unfinished.push_back(block.name);
     }
   }
-  if (!unfinished.empty()) warnings.push_back("No training record for these blocks: " + Names(unfinished));
+  if (!unfinished.empty()) warnings.push_back("train.json has no entry for these blocks, run `skyquilt train` again: " + Names(unfinished));
   static const scene::TrainReport kUnknown;
   for (const scene::FieldTraining& field : (training == nullptr ? kUnknown : *training).fields) {
     if (!field.ok)
-      warnings.push_back(fmt::format("Training of {} failed: {}", field.name, field.reason.empty() ? "no reason was given" : field.reason));
+      warnings.push_back(fmt::format("Training of {} failed: {}. Run `skyquilt train` again to repeat it", field.name,
+                                     field.reason.empty() ? "no reason was given" : field.reason));
     if (field.ok && field.dropped_steps > 0) {
-      warnings.push_back(fmt::format("Training of {} dropped {} steps with non-finite loss or gradient", field.name, field.dropped_steps));
+      warnings.push_back(fmt::format("Training of {} skipped {} steps whose loss or gradient was not finite", field.name, field.dropped_steps));
     }
   }
-  if (training == nullptr) warnings.emplace_back("No train.json: training time, speed and memory are unknown");
+  if (training == nullptr) warnings.emplace_back("There is no train.json, so training time, speed and memory are unknown");
   if (metrics.photos.empty()) {
-    warnings.emplace_back("No held-out photo was scored, so there are no quality figures");
+    warnings.emplace_back("No held-out photo was scored, so there are no quality scores; hold out photos with prepare.holdout");
   } else if (std::isfinite(metrics.coverage) && metrics.coverage < 0.5) {
     warnings.push_back(
-        fmt::format("Only {:.0f} % of the held-out pixels are covered by two training photos or more: the scores speak for that share only",
+        fmt::format("Only {:.0f} % of the held-out pixels are seen by at least two training photos; the scores are over these pixels only",
                     100.0 * metrics.coverage));
   }
   if (!metrics.photos.empty() && metrics.photos.size() < static_cast<size_t>(metrics.n_test)) {
-    warnings.push_back(fmt::format("Only {} of {} held-out photos were scored", metrics.photos.size(), metrics.n_test));
+    warnings.push_back(fmt::format("Only {} of {} held-out photos were scored (see evaluate.max_photos)", metrics.photos.size(), metrics.n_test));
   }
   return warnings;
 }

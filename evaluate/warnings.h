@@ -1,4 +1,4 @@
-// What a reader of the report must know before believing its figures.
+// Warnings that a reader of the report must know to judge its numbers. Plain text, one sentence each.
 #pragma once
 
 #include <string>

@@ -243,7 +243,7 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.psnr_full_frame = metrics.psnr - 1.3;
   metrics.ssim_full_frame = metrics.ssim - 0.03;
   metrics.coverage = 0.912;
-  metrics.lpips_note = "not measured: no network file was given";
+  metrics.lpips_note = "not measured: evaluate.lpips_network is not set";
   metrics.psnr_interior_db = 28.4;
   metrics.psnr_matched_interior_db = 28.4;
   metrics.psnr_seam_db = 28.28;

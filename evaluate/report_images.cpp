@@ -132,7 +132,7 @@ std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& prod
   };
   const auto low = corner("min_enu"), high = corner("max_enu");
   if (!low || !high || !(high->array() > low->array()).all()) {
-    spdlog::warn("{}: has no usable bounds, so the map of the report has no orthophoto; run `skyquilt products` again", bounds.string());
+    spdlog::warn("{}: has no usable bounds, so the map of the report has no orthophoto; make it again with `skyquilt run`", bounds.string());
     return std::nullopt;
   }
   try {

@@ -1,12 +1,12 @@
-# Helpers for one target per room: skyquilt_library(core_geo SOURCES a.cpp PUBLIC deps PRIVATE deps)
-# and one test program per room: skyquilt_test(core_geo SOURCES a_test.cpp LIBRARIES core_geo).
+# Functions that define one library per folder, skyquilt_library(core_geo SOURCES a.cpp PUBLIC deps PRIVATE deps),
+# and one test program per folder, skyquilt_test(core_geo SOURCES a_test.cpp LIBRARIES core_geo).
 
 add_library(skyquilt_warnings INTERFACE)
 target_compile_options(skyquilt_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor -Wold-style-cast
-  # g++ 12 reports overlaps that cannot be in "literal" + std::string (GCC bug 105329).
+  # g++ 12 warns wrongly about overlaps in "literal" + std::string (GCC bug 105329).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(SKYQUILT_UNITY)
-  # A joined file looks like a header full of anonymous namespaces.
+  # In a unity build a file with an anonymous namespace is included like a header, which gcc warns about.
   target_compile_options(skyquilt_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 if(SKYQUILT_WERROR)
@@ -17,11 +17,11 @@ if(SKYQUILT_SANITIZE)
   target_link_options(skyquilt_warnings INTERFACE -fsanitize=${SKYQUILT_SANITIZE})
 endif()
 
-# What every target of ours is compiled with.
+# Settings of all our targets.
 function(skyquilt_target name)
   target_compile_features(${name} PUBLIC cxx_std_20)
   set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
-  # Behind CMake's own -O3 of release builds, so that this one counts.
+  # After CMake's -O3 of release builds, so that -O2 takes effect.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O2>)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE skyquilt_warnings)
@@ -32,11 +32,11 @@ function(skyquilt_library name)
   add_library(${name} STATIC ${ARG_SOURCES})
   skyquilt_target(${name})
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${SKYQUILT_UNITY} UNITY_BUILD_BATCH_SIZE 6)
-  # Third-party headers are not held to our warnings.
+  # Warnings apply to our code only, not to third-party headers.
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
 endfunction()
 
-# skyquilt_timeout(600 test...): seconds before a test counts as hung; sanitizers slow everything down.
+# skyquilt_timeout(600 test...): seconds after which a test is stopped as hung; six times as long with sanitizers, which are slow.
 function(skyquilt_timeout seconds)
   if(SKYQUILT_SANITIZE)
     math(EXPR seconds "${seconds} * 6")

@@ -16,7 +16,7 @@ namespace {
 constexpr double kMapWidth_px = 900.0;
 constexpr double kMaxHeight_px = 820.0;
 
-// East and north in metres to pixels of the drawing, north up.
+// Converts east and north in metres to pixels of the drawing, north up.
 class MapFrame {
  public:
   MapFrame(Eigen::Vector2d low, Eigen::Vector2d high) {
@@ -47,7 +47,7 @@ void Grow(const Eigen::Vector2d& x, Eigen::Vector2d* low, Eigen::Vector2d* high)
   *high = high->cwiseMax(x);
 }
 
-// Bounds of blocks and cameras; a stray GPS tag must not shrink the map to a dot, so tags do not count.
+// Bounds of blocks and cameras. GPS tags do not count, because one wrong tag would make the rest of the map tiny.
 MapFrame FrameOf(const ReportInput& input) {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d high = -low;
@@ -90,7 +90,7 @@ std::string BlockLabels(const ReportInput& input, const MapFrame& frame) {
   std::string svg = "<g class=\"layer-blocks\">";
   for (const partition::Block& block : input.blocks->blocks) {
     const double width_px = (block.max_enu.x() - block.min_enu.x()) * frame.scale();
-    if (width_px < 28.0) continue;  // would only overlap its neighbours; the tooltip still names it
+    if (width_px < 28.0) continue;  // the text would overlap its neighbours; the tooltip has the name
     const double x = frame.X(0.5 * (block.min_enu.x() + block.max_enu.x()));
     const double y = frame.Y(0.5 * (block.min_enu.y() + block.max_enu.y()));
     svg += fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, y - 2.0, page::EscapeHtml(block.name));
@@ -155,7 +155,7 @@ std::string Cameras(const ReportInput& input, const MapFrame& frame) {
 }
 
 std::string ScaleBarAndNorth(const ReportInput& input, const MapFrame& frame) {
-  // The longest of 1, 2, 5 times a power of ten that fits a quarter of the map.
+  // The largest length 1, 2 or 5 times a power of ten that fits into a quarter of the map.
   const double room_m = 0.25 * frame.width_px() / frame.scale();
   const double magnitude = std::pow(10.0, std::floor(std::log10(room_m)));
   const double length_m = magnitude * (5.0 * magnitude <= room_m ? 5.0 : 2.0 * magnitude <= room_m ? 2.0 : 1.0);

@@ -18,8 +18,8 @@ namespace skyquilt::evaluate {
 
 namespace {
 
-constexpr int kGrid = 48;           // pixels each way that stand for a photo
-constexpr double kOffStops = 0.15;  // less is hard to see
+constexpr int kGrid = 48;           // sampled pixels per row and per column of a photo
+constexpr double kOffStops = 0.15;  // smaller differences are hard to see
 
 struct LightOfPhotos {
   std::vector<double> before_stops, after_stops;  // log2 of the mean light of each photo
@@ -59,7 +59,7 @@ void AddPhoto(const brightness::Response& response, const camera::Camera& cached
       light->after[BinOf(shown_after)] += 1.0;
     }
   }
-  // A black photo has no exposure to speak of.
+  // A black photo has no exposure.
   if (!(before > 0.0)) return;
   light->before_stops.push_back(std::log2(before / values));
   light->after_stops.push_back(std::log2(after / values));
@@ -117,7 +117,7 @@ BrightnessReport CollectBrightness(const scene::SceneInfo& info, const survey::S
   BrightnessReport report;
   const brightness::Response& response = info.response;
   if (response.photos() != survey.photos.size() || survey.photos.empty()) return report;
-  SKYQUILT_CHECK(pixels.size() == survey.photos.size(), "one cached photo per photo of the survey");
+  SKYQUILT_CHECK(pixels.size() == survey.photos.size(), "the pixel cache must have one entry per photo of the survey");
   report.timed = brightness::AllTimed(survey);
   const std::vector<brightness::CapturedPhoto> captured = brightness::CapturedPhotos(survey);
   std::vector<size_t> order(captured.size());
@@ -153,9 +153,9 @@ std::string BrightnessJson(const BrightnessReport& report) {
   const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
   Json json;
   json["about"] =
-      "light a photo recorded over light at the survey's reference exposure, in stops: exif_stops + learned_stops (red, green, blue); held-out "
-      "photos' learned_stops are predicted from the photos before and after. vignetting: per camera, share of light at 0, 0.1 ... 1 of the way from "
-      "the principal point to the farthest corner";
+      "light recorded by a photo relative to the survey's reference exposure, in stops: exif_stops + learned_stops (red, green, blue). For held-out "
+      "photos learned_stops are predicted from the photos before and after. vignetting: per camera, factor on light at 0, 0.1 ... 1 of the distance "
+      "from the principal point to the farthest corner";
   json["trust_in_tags"] = number(report.trust_in_tags);
   json["spread_before_stops"] = number(report.spread_before_stops);
   json["spread_after_stops"] = number(report.spread_after_stops);

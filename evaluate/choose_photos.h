@@ -1,4 +1,4 @@
-// Which photos an evaluation looks at.
+// Chooses the photos that an evaluation scores and shows.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,11 @@
 
 namespace skyquilt::evaluate {
 
-// Indices into Survey::photos of those that were never trained on.
+// Indices into Survey::photos of the held-out photos, which were not trained on.
 std::vector<int> HeldOutPhotos(const survey::Survey& survey);
-// Places of `count` of `n` entries, evenly spread; of all when count is 0 or enough.
+// `count` indices below n, evenly spread; all n when count is 0 or at least n.
 std::vector<size_t> SpreadPlaces(size_t n, int count);
-// `count` of the photos, chosen so.
+// `count` of the photos, chosen by SpreadPlaces.
 std::vector<int> EvenlySpread(const std::vector<int>& photos, int count);
 
 }  // namespace skyquilt::evaluate

@@ -36,11 +36,11 @@ TrainingViews::TrainingViews(std::vector<TrainingView> views) : views_(std::move
   cones_.reserve(views_.size());
   for (const TrainingView& view : views_) {
     const size_t n_pixels = static_cast<size_t>(view.camera.width) * static_cast<size_t>(view.camera.height);
-    SKYQUILT_CHECK(view.mask.empty() || view.mask.size() == n_pixels, "a mask of the camera's size");
+    SKYQUILT_CHECK(view.mask.empty() || view.mask.size() == n_pixels, "the mask must have the size of the camera's image");
     Cone cone;
     cone.apex_enu = view.cam_from_enu.OriginInSource();
     cone.axis_enu = view.cam_from_enu.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-    // The widest ray lies on the image border; distortion models fold far outside it, so they are only asked within this cone.
+    // The widest ray is on the image border. Distortion models are invalid far outside the image, so points outside this cone are not projected.
     constexpr int kSteps = 16;
     for (int i = 0; i <= kSteps; ++i) {
       const double u = view.camera.width * static_cast<double>(i) / kSteps;

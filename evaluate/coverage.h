@@ -1,5 +1,5 @@
-// Which pixels of a held-out photo can be asked of the model: those whose surface point at least two training photos show.
-// Frame: survey ENU, metres.
+// Coverage: a pixel of a held-out photo is scored only if at least two training photos see its surface point, because a scene cannot be expected to
+// know anything else. Frame: survey ENU, metres.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,14 +13,14 @@
 
 namespace skyquilt::evaluate {
 
-// Heights between which the scene's surface lies, metres; low <= high.
+// Lowest and highest z of the scene's surface, metres; low <= high.
 struct HeightRange {
   double low_m = 0.0;
   double high_m = 0.0;
 };
 
-// The point at `depth_m` along the ray (direction of length 1), moved along the ray into the height range. A NaN depth (the ray never became
-// opaque) counts as infinitely far. Nothing when the ray does not pass the range in front of the camera, or stays in it for ever.
+// The point at `depth_m` along the ray (unit direction), moved along the ray into the height range. A NaN depth (the ray never became opaque) counts
+// as infinitely far. Nothing when the ray never enters the range in front of the camera, or is level and has no depth.
 std::optional<Eigen::Vector3d> SurfacePoint(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu, double depth_m,
                                             HeightRange range);
 
@@ -34,9 +34,9 @@ class TrainingViews {
  public:
   explicit TrainingViews(std::vector<TrainingView> views);
 
-  // Views by distance of their cameras from a point, nearest first: the order in which a search ends soonest.
+  // Indices of the views, nearest camera to the point first. Near views most likely see a point, so Count then stops early.
   std::vector<int> ByDistance(const Eigen::Vector3d& x_in_enu) const;
-  // How many of the views in `order` have the point inside their frame on an unmasked pixel; stops counting at `enough`.
+  // Number of views in `order` that have the point inside their image on an unmasked pixel; stops counting at `enough`.
   int Count(const Eigen::Vector3d& x_in_enu, std::span<const int> order, int enough) const;
   bool Sees(int view, const Eigen::Vector3d& x_in_enu) const;
   size_t size() const { return views_.size(); }

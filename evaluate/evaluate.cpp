@@ -20,8 +20,8 @@ using Clock = std::chrono::steady_clock;
 
 void CheckInput(const EvaluateInput& input) {
   SKYQUILT_CHECK(input.scene != nullptr && input.survey != nullptr && input.blocks != nullptr && input.pixels != nullptr,
-                 "scene, survey, blocks and pixels");
-  SKYQUILT_CHECK(input.pixels->size() == input.survey->photos.size(), "one cached photo per photo of the survey");
+                 "scene, survey, blocks and pixels must be set");
+  SKYQUILT_CHECK(input.pixels->size() == input.survey->photos.size(), "the pixel cache must have one entry per photo of the survey");
   input.options.Check();
 }
 

@@ -1,4 +1,4 @@
-// Scores the merged scene on the held-out photos and writes report/metrics.json, report/brightness.json and report/index.html.
+// Stage evaluate: scores the merged scene on the held-out photos and writes report/metrics.json, report/brightness.json and report/index.html.
 #pragma once
 
 #include "core/base/thread_pool.h"
@@ -7,7 +7,7 @@
 
 namespace skyquilt::evaluate {
 
-// Renders every held-out photo and compares. Deterministic for any number of threads.
+// Renders every held-out photo and compares it with the real one. The same result for any number of threads.
 // Throws base::UsageError for options out of range, base::InputError for files that cannot be read or written, base::Interrupted.
 Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads);
 

@@ -1,4 +1,4 @@
-// What an evaluation works on.
+// Input of an evaluation. The pointers must outlive it; all but `training` must be set.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +19,8 @@ struct EvaluateInput {
   const partition::BlockSet* blocks = nullptr;
   const image::PixelCache* pixels = nullptr;     // entry i belongs to survey->photos[i]
   std::filesystem::path project_folder;          // report/ is written here; checkpoints/ and products/ are read
-  const scene::TrainReport* training = nullptr;  // null: nothing is known of it
-  std::string config_text;                       // TOML; empty: what the scene was trained with
+  const scene::TrainReport* training = nullptr;  // null: unknown, then the report says nothing about training
+  std::string config_text;                       // TOML; empty: the configuration stored in the scene
   EvaluateOptions options;
 
   std::filesystem::path ReportFolder() const { return project_folder / "report"; }

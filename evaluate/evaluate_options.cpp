@@ -12,15 +12,15 @@ std::vector<config::Field<EvaluateOptions>> EvaluateOptions::Fields() {
   return {
       {"image_width", &O::image_width, Range{16, 65536}.Or(0), "width in pixels at which held-out photos are scored; 0: the training width"},
       {"lpips_network", &O::lpips_network, Range(), "ONNX file of an LPIPS network; empty: LPIPS is not measured"},
-      {"max_photos", &O::max_photos, Range::AtLeast(0), "score at most so many held-out photos, evenly spread; 0: all"},
-      {"exif_gain", &O::exif_gain, Range(), "render each held-out photo at the exposure its EXIF states"},
+      {"max_photos", &O::max_photos, Range::AtLeast(0), "most held-out photos to score, evenly spread; 0: all"},
+      {"exif_gain", &O::exif_gain, Range(), "render each held-out photo at the exposure of its EXIF tags"},
       {"predicted_gain", &O::predicted_gain, Range(),
-       "render each held-out photo also with the residual gain of the photos taken before and after it, where gains were learned"},
+       "also apply the residual gain predicted from the photos taken before and after, if training learned gains"},
       {"normal_photos", &O::normal_photos, Range(),
-       "folder of the same photos, normally exposed: what is shown at normal brightness is scored against them too; empty: none"},
-      {"normal_stops", &O::normal_stops, Range{-10, 10}, "stops by which normal brightness is raised before that comparison"},
-      {"report_photos", &O::report_photos, Range::AtLeast(0), "held-out photos with pictures in the report, evenly spread; all are in its tables"},
-      {"report_image_width", &O::report_image_width, Range{16, 65536}, "largest width in pixels of the report's pictures"},
+       "folder of the same photos at normal exposure, to score renderings at normal brightness too; empty: none"},
+      {"normal_stops", &O::normal_stops, Range{-10, 10}, "stops to brighten the renderings by for normal_photos"},
+      {"report_photos", &O::report_photos, Range::AtLeast(0), "held-out photos shown as images in the report, evenly spread; its tables have all"},
+      {"report_image_width", &O::report_image_width, Range{16, 65536}, "largest width of the report's images in pixels"},
   };
 }
 

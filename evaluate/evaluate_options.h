@@ -1,4 +1,4 @@
-// How a scene is evaluated: [evaluate] in the configuration.
+// Options of section [evaluate] of the configuration: how a scene is scored on the held-out photos.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@ namespace skyquilt::evaluate {
 struct EvaluateOptions {
   int image_width = 0;           // pixels; 0: the training width
   std::string lpips_network;     // ONNX file; empty: LPIPS is not measured
-  int max_photos = 0;            // score at most so many held-out photos, evenly spread; 0: all
+  int max_photos = 0;            // most held-out photos to score, evenly spread; 0: all
   bool exif_gain = true;         // render each photo at its EXIF exposure
-  bool predicted_gain = true;    // and with the residual gain predicted for it
+  bool predicted_gain = true;    // multiplied by the residual gain predicted for it
   std::string normal_photos;     // folder of the same photos at normal exposure; empty: none
-  double normal_stops = 0.0;     // -10..10, by which what is shown is raised before that comparison
-  int report_photos = 40;        // photos with pictures in the report, evenly spread
+  double normal_stops = 0.0;     // -10..10, brightening of the rendering for that comparison
+  int report_photos = 40;        // photos shown in the report, evenly spread
   int report_image_width = 960;  // pixels
 
   static std::vector<config::Field<EvaluateOptions>> Fields();

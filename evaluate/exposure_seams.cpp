@@ -11,15 +11,15 @@
 namespace skyquilt::evaluate {
 namespace {
 
-constexpr int kPerSide = 256;          // places along each side of a photo
-constexpr double kApartPixels = 2.0;   // from inside to outside
-constexpr double kControlPixels = 12;  // how far inside the control lines run
+constexpr int kPerSide = 256;          // sampled points along each side of a photo
+constexpr double kApartPixels = 2.0;   // distance between the point inside and the point outside
+constexpr double kControlPixels = 12;  // distance of the control lines from the border
 
 struct Place {
   Eigen::Vector2d pixel, inwards;
 };
 
-// Places along the four sides, `inset` pixels from them. Corners are left out: another side is near.
+// Points along the four sides, `inset` pixels inside. Not near corners, where two borders meet.
 std::vector<Place> PlacesAlong(const camera::Camera& camera, double inset) {
   std::vector<Place> places;
   const Eigen::Vector2d size(camera.width, camera.height);
@@ -33,7 +33,7 @@ std::vector<Place> PlacesAlong(const camera::Camera& camera, double inset) {
   return places;
 }
 
-// Mean over a line's places of what lies outside minus what lies inside, seen from straight above.
+// |mean over the points of brightness outside minus brightness inside|, seen from straight above. Nothing when too few points are in the scene.
 std::optional<double> StepAcross(const scene::Scene& scene, const TrainingView& view, double inset, base::ThreadPool& threads) {
   const geo::Rigid3d enu_from_cam = view.cam_from_enu.Inverse();
   const std::vector<Place> places = PlacesAlong(view.camera, inset);
@@ -51,7 +51,7 @@ std::optional<double> StepAcross(const scene::Scene& scene, const TrainingView& 
   for (size_t i = 0; i < rays.size(); ++i) {
     if (!std::isfinite(seen[i].depth_median)) continue;
     const Eigen::Vector3d ground = rays[i].origin_enu + static_cast<double>(seen[i].depth_median) * rays[i].direction_enu;
-    // One pixel further inside, at the same distance: the direction and length of a pixel on the ground.
+    // The neighbouring pixel further inside, at the same depth, gives direction and size of a pixel on the ground.
     const Eigen::Vector3d beside = enu_from_cam.rotation * view.camera.RayFromImg(places[i].pixel + places[i].inwards).normalized();
     const Eigen::Vector3d inwards = rays[i].origin_enu + static_cast<double>(seen[i].depth_median) * beside - ground;
     std::array<Eigen::Vector3d, 2> pair = {ground - 0.5 * kApartPixels * inwards, ground + 0.5 * kApartPixels * inwards};
@@ -72,7 +72,7 @@ std::optional<double> StepAcross(const scene::Scene& scene, const TrainingView& 
     for (size_t c = 0; c < 3; ++c) sum += static_cast<double>(colors[i].rgb_srgb[c] - colors[i + 1].rgb_srgb[c]) / 3.0;
     n += 1.0;
   }
-  if (n < kPerSide) return std::nullopt;  // hardly a side of it lies in the area
+  if (n < kPerSide) return std::nullopt;  // less than one side of the photo is in the scene
   return std::abs(sum / n);
 }
 

@@ -1,5 +1,5 @@
-// Do the photos' footprints show on the map? Seen from above at normal brightness, the ground just inside the border of a photo's footprint is
-// compared with the ground just outside. Where exposure differences were taken into the scene's colours, a step stands there.
+// Measures whether exposure differences between photos are baked into the scene's colours. If they are, the brightness on the map changes at the
+// border of a photo's footprint. So the ground just inside the border is compared with the ground just outside, seen from above at normal brightness.
 #pragma once
 
 #include "core/base/thread_pool.h"
@@ -12,11 +12,11 @@ namespace skyquilt::evaluate {
 struct ExposureSeams {
   // Medians over photos of |mean outside - mean inside| in display values (1 = white), colours averaged; NaN without photos.
   double border = kNotMeasured;
-  double control = kNotMeasured;  // the same across lines a little further inside, where no border runs: what texture alone gives
-  int photos = 0;
+  double control = kNotMeasured;  // the same at lines further inside the footprint, where there is no border: the effect of texture alone
+  int photos = 0;                 // measured
 };
 
-// At most kFootprints of the views, evenly spread.
+// Largest number of views to measure, evenly spread.
 constexpr int kFootprints = 96;
 ExposureSeams MeasureExposureSeams(const scene::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads);
 

@@ -31,9 +31,9 @@ std::vector<std::pair<double, double>> FloaterOpacity::Profile() const {
 }
 
 FloaterOpacity MeasureFloaterOpacity(const scene::Scene& scene, const PhotoTask& task, const PhotoFindings& findings, base::ThreadPool& threads) {
-  SKYQUILT_CHECK(!findings.true_depth.Empty(), "a photo with true depth");
+  SKYQUILT_CHECK(!findings.true_depth.Empty(), "the photo must have a true depth");
   const geo::Rigid3d enu_from_cam = task.cam_from_enu.Inverse();
-  // Whole rays for every clearance: pieces of rays, shorter than a marching step, would be weighed differently.
+  // One ray from the camera per clearance. Cutting one ray into pieces would change its samples, as pieces may be shorter than a marching step.
   std::vector<render::Ray> rays;
   std::vector<size_t> clearance_of;
   for (int y = kEvery / 2; y < task.camera.height; y += kEvery) {
@@ -52,12 +52,12 @@ FloaterOpacity MeasureFloaterOpacity(const scene::Scene& scene, const PhotoTask&
   }
   std::vector<render::RayColor> colors(rays.size());
   scene.RenderRays(rays, colors, {}, threads);
-  FloaterOpacity air;
+  FloaterOpacity total;
   for (size_t k = 0; k < rays.size(); ++k) {
-    air.sum[clearance_of[k]] += static_cast<double>(colors[k].opacity);
-    ++air.rays[clearance_of[k]];
+    total.sum[clearance_of[k]] += static_cast<double>(colors[k].opacity);
+    ++total.rays[clearance_of[k]];
   }
-  return air;
+  return total;
 }
 
 }  // namespace skyquilt::evaluate

@@ -1,5 +1,5 @@
-// Matter where there is none: how much of the light from the true surface a scene swallows on its way to the camera ("floaters").
-// Needs a simulated survey's true depth.
+// Measures floaters, density in the free space in front of surfaces: the opacity of rays from the camera to just in front of the true surface, which
+// should be 0. Needs the true depth of a simulated survey.
 #pragma once
 
 #include <array>
@@ -13,25 +13,25 @@
 
 namespace skyquilt::evaluate {
 
-// Air that counts ends this far in front of the true surface, metres: what a surface's own blur takes is not floater opacity.
+// Free space ends this far in front of the true surface, metres, so that a slightly blurred surface does not count as a floater.
 inline constexpr double kFloaterClearance_m = 1.0;
-// The same farther from surfaces: blur falls off, what floats stays. Ascending, from kFloaterClearance_m.
+// Larger clearances tell floaters from blur: blur is only near surfaces. Ascending, from kFloaterClearance_m.
 inline constexpr std::array<double, 5> kFloaterProfile_m = {kFloaterClearance_m, 2.0, 5.0, 10.0, 20.0};
 
 struct FloaterOpacity {
-  // Per clearance of kFloaterProfile_m: opacities in [0, 1], each gathered from the camera to the clearance in front of the true surface, of the rays
-  // that are longer than that.
+  // Per clearance of kFloaterProfile_m: sum of the opacities (each in [0, 1]) from the camera to that distance in front of the true surface, and the
+  // number of rays long enough for it.
   std::array<double, kFloaterProfile_m.size()> sum = {};
   std::array<int64_t, kFloaterProfile_m.size()> rays = {};
 
   FloaterOpacity& operator+=(const FloaterOpacity& other);
   double Mean() const { return Mean(0); }  // to kFloaterClearance_m; NaN without rays
   double Mean(size_t clearance) const;
-  // (clearance in metres, mean opacity).
+  // Pairs (clearance in metres, mean opacity).
   std::vector<std::pair<double, double>> Profile() const;
 };
 
-// Over a grid of pixels of one photo that are scored and have a true depth. `findings` as ScorePhoto gave them for this task.
+// Measures a grid of pixels of one photo that are scored and have a true depth. findings: result of ScorePhoto for this task.
 FloaterOpacity MeasureFloaterOpacity(const scene::Scene& scene, const PhotoTask& task, const PhotoFindings& findings, base::ThreadPool& threads);
 
 }  // namespace skyquilt::evaluate

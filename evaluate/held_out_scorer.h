@@ -1,4 +1,4 @@
-// Renders held-out photos as they were recorded and scores them, one by one: photos in, values out.
+// Renders held-out photos at the brightness at which they were taken, and scores them one by one. Writes no files.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ namespace skyquilt::evaluate {
 
 struct ScoredPhoto {
   PhotoTask task;
-  PhotoFindings findings;                // with the whole score
-  FloaterOpacity air;                    // nothing without true depth
-  std::vector<render::RayColor> normal;  // at normal brightness, row-major; empty when nobody asked
+  PhotoFindings findings;                // with all scores filled in
+  FloaterOpacity air;                    // no rays without true depth
+  std::vector<render::RayColor> normal;  // rendered at normal brightness, row-major; empty when not requested
 };
 
 class HeldOutScorer {
@@ -27,14 +27,14 @@ class HeldOutScorer {
   // `input` must outlive it. Throws base::InputError for an LPIPS network that cannot be used.
   explicit HeldOutScorer(const EvaluateInput& input);
 
-  // photo: index into Survey::photos. keep_normal: the photo at normal brightness is wanted too. Throws base::InputError.
+  // photo: index into Survey::photos. keep_normal: return the rendering at normal brightness too. Throws base::InputError when a file cannot be read.
   ScoredPhoto Score(int photo, bool keep_normal, base::ThreadPool& threads);
 
   const std::vector<TrainingView>& training() const { return training_; }
-  size_t n_boxes() const { return area_.boxes.size(); }  // as many squared errors per block a photo gives
+  size_t n_boxes() const { return area_.boxes.size(); }  // size of PhotoFindings::per_block
 
  private:
-  // How the photo records light by its tags, and with what training predicts for it.
+  // Brightness of the photo by its tags, and with the gain that training predicts for it.
   struct Recordings {
     double gain = 1.0;
     Recording tagged, predicted;

@@ -1,4 +1,4 @@
-// A held-out photo as it is scored: pixels, mask, camera and, for simulated surveys, true depth.
+// Loads a held-out photo for scoring: pixels, mask, camera and, for simulated surveys, true depth.
 #pragma once
 
 #include "core/image/pixel_cache.h"
@@ -7,7 +7,8 @@
 
 namespace skyquilt::evaluate {
 
-// At image_width pixels (0: as cached), from the cache when that is large enough, else decoded again. Throws base::InputError.
+// index: into Survey::photos. image_width: pixels, 0 = as cached. Taken from the cache if that is large enough, otherwise decoded again. Throws
+// base::InputError when a file cannot be read.
 PhotoTask LoadTask(const survey::Survey& survey, const image::PixelCache& pixels, int index, int image_width);
 
 }  // namespace skyquilt::evaluate

@@ -1,5 +1,5 @@
-// What one evaluation found, and its JSON form (report/metrics.json).
-// NaN stands for "not measured" in every number and becomes null in JSON; so does an infinite PSNR (identical images).
+// Result of an evaluation, and its JSON form (report/metrics.json).
+// NaN means "not measured" and becomes null in JSON; so does an infinite PSNR (identical images).
 // PSNR in dB with display values in [0,1] (MAX = 1), higher better; SSIM at most 1, higher better; LPIPS a distance, lower better.
 #pragma once
 
@@ -25,7 +25,7 @@ struct PhotoScore {
   int64_t used_pixels = 0;                                  // not masked
   int64_t covered_pixels = 0;                               // used and covered (see kCoverageDefinition)
   double exposure_gain = 1.0;                               // linear light, from the tags
-  std::array<double, 3> predicted_stops = {0.0, 0.0, 0.0};  // applied beside it, per colour
+  std::array<double, 3> predicted_stops = {0.0, 0.0, 0.0};  // predicted gain, applied in addition, per colour
   double psnr_db = kNotMeasured;                            // over the covered pixels
   double psnr_exif_gain_db = kNotMeasured;                  // over the covered pixels, with exposure_gain alone
   double psnr_normal_db = kNotMeasured;  // at normal brightness against a normally exposed photo (evaluate.normal_photos), covered pixels
@@ -37,7 +37,7 @@ struct PhotoScore {
   double right_half_db = kNotMeasured;                   // PSNR over the covered pixels of the right half,
   double right_half_fitted_db = kNotMeasured;            // and with gains per colour fitted to the left half
   std::array<double, 3> fitted_stops = {0.0, 0.0, 0.0};  // those gains, on top of exposure_gain
-  double depth_rmse_m = kNotMeasured;                    // simulated surveys only: z-depth over covered pixels where both depths exist
+  double depth_rmse_m = kNotMeasured;                    // simulated surveys only: z-depth error over covered pixels with both depths
   double depth_median_abs_m = kNotMeasured;
   double render_seconds = 0.0;
 
@@ -46,7 +46,7 @@ struct PhotoScore {
 
 struct BlockScore {
   std::string name;
-  double psnr_db = kNotMeasured;  // pooled over the covered pixels of all test photos whose surface point lies in the block
+  double psnr_db = kNotMeasured;  // pooled over the covered pixels of all test photos whose surface point is in the block
   int64_t pixels = 0;
 };
 
@@ -59,7 +59,7 @@ struct Warning {
 };
 
 struct Metrics {
-  // Means over the test photos of the per-photo values, the convention of the field; photos without the value do not count.
+  // Means over the test photos of the values per photo, as usual in NeRF papers; photos without the value do not count.
   double psnr = kNotMeasured;
   double psnr_exif_gain = kNotMeasured;
   double psnr_normal = kNotMeasured;
@@ -76,15 +76,15 @@ struct Metrics {
   std::vector<BlockScore> blocks;
   double psnr_interior_db = kNotMeasured;          // covered pixels deeper than the margin inside a block, pooled
   double psnr_seam_db = kNotMeasured;              // covered pixels where two or more blocks blend, pooled
-  double psnr_matched_interior_db = kNotMeasured;  // the interior weighted to the seams' textures
+  double psnr_matched_interior_db = kNotMeasured;  // interior, weighted to have the textures of the seams
   double seam_psnr_gap_db = kNotMeasured;          // matched interior minus seam; NaN with a single block
-  double exposure_seam = kNotMeasured;             // brightness steps across the borders of photos' footprints, display values (exposure_seams.h)
+  double exposure_seam = kNotMeasured;             // brightness change at borders of photo footprints, display values (exposure_seams.h)
   double exposure_seam_control = kNotMeasured;
   double depth_rmse_m = kNotMeasured;  // pooled over the pixels of all test photos
   double depth_median_abs_m = kNotMeasured;
-  double floater_opacity = kNotMeasured;                   // of what should be empty in front of the true surface, mean over rays (floater_opacity.h)
-  std::vector<std::pair<double, double>> floater_profile;  // (metres in front of the true surface, the same until there)
-  bool has_truth = false;
+  double floater_opacity = kNotMeasured;                   // of the free space in front of the true surface, mean over rays (floater_opacity.h)
+  std::vector<std::pair<double, double>> floater_profile;  // pairs (metres in front of the true surface, opacity up to there)
+  bool has_truth = false;                                  // simulated survey with true depth
 
   double train_seconds = kNotMeasured;
   double samples_per_second = kNotMeasured;
@@ -100,7 +100,7 @@ struct Metrics {
   bool georeferenced = false;
   survey::GeoFit geo_fit;
   double median_agl_m = kNotMeasured;
-  double median_relative_altitude_m = kNotMeasured;  // XMP, the drone's own figure
+  double median_relative_altitude_m = kNotMeasured;  // from the XMP tags of the drone
   double gsd_m = kNotMeasured;
   int n_photos = 0;  // registered
   int n_unregistered = 0;
@@ -122,10 +122,10 @@ extern const char* const kRightHalfDefinition;
 double MeanOfMeasured(const std::vector<double>& values);
 // Median of the finite values; NaN when there is none.
 double MedianOfMeasured(std::vector<double> values);
-// UTF-8 JSON text, keys as in the project's documentation; file names that are not UTF-8 are repaired, never refused.
+// Text of metrics.json, keys as in the documentation. UTF-8; invalid bytes in file names are replaced.
 std::string MetricsJson(const Metrics& metrics);
-// Back from the file, all but the fit of poses to GPS and what rendering took; of single photos name and PSNR alone. Infinity comes back as not
-// measured. Throws base::InputError.
+// Reads metrics.json, except for the fit to GPS and the statistics of rendering; of single photos only name and PSNR. An infinite PSNR is read as not
+// measured. Throws base::InputError when the file cannot be read.
 Metrics ReadMetrics(const std::filesystem::path& file);
 
 }  // namespace skyquilt::evaluate

@@ -158,8 +158,7 @@ std::string MethodSection(const ReportInput& input) {
   }
   html +=
       "<p>Each photo is rendered at the exposure that its EXIF tags state. Where training learned gains, those of the photos taken before and after "
-      "are "
-      "added. Nothing is fitted to the held-out photo itself.</p></div></div>";
+      "are added. Nothing is fitted to the held-out photo itself.</p></div></div>";
   if (!metrics.config.empty())
     html += "<details class=\"card config\"><summary>Configuration</summary><pre>" + page::EscapeHtml(metrics.config) + "</pre></details>";
   return html + "</section>\n";

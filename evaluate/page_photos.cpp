@@ -29,10 +29,9 @@ std::string PhotoCard(const ReportInput& input, size_t index) {
   html += "</div></header><div class=\"pics\">";
   html += fmt::format(
       "<figure class=\"pic slider\"><div class=\"compare\" style=\"aspect-ratio:{0}/{1}\"><img src=\"{2}\" loading=\"lazy\" alt=\"Render\"><img "
-      "class=\"top\" "
-      "src=\"{3}\" loading=\"lazy\" alt=\"Photo\"><i></i><span class=\"tag l\">Photo</span><span class=\"tag r\">Render</span><input type=\"range\" "
-      "min=\"0\" max=\"100\" step=\"0.1\" value=\"50\" "
-      "aria-label=\"Move between photo and render\"></div><figcaption>Drag to compare photo and render</figcaption></figure>",
+      "class=\"top\" src=\"{3}\" loading=\"lazy\" alt=\"Photo\"><i></i><span class=\"tag l\">Photo</span><span class=\"tag r\">Render</span><input "
+      "type=\"range\" min=\"0\" max=\"100\" step=\"0.1\" value=\"50\" aria-label=\"Move between photo and render\"></div><figcaption>Drag to compare "
+      "photo and render</figcaption></figure>",
       images.width, images.height, page::EscapeHtml(images.render), page::EscapeHtml(images.photo));
   const auto picture = [&](const char* kind, const std::string& file, const char* caption, const std::string& legend = "") {
     html += Picture(kind, file, images.width, images.height, caption, legend);
@@ -81,12 +80,11 @@ std::string PhotoSection(const ReportInput& input) {
   if (input.metrics->photos.empty()) return html + "</div><p class=\"card empty\">No photo was scored.</p></section>\n";
   html +=
       "<div class=\"controls\"><div class=\"segmented\" role=\"group\" aria-label=\"View\"><button data-view=\"side\" class=\"on\">Side by "
-      "side</button>"
-      "<button data-view=\"slide\">Slider</button></div><label>Order <select id=\"order\"><option value=\"name\">by name</option><option "
-      "value=\"worst\">worst first</option><option value=\"best\">best first</option></select></label></div></div>"
+      "side</button><button data-view=\"slide\">Slider</button></div><label>Order <select id=\"order\"><option value=\"name\">by "
+      "name</option><option value=\"worst\">worst first</option><option value=\"best\">best first</option></select></label></div></div>"
       "<p class=\"lead\">These photos were kept out of training, so they test the result. Error is the mean absolute difference of red, green and "
-      "blue in display values from 0 to 1. Grey pixels do not count: fewer than two training photos see them, or a mask excludes them. "
-      "<span class=\"screen\">Click a picture to enlarge it.</span></p><div id=\"photo-list\">";
+      "blue in display values from 0 to 1. Grey pixels do not count: fewer than two training photos see them, or a mask excludes them. <span "
+      "class=\"screen\">Click a picture to enlarge it.</span></p><div id=\"photo-list\">";
   size_t pictured = 0;
   for (size_t i = 0; i < input.metrics->photos.size() && i < input.images.size(); ++i) {
     if (input.images[i].photo.empty()) continue;

@@ -40,13 +40,10 @@ std::string BlockTable(const ReportInput& input) {
   const char* length_unit = input.survey->georeferenced ? "m" : "units";
   std::string html =
       "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Block</th><th>State</th><th class=\"num\">Held-out PSNR</th><th "
-      "class=\"num\">Scored "
-      "pixels</th>"
-      "<th class=\"num\">Training PSNR</th><th class=\"num\">Steps</th><th class=\"num\">Training time</th><th class=\"num\">Rays</th><th "
-      "class=\"num\">Samples</th>"
+      "class=\"num\">Scored pixels</th><th class=\"num\">Training PSNR</th><th class=\"num\">Steps</th><th class=\"num\">Training time</th><th "
+      "class=\"num\">Rays</th><th class=\"num\">Samples</th>"
       "<th class=\"num\">Parameters</th><th class=\"num\">Size</th><th class=\"num\">Heights from, to</th><th class=\"num\">Height above "
-      "ground</th><th "
-      "class=\"num\">GSD</th>"
+      "ground</th><th class=\"num\">GSD</th>"
       "<th class=\"num\">Photos</th></tr></thead><tbody>";
   if (const scene::FieldTraining* context = input.training->Find("context")) {
     html += "<tr><td><b>context</b></td>" + StatusCell(context, nullptr) +
@@ -105,8 +102,7 @@ std::string ResidualTable(const ReportInput& input) {
   };
   const std::string head =
       "<thead><tr><th>Photo</th><th class=\"num\">Residual</th><th>GPS tag</th><th class=\"num\">Height above ground</th><th class=\"num\">Height "
-      "above take-off "
-      "(XMP)</th>"
+      "above take-off (XMP)</th>"
       "<th class=\"num\">Flight</th><th>Used for</th></tr></thead>";
   constexpr size_t kShown = 12;
   std::string html = "<div class=\"card scroll\"><table class=\"sortable\">" + head + "<tbody>";

@@ -12,7 +12,7 @@ namespace {
 
 image::ImageF AsImage(std::span<const render::RayColor> colors, int width, int height) {
   image::ImageF image(width, height, 3);
-  SKYQUILT_CHECK(3 * colors.size() == image.data.size(), "one colour per pixel");
+  SKYQUILT_CHECK(3 * colors.size() == image.data.size(), "there must be one colour per pixel");
   for (size_t i = 0; i < colors.size(); ++i) {
     for (size_t c = 0; c < 3; ++c) {
       const float value = colors[i].rgb_srgb[c];
@@ -27,7 +27,7 @@ image::ImageF AsImage(std::span<const render::RayColor> colors, int width, int h
 double TaggedGain(const survey::Photo& photo, double reference_exposure, bool exif_gain) {
   if (!exif_gain || !(reference_exposure > 0.0)) return 1.0;
   const auto exposure = brightness::ExifExposure(photo.exposure.time_s, photo.exposure.f_number, photo.exposure.iso);
-  // Beyond ten stops a tag is wrong; training limits gains in the same way.
+  // Tags more than ten stops from the reference are wrong. Training limits gains in the same way.
   return exposure ? std::clamp(*exposure / reference_exposure, 0x1.0p-10, 0x1.0p10) : 1.0;
 }
 
@@ -55,7 +55,8 @@ NormalScore ScoreNormal(const std::filesystem::path& true_photo, std::span<const
   if (truth.width != scored.width || truth.height != scored.height) {
     const int height = image::ScaledHeight(truth.width, truth.height, scored.width);
     if (height != scored.height) {
-      throw base::InputError(true_photo, "has another shape than the photo it is to be compared with", "Give the folder of the same photos");
+      throw base::InputError(true_photo, "has another aspect ratio than the photo of the same name",
+                             "Set evaluate.normal_photos to a folder of the same photos");
     }
     truth = image::Resize(truth, scored.width, height);
   }

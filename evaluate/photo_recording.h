@@ -1,4 +1,4 @@
-// How bright a held-out photo is to be rendered, and scores that ask just that.
+// Brightness at which a held-out photo is rendered so that it can be compared with the real one, and scores of brightness.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,15 @@
 
 namespace skyquilt::evaluate {
 
-// Exposure over the survey's reference as the photo's tags have it; 1 without tags, reference (0) or exif_gain.
+// Factor on linear light: the exposure of the photo's tags divided by the survey's reference exposure. 1 without tags, if reference_exposure is 0, or
+// if exif_gain is false.
 double TaggedGain(const survey::Photo& photo, double reference_exposure, bool exif_gain);
-// How a photo records light as far as its tags and its camera say.
+// The recording by the gain of the tags and the vignetting of the camera.
 Recording TaggedRecording(const brightness::Response& response, int camera, double gain);
-// The same with what training predicts for it from the photos before and after.
+// `recording` with the gain that training predicts for the photo from the photos before and after.
 Recording PredictedRecording(const brightness::Response& response, size_t photo, Recording recording);
 
-// PSNR over the scored pixels of a rendering at reference exposure, recorded like this.
+// PSNR over the scored pixels of a rendering at reference exposure, after applying the recording to it.
 double PsnrRecorded(const PhotoTask& task, const Recording& recording, std::vector<render::RayColor> colors, const image::Image8& scored,
                     base::ThreadPool& threads);
 
@@ -26,7 +27,7 @@ struct NormalScore {
   double psnr_db = kNotMeasured;
   double ssim = kNotMeasured;
 };
-// What the scene shows at normal brightness against a photo that was taken at it. Throws base::InputError.
+// Compares a rendering at normal brightness with a photo taken at normal brightness. Throws base::InputError for a photo that cannot be used.
 NormalScore ScoreNormal(const std::filesystem::path& true_photo, std::span<const render::RayColor> normal, const image::Image8& scored);
 
 }  // namespace skyquilt::evaluate

@@ -15,7 +15,7 @@ namespace skyquilt::evaluate {
 
 namespace {
 
-// What pixels add up to.
+// Sums over the pixels of a photo.
 struct PixelSums {
   metrics::SquaredError full, covered;
   SeamErrors seams;
@@ -32,7 +32,7 @@ struct PixelSums {
   }
 };
 
-// Photo and rendering of one frame, compared pixel by pixel.
+// Compares photo and rendering pixel by pixel.
 class FrameComparison {
  public:
   FrameComparison(const PhotoTask& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area)
@@ -49,7 +49,7 @@ class FrameComparison {
         origin_(task.cam_from_enu.OriginInSource()),
         order_(views.ByDistance(origin_)) {}
 
-  // Fills the pictures below and gives the sums over all pixels, the same for any number of threads.
+  // Fills the images below and returns the sums over all pixels, the same for any number of threads.
   PixelSums Compare(base::ThreadPool& threads) {
     PixelSums none;
     none.per_block.resize(area_.boxes.size());
@@ -62,8 +62,8 @@ class FrameComparison {
   }
 
   const image::ImageF photo;
-  image::ImageF render;     // as a picture shows it
-  image::ImageF unclamped;  // brighter than white where the scene is
+  image::ImageF render;     // display values clamped to [0, 1]
+  image::ImageF unclamped;  // may be brighter than white
   image::Image8 scored;     // as in PhotoFindings
   image::ImageF z_depth;    // as in PhotoFindings
 
@@ -109,7 +109,7 @@ class FrameComparison {
   const std::vector<int> order_;
 };
 
-// Averaging would invent depths between roof and ground.
+// Nearest pixel, because averaging would give wrong depths between roof and ground.
 image::ImageF ResizeNearest(const image::ImageF& image, int width, int height) {
   const auto scaled = [](int i, int n, int m) { return std::min(static_cast<int>((i + 0.5) * m / n), m - 1); };
   image::ImageF resized(width, height, 1);
@@ -119,7 +119,7 @@ image::ImageF ResizeNearest(const image::ImageF& image, int width, int height) {
   return resized;
 }
 
-// What is not a sum over pixels, three scores at a time.
+// Scores that are not sums over pixels; the three are computed in parallel.
 void AddWholeFrameScores(const PhotoTask& task, const FrameComparison& frame, base::ThreadPool& threads, PhotoScore* score) {
   const image::Image8 used = task.UsedPixels();
   HalfScores halves;
@@ -148,9 +148,10 @@ PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor
   const int width = task.camera.width;
   const int height = task.camera.height;
   const size_t n_pixels = static_cast<size_t>(width) * static_cast<size_t>(height);
-  SKYQUILT_CHECK(task.photo.width == width && task.photo.height == height && task.photo.channels == 3, "a photo of the camera's size");
-  SKYQUILT_CHECK(rendered.size() == n_pixels, "one rendered ray per pixel");
-  SKYQUILT_CHECK(task.mask.empty() || task.mask.size() == n_pixels, "a mask of the camera's size");
+  SKYQUILT_CHECK(task.photo.width == width && task.photo.height == height && task.photo.channels == 3,
+                 "the photo must have the size of the camera's image");
+  SKYQUILT_CHECK(rendered.size() == n_pixels, "there must be one rendered ray per pixel");
+  SKYQUILT_CHECK(task.mask.empty() || task.mask.size() == n_pixels, "the mask must have the size of the camera's image");
 
   FrameComparison frame(task, rendered, views, area);
   PixelSums sums = frame.Compare(threads);

@@ -25,12 +25,12 @@ struct PhotoTask {
   std::vector<uint8_t> mask;  // per pixel, 0 = ignored; empty: every pixel counts
   image::ImageF true_depth;   // metres along z of the camera, NaN = none, any size; empty: unknown
 
-  image::Image8 UsedPixels() const;  // the mask as a picture of one channel; empty: every pixel counts
+  image::Image8 UsedPixels() const;  // the mask as an image of one channel; empty: every pixel counts
 };
 
 struct SceneArea {
-  std::vector<geo::BlockBox> boxes;
-  HeightRange heights;
+  std::vector<geo::BlockBox> boxes;  // of the blocks
+  HeightRange heights;               // of the whole scene
 };
 
 struct PhotoFindings {
@@ -38,12 +38,12 @@ struct PhotoFindings {
   SeamErrors seams;
   std::vector<metrics::SquaredError> per_block;  // one per box of the area, covered pixels
   image::Image8 scored;                          // one channel, 1 = unmasked and covered
-  image::Image8 render;                          // what the report shows
+  image::Image8 render;                          // the rendering, as shown in the report
   image::ImageF z_depth;                         // metres along z of the camera, NaN where the render has none
-  image::ImageF true_depth;                      // brought to the scored size; empty when unknown
+  image::ImageF true_depth;                      // resized to the scored size; empty when unknown
 };
 
-// `rendered` row-major, one per pixel of the camera. Same result for any number of threads.
+// rendered: row-major, one per pixel of the camera. The same result for any number of threads.
 PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area,
                          base::ThreadPool& threads);
 

@@ -1,5 +1,5 @@
-// Which block a surface point belongs to, whether it lies in a seam, and squared errors of a group of pixels.
-// Boxes are looked at from above; frame: survey ENU, metres.
+// Groups pixels by where their surface point is: in which block, and whether inside it or in a seam between blocks.
+// Only x and y of points and boxes count. Frame: survey ENU, metres.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,14 +13,14 @@ namespace skyquilt::evaluate {
 
 enum class Zone : uint8_t {
   kOutside,   // in no block
-  kInterior,  // deeper than the margin inside a block
-  kSeam,      // where the grown boxes of two or more blocks overlap
-  kRim,       // near an edge of a block that no other block touches
+  kInterior,  // farther than the margin from the edges of its block
+  kSeam,      // where the boxes of two or more blocks, with margins, overlap
+  kRim,       // near an edge of a block without a neighbour
 };
 
-// The block whose core box [min, max) holds the point; -1 when none does.
+// Index of the block whose core box [min, max) contains the point; -1 when none does.
 int BlockAt(const Eigen::Vector3d& x_in_enu, std::span<const geo::BlockBox> boxes);
-// Zone of a point in core box `block` (as BlockAt returned it).
+// Zone of a point. block: result of BlockAt for it.
 Zone ZoneAt(const Eigen::Vector3d& x_in_enu, int block, std::span<const geo::BlockBox> boxes);
 
 // Adds one pixel's RGB difference, display values in [0,1].

@@ -11,7 +11,7 @@ namespace {
 constexpr int kFitSteps = 12;
 constexpr float kSaturated = 254.5F / 255.0F, kBlack = 0.5F / 255.0F;
 
-// Gauss-Newton on the mean squared display error of one colour over the left half.
+// Gauss-Newton on the mean squared error of one colour's display values over the left half.
 float FitLogGain(const image::ImageF& render, const image::ImageF& photo, const image::Image8& scored, int channel) {
   float log_gain = 0.0F;
   for (int step = 0; step < kFitSteps; ++step) {
@@ -21,7 +21,7 @@ float FitLogGain(const image::ImageF& render, const image::ImageF& photo, const 
       for (int x = 0; x < photo.width / 2; ++x) {
         if (*scored.At(x, y) == 0) continue;
         const float wanted = photo.At(x, y)[channel];
-        // A saturated or black pixel says too little.
+        // Saturated and black pixels do not determine the gain.
         if (wanted >= kSaturated || wanted <= kBlack) continue;
         const brightness::Exposed exposed = brightness::Expose(render.At(x, y)[channel], exposure);
         const auto slope = static_cast<double>(exposed.log_gain_slope);

@@ -1,4 +1,4 @@
-// A rendering at reference exposure as a photo would have recorded it, and the gains that would have fitted a photo best.
+// Applies a photo's exposure and the camera's vignetting to a rendering at reference exposure, and finds the gains that would fit a photo best.
 #pragma once
 
 #include <array>
@@ -13,23 +13,23 @@
 
 namespace skyquilt::evaluate {
 
-// Gains of a photo as a whole (natural logarithm, linear light) and the vignetting of its camera.
+// Gains of a photo (natural logarithm, linear light; red, green, blue) and the vignetting of its camera.
 struct Recording {
   std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};
   std::array<float, 3> vignetting = {0.0F, 0.0F, 0.0F};  // as in brightness::Response
 };
 
-// `colors`: row-major, one per pixel of the camera, at reference exposure. Changes their colours.
+// Applies the recording in place. colors: row-major, one per pixel of the camera, at reference exposure.
 void Record(const camera::Camera& camera, const Recording& recording, std::span<render::RayColor> colors, base::ThreadPool& threads);
 
-// What changing a photo's three gains would gain. Fitted on the pixels of the left half, measured on those of the right half (the protocol of
-// Martin-Brualla et al. 2021), so that a photo never judges what was fitted to it.
+// Tells how much of the error is brightness: three gains are fitted on the left half of a photo and scored on the right half (the protocol of
+// Martin-Brualla et al. 2021), so that no pixel is both fitted and scored.
 struct HalfScores {
   metrics::SquaredError right;                         // as recorded
   metrics::SquaredError right_fitted;                  // with the gains fitted on the left
-  std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};  // fitted, on top of what the rendering has; 0 where the left half says nothing
+  std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};  // fitted, in addition to the rendering's; 0 when the left half has no usable pixels
 };
-// render and photo: RGB of one size, display values as recorded; scored: one channel, 0 = leave out.
+// render and photo: RGB of the same size, display values at the photo's brightness. scored: one channel, 0 = do not use.
 HalfScores ScoreHalves(const image::ImageF& render, const image::ImageF& photo, const image::Image8& scored);
 
 }  // namespace skyquilt::evaluate

@@ -24,7 +24,7 @@ image::Image8 Fit(const image::Image8& picture, int max_width) {
   return image::Resize(picture, max_width, image::ScaledHeight(picture.width, picture.height, max_width));
 }
 
-// Thin bright lines in a colour map would lose their colour to JPEG's chroma subsampling.
+// As PNG: thin bright lines of a colour map would lose their colour in JPEG's chroma subsampling.
 std::string WriteColors(const image::Image8& picture, const std::filesystem::path& report_folder, const std::string& name, int max_width) {
   const std::string relative = "images/" + name;
   image::SavePng(Fit(picture, std::min(max_width, kLargestColorsWidth)), report_folder / relative);
@@ -37,7 +37,7 @@ std::string Write(const image::Image8& picture, const std::filesystem::path& rep
   return relative;
 }
 
-// The size of a photo's pictures, which Fit gives them.
+// Sets the size of a photo's images after Fit.
 template <typename Images>
 void SetShownSize(const image::Image8& photo, int max_width, Images* images) {
   images->width = std::min(max_width, photo.width);
@@ -48,7 +48,7 @@ void SetShownSize(const image::Image8& photo, int max_width, Images* images) {
 
 image::ImageF AbsoluteError(const image::Image8& photo, const image::Image8& render) {
   SKYQUILT_CHECK(photo.width == render.width && photo.height == render.height && photo.channels == 3 && render.channels == 3,
-                 "RGB images of one size");
+                 "both must be RGB images of the same size");
   image::ImageF error(photo.width, photo.height, 1);
   for (size_t i = 0; i < error.data.size(); ++i) {
     int sum = 0;
@@ -60,7 +60,7 @@ image::ImageF AbsoluteError(const image::Image8& photo, const image::Image8& ren
 
 image::Image8 ErrorPicture(const PhotoPixels& pixels, float error_high) {
   image::Image8 picture = image::Colorize(AbsoluteError(*pixels.photo, *pixels.render), 0.0F, error_high);
-  SKYQUILT_CHECK(pixels.scored.size() * 3 == picture.data.size(), "one flag per pixel");
+  SKYQUILT_CHECK(pixels.scored.size() * 3 == picture.data.size(), "there must be one flag per pixel");
   for (size_t i = 0; i < pixels.scored.size(); ++i) {
     if (pixels.scored[i] != 0) continue;
     const uint8_t* rgb = pixels.photo->data.data() + 3 * i;
@@ -72,7 +72,7 @@ image::Image8 ErrorPicture(const PhotoPixels& pixels, float error_high) {
 
 bool PercentileRange(const image::ImageF& image, double low, double high, float* low_value, float* high_value) {
   std::vector<float> values;
-  // Enough for a percentile, whatever the size.
+  // About 200000 values are enough for a percentile.
   const size_t stride = std::max<size_t>(1, image.data.size() / 200000);
   for (size_t i = 0; i < image.data.size(); i += stride) {
     if (std::isfinite(image.data[i])) values.push_back(image.data[i]);
@@ -132,7 +132,7 @@ std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& prod
   };
   const auto low = corner("min_enu"), high = corner("max_enu");
   if (!low || !high || !(high->array() > low->array()).all()) {
-    spdlog::warn("{}: no usable bounds; the report's map goes without the orthophoto", bounds.string());
+    spdlog::warn("{}: has no usable bounds, so the map of the report has no orthophoto; make it again with `skyquilt run`", bounds.string());
     return std::nullopt;
   }
   try {
@@ -140,7 +140,7 @@ std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& prod
     image::ReadImageSize(png, &width, &height);
     MapBackground background{"images/orthophoto.png", *low, *high};
     if (width <= kLargestMapWidth) {
-      // A plain copy keeps the transparency of places nobody photographed.
+      // Small enough to be used as it is.
       std::filesystem::copy_file(png, report_folder / background.image, std::filesystem::copy_options::overwrite_existing);
     } else {
       background.image = "images/orthophoto.jpg";
@@ -148,10 +148,10 @@ std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& prod
     }
     return background;
   } catch (const base::InputError& error) {
-    spdlog::warn("the report's map goes without the orthophoto: {}", error.what());
+    spdlog::warn("the map of the report has no orthophoto: {}", error.what());
     return std::nullopt;
   } catch (const std::filesystem::filesystem_error& error) {
-    spdlog::warn("the report's map goes without the orthophoto: {}", error.what());
+    spdlog::warn("the map of the report has no orthophoto: {}", error.what());
     return std::nullopt;
   }
 }

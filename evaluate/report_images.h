@@ -1,4 +1,4 @@
-// Pictures of the report: photo, render, error and depth of a held-out photo, its brightness, the colour ramp, the map's background.
+// Writes the images of the report: photo, render, error and depth of held-out photos, their brightness, the colour ramp, the background of the map.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct PhotoPixels {
 image::ImageF AbsoluteError(const image::Image8& photo, const image::Image8& render);
 // Colours from 0 to error_high; pixels that are not scored show the photo in dimmed grey.
 image::Image8 ErrorPicture(const PhotoPixels& pixels, float error_high);
-// Values below which `low` and `high` shares of the finite values lie; false when there is none.
+// Quantiles `low` and `high` (0..1) of the finite values; false when there is none.
 bool PercentileRange(const image::ImageF& image, double low, double high, float* low_value, float* high_value);
 
 // Writes <prefix>_photo.jpg, _render.jpg, _error.png, _depth.png under report_folder/images, at most max_width pixels wide.
@@ -36,7 +36,7 @@ BrightnessView WriteBrightnessView(const image::Image8& photo, const image::Imag
                                    const std::filesystem::path& report_folder, const std::string& prefix, int max_width);
 // Writes images/ramp.png and returns its relative path.
 std::string WriteColorRamp(const std::filesystem::path& report_folder);
-// products/orthophoto.png with its bounds in products/orthophoto.json, copied beside the page. Nothing when either is missing or damaged.
+// Copies products/orthophoto.png beside the page and reads its bounds from products/orthophoto.json. Nothing when either is missing or damaged.
 std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& products_folder, const std::filesystem::path& report_folder);
 
 }  // namespace skyquilt::evaluate

@@ -18,11 +18,11 @@ constexpr float kErrorHigh = 0.25F;  // display values at the top of the error c
 
 std::string TitleOf(const std::filesystem::path& project_folder) {
   const std::filesystem::path folder = std::filesystem::absolute(project_folder).lexically_normal();
-  // A path that ends in a slash has an empty last name.
+  // A path that ends in a slash has an empty file name.
   return (folder.filename().empty() ? folder.parent_path() : folder).filename().string();
 }
 
-// Pictures of an earlier evaluation with other options would only take room.
+// Removes images of an earlier evaluation that the page no longer shows.
 void RemoveStalePictures(const std::filesystem::path& report_folder, const std::vector<PhotoImages>& images) {
   std::set<std::string> kept;
   for (const PhotoImages& one : images) kept.insert({one.photo, one.render, one.error, one.depth});

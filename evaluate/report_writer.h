@@ -1,4 +1,4 @@
-// Writes what an evaluation found: the folder report/ with its page, its pictures, brightness.json and metrics.json.
+// Writes the results of an evaluation: the folder report/ with its page, images, brightness.json and metrics.json.
 #pragma once
 
 #include <vector>
@@ -11,15 +11,15 @@
 
 namespace skyquilt::evaluate {
 
-// The pictures of the held-out photos. They are written as the photos are scored: all together would not fit in memory.
+// Images of the held-out photos. Written as soon as a photo is scored, because together they may not fit in memory.
 class ReportPictures {
  public:
-  // Chooses whom to show. `input` must outlive it.
+  // Chooses the photos to show. `input` must outlive it.
   ReportPictures(const EvaluateInput& input, const std::vector<int>& held_out);
 
-  // Whether Write wants the photo at normal brightness.
+  // Whether Write needs ScoredPhoto::normal of this photo.
   bool ShowsNormal(int photo) const;
-  // Every scored photo in turn, also those that are not shown. Throws base::InputError.
+  // Call for every scored photo in order, also those that are not shown. Throws base::InputError when a file cannot be written.
   void Write(const ScoredPhoto& scored);
 
   const std::vector<PhotoImages>& images() const { return images_; }  // one per photo, empty where it is not shown
@@ -34,7 +34,8 @@ class ReportPictures {
   BrightnessReport brightness_;
 };
 
-// Everything but those pictures; metrics.json last, because its presence says that the evaluation is complete. Throws base::InputError.
+// Writes all other files; metrics.json last, so that it exists only when the evaluation is complete. Throws base::InputError when a file cannot be
+// written.
 void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures);
 
 }  // namespace skyquilt::evaluate

@@ -12,7 +12,7 @@ metrics::SquaredError Sum(const std::array<metrics::SquaredError, kTextureClasse
   return sum;
 }
 
-// Both groups over the classes they share, the interior weighted as the seams are.
+// Both groups over the classes they have in common, the interior weighted like the seams.
 struct Matched {
   metrics::SquaredError interior, seam;
 

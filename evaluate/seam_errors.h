@@ -1,5 +1,5 @@
-// How much worse a scene is where blocks meet: squared errors inside blocks and in seams, by class of texture, because a seam through a wood must
-// not be measured against the inside of a meadow.
+// Measures how much worse a scene is in the seams between blocks than inside them. Squared errors are kept by class of texture, because errors in a
+// forest are larger than in a meadow, wherever the seam is.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ namespace skyquilt::evaluate {
 
 constexpr int kTextureClasses = 8;
 
-// Class of a pixel of the true photo (RGB, display values): its grey gradient by central differences, doubling from class to class. Class 0 is
-// less than 1/128 per pixel, class 7 at least 1/2. Beyond the frame the edge's pixel is repeated.
+// Class of a pixel of the true photo (RGB, display values) by its grey gradient (central differences, edge pixels repeated). Class 0: less than 1/128
+// per pixel; the limit doubles from class to class; class 7: at least 1/2.
 int TextureClass(const image::ImageF& photo, int x, int y);
 
 struct SeamErrors {
@@ -22,10 +22,10 @@ struct SeamErrors {
   SeamErrors& operator+=(const SeamErrors& other);
   metrics::SquaredError AllInterior() const;
   metrics::SquaredError AllSeam() const;
-  // PSNR inside blocks, dB, if the interior had the seams' textures; classes that are missing on one side are left out on both.
-  // NaN when no class is on both sides.
+  // PSNR of the interior in dB, weighted to have the textures of the seams. Classes missing in one of the groups are left out. NaN when the groups
+  // have no class in common.
   double MatchedInteriorDb() const;
-  // MatchedInterior_db less the PSNR of the seams over the same classes; NaN likewise.
+  // MatchedInteriorDb() minus the PSNR of the seams over the same classes; NaN likewise.
   double GapDb() const;
 };
 

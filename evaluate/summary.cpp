@@ -102,7 +102,7 @@ Metrics KnownFacts(const EvaluateInput& input) {
   metrics.parameters = info.parameters;
   metrics.config = input.config_text.empty() ? info.config : input.config_text;
   metrics.gsd_m = info.gsd_m > 0.0 ? info.gsd_m : kNotMeasured;
-  metrics.lpips_note = network.empty() ? "not measured: no network file was given" : "full frame, network " + network.filename().string();
+  metrics.lpips_note = network.empty() ? "not measured: evaluate.lpips_network is not set" : "full frame, network " + network.filename().string();
   metrics.machine = base::MachineDescription();
   metrics.date = base::UtcTimestamp();
   return metrics;

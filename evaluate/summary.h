@@ -1,4 +1,4 @@
-// From the scores of the photos to the metrics of the scene.
+// Computes the metrics of the scene from the scores of the photos.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@
 
 namespace skyquilt::evaluate {
 
-// Of all photos together: each one's score, and the sums that means over photos cannot give.
+// Scores of all photos, and sums over their pixels for pooled values.
 struct Scores {
   std::vector<PhotoScore> photos;
   std::vector<metrics::SquaredError> per_block;
@@ -23,16 +23,16 @@ struct Scores {
   FloaterOpacity air;
   ExposureSeams footprints;
 
-  // n_boxes: of the scene's area.
+  // n_boxes: HeldOutScorer::n_boxes().
   explicit Scores(size_t n_boxes) : per_block(n_boxes) {}
   void Add(const ScoredPhoto& photo);
   double Psnr() const;      // dB, mean over the photos; NaN when none has one
   double Coverage() const;  // covered share of all used pixels; NaN when none is used
 };
 
-// What is known before any photo is scored: survey, training, machine.
+// Metrics known before any photo is scored: survey, training, machine.
 Metrics KnownFacts(const EvaluateInput& input);
-// Adds what the scores say, what scoring took so far, and the warnings.
+// Adds the values that follow from the scores, the cost of rendering so far, and the warnings.
 void Summarise(const EvaluateInput& input, const Scores& scores, Metrics* metrics);
 
 }  // namespace skyquilt::evaluate

@@ -33,15 +33,15 @@ void AboutPlacedPhotos(const survey::Survey& survey, std::vector<Warning>* warni
   warnings->push_back(
       {fmt::format("{} of {} photos {} not placed: the COLMAP model has no camera position for {}", n, survey.photos.size() + n,
                    n == 1 ? "was" : "were", Names(survey.unregistered)),
-       "The map is made without them. If they matter, check that they are sharp and show firm ground rather than water, add photos "
-       "that overlap them more, and run the same command with --restart. If skyquilt ran COLMAP, its log is survey/colmap/colmap.log"});
+       "The map is made without them. If they matter, check that they are sharp and show firm ground rather than water, add photos that overlap them "
+       "more, and run the same command with --restart. If skyquilt ran COLMAP, its log is survey/colmap/colmap.log"});
 }
 
 void AboutPosition(const survey::Survey& survey, std::vector<Warning>* warnings) {
   if (!survey.georeferenced) {
-    warnings->push_back({"No geo-reference: too few photos carry usable GPS. The map has a local frame of unknown scale, and lengths are not metres",
-                         "Use photos with GPS tags (EXIF or XMP): at least three, not all in one place or on one line. Then run the same "
-                         "command with --restart"});
+    warnings->push_back(
+        {"No geo-reference: too few photos carry usable GPS. The map has a local frame of unknown scale, and lengths are not metres",
+         "Use photos with GPS tags (EXIF or XMP): at least three, not all in one place or on one line. Then run the same command with --restart"});
     return;
   }
   std::vector<std::string> outliers;
@@ -104,10 +104,10 @@ void AboutScores(const Metrics& metrics, std::vector<Warning>* warnings) {
     return;
   }
   if (std::isfinite(metrics.coverage) && metrics.coverage < kLowCoverage) {
-    warnings->push_back({fmt::format("Only {:.0f} % of the held-out pixels show ground that two training photos or more see. The scores count only "
-                                     "these pixels",
-                                     100.0 * metrics.coverage),
-                         "Add photos with more overlap, so that every place is seen from at least two positions"});
+    warnings->push_back(
+        {fmt::format("Only {:.0f} % of the held-out pixels show ground that two training photos or more see. The scores count only these pixels",
+                     100.0 * metrics.coverage),
+         "Add photos with more overlap, so that every place is seen from at least two positions"});
   }
   if (metrics.photos.size() < static_cast<size_t>(metrics.n_test)) {
     warnings->push_back({fmt::format("Only {} of {} held-out photos were scored", metrics.photos.size(), metrics.n_test),

@@ -1,4 +1,4 @@
-// What a reader of the report must know before believing its figures, and what to do about it.
+// Warnings that a reader of the report must know to judge its numbers, and what to do about each.
 #pragma once
 
 #include <vector>

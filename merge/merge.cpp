@@ -18,7 +18,7 @@ namespace {
 
 struct Loaded {
   render::TrainedField description;
-  brightness::Response response;  // this and what follows: of the context
+  brightness::Response response;  // this and the fields below are read from the context only
   brightness::Luminance luminance;
   brightness::LuminanceState luminance_state;
   scene::Background background;
@@ -27,9 +27,11 @@ struct Loaded {
 Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, const geo::Geodetic& origin) {
   if (!std::filesystem::exists(file)) throw base::InputError(file, "is missing", "Run `skyquilt train` to the end first");
   const checkpoint::ArchiveReader reader(file);
-  if (reader.kind() != kind) throw base::InputError(file, "is a " + reader.kind() + " file, not a " + kind, "Give this project's own checkpoints");
+  if (reader.kind() != kind)
+    throw base::InputError(file, "is a " + reader.kind() + " file, not a " + kind,
+                           "Put this project's own checkpoint there, or train again with --restart");
   reader.RequireVersion(scene::kCheckpointVersion);
-  if (reader.IntAttribute("complete") == 0) throw base::InputError(file, "is not trained to the end", "Run `skyquilt train` again, it continues");
+  if (reader.IntAttribute("complete") == 0) throw base::InputError(file, "is not trained to the end", "Run `skyquilt train` again; it resumes");
   const bool same_place = reader.DoubleAttribute("origin_latitude_deg") == origin.latitude_deg &&
                           reader.DoubleAttribute("origin_longitude_deg") == origin.longitude_deg &&
                           reader.DoubleAttribute("origin_height_m") == origin.height_m;

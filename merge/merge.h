@@ -1,4 +1,5 @@
-// Joins the context and the blocks' checkpoints into one scene file: inference parameters only, no optimiser state.
+// Joins the checkpoints of the context field and of all blocks into one scene file, which is all that rendering needs: the parameters of the
+// fields, but no optimiser state.
 #pragma once
 
 #include <filesystem>
@@ -12,24 +13,25 @@
 namespace skyquilt::merge {
 
 struct TrainedBlock {
-  std::filesystem::path checkpoint;
-  double gsd_m = 0.0;  // ground sampling distance of its photos
+  std::filesystem::path checkpoint;  // of a block, trained to the end
+  double gsd_m = 0.0;                // ground sampling distance of its photos, metres per pixel
 };
 
 struct MergeInput {
-  std::filesystem::path context;
-  std::vector<TrainedBlock> blocks;  // empty or failed blocks left out
-  geo::Geodetic origin;
+  std::filesystem::path context;     // checkpoint of the context field
+  std::vector<TrainedBlock> blocks;  // in the order they get in the scene; without empty and failed ones
+  geo::Geodetic origin;              // of the survey; every checkpoint must have the same
   bool georeferenced = false;
-  scene::Borders borders = scene::Borders::kSmooth;
+  scene::Borders borders = scene::Borders::kSmooth;                 // how neighbouring blocks are joined
   checkpoint::Precision storage = checkpoint::Precision::kFloat32;  // of the hash tables
-  bool use_context = true;                                          // false: the context does not fill what no block covers (independent blocks)
-  std::string config_toml;                                          // stored in the scene
+  bool use_context = true;  // false: leave the context field out, so that it does not fill places outside all blocks
+  std::string config_toml;  // the whole configuration; stored in the scene
   std::string config_hash;
   std::filesystem::path scene;  // out
 };
 
-// Throws base::InputError: a checkpoint missing, damaged, unfinished, or of another survey origin; disk full.
+// Throws base::InputError when there is no block, when a checkpoint is missing, damaged, not trained to the end or of a survey with another origin,
+// and when the scene cannot be written.
 void MergeScene(const MergeInput& input);
 
 }  // namespace skyquilt::merge

@@ -7,10 +7,10 @@ std::vector<config::Field<MergeOptions>> MergeOptions::Fields() {
   using O = MergeOptions;
   return {
       {"storage", &O::storage, Range::OneOf({"fp32", "bf16", "fp16"}),
-       "how the hash tables are kept in the scene: fp32 as they were trained, bf16 or fp16 in half the bytes (what is too large becomes the largest "
-       "number)"},
+       "number format of the hash tables in the scene file: fp32 as trained; bf16 and fp16 take half the bytes (values too large for the format are "
+       "clamped)"},
       {"borders", &O::borders, Range::OneOf({"smooth", "hard"}),
-       "smooth: neighbouring blocks are blended across their margins; hard: every block ends at its face and the next one begins there"},
+       "smooth: neighbouring blocks are blended where their margins overlap; hard: no blending, every block ends at the faces of its box"},
   };
 }
 

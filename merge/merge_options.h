@@ -1,4 +1,4 @@
-// [merge] in the configuration.
+// Options of section [merge] of the configuration: how a scene file is made of trained blocks.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@
 namespace skyquilt::merge {
 
 struct MergeOptions {
-  std::string borders = "smooth";
-  std::string storage = "fp32";
+  std::string borders = "smooth";  // "smooth" (blended) or "hard"
+  std::string storage = "fp32";    // of the hash tables: "fp32", "bf16" or "fp16"
 
   static std::vector<config::Field<MergeOptions>> Fields();
-  // Throws base::UsageError naming the option and what it may be.
+  // Throws base::UsageError that names the option and its allowed values.
   void Check() const;
   checkpoint::Precision Storage() const;
   scene::Borders Borders() const { return borders == "hard" ? scene::Borders::kHard : scene::Borders::kSmooth; }

@@ -1,4 +1,4 @@
-// Height of flight above the ground, per photo and per block.
+// Flying height above the ground, per photo and per block. It decides the ground sampling distance and so how fine a block's field must be.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,12 +8,12 @@
 
 namespace skyquilt::partition {
 
-// Metres above ground of every photo: Photo::agl_m where known, otherwise its height over `ground_m`; always > 0. A camera that is not above
-// the ground at all gets its distance from `centre` instead, which is what its ground sampling distance depends on.
+// Metres above ground of every photo, > 0: Photo::agl_m where known, otherwise the camera's height above `ground_m`. A camera that is not above the
+// ground gets its distance from `centre` instead, because its ground sampling distance depends on that.
 std::vector<double> PhotoAltitudes(const survey::Survey& survey, const Eigen::Vector2d& centre, double ground_m);
 
-// Median over the photos taken above the rectangle; over the five nearest when fewer than two were.
-// Photos taken elsewhere see the block too, but from the altitude of their own block.
+// Metres: median over the photos taken above the rectangle, or over the five nearest photos when fewer than two were taken there. Photos taken
+// elsewhere may see the block too, but their altitude is that of another block.
 double BlockAltitude(const survey::Survey& survey, const std::vector<double>& photo_altitude_m, const Eigen::Vector2d& low,
                      const Eigen::Vector2d& high);
 

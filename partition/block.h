@@ -1,4 +1,4 @@
-// Blocks: the geo-referenced boxes in which separate fields are trained.
+// Blocks: the geo-referenced boxes in which separate fields are trained, and the file blocks.geojson that keeps them.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@
 namespace skyquilt::partition {
 
 struct Block : geo::BlockBox {
-  int id = 0;                   // position in BlockSet::blocks
-  std::string name;             // "r0c1": row from the south, column from the west
-  double altitude_agl_m = 0.0;  // of the cameras that see it: given, or from the flight
-  double gsd_m = 0.0;           // ground sampling distance at that altitude and the training image width
-  double finest_voxel_m = 0.0;
-  int log2_table_size = 0;
-  std::vector<int> photos;       // indices into Survey::photos whose rays cross the box, training and test
+  int id = 0;                    // position in BlockSet::blocks
+  std::string name;              // "r0c1": row from the south, column from the west
+  double altitude_agl_m = 0.0;   // of the cameras above it: from the options or from the flight
+  double gsd_m = 0.0;            // ground sampling distance at that altitude and the training image width
+  double finest_voxel_m = 0.0;   // cell size of the finest level of its encoding
+  int log2_table_size = 0;       // of its hash tables; 0 when empty
+  std::vector<int> photos;       // indices into Survey::photos that see the box, training and test
   double expected_pixels = 0.0;  // training pixels whose ray crosses the box
-  double cost = 0.0;             // relative share of training time, > 0 unless empty
-  bool empty = false;
+  double cost = 0.0;             // estimated share of the total training time, > 0 unless empty
+  bool empty = false;            // not trained
   std::string empty_reason;
 };
 
@@ -31,13 +31,13 @@ struct BlockSet {
   int rows = 0;
   int columns = 0;
   int image_width = 0;        // training width the capacities were computed for; 0 = full size
-  std::string config_hash;    // of the options and survey that made it
+  std::string config_hash;    // of the options and the survey the blocks were made from
   std::vector<Block> blocks;  // row-major from the south-west
 };
 
-// RFC 7946 FeatureCollection: polygons in longitude, latitude (counter-clockwise); everything of Block as properties.
-// Without geo-reference the local metres are written as they are and the file says so in "skyquilt:georeferenced": false.
-// Throws base::InputError.
+// Writes or reads a GeoJSON FeatureCollection (RFC 7946): polygons in longitude, latitude (counter-clockwise), the fields of Block as properties.
+// Without geo-reference the polygons are in local metres and "skyquilt:georeferenced" is false.
+// Throws base::InputError when the file cannot be written, read or used.
 void SaveBlocks(const BlockSet& blocks, const std::filesystem::path& file);
 BlockSet LoadBlocks(const std::filesystem::path& file);
 

@@ -50,7 +50,7 @@ BlockRequest ParseBlockRequest(const std::string& text) {
     return request;
   }
   const size_t cross = text.find_first_of("xX");
-  if (cross == std::string::npos) Refuse(text, "not understood");
+  if (cross == std::string::npos) Refuse(text, "is not a number of blocks");
   const auto rows = ParseNumber<int>(text.substr(0, cross));
   const auto columns = ParseNumber<int>(text.substr(cross + 1));
   if (!rows || !columns) Refuse(text, "rows and columns must be whole numbers");
@@ -77,7 +77,7 @@ BlockGrid SplitByCount(const Eigen::Vector2d& min_enu, const Eigen::Vector2d& ma
 BlockGrid SplitBySize(const Eigen::Vector2d& min_enu, const Eigen::Vector2d& max_enu, double size_m) {
   SKYQUILT_CHECK(std::isfinite(size_m) && size_m > 0.0, std::to_string(size_m));
   SKYQUILT_CHECK((max_enu.array() > min_enu.array()).all(), "empty area");
-  // A rounding error must not add a whole column.
+  // Subtract a little, so that a rounding error does not add a column.
   const Eigen::Array2d count = ((max_enu - min_enu).array() / size_m - 1e-9).ceil().max(1.0);
   if (count.x() * count.y() > kMaxBlocks) {
     throw base::UsageError("blocks = \"size:" + std::to_string(size_m) + "\": an area of " + std::to_string(max_enu.x() - min_enu.x()) + " x " +

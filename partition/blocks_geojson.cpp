@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
 
-// JSON has no NaN; null stands for it.
+// JSON has no NaN: null is written instead.
 Json Number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -24,7 +24,7 @@ Json Vector(const Eigen::Vector3d& x) {
   return Json::array({Number(x.x()), Number(x.y()), Number(x.z())});
 }
 
-// Straight edges in metres are curves in degrees: enough points that large blocks and those near a pole keep their shape.
+// Straight edges in metres are curves in degrees. Large blocks and blocks near a pole need more points to keep their shape.
 int PointsPerEdge(const Block& block, const geo::Geodetic& centre) {
   const double side = (block.max_enu - block.min_enu).head<2>().maxCoeff();
   const double distance_to_pole_m = (90.0 - std::abs(centre.latitude_deg)) * 111e3;
@@ -99,7 +99,7 @@ Json Properties(const Block& block) {
           {"photos", block.photos}};
 }
 
-// West of the westernmost to east of the easternmost block, seen from the first one.
+// Bounding box of all outlines. Longitudes are unwrapped relative to the first outline, so that it works across the date line.
 LonLatOutline Union(const std::vector<LonLatOutline>& outlines) {
   LonLatOutline all = outlines.front();
   double width = 0.0;
@@ -159,13 +159,13 @@ void CheckBlock(const Block& block, size_t index, const std::filesystem::path& f
   const auto require = [&](bool good, const std::string& found) {
     if (!good) throw base::InputError(file, "block " + std::to_string(index) + " (\"" + block.name + "\") " + found, kFix);
   };
-  require(block.id == static_cast<int>(index), "has id " + std::to_string(block.id) + "; ids must count from 0 in file order");
+  require(block.id == static_cast<int>(index), "has id " + std::to_string(block.id) + "; ids must be 0, 1, 2, ... in file order");
   require(block.min_enu.allFinite() && block.max_enu.allFinite(), "has a box that is not finite");
   require((block.max_enu.array() > block.min_enu.array()).all(), "has a box without volume");
   require(std::isfinite(block.margin_m) && block.margin_m >= 0.0, "has a margin that is negative or not finite");
   if (block.empty) return;
   require(block.log2_table_size >= 1 && block.log2_table_size <= 24,
-          "has log2_table_size " + std::to_string(block.log2_table_size) + "; it must lie in [1, 24]");
+          "has log2_table_size " + std::to_string(block.log2_table_size) + "; it must be from 1 to 24");
   require(block.finest_voxel_m > 0.0, "has a finest voxel that is not positive");
   require(std::all_of(block.photos.begin(), block.photos.end(), [](int photo) { return photo >= 0; }), "names a photo with a negative index");
 }
@@ -210,10 +210,11 @@ BlockSet LoadBlocks(const std::filesystem::path& file) {
   try {
     const Json root = Json::parse(text);
     if (!root.is_object() || root.value("type", "") != "FeatureCollection" || !root.contains("skyquilt:version")) {
-      throw base::InputError(file, "is not a blocks file of this program", "Name the blocks.geojson that `skyquilt partition` wrote");
+      throw base::InputError(file, "is not a blocks file of Skyquilt", "Give the blocks.geojson that `skyquilt partition` wrote");
     }
     if (root.at("skyquilt:version").get<int>() != kVersion) {
-      throw base::InputError(file, "has version " + root.at("skyquilt:version").dump() + ", this program reads " + std::to_string(kVersion), kFix);
+      throw base::InputError(
+          file, "has version " + root.at("skyquilt:version").dump() + " but this program reads version " + std::to_string(kVersion), kFix);
     }
     const Json& origin = root.at("skyquilt:origin");
     set.origin = {ReadNumber(origin.at("latitude_deg")), ReadNumber(origin.at("longitude_deg")), ReadNumber(origin.at("height_m"))};
@@ -230,7 +231,7 @@ BlockSet LoadBlocks(const std::filesystem::path& file) {
   for (size_t i = 0; i < set.blocks.size(); ++i) CheckBlock(set.blocks[i], i, file);
   if (static_cast<int64_t>(set.rows) * set.columns != static_cast<int64_t>(set.blocks.size())) {
     throw base::InputError(file,
-                           "names " + std::to_string(set.rows) + " rows and " + std::to_string(set.columns) + " columns but holds " +
+                           "says " + std::to_string(set.rows) + " rows and " + std::to_string(set.columns) + " columns but has " +
                                std::to_string(set.blocks.size()) + " blocks",
                            kFix);
   }

@@ -68,7 +68,7 @@ double Roughness(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector
 double SurfaceVoxels(const SurveyArea& area, const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& low, const Eigen::Vector2d& high,
                      double voxel_m) {
   SKYQUILT_CHECK(voxel_m > 0.0, std::to_string(voxel_m));
-  // Margins reach past the raster, and the coverage test knows no relief: never less than a twentieth.
+  // At least a twentieth: margins may extend beyond the raster, and the coverage test ignores relief.
   const double ground = std::max(area.CoveredArea(low, high), 0.05 * (high - low).prod());
   return ground / (voxel_m * voxel_m) * (1.0 + Roughness(points, low, high));
 }

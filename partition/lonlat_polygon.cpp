@@ -14,7 +14,7 @@ double UnwrapNear(double longitude, double near) {
   return longitude - 360.0 * std::round((longitude - near) / 360.0);
 }
 
-// The part of an open convex-or-not ring with sign * x <= sign * limit (Sutherland and Hodgman 1974).
+// The part of a ring with sign * x <= sign * limit (Sutherland and Hodgman 1974). The ring is not closed and need not be convex.
 std::vector<Eigen::Vector2d> Clip(const std::vector<Eigen::Vector2d>& ring, double limit, double sign) {
   std::vector<Eigen::Vector2d> kept;
   for (size_t i = 0; i < ring.size(); ++i) {
@@ -34,7 +34,7 @@ std::vector<Eigen::Vector2d> Clip(const std::vector<Eigen::Vector2d>& ring, doub
 double SignedArea(const std::vector<Eigen::Vector2d>& ring) {
   double twice = 0.0;
   for (size_t i = 0; i < ring.size(); ++i) {
-    // Relative to the first corner: products of large longitudes would drown the area of a small block.
+    // Relative to the first corner: with large longitudes the products would round away the area of a small block.
     const Eigen::Vector2d a = ring[i] - ring[0];
     const Eigen::Vector2d b = ring[(i + 1) % ring.size()] - ring[0];
     twice += a.x() * b.y() - a.y() * b.x();
@@ -48,7 +48,7 @@ Ring Close(std::vector<Eigen::Vector2d> ring) {
   return ring;
 }
 
-// Longitudes of `ring` run through a whole turn: cut it at the date line and join the ends along the pole.
+// `ring` runs once around the pole: cut it at the date line and join the ends along the pole.
 LonLatOutline PolarCap(std::vector<Eigen::Vector2d> ring, double pole) {
   for (Eigen::Vector2d& x : ring) x.x() = geo::WrapLongitudeDeg(x.x());
   std::sort(ring.begin(), ring.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() < b.x(); });

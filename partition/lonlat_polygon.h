@@ -1,4 +1,5 @@
-// Outlines on the globe as RFC 7946 wants them: rings in longitude, latitude, counter-clockwise, split where they cross the date line.
+// Outlines of blocks as polygons that GIS programs draw correctly everywhere on Earth, as RFC 7946 requires: longitude, latitude, counter-clockwise,
+// split where they cross the date line.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +17,8 @@ struct LonLatOutline {
   double north_deg = 0.0;
 };
 
-// `corners` run counter-clockwise as seen from above, not closed, neighbours less than 180 degrees of longitude apart. An outline around a pole
-// becomes the cap from its lowest ring up to the pole's edge of the map.
+// corners: longitude, latitude in degrees; counter-clockwise as seen from above, at least three, not closed, neighbours less than 180 degrees of
+// longitude apart. An outline around a pole becomes the area between the outline and the map edge at the pole.
 LonLatOutline MakeOutline(const std::vector<Eigen::Vector2d>& corners);
 
 }  // namespace skyquilt::partition

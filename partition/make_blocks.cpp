@@ -15,10 +15,10 @@
 namespace skyquilt::partition {
 namespace {
 
-// Share of a block without sparse points from which on it gets headroom.
+// A block gets headroom when at least this share of its ground has no sparse points.
 constexpr double kGap = 0.3;
 
-// What every step needs and nobody changes.
+// Read by all steps below, complete before the first.
 struct Inputs {
   const survey::Survey& survey;
   const PartitionOptions& options;
@@ -43,7 +43,7 @@ double VoxelsOf(const Inputs& in, const BlockGrid& grid, int index, double voxel
   return SurfaceVoxels(in.area, in.points, grid.Min(index) - margin, grid.Max(index) + margin, voxel_m);
 }
 
-// Grows the number of blocks until each one's surface fits the largest table or the budget is spent.
+// Uses more and more blocks until the surface of each fits the largest table, or the next grid would exceed the budget.
 BlockGrid AutoGrid(const Inputs& in) {
   const Eigen::Vector2d extent = in.area.max_enu - in.area.min_enu;
   const double largest_table = std::exp2(in.options.max_log2_table_size);
@@ -61,7 +61,7 @@ BlockGrid AutoGrid(const Inputs& in) {
     grid = SplitByCount(in.area.min_enu, in.area.max_enu, next_rows, next_columns);
     rows = next_rows;
     columns = next_columns;
-    // Half a power of two of overload is what rounding to the nearest table allows anyway.
+    // A factor of sqrt(2) too much is accepted, as Log2TableSize rounds to the nearest power of two.
     bool fits = true;
     for (int index = 0; fits && index < rows * columns; ++index) {
       const double agl = BlockAltitude(in.survey, in.photo_altitude_m, grid.Min(index), grid.Max(index));
@@ -82,12 +82,12 @@ BlockGrid MakeGrid(const Inputs& in) {
 void CheckAltitudeCount(const PartitionOptions& options, int rows, int columns) {
   const size_t n_blocks = static_cast<size_t>(rows) * static_cast<size_t>(columns);
   if (options.altitudes.empty() || options.altitudes.size() == n_blocks) return;
-  throw base::UsageError("partition.altitudes names " + std::to_string(options.altitudes.size()) + " altitude(s) but blocks = \"" + options.blocks +
-                         "\" gives " + std::to_string(n_blocks) + " block(s) (" + std::to_string(rows) + " row(s) x " + std::to_string(columns) +
-                         " column(s)); give one per block in row-major order from the south-west");
+  throw base::UsageError("partition.altitudes has " + std::to_string(options.altitudes.size()) + " altitude(s) but partition.blocks = \"" +
+                         options.blocks + "\" gives " + std::to_string(n_blocks) + " block(s) (" + std::to_string(rows) + " row(s) x " +
+                         std::to_string(columns) + " column(s)); give one per block in row-major order from the south-west");
 }
 
-// Everything of a block but what depends on the photos that see it.
+// Fills in everything that does not depend on the photos that see the block.
 Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   Block block;
   block.id = index;
@@ -100,10 +100,10 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   block.max_enu.head<2>() = grid.Max(index);
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(block.margin_m);
   const auto range = VerticalRange(in.points, grid.Min(index) - margin, grid.Max(index) + margin, block.gsd_m, in.options);
-  const double air = 40.0 * block.gsd_m;
-  block.min_enu.z() = range ? range->first : in.area.ground_m - air;
-  block.max_enu.z() = range ? range->second : in.area.ground_m + air;
-  // Away from points the block may be far higher than they are.
+  const double half_height_m = 40.0 * block.gsd_m;  // for a block without points
+  block.min_enu.z() = range ? range->first : in.area.ground_m - half_height_m;
+  block.max_enu.z() = range ? range->second : in.area.ground_m + half_height_m;
+  // Where there are no points, trees or roofs may be far higher than the points elsewhere.
   if (ShareWithoutPoints(in.points, grid.Min(index), grid.Max(index)) >= kGap) {
     block.max_enu.z() += in.options.headroom * block.altitude_agl_m;
   }
@@ -111,7 +111,7 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
       std::any_of(in.points.begin(), in.points.end(), [&](const Eigen::Vector3d& x) { return grid.CellOf(x.x(), x.y()) == index; });
   if (!range || !has_points) {
     block.empty = true;
-    block.empty_reason = "no sparse point lies in it";
+    block.empty_reason = "no sparse point is inside it";
   }
   return block;
 }
@@ -128,7 +128,8 @@ void AddViews(Block& block, BlockViews views, double surface_voxels, const Parti
   block.cost = std::sqrt(views.training_pixels * surface_voxels);
 }
 
-void ShareHeights(std::vector<Block>& blocks) {
+// All blocks get the lowest ground and the highest roof of any block.
+void UseCommonHeights(std::vector<Block>& blocks) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (const Block& block : blocks) {
@@ -149,7 +150,7 @@ void ScaleCosts(std::vector<Block>& blocks) {
   for (Block& block : blocks) block.cost = sum > 0.0 ? block.cost / sum : 0.0;
 }
 
-// Bytes of the numbers themselves: any change of the survey that could move a block changes the hash.
+// The exact bytes of the numbers, so that any change of the survey that could move a block changes the hash.
 void Append(std::string& bytes, const double* values, Eigen::Index count) {
   bytes.append(reinterpret_cast<const char*>(values), static_cast<size_t>(count) * sizeof(double));
 }
@@ -177,7 +178,8 @@ std::string ConfigHash(const survey::Survey& survey, PartitionOptions options, i
 
 BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& options, int image_width) {
   options.Check();
-  if (image_width < 0) throw base::UsageError("image width = " + std::to_string(image_width) + ": must be positive, or 0 for full size");
+  if (image_width < 0)
+    throw base::UsageError("image width = " + std::to_string(image_width) + " is not allowed: it must be positive, or 0 for full size");
   const BlockRequest request = ParseBlockRequest(options.blocks);
   if (request.kind == BlockRequestKind::kCount) CheckAltitudeCount(options, request.rows, request.columns);
 
@@ -195,7 +197,7 @@ BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& option
   set.image_width = image_width;
   set.config_hash = ConfigHash(survey, options, image_width);
   for (int index = 0; index < set.rows * set.columns; ++index) set.blocks.push_back(MakeBlock(in, grid, index));
-  if (options.heights == "survey") ShareHeights(set.blocks);
+  if (options.heights == "survey") UseCommonHeights(set.blocks);
   std::vector<Box> boxes;
   for (const Block& block : set.blocks) boxes.push_back({block.TrainMin(), block.TrainMax()});
   std::vector<BlockViews> views = FindViews(survey, boxes, image_width);

@@ -1,4 +1,4 @@
-// From a survey to its blocks: area, grid, altitude, capacity and visibility in one call.
+// Divides a survey into blocks: finds the area, makes the grid, and computes every block's height, table size, photos and cost.
 #pragma once
 
 #include "core/survey/survey.h"
@@ -7,12 +7,12 @@
 
 namespace skyquilt::partition {
 
-// Deterministic. A block without sparse points, or that fewer than two training photos see, is named, marked empty with its reason and given
-// no photos, table or cost. Block::cost is the geometric mean of what a block has to explain (training pixels) and what it has to store
-// (voxels its surface crosses at the finest level), scaled so that all blocks sum to 1.
-// image_width: training width in pixels, 0 = full size.
-// Throws base::UsageError for invalid requests (altitude count against block count, both named; see PartitionOptions::Check) and
-// base::InputError when the survey has no area or every block is empty.
+// A block without sparse points, or seen by fewer than two training photos, is marked empty with a reason and has no photos, table or cost.
+// Block::cost is the geometric mean of training pixels (what the block must explain) and surface voxels of the finest level (what it must store),
+// scaled so that all blocks sum to 1.
+//   image_width  training width in pixels, 0 = full size
+// Deterministic. Throws base::UsageError for options that cannot be used (see PartitionOptions::Check; also when the number of altitudes is not the
+// number of blocks) and base::InputError when the survey has no area or every block is empty.
 BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& options, int image_width);
 
 }  // namespace skyquilt::partition

@@ -104,26 +104,26 @@ SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen:
   const std::filesystem::path name = survey.photo_root.empty() ? std::filesystem::path("survey") : survey.photo_root;
   if (survey.photos.size() < 2) {
     throw base::InputError(name, "the survey has " + std::to_string(survey.photos.size()) + " photo(s) with a pose",
-                           "At least two that see the same ground are needed; prepare with more photos");
+                           "Run `skyquilt prepare` with at least two photos that see the same ground");
   }
   if (points.size() < 4) {
     throw base::InputError(name, "the survey has " + std::to_string(points.size()) + " usable sparse points",
-                           "The area cannot be found without them; prepare again with a model that contains points3D");
+                           "At least 4 are needed to find the area: run `skyquilt prepare` again with a model that contains points3D");
   }
   SurveyArea area;
   for (int axis = 0; axis < 2; ++axis) {
     const std::vector<double> values = Coordinate(points, axis);
     const double low = base::Quantile(values, 0.01);
     const double high = base::Quantile(values, 0.99);
-    // What the percentiles cut off an even spread comes back. Points thin out towards the rim, where few photos overlap; where coverage
-    // decides, the search goes a little farther.
+    // 2 % on each side restore what the percentiles cut off evenly spread points. Points are sparse near the rim, where few photos overlap, so
+    // the search for covered ground extends farther.
     const double widening = rule == "covered" ? kSearchBeyondPoints : 0.02;
     area.min_enu[axis] = low - widening * (high - low);
     area.max_enu[axis] = high + widening * (high - low);
   }
   const Eigen::Vector2d extent = area.max_enu - area.min_enu;
   if (!(extent.minCoeff() > 0.0)) {
-    throw base::InputError(name, "the sparse points lie on one line or place", "Prepare again with photos from different positions");
+    throw base::InputError(name, "all sparse points are on one line or in one spot", "Prepare again with photos from different positions");
   }
   const GroundRaster ground(points, area.min_enu, area.max_enu, kGroundCells);
   area.ground_m = ground.median();
@@ -146,7 +146,7 @@ SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen:
     y_covered.push_back(static_cast<double>(i / static_cast<size_t>(area.raster_columns)));
   }
   if (x_covered.empty()) {
-    // Photos that look past the median ground: the points are all there is to go by.
+    // No photo sees the ground at its estimated height: use the bounds of the points.
     std::fill(area.covered.begin(), area.covered.end(), char{1});
     return area;
   }

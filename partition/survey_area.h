@@ -1,4 +1,4 @@
-// The rectangle of ground that a survey can reconstruct, and how well each part of it is seen.
+// The rectangle of ground that the photos cover well enough to reconstruct, and a raster of which parts of it are covered.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,14 +9,14 @@
 
 namespace skyquilt::partition {
 
-// Points fit for measuring: finite, and seen by at least three photos as long as enough of those exist.
+// Finite sparse points, only those seen by at least three photos if there are enough of them. ENU metres.
 std::vector<Eigen::Vector3d> ReliablePoints(const survey::Survey& survey);
 
-// Height of the ground on a coarse raster: median of the points of a cell, the overall median where there are none.
+// Height of the ground on a coarse raster: median of the points of a cell, the overall median in cells with fewer than three points.
 class GroundRaster {
  public:
   GroundRaster(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& min_enu, const Eigen::Vector2d& max_enu, int cells);
-  double At(double x, double y) const;  // metres; the nearest cell outside the raster
+  double At(double x, double y) const;  // metres; outside the raster that of the nearest cell
   double median() const { return median_; }
 
  private:
@@ -28,22 +28,22 @@ class GroundRaster {
 };
 
 struct SurveyArea {
-  Eigen::Vector2d min_enu = Eigen::Vector2d::Zero();  // the rectangle to cut into blocks, metres
+  Eigen::Vector2d min_enu = Eigen::Vector2d::Zero();  // the rectangle to divide into blocks, metres
   Eigen::Vector2d max_enu = Eigen::Vector2d::Zero();
   double ground_m = 0.0;  // median height of the points
-  // Coverage raster over the bounds of the points, somewhat widened; row-major from the south-west.
+  // Coverage raster over slightly more than the bounds of the points; row-major from the south-west.
   Eigen::Vector2d raster_min = Eigen::Vector2d::Zero();
   Eigen::Vector2d raster_cell = Eigen::Vector2d::Ones();
   int raster_columns = 0;
   int raster_rows = 0;
-  std::vector<char> covered;
+  std::vector<char> covered;  // 1 where enough training photos see the ground
 
-  // Covered ground inside a rectangle, square metres; cells count by the part of them that lies inside.
+  // Covered ground inside a rectangle, square metres. Cells partly inside count with that part.
   double CoveredArea(const Eigen::Vector2d& low, const Eigen::Vector2d& high) const;
 };
 
-// `rule`: "covered" or "points" (see PartitionOptions::area). A place counts as seen by a photo when it projects into the image from no
-// farther than three times the height of flight: beyond, oblique views blur into the horizon.
+// `rule`: "covered" or "points" (see PartitionOptions::area). A photo sees a piece of ground when it projects into the image and is no farther away
+// than three times the flying height; beyond that, oblique views are too coarse.
 // Throws base::InputError when there are fewer than two photos or four usable points, or when the points have no extent.
 SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen::Vector3d>& points, const std::string& rule, int min_views);
 

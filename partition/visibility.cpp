@@ -12,7 +12,7 @@ constexpr int kRaysDown = 12;
 
 struct RayGrid {
   std::vector<Eigen::Vector3d> direction_in_cam;
-  std::vector<double> share;  // sums to 1
+  std::vector<double> share;  // of the image that each ray stands for; sums to 1
 };
 
 RayGrid MakeRayGrid(const camera::Camera& camera) {
@@ -53,7 +53,7 @@ double ShareByProjection(const camera::Camera& camera, const survey::Photo& phot
     high = high.cwiseMax(*pixel);
   }
   const Eigen::Vector2d extent = high.cwiseMin(size) - low.cwiseMax(0.0);
-  // A box smaller than a pixel is still seen by one.
+  // A box smaller than a pixel counts as one pixel.
   return std::max(extent.prod(), 1.0) / size.prod();
 }
 

@@ -1,4 +1,4 @@
-// Which photos see which box, and with how many of their pixels.
+// Finds which photos see which box, and with how many pixels: the photos a block is trained on and the amount of work.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,13 +14,13 @@ struct Box {
 };
 
 struct BlockViews {
-  std::vector<int> photos;  // indices into Survey::photos, ascending; training and test
-  int n_training = 0;
-  double training_pixels = 0.0;  // whose ray meets the box, at the training size
+  std::vector<int> photos;       // indices into Survey::photos, ascending; training and test
+  int n_training = 0;            // of these photos, for training
+  double training_pixels = 0.0;  // training pixels whose ray hits the box, at the training size
 };
 
-// Shares are taken from 16 x 12 rays per photo, image borders included (trapezoid rule). A box that slips between those rays is found by
-// projecting it; its share is then that of the rectangle around its corners. Result in the order of `boxes`.
+// Pixels are estimated with 16 x 12 rays per photo, image borders included (trapezoid rule). A box that none of these rays hits is projected
+// instead and counts with the rectangle around its corners. image_width: training width in pixels, 0 = full size. Result in the order of `boxes`.
 std::vector<BlockViews> FindViews(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width);
 
 }  // namespace skyquilt::partition

@@ -19,12 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMaxNeighbors = 24;
-constexpr size_t kBlockSize = 10;  // photos per side of an exhaustive block: small, so that progress is seen
+constexpr size_t kBlockSize = 10;  // photos per side of a block of pairs; small blocks report progress more often
 
 struct Step {
-  std::string name;     // of the stamp
-  std::string label;    // of the progress bar
-  std::string command;  // COLMAP's
+  std::string name;     // of its stamp file
+  std::string label;    // of its progress line
+  std::string command;  // of COLMAP
   std::vector<std::string> arguments;
 };
 
@@ -40,7 +40,7 @@ std::map<std::string, std::vector<const PhotoFile*>> GroupByCamera(const std::ve
   return groups;
 }
 
-// Identity of what goes in: a change of photos, masks or options makes finished steps worthless.
+// Identifies photos, masks and options: when any of them changes, finished steps must be repeated.
 std::string InputHash(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PrepareOptions& options) {
   std::string text = job.photo_root.string() + "\n" + options.camera_model + "\n" + std::to_string(options.max_image_size) + "\n" +
                      std::to_string(options.max_features) + "\n" + std::to_string(options.seed) + "\n" + std::to_string(options.use_gpu) + "\n";
@@ -73,7 +73,7 @@ void RunStep(const ColmapJob& job, const fs::path& program, const Step& step, si
   base::Progress progress(step.label, static_cast<double>(n_photos), "photos");
   base::Command command{program, {step.command}};
   command.arguments.insert(command.arguments.end(), step.arguments.begin(), step.arguments.end());
-  // No window and no display: COLMAP is linked against Qt even for its plain commands.
+  // COLMAP links against Qt even for commands without a window; this lets it run without a display.
   command.environment = {"QT_QPA_PLATFORM=offscreen"};
   double share = 0.0;
   const int status = base::RunLogged(command, log, [&](const std::string& line) {
@@ -87,20 +87,20 @@ void RunStep(const ColmapJob& job, const fs::path& program, const Step& step, si
     progress.Finish();
     return;
   }
-  std::string found = "COLMAP's " + step.command + " ended with status " + std::to_string(status);
-  if (!last_lines.empty()) found += "; it last said: " + last_lines.back();
+  std::string found = "COLMAP's " + step.command + " failed with status " + std::to_string(status);
+  if (!last_lines.empty()) found += "; its last line: " + last_lines.back();
   throw base::InputError(log, found,
                          step.command == "mapper"
-                             ? "Photos may overlap too little or be blurred: read the log, add photos, or give a model with --model"
-                             : "Read the log; less memory is needed with a smaller prepare.max_image_size");
+                             ? "The photos may overlap too little or be blurred: read the log, add photos, or give a model with --model"
+                             : "Read the log; if memory ran out, lower prepare.max_image_size");
 }
 
 void ExtractFeatures(const ColmapJob& job, const fs::path& program, const std::vector<PhotoFile>& photos, const PrepareOptions& options) {
-  // A half-filled database would give the remaining photos a camera of their own.
+  // Start with a new database: in a half-filled one the remaining photos would get another camera.
   const fs::path database = job.folder / "database.db";
   for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(database.string() + suffix);
   const auto groups = GroupByCamera(photos);
-  if (groups.size() > 1) spdlog::info("{} kinds of photos (size, camera, focal length): each gets a camera of its own", groups.size());
+  if (groups.size() > 1) spdlog::info("{} kinds of photos (by size, camera, focal length): each gets its own camera model", groups.size());
   size_t index = 0;
   for (const auto& [key, group] : groups) {
     const fs::path list = job.folder / ("photos_" + std::to_string(index) + ".txt");
@@ -148,13 +148,14 @@ void Match(const ColmapJob& job, const fs::path& program, const std::vector<Phot
                     "--random_seed",
                     std::to_string(options.seed)};
   if (spatial) {
-    // Neighbours are limited by their number alone: high flights are more than COLMAP's 100 m between photos.
+    // Neighbours are limited by number only: COLMAP's default limit of 100 m is too small for high flights.
     step.arguments.insert(step.arguments.end(), {"--SpatialMatching.is_gps", "1", "--SpatialMatching.max_num_neighbors",
                                                  std::to_string(kMaxNeighbors), "--SpatialMatching.max_distance", "100000"});
   } else {
     step.arguments.insert(step.arguments.end(), {"--ExhaustiveMatching.block_size", std::to_string(photos.size() < 100 ? kBlockSize : 50)});
     if (photos.size() > 300) {
-      spdlog::warn("{} photos without GPS: all {} pairs are matched, which takes long", photos.size(), photos.size() * (photos.size() - 1) / 2);
+      spdlog::warn("{} photos without GPS tags: matching all {} pairs takes long; use photos with GPS tags, or give a model with --model",
+                   photos.size(), photos.size() * (photos.size() - 1) / 2);
     }
   }
   RunStep(job, program, step, photos.size());
@@ -189,8 +190,11 @@ fs::path LargestModel(const fs::path& models, const fs::path& log) {
     }
   }
   if (best.empty())
-    throw base::InputError(log, "COLMAP found no model", "Photos may overlap too little or be blurred: read the log, or give a model with --model");
-  if (n_models > 1) spdlog::warn("COLMAP left {} separate models; the largest, with {} photos, is used ({})", n_models, best_images, best.string());
+    throw base::InputError(log, "COLMAP found no model",
+                           "The photos may overlap too little or be blurred: read the log, add photos, or give a model with --model");
+  if (n_models > 1)
+    spdlog::warn("COLMAP found {} models that do not connect; only the largest is used, with {} photos ({}). Photos between them would connect them",
+                 n_models, best_images, best.string());
   return best;
 }
 
@@ -203,7 +207,7 @@ double ColmapLineProgress(const std::string& line, size_t n_photos) {
     if (std::sscanf(line.c_str() + at, "Processed file [%u/%u]", &a, &b) == 2) return share(a, b);
   }
   if (const size_t at = line.find("Matching block ["); at != std::string::npos) {
-    // Rows of blocks, columns within: "[row/rows, column/columns]", printed when the block begins.
+    // Printed before each block of pairs: "[row/rows, column/columns]".
     if (std::sscanf(line.c_str() + at, "Matching block [%u/%u, %u/%u]", &a, &b, &c, &d) == 4 && a > 0 && c > 0) {
       return share((a - 1.0) * d + (c - 1.0), static_cast<double>(b) * d);
     }
@@ -221,21 +225,21 @@ double ColmapLineProgress(const std::string& line, size_t n_photos) {
 fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PrepareOptions& options) {
   const fs::path program = base::FindProgram(options.colmap);
   if (program.empty()) {
-    throw base::InputError(options.colmap, "no such program",
-                           "Install COLMAP (Debian: apt install colmap), name it with prepare.colmap, or give a model with --model");
+    throw base::InputError(options.colmap, "there is no such program",
+                           "Install COLMAP (Debian: apt install colmap), set prepare.colmap to its path, or give a model with --model");
   }
   base::RequireWritableFolder(job.folder);
   const std::string hash = InputHash(job, photos, options);
   const auto run = [&](const std::string& name, const auto& step, const std::vector<std::string>& later) {
     if (IsDone(job, name, hash)) {
-      spdlog::info("COLMAP {}: already there", name);
+      spdlog::info("COLMAP {}: already done", name);
       return;
     }
     for (const std::string& stamp : later) fs::remove(StampFile(job, stamp));
     step(job, program, photos, options);
     base::WriteFileAtomically(StampFile(job, name), hash + "\n");
   };
-  spdlog::info("COLMAP on {} photos; its words are in {}", photos.size(), (job.folder / "colmap.log").string());
+  spdlog::info("running COLMAP on {} photos; its log is {}", photos.size(), (job.folder / "colmap.log").string());
   run("features", ExtractFeatures, {"features", "matches", "model"});
   run("matches", Match, {"matches", "model"});
   run("model", Map, {"model"});

@@ -16,8 +16,8 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMaxOffsetRounds = 20;
 
-// By medians in a frame about one of the tags, so that neither the poles nor the date line are special; then once more about that median,
-// where the frame is level.
+// Medians are taken in an ENU frame, which has no special case at the poles and the date line. The frame starts at one of the tags and is moved to
+// the median, where it is level.
 geo::Geodetic MedianPosition(const std::vector<Station>& stations) {
   std::vector<double> heights;
   std::optional<geo::Geodetic> centre;
@@ -39,7 +39,7 @@ geo::Geodetic MedianPosition(const std::vector<Station>& stations) {
   return {centre->latitude_deg, centre->longitude_deg, base::Median(heights)};
 }
 
-// Matches of one fit: camera centres in the model against tags in ENU.
+// Pairs to fit: camera centres in the model and tagged positions in ENU.
 struct Matches {
   std::vector<size_t> station;
   std::vector<Eigen::Vector3d> in_model;
@@ -65,7 +65,7 @@ std::vector<Eigen::Vector3d> WithOffsets(const Matches& matches, const std::vect
   return shifted;
 }
 
-// Median of (fitted - tagged) height per flight over tags that fit horizontally; NaN where a flight has none.
+// Per flight: median of fitted minus tagged height over the tags that fit horizontally. NaN for a flight without any.
 std::vector<double> FlightHeightDifference(const Matches& matches, const geo::Similarity3d& enu_from_model, const std::vector<int>& flight,
                                            int n_flights, double threshold_m) {
   std::vector<std::vector<double>> differences(static_cast<size_t>(n_flights));
@@ -90,7 +90,7 @@ int ReferenceFlight(const std::vector<Station>& stations, const std::vector<int>
   return static_cast<int>(std::max_element(votes.begin(), votes.end()) - votes.begin());
 }
 
-// Fills residuals, inliers and the figures of the fit from the transform and the offsets in `result`.
+// Fills in residuals, inliers and the errors of the fit, from the transform and the offsets in `result`.
 void Evaluate(const std::vector<Station>& stations, const Matches& matches, double threshold_m, Georeference& result) {
   result.residual_m.assign(stations.size(), kNan);
   result.residual_up_m.assign(stations.size(), kNan);
@@ -123,7 +123,7 @@ int CountFlights(const std::vector<int>& flight) {
   return flight.empty() ? 0 : *std::max_element(flight.begin(), flight.end()) + 1;
 }
 
-// One vertical offset per flight, alternating with the fit until neither moves. Leaves everything alone when flights agree.
+// Estimates one vertical offset per flight, in turn with the transform, until both converge. Changes nothing when the flights agree.
 void FitFlightOffsets(const std::vector<Station>& stations, const Matches& matches, const PrepareOptions& options,
                       const geo::RobustSimilarityOptions& robust, Georeference& result) {
   const int n_flights = CountFlights(result.flight);
@@ -187,7 +187,7 @@ Georeference FitToGps(const std::vector<Station>& stations, const PrepareOptions
   result.fit.n_matches = static_cast<int>(n_tagged);
   if (n_tagged < 3) {
     result.reason = n_tagged == 0 ? "no photo with a pose has a GPS tag"
-                                  : "only " + std::to_string(n_tagged) + " photos with a pose have a GPS tag, 3 are needed";
+                                  : "only " + std::to_string(n_tagged) + " photo(s) with a pose have a GPS tag, 3 are needed";
     return result;
   }
   result.origin = MedianPosition(stations);

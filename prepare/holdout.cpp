@@ -13,7 +13,8 @@ namespace skyquilt::prepare {
 namespace {
 
 [[noreturn]] void FailUsage(const std::string& text) {
-  throw base::UsageError("holdout '" + text + "' is not understood: use every:N (N >= 2), every:N:offset (0 <= offset < N), list:FILE or none");
+  throw base::UsageError("prepare.holdout = '" + text +
+                         "' is not understood: use every:N (N >= 2), every:N:offset (0 <= offset < N), list:FILE or none");
 }
 
 int ParseInt(const std::string& digits, const std::string& text) {
@@ -36,10 +37,10 @@ void MarkList(const std::filesystem::path& file, survey::Survey& survey) {
     if (found != by_name.end()) {
       found->second->is_test = true;
     } else if (std::find(survey.unregistered.begin(), survey.unregistered.end(), name) != survey.unregistered.end()) {
-      spdlog::warn("{}: '{}' has no pose and cannot be a test photo", file.string(), name);
+      spdlog::warn("{}: '{}' has no pose, so it is not used as a test photo", file.string(), name);
     } else {
       throw base::InputError(file, "names '" + name + "', which is not among the photos",
-                             "Write names as in survey.json, relative to the photo folder");
+                             "Write names relative to the photo folder, as in survey.json");
     }
   }
 }
@@ -71,7 +72,8 @@ void MarkHoldout(const Holdout& holdout, survey::Survey& survey) {
     }
   }
   const bool any_train = std::any_of(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return !photo.is_test; });
-  if (!survey.photos.empty() && !any_train) throw base::UsageError("the holdout keeps every photo for testing: nothing remains to train on");
+  if (!survey.photos.empty() && !any_train)
+    throw base::UsageError("prepare.holdout keeps every photo for testing, so none is left to train on: hold out fewer");
 }
 
 }  // namespace skyquilt::prepare

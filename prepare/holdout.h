@@ -1,4 +1,4 @@
-// Which photos are kept for testing.
+// Chooses the photos that are kept for testing. They are not trained on, so that rendering them measures the quality of the scene.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 namespace skyquilt::prepare {
 
 struct Holdout {
-  int every = 0;               // 0: not by index
+  int every = 0;               // every how many photos one is held out; 0: not by index
   int offset = 0;              // in [0, every)
-  std::filesystem::path list;  // empty: not by name
+  std::filesystem::path list;  // file with one name per line; empty: not by name
 };
 
-// "none", "every:N", "every:N:offset", "list:FILE". Throws base::UsageError.
+// Reads "none", "every:N", "every:N:offset" or "list:FILE". Throws base::UsageError for anything else.
 Holdout ParseHoldout(const std::string& text);
-// Sets is_test. The index counts the registered photos in name order (index % every == offset), as the field's benchmarks do.
-// Throws base::InputError for a list that cannot be read or names a photo the survey has never seen, base::UsageError if nothing remains to train on.
+// Sets is_test of every photo. The index counts the photos with a pose in name order: index % every == offset is held out, as usual in NeRF
+// benchmarks. Throws base::InputError for a list that cannot be read or names an unknown photo, base::UsageError if no photo remains to train on.
 void MarkHoldout(const Holdout& holdout, survey::Survey& survey);
 
 }  // namespace skyquilt::prepare

@@ -34,7 +34,7 @@ void ReadSimulated(const fs::path& folder, bool own_model, InputFolder& found) {
       const nlohmann::json& origin = json.at("origin");
       found.exact_origin =
           geo::Geodetic{origin.at("latitude_deg").get<double>(), origin.at("longitude_deg").get<double>(), origin.at("height_m").get<double>()};
-      if (!geo::IsValid(*found.exact_origin)) throw base::InputError(file, "has an origin that is not on Earth", fix);
+      if (!geo::IsValid(*found.exact_origin)) throw base::InputError(file, "has an origin that is not a valid latitude, longitude and height", fix);
     }
   } catch (const nlohmann::json::exception& error) {
     throw base::InputError(file, std::string("is damaged (") + error.what() + ")", fix);
@@ -61,7 +61,8 @@ InputFolder FindInputs(const fs::path& photos, const fs::path& model, const fs::
   } else if (simulated) {
     found.model = folder / "sparse" / "0";
   } else if (fs::is_directory(folder / "sparse" / "0")) {
-    spdlog::info("a COLMAP model lies in {}; to use it instead of running COLMAP give it with --model", (folder / "sparse" / "0").string());
+    spdlog::info("found a COLMAP model in {}, which is not used; give it with --model to use it instead of running COLMAP",
+                 (folder / "sparse" / "0").string());
   }
   if (simulated) ReadSimulated(folder, model.empty() || fs::equivalent(found.model, folder / "sparse" / "0"), found);
 

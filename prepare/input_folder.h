@@ -1,4 +1,4 @@
-// What kind of folder a person handed over, and where its pieces lie.
+// Finds photos, model and masks in the folder that the user gave: plain photos, a COLMAP project or the output of `simulate`.
 #pragma once
 
 #include <filesystem>
@@ -11,15 +11,15 @@ namespace skyquilt::prepare {
 
 struct InputFolder {
   std::filesystem::path photo_root;           // absolute
-  std::filesystem::path model;                // empty: COLMAP has to be run
+  std::filesystem::path model;                // folder of a COLMAP model; empty: COLMAP must be run
   std::filesystem::path masks;                // empty: none
-  std::optional<geo::Geodetic> exact_origin;  // simulated survey whose model already is in ENU about this origin
-  std::optional<survey::Truth> truth;         // simulated survey
+  std::optional<geo::Geodetic> exact_origin;  // the model already is in ENU about this origin (simulated survey)
+  std::optional<survey::Truth> truth;         // true depth, buildings and exposure (simulated survey)
 };
 
-// `photos` may be a folder of photos, one with the photos in images/, or a simulate folder (simulate.json). `model` and `masks` are what the
-// person asked for; empty means: look in the usual place (a model only in simulate folders, masks in PHOTOS/masks).
-// Throws base::InputError: no such folder, damaged simulate.json.
+// `photos` may be a folder of photos, a folder with the photos in images/, or a folder made by `simulate` (it has a simulate.json). `model` and
+// `masks` are folders that the user gave; if empty, the usual places are searched: PHOTOS/masks, and only for simulated surveys PHOTOS/sparse/0.
+// Throws base::InputError for a missing folder or a damaged simulate.json.
 InputFolder FindInputs(const std::filesystem::path& photos, const std::filesystem::path& model, const std::filesystem::path& masks);
 
 }  // namespace skyquilt::prepare

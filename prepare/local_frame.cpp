@@ -7,7 +7,7 @@
 namespace skyquilt::prepare {
 namespace {
 
-// Cameras that look the same way within about 37 degrees on average: a nadir flight.
+// Norm of the mean viewing direction. Above this, cameras look the same way within about 37 degrees on average: a nadir flight.
 constexpr double kConsistentView = 0.8;
 
 Eigen::Vector3d MedianPoint(const std::vector<Eigen::Vector3d>& points) {
@@ -41,7 +41,7 @@ Eigen::Vector3d UpDirection(const std::vector<Station>& stations) {
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   const Eigen::Vector3d spread = solver.eigenvalues();  // ascending
-  // Centres on one line span no plane: the cameras' own upper edge has to do.
+  // Centres on one line define no plane: use the mean up direction of the cameras instead.
   Eigen::Vector3d up = spread[1] > 1e-6 * spread[2] ? Eigen::Vector3d(solver.eigenvectors().col(0)) : camera_up;
   if (!(up.norm() > 1e-9)) up = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d hint = view.norm() > 0.1 ? Eigen::Vector3d(-view) : camera_up;

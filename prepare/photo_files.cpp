@@ -21,11 +21,11 @@ bool IsHidden(const fs::path& path) {
   return path.filename().string().starts_with(".");
 }
 
-// The header says the size; whether the rest is there only the end of the data tells.
+// A cut-off JPEG still has a good header: only the end of the data tells whether it is complete.
 void CheckComplete(const fs::path& file) {
   const base::MemoryMap map(file);
   const image::JpegStructure structure = image::ParseJpeg(map.bytes(), false);
-  // A few writers leave the end marker out; the decoder knows whether rows are missing.
+  // Some programs leave out the end marker; then the decoder tells whether rows are missing.
   if (structure.is_jpeg && !structure.complete) image::LoadRgb8(file);
 }
 
@@ -43,7 +43,9 @@ std::vector<std::string> ListPhotos(const fs::path& root, const std::vector<fs::
   std::error_code error;
   auto entry = fs::recursive_directory_iterator(root, fs::directory_options::follow_directory_symlink, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    if (entry.depth() > 32) throw base::InputError(root, "folders nest deeper than 32 levels (a link to a parent?)", "Remove the link");
+    if (entry.depth() > 32)
+      throw base::InputError(root, "has folders nested deeper than 32 levels",
+                             "Remove the link to a parent folder that causes this, or give a folder further down");
     std::error_code ignored;
     if (entry->is_directory(ignored)) {
       const bool skipped =
@@ -54,7 +56,7 @@ std::vector<std::string> ListPhotos(const fs::path& root, const std::vector<fs::
     }
   }
   if (error) throw base::InputError(root, "cannot be listed: " + error.message(), "Check permissions");
-  if (names.empty()) throw base::InputError(root, "holds no photos (.jpg, .jpeg, .png, .tif, .tiff)", "Give the folder that holds the photos");
+  if (names.empty()) throw base::InputError(root, "has no photos (.jpg, .jpeg, .png, .tif, .tiff)", "Give the folder that holds the photos");
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -114,8 +116,8 @@ void ResolveHeights(std::vector<PhotoFile>& photos) {
   if (n_without == 0) return;
   if (2 * n_without > n_tagged) {
     const bool use_relative = n_relative == n_tagged;
-    spdlog::warn("{} of {} GPS tags have no altitude: heights are taken {}", n_without, n_tagged,
-                 use_relative ? "from RelativeAltitude (above take-off)" : "as 0, so the survey's height above the ellipsoid is unknown");
+    spdlog::warn("{} of {} GPS tags have no altitude: all heights are {}", n_without, n_tagged,
+                 use_relative ? "taken from RelativeAltitude (above take-off)" : "set to 0, so the survey's height above the ellipsoid is unknown");
     for (PhotoFile& photo : photos) {
       if (photo.tags.gps) photo.tags.gps->height_m = use_relative ? *photo.tags.relative_altitude_m : 0.0;
     }
@@ -141,7 +143,7 @@ std::vector<std::string> FindMasks(const fs::path& masks, const std::vector<Phot
       throw base::InputError(mask,
                              "is " + std::to_string(width) + "x" + std::to_string(height) + " pixels, its photo " + std::to_string(photos[i].width) +
                                  "x" + std::to_string(photos[i].height),
-                             "Make masks in the size of their photos");
+                             "Make every mask the same size as its photo");
     }
     found[i] = mask.string();
     ++n_found;

@@ -1,4 +1,4 @@
-// The photos of a folder: found, looked over, and with their tags.
+// Lists the photos of a folder, checks that they can be used and reads their EXIF and XMP tags.
 #pragma once
 
 #include <filesystem>
@@ -19,21 +19,23 @@ struct PhotoFile {
 
 struct PhotoSet {
   std::vector<PhotoFile> usable;        // in name order
-  std::vector<std::string> unreadable;  // names of files dropped, each already warned about
+  std::vector<std::string> unreadable;  // names of photos left out, each with a warning in the log
 };
 
 constexpr int kMinPhotos = 3;
 
-// By its extension: jpg, jpeg, png, tif, tiff in any case; hidden files are not photos.
+// Decides by the extension: jpg, jpeg, png, tif or tiff in any case. Hidden files are not photos.
 bool LooksLikePhoto(const std::filesystem::path& file);
-// All photos under `root` in name order; folders in `skip` and hidden ones are not entered. Throws base::InputError when there is none.
+// Names of all photos under `root`, sorted. Folders in `skip` and hidden folders are not searched. Throws base::InputError when there is none.
 std::vector<std::string> ListPhotos(const std::filesystem::path& root, const std::vector<std::filesystem::path>& skip);
-// Reads sizes and tags and checks that JPEGs are complete. Files that cannot be used are dropped with a warning that names file and how to fix it.
+// Reads sizes and tags and checks that JPEGs are complete. Photos that cannot be used are left out, with a warning that says how to fix it.
 // Throws base::InputError when fewer than kMinPhotos remain.
 PhotoSet ReadPhotos(const std::filesystem::path& root, const std::vector<std::string>& names, base::ThreadPool& threads);
-// Tags without a height: taken from RelativeAltitude or 0 when most have none (with a warning), otherwise the tag is not used.
+// Handles GPS tags without a height. If most tags have none, all heights become RelativeAltitude, or 0 if that is not tagged everywhere; otherwise
+// only the tags without a height are removed. Both with a warning.
 void ResolveHeights(std::vector<PhotoFile>& photos);
-// masks/<name>.png per photo, empty where there is none. Throws base::InputError when no mask fits any photo or a mask has another size.
+// Path of masks/<name>.png per photo, empty where there is none. Throws base::InputError when no photo has a mask or when a mask's size differs from
+// its photo's.
 std::vector<std::string> FindMasks(const std::filesystem::path& masks, const std::vector<PhotoFile>& photos);
 
 }  // namespace skyquilt::prepare

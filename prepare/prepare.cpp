@@ -43,8 +43,8 @@ std::string BaseNameKey(const std::string& name) {
   return key;
 }
 
-// Photos by their name in the model: as written, else by a file name that occurs only once on both sides (models are often made from another
-// folder than the one given now).
+// Finds the photo of a name in the model: by the full name, otherwise by the file name if it occurs only once on both sides. Models are often made
+// from another folder than the one given now.
 class PhotoFinder {
  public:
   PhotoFinder(const std::vector<PhotoFile>& files, const survey::ColmapModel& model) {
@@ -93,12 +93,12 @@ std::vector<Registered> MatchPhotos(const survey::ColmapModel& model, const std:
     registered.push_back({&image, *file});
   }
   if (!missing.empty()) {
-    spdlog::warn("{}: {} of {} photos of the model are not in {} (or cannot be read) and are left out: {}", model_folder.string(), missing.size(),
-                 model.images.size(), photo_root.string(), Joined(missing));
+    spdlog::warn("{}: {} of {} photos of the model are left out, because they are not in {} or cannot be read: {}", model_folder.string(),
+                 missing.size(), model.images.size(), photo_root.string(), Joined(missing));
   }
   if (!other_size.empty()) {
-    spdlog::warn("{} photos have another size than their camera in the model and are left out: {} ({})", other_size.size(), Joined(other_size),
-                 size_example);
+    spdlog::warn("{} photos are left out, because their size is not that of their camera in the model: {} ({})", other_size.size(),
+                 Joined(other_size), size_example);
   }
   if (registered.size() < kMinPhotos) {
     std::string found =
@@ -126,14 +126,14 @@ std::vector<survey::SparsePoint> ConvertPoints(const survey::ColmapModel& model,
   std::vector<survey::SparsePoint> points;
   points.reserve(model.points.size());
   for (const survey::ColmapPoint& point : model.points) {
-    // A point may be seen more than once in one photo; what counts is from how many photos.
+    // A point may be seen more than once in one photo; only the number of photos counts.
     const std::set<uint32_t> photos(point.image_ids.begin(), point.image_ids.end());
     points.push_back({enu_from_model * point.x_in_world, point.rgb, static_cast<float>(point.error_px), static_cast<int>(photos.size())});
   }
   return points;
 }
 
-// Poses, tags and cameras into the survey; only cameras that are used are kept.
+// Puts poses, tags and cameras into the survey. Cameras without photos are left out.
 void FillPhotos(const survey::ColmapModel& model, const std::vector<Registered>& registered, const std::vector<PhotoFile>& files,
                 const std::vector<std::string>& masks, const Georeference& georeference, survey::Survey& survey) {
   std::map<uint32_t, int> camera_index;

@@ -1,9 +1,10 @@
-// Photos (and, if at hand, their COLMAP model) to a prepared survey in one local ENU frame, written to `out_folder`:
+// Turns photos into a prepared survey: camera poses and sparse points in one local ENU frame, the input of all later stages. A COLMAP model of the
+// photos is used if given, otherwise COLMAP is run. Written to `out_folder`:
 //   survey.json, points.ply     the survey (core/survey/survey.h)
-//   geo_residuals.csv           per photo: camera position, tag, residual, AGL
+//   geo_residuals.csv           per photo: camera position, GPS tag, residual, height above ground
 //   cameras.geojson             camera positions, when geo-referenced (opens in QGIS)
-//   colmap/                     database, models and log, when COLMAP was run; a second call continues where the first one stopped
-// A folder with simulate.json is a simulated survey: its model is taken as given and its truth is kept with the survey.
+//   colmap/                     database, models and log, when COLMAP was run; a second call resumes where the first stopped
+// A folder with simulate.json is a simulated survey: its own model is used, and the survey keeps the paths of its truth.
 #pragma once
 
 #include <filesystem>
@@ -15,13 +16,13 @@
 namespace skyquilt::prepare {
 
 struct PrepareInput {
-  std::filesystem::path photos;      // folder, searched recursively; may be a simulate folder or one that keeps its photos in images/
-  std::filesystem::path model;       // folder with cameras/images/points3D; empty: COLMAP is run (simulate folder: its own model)
+  std::filesystem::path photos;      // folder, searched recursively; see FindInputs in input_folder.h
+  std::filesystem::path model;       // folder with cameras, images and points3D; empty: COLMAP is run (simulated survey: its own model)
   std::filesystem::path out_folder;  // created if needed
 };
 
-// Throws base::UsageError for options that cannot be, base::InputError when fewer than 3 usable photos remain or something cannot be read or
-// written, base::Interrupted when asked to stop. Photos that cannot be used are dropped with a warning that names them.
+// Photos that cannot be used are left out with a warning that names them. Throws base::UsageError for invalid options, base::InputError when fewer
+// than 3 usable photos remain or a file cannot be read or written, base::Interrupted when asked to stop.
 survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads);
 
 }  // namespace skyquilt::prepare

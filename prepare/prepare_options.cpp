@@ -11,26 +11,26 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
   return {
       {"holdout", &O::holdout, Range(), "photos kept for testing, in name order: every:N, every:N:offset, list:FILE (one name per line) or none"},
       {"ransac_threshold_m", &O::ransac_threshold_m, Range{1e-3, 1e6},
-       "distance between fitted and tagged camera position up to which a tag counts, metres"},
+       "largest distance in metres between fitted and tagged camera position; tags farther off are not used"},
       {"camera_model", &O::camera_model,
        Range::OneOf({"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV", "OPENCV_FISHEYE"}),
-       "COLMAP camera model for photos without a model"},
-      {"colmap", &O::colmap, Range(), "the COLMAP program, found on the PATH or given as a path"},
-      {"max_image_size", &O::max_image_size, Range::AtLeast(100), "longer side at which COLMAP looks for features, pixels"},
-      {"max_features", &O::max_features, Range::AtLeast(100), "features per photo"},
+       "camera model for COLMAP; not used when a model is given"},
+      {"colmap", &O::colmap, Range(), "the COLMAP program: a name to find on the PATH, or a path"},
+      {"max_image_size", &O::max_image_size, Range::AtLeast(100), "COLMAP scales photos down to this longer side, in pixels, to find features"},
+      {"max_features", &O::max_features, Range::AtLeast(100), "most features per photo"},
       {"use_gpu", &O::use_gpu, Range(), "let COLMAP use a GPU for features and matching (needs a COLMAP built for it)"},
       {"masks", &O::masks, Range(), "folder of masks named PHOTO.jpg.png, 0 = ignore; empty: masks/ inside the photo folder if there is one"},
-      {"flight_gap_s", &O::flight_gap_s, Range{1e-3, 1e9}, "a longer pause between photos starts another flight, seconds"},
+      {"flight_gap_s", &O::flight_gap_s, Range{1e-3, 1e9}, "a longer pause between photos, in seconds, starts a new flight"},
       {"flight_offsets", &O::flight_offsets, Range::OneOf({"auto", "off"}),
        "auto: flights whose tagged heights disagree get one vertical offset each; off: never"},
-      {"seed", &O::seed, Range::AtLeast(0), "of the robust fit and of COLMAP"},
+      {"seed", &O::seed, Range::AtLeast(0), "random seed of COLMAP and of the fit to GPS"},
   };
 }
 
 void PrepareOptions::Check() const {
   config::CheckRanges("prepare", *this);
   ParseHoldout(holdout);
-  if (colmap.empty()) throw base::UsageError("prepare.colmap is empty: it must name a program, for instance colmap");
+  if (colmap.empty()) throw base::UsageError("prepare.colmap is empty: set it to the name or path of the COLMAP program, for instance colmap");
 }
 
 }  // namespace skyquilt::prepare

@@ -1,4 +1,4 @@
-// What a person may choose about `prepare`. Defaults live only here.
+// Options of section [prepare] of the configuration: how photos become a survey. Fields() describes each one.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct PrepareOptions {
   int seed = 1;
 
   static std::vector<config::Field<PrepareOptions>> Fields();
-  // Throws base::UsageError naming the option, its value and what is allowed.
+  // Throws base::UsageError that names the option, its value and what is allowed.
   void Check() const;
 };
 

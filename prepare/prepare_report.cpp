@@ -53,8 +53,8 @@ void LogSummary(const survey::Survey& survey, const Georeference& georeference) 
   const double agl = survey.MedianAgl();
   if (!survey.georeferenced) {
     spdlog::warn(
-        "no geo-reference: {}. Going on in a local frame of unknown scale (1 unit = 1 made-up metre, median depth {:.0f}); maps and heights are not "
-        "on Earth",
+        "no geo-reference: {}. The survey gets a local frame of unknown scale (median depth {:.0f} units), and maps cannot be placed on Earth. To "
+        "geo-reference it, use photos with GPS tags",
         georeference.reason, kLocalDepth);
     return;
   }
@@ -62,11 +62,12 @@ void LogSummary(const survey::Survey& survey, const Georeference& georeference) 
   spdlog::info(
       "origin: {:.7f} deg latitude, {:.7f} deg longitude, {:.2f} m (height as tagged; without RTK usually above sea level, not the ellipsoid)",
       survey.origin.latitude_deg, survey.origin.longitude_deg, survey.origin.height_m);
-  spdlog::info("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {:.2f} m vertical), {:.6g} m per model unit", fit.n_inliers,
+  spdlog::info("GPS: {} of {} tags fit, RMSE {:.2f} m ({:.2f} m horizontal, {:.2f} m vertical), {:.6g} m per model unit", fit.n_inliers,
                fit.n_matches, fit.rmse_m, fit.rmse_horizontal_m, fit.rmse_vertical_m, fit.scale);
   for (size_t i = 0, n_named = 0; i < survey.photos.size() && n_named < 5; ++i) {
     if (!survey.photos[i].gps || survey.photos[i].gps_inlier) continue;
-    spdlog::warn("GPS tag of {} is off by {:.1f} m and was not used", survey.photos[i].name, survey.photos[i].gps_residual_m);
+    spdlog::warn("GPS tag of {} is {:.1f} m from the fitted position and is not used; if many are, raise prepare.ransac_threshold_m",
+                 survey.photos[i].name, survey.photos[i].gps_residual_m);
     ++n_named;
   }
   LogFlights(survey);
@@ -74,8 +75,8 @@ void LogSummary(const survey::Survey& survey, const Georeference& georeference) 
   for (const survey::Photo& photo : survey.photos) {
     if (photo.relative_altitude_m) relative.push_back(*photo.relative_altitude_m);
   }
-  const std::string tagged =
-      relative.empty() ? "no RelativeAltitude to compare with" : "RelativeAltitude says " + Field(base::Median(relative), 1) + " m above take-off";
+  const std::string tagged = relative.empty() ? "no RelativeAltitude tag to compare with"
+                                              : "median RelativeAltitude tag " + Field(base::Median(relative), 1) + " m above take-off";
   spdlog::info("height above ground: median {} m; {}", std::isfinite(agl) ? Field(agl, 1) : "unknown", tagged);
 }
 

@@ -1,4 +1,4 @@
-// What prepare tells people: a summary in the log, a table of residuals, a map of the cameras.
+// Results of `prepare` for the user to check the geo-reference: a summary in the log, a table of residuals, a map of the cameras.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,10 @@
 namespace skyquilt::prepare {
 
 void LogSummary(const survey::Survey& survey, const Georeference& georeference);
-// name, ENU position, fitted and tagged longitude / latitude / height, residual, its upward part, inlier, flight, AGL, RelativeAltitude, test.
-// Empty fields where a figure is not known. Throws base::InputError.
+// CSV, one line per photo: name, ENU position, fitted and tagged latitude / longitude / height, residual, its upward part, inlier, flight, its
+// offset, height above ground, RelativeAltitude, test. Unknown values are empty. Throws base::InputError when the file cannot be written.
 void WriteResidualTable(const survey::Survey& survey, const Georeference& georeference, const std::filesystem::path& file);
-// RFC 7946 points. The survey must be geo-referenced. Throws base::InputError.
+// GeoJSON points (RFC 7946). The survey must be geo-referenced. Throws base::InputError when the file cannot be written.
 void WriteCameraMap(const survey::Survey& survey, const std::filesystem::path& file);
 
 }  // namespace skyquilt::prepare

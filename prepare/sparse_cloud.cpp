@@ -12,7 +12,7 @@ namespace skyquilt::prepare {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-// Fewer good points than this share or number: better some doubtful ones than none.
+// With fewer good points than this number and this share of all, worse ones are kept too.
 constexpr size_t kFewPoints = 1000;
 constexpr double kFewShare = 0.2;
 constexpr size_t kMinAglPoints = 3;
@@ -23,7 +23,7 @@ size_t CountGood(const std::vector<survey::SparsePoint>& points, double max_erro
   }));
 }
 
-// Bounds that hold 99 % of the points, grown by their own extent: a stray triangulation is far outside, a tower or a distant hill is not.
+// Removes points outside the bounds of 99 % of the points, widened by their own extent: wrongly triangulated points, but not towers or distant hills.
 void RemoveOutliers(std::vector<survey::SparsePoint>& points) {
   if (points.size() < 20) return;
   Eigen::Vector3d low;
@@ -35,7 +35,7 @@ void RemoveOutliers(std::vector<survey::SparsePoint>& points) {
     low[axis] = base::Quantile(values, 0.005);
     high[axis] = base::Quantile(std::move(values), 0.995);
   }
-  // Perfectly flat ground still tolerates noise.
+  // Perfectly flat ground must not make the margin zero.
   const double smallest = 1e-3 * (high - low).maxCoeff();
   const Eigen::Vector3d margin = (high - low).cwiseMax(smallest);
   std::erase_if(points, [&](const survey::SparsePoint& point) {
@@ -58,8 +58,8 @@ void FilterSparsePoints(std::vector<survey::SparsePoint>& points) {
   }
   const size_t n_good = points.size();
   RemoveOutliers(points);
-  spdlog::info("sparse points: {} of {} kept ({} with large error or short track and {} far outliers left out)", points.size(), n_all, n_all - n_good,
-               n_good - points.size());
+  spdlog::info("sparse points: {} of {} kept ({} with a large error or short track and {} far outliers removed)", points.size(), n_all,
+               n_all - n_good, n_good - points.size());
 }
 
 void MeasureAgl(survey::Survey& survey, base::ThreadPool& threads) {

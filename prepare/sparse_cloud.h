@@ -1,4 +1,4 @@
-// The sparse points worth keeping, and how high each camera flies above them.
+// Removes bad sparse points of structure from motion, and measures each camera's height above the remaining ones.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,12 @@
 
 namespace skyquilt::prepare {
 
-// Removes points with a large reprojection error or a short track, and points far outside the robust bounds of the rest. Conditions that would
-// leave hardly anything are relaxed. Says in the log what was removed.
+// Removes points with a reprojection error above kMaxPointErrorPx or seen by fewer than kMinTrack photos, and points far outside the bounds of the
+// rest. These limits are relaxed when hardly any point would remain. Logs how many were removed.
 void FilterSparsePoints(std::vector<survey::SparsePoint>& points);
 
-// Sets agl_m: camera height minus the median height of the points nearest to its foot, within half its height; NaN when there are too few.
+// Sets agl_m of every photo: the camera's height above the median of the kAglPoints points nearest to the spot below it, no farther from there than
+// half the height; NaN when fewer than three are left.
 void MeasureAgl(survey::Survey& survey, base::ThreadPool& threads);
 
 constexpr double kMaxPointErrorPx = 2.0;

@@ -30,7 +30,7 @@ std::string FrameName(size_t index) {
   return "frame_" + std::string(digits.size() < 5 ? 5 - digits.size() : 0, '0') + digits;
 }
 
-// "flight/a.jpg" -> "flight_a"; photos that would share a name keep their extension as well.
+// "flight/a.jpg" -> "flight_a". If that name is taken, the extension is kept.
 std::string FileStem(const std::string& photo, std::set<std::string>* taken) {
   std::string name = std::filesystem::path(photo).replace_extension().generic_string();
   std::replace(name.begin(), name.end(), '/', '_');
@@ -85,14 +85,14 @@ camera::Camera PinholeCamera(int width, int height, double fov_deg) {
 }
 
 std::vector<View> ViewsOfPhotos(const survey::Survey& survey, const std::vector<std::string>& names, int width) {
-  if (width < 0) throw base::UsageError("width = " + std::to_string(width) + ": must be positive, or 0 for the photo's own");
+  if (width < 0) throw base::UsageError("width = " + std::to_string(width) + " is not allowed: it must be positive, or 0 for the size of the photo");
   std::vector<const survey::Photo*> photos;
   for (const std::string& name : names) photos.push_back(&FindPhoto(survey, name));
   if (names.empty()) {
     for (const survey::Photo& photo : survey.photos) {
       if (photo.is_test) photos.push_back(&photo);
     }
-    if (photos.empty()) throw base::UsageError("the survey holds out no photo; name the photos whose views to render");
+    if (photos.empty()) throw base::UsageError("the survey has no held-out photos; name the photos whose views to render");
   }
   std::vector<View> views;
   std::set<std::string> taken;
@@ -113,7 +113,7 @@ std::vector<View> BuiltInPath(const scene::SceneInfo& info, const ProductOptions
   const auto frames = static_cast<size_t>(std::max(1L, std::lround(options.video_seconds * options.video_fps)));
   const Eigen::Vector3d extent = info.max_enu - info.min_enu;
   Eigen::Vector3d centre = 0.5 * (info.min_enu + info.max_enu);
-  // The lower third: ground and low roofs, not the air beside a tower.
+  // Aim at the lower third of the height range, where ground and low roofs are.
   centre.z() = info.min_enu.z() + extent.z() / 3.0;
   const double reach = 0.5 * extent.head<2>().minCoeff();
   std::vector<View> views;

@@ -1,4 +1,4 @@
-// Where the camera stands for pictures and videos: at the survey's photos, along a file, or on a built-in path.
+// Camera poses of images and videos to render: those of the survey's photos, those of a file, or a built-in path.
 // Angles in degrees: yaw clockwise from north (+y of ENU), pitch 0 level and -90 straight down, roll positive with the right side down.
 #pragma once
 
@@ -12,25 +12,25 @@
 
 namespace skyquilt::products {
 
-// A pose from angles about ENU axes.
+// Pose of a camera at `eye_enu` (metres) with these angles.
 geo::Rigid3d PoseFromAngles(const Eigen::Vector3d& eye_enu, double yaw_deg, double pitch_deg, double roll_deg);
-// Level horizon, looking at `target`; straight up or down looks with north up.
+// Pose of a camera at `eye_enu` that looks at `target_enu`, with a level horizon. When it looks straight up or down, north is up in the image.
 geo::Rigid3d PoseLookingAt(const Eigen::Vector3d& eye_enu, const Eigen::Vector3d& target_enu);
-// Pinhole without distortion. fov_deg across the width, (0, 180).
+// Pinhole camera without distortion. fov_deg: field of view across the width, in (0, 180).
 camera::Camera PinholeCamera(int width, int height, double fov_deg);
 
-// The poses of photos by name (or by their file name alone), all held-out ones when `names` is empty. Lens and aspect ratio are the photo's
-// own; width 0 keeps its size. Throws base::UsageError for an unknown name (with the nearest) or when nothing is held out.
+// Views of the named photos (names with or without folder); of all held-out photos when `names` is empty. Distortion and aspect ratio are those of
+// the photo; width 0 keeps its size. Throws base::UsageError for an unknown name (suggesting the nearest) or when no photo is held out.
 std::vector<View> ViewsOfPhotos(const survey::Survey& survey, const std::vector<std::string>& names, int width);
 
-// A JSON list, or {"views": [...], "frames_between": n}. Each entry: "position_enu": [x, y, z] or "longitude", "latitude", "height"
-// (ellipsoidal); "yaw", "pitch", "roll" (0 when left out); "fov" (60); "name". With frames_between > 0 the entries are key frames of a video:
-// positions follow a Catmull-Rom curve, orientations and fields of view are interpolated between neighbours.
-// Throws base::InputError naming the entry and key.
+// Reads views from a JSON file: a list, or {"views": [...], "frames_between": n}. Each entry: "position_enu": [x, y, z] or "longitude", "latitude",
+// "height" (ellipsoidal); "yaw", "pitch", "roll" (0 when left out); "fov" (60); "name". With frames_between > 0 the entries are key frames of a
+// video: positions follow a Catmull-Rom curve, orientations and fields of view are interpolated between neighbours. Throws base::InputError that
+// names the entry and the key.
 std::vector<View> LoadCameraPath(const std::filesystem::path& file, const scene::SceneInfo& info, int width, int height);
 
-// The built-in path options.video_path: "orbit" circles the scene's centre looking 50 degrees down; "flyover" crosses it from south-west to
-// north-east looking ahead and down. Both stay above the tallest box.
+// Frames of the built-in path options.video_path: "orbit" circles the scene's centre, looking 50 degrees down; "flyover" crosses the scene from
+// south-west to north-east, looking ahead and down. Both stay above the highest box.
 std::vector<View> BuiltInPath(const scene::SceneInfo& info, const ProductOptions& options);
 
 }  // namespace skyquilt::products

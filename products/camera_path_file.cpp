@@ -24,7 +24,7 @@ struct KeyFrame {
   std::string name;
 };
 
-// One entry of the file; every complaint names it.
+// One entry of the file. Every error message names it.
 class Entry {
  public:
   Entry(const std::filesystem::path& file, const Json& json, size_t index) : file_(file), json_(json), index_(index) {
@@ -33,7 +33,7 @@ class Entry {
     for (const auto& item : json.items()) {
       if (std::find(known.begin(), known.end(), item.key()) != known.end()) continue;
       const std::string nearest = config::Nearest(item.key(), known);
-      Refuse("has the unknown key \"" + item.key() + "\"" + (nearest.empty() ? "" : " (\"" + nearest + "\"?)"));
+      Refuse("has the unknown key \"" + item.key() + "\"" + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
     }
   }
   [[noreturn]] void Refuse(const std::string& found) const {
@@ -42,7 +42,7 @@ class Entry {
   }
   double Number(const std::string& key, std::optional<double> otherwise) const {
     if (!json_.contains(key)) {
-      if (!otherwise) Refuse("lacks \"" + key + "\"");
+      if (!otherwise) Refuse("has no \"" + key + "\"");
       return *otherwise;
     }
     if (!json_[key].is_number()) Refuse("has a \"" + key + "\" that is not a number");
@@ -60,12 +60,12 @@ class Entry {
     } else {
       const geo::Geodetic place{Number("latitude", {}), Number("longitude", {}), Number("height", {})};
       if (!frame) Refuse("is given by longitude and latitude, but the scene has no geo-reference");
-      if (!geo::IsValid(place)) Refuse("is not on Earth: latitude " + std::to_string(place.latitude_deg));
+      if (!geo::IsValid(place)) Refuse("has a position that is not on Earth: latitude " + std::to_string(place.latitude_deg));
       key.eye_enu = frame->EnuFromGeodetic(place);
     }
     key.rotation = PoseFromAngles(key.eye_enu, Number("yaw", 0.0), Number("pitch", 0.0), Number("roll", 0.0)).rotation;
     key.fov_deg = Number("fov", 60.0);
-    if (!(key.fov_deg > 0.0 && key.fov_deg < 180.0)) Refuse("has fov " + std::to_string(key.fov_deg) + "; it must lie between 0 and 180 degrees");
+    if (!(key.fov_deg > 0.0 && key.fov_deg < 180.0)) Refuse("has fov " + std::to_string(key.fov_deg) + "; it must be between 0 and 180 degrees");
     if (json_.contains("name")) {
       if (!json_["name"].is_string()) Refuse("has a \"name\" that is not a text");
       key.name = json_["name"].get<std::string>();
@@ -80,7 +80,7 @@ class Entry {
   size_t index_;
 };
 
-// Catmull and Rom 1974, uniform; runs through b at u = 0 and c at u = 1.
+// Point on a uniform Catmull-Rom curve (1974), at b for u = 0 and at c for u = 1.
 Eigen::Vector3d CatmullRom(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d, double u) {
   return 0.5 * (2.0 * b + u * (c - a) + u * u * (2.0 * a - 5.0 * b + 4.0 * c - d) + u * u * u * (3.0 * b - 3.0 * c + d - a));
 }
@@ -113,7 +113,9 @@ std::string NumberedName(size_t index) {
 }  // namespace
 
 std::vector<View> LoadCameraPath(const std::filesystem::path& file, const scene::SceneInfo& info, int width, int height) {
-  if (width <= 0 || height <= 0) throw base::UsageError("a picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+  if (width <= 0 || height <= 0)
+    throw base::UsageError("the image size " + std::to_string(width) + " x " + std::to_string(height) +
+                           " is not allowed: width and height must be positive");
   const Json root = Json::parse(base::ReadFile(file), nullptr, false);
   const bool is_object = root.is_object() && root.contains("views");
   const Json& list = is_object ? root["views"] : root;
@@ -138,7 +140,8 @@ std::vector<View> LoadCameraPath(const std::filesystem::path& file, const scene:
   for (const KeyFrame& key : Interpolate(keys, frames_between)) {
     View view;
     view.name = key.name.empty() ? NumberedName(views.size()) : key.name;
-    if (!taken.insert(view.name).second) throw base::InputError(file, "names two views \"" + view.name + "\"", "Give each its own name");
+    if (!taken.insert(view.name).second)
+      throw base::InputError(file, "has two views with the name \"" + view.name + "\"", "Give each view its own name");
     view.camera = PinholeCamera(width, height, key.fov_deg);
     view.cam_from_enu.rotation = key.rotation;
     view.cam_from_enu.translation = -(key.rotation * key.eye_enu);

@@ -13,7 +13,7 @@
 namespace skyquilt::products {
 namespace {
 
-constexpr int kLattice = 32;  // exact nodes along each side of a preview
+constexpr int kLattice = 32;  // exactly projected points per side, less one; linear in between
 
 // Cell coordinates in the map for each pixel of a preview over the scene's box.
 class CellLookup {
@@ -46,7 +46,7 @@ class CellLookup {
   std::vector<Eigen::Vector2d> nodes_;
 };
 
-// The pixel of the reduced map nearest to a cell of the full one; null outside.
+// The pixel of the reduced map at a cell of the full map; null outside.
 const float* Sample(const gis::ReducedRaster& raster, const Eigen::Vector2d& cell) {
   const double x = std::floor((cell.x() + 0.5) / raster.scale);
   const double y = std::floor((cell.y() + 0.5) / raster.scale_down);
@@ -66,7 +66,7 @@ image::Image8 OrthophotoPreview(const gis::ReducedRaster& raster, const CellLook
   return preview;
 }
 
-// Between the four nearest heights; a slope sampled pixel by pixel would show the raster's grid in the relief. NaN where the nearest is NaN.
+// Height interpolated between the four nearest pixels, because the relief would show the pixel grid otherwise. NaN where the nearest is NaN.
 float SmoothSample(const gis::ReducedRaster& raster, const Eigen::Vector2d& cell) {
   const float* nearest = Sample(raster, cell);
   if (nearest == nullptr) return std::numeric_limits<float>::quiet_NaN();
@@ -91,7 +91,7 @@ image::ImageF HeightPreview(const gis::ReducedRaster& raster, const CellLookup& 
   return preview;
 }
 
-// Central difference where both neighbours exist, one-sided at the rim of the data, 0 for a lone pixel.
+// Central difference; one-sided at the edge of the data, 0 for a pixel without neighbours.
 double Slope(const image::ImageF& height, int x, int y, int dx, int dy, double cell_m) {
   const auto at = [&](int px, int py) {
     const bool inside = px >= 0 && py >= 0 && px < height.width && py < height.height;

@@ -17,7 +17,7 @@ namespace {
 constexpr float kNoHeight = -9999.0F;
 constexpr size_t kBatchRays = 1 << 16;
 
-// Rows of both maps that are written together.
+// Consecutive rows of both maps, written together.
 struct Band {
   int first_row = 0;
   int n_rows = 0;
@@ -25,10 +25,10 @@ struct Band {
   std::vector<float> height;
 };
 
-// Where a ray's answer belongs.
+// Rays that wait to be rendered, and the cells their results belong to.
 struct Pending {
   std::vector<render::Ray> rays;
-  std::vector<size_t> cell;  // in the band
+  std::vector<size_t> cell;  // index in the band
   std::vector<double> start_height_m;
   std::vector<render::RayColor> colors;
 };
@@ -37,8 +37,8 @@ uint8_t ToByte(float display_value) {
   return static_cast<uint8_t>(std::lround(255.0F * std::clamp(display_value, 0.0F, 1.0F)));
 }
 
-// Returns the number of cells that got data.
-int64_t Answer(const RayCaster& caster, double min_opacity, Pending* pending, Band* band) {
+// Renders the waiting rays into the band. Returns the number of cells that got data.
+int64_t RenderPending(const RayCaster& caster, double min_opacity, Pending* pending, Band* band) {
   pending->colors.assign(pending->rays.size(), {});
   caster(pending->rays, pending->colors);
   int64_t filled = 0;
@@ -46,13 +46,13 @@ int64_t Answer(const RayCaster& caster, double min_opacity, Pending* pending, Ba
     const render::RayColor& color = pending->colors[i];
     if (!(static_cast<double>(color.opacity) >= min_opacity)) continue;
     const size_t cell = pending->cell[i];
-    // Colours come premultiplied; the map's alpha is all or nothing.
+    // Rendered colours are premultiplied by opacity; the map's alpha is 0 or 255.
     for (size_t c = 0; c < 3; ++c) {
       const float straight = color.rgb_srgb[c] / color.opacity;
       band->rgba[4 * cell + c] = std::isfinite(straight) ? ToByte(straight) : uint8_t{0};
     }
     band->rgba[4 * cell + 3] = 255;
-    // An opacity limit below one half can accept a ray without median depth.
+    // With min_opacity below one half a ray may have no median depth.
     const float depth = std::isfinite(color.depth_median) ? color.depth_median : color.depth;
     if (std::isfinite(depth)) band->height[cell] = static_cast<float>(pending->start_height_m[i] - static_cast<double>(depth));
     ++filled;
@@ -95,7 +95,8 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   if (!options.ortho && !options.dsm) return products;
   base::RequireWritableFolder(folder);
   const gis::MapGrid& grid = products.grid;
-  if (!grid.georeferenced) spdlog::warn("the survey has no geo-reference: orthophoto and surface model are in local coordinates, without CRS");
+  if (!grid.georeferenced)
+    spdlog::warn("the survey has no geo-reference, so orthophoto and surface model are in local coordinates without CRS; use photos with GPS tags");
   std::optional<gis::GeoTiffWriter> ortho;
   std::optional<gis::GeoTiffWriter> dsm;
   if (options.ortho) ortho.emplace(products.orthophoto = folder / "orthophoto.tif", OrthophotoSpec(grid));
@@ -120,11 +121,11 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
         pending.rays.push_back(row_rays.rays[i]);
         pending.cell.push_back(static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(row_rays.column[i]));
         pending.start_height_m.push_back(row_rays.start_height_m[i]);
-        if (pending.rays.size() == kBatchRays) filled += Answer(caster, options.min_opacity, &pending, &band);
+        if (pending.rays.size() == kBatchRays) filled += RenderPending(caster, options.min_opacity, &pending, &band);
       }
       progress.Update(static_cast<double>(band.first_row + row) * grid.width);
     }
-    filled += Answer(caster, options.min_opacity, &pending, &band);
+    filled += RenderPending(caster, options.min_opacity, &pending, &band);
     if (ortho) ortho->WriteRows(band.first_row, band.n_rows, std::span<const uint8_t>(band.rgba));
     if (dsm) dsm->WriteRows(band.first_row, band.n_rows, std::span<const float>(band.height));
   }

@@ -1,9 +1,9 @@
-// Orthophoto and digital surface model in one pass over the map.
+// Makes the maps of a scene, orthophoto and digital surface model, by rendering one vertical ray per map cell. Files:
 //   orthophoto.tif  red, green, blue, alpha bytes (display values); alpha 0 where the scene has no surface
 //   dsm.tif         float32 ellipsoidal height (WGS84) of the surface in metres, local z without geo-reference; no data: -9999
 //   orthophoto.png, dsm.png   previews, north of the local frame up, white where there is no data; dsm.png is a shaded relief
 //   orthophoto.json           ENU bounds of both previews (min_enu, max_enu: x, y in metres), resolution and CRS of the maps
-// The surface is where a plumb ray's transmittance passes one half.
+// The surface is where the transmittance along the vertical ray falls below one half.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ namespace skyquilt::products {
 
 struct MapProducts {
   gis::MapGrid grid;
-  std::filesystem::path orthophoto;  // empty when not asked for
+  std::filesystem::path orthophoto;  // empty when not made; dsm likewise
   std::filesystem::path dsm;
-  double filled = 0.0;  // share of the cells inside the scene's box that have data
+  double filled = 0.0;  // share of the cells inside the scene's box that have data, 0..1
   int64_t rays = 0;
   double seconds = 0.0;
 };
 
-// Writes into `folder`, which is created. Deterministic. A scene without geo-reference gives files without CRS, with a warning.
-// Throws base::UsageError (see PlanMapGrid), base::InputError (disk) and base::Interrupted; a file is whole or absent.
+// Writes into `folder`, which is created. Deterministic. For a scene without geo-reference the files have no CRS, with a warning. Files are complete
+// or absent. Throws base::UsageError (see PlanMapGrid), base::InputError when a file cannot be written, and base::Interrupted.
 MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options,
                             const std::filesystem::path& folder);
 MapProducts MakeMapProducts(const scene::Scene& scene, const ProductOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads);

@@ -19,7 +19,7 @@ struct Extent {
   Eigen::Vector2d high = Eigen::Vector2d::Constant(-std::numeric_limits<double>::infinity());
 };
 
-// Edges of the box are curves on the map, so points along them count too.
+// Edges of the box are curves on the map, so points along the edges are needed too.
 Extent ProjectedExtent(const scene::SceneInfo& info, const MapProjection& projection) {
   constexpr int kSteps = 16;
   Extent extent;
@@ -38,7 +38,7 @@ Extent ProjectedExtent(const scene::SceneInfo& info, const MapProjection& projec
   return extent;
 }
 
-// Width and height as doubles: they may exceed any integer before the limit is checked.
+// Width and height in cells; as doubles, because they may be too large for integers before the limit is checked.
 Eigen::Array2d CellCounts(const Extent& extent, double resolution_m) {
   return (extent.high.array() / resolution_m).ceil() - (extent.low.array() / resolution_m).floor();
 }
@@ -72,10 +72,12 @@ gis::MapGrid PlanMapGrid(const scene::SceneInfo& info, const ProductOptions& opt
     if (!automatic) {
       throw base::UsageError("products.resolution_m = " + std::to_string(grid.resolution_m) + " gives a map of " + std::to_string(cells / 1e6) +
                              " million cells, more than products.max_pixels = " + std::to_string(options.max_pixels / 1e6) +
-                             " million; use at least " + std::to_string(fits) + " m or raise the limit");
+                             " million; set it to at least " + std::to_string(fits) + " m, or raise products.max_pixels");
     }
-    spdlog::warn("map products at {} m would have {:.3g} million cells, more than products.max_pixels; made at {} m instead", grid.resolution_m,
-                 cells / 1e6, fits);
+    spdlog::warn(
+        "maps with {} m per cell would have {:.3g} million cells, more than products.max_pixels; they are made with {} m instead. Raise "
+        "products.max_pixels for finer maps",
+        grid.resolution_m, cells / 1e6, fits);
     grid.resolution_m = fits;
   }
   const Eigen::Array2d counts = CellCounts(extent, grid.resolution_m);
@@ -94,7 +96,7 @@ MapProjection::MapProjection(const scene::SceneInfo& info, const gis::MapGrid& g
 
 MapProjection::PlumbLine MapProjection::LineAt(const Eigen::Vector2d& easting_northing) const {
   if (!grid_.georeferenced) return {{easting_northing.x(), easting_northing.y(), 0.0}, {0.0, 0.0, -1.0}};
-  // Height changes one to one along the ellipsoid's normal; a long base keeps the direction's rounding below 1e-9.
+  // The line is the ellipsoid's normal. Its direction is taken between points 1 km apart, so that rounding is below 1e-9.
   constexpr double kBase_m = 1000.0;
   geo::Geodetic place = geo::GeodeticFromUtm(easting_northing, start_height_m_, grid_.zone);
   const Eigen::Vector3d start = frame_->EnuFromGeodetic(place);
@@ -135,16 +137,16 @@ void MapRayMaker::MakeRow(int row, MapRays* out) const {
     };
     const Eigen::Vector3d start = blend(&MapProjection::PlumbLine::start_enu);
     const Eigen::Vector3d down = blend(&MapProjection::PlumbLine::down_enu).normalized();
-    // Where the line passes the middle of the scene: plumb lines lean over kilometres, and the scene's box is upright.
+    // The point of the line at the middle height of the scene, because over kilometres vertical lines are not parallel to ENU z.
     const double middle_z = 0.5 * (info_.min_enu.z() + info_.max_enu.z());
     const Eigen::Vector3d place = start + down * ((middle_z - start.z()) / down.z());
-    // Cells that the box's rim crosses belong to it too.
+    // Include cells that the edge of the box crosses.
     const double rim = 0.75 * grid_.resolution_m;
     if ((place.head<2>().array() < info_.min_enu.head<2>().array() - rim).any() ||
         (place.head<2>().array() > info_.max_enu.head<2>().array() + rim).any()) {
       continue;
     }
-    // Only the boxes over this place: the air between a low block's roof and a tall neighbour's is nobody's.
+    // Only the height range of the blocks at this cell, so that the ray does not pass space that no block was trained on.
     double top = -std::numeric_limits<double>::infinity();
     double bottom = std::numeric_limits<double>::infinity();
     for (const scene::SceneBlock& block : info_.blocks) {
@@ -165,7 +167,7 @@ void MapRayMaker::MakeRow(int row, MapRays* out) const {
     ray.origin_enu = start + s * down;
     ray.direction_enu = down;
     ray.t_far = length;
-    // A plumb ray sees a column, not a cone: half a cell at half its length.
+    // pixel_radius describes a cone, but a map cell is a column: make the cone's radius half a cell at half its length.
     ray.pixel_radius = static_cast<float>(grid_.resolution_m / std::max(length, grid_.resolution_m));
     out->rays.push_back(ray);
     out->column.push_back(column);

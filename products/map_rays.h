@@ -1,4 +1,5 @@
-// The raster of the map products: which cell lies where on Earth, and which ray looks straight down on it.
+// Geometry of the maps: the map grid in UTM, and for each cell the ray that looks straight down on it. Over kilometres these rays are not parallel in
+// ENU, so they are computed from the ellipsoid's normal.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,19 +14,19 @@
 
 namespace skyquilt::products {
 
-// The nearest of 1, 2, 5 times a power of ten (nearest as a ratio).
+// The nearest value 1, 2 or 5 times a power of ten, by ratio.
 double NiceResolution(double metres);
 
-// A grid over the scene's box. Throws base::UsageError when the requested resolution gives more than options.max_pixels cells (the message
-// names a resolution that fits); an automatic one is coarsened instead, with a warning.
+// A map grid that covers the scene's box. If it has more than options.max_pixels cells, an automatic resolution is made coarser, with a warning; a
+// requested one throws base::UsageError with a resolution that fits.
 gis::MapGrid PlanMapGrid(const scene::SceneInfo& info, const ProductOptions& options);
 
-// Between the grid and the survey's frame.
+// Converts between map coordinates (UTM, or local x, y without geo-reference) and the survey's ENU frame.
 class MapProjection {
  public:
   MapProjection(const scene::SceneInfo& info, const gis::MapGrid& grid);
 
-  // The plumb line of a place: points enu(s) = start + s * down, whose height is start_height_m - s to well under a millimetre.
+  // Vertical line at a position on the map: the points start + s * down, s in metres. Their height is start_height_m - s, to well below a millimetre.
   struct PlumbLine {
     Eigen::Vector3d start_enu;
     Eigen::Vector3d down_enu;  // length 1; the ellipsoid's inward normal
@@ -40,17 +41,18 @@ class MapProjection {
   std::optional<geo::EnuFrame> frame_;
 };
 
-// One ray per cell of a row that lies in the scene's box; rays start at the top of the boxes above the cell and end below them.
+// Rays of one map row, one per cell inside the scene's box. A ray begins at the top of the blocks at this cell and ends at their bottom.
 struct MapRays {
   std::vector<render::Ray> rays;
   std::vector<int> column;             // per ray
-  std::vector<double> start_height_m;  // height where the ray begins; the surface lies at start_height_m - depth
+  std::vector<double> start_height_m;  // height where the ray begins; the surface is at start_height_m - depth
 };
 
 class MapRayMaker {
  public:
   MapRayMaker(const scene::SceneInfo& info, const gis::MapGrid& grid);
-  // Replaces the content of `out`. Lines are exact on a lattice of at most 100 m and interpolated between: within a millimetre.
+  // Replaces the content of `out`. Lines are computed exactly on a lattice with at most 100 m spacing and interpolated between, which is correct to a
+  // millimetre.
   void MakeRow(int row, MapRays* out) const;
 
  private:

@@ -7,16 +7,18 @@ std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
   return {
       {"ortho", &O::ortho, Range(), "make the orthophoto"},
       {"dsm", &O::dsm, Range(), "make the digital surface model"},
-      {"resolution_m", &O::resolution_m, Range{0, 1e5}, "metres per cell of both; 0: the ground sampling distance, rounded"},
-      {"max_pixels", &O::max_pixels, Range{1, 1e11}, "largest map in cells; maps of automatic resolution are coarsened to fit"},
-      {"min_opacity", &O::min_opacity, Range{0.01, 0.99}, "cells whose ray stays more transparent than this have no data"},
-      {"preview_width", &O::preview_width, Range{16, 16384}, "pixels of the PNG previews"},
-      {"exposure", &O::exposure, Range(), "normal (one brightness everywhere), stops above it, -10..10, or the name of a photo to look like"},
-      {"video_path", &O::video_path, Range::OneOf({"orbit", "flyover"}), "how the camera of the video flies"},
-      {"video_seconds", &O::video_seconds, Range{0, 3600}, "length of the video; 0: none"},
-      {"video_fps", &O::video_fps, Range{1, 120}, "frames per second"},
-      {"video_width", &O::video_width, Range{16, 16384}.MultipleOf(2), "pixels; even, as H.264 asks"},
-      {"video_height", &O::video_height, Range{16, 16384}.MultipleOf(2), "pixels; even, as H.264 asks"},
+      {"resolution_m", &O::resolution_m, Range{0, 1e5}, "metres per cell of orthophoto and surface model; 0: the ground sampling distance, rounded"},
+      {"max_pixels", &O::max_pixels, Range{1, 1e11},
+       "most cells of a map; with resolution_m = 0 larger maps are made coarser, otherwise they are refused"},
+      {"min_opacity", &O::min_opacity, Range{0.01, 0.99}, "map cells with a lower opacity have no data"},
+      {"preview_width", &O::preview_width, Range{16, 16384}, "width of the PNG previews in pixels"},
+      {"exposure", &O::exposure, Range(),
+       "brightness of images, video and orthophoto: normal, stops above normal (-10..10), or the name of a photo whose brightness to use"},
+      {"video_path", &O::video_path, Range::OneOf({"orbit", "flyover"}), "camera path of the video: orbit circles the scene, flyover crosses it"},
+      {"video_seconds", &O::video_seconds, Range{0, 3600}, "length of the video in seconds; 0: no video"},
+      {"video_fps", &O::video_fps, Range{1, 120}, "frames per second of the video"},
+      {"video_width", &O::video_width, Range{16, 16384}.MultipleOf(2), "width of the video in pixels; even, as H.264 requires"},
+      {"video_height", &O::video_height, Range{16, 16384}.MultipleOf(2), "height of the video in pixels; even, as H.264 requires"},
   };
 }
 

@@ -25,15 +25,15 @@ scene::Appearance AppearanceOf(const std::string& exposure, const scene::SceneIn
   const auto parsed = std::from_chars(first, exposure.data() + exposure.size(), stops);
   if (parsed.ec == std::errc() && parsed.ptr == exposure.data() + exposure.size()) {
     if (!(std::abs(stops) <= kMostStops)) {
-      throw base::UsageError("an exposure of " + exposure + " stops cannot be: give a number from -10 to 10");
+      throw base::UsageError("exposure '" + exposure + "' is not allowed: give stops from -10 to 10");
     }
     appearance.log_gain.fill(static_cast<float>(stops * std::numbers::ln2));
     return appearance;
   }
   const std::optional<size_t> photo = info.response.Find(exposure);
   if (!photo) {
-    throw base::UsageError("the exposure '" + exposure + "' is neither 'normal' nor a number of stops nor the name of one photo of this survey" +
-                           (info.response.photos() == 0 ? " (this scene knows no photos: merge it again)" : ""));
+    throw base::UsageError("exposure '" + exposure + "' is not allowed: give 'normal', a number of stops, or the name of a photo of this survey" +
+                           (info.response.photos() == 0 ? " (this scene stores no photos: run `skyquilt merge` again)" : ""));
   }
   return {scene::Look::kRecorded, info.response.LogGain(*photo)};
 }

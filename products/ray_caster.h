@@ -1,4 +1,5 @@
-// How the products ask for colours and depths: a scene behind two small functions, so that anything that answers rays can be mapped.
+// Interface between products and renderer: functions that return the colours of rays or of a view. Products then work the same with a scene in
+// memory, with rendering on several ranks and with test scenes.
 #pragma once
 
 #include <functional>
@@ -13,25 +14,25 @@
 
 namespace skyquilt::products {
 
-// Answers any number of rays (ENU, metres); both spans have the same length. May throw base::Interrupted.
+// Renders any number of rays (ENU, metres); both spans have the same length. May throw base::Interrupted.
 using RayCaster = std::function<void(std::span<const render::Ray>, std::span<render::RayColor>)>;
 
 struct View {
-  std::string name;  // of the files it is written to, without extension
+  std::string name;  // of its image file, without extension
   camera::Camera camera;
   geo::Rigid3d cam_from_enu;
 };
 
-// All pixels of a view, row-major.
+// Renders all pixels of a view, row-major.
 using ViewRenderer = std::function<std::vector<render::RayColor>(const View&)>;
 
-// `exposure` as products.exposure: "normal", stops above it (linear light times 2^stops), or the name of a photo whose brightness and white
-// balance renderings take. Throws base::UsageError for anything else.
+// Reads an exposure like products.exposure: "normal", stops above normal (linear light times 2^stops), or the name of a photo whose brightness and
+// white balance to use. Throws base::UsageError for anything else.
 scene::Appearance AppearanceOf(const std::string& exposure, const scene::SceneInfo& info);
-// Both keep references to their arguments.
+// Renderers of a scene. Both keep references to scene and threads.
 RayCaster CasterOf(const scene::Scene& scene, const scene::Appearance& appearance, base::ThreadPool& threads);
 ViewRenderer RendererOf(const scene::Scene& scene, const scene::Appearance& appearance, base::ThreadPool& threads);
-// One ray through each pixel centre, in bands.
+// Renders one ray through each pixel centre, in batches.
 ViewRenderer RendererOf(RayCaster caster);
 
 }  // namespace skyquilt::products

@@ -13,7 +13,7 @@
 namespace skyquilt::products {
 namespace {
 
-// Renders and accounts for one view.
+// Renders one view and adds it to the statistics.
 std::vector<render::RayColor> Render(const ViewRenderer& renderer, const View& view, RenderStats* stats) {
   base::ThrowIfCancelled();
   const auto begin = std::chrono::steady_clock::now();

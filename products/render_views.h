@@ -1,4 +1,4 @@
-// Pictures and videos of a scene.
+// Renders images and videos of a scene to files.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,15 @@ struct RenderStats {
   double RaysPerSecond() const { return seconds > 0.0 ? static_cast<double>(rays) / seconds : 0.0; }
 };
 
-// <folder>/<name>.png: colours over black. <folder>/<name>_depth.tiff: float, metres along the ray (not along the optical axis) to where the
-// transmittance passes one half, NaN where it never does. The folder is created; existing files are replaced.
-// Throws base::InputError (disk) and base::Interrupted between views.
+// Writes <folder>/<name>.png (colours on black) and, if with_depth, <folder>/<name>_depth.tiff: float, metres along the ray (not along the optical
+// axis) to where the transmittance falls below one half, NaN where it never does. The folder is created; existing files are replaced. Throws
+// base::InputError when a file cannot be written, and base::Interrupted between views.
 RenderStats RenderViews(const ViewRenderer& renderer, const std::vector<View>& views, const std::filesystem::path& folder, bool with_depth);
 
-// An MP4, one frame per view. All views have the same even size (throws std::logic_error otherwise).
+// Writes an MP4 with one frame per view. Throws std::logic_error unless all views have the same size with even width and height.
 RenderStats RenderVideo(const ViewRenderer& renderer, const std::vector<View>& views, int fps, const std::filesystem::path& file);
 
+// Images of rendered pixels, row-major: display values on black; median depth in metres along the ray, NaN where there is none.
 image::Image8 ColorImage(const std::vector<render::RayColor>& colors, int width, int height);
 image::ImageF DepthImage(const std::vector<render::RayColor>& colors, int width, int height);
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kFfmpegFix = "Check free space and that ffmpeg has libx264";
 
-// ffmpeg that takes raw frames on its standard input. Nothing when there is no such program.
+// Starts an ffmpeg that reads raw frames from its standard input. Nothing when there is no such program.
 std::optional<base::ChildProcess> StartFfmpeg(const std::string& program, const std::filesystem::path& file, int width, int height, int fps) {
   const std::filesystem::path found = base::FindProgram(program);
   if (found.empty()) return std::nullopt;
@@ -29,17 +29,17 @@ std::optional<base::ChildProcess> StartFfmpeg(const std::string& program, const 
   try {
     return base::ChildProcess::StartWriting({found, arguments});
   } catch (const base::StartError& error) {
-    // As if it were not there: a script whose interpreter is missing, say.
+    // Treated as not installed; for instance a script whose interpreter is missing.
     if (error.missing() == base::StartError::Missing::kProgram && (error.code() == ENOENT || error.code() == EACCES)) return std::nullopt;
     const bool channel = error.missing() == base::StartError::Missing::kChannel;
-    throw base::InputError(file, channel ? "no socket for ffmpeg" : "ffmpeg cannot be started", error.what());
+    throw base::InputError(file, channel ? "cannot open a socket to ffmpeg" : "ffmpeg cannot be started", error.what());
   }
 }
 
-// Waits for its end. Empty when it went well, otherwise the reason.
+// Waits for ffmpeg to end. Returns the reason of a failure; empty when it succeeded.
 std::string WaitForEnd(base::ChildProcess& ffmpeg) {
   const base::ChildEnd end = ffmpeg.Wait();
-  return end.Text("ffmpeg") + (end.status == 0 ? "" : "; its own message stands above");
+  return end.Text("ffmpeg") + (end.status == 0 ? "" : "; see its own message above");
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int heigh
   SKYQUILT_CHECK(width > 0 && height > 0 && width % 2 == 0 && height % 2 == 0, std::to_string(width) + " x " + std::to_string(height));
   SKYQUILT_CHECK(fps > 0, std::to_string(fps));
   impl_->file = file;
-  // OpenCV picks the container by the extension.
+  // OpenCV chooses the container by the extension.
   impl_->partial = file;
   impl_->partial.replace_extension(".partial.mp4");
   impl_->width = width;
@@ -70,7 +70,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int heigh
     impl_->encoder = "ffmpeg libx264";
     return;
   }
-  spdlog::warn("the program ffmpeg is not installed; the video is written as MPEG-4 instead of H.264");
+  spdlog::warn("the program ffmpeg is not installed, so the video is written as MPEG-4 instead of H.264; install ffmpeg for H.264");
   impl_->encoder = "OpenCV mp4v";
   bool opened = false;
   try {
@@ -94,11 +94,11 @@ void VideoWriter::Write(const image::Image8& frame) {
                  std::to_string(frame.width) + " x " + std::to_string(frame.height));
   if (impl_->ffmpeg) {
     if (impl_->ffmpeg->Send(frame.data)) return;
-    // A signal to the group ends ffmpeg too.
+    // A signal to the process group ends ffmpeg too; then this is not an error.
     base::ThrowIfCancelled();
     throw base::InputError(impl_->file, "cannot be written: " + WaitForEnd(*impl_->ffmpeg), kFfmpegFix);
   }
-  // OpenCV's frames are blue, green, red.
+  // OpenCV expects blue, green, red.
   cv::Mat bgr(frame.height, frame.width, CV_8UC3);
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
@@ -123,7 +123,7 @@ void VideoWriter::Close() {
   }
   std::error_code error;
   std::filesystem::rename(impl_->partial, impl_->file, error);
-  if (error) throw base::InputError(impl_->file, "cannot be put in place: " + error.message(), "Check permissions of its folder");
+  if (error) throw base::InputError(impl_->file, "cannot be renamed from its temporary name: " + error.message(), "Check permissions of its folder");
   impl_->closed = true;
 }
 

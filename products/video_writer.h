@@ -1,4 +1,4 @@
-// MP4 from frames. H.264 through the ffmpeg program when it is installed, otherwise MPEG-4 through OpenCV.
+// Writes frames to an MP4 file: as H.264 by the ffmpeg program if it is installed, otherwise as MPEG-4 by OpenCV.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,14 @@ namespace skyquilt::products {
 
 class VideoWriter {
  public:
-  // Width and height even, fps > 0 (std::logic_error). `ffmpeg` is the program to run; a path that does not exist leads to OpenCV.
-  // Throws base::InputError when neither can write the file. Nothing is at `file` until Close.
+  // `ffmpeg`: the program to run; if it does not exist, OpenCV is used. Until Close nothing is written to `file` itself, only to a file beside it.
+  // Throws std::logic_error unless width and height are even and fps > 0, base::InputError when neither program can write the file.
   VideoWriter(const std::filesystem::path& file, int width, int height, int fps, const std::string& ffmpeg = "ffmpeg");
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
-  // RGB, of the size named above.
+  // Adds a frame: RGB, width x height. Throws base::InputError when ffmpeg fails.
   void Write(const image::Image8& frame);
   void Close();
   const std::string& encoder() const;  // "ffmpeg libx264" or "OpenCV mp4v"

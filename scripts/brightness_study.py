@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Measures what brightness correction recovers, on simulated surveys whose truth is known, and writes tables and pictures.
+"""Measures how well brightness correction works, on simulated surveys whose truth is known, and writes tables and images.
 
   scripts/brightness_study.py -o study
   scripts/brightness_study.py -o study --study exposure --steps 2000
   scripts/brightness_study.py -o study --skyquilt build/release/skyquilt --quick
 
 Studies: exposure (drift, jumps, wrong tags, no tags), hidden (under- and over-exposed surveys), light (brighter, darker and moved sun).
-Simulations and finished runs in the output folder are used again, so a stopped study goes on. Writes study.md, study.json and pictures.
-Needs python3-numpy and python3-pil. Every run has the same number of steps, so other work on the machine changes nothing but the time.
+Simulations and finished runs in the output folder are used again, so a stopped study resumes. Writes study_NAME.md, study_NAME.json and images.
+Needs python3-numpy and python3-pil. Every run has the same number of steps, so other work on the machine changes only the time.
 Exit status: 0 done, 1 skyquilt failed, 2 wrong usage or a missing module.
 """
 import argparse
@@ -28,7 +28,7 @@ except ImportError:
 STEADY = {"exposure_drift_stops": 0, "exposure_jumps_stops": 0}
 DRIFT = {"exposure_drift_stops": 1.5, "exposure_jumps_stops": 1.5}
 ROUGH = {"exposure_drift_stops": 1.0, "exposure_jumps_stops": 1.0, "exposure_error_stops": 0.3, "color_drift_stops": 0.2, "vignetting": 0.4}
-# The mean display value of the photos is then 0.40, what cameras aim at and what brightness.target_brightness has by default.
+# The photos then have a mean display value of 0.40, as usual for cameras; it is the default of brightness.target_brightness.
 NORMAL = {**STEADY, "exposure_offset_stops": -1.25}
 UNDER = {**STEADY, "exposure_offset_stops": -5.4}
 OVER = {**STEADY, "exposure_offset_stops": 1.08}
@@ -52,11 +52,11 @@ class Study:
             sys.exit(f"brightness_study: skyquilt {' '.join(map(str, command))}\n{done.stderr[-2000:]}")
         return done.stdout
 
-    def simulate(self, name, preset, options):
+    def simulate(self, name, place, options):
         folder = self.out / "sim" / name
         if not (folder / "simulate.json").exists():
             print(f"simulate {name}", flush=True)
-            self.call("simulate", preset, "-o", folder, "--quiet", *settings("simulate", options))
+            self.call("simulate", place, "-o", folder, "--quiet", *settings("simulate", options))
         return folder
 
     def run(self, name, survey, brightness, *extra):
@@ -74,7 +74,7 @@ class Study:
         return metrics
 
     def gain_error_stops(self, name, survey):
-        """Root mean square over photos and colours of recovered against true gains, common factor taken off; training photos, held-out ones."""
+        """RMS error of the recovered gains over photos and colours, without the common factor: (training photos, held-out photos)."""
         truth = {p["name"]: np.log2(p["light_rgb"]) for p in json.loads((survey / "truth" / "exposure.json").read_text())["photos"]}
         found = json.loads((self.out / "run" / name / "report" / "brightness.json").read_text())["photos"]
         rows = {False: [], True: []}
@@ -94,7 +94,7 @@ class Study:
         self.lines += ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
         self.lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
 
-    # Pictures of one held-out view, side by side.
+    # Images of one held-out view, side by side.
     def panel(self, file, pictures, width=480):
         tiles = []
         for picture in pictures:
@@ -108,7 +108,7 @@ class Study:
         sheet.save(self.out / file, quality=88)
 
     def view(self, name, photo, exposure="normal"):
-        """Picture of a photo's view as the scene shows it."""
+        """Image of the scene from the pose of a photo."""
         folder = self.out / "view" / name / exposure.replace("/", "_")
         file = folder / (Path(photo).stem + ".png")
         if not file.exists():
@@ -143,7 +143,7 @@ class Study:
                                     fixed / "images" / extreme])
 
     def equalised(self, survey, name):
-        """The same survey with every photo's histogram equalised, as people do before photogrammetry."""
+        """The same survey with every photo's histogram equalised, as is sometimes done before photogrammetry."""
         folder = self.out / "sim" / name
         if (folder / "simulate.json").exists():
             return folder
@@ -167,7 +167,7 @@ class Study:
             normal = ["--set", f"evaluate.normal_photos={truth}"]
             forms = [("no correction", "none", survey, "none", []), ("histogram equalisation", "equalised", equal, "none", []),
                      ("EXIF gain", "exif", survey, "exif", []),
-                     ("EXIF gain, raised by the true offset", "raised", survey, "exif", ["--set", f"evaluate.normal_stops={-offset}"]),
+                     ("EXIF gain, brightened by the true offset", "raised", survey, "exif", ["--set", f"evaluate.normal_stops={-offset}"]),
                      ("luminance, patches, gain", "luminance", survey, "exif,luminance", []),
                      ("luminance, random batch, gain", "luminance_batch", survey, "exif,luminance", ["--set", "brightness.luminance_neighbours=batch"]),
                      ("luminance, patches, product (eq. 13)", "luminance_product", survey, "exif,luminance",
@@ -182,7 +182,7 @@ class Study:
         self.table(["survey", "method", "PSNR against the normal photo (dB)", "SSIM", "PSNR against the photo as taken"], rows)
 
     def mixed(self, name, first, second):
-        """The first half of the flight in one light, the second in another; poses are the same."""
+        """The first half of the flight from one survey, the second half from another with the same poses and other light."""
         folder = self.out / "sim" / name
         if (folder / "simulate.json").exists():
             return folder
@@ -200,7 +200,7 @@ class Study:
         for factor in (1.0 / 3.0, 3.0):
             other = self.simulate(f"light_{factor:.2f}", "town", {**common, "light_intensity": factor})
             survey = self.mixed(f"mixed_light_{factor:.2f}", day, other)
-            # Gains have zero mean, so normal brightness lies halfway between the two lights.
+            # Gains have zero mean, so normal brightness is halfway between the two lights.
             halfway = ["--set", f"evaluate.normal_stops={-0.5 * np.log2(factor):.3f}"]
             for brightness in ("exif", "exif,gain"):
                 m = self.run(f"light_{factor:.2f}_{brightness.replace(',', '_')}", survey, brightness, *truth, *halfway)
@@ -214,7 +214,7 @@ class Study:
                          f"{m['psnr_right_half_fitted']:.2f}", f"{m['psnr_normal']:.2f}"])
         self.title("Light that changes during the flight")
         self.table(["survey (first half: light x 1, sun at 48 degrees)", "brightness", "held-out PSNR (dB)", "right half, gains fitted on the left",
-                    "shown against photos of the first light"], rows)
+                    "PSNR against photos of the first light"], rows)
         photo = sorted(p.name for p in (day / "images").glob("*.jpg"))[8]
         self.panel("light_sun.jpg", [self.out / "sim" / "sun_10" / "images" / photo, day / "images" / photo, self.view("sun_48_exif_gain", photo),
                                      self.view("sun_10_exif_gain", photo)])
@@ -225,13 +225,13 @@ def main():
     parser.add_argument("-o", "--out", required=True, help="folder for surveys, runs, tables and pictures")
     parser.add_argument("--skyquilt", default=shutil.which("skyquilt") or "build/release/skyquilt", help="the program")
     parser.add_argument("--study", choices=["exposure", "hidden", "light", "all"], default="all")
-    parser.add_argument("--steps", type=int, default=600, help="of every block's training; the context has half as many")
-    parser.add_argument("--quick", action="store_true", help="sixty steps: shows that everything works, not how well")
+    parser.add_argument("--steps", type=int, default=600, help="training steps of every block; the context has half as many")
+    parser.add_argument("--quick", action="store_true", help="only 60 steps: tests that everything runs, results mean nothing")
     args = parser.parse_args()
     if args.quick:
         args.steps = 60
     if not os.access(args.skyquilt, os.X_OK):
-        sys.exit(f"brightness_study: {args.skyquilt} cannot be run: build it (scripts/demo.sh does) or give --skyquilt")
+        sys.exit(f"brightness_study: {args.skyquilt} cannot be run: build it with scripts/demo.sh, or give --skyquilt")
     study = Study(args)
     for name in ["exposure", "hidden", "light"] if args.study == "all" else [args.study]:
         getattr(study, name)()

@@ -5,9 +5,9 @@
   /usr/bin/python3 scripts/compare_pytorch.py --skyquilt build/release/skyquilt
   /usr/bin/python3 scripts/compare_pytorch.py --threads 1 --batch 262144 --rounds 5
 
-Needs PyTorch. Debian: apt-get install python3-torch libopenblas0-pthread (without OpenBLAS its matrix products run on the
-unoptimised reference BLAS). With --skyquilt, `skyquilt bench kernel` runs on the same sizes and threads, one round after each round of
-PyTorch. Leave the machine alone meanwhile. Exit status: 0 done, 1 skyquilt failed, 2 wrong usage or no PyTorch.
+Needs PyTorch. Debian: apt-get install python3-torch libopenblas0-pthread (without OpenBLAS, matrix products use the slow
+reference BLAS). With --skyquilt, `skyquilt bench kernel` runs on the same sizes and threads, one round after each round of
+PyTorch. Do not use the machine meanwhile. Exit status: 0 done, 1 skyquilt failed, 2 wrong usage or no PyTorch.
 """
 import argparse
 import json
@@ -28,7 +28,7 @@ BASE_RESOLUTION = 16
 FINEST_RESOLUTION = 2048
 GEOMETRY = 16  # outputs of the density network
 SAMPLES_PER_RAY = 16
-HASH = (1, 2654435761 - 2**32, 805459861)  # as signed 32-bit numbers: the low bits that count are the same
+HASH = (1, 2654435761 - 2**32, 805459861)  # as signed 32-bit numbers; the low bits, which are used, are the same
 
 
 class Encoding:
@@ -54,7 +54,7 @@ class Encoding:
     def corners(position, level):
         """Entries and trilinear weights of the eight corners, both n x 8.
 
-        Worked out in rows of n and 32-bit integers, which is several times faster than n x 2 x 2 x 2 and 64 bits.
+        Computed in rows of n with 32-bit integers, which is several times faster than n x 2 x 2 x 2 with 64 bits.
         """
         resolution, factors, dense, entries = level
         scaled = position * resolution
@@ -71,10 +71,10 @@ class Encoding:
 
 if torch is not None:
     class Lookup(torch.autograd.Function):
-        """Weighted sum of eight table rows, in the quickest way found among embedding, embedding_bag, indexing and their backwards.
+        """Weighted sum of eight table rows, by the fastest of embedding, embedding_bag, indexing and their backward passes.
 
-        embedding_bag does not write the rows down in between. scatter_add_, feature by feature, adds their gradients several times faster
-        than what those functions do by themselves. Sparse gradients cost more yet: SparseAdam has to sort them.
+        embedding_bag does not store the rows in between. scatter_add_ per feature adds gradients several times faster than the backward
+        passes of these functions. Sparse gradients are slower still, because SparseAdam must sort them.
         """
 
         @staticmethod
@@ -125,18 +125,18 @@ class Field:
         self.parameters = self.encoding.tables + self.density.weights + self.color.weights
 
     def __call__(self, position, direction):
-        """Optical depth (rays x samples) and colour (rays x samples x 3); one direction per ray."""
+        """Optical depth tau (rays x samples) and colour (rays x samples x 3); one direction per ray."""
         geometry = self.density(self.encoding(position))
-        depth = torch.exp(geometry[:, 0] - 5)
+        tau = torch.exp(geometry[:, 0] - 5)
         harmonics = spherical_harmonics(direction)[:, None].expand(-1, SAMPLES_PER_RAY, -1).reshape(-1, 16)
         color = torch.sigmoid(self.color(torch.cat([geometry, harmonics], dim=1)))
-        return depth.view(-1, SAMPLES_PER_RAY), color.view(-1, SAMPLES_PER_RAY, 3)
+        return tau.view(-1, SAMPLES_PER_RAY), color.view(-1, SAMPLES_PER_RAY, 3)
 
 
-def composite(depth, color):
-    """Front to back before a black background."""
-    behind = torch.cumsum(depth, dim=1)
-    weight = torch.exp(depth - behind) - torch.exp(-behind)
+def composite(tau, color):
+    """Colour of each ray on a black background."""
+    tau_behind = torch.cumsum(tau, dim=1)
+    weight = torch.exp(tau - tau_behind) - torch.exp(-tau_behind)
     return (weight[:, :, None] * color).sum(dim=1)
 
 
@@ -159,7 +159,7 @@ class Bench:
         self.target = torch.rand(rays, 3)
         self.field = Field(options)
         self.optimizer = adam(self.field.parameters)
-        self.train()  # takes the memory that later steps use again
+        self.train()  # allocates the memory that later steps use again
         self.infer()
 
     def train(self):
@@ -169,12 +169,12 @@ class Bench:
         self.optimizer.step()
 
     def infer(self):
-        # Density and colour, as skyquilt's figure.
+        # Density and colour, like skyquilt's inference rate.
         with torch.inference_mode():
             self.field(self.position, self.direction)
 
     def rate(self, work, seconds):
-        """Samples per second over about so many seconds, one batch at least."""
+        """Samples per second, measured for about `seconds` and at least one batch."""
         start = time.perf_counter()
         batches = 0
         while batches == 0 or time.perf_counter() - start < seconds:
@@ -198,7 +198,7 @@ def skyquilt_rates(options):
         figures = json.loads(run.stdout)
         return figures["train_samples_per_second"], figures["infer_samples_per_second"]
     except (ValueError, KeyError):
-        sys.exit(f"compare_pytorch: {' '.join(command)} did not print the figures as JSON")
+        sys.exit(f"compare_pytorch: {' '.join(command)} did not print its results as JSON")
 
 
 def parse():
@@ -206,11 +206,11 @@ def parse():
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     parser.add_argument("--skyquilt", metavar="PROGRAM", help="compare with this skyquilt")
     parser.add_argument("--batch", type=int, default=65536, metavar="N", help="samples per step (default: %(default)s)")
-    parser.add_argument("--threads", type=int, default=cores, metavar="N", help="default: every core (%(default)s)")
-    parser.add_argument("--seconds", type=float, default=5.0, metavar="S", help="of training per round, inference half as long (default: %(default)s)")
-    parser.add_argument("--rounds", type=int, default=3, metavar="N", help="medians of so many (default: %(default)s)")
-    parser.add_argument("--levels", type=int, default=16, metavar="N", help="resolutions of the hash grid (default: %(default)s)")
-    parser.add_argument("--features", type=int, default=2, metavar="N", help="numbers per grid entry, 2 or 4 (default: %(default)s)")
+    parser.add_argument("--threads", type=int, default=cores, metavar="N", help="number of threads (default: all cores, %(default)s)")
+    parser.add_argument("--seconds", type=float, default=5.0, metavar="S", help="training time per round; inference takes half as long (default: %(default)s)")
+    parser.add_argument("--rounds", type=int, default=3, metavar="N", help="number of rounds to take the median of (default: %(default)s)")
+    parser.add_argument("--levels", type=int, default=16, metavar="N", help="resolution levels of the hash grid (default: %(default)s)")
+    parser.add_argument("--features", type=int, default=2, metavar="N", help="features per table entry, 2 or 4 (default: %(default)s)")
     parser.add_argument("--log2-table-size", type=int, default=19, metavar="N", help="entries per level, log2 (default: %(default)s)")
     parser.add_argument("--hidden", type=int, default=64, metavar="N", help="width of the hidden layers (default: %(default)s)")
     options = parser.parse_args()
@@ -232,7 +232,7 @@ def parse():
 def main():
     options = parse()
     if torch is None:
-        print(f"compare_pytorch: no PyTorch for {sys.executable}.\n"
+        print(f"compare_pytorch: PyTorch is not installed for {sys.executable}.\n"
               "Debian: apt-get install python3-torch libopenblas0-pthread, then /usr/bin/python3 scripts/compare_pytorch.py\n"
               "(a python3 of pyenv or conda does not see Debian's packages).", file=sys.stderr)
         return 2
@@ -244,7 +244,7 @@ def main():
             rounds["Skyquilt"].append(skyquilt_rates(options))
 
     print(f"{options.levels} levels x {options.features} features, 2^{options.log2_table_size} entries, {options.hidden}-wide networks, "
-          f"{options.batch} samples a batch, {options.threads} thread{'s' if options.threads > 1 else ''}, PyTorch {torch.__version__}")
+          f"{options.batch} samples per batch, {options.threads} thread{'s' if options.threads > 1 else ''}, PyTorch {torch.__version__}")
     print(f"Million samples per second, median of {options.rounds} round{'s' if options.rounds > 1 else ''} (slowest to fastest)")
     for column, what in enumerate(("training", "inference")):
         medians = {}

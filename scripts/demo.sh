@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The whole way on a simulated town: set-up, build, simulate, train, merge, map products, report.
+# Runs everything on a simulated town: set-up, build, simulate, train, merge, maps, report.
 #   scripts/demo.sh [FOLDER]             default folder: out/demo in the repository
-#   SKYQUILT_DEMO_BUDGET=10min scripts/demo.sh    another time for training (default 5min)
-# The same command again continues where it stopped and does nothing twice.
+#   SKYQUILT_DEMO_BUDGET=10min scripts/demo.sh    training time (default 5min)
+# If it was stopped, the same command resumes and repeats nothing.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -11,7 +11,7 @@ budget=${SKYQUILT_DEMO_BUDGET:-5min}
 cd "$root"
 
 times=()
-stage() {
+step() {
   local name=$1 start=$SECONDS
   shift
   echo "== $name"
@@ -45,10 +45,10 @@ PYTHON
 }
 
 skyquilt=build/release/skyquilt
-stage "set-up" scripts/setup.sh --run
-stage "build" build
-stage "simulate" "$skyquilt" simulate town -o "$out/simulated"
-stage "run ($budget of training)" "$skyquilt" run --place town -o "$out" --blocks 2x2 --time-budget "$budget"
+step "set-up" scripts/setup.sh --run
+step "build" build
+step "simulate" "$skyquilt" simulate town -o "$out/simulated"
+step "run ($budget of training)" "$skyquilt" run --place town -o "$out" --blocks 2x2 --time-budget "$budget"
 
 echo "== done"
 printf '%s\n' "${times[@]}"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Proves that nothing is lost: SIGKILLs of random ranks at random moments (inside checkpoint writes too), a full disk, a read-only folder and
-# damaged checkpoints, over small trainings. Each must go on and end bit-identical to an undisturbed one. About ten minutes.
+# Tests that no work is lost: small trainings are disturbed by SIGKILLs of random ranks at random moments (also during checkpoint writes), a full disk,
+# a read-only folder and damaged checkpoints. Each must resume and end bit-identical to an undisturbed training. Takes about ten minutes.
 #   scripts/fault_drill.sh [--kills 200] [--truncations 20] [--flips 100] [--seed 1]
-# SKYQUILT: the program (default: the release build, built if need be). The full disk is a small tmpfs: needs the right to mount, else skipped.
+# SKYQUILT: the program (default: the release build, built if missing). The full disk is a small tmpfs; this part is skipped without the right to mount.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

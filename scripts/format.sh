@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Formats all C++ files in place; with --check changes nothing and fails if a file is not formatted.
+# Formats all C++ files in place. With --check it changes nothing and fails if a file is not formatted.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

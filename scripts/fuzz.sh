@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Searches for inputs that break the readers: libFuzzer with address and undefined-behaviour sanitizers, memory and time per input bounded.
+# Searches for inputs that break the file readers: libFuzzer with address and undefined-behaviour sanitizers, and limits on memory and time per input.
 #   scripts/fuzz.sh [SECONDS] [TARGET...]      default: 60 seconds for each of colmap config blocks archive exif
-# Findings are kept as build/fuzz/findings/TARGET-*; one that is fixed belongs into tests/fuzz/corpus/TARGET, where the tests feed it for ever.
+# Findings are kept as build/fuzz/findings/TARGET-*. After a fix, copy the input to tests/fuzz/corpus/TARGET: the unit tests read all files there.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

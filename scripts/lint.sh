@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# clang-tidy with the checks of .clang-tidy over every compiled file. Needs a configured build without joined files (default: build/debug).
+# Runs clang-tidy with the checks of .clang-tidy on every compiled file. Needs a configured build with SKYQUILT_UNITY off (default: build/debug).
 #   scripts/lint.sh [FILE...]             only these files
 #   scripts/lint.sh --changed [BASE]      only files that differ from BASE, uncommitted and untracked ones too. BASE is any commit or branch;
 #                                         default: where this branch left origin/main, or else main

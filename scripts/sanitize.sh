@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Builds the program with sanitizers and runs its tests under them. Takes an hour or two on two cores.
+# Builds the program with sanitizers and runs its tests with them. Takes an hour or two on two cores.
 #   scripts/sanitize.sh [address|thread|all] [ctest options...]      default: all
-# address: memory errors, leaks and undefined behaviour (clang); thread: data races (gcc). What Open MPI itself leaves behind or hides from the
-# sanitizers is let pass: tests/support/lsan.supp, tests/support/tsan.supp.
+# address: memory errors, leaks and undefined behaviour (clang); thread: data races (gcc). Reports caused by Open MPI itself are suppressed, see
+# tests/support/lsan.supp and tests/support/tsan.supp.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

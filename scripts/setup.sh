@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Installs what building and running needs on Debian 12, and nothing that is there already.
-#   scripts/setup.sh         everything, tests and checks included
-#   scripts/setup.sh --run   only what the program itself needs
-#   scripts/setup.sh --fuzz  everything and clang, for scripts/fuzz.sh
-# SKYQUILT_SKIP_SETUP=1 skips it, for systems where the libraries come from elsewhere.
+# Installs the Debian 12 packages needed to build and run, except those already installed.
+#   scripts/setup.sh         everything, including tests and checks
+#   scripts/setup.sh --run   only what the program needs
+#   scripts/setup.sh --fuzz  everything plus clang, for scripts/fuzz.sh and scripts/sanitize.sh
+# SKYQUILT_SKIP_SETUP=1 skips it, for systems where the libraries are installed in another way.
 set -euo pipefail
 
 run_packages=(
@@ -28,7 +28,7 @@ fi
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   {
-    echo "setup: this system has no apt-get. Install what these Debian packages hold, then set SKYQUILT_SKIP_SETUP=1:"
+    echo "setup: this system has no apt-get. Install the contents of these Debian packages, then set SKYQUILT_SKIP_SETUP=1:"
     printf '  %s\n' "${wanted[@]}"
     echo "Needed versions: g++ 12, CMake 3.25, COLMAP 3.8, Embree 3, OpenCV 4.6, GDAL 3.6, or newer ones that are compatible."
   } >&2
@@ -45,7 +45,7 @@ if (( ${#missing[@]} > 0 )); then
   as_root=()
   if (( EUID != 0 )); then
     if ! command -v sudo >/dev/null; then
-      echo "setup: no sudo here. As root run: apt-get install --no-install-recommends ${missing[*]}" >&2
+      echo "setup: sudo is not installed. As root run: apt-get install --no-install-recommends ${missing[*]}" >&2
       exit 2
     fi
     as_root=(sudo)
@@ -54,4 +54,4 @@ if (( ${#missing[@]} > 0 )); then
   "${as_root[@]}" apt-get update -qq
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
 fi
-echo "setup: ${#wanted[@]} packages are there, ${#missing[@]} of them new, ${SECONDS} s"
+echo "setup: ${#wanted[@]} packages are installed, ${#missing[@]} of them new, ${SECONDS} s"

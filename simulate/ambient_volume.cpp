@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr size_t kDirections = 32;  // over the upper half of the sphere; what comes from below is the ground's mean light
+constexpr size_t kDirections = 32;  // over the upper half of the sphere; from below comes the ground's mean light
 static_assert(kDirections % raytrace::kPacket == 0);
 
 constexpr float kShare = 0.5F / static_cast<float>(kDirections);  // of the whole sphere
@@ -52,12 +52,12 @@ AmbientVolume::AmbientVolume(const Mesh& mesh, const raytrace::TracedScene& scen
     const auto row = static_cast<size_t>(task);
     raytrace::RayPacket rays;
     for (size_t i = 0; i < nx; ++i) {
-      // Off the lattice: grid planes should not coincide with walls.
+      // Slightly off the grid nodes, because walls may coincide with grid planes.
       const Vector3f place =
           min_ + voxel_m_ * Vector3f(static_cast<float>(i) + 0.013F, static_cast<float>(row % ny) + 0.017F, static_cast<float>(row / ny) + 0.11F);
       Node& node = node_[row * nx + i];
       int n_inside = 0;
-      // The lower half of the sphere, whole: mean of the directions there is half a unit down.
+      // The lower half of the sphere at once: the mean of its directions is (0, 0, -0.5).
       node.harmonics.col(0) = 0.5F * 0.85F * sky.ground_radiance();
       node.harmonics.col(3) = -0.25F * 3.0F * 0.85F * sky.ground_radiance();
       for (size_t begin = 0; begin < kDirections; begin += raytrace::kPacket) {
@@ -66,14 +66,14 @@ AmbientVolume::AmbientVolume(const Mesh& mesh, const raytrace::TracedScene& scen
         for (size_t lane = 0; lane < raytrace::kPacket; ++lane) {
           const Vector3f& d = directions[begin + lane];
           const uint32_t hit = rays.triangle[lane];
-          // Seeing the back of a closed surface means being inside it.
+          // A node that sees the back of a closed surface is inside it.
           if (hit != raytrace::kNoTriangle && mesh.FaceNormal(hit).dot(d) > 0.0F && mesh.tag[hit].part != Part::kLeaves) ++n_inside;
           const Vector3f light = hit == raytrace::kNoTriangle ? open_sky[begin + lane] : Vector3f(0.85F * sky.ground_radiance());
           node.harmonics.col(0) += light * kShare;
           node.harmonics.rightCols<3>() += light * d.transpose() * (3.0F * kShare);
         }
       }
-      // Nodes inside solids count only where a surface has no other neighbour.
+      // Nodes inside solids count only where all eight neighbours are inside.
       node.weight = n_inside > static_cast<int>(kDirections) / 4 ? 1e-4F : 1.0F;
     }
   });

@@ -1,5 +1,6 @@
-// Light of the sky and of the ground at every place, as a grid of first-order spherical harmonics (irradiance volume, Greger et al. 1998;
-// cosine convolution, Ramamoorthi and Hanrahan 2001). Computed once per world: smooth, the same from every photo, and cheap to look up.
+// Ambient light: what a surface receives from the sky and from the ground around it, without the sun. Stored as a grid of first-order spherical
+// harmonics, computed once per world and cheap to look up. Sources: irradiance volume, Greger et al. 1998; cosine convolution, Ramamoorthi and
+// Hanrahan 2001.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,14 +16,14 @@ namespace skyquilt::simulate {
 
 class AmbientVolume {
  public:
-  // Grid over the mesh's bounds with cells of voxel_m.
+  // Grid over the mesh's bounds with cells of voxel_m metres.
   AmbientVolume(const Mesh& mesh, const raytrace::TracedScene& scene, const Sky& sky, float voxel_m, base::ThreadPool& threads);
 
-  // Irradiance / pi from all but the sun on a surface with this normal; clamped to the grid outside.
+  // Ambient irradiance / pi on a surface at `position` (ENU metres) with this unit normal; outside the grid that of its border.
   Eigen::Vector3f Irradiance(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) const;
 
  private:
-  // Mean radiance and its slope along x, y, z, per colour; weight 0 inside solids.
+  // Mean radiance and its gradient along x, y, z, per colour; weight near 0 inside solids.
   struct Node {
     Eigen::Matrix<float, 3, 4> harmonics = Eigen::Matrix<float, 3, 4>::Zero();
     float weight = 0.0F;

@@ -16,7 +16,7 @@ constexpr float kFoundation = 1.5F;
 constexpr float kRoofOverhang = 0.4F;
 constexpr float kParapetThickness = 0.25F;
 
-// Places points given in the building's own axes.
+// Converts points from the building's own axes to ENU.
 class Placer {
  public:
   explicit Placer(const Building& b) {
@@ -83,7 +83,7 @@ void AddFlatRoof(const Building& b, const Placer& place, float hl, float hw, flo
   }
   if (b.kind == BuildingKind::kShed) return;
   const Tag box{Part::kRooftopBox, index};
-  // The stair housing and the machines stand off the centre, so that the deck's height can be measured there.
+  // Stair housing and machines are off the centre, so that the height of the deck can be measured there.
   mesh.AddBox(place(0.28F * hl + 1.6F, 0.3F * hw, deck), {1.7F, 1.5F, 0}, 2.4F, place.yaw(), box, box);
   const int n_units = 2 + static_cast<int>(HashCell(1, 0, b.seed) % 4U);
   for (int i = 0; i < n_units; ++i) {

@@ -1,4 +1,4 @@
-// A building of known size: what it is, and its triangles.
+// A building of a simulated place. Its sizes are known exactly, so that heights measured in a reconstruction can be checked against them.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,17 +26,17 @@ struct Building {
   double ground_z_m = 0.0;                           // ENU height of the ground at the centre
   uint32_t seed = 0;
 
-  // Unit vector of the length axis on the map.
+  // Unit vector of the length axis, east and north.
   Eigen::Vector2d Axis() const;
-  // ENU to the building's own axes: x along the length, y along the width, z above ground_z_m.
+  // A point in the building's own axes, metres: x along the length, y along the width, z above ground_z_m.
   Eigen::Vector3f Local(const Eigen::Vector3f& x_in_enu) const { return Local(x_in_enu, Axis().cast<float>()); }
-  // The same with Axis() at hand.
+  // The same for a caller that already has Axis().
   Eigen::Vector3f Local(const Eigen::Vector3f& x_in_enu, const Eigen::Vector2f& axis) const;
-  // Distance of a point on the map to the walls, metres; negative inside.
+  // Horizontal distance of a point (east, north) to the walls, metres; negative inside.
   double DistanceTo(const Eigen::Vector2d& point) const;
 };
 
-// Walls begin below the ground so that slopes leave no gap.
+// Adds the building's triangles, tagged with `index`. Walls start below ground_z_m, so that there is no gap on slopes.
 void AddBuilding(const Building& building, uint32_t index, Mesh& mesh);
 
 }  // namespace skyquilt::simulate

@@ -44,7 +44,7 @@ void Wall(const Building& b, const Eigen::Vector2f& axis, const Hit& hit, const 
   const uint32_t face = b.seed + (end_wall ? 5U : 9U);
   Vector3f color = Pick(kPlaster, 1, b.seed);
   color *= 1.0F + 0.06F * FractalNoise(s, z, {6.0F, 4, 0.5F}, face, w) + 0.05F * FractalNoise(4.0F * s, z, {5.0F, 2, 0.5F}, face + 50U, w);
-  // Splashed plinth.
+  // The foot of the wall is darkened by splashes.
   color *= 1.0F - 0.3F * Bar(z, -3.0F, 0.5F, w);
   const bool high = b.kind == BuildingKind::kTower || b.kind == BuildingKind::kApartment;
   const float storey = high ? 3.05F : 2.8F;
@@ -85,7 +85,7 @@ void Wall(const Building& b, const Eigen::Vector2f& axis, const Hit& hit, const 
 void PitchedRoof(const Building& b, const Eigen::Vector2f& axis, const Hit& hit, const Vector3f& local, Surface& surface) {
   const Eigen::Vector2f fall = hit.normal.head<2>();
   const bool hip_end = std::abs(fall.dot(axis)) > std::abs(fall.dot(Eigen::Vector2f(-axis.y(), axis.x())));
-  const float level = hip_end ? local.y() : local.x();  // along the tile rows
+  const float level = hip_end ? local.y() : local.x();  // position along the tile rows
   const float down = hip_end ? local.x() : local.y();
   const float w = SurfaceFootprint(hit);
   Vector3f color = Pick(kTiles, 2, b.seed);
@@ -126,7 +126,7 @@ void FlatRoof(const Building& b, const Hit& hit, const Vector3f& local, Surface&
   color *= 1.0F + 0.11F * FractalNoise(local.x(), local.y(), {7.0F, 5, 0.5F}, b.seed + 3U, w);
   const float seams = PulseTrain(local.x() / 3.0F, 0.05F, w / 3.0F) + 0.5F * PulseTrain(local.y() / 6.0F, 0.03F, w / 6.0F);
   color *= 1.0F - 0.25F * std::min(seams, 1.0F);
-  // Stains gather along the edges, puddles dry in the middle.
+  // Stains along the edges, dried puddles in the middle.
   const float edge =
       std::min(0.5F * static_cast<float>(b.length_m) - std::abs(local.x()), 0.5F * static_cast<float>(b.width_m) - std::abs(local.y()));
   color *= 1.0F - 0.25F * (1.0F - Smoothstep(0.2F, 1.5F, edge));

@@ -1,4 +1,4 @@
-// How buildings look: plaster with windows, tiles, gravel roofs.
+// Appearance of buildings: plaster with windows, tiled and gravel roofs.
 #pragma once
 
 #include "simulate/building.h"
@@ -6,7 +6,7 @@
 
 namespace skyquilt::simulate {
 
-// axis: building.Axis(), which costs too much to find again for every ray.
+// axis: building.Axis(), passed in because computing it for every ray is slow.
 Surface BuildingSurface(const Building& building, const Eigen::Vector2f& axis, const Hit& hit);
 
 }  // namespace skyquilt::simulate

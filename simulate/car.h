@@ -1,4 +1,4 @@
-// Cars: parked ones belong to the scenery, moving ones have a place per photo.
+// Cars: parked ones are part of the static scene, moving ones have another position in every photo.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ struct Car {
   uint32_t seed = 0;
 };
 
-// A section of lane driven at constant speed; past its end the car enters again at the start.
+// A car that drives along a section of lane at constant speed. At the end of the section it starts again at its beginning.
 struct MovingCar {
   Eigen::Vector2d start = Eigen::Vector2d::Zero();
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  // unit
@@ -25,9 +25,10 @@ struct MovingCar {
   double speed_mps = 8.0;
   uint32_t seed = 0;
 
-  Car At(double time_s) const;  // ground_z_m is left 0
+  Car At(double time_s) const;  // the caller must set ground_z_m
 };
 
+// Adds the car's triangles, tagged with `index`.
 void AddCar(const Car& car, uint32_t index, Mesh& mesh);
 
 }  // namespace skyquilt::simulate

@@ -1,4 +1,4 @@
-// What stands in a cell between streets: houses with gardens, slabs of flats, towers on a plaza, a park with a pond.
+// Fills a cell between streets with its contents: houses with gardens, blocks of flats, towers on a plaza, or a park with a pond.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -38,7 +38,7 @@ void FlatRoofed(Building& building, double height_m, double parapet_m) {
   building.parapet_height_m = parapet_m;
 }
 
-// `front` is +1 when the street lies towards +y of the lot, -1 otherwise.
+// `front`: +1 when the street is on the +y side of the lot, otherwise -1.
 void AddHouseLot(Cell& cell, double lot_x, double lot_width, double front, CityContents& contents, base::Random& random) {
   const double street_y = front > 0.0 ? cell.max.y() : cell.min.y();
   Building house;
@@ -215,7 +215,7 @@ bool TreeFits(const Tree& tree, const CityContents& contents, size_t first_build
 }
 
 void FurnishCell(const CityPlan& plan, Cell& cell, CityContents& contents, base::Random& random) {
-  // Beyond the built-up rectangle cells are meadows.
+  // Cells outside the built-up rectangle are meadows.
   const Vector2d middle = 0.5 * (cell.min + cell.max);
   if ((middle - plan.min).minCoeff() < -0.25 * plan.pitch_m || (plan.max - middle).minCoeff() < -0.25 * plan.pitch_m) cell.kind = CellKind::kField;
   switch (cell.kind) {

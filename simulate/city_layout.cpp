@@ -41,7 +41,7 @@ CityLayout::CityLayout(const CityPlan& plan, const Eigen::Vector2d& ground_min, 
 }
 
 void CityLayout::ChooseKinds(const CityPlan& plan, base::Random& random) {
-  // The middle of the city gets one cell of each rarer kind, so that every seed shows them all.
+  // The middle of the city gets one cell of each rarer kind, so that they exist for every seed.
   std::vector<size_t> by_distance(cells_.size());
   for (size_t i = 0; i < by_distance.size(); ++i) by_distance[i] = i;
   const Eigen::Vector2d middle = 0.5 * (plan.min + plan.max);
@@ -122,7 +122,7 @@ void CityLayout::AddFieldTrees(const CityPlan& plan, const Eigen::Vector2d& grou
     tree.conifer = random.UniformDouble() < 0.3;
     tree.seed = random.NextU32();
     const GroundSample ground = Sample(static_cast<float>(tree.position.x()), static_cast<float>(tree.position.y()));
-    // Groves: trees gather where a slow noise is high.
+    // Groves: more trees where a noise of long wavelength is high.
     const float grove = ValueNoise(static_cast<float>(tree.position.x()) / 35.0F, static_cast<float>(tree.position.y()) / 35.0F, 77U);
     if (ground.kind == GroundKind::kField && grove > 0.1F) contents_.trees.push_back(tree);
   }

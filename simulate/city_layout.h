@@ -1,4 +1,5 @@
-// A city on the map: a grid of streets, cells between them, and what stands in each cell. Heights come later, from the terrain.
+// Plan of a simulated city: a grid of streets, the cells between them, and the contents of each cell. East and north only; heights are added later,
+// from the terrain.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,14 +37,14 @@ struct Cell {
   Eigen::Vector2d min = Eigen::Vector2d::Zero();  // inside the pavements, ENU metres
   Eigen::Vector2d max = Eigen::Vector2d::Zero();
   std::vector<Pad> pads;
-  float lot_pitch_m = 1e6F;  // gardens change colour every so far along east
+  float lot_pitch_m = 1e6F;  // width of a garden along east
 };
 
 struct Pond {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Eigen::Vector2d radii = Eigen::Vector2d::Ones();
   double level_z_m = 0.0;
-  // 1 at the shore, 0 at the centre.
+  // Relative distance from the centre: 0 at the centre, 1 at the shore.
   double Radius(double east, double north) const { return std::hypot((east - centre.x()) / radii.x(), (north - centre.y()) / radii.y()); }
 };
 
@@ -59,6 +60,7 @@ constexpr float kPavementWidth = 2.2F;
 
 enum class GroundKind { kRoad, kPavement, kPad, kCell, kField };
 
+// What the ground is at a point.
 struct GroundSample {
   GroundKind kind = GroundKind::kField;
   float across = 0.0F;       // roads: signed distance to the centre line of the nearer street
@@ -77,7 +79,7 @@ class CityLayout {
   GroundSample Sample(float east, float north) const;
   const CityContents& contents() const { return contents_; }
   CityContents& contents() { return contents_; }
-  // Cars on lanes of streets that cross the rectangle, spread by the generator.
+  // `count` cars at random positions on lanes of the streets that cross the rectangle.
   std::vector<MovingCar> MakeMovingCars(int count, const Eigen::Vector2d& min, const Eigen::Vector2d& max, base::Random& random) const;
 
  private:
@@ -93,9 +95,9 @@ class CityLayout {
   CityContents contents_;
 };
 
-// Fills one cell. Buildings keep clear of each other and trees of buildings.
+// Fills one cell with buildings, trees, cars and pads. Buildings do not overlap each other, and trees do not overlap buildings.
 void FurnishCell(const CityPlan& plan, Cell& cell, CityContents& contents, base::Random& random);
-// False when the crown would touch a building or stand in a pond.
+// False when the crown would touch a building or the tree would be in a pond. Only buildings from index `first_building` on are checked.
 bool TreeFits(const Tree& tree, const CityContents& contents, size_t first_building);
 
 }  // namespace skyquilt::simulate

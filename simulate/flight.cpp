@@ -32,7 +32,7 @@ struct Station {
   int line;
 };
 
-// Positions with exactly this spacing, centred on [low, high].
+// Positions with this spacing, centred on [low, high]; they may extend a little beyond it.
 std::vector<double> Spread(double low, double high, double spacing) {
   const int n = std::max(1, static_cast<int>(std::lround((high - low) / spacing)) + 1);
   std::vector<double> at;
@@ -55,7 +55,7 @@ void AddNadirLines(const PlaceSpec& place, const Vector2d& min, const Vector2d& 
   }
 }
 
-// Along the edges, looking inwards; the optical axis meets the ground a quarter of the way into the area.
+// Along the edges, looking inwards; the optical axis hits the ground a quarter of the way into the area.
 void AddObliqueLines(const PlaceSpec& place, double altitude_m, int* line, std::vector<Station>* stations) {
   const double slant = altitude_m / std::sin(Radians(-kObliquePitch_deg));
   const double spacing = slant * place.camera.width / place.camera.FocalX() * (1.0 - place.oblique_overlap);
@@ -99,13 +99,13 @@ std::vector<Station> PlanStations(const PlaceSpec& place) {
   return stations;
 }
 
-// In [-1, 1], over some ten photos from one side to the other.
-double Wander(size_t photo, uint32_t noise_seed) {
+// Slow noise in [-1, 1], independent after about ten photos.
+double SlowNoise(size_t photo, uint32_t noise_seed) {
   const auto noise = static_cast<double>(ValueNoise(static_cast<float>(photo) / 9.0F, 0.5F, noise_seed));
   return std::clamp(1.5 * noise, -1.0, 1.0);
 }
 
-// Stops relative to the survey's exposure for every photo: a slow wander and steps now and then.
+// Stops relative to the survey's exposure for every photo: a slow drift plus a jump every few photos.
 std::vector<double> ExposureStops(const PlaceSpec& place, size_t n_photos) {
   base::Random random(place.seed, 51);
   const auto noise_seed = random.NextU32();
@@ -117,7 +117,7 @@ std::vector<double> ExposureStops(const PlaceSpec& place, size_t n_photos) {
       jump = random.Uniform(-1.0, 1.0);
       until_jump = 6 + static_cast<int>(random.Below(10));
     }
-    stops.push_back(place.exposure_drift_stops * Wander(i, noise_seed) + place.exposure_jumps_stops * jump);
+    stops.push_back(place.exposure_drift_stops * SlowNoise(i, noise_seed) + place.exposure_jumps_stops * jump);
   }
   return stops;
 }
@@ -126,7 +126,7 @@ void SetExposure(double stops, PhotoPlan& photo) {
   constexpr double kNormalTime_s = 1.0 / 800.0;
   photo.iso = stops > 1.0 ? 200.0 : 100.0;
   const double wanted = kNormalTime_s * std::exp2(stops) * 100.0 / photo.iso;
-  // Cameras tag exposure times as 1/n, long ones in hundredths of a second: the tag is then exact.
+  // Cameras tag short exposure times as 1/n and long ones in hundredths of a second. Rounding to these makes the tag exact.
   const double n = std::round(1.0 / wanted);
   photo.exposure_time_s = n >= 10.0 ? 1.0 / n : std::round(100.0 * wanted) / 100.0;
 }
@@ -135,7 +135,7 @@ double Exposure(const PhotoPlan& photo) {
   return photo.exposure_time_s * photo.iso / (100.0 * photo.f_number * photo.f_number);
 }
 
-// Gains from the settings, and what changes the light without the tags knowing.
+// Sets the gains by the camera's settings and the true gains, which include errors that no tag records.
 void SetLight(const PlaceSpec& place, std::vector<PhotoPlan>& photos) {
   std::vector<double> exposure;
   exposure.reserve(photos.size());
@@ -146,9 +146,9 @@ void SetLight(const PlaceSpec& place, std::vector<PhotoPlan>& photos) {
   for (size_t i = 0; i < photos.size(); ++i) {
     PhotoPlan& photo = photos[i];
     photo.gain = exposure[i] / median;
-    // Normal exposure is the median photo's without the offset.
+    // Normal exposure is that of the median photo without the offset.
     photo.development_gain = photo.gain * std::exp2(place.exposure_offset_stops + place.exposure_error_stops * random.Normal());
-    photo.color_drift_stops = place.color_drift_stops * Wander(i, color_seed);
+    photo.color_drift_stops = place.color_drift_stops * SlowNoise(i, color_seed);
   }
 }
 

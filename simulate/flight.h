@@ -1,4 +1,4 @@
-// Where the drone takes its photos, with which exposure, and what its tags say about both.
+// Plans the drone's photos: true poses, exposures, and the values written into the tags, which have errors as in a real survey.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ struct PhotoPlan {
   double yaw_deg = 0.0;       // gimbal, clockwise from north
   double pitch_deg = -90.0;   // -90: straight down
   double roll_deg = 0.0;
-  double relative_altitude_m = 0.0;                           // above the take-off point, as the barometer has it
+  double relative_altitude_m = 0.0;                           // above the take-off point, with the barometer's error
   Eigen::Vector3d tagged_position = Eigen::Vector3d::Zero();  // ENU metres, true position plus GPS noise
   double time_s = 0.0;                                        // since the first photo
   int line = 0;                                               // flight line; nadir lines come first
@@ -26,20 +26,20 @@ struct PhotoPlan {
   double exposure_time_s = 0.0;
   double f_number = 2.8;
   double iso = 100.0;
-  bool exposure_tagged = true;     // the three above stand in its tags
-  double gain = 1.0;               // of linear light by the three above, relative to the median photo
-  double development_gain = 1.0;   // of linear light as it really was, relative to normal exposure
-  double color_drift_stops = 0.0;  // of the white balance: red gets so much more, blue so much less
+  bool exposure_tagged = true;     // the photo's tags have the three values above
+  double gain = 1.0;               // factor on linear light by the three values above, relative to the median photo
+  double development_gain = 1.0;   // the true factor on linear light, relative to normal exposure
+  double color_drift_stops = 0.0;  // of the white balance: added to red, subtracted from blue
 };
 
-// Nadir lines run north and south with the wide side of the photo across them: one flight over the whole area when all altitudes agree,
-// otherwise one per block. Oblique lines follow. takeoff_z_m: ENU height of the ground the drone started from.
+// Nadir lines run north and south with the wide side of the photo across them: one flight over the whole area when all blocks have the same altitude,
+// otherwise one per block. Oblique lines follow. takeoff_z_m: ENU height of the ground at take-off.
 std::vector<PhotoPlan> PlanFlight(const PlaceSpec& place, double takeoff_z_m);
 
-// Factors on linear light that the photo really gets, relative to normal exposure: red, green, blue.
+// True factors on linear light relative to normal exposure: red, green, blue.
 std::array<double, 3> LightRgb(const PhotoPlan& photo);
 
-// cam_from_enu of a camera at `position` whose optical axis has this yaw (clockwise from north) and pitch; roll turns it about that axis.
+// cam_from_enu of a camera at `position` (ENU metres). Yaw is clockwise from north, pitch -90 looks straight down, roll turns about the optical axis.
 geo::Rigid3d PoseFromGimbal(const Eigen::Vector3d& position, double yaw_deg, double pitch_deg, double roll_deg);
 
 }  // namespace skyquilt::simulate

@@ -14,7 +14,7 @@ Vector3f Mix(const Vector3f& a, const Vector3f& b, float share) {
   return a + share * (b - a);
 }
 
-// Everything a ground colour depends on.
+// What the colour of the ground depends on.
 struct GroundPoint {
   float x, y, footprint;
   uint32_t seed;
@@ -44,7 +44,7 @@ Vector3f Road(const GroundSample& ground, const GroundPoint& at) {
   const float w = at.footprint;
   const float side = std::abs(ground.across);
   if (!ground.crossing) {
-    // Wheel tracks are worn bright, the strip between them is stained by oil.
+    // Worn bright in the wheel tracks, stained by oil between them.
     color *= 1.0F + 0.10F * (Bar(side, 0.9F, 1.5F, w) + Bar(side, 2.3F, 2.9F, w)) - 0.10F * Bar(side, 1.6F, 2.2F, w);
     const int patch = FloorInt(ground.along / 9.0F);
     if (HashUnit(patch, static_cast<int>(street), at.seed) < 0.16F) {
@@ -94,7 +94,7 @@ Vector3f Paved(const Pad& pad, const GroundPoint& at) {
   return Vector3f::Zero();
 }
 
-// Plots of farmland, turned against the streets.
+// Plots of farmland, at an angle to the streets.
 Vector3f Field(const GroundPoint& at) {
   const float u = 0.956F * at.x + 0.292F * at.y;
   const float v = -0.292F * at.x + 0.956F * at.y;

@@ -1,4 +1,5 @@
-// Triangles with normals and a tag that says what they are part of. ENU metres, float (a simulated survey spans a few kilometres at most).
+// Triangle mesh of a simulated place, with normals and a tag per triangle that says which part of which object it is. ENU metres in single precision,
+// as a simulated survey spans a few kilometres at most.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,12 +36,13 @@ struct Mesh {
   std::vector<std::array<uint32_t, 3>> triangle;  // counter-clockwise seen from outside
   std::vector<Tag> tag;                           // per triangle
 
-  // Flat faces get vertices of their own; corners counter-clockwise seen from outside.
+  // Flat faces, not sharing vertices with others; corners counter-clockwise seen from outside.
   void AddTriangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, Tag t);
   void AddQuad(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, const Eigen::Vector3f& d, Tag t);
-  // Sides and top of a box standing on z = low.z, turned by yaw (radians, counter-clockwise) about `centre`; half sizes along its own axes.
+  // Sides and top of a box whose bottom is centred on `centre_bottom`, turned by yaw (radians, counter-clockwise); half: half sizes along its own
+  // axes, z unused.
   void AddBox(const Eigen::Vector3f& centre_bottom, const Eigen::Vector3f& half, float height, float yaw, Tag sides, Tag top);
-  // Unit sphere from an icosahedron cut `subdivisions` times, every vertex moved by `place` (which gets the unit vector); smooth normals.
+  // Sphere from an icosahedron subdivided `subdivisions` times, with smooth normals. `place` maps each unit vector to the vertex position.
   template <typename Place>
   void AddSphere(int subdivisions, const Place& place, Tag t) {
     const Mesh& sphere = UnitSphere(subdivisions);

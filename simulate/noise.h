@@ -1,5 +1,5 @@
-// Value noise whose octaves fade out before they fall below the pixel footprint, so that textures never alias.
-// A pure function of position and seed: no state, the same on every thread.
+// Noise for procedural textures. Octaves finer than the pixel footprint fade out, so that textures do not alias. Pure functions of position and seed,
+// so the result does not depend on threads.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ inline float Smoothstep(float low, float high, float x) {
   return t * t * (3.0F - 2.0F * t);
 }
 
-// In [-1, 1], period of the lattice 1.
+// Value noise in [-1, 1] on a lattice with cells of size 1.
 inline float ValueNoise(float x, float y, uint32_t seed) {
   const int ix = FloorInt(x);
   const int iy = FloorInt(y);
@@ -50,11 +50,12 @@ inline float ValueNoise(float x, float y, uint32_t seed) {
 
 struct FractalShape {
   float wavelength_m = 10.0F;  // of the first octave
-  int octaves = 4;             // each half the wavelength of the one before
+  int octaves = 4;             // each has half the wavelength of the one before
   float persistence = 0.5F;    // amplitude of an octave relative to the one before; 0.5 is the 1/f of natural surfaces
 };
 
-// Sum of octaves, first amplitude 1; octaves with a wavelength under 4 footprints fade, under 2 they vanish. footprint in metres per pixel, 0: all.
+// Sum of octaves, the first with amplitude 1. Octaves with a wavelength below 4 footprints are reduced, below 2 left out. footprint: metres per
+// pixel; 0 keeps all octaves.
 inline float FractalNoise(float x, float y, const FractalShape& shape, uint32_t seed, float footprint) {
   float sum = 0.0F;
   float amplitude = 1.0F;
@@ -66,7 +67,7 @@ inline float FractalNoise(float x, float y, const FractalShape& shape, uint32_t 
     sum += amplitude * keep * ValueNoise(x * inverse, y * inverse, seed + static_cast<uint32_t>(octave));
     amplitude *= shape.persistence;
     wavelength *= 0.5F;
-    // Turning each octave hides the axes of the lattice.
+    // Each octave is rotated to hide the axes of the lattice.
     const float turned = 0.8F * x - 0.6F * y;
     y = 0.6F * x + 0.8F * y;
     x = turned;

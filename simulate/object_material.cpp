@@ -22,7 +22,7 @@ Surface TreeSurface(const Tree& tree, const Hit& hit) {
   const Vector3f dark(0.038F, 0.078F, 0.028F);
   Vector3f color = tree.conifer ? Vector3f(0.030F, 0.055F, 0.026F) : Vector3f(fresh + hue * (dark - fresh));
   if (!tree.conifer && HashUnit(2, 2, tree.seed) > 0.96F) color = Vector3f(0.10F, 0.045F, 0.035F);
-  // Leaf clusters: two crossed slices of noise stand in for noise in space.
+  // Leaf clusters: the sum of two slanted 2D noises replaces 3D noise.
   const float clusters = FractalNoise(p.x() + 0.6F * p.z(), p.y() - 0.5F * p.z(), {1.9F, 3, 0.6F}, tree.seed + 5U, w) +
                          0.5F * FractalNoise(p.x() - 0.7F * p.z(), p.y() + 0.8F * p.z(), {1.3F, 2, 0.6F}, tree.seed + 15U, w);
   surface.albedo = color * std::max(1.0F + 0.36F * clusters, 0.3F);

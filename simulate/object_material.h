@@ -1,4 +1,4 @@
-// How trees and cars look.
+// Appearance of trees and cars.
 #pragma once
 
 #include "simulate/car.h"

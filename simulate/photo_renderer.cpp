@@ -56,7 +56,7 @@ void PhotoRenderer::Trace(const Frame& frame, const MovingScene& moving, int til
 Vector3f PhotoRenderer::Shade(const Hit& hit, const Surface& surface, float sun_share) const {
   const Sky& sky = world_.sky();
   float cosine = surface.normal.dot(sky.sun_direction());
-  // Light shines through leaves.
+  // Leaves let light through, so their shading is softer.
   if (hit.tag.part == Part::kLeaves) cosine = (cosine + 0.3F) / 1.3F;
   const Vector3f light = sky.sun_over_pi() * (sun_share * std::max(cosine, 0.0F)) + world_.ambient().Irradiance(hit.position, surface.normal);
   Vector3f radiance = surface.albedo.cwiseProduct(light);
@@ -100,12 +100,12 @@ void PhotoRenderer::ShadeTile(const Frame& frame, const MovingScene& moving, int
     }
     Vector3f towards = sun;
     if (soft_shadows_) {
-      // Four places on the sun's disc, one for each sample of a 2 x 2 square.
+      // Each sample of a 2 x 2 square uses another point of the sun's disc.
       const float a = (lane % 2 == 0 ? 0.35F : -0.35F) + ((lane / 4) % 2 == 0 ? 0.35F : -0.35F);
       const float b = (lane % 2 == 0 ? 0.35F : -0.35F) - ((lane / 4) % 2 == 0 ? 0.35F : -0.35F);
       towards = (sun + kSunRadius_rad * (a * sun_right + b * sun_up)).normalized();
     }
-    // Crowns are coarse shells: their own triangles right above the hit cast no shadow on it.
+    // Crowns are coarse meshes: triangles closer than this to the hit cast no shadow on it.
     const float offset = hit.tag.part == Part::kLeaves ? 0.5F : 4e-3F;
     shadow.Set(lane, hit.position + 2e-3F * face, towards, offset, kFar);
   }

@@ -1,4 +1,4 @@
-// Renders what a camera of a simulated survey sees: linear colour, true depth, and where moving things are.
+// Renders the photos of a simulated survey by ray tracing: linear colour, true depth and a mask of moving cars.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@ namespace skyquilt::simulate {
 
 struct Rendering {
   image::ImageF rgb_linear;  // radiance before the photo's exposure
-  image::Image8 usable;      // 0 where a moving car or its shadow is seen, 255 elsewhere; empty when there is none
+  image::Image8 usable;      // mask: 0 on a moving car or its shadow, 255 elsewhere; empty when the photo shows none
 };
 
 class PhotoRenderer {
@@ -22,9 +22,9 @@ class PhotoRenderer {
   // samples_per_pixel 1, 4 or 16, on a regular grid. Holds references: world and camera must outlive it.
   PhotoRenderer(const World& world, const camera::Camera& camera, int samples_per_pixel, bool soft_shadows);
 
-  // The same picture for any number of threads.
+  // The same image for any number of threads.
   Rendering Render(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const;
-  // Metres along the camera's z axis at pixel centres, moving cars included; NaN where the sky is seen.
+  // Metres along the camera's z axis at pixel centres, moving cars included; NaN for sky.
   image::ImageF Depth(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const;
 
  private:

@@ -11,7 +11,7 @@
 namespace skyquilt::simulate {
 namespace {
 
-// At 13 stops below normal exposure the shutter time is 15 units of 1e-8 s, in which the tags are written.
+// Tags have shutter times in units of 1e-8 s. At 13 stops below normal exposure this is 15 units; less would be too coarse.
 constexpr double kMaxStops = 13.0;
 
 camera::Camera MakeCamera(camera::CameraModel model, int width, int height, double horizontal_fov_deg, const std::vector<double>& distortion) {
@@ -131,7 +131,7 @@ std::string Text(double value) {
   return out.str();
 }
 
-// Negative means "as the place has it".
+// A negative option keeps the place's value.
 void Overlay(double value, double& target) {
   if (value >= 0.0) target = value;
 }
@@ -141,7 +141,7 @@ void ApplyAltitudes(const std::vector<double>& altitudes, PlaceSpec& place) {
   const auto n_blocks = static_cast<size_t>(place.rows) * static_cast<size_t>(place.columns);
   if (altitudes.size() != 1 && altitudes.size() != n_blocks) {
     Refuse("altitudes", std::to_string(altitudes.size()) + " numbers",
-           "place '" + place.name + "' has " + std::to_string(n_blocks) + " blocks; give one altitude or " + std::to_string(n_blocks));
+           "place '" + place.name + "' has " + std::to_string(n_blocks) + " blocks; give 1 altitude or " + std::to_string(n_blocks));
   }
   place.altitudes_agl_m = altitudes;
   place.altitudes_agl_m.resize(n_blocks, altitudes.front());
@@ -154,7 +154,7 @@ void ApplyExposure(const SimulateOptions& options, PlaceSpec& place) {
   if (std::abs(place.exposure_offset_stops) + place.exposure_drift_stops + place.exposure_jumps_stops > kMaxStops) {
     Refuse("exposure_offset_stops", Text(place.exposure_offset_stops),
            "with exposure_drift_stops = " + Text(place.exposure_drift_stops) + " and exposure_jumps_stops = " + Text(place.exposure_jumps_stops) +
-               " photos would be more than " + Text(kMaxStops) + " stops from normal; give less of one of them");
+               " photos would be more than " + Text(kMaxStops) + " stops from normal exposure; lower one of the three");
   }
   place.exposure_error_stops = options.exposure_error_stops;
   place.color_drift_stops = options.color_drift_stops;
@@ -199,7 +199,7 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
   ApplyExposure(options, place);
   if (options.moving_cars >= 0) {
     if (place.landscape == Landscape::kTidalFlat && options.moving_cars > 0) {
-      Refuse("moving_cars", std::to_string(options.moving_cars), "place 'tidalflat' has no roads; give 0");
+      Refuse("moving_cars", std::to_string(options.moving_cars), "place 'tidalflat' has no roads; set it to 0");
     }
     place.moving_cars = options.moving_cars;
   }

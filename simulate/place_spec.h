@@ -1,4 +1,5 @@
-// The simulated places: numbers only. Options are laid over a place once, checked, and everything after works from the result.
+// Settings of the simulated places (hamlet, town, smallcity, tidalflat). ResolvePlace applies the user's options to them once; everything else reads
+// the result.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +13,7 @@
 namespace skyquilt::simulate {
 
 enum class Landscape { kCity, kTidalFlat };
-enum class ExposureTags { kAll, kNone, kHalf };  // kHalf: the first photo has them, the second has not, and so on
+enum class ExposureTags { kAll, kNone, kHalf };  // kHalf: every second photo has none, beginning with the second
 
 struct CityPlan {
   Eigen::Vector2d min = Eigen::Vector2d::Zero();  // built-up rectangle, ENU metres; fields beyond
@@ -22,7 +23,7 @@ struct CityPlan {
   double tower_share = 0.1;                         // of the cells between streets
   double flats_share = 0.2;
   double park_share = 0.1;
-  double lot_use = 0.95;  // share of house lots that are built on
+  double lot_use = 0.95;  // share of house lots with a house
   double trees = 1.0;     // density relative to the town
   int tree_detail = 2;    // subdivisions of each crown
 };
@@ -31,13 +32,13 @@ struct PlaceSpec {
   std::string name;
   Landscape landscape = Landscape::kCity;
   uint32_t seed = 1;
-  Eigen::Vector2d area_min = Eigen::Vector2d::Zero();  // what is surveyed and cut into blocks, ENU metres
+  Eigen::Vector2d area_min = Eigen::Vector2d::Zero();  // the surveyed area, ENU metres
   Eigen::Vector2d area_max = Eigen::Vector2d::Zero();
   double surround_m = 150.0;  // ground modelled beyond the area on every side
   double terrain_step_m = 2.0;
   double terrain_amplitude_m = 1.5;
   CityPlan city;
-  int rows = 2;
+  int rows = 2;  // of blocks
   int columns = 2;
   std::vector<double> altitudes_agl_m;  // rows * columns, row-major from the south-west
   double forward_overlap = 0.8;
@@ -59,10 +60,10 @@ struct PlaceSpec {
   double sun_azimuth_deg = 140.0;
   double sun_elevation_deg = 48.0;
   double ambient_voxel_m = 3.0;
-  double sky_clouds = 0.0;  // 0..1, contrast of the clouds that wet surfaces mirror
+  double sky_clouds = 0.0;  // 0..1, contrast of the clouds; photos see them mirrored by wet surfaces
 };
 
-// The place with the options laid over it. Throws base::UsageError naming the option, what was given and what is allowed.
+// The settings of options.place, changed by the other options. Throws base::UsageError that names the option, its value and what is allowed.
 PlaceSpec ResolvePlace(const SimulateOptions& options);
 
 }  // namespace skyquilt::simulate

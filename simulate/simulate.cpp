@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr int kSeedsPerPhoto = 170;
 constexpr const char* kStarted = "simulate.started";
 
-// Makes the folders; removes an earlier simulation, and nothing else.
+// Makes the folders. Removes an earlier simulation, but nothing else.
 void PrepareFolder(const fs::path& folder) {
   base::RequireWritableFolder(folder);
   const bool ours = fs::exists(folder / "simulate.json") || fs::exists(folder / kStarted);
@@ -31,7 +31,7 @@ void PrepareFolder(const fs::path& folder) {
     const fs::path part = folder / name;
     if (!fs::exists(part)) continue;
     if (!ours && !(fs::is_directory(part) && fs::is_empty(part))) {
-      throw base::InputError(part, "exists and was not made by simulate", "Choose an empty or new folder");
+      throw base::InputError(part, "exists and was not made by `skyquilt simulate`", "Give an empty or new folder");
     }
   }
   base::WriteFileAtomically(folder / kStarted, "");
@@ -47,7 +47,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   const PlaceSpec place = ResolvePlace(options);
   PrepareFolder(folder);
   const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
-  spdlog::info("simulate: building {}", place.name);
+  spdlog::info("simulate: building place {}", place.name);
   const World world(place, options.light_intensity, threads);
   const Eigen::Vector2f middle = (0.5 * (place.area_min + place.area_max)).cast<float>();
   const std::vector<PhotoPlan> photos = PlanFlight(place, static_cast<double>(world.terrain().Height(middle.x(), middle.y())));
@@ -91,7 +91,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   WriteSummary(folder, place, options, frame, photos.size());
   fs::remove(folder / kStarted);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  spdlog::info("simulate: {} photos ({} test views), {} points, {} buildings in {}", summary.n_photos, summary.n_test, summary.n_points,
+  spdlog::info("simulate: {} photos ({} test photos), {} points, {} buildings in {}", summary.n_photos, summary.n_test, summary.n_points,
                summary.n_buildings, base::FormatDuration(summary.seconds));
   return summary;
 }

@@ -1,9 +1,11 @@
-// `skyquilt simulate`: a drone survey of an invented place, with everything about it known.
-//   images/IMG_0001.jpg ...            photos with EXIF and XMP tags as a drone writes them
-//   sparse/0/{cameras,images,points3D}.txt   COLMAP model of the true poses; its frame is the ENU frame of the origin, metres
-//   truth/depth/<stem>.tiff            of the test views (every test_every-th in name order): metres along the camera's z, NaN = sky
-//   truth/masks/<name>.jpg.png         0 where a moving car or its shadow is seen; only photos that see one
-//   truth/exposure.json, truth/buildings.json
+// `skyquilt simulate`: makes the photos of a drone survey of an invented place, for tests and demonstrations. Poses, depth, brightness and buildings
+// are known exactly, so results can be compared with the truth. Written to the folder:
+//   images/IMG_0001.jpg ...            photos with EXIF and XMP tags like those of a drone
+//   sparse/0/{cameras,images,points3D}.txt   COLMAP model of the true poses in the ENU frame of the origin, metres
+//   truth/depth/<stem>.tiff            depth of the test photos (every test_every-th in name order): metres along the camera's z, NaN = sky
+//   truth/masks/<name>.jpg.png         0 on a moving car or its shadow; only for photos that show one
+//   truth/exposure.json                brightness of every photo
+//   truth/buildings.json               position and size of every building
 //   simulate.json                      place, origin, options, suggested blocks; written last
 #pragma once
 
@@ -25,12 +27,12 @@ struct SimulateSummary {
   double seconds = 0.0;
 };
 
-// hamlet, town, smallcity, tidalflat.
+// Allowed values of simulate.place: hamlet, town, smallcity, tidalflat.
 std::vector<std::string> PlaceNames();
 
-// Same options and seed: the same bytes, for any number of threads. A folder that holds an earlier simulation is written anew.
-// Throws base::UsageError for impossible options (names the option), base::InputError if the folder cannot be written or holds photos of
-// other origin, base::Interrupted.
+// The same options give the same bytes, for any number of threads. An earlier simulation in the folder is replaced.
+// Throws base::UsageError that names an option which cannot be used, base::InputError if the folder cannot be written or has images/, sparse/ or
+// truth/ from elsewhere, base::Interrupted.
 SimulateSummary Simulate(const SimulateOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads);
 
 }  // namespace skyquilt::simulate

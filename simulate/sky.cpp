@@ -27,7 +27,7 @@ Vector3f Sky::Radiance(const Vector3f& direction) const {
   const float up = std::sqrt(direction.z());
   Vector3f clear = Vector3f(0.46F, 0.52F, 0.60F) * (1.0F - up) + Vector3f(0.23F, 0.31F, 0.47F) * up;
   if (clouds_ > 0.0F) {
-    // Clouds on a flat ceiling.
+    // Clouds on a plane above the ground.
     const float scale = 1.0F / (direction.z() + 0.12F);
     const float cover = FractalNoise(direction.x() * scale, direction.y() * scale, {0.8F, 4, 0.5F}, seed_, 0.02F);
     const float share = clouds_ * Smoothstep(-0.1F, 0.7F, cover);

@@ -1,4 +1,4 @@
-// Sun and sky. Radiances are relative: a white surface square to the sun is about 1.2 in linear light.
+// Light of the sun and the sky in a simulated place. Radiances are relative: a white surface that faces the sun has about 1.2 in linear light.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,11 +12,11 @@ class Sky {
   Sky(double sun_azimuth_deg, double sun_elevation_deg, double intensity, double clouds, uint32_t seed);
 
   const Eigen::Vector3f& sun_direction() const { return sun_direction_; }      // towards the sun, unit
-  const Eigen::Vector3f& sun_over_pi() const { return sun_over_pi_; }          // irradiance square to the sun / pi
-  const Eigen::Vector3f& ground_radiance() const { return ground_radiance_; }  // mean light coming up from the ground
-  // Sky without the sun, below the horizon the ground's mean.
+  const Eigen::Vector3f& sun_over_pi() const { return sun_over_pi_; }          // irradiance / pi on a surface that faces the sun
+  const Eigen::Vector3f& ground_radiance() const { return ground_radiance_; }  // mean radiance of the ground
+  // Radiance from a unit direction without the sun; below the horizon the mean of the ground.
   Eigen::Vector3f Radiance(const Eigen::Vector3f& direction) const;
-  // What a smooth wet surface adds near the sun's mirror image.
+  // Extra radiance near the sun, as mirrored by a smooth wet surface.
   Eigen::Vector3f SunGlow(const Eigen::Vector3f& direction) const;
 
  private:

@@ -36,7 +36,7 @@ bool HitByMovingCar(const MovingScene& moving, const Vector3f& origin, const Vec
   return moving.scene.Occluded(ray) != 0;
 }
 
-// The fixed surface behind a pixel, when a feature could be found there.
+// The static surface at a pixel, if a feature could be found there.
 std::optional<Found> TraceSeed(const World& world, const MovingScene& moving, const camera::Camera& camera, const View& view,
                                const SurfaceSeed& seed) {
   const Vector3d direction = view.cam_from_enu.rotation.conjugate() * camera.RayFromImg({seed.x + 0.5, seed.y + 0.5});
@@ -96,7 +96,7 @@ std::vector<uint32_t> Track(const World& world, const std::vector<MovingScene>& 
 std::vector<SurfaceSeed> ChooseSeeds(const camera::Camera& camera, int photo, int count, uint32_t seed) {
   base::Random random(seed, 500000U + static_cast<uint64_t>(photo));
   std::vector<SurfaceSeed> seeds;
-  // One at random in each cell of a grid: even cover, as feature detectors are tuned to give.
+  // One random pixel per cell of a grid: evenly spread, as features of a detector are.
   const int columns = std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(count) * camera.width / camera.height))));
   const int rows = std::max(1, (count + columns - 1) / columns);
   for (int j = 0; j < rows; ++j) {
@@ -119,7 +119,7 @@ std::vector<survey::ColmapPoint> MakeSparsePoints(const World& world, const came
     views.push_back({photo.cam_from_enu, photo.cam_from_enu.OriginInSource(), photo.cam_from_enu.rotation.conjugate() * Vector3d::UnitZ()});
     moving.push_back(world.MovingAt(photo.time_s));
   }
-  // Nothing farther off the axis than the corners can be in a photo.
+  // A point farther from the optical axis than the image corners is not in the photo.
   double cos_half_view = 1.0;
   for (const double x : {0.0, static_cast<double>(camera.width)}) {
     for (const double y : {0.0, static_cast<double>(camera.height)}) cos_half_view = std::min(cos_half_view, camera.RayFromImg({x, y}).z());
@@ -135,7 +135,7 @@ std::vector<survey::ColmapPoint> MakeSparsePoints(const World& world, const came
     if (point.image_ids.size() < kMinTrack) return;
     base::Random random(seed, 900000U + static_cast<uint64_t>(task));
     point.error_px = std::clamp(0.4 + 0.08 * random.Normal(), 0.15, 0.9);
-    // Errors of many views average out; along the line of sight they are worse.
+    // More views give smaller errors; along the viewing direction they are larger.
     const double gsd = (views[photo].centre - found->position.cast<double>()).norm() / camera.FocalX();
     const double sigma = 0.5 * point.error_px * gsd / std::sqrt(static_cast<double>(point.image_ids.size()));
     const Vector3d error(sigma * random.Normal(), sigma * random.Normal(), 2.0 * sigma * random.Normal());

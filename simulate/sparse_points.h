@@ -1,4 +1,5 @@
-// Sparse points as structure from motion would have found them: surface points seen unoccluded by at least three photos, with small errors.
+// Makes the sparse points of a simulated survey, like those of structure from motion: surface points seen by at least three photos, with small
+// errors.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,6 +15,7 @@
 
 namespace skyquilt::simulate {
 
+// A pixel at whose surface a sparse point is tried.
 struct SurfaceSeed {
   int photo = 0;  // index of the photo it was found in
   int x = 0;      // pixel there
@@ -21,11 +23,11 @@ struct SurfaceSeed {
   std::array<uint8_t, 3> rgb{};
 };
 
-// Pixels of one photo at which to look for points, spread over it; colours are the caller's to fill in.
+// About `count` pixels spread evenly over a photo. The caller fills in their colours.
 std::vector<SurfaceSeed> ChooseSeeds(const camera::Camera& camera, int photo, int count, uint32_t seed);
 
-// Traces the seeds to the fixed scenery (water, leaves at grazing angles and moving cars are left out), finds the photos that see them and keeps
-// those with three or more. Image ids are index + 1. Points are off by about error_px pixels' worth of ground.
+// Traces each seed to the static scene (not on water, moving cars and at grazing angles), finds the photos that see the point, and keeps points seen
+// by three or more. Image ids are index + 1. Position errors follow from error_px and the ground sampling distance.
 std::vector<survey::ColmapPoint> MakeSparsePoints(const World& world, const camera::Camera& camera, const std::vector<PhotoPlan>& photos,
                                                   const std::vector<SurfaceSeed>& seeds, uint32_t seed, base::ThreadPool& threads);
 

@@ -17,10 +17,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kFirstPhoto_s = 1777888800.0;  // 2026-05-04 10:00:00 on the camera's clock
-// So bright that grass in the sun comes out in the middle of the scale.
+// With this factor, grass in the sun gets a medium brightness.
 constexpr float kNormalExposure = 1.35F;
 
-// The options as they were given, for the record.
+// The options as the user gave them.
 Json OptionsJson(SimulateOptions options) {
   Json json = Json::object();
   for (const config::Option& option : config::OptionsOf(options)) {
@@ -36,7 +36,7 @@ double Rounded(double value, double unit) {
 }  // namespace
 
 image::Image8 Develop(const image::ImageF& rgb_linear, const Development& development) {
-  // 8-bit values by table: finer than one step of sRGB at its steepest.
+  // Table from linear light to 8-bit sRGB, fine enough where sRGB is steepest.
   constexpr size_t kTableSize = 1U << 15U;
   static const std::array<uint8_t, kTableSize + 1> table = [] {
     std::array<uint8_t, kTableSize + 1> made{};
@@ -54,7 +54,7 @@ image::Image8 Develop(const image::ImageF& rgb_linear, const Development& develo
   for (int y = 0; y < out.height; ++y) {
     for (int x = 0; x < out.width; ++x) {
       const double distance2 = (Eigen::Vector2d(x + 0.5, y + 0.5) - centre).squaredNorm();
-      // Exactly 1 without vignetting.
+      // Exactly 1 when there is no vignetting.
       const auto vignetting = static_cast<float>(std::exp(log_per_px2 * distance2));
       const float* light = rgb_linear.At(x, y);
       uint8_t* stored = out.At(x, y);
@@ -110,10 +110,10 @@ void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<P
   }
   const Json json = {
       {"about",
-       "gain: factor on linear light by the photo's settings relative to the median photo, t * ISO / (100 N^2); light_rgb: factors on linear red, "
-       "green and blue light that the photo really got relative to normal exposure, with the survey's exposure offset and what no tag tells, "
-       "brightness errors and colour drift; vignetting: share of light lost in the corner farthest from the principal point, elsewhere the factor "
-       "is exp(log(1 - vignetting) r^2), r the distance from the principal point over that corner's"},
+       "gain: factor on linear light by the photo's settings, t * ISO / (100 N^2), relative to the median photo; light_rgb: true factors on linear "
+       "red, green and blue light relative to normal exposure, including the exposure offset and the brightness errors and colour drift that no tag "
+       "records; vignetting: fraction of light lost in the corner farthest from the principal point; the factor is exp(log(1 - vignetting) r^2) "
+       "where r is the distance from the principal point, 1 at that corner"},
       {"vignetting", place.vignetting},
       {"photos", list}};
   base::WriteFileAtomically(folder / "truth" / "exposure.json", json.dump(1) + "\n");
@@ -145,7 +145,7 @@ void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<B
   const Json json = {
       {"about",
        "ENU metres about the survey's origin; heights above ground_z_m (ground at the centre); yaw of the length axis counter-clockwise "
-       "from east; flat roofs: eave = ridge = roof deck, the parapet stands above it"},
+       "from east; flat roofs: eave = ridge = roof deck, the parapet is above it"},
       {"buildings", list}};
   base::WriteFileAtomically(folder / "truth" / "buildings.json", json.dump(1) + "\n");
 }

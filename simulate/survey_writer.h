@@ -1,4 +1,4 @@
-// The files of a simulated survey: photos as a drone leaves them, the COLMAP model of the true poses, and the truth beside them.
+// Writes the files of a simulated survey: photos like those of a drone, the COLMAP model of the true poses, and the truth (see simulate.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,17 +16,17 @@
 
 namespace skyquilt::simulate {
 
-// What happens to linear light between scene and stored pixel.
+// How a camera turns linear light into stored pixels.
 struct Development {
   std::array<double, 3> gain = {1.0, 1.0, 1.0};               // red, green, blue, relative to normal exposure
-  double vignetting = 0.0;                                    // share of light lost in the farthest corner, 0 to below 1
+  double vignetting = 0.0;                                    // fraction of light lost in the farthest corner, 0 to below 1
   Eigen::Vector2d principal_point = Eigen::Vector2d::Zero();  // pixels, the centre of the vignetting
 };
 
-// Linear light times gain, fading towards the corners as exp(log(1 - vignetting) r^2), r = distance from the principal point over that of the
-// farthest corner; clipped, to sRGB.
+// Linear light times gain times vignetting, clipped to [0, 1] and converted to sRGB. Vignetting is exp(log(1 - vignetting) r^2), where r is the
+// distance from the principal point, 1 at the farthest corner.
 image::Image8 Develop(const image::ImageF& rgb_linear, const Development& development);
-// images/<name> with EXIF and XMP; exposure tags only where the plan has them.
+// images/<name> with EXIF and XMP tags; exposure tags only if photo.exposure_tagged.
 void WritePhoto(const std::filesystem::path& folder, const PhotoPlan& photo, const image::Image8& pixels, const camera::Camera& camera,
                 const geo::EnuFrame& frame, int jpeg_quality);
 // sparse/0: cameras, images and points3D as text; image ids are index + 1.
@@ -37,7 +37,7 @@ void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<P
 // truth/buildings.json
 void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<Building>& buildings, const PlaceSpec& place,
                         const geo::EnuFrame& frame);
-// simulate.json: what was made and the suggested blocks. Its presence says that the survey is complete.
+// simulate.json: options, origin and suggested blocks. Written last, so it exists only when the survey is complete.
 void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, const SimulateOptions& options, const geo::EnuFrame& frame,
                   size_t n_photos);
 

@@ -1,4 +1,4 @@
-// The ground as a height grid over a rectangle; bilinear between its nodes. ENU metres.
+// Ground of a simulated place: a grid of heights over a rectangle, interpolated bilinearly. ENU metres.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,10 +12,10 @@ namespace skyquilt::simulate {
 
 class Terrain {
  public:
-  // Samples `height` (metres at east, north) every step_m; the last row and column lie at or beyond `max`.
+  // Samples `height` (metres at east, north) every step_m; the last row and column are at or beyond `max`.
   Terrain(const Eigen::Vector2d& min, const Eigen::Vector2d& max, double step_m, const std::function<double(double, double)>& height);
 
-  // Clamped to the edge outside.
+  // Outside the rectangle: the height at its edge.
   float Height(float east, float north) const;
   const Eigen::Vector2d& min() const { return min_; }
   const Eigen::Vector2d& max() const { return max_; }
@@ -33,7 +33,7 @@ class Terrain {
   std::vector<float> node_;
 };
 
-// Gentle hills with wavelengths of 60 to 240 m; about +-1.7 amplitude_m.
+// Gentle hills with wavelengths of 60 to 240 m; heights within about +-1.7 amplitude_m.
 double RollingHeight(double east, double north, double amplitude_m, uint32_t seed);
 
 }  // namespace skyquilt::simulate

@@ -29,7 +29,7 @@ void TidalChannels::Grow(Vector2d from, double heading_rad, double half_width, d
     const double swing = static_cast<double>(ValueNoise(static_cast<float>(i) / 6.0F, static_cast<float>(key), seed_));
     const double heading = mean_heading + (1.1 + 0.1 * order) * swing;
     const Vector2d to = from + kStep * Vector2d(std::cos(heading), std::sin(heading));
-    // Channels narrow and rise towards their heads.
+    // Channels become narrower and shallower towards their ends.
     const auto Taper = [](double share) { return 0.25 + 0.75 * share; };
     reaches_.push_back({from, to, half_width * Taper(left), half_width * Taper(left_after), depth * std::sqrt(left), depth * std::sqrt(left_after)});
     from = to;
@@ -51,7 +51,7 @@ double TidalChannels::Height(double east, double north) const {
     const double s = std::clamp((p - reach.a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
     const double half_width = reach.half_width_a + s * (reach.half_width_b - reach.half_width_a);
     const double away = (p - reach.a - s * ab).norm() / half_width;
-    // Gentle banks reach past the nominal width.
+    // Gentle banks extend beyond the nominal width.
     if (away > 2.2) continue;
     const double profile = 1.0 - static_cast<double>(Smoothstep(0.35F, 2.2F, static_cast<float>(away)));
     carved = std::max(carved, profile * (reach.depth_a + s * (reach.depth_b - reach.depth_a)));

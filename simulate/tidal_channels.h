@@ -1,4 +1,4 @@
-// The bed of a tidal flat: sand banks cut by a branching network of channels. ENU metres, z = 0 about the mean sand.
+// Ground of a simulated tidal flat: sand banks with a branching network of channels. ENU metres, z = 0 at about the mean height of the sand.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@ class TidalChannels {
  public:
   TidalChannels(const Eigen::Vector2d& min, const Eigen::Vector2d& max, double amplitude_m, uint32_t seed);
 
-  // Height of sand or channel bed.
+  // Height of the sand or the channel bed.
   double Height(double east, double north) const;
   double water_z_m() const { return -0.62; }
 

@@ -34,12 +34,12 @@ Surface TidalSand(const Hit& hit, float water_z_m, uint32_t seed) {
   surface.normal = hit.normal;
   const float above = hit.position.z() - water_z_m;
   const float damp = FractalNoise(x, y, {24.0F, 4, 0.5F}, seed + 500U, w);
-  // Films of standing water lie in the hollows and along the channels, wet sand around them.
+  // Films of standing water in hollows and along channels, with wet sand around them.
   const float low_lying = damp - 1.1F * (above - 0.42F);
   const float film = Smoothstep(0.32F, 0.62F, low_lying);
   const float wet = Smoothstep(-0.35F, 0.40F, low_lying);
   surface.albedo = DrySand(x, y, w, seed) * (1.0F - 0.45F * wet - 0.22F * film);
-  // Ripples: bent rows 0.9 m apart, gone under water films and where a pixel swallows them.
+  // Ripples: curved rows 0.9 m apart, not under water films or where they are smaller than a pixel.
   constexpr float kRipple = 0.9F;
   const float visible = std::clamp(kRipple / (3.0F * w) - 0.6F, 0.0F, 1.0F) * (1.0F - film);
   if (visible > 0.0F) {
@@ -51,7 +51,7 @@ Surface TidalSand(const Hit& hit, float water_z_m, uint32_t seed) {
     surface.albedo *= 1.0F - 0.08F * visible * field * std::sin(phase);
   }
   if (film <= 0.0F) return surface;
-  // Brighter than clear water over dark ground would be: silt makes the film a better mirror.
+  // Silt makes the film a better mirror than clear water.
   surface.mirror = 0.14F;
   surface.mirror_share = film;
   surface.mirror_normal = WaveNormal(x, y, 5.0F, 0.004F, w, seed + 850U);

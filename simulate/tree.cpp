@@ -21,7 +21,7 @@ void AddTrunk(const Vector3f& foot, float height, float radius, uint32_t index, 
     mesh.AddQuad(Corner(i, -0.5F), Corner(i + 1, -0.5F), Corner(i + 1, height), Corner(i, height), {Part::kTrunk, index});
 }
 
-// A sphere whose radius varies by value noise over its own directions.
+// A sphere whose radius varies with the direction by value noise.
 void AddCrown(const Vector3f& centre, const Vector3f& radii, uint32_t seed, int detail, uint32_t index, Mesh& mesh) {
   mesh.AddSphere(detail,
                  [&](const Vector3f& unit) {

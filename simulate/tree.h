@@ -1,4 +1,4 @@
-// A tree: a trunk and a few lumpy crowns.
+// A tree of a simulated place: a trunk and a few irregular crowns.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@ struct Tree {
   uint32_t seed = 0;
 };
 
-// detail: subdivisions of each crown's sphere, 0..3.
+// Adds the tree's triangles, tagged with `index`. detail: subdivisions of each crown's sphere, 0..3.
 void AddTree(const Tree& tree, uint32_t index, int detail, Mesh& mesh);
 
 }  // namespace skyquilt::simulate

@@ -41,7 +41,7 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
     for (const Pond& pond : contents.ponds) {
       const double r = pond.Radius(east, north);
       if (r > 1.5) continue;
-      // A level shore first, then the basin.
+      // A level shore, and the basin inside it.
       const auto shore = static_cast<double>(Smoothstep(1.5F, 1.05F, static_cast<float>(r)));
       const double basin = pond.level_z_m + (r - 1.0) * 1.6;
       height += shore * (basin - height);

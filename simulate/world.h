@@ -1,4 +1,4 @@
-// A simulated place: geometry, light and the look of everything in it, made from a place. Read-only once made; thread-safe.
+// A simulated place, ready to be rendered: geometry, light and surfaces, built from a PlaceSpec. Read-only once built, so thread-safe.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@
 
 namespace skyquilt::simulate {
 
-// The moving cars where they are at one moment.
+// The moving cars at one moment.
 struct MovingScene {
   std::vector<Car> cars;
   Mesh mesh;
@@ -33,11 +33,11 @@ class World {
   const Sky& sky() const { return sky_; }
   const AmbientVolume& ambient() const { return *ambient_; }
   const Terrain& terrain() const { return *terrain_; }
-  // Everything of known size, empty without a city.
+  // Empty without a city.
   const std::vector<Building>& buildings() const;
 
   MovingScene MovingAt(double time_s) const;
-  // Looks of the fixed scenery and, given their cars, of moving things.
+  // Surface of the static scene at a hit; of a moving car, given the cars of its MovingScene.
   Surface SurfaceAt(const Hit& hit) const;
   static Surface MovingSurfaceAt(const Hit& hit, const std::vector<Car>& cars);
 

@@ -1,4 +1,4 @@
-"""Wrong usage and bad input: each with its own message and exit status, and nothing that was saved is lost."""
+"""Wrong usage and bad input: each case has its own message and exit status, and no saved work is lost."""
 import os
 import shutil
 
@@ -64,7 +64,7 @@ def test(skyquilt, folder):
     text = skyquilt.call("prepare", damaged, "-o", folder / "out_damaged")
     expect(photos[1].name in text, f"the truncated photo is not named:\n{text}")
 
-    # A pose that is no number.
+    # A pose that is not a number.
     broken = folder / "broken"
     shutil.copytree(survey, broken)
     images = next(broken.rglob("images.txt"))
@@ -77,7 +77,7 @@ def test(skyquilt, folder):
     text = skyquilt.call("prepare", broken, "-o", folder / "out_broken", status=3)
     expect(words[-1] in text, f"the photo with the NaN pose is not named:\n{text}")
 
-    # What an earlier command saved survives all of the following refusals.
+    # Refused commands do not change what an earlier command saved.
     project = folder / "project"
     skyquilt.call("prepare", survey, "-o", project)
     saved = (project / "survey" / "survey.json").read_bytes()

@@ -1,4 +1,4 @@
-"""`bench kernel` measures on any instruction set and says what it measured; how fast is no test's business. Benches leave JSON, CSV and a page."""
+"""`bench kernel` works with every instruction set and reports its settings; speed itself is not tested. Benchmarks write JSON, CSV and a page."""
 import csv
 import json
 
@@ -14,7 +14,7 @@ def rows_of(path):
 
 def check_page(path, *texts):
     page = path.read_text(encoding="utf-8")
-    expect("http" not in page, f"{path.name} asks for something from the net")
+    expect("http" not in page, f"{path.name} loads something from the internet")
     for text in ("<svg", 'class="bar', *texts):
         expect(text in page, f"{path.name} lacks {text}")
 
@@ -49,11 +49,11 @@ def test(skyquilt, folder):
         expect(result["config"]["log2_table_size"] == 10, result["config"])
         check_kernel_files(out, result)
 
-    # On several ranks one process measures, the others stay quiet.
+    # On several ranks only one process measures and prints.
     text = skyquilt.call("bench", "kernel", *SMALL, "--threads", "1", ranks=2)
     expect(text.count("Where training time goes") == 1, text)
 
-    # A small cluster, of which what was said on the command line stays.
+    # A small simulated cluster; settings given on the command line override --quick.
     text = skyquilt.call("bench", "schedule", "--quick", "--blocks", "300", "--status-every", "60", "-o", out)
     expect("nothing fails" in text, text)
     result = json.loads((out / "schedule.json").read_text())
@@ -64,7 +64,7 @@ def test(skyquilt, folder):
     shares = rows_of(out / "schedule_time.csv")[1:]
     expect(float(shares[0][1]) == result["undisturbed"]["efficiency"] and abs(sum(float(row[2]) for row in shares) - 1.0) < 1e-9, shares)
 
-    # Numbers at the extremes: tables on the page, every row in the files, nothing left of what cases made.
+    # Extreme numbers: the page has the tables, the files have every row, and temporary surveys are removed.
     text = skyquilt.call("bench", "numerics", "--quick", "--only", "space,nonfinite,brightness,storage,earth", "-o", out)
     expect("Space" in text and "FAILED" not in text, text)
     result = json.loads((out / "numerics.json").read_text())

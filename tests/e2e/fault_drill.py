@@ -1,4 +1,4 @@
-"""Kills, full disks and damaged files against small trainings: every one must go on and end as if nothing had happened.
+"""Disturbs small trainings by kills, full disks and damaged files. Every one must resume and end with the same result as undisturbed.
 
 Usage: fault_drill.py SKYQUILT [--kills 200] [--truncations 20] [--flips 100] [--seed 1]
 """
@@ -47,7 +47,7 @@ class Drill:
             expect(not differing, f"{what} (ranks: {ranks}): {name} differs from an undisturbed run in {differing}")
 
     def wait_for_moment(self, process, project, way, began):
-        """True when the process still runs at the moment it is to be killed."""
+        """Waits for the moment to kill the process. False if it ended before."""
         checkpoints = project / "checkpoints"
 
         def writing():
@@ -70,7 +70,7 @@ class Drill:
         return process.poll() is None
 
     def kill_one(self, process, ranks):
-        """One rank, or the launcher itself; whatever is left of the job afterwards is cleared away as a batch system would."""
+        """Kills one rank or the launcher, then the rest of the job, as a batch system would."""
         victims = (children(process.pid) + [process.pid]) if ranks else [process.pid]
         try:
             os.kill(self.random.choice(victims), signal.SIGKILL)
@@ -122,7 +122,7 @@ class Drill:
             self.compare(project, ranks, "killed and resumed")
             shutil.rmtree(project)
             finished += 1
-            print(f"{sum(self.kills.values())} of {wanted_kills} kills, {finished} trainings ended as undisturbed ones", flush=True)
+            print(f"{sum(self.kills.values())} of {wanted_kills} kills, {finished} trainings ended with the result of an undisturbed one", flush=True)
         print("kills " + ", ".join(f"{n} {way}" for way, n in self.kills.items()) + f"; {self.unreadable} unreadable checkpoints, 0 lost blocks")
 
     def full_disk(self):
@@ -150,10 +150,10 @@ class Drill:
             self.compare(project, 0, "resumed after a read-only folder")
         finally:
             subprocess.run(["umount", "-l", str(disk)])
-        print("full disk, read-only folder: named, nothing lost, resumed bit for bit")
+        print("full disk, read-only folder: reported, nothing lost, resumed with bit-identical results")
 
     def half_way(self):
-        """A training killed when a block had a checkpoint and a previous one."""
+        """A training that was killed when a block had a checkpoint and a previous checkpoint: (project, checkpoint)."""
         while True:
             project = self.fresh()
             process = self.skyquilt.start("train", project, *QUICK_TRAIN)
@@ -184,18 +184,18 @@ class Drill:
             file.write_bytes(bytes_)
             done = subprocess.run([self.skyquilt.program, "info", str(file)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
                                   timeout=60)
-            expect(done.returncode == 3 and file.name in done.stdout, f"damage went by with status {done.returncode}:\n{done.stdout}")
-        # A damaged newest file is refused with a reason and the previous one used; a foreign one likewise.
+            expect(done.returncode == 3 and file.name in done.stdout, f"damage was not found, status {done.returncode}:\n{done.stdout}")
+        # A damaged or foreign newest file is refused with a reason, and the previous file is used.
         for kind, bytes_ in (("cut off", broken[0]), ("with a flipped bit", broken[-1]), ("of something else", b"not a checkpoint" * 100), ("empty", b"")):
             copy = self.folder / "damaged"
             shutil.copytree(project, copy, symlinks=True)
             (copy / "checkpoints" / file.name).write_bytes(bytes_)
             text = self.skyquilt.call("train", copy, *QUICK_TRAIN)
-            expect(file.name in text, f"a file {kind} was passed over in silence:\n{text}")
+            expect(file.name in text, f"there is no message about a file {kind}:\n{text}")
             self.compare(copy, 0, f"resumed with a file {kind}")
             shutil.rmtree(copy)
             used += 1
-        print(f"{self.options.truncations} truncations and {self.options.flips} flipped bits: all found; {used} trainings went on from the previous file")
+        print(f"{self.options.truncations} truncations and {self.options.flips} flipped bits: all found; {used} trainings resumed from the previous file")
 
 
 def parse():

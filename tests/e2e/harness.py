@@ -1,4 +1,4 @@
-"""Drives the skyquilt program as a person would: commands in, exit status and files out. Python's standard library only."""
+"""Runs the skyquilt program as a user would and checks exit status and files. Needs only Python's standard library."""
 import json
 import os
 import pathlib
@@ -10,11 +10,11 @@ import tempfile
 import time
 
 STEPS = "300"
-# Small fields: the test is about the way, not about the picture.
+# Small fields: these tests are about the pipeline, not about image quality.
 SMALL = ["--steps", STEPS, "--blocks", "1x2", "--image-width", "240", "--set", "train.batch_samples=8192", "--set", "context.batch_samples=8192",
          "--set", "partition.max_log2_table_size=15", "--set", "products.video_seconds=0"]
 
-# Two blocks of some seconds each, for small_project; saved so often that any moment is near a checkpoint.
+# For small_project: two blocks of some seconds each, saved so often that a checkpoint is always recent.
 QUICK_TRAIN = ["--steps", "700", "--set", "train.checkpoint_every_s=0.1", "--set", "context.checkpoint_every_s=0.1", "--set", "train.batch_samples=4096",
                "--set", "context.batch_samples=4096"]
 
@@ -92,21 +92,21 @@ def small_survey(skyquilt, folder):
 
 
 def small_project(skyquilt, survey, project):
-    """Prepared and cut into two blocks, ready to be trained."""
+    """A project that is prepared and divided into two blocks, ready to be trained."""
     skyquilt.call("prepare", survey, "-o", project)
     skyquilt.call("partition", project, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
     return project
 
 
 def arrays_of(skyquilt, file):
-    """Digest of every array: seconds and the like are attributes and may differ."""
+    """Digest of every array. Attributes, such as seconds, may differ and are left out."""
     described = json.loads(skyquilt.call("info", file, "--json"))
     return {array["name"]: array["xxh64"] for array in described["arrays"]}
 
 
 def state_of(skyquilt, project):
     files = sorted(p for p in (project / "checkpoints").glob("*.h5"))
-    expect(len(files) == 3, f"{project} holds {[p.name for p in files]}, not the context and two blocks")
+    expect(len(files) == 3, f"{project} has {[p.name for p in files]} instead of the context and two blocks")
     return {p.name: arrays_of(skyquilt, p) for p in files}
 
 

@@ -1,4 +1,4 @@
-"""scripts/skyquilt-mpirun: starts again after a lost rank, gives up in the end, leaves what is final alone and passes signals on."""
+"""scripts/skyquilt-mpirun: restarts after a lost rank, gives up after the last restart, does not retry final results and passes on signals."""
 import os
 import pathlib
 import signal
@@ -26,7 +26,7 @@ def test(skyquilt, folder):
     def ranks_of(launcher):
         return [rank for mpirun in children(launcher) for rank in children(mpirun)]
 
-    # A rank is killed in mid-training; --restart is heeded once, not again at the new start.
+    # A rank is killed during training. --restart applies to the first start only.
     project = small_project(skyquilt, survey, folder / "lost")
     process, log = start("lost", *ranks, "train", str(project), *QUICK_TRAIN, "--restart")
     wait_for(lambda: any(project.glob("checkpoints/block_*.h5")), "first checkpoint of a block", process)
@@ -36,7 +36,7 @@ def test(skyquilt, folder):
     expect("new start 1 of 2" in text and "ended with status 0 after 1 new start" in text, text)
     expect(state_of(skyquilt, project) == state_of(skyquilt, whole), "killed and started again differs from undisturbed")
 
-    # A signal for the launcher makes the ranks save and leave.
+    # A signal to the launcher makes the ranks save and end.
     project = small_project(skyquilt, survey, folder / "stopped")
     process, log = start("stopped", *ranks, "train", str(project), *QUICK_TRAIN)
     wait_for(lambda: any(project.glob("checkpoints/block_*.h5")), "first checkpoint of a block", process)
@@ -46,7 +46,7 @@ def test(skyquilt, folder):
     skyquilt.call("train", project, *QUICK_TRAIN)
     expect(state_of(skyquilt, project) == state_of(skyquilt, whole), "stopped and continued differs from undisturbed")
 
-    # What always dies is given up with its own status; what is final is not tried again.
+    # A program that always dies is given up with its own status. A final result is not tried again.
     process, log = start("dies", "-n", "1", "sh", "-c", "kill -9 $$")
     status = process.wait(timeout=120)
     expect(status == 137 and "given up after 2 new starts" in log.read_text(), f"ended with {status}:\n{log.read_text()}")

@@ -1,4 +1,4 @@
-"""The whole way on 1, 2 and 3 ranks gives the same quality; stage by stage gives what `run` gives; running again does nothing twice."""
+"""`run` on 1, 2 and 3 ranks gives the same quality; single stages give the same result as `run`; running again repeats nothing."""
 from harness import SMALL, digest, expect, main, metrics_of, replaced
 
 
@@ -17,12 +17,12 @@ def test(skyquilt, folder):
         psnr[ranks] = metrics["psnr"]
         print(f"{ranks} ranks: PSNR {metrics['psnr']:.3f} dB, SSIM {metrics['ssim']:.4f}, coverage {metrics['coverage']:.3f}, "
               f"median depth error {metrics['depth_median_abs_m']:.2f} m")
-        expect(metrics["ranks"] == ranks, f"the report speaks of {metrics['ranks']} ranks")
+        expect(metrics["ranks"] == ranks, f"the report says {metrics['ranks']} ranks")
         for name in ("blocks.geojson", "scene.h5", "checkpoints/context.h5", "checkpoints/context.log.csv", "report/index.html", "log.txt", "config.toml"):
             expect((project / name).exists(), f"{name} is missing")
     expect(max(psnr.values()) - min(psnr.values()) <= 0.1, f"PSNR depends on the ranks: {psnr}")
-    # A field that only learned the mean colour would stay near 15 dB.
-    expect(psnr[1] > 18.0, f"PSNR {psnr[1]:.2f} dB says that nothing was learned")
+    # A field that learned only the mean colour would have about 15 dB.
+    expect(psnr[1] > 18.0, f"PSNR {psnr[1]:.2f} dB: nothing was learned")
 
     alone = folder / "ranks1"
     before = digest(alone, but=("log.txt",))
@@ -42,8 +42,8 @@ def test(skyquilt, folder):
     for path in (alone, alone / "survey", alone / "survey" / "points.ply", alone / "survey" / "cameras.geojson", alone / "blocks.geojson",
                  alone / "scene.h5", alone / "checkpoints" / "context.h5", alone / "checkpoints" / "context.log.csv", alone / "train.json",
                  alone / "products" / "orthophoto.tif", alone / "report" / "metrics.json", alone / "config.toml", survey / "simulate.json"):
-        expect(skyquilt.call("info", path).strip(), f"info says nothing of {path}")
-        expect(skyquilt.call("info", path, "--json").lstrip().startswith("{"), f"info --json is no JSON for {path}")
+        expect(skyquilt.call("info", path).strip(), f"info prints nothing about {path}")
+        expect(skyquilt.call("info", path, "--json").lstrip().startswith("{"), f"info --json does not print JSON for {path}")
 
     text = skyquilt.call("run", survey, "-o", alone, *replaced(SMALL, "--steps", "301"), status=2)
     expect("train.steps: 300 -> 301" in text and "--restart" in text, f"the changed option is not named:\n{text}")

@@ -1,4 +1,4 @@
-"""A finished scene gives the same pictures, maps and scores alone, in little memory and on any number of ranks."""
+"""A finished scene gives the same images, maps and scores on one process, with little memory and on any number of ranks."""
 import hashlib
 import json
 import math
@@ -8,7 +8,7 @@ import signal
 
 from harness import expect, main, metrics_of, small_survey, wait_for
 
-# What an evaluation measures of itself, not of the scene.
+# Keys of metrics.json about the evaluation itself, not about the scene.
 OWN = ("evaluate_seconds", "evaluate_peak_rss_bytes", "date", "render_seconds", "rendering")
 
 
@@ -23,12 +23,12 @@ def scores_of(project):
 
 def pictures_of(folder):
     files = sorted(path for path in folder.rglob("*") if path.suffix in (".png", ".tiff", ".tif"))
-    expect(len(files) >= 6, f"{folder} holds only {[path.name for path in files]}")
+    expect(len(files) >= 6, f"{folder} has only {[path.name for path in files]}")
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
 
 
 def bytes_of_fields(described):
-    """In memory while rendering: a byte for every cell, of which the file keeps a bit."""
+    """Memory of each field while rendering. A cell of the occupancy grid takes a byte there, but a bit in the file."""
     fields = {}
     for array in described["arrays"]:
         name, _, what = array["name"].rpartition("/")
@@ -45,7 +45,7 @@ def test(skyquilt, folder):
     skyquilt.call("train", project, "--steps", "60", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096")
     skyquilt.call("merge", project)
     fields = bytes_of_fields(json.loads(skyquilt.call("info", project / "scene.h5", "--json")))
-    # For each of two ranks: not the whole scene, but the context and any two blocks that meet.
+    # Memory of each rank: too little for the whole scene, but enough for the context and any two neighbouring blocks.
     little = str(2 * int(sum(fields.values()) - 0.5 * min(fields.values())))
 
     asked = ("--test", "--width", "120", "--ortho", "--dsm")
@@ -55,12 +55,12 @@ def test(skyquilt, folder):
     for ranks in (2, 3, 4):
         out = folder / f"ranks{ranks}"
         text = skyquilt.call("render", project, *asked, "-o", out, ranks=ranks)
-        expect(pictures_of(out) == alone, f"{ranks} ranks render other pictures")
-        expect(re.search(rf"rays rendered by {ranks - 1} rank.* bytes per ray", text), f"the bytes on the wire are not reported:\n{text}")
+        expect(pictures_of(out) == alone, f"{ranks} ranks render other images")
+        expect(re.search(rf"rays rendered by {ranks - 1} rank.* bytes per ray", text), f"the bytes sent are not reported:\n{text}")
     text = skyquilt.call("render", project, *asked, "-o", folder / "shared", "--memory", little, ranks=3)
-    expect(pictures_of(folder / "shared") == alone, "ranks that share a scene render other pictures")
+    expect(pictures_of(folder / "shared") == alone, "ranks that hold parts of a scene render other images")
     handovers = re.search(r"([\d.]+ ?[kM]?) handovers", text)
-    expect("1 group(s)" in text and handovers and handovers.group(1) != "0", f"no ray went from rank to rank:\n{text}")
+    expect("1 group(s)" in text and handovers and handovers.group(1) != "0", f"no ray was handed from rank to rank:\n{text}")
 
     text = skyquilt.call("render", project, *asked, "-o", folder / "tiny", "--memory", "100kB", status=2)
     expect("--memory" in text and not list((folder / "tiny").glob("*.png")), f"too little memory is not explained:\n{text}")
@@ -73,9 +73,9 @@ def test(skyquilt, folder):
     for ranks in (2, 4):
         shutil.rmtree(project / "report")
         skyquilt.call("evaluate", project, "--restart", ranks=ranks)
-        expect(scores_of(project) == expected, f"{ranks} ranks score otherwise: {scores_of(project)['psnr']} dB, alone {expected['psnr']} dB")
+        expect(scores_of(project) == expected, f"{ranks} ranks give other scores: {scores_of(project)['psnr']} dB, alone {expected['psnr']} dB")
         expect(metrics_of(project)["rendering"]["ranks"] == ranks - 1, "the report does not say who rendered")
-        expect(metrics_of(project)["rendering"]["bytes_received"] > 0, "the report does not count bytes on the wire")
+        expect(metrics_of(project)["rendering"]["bytes_received"] > 0, "the report does not count the bytes received")
 
     hard = folder / "hard"
     shutil.copytree(project, hard)
@@ -83,7 +83,7 @@ def test(skyquilt, folder):
     skyquilt.call("render", hard, *asked, "-o", folder / "hard_alone")
     expect(pictures_of(folder / "hard_alone") != alone, "hard borders change nothing")
     skyquilt.call("render", hard, *asked, "-o", folder / "hard_shared", "--memory", little, ranks=3)
-    expect(pictures_of(folder / "hard_shared") == pictures_of(folder / "hard_alone"), "ranks that share a scene with hard borders render other pictures")
+    expect(pictures_of(folder / "hard_shared") == pictures_of(folder / "hard_alone"), "ranks that hold parts of a scene with hard borders render other images")
 
     process = skyquilt.start("render", project, "--test", "--width", "1600", "-o", folder / "stopped")
     wait_for(lambda: list((folder / "stopped").glob("*.png")), "first picture", process)

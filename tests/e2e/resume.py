@@ -1,4 +1,4 @@
-"""A run that is killed or interrupted in mid-training continues with the same command, and ends as if nothing had happened."""
+"""A run that is killed or interrupted during training is resumed by the same command and ends with the result of an undisturbed run."""
 import os
 import signal
 
@@ -8,7 +8,7 @@ from harness import SMALL, expect, kill_group, main, metrics_of, replaced, wait_
 def test(skyquilt, folder):
     survey = folder / "hamlet"
     skyquilt.call("simulate", "hamlet", "-o", survey)
-    # Blocks that take long enough to be stopped half-way.
+    # Blocks that take long enough to be stopped in between.
     options = replaced(SMALL, "--steps", "1500") + ["--set", "train.checkpoint_every_s=0.3", "--set", "context.checkpoint_every_s=0.3"]
     whole = folder / "whole"
     skyquilt.call("run", survey, "-o", whole, *options)

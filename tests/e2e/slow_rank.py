@@ -1,4 +1,4 @@
-"""A rank that becomes very slow loses its block to one that has nothing to do, which goes on from the checkpoint: same bits, no lost work."""
+"""The block of a rank that becomes very slow moves to an idle rank, which resumes from the checkpoint. The result is bit-identical."""
 import os
 import pathlib
 import signal
@@ -32,7 +32,7 @@ def test(skyquilt, folder):
     end = time.monotonic() + 400
     slow = None
     while process.poll() is None and "goes on on rank" not in log.read_text():
-        expect(time.monotonic() < end, f"nobody took over the slow rank's block:\n{log.read_text()}")
+        expect(time.monotonic() < end, f"no rank took over the slow rank's block:\n{log.read_text()}")
         if not any(slowed.glob("checkpoints/block_*")):
             time.sleep(0.05)
             continue

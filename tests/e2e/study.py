@@ -1,4 +1,4 @@
-"""Benches that train: interrupted they go on, their pages hold what they promise, and other settings are not mixed in."""
+"""Benchmarks that train: they resume after an interruption, their pages are complete, and results of other settings are not mixed in."""
 import json
 import re
 import signal
@@ -11,7 +11,7 @@ SMALL = ["--quick", "--time-budget", "1s", "--set", "run.image_width=160", "--se
 
 def check_page(folder, name):
     html = (folder / f"{name}.html").read_text()
-    expect("http" not in re.sub(r'xmlns="[^"]*"', "", html), "the page asks for something from the net")
+    expect("http" not in re.sub(r'xmlns="[^"]*"', "", html), "the page loads something from the internet")
     for link in re.findall(r'<img src="([^"]+)"', html):
         expect((folder / link).is_file(), f"{name}.html shows {link}, which is not there")
     expect("<img" in html and "<svg" in html, f"{name}.html has no picture or no plot")
@@ -51,7 +51,7 @@ def test(skyquilt, folder):
     skyquilt.call("bench", "blocks", "--survey", folder / "nowhere", "-o", folder / "none", status=3)
     skyquilt.call("bench", "blocks", "--survey", survey, "--place", "town", "-o", folder / "none", status=2)
 
-    # What the scene keeps of what was trained.
+    # Parameters kept in the scene against parameters trained.
     out = folder / "capacity"
     skyquilt.call("bench", "capacity", "--survey", survey, "-o", out, "--blocks", "1x2", *SMALL)
     result = check_page(out, "capacity")

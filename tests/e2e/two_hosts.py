@@ -1,7 +1,7 @@
-"""Two hosts for real, as far as MPI can tell: network namespaces with addresses and host names of their own, joined by a cable and a shared folder.
+"""Trains on two hosts: network namespaces with their own addresses and host names, joined by a virtual cable and a shared folder.
 
-mpirun starts a rank on each through an agent in ssh's place. In the middle of training the cable is pulled: the job ends, skyquilt-mpirun starts
-it again once the cable is back, and the result is bit-identical to an undisturbed run. Skipped where namespaces are not allowed.
+mpirun starts ranks on both through an agent instead of ssh. During training the cable is pulled: the job ends, skyquilt-mpirun restarts it
+when the cable is back, and the result is bit-identical to an undisturbed run. Skipped where namespaces are not allowed.
 """
 import os
 import pathlib
@@ -29,7 +29,7 @@ def entering(host):
 
 
 def make_hosts():
-    """Empty, or why it cannot be."""
+    """Returns why the hosts cannot be made; empty on success."""
     remove_hosts()
     for host in HOSTS:
         done = ip("netns", "add", host)
@@ -60,7 +60,7 @@ def remove_hosts():
 
 
 def agent_in(folder):
-    """What mpirun calls instead of ssh: AGENT [options] HOST COMMAND."""
+    """Writes the script that mpirun calls instead of ssh: AGENT [options] HOST COMMAND."""
     cases = "\n".join(f"  {address}|{host}) host={host} ;;" for host, address in HOSTS.items())
     script = folder / "agent"
     script.write_text("#!/bin/sh\nwhile [ \"${1#-}\" != \"$1\" ]; do shift; done\ncase \"$1\" in\n" + cases + "\n  *) exit 255 ;;\nesac\nshift\n"
@@ -108,7 +108,7 @@ if __name__ == "__main__":
     reason = make_hosts()
     if reason:
         remove_hosts()
-        print(f"skipped: this system lets nobody make network namespaces ({reason})")
+        print(f"skipped: this system does not allow network namespaces ({reason})")
         sys.exit(SKIPPED)
     try:
         main(test)

@@ -18,8 +18,8 @@ namespace {
 
 constexpr int kWidth = 64, kHeight = 48;
 
-// Photos of one grey slope, brighter to the right; photo i recorded 2^stops[i] of its light, and the scene knows it. All but the first two are
-// held out.
+// Photos of a grey gradient, brighter to the right. Photo i recorded 2^stops[i] of its light, and the scene has these gains. All but the first two
+// are held out.
 struct SlopeSurvey {
   TemporaryFolder folder;
   scene::SceneInfo info;
@@ -78,7 +78,7 @@ TEST(CollectBrightness, GainsTakeDifferencesOfExposureOut) {
   EXPECT_NEAR(report.spread_after_stops, 0.0, 0.02);
   EXPECT_NEAR(Sum(report.histogram_before), 1.0, 1e-9);
   EXPECT_NEAR(Sum(report.histogram_after), 1.0, 1e-9);
-  // At reference exposure nothing is darker than the slope's foot, a quarter of the way; half its light is.
+  // At reference exposure the darkest display value is a quarter; at half the light it is less.
   const auto foot = static_cast<std::ptrdiff_t>(kBrightnessBins / 4 - 1);
   EXPECT_GT(std::accumulate(report.histogram_before.begin(), report.histogram_before.begin() + foot, 0.0), 0.04);
   EXPECT_EQ(std::accumulate(report.histogram_after.begin(), report.histogram_after.begin() + foot, 0.0), 0.0);
@@ -92,7 +92,7 @@ TEST(CollectBrightness, PhotosComeInOrderOfCapture) {
   small.survey.photos[0].time_s = 25.0;
   small.survey.photos[1].time_s = 15.0;
   small.survey.photos[2].time_s = 45.0;
-  // The tags of one state half the light, and its picture shows none of that.
+  // The tags of one photo say half the light, but its pixels do not show it.
   for (const size_t i : {0U, 1U, 2U}) small.survey.photos[i].exposure.time_s = i == 1 ? 0.005 : 0.01;
   small.info.response.exif_gain[1] = 0.5F;
   for (size_t c = 0; c < 3; ++c) small.info.response.log_gain[3 + c] = std::log(2.0F);
@@ -153,7 +153,7 @@ TEST(ChooseViews, TakesDarkestAndBrightestThatDiffer) {
   survey.photos.resize(5);
   info.response = brightness::Response::Plain(5, 1);
   info.response.exif_gain = {1.0F, 0.5F, 2.0F, 1.05F, 1.0F};
-  // Learned gains count as the tags do.
+  // Learned gains count like the tags.
   for (size_t c = 0; c < 3; ++c) info.response.log_gain[12 + c] = -2.0F * std::log(2.0F);
   EXPECT_NEAR(ExposureStops(info.response, 4), -2.0, 1e-6);
   EXPECT_EQ(ChooseViews(info, survey, {0, 1, 2, 3, 4}), (std::vector<int>{4, 2}));

@@ -73,7 +73,7 @@ TEST(TrainingViews, StopsCountingAtEnough) {
   EXPECT_EQ(TrainingViews({}).Count({0, 0, 0}, {}, 2), 0);
 }
 
-// Strong barrel distortion folds points far outside the frame back into it.
+// Strong barrel distortion projects points far outside the view into the image.
 TEST(TrainingViews, FoldedDistortionIsNotSeen) {
   TrainingView view = NadirView(0, 0, 100);
   view.camera.model = camera::CameraModel::kSimpleRadial;

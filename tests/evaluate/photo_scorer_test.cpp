@@ -63,7 +63,7 @@ TEST(ScorePhoto, BlocksAndSeamsGetTheirOwnPixels) {
   EXPECT_NEAR(metrics::PsnrOf(findings.per_block[0]), Psnr(10.0), 1e-3);
   EXPECT_NEAR(metrics::PsnrOf(findings.per_block[1]), Psnr(20.0), 1e-3);
   EXPECT_EQ(PixelsOf(findings.seams.AllSeam()), 10 * kHeight);                 // 5 m on either side
-  EXPECT_EQ(PixelsOf(findings.seams.AllInterior()), 2 * 40 * (kHeight - 10));  // less seam and rim
+  EXPECT_EQ(PixelsOf(findings.seams.AllInterior()), 2 * 40 * (kHeight - 10));  // without seam and rim
 }
 
 TEST(ScorePhoto, PixelsSeenByOneViewOnlyAreNotCovered) {

@@ -79,7 +79,7 @@ image::Image8 Brightened(image::Image8 picture, double stops) {
   return picture;
 }
 
-// Clouds over the flight: the tags follow them in part, training found the rest.
+// Clouds during the flight: the tags contain part of the change, training learned the rest.
 BrightnessReport CloudyFlight(const survey::Survey& survey, const std::filesystem::path& folder) {
   BrightnessReport report;
   report.timed = true;
@@ -118,7 +118,7 @@ BrightnessReport CloudyFlight(const survey::Survey& survey, const std::filesyste
   return report;
 }
 
-// Nine lines of nine photos over the town, one of them far off its tag.
+// Nine lines of nine photos over the town; one photo's tag is far off.
 survey::Survey FlownSurvey(base::Random& random) {
   survey::Survey survey;
   survey.origin = {47.3769, 8.5417, 455.0};
@@ -229,7 +229,7 @@ PhotoImages PicturesOf(const survey::Photo& photo, const std::filesystem::path& 
   return WritePhotoImages({&taken, &render, &depth, scored}, folder, prefix, 960, 0.25F);
 }
 
-// All but the scores of photos and blocks.
+// Everything but the scores of photos and blocks.
 void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport& training, Metrics& metrics) {
   std::vector<double> psnr, ssim;
   for (const PhotoScore& photo : metrics.photos) {
@@ -244,7 +244,7 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.psnr_full_frame = metrics.psnr - 1.3;
   metrics.ssim_full_frame = metrics.ssim - 0.03;
   metrics.coverage = 0.912;
-  metrics.lpips_note = "not measured: no network file was given";
+  metrics.lpips_note = "not measured: evaluate.lpips_network is not set";
   metrics.psnr_interior_db = 28.4;
   metrics.psnr_matched_interior_db = 28.4;
   metrics.psnr_seam_db = 28.28;

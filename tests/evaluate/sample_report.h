@@ -1,4 +1,4 @@
-// A made-up evaluation, complete enough to fill every part of the report page.
+// An invented evaluation with data for every part of the report page.
 #pragma once
 
 #include <filesystem>
@@ -16,9 +16,9 @@ struct SampleReport {
   scene::TrainReport training;
   Curves curves;
   BrightnessReport brightness;
-  ReportInput input;  // points into the above: do not copy
+  ReportInput input;  // points to the members above: do not copy
 
-  // Writes the pictures under folder/images.
+  // Writes the images to folder/images.
   explicit SampleReport(const std::filesystem::path& folder);
   SampleReport(const SampleReport&) = delete;
   SampleReport& operator=(const SampleReport&) = delete;

@@ -12,7 +12,7 @@ metrics::SquaredError Errors(double mean, int64_t n_values) {
 }
 
 TEST(SeamErrors, EqualQualityPerTextureIsNoGap) {
-  // Rough ground is rendered ten times worse than smooth ground, everywhere alike; the seams happen to lie in the rough.
+  // Rough ground has ten times the error of smooth ground, inside and in seams; the seams happen to be on rough ground.
   SeamErrors errors;
   errors.interior[0] = Errors(1e-4, 3000);
   errors.interior[5] = Errors(1e-3, 300);

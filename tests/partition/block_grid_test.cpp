@@ -33,7 +33,7 @@ RC_GTEST_PROP(BlockGrid, EveryPointLiesInExactlyOneCore, ()) {
   const Eigen::Vector2d low(origin, -0.3 * origin);
   const Eigen::Vector2d high = low + Eigen::Vector2d(extent, 0.7 * extent);
   const BlockGrid grid = SplitByCount(low, high, rows, columns);
-  // Steps of a twelfth of a cell put many of the points onto edges.
+  // With steps of a twelfth of a cell, many of the points are exactly on edges.
   const int i = *rc::gen::inRange(0, 12 * columns + 1);
   const int j = *rc::gen::inRange(0, 12 * rows + 1);
   const double x = std::min(high.x(), low.x() + (high.x() - low.x()) * i / (12 * columns));

@@ -102,7 +102,7 @@ double RingArea(const Json& ring) {
   return 0.5 * twice;
 }
 
-// What RFC 7946 asks of every ring: closed, counter-clockwise, inside the map, no edge across it.
+// Checks what RFC 7946 requires of every ring: closed, counter-clockwise, valid coordinates, no edge across the whole map.
 void ExpectGoodRing(const Json& ring, bool polar) {
   ASSERT_GE(ring.size(), 4U);
   EXPECT_EQ(ring.front(), ring.back());
@@ -120,7 +120,7 @@ void ExpectGoodRing(const Json& ring, bool polar) {
   }
 }
 
-// What a file holds after the blocks were saved, which come back from it unchanged.
+// Saves the blocks, checks that loading gives the same blocks, and returns the file as JSON.
 Json SavedAndLoaded(const BlockSet& set) {
   const TempFile file;
   SaveBlocks(set, file.path());

@@ -1,4 +1,4 @@
-// A made-up survey for partition tests: nadir photos on a grid over points on flat ground, optionally with a tower quarter.
+// A survey for partition tests: nadir photos on a grid over points on flat ground, optionally with a quarter of towers.
 #pragma once
 
 #include "core/base/random.h"

@@ -15,7 +15,7 @@ namespace {
 PartitionOptions Request(const std::string& blocks) {
   PartitionOptions options;
   options.blocks = blocks;
-  options.max_log2_table_size = 19;  // room to tell differences
+  options.max_log2_table_size = 19;  // large enough that sizes differ
   options.voxels_per_entry = options.max_voxels_per_entry = 1.0;
   return options;
 }
@@ -48,7 +48,7 @@ TEST(MakeBlocks, CoversTheSurveyOnce) {
   EXPECT_EQ(set.blocks[0].max_enu.x(), set.blocks[1].min_enu.x()) << "to the last bit";
   EXPECT_EQ(set.blocks[0].max_enu.y(), set.blocks[3].min_enu.y());
   EXPECT_LT(set.blocks[0].min_enu.y(), set.blocks[3].min_enu.y()) << "rows from the south";
-  // All of the flown ground and a rim around it, which the outer photos see as well.
+  // The ground below the flight and a rim around it, which the outer photos see too.
   EXPECT_GT(area, 0.97 * 200 * 200);
   EXPECT_LT(area, 1.25 * 1.25 * 200 * 200);
 }
@@ -68,7 +68,7 @@ TEST(MakeBlocks, GroundThatFewPhotosSeeIsLeftOut) {
 TEST(MakeBlocks, BlocksWithGapsInThePointsGetHeadroom) {
   survey::Survey survey = FlySurvey({});
   const double without = MakeBlocks(survey, Request("1x1"), 0).blocks[0].max_enu.z();
-  // A wood without features over a good part of the survey.
+  // A forest without features over a large part of the survey.
   std::erase_if(survey.points, [](const survey::SparsePoint& point) {
     return std::abs(point.x_in_enu.x() - 100.0) < 70.0 && std::abs(point.x_in_enu.y() - 100.0) < 90.0;
   });
@@ -200,7 +200,7 @@ TEST(MakeBlocks, EmptyBlocksAreNamedAndSkipped) {
   FlownSurveyOptions flown;
   flown.empty_east = true;
   survey::Survey survey = FlySurvey(flown);
-  // A few stray points keep the bounds wide, none of them in the north-eastern block.
+  // A few outlying points widen the bounds; none of them is in the north-eastern block.
   for (int i = 0; i < 200; ++i) {
     survey::SparsePoint point;
     point.x_in_enu = {199.0, 1.0 + 0.2 * i, 12.0};
@@ -211,7 +211,7 @@ TEST(MakeBlocks, EmptyBlocksAreNamedAndSkipped) {
   const Block& north_east = set.blocks[8];
   EXPECT_EQ(north_east.name, "r2c2");
   EXPECT_TRUE(north_east.empty);
-  EXPECT_EQ(north_east.empty_reason, "no sparse point lies in it");
+  EXPECT_EQ(north_east.empty_reason, "no sparse point is inside it");
   EXPECT_EQ(north_east.cost, 0.0);
   EXPECT_TRUE(north_east.photos.empty());
   EXPECT_FALSE(set.blocks[0].empty);
@@ -262,7 +262,7 @@ TEST(MakeBlocks, SurveysWithoutAreaAreRefused) {
   EXPECT_THROW(MakeBlocks(one_place, Request("1x1"), 0), base::InputError);
 }
 
-// The same survey a thousand times smaller or larger gives the same partition: nothing depends on metres alone but the margins' wishes.
+// The same survey a thousand times smaller or larger gives the same partition: nothing but the margins depends on absolute metres.
 RC_GTEST_PROP(MakeBlocks, WorksAtAnyScale, ()) {
   const double scale = std::pow(10.0, *rc::gen::inRange(-2, 4));
   FlownSurveyOptions flown;

@@ -20,7 +20,7 @@ TEST(ColmapProgress, IsReadFromItsOutput) {
   EXPECT_LT(ColmapLineProgress("Registering image #", 18), 0.0);
 }
 
-// A stand-in for COLMAP that notes its calls: what matters is which steps are run again.
+// A fake COLMAP that records its calls, to test which steps are run again.
 TEST(ColmapRun, FinishedStepsAreSkippedAndFailuresNameTheLog) {
   const TemporaryFolder folder;
   const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
@@ -45,7 +45,7 @@ TEST(ColmapRun, FinishedStepsAreSkippedAndFailuresNameTheLog) {
   EXPECT_NE(error.find("colmap.log"), std::string::npos) << error;
   EXPECT_NE(error.find("no good initial pair"), std::string::npos) << error;
   write_fake("exit 0");
-  EXPECT_THROW(RunColmap(job, photos, options), base::InputError);  // succeeded, yet left no model
+  EXPECT_THROW(RunColmap(job, photos, options), base::InputError);  // succeeded, but wrote no model
   EXPECT_EQ(base::ReadFile(folder / "calls"), "feature_extractor\nexhaustive_matcher\nmapper\nmapper\n");
 
   options.max_features = 500;

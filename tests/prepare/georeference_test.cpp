@@ -55,7 +55,7 @@ TEST(Georeference, OutliersAreFoundAndDoNotPull) {
 
 TEST(Georeference, FlightsThatDisagreeGetOneOffsetEach) {
   test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
-  // Lines flown in turns on two days; the second day's barometer stood 15 m higher.
+  // Lines flown alternately on two days; heights of the second day are 15 m too high.
   for (size_t i = 0; i < 20; ++i) flight.photos[i].tags.capture_time_s = *flight.photos[i].tags.capture_time_s + (i % 3 == 1 ? 86400.0 : 0.0);
   test::SetTags(flight,
                 [](size_t i, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(0.0, 0.0, i % 3 == 1 ? 15.0 : 0.0)); });

@@ -113,7 +113,7 @@ TEST_F(PrepareTest, EmptyFoldersAndTextFilesHaveTheirOwnMessages) {
   fs::remove_all(folder_ / "images");
   ExpectInMessage("no such folder");
   fs::create_directories(folder_ / "images");
-  ExpectInMessage("holds no photos");
+  ExpectInMessage("has no photos");
   for (const char* name : {"a.jpg", "b.jpg", "c.jpg", "d.jpg"}) std::ofstream(folder_ / (std::string("images/") + name)) << "text";
   ExpectInMessage("only 0 of 4 photos can be used");
 }

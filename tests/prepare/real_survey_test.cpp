@@ -1,5 +1,5 @@
-// Figures of an independent fit of the same models: Brighton Beach 0.60 m over 18 photos and 45.5 m above ground (40.0 m RelativeAltitude),
-// Seneca 3.6 m over 166 photos and 63.9 m.
+// Reference values from an independent fit of the same models: Brighton Beach 0.60 m over 18 photos and 45.5 m above ground (40.0 m
+// RelativeAltitude), Seneca 3.6 m over 166 photos and 63.9 m.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

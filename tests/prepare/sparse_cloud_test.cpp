@@ -49,7 +49,7 @@ TEST(SparseCloud, AglIsMeasuredToTheGroundBelow) {
   base::ThreadPool threads(2);
   survey::Survey survey;
   survey.points = Ground(5.0);
-  // A plateau to the east, a bird above the camera and a pit: none of them may change what lies below the first camera.
+  // A plateau to the east, a point above the camera and a pit must not change the ground height below the first camera.
   for (survey::SparsePoint& point : survey.points) {
     if (point.x_in_enu.x() > 20.0) point.x_in_enu.z() = 25.0;
   }

@@ -1,4 +1,4 @@
-// A small nadir flight over gently rolling ground, as photos with tags and a COLMAP model in a frame of its own.
+// A small nadir flight over gentle hills: photos with tags, and a COLMAP model in an arbitrary frame.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace skyquilt::test {
 
-constexpr double kFlightHeight_m = 50.0;  // above the mean ground, which lies at ENU z = 0
+constexpr double kFlightHeight_m = 50.0;  // above the mean ground, which is at ENU z = 0
 
 struct FlightPhoto {
   std::string name;
@@ -31,9 +31,9 @@ struct Flight {
 
 // `origin` may be anywhere on Earth.
 Flight MakeFlight(const geo::Geodetic& origin);
-// ENU positions of the tags become `tag(photo index, true centre)`.
+// Sets the ENU position of every tag to `tag(photo index, true centre)`.
 void SetTags(Flight& flight, const std::function<Eigen::Vector3d(size_t, const Eigen::Vector3d&)>& tag);
-// photos into `folder`/images, the model as text into `folder`/sparse/0.
+// Writes photos to `folder`/images and the model as text to `folder`/sparse/0.
 void WriteFlight(const Flight& flight, const std::filesystem::path& folder);
 
 }  // namespace skyquilt::test

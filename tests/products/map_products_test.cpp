@@ -20,7 +20,7 @@
 namespace skyquilt::products {
 namespace {
 
-// What another program sees in the file: GDAL's own geo-transform, CRS and PROJ instead of our projections.
+// Reads the file like another program: with GDAL's geo-transform, CRS and PROJ instead of our projections.
 class OtherProgram {
  public:
   explicit OtherProgram(const std::filesystem::path& file) {
@@ -35,7 +35,7 @@ class OtherProgram {
   OtherProgram& operator=(const OtherProgram&) = delete;
 
   GDALDataset* dataset() const { return dataset_; }
-  // Column and row (fractional, outer corner 0) of a place on Earth.
+  // Column and row (fractional, outer corner 0) of a position on Earth.
   Eigen::Vector2d PixelOf(double longitude_deg, double latitude_deg) const {
     OGRSpatialReference wgs84;
     wgs84.importFromEPSG(4326);
@@ -107,7 +107,7 @@ TEST_P(AnywhereOnEarth, PlacesAndHeightsAreRight) {
     }
   }
   EXPECT_GT(checked, 800);
-  // The map ends where the scene ends: its corners lie within two cells of the outermost of the scene's corners.
+  // The map ends where the scene ends: its corners are within two cells of the outermost corners of the scene.
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
   Eigen::Vector2d high = -low;
   for (const double x : {info.min_enu.x(), info.max_enu.x()}) {
@@ -151,7 +151,7 @@ TEST(MapProducts, StayRightOverTensOfKilometres) {
       const Eigen::Vector2d pixel = dsm.PixelOf(place.longitude_deg, place.latitude_deg);
       const auto column = static_cast<int>(pixel.x());
       const auto row = static_cast<int>(pixel.y());
-      // A level plane of the local frame slopes against the ellipsoid: compare at the cell's own centre.
+      // A level plane of the local frame is not level on the ellipsoid, so compare at the centre of each cell.
       const Eigen::Vector2d en = products.grid.CellCentre(column, row);
       Eigen::Vector3d centre = frame.EnuFromGeodetic(geo::GeodeticFromUtm(en, place.height_m, products.grid.zone));
       centre.z() = scene.SurfaceZ(x, y);
@@ -217,7 +217,7 @@ TEST(MapProducts, LargeMapsHaveOverviewsAndTiles) {
 TEST(MapProducts, PreviewsLieInTheLocalFrame) {
   const TemporaryFolder folder;
   const AnalyticScene scene;
-  // Far from the zone's central meridian north of the map and of the frame differ by two degrees.
+  // Far from the zone's central meridian, map north and true north differ by two degrees.
   MakeMapProducts(scene.Info({50.0, 5.9, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path());
   const image::Image8 picture = image::LoadRgb8(folder.path() / "orthophoto.png");
   const auto bounds = nlohmann::json::parse(base::ReadFile(folder.path() / "orthophoto.json"));
@@ -253,7 +253,7 @@ TEST(MapProducts, TooManyCellsAreRefusedOrCoarsened) {
   EXPECT_GT(coarse.resolution_m, 0.5);
   options.resolution_m = 0.25;
   const std::string error = UsageErrorOf([&] { PlanMapGrid(info, options); });
-  EXPECT_NE(error.find("use at least 1.0"), std::string::npos) << error;
+  EXPECT_NE(error.find("set it to at least 1.0"), std::string::npos) << error;
   options.resolution_m = -1.0;
   EXPECT_THROW(PlanMapGrid(info, options), base::UsageError);
   options.resolution_m = std::numeric_limits<double>::quiet_NaN();

@@ -60,7 +60,7 @@ TEST(RenderViews, DepthRunsAlongTheRay) {
   const image::Image8 picture = image::LoadRgb8(folder.path() / "nadir.png");
   EXPECT_EQ(picture.At(0, 24)[1], 255) << "green in the west";
   EXPECT_EQ(picture.At(63, 0)[0], 255) << "red in the east";
-  // 50 m east of the camera and 100 m below it the house's west wall begins: 27.7 px right of the centre.
+  // The house's west wall begins 50 m east of the camera and 100 m below it: 27.7 px right of the centre.
   EXPECT_EQ(picture.At(58, 24)[0], 255) << "ground";
   EXPECT_EQ(picture.At(61, 24)[2], 255) << "wall";
 }

@@ -78,7 +78,7 @@ TEST(Develop, VignettingHalvesTheLightInTheCorners) {
   for (const int x : {0, 400}) {
     for (const int y : {0, 300}) EXPECT_NEAR(*out.At(x, y), *dark.At(x, y), 1) << x << " " << y;
   }
-  // Half way out the loss has a quarter of the exponent.
+  // Half-way to the corner the exponent is a quarter.
   const image::Image8 half_way = Develop(light, Gain(std::pow(0.5, 0.25)));
   EXPECT_NEAR(*out.At(300, 225), *half_way.At(300, 225), 1);
   for (int x = 201; x < 401; ++x) EXPECT_LE(*out.At(x, 150), *out.At(x - 1, 150));
@@ -89,7 +89,7 @@ TEST(Develop, VignettingIsAboutThePrincipalPoint) {
   const image::Image8 even = Develop(light, Gain(1.0));
   Development fading = Gain(1.0);
   fading.principal_point = {0.5, 0.5};
-  EXPECT_EQ(Develop(light, fading).data, even.data);  // nothing lost, wherever the centre is
+  EXPECT_EQ(Develop(light, fading).data, even.data);  // no loss, wherever the centre is
   fading.vignetting = 0.5;
   const image::Image8 out = Develop(light, fading);
   EXPECT_EQ(*out.At(0, 0), *even.At(0, 0));

@@ -28,7 +28,7 @@ std::map<int, std::vector<Eigen::Vector3d>> NadirLines(const std::vector<PhotoPl
   return lines;
 }
 
-// Drift of the drone (0.25 m a side) averages out over a line.
+// Position errors of the drone (0.25 m per axis) average out over a line.
 TEST(Flight, OverlapsAreAsRequested) {
   for (const double forward : {0.6, 0.8}) {
     for (const double side : {0.5, 0.7}) {
@@ -62,7 +62,7 @@ TEST(Flight, GimbalAnglesGiveThePose) {
   // Straight below: depth is the height; east is right, north is up in the photo.
   EXPECT_LT((nadir * Eigen::Vector3d(10.0, 20.0, 0.0) - Eigen::Vector3d(0, 0, 100)).norm(), 1e-9);
   EXPECT_LT((nadir * Eigen::Vector3d(15.0, 27.0, 0.0) - Eigen::Vector3d(5, -7, 100)).norm(), 1e-9);
-  // Looking east and 30 degrees down: the optical axis meets the ground 100 / tan(30) m ahead.
+  // Looking east and 30 degrees down: the optical axis hits the ground 100 / tan(30) m ahead.
   const geo::Rigid3d oblique = PoseFromGimbal(position, 90.0, -30.0, 0.0);
   const Eigen::Vector3d ahead = oblique * Eigen::Vector3d(10.0 + 100.0 / std::tan(M_PI / 6.0), 20.0, 0.0);
   EXPECT_NEAR(ahead.x(), 0.0, 1e-9);
@@ -163,7 +163,7 @@ TEST(Flight, BrightnessErrorsAreNotInTheTags) {
     sum += stops;
     squares += stops * stops;
   }
-  // Of 110 samples: the mean is good to 0.05 stops, the standard deviation to 7 %.
+  // With 110 samples the mean is accurate to 0.05 stops, the standard deviation to 7 %.
   EXPECT_NEAR(sum / n, 0.0, 0.2);
   EXPECT_NEAR(std::sqrt(squares / n), 0.5, 0.14);
 }
@@ -181,7 +181,7 @@ TEST(Flight, ColorDriftsSlowlyAndTurnsRedAgainstBlue) {
     EXPECT_NEAR(light[0] * light[2], light[1] * light[1], 1e-12);
     const double drift = std::log2(light[0] / light[1]);
     EXPECT_LE(std::abs(drift), most + 1e-12);
-    // The steepest that the noise can be, see ValueNoise.
+    // The largest possible slope of the noise, see ValueNoise.
     EXPECT_LE(std::abs(drift - previous), 0.5 * most + 1e-6);
     previous = drift;
     reddest = std::max(reddest, drift);
@@ -209,7 +209,7 @@ TEST(Flight, GpsNoiseHasTheStatedSize) {
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   for (const PhotoPlan& photo : photos) squares += (photo.tagged_position - photo.cam_from_enu.OriginInSource()).cwiseAbs2();
   const Eigen::Vector3d sigma = (squares / static_cast<double>(photos.size())).cwiseSqrt();
-  // 110 samples: the estimate itself is good to 7 %.
+  // With 110 samples the estimate is accurate to 7 %.
   EXPECT_NEAR(sigma.x(), 2.0, 0.5);
   EXPECT_NEAR(sigma.y(), 2.0, 0.5);
   EXPECT_NEAR(sigma.z(), 3.0, 0.75);
@@ -223,7 +223,7 @@ TEST(Flight, BlocksAreFlownAtTheirOwnAltitudes) {
   for (const PhotoPlan& photo : photos) {
     const Eigen::Vector3d p = photo.cam_from_enu.OriginInSource();
     const Eigen::Vector2d cell = (p.head<2>() - place.area_min).cwiseQuotient(block);
-    // Lines may stand just outside their block; look only at photos well inside.
+    // Lines may be just outside their block; use only photos well inside.
     const Eigen::Vector2d inside = cell - Eigen::Vector2d(std::floor(cell.x()), std::floor(cell.y()));
     if (inside.minCoeff() < 0.14 || inside.maxCoeff() > 0.86) continue;
     const auto index = static_cast<size_t>(std::floor(cell.y()) * place.columns + std::floor(cell.x()));

@@ -18,7 +18,7 @@ TEST(ValueNoise, StaysInRangeAndIsContinuous) {
     EXPECT_LE(std::abs(here), 1.0F);
     EXPECT_NEAR(here, ValueNoise(x + 1e-3F, y, 3U), 0.01F);
   }
-  // Across a lattice line, on both sides of zero.
+  // Continuous across lattice lines, on both sides of zero.
   for (const float line : {-2.0F, 0.0F, 3.0F}) EXPECT_NEAR(ValueNoise(line - 1e-4F, 0.3F, 3U), ValueNoise(line + 1e-4F, 0.3F, 3U), 1e-3F);
 }
 
@@ -27,7 +27,7 @@ TEST(FractalNoise, OctavesBelowTheFootprintVanish) {
   const FractalShape coarse_only{8.0F, 1, 0.5F};
   for (int i = 0; i < 100; ++i) {
     const float x = 1.37F * static_cast<float>(i);
-    // Half the first wavelength: the next octave (4 m) is gone, the first (8 m) is whole.
+    // The second octave (4 m) is left out, the first (8 m) is complete.
     EXPECT_FLOAT_EQ(FractalNoise(x, 2.0F, shape, 1U, 2.0F), FractalNoise(x, 2.0F, coarse_only, 1U, 0.0F));
     EXPECT_EQ(FractalNoise(x, 2.0F, shape, 1U, 100.0F), 0.0F);
   }

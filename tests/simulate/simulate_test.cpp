@@ -63,7 +63,7 @@ TEST_F(HamletSurvey, SameSeedSameBytesForAnyNumberOfThreads) {
   EXPECT_GT(files.size(), 30U);
   Simulate(Hamlet(), root_ / "again", one);
   EXPECT_TRUE(files == ReadTree(root_ / "again"));
-  // Over an earlier simulation of something else: nothing of it stays.
+  // Replaces an earlier, different simulation completely.
   SimulateOptions other = Hamlet();
   other.seed = 6;
   other.samples_per_pixel = 1;
@@ -125,7 +125,7 @@ TEST_F(HamletSurvey, TagsTellPositionAndExposure) {
 }
 
 // Sparse points are within a few centimetres of the surface, so where a photo's track has them its depth must agree,
-// except beside edges, where a pixel's centre can lie on the other side.
+// except beside edges, where a pixel's centre can be on the other side.
 TEST_F(HamletSurvey, DepthAgreesWithThePoints) {
   const survey::ColmapModel model = survey::ReadColmapModel(root_ / "two/sparse/0");
   std::vector<double> differences;
@@ -154,7 +154,7 @@ TEST_F(HamletSurvey, DepthAgreesWithThePoints) {
   EXPECT_LT(differences[differences.size() * 8 / 10], 0.6);
 }
 
-// Flat and pitched roofs, seen in the depth images of the test views: the highest point of each building's footprint.
+// Heights of flat and pitched roofs in the depth images of the test photos: the highest point of each building.
 TEST_F(HamletSurvey, DepthShowsTheBuildingsAtTheirHeights) {
   const survey::ColmapModel model = survey::ReadColmapModel(root_ / "two/sparse/0");
   int n_checked = 0;
@@ -162,7 +162,7 @@ TEST_F(HamletSurvey, DepthShowsTheBuildingsAtTheirHeights) {
   const nlohmann::json truth = Json("truth/buildings.json");
   for (const nlohmann::json& b : truth["buildings"]) {
     const double yaw = b["yaw_deg"].get<double>() * M_PI / 180.0;
-    // On the ridge, or on the deck, off the centre.
+    // On the ridge, or off the centre of a flat roof's deck.
     const double along = -0.1 * b["length_m"].get<double>();
     const Eigen::Vector3d top(b["east_m"].get<double>() + along * std::cos(yaw), b["north_m"].get<double>() + along * std::sin(yaw),
                               b["ground_z_m"].get<double>() + b["ridge_height_m"].get<double>());

@@ -21,7 +21,7 @@ class TownWorld : public testing::Test {
   static void SetUpTestSuite() {
     threads_ = new base::ThreadPool(2);
     PlaceSpec place = Resolve("town");
-    // Neither leaves above the roofs nor fine light matter here.
+    // Coarse trees and coarse ambient light are enough for these tests.
     place.city.tree_detail = 0;
     place.ambient_voxel_m = 12.0;
     world_ = new World(place, 1.0, *threads_);
@@ -81,11 +81,11 @@ TEST_F(TownWorld, RoofsStandAtTheStatedHeights) {
     const double hw = 0.5 * b.width_m;
     const double slope = (b.ridge_height_m - b.eave_height_m) / hw;
     for (const double y : {0.02, hw - 0.6}) {
-      // Flat roofs carry a parapet 0.25 m wide; 0.6 m from the edge is free of it.
+      // Flat roofs have a parapet 0.25 m wide; points 0.6 m from the edge are not on it.
       const double expected = b.roof == RoofKind::kFlat ? b.eave_height_m : b.ridge_height_m - slope * y;
       const Traced traced = Trace(Place(b, 0.0, y, 100.0), -Eigen::Vector3d::UnitZ());
       ASSERT_TRUE(traced.hit);
-      // Machines stand on some flat roofs.
+      // Some flat roofs have machines on them.
       if (traced.tag.part == Part::kRooftopBox) continue;
       EXPECT_EQ(traced.tag.object, i);
       EXPECT_TRUE(traced.tag.part == Part::kFlatRoof || traced.tag.part == Part::kPitchedRoof);
@@ -163,7 +163,7 @@ TEST_F(TownWorld, LightIsFiniteAndShadowsAreDarker) {
     const Eigen::Vector3f light = world_->ambient().Irradiance(roof, up);
     EXPECT_TRUE(light.allFinite());
     EXPECT_GT(light.minCoeff(), 0.05F);
-    // The sun outshines the sky on a roof.
+    // On a roof the sun is brighter than the sky.
     EXPECT_LT(light.x(), sky.sun_over_pi().x() * sky.sun_direction().z());
   }
 }

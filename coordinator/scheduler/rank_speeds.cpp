@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kJudge_s = 20.0;      // the speed of a block is judged only after this time
 constexpr double kWorthwhile = 0.75;   // a move must reduce the remaining time to this fraction or less
-constexpr double kAfterAllElse = 1.1;  // a rank is slow when it needs this many times as long as all other work
+constexpr double kAfterAllElse = 1.1;  // a rank is slow when its block takes this many times as long as all remaining work on all ranks
 
 }  // namespace
 

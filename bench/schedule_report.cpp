@@ -150,7 +150,7 @@ std::string ScheduleBenchTable(const ScheduleBenchResult& r) {
                         base::FormatDuration(run.wall_s), run.restarts, run.moves, run.messages_per_second, base::FormatCount(run.bytes_per_second),
                         100.0 * run.coordinator_load);
   };
-  text += fmt::format("  {:<28}{:>8}  {:>9}  {:>8}  {:>6}  {:>13}  {:>12}  {:>9}\n", "", "efficiency", "time", "restarts", "moves", "messages",
+  text += fmt::format("  {:<26}{:>10}  {:>9}  {:>8}  {:>6}  {:>13}  {:>12}  {:>9}\n", "", "efficiency", "time", "restarts", "moves", "messages",
                       "traffic", "rank 0 CPU");
   row("nothing fails", r.undisturbed);
   row(fmt::format("{:.1f} % of ranks lost", 100.0 * o.failing), r.failing);

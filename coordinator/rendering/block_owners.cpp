@@ -43,7 +43,7 @@ std::vector<int> AlongCurve(const scene::FieldStore& store) {
 }
 
 // Whether two blocks, with their blend margins, touch or overlap in plan view.
-bool Meet(const render::TrainedField& a, const render::TrainedField& b) {
+bool Overlap(const render::TrainedField& a, const render::TrainedField& b) {
   const double reach = a.blend_m + b.blend_m;
   return (a.box.min_enu.head<2>().array() - reach <= b.box.max_enu.head<2>().array()).all() &&
          (b.box.min_enu.head<2>().array() - reach <= a.box.max_enu.head<2>().array()).all();
@@ -70,7 +70,7 @@ std::vector<std::vector<int>> LowerNeighbours(const scene::FieldStore& store) {
   std::vector<std::vector<int>> lower(static_cast<size_t>(store.size()));
   for (int k = 0; k < store.size(); ++k) {
     for (int other = 0; other < k; ++other) {
-      if (Meet(store.block(other), store.block(k))) lower[static_cast<size_t>(k)].push_back(other);
+      if (Overlap(store.block(other), store.block(k))) lower[static_cast<size_t>(k)].push_back(other);
     }
   }
   return lower;

@@ -75,8 +75,8 @@ bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& bloc
     if (!block.empty) largest = std::max(largest, ExpectedTrainingBytes(block, settings.train, threads));
   }
   // Every rank maps the pixels of all photos, so they count for each rank.
-  const double share = settings.run.MemoryLimitBytes() / std::max(1, ranks_on_machine);
-  return static_cast<double>(pixels.FileBytes()) + largest + kProgramBytes > share;
+  const double per_rank = settings.run.MemoryLimitBytes() / std::max(1, ranks_on_machine);
+  return static_cast<double>(pixels.FileBytes()) + largest + kProgramBytes > per_rank;
 }
 
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,

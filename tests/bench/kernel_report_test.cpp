@@ -58,10 +58,10 @@ TEST(KernelBenchPage, HasTheFiguresOfTheJson) {
   EXPECT_EQ(limit.rows[1][1].value, json.at("infer_samples_per_second"));
   EXPECT_EQ(limit.rows[1][2].value, json.at("roofline_infer_samples_per_second"));
   EXPECT_EQ(limit.rows[2][1].value, json.at("one_thread").at("train_samples_per_second"));
-  const BenchTable& stages = TableOf(page, "stages");
-  ASSERT_EQ(stages.rows.size(), json.at("share").size());
-  for (const auto& row : stages.rows) {
-    ASSERT_EQ(row.size(), stages.columns.size());
+  const BenchTable& phases = TableOf(page, "phases");
+  ASSERT_EQ(phases.rows.size(), json.at("share").size());
+  for (const auto& row : phases.rows) {
+    ASSERT_EQ(row.size(), phases.columns.size());
     const std::string key = row[0].shown == "waiting, bookkeeping" ? "waiting" : row[0].shown;
     EXPECT_EQ(row[1].value, json.at("share").at(key)) << key;
     EXPECT_EQ(row[3].value, json.at("one_thread").at("share").at(key)) << key;
@@ -91,7 +91,7 @@ TEST(KernelBenchPage, HasNoOneThreadRowsWhenOnlyOneThreadIsUsed) {
   result.one_thread.clear();
   const BenchPage page = KernelBenchPage(result, "");
   EXPECT_EQ(TableOf(page, "limit").rows.size(), 2U);
-  EXPECT_EQ(TableOf(page, "stages").columns.size(), 3U);
+  EXPECT_EQ(TableOf(page, "phases").columns.size(), 3U);
   EXPECT_EQ(TableOf(page, "machine").columns.size(), 2U);
   EXPECT_EQ(page.verdicts.size(), 1U);
 }

@@ -66,7 +66,7 @@ TEST_F(BlockOwners, RanksThatHoldTheWholeSceneFormGroupsOfOne) {
   EXPECT_EQ(plenty.size(), 5U);
   const std::vector<SceneHolders> half = MakeGroups(*store_, ranks, std::vector<double>(5, 0.85 * AllBytes()));
   ASSERT_EQ(half.size(), 2U);
-  EXPECT_EQ(half[0].ranks.size() + half[1].ranks.size(), 5U) << "every rank has a place";
+  EXPECT_EQ(half[0].ranks.size() + half[1].ranks.size(), 5U) << "every rank is in a group";
   const std::vector<SceneHolders> scarce = MakeGroups(*store_, ranks, std::vector<double>(5, 0.01 * AllBytes()));
   ASSERT_EQ(scarce.size(), 1U);
   EXPECT_EQ(scarce[0].ranks, ranks);
@@ -82,7 +82,7 @@ TEST_F(BlockOwners, MoreOwnersThanBlocks) {
   const std::vector<int> owner = DealBlocks(*store_, 50);
   std::vector<int> sorted = owner;
   std::sort(sorted.begin(), sorted.end());
-  EXPECT_TRUE(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) << "every block has an owner of its own";
+  EXPECT_TRUE(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) << "every block has a different owner";
 }
 
 }  // namespace

@@ -101,13 +101,13 @@ std::string LuminanceSentence(const scene::SceneInfo& info) {
   const std::string omega = page::FormatFixed(info.luminance_state.mean_log_gain / std::numbers::ln2, 2, "stops");
   if (info.luminance.mode == brightness::LuminanceMode::kUnder) {
     return fmt::format(
-        "The survey as a whole is too dark: the scene at normal exposure aims at a mean display value of {}, and what the photos recorded is that "
-        "light held back (mean \xCE\xA9 {}).",
+        "The survey as a whole is too dark. The scene at normal exposure is brightened to a mean display value of {}; a learned concealing field "
+        "darkens it to what the photos recorded (mean \xCE\xA9 {}).",
         target, omega);
   }
   return fmt::format(
-      "The survey as a whole is too bright: the scene at normal exposure is what the photos recorded with light held back (mean \xCE\xA9 {}), and "
-      "aims at a mean display value of {}.",
+      "The survey as a whole is too bright. A learned concealing field darkens what the photos recorded (mean \xCE\xA9 {}), so that the scene at "
+      "normal exposure has a mean display value of {}.",
       omega, target);
 }
 

@@ -56,7 +56,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   metrics.evaluate_seconds = std::chrono::duration<double>(Clock::now() - start).count();
 
   Summarise(input, scores, &metrics);
-  for (const std::string& warning : metrics.warnings) spdlog::warn("{}", warning);
+  for (const Warning& warning : metrics.warnings) spdlog::warn("{}. {}", warning.finding, warning.advice);
   WriteReport(input, metrics, pictures);
   return metrics;
 }

@@ -1,5 +1,9 @@
 #include "evaluate/evaluate_options.h"
 
+#include <filesystem>
+
+#include "core/base/errors.h"
+
 namespace skyquilt::evaluate {
 
 std::vector<config::Field<EvaluateOptions>> EvaluateOptions::Fields() {
@@ -18,6 +22,15 @@ std::vector<config::Field<EvaluateOptions>> EvaluateOptions::Fields() {
       {"report_photos", &O::report_photos, Range::AtLeast(0), "held-out photos with pictures in the report, evenly spread; all are in its tables"},
       {"report_image_width", &O::report_image_width, Range{16, 65536}, "largest width in pixels of the report's pictures"},
   };
+}
+
+void EvaluateOptions::RequireFiles() const {
+  if (!lpips_network.empty() && !std::filesystem::is_regular_file(lpips_network)) {
+    throw base::InputError(lpips_network, "no such file", "Give an ONNX file as evaluate.lpips_network, or leave it empty: LPIPS is not measured then");
+  }
+  if (!normal_photos.empty() && !std::filesystem::is_directory(normal_photos)) {
+    throw base::InputError(normal_photos, "no such folder", "Give the folder of the normally exposed photos as evaluate.normal_photos, or leave it empty");
+  }
 }
 
 void EvaluateOptions::Check() const {

@@ -22,6 +22,8 @@ struct EvaluateOptions {
   static std::vector<config::Field<EvaluateOptions>> Fields();
   // Throws base::UsageError for options out of range.
   void Check() const;
+  // Throws base::InputError when a file or folder that they name is not there. For the beginning of long work whose last stage reads them.
+  void RequireFiles() const;
 };
 
 }  // namespace skyquilt::evaluate

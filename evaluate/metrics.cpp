@@ -8,23 +8,28 @@
 namespace skyquilt::evaluate {
 
 const char* const kCoverageDefinition =
-    "A pixel's surface point is where its rendered ray becomes half opaque, moved along the ray into the height range of the scene's blocks "
-    "(so that neither floaters nor holes change what counts). The pixel is covered when that point lies inside the area of the scene's blocks "
-    "and inside the unmasked frame of at least two training photos; occlusion between photos is not tested. "
-    "coverage = covered pixels / pixels that the photo's mask does not exclude.";
+    "Coverage: covered pixels divided by the pixels that the photo's mask does not exclude. The surface point of a pixel is where its rendered ray "
+    "becomes half opaque, moved along the ray into the height range of the blocks, so that neither floaters nor holes change what counts. The pixel "
+    "is "
+    "covered when this point lies inside the blocks and inside the unmasked frame of at least two training photos. Whether something hides the point "
+    "from these photos is not tested.";
 const char* const kPsnrDefinition =
-    "psnr, ssim: computed per held-out photo over its covered pixels in sRGB display values, then averaged over photos. "
-    "*_full_frame: the same over every pixel that is not masked. psnr_per_block: from the squared errors of all covered pixels of all held-out "
-    "photos whose surface point lies in the block's core box, seen from above.";
+    "PSNR and SSIM: computed per held-out photo over its covered pixels in sRGB display values, then averaged over the photos. Full frame: the same "
+    "over every pixel that no mask excludes. PSNR of a block: from the squared errors of all covered pixels of all held-out photos whose surface "
+    "point "
+    "lies in the block's core box, seen from above.";
 const char* const kSeamDefinition =
-    "seam_psnr_gap_db = PSNR of covered pixels whose surface point lies deeper than the margin inside a block, minus PSNR of those where the "
-    "grown boxes of two or more blocks overlap. Textures differ from place to place, so the interior's squared errors are taken by class of the "
-    "photo's gradient (eight classes, each twice the one before) and weighted to the seams' share of each class. Pixels near the survey's outer rim "
-    "belong to neither. Null with a single block.";
+    "Seam gap: PSNR of covered pixels whose surface point lies inside a block, farther from its border than the margin, minus PSNR of those where "
+    "two or "
+    "more blocks with their margins overlap. Strong texture is harder to render, and there may be more of it in one of the two. So the pixels are "
+    "sorted into eight classes by the photo's gradient (each class twice the one before), and the squared errors inside are weighted to the number "
+    "of "
+    "seam pixels in each class. Pixels near the outer border of the survey belong to neither. There is no seam gap with a single block.";
 const char* const kRightHalfDefinition =
-    "psnr_right_half: mean over photos of the PSNR over the covered pixels of the right half, rendered as psnr is. psnr_right_half_fitted: the same "
-    "pixels after three gains in linear light, one per colour, were fitted to the left half of the photo; the difference is what tags and training "
-    "do not know of the photo's brightness.";
+    "PSNR of right halves: mean over photos of the PSNR over the covered pixels of the right half, rendered as for PSNR. With fitted gains: the same "
+    "pixels after three gains in linear light, one per colour, were fitted to the left half of the photo. The difference is what tags and training "
+    "do "
+    "not know about the brightness of the photo.";
 
 double PhotoScore::Coverage() const {
   return used_pixels > 0 ? static_cast<double>(covered_pixels) / static_cast<double>(used_pixels) : kNotMeasured;

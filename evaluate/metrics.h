@@ -50,6 +50,14 @@ struct BlockScore {
   int64_t pixels = 0;
 };
 
+// What a reader must know before believing the figures, each without a full stop at its end.
+struct Warning {
+  std::string finding;
+  std::string advice;  // what to do about it, or that nothing needs to be done
+
+  bool operator==(const Warning&) const = default;
+};
+
 struct Metrics {
   // Means over the test photos of the per-photo values, the convention of the field; photos without the value do not count.
   double psnr = kNotMeasured;
@@ -100,7 +108,7 @@ struct Metrics {
   int image_width = 0;  // of the first scored photo, pixels
   std::string machine;
   std::string date;  // UTC
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 
   const BlockScore* FindBlock(const std::string& name) const;  // nullptr when none of that name was scored
 };

@@ -145,7 +145,7 @@ Metrics MetricsFrom(const Json& json) {
   metrics.n_photos = ValueAt<int>(json, "photos_registered");
   metrics.n_unregistered = ValueAt<int>(json, "photos_unregistered");
   metrics.n_test = ValueAt<int>(json, "photos_held_out");
-  metrics.warnings = ValueAt<std::vector<std::string>>(json, "warnings");
+  for (const Json& warning : ValueAt<Json>(json, "warnings")) metrics.warnings.push_back({warning.at("finding"), warning.at("advice")});
   metrics.machine = ValueAt<std::string>(json, "machine");
   metrics.date = ValueAt<std::string>(json, "date");
   metrics.config = ValueAt<std::string>(json, "config");
@@ -199,7 +199,8 @@ std::string MetricsJson(const Metrics& metrics) {
   for (const BlockScore& block : metrics.blocks) json["pixels_per_block"][block.name] = block.pixels;
   json["definitions"] = {
       {"coverage", kCoverageDefinition}, {"psnr", kPsnrDefinition}, {"seam", kSeamDefinition}, {"right_half", kRightHalfDefinition}};
-  json["warnings"] = metrics.warnings;
+  json["warnings"] = Json::array();
+  for (const Warning& warning : metrics.warnings) json["warnings"].push_back({{"finding", warning.finding}, {"advice", warning.advice}});
   json["machine"] = metrics.machine;
   json["date"] = metrics.date;
   json["config"] = metrics.config;

@@ -163,9 +163,9 @@ std::string HistogramChart(const BrightnessReport& brightness, bool alone) {
   const BrightnessHistogram &before = brightness.histogram_before, &after = brightness.histogram_after;
   const double most = std::max(*std::max_element(before.begin(), before.end()), *std::max_element(after.begin(), after.end()));
   if (!(most > 0.0)) return "";
-  page::PlotFrame frame{.title = "Brightness of the training photos",
+  page::PlotFrame frame{.title = "Brightness of the training photos, before and after correction",
                         .x = {.label = "display value (0 black, 1 white)", .ticks = 10},
-                        .y = {.label = "share of pixels (%)", .high = 100.0 * most * 1.06},
+                        .y = {.label = "pixels (%)", .high = 100.0 * most * 1.06},
                         .zero_stands_out = true};
   if (alone) {
     frame.width_px = kWide_px;
@@ -186,36 +186,37 @@ std::string VignettingChart(const BrightnessReport& brightness) {
       curve.points.emplace_back(static_cast<double>(i) / static_cast<double>(shares.size() - 1), 100.0 * shares[i]);
     }
   }
-  return page::CurveChart(curves,
-                          {.title = "Light towards the corners", .x_label = "way from the middle to the farthest corner", .y_label = "light (%)"});
+  return page::CurveChart(
+      curves, {.title = "Vignetting: light towards the corners", .x_label = "distance from the middle, 1 = farthest corner", .y_label = "light (%)"});
 }
 
 std::string TagSentences(const BrightnessReport& brightness, double low_stops, double high_stops) {
   const bool alike = high_stops - low_stops < kAlikeStops;
-  std::string text = "The tags (shutter time, aperture, ISO) tell no differences in exposure, or are not used. ";
+  std::string text = "The tags (shutter time, aperture, ISO) show no difference in exposure, or are not used. ";
   if (!alike) {
     text = fmt::format(
-        "By their tags (shutter time, aperture, ISO) the photos were exposed between {} and {} from the reference; one stop is twice the light. ",
+        "By their tags (shutter time, aperture, ISO) the photos were exposed between {} and {} from the reference. One stop more is twice the "
+        "light. ",
         SignedFixed(low_stops, 2), SignedFixed(high_stops, 2, "stops"));
   }
   if (!Learned(brightness)) return text + "Nothing beyond the tags was learned. ";
-  text += "Training learned what the photos needed on top, per colour; for held-out photos it is predicted from the photos before and after. ";
+  text += "Training learned a further gain per photo and colour. For held-out photos it is predicted from the photos before and after. ";
   if (alike) return text;
-  const char* meaning = "that share of a difference in the tags shows in the photos, the rest is changing light that the camera made up for";
-  if (brightness.trust_in_tags >= 0.9) meaning = "the photos are as much brighter or darker as their tags say";
-  if (brightness.trust_in_tags <= 0.1) meaning = "the camera followed the changing light, so that the photos came out alike whatever their tags say";
+  const char* meaning = "the photos show only this part of the differences in the tags; the rest was changing light that the camera compensated";
+  if (brightness.trust_in_tags >= 0.9) meaning = "the photos differ in brightness as their tags say";
+  if (brightness.trust_in_tags <= 0.1) meaning = "the camera followed the changing light, so the photos are equally bright whatever their tags say";
   return text + fmt::format("Trust in the tags is {}: {}. ", page::FormatPercent(brightness.trust_in_tags, 0), meaning);
 }
 
 std::string SpreadSentences(const BrightnessReport& brightness) {
   const double before = brightness.spread_before_stops, after = brightness.spread_after_stops;
   if (!std::isfinite(before) || !std::isfinite(after)) return "";
-  const char* meaning = "The gains hardly change it: what differs is the ground, or nothing does.";
-  if (after < 0.8 * before) meaning = "The gains explain much of it; bright and dark ground remains.";
+  const char* meaning = "The gains hardly change this: the ground itself differs in brightness, or nothing does.";
+  if (after < 0.8 * before) meaning = "The gains explain much of this; differences between bright and dark ground remain.";
   if (after > 1.1 * before && after > before + kAlikeStops) {
-    meaning = "More than before: either the camera had evened out bright and dark ground, or the gains are wrong; the pictures tell.";
+    meaning = "That is more than before: either the camera had evened out bright and dark ground, or the gains are wrong. Check the pictures below.";
   }
-  return fmt::format("The mean light of the training photos spreads by {} as recorded, and by {} with the gains taken out. {} ",
+  return fmt::format("The mean light of the training photos varies by {} as recorded (standard deviation), and by {} with the gains taken out. {} ",
                      page::FormatFixed(before, 2, "stops"), page::FormatFixed(after, 2, "stops"), meaning);
 }
 
@@ -223,7 +224,7 @@ std::string ViewCard(const BrightnessView& view) {
   std::string html = "<article class=\"card photo\"><header><h3>" + page::EscapeHtml(view.name) + "</h3><div class=\"chips\">" +
                      Chip("exposure", SignedFixed(view.stops, 2, "stops")) + "</div></header><div class=\"pics three\">";
   html += Picture("taken-pic", view.photo, view.width, view.height, "Photo as taken");
-  html += Picture("recorded-pic", view.recorded, view.width, view.height, "Scene, as this photo recorded");
+  html += Picture("recorded-pic", view.recorded, view.width, view.height, "Scene at the exposure of this photo");
   html += Picture("normal-pic", view.normal, view.width, view.height, "Scene at normal exposure");
   return html + "</div></article>\n";
 }
@@ -236,7 +237,7 @@ std::string BrightnessSection(const ReportInput& input) {
   const auto [low, high] = std::minmax_element(brightness.photos.begin(), brightness.photos.end(),
                                                [](const auto& a, const auto& b) { return a.exif_stops < b.exif_stops; });
   std::string html = "<section id=\"brightness\"><div class=\"heading\"><h2>Brightness</h2><div class=\"chips\">";
-  html += Chip("spread of the photos",
+  html += Chip("variation between photos",
                page::FormatFixed(brightness.spread_before_stops, 2) + " \xE2\x86\x92 " + page::FormatFixed(brightness.spread_after_stops, 2, "stops"),
                "main");
   if (Learned(brightness) && high->exif_stops - low->exif_stops >= kAlikeStops) {

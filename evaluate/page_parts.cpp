@@ -2,7 +2,12 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
 #include "core/page/html.h"
+#include "evaluate/metrics.h"
 
 namespace skyquilt::evaluate {
 
@@ -24,6 +29,28 @@ std::string BarRow(const std::string& name, double percent, const std::string& v
 
 std::string Fact(const std::string& name, const std::string& value) {
   return fmt::format("<dt>{}</dt><dd>{}</dd>", page::EscapeHtml(name), value);
+}
+
+std::string RangeOf(const std::vector<double>& values, int decimals, const char* unit) {
+  if (values.empty()) return page::FormatFixed(kNotMeasured, decimals);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const std::string low_text = page::FormatFixed(*low, decimals), high_text = page::FormatFixed(*high, decimals, unit);
+  return page::FormatFixed(*low, decimals, unit) == high_text ? high_text : low_text + " \xE2\x80\x93 " + high_text;
+}
+
+std::string ShownDuration(double seconds) {
+  if (!std::isfinite(seconds)) return page::FormatFixed(seconds, 0);
+  constexpr const char* kSpace = "\xE2\x80\xAF";
+  if (seconds < 59.95) return page::FormatFixed(seconds, 1, "s");
+  const auto whole = static_cast<int64_t>(std::llround(seconds));
+  if (whole < 3600) return fmt::format("{0}{2}min {1:02}{2}s", whole / 60, whole % 60, kSpace);
+  const auto minutes = static_cast<int64_t>(std::llround(seconds / 60.0));
+  return fmt::format("{0}{2}h {1:02}{2}min", minutes / 60, minutes % 60, kSpace);
+}
+
+std::string ShownDate(const std::string& utc_timestamp) {
+  const bool known = utc_timestamp.size() == 20 && utc_timestamp[10] == 'T' && utc_timestamp[19] == 'Z';
+  return known ? utc_timestamp.substr(0, 10) + " " + utc_timestamp.substr(11, 5) + " UTC" : utc_timestamp;
 }
 
 }  // namespace skyquilt::evaluate

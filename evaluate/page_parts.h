@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace skyquilt::evaluate {
 
@@ -14,5 +15,11 @@ std::string Picture(const std::string& kind, const std::string& file, int width,
 std::string BarRow(const std::string& name, double percent, const std::string& value);
 // An entry of a list of facts (<dl>).
 std::string Fact(const std::string& name, const std::string& value);
+// One figure for equal values, otherwise the range; an en dash for none.
+std::string RangeOf(const std::vector<double>& values, int decimals, const char* unit);
+// "24.5 s", "10 min 24 s", "2 h 05 min"; an en dash for what is not measured.
+std::string ShownDuration(double seconds);
+// "2026-01-31T12:00:00Z" as "2026-01-31 12:00 UTC"; other texts stay as they are.
+std::string ShownDate(const std::string& utc_timestamp);
 
 }  // namespace skyquilt::evaluate

@@ -23,7 +23,7 @@ std::string PhotoCard(const ReportInput& input, size_t index) {
                   index, std::isfinite(score.psnr_db) ? fmt::format("{:.4f}", score.psnr_db) : "", page::EscapeHtml(score.name));
   html += Chip("PSNR", page::FormatFixed(score.psnr_db, 2, "dB"), "main");
   html += Chip("SSIM", page::FormatFixed(score.ssim, 3));
-  html += Chip("covered", page::FormatPercent(score.Coverage()));
+  html += Chip("coverage", page::FormatPercent(score.Coverage()));
   html += Chip("full frame", page::FormatFixed(score.psnr_full_db, 2, "dB"));
   if (input.metrics->has_truth) html += Chip("median depth error", page::FormatFixed(score.depth_median_abs_m, 2, "m"));
   html += "</div></header><div class=\"pics\">";
@@ -49,8 +49,8 @@ std::string PhotoTable(const ReportInput& input) {
   const bool truth = input.metrics->has_truth;
   std::string html =
       "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Held-out photo</th><th class=\"num\">PSNR</th><th class=\"num\">SSIM</th>"
-      "<th class=\"num\">Covered</th><th class=\"num\">PSNR, full frame</th><th class=\"num\">SSIM, full frame</th><th class=\"num\">LPIPS</th>";
-  if (truth) html += "<th class=\"num\">Depth RMSE</th><th class=\"num\">Depth, median error</th>";
+      "<th class=\"num\">Coverage</th><th class=\"num\">PSNR, full frame</th><th class=\"num\">SSIM, full frame</th><th class=\"num\">LPIPS</th>";
+  if (truth) html += "<th class=\"num\">Depth error, RMSE</th><th class=\"num\">Depth error, median</th>";
   html += "<th class=\"num\">Exposure gain</th><th class=\"num\">Size</th><th class=\"num\">Render time</th></tr></thead><tbody>";
   for (size_t i = 0; i < input.metrics->photos.size(); ++i) {
     const PhotoScore& score = input.metrics->photos[i];
@@ -84,9 +84,9 @@ std::string PhotoSection(const ReportInput& input) {
       "side</button>"
       "<button data-view=\"slide\">Slider</button></div><label>Order <select id=\"order\"><option value=\"name\">by name</option><option "
       "value=\"worst\">worst first</option><option value=\"best\">best first</option></select></label></div></div>"
-      "<p class=\"lead\">Never trained on. Error is the mean absolute difference of red, green and blue in display values; pixels that fewer than "
-      "two training "
-      "photos cover, or that a mask excludes, are shown in dimmed grey and do not count. Click a picture to enlarge it.</p><div id=\"photo-list\">";
+      "<p class=\"lead\">These photos were kept out of training, so they test the result. Error is the mean absolute difference of red, green and "
+      "blue in display values from 0 to 1. Grey pixels do not count: fewer than two training photos see them, or a mask excludes them. "
+      "<span class=\"screen\">Click a picture to enlarge it.</span></p><div id=\"photo-list\">";
   size_t pictured = 0;
   for (size_t i = 0; i < input.metrics->photos.size() && i < input.images.size(); ++i) {
     if (input.images[i].photo.empty()) continue;
@@ -95,7 +95,7 @@ std::string PhotoSection(const ReportInput& input) {
   }
   html += "</div>";
   if (pictured < input.metrics->photos.size()) {
-    html += fmt::format("<p class=\"note\">Pictures of {} of {} scored photos are kept; all are in the table.</p>", pictured,
+    html += fmt::format("<p class=\"note\">Pictures are shown for {} of {} scored photos; the table has all of them.</p>", pictured,
                         input.metrics->photos.size());
   }
   return html + PhotoTable(input) + "</section>\n";

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/progress.h"
 #include "core/page/html.h"
+#include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
 
 namespace skyquilt::evaluate {
@@ -14,11 +14,11 @@ namespace {
 std::string StatusCell(const scene::FieldTraining* log, const partition::Block* block) {
   if (block != nullptr && block->empty)
     return fmt::format("<td class=\"status\"><span class=\"state idle\">empty</span><small>{}</small></td>", page::EscapeHtml(block->empty_reason));
-  if (log == nullptr) return "<td class=\"status\"><span class=\"state idle\">no log</span></td>";
+  if (log == nullptr) return "<td class=\"status\"><span class=\"state idle\">no record</span></td>";
   if (!log->ok)
     return fmt::format("<td class=\"status\"><span class=\"state bad\">failed</span><small>{}</small></td>", page::EscapeHtml(log->reason));
   if (log->dropped_steps > 0) {
-    return fmt::format("<td class=\"status\"><span class=\"state warn\">done</span><small>{} non-finite steps dropped</small></td>",
+    return fmt::format("<td class=\"status\"><span class=\"state warn\">done</span><small>{} steps left out: not finite</small></td>",
                        page::FormatInteger(log->dropped_steps));
   }
   return "<td class=\"status\"><span class=\"state good\">done</span></td>";
@@ -31,19 +31,21 @@ std::string TrainingCells(const scene::FieldTraining* log) {
   const auto number = [](int64_t value) { return page::NumberCell(static_cast<double>(value), page::FormatLarge(static_cast<double>(value))); };
   return page::NumberCell(log->psnr_db, page::FormatFixed(log->psnr_db, 2, "dB")) +
          page::NumberCell(static_cast<double>(log->steps), page::FormatInteger(log->steps)) +
-         page::NumberCell(log->seconds, base::FormatDuration(log->seconds)) + number(log->rays) + number(log->samples) + number(log->parameters);
+         page::NumberCell(log->seconds, ShownDuration(log->seconds)) + number(log->rays) + number(log->samples) + number(log->parameters);
 }
 
 }  // namespace
 
 std::string BlockTable(const ReportInput& input) {
+  const char* length_unit = input.survey->georeferenced ? "m" : "units";
   std::string html =
-      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Field</th><th>State</th><th class=\"num\">Held-out PSNR</th><th "
+      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Block</th><th>State</th><th class=\"num\">Held-out PSNR</th><th "
       "class=\"num\">Scored "
       "pixels</th>"
-      "<th class=\"num\">Training PSNR</th><th class=\"num\">Steps</th><th class=\"num\">Time</th><th class=\"num\">Rays</th><th "
+      "<th class=\"num\">Training PSNR</th><th class=\"num\">Steps</th><th class=\"num\">Training time</th><th class=\"num\">Rays</th><th "
       "class=\"num\">Samples</th>"
-      "<th class=\"num\">Parameters</th><th class=\"num\">Size</th><th class=\"num\">Heights</th><th class=\"num\">Flown above ground</th><th "
+      "<th class=\"num\">Parameters</th><th class=\"num\">Size</th><th class=\"num\">Heights from, to</th><th class=\"num\">Height above "
+      "ground</th><th "
       "class=\"num\">GSD</th>"
       "<th class=\"num\">Photos</th></tr></thead><tbody>";
   if (const scene::FieldTraining* context = input.training->Find("context")) {
@@ -58,13 +60,14 @@ std::string BlockTable(const ReportInput& input) {
     const double pixels = score == nullptr ? kNotMeasured : static_cast<double>(score->pixels);
     const scene::FieldTraining* log = input.training->Find(block.name);
     const Eigen::Vector3d size = block.max_enu - block.min_enu;
+    const double gsd_m = input.survey->georeferenced ? block.gsd_m : kNotMeasured;
     html += fmt::format("<tr id=\"block-{0}\"><td><b>{0}</b></td>", page::EscapeHtml(block.name)) + StatusCell(log, &block);
     html += page::NumberCell(psnr_db, page::FormatFixed(psnr_db, 2, "dB")) + page::NumberCell(pixels, page::FormatLarge(pixels)) + TrainingCells(log);
-    html += page::NumberCell(size.x() * size.y(), fmt::format("{:.0f} \xC3\x97 {:.0f}\xE2\x80\xAFm", size.x(), size.y()));
-    html += page::NumberCell(
-        block.min_enu.z(), fmt::format("{} \xE2\x80\xA6 {}", page::FormatFixed(block.min_enu.z(), 1), page::FormatFixed(block.max_enu.z(), 1, "m")));
-    html += page::NumberCell(block.altitude_agl_m, page::FormatFixed(block.altitude_agl_m, 1, "m"));
-    html += page::NumberCell(block.gsd_m, page::FormatFixed(block.gsd_m * 100.0, 1, "cm"));
+    html += page::NumberCell(size.x() * size.y(), fmt::format("{:.0f} \xC3\x97 {:.0f}\xE2\x80\xAF{}", size.x(), size.y(), length_unit));
+    html += page::NumberCell(block.min_enu.z(), fmt::format("{} \xE2\x80\xA6 {}", page::FormatFixed(block.min_enu.z(), 1),
+                                                            page::FormatFixed(block.max_enu.z(), 1, length_unit)));
+    html += page::NumberCell(block.altitude_agl_m, page::FormatFixed(block.altitude_agl_m, 1, length_unit));
+    html += page::NumberCell(gsd_m, page::FormatFixed(gsd_m * 100.0, 1, "cm"));
     html += page::NumberCell(static_cast<double>(block.photos.size()), page::FormatInteger(static_cast<int64_t>(block.photos.size())));
     html += "</tr>";
   }
@@ -83,7 +86,8 @@ std::string ResidualTable(const ReportInput& input) {
     }
   }
   if (!survey.georeferenced || tagged.empty()) {
-    return "<p class=\"card empty\">The survey has no usable GPS: positions are in a local frame of unknown scale and no residuals exist.</p>\n";
+    return "<p class=\"card empty\">The survey has no usable GPS: positions are in a local frame of unknown scale, and there is nothing to compare "
+           "them with.</p>\n";
   }
   std::stable_sort(tagged.begin(), tagged.end(), [](const auto* a, const auto* b) { return a->gps_residual_m > b->gps_residual_m; });
   const double worst = tagged.front()->gps_residual_m;
@@ -92,17 +96,18 @@ std::string ResidualTable(const ReportInput& input) {
     std::string html = "<tr>" + page::TextCell(photo.name);
     html += fmt::format("<td class=\"num bar\" data-v=\"{}\"><i style=\"width:{:.1f}%\"></i>{}</td>", photo.gps_residual_m, bar,
                         page::FormatFixed(photo.gps_residual_m, 2, "m"));
-    html += fmt::format("<td><span class=\"state {}</span></td>", photo.gps_inlier ? "good\">inlier" : "bad\">outlier");
+    html += fmt::format("<td><span class=\"state {}</span></td>", photo.gps_inlier ? "good\">used" : "bad\">not used");
     html += page::NumberCell(photo.agl_m, page::FormatFixed(photo.agl_m, 1, "m"));
     const double relative_m = photo.relative_altitude_m.value_or(kNotMeasured);
     html +=
         page::NumberCell(relative_m, page::FormatFixed(relative_m, 1, "m")) + page::NumberCell(photo.flight + 1, std::to_string(photo.flight + 1));
-    return html + page::TextCell(photo.is_test ? "held out" : "training") + "</tr>";
+    return html + page::TextCell(photo.is_test ? "testing" : "training") + "</tr>";
   };
   const std::string head =
-      "<thead><tr><th>Photo</th><th class=\"num\">Residual</th><th>Fit</th><th class=\"num\">Above ground</th><th class=\"num\">XMP relative "
-      "altitude</th>"
-      "<th class=\"num\">Flight</th><th>Use</th></tr></thead>";
+      "<thead><tr><th>Photo</th><th class=\"num\">Residual</th><th>GPS tag</th><th class=\"num\">Height above ground</th><th class=\"num\">Height "
+      "above take-off "
+      "(XMP)</th>"
+      "<th class=\"num\">Flight</th><th>Used for</th></tr></thead>";
   constexpr size_t kShown = 12;
   std::string html = "<div class=\"card scroll\"><table class=\"sortable\">" + head + "<tbody>";
   for (size_t i = 0; i < tagged.size() && i < kShown; ++i) html += row(*tagged[i]);
@@ -113,7 +118,7 @@ std::string ResidualTable(const ReportInput& input) {
     for (size_t i = kShown; i < tagged.size(); ++i) html += row(*tagged[i]);
     html += "</tbody></table></div></details>";
   }
-  if (n_untagged > 0) html += fmt::format("<p class=\"note\">{} registered photos carry no GPS tag and are not listed.</p>", n_untagged);
+  if (n_untagged > 0) html += fmt::format("<p class=\"note\">{} photos have no GPS tag and are not listed.</p>", n_untagged);
   return html + "\n";
 }
 

@@ -48,8 +48,13 @@ struct ReportInput {
 std::string BuildReportPage(const ReportInput& input);
 
 // Parts of the page, each a <section> or a piece of one.
+std::string SummarySection(const ReportInput& input);  // the key figures of the first screen
+std::string WarningsBanner(const Metrics& metrics);
 std::string BlockMapSvg(const ReportInput& input);
 std::string PhotoSection(const ReportInput& input);
+std::string GeoSection(const ReportInput& input);
+std::string DetailsSection(const ReportInput& input);  // every figure and its meaning
+std::string MethodSection(const ReportInput& input);
 std::string BrightnessSection(const ReportInput& input);  // empty without brightness
 std::string BlockTable(const ReportInput& input);
 std::string ResidualTable(const ReportInput& input);

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 namespace skyquilt::evaluate {
 
 namespace {
+
+constexpr double kLowCoverage = 0.5;
 
 // "a, b, c and 4 more"
 std::string Names(const std::vector<std::string>& names) {
@@ -18,60 +22,109 @@ std::string Names(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string Photos(size_t n) {
-  return fmt::format("{} {}", n, n == 1 ? "photo" : "photos");
+// "Block a is", "Blocks a and 3 more are"
+std::string BlocksAre(const std::vector<std::string>& names) {
+  return fmt::format("{} {} {}", names.size() == 1 ? "Block" : "Blocks", Names(names), names.size() == 1 ? "is" : "are");
+}
+
+void AboutPlacedPhotos(const survey::Survey& survey, std::vector<Warning>* warnings) {
+  if (survey.unregistered.empty()) return;
+  const size_t n = survey.unregistered.size();
+  warnings->push_back(
+      {fmt::format("{} of {} photos {} not placed: the COLMAP model has no camera position for {}", n, survey.photos.size() + n,
+                   n == 1 ? "was" : "were", Names(survey.unregistered)),
+       "The map is made without them. If they matter, check that they are sharp and show firm ground rather than water, add photos "
+       "that overlap them more, and run the same command with --restart. If skyquilt ran COLMAP, its log is survey/colmap/colmap.log"});
+}
+
+void AboutPosition(const survey::Survey& survey, std::vector<Warning>* warnings) {
+  if (!survey.georeferenced) {
+    warnings->push_back({"No geo-reference: too few photos carry usable GPS. The map has a local frame of unknown scale, and lengths are not metres",
+                         "Use photos with GPS tags (EXIF or XMP): at least three, not all in one place or on one line. Then run the same "
+                         "command with --restart"});
+    return;
+  }
+  std::vector<std::string> outliers;
+  for (const survey::Photo& photo : survey.photos) {
+    if (photo.gps && std::isfinite(photo.gps_residual_m) && !photo.gps_inlier) outliers.push_back(photo.name);
+  }
+  if (outliers.empty()) return;
+  warnings->push_back({fmt::format("The GPS {} of {} {} disagree{} with the camera positions found and {} not used: {}",
+                                   outliers.size() == 1 ? "tag" : "tags", outliers.size(), outliers.size() == 1 ? "photo" : "photos",
+                                   outliers.size() == 1 ? "s" : "", outliers.size() == 1 ? "was" : "were", Names(outliers)),
+                       "Compare the residuals under Geo-reference (or in survey/geo_residuals.csv). A few bad tags do no harm. If good tags are left "
+                       "out, raise prepare.ransac_threshold_m and run the same command with --restart"});
+}
+
+void AboutBlocks(const partition::BlockSet& blocks, const scene::TrainReport* training, std::vector<Warning>* warnings) {
+  std::map<std::string, std::vector<std::string>> empty;  // by reason
+  std::vector<std::string> untrained;
+  for (const partition::Block& block : blocks.blocks) {
+    if (block.empty) {
+      empty[block.empty_reason].push_back(block.name);
+    } else if (training != nullptr && training->Find(block.name) == nullptr) {
+      untrained.push_back(block.name);
+    }
+  }
+  for (const auto& [reason, names] : empty) {
+    warnings->push_back({fmt::format("{} empty and not trained: {}", BlocksAre(names), reason.empty() ? "no reason was given" : reason),
+                         "Nothing needs to be done if this ground lies outside the survey or is water. Otherwise add photos of it, so that at least "
+                         "two see every place, or cut fewer and larger blocks with --blocks"});
+  }
+  if (!untrained.empty()) {
+    warnings->push_back({fmt::format("{} without a record of training", BlocksAre(untrained)),
+                         "The map is coarse there or has a hole. Run 'skyquilt train' on the project folder again: only what is missing is trained"});
+  }
+}
+
+void AboutTraining(const scene::TrainReport* training, std::vector<Warning>* warnings) {
+  if (training == nullptr) {
+    warnings->push_back({"There is no train.json: training time, speed and memory are unknown",
+                         "The other figures are not affected. Run 'skyquilt train' on the project folder to have these too"});
+    return;
+  }
+  for (const scene::FieldTraining& field : training->fields) {
+    const std::string name = field.block < 0 && field.name == "context" ? "the context" : "block " + field.name;
+    if (!field.ok) {
+      warnings->push_back({fmt::format("Training of {} failed: {}", name, field.reason.empty() ? "no reason was given" : field.reason),
+                           "The map is coarse there or has a hole. Run the same command again: only what failed is trained. If it fails again, lower "
+                           "train.learning_rate, or cut smaller blocks with --blocks; log.txt has the details"});
+    } else if (field.dropped_steps > 0) {
+      warnings->push_back({fmt::format("Training of {} left out {} {} with a loss or gradient that was not finite", name, field.dropped_steps,
+                                       field.dropped_steps == 1 ? "step" : "steps"),
+                           "A few do no harm. If there are many, lower train.learning_rate and train again with --restart"});
+    }
+  }
+}
+
+void AboutScores(const Metrics& metrics, std::vector<Warning>* warnings) {
+  if (metrics.photos.empty()) {
+    warnings->push_back({"No held-out photo was scored, so there are no figures of quality",
+                         "Keep some photos out of training with --holdout every:8, and run the same command with --restart"});
+    return;
+  }
+  if (std::isfinite(metrics.coverage) && metrics.coverage < kLowCoverage) {
+    warnings->push_back({fmt::format("Only {:.0f} % of the held-out pixels show ground that two training photos or more see. The scores count only "
+                                     "these pixels",
+                                     100.0 * metrics.coverage),
+                         "Add photos with more overlap, so that every place is seen from at least two positions"});
+  }
+  if (metrics.photos.size() < static_cast<size_t>(metrics.n_test)) {
+    warnings->push_back({fmt::format("Only {} of {} held-out photos were scored", metrics.photos.size(), metrics.n_test),
+                         "Run 'skyquilt evaluate' with --max-photos 0 to score all of them"});
+  }
 }
 
 }  // namespace
 
-std::vector<std::string> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport* training,
-                                         const Metrics& metrics) {
-  std::vector<std::string> warnings;
-  if (!survey.unregistered.empty()) {
-    warnings.push_back(
-        fmt::format("{} could not be registered and took no part: {}", Photos(survey.unregistered.size()), Names(survey.unregistered)));
-  }
-  if (!survey.georeferenced) {
-    warnings.emplace_back(
-        "No geo-reference: too few photos carry usable GPS. Positions are in a local frame of unknown scale; lengths are not metres");
-  } else {
-    std::vector<std::string> outliers;
-    for (const survey::Photo& photo : survey.photos) {
-      if (photo.gps && std::isfinite(photo.gps_residual_m) && !photo.gps_inlier) outliers.push_back(photo.name);
-    }
-    if (!outliers.empty()) {
-      warnings.push_back(fmt::format("The GPS tags of {} disagree with the reconstruction and were left out of the geo-reference: {}",
-                                     Photos(outliers.size()), Names(outliers)));
-    }
-  }
-  std::vector<std::string> unfinished;
-  for (const partition::Block& block : blocks.blocks) {
-    if (block.empty) {
-      warnings.push_back(fmt::format("Block {} is empty and was not trained: {}", block.name, block.empty_reason));
-    } else if (training != nullptr && training->Find(block.name) == nullptr) {
-      unfinished.push_back(block.name);
-    }
-  }
-  if (!unfinished.empty()) warnings.push_back("No training record for these blocks: " + Names(unfinished));
-  static const scene::TrainReport kUnknown;
-  for (const scene::FieldTraining& field : (training == nullptr ? kUnknown : *training).fields) {
-    if (!field.ok)
-      warnings.push_back(fmt::format("Training of {} failed: {}", field.name, field.reason.empty() ? "no reason was given" : field.reason));
-    if (field.ok && field.dropped_steps > 0) {
-      warnings.push_back(fmt::format("Training of {} dropped {} steps with non-finite loss or gradient", field.name, field.dropped_steps));
-    }
-  }
-  if (training == nullptr) warnings.emplace_back("No train.json: training time, speed and memory are unknown");
-  if (metrics.photos.empty()) {
-    warnings.emplace_back("No held-out photo was scored, so there are no quality figures");
-  } else if (std::isfinite(metrics.coverage) && metrics.coverage < 0.5) {
-    warnings.push_back(
-        fmt::format("Only {:.0f} % of the held-out pixels are covered by two training photos or more: the scores speak for that share only",
-                    100.0 * metrics.coverage));
-  }
-  if (!metrics.photos.empty() && metrics.photos.size() < static_cast<size_t>(metrics.n_test)) {
-    warnings.push_back(fmt::format("Only {} of {} held-out photos were scored", metrics.photos.size(), metrics.n_test));
-  }
+std::vector<Warning> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport* training,
+                                     const Metrics& metrics) {
+  std::vector<Warning> warnings;
+  AboutPlacedPhotos(survey, &warnings);
+  AboutPosition(survey, &warnings);
+  AboutBlocks(blocks, training, &warnings);
+  AboutTraining(training, &warnings);
+  AboutScores(metrics, &warnings);
   return warnings;
 }
 

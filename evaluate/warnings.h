@@ -1,7 +1,6 @@
-// What a reader of the report must know before believing its figures.
+// What a reader of the report must know before believing its figures, and what to do about it.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "core/scene/train_report.h"
@@ -11,7 +10,8 @@
 
 namespace skyquilt::evaluate {
 
-std::vector<std::string> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport* training,
-                                         const Metrics& metrics);
+// `training` is null when there is no record of it.
+std::vector<Warning> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport* training,
+                                     const Metrics& metrics);
 
 }  // namespace skyquilt::evaluate

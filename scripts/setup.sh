@@ -12,7 +12,7 @@ run_packages=(
   libgdal-dev gdal-bin libexiv2-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libspdlog-dev libembree-dev
   ffmpeg python3
 )
-test_packages=(libgtest-dev librapidcheck-dev libbenchmark-dev git clang-format clang-tidy procps iproute2)
+test_packages=(libgtest-dev librapidcheck-dev libbenchmark-dev git clang-format clang-tidy procps iproute2 dpkg-dev file)
 
 case "${1:-}" in
   --run) wanted=("${run_packages[@]}") ;;

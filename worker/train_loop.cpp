@@ -64,7 +64,7 @@ TrainResult TrainLoop::SaveResult(const ContextFindings* findings) {
 TrainResult TrainLoop::Failure() const {
   TrainResult failed = Summarise();
   failed.ok = false;
-  failed.reason = std::to_string(dropped_in_a_row_) + " steps in a row were not finite";
+  failed.reason = "loss or gradient was not finite in " + std::to_string(dropped_in_a_row_) + " steps in a row";
   return failed;
 }
 

@@ -27,7 +27,7 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
   const auto flags = std::make_shared<Flags>();
   bench::KernelBenchOptions& o = flags->options;
   CLI::App* command = bench.add_subcommand("kernel", "samples per second in training and rendering, compared with the limit of this machine");
-  command->add_option("-o,--output", flags->out, "folder for kernel.json, kernel.html and tables as CSV")->type_name("DIR");
+  command->add_option("-o,--out,--output", flags->out, "folder for kernel.json, kernel.html and tables as CSV")->type_name("DIR");
   command->add_option("--isa", o.isa, "force an instruction set: avx512, avx2, portable or one by name")->type_name("NAME");
   command->add_option("--levels", o.levels, "resolutions of the hash grid")->type_name("N")->capture_default_str();
   command->add_option("--features", o.features, "features per grid entry, 2 or 4")->type_name("N")->capture_default_str();
@@ -76,7 +76,7 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
   const auto flags = std::make_shared<Flags>();
   bench::ScheduleBenchOptions& o = flags->options;
   CLI::App* command = bench.add_subcommand("schedule", "predict how well a cluster would be used: the scheduler with simulated ranks");
-  command->add_option("-o,--output", flags->out, "folder for schedule.json, schedule.html and tables as CSV")->type_name("DIR");
+  command->add_option("-o,--out,--output", flags->out, "folder for schedule.json, schedule.html and tables as CSV")->type_name("DIR");
   const CLI::Option* blocks = command->add_option("--blocks", o.blocks, "blocks to train")->type_name("N")->capture_default_str();
   const CLI::Option* ranks =
       command->add_option("--ranks", o.ranks, "ranks, including rank 0, which only hands out blocks")->type_name("N")->capture_default_str();

@@ -53,7 +53,7 @@ void AddNumericsBench(CLI::App& bench, CommandState& state) {
   };
   const auto flags = std::make_shared<Flags>();
   CLI::App* command = bench.add_subcommand("numerics", "check numerical accuracy in extreme cases, against double precision");
-  command->add_option("-o,--output", flags->out, "folder for numerics.json, numerics.html and one CSV table per group")->type_name("DIR");
+  command->add_option("-o,--out,--output", flags->out, "folder for numerics.json, numerics.html and one CSV table per group")->type_name("DIR");
   command
       ->add_option("--only", flags->only,
                    "only these groups of cases, separated by commas: space, rays, compositing, field, trainer, away, brightness, ...")

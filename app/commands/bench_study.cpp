@@ -77,7 +77,7 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   const auto flags = std::make_shared<StudyFlags>();
   const std::string& name = study_command.name;
   CLI::App* command = bench.add_subcommand(name, study_command.help);
-  command->add_option("-o,--output", flags->out, "folder for " + name + ".json, .csv, .html and the runs")->required()->type_name("DIR");
+  command->add_option("-o,--out,--output", flags->out, "folder for " + name + ".json, .csv, .html and the runs")->required()->type_name("DIR");
   command->add_option("--survey", flags->survey, "folder with photos, a simulated survey, or a prepared project")->type_name("FOLDER");
   AddPlaceFlag(
       *command, "--place", [flags](const std::string& place) { flags->place = place; },

@@ -23,9 +23,13 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
     throw base::UsageError("skyquilt run needs either a folder with photos or --place NAME, not both");
   }
   coordinator::Settings settings = state.Load({}, overrides);
-  // Checked here so that no output folder is created for a wrong path.
+  // Checked before the output folder is created and before hours of work.
   if (!flags.photos.empty() && !std::filesystem::is_directory(flags.photos)) {
     throw base::InputError(flags.photos, "no such folder", "Give the folder that holds the photos");
+  }
+  settings.evaluate.RequireFiles();
+  if (const std::string& masks = settings.prepare.masks; !masks.empty() && !std::filesystem::is_directory(masks)) {
+    throw base::InputError(masks, "no such folder", "Give the folder of the masks as prepare.masks, or leave it empty");
   }
   coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags.out), std::move(settings), flags.restart);
   coordinator::RequireSameConfiguration(pipeline, "prepare");

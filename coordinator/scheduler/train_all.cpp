@@ -70,8 +70,8 @@ class Training {
     if (comm_.size() > 1) {
       threads = AssignThreads(group.WaitForRanks(), &per_host);
     }
-    TrainContext(trainer, all_threads);
     RequireMemory(*input_.blocks, settings_, threads, per_host);
+    TrainContext(trainer, all_threads);
     TrainBlocks(trainer, threads);
     ledger_.SetSpent(Now(), true);
     scene::TrainReport report = ledger_.Report(comm_.size(), threads);

@@ -59,7 +59,7 @@ void RequireSameConfiguration(Pipeline& pipeline, const std::string& first) {
 void RunStage(Pipeline& pipeline, const std::string& name) {
   const Stage& stage = StageNamed(name);
   const Project& project = pipeline.project;
-  for (const Stage::Input& input : stage.inputs) RequireFile(input.file(project), input.stage, project);
+  for (const Stage::RequiredFile& required : stage.required) RequireFile(required.file(project), required.stage, project);
   if (stage.check != nullptr) stage.check(project);
   // Identify the inputs before a restart removes anything: they may be among the removed files.
   StageStamp stamp{.stage = name, .state = StageStamp::kRunning, .options = StageOptions(stage, pipeline.settings), .inputs = stage.inputs(pipeline)};

@@ -24,11 +24,11 @@ struct Stage {
   // Exceptions: options in those sections that do not change its results.
   std::vector<std::string> without_effect = {};
   // Files that must exist before it starts, and the stages that make them.
-  struct Input {
+  struct RequiredFile {
     std::filesystem::path (*file)(const Project& project);
     std::string stage;
   };
-  std::vector<Input> inputs = {};
+  std::vector<RequiredFile> required = {};
   // Throws base::InputError when one of them is damaged, before anything is changed; null: only the body checks.
   void (*check)(const Project& project) = nullptr;
   // Identity of its inputs, by name.

@@ -83,7 +83,7 @@ std::vector<Stage> MakeTable() {
        .on_new_inputs = OnNewInputs::kRefuse},
       {.name = "partition",
        .options = {"partition.", "run.image_width"},
-       .inputs = {{SurveyFile, "prepare"}},
+       .required = {{SurveyFile, "prepare"}},
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"survey", SurveyIdentity(pipeline.project)}};
@@ -96,7 +96,7 @@ std::vector<Stage> MakeTable() {
        .options = {"brightness.", "context.", "train.", "run.image_width", "run.time_budget_s", "run.context_share", "run.seed"},
        // How often a field is saved does not change its result.
        .without_effect = {"context.checkpoint_every_s", "train.checkpoint_every_s"},
-       .inputs = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},
+       .required = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"survey", SurveyIdentity(pipeline.project)}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
@@ -111,7 +111,7 @@ std::vector<Stage> MakeTable() {
        .on_new_inputs = OnNewInputs::kRefuse},
       {.name = "merge",
        .options = {"merge."},
-       .inputs = {{BlocksFile, "partition"}, {TrainReportFile, "train"}},
+       .required = {{BlocksFile, "partition"}, {TrainReportFile, "train"}},
        .check = [](const Project& p) { scene::ReadTrainReport(p.TrainReport()); },
        .inputs =
            [](const Pipeline& pipeline) {
@@ -125,7 +125,7 @@ std::vector<Stage> MakeTable() {
        .body = MergeBody},
       {.name = "products",
        .options = {"products."},
-       .inputs = {{SceneFile, "merge"}},
+       .required = {{SceneFile, "merge"}},
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))}};
@@ -138,7 +138,7 @@ std::vector<Stage> MakeTable() {
        .body = ProductsBody},
       {.name = "evaluate",
        .options = {"evaluate.", "run.image_width"},
-       .inputs = {{SceneFile, "merge"}},
+       .required = {{SceneFile, "merge"}},
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))},

@@ -6,7 +6,7 @@ namespace skyquilt::base {
 
 void ThrowCheckFailure(const char* condition, const char* file, int line, const std::string& detail) {
   std::ostringstream message;
-  message << "check failed: " << condition << " at " << std::filesystem::path(file).filename().string() << ":" << line;
+  message << "check failed: " << condition << " at " << file << ":" << line;
   if (!detail.empty()) message << ": " << detail;
   throw std::logic_error(message.str());
 }

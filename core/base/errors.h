@@ -52,7 +52,7 @@ class Interrupted : public std::runtime_error {
 
 }  // namespace skyquilt::base
 
-#define SKYQUILT_CHECK(condition, detail)                                                          \
-  do {                                                                                             \
-    if (!(condition)) ::skyquilt::base::ThrowCheckFailure(#condition, __FILE__, __LINE__, detail); \
+#define SKYQUILT_CHECK(condition, detail)                                                               \
+  do {                                                                                                  \
+    if (!(condition)) ::skyquilt::base::ThrowCheckFailure(#condition, __FILE_NAME__, __LINE__, detail); \
   } while (false)

@@ -2,6 +2,8 @@
 // and bright values, so that errors there count. Its slope is unbounded at 0 and 1: beyond kSafe of either end the curve goes on as the
 // straight line it has there, which keeps value and slope finite and the curve rising for every finite x. The published code clips its
 // argument instead, and a clipped pixel stops learning.
+// In float, from -4 to 4: the value within 2.3 ulp or 1.9e-7, whichever is more (small values are differences of numbers near a half); the slope
+// within 4.1 ulp.
 #pragma once
 
 #include <algorithm>

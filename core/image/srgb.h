@@ -1,4 +1,7 @@
-// sRGB transfer function (IEC 61966-2-1), extended past 1 by the same power law so that over-range light stays ordered.
+// sRGB transfer function (IEC 61966-2-1), extended past 1 by the same power law so that over-range light stays ordered, and below 0 by its straight
+// line. Largest errors in ulp, with a pow that is right to half an ulp:
+//   LinearFromSrgb  6.5 from -1 to 1   9.5 up to 16        SrgbFromLinear  3.1 from -1 to 1   4.0 up to 1000
+//   LinearSlope     6.1 from 0 to 1    4.4 up to 16        SrgbSlope       3.6 from 0 to 1    6.6 up to 1000
 #pragma once
 
 #include <cmath>

@@ -1,7 +1,7 @@
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 
+#include "core/base/errors.h"
 #include "core/kernel/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -18,6 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using FloatTag = hn::ScalableTag<float>;
 using FloatVector = hn::Vec<FloatTag>;
+static_assert(HWY_HAVE_SCALABLE || kPad % hn::MaxLanes(FloatTag()) == 0, "a padded batch is a whole number of vectors");
 
 // Vectors of samples per register tile: 4 x 4 accumulators need 32 registers, 4 x 3 with their operands fill 16.
 constexpr int kTileVectors = (HWY_TARGET <= HWY_AVX3) ? 4 : 3;
@@ -163,28 +164,40 @@ HWY_EXPORT(DenseImpl);
 HWY_EXPORT(DenseWeightGradientImpl);
 
 namespace {
-void RequirePadded(int rows, int64_t n) {
-  if (rows % kRowPad != 0 || n % kPad != 0) {
-    throw std::logic_error("dense kernel: rows and samples must be padded, got " + std::to_string(rows) + " rows, " + std::to_string(n) + " samples");
-  }
+
+// The loops above load and store whole vectors and groups of rows, and would go past the end of anything else.
+void CheckPadded(int rows, int64_t n) {
+  SKYQUILT_CHECK(rows >= 0 && rows % kRowPad == 0 && n >= 0 && n % kPad == 0, std::to_string(rows) + " rows, " + std::to_string(n) + " samples");
 }
+
+void CheckStride(int rows, size_t stride, int64_t n) {
+  SKYQUILT_CHECK(rows <= 1 || stride >= static_cast<size_t>(n), "stride " + std::to_string(stride) + ", " + std::to_string(n) + " samples");
+}
+
 }  // namespace
 
 void Dense(const float* weights, int n_out, int n_in, const float* in, size_t in_stride, int64_t n, bool relu, float* out, size_t out_stride) {
-  RequirePadded(n_out, n);
+  CheckPadded(n_out, n);
+  CheckStride(n_in, in_stride, n);
+  CheckStride(n_out, out_stride, n);
   HWY_DYNAMIC_DISPATCH(DenseImpl)(weights, n_out, n_in, in, in_stride, n, relu, nullptr, 0, out, out_stride);
 }
 
 void DenseGated(const float* weights, int n_out, int n_in, const float* in, size_t in_stride, int64_t n, const float* gate, size_t gate_stride,
                 float* out, size_t out_stride) {
-  RequirePadded(n_out, n);
+  CheckPadded(n_out, n);
+  CheckStride(n_in, in_stride, n);
+  CheckStride(n_out, gate_stride, n);
+  CheckStride(n_out, out_stride, n);
   HWY_DYNAMIC_DISPATCH(DenseImpl)(weights, n_out, n_in, in, in_stride, n, false, gate, gate_stride, out, out_stride);
 }
 
 void DenseWeightGradient(const float* out_gradient, size_t out_stride, int n_out, const float* in, size_t in_stride, int n_in, int64_t n,
                          float* weight_gradient) {
-  RequirePadded(n_out, n);
-  RequirePadded(n_in, n);
+  CheckPadded(n_out, n);
+  CheckPadded(n_in, n);
+  CheckStride(n_out, out_stride, n);
+  CheckStride(n_in, in_stride, n);
   HWY_DYNAMIC_DISPATCH(DenseWeightGradientImpl)(out_gradient, out_stride, n_out, in, in_stride, n_in, n, weight_gradient);
 }
 

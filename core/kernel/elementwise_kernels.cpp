@@ -16,6 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using FloatTag = hn::ScalableTag<float>;
 using FloatVector = hn::Vec<FloatTag>;
+static_assert(HWY_HAVE_SCALABLE || kPad % hn::MaxLanes(FloatTag()) == 0, "a padded batch is a whole number of vectors");
 
 // exp(min(limit, x + bias)) for whole vectors.
 void ExpShiftedImpl(const float* x, int64_t n, float bias, float limit, float* out) {
@@ -117,6 +118,7 @@ void CheckWholeVectors(int64_t n) {
 
 void ExpShifted(const float* x, int64_t n, float bias, float limit, float* out) {
   CheckWholeVectors(n);
+  SKYQUILT_CHECK(limit <= kMaxExpLimit, std::to_string(limit));
   HWY_DYNAMIC_DISPATCH(ExpShiftedImpl)(x, n, bias, limit, out);
 }
 

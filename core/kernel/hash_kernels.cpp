@@ -1,7 +1,8 @@
 #include <algorithm>
-#include <stdexcept>
+#include <bit>
 #include <string>
 
+#include "core/base/errors.h"
 #include "core/kernel/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -233,9 +234,17 @@ HWY_EXPORT(HashForwardImpl);
 HWY_EXPORT(HashBackwardImpl);
 
 namespace {
-void RequireFeatures(int features) {
-  if (features != 2 && features != 4) throw std::logic_error("hash grid: features per entry must be 2 or 4, got " + std::to_string(features));
+
+// Every lattice point must have its entry, and every result its place.
+void CheckShapes(const HashLevel& level, int features, int64_t n, size_t stride) {
+  SKYQUILT_CHECK(features == 2 || features == 4, std::to_string(features) + " features per entry");
+  SKYQUILT_CHECK(n >= 0 && stride >= static_cast<size_t>(n), "stride " + std::to_string(stride) + ", " + std::to_string(n) + " samples");
+  SKYQUILT_CHECK(std::min({level.size[0], level.size[1], level.size[2]}) >= 2, "an axis of fewer than two points");
+  const int64_t points = int64_t{level.size[0]} * level.size[1] * level.size[2];
+  SKYQUILT_CHECK(level.dense ? points <= int64_t{level.entries} : std::has_single_bit(level.entries),
+                 std::to_string(level.entries) + " entries for " + std::to_string(points) + " points");
 }
+
 }  // namespace
 
 uint32_t HashIndex(const HashLevel& level, uint32_t x, uint32_t y, uint32_t z) {
@@ -245,13 +254,13 @@ uint32_t HashIndex(const HashLevel& level, uint32_t x, uint32_t y, uint32_t z) {
 
 void HashForward(const HashLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
                  size_t out_stride) {
-  RequireFeatures(features);
+  CheckShapes(level, features, n, out_stride);
   HWY_DYNAMIC_DISPATCH(HashForwardImpl)(level, features, table, x, y, z, n, out, out_stride);
 }
 
 void HashBackward(const HashLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
                   size_t out_stride, float* table_gradient, uint8_t* touched) {
-  RequireFeatures(features);
+  CheckShapes(level, features, n, out_stride);
   HWY_DYNAMIC_DISPATCH(HashBackwardImpl)(level, features, x, y, z, n, out_gradient, out_stride, table_gradient, touched);
 }
 

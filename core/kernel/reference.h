@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "core/kernel/kernels.h"
@@ -80,6 +82,36 @@ void HashBackward(const HashLevel& level, const T position[3], const std::vector
   for (const Corner<T>& corner : Corners(level, position)) {
     for (size_t f = 0; f < out_gradient.size(); ++f) (*table_gradient)[corner.entry * out_gradient.size() + f] += corner.weight * out_gradient[f];
   }
+}
+
+// One value of ExpShifted, Sigmoid and SineCosine.
+template <typename T>
+T ExpShifted(T x, T bias, T limit) {
+  return std::exp(std::min(limit, x + bias));
+}
+
+template <typename T>
+T Sigmoid(T x, T range) {
+  return range / (T(1) + std::exp(-x));
+}
+
+template <typename T>
+void SineCosine(T turns, T* sine, T* cosine) {
+  // The nearest whole turn goes off first, which is exact, then the sine is folded about a quarter turn: small results keep all their digits.
+  const T t = turns - std::round(turns);
+  const T size = std::abs(t);
+  *sine = std::copysign(std::sin(T(2) * std::numbers::pi_v<T> * std::min(size, T(0.5) - size)), t);
+  *cosine = std::sin(T(2) * std::numbers::pi_v<T> * (T(0.25) - size));
+}
+
+// One parameter's step of AdamDense and AdamTouched.
+template <typename T>
+void Adam(const AdamStep& step, T gradient, T* parameter, T* moment1, T* moment2) {
+  const T beta1 = static_cast<T>(step.beta1), beta2 = static_cast<T>(step.beta2);
+  *moment1 = (T(1) - beta1) * gradient + beta1 * *moment1;
+  *moment2 = (T(1) - beta2) * gradient * gradient + beta2 * *moment2;
+  const T denominator = std::sqrt(*moment2 / static_cast<T>(step.correction2)) + static_cast<T>(step.epsilon);
+  *parameter -= static_cast<T>(step.learning_rate) / static_cast<T>(step.correction1) * *moment1 / denominator;
 }
 
 }  // namespace skyquilt::kernel::reference

@@ -80,7 +80,7 @@
   });
 
   const viewer = document.getElementById("viewer");
-  const stage = viewer.querySelector("div");
+  const frame = viewer.querySelector("div");
   document.addEventListener("click", function (e) {
     const img = e.target;
     if (!img.matches || !img.matches(".pic:not(.slider) img")) return;
@@ -94,11 +94,19 @@
       shown.removeAttribute("loading");
     }
     shown.style.width = "min(100%, calc(88vh * " + (img.naturalWidth / img.naturalHeight || 1.5) + "))";
-    stage.replaceChildren(shown);
+    frame.replaceChildren(shown);
     const what = compared ? "drag to compare photo and render" : img.alt.toLowerCase();
     viewer.querySelector("p").textContent = card ? card.querySelector("h3").textContent + " \u00b7 " + what : img.alt;
     viewer.showModal();
   });
+  // Paper shows what is folded away.
+  let unfolded = [];
+  addEventListener("beforeprint", function () {
+    unfolded = Array.from(document.querySelectorAll("details:not([open])"));
+    unfolded.forEach(function (details) { details.open = true; });
+  });
+  addEventListener("afterprint", function () { unfolded.forEach(function (details) { details.open = false; }); });
+
   viewer.querySelector("button").onclick = function () { viewer.close(); };
   viewer.onclick = function (e) { if (e.target === viewer) viewer.close(); };
 })();

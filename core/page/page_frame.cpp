@@ -33,9 +33,8 @@ std::string PageEnd() {
          "</script></body></html>\n";
 }
 
-std::string KeyFigure(const std::string& label, const std::string& value, const std::string& note, bool hero) {
-  return fmt::format("<div class=\"kpi{}\"><span>{}</span><strong>{}</strong><small>{}</small></div>", hero ? " hero" : "", EscapeHtml(label), value,
-                     note);
+std::string KeyFigure(const std::string& label, const std::string& value, const std::string& note) {
+  return fmt::format("<div class=\"kpi\"><span>{}</span><strong>{}</strong><small>{}</small></div>", EscapeHtml(label), value, note);
 }
 
 }  // namespace skyquilt::page

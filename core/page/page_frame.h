@@ -18,7 +18,7 @@ struct PageFrame {
 std::string PageBegin(const PageFrame& frame);
 std::string PageEnd();
 // One figure of a row of key figures (section.kpis); `value` and `note` are HTML.
-std::string KeyFigure(const std::string& label, const std::string& value, const std::string& note, bool hero = false);
+std::string KeyFigure(const std::string& label, const std::string& value, const std::string& note);
 
 std::string PageStyle();   // CSS
 std::string PageScript();  // JavaScript

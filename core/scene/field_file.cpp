@@ -22,8 +22,7 @@ struct Box {
   Eigen::Vector3d min_enu, max_enu;
 };
 
-// Calls visit(name, number) for the numbers that rebuild a field, int and double, each by reference. Older files have no names for them but their
-// places in this order: what is new stands elsewhere.
+// Calls visit(name, number) for the numbers that rebuild a field, int and double, each by reference.
 template <typename Field, typename BoxOf, typename Visit>
 void VisitNumbers(Field& f, BoxOf& box, const Visit& visit) {
   const auto corner = [&visit](const std::string& name, auto& point) {
@@ -51,30 +50,6 @@ void VisitNumbers(Field& f, BoxOf& box, const Visit& visit) {
   visit("margin_m", f.box.margin_m);
   visit("step_m", f.step_m);
 }
-
-// Reads the numbers one after the other.
-class NumberReader {
- public:
-  NumberReader(const checkpoint::ArchiveReader& reader, const std::string& prefix)
-      : reader_(reader), prefix_(prefix), numbered_(reader.HasAttribute(prefix + "describe0")) {}
-
-  template <typename Number>
-  void Read(const std::string& name, Number& number) {
-    if constexpr (std::is_same_v<Number, double>) {
-      number = numbered_ ? NextNumbered() : reader_.DoubleAttribute(prefix_ + name);
-    } else {
-      number = static_cast<Number>(numbered_ ? std::lround(NextNumbered()) : reader_.IntAttribute(prefix_ + name));
-    }
-  }
-
- private:
-  double NextNumbered() { return reader_.DoubleAttribute(prefix_ + "describe" + std::to_string(next_++)); }
-
-  const checkpoint::ArchiveReader& reader_;
-  std::string prefix_;
-  bool numbered_;  // an older file
-  size_t next_ = 0;
-};
 
 // One bit per cell, the first in the lowest bit.
 std::vector<uint8_t> PackBits(const std::vector<uint8_t>& flags) {
@@ -163,17 +138,20 @@ render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, con
   f.seconds = reader.DoubleAttribute(prefix + "seconds");
   f.samples = reader.IntAttribute(prefix + "samples");
   Box box;
-  NumberReader numbers(reader, prefix);
-  VisitNumbers(f, box, [&numbers](const std::string& name, auto& number) { numbers.Read(name, number); });
-  f.config.luminance = reader.HasAttribute(prefix + "luminance") && reader.IntAttribute(prefix + "luminance") != 0;
+  VisitNumbers(f, box, [&](const std::string& name, auto& number) {
+    using Number = std::remove_reference_t<decltype(number)>;
+    if constexpr (std::is_same_v<Number, double>) {
+      number = reader.DoubleAttribute(prefix + name);
+    } else {
+      number = static_cast<Number>(reader.IntAttribute(prefix + name));
+    }
+  });
+  f.config.luminance = reader.IntAttribute(prefix + "luminance") != 0;
+  f.config.density_hidden_layers = static_cast<int>(reader.IntAttribute(prefix + "density_hidden_layers"));
   f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
   f.blend_m = f.box.margin_m;
   try {
-    // Absent in files from before there was a choice.
-    if (reader.HasAttribute(prefix + "encoding")) f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));
-    if (reader.HasAttribute(prefix + "density_hidden_layers")) {
-      f.config.density_hidden_layers = static_cast<int>(reader.IntAttribute(prefix + "density_hidden_layers"));
-    }
+    f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));
     f.map = box.contracted ? encoding::SpaceMap::Slab(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu, box.max_enu);
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, std::string("holds an impossible field: ") + error.what(), kFix);

@@ -25,7 +25,8 @@ struct Described {
 
 std::vector<Described> AllOptions(coordinator::Settings& settings) {
   std::vector<Described> all;
-  for (const config::Sections::Entry& entry : settings.AllSections().entries()) {
+  const config::Sections sections = settings.AllSections();
+  for (const config::Sections::Entry& entry : sections.entries()) {
     for (const config::Option& option : entry.options) all.push_back({entry.name + "." + option.key, option});
   }
   return all;

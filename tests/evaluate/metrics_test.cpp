@@ -85,7 +85,7 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   metrics.peak_rss_bytes = 123456789012;
   metrics.parameters = 7;
   metrics.n_test = 3;
-  metrics.warnings = {"one", "two"};
+  metrics.warnings = {{"one", "do this"}, {"two", "do that"}};
   const TemporaryFolder folder;
   base::WriteFileAtomically(folder.path() / "metrics.json", MetricsJson(metrics));
   const Metrics back = ReadMetrics(folder.path() / "metrics.json");

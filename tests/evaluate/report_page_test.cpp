@@ -15,7 +15,7 @@
 namespace skyquilt::evaluate {
 namespace {
 
-// One sample for all tests; SKYQUILT_SAMPLE_REPORT=<folder> keeps its page for a look at it.
+// A good and a poor sample for all tests; SKYQUILT_SAMPLE_REPORT=<folder> keeps their pages for a look at them.
 class ReportPage : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -24,15 +24,20 @@ class ReportPage : public testing::Test {
     folder_ = keep_ ? std::filesystem::path(kept) : std::filesystem::temp_directory_path() / ("skyquilt_report_" + std::to_string(::getpid()));
     sample_ = std::make_unique<SampleReport>(folder_);
     html_ = BuildReportPage(sample_->input);
-    if (keep_) base::WriteFileAtomically(folder_ / "index.html", html_);
+    poor_ = std::make_unique<SampleReport>(folder_);
+    poor_->MakePoor();
+    if (!keep_) return;
+    base::WriteFileAtomically(folder_ / "index.html", html_);
+    base::WriteFileAtomically(folder_ / "poor.html", BuildReportPage(poor_->input));
   }
   static void TearDownTestSuite() {
     sample_.reset();
+    poor_.reset();
     if (!keep_) std::filesystem::remove_all(folder_);
   }
   static inline std::filesystem::path folder_;
   static inline bool keep_ = false;
-  static inline std::unique_ptr<SampleReport> sample_;
+  static inline std::unique_ptr<SampleReport> sample_, poor_;
   static inline std::string html_;
 };
 
@@ -86,11 +91,74 @@ TEST_F(ReportPage, TagsAreBalancedAndNoNumberIsNan) {
   EXPECT_EQ(CountOf(html_, "\"nan\"") + CountOf(html_, ">nan") + CountOf(html_, "inf\""), 0U);
 }
 
-TEST_F(ReportPage, SummaryTellsWhatPredictedGainsAreWorth) {
-  const size_t summary = html_.find("id=\"summary\""), end = html_.find("</section>", summary);
-  EXPECT_LT(html_.find("PSNR with the EXIF gain alone", summary), end);
-  EXPECT_LT(html_.find("PSNR of right halves, as rendered", summary), end);
-  EXPECT_LT(html_.find("with gains fitted to the left halves", summary), end);
+TEST_F(ReportPage, AtMostSixKeyFiguresStandBeforeTheDetails) {
+  for (const SampleReport* sample : {sample_.get(), poor_.get()}) {
+    const std::string html = BuildReportPage(sample->input);
+    const size_t details = html.find("id=\"details\"");
+    ASSERT_NE(details, std::string::npos);
+    const size_t before = CountOf(html.substr(0, details), "<div class=\"kpi\">");
+    EXPECT_GE(before, 4U);
+    EXPECT_LE(before, 6U);
+    EXPECT_EQ(CountOf(html, "<div class=\"kpi\">"), before);
+    // A label, a value and a note each.
+    const std::regex complete("<div class=\"kpi\"><span>[^<]+</span><strong>[^<]+</strong><small>[^<]+</small></div>");
+    EXPECT_EQ(static_cast<size_t>(std::distance(std::sregex_iterator(html.begin(), html.end(), complete), std::sregex_iterator())), before);
+  }
+}
+
+TEST_F(ReportPage, TheFirstScreenSaysWhereOnEarthOrThatNothingDoes) {
+  const std::string good = SummarySection(sample_->input), poor = SummarySection(poor_->input);
+  EXPECT_NE(good.find("2.41\xE2\x80\xAFm"), std::string::npos) << good;
+  EXPECT_NE(good.find("80 of 81 GPS tags used"), std::string::npos) << good;
+  EXPECT_NE(good.find("6.1\xE2\x80\xAF"
+                      "cm</strong>"),
+            std::string::npos)
+      << good;
+  EXPECT_NE(good.find("photos reduced to 480 pixels width"), std::string::npos) << good;
+  // Five blocks of 100 m by 150 m.
+  EXPECT_NE(good.find("7.50\xE2\x80\xAFha"), std::string::npos) << good;
+  EXPECT_NE(good.find("Depth error"), std::string::npos) << good;
+  EXPECT_NE(poor.find("<strong>none</strong>"), std::string::npos) << poor;
+  EXPECT_EQ(poor.find("per pixel"), std::string::npos) << "a scale nobody knows: " << poor;
+  EXPECT_EQ(poor.find("\xE2\x80\xAFha"), std::string::npos) << poor;
+  EXPECT_EQ(poor.find("Depth error"), std::string::npos) << poor;
+  EXPECT_NE(poor.find("31.0\xE2\x80\xAF%"), std::string::npos) << "coverage instead: " << poor;
+}
+
+TEST_F(ReportPage, EveryWarningSaysWhatToDo) {
+  for (const SampleReport* sample : {sample_.get(), poor_.get()}) {
+    const std::vector<Warning>& warnings = sample->metrics.warnings;
+    EXPECT_GE(warnings.size(), 4U);
+    const std::string banner = WarningsBanner(sample->metrics);
+    EXPECT_NE(BuildReportPage(sample->input).find(banner), std::string::npos);
+    const std::regex advised("<li>[^<]+<span class=\"advice\"><b>What to do:</b>[^<]+</span></li>");
+    EXPECT_EQ(static_cast<size_t>(std::distance(std::sregex_iterator(banner.begin(), banner.end(), advised), std::sregex_iterator())),
+              warnings.size());
+  }
+}
+
+TEST_F(ReportPage, PrintsAsAReportOnPaper) {
+  EXPECT_NE(html_.find("size:A4", html_.find("@page {")), std::string::npos);
+  const size_t print = html_.find("@media print");
+  ASSERT_NE(print, std::string::npos);
+  // Later rules win: none for the screen may follow.
+  EXPECT_EQ(html_.find("@media (max-width", print), std::string::npos);
+  EXPECT_NE(html_.find("display:table-header-group", print), std::string::npos);
+  EXPECT_NE(html_.find("break-inside:avoid", print), std::string::npos);
+  // Dark colours are for the screen alone, and what is folded away opens.
+  EXPECT_EQ(CountOf(html_, "color-scheme:dark }"), 2U);
+  EXPECT_EQ(CountOf(html_, "@media screen"), 2U);
+  EXPECT_NE(html_.find("beforeprint"), std::string::npos);
+}
+
+TEST_F(ReportPage, DetailsTellWhatPredictedGainsAreWorthAndExplainEveryFigure) {
+  const std::string details = DetailsSection(sample_->input);
+  for (const char* name : {"PSNR with the EXIF gain alone", "PSNR of right halves, as rendered", "with gains fitted to the left halves",
+                           "Floater opacity", "Exposure seams", "Seam gap", "Parameters"}) {
+    EXPECT_NE(details.find(name), std::string::npos) << name;
+  }
+  EXPECT_EQ(CountOf(details, "<td></td>"), 0U);
+  EXPECT_EQ(DetailsSection(poor_->input).find("Floater opacity"), std::string::npos) << "needs true depth";
 }
 
 TEST_F(ReportPage, BrightnessHasChartsPicturesAndATooltipPerPhoto) {

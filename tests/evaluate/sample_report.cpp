@@ -160,6 +160,7 @@ partition::BlockSet TownBlocks(const survey::Survey& survey) {
   blocks.georeferenced = true;
   blocks.rows = 2;
   blocks.columns = 3;
+  blocks.image_width = 480;
   for (int row = 0; row < 2; ++row) {
     for (int column = 0; column < 3; ++column) {
       partition::Block block;
@@ -250,6 +251,9 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.seam_psnr_gap_db = 0.12;
   metrics.depth_rmse_m = 1.12;
   metrics.depth_median_abs_m = 0.21;
+  metrics.floater_opacity = 0.0184;
+  metrics.exposure_seam = 0.0031;
+  metrics.exposure_seam_control = 0.0027;
   metrics.train_seconds = training.TrainSeconds();
   metrics.samples_per_second = training.SamplesPerSecond();
   metrics.peak_rss_bytes = training.PeakRssBytes();
@@ -302,6 +306,29 @@ SampleReport::SampleReport(const std::filesystem::path& folder) {
   input.training = &training;
   input.curves = curves;
   input.brightness = &brightness;
+}
+
+void SampleReport::MakePoor() {
+  survey.georeferenced = metrics.georeferenced = false;
+  survey.fit = metrics.geo_fit = {};
+  for (survey::Photo& photo : survey.photos) {
+    photo.gps.reset();
+    photo.gps_residual_m = kNotMeasured;
+    photo.gps_inlier = false;
+  }
+  for (int i = 0; i < 200; ++i) survey.unregistered.push_back("flight1/DJI_" + std::to_string(2000 + i) + ".JPG");
+  metrics.n_unregistered = static_cast<int>(survey.unregistered.size());
+  metrics.has_truth = false;
+  metrics.coverage = 0.31;
+  metrics.seam_psnr_gap_db = kNotMeasured;
+  metrics.n_test = 3 * static_cast<int>(metrics.photos.size());
+  blocks.georeferenced = false;
+  blocks.blocks[0].empty = true;
+  blocks.blocks[0].empty_reason = "only one training photo sees it";
+  training.fields[2].ok = false;
+  training.fields[2].reason = "loss or gradient was not finite in 20 steps in a row";
+  training.fields.pop_back();
+  metrics.warnings = CollectWarnings(survey, blocks, &training, metrics);
 }
 
 }  // namespace skyquilt::evaluate

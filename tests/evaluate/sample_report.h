@@ -22,6 +22,10 @@ struct SampleReport {
   explicit SampleReport(const std::filesystem::path& folder);
   SampleReport(const SampleReport&) = delete;
   SampleReport& operator=(const SampleReport&) = delete;
+
+  // No GPS, no true depth, little coverage, most photos not placed, blocks that failed or were never trained: every warning but those of a
+  // missing training record and of no scored photo at all.
+  void MakePoor();
 };
 
 }  // namespace skyquilt::evaluate

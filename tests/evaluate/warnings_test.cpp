@@ -8,8 +8,8 @@
 namespace skyquilt::evaluate {
 namespace {
 
-bool Mentions(const std::vector<std::string>& warnings, const std::string& text) {
-  return std::any_of(warnings.begin(), warnings.end(), [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+bool Mentions(const std::vector<Warning>& warnings, const std::string& text) {
+  return std::any_of(warnings.begin(), warnings.end(), [&](const Warning& warning) { return warning.finding.find(text) != std::string::npos; });
 }
 
 struct Case {
@@ -31,7 +31,7 @@ struct Case {
     metrics.n_test = 1;
     metrics.coverage = 0.9;
   }
-  std::vector<std::string> Collect() const { return CollectWarnings(survey, blocks, training ? &*training : nullptr, metrics); }
+  std::vector<Warning> Collect() const { return CollectWarnings(survey, blocks, training ? &*training : nullptr, metrics); }
 };
 
 TEST(CollectWarnings, NothingToSayAboutAGoodRun) {
@@ -53,7 +53,7 @@ TEST(CollectWarnings, NamesUnregisteredPhotosAndGpsOutliers) {
 TEST(CollectWarnings, LongListsAreCutShort) {
   Case c;
   for (int i = 0; i < 100; ++i) c.survey.unregistered.push_back("photo" + std::to_string(i));
-  EXPECT_TRUE(Mentions(c.Collect(), "100 photos"));
+  EXPECT_TRUE(Mentions(c.Collect(), "100 of 100 photos"));
   EXPECT_TRUE(Mentions(c.Collect(), "92 more"));
 }
 
@@ -68,10 +68,21 @@ TEST(CollectWarnings, NamesEmptyFailedAndUntrainedBlocks) {
   untrained.name = "r0c2";
   c.blocks.blocks.push_back(empty);
   c.blocks.blocks.push_back(untrained);
-  const auto warnings = c.Collect();
+  const std::vector<Warning> warnings = c.Collect();
   EXPECT_TRUE(Mentions(warnings, "diverged"));
   EXPECT_TRUE(Mentions(warnings, "no photo sees it"));
   EXPECT_TRUE(Mentions(warnings, "r0c2"));
+}
+
+TEST(CollectWarnings, EmptyBlocksOfOneReasonAreOneWarning) {
+  Case c;
+  for (int i = 1; i <= 30; ++i) {
+    partition::Block& block = c.blocks.blocks.emplace_back();
+    block.name = "r0c" + std::to_string(i);
+    block.empty = true;
+    block.empty_reason = i % 2 == 0 ? "no training photo sees it" : "no sparse point lies in it";
+  }
+  EXPECT_EQ(c.Collect().size(), 2U);
 }
 
 TEST(CollectWarnings, SaysWhenGpsTrainingRecordOrScoresAreMissing) {
@@ -91,6 +102,37 @@ TEST(CollectWarnings, LowCoverageAndPartialScoringAreSaid) {
   c.metrics.n_test = 10;
   EXPECT_TRUE(Mentions(c.Collect(), "20 %"));
   EXPECT_TRUE(Mentions(c.Collect(), "1 of 10"));
+}
+
+TEST(CollectWarnings, EachSaysWhatToDoAndLeavesTheFullStopToOthers) {
+  Case poor, bare;
+  poor.survey.unregistered = {"lost.jpg"};
+  survey::Photo photo;
+  photo.gps = geo::Geodetic{1, 2, 3};
+  poor.survey.photos = {photo};
+  partition::Block empty, untrained;
+  empty.empty = true;
+  untrained.name = "r0c2";
+  poor.blocks.blocks.insert(poor.blocks.blocks.end(), {empty, untrained});
+  poor.training->fields[0].dropped_steps = 1;
+  scene::FieldTraining failed;
+  failed.name = "r0c3";
+  poor.training->fields.push_back(failed);
+  poor.metrics.coverage = 0.2;
+  poor.metrics.n_test = 10;
+  bare.survey.georeferenced = false;
+  bare.training.reset();
+  bare.metrics.photos.clear();
+  std::vector<Warning> warnings = poor.Collect();
+  EXPECT_EQ(warnings.size(), 8U);
+  for (const Warning& warning : bare.Collect()) warnings.push_back(warning);
+  EXPECT_EQ(warnings.size(), 11U) << "every kind there is";
+  for (const Warning& warning : warnings) {
+    EXPECT_GE(warning.finding.size(), 20U) << warning.advice;
+    EXPECT_GE(warning.advice.size(), 20U) << warning.finding;
+    EXPECT_FALSE(warning.finding.ends_with('.')) << warning.finding;
+    EXPECT_FALSE(warning.advice.ends_with('.')) << warning.advice;
+  }
 }
 
 }  // namespace

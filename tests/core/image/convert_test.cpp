@@ -4,7 +4,6 @@
 
 #include "core/base/errors.h"
 #include "core/image/image.h"
-#include "core/image/srgb.h"
 #include "tests/core/image/raw_files.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
@@ -91,18 +90,6 @@ TEST(Colorize, RunsFromDarkToBrightAndMarksGaps) {
   EXPECT_GT(colours.At(2, 0)[0], 200);
   EXPECT_GT(colours.At(2, 0)[1], 200);
   EXPECT_LT(colours.At(2, 0)[2], 100);
-}
-
-TEST(Srgb, IsInvertibleContinuousAndKnowsItsSlope) {
-  for (float srgb = 0.0F; srgb < 1.5F; srgb += 0.01F) {
-    EXPECT_NEAR(SrgbFromLinear(LinearFromSrgb(srgb)), srgb, 2e-6);
-    const double step = 1e-3;
-    if (std::abs(srgb - 0.04045F) < 2e-3F) continue;
-    const double slope = (static_cast<double>(LinearFromSrgb(srgb + 1e-3F)) - static_cast<double>(LinearFromSrgb(srgb - 1e-3F))) / (2.0 * step);
-    EXPECT_NEAR(LinearSlope(srgb), slope, 2e-3) << srgb;
-  }
-  EXPECT_FLOAT_EQ(LinearFromSrgb(1.0F), 1.0F);
-  EXPECT_NEAR(LinearFromSrgb(0.5F), 0.21404114, 1e-6);  // closed form, IEC 61966-2-1
 }
 
 TEST(SavePng, ComesBackUnchanged) {

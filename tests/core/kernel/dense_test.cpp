@@ -88,6 +88,12 @@ TEST(Dense, RefusesUnpaddedShapes) {
   float buffer[64] = {};
   EXPECT_THROW(Dense(buffer, 3, 4, buffer, 64, 64, false, buffer, 64), std::logic_error);
   EXPECT_THROW(Dense(buffer, 4, 4, buffer, 64, 63, false, buffer, 64), std::logic_error);
+  EXPECT_THROW(Dense(buffer, 4, 4, buffer, 64, -16, false, buffer, 64), std::logic_error);
+  EXPECT_THROW(Dense(buffer, 4, 4, buffer, 15, 16, false, buffer, 16), std::logic_error) << "rows would overlap";
+  EXPECT_THROW(Dense(buffer, 4, 4, buffer, 16, 16, false, buffer, 15), std::logic_error);
+  EXPECT_THROW(DenseGated(buffer, 4, 4, buffer, 16, 16, buffer, 15, buffer, 16), std::logic_error);
+  EXPECT_THROW(DenseWeightGradient(buffer, 16, 4, buffer, 15, 4, 16, buffer), std::logic_error);
+  EXPECT_THROW(DenseWeightGradient(buffer, 16, 4, buffer, 16, 3, 16, buffer), std::logic_error);
 }
 
 TEST_P(DenseKernels, GateStopsWhatTheUnitStopped) {

@@ -18,45 +18,6 @@ SKYQUILT_EACH_INSTRUCTION_SET(ElementwiseKernels);
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-TEST_P(ElementwiseKernels, ExpIsCutAtItsLimit) {
-  std::vector<float> x(48), out(48);
-  for (size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>(i) - 24.0F;
-  x[0] = -1e4F;
-  x[1] = 1e30F;
-  ExpShifted(x.data(), 48, -5.0F, 15.0F, out.data());
-  for (size_t i = 0; i < x.size(); ++i) {
-    const double expected = std::exp(std::min(15.0, static_cast<double>(x[i]) - 5.0));
-    EXPECT_NEAR(static_cast<double>(out[i]), expected, 1e-6 * expected + 1e-30) << x[i];
-  }
-}
-
-TEST_P(ElementwiseKernels, SigmoidStaysInItsRange) {
-  std::vector<float> x(32), out(32);
-  for (size_t i = 0; i < x.size(); ++i) x[i] = 0.7F * (static_cast<float>(i) - 16.0F);
-  x[0] = -kInfinity;
-  x[1] = kInfinity;
-  x[2] = -1e30F;
-  x[3] = 1e30F;
-  Sigmoid(x.data(), 32, 1.5F, out.data());
-  for (size_t i = 0; i < x.size(); ++i) {
-    EXPECT_NEAR(static_cast<double>(out[i]), 1.5 / (1.0 + std::exp(-static_cast<double>(x[i]))), 1e-6) << x[i];
-    EXPECT_TRUE(out[i] >= 0.0F && out[i] <= 1.5F);
-  }
-}
-
-TEST_P(ElementwiseKernels, SineAndCosineOfWholeTurnsAndFractionsOfManyTurns) {
-  base::Random random(23);
-  std::vector<float> turns(4096), sine(turns.size()), cosine(turns.size());
-  for (size_t i = 0; i < turns.size(); ++i) turns[i] = (random.Uniform() - 0.5F) * static_cast<float>(1 << (i % 18));
-  for (size_t i = 0; i < 17; ++i) turns[i] = 0.125F * static_cast<float>(i) - 1.0F;  // zeros, extremes, and where branches of the series meet
-  SineCosine(turns.data(), static_cast<int64_t>(turns.size()), sine.data(), cosine.data());
-  for (size_t i = 0; i < turns.size(); ++i) {
-    const double angle = 2.0 * M_PI * std::fmod(static_cast<double>(turns[i]), 1.0);
-    EXPECT_NEAR(static_cast<double>(sine[i]), std::sin(angle), 2e-7) << turns[i];
-    EXPECT_NEAR(static_cast<double>(cosine[i]), std::cos(angle), 2e-7) << turns[i];
-  }
-}
-
 TEST_P(ElementwiseKernels, CompactKeepsOrderInPlaceAndElsewhere) {
   base::Random random(5);
   constexpr size_t kN = 112, kRows = 3, kStride = 128;

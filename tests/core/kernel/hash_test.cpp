@@ -158,9 +158,23 @@ TEST_P(HashKernels, AdamMovesOnlyParametersWithAGradient) {
   EXPECT_EQ(touched[9], 0);
 }
 
-TEST(HashKernelShapes, RefuseOtherFeatureCounts) {
+TEST(HashKernels, RefuseShapesThatReachPastTheTable) {
   float value = 0.0F;
-  EXPECT_THROW(HashForward(DenseLevel(), 3, &value, &value, &value, &value, 1, &value, 1), std::logic_error);
+  const auto forward = [&](const HashLevel& level, int features, int64_t n, size_t stride) {
+    HashForward(level, features, &value, &value, &value, &value, n, &value, stride);
+  };
+  EXPECT_THROW(forward(DenseLevel(), 3, 1, 1), std::logic_error);
+  EXPECT_THROW(forward(DenseLevel(), 2, -1, 1), std::logic_error);
+  EXPECT_THROW(forward(DenseLevel(), 2, 2, 1), std::logic_error);
+  HashLevel level = DenseLevel();
+  level.entries = 89;
+  EXPECT_THROW(forward(level, 2, 1, 1), std::logic_error) << "a lattice point without an entry";
+  level = Hashed();
+  level.entries = 255;
+  EXPECT_THROW(forward(level, 2, 1, 1), std::logic_error) << "no power of two";
+  level = Hashed();
+  level.size[2] = 1;
+  EXPECT_THROW(forward(level, 2, 1, 1), std::logic_error) << "no cell";
 }
 
 }  // namespace

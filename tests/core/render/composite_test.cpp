@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "core/base/random.h"
 #include "tests/support/gradient_check.h"
+#include "tests/support/ulp.h"
 
 namespace skyquilt::render {
 namespace {
@@ -91,6 +93,24 @@ TEST(Composite, WeightsSumToOpacityAndSplittingARayIsExact) {
     EXPECT_NEAR(t1 * t2, final, 1e-12);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(first[c] + t1 * second[c], whole[c], 1e-12);
   }
+}
+
+TEST(Composite, OneSampleStaysWithinItsErrors) {
+  const auto weight = testing::EachValue([](float tau) {
+    const float white[3] = {1.0F, 1.0F, 1.0F};
+    float first = 0.0F, rgb[3];
+    CompositeForward(1, &tau, white, 1, &first, rgb);
+    return first;
+  });
+  const auto transmittance = testing::EachValue([](float tau) {
+    const float white[3] = {1.0F, 1.0F, 1.0F};
+    float first = 0.0F, rgb[3];
+    return CompositeForward(1, &tau, white, 1, &first, rgb);
+  });
+  // Worst seen over 16 million floats with the GNU C library 2.36: 4.48e-8 and 0.51 ulp. The weight's error is absolute: the header says why.
+  const float most = std::numeric_limits<float>::max();
+  testing::ExpectWithinUlp({"weight", [](double tau) { return -std::expm1(-tau); }, 0.0F, most, 0.0, 4.6e-8}, "the C library", weight);
+  testing::ExpectWithinUlp({"transmittance", [](double tau) { return std::exp(-tau); }, 0.0F, most, 0.6}, "the C library", transmittance);
 }
 
 }  // namespace

@@ -1,0 +1,97 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/page/html.h"
+#include "core/page/page_frame.h"
+#include "evaluate/page_parts.h"
+#include "evaluate/report_page.h"
+
+namespace skyquilt::evaluate {
+
+namespace {
+
+std::string PositionFigure(const Metrics& metrics) {
+  const survey::GeoFit& fit = metrics.geo_fit;
+  const std::string label = "Position error against GPS";
+  if (!metrics.georeferenced) return page::KeyFigure(label, "none", "no usable GPS: local frame, unknown scale");
+  return page::KeyFigure(label, page::FormatFixed(fit.rmse_m, 2, "m"), fmt::format("RMSE, {} of {} GPS tags used", fit.n_inliers, fit.n_matches));
+}
+
+std::string GroundSamplingFigure(const ReportInput& input) {
+  const std::string label = "Ground sampling distance";
+  if (!input.metrics->georeferenced) return page::KeyFigure(label, page::FormatFixed(kNotMeasured, 0), "unknown without GPS");
+  std::vector<double> gsd_cm;
+  for (const partition::Block& block : input.blocks->blocks) {
+    if (!block.empty) gsd_cm.push_back(100.0 * block.gsd_m);
+  }
+  int width = 0;  // of the largest photos
+  for (const camera::Camera& camera : input.survey->cameras) width = std::max(width, camera.width);
+  std::string note = fmt::format("per pixel; flown {} above ground", page::FormatFixed(input.metrics->median_agl_m, 0, "m"));
+  const int reduced = input.blocks->image_width;
+  if (reduced > 0 && reduced < width) note += fmt::format(", photos reduced to {} pixels width", page::FormatInteger(reduced));
+  return page::KeyFigure(label, RangeOf(gsd_cm, 1, "cm"), note);
+}
+
+std::string AreaFigure(const ReportInput& input) {
+  double area_m2 = 0.0;
+  size_t n_blocks = 0;
+  for (const partition::Block& block : input.blocks->blocks) {
+    const scene::FieldTraining* log = input.training->Find(block.name);
+    if (block.empty || (log != nullptr && !log->ok)) continue;
+    const Eigen::Vector3d size = block.max_enu - block.min_enu;
+    area_m2 += size.x() * size.y();
+    ++n_blocks;
+  }
+  const double area_ha = n_blocks > 0 && input.metrics->georeferenced ? area_m2 * 1e-4 : kNotMeasured;
+  const int n_photos = input.metrics->n_photos;
+  return page::KeyFigure("Area", page::FormatFixed(area_ha, area_ha < 10.0 ? 2 : 1, "ha"),
+                         fmt::format("inside {} {}; {} of {} photos placed", n_blocks, n_blocks == 1 ? "block" : "blocks",
+                                     page::FormatInteger(n_photos), page::FormatInteger(n_photos + input.metrics->n_unregistered)));
+}
+
+// Without true depths the area that photos cover is what can be said of the surface.
+std::string SurfaceFigure(const Metrics& metrics) {
+  if (metrics.has_truth) {
+    return page::KeyFigure("Depth error", page::FormatFixed(metrics.depth_median_abs_m, 2, "m"), "median, against the simulated survey's true depth");
+  }
+  return page::KeyFigure("Coverage", page::FormatPercent(metrics.coverage), "of the test photos' pixels: ground seen by two or more training photos");
+}
+
+std::string SimilarityFigure(const Metrics& metrics) {
+  return page::KeyFigure("Picture similarity", page::FormatFixed(metrics.psnr, 2, "dB"),
+                         metrics.photos.empty() ? "no photo was held out and scored"
+                                                : fmt::format("PSNR on {} {} not used in training; higher is better", metrics.photos.size(),
+                                                              metrics.photos.size() == 1 ? "photo" : "photos"));
+}
+
+std::string TimeFigure(const Metrics& metrics) {
+  std::string note = metrics.ranks == 1 ? "1 process" : fmt::format("{} ranks", metrics.ranks);
+  if (metrics.threads > 0)
+    note += fmt::format(", {} {}{}", metrics.threads, metrics.threads == 1 ? "thread" : "threads", metrics.ranks > 1 ? " each" : "");
+  return page::KeyFigure("Training time", ShownDuration(metrics.train_seconds), note + "; COLMAP not included");
+}
+
+}  // namespace
+
+std::string SummarySection(const ReportInput& input) {
+  const Metrics& metrics = *input.metrics;
+  // What a surveyor asks first: where on Earth, how fine, how much ground, how right, how like the photos, how long.
+  return "<section id=\"summary\" class=\"kpis six\">" + PositionFigure(metrics) + GroundSamplingFigure(input) + AreaFigure(input) +
+         SurfaceFigure(metrics) + SimilarityFigure(metrics) + TimeFigure(metrics) +
+         "</section>\n<p class=\"more\"><a href=\"#details\">All figures, and what they mean</a></p>\n";
+}
+
+std::string WarningsBanner(const Metrics& metrics) {
+  if (metrics.warnings.empty()) return "<p class=\"banner good\"><b>No warnings.</b> Every photo was placed and every block was trained.</p>\n";
+  std::string html = fmt::format("<details class=\"banner warn\" open><summary><b>{} {}</b></summary><ul>", metrics.warnings.size(),
+                                 metrics.warnings.size() == 1 ? "warning" : "warnings");
+  for (const Warning& warning : metrics.warnings) {
+    html += fmt::format("<li>{}.<span class=\"advice\"><b>What to do:</b> {}.</span></li>", page::EscapeHtml(warning.finding),
+                        page::EscapeHtml(warning.advice));
+  }
+  return html + "</ul></details>\n";
+}
+
+}  // namespace skyquilt::evaluate

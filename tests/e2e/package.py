@@ -1,0 +1,81 @@
+"""The Debian package of a build: made, unpacked into an empty folder, looked at, and run from there with an empty environment."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+from harness import expect, main
+
+SKIPPED = 77
+NEEDED = ("cpack", "dpkg-deb", "dpkg-shlibdeps", "file", "readelf")
+# What a user has, and nothing of the build.
+ENVIRONMENT = {"PATH": "/usr/local/bin:/usr/bin:/bin"}
+
+
+def output(*command, cwd, environment=None):
+    done = subprocess.run([str(word) for word in command], cwd=cwd, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace", timeout=300)
+    expect(done.returncode == 0, f"{' '.join(map(str, command))} ended with {done.returncode}:\n{done.stdout}")
+    return done.stdout
+
+
+def names(field):
+    """Names of packages in a field such as Depends, without their versions."""
+    return [entry.split()[0] for entry in field.split(",")]
+
+
+def test(_, folder):
+    build = pathlib.Path(sys.argv[1]).resolve()
+    source = pathlib.Path(__file__).resolve().parents[2]
+    output("cpack", "--config", build / "CPackConfig.cmake", "-G", "DEB", "-B", folder / "made", cwd=folder)
+    packages = list((folder / "made").glob("*.deb"))
+    expect(len(packages) == 1, f"cpack made {packages}")
+    package = packages[0]
+
+    def field(name):
+        return output("dpkg-deb", "--field", package, name, cwd=folder).strip()
+
+    version = field("Version")
+    expect(package.name == f"skyquilt_{version}_{field('Architecture')}.deb", package.name)
+    depends = names(field("Depends"))
+    for wanted in ("openmpi-bin", "libopenmpi", "libhdf5", "libgdal", "libopencv-core", "libexiv2", "libembree"):
+        expect(any(name.startswith(wanted) for name in depends), f"{wanted} is not among {depends}")
+    recommends = names(field("Recommends"))
+    expect(recommends == ["colmap", "ffmpeg"], f"recommends {recommends}")
+
+    root = folder / "root"
+    output("dpkg-deb", "--extract", package, root, cwd=folder)
+    documents = root / "usr/share/doc/skyquilt"
+    for path in ("copyright", "LICENSE", "README.md", "docs/licences.md", "docs/commands.md", "examples/configs/fast.toml", "examples/skyquilt.slurm"):
+        expect((documents / path).stat().st_size > 0, f"{path} is empty")
+    expect(sorted(path.name for path in (root / "usr/bin").iterdir()) == ["skyquilt", "skyquilt-mpirun"], "other programs than these two")
+    expect((documents / "copyright").read_text().startswith("Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/"), "copyright")
+
+    program = root / "usr/bin/skyquilt"
+    dynamic = output("readelf", "--dynamic", program, cwd=folder)
+    expect("RUNPATH" not in dynamic and "RPATH" not in dynamic, dynamic)
+    expect(".symtab" not in output("readelf", "--sections", "--wide", program, cwd=folder), "the program is not stripped")
+    for place in (source, build):
+        expect(os.fsencode(place) not in program.read_bytes(), f"the program names {place}")
+
+    # From here on nothing of the build is used.
+    away = folder / "away"
+    away.mkdir()
+    libraries = output("ldd", program, cwd=away, environment=ENVIRONMENT)
+    expect("not found" not in libraries, libraries)
+    expect(output(program, "--version", cwd=away, environment=ENVIRONMENT).split() == ["skyquilt", version], "another version than the package's")
+    defaults = output(program, "--config", "fast", "info", "--defaults", cwd=away, environment=ENVIRONMENT)
+    expect("max_log2_table_size" in defaults, defaults)
+    output(program, "simulate", "hamlet", "-o", "survey", "--set", "simulate.image_width=96", cwd=away, environment=ENVIRONMENT)
+    output(program, "info", "survey", cwd=away, environment=ENVIRONMENT)
+    help_text = subprocess.run([root / "usr/bin/skyquilt-mpirun", "--help"], env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
+    expect("skyquilt-mpirun [--restarts N]" in help_text.stderr, help_text.stderr)
+
+
+if __name__ == "__main__":
+    missing = [program for program in NEEDED if shutil.which(program) is None]
+    if missing:
+        print(f"skipped: not installed: {', '.join(missing)}")
+        sys.exit(SKIPPED)
+    main(test)

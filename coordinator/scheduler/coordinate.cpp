@@ -61,7 +61,7 @@ class Coordination {
         Stop();
       }
       if (!stopping_) RelieveSlowRanks();
-      while (!stopping_ && !idle_.empty() && GoOnWithReturned()) {
+      while (!stopping_ && !idle_.empty() && AssignReturnedBlock()) {
       }
       while (!stopping_ && queue_.HasWaiting() && !idle_.empty()) HandOut();
       if (busy_.empty() && (stopping_ || (!queue_.HasWaiting() && returned_.empty()))) break;
@@ -118,7 +118,7 @@ class Coordination {
   }
 
   // Gives a block that a slow rank gave back to the fastest idle rank; to the slow rank itself only if no other rank is idle and no block waits.
-  bool GoOnWithReturned() {
+  bool AssignReturnedBlock() {
     if (returned_.empty()) return false;
     const auto [job, from] = returned_.back();
     std::optional<int> to;

@@ -49,7 +49,8 @@ TEST(Stages, StagesDependOnTheirOwnOptionsOnly) {
 TEST(Stages, HaveUniqueNamesAndNeedOnlyEarlierOnes) {
   std::set<std::string> names;
   for (const Stage& stage : Stages()) {
-    for (const Stage::RequiredFile& required : stage.required) EXPECT_TRUE(names.contains(required.stage)) << stage.name << " needs " << required.stage;
+    for (const Stage::RequiredFile& required : stage.required)
+      EXPECT_TRUE(names.contains(required.stage)) << stage.name << " needs " << required.stage;
     EXPECT_TRUE(names.insert(stage.name).second) << stage.name;
     EXPECT_TRUE(stage.inputs != nullptr && stage.outputs != nullptr && stage.proof != nullptr && stage.body != nullptr) << stage.name;
   }

@@ -120,7 +120,7 @@ Json DescribeProject(const std::filesystem::path& folder) {
 Json DescribeJson(const std::filesystem::path& file) {
   const Json content = Json::parse(base::ReadFile(file), nullptr, false);
   if (content.is_discarded()) throw base::InputError(file, "is not valid JSON", "Make it again with the command that wrote it");
-  Json json = {{"what", "JSON of skyquilt"}, {"bytes", std::filesystem::file_size(file)}};
+  Json json = {{"what", "JSON file of skyquilt"}, {"bytes", std::filesystem::file_size(file)}};
   if (file.filename() == "metrics.json") json["what"] = "metrics";
   if (file.filename() == "simulate.json") json["what"] = "simulated survey";
   if (file.filename() == "train.json") json["what"] = "training report";

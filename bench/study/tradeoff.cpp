@@ -160,7 +160,7 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
   }
   for (const int every : options.keep_every) {
     photos.push_back(study.Run({.name = "photos_" + std::to_string(every),
-                                .label = every == 1 ? "all photos" : fmt::format("every {}. photo", every),
+                                .label = every == 1 ? "all photos" : fmt::format("one photo in {}", every),
                                 .overrides = {middle, layout},
                                 .keep_every = every}));
     photo_x.push_back(photos.back().training_photos);

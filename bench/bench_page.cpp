@@ -14,7 +14,7 @@
 namespace skyquilt::bench {
 namespace {
 
-// Letters of a UTF-8 text: what a column is as wide as.
+// Number of characters of a UTF-8 text.
 size_t Width(const std::string& text) {
   return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
@@ -24,7 +24,7 @@ std::string PadTo(const std::string& text, size_t width, bool right) {
   return right ? space + text : text + space;
 }
 
-// A column of numbers stands to the right.
+// Columns with numbers are right-aligned.
 bool IsNumeric(const BenchTable& table, size_t column) {
   return std::any_of(table.rows.begin(), table.rows.end(), [column](const auto& row) { return !std::isnan(row.at(column).value); });
 }
@@ -88,7 +88,7 @@ std::string HtmlSection(const BenchSection& section) {
   return html + HtmlPictures(section.pictures) + "</section>\n";
 }
 
-// Quoted when it holds a separator; quotes doubled.
+// In quotes when the text contains a comma, a quote or a line break; quotes in it are doubled.
 std::string CsvText(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";

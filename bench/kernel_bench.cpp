@@ -40,7 +40,7 @@ render::TrainedField MakeField(const KernelBenchOptions& options) {
   return f;
 }
 
-// Rays whose samples lie anywhere in the unit cube; colours and directions are random too.
+// Rays whose samples are at random positions in the unit cube, with random colours and directions.
 worker::RayBatch MakeBatch(const KernelBenchOptions& options, int feature_rows) {
   worker::RayBatch batch;
   base::Random random(7);
@@ -66,7 +66,7 @@ worker::RayBatch MakeBatch(const KernelBenchOptions& options, int feature_rows) 
   return batch;
 }
 
-// The limits of `threads` threads that all work at once, per thread.
+// Measures the limit with all threads working at once.
 void MeasureLimits(const KernelBenchOptions& options, const field::HashField& field, base::ThreadPool& threads, KernelSpeed* speed) {
   const auto n = static_cast<size_t>(threads.size());
   std::vector<double> flops(n), gather(n), scatter(n);
@@ -82,7 +82,7 @@ void MeasureLimits(const KernelBenchOptions& options, const field::HashField& fi
       gather[static_cast<size_t>(task)] = times.gather_s;
       scatter[static_cast<size_t>(task)] = times.scatter_s;
     });
-    // Throughputs of threads add up, so the mean is that of rates.
+    // Rates of threads add up, so the mean is taken over rates and not over times.
     const auto mean = [&](const std::vector<double>& seconds_each) {
       double rate = 0.0;
       for (const double s : seconds_each) rate += 1.0 / s;
@@ -102,7 +102,7 @@ void MeasureLimits(const KernelBenchOptions& options, const field::HashField& fi
   speed->roofline_infer_samples_per_second = static_cast<double>(n) / (field.ForwardFlops() / per_thread + gather_s);
 }
 
-// Samples per second of `work`, which does one batch, over about `seconds`.
+// Samples per second of `work`, which processes one batch; repeated for about `seconds`.
 template <typename Work>
 double Rate(int64_t batch_samples, double seconds, Work&& work) {
   const Clock::time_point start = Clock::now();
@@ -129,7 +129,7 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
   worker::FieldStep step(target, field, nullptr, worker::LuminancePlan{}, threads, times);
   worker::RayBatch batch = MakeBatch(options, field.FeatureRows());
   worker::StepOptions learning;
-  learning.learning_rate = 1e-4;  // densities stay low, so that every sample takes part in everything
+  learning.learning_rate = 1e-4;  // keeps densities low, so that no sample is hidden and skipped
   const int64_t samples = batch.n_samples;
 
   std::vector<KernelSpeed> rounds;

@@ -43,7 +43,7 @@ BenchCell RateCell(double samples_per_second) {
   return {InMillions(samples_per_second), samples_per_second};
 }
 
-// The table's number is in nanoseconds.
+// Shown and stored in nanoseconds.
 BenchCell NsCell(double seconds) {
   return BenchCell::Number(1e9 * seconds, 1, "ns");
 }
@@ -52,7 +52,7 @@ std::string ThreadsText(int threads) {
   return threads == 1 ? "one thread" : fmt::format("{} threads", threads);
 }
 
-// All threads, and one alone where that was measured too.
+// Speeds with all threads, and with one thread if that was measured too.
 std::vector<KernelSpeed> SpeedsOf(const KernelBenchResult& r) {
   std::vector<KernelSpeed> speeds = {r.all};
   speeds.insert(speeds.end(), r.one_thread.begin(), r.one_thread.end());
@@ -63,7 +63,8 @@ std::vector<BenchFigure> KernelFigures(const KernelBenchResult& r) {
   const KernelSpeed& s = r.all;
   std::vector<BenchFigure> figures = {
       {"Training", InMillions(s.train_samples_per_second), fmt::format("samples on {}, {}", ThreadsText(s.threads), r.isa)},
-      {"Share of the limit", page::FormatPercent(s.RooflineFraction(), 0), "this machine's own: " + InMillions(s.roofline_train_samples_per_second)},
+      {"Share of the limit", page::FormatPercent(s.RooflineFraction(), 0),
+       "limit of this machine: " + InMillions(s.roofline_train_samples_per_second)},
       {"Inference", InMillions(s.infer_samples_per_second),
        fmt::format("{} times training; limit {}", page::FormatFixed(s.infer_samples_per_second / s.train_samples_per_second, 1),
                    InMillions(s.roofline_infer_samples_per_second))}};
@@ -72,7 +73,7 @@ std::vector<BenchFigure> KernelFigures(const KernelBenchResult& r) {
     figures.push_back(
         {"One thread trains", InMillions(one.train_samples_per_second), page::FormatPercent(one.RooflineFraction(), 0) + " of its own limit"});
     figures.push_back({"Scaling", page::FormatPercent(r.ScalingFraction(), 0),
-                       fmt::format("speed-up by {}, as a share of the limit's own speed-up", ThreadsText(s.threads))});
+                       fmt::format("speed-up by {}, as a fraction of the limit's speed-up", ThreadsText(s.threads))});
   }
   return figures;
 }
@@ -80,12 +81,12 @@ std::vector<BenchFigure> KernelFigures(const KernelBenchResult& r) {
 std::vector<std::string> KernelVerdicts(const KernelBenchResult& r) {
   const KernelSpeed& s = r.all;
   const auto most = static_cast<size_t>(std::max_element(s.train_share.begin(), s.train_share.end()) - s.train_share.begin());
-  std::vector<std::string> verdicts = {fmt::format("Training reaches {} of what this machine can do at best; most of its time goes into {} ({}).",
+  std::vector<std::string> verdicts = {fmt::format("Training reaches {} of this machine's limit. The longest phase is {} ({} of the time).",
                                                    page::FormatPercent(s.RooflineFraction(), 0), worker::kPhaseNames[most],
                                                    page::FormatPercent(s.train_share[most], 0))};
   if (!r.one_thread.empty()) {
     const KernelSpeed& one = r.one_thread.front();
-    verdicts.push_back(fmt::format("{} threads train {} times as fast as one; the limit itself grows {} times.", s.threads,
+    verdicts.push_back(fmt::format("{} threads train {} times as fast as one thread; the limit is {} times as high.", s.threads,
                                    page::FormatFixed(s.train_samples_per_second / one.train_samples_per_second, 2),
                                    page::FormatFixed(s.roofline_train_samples_per_second / one.roofline_train_samples_per_second, 2)));
   }
@@ -107,19 +108,19 @@ BenchSection LimitSection(const KernelBenchResult& r) {
   return {.id = "limit",
           .title = "Against the limit",
           .lead =
-              "The limit is what a sample would take if nothing were done but its multiply-adds at the peak rate and its reads and additions in "
-              "the tables, one after the other.",
+              "The limit counts only the multiply-adds of a sample at the peak rate, and its random reads and additions in the tables, one after "
+              "the other.",
           .charts = {page::BarChart(bars, {.title = "Measured against the limit", .x_label = "million samples per second"})},
           .tables = {table},
           .pictures = {}};
 }
 
-BenchSection StageSection(const KernelBenchResult& r) {
+BenchSection PhaseSection(const KernelBenchResult& r) {
   const std::vector<KernelSpeed> speeds = SpeedsOf(r);
   BenchTable table{.name = "phases", .title = "", .note = "", .columns = {"phase"}, .rows = {}};
   for (const KernelSpeed& s : speeds) {
     table.columns.push_back("share, " + ThreadsText(s.threads));
-    table.columns.push_back("ns a sample, " + ThreadsText(s.threads));
+    table.columns.push_back("ns per sample, " + ThreadsText(s.threads));
   }
   std::vector<std::vector<page::Bar>> bars(speeds.size());
   for (size_t phase = 0; phase <= worker::kPhases; ++phase) {
@@ -142,13 +143,12 @@ BenchSection StageSection(const KernelBenchResult& r) {
     charts.push_back(
         page::BarChart(bars[k], {.title = "Training on " + ThreadsText(speeds[k].threads), .x_label = "share of the threads' time (%)"}));
   }
-  return {
-      .id = "phases",
-      .title = "Where a sample's time goes",
-      .lead = "Time of one thread for a training sample. Waiting is what the phases leave: threads with nothing to do, and what lies between calls.",
-      .charts = charts,
-      .tables = {table},
-      .pictures = {}};
+  return {.id = "phases",
+          .title = "Time per training phase",
+          .lead = "Time of one thread for one training sample. Waiting is the time outside all phases: idle threads and the work between phases.",
+          .charts = charts,
+          .tables = {table},
+          .pictures = {}};
 }
 
 BenchSection MachineSection(const KernelBenchResult& r) {
@@ -157,17 +157,17 @@ BenchSection MachineSection(const KernelBenchResult& r) {
       .name = "machine",
       .title = "",
       .note = fmt::format(
-          "Networks: {} kFLOP a training sample at {} a thread. Reads and additions: 8 corners of {} numbers at each of {} levels, anywhere in "
-          "tables of up to 2^{} entries. Every row is a median, so that parts and sums may differ a little.",
+          "Networks: {} kFLOP per training sample at {} per thread. Reads and additions: 8 corners with {} features at each of {} levels, at random "
+          "positions in tables of up to 2^{} entries. Every row is a median, so parts and sums may differ a little.",
           page::FormatFixed(1e-3 * r.train_flops, 1), page::FormatFixed(r.all.gflops_per_thread, 0, "GFLOP/s"), o.features, o.levels,
           o.log2_table_size),
-      .columns = {"limit of a sample"},
+      .columns = {"limit per sample"},
       .rows = {}};
   for (const char* name : {"networks, training", "random reads", "random additions", "training, all three", "inference, without additions"}) {
     table.rows.push_back({BenchCell::Text(name)});
   }
   for (const KernelSpeed& s : SpeedsOf(r)) {
-    table.columns.push_back("ns a thread, " + ThreadsText(s.threads));
+    table.columns.push_back("ns per thread, " + ThreadsText(s.threads));
     const std::vector<BenchCell> cells = {NsCell(s.network_limit_s), NsCell(s.gather_limit_s), NsCell(s.scatter_limit_s),
                                           NsCell(s.threads / s.roofline_train_samples_per_second),
                                           NsCell(s.threads / s.roofline_infer_samples_per_second)};
@@ -175,7 +175,7 @@ BenchSection MachineSection(const KernelBenchResult& r) {
   }
   return {.id = "machine",
           .title = "The machine's limit",
-          .lead = "Measured in the same rounds, on as many threads at once.",
+          .lead = "Measured in the same rounds, on the same number of threads at once.",
           .charts = {},
           .tables = {table},
           .pictures = {}};
@@ -210,7 +210,7 @@ std::string KernelBenchJson(const KernelBenchResult& r) {
 std::string KernelBenchTable(const KernelBenchResult& r) {
   const KernelSpeed& s = r.all;
   const KernelBenchOptions& o = r.options;
-  std::string text = fmt::format("{} levels x {} features, 2^{} entries, {}-wide networks, {} samples a batch, {}, {} thread{}\n", o.levels,
+  std::string text = fmt::format("{} levels x {} features, 2^{} entries, networks of width {}, {} samples per batch, {}, {} thread{}\n", o.levels,
                                  o.features, o.log2_table_size, o.hidden, o.batch_samples, r.isa, s.threads, s.threads == 1 ? "" : "s");
   const auto row = [&](const std::string& what, const std::string& value, const std::string& note = "") {
     text += fmt::format("  {:<22}{:>12}  {}\n", what, value, note);
@@ -229,33 +229,35 @@ std::string KernelBenchTable(const KernelBenchResult& r) {
   text += fmt::format(
       "Limit per sample and thread: {:.0f} ns networks ({:.1f} kFLOP at {:.0f} GFLOP/s) + {:.0f} ns random reads + {:.0f} ns random additions\n",
       1e9 * s.network_limit_s, 1e-3 * r.train_flops, s.gflops_per_thread, 1e9 * s.gather_limit_s, 1e9 * s.scatter_limit_s);
-  text += "Where training time goes:\n";
+  text += "Training time by phase:\n";
   const double thread_s = s.threads / s.train_samples_per_second;
   for (size_t i = 0; i < worker::kPhases; ++i) {
     if (s.train_share[i] > 0.0005) {
       row(worker::kPhaseNames[i], fmt::format("{:.1f} %", 100.0 * s.train_share[i]),
-          fmt::format("{:.0f} ns a sample", 1e9 * thread_s * s.train_share[i]));
+          fmt::format("{:.0f} ns per sample", 1e9 * thread_s * s.train_share[i]));
     }
   }
-  row("waiting, bookkeeping", fmt::format("{:.1f} %", 100.0 * s.waiting_share), fmt::format("{:.0f} ns a sample", 1e9 * thread_s * s.waiting_share));
+  row("waiting, bookkeeping", fmt::format("{:.1f} %", 100.0 * s.waiting_share),
+      fmt::format("{:.0f} ns per sample", 1e9 * thread_s * s.waiting_share));
   return text;
 }
 
 BenchPage KernelBenchPage(const KernelBenchResult& r, const std::string& command) {
   const KernelBenchOptions& o = r.options;
-  BenchPage page{
-      .name = "kernel",
-      .title = "A field's speed against the machine's limit",
-      .lead = fmt::format("{} levels of {} features, tables of up to 2^{} entries, networks {} wide with {} hidden layer{} for colour, batches of {} "
-                          "samples at random places. Medians of {} round{} of {:g} s a figure; the limit is measured in the same rounds.",
-                          o.levels, o.features, o.log2_table_size, o.hidden, o.color_hidden_layers, o.color_hidden_layers == 1 ? "" : "s",
-                          page::FormatInteger(o.batch_samples), o.rounds, o.rounds == 1 ? "" : "s", o.seconds),
-      .figures = KernelFigures(r),
-      .verdicts = KernelVerdicts(r),
-      .sections = {LimitSection(r), StageSection(r), MachineSection(r)},
-      .command = command,
-      .machine = base::MachineDescription(),
-      .date = base::UtcTimestamp()};
+  BenchPage page{.name = "kernel",
+                 .title = "A field's speed against the machine's limit",
+                 .lead = fmt::format(
+                     "{} levels of {} features, tables of up to 2^{} entries, networks of width {} with {} hidden layer{} for colour, batches of "
+                     "{} samples at random positions. Medians of {} round{} with {:g} s per measurement; the limit is measured in the same "
+                     "rounds.",
+                     o.levels, o.features, o.log2_table_size, o.hidden, o.color_hidden_layers, o.color_hidden_layers == 1 ? "" : "s",
+                     page::FormatInteger(o.batch_samples), o.rounds, o.rounds == 1 ? "" : "s", o.seconds),
+                 .figures = KernelFigures(r),
+                 .verdicts = KernelVerdicts(r),
+                 .sections = {LimitSection(r), PhaseSection(r), MachineSection(r)},
+                 .command = command,
+                 .machine = base::MachineDescription(),
+                 .date = base::UtcTimestamp()};
   return page;
 }
 

@@ -18,7 +18,7 @@
 namespace skyquilt::bench {
 namespace {
 
-// One stream of random numbers per thing drawn, so that changing one option leaves the others' draws alone.
+// One stream of random numbers per quantity, so that changing one option does not change the random numbers of the others.
 enum Stream : uint64_t { kCost = 1, kError = 2, kSpeed = 3, kStraggler = 4, kFailure = 5 };
 
 double CpuSeconds() {
@@ -26,8 +26,8 @@ double CpuSeconds() {
 }
 
 struct Cluster {
-  std::vector<double> work_s;  // of every block on a rank of speed 1
-  std::vector<double> cost;    // what the partition believes
+  std::vector<double> work_s;  // seconds of every block on a rank of speed 1
+  std::vector<double> cost;    // estimated cost of every block
   std::vector<double> speed;
   std::vector<double> fails_at_s;
   double Work() const { return std::accumulate(work_s.begin(), work_s.end(), 0.0); }
@@ -102,7 +102,7 @@ ScheduleRun Simulate(const ScheduleBenchOptions& o, const Cluster& cluster, cons
 
 void ScheduleBenchOptions::Check() const {
   if (blocks < 1 || blocks > 10'000'000) throw base::UsageError("--blocks must be from 1 to 10000000");
-  if (ranks < 2 || ranks > 1'000'000) throw base::UsageError("--ranks must be from 2 to 1000000: the first hands out blocks, the others train");
+  if (ranks < 2 || ranks > 1'000'000) throw base::UsageError("--ranks must be from 2 to 1000000: rank 0 hands out blocks, the others train");
   if (!(block_seconds > 0.0) || !(checkpoint_every_s > 0.0) || !(status_every_s > 0.0)) {
     throw base::UsageError("--block-seconds, --checkpoint-every and --status-every must be positive");
   }
@@ -110,7 +110,7 @@ void ScheduleBenchOptions::Check() const {
     throw base::UsageError("--cost-spread, --cost-error, --speed-spread, --restart-seconds, --skip-seconds and --move-seconds must not be negative");
   }
   if (!(stragglers >= 0.0 && stragglers <= 1.0) || !(failing >= 0.0 && failing <= 1.0)) {
-    throw base::UsageError("--stragglers and --failing are shares from 0 to 1");
+    throw base::UsageError("--stragglers and --failing must be from 0 to 1");
   }
 }
 
@@ -136,7 +136,7 @@ std::vector<double> MeasuredBlockSeconds(const std::string& train_json) {
     if (field.block >= 0 && field.ok) seconds.push_back(field.seconds);
   }
   std::erase_if(seconds, [](double s) { return !(s > 0.0); });
-  if (seconds.empty()) throw base::InputError(train_json, "holds no trained block", "Give the train.json of a finished training");
+  if (seconds.empty()) throw base::InputError(train_json, "contains no trained block", "Give the train.json of a finished training");
   return seconds;
 }
 

@@ -1,5 +1,5 @@
-// Ranks that exist only on a clock: what CoordinateBlocks sends them takes effect in simulated time, and their answers come back in order of it.
-// A failing rank ends the whole job, as MPI does.
+// Simulated ranks, to test the scheduler without a cluster. A Communicator that answers the messages of CoordinateBlocks in simulated time.
+// A lost rank ends the whole job, as with MPI.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,18 @@
 
 namespace skyquilt::bench {
 
-// Thrown out of TryReceive at the moment a rank is lost.
+// Thrown by TryReceive at the moment a rank is lost.
 struct RankLost {
   int rank = 0;
 };
 
 class SimulatedRanks : public comm::Communicator {
  public:
-  // work_s, left_s: seconds that every block needs, and still needs, on a rank of speed 1. speed: of every rank; the first entry is rank 0, which
-  // does not train. skip_s: to find that a block has nothing left. save_s: to give one back, and again to go on with it elsewhere.
-  // fails_at_s: on the same clock, ascending; at each a rank is lost.
+  // speed: of every rank; the first entry is rank 0, which does not train.
+  // work_s, left_s: seconds that every block needs in total, and still needs, on a rank of speed 1.
+  // fails_at_s: times at which a rank is lost, ascending.
+  // skip_s: time to skip a block that is complete. save_s: time to save a block that is given back, and again to load it on another rank.
+  // start_s: the clock's first value.
   SimulatedRanks(std::vector<double> speed, std::vector<double> work_s, std::vector<double> left_s, std::vector<double> fails_at_s, double skip_s,
                  double save_s, double status_every_s, double start_s);
 
@@ -40,15 +42,15 @@ class SimulatedRanks : public comm::Communicator {
 
   double now_s() const { return now_s_; }
   int64_t messages() const { return messages_; }  // both ways
-  // What is left of every block when all ranks are lost now and only whole checkpoint intervals count.
+  // Seconds that every block still needs when the job ends now and the work since its last checkpoint is lost.
   std::vector<double> LeftAfterLoss(double checkpoint_every_s) const;
 
  private:
   struct Training {
     coordinator::FieldJob job;
     double from_s = 0.0, until_s = 0.0;
-    int64_t serial = 0;  // tells events that are void by now
-    bool yields = false;
+    int64_t serial = 0;   // events with another number are outdated
+    bool yields = false;  // the block is being given back
   };
   struct Event {
     double at_s = 0.0;

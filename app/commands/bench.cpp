@@ -26,19 +26,21 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
   };
   const auto flags = std::make_shared<Flags>();
   bench::KernelBenchOptions& o = flags->options;
-  CLI::App* command = bench.add_subcommand("kernel", "samples per second of training and rendering a field, against this machine's own limit");
+  CLI::App* command = bench.add_subcommand("kernel", "samples per second in training and rendering, compared with the limit of this machine");
   command->add_option("-o,--out,--output", flags->out, "folder for kernel.json, kernel.html and tables as CSV")->type_name("DIR");
   command->add_option("--isa", o.isa, "force an instruction set: avx512, avx2, portable or one by name")->type_name("NAME");
   command->add_option("--levels", o.levels, "resolutions of the hash grid")->type_name("N")->capture_default_str();
-  command->add_option("--features", o.features, "numbers per grid entry, 2 or 4")->type_name("N")->capture_default_str();
-  command->add_option("--log2-table-size", o.log2_table_size, "entries per level, log2")->type_name("N")->capture_default_str();
+  command->add_option("--features", o.features, "features per grid entry, 2 or 4")->type_name("N")->capture_default_str();
+  command->add_option("--log2-table-size", o.log2_table_size, "log2 of the entries per level")->type_name("N")->capture_default_str();
   command->add_option("--hidden", o.hidden, "width of the hidden layers")->type_name("N")->capture_default_str();
   command->add_option("--color-hidden-layers", o.color_hidden_layers, "hidden layers of the colour network")->type_name("N")->capture_default_str();
-  command->add_option("--sh-degree", o.sh_degree, "spherical harmonics of the direction")->type_name("N")->capture_default_str();
+  command->add_option("--sh-degree", o.sh_degree, "degree of the spherical harmonics of the viewing direction")
+      ->type_name("N")
+      ->capture_default_str();
   command->add_option("--batch", o.batch_samples, "samples per step")->type_name("N")->capture_default_str();
-  command->add_option("--samples-per-ray", o.samples_per_ray, "of every ray")->type_name("N")->capture_default_str();
-  command->add_option("--seconds", o.seconds, "per figure and round")->type_name("S")->capture_default_str();
-  command->add_option("--rounds", o.rounds, "medians of so many")->type_name("N")->capture_default_str();
+  command->add_option("--samples-per-ray", o.samples_per_ray, "samples on every ray")->type_name("N")->capture_default_str();
+  command->add_option("--seconds", o.seconds, "duration of one measurement")->type_name("S")->capture_default_str();
+  command->add_option("--rounds", o.rounds, "rounds of measurements; medians are reported")->type_name("N")->capture_default_str();
   command->add_flag("--quick", flags->quick, "one short round");
   command->add_flag("--json", flags->json, "print JSON instead of the table");
   command->footer(
@@ -46,10 +48,10 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
       "  skyquilt bench kernel\n"
       "  skyquilt bench kernel --isa avx2 --json\n"
       "  skyquilt bench kernel --log2-table-size 22 -o out/bench\n"
-      "Rates are medians over rounds; the limit is measured in the same rounds. Leave the machine alone meanwhile.");
+      "Rates are medians over rounds; the limit is measured in the same rounds. Run nothing else on the machine meanwhile.");
   command->callback([&state, flags] {
     state.chosen = [&state, flags] {
-      if (state.comm != nullptr && state.comm->rank() != 0) return;  // one process measures; others would disturb it
+      if (state.comm != nullptr && state.comm->rank() != 0) return;  // only one process measures; others would slow it down
       flags->options.threads = BenchThreads(state);
       if (flags->quick) {
         flags->options.rounds = 1;
@@ -73,33 +75,40 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
   };
   const auto flags = std::make_shared<Flags>();
   bench::ScheduleBenchOptions& o = flags->options;
-  CLI::App* command = bench.add_subcommand("schedule", "how well a cluster would be used: the scheduler against simulated ranks");
+  CLI::App* command = bench.add_subcommand("schedule", "predict how well a cluster would be used: the scheduler with simulated ranks");
   command->add_option("-o,--out,--output", flags->out, "folder for schedule.json, schedule.html and tables as CSV")->type_name("DIR");
   const CLI::Option* blocks = command->add_option("--blocks", o.blocks, "blocks to train")->type_name("N")->capture_default_str();
-  const CLI::Option* ranks = command->add_option("--ranks", o.ranks, "ranks, the one that hands out included")->type_name("N")->capture_default_str();
+  const CLI::Option* ranks =
+      command->add_option("--ranks", o.ranks, "ranks, including rank 0, which only hands out blocks")->type_name("N")->capture_default_str();
   command->add_option("--block-seconds", o.block_seconds, "mean training time of a block on one rank")->type_name("S")->capture_default_str();
-  command->add_option("--measured", flags->measured, "train.json of a project: blocks differ in time as its blocks do")->type_name("FILE");
-  command->add_option("--cost-spread", o.cost_spread, "without --measured: deviation of log seconds")->type_name("X")->capture_default_str();
-  command->add_option("--cost-error", o.cost_error, "deviation of log estimated over real cost")->type_name("X")->capture_default_str();
-  command->add_option("--speed-spread", o.speed_spread, "deviation of the ranks' log speed")->type_name("X")->capture_default_str();
-  command->add_option("--stragglers", o.stragglers, "share of ranks at half speed")->type_name("SHARE")->capture_default_str();
-  command->add_option("--failing", o.failing, "share of ranks lost during the job")->type_name("SHARE")->capture_default_str();
+  command->add_option("--measured", flags->measured, "train.json of a project, whose block times are used")->type_name("FILE");
+  command->add_option("--cost-spread", o.cost_spread, "standard deviation of log(block time), without --measured")
+      ->type_name("X")
+      ->capture_default_str();
+  command->add_option("--cost-error", o.cost_error, "standard deviation of log(estimated cost / true cost)")->type_name("X")->capture_default_str();
+  command->add_option("--speed-spread", o.speed_spread, "standard deviation of log(rank speed)")->type_name("X")->capture_default_str();
+  command->add_option("--stragglers", o.stragglers, "fraction of ranks at half speed")->type_name("SHARE")->capture_default_str();
+  command->add_option("--failing", o.failing, "fraction of ranks lost during the job")->type_name("SHARE")->capture_default_str();
   command->add_option("--checkpoint-every", o.checkpoint_every_s, "seconds between checkpoints")->type_name("S")->capture_default_str();
-  command->add_option("--restart-seconds", o.restart_s, "from a loss until all train again")->type_name("S")->capture_default_str();
-  command->add_option("--skip-seconds", o.skip_s, "after a restart, to pass over a finished block")->type_name("S")->capture_default_str();
-  command->add_option("--move-seconds", o.move_s, "to save a slow rank's block, and again to go on with it")->type_name("S")->capture_default_str();
-  command->add_option("--status-every", o.status_every_s, "seconds between a rank's reports")->type_name("S")->capture_default_str();
-  command->add_option("--seed", o.seed, "of all that is drawn")->type_name("N")->capture_default_str();
-  command->add_flag(
-      "--quick", flags->quick,
-      "a small cluster, " + std::to_string(kQuickBlocks) + " blocks on " + std::to_string(kQuickRanks) + " ranks, unless these are given");
+  command->add_option("--restart-seconds", o.restart_s, "time from the loss of a rank until all ranks train again")
+      ->type_name("S")
+      ->capture_default_str();
+  command->add_option("--skip-seconds", o.skip_s, "time to skip a finished block after a restart")->type_name("S")->capture_default_str();
+  command->add_option("--move-seconds", o.move_s, "time to save a slow rank's block, and again to load it on another rank")
+      ->type_name("S")
+      ->capture_default_str();
+  command->add_option("--status-every", o.status_every_s, "time between two progress reports of a rank")->type_name("S")->capture_default_str();
+  command->add_option("--seed", o.seed, "seed of the random numbers")->type_name("N")->capture_default_str();
+  command->add_flag("--quick", flags->quick,
+                    "a small cluster: " + std::to_string(kQuickBlocks) + " blocks on " + std::to_string(kQuickRanks) +
+                        " ranks, unless --blocks or --ranks is given");
   command->add_flag("--json", flags->json, "print JSON instead of the table");
   command->footer(
       "Examples:\n"
       "  skyquilt bench schedule\n"
       "  skyquilt bench schedule --quick -o out/bench\n"
       "  skyquilt bench schedule --blocks 400 --ranks 64 --block-seconds 1800 --measured out/train.json\n"
-      "Twice in simulated time: undisturbed, and with ranks that are lost and the job started again from its checkpoints.");
+      "Simulates the job twice: undisturbed, and with lost ranks, after which the job starts again from its checkpoints.");
   command->callback([&state, flags, blocks, ranks] {
     state.chosen = [&state, flags, blocks, ranks] {
       if (state.comm != nullptr && state.comm->rank() != 0) return;
@@ -127,7 +136,7 @@ int BenchThreads(const CommandState& state) {
 }
 
 void AddBench(CLI::App& app, CommandState& state) {
-  CLI::App* bench = app.add_subcommand("bench", "measure: speed, and what it costs in accuracy");
+  CLI::App* bench = app.add_subcommand("bench", "measure speed and accuracy");
   bench->require_subcommand(1);
   AddKernelBench(*bench, state);
   AddScheduleBench(*bench, state);

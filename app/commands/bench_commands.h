@@ -1,11 +1,11 @@
-// The subcommands of `bench` that have a file of their own.
+// Shared by the subcommands of `bench`.
 #pragma once
 
 #include "app/commands/command.h"
 
 namespace skyquilt::app {
 
-// Of --threads; 0: every core. Throws base::UsageError.
+// The value of --threads; 0: all cores. Throws base::UsageError when it is not a whole number.
 int BenchThreads(const CommandState& state);
 
 void AddNumericsBench(CLI::App& bench, CommandState& state);

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where cases make their surveys: in the output folder, else in the system's; removed at the end, however that comes.
+// Folder for the surveys that cases make: in the output folder, or in the system's temporary folder. Removed at the end, also after an exception.
 class WorkFolder {
  public:
   explicit WorkFolder(const std::string& out)
@@ -52,12 +52,14 @@ void AddNumericsBench(CLI::App& bench, CommandState& state) {
     bool json = false;
   };
   const auto flags = std::make_shared<Flags>();
-  CLI::App* command = bench.add_subcommand("numerics", "numbers at the extremes: places, rays, fields and trainings against double precision");
-  command->add_option("-o,--out,--output", flags->out, "folder for numerics.json, .html and a .csv per group")->type_name("DIR");
-  command->add_option("--only", flags->only, "groups of cases, separated by commas: space, rays, compositing, field, trainer, away, brightness, ...")
+  CLI::App* command = bench.add_subcommand("numerics", "check numerical accuracy in extreme cases, against double precision");
+  command->add_option("-o,--out,--output", flags->out, "folder for numerics.json, numerics.html and one CSV table per group")->type_name("DIR");
+  command
+      ->add_option("--only", flags->only,
+                   "only these groups of cases, separated by commas: space, rays, compositing, field, trainer, away, brightness, ...")
       ->delimiter(',')
       ->type_name("GROUPS");
-  command->add_flag("--quick", flags->quick, "fewer places and shorter trainings");
+  command->add_flag("--quick", flags->quick, "fewer cases and shorter trainings");
   command->add_flag("--json", flags->json, "print JSON instead of the tables");
   command->footer(
       "Examples:\n"

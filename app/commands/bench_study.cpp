@@ -20,18 +20,18 @@ struct StudyFlags {
   bool quick = false, restart = false, keep = false, json = false;
 };
 
-// What only costs time in a comparison.
+// Outputs that a comparison does not need are reduced.
 const std::vector<config::Override> kLean = {
     {"products.video_seconds", "0"}, {"evaluate.report_photos", "6"}, {"evaluate.report_image_width", "640"}};
-// A small invented place, seen in small photos.
+// --quick: small photos and small tables.
 const std::vector<config::Override> kQuick = {{"run.image_width", "320"}, {"evaluate.report_photos", "2"}, {"partition.max_log2_table_size", "15"}};
 
 struct StudyCommand {
   std::string name, help;
   std::string place;   // simulated when no survey is given
-  std::string budget;  // the default, for people
+  std::string budget;  // default training time, as shown in the help
   std::string footer;
-  std::function<void(CLI::App*, StudyFlags*)> options = {};  // of this command alone
+  std::function<void(CLI::App*, StudyFlags*)> options = {};  // adds the options that only this command has
   std::function<bench::StudyBench(bench::Study&, const StudyFlags&)> run;
 };
 
@@ -43,7 +43,7 @@ double BudgetOf(const StudyFlags& flags, double otherwise_s, double quick_s) {
 bench::Study Begin(const CommandState& state, const StudyFlags& flags, const std::string& place) {
   std::vector<config::Override> own = kLean;
   if (flags.quick) own.insert(own.end(), kQuick.begin(), kQuick.end());
-  // --config and --set come last: what the user says counts.
+  // --config and --set come last, so that the user's values win.
   coordinator::Settings settings;
   for (const config::Override& entry : own) settings.Set(entry);
   settings = state.LoadOver(settings);
@@ -78,14 +78,15 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   const std::string& name = study_command.name;
   CLI::App* command = bench.add_subcommand(name, study_command.help);
   command->add_option("-o,--out,--output", flags->out, "folder for " + name + ".json, .csv, .html and the runs")->required()->type_name("DIR");
-  command->add_option("--survey", flags->survey, "folder with photos, a simulated survey, or a project that was prepared")->type_name("FOLDER");
+  command->add_option("--survey", flags->survey, "folder with photos, a simulated survey, or a prepared project")->type_name("FOLDER");
   AddPlaceFlag(
-      *command, "--place", [flags](const std::string& place) { flags->place = place; }, "simulate a place instead; default: " + study_command.place);
-  command->add_option("--model", flags->model, "COLMAP model of the photos; without it COLMAP is run")->type_name("FOLDER");
-  command->add_option("--time-budget", flags->budget, "training time of every variant, as 90s or 10min; default: " + study_command.budget)
+      *command, "--place", [flags](const std::string& place) { flags->place = place; },
+      "simulated place to use instead of photos; default: " + study_command.place);
+  command->add_option("--model", flags->model, "folder with the COLMAP model of the photos; without it COLMAP is run")->type_name("FOLDER");
+  command->add_option("--time-budget", flags->budget, "training time of every variant, such as 90s or 10min; default: " + study_command.budget)
       ->type_name("TIME");
-  command->add_flag("--quick", flags->quick, "a hamlet in small photos, seconds instead of minutes: shows that it works, decides nothing");
-  command->add_flag("--restart", flags->restart, "remove the earlier runs in the folder first");
+  command->add_flag("--quick", flags->quick, "test with a hamlet and small photos: seconds instead of minutes, figures without meaning");
+  command->add_flag("--restart", flags->restart, "remove earlier runs in the output folder first");
   command->add_flag("--keep", flags->keep, "keep checkpoints and scenes of finished variants");
   command->add_flag("--json", flags->json, "print JSON instead of the tables");
   if (study_command.options) study_command.options(command, flags.get());
@@ -151,59 +152,59 @@ bench::StudyBench RunTradeoff(bench::Study& study, const StudyFlags& flags) {
 }  // namespace
 
 void AddStudyBenches(CLI::App& bench, CommandState& state) {
-  AddStudyCommand(bench, state,
-                  {.name = "single-vs-multi",
-                   .help = "one model of the whole area against one per block",
-                   .place = "smallcity",
-                   .budget = "5min",
-                   .footer = "Examples:\n"
-                             "  skyquilt bench single-vs-multi -o out/bench\n"
-                             "  skyquilt bench single-vs-multi --survey photos/ --model sparse/0 --time-budget 10min -o out/bench\n"
-                             "Interrupted, the same command goes on with the variant it was at.",
-                   .options =
-                       [](CLI::App* command, StudyFlags* flags) {
-                         command->add_option("--blocks", flags->blocks, "of the divided variants, rows x columns; default: 3x3, with --quick 2x2")
-                             ->type_name("RxC");
-                       },
-                   .run = RunSingleVsMulti});
+  AddStudyCommand(
+      bench, state,
+      {.name = "single-vs-multi",
+       .help = "compare one model of the whole area with one model per block",
+       .place = "smallcity",
+       .budget = "5min",
+       .footer = "Examples:\n"
+                 "  skyquilt bench single-vs-multi -o out/bench\n"
+                 "  skyquilt bench single-vs-multi --survey photos/ --model sparse/0 --time-budget 10min -o out/bench\n"
+                 "After an interruption, the same command continues with the unfinished variant.",
+       .options =
+           [](CLI::App* command, StudyFlags* flags) {
+             command->add_option("--blocks", flags->blocks, "rows x columns of the variants with several blocks; default: 3x3, with --quick 2x2")
+                 ->type_name("RxC");
+           },
+       .run = RunSingleVsMulti});
   AddStudyCommand(bench, state,
                   {.name = "blocks",
-                   .help = "number of blocks against the size of each",
+                   .help = "compare numbers of blocks and table sizes",
                    .place = "town",
                    .budget = "3min",
                    .footer = "Examples:\n"
                              "  skyquilt bench blocks -o out/bench\n"
                              "  skyquilt bench blocks --quick -o out/bench",
                    .run = RunBlocks});
-  AddStudyCommand(bench, state,
-                  {.name = "capacity",
-                   .help = "tables as large as a block's content asks for, against the same for all",
-                   .place = "smallcity",
-                   .budget = "5min",
-                   .footer = "Examples:\n"
-                             "  skyquilt bench capacity -o out/bench\n"
-                             "  skyquilt bench capacity --survey photos/ --model sparse/0 --blocks 3x3 -o out/bench",
-                   .options =
-                       [](CLI::App* command, StudyFlags* flags) {
-                         command->add_option("--blocks", flags->blocks, "rows x columns; default: as `partition` chooses")->type_name("RxC");
-                         command
-                             ->add_option("--log2-table-sizes", flags->log2_table_sizes,
-                                          "tables to compare with, the same for all blocks: log2 of the entries of a level; default: 17,18, "
-                                          "with --quick 13,15")
-                             ->delimiter(',')
-                             ->check(CLI::Range(4, 24))
-                             ->type_name("N,...");
-                         command
-                             ->add_option("--voxels-per-entry", flags->voxels_per_entry,
-                                          "how many finest voxels of surface share an entry of a table; default: 1,2,8")
-                             ->delimiter(',')
-                             ->check(CLI::Range(0.1, 1000.0))
-                             ->type_name("X,...");
-                       },
-                   .run = RunCapacity});
+  AddStudyCommand(
+      bench, state,
+      {.name = "capacity",
+       .help = "compare table sizes chosen per block with one size for all blocks",
+       .place = "smallcity",
+       .budget = "5min",
+       .footer = "Examples:\n"
+                 "  skyquilt bench capacity -o out/bench\n"
+                 "  skyquilt bench capacity --survey photos/ --model sparse/0 --blocks 3x3 -o out/bench",
+       .options =
+           [](CLI::App* command, StudyFlags* flags) {
+             command->add_option("--blocks", flags->blocks, "rows x columns; default: as `partition` chooses")->type_name("RxC");
+             command
+                 ->add_option("--log2-table-sizes", flags->log2_table_sizes,
+                              "table sizes of the variants with one size for all blocks: log2 of the entries per level; default: 17,18, "
+                              "with --quick 13,15")
+                 ->delimiter(',')
+                 ->check(CLI::Range(4, 24))
+                 ->type_name("N,...");
+             command->add_option("--voxels-per-entry", flags->voxels_per_entry, "finest voxels on the surface per table entry; default: 1,2,8")
+                 ->delimiter(',')
+                 ->check(CLI::Range(0.1, 1000.0))
+                 ->type_name("X,...");
+           },
+       .run = RunCapacity});
   AddStudyCommand(bench, state,
                   {.name = "encodings",
-                   .help = "hash grid, voxels, planes and frequencies in the same field",
+                   .help = "compare encodings in the same field: hash grid, voxels, planes, frequencies",
                    .place = "town",
                    .budget = "3min",
                    .footer = "Examples:\n"
@@ -212,13 +213,14 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                    .run = RunEncodings});
   AddStudyCommand(bench, state,
                   {.name = "tradeoff",
-                   .help = "what time, tables, samples, photos and precision buy",
+                   .help = "measure how time, table size, samples, photos and precision change the quality",
                    .place = "town",
                    .budget = "1min",
                    .footer = "Examples:\n"
                              "  skyquilt bench tradeoff -o out/bench\n"
                              "  skyquilt bench tradeoff --survey out/brighton --time-budget 3min -o out/bench\n"
-                             "--time-budget is for what varies one thing; presets are trained for a third of it up to nine times as long.",
+                             "--time-budget is the training time of variants that change one setting. Presets are trained for a third of it up to\n"
+                             "nine times as long.",
                    .run = RunTradeoff});
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 enum ExitStatus : int { kDone = 0, kBug = 1, kUsage = 2, kInput = 3, kBlockFailed = 4, kCheckFailed = 5, kInterrupted = 130 };
 
-// However rank 0 leaves, the others must hear of it.
+// Ends the other ranks when rank 0 leaves, also after an exception.
 class RankRelease {
  public:
   explicit RankRelease(comm::Communicator& comm) : comm_(comm) {}
@@ -41,7 +41,7 @@ std::string LongNames(const CLI::App& app, std::vector<std::string>* names) {
   return app.get_name();
 }
 
-// What the first word that nobody understood was probably meant to be.
+// A message for the first word that is not understood, with the nearest known word.
 std::string Suggestion(const CLI::App& app) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   std::vector<std::string> words = app.remaining(true);
@@ -63,16 +63,19 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const std::string suggestion = Suggestion(app);
   std::cerr << "skyquilt: " << (suggestion.empty() ? error.what() : suggestion) << "\n"
-            << "Run 'skyquilt " << (chosen.empty() ? "" : chosen.front()->get_name() + " ") << "--help' for what is possible.\n";
+            << "Run 'skyquilt " << (chosen.empty() ? "" : chosen.front()->get_name() + " ") << "--help' for the commands and options.\n";
   return kUsage;
 }
 
 void AddCommands(CLI::App& app, CommandState& state) {
   app.add_option("--config", state.config, "TOML file with options, or a preset: fast, default, quality (see configs/)")->type_name("FILE|NAME");
-  app.add_option("--set", state.set, "one option: --set train.levels=10; may be repeated")->type_name("SECTION.KEY=VALUE")->expected(1)->take_all();
-  app.add_option("--threads", state.threads, "threads on this machine; 0: every core")->type_name("N");
-  app.add_flag("--quiet", state.quiet, "only warnings and errors");
-  app.add_flag("--verbose", state.verbose, "tell more");
+  app.add_option("--set", state.set, "set one option, for instance train.levels=10; may be repeated")
+      ->type_name("SECTION.KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--threads", state.threads, "threads per machine; 0: all cores")->type_name("N");
+  app.add_flag("--quiet", state.quiet, "print only warnings and errors");
+  app.add_flag("--verbose", state.verbose, "print more details");
   app.set_version_flag("--version", std::string("skyquilt ") + SKYQUILT_VERSION);
   app.fallthrough();
   app.footer(
@@ -115,13 +118,13 @@ int Guarded(const std::function<void()>& body) {
     spdlog::warn("{}", error.what());
     return kInterrupted;
   } catch (const std::filesystem::filesystem_error& error) {
-    spdlog::error("{}. Check that the path exists, that you may use it and that the disk has space", error.what());
+    spdlog::error("{}. Check that the path exists, that you have permission and that the disk has free space", error.what());
     return kInput;
   } catch (const std::bad_alloc&) {
     spdlog::error("out of memory. Use a smaller --image-width, more blocks, or fewer ranks on this machine");
     return kBug;
   } catch (const std::exception& error) {
-    spdlog::error("{}\nThis is a bug in skyquilt: please report it with log.txt of the project. What was saved before is intact", error.what());
+    spdlog::error("{}\nThis is a bug in skyquilt. Please report it with the project's log.txt. Results saved before are intact", error.what());
     return kBug;
   }
 }

@@ -17,7 +17,7 @@ namespace skyquilt::app {
 
 namespace {
 
-// What --config sets: the options of a file, or of a preset by its name. A file is preferred.
+// The options set by --config: those of a file, or of a preset. When a file and a preset have this name, the file is used.
 struct NamedConfig {
   std::vector<std::filesystem::path> files;
   std::vector<config::Override> overrides;
@@ -25,7 +25,7 @@ struct NamedConfig {
 
 NamedConfig FindConfig(const std::string& config) {
   if (config.empty()) return {};
-  // A folder may well be called after the preset that it was made with.
+  // A folder with the name of a preset (for instance an output folder "fast") is not a configuration.
   if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.files = {config}, .overrides = {}};
   const std::vector<std::string> presets = PresetNames();
   if (std::find(presets.begin(), presets.end(), config) == presets.end()) {
@@ -34,7 +34,7 @@ NamedConfig FindConfig(const std::string& config) {
                            nearest.empty() ? "Give a TOML file, or one of fast, default, quality" : "Did you mean '" + nearest + "'?");
   }
   if (config != "default") return {.files = {}, .overrides = PresetOverrides(config)};
-  // Back to the defaults, whatever the project's own configuration says.
+  // All defaults are set explicitly, because they must replace the values of the project's own configuration.
   NamedConfig named;
   for (const auto& [key, value] : coordinator::Settings().Flat()) named.overrides.push_back({key, value});
   return named;
@@ -79,7 +79,7 @@ std::string AllowedText(const std::string& key) {
   coordinator::Settings settings;
   const config::Sections sections = settings.AllSections();
   const config::Option* option = sections.Find(key);
-  SKYQUILT_CHECK(option != nullptr, "a flag for the option '" + key + "' that is not there");
+  SKYQUILT_CHECK(option != nullptr, "a flag refers to the option '" + key + "', which does not exist");
   const std::string range = option->range.Text();
   return range.empty() ? "" : " (" + range + ")";
 }
@@ -99,10 +99,11 @@ void AddPlaceFlag(CLI::App& command, const std::string& names, const std::functi
       .add_option_function<std::string>(
           "--preset",
           [take](const std::string& name) {
-            spdlog::warn("--preset is now called --place; presets are what --config takes: {}", base::Join(PresetNames()));
+            spdlog::warn("--preset NAME is now --place NAME; the old form still works. Presets ({}) are given with --config",
+                         base::Join(PresetNames()));
             take(name);
           },
-          "earlier name of --place")
+          "old name of --place")
       ->group("");  // not in the help
 }
 
@@ -129,18 +130,18 @@ void AddMemoryFlag(CLI::App& command, const Overrides& overrides) {
       [overrides](const std::string& text) {
         overrides->push_back({"run.memory_gb", FormatGib(ParseBytes(text))});
       },
-      "memory this machine's ranks may use together, as 2GiB or 1500MB; half of the machine when not given [run.memory_gb]");
+      "memory limit per machine, such as 2GiB or 1500MB; default: half of the machine's memory [run.memory_gb]");
 }
 
 void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
-  AddDurationFlag(command, overrides, "--time-budget", {"run.time_budget_s"}, "time for all training together, as 90s, 10min or 1h30m");
-  AddOverride(command, overrides, "--steps", "train.steps", "train every block for exactly so many steps, instead of a time budget");
+  AddDurationFlag(command, overrides, "--time-budget", {"run.time_budget_s"}, "time for the whole training, such as 90s, 10min or 1h30m");
+  AddOverride(command, overrides, "--steps", "train.steps", "train every block for this many steps instead of a time budget");
   AddDurationFlag(command, overrides, "--checkpoint-every", {"context.checkpoint_every_s", "train.checkpoint_every_s"},
-                  "time between two checkpoints of a field, as 20s or 5min");
+                  "time between two checkpoints of a field, such as 20s or 5min");
   AddMemoryFlag(command, overrides);
-  AddOverride(command, overrides, "--seed", "run.seed", "start of every random sequence of the training");
+  AddOverride(command, overrides, "--seed", "run.seed", "seed of the random numbers of training");
   AddOverride(command, overrides, "--brightness", "brightness.correction",
-              "none, or any of exif,gain,vignette,luminance: what is done about exposure differences");
+              "correction of exposure differences between photos: none, or any of exif,gain,vignette,luminance");
 }
 
 std::vector<std::filesystem::path> ProjectConfig(const coordinator::Project& project) {

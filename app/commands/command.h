@@ -1,5 +1,5 @@
-// What all commands share: global flags, the ranks, and how a command line becomes settings.
-// Each command has one file with a function that adds it to the table.
+// Shared by all commands: global flags, the ranks, and the way from command line to settings.
+// Each command has its own file with a function that adds it to the command line parser.
 #pragma once
 
 #include <filesystem>
@@ -26,31 +26,31 @@ struct CommandState {
   std::string command_line;      // as it was typed, for reports
   bool quiet = false;
   bool verbose = false;
-  std::function<void()> chosen;  // the body of the command on the command line, set while parsing
+  std::function<void()> chosen;  // runs the command that was given; set while parsing
 
-  // Defaults, `files`, --config, --set, then the command's own flags.
+  // Settings from, in this order: defaults, `files`, --config, --set, the command's own flags. Later ones win.
   coordinator::Settings Load(const std::vector<std::filesystem::path>& files, const std::vector<config::Override>& flags) const;
-  // --config and --set on top of these.
+  // The given settings, changed by --config, --set and --threads.
   coordinator::Settings LoadOver(coordinator::Settings settings) const;
-  // A project for a command: logging into it begins. `restart` as given on the command line.
+  // The pipeline of a project. From here on, log lines are also written to the project's log.txt.
   coordinator::Pipeline Begin(const coordinator::Project& project, coordinator::Settings settings, bool restart) const;
-  // The same for the project in a folder, with its own configuration and the command's flags.
+  // The same for an existing project folder, with its stored configuration and the command's flags.
   coordinator::Pipeline BeginIn(const std::string& folder, const std::vector<config::Override>& flags, bool restart) const;
 };
 
 using Overrides = std::shared_ptr<std::vector<config::Override>>;
 
-// What an option may be, for the help of a flag: " (1 to 16)"; empty when anything goes.
+// The range of an option in parentheses, for the help; empty without a range.
 std::string AllowedText(const std::string& key);
-// A flag with a value that sets one option, "section.key".
+// Adds a flag whose value sets the option `key` ("section.key"). The option's range and key are added to the help.
 void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help);
-// The flag of commands that simulate: `take` gets the name of the place. Its name in earlier versions, --preset, is still taken, with a warning.
+// Adds the flag for the simulated place: `take` receives its name. The old flag --preset still works, with a warning.
 void AddPlaceFlag(CLI::App& command, const std::string& names, const std::function<void(const std::string&)>& take, const std::string& help);
 // --memory.
 void AddMemoryFlag(CLI::App& command, const Overrides& overrides);
 // --time-budget, --steps, --checkpoint-every, --memory, --seed, --brightness.
 void AddTrainingFlags(CLI::App& command, const Overrides& overrides);
-// The project's own configuration as the lowest layer; empty when there is none yet.
+// The project's config.toml; empty when it does not exist yet.
 std::vector<std::filesystem::path> ProjectConfig(const coordinator::Project& project);
 
 void AddSimulate(CLI::App& app, CommandState& state);
@@ -62,7 +62,7 @@ void AddRender(CLI::App& app, CommandState& state);
 void AddEvaluate(CLI::App& app, CommandState& state);
 void AddInfo(CLI::App& app, CommandState& state);
 void AddBench(CLI::App& app, CommandState& state);
-// Those that train.
+// The subcommands of `bench` that train whole surveys.
 void AddStudyBenches(CLI::App& bench, CommandState& state);
 void AddRun(CLI::App& app, CommandState& state);
 

@@ -93,13 +93,13 @@ Json DescribeProject(const std::filesystem::path& folder) {
   for (const coordinator::Stage& stage : coordinator::Stages()) {
     const coordinator::Project home = stage.home == nullptr ? project : stage.home(project);
     const std::optional<coordinator::StageStamp> stamp = coordinator::LoadStamp(home, stage.name);
-    // Only what belongs to every project is shown when it has not been begun.
+    // A stage that not every project has (simulate) is shown only when it was started.
     if (!stamp && stage.home != nullptr) continue;
     const coordinator::Paths proof = stage.proof(home);
-    const bool there = std::all_of(proof.begin(), proof.end(), [](const auto& path) { return std::filesystem::exists(path); });
-    std::string state = stamp ? stamp->state : there ? "done" : "not yet";
-    if (state == "done" && !there) state = "files missing";
-    if (state == "running") state = "begun";
+    const bool complete = std::all_of(proof.begin(), proof.end(), [](const auto& path) { return std::filesystem::exists(path); });
+    std::string state = stamp ? stamp->state : complete ? "done" : "not started";
+    if (state == "done" && !complete) state = "files missing";
+    if (state == "running") state = "unfinished";
     stages.push_back({{"stage", stage.name},
                       {"state", state},
                       {"finished", stamp ? stamp->finished_utc : ""},
@@ -120,7 +120,7 @@ Json DescribeProject(const std::filesystem::path& folder) {
 Json DescribeJson(const std::filesystem::path& file) {
   const Json content = Json::parse(base::ReadFile(file), nullptr, false);
   if (content.is_discarded()) throw base::InputError(file, "is not valid JSON", "Make it again with the command that wrote it");
-  Json json = {{"what", "JSON of skyquilt"}, {"bytes", std::filesystem::file_size(file)}};
+  Json json = {{"what", "JSON file of skyquilt"}, {"bytes", std::filesystem::file_size(file)}};
   if (file.filename() == "metrics.json") json["what"] = "metrics";
   if (file.filename() == "simulate.json") json["what"] = "simulated survey";
   if (file.filename() == "train.json") json["what"] = "training report";
@@ -131,12 +131,12 @@ Json DescribeJson(const std::filesystem::path& file) {
 }  // namespace
 
 nlohmann::ordered_json Describe(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) throw base::InputError(path, "no such file or folder", "");
+  if (!std::filesystem::exists(path)) throw base::InputError(path, "no such file or folder", "Check the path");
   if (std::filesystem::is_directory(path)) {
     if (coordinator::Project::IsProject(path)) return DescribeProject(path);
     if (std::filesystem::exists(path / "survey.json")) return DescribeSurvey(path);
     if (std::filesystem::exists(path / "simulate.json")) return DescribeJson(path / "simulate.json");
-    throw base::InputError(path, "is no folder of skyquilt", "Give a project folder, a survey folder or a simulated survey");
+    throw base::InputError(path, "is not a folder made by skyquilt", "Give a project folder, a survey folder or a simulated survey");
   }
   const std::string name = path.filename().string();
   const std::string extension = path.extension().string();
@@ -148,8 +148,8 @@ nlohmann::ordered_json Describe(const std::filesystem::path& path) {
   if (extension == ".h5" || extension == ".prev") return DescribeArchive(path);
   if (extension == ".tif" || extension == ".tiff") return DescribeRaster(path);
   if (extension == ".json") return DescribeJson(path);
-  throw base::InputError(path, "is of no kind that skyquilt knows",
-                         "It reads project and survey folders, .geojson, .h5, .json, .csv, .toml, points.ply and .tif");
+  throw base::InputError(path, "is not a file that 'skyquilt info' can read",
+                         "Give a project or survey folder, or a .geojson, .h5, .json, .csv, .toml, points.ply or .tif file");
 }
 
 }  // namespace skyquilt::app

@@ -1,4 +1,4 @@
-// What any file or folder of this program holds, as JSON for `skyquilt info`.
+// Describes the content of any file or folder that skyquilt writes, as JSON for `skyquilt info`.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 namespace skyquilt::app {
 
-// Throws base::InputError when the path does not exist or is nothing that skyquilt writes or reads.
+// Chooses the description by file name and extension. Throws base::InputError when the path does not exist, is damaged or cannot be described.
 nlohmann::ordered_json Describe(const std::filesystem::path& path);
-// HDF5 checkpoints and scenes: kind, version, attributes, arrays with shape, type, range.
+// HDF5 checkpoints and scenes: kind, version, attributes, and arrays with type, shape, hash and range.
 nlohmann::ordered_json DescribeArchive(const std::filesystem::path& file);
 
 // GeoTIFFs and float TIFFs: size, bands, ranges.
@@ -19,7 +19,7 @@ nlohmann::ordered_json DescribeCameras(const std::filesystem::path& file);
 nlohmann::ordered_json DescribeTable(const std::filesystem::path& file);
 nlohmann::ordered_json DescribeConfiguration(const std::filesystem::path& file);
 
-// Indented "key: value" lines; lists of records become tables.
+// JSON as text for a terminal: indented "key: value" lines; lists of records become tables.
 std::string Readable(const nlohmann::ordered_json& json);
 
 }  // namespace skyquilt::app

@@ -40,7 +40,7 @@ void AddContent(const std::vector<T>& values, Json* entry) {
   if (n_bad > 0) (*entry)["not_finite"] = n_bad;
 }
 
-// Attributes carry no type in the reader's interface: text, whole number or number is found by asking.
+// The reader has no function for the type of an attribute, so text, whole number and number are tried in turn.
 Json Attribute(const checkpoint::ArchiveReader& archive, const std::string& name) {
   try {
     return archive.StringAttribute(name);

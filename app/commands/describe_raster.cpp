@@ -16,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
 Json DescribeRaster(const std::filesystem::path& file) {
-  // Averages of a reduced copy: the ranges are those of the picture as a whole, found without reading every cell.
+  // Ranges come from a reduced copy of averaged cells, which is fast for large rasters; single extreme cells may exceed them.
   const gis::ReducedRaster raster = gis::ReadReduced(file, 512);
   const image::ImageF& image = raster.image;
   Json bands = Json::array();

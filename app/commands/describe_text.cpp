@@ -1,4 +1,4 @@
-// What `info` says of files that are text: photo positions, tables, configurations.
+// `info` for text files: photo positions, tables, configurations.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -49,7 +49,7 @@ nlohmann::ordered_json DescribeTable(const std::filesystem::path& file) {
   std::string line, last;
   std::getline(lines, line);
   const std::vector<std::string> columns = Cells(line);
-  if (columns.size() < 2) throw base::InputError(file, "has no row of column names", "It reads the tables that skyquilt writes");
+  if (columns.size() < 2) throw base::InputError(file, "has no row of column names", "Give a table that skyquilt wrote");
   int64_t rows = 0;
   while (std::getline(lines, line)) {
     if (line.empty()) continue;

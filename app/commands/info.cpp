@@ -15,11 +15,12 @@ void AddInfo(CLI::App& app, CommandState& state) {
     bool defaults = false;
   };
   const auto flags = std::make_shared<InfoFlags>();
-  CLI::App* command = app.add_subcommand("info", "what a file or folder of skyquilt holds");
+  CLI::App* command = app.add_subcommand("info", "show the content of a file or folder of skyquilt");
   command->add_option("path", flags->path, "project, survey folder, or any file in them: .geojson, .h5, .json, .csv, .toml, .ply, .tif")
       ->type_name("PATH");
-  command->add_flag("--json", flags->json, "as JSON");
-  command->add_flag("--defaults", flags->defaults, "every option with its value (after --config and --set) as TOML, explained line by line");
+  command->add_flag("--json", flags->json, "print JSON");
+  command->add_flag("--defaults", flags->defaults,
+                    "print a configuration file: every option with its explanation and its value after --config and --set");
   command->footer(
       "Examples:\n"
       "  skyquilt info out\n"

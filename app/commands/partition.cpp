@@ -11,12 +11,13 @@ void AddPartition(CLI::App& app, CommandState& state) {
   };
   const auto flags = std::make_shared<PartitionFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  CLI::App* command = app.add_subcommand("partition", "cut the survey's area into geo-referenced blocks at altitudes");
+  CLI::App* command = app.add_subcommand("partition", "divide the survey area into geo-referenced blocks");
   command->add_option("project", flags->project, "project folder with a survey")->required()->type_name("FOLDER");
-  AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns as 2x2, size:<metres>, or auto");
+  AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
   AddOverride(*command, overrides, "--altitudes", "partition.altitudes",
-              "metres above ground, one per block from the south-west, separated by commas");
-  AddOverride(*command, overrides, "--image-width", "run.image_width", "width in pixels that photos are trained at; 0: full size");
+              "altitude above ground in metres of each block, row by row from the south-west, separated by commas");
+  AddOverride(*command, overrides, "--image-width", "run.image_width",
+              "scale photos down to this width in pixels for training and scoring; 0: full size");
   command->add_flag("--restart", flags->restart, "remove the blocks and everything made from them first");
   command->footer(
       "Examples:\n"

@@ -13,12 +13,14 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   };
   const auto flags = std::make_shared<PrepareFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  CLI::App* command = app.add_subcommand("prepare", "photos (and their COLMAP model, if at hand) to a geo-referenced survey");
+  CLI::App* command = app.add_subcommand("prepare", "make a geo-referenced survey from photos and their COLMAP model");
   command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->required()->type_name("FOLDER");
-  command->add_option("-o,--out", flags->out, "project folder; made if needed")->required()->type_name("FOLDER");
-  command->add_option("--model", flags->model, "COLMAP model of these photos (text or binary); without it COLMAP is run")->type_name("FOLDER");
-  AddOverride(*command, overrides, "--holdout", "prepare.holdout", "which photos are never trained on");
-  AddOverride(*command, overrides, "--masks", "prepare.masks", "folder with masks/<photo>.png; 0 = ignored pixel");
+  command->add_option("-o,--out", flags->out, "project folder; created if it does not exist")->required()->type_name("FOLDER");
+  command->add_option("--model", flags->model, "folder with the COLMAP model of the photos (text or binary); without it COLMAP is run")
+      ->type_name("FOLDER");
+  AddOverride(*command, overrides, "--holdout", "prepare.holdout",
+              "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
+  AddOverride(*command, overrides, "--masks", "prepare.masks", "folder of masks named PHOTO.jpg.png; pixels with value 0 are ignored");
   command->add_flag("--restart", flags->restart, "remove the survey and everything made from it first");
   command->footer(
       "Examples:\n"

@@ -31,7 +31,7 @@ struct RenderFlags {
   bool Anything() const { return !photos.empty() || test || !path.empty() || video || ortho || dsm; }
 };
 
-// The scene to render and the project around it, if there is one.
+// The scene to render, and its project if it is inside one.
 struct Target {
   std::filesystem::path scene;
   std::optional<coordinator::Project> project;
@@ -48,7 +48,7 @@ Target FindTarget(const std::filesystem::path& path) {
 }
 
 void LogStats(const products::RenderStats& stats, const std::filesystem::path& where) {
-  spdlog::info("{} picture(s), {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), where.string());
+  spdlog::info("{} image(s), {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), where.string());
 }
 
 void RenderAsked(const RenderFlags& flags, const Target& target, const coordinator::Settings& settings, coordinator::SceneSession& session,
@@ -101,11 +101,11 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
 }
 
 void Render(const CommandState& state, const RenderFlags& flags, const std::vector<config::Override>& overrides) {
-  if (flags.width < 0) throw base::UsageError("--width " + std::to_string(flags.width) + " cannot be: a number of pixels is needed");
+  if (flags.width < 0) throw base::UsageError("--width " + std::to_string(flags.width) + " is not allowed: give a number of pixels, or 0");
   const Target target = FindTarget(flags.target);
   coordinator::Settings settings = state.Load(target.project ? ProjectConfig(*target.project) : std::vector<std::filesystem::path>{}, overrides);
   if (!flags.Anything()) {
-    if (!target.project) throw base::UsageError("what of " + flags.target + " is to be rendered? Give --path, --video, --ortho or --dsm");
+    if (!target.project) throw base::UsageError("nothing to render from " + flags.target + " was chosen. Give --path, --video, --ortho or --dsm");
     coordinator::Pipeline pipeline = state.Begin(*target.project, std::move(settings), flags.restart);
     coordinator::ProductsStage(pipeline);
     return;
@@ -123,24 +123,27 @@ void Render(const CommandState& state, const RenderFlags& flags, const std::vect
 void AddRender(CLI::App& app, CommandState& state) {
   const auto flags = std::make_shared<RenderFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  CLI::App* command = app.add_subcommand("render", "pictures, depth, video, orthophoto and surface model of a scene");
+  CLI::App* command = app.add_subcommand("render", "render images, depth, video, orthophoto and surface model of a scene");
   command->add_option("scene", flags->target, "project folder or scene.h5")->required()->type_name("PATH");
-  command->add_option("--photo", flags->photos, "the view of this photo; may be repeated")->type_name("NAME")->expected(1)->take_all();
-  command->add_flag("--test", flags->test, "the views of all held-out photos");
-  command->add_option("--path", flags->path, "JSON file with camera positions")->type_name("FILE");
-  command->add_flag("--video", flags->video, "an MP4: along --path, or on the built-in path of [products]");
-  command->add_flag("--ortho", flags->ortho, "the orthophoto as GeoTIFF");
-  command->add_flag("--dsm", flags->dsm, "the surface model as GeoTIFF");
-  command->add_flag("--no-depth", flags->no_depth, "pictures without their depth images");
-  AddOverride(*command, overrides, "--exposure", "products.exposure", "normal, stops above it, or the name of a photo to look like");
-  AddOverride(*command, overrides, "--resolution", "products.resolution_m", "metres per cell of orthophoto and surface model");
+  command->add_option("--photo", flags->photos, "render the view of this photo; may be repeated")->type_name("NAME")->expected(1)->take_all();
+  command->add_flag("--test", flags->test, "render the views of all held-out photos");
+  command->add_option("--path", flags->path, "render a camera path from a JSON file")->type_name("FILE");
+  command->add_flag("--video", flags->video, "make an MP4 video along --path, or along the built-in path of [products]");
+  command->add_flag("--ortho", flags->ortho, "make the orthophoto as GeoTIFF");
+  command->add_flag("--dsm", flags->dsm, "make the surface model as GeoTIFF");
+  command->add_flag("--no-depth", flags->no_depth, "do not write depth images");
+  AddOverride(*command, overrides, "--exposure", "products.exposure",
+              "exposure of the images: normal, a number of stops above it, or a photo's name to use its exposure");
+  AddOverride(*command, overrides, "--resolution", "products.resolution_m", "cell size of orthophoto and surface model in metres");
   AddMemoryFlag(*command, overrides);
-  command->add_option("--width", flags->width, "pixels of the pictures; 0: the photos' own size")->type_name("N");
-  command->add_option("-o,--out", flags->out, "folder for the files; default: renders/ and products/ beside the scene")->type_name("FOLDER");
-  command->add_flag("--restart", flags->restart, "remove products, renders and report first (without a selection)");
+  command->add_option("--width", flags->width, "image width in pixels; 0: size of the photos, with --path and --video products.video_width")
+      ->type_name("N");
+  command->add_option("-o,--out", flags->out, "output folder; default: renders/ and products/ beside the scene")->type_name("FOLDER");
+  command->add_flag("--restart", flags->restart,
+                    "remove products, renders and report first; only when none of the flags above chooses what to render");
   command->footer(
       "Examples:\n"
-      "  skyquilt render out                           everything that [products] names, once\n"
+      "  skyquilt render out                           the products chosen in [products]\n"
       "  skyquilt render out --test --width 1000\n"
       "  skyquilt render out --photo IMG_0007.jpg --exposure 1\n"
       "  skyquilt render out/scene.h5 --path flight.json --video -o movie\n"

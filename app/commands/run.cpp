@@ -18,10 +18,10 @@ struct RunFlags {
 
 void Run(const CommandState& state, const RunFlags& flags, const std::vector<config::Override>& overrides) {
   if (flags.photos.empty() == flags.place.empty()) {
-    throw base::UsageError("skyquilt run needs either a folder with photos or --place NAME, and not both");
+    throw base::UsageError("skyquilt run needs either a folder with photos or --place NAME, not both");
   }
   coordinator::Settings settings = state.Load({}, overrides);
-  // What cannot be read is found before the output folder is made and before hours of work.
+  // Checked before the output folder is created and before hours of work.
   if (!flags.photos.empty() && !std::filesystem::is_directory(flags.photos)) {
     throw base::InputError(flags.photos, "no such folder", "Give the folder that holds the photos");
   }
@@ -50,22 +50,25 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
 void AddRun(CLI::App& app, CommandState& state) {
   const auto flags = std::make_shared<RunFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  CLI::App* command = app.add_subcommand("run", "the whole way: photos in, scene, map products and report out");
+  CLI::App* command = app.add_subcommand("run", "run all stages: from photos to scene, map products and report");
   command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->type_name("FOLDER");
-  command->add_option("-o,--out", flags->out, "project folder; made if needed")->required()->type_name("FOLDER");
+  command->add_option("-o,--out", flags->out, "project folder; created if it does not exist")->required()->type_name("FOLDER");
   AddPlaceFlag(
       *command, "--place",
       [flags, overrides](const std::string& name) {
         flags->place = name;
         overrides->push_back({"simulate.place", name});
       },
-      "simulate a place instead" + AllowedText("simulate.place") + " [simulate.place]");
-  command->add_option("--model", flags->model, "COLMAP model of the photos (text or binary); without it COLMAP is run")->type_name("FOLDER");
-  AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns as 2x2, size:<metres>, or auto");
+      "simulated place to use instead of photos" + AllowedText("simulate.place") + " [simulate.place]");
+  command->add_option("--model", flags->model, "folder with the COLMAP model of the photos (text or binary); without it COLMAP is run")
+      ->type_name("FOLDER");
+  AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
   AddOverride(*command, overrides, "--altitudes", "partition.altitudes",
-              "metres above ground, one per block from the south-west, separated by commas");
-  AddOverride(*command, overrides, "--image-width", "run.image_width", "width in pixels that photos are trained and scored at; 0: full size");
-  AddOverride(*command, overrides, "--holdout", "prepare.holdout", "which photos are never trained on");
+              "altitude above ground in metres of each block, row by row from the south-west, separated by commas");
+  AddOverride(*command, overrides, "--image-width", "run.image_width",
+              "scale photos down to this width in pixels for training and scoring; 0: full size");
+  AddOverride(*command, overrides, "--holdout", "prepare.holdout",
+              "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddTrainingFlags(*command, overrides);
   command->add_flag("--restart", flags->restart, "remove all earlier results in the project folder first");
   command->footer(
@@ -74,7 +77,7 @@ void AddRun(CLI::App& app, CommandState& state) {
       "  skyquilt run photos/ --model sparse/0 -o out --blocks 3x3 --time-budget 15min\n"
       "  skyquilt run --place town -o out/town --steps 3000\n"
       "  mpirun -n 3 skyquilt run photos/ -o out --time-budget 1h30m\n"
-      "The same command again continues where it stopped and does nothing twice.\n"
+      "Run the same command again to continue after an interruption; finished stages are skipped.\n"
       "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 a block failed (the rest is saved), 130 interrupted (resumable).");
   command->callback([&state, flags, overrides] { state.chosen = [&state, flags, overrides] { Run(state, *flags, *overrides); }; });
 }

@@ -11,18 +11,19 @@ void AddSimulate(CLI::App& app, CommandState& state) {
   };
   const auto flags = std::make_shared<SimulateFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  CLI::App* command = app.add_subcommand("simulate", "make a survey with ground truth: photos, poses, depth, masks, buildings");
+  CLI::App* command = app.add_subcommand("simulate", "make a simulated survey with ground truth: photos, poses, depth, masks, buildings");
   AddPlaceFlag(
       *command, "place,--place",
       [overrides](const std::string& name) {
         overrides->push_back({"simulate.place", name});
       },
-      "which place" + AllowedText("simulate.place") + " [simulate.place]");
-  command->add_option("-o,--out", flags->out, "folder for the survey; made if needed")->required()->type_name("FOLDER");
-  AddOverride(*command, overrides, "--seed", "simulate.seed", "another place of the same kind");
-  AddOverride(*command, overrides, "--image-width", "simulate.image_width", "pixels");
-  AddOverride(*command, overrides, "--altitudes", "simulate.altitudes", "metres above ground: one, or one per block, separated by commas");
-  command->add_flag("--restart", flags->restart, "make it anew even if it is there");
+      "place to simulate" + AllowedText("simulate.place") + " [simulate.place]");
+  command->add_option("-o,--out", flags->out, "folder for the survey; created if it does not exist")->required()->type_name("FOLDER");
+  AddOverride(*command, overrides, "--seed", "simulate.seed", "seed of the place; another number gives another place of the same kind");
+  AddOverride(*command, overrides, "--image-width", "simulate.image_width", "width of the photos in pixels");
+  AddOverride(*command, overrides, "--altitudes", "simulate.altitudes",
+              "flying height above ground in metres: one, or one per block, separated by commas");
+  command->add_flag("--restart", flags->restart, "remove an earlier survey in the folder first");
   command->footer(
       "Examples:\n"
       "  skyquilt simulate hamlet -o data/hamlet\n"

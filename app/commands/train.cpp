@@ -11,7 +11,7 @@ void AddTrain(CLI::App& app, CommandState& state) {
   };
   const auto flags = std::make_shared<TrainFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  CLI::App* command = app.add_subcommand("train", "train the context, then every block; continues where it stopped");
+  CLI::App* command = app.add_subcommand("train", "train the coarse context field and then every block");
   command->add_option("project", flags->project, "project folder with blocks")->required()->type_name("FOLDER");
   AddTrainingFlags(*command, overrides);
   command->add_flag("--restart", flags->restart, "remove the checkpoints and everything made from them first");
@@ -21,7 +21,8 @@ void AddTrain(CLI::App& app, CommandState& state) {
       "  skyquilt train out --steps 4000\n"
       "  mpirun -n 4 skyquilt train out --time-budget 1h30m\n"
       "Writes out/checkpoints/ and out/train.json. With several ranks, rank 0 hands out blocks and the others train them.\n"
-      "Exit status 4: a block failed after its tries, the others are saved; 130: interrupted, the same command continues.");
+      "Run the same command again to continue after an interruption.\n"
+      "Exit status: 0 done, 4 a block failed after all tries (the others are saved), 130 interrupted (resumable).");
   command->callback([&state, flags, overrides] {
     state.chosen = [&state, flags, overrides] {
       coordinator::Pipeline pipeline = state.BeginIn(flags->project, *overrides, flags->restart);

@@ -67,7 +67,7 @@ std::optional<double> ParseUnits(const std::string& text) {
     std::string unit;
     while (at < text.size() && std::isalpha(static_cast<unsigned char>(text[at])) != 0) unit += text[at++];
     if (unit.empty()) {
-      // A bare number stands alone only: "1h30" could be minutes or seconds.
+      // A number without a unit must be the whole text: in "1h30" it could be minutes or seconds.
       if (last_unit < 1e30 || at != text.size()) return std::nullopt;
       return number;
     }

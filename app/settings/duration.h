@@ -5,7 +5,7 @@
 
 namespace skyquilt::app {
 
-// Seconds, finite and > 0. Throws base::UsageError quoting the text and showing what would be understood.
+// Seconds, finite and > 0. Throws base::UsageError quoting the text and showing examples.
 double ParseDurationSeconds(const std::string& text);
 
 }  // namespace skyquilt::app

@@ -10,7 +10,8 @@
 
 namespace skyquilt::app {
 
-// `files` in order; ones that are not there are base::InputError. The result is checked.
+// Later files and overrides win. The result is checked. Throws base::InputError for a missing or unreadable file, base::UsageError for a wrong
+// option.
 coordinator::Settings LoadSettings(const std::vector<std::filesystem::path>& files, const std::vector<config::Override>& overrides);
 
 }  // namespace skyquilt::app

@@ -5,9 +5,9 @@
 
 namespace skyquilt::app {
 
-// Bytes, > 0. Throws base::UsageError quoting the text and showing what would be understood.
+// Bytes, > 0. Throws base::UsageError quoting the text and showing examples.
 double ParseBytes(const std::string& text);
-// GiB with the digits that read back to the same number.
+// The size in GiB as decimal text with 9 significant digits.
 std::string FormatGib(double bytes);
 
 }  // namespace skyquilt::app

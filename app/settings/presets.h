@@ -1,4 +1,4 @@
-// The presets of configs/, built into the program.
+// The presets: named configurations that trade training time for quality. They are stored in configs/ and built into the program.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace skyquilt::app {
 
-// "fast", "default", "quality": from the quickest to the best.
+// "fast", "default", "quality": from the fastest to the best result.
 std::vector<std::string> PresetNames();
-// What a preset sets differently from the defaults. Throws base::UsageError for an unknown name.
+// The options in which a preset differs from the defaults. Throws base::UsageError for an unknown name.
 std::vector<config::Override> PresetOverrides(const std::string& name);
 
 }  // namespace skyquilt::app

@@ -1,5 +1,5 @@
-// The same training run with the scene ever farther from the frame's origin: once with positions as the worker makes them, once from survey-wide
-// coordinates in single precision.
+// The same training with the scene at increasing distances from the frame's origin: once with positions as the worker computes them, once from
+// survey-wide coordinates in single precision.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct AwayRun {
   int steps = 0, rays = 0, threads = 0;
 };
 
-// Held-out PSNR after a fixed training with the scene's middle at that place.
+// Held-out PSNR after a fixed training with the scene's centre at this position.
 double PsnrAt(const Eigen::Vector3d& offset, bool naive, const AwayRun& run, bool* finite) {
   SyntheticOptions scene;
   scene.offset_enu = offset;
@@ -38,7 +38,7 @@ double PsnrAt(const Eigen::Vector3d& offset, bool naive, const AwayRun& run, boo
 
 struct AwayCurves {
   double home_db = kNoNumber;
-  page::Curve ours{.name = "Skyquilt: double, then the block's own float", .points = {}, .emphasised = true, .marks = true};
+  page::Curve ours{.name = "Skyquilt: double, then float in the block's frame", .points = {}, .emphasised = true, .marks = true};
   page::Curve naive{.name = "survey-wide float coordinates", .points = {}, .marks = true};
 };
 
@@ -51,14 +51,14 @@ NumericGroup AwayGroup(const NumericsOptions& options) {
       .id = "away",
       .title = "Away from the origin",
       .lead = fmt::format("One fixed training ({} steps of {} rays; a scene of 8 m with detail of half a metre, voxels of 0.1 m) with the "
-                          "scene's middle ever farther from the frame's origin; held-out PSNR. 6400 km is where Earth-centred coordinates are.",
+                          "scene's centre at increasing distances from the frame's origin; held-out PSNR. Earth-centred coordinates are at 6400 km.",
                           run.steps, run.rays)};
   std::vector<double> distances = {0.0, 1e3, 1e4, 1e5, 1e6, 6.4e6};
   if (options.quick) distances = {0.0, 1e5, 6.4e6};
   for (const double distance : distances) {
     const Eigen::Vector3d offset = distance * Eigen::Vector3d(0.8, -0.6, 0.0);
     const std::string place = distance == 0.0 ? "at the origin" : fmt::format("{:g} km away", distance / 1e3);
-    // A chart with a logarithmic axis has no place for zero.
+    // A logarithmic axis cannot show zero.
     const double shown = std::max(distance, 10.0);
     group.cases.push_back({.name = "Training " + place,
                            .expected = "PSNR within 0.1 dB of the run at the origin",
@@ -87,8 +87,8 @@ NumericGroup AwayGroup(const NumericsOptions& options) {
                            }});
   }
   group.charts = [curves] {
-    return std::vector<std::string>{page::CurveChart({curves->ours, curves->naive}, {.title = "The same training, ever farther away",
-                                                                                     .x_label = "distance from the origin, m (10 m: at it)",
+    return std::vector<std::string>{page::CurveChart({curves->ours, curves->naive}, {.title = "The same training at increasing distances",
+                                                                                     .x_label = "distance from the origin, m (10 m: at the origin)",
                                                                                      .y_label = "held-out PSNR, dB",
                                                                                      .log_x = true})};
   };

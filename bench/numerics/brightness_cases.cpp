@@ -1,4 +1,4 @@
-// Brightness at its ends: the tone curve near 0 and 1, gains of ten stops, photos with nothing on them.
+// Extreme brightness: the tone curve near 0 and 1, gains of ten stops, photos of one colour.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ Finding ToneCurveInside() {
   return {.seen = "100001 places, value and slope", .worst = worst.value()};
 }
 
-// Around and beyond its ends: finite, rising, as steep as at the end.
+// The tone curve near and beyond 0 and 1: finite, increasing, with bounded slope.
 Finding ToneCurveOutside() {
   bool holds = true;
   Worst worst;
@@ -73,7 +73,7 @@ Finding ExposureOf(double stops) {
     const auto x = static_cast<long double>(srgb);
     const long double value = exact(x);
     worst.Take(std::abs(static_cast<double>((static_cast<long double>(seen.value) - value) / std::max(1.0L, value))));
-    // The standard's two pieces meet with a step of 3e-8 in value: differences across it mean nothing.
+    // The two pieces of the sRGB curve differ by 3e-8 in value where they meet, so differences across that point are skipped.
     constexpr long double kStep = 1e-6L;
     if (std::abs(x - 0.04045L) < 1e-4L || std::abs(value - 0.04045L) < 1e-4L * std::max(1.0L, gain)) continue;
     const long double slope = (exact(x + kStep) - exact(x - kStep)) / (2.0L * kStep);
@@ -132,12 +132,12 @@ NumericGroup BrightnessGroup(const NumericsOptions& options) {
       .id = "brightness",
       .title = "Tone curve, gains and empty photos",
       .lead =
-          "The inverse tone curve has an unbounded slope at 0 and 1 and goes on as a straight line within a thousandth of them. Gains "
-          "multiply linear light. Photos with nothing on them go through the worker's whole training: context, then block, checkpoints."};
+          "The inverse tone curve has an unbounded slope at 0 and 1; within a thousandth of them it is replaced by a straight line. Gains "
+          "multiply linear light. Photos of one colour go through the worker's whole training: context, then block, with checkpoints."};
   group.cases = {
       {.name = "Tone curve", .expected = "value and slope as in long double", .limit = 1e-5, .run = ToneCurveInside},
       {.name = "Tone curve at and beyond 0 and 1",
-       .expected = "finite and rising, slope bounded by its value a thousandth inside (10.5)",
+       .expected = "finite and increasing, slope at most as large as at a thousandth inside (10.5)",
        .unit = "slope",
        .limit = 10.6,
        .run = ToneCurveOutside},

@@ -1,4 +1,4 @@
-// Compositing along a ray in float, forward and backward, against sums in long double written down from the definition.
+// Compositing along a ray in float, forward and backward, against sums in long double that follow the definition.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -92,7 +92,7 @@ NumericCase DepthsCase(const std::string& name, const std::vector<double>& depth
           }};
 }
 
-// Depths from 1e-8 to 1e4 in random order, with intervals of no length among them.
+// Optical depths from 1e-8 to 1e4 in random order, some of them of intervals without length.
 Finding RandomDepths(int rays) {
   base::Random random(67);
   Worst worst;
@@ -119,14 +119,14 @@ Finding NoSamples() {
 constexpr size_t kDistortionSamples = 120;
 constexpr double kDistortionStep = 0.02;  // width of an interval
 
-// Running sums of w and w m are rounded once per interval, to 2^-24 of at most 1 x the ray's length, and the slope subtracts two of them: roundings
-// of either sign add up as a random walk.
+// Running sums of w and w m are rounded once per interval, with an error of up to 2^-24 times the ray's length, and the slope is a difference of two
+// of them. Errors of both signs add up as a random walk.
 double DistortionLimit() {
   const auto n = static_cast<double>(kDistortionSamples);
   return std::sqrt(n) * std::exp2(-24.0) * n * kDistortionStep;
 }
 
-// sum_ij w_i w_j |m_i - m_j| + 1/3 sum_i w_i^2 d_i by its double sum, and its derivative.
+// sum_ij w_i w_j |m_i - m_j| + 1/3 sum_i w_i^2 d_i as a double sum, and its derivative.
 Finding Distortion(int rays) {
   base::Random random(71);
   Worst worst;
@@ -184,7 +184,7 @@ NumericGroup CompositeGroup(const NumericsOptions& options) {
       DepthsCase("Optical depth 10^4 over 1000 intervals", std::vector<double>(1000, 10.0), 1.0),
       DepthsCase("Optical depth 10^4 in one interval", {1e4}, 1.0),
       DepthsCase("Infinite optical depth", {0.5, kEver, 0.5}, 1.0),
-      DepthsCase("Intervals of no length between solid ones", {0.0, 0.7, 0.0, 0.0, 0.7, 0.0}, -std::expm1(-2.0 * static_cast<double>(0.7F))),
+      DepthsCase("Intervals without length between dense ones", {0.0, 0.7, 0.0, 0.0, 0.7, 0.0}, -std::expm1(-2.0 * static_cast<double>(0.7F))),
       DepthsCase("Thin haze: 1000 intervals of 10^-6", std::vector<double>(1000, 1e-6), -std::expm1(-1000.0 * static_cast<double>(1e-6F))),
       DepthsCase("Denormal optical depths", std::vector<double>(64, 1e-42), 0.0),
       {.name = "A ray without samples", .expected = "transmittance 1, black", .limit = 0.0, .run = NoSamples},

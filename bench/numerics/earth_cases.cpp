@@ -1,4 +1,4 @@
-// One small survey, flown at many places of the Earth: the same photos with other tags, through the whole pipeline.
+// One small simulated survey at many places on Earth: the same photos with other GPS tags, through the whole pipeline.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -20,9 +20,9 @@ namespace {
 struct EarthPlace {
   std::string name;
   geo::Geodetic origin;
-  bool fitted = true;  // flown in a frame from tags too
-  // Around a pole the found origin's longitude, and with it where east is, hangs on the last metre: block and grid lie turned against the scene. What
-  // that alone changes is found at home, with the survey turned by as much.
+  bool fitted = true;  // also run with a frame fitted to the GPS tags
+  // Near a pole, the longitude of the fitted origin (and with it the east direction) depends on the last metre, so block and grid are rotated
+  // against the scene. The effect of this rotation alone is measured at home with a survey rotated by the same angle.
   bool turned = false;
   bool quick = false;
 };
@@ -45,27 +45,27 @@ const std::vector<EarthPlace>& EarthPlaces() {
   return places;
 }
 
-// What the frame is: the simulation's own, so that all places train on the same numbers, or found from the photos' GPS tags, as with real photos.
-// There every place trains on numbers that differ by rounding (near a pole the axes point elsewhere, too), and trainings that differ by rounding end
-// as far apart as trainings with other random numbers: their mean counts.
+// The frame is that of the simulation, so that all places train on the same numbers, or it is fitted to the photos' GPS tags, as with real photos.
+// With a fitted frame the places differ by rounding (near a pole also in the axes). Trainings that differ by rounding end as far apart as trainings
+// with different seeds, so means over several seeds are compared.
 struct EarthFrame {
   bool fitted = false;
-  double turn_deg = 0.0;  // of the prepared survey about the vertical
+  double turn_deg = 0.0;  // rotation of the prepared survey about the vertical
   int seeds = 1;
   int context_steps = 100, train_steps = 200;
 };
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr EarthFrame kKnownFrame{};
-// Fixed before any result was seen; means of twelve scatter half as much as means of three.
+// Chosen before any result was seen. Means of twelve runs vary half as much as means of three.
 constexpr EarthFrame kFittedFrame{.fitted = true, .seeds = 12, .context_steps = 300, .train_steps = 1000};
 constexpr int kQuickSeeds = 3;
 
 struct EarthRun {
-  std::vector<double> psnr_db;  // by seed
+  std::vector<double> psnr_db;  // one per seed
   int64_t dropped_steps = 0;
   geo::Geodetic origin;
   double fit_rmse_m = kNoNumber;
-  double worst_float_ecef_m = 0.0;  // of the cameras' positions
+  double worst_float_ecef_m = 0.0;  // largest error of camera positions in single-precision ECEF
 
   double MeanPsnrDb() const {
     double sum = 0.0;
@@ -83,7 +83,7 @@ coordinator::Settings EarthSettings(const geo::Geodetic& origin, const EarthFram
   return settings;
 }
 
-// The survey as if its frame's axes pointed elsewhere.
+// The survey with the axes of its frame rotated.
 void TurnSurvey(const std::filesystem::path& folder, double turn_deg) {
   survey::Survey survey = survey::LoadSurvey(folder);
   const Eigen::Quaterniond turned_from_enu(Eigen::AngleAxisd(turn_deg * kDegree, Eigen::Vector3d::UnitZ()));
@@ -92,7 +92,7 @@ void TurnSurvey(const std::filesystem::path& folder, double turn_deg) {
   survey::SaveSurvey(survey, folder);
 }
 
-// The whole way with one seed.
+// The whole pipeline with one seed.
 void FlyOnce(const EarthPlace& place, const EarthFrame& frame, int seed, const NumericsOptions& options, EarthRun* run) {
   const std::filesystem::path folder = options.work_folder / "earth";
   std::filesystem::remove_all(folder);
@@ -132,13 +132,13 @@ EarthRun FlyAt(const EarthPlace& place, const EarthFrame& frame, const NumericsO
   return run;
 }
 
-// The angle by which coordinates turn, counter-clockwise, from the frame about `made` to the one about `found` close to it: meridians meet at the
-// poles.
+// The counter-clockwise angle by which coordinates rotate from the ENU frame at `made` to the one at `found`, which is close to it. Near a pole it is
+// large, because meridians converge there.
 double TurnDeg(const geo::Geodetic& made, const geo::Geodetic& found) {
   return geo::WrapLongitudeDeg(made.longitude_deg - found.longitude_deg) * std::sin(found.latitude_deg * kDegree);
 }
 
-// Of one kind; the first is at home.
+// Runs with one kind of frame; the first is at home.
 using EarthRuns = std::vector<EarthRun>;
 
 NumericCase EarthCase(const EarthPlace& place, const EarthFrame& frame, const std::shared_ptr<EarthRuns>& runs, const NumericsOptions& options) {
@@ -146,7 +146,7 @@ NumericCase EarthCase(const EarthPlace& place, const EarthFrame& frame, const st
   const bool turned = frame.fitted && place.turned;
   return {.name = (frame.fitted ? "Frame from GPS tags, " : "Known frame, ") + place.name,
           .expected = fmt::format("finite, no step dropped, {} within {:g} dB of home{}", frame.seeds > 1 ? "mean PSNR" : "PSNR", kAllowed_db,
-                                  turned ? " with axes turned as much" : ""),
+                                  turned ? " with axes rotated by the same angle" : ""),
           .unit = "dB",
           .limit = kAllowed_db,
           .run = [place, frame, runs, turned, options] {
@@ -160,7 +160,8 @@ NumericCase EarthCase(const EarthPlace& place, const EarthFrame& frame, const st
               control.turn_deg = TurnDeg(place.origin, run.origin);
               const double straight_db = wanted_db;
               wanted_db = FlyAt(EarthPlaces().front(), control, options).MeanPsnrDb();
-              seen += fmt::format("; home turned by {:.2f}\xC2\xB0 {:.3f} dB, home as it is {:.3f} dB", control.turn_deg, wanted_db, straight_db);
+              seen += fmt::format("; home rotated by {:.2f}\xC2\xB0 {:.3f} dB, home without rotation {:.3f} dB", control.turn_deg, wanted_db,
+                                  straight_db);
             }
             seen += fmt::format("; origin {:.6f}, {:.6f}, {:.1f} m", run.origin.latitude_deg, run.origin.longitude_deg, run.origin.height_m);
             return Finding{.seen = seen,
@@ -176,11 +177,11 @@ NumericGroup EarthGroup(const NumericsOptions& options) {
       .id = "earth",
       .title = "Anywhere on Earth",
       .lead =
-          "The simulated hamlet flown at other places: the same 28 photos with other GPS tags through prepare, partition, train, merge and "
-          "evaluate, with a fixed number of steps. Once in the simulation's own frame, once in a frame found from the noisy tags, as with "
-          "real photos. Near a pole the found frame's axes are turned against the scene, which changes what grid and block can show: there home is "
-          "flown again with its survey turned by as much. Means over a fixed number of seeds are compared; the last row but one says how far single "
-          "seeds are apart."};
+          "The simulated hamlet at other places: the same 28 photos with other GPS tags through prepare, partition, train, merge and evaluate, "
+          "with a fixed number of steps. Once in the frame of the simulation, once in a frame fitted to the noisy tags, as with real photos. Near a "
+          "pole the axes of the fitted frame are rotated against the scene, which changes the grid and the block; such rows are compared with a run "
+          "at home that is rotated by the same angle. Means over a fixed number of seeds are compared; the last row but one shows how much single "
+          "seeds differ."};
   if (options.comm == nullptr) return group;
   const auto known = std::make_shared<EarthRuns>(), fitted = std::make_shared<EarthRuns>();
   for (const bool by_tags : {false, true}) {
@@ -188,7 +189,7 @@ NumericGroup EarthGroup(const NumericsOptions& options) {
       if ((by_tags && !place.fitted) || (options.quick && !place.quick)) continue;
       EarthFrame frame = by_tags ? kFittedFrame : kKnownFrame;
       if (options.quick && by_tags) {
-        // Too few to compare a turned survey with.
+        // Too few seeds for a comparison with a rotated survey.
         if (place.turned) continue;
         frame.seeds = kQuickSeeds;
       }
@@ -196,7 +197,7 @@ NumericGroup EarthGroup(const NumericsOptions& options) {
     }
   }
   group.cases.push_back({.name = "Instead: other random numbers",
-                         .expected = "frame from GPS tags, at home: largest minus smallest PSNR by seed, what chance alone changes",
+                         .expected = "frame from GPS tags, at home: largest minus smallest PSNR over the seeds",
                          .unit = "dB",
                          .for_comparison = true,
                          .run = [fitted] {
@@ -205,7 +206,7 @@ NumericGroup EarthGroup(const NumericsOptions& options) {
                            return Finding{.seen = fmt::format("{:.3f} to {:.3f} dB", *low, *high), .worst = *high - *low};
                          }});
   group.cases.push_back({.name = "Instead: cameras in float ECEF",
-                         .expected = "how far the cameras of these surveys would be moved",
+                         .expected = "how far the cameras of these surveys would move",
                          .unit = "m",
                          .for_comparison = true,
                          .run = [known] {

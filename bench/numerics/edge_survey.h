@@ -1,4 +1,4 @@
-// A handful of photos from straight above, made of any pixels, on disk as a survey: to see what training makes of them.
+// A small survey of nadir photos with pixels from a formula, to test the whole training with unusual photos: black, white, one pixel, ...
 #pragma once
 
 #include <array>
@@ -24,10 +24,10 @@ class EdgeSurvey {
   EdgeSurvey(const std::filesystem::path& folder, int width, int height, const PixelFormula& pixels);
 
   struct Outcome {
-    worker::TrainResult context, block;  // of so many steps each; the block only when the context is good
-    bool finite = false;                 // all parameters and moments in the checkpoints
+    worker::TrainResult context, block;  // the block is trained only when the context succeeded
+    bool finite = false;                 // whether all parameters and moments in the checkpoints are finite
   };
-  // response: of kPhotos photos and one camera.
+  // Trains context and block for `steps` each. response: for kPhotos photos and one camera.
   Outcome Train(const brightness::Response& response, int steps, base::ThreadPool& threads) const;
 
  private:

@@ -1,4 +1,4 @@
-// Every kernel on every instruction set of this processor, against its scalar twin in double.
+// Every kernel on every instruction set of this processor, against a scalar version in double.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 namespace twin = kernel::reference;
 
-// Runs the check once per instruction set, worst first, and puts the one in use back.
+// Runs the check with each instruction set, and then restores the one that was in use.
 NumericCase KernelCase(const std::string& name, const std::string& expected, double limit, const std::function<Finding()>& check) {
   return {.name = name, .expected = expected, .unit = "relative", .limit = limit, .run = [check] {
             const std::string active = kernel::ActiveInstructionSet();
@@ -109,7 +109,7 @@ Finding HashLookups(const kernel::HashLevel& level, int features, const std::vec
     }
     kernel::HashForward(level, features, table.data(), x.data(), y.data(), z.data(), n, out.data(), count);
     kernel::HashBackward(level, features, x.data(), y.data(), z.data(), n, out_gradient.data(), count, gradient.data(), touched.data());
-    // Entries that the samples touch, and what their gradient must be.
+    // Entries that the samples read, and their expected gradients.
     std::vector<std::pair<size_t, double>> additions;
     for (size_t s = 0; s < count; ++s) {
       const double position[3] = {InDouble(x[s]), InDouble(y[s]), InDouble(z[s])};
@@ -131,7 +131,7 @@ Finding HashLookups(const kernel::HashLevel& level, int features, const std::vec
       holds = holds && (gradient[at] == 0.0F || touched[at / kernel::kLineFloats] != 0);
       gradient[at] = 0.0F;
     }
-    // Nothing else was written to.
+    // No other entry has changed.
     holds = holds && std::all_of(gradient.begin(), gradient.end(), [](float value) { return value == 0.0F; });
     std::fill(touched.begin(), touched.end(), uint8_t{0});
   }
@@ -148,7 +148,7 @@ kernel::HashLevel LevelOf(int cells, int log2_entries) {
   return level;
 }
 
-// exp(min(limit, x + bias)) and range / (1 + exp(-x)), far into both ends.
+// exp(min(limit, x + bias)) and range / (1 + exp(-x)), also for very large and very small x.
 Finding Elementwise() {
   std::vector<float> x = {0.0F,
                           1e-30F,
@@ -174,7 +174,7 @@ Finding Elementwise() {
     const double exact_exp = std::exp(std::min(15.0, InDouble(x[i] + -3.0F)));
     const double exact_sigmoid = InDouble(1.4F) / (1.0 + std::exp(-InDouble(x[i])));
     finite = finite && std::isfinite(exp[i]) && std::isfinite(sigmoid[i]);
-    // What is smaller adds nothing to any sum.
+    // Smaller values do not change any sum.
     constexpr double kNothing = 1e-20;
     worst.Take(std::abs(InDouble(exp[i]) - exact_exp) / std::max(kNothing, exact_exp));
     worst.Take(std::abs(InDouble(sigmoid[i]) - exact_sigmoid) / std::max(kNothing, exact_sigmoid));
@@ -182,7 +182,7 @@ Finding Elementwise() {
   return {.worst = worst.value(), .holds = finite};
 }
 
-// Fifty steps of Adam with gradients of any size; resting entries must not move.
+// Fifty steps of Adam with gradients of very different size; entries without gradient must not change.
 Finding AdamSteps(double smallest, double largest) {
   constexpr size_t kFloats = 64 * kernel::kLineFloats;
   base::Random random(101);
@@ -211,7 +211,7 @@ Finding AdamSteps(double smallest, double largest) {
     }
     std::vector<float> table_gradient = gradient, dense_gradient = gradient;
     std::vector<uint8_t> touched(kFloats / kernel::kLineFloats, 1);
-    touched[3] = 0;  // a line that no sample wrote to
+    touched[3] = 0;  // a cache line without gradients
     std::fill_n(table_gradient.begin() + 3 * kernel::kLineFloats, kernel::kLineFloats, 0.0F);
     const std::vector<float> table_before = table;
     const std::vector<float> moving = table_gradient;
@@ -220,7 +220,7 @@ Finding AdamSteps(double smallest, double largest) {
     for (size_t i = 0; i < kFloats; ++i) {
       adam(InDouble(gradient[i]), correction1, correction2, &exact[i], &e1[i], &e2[i]);
       if (moving[i] != 0.0F) adam(InDouble(moving[i]), correction1, correction2, &lazy[i], &l1[i], &l2[i]);
-      // Relative to the parameters' own size of one.
+      // Relative to the parameters' size, which is about one.
       worst.Take(std::abs(InDouble(dense[i]) - exact[i]));
       worst.Take(std::abs(InDouble(table[i]) - lazy[i]));
       holds = holds && (moving[i] != 0.0F || table[i] == table_before[i]) && table_gradient[i] == 0.0F && dense_gradient[i] == 0.0F;
@@ -229,7 +229,7 @@ Finding AdamSteps(double smallest, double largest) {
   return {.worst = worst.value(), .holds = holds};
 }
 
-// Finds one bad value wherever it stands, and keeps what is to be kept.
+// Finding a non-finite value at every index, and packing the samples that are kept.
 Finding FiniteAndCompact() {
   bool holds = true;
   for (const size_t n : {0U, 1U, 15U, 16U, 17U, 100U}) {
@@ -266,11 +266,11 @@ NumericGroup FieldGroup(const NumericsOptions& options) {
       .id = "field",
       .title = "Kernels of the field",
       .lead =
-          "Each kernel on every instruction set of this processor (named under \xE2\x80\x9Cseen\xE2\x80\x9D) against its scalar twin in "
-          "double. Sums are judged relative to the sizes of their terms. The whole field, forward and backward, is judged under Trainer."};
+          "Each kernel on every instruction set of this processor (named under \xE2\x80\x9Cseen\xE2\x80\x9D) against a scalar version in "
+          "double. Errors of sums are relative to the sizes of their terms. The whole field, forward and backward, is checked under Trainer."};
   const std::vector<int64_t> batches = {0, 1, 15, 16, 17, 1000};
   const auto lookups = [&](const std::string& name, const kernel::HashLevel& level, int features, double limit) {
-    group.cases.push_back(KernelCase(name, "features and gradients to a step of the cell's fraction in float; nothing else written", limit,
+    group.cases.push_back(KernelCase(name, "features and gradients to one float step of the position in the cell; nothing else written", limit,
                                      [level, features, batches] { return HashLookups(level, features, batches); }));
   };
   group.cases.push_back(KernelCase("Dense layers, 4 to 256 wide", "to a few roundings of the sum's terms", 2e-6, DenseLayers));

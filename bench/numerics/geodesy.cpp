@@ -9,7 +9,7 @@
 namespace skyquilt::bench {
 namespace {
 
-// Through memory: g++ 12 leaves both conversions out where it vectorises several of them.
+// The value goes through memory, because g++ 12 removes both conversions where it vectorises several of them.
 double InFloat(double value) {
   volatile float rounded = static_cast<float>(value);
   return static_cast<double>(rounded);

@@ -1,5 +1,5 @@
-// Positions in long double, by the closed formula and nothing of ours: what the pipeline's positions are compared with. And the single-precision
-// pipelines that programs are written with when nobody thinks of it.
+// Reference positions for numerical checks, in long double from closed formulas and without code of the pipeline. Also the error of naive pipelines
+// that keep coordinates in single precision, for comparison.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,8 @@ double DistanceMetres(const geo::Geodetic& a, const geo::Geodetic& b);
 enum class NaiveFrame { kDegrees, kEcef, kUtm, kEnu };
 const std::vector<NaiveFrame>& NaiveFrames();
 std::string NaiveName(NaiveFrame frame);
-// How far a place moves when its coordinates in that frame (UTM's zone and ENU's tangent plane are the origin's) are kept in single precision.
+// How far a position moves when its coordinates in this frame are rounded to single precision. UTM zone and ENU tangent plane are those of the
+// origin.
 double NaiveErrorMetres(NaiveFrame frame, const geo::Geodetic& origin, const geo::Geodetic& position);
 
 }  // namespace skyquilt::bench

@@ -1,4 +1,4 @@
-// The groups of cases, one per kind of trouble.
+// The groups of numerical checks, one function each.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@ namespace skyquilt::bench {
 
 struct NumericsOptions {
   bool quick = false;
-  bool silent = false;                 // no progress is shown, whatever runs
-  int threads = 0;                     // 0: every core
-  std::filesystem::path work_folder;   // for surveys that cases make; theirs alone
-  comm::Communicator* comm = nullptr;  // of the whole pipeline's runs; null: those are left out
+  bool silent = false;                 // show no progress
+  int threads = 0;                     // 0: all cores
+  std::filesystem::path work_folder;   // for the surveys that cases make; no other files may be in it
+  comm::Communicator* comm = nullptr;  // for cases that run the whole pipeline; null: they are left out
 };
 
 NumericGroup SpaceGroup(const NumericsOptions& options);

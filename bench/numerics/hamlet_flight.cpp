@@ -14,7 +14,7 @@ coordinator::Settings HamletSettings(const HamletTraining& training, const Numer
   settings.context.steps = training.context_steps;
   settings.train.steps = training.train_steps;
   settings.context.batch_samples = settings.train.batch_samples = 8192;
-  // Parameters come to rest: less is left to chance.
+  // The learning rate decays, so that results depend less on the seed.
   settings.context.final_learning_rate_share = settings.train.final_learning_rate_share = 0.02;
   return settings;
 }

@@ -1,4 +1,4 @@
-// Numbers that are none, put where they hurt: they must never reach the parameters.
+// NaN and infinity in batches and parameters: they must never spread to other parameters.
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ const worker::StepOptions kPoisonOptions{.learning_rate = 1e-2, .network_l2 = 1e
 
 using Poison = std::function<void(worker::RayBatch& batch, TrainingState& state)>;
 
-// Some clean steps, one with the poison in it, and a clean one.
+// A few normal steps, one with a non-finite value, and a normal one.
 Finding PoisonedStep(const Poison& poison) {
   SyntheticTrainer trainer({}, 9, 1);
   base::Random random(43);
@@ -27,21 +27,21 @@ Finding PoisonedStep(const Poison& poison) {
   poison(batch, trainer.state());
   const bool poisoned_state = !AllFinite(trainer.state());
   const worker::StepResult result = trainer.Train(batch, kPoisonOptions);
-  // A poisoned parameter is put back as the last good checkpoint would; the others must not have moved.
+  // A non-finite parameter is restored, as from the last good checkpoint; the others must not have changed.
   if (poisoned_state) {
     trainer.state().parameters.grid[0] = before.parameters.grid[0];
     trainer.state().parameters.networks[0] = before.parameters.networks[0];
   }
   const bool untouched = SameParameters(before, trainer.state());
   const worker::StepResult after = trainer.Train(trainer.Draw({.rays = 200}, random), kPoisonOptions);
-  const bool goes_on = after.finite && AllFinite(trainer.state()) && !SameParameters(before, trainer.state());
+  const bool continues = after.finite && AllFinite(trainer.state()) && !SameParameters(before, trainer.state());
   return {.seen = fmt::format("step {}, parameters and moments {}, the next step {}", result.finite ? "taken" : "dropped",
-                              untouched ? "untouched" : "changed", goes_on ? "trains" : "does not train"),
+                              untouched ? "unchanged" : "changed", continues ? "trains" : "does not train"),
           .worst = kNoNumber,
-          .holds = !result.finite && untouched && goes_on};
+          .holds = !result.finite && untouched && continues};
 }
 
-// Positions that are no numbers count as the corner of the box: what happens must stay finite, whether the step is taken or dropped.
+// NaN positions count as a corner of the box. The parameters must stay finite, whether the step is taken or dropped.
 Finding NanPositions() {
   SyntheticTrainer trainer({}, 9, 1);
   base::Random random(43);
@@ -55,7 +55,7 @@ Finding NanPositions() {
   return {.seen = finite ? "parameters and moments finite" : "not finite", .worst = kNoNumber, .holds = finite};
 }
 
-// Every photo's gain is no number: a field that can only fail.
+// The gain of every photo is NaN, so training must fail.
 Finding FailsWithReason(const NumericsOptions& options) {
   const QuietStages quiet(options.silent);
   const EdgeSurvey survey(options.work_folder / "photos", 48, 36, [](int, int x, int y) {
@@ -78,11 +78,11 @@ NumericGroup NonFiniteGroup(const NumericsOptions& options) {
       .id = "nonfinite",
       .title = "Not a number",
       .lead =
-          "NaN and infinity put into a batch or into the parameters of a field in training. The step must be dropped and counted, nothing "
-          "else may change, and training must go on."};
+          "NaN and infinity in a batch or in the parameters of a field in training. The step must be dropped and counted, nothing else may "
+          "change, and training must continue."};
   const auto add = [&group](const std::string& name, const Poison& poison) {
     group.cases.push_back({.name = name,
-                           .expected = "the step is dropped, parameters and moments stay bit for bit, the next step trains",
+                           .expected = "the step is dropped, parameters and moments stay bit-identical, the next step trains",
                            .run = [poison] { return PoisonedStep(poison); }});
   };
   add("A pixel that is NaN", [](worker::RayBatch& batch, TrainingState&) { batch.rays[7].ray.target_srgb[1] = kNotANumber; });
@@ -98,7 +98,7 @@ NumericGroup NonFiniteGroup(const NumericsOptions& options) {
   group.cases.push_back(
       {.name = "Positions that are NaN, infinite or far outside", .expected = "parameters and moments stay finite", .run = NanPositions});
   group.cases.push_back({.name = "A field whose every step fails",
-                         .expected = "ends after 20 dropped steps in a row, alone and with its reason",
+                         .expected = "training ends after 20 dropped steps in a row and gives the reason",
                          .unit = "steps dropped",
                          .limit = 20.0,
                          .run = [options] { return FailsWithReason(options); }});

@@ -1,4 +1,4 @@
-// One statement about numbers at the extremes, and what running it showed.
+// A numerical check: what is expected, how to run it, and its result.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace skyquilt::bench {
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kEver = std::numeric_limits<double>::infinity();
 
-// The largest of some errors. A NaN among them stays.
+// The largest of several errors. Once NaN, it stays NaN.
 class Worst {
  public:
   void Take(double error) {
@@ -24,11 +24,11 @@ class Worst {
   double value_ = 0.0;
 };
 
-// What a case saw. A case with a limit passes when `holds` and worst <= limit; a NaN never does.
+// Result of a case. A case with a limit passes when `holds` is true and worst <= limit; a NaN never passes.
 struct Finding {
-  std::string seen = {};
-  double worst = kNoNumber;  // in the case's unit
-  bool holds = true;         // whatever else was expected beside the limit
+  std::string seen = {};     // what was measured, in words
+  double worst = kNoNumber;  // largest error, in the case's unit
+  bool holds = true;         // whether everything else that was expected is true
 };
 
 struct NumericCase {
@@ -36,11 +36,11 @@ struct NumericCase {
   std::string expected = {};    // in words
   std::string unit = {};        // of the worst error; may be empty
   double limit = kNoNumber;     // largest error allowed; NaN: only `holds` counts
-  bool for_comparison = false;  // a pipeline that is not ours: shown, never judged
+  bool for_comparison = false;  // shown but not judged, for instance a single-precision pipeline
   std::function<Finding()> run = {};
 };
 
-// Cases of one kind. `charts` is asked for <figure>s after all of the group's cases have run.
+// Cases of one kind. charts: called after all cases of the group have run; returns HTML <figure> elements.
 struct NumericGroup {
   std::string id = {}, title = {}, lead = {};
   std::vector<NumericCase> cases = {};
@@ -57,7 +57,7 @@ struct NumericRow {
   double seconds = 0.0;
 };
 
-// Runs a case. An exception that a case throws is its failure, with the message as what was seen; base::Interrupted passes through.
+// Runs a case. When it throws, the case fails and `seen` is the message; only base::Interrupted is not caught.
 NumericRow RunCase(const std::string& group, const NumericCase& numeric_case);
 
 // "3.1e-05 mm"; an en dash for NaN.

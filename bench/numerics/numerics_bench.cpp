@@ -56,7 +56,7 @@ std::vector<NumericGroup> OnlyGroups(std::vector<NumericGroup> groups, const std
   for (const NumericGroup& group : groups) known += (known.empty() ? "" : ", ") + group.id;
   for (const std::string& id : ids) {
     const bool found = std::any_of(groups.begin(), groups.end(), [&id](const NumericGroup& group) { return group.id == id; });
-    if (!found) throw base::UsageError(fmt::format("there are no numeric cases called '{}'; choose from {}", id, known));
+    if (!found) throw base::UsageError(fmt::format("--only: there is no group of cases '{}'. Choose from {}", id, known));
   }
   std::erase_if(groups, [&ids](const NumericGroup& group) { return std::find(ids.begin(), ids.end(), group.id) == ids.end(); });
   return groups;

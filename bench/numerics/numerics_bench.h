@@ -1,4 +1,4 @@
-// `bench numerics`: every promise about numbers at the extremes as a row of a table.
+// `bench numerics`: runs all numerical checks and reports each as one row of a table.
 #pragma once
 
 #include <string>
@@ -26,16 +26,16 @@ struct NumericsResult {
   std::vector<NumericRow> Failed() const;
 };
 
-// Those of design: space, rays, compositing, kernels, trainer, distance, brightness, not-a-number, storage, Earth.
+// All groups: space, rays, compositing, field kernels, trainer, distance from the origin, brightness, NaN and infinity, storage, places on Earth.
 std::vector<NumericGroup> AllGroups(const NumericsOptions& options);
-// Those of the given ids, in their own order. Throws base::UsageError for an id that is not among them.
+// The groups with these ids, in the order of `groups`. Throws base::UsageError for an unknown id.
 std::vector<NumericGroup> OnlyGroups(std::vector<NumericGroup> groups, const std::vector<std::string>& ids);
-// Runs the groups one after the other. A case that fails or throws is a row; base::Interrupted passes through.
+// Runs the groups one after the other. A case that fails or throws becomes a failed row; only base::Interrupted is not caught.
 NumericsResult RunNumerics(const std::vector<NumericGroup>& groups, bool quick);
 
 BenchPage NumericsPage(const NumericsResult& result, const std::string& command);
 std::string NumericsJson(const NumericsResult& result, const std::string& command);
-// base::FailedCheck naming the failed cases, when there are any.
+// Throws base::FailedCheck with the names of the failed cases, if there are any.
 void ThrowIfFailed(const NumericsResult& result);
 
 }  // namespace skyquilt::bench

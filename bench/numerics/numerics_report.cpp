@@ -10,7 +10,7 @@
 namespace skyquilt::bench {
 namespace {
 
-// Rows of one group and kind, smallest and largest error.
+// Smallest and largest error of the rows of one group and unit.
 struct Range {
   double low = kEver, high = -kEver;
 };
@@ -37,7 +37,7 @@ const NumericRow* FindRow(const NumericsResult& result, const std::string& group
   return nullptr;
 }
 
-// Places are judged in millimetres; boxes by their own float step.
+// Largest error in millimetres of the "space" rows. Rows "Block of ..." are left out: their limit is the float step of the block.
 double WorstPlaceMm(const NumericsResult& result) {
   Worst worst;
   bool any = false;
@@ -73,19 +73,20 @@ BenchTable GroupTable(const GroupResult& group) {
 }  // namespace
 
 BenchPage NumericsPage(const NumericsResult& result, const std::string& command) {
-  BenchPage page{.name = "numerics",
-                 .title = "Numbers at the extremes",
-                 .lead =
-                     "Each case says what it expects, what was seen and by how much the worst value is off. References are written anew in double or "
-                     "long double. Rows \xE2\x80\x9C"
-                     "for comparison\xE2\x80\x9D show pipelines that are not ours and are not judged." +
-                     std::string(result.quick ? " This was a quick run: fewer places, fewer steps." : ""),
-                 .figures = {},
-                 .verdicts = {CasesSentence(result)},
-                 .sections = {},
-                 .command = command,
-                 .machine = base::MachineDescription(),
-                 .date = base::UtcTimestamp()};
+  BenchPage page{
+      .name = "numerics",
+      .title = "Numerical accuracy in extreme cases",
+      .lead =
+          "Each case shows what is expected, what was measured and the largest error. References are independent implementations in double "
+          "or long double. Rows \xE2\x80\x9C"
+          "for comparison\xE2\x80\x9D show other ways to compute, such as single precision, and are not judged." +
+          std::string(result.quick ? " This was a quick run: fewer places, fewer steps." : ""),
+      .figures = {},
+      .verdicts = {CasesSentence(result)},
+      .sections = {},
+      .command = command,
+      .machine = base::MachineDescription(),
+      .date = base::UtcTimestamp()};
   const int passed = result.Count(Verdict::kPassed), failed = result.Count(Verdict::kFailed);
   page.figures.push_back({"Cases passed", fmt::format("{} of {}", passed, passed + failed), "in " + base::FormatDuration(result.seconds)});
   if (const double worst = WorstPlaceMm(result); !std::isnan(worst)) {
@@ -115,10 +116,10 @@ BenchPage NumericsPage(const NumericsResult& result, const std::string& command)
   }
   if (const double earth = result.WorstOf("earth", "dB"); !std::isnan(earth)) {
     page.figures.push_back(
-        {"Anywhere on Earth", FormatError(earth, "dB"), "largest PSNR change of a moved survey, axes turned alike; 0.1 dB allowed"});
+        {"Anywhere on Earth", FormatError(earth, "dB"), "largest PSNR change of a moved survey with equally rotated axes; 0.1 dB allowed"});
     page.verdicts.push_back(
         fmt::format("Flown at the poles, across \xC2\xB1"
-                    "180\xC2\xB0, below sea level and at 9 km, the survey's PSNR changes by at most {} with its axes turned alike "
+                    "180\xC2\xB0, below sea level and at 9 km, the survey's PSNR changes by at most {} with equally rotated axes "
                     "(allowed: 0.1 dB).",
                     FormatError(earth, "dB")));
   }

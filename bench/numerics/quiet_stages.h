@@ -1,4 +1,4 @@
-// Silence while a case runs something that talks a lot: only warnings and errors come through.
+// While it exists, only warnings and errors are logged, and no progress is shown. For cases that run the whole pipeline.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace skyquilt::bench {
 
 class QuietStages {
  public:
-  // always: progress stays silent afterwards too.
+  // always: keep progress hidden afterwards too.
   explicit QuietStages(bool always) : always_(always), level_(spdlog::get_level()) {
     spdlog::set_level(std::max(level_, spdlog::level::warn));
     base::Progress::SetQuiet(true);

@@ -1,5 +1,5 @@
-// Rays against boxes, and the samples marched along them. The reference walks around the slab method: it intersects the six planes one by one in
-// long double and keeps the crossings that lie on the box.
+// Intersections of rays and boxes, and samples along rays. The reference does not use the slab method: it intersects the six planes one by one in
+// long double and keeps the intersections that are on the box.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 struct RayCase {
   std::string name;
   Eigen::Vector3d origin, direction;
-  double t_near, t_far;  // what it must be; both 0: a miss
+  double t_near, t_far;  // expected interval, metres; both 0: a miss
 };
 
 // Against the box [0, 10] x [0, 20] x [0, 5].
@@ -65,8 +65,8 @@ struct Span {
   long double t_near, t_far;
 };
 
-// Nothing when the ray misses. Crossings within 1e-12 m of the box's rim count, for those on an edge are rounded to either side; on a ray that
-// grazes a face at an angle of 1e-4 that is 1e-8 m of its length, which is all that is asked of such rays.
+// Empty when the ray misses. Intersections within 1e-12 m outside the box count too, because those on an edge are rounded to either side. For a ray
+// at an angle of 1e-4 to a face this is 1e-8 m along the ray, the accuracy that is required of such rays.
 std::optional<Span> ReferenceSpan(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& low,
                                   const Eigen::Vector3d& high) {
   constexpr long double kSlack = 1e-12L;
@@ -115,7 +115,7 @@ Finding RandomBoxes(int rays) {
     const std::optional<Span> exact = ReferenceSpan(origin, direction, low, high);
     const long double length = exact ? exact->t_far - exact->t_near : 0.0L;
     if (interval.Empty()) {
-      // A graze shorter than rounding may be either.
+      // An interval shorter than the rounding error may be a hit or a miss.
       if (length > 1e-9L) ++wrong;
       continue;
     }
@@ -131,7 +131,7 @@ Finding RandomBoxes(int rays) {
       .seen = fmt::format("{} rays, {} hits, {} judged wrongly", rays, hits, wrong), .worst = worst.value(), .holds = wrong == 0 && hits > rays / 4};
 }
 
-// Samples of random rays through a block: inside the interval, ascending, in the box, and as many as steps fit.
+// Samples of random rays through a block: inside the interval, ascending, in the box, and one for each step.
 Finding MarchedSamples(int rays) {
   const render::TrainedField field = SyntheticField({.offset_enu = {7e4, -3e4, 0.0}});
   base::Random random(59);
@@ -192,8 +192,8 @@ NumericGroup RayGroup(const NumericsOptions& options) {
   NumericGroup group{.id = "rays",
                      .title = "Rays and boxes",
                      .lead =
-                         "Where a ray is inside a box, in metres along it. The named rays meet the box [0, 10] x [0, 20] x [0, 5]; random ones are "
-                         "compared with plane by plane intersection in long double."};
+                         "The interval of a ray inside a box, in metres along the ray. The named rays are tested with the box [0, 10] x [0, 20] x "
+                         "[0, 5]; random rays are compared with plane by plane intersections in long double."};
   for (const RayCase& ray : RayCases()) group.cases.push_back(BoxCase(ray));
   group.cases.push_back({.name = "Random boxes and rays",
                          .expected = "as in long double, to 10 nm at 100 km from the origin",
@@ -206,7 +206,7 @@ NumericGroup RayGroup(const NumericsOptions& options) {
                          .limit = 1.2e-7,
                          .run = [rays] { return MarchedSamples(rays / 20); }});
   group.cases.push_back(
-      {.name = "Intervals of no length, reversed or NaN", .expected = "no sample", .unit = "samples", .limit = 0.0, .run = ZeroLengthInterval});
+      {.name = "Intervals without length, reversed or NaN", .expected = "no sample", .unit = "samples", .limit = 0.0, .run = ZeroLengthInterval});
   return group;
 }
 

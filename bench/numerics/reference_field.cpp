@@ -39,9 +39,9 @@ std::vector<double> ReferenceHarmonics(const std::array<double, 3>& direction, i
 }
 
 ReferenceField::ReferenceField(const field::HashField& field) : field_(field), grid_(field.config().grid) {
-  if (field.config().encoding != encoding::Kind::kHash) throw std::invalid_argument("the reference knows hash grids only");
+  if (field.config().encoding != encoding::Kind::kHash) throw std::invalid_argument("the reference supports hash grids only");
   if (field.config().density_hidden_layers != 1) throw std::invalid_argument("the reference's density network has one hidden layer");
-  if (field.config().luminance) throw std::invalid_argument("the reference has no luminance");
+  if (field.config().luminance) throw std::invalid_argument("the reference does not support luminance");
   const auto hidden = static_cast<size_t>(field.config().hidden);
   size_t offset = 0;
   const auto add = [&](size_t outputs, size_t inputs, bool relu) {
@@ -53,7 +53,8 @@ ReferenceField::ReferenceField(const field::HashField& field) : field_(field), g
   add(hidden, static_cast<size_t>(field.ColorInputRows()), true);
   for (int l = 1; l < field.config().color_hidden_layers; ++l) add(hidden, hidden, true);
   add(field::kColorRows, hidden, false);
-  if (offset != static_cast<size_t>(field.NetworkParameters())) throw std::invalid_argument("the reference's networks have another size");
+  if (offset != static_cast<size_t>(field.NetworkParameters()))
+    throw std::invalid_argument("the reference's networks differ in size from the field's");
 }
 
 std::array<ReferenceField::Corner, 8> ReferenceField::Corners(int level, const std::array<double, 3>& position) const {
@@ -76,7 +77,7 @@ std::array<ReferenceField::Corner, 8> ReferenceField::Corners(int level, const s
       at[axis] += upper ? 1 : 0;
       weight *= upper ? fraction[axis] : 1.0 - fraction[axis];
     }
-    // Mueller et al. 2022, eq. 4, in 32-bit arithmetic; a level that fits keeps its points in order.
+    // Mueller et al. 2022, eq. 4, in 32-bit arithmetic; a level that fits into the table is stored densely, in order.
     const uint64_t hash = (at[0] ^ at[1] * 2654435761ULL ^ at[2] * 805459861ULL) & 0xFFFFFFFFULL;
     const uint64_t in_order = at[0] + static_cast<uint64_t>(shape.size[0]) * (at[1] + static_cast<uint64_t>(shape.size[1]) * at[2]);
     const uint64_t entry = shape.dense ? in_order : hash % shape.entries;
@@ -142,7 +143,7 @@ void ReferenceField::Backward(std::span<const double> networks, const Sample& sa
   for (size_t l = layers_.size(); l-- > 0;) {
     const Layer& layer = layers_[l];
     if (l == 1) {
-      // Geometry: what the colour network says of it, and the density's own word on row 0.
+      // The density network's outputs: gradient from the colour network, and on row 0 also from the density.
       gradient.resize(layer.outputs);
       gradient[0] += log_depth_gradient;
     }

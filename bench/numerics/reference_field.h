@@ -1,5 +1,5 @@
-// The field once more, one sample at a time, in double and in the plainest way: what the batched single-precision one is compared with. It takes
-// its shape (levels, offsets, widths) from field::HashField and shares no arithmetic with it, nor with the kernels.
+// Reference implementation of the field, to check the fast one (batches, single precision): one sample at a time, in double, as simple as possible.
+// It takes its shape (levels, offsets, widths) from field::HashField, but shares no arithmetic with it or with the kernels.
 #pragma once
 
 #include <array>
@@ -19,19 +19,19 @@ class ReferenceField {
   // The field must outlive this. Fields with luminance, another encoding or a deeper density network are not covered (std::invalid_argument).
   explicit ReferenceField(const field::HashField& field);
 
-  // What forward leaves for backward.
+  // Values of the forward pass that the backward pass needs.
   struct Sample {
     std::array<double, 3> position = {};
     std::vector<std::vector<double>> inputs;   // of every layer
     std::vector<std::vector<double>> outputs;  // after the ReLU where there is one
-    double log_depth = 0.0;                    // row 0 of the geometry
+    double log_depth = 0.0;                    // output 0 of the density network: log density, before the density bias
     std::array<double, 3> raw = {};            // colours before the sigmoid
   };
 
-  // position in the unit box. Outside of it the nearest place on its faces counts.
+  // position: in the unit box; positions outside are moved to its nearest face.
   Sample Forward(std::span<const double> grid, std::span<const double> networks, const std::array<double, 3>& position,
                  const std::array<double, 3>& direction) const;
-  // The density alone: inputs of the colour network are not made, raw stays zero.
+  // The density only: the colour network is not evaluated, raw stays zero.
   Sample ForwardDensity(std::span<const double> grid, std::span<const double> networks, const std::array<double, 3>& position) const;
   void ForwardColor(std::span<const double> networks, const std::array<double, 3>& direction, Sample* sample) const;
   // Adds to both gradients.
@@ -44,7 +44,7 @@ class ReferenceField {
     bool relu = false;
   };
   struct Corner {
-    size_t first = 0;  // number of the grid parameters
+    size_t first = 0;  // index of the first grid parameter of the entry
     double weight = 0.0;
   };
   std::array<Corner, 8> Corners(int level, const std::array<double, 3>& position) const;

@@ -24,7 +24,7 @@ double ToSrgbSlope(double linear) {
   return linear <= 0.0031308 ? 12.92 : 1.055 / 2.4 * std::pow(linear, 1.0 / 2.4 - 1.0);
 }
 
-// A sample of a ray that light reaches.
+// A sample of a ray that is not hidden.
 struct Lit {
   ReferenceField::Sample sample;
   double tau = 0.0, weight = 0.0, mid = 0.0;
@@ -98,7 +98,7 @@ ReferenceResult ReferenceTrainer::Ray(const worker::RayBatch& batch, const worke
       const auto target = static_cast<double>(ray.ray.target_srgb[c]);
       const double residual = ToSrgb(light) - target;
       result.squared_error += residual * residual;
-      // A saturated pixel says "at least this bright", a black one "at most".
+      // A saturated pixel means "at least this bright", a black one "at most this bright".
       if ((target >= 254.5 / 255.0 && residual > 0.0) || (target <= 0.5 / 255.0 && residual < 0.0)) continue;
       result.loss += residual * residual;
       rgb_gradient[c] = 2.0 * residual * ToSrgbSlope(light) * gain * ToLinearSlope(shown) * ray_share;

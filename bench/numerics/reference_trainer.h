@@ -1,5 +1,6 @@
-// Trains the same field on the same batches as worker::FieldStep, in double and one ray after the other: sampling positions, the rule which samples
-// count as hidden, losses, Adam and its rule for untouched entries are the same, the arithmetic is written anew from the formulas.
+// Reference implementation of the training step, to check worker::FieldStep: same field and batches, but in double and one ray after the other.
+// Sample positions, the rule for hidden samples, losses, Adam and its rule for untouched entries are the same; the arithmetic is written
+// independently from the formulas.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +25,16 @@ struct ReferenceState {
 struct ReferenceResult {
   double loss = 0.0;           // mean over rays
   double squared_error = 0.0;  // mean over colour rays and channels
-  int64_t live = 0;            // samples that light reaches
+  int64_t live = 0;            // samples that are not hidden
 };
 
 class ReferenceTrainer {
  public:
-  // Both must outlive this. The target's map, step and colour range are read.
+  // Both must outlive this. Of the target, only map, step and colour range are used.
   ReferenceTrainer(const render::TrainedField& target, const field::HashField& field);
 
-  // The loss of a batch and its derivatives by every parameter (weight decay is the optimiser's). Both gradients are overwritten; null: not wanted.
+  // The loss of a batch and its gradient by every parameter, without weight decay (the optimiser adds it). Gradients are overwritten; null: not
+  // needed.
   ReferenceResult Gradient(const worker::RayBatch& batch, const ReferenceState& state, double distortion, std::vector<double>* grid_gradient,
                            std::vector<double>* network_gradient) const;
   ReferenceResult Step(const worker::RayBatch& batch, const worker::StepOptions& options, ReferenceState& state) const;

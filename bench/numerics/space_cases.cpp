@@ -1,5 +1,5 @@
-// Section "where numbers live": a place goes from latitude, longitude and height through ENU into a block's unit box, is rounded to float there
-// once, and comes back. What that moves it by is measured against long double.
+// A position goes from latitude, longitude and height through ENU into a block's unit box, is rounded to float there once, and goes back. The error
+// is measured against long double.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace skyquilt::bench {
 namespace {
 
-constexpr double kBlock_m = 250.0;  // about what surveys are cut into
+constexpr double kBlock_m = 250.0;  // a typical block
 constexpr double kMarginShare = 0.06;
 constexpr double kBlockHeight_m = 60.0;
 constexpr double kAllowed_mm = 1.0;
@@ -27,7 +27,7 @@ std::string LengthText(double length_m) {
   return length_m < 1e3 ? fmt::format("{:g} m", length_m) : fmt::format("{:g} km", length_m / 1e3);
 }
 
-// The box, with its margin, of the block of a regular grid that a place lies in.
+// The box, with margin, of the grid block that contains a position.
 encoding::SpaceMap BlockAround(const Eigen::Vector3d& x_in_enu, double side_m) {
   const double margin = kMarginShare * side_m;
   const double height = std::min(side_m, kBlockHeight_m);
@@ -43,7 +43,7 @@ geo::Geodetic ThroughThePipeline(const geo::EnuFrame& frame, const geo::Geodetic
   return frame.GeodeticFromEnu(block.EnuFromUnit(unit.cast<double>()));
 }
 
-// Worst error over random places of a survey of that extent.
+// Largest error over random positions of a survey of this extent.
 double WorstRoundTripMm(const geo::Geodetic& origin, double extent_m, int places) {
   const geo::EnuFrame frame(origin);
   base::Random random(17);
@@ -75,7 +75,7 @@ NumericCase PlaceCase(const std::string& name, const geo::Geodetic& origin, int 
           }};
 }
 
-// A camera up to 70 km away from the origin looks at a block: where samples of its rays lie in the unit box, against long double.
+// A camera up to 70 km from the origin looks at a block: unit-box positions of samples on its rays, against long double.
 Finding RaySamples() {
   base::Random random(23);
   Worst worst;
@@ -104,7 +104,7 @@ NumericCase BoxStepCase(double edge_m) {
   const double half_step_mm = 1e3 * edge_m * std::exp2(-25.0);
   return {.name = "Block of " + LengthText(edge_m),
           .expected = fmt::format("half a float step per axis: {}{}", FormatError(half_step_mm, "mm"),
-                                  half_step_mm > 0.5 ? "; blocks are never cut this large" : ""),
+                                  half_step_mm > 0.5 ? "; blocks are never this large" : ""),
           .unit = "mm",
           .limit = half_step_mm * 1.0001,
           .run = [edge_m] {
@@ -142,7 +142,7 @@ NumericCase NaiveCase(NaiveFrame frame) {
           }};
 }
 
-// Worst error of places on circles about the origin.
+// Largest error of positions on circles around the origin.
 std::vector<std::string> ErrorAgainstDistance() {
   const geo::Geodetic origin{47.3769, 8.5417, 408.0};
   const geo::EnuFrame frame(origin);
@@ -178,9 +178,9 @@ NumericGroup SpaceGroup(const NumericsOptions& options) {
   NumericGroup group{.id = "space",
                      .title = "Space",
                      .lead =
-                         "A place goes from latitude, longitude and height through the survey's ENU frame (double) into its block's unit box (float, "
-                         "rounded once) and back; the difference is measured in Earth-centred long double. Surveys of 1 m are one block of 1 m, the "
-                         "others are cut into blocks of 250 m.",
+                         "A position goes from latitude, longitude and height through the survey's ENU frame (double) into its block's unit box "
+                         "(float, rounded once) and back; the error is measured in Earth-centred long double. Surveys of 1 m are one block of 1 m, "
+                         "the others are divided into blocks of 250 m.",
                      .cases = {},
                      .charts = ErrorAgainstDistance};
   for (int latitude = -90; latitude <= 90; latitude += 15) {

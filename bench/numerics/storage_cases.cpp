@@ -1,4 +1,4 @@
-// Numbers of 16 bits that scenes may be stored in: rounding, overflow, and what a scene written with them looks like.
+// The 16-bit formats in which scenes can be stored: rounding, overflow, and the quality of a scene stored with them.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ struct ShortFormat {
   checkpoint::Precision precision;
   float (*to_float)(uint16_t);
   uint16_t (*from_float)(float);
-  int precision_bits;  // of the significand, the hidden one included: to nearest, numbers are off by at most 2^-bits of themselves
-  int least_exponent;  // of normal numbers
+  int precision_bits;  // bits of the significand with the implicit one; rounding to nearest has a relative error of at most 2^-bits
+  int least_exponent;  // smallest exponent of normal numbers
   float largest;
 };
 
@@ -37,7 +37,7 @@ double StoredError(const ShortFormat& format, float value) {
   return static_cast<double>(format.to_float(format.from_float(value))) - static_cast<double>(value);
 }
 
-// Numbers of every size that the format has, both signs, uniform in their logarithm.
+// Numbers of every magnitude of the format, both signs, uniform in their logarithm.
 Finding Rounding(const ShortFormat& format) {
   base::Random random(29);
   Worst worst;
@@ -49,7 +49,7 @@ Finding Rounding(const ShortFormat& format) {
   return {.seen = fmt::format("10^6 numbers from 2^{} to {:g}", format.least_exponent, format.largest), .worst = worst.value()};
 }
 
-// Below the normal numbers fp16 goes on in steps of 2^-24; bf16 has the exponents of float, so that only float's own subnormals are left.
+// Below its normal numbers fp16 has steps of 2^-24. bf16 has the exponents of float, so its subnormal numbers are those of float.
 Finding TinyNumbers(const ShortFormat& format) {
   base::Random random(31);
   const double normal = std::exp2(format.least_exponent);
@@ -71,7 +71,7 @@ Finding Overflow(const ShortFormat& format) {
   return {.seen = holds ? fmt::format("{:g}; NaN stays NaN", format.largest) : "another number", .holds = holds};
 }
 
-// A parameter that no format of 16 bits has room for, written to a file and read back.
+// A parameter that is too large for a 16-bit format, written to a file and read back.
 Finding ArchiveOverflow(const ShortFormat& format, const NumericsOptions& options) {
   const std::vector<float> values = {1e30F, -std::numeric_limits<float>::max(), 0.25F, 0.0F};
   checkpoint::ArchiveWriter first("bench", 1);
@@ -108,7 +108,7 @@ std::vector<StoredScene> StoreHamlet(const NumericsOptions& options) {
   std::filesystem::remove_all(folder);
   coordinator::Pipeline pipeline{
       .comm = *options.comm, .project = coordinator::Project::Create(folder), .settings = HamletSettings({}, options), .quiet = true};
-  // Tables fitted to a hamlet are so small that networks and occupancy, which stay as they are, weigh more than in a real block.
+  // Tables chosen for a hamlet are so small that networks and occupancy grid, which keep their precision, count more than in a real block.
   pipeline.settings.partition.voxels_per_entry = 1.0;
   const std::filesystem::path photos = pipeline.project.SimulatedFolder();
   coordinator::SimulateStage(pipeline, photos);
@@ -122,7 +122,7 @@ std::vector<StoredScene> StoreHamlet(const NumericsOptions& options) {
 }
 
 NumericCase SceneCase(size_t format, const std::shared_ptr<std::vector<StoredScene>>& scenes, const NumericsOptions& options) {
-  constexpr double kMostBytes = 0.55;  // tables are halved; networks, occupancy and the file's own frame are not
+  constexpr double kMostBytes = 0.55;  // tables are halved; networks, occupancy grid and file headers are not
   return {.name = "A scene stored as " + ShortFormats()[format].name,
           .expected = fmt::format("PSNR within 0.1 dB of fp32, at most {:.0f} % of its bytes", 100.0 * kMostBytes),
           .unit = "dB",
@@ -144,8 +144,8 @@ NumericGroup StorageGroup(const NumericsOptions& options) {
   NumericGroup group{.id = "storage",
                      .title = "Storage with 16 bits",
                      .lead =
-                         "Tables may be stored as bf16 (the exponents of float) or fp16 (three more bits of precision, at most 65504). What is "
-                         "too large becomes the largest number, for one infinity would make a whole field NaN."};
+                         "Tables may be stored as bf16 (the exponents of float) or fp16 (three more bits of precision, at most 65504). Numbers that "
+                         "are too large become the largest number, because one infinity would make a whole field NaN."};
   for (const ShortFormat& format : ShortFormats()) {
     group.cases.push_back({.name = format.name + ": rounding",
                            .expected = fmt::format("off by at most 2^-{} of the number", format.precision_bits),

@@ -35,7 +35,7 @@ render::TrainedField SyntheticField(const SyntheticOptions& options) {
   grid.log2_table_size = options.log2_table_size;
   grid.base_resolution = 4;
   grid.finest_resolution = options.edge_m / options.voxel_m;
-  // Far from the origin the box's corners are rounded: the field's shape must not depend on that.
+  // The box's corners are rounded far from the origin; the field's shape must not depend on that.
   const double extent[3] = {1.0, 1.0, std::min(1.0, options.height_m / options.edge_m)};
   std::copy(extent, extent + 3, grid.extent);
   field.config.hidden = options.hidden;

@@ -1,5 +1,5 @@
-// A scene that is a formula: patterned ground with a block on it, seen by rays from above. Batches of such rays train a field without photos, at
-// any place of the survey's frame.
+// A scene given by a formula: patterned ground with a box on it, seen from above. Rays with known colours train a field without photos, at any
+// position in the survey's frame.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,29 +23,29 @@ struct SyntheticOptions {
   int color_hidden_layers = 1;
 };
 
-// A field over the scene with every cell awake and no parameters.
+// A field over the scene with every occupancy cell on and without parameters.
 render::TrainedField SyntheticField(const SyntheticOptions& options);
 
 struct SyntheticRays {
   int rays = 256;
-  float empty_share = 0.0F;  // of the rays: they teach emptiness
-  float most_stops = 0.0F;   // exposures are spread evenly over +- this
+  float empty_share = 0.0F;  // fraction of rays that are trained to be empty (density 0)
+  float most_stops = 0.0F;   // exposures are uniform between plus and minus this
 };
 
-// Rays through random places of the scene, with what a photo of that exposure shows there: display values in [0, 1], without noise.
+// Rays through random positions of the scene, with the colours that a photo of that exposure would have: display values in [0, 1], without noise.
 void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOptions& scene, const SyntheticRays& rays, base::Random& random,
                         worker::RayBatch* batch);
 
-// The samples' unit positions once more, from survey-wide coordinates in single precision throughout: what a trainer without blocks of its own
-// frame would feed its field with.
+// Replaces the samples' unit positions by positions computed from survey-wide single-precision coordinates, as a trainer without block frames would
+// have them.
 void RepositionInFloat(const render::TrainedField& field, worker::RayBatch* batch);
 
-// A field in training: copied to see later what a step did.
+// Parameters and moments of a field in training; copied to compare them before and after a step.
 struct TrainingState {
   field::Parameters parameters;
   field::TrainableState moments;
 };
-// As training starts.
+// The state at the start of training.
 TrainingState InitialState(const field::HashField& field, uint64_t seed);
 bool AllFinite(const TrainingState& state);
 bool SameParameters(const TrainingState& a, const TrainingState& b);

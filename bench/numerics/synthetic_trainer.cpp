@@ -20,7 +20,7 @@ worker::RayBatch SyntheticTrainer::Draw(const SyntheticRays& rays, base::Random&
 }
 
 SyntheticTrainer::Gradients SyntheticTrainer::GradientsOf(worker::RayBatch batch, double distortion) {
-  // After one step from moments of zero, the first moment is a tenth of the gradient.
+  // After one step from zero moments, the first moment is a tenth of the gradient.
   field::Parameters parameters = state_.parameters;
   field::TrainableState probe;
   probe.Allocate(field_);

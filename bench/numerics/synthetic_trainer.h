@@ -1,4 +1,4 @@
-// The worker's own training step on synthetic batches.
+// Runs the worker's training step on batches of the synthetic scene.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,11 @@ class SyntheticTrainer {
   TrainingState& state() { return state_; }
 
   worker::RayBatch Draw(const SyntheticRays& rays, base::Random& random) const;
-  // The batch is copied: training loses positions of hidden samples.
+  // The batch is copied, because training removes the positions of hidden samples.
   worker::StepResult Train(worker::RayBatch batch, const worker::StepOptions& options) {
     return step_.Train(batch, options, state_.parameters, state_.moments, nullptr);
   }
-  // Loss and gradients at the present parameters, which stay as they are.
+  // Loss and gradients at the present parameters, which are not changed.
   struct Gradients {
     worker::StepResult result;
     std::vector<double> grid, networks;

@@ -63,14 +63,14 @@ NumericCase GradientCase(const std::string& name, const SyntheticOptions& scene,
           .run = [scene, steps] { return GradientFinding(scene, steps); }};
 }
 
-// What two runs of the same training came to, step by step.
+// Differences between two runs of the same training, step by step.
 struct Runs {
   std::vector<std::pair<double, double>> parameters, loss;  // step, relative difference
   double psnr_gap_db = 0.0, psnr_db = 0.0;
   bool finite = true;
 };
 
-// How far apart two sets of parameters are, as a share of the way from the start.
+// Distance between two sets of parameters, divided by the distance from the start.
 double ShareOfWay(const ReferenceState& a, const ReferenceState& b, const ReferenceState& start) {
   double apart = 0.0, way = 0.0;
   const auto add = [&](const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& from) {
@@ -88,7 +88,8 @@ worker::StepOptions FreeRunOptions(int step) {
   return {.learning_rate = 1e-2 * std::min(1.0, (step + 1) / 10.0), .network_l2 = 1e-6, .distortion = kTrainerDistortion};
 }
 
-// The reference beside the trainer (disturbed = false), or beside itself from parameters that are off by one rounding to float.
+// Runs the reference and the trainer side by side (disturbed = false), or the reference twice, once from parameters changed by a factor of
+// 1 +- 2^-24, the size of one rounding to float.
 Runs FreeRun(int steps, bool disturbed) {
   SyntheticTrainer trainer({}, kTrainerSeed, 1);
   const ReferenceTrainer reference(trainer.target(), trainer.field());
@@ -121,7 +122,7 @@ Runs FreeRun(int steps, bool disturbed) {
   held_out.rays = 500;
   const worker::RayBatch test = trainer.Draw(held_out, random);
   runs.psnr_db = PsnrDb(reference.Gradient(test, exact, 0.0, nullptr, nullptr).squared_error);
-  // The trainer's own forward judges its own parameters.
+  // Parameters of the trainer are scored with the trainer's own forward pass.
   const double other_error =
       disturbed ? reference.Gradient(test, other, 0.0, nullptr, nullptr).squared_error : trainer.GradientsOf(test, 0.0).result.squared_error;
   runs.psnr_gap_db = std::abs(PsnrDb(other_error) - runs.psnr_db);
@@ -135,7 +136,7 @@ double LargestOf(const std::vector<std::pair<double, double>>& points) {
 }
 
 std::string RunsText(const Runs& runs) {
-  return fmt::format("loss at most {} off in a step, parameters {} of the way from the start, held-out PSNR {:.3f} dB",
+  return fmt::format("loss of a step differs by at most {}, parameters by {} of their distance from the start, held-out PSNR {:.3f} dB",
                      FormatError(LargestOf(runs.loss), ""), FormatError(LargestOf(runs.parameters), ""), runs.psnr_db);
 }
 
@@ -150,7 +151,7 @@ Finding EmptyBatch() {
           .holds = result.finite && SameParameters(before, trainer.state())};
 }
 
-// One ray of 0, 1 or all of its samples.
+// One ray with none, one or all of its samples.
 Finding OneRay() {
   Worst worst;
   bool holds = true;
@@ -189,21 +190,21 @@ NumericGroup TrainerGroup(const NumericsOptions& options) {
   deep.color_hidden_layers = 3;
   deep.features = 4;
   deep.hidden = 24;
-  fine.voxel_m = 0.004;  // 2000 cells along an edge: fractions of cells lose eleven bits
+  fine.voxel_m = 0.004;  // 2000 cells along an edge: positions within a cell lose eleven bits
   fine.log2_table_size = 14;
   NumericGroup group{
       .id = "trainer",
       .title = "Trainer",
       .lead =
           "The worker's training step (float, batched, vectorised) against a reference trainer that does the same ray by ray in double: "
-          "encoding, networks, compositing, losses with distortion and emptiness, exposures of a stop either way, Adam with resting "
+          "encoding, networks, compositing, losses with distortion and empty rays, exposures of plus and minus one stop, Adam with untouched "
           "entries. Rays and samples are the same."};
   group.cases = {
       GradientCase("Gradients", {}, steps),
       GradientCase("Gradients, table of 2^1", tiny, steps),
       GradientCase("Gradients, four features and three colour layers", deep, steps),
       GradientCase("Gradients, 2000 cells along an edge", fine, std::min(steps, 20)),
-      {.name = "A batch of no rays", .expected = "loss 0, nothing moves", .unit = "loss", .limit = 0.0, .run = EmptyBatch},
+      {.name = "A batch of no rays", .expected = "loss 0, nothing changes", .unit = "loss", .limit = 0.0, .run = EmptyBatch},
       {.name = "A batch of one ray", .expected = "loss and gradients as the reference", .unit = "relative", .limit = 1e-4, .run = OneRay},
       {.name = fmt::format("{} steps of training", steps),
        .expected = "held-out PSNR within 0.01 dB, loss of every step within 0.1 %",
@@ -216,7 +217,7 @@ NumericGroup TrainerGroup(const NumericsOptions& options) {
              return Finding{.seen = RunsText(runs), .worst = runs.psnr_gap_db, .holds = runs.finite && LargestOf(runs.loss) <= 1e-3};
            }},
       {.name = "Instead: the double trainer against itself",
-       .expected = "started from parameters that are off by one rounding to float: what no trainer in float can be better than",
+       .expected = "started once from parameters changed by one rounding to float: a difference that no float trainer can avoid",
        .unit = "dB",
        .for_comparison = true,
        .run =
@@ -227,9 +228,9 @@ NumericGroup TrainerGroup(const NumericsOptions& options) {
            }},
   };
   group.charts = [curves] {
-    return std::vector<std::string>{page::CurveChart(*curves, {.title = "How far runs of the same training part",
+    return std::vector<std::string>{page::CurveChart(*curves, {.title = "Difference between runs of the same training",
                                                                .x_label = "step",
-                                                               .y_label = "parameters apart, share of the way from the start",
+                                                               .y_label = "parameter difference / distance from the start",
                                                                .log_y = true})};
   };
   return group;

@@ -12,8 +12,8 @@ StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options) {
   StudyBench bench;
   const std::string budget = fmt::format("{}", options.budget_s);
   BenchTable grid{.name = "psnr",
-                  .title = "PSNR by number of blocks and capacity",
-                  .note = "Entries per level of each block's tables: 2^n.",
+                  .title = "PSNR by number of blocks and table size",
+                  .note = "Columns: entries per level of each block's tables.",
                   .columns = {"blocks"},
                   .rows = {}};
   std::vector<page::Curve> curves;
@@ -40,8 +40,9 @@ StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options) {
   }
   BenchPage& page = bench.page;
   page.name = "blocks";
-  page.title = "How many blocks, how large";
-  page.lead = fmt::format("Number of blocks against the size of each block's tables, {:.0f} s of training for every variant.", options.budget_s);
+  page.title = "Number of blocks and table size";
+  page.lead =
+      fmt::format("Compares numbers of blocks and sizes of each block's tables, with {:.0f} s of training for every variant.", options.budget_s);
   const auto by_psnr = [](const VariantResult& a, const VariantResult& b) { return !(a.psnr_db >= b.psnr_db); };
   const auto best = std::max_element(bench.results.begin(), bench.results.end(), by_psnr);
   if (best != bench.results.end() && best->failure.empty()) {
@@ -50,7 +51,7 @@ StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options) {
                                         best->psnr_db, best->parameters / 1e6, best->samples_per_second / 1e6));
   }
   page.sections.push_back({.id = "grid",
-                           .title = "Blocks against capacity",
+                           .title = "Number of blocks and table size",
                            .lead = "",
                            .charts = {page::CurveChart(curves, {.title = "PSNR by number of blocks", .x_label = "blocks", .y_label = "PSNR (dB)"})},
                            .tables = {grid},

@@ -19,11 +19,11 @@ int LargestTable(const VariantResult& result) {
   return largest;
 }
 
-// What was trained and what the scene keeps, field by field.
+// Trained parameters and parameters stored in the scene, for each field.
 BenchTable FieldTable(const VariantResult& result) {
   BenchTable table{.name = "fields",
                    .title = result.label,
-                   .note = "A scene keeps the entries that some occupied cell reads: pictures are the same to the bit.",
+                   .note = "A scene stores only table entries that an occupied cell reads. Rendered images stay bit-identical.",
                    .columns = {"field", "entries per level", "trained", "in the scene", "left out", "PSNR"},
                    .rows = {}};
   for (const VariantField& field : result.fields) {
@@ -42,14 +42,15 @@ std::string Against(const VariantResult& fitted, const VariantResult& other) {
   const double change_db = fitted.psnr_db - other.psnr_db;
   const double bytes = 1.0 - fitted.scene_bytes / other.scene_bytes;
   return fmt::format(
-      "Against {}: {:.0f} % fewer parameters in the scene than that trained ({:.2f} M against {:.2f} M; its file is {:.0f} % smaller than that "
-      "one's, which leaves out unread entries too), PSNR {} dB. The aim, {:.0f} % fewer at a loss of at most {:g} dB, is {}.",
+      "Compared with {}: the scene has {:.0f} % fewer parameters than that variant trained ({:.2f} M and {:.2f} M; the scene file is {:.0f} % "
+      "smaller, "
+      "and both files leave out unread entries), PSNR {} dB. The target of {:.0f} % fewer parameters at a loss of at most {:g} dB is {}.",
       other.label, 100.0 * share, fitted.scene_parameters / 1e6, other.parameters / 1e6, 100.0 * bytes, Signed(change_db, 2), 100.0 * kAimShare,
       kAimLoss_db, share >= kAimShare && change_db >= -kAimLoss_db ? "met" : "missed");
 }
 
 std::string Even(const VariantResult& fitted, const VariantResult& leaner) {
-  return fmt::format("{} would do with {:.0f} % of the fitted scene's parameters ({:.2f} M) at {} dB.", leaner.label,
+  return fmt::format("{}: {:.0f} % of the fitted scene's parameters ({:.2f} M), PSNR {} dB.", leaner.label,
                      100.0 * leaner.scene_parameters / fitted.scene_parameters, leaner.scene_parameters / 1e6,
                      Signed(leaner.psnr_db - fitted.psnr_db, 2));
 }
@@ -68,7 +69,7 @@ StudyBench CapacityBench(Study& study, const CapacityOptions& options) {
   std::vector<config::Override> own = {budget};
   if (!options.blocks.empty()) own.push_back({"partition.blocks", options.blocks});
   const VariantResult fitted = study.Run({.name = "fitted", .label = "fitted to each block", .overrides = own});
-  // Other tables would make automatic partition cut other blocks.
+  // The blocks are fixed, because automatic partition would make other blocks for other tables.
   const std::string layout = fitted.layout.empty() ? study.settings().partition.blocks : fitted.layout;
   std::vector<VariantResult> uniform, shared, cut;
   for (const int log2 : options.log2_table_sizes) {
@@ -95,10 +96,11 @@ StudyBench CapacityBench(Study& study, const CapacityOptions& options) {
   for (const auto* group : {&uniform, &shared, &cut}) bench.results.insert(bench.results.end(), group->begin(), group->end());
   BenchPage& page = bench.page;
   page.name = "capacity";
-  page.title = "Only what a scene requires";
+  page.title = "Table sizes chosen per block";
   page.lead = fmt::format(
-      "Each block's tables as large as its ground sampling distance, area and roughness ask for ({:g} finest voxels "
-      "of surface per entry), against one size for all blocks, and against more and fewer voxels per entry. {:.0f} s of training for every variant.",
+      "Compares table sizes chosen from each block's ground sampling distance, area and roughness ({:g} finest surface voxels per entry) with one "
+      "size "
+      "for all blocks, and with more and fewer voxels per entry. {:.0f} s of training for every variant.",
       partition.voxels_per_entry, options.budget_s);
   const int largest = LargestTable(fitted);
   for (size_t i = 0; i < uniform.size(); ++i) {
@@ -106,8 +108,8 @@ StudyBench CapacityBench(Study& study, const CapacityOptions& options) {
     if (!fitted.failure.empty() || !same.failure.empty() || options.log2_table_sizes[i] < largest) continue;
     page.verdicts.push_back(Against(fitted, same));
     if (options.log2_table_sizes[i] != largest) continue;
-    page.figures.push_back(
-        {"Parameters", Signed(100.0 * (fitted.scene_parameters / same.parameters - 1.0), 0) + " %", "against the largest block's tables for all"});
+    page.figures.push_back({"Parameters", Signed(100.0 * (fitted.scene_parameters / same.parameters - 1.0), 0) + " %",
+                            "compared with the largest block's table size for all blocks"});
     page.figures.push_back({"PSNR", Signed(fitted.psnr_db - same.psnr_db, 2) + " dB", "at equal training time"});
   }
   for (const auto* group : {&shared, &cut}) {
@@ -118,12 +120,12 @@ StudyBench CapacityBench(Study& study, const CapacityOptions& options) {
   }
   if (fitted.failure.empty()) {
     page.figures.push_back({"Left out after training", fmt::format("{:.0f} %", 100.0 * (1.0 - fitted.scene_parameters / fitted.parameters)),
-                            "entries that nothing reads; changes no pixel"});
+                            "entries that no occupied cell reads; changes no pixel"});
   }
   const page::Curve here{.name = "fitted", .points = {{fitted.scene_parameters, fitted.psnr_db}}, .emphasised = true, .line = false, .marks = true};
   page.sections.push_back(
       {.id = "quality",
-       .title = "Quality for size",
+       .title = "Quality and size",
        .lead = "",
        .charts = {page::CurveChart(
            {Points("one size for all blocks", uniform), Points("other voxels per entry", shared), Points("smaller blocks", cut), here},

@@ -28,7 +28,7 @@ StudyBench EncodingsBench(Study& study, const EncodingsOptions& options) {
   for (const Baseline& baseline : kBaselines) {
     std::vector<config::Override> overrides = {budget, {"train.encoding", baseline.encoding}, {"context.encoding", baseline.encoding}};
     if (std::string(baseline.encoding) == "frequency") {
-      // Without tables the networks must hold everything.
+      // Without tables the networks must store the whole scene, so they are larger.
       for (const char* section : {"train", "context"}) {
         overrides.push_back({std::string(section) + ".hidden", std::to_string(options.frequency_hidden)});
         overrides.push_back({std::string(section) + ".density_hidden_layers", std::to_string(options.frequency_layers)});
@@ -39,11 +39,11 @@ StudyBench EncodingsBench(Study& study, const EncodingsOptions& options) {
   }
   BenchPage& page = bench.page;
   page.name = "encodings";
-  page.title = "What stands between place and network";
+  page.title = "Encodings of position";
   page.lead = fmt::format(
-      "The same field with four encodings of position, {:.0f} s of training each: same losses, same sampling, same occupancy. Voxels and planes have "
-      "about as many "
-      "parameters as the hash grid; sines and cosines have none, and a network of {} layers of {} instead.",
+      "The same field with four encodings of position, {:.0f} s of training each, with the same losses, sampling and occupancy grid. Voxels and "
+      "planes "
+      "have about as many parameters as the hash grid. Sines and cosines have none; their network has {} layers of width {} instead.",
       options.budget_s, options.frequency_layers, options.frequency_hidden);
   const VariantResult& hash = bench.results.front();
   for (size_t i = 1; i < bench.results.size(); ++i) {

@@ -1,4 +1,4 @@
-// Which of several ways to pay for quality are worth their price.
+// The Pareto front of training time and quality: the variants that no other variant beats in both.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@ struct Priced {
   double quality = 0.0;  // larger is better
 };
 
-// Indices of the points that no other point beats: none is at most as dear and better, or cheaper and as good. In order of cost.
+// Indices of the points for which no other point is at most as expensive and better, or cheaper and as good. In order of cost.
 // Points with a NaN are left out.
 std::vector<size_t> ParetoFront(const std::vector<Priced>& points);
-// How far a point lies under the front: the quality that the front offers at its cost or less, minus its own; 0 on the front.
-// Costs up to `same_cost` (a share, 0 or more) higher count as its own: measured times of equal budgets differ a little.
+// How far a point is below the front: the best quality at its cost or less, minus its own quality; 0 on the front.
+// Points that cost up to the fraction same_cost (0 or more) more count as equally expensive, because measured times of equal budgets differ a little.
 double BelowFront(const std::vector<Priced>& points, size_t point, double same_cost = 0.0);
 
 }  // namespace skyquilt::bench

@@ -15,7 +15,7 @@ const VariantResult* Find(const std::vector<VariantResult>& results, const std::
   return at == results.end() ? nullptr : &*at;
 }
 
-// Log2 of the table size of one field that has about as many entries as all blocks together.
+// log2 of the table size with which one field has about as many entries as all blocks together.
 int JoinedTableSize(const VariantResult& divided, int log2_table_size) {
   double entries = 0.0;
   for (const VariantField& field : divided.fields) {
@@ -28,7 +28,7 @@ std::string Difference(const VariantResult& a, const VariantResult& b) {
   return fmt::format("{} dB ({:.2f} against {:.2f}), SSIM {}", Signed(a.psnr_db - b.psnr_db, 2), a.psnr_db, b.psnr_db, Signed(a.ssim - b.ssim, 3));
 }
 
-// Opacity so far in front of surfaces is not their blur.
+// Opacity this far in front of surfaces comes from floaters, not from blurred surfaces.
 constexpr double kHighFloaters_m = 10.0;
 
 double HighFloaters(const VariantResult& result) {
@@ -38,30 +38,30 @@ double HighFloaters(const VariantResult& result) {
   return VariantResult::kNone;
 }
 
-// Empty where nothing was measured.
-std::string FloaterRatio(const VariantResult& clean, const VariantResult& dirty) {
+// How many times as much floater opacity `b` has as `a`; empty without measurements.
+std::string FloaterRatio(const VariantResult& a, const VariantResult& b) {
   std::string text;
   const auto add = [&text](const std::string& what, double less, double more) {
     if (!std::isfinite(less) || !std::isfinite(more) || !(less > 0.0)) return;
     text += fmt::format("; {} {:.3f} % against {:.3f} %, a factor of {:.1f}", what, 100.0 * less, 100.0 * more, more / less);
   };
-  add("floater opacity", clean.floater_opacity, dirty.floater_opacity);
-  add(fmt::format("{:g} m and more in front of surfaces", kHighFloaters_m), HighFloaters(clean), HighFloaters(dirty));
+  add("floater opacity", a.floater_opacity, b.floater_opacity);
+  add(fmt::format("{:g} m and more in front of surfaces", kHighFloaters_m), HighFloaters(a), HighFloaters(b));
   return text;
 }
 
-BenchSection AirSection(const std::vector<VariantResult>& results) {
+BenchSection FloaterSection(const std::vector<VariantResult>& results) {
   std::vector<page::Curve> curves;
   curves.reserve(results.size());
   for (const VariantResult& r : results) curves.push_back({.name = r.label, .points = r.floater_profile, .marks = true});
-  return {.id = "air",
+  return {.id = "floaters",
           .title = "Floater opacity",
           .lead =
-              "What a scene swallows of a ray from the camera until so far in front of the true surface. Blur of surfaces ends "
-              "after some metres; what is left floats.",
-          .charts = {page::CurveChart(curves, {.title = "Opacity of air",
+              "Opacity of a ray from the camera up to the given distance in front of the true surface, where space should be free. Blurred "
+              "surfaces reach a few metres; opacity beyond that comes from floaters.",
+          .charts = {page::CurveChart(curves, {.title = "Opacity in front of surfaces",
                                                .x_label = "distance from the true surface (m)",
-                                               .y_label = "share of light swallowed",
+                                               .y_label = "opacity",
                                                .log_y = true,
                                                .log_x = true})},
           .tables = {},
@@ -77,30 +77,32 @@ std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
   const VariantResult* everywhere = Find(results, "everywhere");
   const VariantResult* shared_everywhere = Find(results, "shared_everywhere");
   std::vector<std::string> verdicts;
-  if (guided == nullptr) return {"The divided model could not be trained: nothing can be compared."};
-  if (small != nullptr) verdicts.push_back("Blocks against one model with the tables of one block, equal time: " + Difference(*guided, *small) + ".");
+  if (guided == nullptr) return {"The model with several blocks could not be trained, so nothing can be compared."};
+  if (small != nullptr) {
+    verdicts.push_back("Blocks against one model with the table size of one block, equal time: " + Difference(*guided, *small) + ".");
+  }
   if (large != nullptr) {
     verdicts.push_back(fmt::format("Blocks against one model with as many parameters ({:.1f} M against {:.1f} M), equal time: {}.",
                                    guided->parameters / 1e6, large->parameters / 1e6, Difference(*guided, *large)));
     verdicts.push_back(
         fmt::format("The large model was trained with {:.0f} M samples ({:.2f} M/s), the blocks with {:.0f} M together ({:.2f} M/s){}.",
                     large->samples / 1e6, large->samples_per_second / 1e6, guided->samples / 1e6, guided->samples_per_second / 1e6,
-                    large->samples_per_second < 0.95 * guided->samples_per_second ? ": larger tables leave the caches" : ""));
-    verdicts.push_back(
-        fmt::format("Each block had {} of its own to learn everything from the beginning, the large model {}.", OfItsOwn(*guided), OfItsOwn(*large)));
+                    large->samples_per_second < 0.95 * guided->samples_per_second ? ": larger tables do not fit into the caches" : ""));
+    verdicts.push_back(fmt::format("Each block was trained with {}, the large model with {}.", OfItsOwn(*guided), OfItsOwn(*large)));
   }
-  if (independent != nullptr) verdicts.push_back("Blocks guided by a context against blocks alone: " + Difference(*guided, *independent) + ".");
+  if (independent != nullptr)
+    verdicts.push_back("Blocks with the context (guided) against blocks without it: " + Difference(*guided, *independent) + ".");
   if (shared != nullptr) {
-    verdicts.push_back("A box as high as what stands in it against boxes that share the survey's height: " + Difference(*guided, *shared) +
+    verdicts.push_back("Boxes as high as their content against boxes with the height of the whole survey: " + Difference(*guided, *shared) +
                        FloaterRatio(*guided, *shared) + ".");
   }
   if (everywhere != nullptr && shared_everywhere != nullptr) {
-    verdicts.push_back("The same when fields know nothing of where surfaces are and search their whole boxes: " +
-                       Difference(*everywhere, *shared_everywhere) + FloaterRatio(*everywhere, *shared_everywhere) + ".");
+    verdicts.push_back("The same when training starts in the whole box (train.start = everywhere): " + Difference(*everywhere, *shared_everywhere) +
+                       FloaterRatio(*everywhere, *shared_everywhere) + ".");
   }
   if (shared_everywhere != nullptr) {
-    verdicts.push_back("Boxes of their own height and surfaces that are known, against neither: " + Difference(*guided, *shared_everywhere) +
-                       FloaterRatio(*guided, *shared_everywhere) + ".");
+    verdicts.push_back("Boxes as high as their content and training that starts at known surfaces, against neither: " +
+                       Difference(*guided, *shared_everywhere) + FloaterRatio(*guided, *shared_everywhere) + ".");
   }
   for (const VariantResult* one : {small, large}) {
     if (one == nullptr || !std::isfinite(one->floater_opacity) || !(guided->floater_opacity > 0.0)) continue;
@@ -128,21 +130,19 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
   run("independent", "blocks, independent", {divided, {"train.coupling", "independent"}});
   const config::Override one_height = {"partition.heights", "survey"}, everywhere = {"train.start", "everywhere"};
   run("shared_height", "blocks, one height for all", {divided, one_height});
-  // Floater opacity is only known where the true surface is.
+  // Floater opacity can only be measured when the true surface is known.
   if (std::isfinite(results.front().floater_opacity)) {
-    run("everywhere", "blocks that search their whole box", {divided, everywhere});
-    run("shared_everywhere", "one height for all, whole box", {divided, one_height, everywhere});
+    run("everywhere", "blocks, start in the whole box", {divided, everywhere});
+    run("shared_everywhere", "one height for all, start in the whole box", {divided, one_height, everywhere});
   }
 
   BenchPage& page = bench.page;
   page.name = "single-vs-multi";
   page.title = "One model or many";
   page.lead = fmt::format(
-      "The same survey, the same {:.0f} s of training for every variant (the context's time included): one field of the whole area against one per "
-      "block. "
-      "Blocks either know the context (guided) or nothing outside themselves (independent). Floater opacity is what a scene swallows of a ray that "
-      "should "
-      "be free until 1 m in front of the true surface; only simulated surveys can tell.",
+      "Compares one field of the whole area with one field per block, for the same survey and the same {:.0f} s of training (context included). "
+      "Blocks are trained with the context (guided) or without it (independent). Floater opacity is the opacity of a ray from the camera to 1 m in "
+      "front of the true surface; it is known only for simulated surveys.",
       options.budget_s);
   if (const VariantResult* guided = Find(results, "guided")) {
     page.figures.push_back({"Blocks, guided", fmt::format("{:.2f} dB", guided->psnr_db), fmt::format("{} blocks", guided->blocks)});
@@ -154,7 +154,7 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
     }
     if (const VariantResult* naive = Find(results, "shared_everywhere"); naive != nullptr && HighFloaters(*guided) > 0.0) {
       page.figures.push_back({"Floaters high above surfaces", fmt::format("{:.1f} x less", HighFloaters(*naive) / HighFloaters(*guided)),
-                              "boxes of their own height, surfaces that are known"});
+                              "boxes as high as their content, start at known surfaces"});
     }
   }
   page.verdicts = Verdicts(results);
@@ -166,7 +166,7 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
                            .charts = {TrainingChart(results)},
                            .tables = {BlockTable(results, "blocks")},
                            .pictures = {}});
-  if (!results.front().floater_profile.empty()) page.sections.push_back(AirSection(results));
+  if (!results.front().floater_profile.empty()) page.sections.push_back(FloaterSection(results));
   page.sections.push_back(PictureSection(results));
   return bench;
 }

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kFix = "Run the bench again with --restart, or remove this file";
 
-// Nothing of these changes a result.
+// Options that do not change a result.
 constexpr const char* kIdle[] = {"run.threads", "run.memory_gb", "context.checkpoint_every_s", "train.checkpoint_every_s"};
 
 void RemoveOldRuns(const std::filesystem::path& folder) {
@@ -31,7 +31,7 @@ void RemoveOldRuns(const std::filesystem::path& folder) {
   }
 }
 
-// Batches' PSNR over the time that all fields together have trained: fields one after the other, each at the mean of what has begun.
+// Mean PSNR of the training batches over all blocks, at 60 fractions of the training; x is that fraction of the blocks' total training seconds.
 std::vector<std::pair<double, double>> JoinedCurve(const scene::TrainReport& training, const std::filesystem::path& checkpoint_folder) {
   constexpr int kPoints = 60;
   std::vector<std::pair<double, double>> joined;
@@ -62,7 +62,7 @@ std::vector<std::pair<double, double>> JoinedCurve(const scene::TrainReport& tra
   return joined;
 }
 
-// Of every field in a scene, by name.
+// Number of parameters of every field in a scene, by name.
 std::map<std::string, int64_t> SceneParameters(const std::filesystem::path& file) {
   const checkpoint::ArchiveReader reader = scene::OpenScene(file);
   std::vector<std::string> prefixes = {scene::kContextPrefix};
@@ -74,14 +74,14 @@ std::map<std::string, int64_t> SceneParameters(const std::filesystem::path& file
   return parameters;
 }
 
-// In the place of one that may be there.
+// Replaces the folder `to` if it exists.
 void MoveFolder(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::filesystem::remove_all(to);
   std::filesystem::create_directories(to.parent_path());
   std::filesystem::rename(from, to);
 }
 
-// Training photos of every n-th in name order, and all held-out ones.
+// The survey with every n-th training photo in name order and all held-out photos.
 survey::Survey Thinned(survey::Survey survey, int keep_every) {
   std::vector<survey::Photo> kept;
   int number = 0;
@@ -96,7 +96,7 @@ survey::Survey Thinned(survey::Survey survey, int keep_every) {
 
 Study::Study(comm::Communicator& comm, Options options) : comm_(comm), options_(std::move(options)) {
   const StudySurvey& wanted = options_.survey;
-  if (wanted.folder.empty() == wanted.place.empty()) throw base::UsageError("a bench needs either --survey FOLDER or --place NAME, and not both");
+  if (wanted.folder.empty() == wanted.place.empty()) throw base::UsageError("a bench needs either --survey FOLDER or --place NAME, not both");
   options_.folder = std::filesystem::absolute(options_.folder).lexically_normal();
   base::RequireWritableFolder(options_.folder);
   if (options_.restart) RemoveOldRuns(options_.folder);
@@ -125,7 +125,7 @@ Study::Study(comm::Communicator& comm, Options options) : comm_(comm), options_(
 std::string Study::Identity(const Variant& variant, coordinator::Settings settings) const {
   coordinator::FlatOptions flat = settings.Flat();
   for (const char* key : kIdle) flat.erase(key);
-  // How the survey came about shows in the survey.
+  // The survey file is part of the identity, so the options that made it are not needed.
   std::erase_if(flat, [](const auto& entry) { return entry.first.starts_with("simulate.") || entry.first.starts_with("prepare."); });
   return config::Hash(flat) + " " + coordinator::FileIdentity(source_ / "survey" / "survey.json") + " " + std::to_string(variant.keep_every);
 }
@@ -151,13 +151,13 @@ std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::v
   if (std::optional<VariantResult> known = Load(variant, identity)) results.push_back(std::move(*known));
   for (const Variant& other : merged) {
     if (results.empty()) break;
-    // Their training is the variant's.
+    // The identity includes that of the variant, because the training is the variant's.
     const std::optional<VariantResult> known = Load(other, identity + " " + Identity(other, SettingsOf(other)));
     if (!known) results.clear();
     if (known) results.push_back(*known);
   }
   if (results.size() == 1 + merged.size()) {
-    spdlog::info("{}: nothing to do, its result is there", variant.label);
+    spdlog::info("{}: nothing to do, its result is saved", variant.label);
     return results;
   }
   scene::TrainReport training;
@@ -169,7 +169,7 @@ std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::v
     if (!results.front().failure.empty()) break;
     spdlog::info("--- {}", other.label);
     const coordinator::Settings own = SettingsOf(other);
-    // Merging anew is what is wanted here: nothing is refused.
+    // restart: the existing scene has other merge settings, which would be refused otherwise.
     coordinator::Pipeline pipeline{
         .comm = comm_, .project = project, .settings = own, .restart = true, .quiet = options_.quiet, .verbose = options_.verbose};
     coordinator::MergeStage(pipeline);
@@ -210,7 +210,7 @@ void Study::RemoveLargeFiles(const Variant& variant) const {
     std::filesystem::remove_all(RunFolder(variant) / part, ignored);
 }
 
-// The decoded photos of one width are the same for all variants that use all photos: one file under several names.
+// Decoded photos of one width are the same for all variants that use all photos, so they share one file through hard links.
 void Study::LinkPixels(const std::filesystem::path& run_folder, int image_width, bool share) const {
   const std::filesystem::path shared = options_.folder / "cache" / ("pixels_" + std::to_string(image_width) + ".bin");
   const std::filesystem::path own = coordinator::Project{run_folder}.PixelCacheFile();
@@ -218,7 +218,7 @@ void Study::LinkPixels(const std::filesystem::path& run_folder, int image_width,
   const std::filesystem::path& to = share ? shared : own;
   if (!std::filesystem::exists(from) || std::filesystem::exists(to)) return;
   std::filesystem::create_directories(to.parent_path());
-  std::error_code ignored;  // a file system without links: everybody decodes for himself
+  std::error_code ignored;  // on a file system without links every variant decodes its photos itself
   std::filesystem::create_hard_link(from, to, ignored);
 }
 
@@ -235,7 +235,7 @@ evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settin
   try {
     *training = coordinator::TrainStage(pipeline);
   } catch (const base::UsageError& error) {
-    throw base::BlockError(error.what());  // what cannot be trained with these settings, for instance for want of memory, is a result
+    throw base::BlockError(error.what());  // these settings cannot be trained, for instance for lack of memory: this is a result of the bench
   }
   coordinator::ThrowIfBlocksFailed(*training, project);
   if (variant.keep_every == 1) LinkPixels(project.folder, settings.run.image_width, true);

@@ -1,4 +1,4 @@
-// The benches that train: every one a list of variants of one survey, and what is to be read from their results.
+// The benches that train whole surveys. Each one runs a list of variants of one survey and makes a page with tables, plots and conclusions.
 #pragma once
 
 #include <string>
@@ -15,11 +15,11 @@ struct StudyBench {
 };
 
 struct SingleVsMultiOptions {
-  std::string blocks = "3x3";  // of the divided variants
+  std::string blocks = "3x3";  // of the variants with several blocks
   double budget_s = 300.0;     // training time of every variant, context included
 };
-// One model of the whole area against one per block: equal time, and equal parameters. Couplings guided and independent; boxes as high as what
-// stands in them against boxes that share the survey's height.
+// Compares one model of the whole area with one model per block, at equal time and at equal parameters. Also compares blocks with and without the
+// context, and block boxes as high as their content with boxes that all have the height of the survey.
 // Source of the question: MatrixCity (Li et al. 2023), supplement, table 2.
 StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options);
 
@@ -28,7 +28,7 @@ struct BlocksBenchOptions {
   std::vector<int> log2_table_sizes = {15, 17, 19};
   double budget_s = 180.0;
 };
-// Number of blocks against capacity of each. MatrixCity, supplement, table 3.
+// Compares numbers of blocks and table sizes. Source: MatrixCity, supplement, table 3.
 StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options);
 
 struct CapacityOptions {
@@ -37,8 +37,8 @@ struct CapacityOptions {
   std::vector<double> voxels_per_entry = {1.0, 2.0, 8.0};  // of partition
   double budget_s = 300.0;
 };
-// Tables (and blocks) sized by what each block's ground sampling distance and surface ask for, against the same size for all blocks, and against
-// more and fewer surface voxels per entry and smaller blocks; what a scene leaves out of them, and what all of it costs in quality.
+// Compares table sizes chosen from each block's ground sampling distance and surface with one size for all blocks, with more and fewer surface
+// voxels per entry, and with smaller blocks. Reports quality, and how many entries the scene leaves out.
 StudyBench CapacityBench(Study& study, const CapacityOptions& options);
 
 struct EncodingsOptions {
@@ -47,23 +47,24 @@ struct EncodingsOptions {
   int frequency_layers = 6;
   double frequency_learning_rate = 2e-3;
 };
-// Hash grid, dense voxels, planes and lines, sines and cosines: encodings of one and the same field.
+// Compares encodings of the same field: hash grid, dense voxels, planes and lines, sines and cosines.
 StudyBench EncodingsBench(Study& study, const EncodingsOptions& options);
 
 struct StudiedPreset {
   std::string name;
-  std::vector<config::Override> overrides;  // what it sets differently from the defaults
-  std::vector<double> budgets;              // times to train it for, as multiples of the middle budget: around what it is made for
+  std::vector<config::Override> overrides;  // options that differ from the defaults
+  std::vector<double> budgets;              // training times to try, as multiples of middle_budget_s
 };
 
 struct TradeoffOptions {
-  double middle_budget_s = 60.0;       // of the studies that vary one thing
-  std::vector<StudiedPreset> presets;  // from the quickest to the best
+  double middle_budget_s = 60.0;       // training time of the variants that change one setting
+  std::vector<StudiedPreset> presets;  // from the fastest to the best
   std::vector<int> log2_table_sizes = {14, 15, 16, 17, 18, 19};
-  std::vector<double> steps_per_voxel = {1.0, 2.0, 4.0};  // marching step: how many samples a ray gets
-  std::vector<int> keep_every = {1, 2, 4};                // of the training photos
+  std::vector<double> steps_per_voxel = {1.0, 2.0, 4.0};  // step along the ray in finest voxels: decides the number of samples
+  std::vector<int> keep_every = {1, 2, 4};                // train with every n-th training photo
 };
-// Presets against time budgets, and one thing at a time: storage precision, tables, samples per ray, their placing, photos.
+// Measures presets at several time budgets. Then changes one setting at a time: storage precision, table size, samples per ray, their placement,
+// number of photos.
 StudyBench Tradeoff(Study& study, const TradeoffOptions& options);
 
 }  // namespace skyquilt::bench

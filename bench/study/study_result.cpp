@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Everything that is one number, by name.
+// Calls `each` for every member that is a single number, with its JSON key.
 template <typename Result, typename Each>
 void EachNumber(Result& r, const Each& each) {
   each("psnr_db", r.psnr_db);

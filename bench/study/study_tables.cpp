@@ -41,11 +41,12 @@ const std::vector<Column>& Columns() {
 }  // namespace
 
 BenchTable QualityTable(const std::vector<VariantResult>& results, const std::string& name) {
-  BenchTable table{.name = name,
-                   .title = "",
-                   .note = "PSNR and SSIM over the pixels of held-out photos that at least two training photos cover. Memory is the training's peak.",
-                   .columns = {"variant"},
-                   .rows = {}};
+  BenchTable table{
+      .name = name,
+      .title = "",
+      .note = "PSNR and SSIM over the pixels of held-out photos that at least two training photos see. Memory is the peak during training.",
+      .columns = {"variant"},
+      .rows = {}};
   for (const VariantResult& r : results) table.rows.push_back({BenchCell::Text(r.failure.empty() ? r.label : r.label + " (" + r.failure + ")")});
   for (const Column& column : Columns()) {
     if (std::all_of(results.begin(), results.end(), [&](const VariantResult& r) { return std::isnan(column.cell(r).value); })) continue;
@@ -90,16 +91,16 @@ std::string TrainingChart(const std::vector<VariantResult>& results) {
 
 BenchSection PictureSection(const std::vector<VariantResult>& results) {
   BenchSection section{.id = "pictures",
-                       .title = "Pictures",
+                       .title = "Images",
                        .lead =
-                           "The same held-out photo, taken and rendered by every variant, magnified. Point at another place to see it "
-                           "in all of them; click for the whole picture.",
+                           "The same held-out photo and its rendering by every variant, magnified. Move the pointer to see another part "
+                           "in all of them; click to see the whole image.",
                        .charts = {},
                        .tables = {},
                        .pictures = {}};
   for (const VariantResult& r : results) {
     if (r.render.empty()) continue;
-    if (section.pictures.empty()) section.pictures.push_back({r.photo, "taken"});
+    if (section.pictures.empty()) section.pictures.push_back({r.photo, "photo"});
     section.pictures.push_back({r.render, r.label});
   }
   return section;

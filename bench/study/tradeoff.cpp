@@ -12,10 +12,10 @@
 namespace skyquilt::bench {
 namespace {
 
-constexpr double kSameTime = 0.03;     // trainings with one budget end within this share of each other
-constexpr double kNearFront_db = 0.1;  // smaller differences are not told apart here; the verdict gives the figure
+constexpr double kSameTime = 0.03;     // training times of one budget differ by at most this fraction
+constexpr double kNearFront_db = 0.1;  // a preset this close to the front counts as on it; the verdict gives the figure
 
-// To the second, or a tenth of one: what a label says is what is trained.
+// Rounded to 1 s, or to 0.1 s below 10 s, so that the label shows the exact budget.
 double Rounded(double seconds) {
   const double digits = seconds < 10.0 ? 10.0 : 1.0;
   return std::max(0.1, std::round(seconds * digits) / digits);
@@ -32,7 +32,7 @@ std::vector<Priced> Prices(const std::vector<VariantResult>& results) {
   return points;
 }
 
-// Presets train on photos of different widths; all are scored at one, the settings' own, or small pictures would seem the better ones.
+// Presets train on photos of different widths, and small images score higher. So all are scored at the width of the settings.
 config::Override ScoringWidth(const Study& study) {
   int width = study.settings().run.image_width;
   if (width == 0) {
@@ -57,7 +57,7 @@ std::string ParetoChart(const std::vector<std::string>& presets, const std::vect
   return page::CurveChart(curves, {.title = "Quality for time", .x_label = "training time (s)", .y_label = "PSNR (dB)", .log_x = true});
 }
 
-// x: where each result stands on the axis; empty: no plot.
+// The section of variants that differ in one setting. x: the value on the axis for each result; empty: no plot.
 BenchSection OneThing(const std::string& id, const std::string& title, const std::string& lead, const std::vector<VariantResult>& results,
                       const std::string& x_label = "", const std::vector<double>& x = {}, bool log_x = false) {
   BenchSection section{.id = id, .title = title, .lead = lead, .charts = {}, .tables = {QualityTable(results, id)}, .pictures = {}};
@@ -68,7 +68,7 @@ BenchSection OneThing(const std::string& id, const std::string& title, const std
   return section;
 }
 
-// Where a preset comes nearest to the front of all; of equals the longest training.
+// The training of a preset that is nearest to the Pareto front of all presets; of equals the longest training.
 struct Nearest {
   const VariantResult* result = nullptr;  // none when no training of the preset succeeded
   double below_db = std::numeric_limits<double>::infinity();
@@ -91,9 +91,9 @@ Nearest NearestToFront(const std::vector<VariantResult>& own, const std::vector<
 std::string PresetVerdict(const std::string& preset, const Nearest& nearest) {
   if (nearest.result == nullptr) return "Preset '" + preset + "' could not be trained.";
   const VariantResult& r = *nearest.result;
-  std::string text = fmt::format("Preset '{}' {}: nearest at {}, {:.2f} dB under it.", preset,
-                                 nearest.OnFront() ? "lies on the front" : "does not lie on the front", r.label, nearest.below_db);
-  if (!nearest.OnFront()) text += fmt::format(" Its {} blocks had {} each to learn everything from the beginning.", r.layout, OfItsOwn(r));
+  std::string text = fmt::format("Preset '{}' {}: nearest with {}, {:.2f} dB below it.", preset,
+                                 nearest.OnFront() ? "is on the Pareto front" : "is not on the Pareto front", r.label, nearest.below_db);
+  if (!nearest.OnFront()) text += fmt::format(" Each of its {} blocks was trained with {}.", r.layout, OfItsOwn(r));
   return text;
 }
 
@@ -133,7 +133,7 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
                       {{.name = "storage_bf16", .label = "bf16", .overrides = {middle, {"merge.storage", "bf16"}}},
                        {.name = "storage_fp16", .label = "fp16", .overrides = {middle, {"merge.storage", "fp16"}}}});
   keep(storage);
-  // Other tables would make automatic partition cut other blocks: one thing at a time.
+  // The blocks are fixed, because automatic partition would make other blocks for other tables.
   const config::Override layout = {"partition.blocks", storage.front().layout.empty() ? study.settings().partition.blocks : storage.front().layout};
   std::vector<VariantResult> tables, samples, placing, photos;
   std::vector<double> table_x, sample_x, photo_x;
@@ -153,13 +153,14 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
   }
   for (const char* stratified : {"true", "false"}) {
     const bool on = std::string(stratified) == "true";
-    placing.push_back(study.Run({.name = on ? "stratified" : "uniform",
-                                 .label = on ? "stratified: the first sample anywhere in its step" : "uniform: always in the middle of it",
-                                 .overrides = {middle, layout, {"train.stratified", stratified}, {"context.stratified", stratified}}}));
+    placing.push_back(
+        study.Run({.name = on ? "stratified" : "uniform",
+                   .label = on ? "stratified: first sample at a random position in its step" : "uniform: first sample in the middle of its step",
+                   .overrides = {middle, layout, {"train.stratified", stratified}, {"context.stratified", stratified}}}));
   }
   for (const int every : options.keep_every) {
     photos.push_back(study.Run({.name = "photos_" + std::to_string(every),
-                                .label = every == 1 ? "all photos" : fmt::format("every {}. photo", every),
+                                .label = every == 1 ? "all photos" : fmt::format("one photo in {}", every),
                                 .overrides = {middle, layout},
                                 .keep_every = every}));
     photo_x.push_back(photos.back().training_photos);
@@ -169,8 +170,9 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
   page.name = "tradeoff";
   page.title = "Speed against accuracy";
   page.lead = fmt::format(
-      "What more time, larger tables, more samples or more photos buy. Presets at several time budgets first; then one thing at a time, {:.0f} s "
-      "each.",
+      "How more time, larger tables, more samples or more photos change the quality. First presets at several time budgets, then one setting at a "
+      "time, "
+      "{:.0f} s each.",
       options.middle_budget_s);
   for (size_t p = 0; p < names.size(); ++p) {
     const Nearest nearest = NearestToFront(by_preset[p], presets);
@@ -190,19 +192,19 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
   }
   page.sections.push_back({.id = "presets",
                            .title = "Presets and time",
-                           .lead = "All scored on held-out photos " + scoring_width.value + " pixels wide (or as wide as they are).",
+                           .lead = "All are scored on held-out photos scaled down to a width of " + scoring_width.value + " pixels.",
                            .charts = {ParetoChart(names, by_preset), TrainingChart(presets)},
                            .tables = {QualityTable(presets, "presets")},
                            .pictures = {}});
-  page.sections.push_back(OneThing("storage", "Storage of the parameters", "One training, its scene written with three precisions.", storage));
+  page.sections.push_back(OneThing("storage", "Storage of the parameters", "One training; its scene is stored with three precisions.", storage));
   page.sections.push_back(OneThing("tables", "Table sizes", "Entries per level of every block.", tables, "parameters", table_x, true));
   page.sections.push_back(OneThing(
       "samples", "Samples per ray",
-      "The marching step as a multiple of the finest voxel: half the step is twice the samples on a ray, and half the rays in the same time.",
-      samples, "marching step (voxels)", sample_x));
-  page.sections.push_back(OneThing("placing", "Stratified against uniform sampling", "", placing));
-  page.sections.push_back(OneThing("photos", "Number of photos", "Training photos left out evenly; the held-out ones are always the same.", photos,
-                                   "training photos", photo_x));
+      "The step along the ray as a multiple of the finest voxel. Half the step gives twice the samples per ray, and half the rays in the same time.",
+      samples, "step along the ray (voxels)", sample_x));
+  page.sections.push_back(OneThing("placing", "Stratified and uniform sampling", "", placing));
+  page.sections.push_back(OneThing("photos", "Number of photos", "Training photos are left out evenly; the held-out photos are always the same.",
+                                   photos, "training photos", photo_x));
   page.sections.push_back(PictureSection(presets));
   return bench;
 }

@@ -1,4 +1,4 @@
-// Where everything of one project lies.
+// The files and folders of one project. Every other part asks here for a path, so the layout on disk is written down once.
 #pragma once
 
 #include <filesystem>
@@ -31,9 +31,9 @@ struct Project {
 
   // Creates the folder and proves it writable. Throws base::InputError.
   static Project Create(const std::filesystem::path& folder);
-  // Throws base::InputError when the folder does not exist or is no project (neither a survey nor a begun one inside).
+  // Throws base::InputError when the folder does not exist or is not a project (see IsProject).
   static Project Open(const std::filesystem::path& folder);
-  // What Open asks, without throwing.
+  // Whether the folder holds a survey, or the stamp of a "prepare" that was started.
   static bool IsProject(const std::filesystem::path& folder);
 };
 

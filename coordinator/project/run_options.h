@@ -1,4 +1,4 @@
-// Options that concern the whole way from photos to report, [run] in the configuration.
+// Options that concern all stages from photos to report: section [run] of the configuration.
 #pragma once
 
 #include <vector>
@@ -8,19 +8,19 @@
 namespace skyquilt::coordinator {
 
 struct RunOptions {
-  int image_width = 1000;       // pixels; photos are reduced to it for training and scoring; 0: full size
-  double time_budget_s = 0.0;   // of the whole training; 0: the steps of [context] and [train] decide
-  double context_share = 0.15;  // of the time budget
+  int image_width = 1000;       // pixels; photos are scaled down to this width for training and scoring; 0: full size
+  double time_budget_s = 0.0;   // seconds for the whole training; 0: the steps of [context] and [train] decide
+  double context_share = 0.15;  // fraction of the time budget, 0..1
   int seed = 1;
   int threads = 0;         // per machine; 0: every core this process may use
   double memory_gb = 0.0;  // per machine; 0: half of it
 
-  // Of this machine, for all its ranks together.
+  // For all ranks on this machine together.
   int UsableThreads() const;
   double MemoryLimitBytes() const;
 
   static std::vector<config::Field<RunOptions>> Fields();
-  // Throws base::UsageError naming the option, its value and what is allowed.
+  // Throws base::UsageError naming the option, its value and the allowed range.
   void Check() const;
 };
 

@@ -6,15 +6,15 @@ namespace skyquilt::coordinator {
 
 config::Sections Settings::AllSections() {
   config::Sections sections;
-  sections.Add("run", run, "the whole way from photos to report");
+  sections.Add("run", run, "options of all stages from photos to report");
   sections.Add("simulate", simulate, "surveys with ground truth, made by 'skyquilt simulate'");
-  sections.Add("prepare", prepare, "photos to a geo-referenced survey");
-  sections.Add("partition", partition, "survey to blocks");
-  sections.Add("brightness", brightness, "what is done about exposure differences between photos");
+  sections.Add("prepare", prepare, "from photos to a geo-referenced survey");
+  sections.Add("partition", partition, "division of the survey into blocks");
+  sections.Add("brightness", brightness, "correction of exposure differences between photos");
   sections.Add("context", context, "the coarse field of the whole survey");
   sections.Add("train", train, "the fine field of each block");
-  sections.Add("merge", merge, "how blocks are joined to one scene");
-  sections.Add("products", products, "orthophoto, surface model, pictures, video");
+  sections.Add("merge", merge, "how blocks are joined into one scene");
+  sections.Add("products", products, "orthophoto, surface model, images, video");
   sections.Add("evaluate", evaluate, "scores and report");
   sections.Rename("simulate.preset", "simulate.place");
   sections.Retire("run.context_ranks", "rank 0 trains the context alone");
@@ -40,7 +40,8 @@ void Settings::Check() const {
   copy.AllSections().Check();
   if (run.time_budget_s > 0.0 && train.steps > 0) {
     throw base::UsageError("both a time budget (run.time_budget_s = " + std::to_string(run.time_budget_s) +
-                           ") and a number of steps (train.steps = " + std::to_string(train.steps) + ") are given: choose one, the other must be 0");
+                           ") and a number of steps (train.steps = " + std::to_string(train.steps) +
+                           ") are given. Choose one and set the other to 0");
   }
 }
 

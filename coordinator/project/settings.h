@@ -1,4 +1,4 @@
-// Every option of the program in one place.
+// Every option of the program, one member per section of the configuration file.
 #pragma once
 
 #include <string>
@@ -31,13 +31,13 @@ struct Settings {
   products::ProductOptions products;
   evaluate::EvaluateOptions evaluate;
 
-  // Holds references to this object.
+  // The result holds references to this object.
   config::Sections AllSections();
   std::string Toml() const;
   FlatOptions Flat() const;
   // Throws base::UsageError as config::ApplyOverride does.
   void Set(const config::Override& entry);
-  // Throws base::UsageError for values that cannot be, alone or together.
+  // Throws base::UsageError for values that are not allowed, alone or in combination.
   void Check() const;
 };
 

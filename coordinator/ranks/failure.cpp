@@ -18,7 +18,7 @@ Failure CurrentFailure() {
   } catch (const base::UsageError& error) {
     return {Failure::kUsage, error.what()};
   } catch (const std::bad_alloc&) {
-    return {Failure::kBlock, "out of memory: smaller blocks, fewer ranks on this machine or a smaller table would fit"};
+    return {Failure::kBlock, "out of memory. Use smaller blocks, smaller tables or fewer ranks on this machine"};
   } catch (const std::exception& error) {
     return {Failure::kBlock, error.what()};
   }

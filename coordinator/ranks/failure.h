@@ -1,4 +1,4 @@
-// What went wrong on a rank, on its way to rank 0: one form for training, rendering and getting ready.
+// An error that happened on a rank, in a form that can be sent to rank 0. Used in training, in rendering and while ranks load their data.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,24 +9,24 @@ namespace skyquilt::coordinator {
 struct Failure {
   enum Kind {
     kNone,
-    kBlock,        // this piece of work only: diverged, out of memory, an exception
+    kBlock,        // only this block or request: diverged, out of memory, an exception
     kInput,        // base::InputError: ends the command
     kUsage,        // base::UsageError: ends the command
     kInterrupted,  // base::Interrupted: saved and stopped
   };
   Kind kind = kNone;
-  std::string reason = {};  // for people: what was found and how to fix it, without the file's name
-  std::string file = {};    // that an input error concerns
+  std::string reason = {};  // what was found and how to fix it, without the file's name
+  std::string file = {};    // the file of an input error; may be empty
 
   explicit operator bool() const { return kind != kNone; }
-  // Reason and, where there is one, file.
+  // "file: reason", or the reason alone.
   std::string Text() const { return file.empty() ? reason : file + ": " + reason; }
 };
 
-// Of the exception that is being handled: only inside a catch block.
+// The exception that is being handled, as a failure. Call it only inside a catch block.
 Failure CurrentFailure();
-// Throws again what the failure was: base::Interrupted, base::UsageError or base::InputError (also for kBlock), with `who` in front of the reason.
-// Not for kNone.
+// Throws the failure as an exception: base::Interrupted, base::UsageError or base::InputError (also for kBlock). `who` is put in front of the
+// reason. kNone is not allowed.
 [[noreturn]] void Throw(const Failure& failure, const std::string& who = "");
 
 nlohmann::json ToJson(const Failure& failure);

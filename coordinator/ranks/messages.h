@@ -1,30 +1,29 @@
-// What rank 0 and the others say to each other.
+// Messages between rank 0 (the coordinator) and the other ranks (the workers).
 #pragma once
 
 #include "core/comm/communicator.h"
 
 namespace skyquilt::coordinator {
 
-// Message tags between rank 0 and the others.
 enum Tag : int {
-  kTagSetup = 101,     // 0 -> worker: a training begins, and what to load for it (see train_all.h)
-  kTagHello = 102,     // worker -> 0: its host and what it has (see rank_group.h)
-  kTagThreads = 103,   // 0 -> worker: how many threads it may use
-  kTagJob = 104,       // 0 -> worker: FieldJob
-  kTagStatus = 105,    // worker -> 0: FieldJob, newline, TrainStatus
-  kTagOutcome = 106,   // worker -> 0: FieldOutcome
+  kTagSetup = 101,     // 0 -> worker: start a training: settings and project (see train_all.h)
+  kTagHello = 102,     // worker -> 0: loaded and ready: host name, threads and memory, or the failure (see rank_group.h)
+  kTagThreads = 103,   // 0 -> worker: number of threads it may use
+  kTagJob = 104,       // 0 -> worker: train this field (FieldJob)
+  kTagStatus = 105,    // worker -> 0: progress: FieldJob, newline, TrainStatus
+  kTagOutcome = 106,   // worker -> 0: result of a job (FieldOutcome)
   kTagStop = 107,      // 0 -> worker: save and stop
-  kTagDone = 108,      // 0 -> worker: no more jobs of this training or rendering
+  kTagDone = 108,      // 0 -> worker: this training or rendering is over
   kTagQuit = 109,      // 0 -> worker: the program ends
-  kTagYield = 110,     // 0 -> worker: save and give the block back, another rank goes on with it
-  kTagScene = 111,     // 0 -> worker: a rendering begins, and of which scene (see rendering/serve_rays.h)
-  kTagPart = 112,      // 0 -> worker: what it may use and which blocks are whose
-  kTagRays = 113,      // 0 -> worker: rays to take on
-  kTagRayReply = 114,  // worker -> 0: how far they came, or what went wrong
+  kTagYield = 110,     // 0 -> worker: save and give the block back; a faster rank continues it
+  kTagScene = 111,     // 0 -> worker: start a rendering of this scene (see rendering/serve_rays.h)
+  kTagPart = 112,      // 0 -> worker: its threads and memory, and the owner of each block
+  kTagRays = 113,      // 0 -> worker: rays to render (RayRequest)
+  kTagRayReply = 114,  // worker -> 0: rendered rays, or the failure (RayReply)
 };
 
-// Waits for a message without giving up when a signal came: only rank 0 decides when a worker rank ends.
-// After a signal and 60 s of silence it throws base::Interrupted, because rank 0 is gone then.
+// Waits for a message. A signal (SIGINT, SIGTERM) does not end the wait, because only rank 0 decides when a worker rank ends.
+// Throws base::Interrupted when no message came for 60 s after a signal: rank 0 has died.
 comm::Message WaitForMessage(comm::Communicator& comm);
 
 }  // namespace skyquilt::coordinator

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// Back to waiting before the body was done: nothing more is to be said.
+// Thrown by Register when rank 0 ends the work before it started, for instance because another rank failed.
 struct SentBack {};
 
 }  // namespace

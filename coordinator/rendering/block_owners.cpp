@@ -11,7 +11,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-// Bits of two 16-bit numbers, alternating (Morton 1966).
+// The bits of two 16-bit numbers in turn: the position on a Z-order curve (Morton 1966).
 uint64_t Interleave(uint32_t x, uint32_t y) {
   uint64_t key = 0;
   for (uint32_t bit = 0; bit < 16; ++bit) {
@@ -21,6 +21,7 @@ uint64_t Interleave(uint32_t x, uint32_t y) {
   return key;
 }
 
+// The blocks in Z-order of their centres.
 std::vector<int> AlongCurve(const scene::FieldStore& store) {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d high = -low;
@@ -32,8 +33,8 @@ std::vector<int> AlongCurve(const scene::FieldStore& store) {
   const double extent = std::max((high - low).maxCoeff(), 1e-9);
   std::vector<uint64_t> key;
   for (int k = 0; k < store.size(); ++k) {
-    const Eigen::Vector2d place = (centre(k) - low) / extent * 65535.0;
-    key.push_back(Interleave(static_cast<uint32_t>(place.x()), static_cast<uint32_t>(place.y())));
+    const Eigen::Vector2d on_grid = (centre(k) - low) / extent * 65535.0;
+    key.push_back(Interleave(static_cast<uint32_t>(on_grid.x()), static_cast<uint32_t>(on_grid.y())));
   }
   std::vector<int> order(key.size());
   std::iota(order.begin(), order.end(), 0);
@@ -41,7 +42,8 @@ std::vector<int> AlongCurve(const scene::FieldStore& store) {
   return order;
 }
 
-bool Meet(const render::TrainedField& a, const render::TrainedField& b) {
+// Whether two blocks, with their blend margins, touch or overlap in plan view.
+bool Overlap(const render::TrainedField& a, const render::TrainedField& b) {
   const double reach = a.blend_m + b.blend_m;
   return (a.box.min_enu.head<2>().array() - reach <= b.box.max_enu.head<2>().array()).all() &&
          (b.box.min_enu.head<2>().array() - reach <= a.box.max_enu.head<2>().array()).all();
@@ -56,7 +58,7 @@ std::vector<int> DealBlocks(const scene::FieldStore& store, int n) {
   std::vector<int> owner(static_cast<size_t>(store.size()), 0);
   double dealt = 0.0;
   for (const int k : AlongCurve(store)) {
-    // By the middle of the block, so that parts come out even.
+    // The middle of the block decides, so that parts are about equal.
     const double middle = dealt + 0.5 * store.Bytes(k);
     owner[static_cast<size_t>(k)] = std::min(n - 1, static_cast<int>(middle / std::max(total, 1.0) * n));
     dealt += store.Bytes(k);
@@ -68,7 +70,7 @@ std::vector<std::vector<int>> LowerNeighbours(const scene::FieldStore& store) {
   std::vector<std::vector<int>> lower(static_cast<size_t>(store.size()));
   for (int k = 0; k < store.size(); ++k) {
     for (int other = 0; other < k; ++other) {
-      if (Meet(store.block(other), store.block(k))) lower[static_cast<size_t>(k)].push_back(other);
+      if (Overlap(store.block(other), store.block(k))) lower[static_cast<size_t>(k)].push_back(other);
     }
   }
   return lower;
@@ -79,7 +81,7 @@ double LargestPartBytes(const scene::FieldStore& store, const std::vector<std::v
   std::set<int> holders;
   for (size_t k = 0; k < owner.size(); ++k) {
     holders = {owner[k]};
-    // Where blocks meet, the owner of the first renders.
+    // Where blocks overlap, the owner of the first renders both.
     for (const int first : lower_neighbours[k]) holders.insert(owner[static_cast<size_t>(first)]);
     for (const int holder : holders) bytes[static_cast<size_t>(holder)] += store.Bytes(static_cast<int>(k));
   }

@@ -1,4 +1,4 @@
-// Which rank holds which blocks of a scene while it is rendered.
+// Which rank holds which blocks of a scene while it is rendered. A scene that does not fit into one rank's memory is divided among several ranks.
 #pragma once
 
 #include <span>
@@ -8,27 +8,27 @@
 
 namespace skyquilt::coordinator {
 
-// Ranks that hold a scene together; every group can answer any ray. Numbers within a group from 0.
+// A group of ranks that together hold the whole scene, so the group can render any ray.
 struct SceneHolders {
   std::vector<int> ranks;
-  std::vector<int> owner;  // per block: number within the group
+  std::vector<int> owner;  // per block: index into `ranks`
 };
 
-// Blocks dealt out to n owners in parts of about equal bytes that hang together on the ground (along a Z-order curve of their centres). Per block
-// its owner; with more owners than blocks some get none.
+// Divides the blocks among n >= 1 owners, in parts of about equal bytes. Blocks of one part are near each other on the ground: they are taken in
+// Z-order (Morton 1966) of their centres. Returns each block's owner, 0..n-1; with more owners than blocks some own none.
 std::vector<int> DealBlocks(const scene::FieldStore& store, int n);
 
-// Per block the ones of lower number that it is blended with somewhere.
+// For each block, the blocks with a lower index that overlap it within the blend margins.
 std::vector<std::vector<int>> LowerNeighbours(const scene::FieldStore& store);
 
-// Bytes that the owner with most of them needs at once, the context and the neighbours included that its blocks are blended with.
+// Largest memory that any of the n owners needs, in bytes: its blocks, the blocks they are blended with, and the context.
 double LargestPartBytes(const scene::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n);
 
-// As many groups as there can be such that everybody's share fits its memory; one group of all when not even that is enough.
-// memory_bytes[i] belongs to ranks[i]; both have the same length, at least 1.
+// As many groups as possible such that each rank's blocks fit its memory; one group of all ranks when even that is not enough (blocks are then
+// loaded on demand). memory_bytes[i] belongs to ranks[i]; both have the same length, at least 1.
 std::vector<SceneHolders> MakeGroups(const scene::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes);
 
-// Who renders where these blocks meet; `otherwise` where there are none.
+// The owner that renders an interval of a ray in which these blocks are blended: the owner of the first. `otherwise` without blocks.
 inline int OwnerOf(std::span<const int> owner, std::span<const int> blocks, int otherwise) {
   return blocks.empty() ? otherwise : owner[static_cast<size_t>(blocks.front())];
 }

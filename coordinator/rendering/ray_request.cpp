@@ -53,7 +53,7 @@ class Unpacker {
       Fail();
     }
   }
-  // A count of things that take at least so many bytes each.
+  // A number of elements that each take at least bytes_each; checked against the bytes that are left.
   size_t TakeCount(size_t bytes_each) {
     const auto n = Take<uint64_t>();
     if (n > (bytes_.size() - at_) / bytes_each) Fail();
@@ -62,7 +62,9 @@ class Unpacker {
   void End() const {
     if (at_ != bytes_.size()) Fail();
   }
-  [[noreturn]] static void Fail() { throw std::runtime_error("a request of rays is not as it should be: do all ranks run the same program?"); }
+  [[noreturn]] static void Fail() {
+    throw std::runtime_error("a message with rays cannot be read. Make sure that all ranks run the same version of skyquilt");
+  }
 
  private:
   void Require(size_t n) const {
@@ -91,7 +93,7 @@ bool Fresh(const scene::RayInFlight& ray_in_flight) {
   return ray_in_flight.at == 0.0 && ray_in_flight.state.transmittance == 1.0 && !ray_in_flight.state.ended;
 }
 
-// Without the padding, whose bytes nobody set.
+// Member by member, because the padding bytes of the struct are not initialised.
 void AddRayInFlight(const scene::RayInFlight& ray_in_flight, Packer* packer) {
   const render::RayState& s = ray_in_flight.state;
   packer->Add(s.transmittance);
@@ -184,19 +186,19 @@ RayRequest RayRequestFromBytes(const std::string& bytes) {
   return request;
 }
 
-std::string ToBytes(const RayReply& request) {
+std::string ToBytes(const RayReply& reply) {
   Packer packer;
-  packer.Add(request.id);
-  packer.Add(request.samples);
-  packer.Add(request.field_loads);
-  packer.AddText(ToJson(request.failure).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  packer.Add(static_cast<uint64_t>(request.in_flight.size()));
+  packer.Add(reply.id);
+  packer.Add(reply.samples);
+  packer.Add(reply.field_loads);
+  packer.AddText(ToJson(reply.failure).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  packer.Add(static_cast<uint64_t>(reply.in_flight.size()));
   size_t color = 0;
-  for (const scene::RayInFlight& ray_in_flight : request.in_flight) {
+  for (const scene::RayInFlight& ray_in_flight : reply.in_flight) {
     const bool arrived = ray_in_flight.owner == scene::kArrived;
     packer.Add(arrived);
     if (arrived) {
-      packer.Add(request.colors.at(color++));
+      packer.Add(reply.colors.at(color++));
     } else {
       AddRayInFlight(ray_in_flight, &packer);
     }
@@ -206,24 +208,24 @@ std::string ToBytes(const RayReply& request) {
 
 RayReply RayReplyFromBytes(const std::string& bytes) {
   Unpacker unpacker(bytes);
-  RayReply request;
-  request.id = unpacker.Take<uint64_t>();
-  request.samples = unpacker.Take<int64_t>();
-  request.field_loads = unpacker.Take<int64_t>();
-  request.failure = unpacker.TakeFailure();
+  RayReply reply;
+  reply.id = unpacker.Take<uint64_t>();
+  reply.samples = unpacker.Take<int64_t>();
+  reply.field_loads = unpacker.Take<int64_t>();
+  reply.failure = unpacker.TakeFailure();
   const size_t n = unpacker.TakeCount(sizeof(bool));
   for (size_t i = 0; i < n; ++i) {
     scene::RayInFlight ray_in_flight;
     if (unpacker.Take<bool>()) {
       ray_in_flight.owner = scene::kArrived;
-      request.colors.push_back(unpacker.Take<render::RayColor>());
+      reply.colors.push_back(unpacker.Take<render::RayColor>());
     } else {
       ray_in_flight = TakeRayInFlight(&unpacker);
     }
-    request.in_flight.push_back(ray_in_flight);
+    reply.in_flight.push_back(ray_in_flight);
   }
   unpacker.End();
-  return request;
+  return reply;
 }
 
 }  // namespace skyquilt::coordinator

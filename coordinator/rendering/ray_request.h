@@ -1,4 +1,4 @@
-// Rays on their way between ranks, as bytes. All ranks run the same program on machines of one byte order.
+// Messages that carry rays from rank 0 to a rank that renders them, and back. All ranks must run the same program on machines of one byte order.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace skyquilt::coordinator {
 
-// To a rank: take these rays on.
+// To a rank: render these rays as far as its blocks reach.
 struct RayRequest {
   uint64_t id = 0;
   render::EngineOptions options;
@@ -18,20 +18,20 @@ struct RayRequest {
   std::vector<scene::RayInFlight> in_flight;  // one per ray
 };
 
-// Back from it: in the order of the request's rays.
+// The answer, in the order of the request's rays.
 struct RayReply {
-  uint64_t id = 0;
-  int64_t samples = 0;
-  int64_t field_loads = 0;                    // of the rank, so far
-  std::vector<scene::RayInFlight> in_flight;  // of arrived ones only `owner` counts
-  std::vector<render::RayColor> colors;       // of arrived ones, in order
-  Failure failure;                            // with it no rays come back
+  uint64_t id = 0;                            // of the request
+  int64_t samples = 0;                        // evaluated for this request
+  int64_t field_loads = 0;                    // fields this rank has loaded from the scene file since it opened it
+  std::vector<scene::RayInFlight> in_flight;  // one per ray; of finished rays (owner = kArrived) the other members are not sent
+  std::vector<render::RayColor> colors;       // of the finished rays, in order
+  Failure failure;                            // when set, there are no rays
 };
 
-// Rays of one camera share most numbers, and fresh ones need none: 24 bytes per ray then, at most 152.
+// A ray takes 24 bytes when the rays of the request differ only in direction and none has been rendered in part; otherwise at most 152.
 std::string ToBytes(const RayRequest& request);
-std::string ToBytes(const RayReply& request);
-// Throw std::runtime_error on bytes that are not theirs.
+std::string ToBytes(const RayReply& reply);
+// Throw std::runtime_error for bytes that are not such a message.
 RayRequest RayRequestFromBytes(const std::string& bytes);
 RayReply RayReplyFromBytes(const std::string& bytes);
 

@@ -14,10 +14,10 @@ namespace {
 using scene::kArrived;
 using scene::RayInFlight;
 
-// Rays that are handed out together: enough to keep a rank's cores busy while the next ones travel, few enough that all ranks have some.
+// Rays per request: enough to keep a rank's cores busy while the next request is on its way, few enough that every rank gets some.
 constexpr size_t kMostRays = 1 << 14;
 constexpr size_t kFewestRays = 1 << 11;
-// Requests with a rank at a time: one to work on and one to go on with.
+// Requests that a rank has at a time: one that it renders and the next one.
 constexpr size_t kWithRank = 2;
 
 }  // namespace
@@ -29,11 +29,11 @@ struct RemoteRenderer::Work {
   render::EngineOptions options;
   std::vector<RayInFlight> in_flight;
   size_t chunk = kMostRays;
-  size_t next_ray = 0;  // of those that no group has yet
-  size_t arrived = 0;
-  std::map<int, std::deque<Request>> waiting;            // per rank
-  std::map<int, std::map<uint64_t, Request>> with_rank;  // per rank and number
-  std::vector<size_t> in_group;                          // rays per group that have not arrived
+  size_t next_ray = 0;                                   // first ray that no group has yet
+  size_t arrived = 0;                                    // finished rays
+  std::map<int, std::deque<Request>> waiting;            // per rank: not sent yet
+  std::map<int, std::map<uint64_t, Request>> with_rank;  // per rank: sent and not answered, by request id
+  std::vector<size_t> in_group;                          // per group: rays that are not finished
 };
 
 RemoteRenderer::RemoteRenderer(comm::Communicator& comm, const std::string& setup) : comm_(comm), group_(comm, kTagScene, setup) {
@@ -79,7 +79,7 @@ void RemoteRenderer::Render(std::span<const render::Ray> rays, std::span<render:
   }
 }
 
-// New rays go to the group with least to do for its size; ranks get what waits for them.
+// Gives new rays to the group with the fewest unfinished rays per rank, and sends waiting requests to their ranks.
 void RemoteRenderer::HandOut(Work& work) {
   while (work.next_ray < work.rays.size()) {
     const auto load = [&](size_t group) { return static_cast<double>(work.in_group[group]) / static_cast<double>(groups_[group].ranks.size()); };
@@ -87,7 +87,7 @@ void RemoteRenderer::HandOut(Work& work) {
     for (size_t group = 1; group < groups_.size(); ++group) {
       if (load(group) < load(least)) least = group;
     }
-    // Twice a chunk per rank: one to work on and one to go on with.
+    // Each rank has enough: one chunk that it renders and the next one.
     if (load(least) >= static_cast<double>(kWithRank * work.chunk)) break;
     AddChunk(work, least);
   }
@@ -107,7 +107,7 @@ void RemoteRenderer::AddChunk(Work& work, size_t group) {
     if (members.ranks.size() > 1) {
       segments.clear();
       segments_->Split(work.rays[i], &segments);
-      // Where there is only the context anybody can render; best who goes on with the ray.
+      // Every rank has the context. The owner of the first block on the ray starts it, so that the ray is passed on less often.
       const auto first = std::find_if(segments.begin(), segments.end(), [&](const auto& segment) { return !segments_->Blocks(segment.set).empty(); });
       if (first != segments.end()) owner = OwnerOf(members.owner, segments_->Blocks(first->set), anyone);
     }
@@ -150,7 +150,7 @@ void RemoteRenderer::TakeBack(Work& work, const comm::Message& message) {
   const RayReply reply = RayReplyFromBytes(message.bytes);
   std::map<uint64_t, Request>& with_rank = work.with_rank[rank];
   const auto at = with_rank.find(reply.id);
-  if (at == with_rank.end()) return;  // of a call that was given up
+  if (at == with_rank.end()) return;  // from an earlier call of Render that ended with an exception
   if (reply.failure) Throw(reply.failure, "rank " + std::to_string(rank));
   const Request request = std::move(at->second);
   with_rank.erase(at);
@@ -171,7 +171,7 @@ void RemoteRenderer::TakeBack(Work& work, const comm::Message& message) {
     }
     work.in_flight[i] = reply.in_flight[k];
     const int next = group.ranks.at(static_cast<size_t>(reply.in_flight[k].owner));
-    SKYQUILT_CHECK(next != rank, "a ray that its rank did not take on");
+    SKYQUILT_CHECK(next != rank, "a rank returned a ray that it owns itself");
     onward[next].rays.push_back(i);
     ++statistics_.handovers;
   }

@@ -1,6 +1,6 @@
-// Rays answered by the other ranks, as rank 0 sees it. Ranks whose memory holds the whole scene work side by side; otherwise groups of ranks hold
-// it together, and a ray goes from rank to rank, front to back, with what it has gathered (scene::RayInFlight). So the picture is the one that a
-// single process makes, to the bit.
+// Rank 0's side of rendering on several ranks. When the scene fits into each rank's memory, every rank renders whole rays. Otherwise groups of
+// ranks hold the scene together, and a ray passes from rank to rank, front to back, with its colour and transmittance so far
+// (scene::RayInFlight). The image is bit-identical to that of a single process.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ namespace skyquilt::coordinator {
 
 class RemoteRenderer : public scene::RayService {
  public:
-  // Calls the other ranks together (at least one); they open the scene file. Its destructor sends them back.
-  // `setup` is for ServeRays, see serve_rays.h.
+  // Starts the rendering on the other ranks (at least one), which open the scene file; the destructor ends it there.
+  // `setup`: from RenderingSetup, see serve_rays.h.
   RemoteRenderer(comm::Communicator& comm, const std::string& setup);
 
   void Begin(const scene::FieldStore& store, const render::RaySegments& segments) override;
@@ -31,7 +31,7 @@ class RemoteRenderer : public scene::RayService {
   scene::RenderStatistics statistics() const override { return statistics_; }
 
  private:
-  // Rays that wait for a rank, or are with one.
+  // Rays that wait for a rank, or that a rank is rendering.
   struct Request {
     size_t group = 0;
     std::vector<size_t> rays;  // indices into the call's rays

@@ -1,4 +1,4 @@
-// A scene opened for rendering, with all ranks and within the memory that the settings allow.
+// A scene opened for rendering. It is rendered by all other ranks, or by this process when it is the only one, within the memory limit of [run].
 #pragma once
 
 #include <filesystem>
@@ -14,9 +14,9 @@ namespace skyquilt::coordinator {
 
 class SceneSession {
  public:
-  // One process alone renders itself. Throws base::InputError, base::UsageError.
+  // Throws base::InputError, base::UsageError.
   SceneSession(comm::Communicator& comm, const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet);
-  // Says in the log what it took: rays per second is the caller's to say.
+  // Logs traffic between ranks and repeated loading of fields. Speed (rays per second) is logged by the caller.
   ~SceneSession();
   SceneSession(const SceneSession&) = delete;
   SceneSession& operator=(const SceneSession&) = delete;

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-// This rank's part of a scene.
+// Renders rays with the blocks of a scene that this rank owns.
 class RayServer {
  public:
   RayServer(const std::filesystem::path& scene_h5, const json& part)
@@ -90,7 +90,7 @@ void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
     options.threads = setup.at("threads").get<int>();
     options.memory_gb = setup.at("memory_gb").get<double>();
     const std::filesystem::path scene_h5 = setup.at("scene").get<std::string>();
-    // Found out before rank 0 counts on this rank.
+    // Checked before Register, so that rank 0 hears of it before it sends rays.
     if (!std::filesystem::exists(scene_h5)) throw base::InputError(scene_h5, "no such file", "All ranks must see the same project folder");
     hello["threads"] = options.UsableThreads();
     hello["memory_bytes"] = options.MemoryLimitBytes();
@@ -100,7 +100,7 @@ void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
       if (message.tag == kTagDone) return;
       if (message.tag != kTagRays) continue;
       comm.Send(0, kTagRayReply, ToBytes(server.Carry(RayRequestFromBytes(message.bytes))));
-      // Nothing moves while this rank renders the next request.
+      // Otherwise the reply might stay unsent while this rank renders the next request.
       comm.Flush();
     }
   });

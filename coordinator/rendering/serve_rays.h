@@ -1,4 +1,4 @@
-// One rendering as every rank but the first sees it.
+// Rendering on the other ranks: they render the rays that rank 0 sends (see remote_renderer.h).
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace skyquilt::coordinator {
 
-// What kTagScene carries.
+// The content of a kTagScene message.
 std::string RenderingSetup(const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet);
 
-// Answers rays until kTagDone. Never throws for what a rendering met.
+// Renders requested rays until kTagDone. Errors are reported to rank 0 and not thrown.
 void ServeRays(comm::Communicator& comm, const std::string& setup);
 
 }  // namespace skyquilt::coordinator

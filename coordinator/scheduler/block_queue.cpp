@@ -10,7 +10,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-// A block is never started for less than this: the budget may be overdrawn by it, but nothing comes out untrained.
+// Shortest budget of a block. It may exceed the time budget a little, but no block stays untrained.
 constexpr double kShortestBudget_s = 2.0;
 
 }  // namespace
@@ -32,7 +32,7 @@ double ListScheduleEnd(std::span<const double> durations_s, double now_s, std::s
 
 BlockQueue::BlockQueue(std::vector<QueueBlock> blocks, const QueueOptions& options) : options_(options), all_(std::move(blocks)) {
   for (QueueBlock& block : all_) {
-    // A block without a sensible cost still has to be trained.
+    // A block with a cost that is not positive and finite still has to be trained.
     if (!(block.cost > 0.0) || !std::isfinite(block.cost)) block.cost = 1e-6;
     total_cost_ += block.cost;
     Insert({block, 0});

@@ -44,7 +44,7 @@ void CoordinateAlone(BlockQueue& queue, const FieldTrainer& trainer, int threads
   }
 }
 
-// State of one training spread over ranks.
+// State of one training that is divided among ranks.
 class Coordination {
   static constexpr double kRelieveEvery_s = 1.0;
   static constexpr int kMostMoves = 3;
@@ -61,7 +61,7 @@ class Coordination {
         Stop();
       }
       if (!stopping_) RelieveSlowRanks();
-      while (!stopping_ && !idle_.empty() && GoOnWithReturned()) {
+      while (!stopping_ && !idle_.empty() && AssignReturnedBlock()) {
       }
       while (!stopping_ && queue_.HasWaiting() && !idle_.empty()) HandOut();
       if (busy_.empty() && (stopping_ || (!queue_.HasWaiting() && returned_.empty()))) break;
@@ -100,14 +100,14 @@ class Coordination {
     comm_.Send(rank, kTagJob, ToText(job));
   }
 
-  // Asks slow ranks for their blocks while others are idle. Looked into once a second at most.
+  // Asks slow ranks for their blocks while other ranks are idle; at most once a second.
   void RelieveSlowRanks() {
     if (idle_.empty() || busy_.empty() || !queue_.FixedWork()) return;
     const double now = hooks_.now_s();
     if (now < relieve_again_s_) return;
     relieve_again_s_ = now + kRelieveEvery_s;
     while (asked_.size() < idle_.size()) {
-      // Of those with nothing to do, the fastest.
+      // The fastest idle rank.
       const int to = *std::max_element(idle_.begin(), idle_.end(), [this](int a, int b) { return speeds_.Speed(a) < speeds_.Speed(b); });
       const std::optional<int> from = speeds_.SlowRank(to, queue_.WaitingCost(), comm_.size() - 1, now);
       if (!from) return;
@@ -117,8 +117,8 @@ class Coordination {
     }
   }
 
-  // A block that a slow rank gave back goes to the fastest idle rank; to the slow one itself only if nobody else is there and nothing else waits.
-  bool GoOnWithReturned() {
+  // Gives a block that a slow rank gave back to the fastest idle rank; to the slow rank itself only if no other rank is idle and no block waits.
+  bool AssignReturnedBlock() {
     if (returned_.empty()) return false;
     const auto [job, from] = returned_.back();
     std::optional<int> to;
@@ -167,7 +167,7 @@ class Coordination {
     }
     switch (outcome.failure.kind) {
       case Failure::kInterrupted:
-        // Also when the signal reached only that rank: the batch system wants its machines back.
+        // Also when the signal reached only that rank: the batch system is ending the job.
         interrupted_ = true;
         if (!stopping_) Stop();
         break;
@@ -190,15 +190,15 @@ class Coordination {
   std::map<int, Busy> busy_;
   RankSpeeds speeds_;
   std::set<int> asked_;                             // slow ranks that were asked for their block
-  std::vector<std::pair<FieldJob, int>> returned_;  // and what they gave back
-  std::map<int, int> moves_;                        // of each block so far
+  std::vector<std::pair<FieldJob, int>> returned_;  // blocks that slow ranks gave back, with the rank
+  std::map<int, int> moves_;                        // moves of each block so far
   double relieve_again_s_ = 0.0;
   std::optional<FieldOutcome> fatal_;
   bool stopping_ = false;
   bool interrupted_ = false;
 };
 
-// Called by the trainer between steps: passes the status on about twice a second and looks for a stop from rank 0.
+// Called by the trainer between steps: sends the status to rank 0 about twice a second, and checks for a stop from rank 0.
 class RankReporter {
  public:
   RankReporter(comm::Communicator& comm, const FieldJob& job) : comm_(comm), job_text_(ToText(job)) {}
@@ -208,7 +208,7 @@ class RankReporter {
       last_poll_ = Clock::now();
       while (const std::optional<comm::Message> message = comm_.TryReceive()) {
         if (message->tag == kTagStop) stop_ = true;
-        // One that crossed the outcome of another job is not meant for this one.
+        // A request for an earlier job may arrive late, after that job has ended; it does not concern this one.
         if (message->tag == kTagYield && message->bytes == job_text_) yield_ = true;
         if (stop_ || yield_) base::RequestCancel();
       }
@@ -219,7 +219,7 @@ class RankReporter {
       comm_.Send(0, kTagStatus, job_text_ + "\n" + ToText(status));
     }
   }
-  // Only the block was asked for: the rank stays.
+  // Only the block was asked for: the rank stays in the training.
   bool only_yielded() const { return yield_ && !stop_; }
 
  private:
@@ -246,7 +246,7 @@ void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int thre
   while (true) {
     const comm::Message message = WaitForMessage(comm);
     if (message.tag == kTagDone) return;
-    if (message.tag != kTagJob) continue;  // a stop that crossed the outcome of the job it was meant for
+    if (message.tag != kTagJob) continue;  // a stop for a job that ended before it arrived
     const FieldJob job = JobFromText(message.bytes);
     RankReporter reporter(comm, job);
     const FieldOutcome outcome = RunField(

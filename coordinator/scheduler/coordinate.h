@@ -1,4 +1,4 @@
-// Hands blocks to ranks and gathers what came of them. Rank 0 coordinates and trains only when it is alone.
+// Hands blocks to ranks and collects the results. Rank 0 coordinates; it trains only when it is the only rank.
 #pragma once
 
 #include <functional>
@@ -18,16 +18,16 @@ struct CoordinateHooks {
   std::function<void(const FieldJob&, int from_rank, int to_rank)> moved = nullptr;
 };
 
-// Works the queue off: over the other ranks, or with `alone` in this process when there are none. A rank with nothing better to do takes over
-// the block of a slow one, from its checkpoint (blocks of fixed work only).
-// Throws base::Interrupted (all ranks have saved and stopped), base::InputError or base::UsageError of a worker (likewise).
+// Trains all blocks of the queue: on the other ranks, or with `alone` in this process when there are none. A rank without work continues the block
+// of a slow rank from its checkpoint (only when BlockQueue::FixedWork).
+// Throws base::Interrupted, or base::InputError or base::UsageError of a worker; all ranks have saved and stopped then.
 // Blocks that failed are in queue.outcomes() with their reason.
 void CoordinateBlocks(comm::Communicator& comm, BlockQueue& queue, const FieldTrainer& alone, int alone_threads, const CoordinateHooks& hooks);
 
 // Throws base::Interrupted, base::InputError or base::UsageError for an outcome of that kind; returns for the others.
 void ThrowIfEndsCommand(const FieldOutcome& outcome);
 
-// A worker rank's part of one training: takes jobs until kTagDone.
+// A worker rank's side: trains the jobs it receives until kTagDone.
 void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int threads);
 
 }  // namespace skyquilt::coordinator

@@ -43,9 +43,10 @@ worker::BlockSpec SpecOfSurvey(const partition::BlockSet& blocks, const survey::
     any = true;
   }
   if (!any)
-    throw base::InputError(blocks_file, "every block is empty, so there is nothing to train", "Check the photos' positions or choose larger blocks");
+    throw base::InputError(blocks_file, "every block is empty, so there is nothing to train",
+                           "Check the photos' positions or use larger blocks (--blocks)");
   spec.log2_table_size = std::max(spec.log2_table_size, 1);
-  // A thousandth of the survey: what stands behind a block is seen from afar.
+  // A thousandth of the survey's width is fine enough: the context shows what is behind a block, seen from far away.
   const Eigen::Vector3d extent = spec.box.max_enu - spec.box.min_enu;
   spec.finest_voxel_m = std::max(2.0 * finest_block_voxel_m, std::max(extent.x(), extent.y()) / 1024.0);
   spec.photos.resize(survey.photos.size());
@@ -60,7 +61,7 @@ int ContextSteps(const Settings& settings) {
 
 double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads) {
   const double entries = std::ldexp(1.0, block.log2_table_size);
-  // Parameters and two moments of every level, the gradient of one level per thread; other encodings with tables take as much.
+  // Parameters and two moments of every level, and the gradient of one level per thread. Other encodings with tables need as much.
   const bool tables = encoding::KindNamed(options.encoding) != encoding::Kind::kFrequency;
   const double table = !tables ? 0.0 : entries * options.features * 4.0 * (3.0 * options.levels + std::min(threads, options.levels));
   const double per_sample = 4.0 * (2.0 * options.levels * options.features + 6.0 * options.hidden + 64.0);
@@ -73,9 +74,9 @@ bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& bloc
   for (const partition::Block& block : blocks.blocks) {
     if (!block.empty) largest = std::max(largest, ExpectedTrainingBytes(block, settings.train, threads));
   }
-  // Photos' pixels are mapped by every rank, and count for each.
-  const double share = settings.run.MemoryLimitBytes() / std::max(1, ranks_on_machine);
-  return static_cast<double>(pixels.FileBytes()) + largest + kProgramBytes > share;
+  // Every rank maps the pixels of all photos, so they count for each rank.
+  const double per_rank = settings.run.MemoryLimitBytes() / std::max(1, ranks_on_machine);
+  return static_cast<double>(pixels.FileBytes()) + largest + kProgramBytes > per_rank;
 }
 
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,

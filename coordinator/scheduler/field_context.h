@@ -1,4 +1,4 @@
-// What a rank needs to train any field of one project, loaded once per training.
+// Connects a project (survey, blocks, settings) with the trainer in worker/: which photos, which box, which options and which files each field gets.
 #pragma once
 
 #include <filesystem>
@@ -19,20 +19,20 @@ namespace skyquilt::coordinator {
 // Photos and masks in the order of Survey::photos.
 std::vector<image::PixelSource> PixelSources(const survey::Survey& survey);
 
-// One block as the trainer wants it.
+// One block in the form that the trainer takes.
 worker::BlockSpec SpecOfBlock(const partition::Block& block);
-// The whole survey as one box: the union of the blocks that are not empty. Throws base::InputError when all are.
+// The whole survey as one box, for the context: the union of the blocks that are not empty. Throws base::InputError when all are empty.
 worker::BlockSpec SpecOfSurvey(const partition::BlockSet& blocks, const survey::Survey& survey, const std::filesystem::path& blocks_file);
 
-// A trainer over references that must outlive it; writes the field's log beside its checkpoint.
+// A function that trains one field. All references must outlive it. It writes checkpoint and training log into the project.
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,
                               const Settings& settings, const Project& project, const std::string& config_hash, base::ThreadPool& threads);
 
-// Steps of the context: its own, or half of the blocks' (at least 200); 0 when the blocks have none either.
+// Steps of the context: context.steps, or half of train.steps (at least 200); 0 when both are 0.
 int ContextSteps(const Settings& settings);
-// Whether single pixels are to be read from the file, because the cache and the largest block together exceed a rank's share of the memory.
+// Whether pixels must be read from the cache file on demand, because cache and largest block together exceed the memory of one rank.
 bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& blocks, const Settings& settings, int threads, int ranks_on_machine);
-// Rough peak memory of training one block: tables with gradient and two moments, and the workspace of a batch per thread.
+// Estimated peak memory of training one block, in bytes: tables with gradient and Adam's two moments, and the workspace of a batch.
 double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads);
 
 }  // namespace skyquilt::coordinator

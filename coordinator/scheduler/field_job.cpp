@@ -28,7 +28,7 @@ FieldJob JobFromJson(const json& j) {
   return job;
 }
 
-// JSON has no NaN: it travels as null and comes back as 0.
+// JSON has no NaN: it is sent as null and read as 0.
 double Number(const json& j, const char* key) {
   return j.contains(key) && j.at(key).is_number() ? j.at(key).get<double>() : 0.0;
 }
@@ -92,7 +92,7 @@ FieldOutcome OutcomeFromText(const std::string& text) {
   FieldOutcome outcome;
   outcome.job = JobFromJson(j.at("job"));
   const json& failure = j.at("failure");
-  // Ledgers of earlier versions keep kind and reason side by side.
+  // Earlier versions stored kind and reason as two separate values.
   outcome.failure =
       failure.is_object() ? FailureFromJson(failure) : Failure{static_cast<Failure::Kind>(failure.get<int>()), j.at("reason").get<std::string>()};
   outcome.rank = j.at("rank").get<int>();

@@ -1,4 +1,4 @@
-// One field to train, handed to a rank, and what came of it. Both travel as small JSON texts.
+// The job "train this field" that rank 0 gives to a rank, and its result. Both are sent as small JSON texts.
 #pragma once
 
 #include <cstdint>
@@ -31,16 +31,16 @@ struct FieldOutcome {
   int64_t peak_rss_bytes = 0;
 };
 
-// Trains one field and calls the reporter often; the seam that tests replace.
+// Trains one field and calls the reporter often. Tests replace it with a fake.
 using FieldTrainer = std::function<worker::TrainResult(const FieldJob&, const worker::Reporter&)>;
 
-// Runs the trainer and turns whatever happens into an outcome; never throws. `rank` and `threads` are written into it.
+// Runs the trainer. Exceptions become FieldOutcome::failure; never throws. `rank` and `threads` are copied into the outcome.
 FieldOutcome RunField(const FieldTrainer& trainer, const FieldJob& job, const worker::Reporter& report, int rank, int threads);
 
 std::string ToText(const FieldJob& job);
 std::string ToText(const FieldOutcome& outcome);
 std::string ToText(const worker::TrainStatus& status);
-// Throw std::runtime_error on text that is not theirs.
+// Throw nlohmann::json::exception for text that is not of this form.
 FieldJob JobFromText(const std::string& text);
 FieldOutcome OutcomeFromText(const std::string& text);
 worker::TrainStatus StatusFromText(const std::string& text);

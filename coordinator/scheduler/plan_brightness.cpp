@@ -33,7 +33,7 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
     plan.response.exif_gain = std::move(gains.gain);
     known = std::move(gains.known);
   }
-  // Only what the tags know can be believed.
+  // Only photos with usable tags are kept near their EXIF gain.
   plan.learn.tag_weight.assign(n, 0.0F);
   for (size_t i = 0; i < n; ++i) plan.learn.tag_weight[i] = known[i] ? kTagWeight : 0.0F;
   size_t untagged = 0;
@@ -48,18 +48,19 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
     const auto [darkest, brightest] = std::minmax_element(plan.response.exif_gain.begin(), plan.response.exif_gain.end());
     const double stops = std::log2(static_cast<double>(*brightest) / static_cast<double>(*darkest));
     if (untagged == n) {
-      plan.remark = "no photo has an exposure time in its tags: gains are learned from the pictures";
+      plan.remark = "no photo has an exposure time in its EXIF tags: brightness gains are learned from the photos";
     } else if (untagged > 0) {
-      plan.remark = fmt::format("{} of {} photos have no exposure time in their tags: their gains are learned from the pictures", untagged, n);
+      plan.remark = fmt::format("{} of {} photos have no exposure time in their EXIF tags: their brightness gains are learned", untagged, n);
     } else if (stops >= 0.1) {
-      plan.remark = fmt::format("exposures differ by {:.1f} stops over the survey, as the photos' tags say; they are brought to their median", stops);
+      plan.remark =
+          fmt::format("exposures differ by {:.1f} stops according to the EXIF tags: all photos are corrected to the median exposure", stops);
     }
   }
   return plan;
 }
 
 brightness::BrightnessStatistics MeasureBrightness(const survey::Survey& survey, const image::PixelCache& pixels) {
-  constexpr int kGrid = 64;  // pixels looked at along each side of a photo
+  constexpr int kGrid = 64;  // pixels read along each side of a photo
   double srgb = 0.0, clipped = 0.0, n = 0.0;
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     if (survey.photos[i].is_test) continue;
@@ -83,13 +84,13 @@ std::string LuminanceRemark(const brightness::Luminance& luminance, const bright
       fmt::format("the photos' mean brightness is {:.2f}, {:.0f} % of the pixels are clipped", statistics.mean_srgb, 100.0 * statistics.clipped);
   switch (luminance.mode) {
     case brightness::LuminanceMode::kUnder:
-      return seen + fmt::format(": taken as under-exposed and shown at a mean of {:.2f}", luminance.target);
+      return seen + fmt::format(": treated as under-exposed; results are shown with a mean brightness of {:.2f}", luminance.target);
     case brightness::LuminanceMode::kOver:
-      return seen + fmt::format(": taken as over-exposed and shown at a mean of {:.2f}", luminance.target);
+      return seen + fmt::format(": treated as over-exposed; results are shown with a mean brightness of {:.2f}", luminance.target);
     case brightness::LuminanceMode::kNone:
       break;
   }
-  return seen + ": normally exposed, so no concealing field is looked for (brightness.luminance_mode decides otherwise)";
+  return seen + ": normally exposed, so no concealing field is trained (set brightness.luminance_mode to under or over to train one)";
 }
 
 }  // namespace skyquilt::coordinator

@@ -1,4 +1,5 @@
-// From a survey's tags and the options to what training is to do about brightness.
+// Photos of one survey differ in exposure. From their EXIF tags and the options in [brightness], this decides which corrections are known and which
+// ones training must learn.
 #pragma once
 
 #include <string>
@@ -13,17 +14,17 @@
 namespace skyquilt::coordinator {
 
 struct BrightnessPlan {
-  brightness::Response response;     // as far as the tags know it
-  brightness::LearnerOptions learn;  // what the context has to find out
-  std::string remark;                // for people: what was found and what is done; empty when there is nothing to say
+  brightness::Response response;     // as far as the tags tell
+  brightness::LearnerOptions learn;  // what is learned while the context trains
+  std::string remark;                // for the log: what was found and what is done about it; may be empty
 };
 
 // Photos without exposure tags learn their gains even when the correction is "exif" alone: nothing else could align them.
 BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::BrightnessOptions& options);
 
-// What the training photos look like as recorded, from some of their pixels.
+// Mean brightness and fraction of clipped pixels of the training photos, from a grid of 64 x 64 pixels in each.
 brightness::BrightnessStatistics MeasureBrightness(const survey::Survey& survey, const image::PixelCache& pixels);
-// For people: what the statistics say and whether concealing field is looked for.
+// For the log: the statistics, and whether the survey is treated as under- or over-exposed.
 std::string LuminanceRemark(const brightness::Luminance& luminance, const brightness::BrightnessStatistics& statistics);
 
 }  // namespace skyquilt::coordinator

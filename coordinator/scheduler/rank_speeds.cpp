@@ -5,10 +5,9 @@
 namespace skyquilt::coordinator {
 namespace {
 
-// A block's own progress says little before.
-constexpr double kJudge_s = 20.0;
-constexpr double kWorthwhile = 0.75;
-constexpr double kAfterAllElse = 1.1;
+constexpr double kJudge_s = 20.0;      // the speed of a block is judged only after this time
+constexpr double kWorthwhile = 0.75;   // a move must reduce the remaining time to this fraction or less
+constexpr double kAfterAllElse = 1.1;  // a rank is slow when its block takes this many times as long as all remaining work on all ranks
 
 }  // namespace
 
@@ -34,7 +33,7 @@ void RankSpeeds::Close(int rank, double now_s) {
   const auto busy = busy_.find(rank);
   if (busy == busy_.end()) return;
   const Block& block = busy->second;
-  // Blocks that were finished already say nothing.
+  // Blocks that were already complete when handed out tell nothing about the speed.
   if (block.seen && block.fraction > block.first_fraction && now_s > block.begun_s) {
     Done& done = done_[rank];
     done.cost += block.cost * (block.fraction - block.first_fraction);
@@ -78,7 +77,7 @@ std::optional<int> RankSpeeds::SlowRank(int idle, double waiting_cost, int n_ran
   for (const auto& [rank, block] : busy_) {
     const double watched_s = now_s - block.first_s;
     if (!block.seen || block.kept || watched_s < kJudge_s) continue;
-    // Without any progress: as slow as one that makes the smallest.
+    // Avoids a division by zero for a block without any progress.
     const double per_second = std::max(1e-6, block.fraction - block.first_fraction) / watched_s;
     const double here_s = (1.0 - block.fraction) / per_second;
     const double there_s = block.cost * (1.0 - block.fraction) / speed + kMove_s;

@@ -1,5 +1,5 @@
-// How fast ranks are, from what they have done, and which block a rank with nothing to do should take over from a slow one.
-// Pure bookkeeping on the caller's clock. Not thread-safe.
+// Measures how fast each rank trains, to decide which block of a slow rank an idle rank should take over.
+// All times are on the caller's clock. Not thread-safe.
 #pragma once
 
 #include <map>
@@ -9,23 +9,23 @@ namespace skyquilt::coordinator {
 
 class RankSpeeds {
  public:
-  // Moving a block costs about this: saving, and loading elsewhere.
+  // Assumed time to move a block: save it on one rank, load it on another.
   static constexpr double kMove_s = 10.0;
 
   void HandedOut(int rank, double cost, double now_s);
-  // fraction of the block's training that is done, earlier runs included; 0..1.
+  // fraction: how much of the block's training is done, earlier runs included; 0..1.
   void Progress(int rank, double fraction, double now_s);
-  // The block is finished (fraction 1) or given up with what Progress last said.
+  // The block is finished (fraction 1), or given up at the fraction that Progress reported last.
   void Finished(int rank, double now_s);
   void GivenUp(int rank, double now_s);
 
-  // This rank's present block stays with it, or was asked for already.
+  // SlowRank no longer proposes this rank's present block.
   void Keep(int rank);
 
-  // Cost per second; a rank that has not shown anything yet counts as the mean of the others, 0 when none has.
+  // Cost per second, from blocks that ended. A rank without any has the mean speed of the others; 0 when no rank has any.
   double Speed(int rank) const;
-  // The rank whose block `idle` had better take over: one that would still be at work after all else is done, and whose rest `idle` finishes in
-  // at most three quarters of the time, the move included. waiting_cost: of the blocks nobody has begun. n_ranks: that train.
+  // The rank whose block `idle` should take over, if any: the slow rank would finish after all other work is done, and `idle` needs less than three
+  // quarters of its remaining time, the move included. waiting_cost: cost of all blocks not yet started. n_ranks: ranks that train.
   std::optional<int> SlowRank(int idle, double waiting_cost, int n_ranks, double now_s) const;
 
  private:

@@ -32,9 +32,9 @@ void RequireMemory(const partition::BlockSet& blocks, const Settings& settings, 
     const double bytes = ExpectedTrainingBytes(block, settings.train, threads);
     if (bytes * per_host > limit) {
       throw base::UsageError(
-          "block " + block.name + " needs about " + base::FormatCount(bytes) + "B to train, but " + std::to_string(per_host) + " rank(s) share " +
-          base::FormatCount(limit) +
-          "B of memory (run.memory_gb): use fewer ranks on one machine, more and smaller blocks, or a smaller table in [partition]");
+          "block " + block.name + " needs about " + base::FormatCount(bytes) + "B of memory to train, but the limit for " + std::to_string(per_host) +
+          " rank(s) on one machine is " + base::FormatCount(limit) +
+          "B (run.memory_gb). Raise --memory, use fewer ranks per machine, more and smaller blocks, or a smaller partition.max_log2_table_size");
     }
   }
 }
@@ -52,7 +52,7 @@ class Training {
     image::PixelCache pixels = image::PixelCache::Open(project_.PixelCacheFile(), PixelSources(*input_.survey), settings_.run.image_width, pool);
     pixels.Stream(MustStream(pixels, *input_.blocks, settings_, all_threads, comm_.local_size()));
     if (pixels.streaming()) {
-      spdlog::info("photos' pixels ({}B) are read on demand: they do not fit beside a block in {}B of memory",
+      spdlog::info("pixels of the photos ({}B) are read from disk on demand: with a block they exceed the memory limit of {}B (--memory)",
                    base::FormatCount(static_cast<double>(pixels.FileBytes())), base::FormatCount(settings_.run.MemoryLimitBytes()));
     }
     // Decoding is not training: the budget starts here.
@@ -114,7 +114,7 @@ class Training {
       const FieldOutcome outcome = RunField(trainer, job, report, 0, threads);
       RethrowIfFatal(outcome);
       if (queue.Record(outcome)) {
-        spdlog::warn("the context failed and is tried again: {}", outcome.failure.reason);
+        spdlog::warn("the context failed and is tried again with half the learning rate: {}", outcome.failure.reason);
         progress.FieldAgain(job);
       }
     }
@@ -138,8 +138,8 @@ class Training {
       }
     }
     if (comm_.size() - 1 > static_cast<int>(waiting.size())) {
-      spdlog::info("{} ranks train {} blocks: {} of them can only take over from slow ones; more and smaller blocks would use them", comm_.size() - 1,
-                   waiting.size(), comm_.size() - 1 - static_cast<int>(waiting.size()));
+      spdlog::info("{} ranks train {} blocks: {} of them have no block of their own. Use more and smaller blocks (--blocks) or fewer ranks",
+                   comm_.size() - 1, waiting.size(), comm_.size() - 1 - static_cast<int>(waiting.size()));
     }
     QueueOptions options;
     options.steps = settings_.run.time_budget_s > 0.0 ? 0 : settings_.train.steps;
@@ -155,7 +155,7 @@ class Training {
     hooks.now_s = [this] { return Now(); };
     hooks.handed_out = [&](const FieldJob& job, int rank) {
       if (options.has_deadline) ledger_.Promise(job.name, job.seconds);
-      spdlog::debug("{} goes to rank {}{}", job.name, rank, job.seconds > 0.0 ? " for " + base::FormatDuration(job.seconds) : "");
+      spdlog::debug("{} is given to rank {}{}", job.name, rank, job.seconds > 0.0 ? " for " + base::FormatDuration(job.seconds) : "");
     };
     hooks.status = [&](const FieldJob& job, const worker::TrainStatus& status) {
       progress.Update(job, queue.Cost(job.block), status);
@@ -176,7 +176,7 @@ class Training {
       }
     };
     hooks.moved = [](const FieldJob& job, int from_rank, int to_rank) {
-      spdlog::info("{} goes on on rank {}: rank {} is slow", job.name, to_rank, from_rank);
+      spdlog::info("{} continues on rank {}: rank {} is slow", job.name, to_rank, from_rank);
     };
     try {
       CoordinateBlocks(comm_, queue, trainer, threads, hooks);
@@ -197,7 +197,7 @@ class Training {
     spdlog::info("{}: {} steps in {}, {} samples, {} parameters, training PSNR {:.2f} dB{}", outcome.job.name, r.steps,
                  base::FormatDuration(r.seconds), base::FormatCount(static_cast<double>(r.samples)),
                  base::FormatCount(static_cast<double>(r.parameters)), r.final_psnr_db,
-                 r.dropped_steps > 0 ? ", " + std::to_string(r.dropped_steps) + " steps dropped" : "");
+                 r.dropped_steps > 0 ? ", " + std::to_string(r.dropped_steps) + " steps dropped because of non-finite values" : "");
   }
 
   comm::Communicator& comm_;

@@ -1,6 +1,6 @@
 // Trains the context and then every block of a survey, over all ranks.
-// Rank 0 trains the context with all its cores, then hands out blocks, most expensive first, and trains them itself only when it is alone.
-// All ranks read survey, blocks and pixels from the project folder, which they share.
+// Rank 0 trains the context with all its cores. Then it hands out the blocks, most expensive first; it trains blocks only when it is the only rank.
+// All ranks read survey, blocks and pixels from the same project folder.
 #pragma once
 
 #include <string>
@@ -19,18 +19,18 @@ namespace skyquilt::coordinator {
 struct TrainInput {
   const survey::Survey* survey = nullptr;
   const partition::BlockSet* blocks = nullptr;
-  std::string config_hash;  // of everything the result depends on; checkpoints with another one are refused
+  std::string config_hash;  // hash of everything the result depends on; checkpoints with another hash are refused
   bool verbose = false;
   bool quiet = false;
 };
 
-// Called on rank 0. Returns and writes the training results of every field; blocks that failed after all tries are not ok. Writes checkpoints,
-// <field>.log.csv and train.json into the project; continues from what is there. Throws base::Interrupted (everything saved), base::InputError,
-// base::UsageError, base::BlockError when the context itself failed.
+// Call it on rank 0. Writes checkpoints, <field>.log.csv and train.json into the project, and continues from existing checkpoints. Returns the
+// results of every field; blocks that failed after all tries have ok = false. Throws base::Interrupted (everything is saved), base::InputError,
+// base::UsageError, and base::BlockError when the context failed.
 scene::TrainReport TrainAll(comm::Communicator& comm, const TrainInput& input, const Settings& settings, const Project& project);
 
-// One training as every other rank sees it, begun by kTagSetup with this text: trains blocks for rank 0 until kTagDone.
-// Never throws for what a training met.
+// The other ranks' side: trains blocks for rank 0 until kTagDone. setup: content of the kTagSetup message.
+// Errors of a training are reported to rank 0 and not thrown.
 void ServeTraining(comm::Communicator& comm, const std::string& setup);
 
 }  // namespace skyquilt::coordinator

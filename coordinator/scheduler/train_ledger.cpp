@@ -22,8 +22,9 @@ TrainLedger::TrainLedger(const Project& project, const std::string& config_hash)
     promised_s_ = ledger.at("promised_s").get<std::map<std::string, double>>();
     outcomes_ = ledger.at("outcomes").get<std::map<std::string, std::string>>();
   } catch (const json::exception& error) {
-    // Only the sharing of the rest of the budget depends on it, never the result in steps.
-    spdlog::warn("{}: damaged ({}); the time budget starts anew", project.TrainLedgerFile().string(), error.what());
+    // Only the division of the time budget depends on this file; checkpoints do not.
+    spdlog::warn("{}: is damaged ({}). Checkpoints are kept and training continues, but with the full time budget again",
+                 project.TrainLedgerFile().string(), error.what());
     spent_s_ = 0.0;
     promised_s_.clear();
     outcomes_.clear();
@@ -49,7 +50,7 @@ void TrainLedger::SetSpent(double seconds, bool now) {
 
 void TrainLedger::AddOutcome(const FieldOutcome& outcome) {
   const auto previous = outcomes_.find(outcome.job.name);
-  // A field that was complete already says nothing new about time and memory: the earlier figures stand.
+  // A field that was already complete was only loaded: keep the time and memory measured when it was trained.
   if (previous != outcomes_.end() && !outcome.failure) {
     const FieldOutcome earlier = OutcomeFromText(previous->second);
     if (!earlier.failure && earlier.result.steps >= outcome.result.steps) return;
@@ -70,7 +71,7 @@ scene::TrainReport TrainLedger::Report(int ranks, int threads) const {
     const FieldOutcome outcome = OutcomeFromText(text);
     const worker::TrainResult& r = outcome.result;
     scene::FieldTraining field;
-    // By the block's own name, as everywhere outside the scheduler.
+    // Outside the scheduler a block has no "block_" in front of its name.
     field.name = outcome.job.block < 0 ? outcome.job.name : outcome.job.name.substr(outcome.job.name.find('_') + 1);
     field.block = outcome.job.block;
     field.ok = !outcome.failure;

@@ -1,5 +1,5 @@
-// What one training keeps on disk beside the checkpoints (.state/training.json): how much of the time budget is spent and promised, so that a resumed
-// training keeps to the same budget, and the training results of every field.
+// The state of a training besides its checkpoints, so that a resumed training keeps the same time budget: seconds used, seconds assigned to each
+// field, and the results of finished fields. Kept in .state/training.json.
 #pragma once
 
 #include <map>
@@ -14,18 +14,18 @@ namespace skyquilt::coordinator {
 
 class TrainLedger {
  public:
-  // Reads an earlier run's figures when they belong to the same configuration.
+  // Reads the state of an earlier run if it has the same configuration; a damaged file is ignored with a warning.
   TrainLedger(const Project& project, const std::string& config_hash);
 
   double spent_s() const { return spent_s_; }
-  // 0 when nothing was promised yet.
+  // Seconds assigned to a field ("context" or "block_<name>"); 0 when none were assigned yet.
   double Promised(const std::string& field) const;
   void Promise(const std::string& field, double seconds);
-  // Wall seconds of this configuration's training so far, earlier runs included; written at most every 5 s unless `now` is set.
+  // Wall seconds of training so far, earlier runs included. Written to disk at most every 5 s, or at once with `now`.
   void SetSpent(double seconds, bool now);
 
   void AddOutcome(const FieldOutcome& outcome);
-  // The training results of every field so far, the context first. `threads`: per rank that trains.
+  // The results of every field so far, the context first. threads: of each rank that trains.
   scene::TrainReport Report(int ranks, int threads) const;
 
  private:

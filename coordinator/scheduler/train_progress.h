@@ -1,4 +1,4 @@
-// One line for all ranks: share done, loss, PSNR, rays and samples per second of the fields now in training.
+// The progress line of a training, for all ranks together: percent done, mean loss and PSNR, rays and samples per second of the fields in training.
 #pragma once
 
 #include <map>
@@ -11,13 +11,13 @@ namespace skyquilt::coordinator {
 
 class TrainProgress {
  public:
-  // total_cost: of all fields of this line, in the unit of Update's costs.
+  // total_cost: sum over all fields, in the unit of Update's costs.
   TrainProgress(const std::string& label, double total_cost, int n_fields);
 
   void Update(const FieldJob& job, double cost, const worker::TrainStatus& status);
-  // The field is finished for good.
+  // The field is finished, or failed after all tries.
   void FieldDone(const FieldJob& job, double cost);
-  // The field starts again: what it had done no longer counts.
+  // The field starts again; its progress so far no longer counts.
   void FieldAgain(const FieldJob& job) { active_.erase(job.name); }
   void Finish();
 

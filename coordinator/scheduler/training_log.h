@@ -1,5 +1,6 @@
-// One field's training curve as CSV: step,seconds,loss,psnr,rays_per_s,samples_per_s,samples_per_ray (psnr in dB). Appended about once a second,
-// so that a report can draw it and a person can follow it. After a resume, lines past the checkpoint are dropped first.
+// One field's training curve as CSV, for the report and for people who follow a training.
+// Columns: step,seconds,loss,psnr,rays_per_s,samples_per_s,samples_per_ray (psnr in dB).
+// A line is added about once a second. After a resume, lines from steps after the checkpoint are removed first.
 #pragma once
 
 #include <chrono>
@@ -12,7 +13,7 @@ namespace skyquilt::coordinator {
 
 class TrainingLog {
  public:
-  // Nothing is opened before the first status. `every_s`: shortest time between two lines; 0 writes all.
+  // The file is opened at the first Add. every_s: shortest time between two lines; 0 writes every status.
   explicit TrainingLog(std::filesystem::path file, double every_s = 1.0) : file_(std::move(file)), every_s_(every_s) {}
   ~TrainingLog();
   TrainingLog(const TrainingLog&) = delete;

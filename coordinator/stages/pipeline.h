@@ -1,7 +1,7 @@
-// The way from photos to report, one function per stage. Each looks at what is there first: it does nothing when its results are fresh,
-// continues what was begun, and refuses (base::UsageError) to mix a changed configuration with old files.
-// All run on rank 0; training and rendering use the other ranks. Every stage reads its inputs from files, so that stage by stage gives what `run`
-// gives, and returns what it found, freshly made or read again where there was nothing to do.
+// The stages from photos to report, one function each. A stage does nothing when its results are up to date, continues when it was interrupted,
+// and refuses (base::UsageError) to mix a changed configuration with old files.
+// All stages run on rank 0; training and rendering use the other ranks too. Every stage reads its inputs from files, so running stage by stage
+// gives the same results as `run`.
 #pragma once
 
 #include <filesystem>
@@ -20,32 +20,33 @@ struct Pipeline {
   comm::Communicator& comm;
   Project project;
   Settings settings;
-  bool restart = false;  // remove the results of the first stage called and of all later ones
+  bool restart = false;  // remove the results of the first stage that is called and of all later stages
   bool quiet = false;
   bool verbose = false;
-  // What "prepare" reads. model empty: COLMAP is run, or the photos are a simulated survey.
+  // Inputs of "prepare". model may be empty: COLMAP is run, or the photos are a simulated survey.
   std::filesystem::path photos = {};
   std::filesystem::path model = {};
-  // What stages found.
+  // Results of "train" and "evaluate"; read from their files when the stage had nothing to do.
   scene::TrainReport training = {};
   evaluate::Metrics metrics = {};
 };
 
-// Throws base::UsageError when any stage from `first` on has results of another configuration; asks before hours of work, not after.
+// Throws base::UsageError when `first` or any later stage has results of another configuration. Called before the first stage, so that a conflict
+// is found before hours of work and not after.
 void RequireSameConfiguration(Pipeline& pipeline, const std::string& first);
 
-// A simulated survey in its own folder.
+// Makes a simulated survey in its own folder.
 void SimulateStage(Pipeline& pipeline, const std::filesystem::path& folder);
 void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model);
 void PartitionStage(Pipeline& pipeline);
-// Blocks that failed after all their tries are among its fields, not ok; the rest is finished and saved.
+// Blocks that failed after all their tries have ok = false in the report; the others are finished and saved.
 const scene::TrainReport& TrainStage(Pipeline& pipeline);
 void MergeStage(Pipeline& pipeline);
-// Orthophoto, surface model and video, as [products] says.
+// Makes orthophoto, surface model and video, as chosen in [products].
 void ProductsStage(Pipeline& pipeline);
 const evaluate::Metrics& EvaluateStage(Pipeline& pipeline);
 
-// base::BlockError naming those that failed, when there are any.
+// Throws base::BlockError with the names of the failed blocks, if there are any.
 void ThrowIfBlocksFailed(const scene::TrainReport& training, const Project& project);
 
 }  // namespace skyquilt::coordinator

@@ -13,14 +13,14 @@ namespace {
 
 void RequireFile(const std::filesystem::path& file, const std::string& stage, const Project& project) {
   if (std::filesystem::exists(file)) return;
-  throw base::InputError(file, "is not there yet", "Run 'skyquilt " + stage + " " + project.folder.string() + "' first");
+  throw base::InputError(file, "does not exist yet", "Run 'skyquilt " + stage + " " + project.folder.string() + "' first");
 }
 
-// Throws base::UsageError when the inputs are other ones and the stage must not follow by itself.
+// Throws base::UsageError when the inputs have changed and the stage must not run again by itself.
 void RequireSameInputs(const Project& project, const Stage& stage, const FlatOptions& inputs) {
   if (stage.on_new_inputs == OnNewInputs::kAgain) return;
   const std::string changes = base::Join(config::Differences(LoadStamp(project, stage.name)->inputs, inputs), "\n  ");
-  throw base::UsageError("what '" + stage.name + "' in " + project.folder.string() + " was made from has changed:\n  " + changes +
+  throw base::UsageError("the inputs of '" + stage.name + "' in " + project.folder.string() + " have changed since it ran:\n  " + changes +
                          "\nUse another project folder, or --restart to remove the results of '" + stage.name + "' and of all later stages");
 }
 
@@ -33,8 +33,8 @@ FlatOptions StageOptions(const Stage& stage, Settings& settings) {
 }
 
 void RemoveStagesFrom(const Project& project, const std::string& name) {
-  StageNamed(name);  // or everything would go
-  // Latest first: an interrupted removal never leaves a stage whose inputs are gone.
+  StageNamed(name);  // throws for an unknown name, with which the loop would remove every stage
+  // Latest first: an interrupted removal never leaves a stage whose inputs are missing.
   for (auto stage = Stages().rbegin(); stage != Stages().rend(); ++stage) {
     std::error_code error;
     std::filesystem::remove(project.StampFile(stage->name), error);
@@ -51,7 +51,7 @@ void RequireSameConfiguration(Pipeline& pipeline, const std::string& first) {
   bool reached = false;
   for (const Stage& stage : Stages()) {
     reached = reached || stage.name == first;
-    // One with a home of its own keeps its own stamp there.
+    // A stage with a separate folder keeps its stamp there.
     if (reached && stage.home == nullptr) CheckStage(pipeline.project, stage.name, StageOptions(stage, pipeline.settings), {}, {});
   }
 }
@@ -61,7 +61,7 @@ void RunStage(Pipeline& pipeline, const std::string& name) {
   const Project& project = pipeline.project;
   for (const Stage::RequiredFile& required : stage.required) RequireFile(required.file(project), required.stage, project);
   if (stage.check != nullptr) stage.check(project);
-  // Before anything is removed: what it reads may be what a restart removes.
+  // Identify the inputs before a restart removes anything: they may be among the removed files.
   StageStamp stamp{.stage = name, .state = StageStamp::kRunning, .options = StageOptions(stage, pipeline.settings), .inputs = stage.inputs(pipeline)};
   if (pipeline.restart) {
     RemoveStagesFrom(project, name);
@@ -70,18 +70,18 @@ void RunStage(Pipeline& pipeline, const std::string& name) {
   const Freshness freshness = CheckStage(project, name, stamp.options, stamp.inputs, stage.proof(project));
   if (freshness == Freshness::kFresh) {
     if (stage.recall == nullptr || stage.recall(pipeline)) {
-      spdlog::info("{}: nothing to do, the results are there", name);
+      spdlog::info("{}: nothing to do, results are up to date", name);
       return;
     }
-    spdlog::info("{}: again, because its results cannot be read", name);
+    spdlog::info("{}: running again, because its results cannot be read", name);
   }
   if (freshness == Freshness::kInputsChanged) {
     RequireSameInputs(project, stage, stamp.inputs);
-    spdlog::info("{}: made again, because its input is new", name);
+    spdlog::info("{}: running again, because its inputs have changed", name);
   }
   SaveStamp(project, stamp);
   if (stage.dated) base::WriteFileAtomically(project.ConfigFile(), pipeline.settings.Toml());
-  spdlog::info("{}", name);
+  spdlog::info("{} started", name);
   const auto start = std::chrono::steady_clock::now();
   stamp.state = stage.body(pipeline, stamp);
   if (stage.dated) {

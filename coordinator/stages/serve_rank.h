@@ -1,13 +1,13 @@
-// What every rank but the first does from start to end.
+// The main loop of every rank but rank 0.
 #pragma once
 
 #include "core/comm/communicator.h"
 
 namespace skyquilt::coordinator {
 
-// Serves rank 0's trainings and renderings until ReleaseRanks. Never throws for what one of them met.
+// Takes part in rank 0's trainings and renderings until ReleaseRanks. Their errors are reported to rank 0 and not thrown.
 void ServeRank(comm::Communicator& comm);
-// Called on rank 0 before it ends, whatever happened.
+// Ends the loop on all other ranks. Rank 0 must call it before it ends, also after an error.
 void ReleaseRanks(comm::Communicator& comm);
 
 }  // namespace skyquilt::coordinator

@@ -1,5 +1,5 @@
-// One stage of the way from photos to report: all that the pipeline has to know of it. The table of all stages is in stage_table.cpp; to add a stage,
-// add a row there and its body to stage_bodies.cpp.
+// Description of one stage of the pipeline: the options it depends on, its inputs, its outputs and its work. The table of all stages is in
+// stage_table.cpp; to add a stage, add a row there and its body to stage_bodies.cpp.
 #pragma once
 
 #include <filesystem>
@@ -13,43 +13,44 @@ namespace skyquilt::coordinator {
 
 using Paths = std::vector<std::filesystem::path>;
 
-// What happens when a finished stage's inputs are other ones now: the later, cheap stages follow by themselves; nobody's survey, blocks or
-// hours of training are thrown away unasked.
+// What to do when the inputs of a finished stage have changed. Later, cheap stages run again by themselves; survey, blocks and hours of training are
+// never removed without the user's consent.
 enum class OnNewInputs { kAgain, kRefuse };
 
 struct Stage {
   std::string name;
-  // What its results depend on: "section.key", or "section." for a whole section.
+  // The options its results depend on: "section.key", or "section." for a whole section.
   std::vector<std::string> options;
-  // Of those, options that change nothing in its results.
+  // Exceptions: options in those sections that do not change its results.
   std::vector<std::string> without_effect = {};
-  // Files it cannot begin without, and the stages that make them.
+  // Files that must exist before it starts, and the stages that make them.
   struct RequiredFile {
     std::filesystem::path (*file)(const Project& project);
     std::string stage;
   };
   std::vector<RequiredFile> required = {};
-  // Throws base::InputError when one of them is damaged, before anything is changed; null: the body finds out.
+  // Throws base::InputError when one of them is damaged, before anything is changed; null: only the body checks.
   void (*check)(const Project& project) = nullptr;
-  // Identity of what it reads, by name.
+  // Identity of its inputs, by name.
   FlatOptions (*inputs)(const Pipeline& pipeline);
-  // What it leaves behind, all of it removed when it is restarted.
+  // Everything it writes; removed when it is restarted.
   Paths (*outputs)(const Project& project);
-  // What must exist for it to count as finished.
+  // Files that must exist for it to count as finished.
   Paths (*proof)(const Project& project);
-  // Does the work; returns StageStamp::kDone or kFailed. The stamp identifies configuration and inputs.
+  // Does the work; returns StageStamp::kDone or kFailed. stamp: configuration and inputs of this run.
   std::string (*body)(Pipeline& pipeline, const StageStamp& stamp);
-  // Reads again what the body found, when there is nothing to do; null: nothing is kept. False when it cannot be read: the body runs again.
+  // Reads the results into the pipeline when there is nothing to do; null: no results are needed. Returns false when they cannot be read, and the
+  // body runs again.
   bool (*recall)(Pipeline& pipeline) = nullptr;
   OnNewInputs on_new_inputs = OnNewInputs::kAgain;
-  // A folder of its own within the project, with a stamp of its own; null: the project's.
+  // A separate folder for this stage and its stamp; null: the project folder.
   Project (*home)(const Project& project) = nullptr;
-  bool dated = true;  // false for results that must be the same bytes each time: no dates, no copy of the configuration
+  bool dated = true;  // false: no date and no copy of the configuration are written, so that results are the same bytes each time
 };
 
 // In the order they run.
 const std::vector<Stage>& Stages();
-// Of a name in the table; anything else is a bug.
+// The stage with this name, which must be in the table.
 const Stage& StageNamed(const std::string& name);
 
 // The values of the options that a stage's results depend on.

@@ -23,14 +23,14 @@ namespace skyquilt::coordinator {
 namespace {
 
 void LogBlocks(const partition::BlockSet& blocks) {
-  spdlog::info("{} x {} blocks", blocks.rows, blocks.columns);
+  spdlog::info("{} x {} blocks (rows x columns)", blocks.rows, blocks.columns);
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) {
-      spdlog::info("  {}: empty, {}", block.name, block.empty_reason);
+      spdlog::info("  {}: empty ({})", block.name, block.empty_reason);
     } else {
       const Eigen::Vector3d size = block.max_enu - block.min_enu;
-      spdlog::info("  {}: {:.0f} x {:.0f} m, {:.1f} m high, {} photos from {:.0f} m, GSD {:.3f} m, table 2^{}", block.name, size.x(), size.y(),
-                   size.z(), block.photos.size(), block.altitude_agl_m, block.gsd_m, block.log2_table_size);
+      spdlog::info("  {}: {:.0f} x {:.0f} m, {:.1f} m high, {} photos from {:.0f} m above ground, GSD {:.3f} m, 2^{} table entries per level",
+                   block.name, size.x(), size.y(), size.z(), block.photos.size(), block.altitude_agl_m, block.gsd_m, block.log2_table_size);
     }
   }
 }
@@ -88,11 +88,12 @@ std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
     if (field != nullptr && field->ok) {
       input.blocks.push_back({.checkpoint = project.BlockCheckpoint(block.name), .gsd_m = block.gsd_m});
     } else {
-      spdlog::warn("block {} has no finished checkpoint: the context stands in for it", block.name);
+      spdlog::warn("block {} has no finished checkpoint: the scene shows the coarse context field there. Run 'skyquilt train' to train it again",
+                   block.name);
     }
   }
   merge::MergeScene(input);
-  spdlog::info("{}", project.SceneFile().string());
+  spdlog::info("scene: {}", project.SceneFile().string());
   return StageStamp::kDone;
 }
 
@@ -138,9 +139,11 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
                                       .options = pipeline.settings.evaluate};
   pipeline.metrics = evaluate::Evaluate(input, threads);
   const evaluate::Metrics& metrics = pipeline.metrics;
-  spdlog::info("PSNR {:.2f} dB, SSIM {:.3f} over the {:.0f} % covered pixels of {} held-out photos; full frame {:.2f} dB", metrics.psnr, metrics.ssim,
-               100.0 * metrics.coverage, metrics.n_test, metrics.psnr_full_frame);
-  if (metrics.has_truth) spdlog::info("depth: median error {:.2f} m, RMSE {:.2f} m", metrics.depth_median_abs_m, metrics.depth_rmse_m);
+  spdlog::info("{} held-out photos: PSNR {:.2f} dB, SSIM {:.3f} over the {:.0f} % of pixels that are covered; PSNR of full frames {:.2f} dB",
+               metrics.n_test, metrics.psnr, metrics.ssim, 100.0 * metrics.coverage, metrics.psnr_full_frame);
+  if (metrics.has_truth) {
+    spdlog::info("depth error against ground truth: median {:.2f} m, RMSE {:.2f} m", metrics.depth_median_abs_m, metrics.depth_rmse_m);
+  }
   spdlog::info("report: {}", (project.ReportFolder() / "index.html").string());
   return StageStamp::kDone;
 }

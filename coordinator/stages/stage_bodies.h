@@ -1,4 +1,4 @@
-// What each stage does, for the table of stages. Each returns StageStamp::kDone or kFailed, and leaves what it found in the pipeline.
+// The work of each stage. Each function returns StageStamp::kDone or kFailed; training and evaluation store their results in the pipeline.
 #pragma once
 
 #include <string>

@@ -29,7 +29,8 @@ std::string SurveyIdentity(const Project& project) {
   return FileIdentity(SurveyFile(project)) + " " + FileIdentity(project.SurveyFolder() / "points.ply");
 }
 
-// The context and every block that train.json calls trained. A damaged train.json proves nothing, not even the blocks.
+// The checkpoints of the context and of every block that train.json lists as trained. When train.json is damaged, no blocks are required here;
+// reading the report fails later (RecallTraining), and the stage runs again.
 Paths TrainProof(const Project& project) {
   Paths proof = {project.ContextCheckpoint(), project.TrainReport()};
   try {
@@ -93,7 +94,7 @@ std::vector<Stage> MakeTable() {
        .on_new_inputs = OnNewInputs::kRefuse},
       {.name = "train",
        .options = {"brightness.", "context.", "train.", "run.image_width", "run.time_budget_s", "run.context_share", "run.seed"},
-       // How often a field is saved changes nothing in it.
+       // How often a field is saved does not change its result.
        .without_effect = {"context.checkpoint_every_s", "train.checkpoint_every_s"},
        .required = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},
        .inputs =

@@ -26,7 +26,7 @@ TEST(CommandLine, EveryCommandHasHelpWithExamples) {
   EXPECT_NE(CallProgram({"--help"}).out.find("Examples"), std::string::npos);
 }
 
-TEST(CommandLine, WrongWordsSuggestTheNearestAndLeaveWithTwo) {
+TEST(CommandLine, UnknownWordsGetASuggestionAndStatusTwo) {
   Called result = CallProgram({"trian", "out"});
   EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.err.find("'train'"), std::string::npos) << result.err;
@@ -51,7 +51,7 @@ TEST(CommandLine, VersionAndDefaults) {
   EXPECT_NE(defaults.out.find("levels = 3"), std::string::npos);
 }
 
-TEST(CommandLine, PresetsGoByName) {
+TEST(CommandLine, PresetsAreChosenByName) {
   EXPECT_NE(CallProgram({"info", "--defaults", "--config", "quality"}).out.find("image_width = 1500"), std::string::npos);
   EXPECT_EQ(CallProgram({"info", "--defaults", "--config", "default"}).out, CallProgram({"info", "--defaults"}).out);
   EXPECT_EQ(CallProgram({"info", "--defaults", "--config", std::filesystem::temp_directory_path().string()}).status, 3);
@@ -59,7 +59,7 @@ TEST(CommandLine, PresetsGoByName) {
   EXPECT_EQ(wrong.status, 3);
   EXPECT_NE(wrong.err.find("Did you mean 'quality'?"), std::string::npos) << wrong.err;
 
-  // Over a project's own configuration: a preset sets what it names, "default" takes everything back, --set comes last.
+  // On top of a project's configuration: a preset changes only its own options, "default" resets all options, --set comes last.
   const std::filesystem::path own = std::filesystem::temp_directory_path() / ("skyquilt_presets_" + std::to_string(getpid()) + ".toml");
   base::WriteFileAtomically(own, "[run]\nimage_width = 123\n[train]\nlevels = 5\n");
   CommandState state;
@@ -81,7 +81,7 @@ TEST(CommandLine, MissingThingsAreInputErrors) {
   EXPECT_EQ(CallProgram({"--config", "/nonexistent/skyquilt.toml", "info", "--defaults"}).status, 3);
 }
 
-TEST(CommandLine, RunNeedsPhotosOrAPresetAndNotBoth) {
+TEST(CommandLine, RunNeedsPhotosOrAPlaceAndNotBoth) {
   EXPECT_EQ(CallProgram({"run", "-o", "x"}).status, 2);
   EXPECT_EQ(CallProgram({"run", "photos", "--place", "hamlet", "-o", "x"}).status, 2);
 }

@@ -32,7 +32,7 @@ std::vector<Described> AllOptions(coordinator::Settings& settings) {
   return all;
 }
 
-// A value that the range does not contain, as typed; empty when it contains all that was tried.
+// A value outside the range, as typed on the command line; empty when the range contains all values that were tried.
 std::string ForbiddenValue(const config::Option& option) {
   if (std::holds_alternative<bool*>(option.value) || option.range.Text().empty()) return "";
   if (std::holds_alternative<std::string*>(option.value)) {
@@ -72,8 +72,8 @@ RC_GTEST_PROP(OptionRanges, AValueOutOfRangeIsRefusedBeforeAnyWork, ()) {
   RC_ASSERT(from_file.err.find("my.toml") != std::string::npos);
 }
 
-// Every numeric option and every choice has a range; free texts have checks of their own.
-TEST(OptionRanges, OnlyTextsAndSwitchesGoWithoutOne) {
+// Every numeric option and every choice has a range; free texts have separate checks.
+TEST(OptionRanges, OnlyTextsAndSwitchesHaveNone) {
   coordinator::Settings settings;
   const std::set<std::string> free_texts = {"prepare.holdout",       "prepare.colmap",    "prepare.masks",          "partition.blocks",
                                             "brightness.correction", "products.exposure", "evaluate.lpips_network", "evaluate.normal_photos"};
@@ -83,12 +83,12 @@ TEST(OptionRanges, OnlyTextsAndSwitchesGoWithoutOne) {
   }
 }
 
-TEST(OptionRanges, DefaultsLieWithinThem) {
+TEST(OptionRanges, ContainTheDefaults) {
   coordinator::Settings settings;
   EXPECT_NO_THROW(settings.Check());
 }
 
-TEST(OptionRanges, ConfigurationFilesAndHelpShowTheSame) {
+TEST(OptionRanges, AreTheSameInConfigurationFilesAndHelp) {
   coordinator::Settings settings;
   const std::vector<Described> all = AllOptions(settings);
   const std::string defaults = CallProgram({"info", "--defaults"}).out;

@@ -42,7 +42,7 @@ TEST(Settings, UnknownNamesSuggestTheNearest) {
   EXPECT_NE(UsageErrorOf([] { config::ParseOverride("train.levels"); }).find("section.key=value"), std::string::npos);
 }
 
-TEST(Settings, OptionsThatAreGoneAreStillTaken) {
+TEST(Settings, RemovedOptionsAreStillAccepted) {
   coordinator::Settings defaults;
   EXPECT_EQ(LoadSettings({}, {{"run.context_ranks", "2"}}).Flat(), defaults.Flat());
   const TemporaryFolder folder;

@@ -46,7 +46,7 @@ const BenchTable& TableOf(const BenchPage& page, const std::string& name) {
   throw std::out_of_range("no table " + name);
 }
 
-TEST(KernelBenchPage, HoldsWhatTheJsonHolds) {
+TEST(KernelBenchPage, HasTheFiguresOfTheJson) {
   const KernelBenchResult result = TwoThreads();
   const BenchPage page = KernelBenchPage(result, "skyquilt bench kernel <-o out>");
   const nlohmann::json json = nlohmann::json::parse(KernelBenchJson(result));
@@ -65,7 +65,7 @@ TEST(KernelBenchPage, HoldsWhatTheJsonHolds) {
     const std::string key = row[0].shown == "waiting, bookkeeping" ? "waiting" : row[0].shown;
     EXPECT_EQ(row[1].value, json.at("share").at(key)) << key;
     EXPECT_EQ(row[3].value, json.at("one_thread").at("share").at(key)) << key;
-    // Two threads make 1.5 samples in a microsecond: 1333 ns of a thread for each.
+    // Two threads process 1.5 samples per microsecond: 1333 ns of thread time per sample.
     EXPECT_NEAR(row[2].value, row[1].value * 4000.0 / 3.0, 1e-6) << key;
   }
   const BenchTable& machine = TableOf(page, "machine");
@@ -85,7 +85,7 @@ TEST(KernelBenchPage, IsOneOfflineFileWithBars) {
   EXPECT_NE(html.find("hash backward"), std::string::npos);
 }
 
-TEST(KernelBenchPage, LeavesOutOneThreadWhenItIsAll) {
+TEST(KernelBenchPage, HasNoOneThreadRowsWhenOnlyOneThreadIsUsed) {
   KernelBenchResult result = TwoThreads();
   result.all = result.one_thread.front();
   result.one_thread.clear();
@@ -96,7 +96,7 @@ TEST(KernelBenchPage, LeavesOutOneThreadWhenItIsAll) {
   EXPECT_EQ(page.verdicts.size(), 1U);
 }
 
-TEST(KernelBenchPage, ShowsADashForWhatIsNoNumber) {
+TEST(KernelBenchPage, ShowsADashForNaN) {
   KernelBenchResult result = TwoThreads();
   result.all.infer_samples_per_second = std::numeric_limits<double>::quiet_NaN();
   const BenchPage page = KernelBenchPage(result, "");

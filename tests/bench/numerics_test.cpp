@@ -17,7 +17,7 @@ class Numerics : public testing::Test {
  protected:
   void SetUp() override { base::Progress::SetQuiet(true); }
   void TearDown() override { base::Progress::SetQuiet(false); }
-  // The group's rows; every judged one must have passed.
+  // The rows of the group; all that are judged must have passed.
   static std::vector<NumericRow> RunPassing(const NumericGroup& group) {
     const NumericsResult result = RunNumerics({group}, true);
     for (const NumericRow& row : result.Failed()) {
@@ -79,7 +79,7 @@ TEST_F(Numerics, AFailedCaseIsInTheTableAndEndsTheCommand) {
   EXPECT_EQ(json.at("rows").at(1).at("worst"), 0.1);
 }
 
-TEST_F(Numerics, LongDoubleGeodesyKnowsTheEllipsoid) {
+TEST_F(Numerics, LongDoubleGeodesyHasTheEllipsoidsRadii) {
   // Polar and equatorial radii of WGS84; 15 km north of the equator is 0.13565 degrees.
   EXPECT_NEAR(static_cast<double>(EcefOf({90.0, 0.0, 0.0}).z()), 6356752.314245, 1e-6);
   EXPECT_NEAR(static_cast<double>(EcefOf({0.0, 90.0, 10.0}).y()), 6378147.0, 1e-9);

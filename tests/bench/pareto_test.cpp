@@ -16,7 +16,7 @@ std::vector<Priced> FromPairs(const std::vector<std::pair<int, int>>& pairs) {
   return points;
 }
 
-RC_GTEST_PROP(ParetoFront, HoldsExactlyThePointsThatNothingBeats, (const std::vector<std::pair<uint8_t, uint8_t>>& pairs)) {
+RC_GTEST_PROP(ParetoFront, ContainsExactlyThePointsThatNoOtherBeats, (const std::vector<std::pair<uint8_t, uint8_t>>& pairs)) {
   const std::vector<Priced> points = FromPairs({pairs.begin(), pairs.end()});
   const std::vector<size_t> front = ParetoFront(points);
   for (size_t i = 0; i < points.size(); ++i) {
@@ -36,14 +36,14 @@ RC_GTEST_PROP(ParetoFront, HoldsExactlyThePointsThatNothingBeats, (const std::ve
   }
 }
 
-TEST(ParetoFront, PassesOverWhatWasNotMeasured) {
+TEST(ParetoFront, IgnoresNaN) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(ParetoFront({{1.0, nan}, {nan, 9.0}, {2.0, 3.0}}), std::vector<size_t>{2});
   EXPECT_TRUE(ParetoFront({}).empty());
   EXPECT_DOUBLE_EQ(BelowFront({{1.0, 30.0}, {2.0, 29.5}, {3.0, 31.0}}, 1), 0.5);
 }
 
-TEST(BelowFront, TakesNearlyEqualCostsForEqual) {
+TEST(BelowFront, TreatsNearlyEqualCostsAsEqual) {
   const std::vector<Priced> points = {{100.0, 30.0}, {101.0, 30.4}, {110.0, 32.0}};
   EXPECT_DOUBLE_EQ(BelowFront(points, 0), 0.0);
   EXPECT_DOUBLE_EQ(BelowFront(points, 0, 0.02), 30.4 - 30.0);

@@ -21,7 +21,7 @@ SyntheticOptions TinyScene() {
   return scene;
 }
 
-// Exposures a stop either way and emptiness rays among them, so that every loss takes part.
+// Exposures of plus and minus one stop, and some empty rays, so that every loss is used.
 const SyntheticRays kMixedRays{.rays = 12, .empty_share = 0.25F, .most_stops = 1.0F};
 
 TEST(ReferenceTrainer, GradientsMatchFiniteDifferencesInDouble) {
@@ -52,7 +52,7 @@ TEST(ReferenceTrainer, GradientsMatchFiniteDifferencesInDouble) {
 }
 
 // Two implementations of the same functions, in the order and with the signs of Sloan 2013.
-TEST(ReferenceField, HarmonicsAreTheFieldsOwn) {
+TEST(ReferenceField, HarmonicsEqualTheFields) {
   base::Random random(7);
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector3d d = i == 0 ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
@@ -64,7 +64,7 @@ TEST(ReferenceField, HarmonicsAreTheFieldsOwn) {
   }
 }
 
-TEST(ReferenceTrainer, LearnsAndLetsUntouchedEntriesRest) {
+TEST(ReferenceTrainer, LearnsAndDoesNotChangeUntouchedEntries) {
   SyntheticTrainer trainer(TinyScene(), 3, 1);
   const ReferenceTrainer reference(trainer.target(), trainer.field());
   base::Random random(5);
@@ -77,7 +77,7 @@ TEST(ReferenceTrainer, LearnsAndLetsUntouchedEntriesRest) {
     if (state.grid[i] == before.grid[i]) {
       EXPECT_EQ(state.grid_moment2[i], 0.0) << i;
     } else {
-      // The first step of Adam is the learning rate.
+      // The size of Adam's first step is the learning rate.
       EXPECT_NEAR(std::abs(state.grid[i] - before.grid[i]), 1e-3, 1e-6) << i;
       ++moved;
     }

@@ -24,7 +24,7 @@ class ScheduleBench : public testing::Test {
   ScheduleBenchOptions options_;
 };
 
-TEST_F(ScheduleBench, EqualRanksAndBlocksAreUsedAllTheTime) {
+TEST_F(ScheduleBench, EqualRanksWithEqualBlocksAreNeverIdle) {
   options_.cost_spread = options_.cost_error = options_.speed_spread = options_.stragglers = options_.failing = 0.0;
   const ScheduleBenchResult result = RunScheduleBench(options_);
   EXPECT_NEAR(result.work_s, 300 * options_.block_seconds, 1e-6 * result.work_s);
@@ -35,7 +35,7 @@ TEST_F(ScheduleBench, EqualRanksAndBlocksAreUsedAllTheTime) {
   EXPECT_EQ(result.failing.wall_s, result.undisturbed.wall_s);
 }
 
-TEST_F(ScheduleBench, AStragglerDoesNotHoldUpTheRest) {
+TEST_F(ScheduleBench, ASlowRankDoesNotDelayTheOthers) {
   options_.speed_spread = 0.0;
   options_.stragglers = 0.1;
   options_.failing = 0.0;
@@ -44,18 +44,18 @@ TEST_F(ScheduleBench, AStragglerDoesNotHoldUpTheRest) {
     options_.seed = seed;
     const ScheduleBenchResult result = RunScheduleBench(options_);
     const ScheduleRun& run = result.undisturbed;
-    // Nothing ends before the longest block, nor before all ranks, of which about a tenth has half the speed, have done the work together.
+    // Lower bounds: the longest block, and the total work divided among all ranks, of which about a tenth has half the speed.
     EXPECT_LT(run.wall_s, 1.15 * std::max(result.longest_s, result.work_s / (0.95 * 30.0))) << seed;
     EXPECT_GT(run.moves, 0) << seed;
   }
 }
 
-TEST_F(ScheduleBench, LostRanksCostRestartsAndNoBlock) {
+TEST_F(ScheduleBench, LostRanksCauseRestartsAndLoseNoBlock) {
   options_.failing = 0.1;
   const ScheduleBenchResult result = RunScheduleBench(options_);
   EXPECT_EQ(result.failing.restarts, 3);
   EXPECT_GT(result.failing.wall_s, result.undisturbed.wall_s + 2 * options_.restart_s);
-  // A loss costs the restart, at most an interval of everybody's work, and a worse end.
+  // A loss costs the restart, at most one checkpoint interval of all ranks' work, and less balance at the end.
   EXPECT_LT(result.failing.wall_s, result.undisturbed.wall_s + 3 * (options_.restart_s + options_.checkpoint_every_s) + options_.block_seconds);
 }
 
@@ -68,7 +68,7 @@ TEST_F(ScheduleBench, ReadsMeasuredBlocks) {
   EXPECT_THROW(MeasuredBlockSeconds(folder / "other.json"), base::InputError);
 }
 
-TEST_F(ScheduleBench, RefusesWhatCannotBe) {
+TEST_F(ScheduleBench, RefusesInvalidOptions) {
   options_.ranks = 1;
   EXPECT_THROW(RunScheduleBench(options_), base::UsageError);
   options_.ranks = 2;

@@ -9,7 +9,7 @@
 namespace skyquilt::bench {
 namespace {
 
-// On the cluster of the defaults: 10000 blocks of 600 s on 1000 ranks.
+// For the default cluster: 10000 blocks of 600 s on 1000 ranks.
 ScheduleBenchResult DefaultCluster() {
   ScheduleBenchResult result;
   result.work_s = 6e6;
@@ -32,7 +32,7 @@ ScheduleBenchResult DefaultCluster() {
   return result;
 }
 
-TEST(ScheduleBenchPage, HoldsWhatTheJsonHolds) {
+TEST(ScheduleBenchPage, HasTheFiguresOfTheJson) {
   const ScheduleBenchResult result = DefaultCluster();
   const BenchPage page = ScheduleBenchPage(result, "skyquilt bench schedule");
   const nlohmann::json json = nlohmann::json::parse(ScheduleBenchJson(result));
@@ -52,7 +52,7 @@ TEST(ScheduleBenchPage, HoldsWhatTheJsonHolds) {
   }
 }
 
-TEST(ScheduleBenchPage, SharesOfTheRanksTimeMakeAWhole) {
+TEST(ScheduleBenchPage, SharesOfTheRanksTimeSumToOne) {
   const BenchPage page = ScheduleBenchPage(DefaultCluster(), "skyquilt bench schedule");
   const BenchTable& time = page.sections.at(1).tables.at(0);
   for (const size_t run : {size_t{1}, size_t{2}}) {
@@ -65,7 +65,7 @@ TEST(ScheduleBenchPage, SharesOfTheRanksTimeMakeAWhole) {
   EXPECT_EQ(page.sections.at(1).charts.size(), 2U);
 }
 
-TEST(ScheduleBenchPage, HoldsAgainstTargetsOnlyWhatTheyAreSetFor) {
+TEST(ScheduleBenchPage, ChecksTargetsOnlyForTheDefaultCluster) {
   ScheduleBenchResult result = DefaultCluster();
   const BenchPage page = ScheduleBenchPage(result, "");
   ASSERT_EQ(page.verdicts.size(), 2U);

@@ -48,7 +48,7 @@ TEST(OfItsOwn, LeavesOutTheContext) {
   EXPECT_EQ(OfItsOwn(r), "nothing");
 }
 
-TEST(ResultJson, ComesBackAsItWas) {
+TEST(ResultJson, ReadsBackUnchanged) {
   const VariantResult r = Example();
   std::string identity;
   const VariantResult back = ParseResult(ResultJson(r, "abc 1"), &identity);
@@ -74,7 +74,7 @@ TEST(ResultJson, RefusesADamagedText) {
   EXPECT_THROW(ParseResult("{}", &identity), nlohmann::json::exception);
 }
 
-TEST(QualityTable, LeavesOutWhatNobodyMeasured) {
+TEST(QualityTable, LeavesOutColumnsWithoutNumbers) {
   VariantResult failed;
   failed.label = "too large";
   failed.failure = "no memory";
@@ -94,7 +94,7 @@ BenchPage ExamplePage() {
   return page;
 }
 
-TEST(BenchPage, IsEscapedAndCarriesNumbersInFull) {
+TEST(BenchPage, IsEscapedAndHasNumbersInFullPrecision) {
   const BenchPage page = ExamplePage();
   const std::string html = BenchHtml(page);
   EXPECT_EQ(html.find("<of>"), std::string::npos);
@@ -108,7 +108,7 @@ TEST(BenchPage, IsEscapedAndCarriesNumbersInFull) {
   EXPECT_NE(text.find("- It works."), std::string::npos);
 }
 
-TEST(Presets, AreWhatTheFilesSayAndCanBeUsed) {
+TEST(Presets, EqualTheirFilesAndAreValid) {
   for (const std::string& name : app::PresetNames()) {
     coordinator::Settings settings;
     for (const config::Override& entry : app::PresetOverrides(name)) settings.Set(entry);

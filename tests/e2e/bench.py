@@ -27,9 +27,9 @@ def check_kernel_files(out, result):
     expect(float(rows[f"training, {threads}"][1]) == result["roofline_train_samples_per_second"], rows)
     expect(float(rows[f"inference, {threads}"][0]) == result["infer_samples_per_second"], rows)
     expect(("inference, one thread" in rows) == ("one_thread" in result or result["threads"] == 1), rows)
-    stages = {row[0]: float(row[1]) for row in rows_of(out / "kernel_stages.csv")[1:]}
-    stages["waiting"] = stages.pop("waiting, bookkeeping")
-    expect(stages == result["share"], f"{stages} in kernel_stages.csv, {result['share']} in kernel.json")
+    phases = {row[0]: float(row[1]) for row in rows_of(out / "kernel_phases.csv")[1:]}
+    phases["waiting"] = phases.pop("waiting, bookkeeping")
+    expect(phases == result["share"], f"{phases} in kernel_phases.csv, {result['share']} in kernel.json")
     machine = [float(row[1]) for row in rows_of(out / "kernel_machine.csv")[1:4]]
     expect(machine == list(result["limit_ns_per_sample_and_thread"].values()), machine)
 
@@ -51,7 +51,7 @@ def test(skyquilt, folder):
 
     # On several ranks only one process measures and prints.
     text = skyquilt.call("bench", "kernel", *SMALL, "--threads", "1", ranks=2)
-    expect(text.count("Where training time goes") == 1, text)
+    expect(text.count("Training time by phase") == 1, text)
 
     # A small simulated cluster; settings given on the command line override --quick.
     text = skyquilt.call("bench", "schedule", "--quick", "--blocks", "300", "--status-every", "60", "-o", out)

@@ -14,7 +14,7 @@ def test(skyquilt, folder):
         expect("brightness.correction" in text, text)
     text = skyquilt.call("run", photos, "-o", project, *SMALL, "--brightness", "exif,vignette,luminance")
     expect("no photo has an exposure time" in text, f"no warning about missing tags:\n{text}")
-    expect("taken as under-exposed" in text, f"no message about dark photos:\n{text}")
+    expect("treated as under-exposed" in text, f"no message about dark photos:\n{text}")
 
     gains = json.loads((project / "report" / "brightness.json").read_text())["photos"]
     trained = [photo["learned_stops"][1] for photo in gains if not photo["held_out"]]

@@ -31,7 +31,7 @@ def test(skyquilt, folder):
                                    start_new_session=True)
     end = time.monotonic() + 400
     slow = None
-    while process.poll() is None and "goes on on rank" not in log.read_text():
+    while process.poll() is None and "continues on rank" not in log.read_text():
         expect(time.monotonic() < end, f"no rank took over the slow rank's block:\n{log.read_text()}")
         if not any(slowed.glob("checkpoints/block_*")):
             time.sleep(0.05)
@@ -46,7 +46,7 @@ def test(skyquilt, folder):
     status = process.wait(timeout=300)
     text = log.read_text()
     expect(status == 0, f"ended with {status}:\n{text}")
-    expect("goes on on rank 2: rank 1 is slow" in text, text)
+    expect("continues on rank 2: rank 1 is slow" in text, text)
     expect(state_of(skyquilt, slowed) == state_of(skyquilt, whole), "the moved block differs from one that stayed where it was")
 
 

@@ -1,5 +1,5 @@
-// Checkpoints: what stands before HDF5 (the plain header, length and digest), and HDF5 itself for what happens to pass. The digest is no defence
-// against forgers, so content with a forged digest is not tried.
+// Checkpoints: the plain header in front of the HDF5 data (length and digest), and the HDF5 data itself when the header is accepted. The digest does
+// not protect against deliberate forgery, so content with a forged digest is not tested.
 #include "core/base/file.h"
 #include "core/checkpoint/archive.h"
 #include "tests/fuzz/fuzz_target.h"

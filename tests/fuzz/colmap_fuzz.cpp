@@ -1,4 +1,4 @@
-// COLMAP models. An input is one file; its first byte says which, whole files stand in for the others.
+// COLMAP models. An input is one file of the model; its first byte says which one. The other files of the model are valid.
 #include <filesystem>
 #include <fstream>
 #include <iterator>

@@ -1,5 +1,5 @@
-// One reader that takes files from strangers. Linked with replay_main.cpp (a test: seeds and many fixed mutations of them) or, built with clang and
-// SKYQUILT_FUZZ=ON, with libFuzzer (scripts/fuzz.sh).
+// The interface of a fuzz target: one reader of files from outside. It is linked with replay_main.cpp (a test with seeds and many fixed mutations of
+// them) or, with clang and SKYQUILT_FUZZ=ON, with libFuzzer (scripts/fuzz.sh).
 #pragma once
 
 #include <filesystem>
@@ -12,13 +12,13 @@
 
 namespace skyquilt::fuzz {
 
-// Whole inputs to start from.
+// Valid inputs, from which mutations start.
 std::vector<std::string> Seeds();
 // Reads the bytes as if they came from a file. Only base::InputError and base::UsageError, which say what is wrong, may be caught inside;
-// whatever else happens is a finding.
+// anything else is an error that the fuzzer reports.
 void Feed(const std::string& bytes);
 
-// Feed for a reader of one file of this name.
+// Writes the bytes to a file of this name and calls the reader with it.
 template <typename Reader>
 void FeedFile(const std::string& name, const std::string& bytes, const Reader& read) {
   static const TemporaryFolder folder;

@@ -1,5 +1,6 @@
-// Feeds the seeds, the inputs that once broke something (tests/fuzz/corpus/<target>) and fixed mutations of both, within bounded memory and time.
-//   fuzz_X CORPUS [MUTATIONS]     exit status 1 when an exception got out; a crash or a hang ends the process by signal
+// Runs a fuzz target with its seeds, with inputs that caused errors before (tests/fuzz/corpus/<target>), and with fixed mutations of both, within
+// limits of memory and time.
+//   fuzz_X CORPUS [MUTATIONS]     exit status 1 after an unexpected exception; a crash or a hang ends the process by signal
 //   fuzz_X --seeds FOLDER         writes the seeds for libFuzzer to start from
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -30,9 +31,9 @@ using skyquilt::base::Random;
 constexpr unsigned kSecondsPerInput = 20;
 
 std::string current_input;
-std::string finding_file;  // where the current input is kept when it breaks something
+std::string finding_file;  // the current input is written here when it causes an error
 
-// Also called while the process is dying: only what may be called then.
+// Also called from signal handlers, so only functions that are allowed there.
 void KeepInput() {
   const int file = open(finding_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (file < 0) return;
@@ -53,7 +54,7 @@ void KeepInputAndDie(int signal) {
 void KeepInputOfCrashes() {
   finding_file = (fs::temp_directory_path() / ("fuzz_finding_" + std::to_string(getpid()))).string();
 #ifdef SKYQUILT_ADDRESS_SANITIZER
-  __sanitizer_set_death_callback(KeepInput);  // of what the sanitizer itself meets
+  __sanitizer_set_death_callback(KeepInput);  // for errors that the sanitizer finds
 #else
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, KeepInputAndDie);
 #endif
@@ -135,8 +136,8 @@ int main(int argc, char** argv) {
     }
   } catch (const std::exception& error) {
     KeepInput();
-    std::cerr << "an exception got out: " << error.what() << '\n';
+    std::cerr << "unexpected exception: " << error.what() << '\n';
     return 1;
   }
-  std::cout << pool.size() << " inputs and " << mutations << " mutations: no crash, no hang, nothing got out\n";
+  std::cout << pool.size() << " inputs and " << mutations << " mutations: no crash, no hang, no unexpected exception\n";
 }

@@ -1,4 +1,4 @@
-// Ranks that send each other messages in every way the program does; ends with a status other than 0 at the first mismatch.
+// Sends messages between ranks in every way the program does. Ends with a status other than 0 at the first mismatch.
 //   traffic <n>     all exchanges, for n ranks
 //   traffic abort   the last rank aborts with status 4 while the others wait for a message
 #include <unistd.h>
@@ -26,7 +26,7 @@ void Require(bool condition, const Communicator& ranks, const std::string& what)
   throw std::runtime_error("rank " + std::to_string(ranks.rank()) + " of " + std::to_string(ranks.size()) + ": " + what);
 }
 
-// Bytes that depend on who sends what.
+// Bytes that depend on sender and serial number.
 std::string Payload(int source, int serial, size_t n_bytes) {
   std::string bytes(n_bytes, '\0');
   uint32_t state = static_cast<uint32_t>(source * 1000 + serial) * 2654435761U + 1U;
@@ -54,7 +54,7 @@ void CheckOrderOfManySmallMessages(Communicator& ranks) {
   Require(received[1] == kMessages && received[2] == kMessages, ranks, "messages lost");
 }
 
-// Everybody sends to everybody, itself included, before anybody receives: only a Send that does not wait for the receiver gets through.
+// Every rank sends to every rank, itself included, before any rank receives: this works only when Send does not wait for the receiver.
 void CheckLargeMessagesCross(Communicator& ranks) {
   const int64_t sent_before = ranks.bytes_sent();
   for (int other = 0; other < ranks.size(); ++other) {
@@ -94,7 +94,7 @@ void CheckBarrier(Communicator& ranks) {
     ranks.Barrier();
     for (int other = 0; other < ranks.size(); ++other) {
       Require(fs::exists(folder / (std::to_string(round) + "_" + std::to_string(other))), ranks,
-              "left the barrier before rank " + std::to_string(other) + " came");
+              "left the barrier before rank " + std::to_string(other) + " reached it");
     }
   }
   ranks.Barrier();
@@ -111,10 +111,10 @@ void CheckCancel(Communicator& ranks) {
     interrupted = true;
   }
   skyquilt::base::ClearCancel();
-  Require(interrupted, ranks, "went on waiting although a cancel was requested");
+  Require(interrupted, ranks, "continued to wait although a cancel was requested");
 }
 
-// What nobody receives must not keep anyone from ending.
+// Messages that no rank receives must not keep a rank from ending.
 void LeaveMessagesBehind(Communicator& ranks) {
   for (int other = 0; other < ranks.size(); ++other) ranks.Send(other, 7, Payload(ranks.rank(), 7, 5'000'000));
 }

@@ -1,4 +1,4 @@
-// What the benchmarks work on: random arrays, the same on every machine.
+// Data for the kernel benchmarks: random arrays that are the same on every machine.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ inline std::vector<float> RandomValues(size_t n, float low, float high, uint64_t
   return values;
 }
 
-// Zeros on large pages where they can be had, as field::AssignTable lays out tables.
+// Zeros, on large pages if the system has them, as in field::AssignTable.
 inline std::vector<float> Table(size_t n) {
   std::vector<float> values;
   values.reserve(n);

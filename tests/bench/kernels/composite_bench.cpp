@@ -1,4 +1,4 @@
-// What training does along every ray: composite, distortion loss, and back.
+// The work of training along every ray: compositing and distortion loss, forward and backward.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -14,12 +14,12 @@ namespace {
 
 constexpr size_t kRays = 64;
 
-// Rays one after another, the three colours in rows behind each other.
+// Samples of all rays one after another; three colour rows.
 struct Rays {
   explicit Rays(const benchmark::State& state)
       : samples(static_cast<int>(state.range(0))),
         stride(kRays * static_cast<size_t>(samples)),
-        // Light still arrives at the last sample, or there would be nothing to do.
+        // Low density, so that no sample is hidden and skipped.
         tau(bench::RandomValues(stride, 0.0F, 4.0F / static_cast<float>(samples), 1)),
         color(bench::RandomValues(3 * stride, 0.0F, 1.0F, 2)),
         mid(stride),
@@ -67,7 +67,7 @@ struct Rays {
     Keep(color_gradient);
   }
 
-  // Everything is inlined here: what nobody reads would not be computed.
+  // Everything is inlined here, so the compiler would remove results that are not read.
   static void Keep(std::vector<float>& result) {
     float* data = result.data();
     benchmark::DoNotOptimize(data);

@@ -1,4 +1,4 @@
-// Layers of 64-wide networks on one chunk of samples: forward, back through the relu of the layer below, and the weights' gradient.
+// Layers of networks of width 64 on one chunk of samples: forward, backward through the ReLU of the layer before, and gradient of the weights.
 #include <benchmark/benchmark.h>
 
 #include <cstddef>

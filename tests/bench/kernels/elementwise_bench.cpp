@@ -34,7 +34,7 @@ void Sigmoid(benchmark::State& state) {
 }
 BENCHMARK(Sigmoid)->ArgName("n")->Arg(kSamples);
 
-// Half of the samples stay, in no order that a branch could learn.
+// Half of the samples are kept, in random order, so that branch prediction cannot help.
 void Compact(benchmark::State& state) {
   const auto rows = static_cast<int>(state.range(0));
   std::vector<float> keep(static_cast<size_t>(kSamples), 0.0F);
@@ -49,7 +49,7 @@ void Compact(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * kSamples);
 }
-// Positions; features; what the density network leaves for backward.
+// Positions; features; values of the density network that the backward pass needs.
 BENCHMARK(Compact)->ArgName("rows")->Arg(1)->Arg(32)->Arg(80);
 
 void AllFinite(benchmark::State& state) {

@@ -1,4 +1,4 @@
-// Lookup in one fine, hashed level and its backward, at random positions: what a shuffled batch of rays does to the caches.
+// Lookup in one fine, hashed level, forward and backward, at random positions, which use the caches as badly as a shuffled batch of rays.
 #include <benchmark/benchmark.h>
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 namespace skyquilt {
 namespace {
 
-// More positions than one call takes, so that a large table is not read at the same few places again and again.
+// More positions than one call uses, so that calls read different parts of a large table.
 constexpr size_t kPositions = size_t{1} << 18;
 constexpr size_t kSamples = 4096;
 constexpr size_t kStride = kernel::StrideFor(kSamples);
@@ -66,7 +66,7 @@ void HashBackward(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(kSamples));
 }
 
-// From a table in the second-level cache to one that only memory holds.
+// From a table that fits into the second-level cache to one that fits only into main memory.
 void Sizes(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"features", "log2_entries"})->ArgsProduct({{2, 4}, {14, 17, 19, 22}})->Unit(benchmark::kMicrosecond);
 }

@@ -1,4 +1,4 @@
-// skyquilt_bench_kernels: every kernel on its own, on one thread. All options are Google Benchmark's (--help), for instance
+// skyquilt_bench_kernels: benchmarks of single kernels on one thread. The options are those of Google Benchmark (--help), for instance
 //   skyquilt_bench_kernels --benchmark_filter=Hash --benchmark_repetitions=5
 //   SKYQUILT_ISA=avx2 skyquilt_bench_kernels      on another instruction set: avx512, avx2, portable or one by name
 #include <benchmark/benchmark.h>
@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     }
   }
   benchmark::AddCustomContext("instruction_set", skyquilt::kernel::ActiveInstructionSet());
-  // A filter that fits nothing is a mistake, not a success.
+  // A filter that matches no benchmark is an error.
   const bool any = benchmark::RunSpecifiedBenchmarks() > 0;
   benchmark::Shutdown();
   return any ? 0 : 1;

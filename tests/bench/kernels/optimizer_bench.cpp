@@ -1,5 +1,5 @@
-// Adam on one level's table, of which a batch touched more or less, and on the networks.
-// Both kernels clear the gradient, so every iteration needs a new one: it is laid out between two iterations, and only the kernel is timed.
+// Adam on the table of one level, with gradients in 1 to 100 % of it, and on the networks.
+// Both kernels clear the gradient, so every iteration needs a new one. It is written between two iterations, and only the kernel is timed.
 // (PauseTiming would cost as much as the shortest of these calls.)
 #include <benchmark/benchmark.h>
 
@@ -53,7 +53,7 @@ void AdamTouched(benchmark::State& state) {
   std::vector<float> moment2 = bench::Table(kTableFloats);
   std::vector<uint8_t> touched(kLines, 0);
   const std::vector<float> line_gradient = bench::RandomValues(kernel::kLineFloats, 1e-4F, 1e-3F);
-  // Other lines each time: the same few would stay in the cache.
+  // Other cache lines each time, because the same few lines would stay in the cache.
   const std::vector<size_t> order = ShuffledLines();
   const size_t count = kLines * static_cast<size_t>(state.range(0)) / 100;
   size_t next = 0;

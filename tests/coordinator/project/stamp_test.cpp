@@ -24,7 +24,7 @@ TEST_F(Stamp, FinishedStageWithItsFilesIsFresh) {
   EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kUnfinished);
 }
 
-TEST_F(Stamp, ChangedOptionIsNamedWithBothValuesAndTheWayOut) {
+TEST_F(Stamp, ChangedOptionIsNamedWithBothValuesAndTheFix) {
   Finish("train");
   FlatOptions changed = options_;
   changed["train.steps"] = "4000";
@@ -55,7 +55,7 @@ TEST_F(Stamp, DamagedStampIsAnInputErrorThatNamesTheFile) {
   }
 }
 
-TEST_F(Stamp, PhotosIdentityFollowsImagesAndNothingElse) {
+TEST_F(Stamp, PhotosIdentityDependsOnImagesOnly) {
   const std::filesystem::path photos = project_.folder / "photos";
   Touch(photos / "a.jpg");
   const std::string one = PhotosIdentity(photos, photos / "out");
@@ -69,7 +69,7 @@ TEST_F(Stamp, PhotosIdentityFollowsImagesAndNothingElse) {
   EXPECT_NE(PhotosIdentity(photos, photos / "out"), two);
 }
 
-TEST_F(Stamp, OpeningAFolderThatIsNoProjectSaysSo) {
+TEST_F(Stamp, OpeningAFolderThatIsNoProjectIsAnInputError) {
   EXPECT_THROW(Project::Open(project_.folder / "absent"), base::InputError);
   EXPECT_THROW(Project::Open(project_.folder), base::InputError);
   Touch(project_.SurveyFolder() / "survey.json");

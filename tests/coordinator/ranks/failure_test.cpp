@@ -21,7 +21,7 @@ Failure Caught(const Error& error) {
 }
 
 TEST(Failure, AnInputErrorArrivesAsItWasThrown) {
-  // A path with ": " in it was once cut there.
+  // A path that contains ": " must not be cut there.
   const base::InputError sent("/data/flight: morning/IMG_1.jpg", "is cut short: 3 of 7 bytes", "Copy it again");
   const Failure failure = Caught(sent);
   EXPECT_EQ(failure.kind, Failure::kInput);
@@ -34,7 +34,7 @@ TEST(Failure, AnInputErrorArrivesAsItWasThrown) {
   }
 }
 
-TEST(Failure, NamesWhoMetIt) {
+TEST(Failure, NamesItsRank) {
   const Failure failure = Caught(base::InputError("scene.h5", "no such file", "Make it"));
   try {
     Throw(failure, "rank 3 on alpha");

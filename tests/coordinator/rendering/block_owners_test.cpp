@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kRows = 4, kColumns = 4;
 
-class BlockShares : public ::testing::Test {
+class BlockOwners : public ::testing::Test {
  protected:
-  BlockShares() {
+  BlockOwners() {
     scene::WriteRandomScene(folder_ / "scene.h5", kRows, kColumns, 0.5, -2.0, true);
     store_ = std::make_unique<scene::FieldStore>(checkpoint::ArchiveReader(folder_ / "scene.h5"), folder_ / "scene.h5", 0.0, false);
   }
@@ -29,11 +29,11 @@ class BlockShares : public ::testing::Test {
   std::unique_ptr<scene::FieldStore> store_;
 };
 
-TEST_F(BlockShares, PartsAreEvenAndHangTogether) {
+TEST_F(BlockOwners, PartsAreEqualAndConnected) {
   const std::vector<int> owner = DealBlocks(*store_, 4);
   for (int part = 0; part < 4; ++part) {
     EXPECT_EQ(std::count(owner.begin(), owner.end(), part), 4);
-    // Four blocks of a Z-order curve are a square: no two of them more than one apart.
+    // Four consecutive blocks of a Z-order curve form a square: any two of them are neighbours.
     for (size_t a = 0; a < owner.size(); ++a) {
       for (size_t b = 0; b < owner.size(); ++b) {
         if (owner[a] != part || owner[b] != part) continue;
@@ -45,7 +45,7 @@ TEST_F(BlockShares, PartsAreEvenAndHangTogether) {
   }
 }
 
-TEST_F(BlockShares, AShareHoldsTheNeighboursItBlendsWith) {
+TEST_F(BlockOwners, APartIncludesTheNeighboursItIsBlendedWith) {
   const std::vector<std::vector<int>> lower = LowerNeighbours(*store_);
   EXPECT_TRUE(lower[0].empty());
   EXPECT_EQ(lower[5], (std::vector<int>{0, 1, 2, 4}));
@@ -56,17 +56,17 @@ TEST_F(BlockShares, AShareHoldsTheNeighboursItBlendsWith) {
     std::iota(numbers.begin(), numbers.end(), 0);
     return numbers;
   }();
-  // Itself and the up to four neighbours of higher number.
+  // The block itself and up to four neighbours with a higher index.
   EXPECT_NEAR(LargestPartBytes(*store_, lower, own, kRows * kColumns), store_->ContextBytes() + 5.0 * store_->Bytes(0), 0.2 * store_->Bytes(0));
 }
 
-TEST_F(BlockShares, RanksThatHoldTheWholeSceneWorkAlone) {
+TEST_F(BlockOwners, RanksThatHoldTheWholeSceneFormGroupsOfOne) {
   const std::vector<int> ranks = {1, 2, 3, 4, 5};
   const std::vector<SceneHolders> plenty = MakeGroups(*store_, ranks, std::vector<double>(5, 2.0 * AllBytes()));
   EXPECT_EQ(plenty.size(), 5U);
   const std::vector<SceneHolders> half = MakeGroups(*store_, ranks, std::vector<double>(5, 0.85 * AllBytes()));
   ASSERT_EQ(half.size(), 2U);
-  EXPECT_EQ(half[0].ranks.size() + half[1].ranks.size(), 5U) << "every rank has a place";
+  EXPECT_EQ(half[0].ranks.size() + half[1].ranks.size(), 5U) << "every rank is in a group";
   const std::vector<SceneHolders> scarce = MakeGroups(*store_, ranks, std::vector<double>(5, 0.01 * AllBytes()));
   ASSERT_EQ(scarce.size(), 1U);
   EXPECT_EQ(scarce[0].ranks, ranks);
@@ -78,11 +78,11 @@ TEST_F(BlockShares, RanksThatHoldTheWholeSceneWorkAlone) {
   }
 }
 
-TEST_F(BlockShares, MoreOwnersThanBlocks) {
+TEST_F(BlockOwners, MoreOwnersThanBlocks) {
   const std::vector<int> owner = DealBlocks(*store_, 50);
   std::vector<int> sorted = owner;
   std::sort(sorted.begin(), sorted.end());
-  EXPECT_TRUE(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) << "every block has an owner of its own";
+  EXPECT_TRUE(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) << "every block has a different owner";
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ RayRequest Request(int n, bool one_camera, bool fresh, uint64_t seed) {
   return request;
 }
 
-RC_GTEST_PROP(RayRequestProperty, TravelsUnchanged, ()) {
+RC_GTEST_PROP(RayRequestProperty, ReadsBackUnchanged, ()) {
   const RayRequest sent =
       Request(*rc::gen::inRange(0, 20), *rc::gen::arbitrary<bool>(), *rc::gen::arbitrary<bool>(), *rc::gen::inRange<uint64_t>(1, 99));
   const RayRequest got = RayRequestFromBytes(ToBytes(sent));
@@ -60,7 +60,7 @@ RC_GTEST_PROP(RayRequestProperty, TravelsUnchanged, ()) {
   }
 }
 
-RC_GTEST_PROP(RayRequestProperty, ComesBackUnchanged, ()) {
+RC_GTEST_PROP(RayReplyProperty, ReadsBackUnchanged, ()) {
   RayReply sent{.id = 7, .samples = 123, .field_loads = 4, .in_flight = {}, .colors = {}, .failure = {Failure::kInput, "why", "scene.h5"}};
   const int n = *rc::gen::inRange(0, 20);
   for (int i = 0; i < n; ++i) {
@@ -84,12 +84,12 @@ TEST(RayRequest, RaysOfOneCameraAreSmall) {
   EXPECT_GT(ToBytes(Request(1000, false, false, 1)).size(), 3 * of_camera);
 }
 
-TEST(RayRequest, RefusesWhatIsNone) {
+TEST(RayRequest, RefusesOtherBytes) {
   const std::string good = ToBytes(Request(5, false, false, 2));
   for (size_t n = 0; n < good.size(); ++n) EXPECT_THROW(RayRequestFromBytes(good.substr(0, n)), std::runtime_error) << n;
   EXPECT_THROW(RayRequestFromBytes(good + "x"), std::runtime_error);
   std::string many = good;
-  // The count of rays follows id, options and two flags.
+  // The number of rays comes after id, options and two flags.
   for (size_t i = 0; i < 8; ++i) many[8 + 8 + 4 + sizeof(render::Concealing) + 2 + i] = '\x7f';
   EXPECT_THROW(RayRequestFromBytes(many), std::runtime_error);
 }

@@ -44,7 +44,7 @@ TEST(BlockQueue, HandsOutEachBlockOnceMostExpensiveFirst) {
   }
 }
 
-TEST(BlockQueue, EqualCostsGoByIndex) {
+TEST(BlockQueue, EqualCostsAreOrderedByIndex) {
   BlockQueue queue({{2, "c", 1.0, 0.0}, {0, "a", 1.0, 0.0}, {1, "b", 1.0, 0.0}}, {.steps = 1});
   EXPECT_EQ(queue.Take(0.0, {}).block, 0);
   EXPECT_EQ(queue.Take(0.0, {}).block, 1);
@@ -79,7 +79,7 @@ TEST(BlockQueue, SeedsDoNotDependOnTheOrderOfHandingOut) {
   EXPECT_EQ(first.seed, second.seed);
 }
 
-// Plays a training in simulated time: every rank takes the next block as soon as it is free.
+// Simulates a training: every rank takes the next block as soon as it is free.
 double PlayedEnd(BlockQueue& queue, int n_workers, double start_s) {
   std::vector<double> free_at(static_cast<size_t>(n_workers), start_s);
   while (queue.HasWaiting()) {
@@ -95,7 +95,7 @@ double PlayedEnd(BlockQueue& queue, int n_workers, double start_s) {
   return *std::max_element(free_at.begin(), free_at.end());
 }
 
-TEST(BlockQueue, TimeBudgetIsSpentAndNotOverdrawn) {
+TEST(BlockQueue, TimeBudgetIsUsedAndNotExceeded) {
   base::Random random(3);
   for (int trial = 0; trial < 40; ++trial) {
     const int n = 1 + static_cast<int>(random.Below(10));
@@ -109,7 +109,7 @@ TEST(BlockQueue, TimeBudgetIsSpentAndNotOverdrawn) {
   }
 }
 
-TEST(BlockQueue, WhatIsHandedOutTogetherIsSharedByCost) {
+TEST(BlockQueue, TimeIsDividedByCost) {
   base::Random random(5);
   BlockQueue queue(RandomBlocks(random, 300), {.has_deadline = true, .deadline_s = 1000.0, .n_workers = 50});
   std::vector<double> busy;
@@ -122,25 +122,25 @@ TEST(BlockQueue, WhatIsHandedOutTogetherIsSharedByCost) {
   }
 }
 
-TEST(BlockQueue, EarlyFinishersLeaveTheirTimeToTheOthers) {
+TEST(BlockQueue, UnusedTimeIsGivenToTheOtherBlocks) {
   BlockQueue queue({{0, "a", 1.0, 0.0}, {1, "b", 1.0, 0.0}}, {.has_deadline = true, .deadline_s = 100.0});
   EXPECT_NEAR(queue.Take(0.0, {}).seconds, 50.0, 1e-6);
   EXPECT_NEAR(queue.Take(10.0, {}).seconds, 90.0, 1e-6);
 }
 
-TEST(BlockQueue, PromisedTimeIsKept) {
+TEST(BlockQueue, AssignedTimeIsKept) {
   BlockQueue queue({{0, "a", 1.0, 33.0}, {1, "b", 0.5, 0.0}}, {.has_deadline = true, .deadline_s = 100.0});
   EXPECT_DOUBLE_EQ(queue.Take(0.0, {}).seconds, 33.0);
 }
 
-TEST(BlockQueue, OverdrawnBudgetStillTrainsALittle) {
+TEST(BlockQueue, BlocksTrainALittleAfterTheDeadline) {
   BlockQueue queue({{0, "a", 1.0, 0.0}}, {.has_deadline = true, .deadline_s = 1.0});
   const FieldJob job = queue.Take(50.0, {});
   EXPECT_GT(job.seconds, 0.0);
   EXPECT_LT(job.seconds, 10.0);
 }
 
-TEST(ListSchedule, EndsAsByHand) {
+TEST(ListSchedule, EndsAsComputedByHand) {
   const std::vector<double> jobs = {5.0, 4.0, 3.0, 3.0};
   EXPECT_DOUBLE_EQ(ListScheduleEnd(jobs, 0.0, {}, 2), 8.0);  // 5+3 and 4+3
   EXPECT_DOUBLE_EQ(ListScheduleEnd(jobs, 10.0, {}, 1), 25.0);

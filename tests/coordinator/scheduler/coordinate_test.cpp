@@ -20,7 +20,7 @@ namespace {
 struct Played {
   std::vector<FieldOutcome> outcomes;
   std::vector<std::string> order;      // names as handed out
-  std::map<std::string, int> rank_of;  // who trained it last
+  std::map<std::string, int> rank_of;  // rank that trained it last
   int n_status = 0;
 };
 
@@ -28,7 +28,7 @@ QueueBlock Named(int block, double cost) {
   return {block, "block_" + std::to_string(block), cost, 0.0};
 }
 
-// Rank 0 coordinates in this thread, the other ranks serve in theirs.
+// Rank 0 coordinates in this thread; every other rank has its own thread.
 Played Play(int n_ranks, const std::vector<QueueBlock>& blocks, const FieldTrainer& trainer) {
   FakeNetwork network(n_ranks);
   std::vector<std::thread> ranks;
@@ -108,13 +108,13 @@ TEST_F(Coordinate, RankZeroTrainsOnlyWhenAlone) {
   for (const auto& [name, rank] : Play(1, {Named(0, 1.0)}, trainer).rank_of) EXPECT_EQ(rank, 0) << name;
 }
 
-TEST_F(Coordinate, NoBlocksIsDoneAtOnce) {
+TEST_F(Coordinate, WithoutBlocksItReturnsAtOnce) {
   const FieldTrainer never = [](const FieldJob&, const worker::Reporter&) -> worker::TrainResult { throw std::logic_error("called"); };
   EXPECT_TRUE(Play(1, {}, never).outcomes.empty());
   EXPECT_TRUE(Play(3, {}, never).outcomes.empty());
 }
 
-TEST_F(Coordinate, AFailingBlockCostsOnlyItself) {
+TEST_F(Coordinate, AFailingBlockDoesNotAffectOthers) {
   for (const int n_ranks : {1, 3}) {
     std::atomic<int> tries = 0;
     const Played played = Play(n_ranks, {Named(0, 1.0), Named(1, 2.0), Named(2, 3.0)}, [&](const FieldJob& job, const worker::Reporter&) {
@@ -150,7 +150,7 @@ TEST_F(Coordinate, BadInputOfAnyRankEndsTheCommandWithItsMessage) {
     base::ClearCancel();
     const FieldTrainer trainer = [](const FieldJob& job, const worker::Reporter& report) {
       if (job.block == 2) throw base::InputError("photos/a.jpg", "is cut short", "Copy it again");
-      // The others train until they are told to stop.
+      // The other ranks train until rank 0 stops them.
       for (int i = 0; i < 2000; ++i) {
         report({});
         base::ThrowIfCancelled();
@@ -177,7 +177,7 @@ TEST_F(Coordinate, AWrongCheckpointIsAUsageError) {
   EXPECT_THROW(Play(2, {Named(0, 1.0)}, trainer), base::UsageError);
 }
 
-TEST_F(Coordinate, AnInterruptStopsAllRanksAndNothingMoreIsHandedOut) {
+TEST_F(Coordinate, AnInterruptStopsAllRanksAndHandsOutNoMoreBlocks) {
   for (const int n_ranks : {1, 3}) {
     base::ClearCancel();
     std::atomic<int> begun = 0;

@@ -1,4 +1,4 @@
-// Several ranks as threads of one process: the Communicator's contract over queues in memory.
+// Ranks as threads of one process, to test without MPI: a Communicator that sends messages through queues in memory.
 #pragma once
 
 #include <cstdlib>

@@ -13,7 +13,7 @@ namespace {
 
 const worker::Reporter kSilent = [](const worker::TrainStatus&) {};
 
-TEST(FieldJob, TravelsUnchanged) {
+TEST(FieldJob, ReadsBackUnchanged) {
   const FieldJob job{
       .block = 3, .name = "block_r1c0", .attempt = 2, .steps = 0, .seconds = 1.0 / 3.0, .rate_factor = 0.25, .seed = 0xFFFFFFFFFFFFFFF1ULL};
   const FieldJob back = JobFromText(ToText(job));
@@ -25,7 +25,7 @@ TEST(FieldJob, TravelsUnchanged) {
   EXPECT_EQ(back.seed, job.seed);
 }
 
-TEST(FieldJob, OutcomeTravelsUnchangedEvenWithStrangeText) {
+TEST(FieldJob, OutcomeReadsBackUnchangedEvenWithStrangeText) {
   FieldOutcome outcome;
   outcome.job.name = "block_r0c0";
   outcome.failure.kind = Failure::kInput;
@@ -52,14 +52,14 @@ TEST(FieldJob, OutcomeOfAnEarlierVersionsLedgerIsRead) {
   EXPECT_EQ(outcome.failure.reason, "diverged");
 }
 
-TEST(FieldJob, StatusWithANonFiniteLossStillTravels) {
+TEST(FieldJob, StatusWithANonFiniteLossIsSent) {
   worker::TrainStatus status;
   status.step = 7;
   status.loss = std::numeric_limits<double>::infinity();
   EXPECT_EQ(StatusFromText(ToText(status)).step, 7);
 }
 
-TEST(RunField, EveryWayToFailBecomesAnOutcome) {
+TEST(RunField, EveryExceptionBecomesAnOutcome) {
   const auto failure = [](const FieldTrainer& trainer) { return RunField(trainer, {}, kSilent, 1, 2).failure.kind; };
   using Result = worker::TrainResult;
   EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) { return Result{.ok = true, .reason = ""}; }), Failure::kNone);

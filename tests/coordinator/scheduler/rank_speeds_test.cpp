@@ -5,7 +5,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-// Ranks 1 and 2 have done a block of cost 100 in 100 s each; rank 3 is at work on one of that cost at a third of the speed.
+// Ranks 1 and 2 have each trained a block of cost 100 in 100 s; rank 3 is training a block of the same cost at a third of the speed.
 RankSpeeds ThreeRanks(double slow_fraction, double now_s) {
   RankSpeeds speeds;
   for (const int rank : {1, 2}) {
@@ -19,26 +19,26 @@ RankSpeeds ThreeRanks(double slow_fraction, double now_s) {
   return speeds;
 }
 
-TEST(RankSpeeds, KnowsWhatRanksHaveShown) {
+TEST(RankSpeeds, MeasuresFinishedBlocks) {
   const RankSpeeds speeds = ThreeRanks(0.3, 100.0);
   EXPECT_DOUBLE_EQ(speeds.Speed(1), 1.0);
   EXPECT_DOUBLE_EQ(speeds.Speed(7), 1.0);  // new: the mean of the others
   EXPECT_DOUBLE_EQ(RankSpeeds().Speed(1), 0.0);
 }
 
-TEST(RankSpeeds, RelievesARankThatWouldBeTheLast) {
+TEST(RankSpeeds, FindsARankThatWouldFinishLast) {
   EXPECT_EQ(ThreeRanks(0.3, 100.0).SlowRank(1, 0.0, 3, 100.0), 3);
 }
 
-TEST(RankSpeeds, LeavesAloneWhatEndsBeforeTheRest) {
-  // Ten more blocks wait for three ranks: the slow one has time.
+TEST(RankSpeeds, DoesNotMoveABlockThatEndsBeforeTheOthers) {
+  // Ten more blocks wait for three ranks, so the slow rank has enough time.
   EXPECT_EQ(ThreeRanks(0.3, 100.0).SlowRank(1, 1000.0, 3, 100.0), std::nullopt);
 }
 
-TEST(RankSpeeds, LeavesAloneWhatAMoveWouldNotHasten) {
+TEST(RankSpeeds, DoesNotMoveABlockWhenThatSavesNoTime) {
   EXPECT_EQ(ThreeRanks(0.9, 100.0).SlowRank(1, 0.0, 3, 100.0), std::nullopt);  // eleven seconds left
   EXPECT_EQ(ThreeRanks(0.01, 10.0).SlowRank(1, 0.0, 3, 10.0), std::nullopt);   // too early to judge
-  EXPECT_EQ(RankSpeeds().SlowRank(1, 0.0, 3, 100.0), std::nullopt);            // nobody has shown anything
+  EXPECT_EQ(RankSpeeds().SlowRank(1, 0.0, 3, 100.0), std::nullopt);            // no rank has finished anything
 }
 
 TEST(RankSpeeds, AsksForABlockOnce) {
@@ -51,7 +51,7 @@ TEST(RankSpeeds, ARankThatHasStoppedIsSlow) {
   EXPECT_EQ(ThreeRanks(0.0, 0.0).SlowRank(1, 0.0, 3, 100.0), 3);
 }
 
-TEST(RankSpeeds, FinishedBlocksOfEarlierRunsSayNothing) {
+TEST(RankSpeeds, BlocksFinishedInEarlierRunsDoNotCount) {
   RankSpeeds speeds;
   speeds.HandedOut(1, 100.0, 0.0);
   speeds.Finished(1, 0.1);

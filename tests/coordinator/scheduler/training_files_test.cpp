@@ -70,7 +70,7 @@ TEST_F(TrainingFiles, LogKeepsFirstAndLastOfABurst) {
   EXPECT_EQ(StepsIn(file), (std::vector<int64_t>{0, 99}));
 }
 
-TEST_F(TrainingFiles, LogOfAFieldThatWasCompleteIsLeftAlone) {
+TEST_F(TrainingFiles, LogOfACompleteFieldIsNotChanged) {
   const std::filesystem::path file = project_.TrainLog("context");
   { TrainingLog log(file); }
   EXPECT_FALSE(std::filesystem::exists(file));
@@ -118,7 +118,7 @@ TEST_F(TrainingFiles, ReportKeepsTheFiguresOfFieldsThatWereAlreadyComplete) {
   EXPECT_EQ(report.at("fields")[1].at("reason"), "diverged");
 }
 
-TEST_F(TrainingFiles, DamagedLedgerStartsAnew) {
+TEST_F(TrainingFiles, DamagedLedgerIsReplaced) {
   std::filesystem::create_directories(project_.StateFolder());
   base::WriteFileAtomically(project_.StateFolder() / "training.json", "{\"config_hash\": \"aaaa\", ");
   EXPECT_DOUBLE_EQ(TrainLedger(project_, "aaaa").spent_s(), 0.0);

@@ -46,7 +46,7 @@ TEST(Stages, StagesDependOnTheirOwnOptionsOnly) {
   EXPECT_NE(StageOptions(StageNamed("partition"), before), StageOptions(StageNamed("partition"), after));
 }
 
-TEST(Stages, HaveEachItsOwnNameAndNeedOnlyEarlierOnes) {
+TEST(Stages, HaveUniqueNamesAndNeedOnlyEarlierOnes) {
   std::set<std::string> names;
   for (const Stage& stage : Stages()) {
     for (const Stage::RequiredFile& required : stage.required)
@@ -65,7 +65,7 @@ TEST(Stages, NameOptionsThatExist) {
   }
 }
 
-TEST_F(StageFiles, WhatProvesAStageIsRemovedWithIt) {
+TEST_F(StageFiles, ProofOfAStageIsRemovedWithIt) {
   for (const Stage& stage : Stages()) {
     if (stage.home != nullptr) continue;
     for (const std::filesystem::path& proof : stage.proof(project_)) {
@@ -76,7 +76,7 @@ TEST_F(StageFiles, WhatProvesAStageIsRemovedWithIt) {
   }
 }
 
-TEST_F(StageFiles, WhatCannotBeReadAgainIsNoResult) {
+TEST_F(StageFiles, AStageWithUnreadableResultsRunsAgain) {
   const auto comm = comm::ConnectAlone();
   Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
   scene::WriteTrainReport({.ranks = 2, .config_hash = "a", .fields = {{.name = "context", .ok = true}}}, project_.TrainReport());
@@ -93,7 +93,7 @@ TEST_F(StageFiles, WhatCannotBeReadAgainIsNoResult) {
   EXPECT_FALSE(StageNamed("evaluate").recall(pipeline));
 }
 
-TEST_F(StageFiles, ADamagedInputLeavesTheStageAsItWas) {
+TEST_F(StageFiles, ADamagedInputChangesNoFiles) {
   const auto comm = comm::ConnectAlone();
   Touch(project_.BlocksFile());
   Touch(project_.TrainReport(), "{\"fields\": [");

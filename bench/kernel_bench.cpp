@@ -121,7 +121,7 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
   const field::HashField field(target.config);
   field::Parameters parameters;
   parameters.Allocate(field);
-  field::TrainableState state;
+  field::OptimizerState state;
   state.Allocate(field);
   base::Random random(11);
   field.Initialize(random, parameters.grid, parameters.networks);

@@ -40,7 +40,7 @@ void SimulatedRanks::Send(int destination, int tag, const std::string& bytes) {
     training.until_s = training.from_s + (left > 0.0 ? left / speed_[static_cast<size_t>(destination)] : skip_s_);
     training_[destination] = training;
     events_.push({std::min(now_s_ + status_every_s_, training.until_s), destination, serial_});
-  } else if (tag == coordinator::kTagYield) {
+  } else if (tag == coordinator::kTagGiveBack) {
     const auto found = training_.find(destination);
     if (found == training_.end() || coordinator::ToText(found->second.job) != bytes) return;
     Training& training = found->second;

@@ -34,7 +34,7 @@ size_t BinOf(float display_value) {
 void AddPhoto(const brightness::Response& response, const camera::Camera& cached_camera, const image::PixelCache& pixels, size_t photo,
               LightOfPhotos* light) {
   const Eigen::Vector2d middle = cached_camera.PrincipalPoint();
-  const double per_radius2 = 1.0 / (cached_camera.FarthestCorner() * cached_camera.FarthestCorner());
+  const double per_radius2 = 1.0 / (cached_camera.MaxImageRadius() * cached_camera.MaxImageRadius());
   double before = 0.0, after = 0.0, values = 0.0;
   for (int row = 0; row < kGrid; ++row) {
     for (int column = 0; column < kGrid; ++column) {
@@ -84,7 +84,7 @@ std::vector<VignettingCurve> VignettingOfCameras(const std::vector<float>& vigne
   if (std::all_of(vignetting.begin(), vignetting.end(), [](float f) { return f == 0.0F; })) return {};
   std::vector<VignettingCurve> curves;
   for (size_t at = 0; at + 3 <= vignetting.size(); at += 3) {
-    brightness::Response one = brightness::Response::Plain(1, 1);
+    brightness::Response one = brightness::Response::Neutral(1, 1);
     std::copy_n(vignetting.begin() + static_cast<std::ptrdiff_t>(at), 3, one.vignetting.begin());
     VignettingCurve& curve = curves.emplace_back();
     for (size_t i = 0; i < curve.size(); ++i) {
@@ -138,7 +138,7 @@ BrightnessReport CollectBrightness(const scene::SceneInfo& info, const survey::S
     const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
     AddPhoto(response, camera.Resized(pixels.Width(i), pixels.Height(i)), pixels, i, &light);
   }
-  report.trust_in_tags = brightness::TrustInTags(response, captured);
+  report.trust_in_tags = brightness::TagReliability(response, captured);
   report.spread_before_stops = SpreadOf(light.before_stops);
   report.spread_after_stops = SpreadOf(light.after_stops);
   report.histogram_before = Shares(light.before);

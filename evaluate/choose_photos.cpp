@@ -10,16 +10,16 @@ std::vector<int> HeldOutPhotos(const survey::Survey& survey) {
   return held_out;
 }
 
-std::vector<size_t> SpreadPlaces(size_t n, int count) {
+std::vector<size_t> EvenlySpacedIndices(size_t n, int count) {
   const size_t wanted = count <= 0 || static_cast<size_t>(count) >= n ? n : static_cast<size_t>(count);
   std::vector<size_t> places;
   for (size_t i = 0; i < wanted; ++i) places.push_back((2 * i + 1) * n / (2 * wanted));
   return places;
 }
 
-std::vector<int> EvenlySpread(const std::vector<int>& photos, int count) {
+std::vector<int> SelectEvenly(const std::vector<int>& photos, int count) {
   std::vector<int> chosen;
-  for (const size_t place : SpreadPlaces(photos.size(), count)) chosen.push_back(photos[place]);
+  for (const size_t place : EvenlySpacedIndices(photos.size(), count)) chosen.push_back(photos[place]);
   return chosen;
 }
 

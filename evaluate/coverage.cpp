@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/base/errors.h"
-#include "core/camera/sight.h"
+#include "core/camera/photo_visibility.h"
 
 namespace skyquilt::evaluate {
 
@@ -69,7 +69,7 @@ bool TrainingViews::Sees(int view_index, const Eigen::Vector3d& x_in_enu) const 
   const Cone& cone = cones_[static_cast<size_t>(view_index)];
   const Eigen::Vector3d offset = x_in_enu - cone.apex_enu;
   if (offset.dot(cone.axis_enu) < cone.cos_limit * offset.norm()) return false;
-  return camera::Shows(view.camera, view.cam_from_enu, x_in_enu, {.mask = view.mask});
+  return camera::IsVisible(view.camera, view.cam_from_enu, x_in_enu, {.mask = view.mask});
 }
 
 int TrainingViews::Count(const Eigen::Vector3d& x_in_enu, std::span<const int> order, int enough) const {

@@ -36,7 +36,7 @@ Scores ScorePhotos(const EvaluateInput& input, const std::vector<int>& held_out,
     scores.Add(scored);
     progress.Advance(1.0, fmt::format("{} {:.2f} dB", scored.findings.score.name, scored.findings.score.psnr_db));
   }
-  scores.footprints = MeasureExposureSeams(*input.scene, scorer.training(), threads);
+  scores.exposure_seams = MeasureExposureSeams(*input.scene, scorer.training(), threads);
   progress.Finish(fmt::format("PSNR {:.2f} dB, coverage {:.1f} %", scores.Psnr(), 100.0 * scores.Coverage()));
   return scores;
 }
@@ -47,9 +47,9 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   CheckInput(input);
   const Clock::time_point start = Clock::now();
   base::RequireWritableFolder(input.ReportFolder() / "images");
-  Metrics metrics = KnownFacts(input);
+  Metrics metrics = MetricsBeforeScoring(input);
 
-  const std::vector<int> held_out = EvenlySpread(HeldOutPhotos(*input.survey), input.options.max_photos);
+  const std::vector<int> held_out = SelectEvenly(HeldOutPhotos(*input.survey), input.options.max_photos);
   HeldOutScorer scorer(input);
   ReportPictures pictures(input, held_out);
   const Scores scores = ScorePhotos(input, held_out, scorer, pictures, threads);

@@ -80,7 +80,7 @@ std::optional<double> StepAcross(const scene::Scene& scene, const TrainingView& 
 
 ExposureSeams MeasureExposureSeams(const scene::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads) {
   std::vector<double> border, control;
-  for (const size_t place : SpreadPlaces(views.size(), kFootprints)) {
+  for (const size_t place : EvenlySpacedIndices(views.size(), kMaxSeamPhotos)) {
     const TrainingView& view = views[place];
     const std::optional<double> across = StepAcross(scene, view, 0.5, threads), beside = StepAcross(scene, view, kControlPixels, threads);
     if (!across || !beside) continue;

@@ -17,7 +17,7 @@ struct ExposureSeams {
 };
 
 // Largest number of views to measure, evenly spread.
-constexpr int kFootprints = 96;
+constexpr int kMaxSeamPhotos = 96;
 ExposureSeams MeasureExposureSeams(const scene::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads);
 
 }  // namespace skyquilt::evaluate

@@ -30,7 +30,7 @@ std::vector<std::pair<double, double>> FloaterOpacity::Profile() const {
   return profile;
 }
 
-FloaterOpacity MeasureFloaterOpacity(const scene::Scene& scene, const PhotoTask& task, const PhotoFindings& findings, base::ThreadPool& threads) {
+FloaterOpacity MeasureFloaterOpacity(const scene::Scene& scene, const HeldOutPhoto& task, const PhotoResult& findings, base::ThreadPool& threads) {
   SKYQUILT_CHECK(!findings.true_depth.Empty(), "the photo must have a true depth");
   const geo::Rigid3d enu_from_cam = task.cam_from_enu.Inverse();
   // One ray from the camera per clearance. Cutting one ray into pieces would change its samples, as pieces may be shorter than a marching step.

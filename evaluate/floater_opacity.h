@@ -32,6 +32,6 @@ struct FloaterOpacity {
 };
 
 // Measures a grid of pixels of one photo that are scored and have a true depth. findings: result of ScorePhoto for this task.
-FloaterOpacity MeasureFloaterOpacity(const scene::Scene& scene, const PhotoTask& task, const PhotoFindings& findings, base::ThreadPool& threads);
+FloaterOpacity MeasureFloaterOpacity(const scene::Scene& scene, const HeldOutPhoto& task, const PhotoResult& findings, base::ThreadPool& threads);
 
 }  // namespace skyquilt::evaluate

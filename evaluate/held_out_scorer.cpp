@@ -3,7 +3,7 @@
 #include <chrono>
 #include <numbers>
 
-#include "evaluate/load_task.h"
+#include "evaluate/load_held_out_photo.h"
 
 namespace skyquilt::evaluate {
 
@@ -28,7 +28,7 @@ std::vector<TrainingView> ViewsOf(const EvaluateInput& input) {
   return views;
 }
 
-double LpipsOf(metrics::Lpips& network, const PhotoTask& task, const image::Image8& render) {
+double LpipsOf(metrics::Lpips& network, const HeldOutPhoto& task, const image::Image8& render) {
   const image::Image8 used = task.UsedPixels();
   return network.Distance(image::ToImageF(render), image::ToImageF(task.photo), used.Empty() ? nullptr : &used);
 }
@@ -45,22 +45,22 @@ HeldOutScorer::Recordings HeldOutScorer::RecordingsOf(int photo) const {
   const survey::Photo& taken = input_.survey->photos[static_cast<size_t>(photo)];
   Recordings recordings;
   recordings.gain = TaggedGain(taken, response.reference_exposure, input_.options.exif_gain);
-  recordings.tagged = TaggedRecording(response, taken.camera, recordings.gain);
+  recordings.tagged = TaggedResponse(response, taken.camera, recordings.gain);
   recordings.predicted =
-      input_.options.predicted_gain ? PredictedRecording(response, static_cast<size_t>(photo), recordings.tagged) : recordings.tagged;
+      input_.options.predicted_gain ? PredictedResponse(response, static_cast<size_t>(photo), recordings.tagged) : recordings.tagged;
   return recordings;
 }
 
-PhotoFindings HeldOutScorer::ScoreRecorded(int photo, const PhotoTask& task, base::ThreadPool& threads) const {
+PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads) const {
   using Clock = std::chrono::steady_clock;
   const Recordings recordings = RecordingsOf(photo);
   const Clock::time_point start = Clock::now();
-  std::vector<render::RayColor> rendered = input_.scene->RenderCamera(task.camera, task.cam_from_enu, {scene::Look::kRecorded, {}}, threads);
+  std::vector<render::RayColor> rendered = input_.scene->RenderCamera(task.camera, task.cam_from_enu, {scene::Rendition::kRecorded, {}}, threads);
   const std::vector<render::RayColor> as_reference = recordings.Differ() ? rendered : std::vector<render::RayColor>();
-  Record(task.camera, recordings.predicted, rendered, threads);
+  ApplyResponse(task.camera, recordings.predicted, rendered, threads);
   const double render_seconds = std::chrono::duration<double>(Clock::now() - start).count();
 
-  PhotoFindings findings = ScorePhoto(task, rendered, views_, area_, threads);
+  PhotoResult findings = ScorePhoto(task, rendered, views_, area_, threads);
   PhotoScore& score = findings.score;
   score.photo = photo;
   score.name = input_.survey->photos[static_cast<size_t>(photo)].name;
@@ -68,12 +68,12 @@ PhotoFindings HeldOutScorer::ScoreRecorded(int photo, const PhotoTask& task, bas
   for (size_t c = 0; c < 3; ++c) {
     score.predicted_stops[c] = static_cast<double>(recordings.predicted.log_gain[c] - recordings.tagged.log_gain[c]) / std::numbers::ln2;
   }
-  score.psnr_exif_gain_db = recordings.Differ() ? PsnrRecorded(task, recordings.tagged, as_reference, findings.scored, threads) : score.psnr_db;
+  score.psnr_exif_gain_db = recordings.Differ() ? PsnrWithResponse(task, recordings.tagged, as_reference, findings.scored, threads) : score.psnr_db;
   score.render_seconds = render_seconds;
   return findings;
 }
 
-std::vector<render::RayColor> HeldOutScorer::RenderNormal(const PhotoTask& task, base::ThreadPool& threads) const {
+std::vector<render::RayColor> HeldOutScorer::RenderNormal(const HeldOutPhoto& task, base::ThreadPool& threads) const {
   scene::Appearance appearance;
   appearance.log_gain.fill(static_cast<float>(input_.options.normal_stops * std::numbers::ln2));
   return input_.scene->RenderCamera(task.camera, task.cam_from_enu, appearance, threads);
@@ -81,11 +81,11 @@ std::vector<render::RayColor> HeldOutScorer::RenderNormal(const PhotoTask& task,
 
 ScoredPhoto HeldOutScorer::Score(int photo, bool keep_normal, base::ThreadPool& threads) {
   ScoredPhoto scored;
-  scored.task = LoadTask(*input_.survey, *input_.pixels, photo, input_.options.image_width);
+  scored.task = LoadHeldOutPhoto(*input_.survey, *input_.pixels, photo, input_.options.image_width);
   scored.findings = ScoreRecorded(photo, scored.task, threads);
   PhotoScore& score = scored.findings.score;
   if (lpips_) score.lpips = LpipsOf(*lpips_, scored.task, scored.findings.render);
-  if (!scored.findings.true_depth.Empty()) scored.air = MeasureFloaterOpacity(*input_.scene, scored.task, scored.findings, threads);
+  if (!scored.findings.true_depth.Empty()) scored.floaters = MeasureFloaterOpacity(*input_.scene, scored.task, scored.findings, threads);
   const std::filesystem::path normal_photos = input_.options.normal_photos;
   if (keep_normal || !normal_photos.empty()) scored.normal = RenderNormal(scored.task, threads);
   if (!normal_photos.empty()) {

@@ -10,15 +10,15 @@
 #include "evaluate/coverage.h"
 #include "evaluate/evaluate_input.h"
 #include "evaluate/floater_opacity.h"
-#include "evaluate/photo_recording.h"
+#include "evaluate/photo_response.h"
 #include "evaluate/photo_scorer.h"
 
 namespace skyquilt::evaluate {
 
 struct ScoredPhoto {
-  PhotoTask task;
-  PhotoFindings findings;                // with all scores filled in
-  FloaterOpacity air;                    // no rays without true depth
+  HeldOutPhoto task;
+  PhotoResult findings;                  // with all scores filled in
+  FloaterOpacity floaters;               // no rays without true depth
   std::vector<render::RayColor> normal;  // rendered at normal brightness, row-major; empty when not requested
 };
 
@@ -31,18 +31,18 @@ class HeldOutScorer {
   ScoredPhoto Score(int photo, bool keep_normal, base::ThreadPool& threads);
 
   const std::vector<TrainingView>& training() const { return training_; }
-  size_t n_boxes() const { return area_.boxes.size(); }  // size of PhotoFindings::per_block
+  size_t n_boxes() const { return area_.boxes.size(); }  // size of PhotoResult::per_block
 
  private:
   // Brightness of the photo by its tags, and with the gain that training predicts for it.
   struct Recordings {
     double gain = 1.0;
-    Recording tagged, predicted;
+    PhotoResponse tagged, predicted;
     bool Differ() const { return predicted.log_gain != tagged.log_gain; }
   };
   Recordings RecordingsOf(int photo) const;
-  PhotoFindings ScoreRecorded(int photo, const PhotoTask& task, base::ThreadPool& threads) const;
-  std::vector<render::RayColor> RenderNormal(const PhotoTask& task, base::ThreadPool& threads) const;
+  PhotoResult ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads) const;
+  std::vector<render::RayColor> RenderNormal(const HeldOutPhoto& task, base::ThreadPool& threads) const;
 
   const EvaluateInput& input_;
   const SceneArea area_;

@@ -9,7 +9,7 @@
 #include "core/metrics/depth_errors.h"
 #include "core/metrics/psnr.h"
 #include "core/metrics/ssim.h"
-#include "evaluate/recorded.h"
+#include "evaluate/apply_response.h"
 
 namespace skyquilt::evaluate {
 
@@ -35,7 +35,7 @@ struct PixelSums {
 // Compares photo and rendering pixel by pixel.
 class FrameComparison {
  public:
-  FrameComparison(const PhotoTask& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area)
+  FrameComparison(const HeldOutPhoto& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area)
       : photo(image::ToImageF(task.photo)),
         render(task.camera.width, task.camera.height, 3),
         unclamped(task.camera.width, task.camera.height, 3),
@@ -64,8 +64,8 @@ class FrameComparison {
   const image::ImageF photo;
   image::ImageF render;     // display values clamped to [0, 1]
   image::ImageF unclamped;  // may be brighter than white
-  image::Image8 scored;     // as in PhotoFindings
-  image::ImageF z_depth;    // as in PhotoFindings
+  image::Image8 scored;     // as in PhotoResult
+  image::ImageF z_depth;    // as in PhotoResult
 
  private:
   void ComparePixel(int x, int y, PixelSums* sums) {
@@ -100,7 +100,7 @@ class FrameComparison {
     AddPixel(rgb, wanted, &group[static_cast<size_t>(TextureClass(photo, x, y))]);
   }
 
-  const PhotoTask& task_;
+  const HeldOutPhoto& task_;
   const std::span<const render::RayColor> rendered_;
   const TrainingViews& views_;
   const SceneArea& area_;
@@ -120,7 +120,7 @@ image::ImageF ResizeNearest(const image::ImageF& image, int width, int height) {
 }
 
 // Scores that are not sums over pixels; the three are computed in parallel.
-void AddWholeFrameScores(const PhotoTask& task, const FrameComparison& frame, base::ThreadPool& threads, PhotoScore* score) {
+void AddWholeFrameScores(const HeldOutPhoto& task, const FrameComparison& frame, base::ThreadPool& threads, PhotoScore* score) {
   const image::Image8 used = task.UsedPixels();
   HalfScores halves;
   threads.ParallelFor(3, [&](int64_t which, int) {
@@ -135,7 +135,7 @@ void AddWholeFrameScores(const PhotoTask& task, const FrameComparison& frame, ba
 
 }  // namespace
 
-image::Image8 PhotoTask::UsedPixels() const {
+image::Image8 HeldOutPhoto::UsedPixels() const {
   image::Image8 used;
   if (mask.empty()) return used;
   used = image::Image8(photo.width, photo.height, 1);
@@ -143,8 +143,8 @@ image::Image8 PhotoTask::UsedPixels() const {
   return used;
 }
 
-PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area,
-                         base::ThreadPool& threads) {
+PhotoResult ScorePhoto(const HeldOutPhoto& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area,
+                       base::ThreadPool& threads) {
   const int width = task.camera.width;
   const int height = task.camera.height;
   const size_t n_pixels = static_cast<size_t>(width) * static_cast<size_t>(height);
@@ -155,7 +155,7 @@ PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor
 
   FrameComparison frame(task, rendered, views, area);
   PixelSums sums = frame.Compare(threads);
-  PhotoFindings findings;
+  PhotoResult findings;
   findings.seams = sums.seams;
   findings.per_block = std::move(sums.per_block);
   PhotoScore& score = findings.score;

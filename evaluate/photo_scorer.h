@@ -18,7 +18,7 @@
 
 namespace skyquilt::evaluate {
 
-struct PhotoTask {
+struct HeldOutPhoto {
   camera::Camera camera;  // at the scored size
   geo::Rigid3d cam_from_enu;
   image::Image8 photo;        // RGB, width * height of the camera
@@ -33,7 +33,7 @@ struct SceneArea {
   HeightRange heights;               // of the whole scene
 };
 
-struct PhotoFindings {
+struct PhotoResult {
   PhotoScore score;  // sizes, pixel counts, PSNR, SSIM and depth; the caller fills the rest
   SeamErrors seams;
   std::vector<metrics::SquaredError> per_block;  // one per box of the area, covered pixels
@@ -44,7 +44,7 @@ struct PhotoFindings {
 };
 
 // rendered: row-major, one per pixel of the camera. The same result for any number of threads.
-PhotoFindings ScorePhoto(const PhotoTask& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area,
-                         base::ThreadPool& threads);
+PhotoResult ScorePhoto(const HeldOutPhoto& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area,
+                       base::ThreadPool& threads);
 
 }  // namespace skyquilt::evaluate

@@ -78,8 +78,8 @@ bool PercentileRange(const image::ImageF& image, double low, double high, float*
     if (std::isfinite(image.data[i])) values.push_back(image.data[i]);
   }
   if (values.empty()) return false;
-  *low_value = base::NearestRank(values, low);
-  *high_value = base::NearestRank(values, high);
+  *low_value = base::NearestRankQuantile(values, low);
+  *high_value = base::NearestRankQuantile(values, high);
   return true;
 }
 

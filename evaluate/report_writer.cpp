@@ -40,7 +40,7 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const std::
 ReportPictures::ReportPictures(const EvaluateInput& input, const std::vector<int>& held_out)
     : input_(input), brightness_(CollectBrightness(input.scene->info(), *input.survey, *input.pixels)) {
   if (input.options.report_photos == 0) return;
-  pictured_ = EvenlySpread(held_out, input.options.report_photos);
+  pictured_ = SelectEvenly(held_out, input.options.report_photos);
   contrasted_ = ChooseViews(input.scene->info(), *input.survey, held_out);
   brightness_.views.resize(contrasted_.size());
 }
@@ -50,7 +50,7 @@ bool ReportPictures::ShowsNormal(int photo) const {
 }
 
 void ReportPictures::Write(const ScoredPhoto& scored) {
-  const PhotoFindings& findings = scored.findings;
+  const PhotoResult& findings = scored.findings;
   const int photo = findings.score.photo;
   images_.emplace_back();
   if (std::find(pictured_.begin(), pictured_.end(), photo) != pictured_.end()) {

@@ -38,14 +38,14 @@ void AddPooled(const scene::SceneInfo& info, const Scores& scores, Metrics* metr
   metrics->psnr_matched_interior_db = scores.seams.MatchedInteriorDb();
   metrics->psnr_seam_db = metrics::PsnrOf(scores.seams.AllSeam());
   metrics->seam_psnr_gap_db = scores.seams.GapDb();
-  metrics->exposure_seam = scores.footprints.border;
-  metrics->exposure_seam_control = scores.footprints.control;
+  metrics->exposure_seam = scores.exposure_seams.border;
+  metrics->exposure_seam_control = scores.exposure_seams.control;
   if (!metrics->has_truth) return;
   const metrics::DepthErrors errors = scores.depth.Result();
   metrics->depth_rmse_m = errors.rmse_m;
   metrics->depth_median_abs_m = errors.median_abs_m;
-  metrics->floater_opacity = scores.air.Mean();
-  metrics->floater_profile = scores.air.Profile();
+  metrics->floater_opacity = scores.floaters.Mean();
+  metrics->floater_profile = scores.floaters.Profile();
 }
 
 void AddSurveyFacts(const survey::Survey& survey, Metrics* metrics) {
@@ -66,12 +66,12 @@ void AddSurveyFacts(const survey::Survey& survey, Metrics* metrics) {
 }  // namespace
 
 void Scores::Add(const ScoredPhoto& photo) {
-  const PhotoFindings& findings = photo.findings;
+  const PhotoResult& findings = photo.findings;
   photos.push_back(findings.score);
   for (size_t b = 0; b < per_block.size(); ++b) per_block[b] += findings.per_block[b];
   seams += findings.seams;
   if (!findings.true_depth.Empty()) depth.Add(findings.z_depth, findings.true_depth, &findings.scored);
-  air += photo.air;
+  floaters += photo.floaters;
 }
 
 double Scores::Psnr() const {
@@ -87,7 +87,7 @@ double Scores::Coverage() const {
   return used > 0 ? static_cast<double>(covered) / static_cast<double>(used) : kNotMeasured;
 }
 
-Metrics KnownFacts(const EvaluateInput& input) {
+Metrics MetricsBeforeScoring(const EvaluateInput& input) {
   const scene::SceneInfo& info = input.scene->info();
   const std::filesystem::path network = input.options.lpips_network;
   Metrics metrics;

@@ -20,8 +20,8 @@ struct Scores {
   std::vector<metrics::SquaredError> per_block;
   SeamErrors seams;
   metrics::DepthErrorCollector depth;
-  FloaterOpacity air;
-  ExposureSeams footprints;
+  FloaterOpacity floaters;
+  ExposureSeams exposure_seams;
 
   // n_boxes: HeldOutScorer::n_boxes().
   explicit Scores(size_t n_boxes) : per_block(n_boxes) {}
@@ -31,7 +31,7 @@ struct Scores {
 };
 
 // Metrics known before any photo is scored: survey, training, machine.
-Metrics KnownFacts(const EvaluateInput& input);
+Metrics MetricsBeforeScoring(const EvaluateInput& input);
 // Adds the values that follow from the scores, the cost of rendering so far, and the warnings.
 void Summarise(const EvaluateInput& input, const Scores& scores, Metrics* metrics);
 

@@ -69,9 +69,9 @@ void MergeScene(const MergeInput& input) {
   writer.SetAttribute("config", input.config_toml);
   writer.SetAttribute("config_hash", input.config_hash);
   writer.SetAttribute("blocks", static_cast<int64_t>(blocks.size()));
-  if (input.use_context) scene::PutFieldOf(context.description, input.context, scene::kContextPrefix, writer, input.storage);
+  if (input.use_context) scene::PutSceneField(context.description, input.context, scene::kContextPrefix, writer, input.storage);
   for (size_t i = 0; i < blocks.size(); ++i)
-    scene::PutFieldOf(blocks[i], input.blocks[i].checkpoint, scene::BlockPrefix(static_cast<int64_t>(i)), writer, input.storage);
+    scene::PutSceneField(blocks[i], input.blocks[i].checkpoint, scene::BlockPrefix(static_cast<int64_t>(i)), writer, input.storage);
   writer.Commit(input.scene);
 }
 

@@ -104,7 +104,7 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   block.min_enu.z() = range ? range->first : in.area.ground_m - half_height_m;
   block.max_enu.z() = range ? range->second : in.area.ground_m + half_height_m;
   // Where there are no points, trees or roofs may be far higher than the points elsewhere.
-  if (ShareWithoutPoints(in.points, grid.Min(index), grid.Max(index)) >= kGap) {
+  if (ShareWithoutSparsePoints(in.points, grid.Min(index), grid.Max(index)) >= kGap) {
     block.max_enu.z() += in.options.headroom * block.altitude_agl_m;
   }
   const bool has_points =
@@ -116,7 +116,7 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   return block;
 }
 
-void AddViews(Block& block, BlockViews views, double surface_voxels, const PartitionOptions& options) {
+void AddViews(Block& block, BoxVisibility views, double surface_voxels, const PartitionOptions& options) {
   if (!block.empty && views.n_training < 2) {
     block.empty = true;
     block.empty_reason = views.n_training == 0 ? "no training photo sees it" : "only one training photo sees it";
@@ -200,7 +200,7 @@ BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& option
   if (options.heights == "survey") UseCommonHeights(set.blocks);
   std::vector<Box> boxes;
   for (const Block& block : set.blocks) boxes.push_back({block.TrainMin(), block.TrainMax()});
-  std::vector<BlockViews> views = FindViews(survey, boxes, image_width);
+  std::vector<BoxVisibility> views = FindVisibility(survey, boxes, image_width);
   for (size_t i = 0; i < set.blocks.size(); ++i) {
     Block& block = set.blocks[i];
     AddViews(block, std::move(views[i]), VoxelsOf(in, grid, block.id, block.finest_voxel_m), options);

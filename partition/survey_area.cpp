@@ -5,7 +5,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
-#include "core/camera/sight.h"
+#include "core/camera/photo_visibility.h"
 
 namespace skyquilt::partition {
 namespace {
@@ -37,10 +37,10 @@ std::vector<int> CountViews(const survey::Survey& survey, const SurveyArea& area
     const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
     const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
     const double agl = eye.z() - ground.At(eye.x(), eye.y());
-    camera::SightRule rule{.far_edges = true};
+    camera::VisibilityRule rule{.far_edges = true};
     if (agl > 0.0) rule.reach_m = kMaxSlantPerAgl * agl;
     for (size_t i = 0; i < centres.size(); ++i) {
-      if (camera::Shows(camera, photo.cam_from_enu, centres[i], rule)) ++views[i];
+      if (camera::IsVisible(camera, photo.cam_from_enu, centres[i], rule)) ++views[i];
     }
   }
   return views;

@@ -39,7 +39,7 @@ std::optional<std::pair<double, double>> VerticalRange(const std::vector<Eigen::
   return std::make_pair(bottom, top);
 }
 
-double ShareWithoutPoints(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
+double ShareWithoutSparsePoints(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
   if (points.empty()) return 1.0;
   Eigen::Vector2d first = points.front().head<2>(), last = first;
   for (const Eigen::Vector3d& x : points) {

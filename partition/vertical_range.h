@@ -18,6 +18,6 @@ std::optional<std::pair<double, double>> VerticalRange(const std::vector<Eigen::
 
 // Share of a rectangle's ground without sparse points, in [0, 1], on a raster with eight points per cell on average; only the part within the bounds
 // of all points counts, 1 when there is none. In such gaps there may be things without features to match, such as foliage, of unknown height.
-double ShareWithoutPoints(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& low, const Eigen::Vector2d& high);
+double ShareWithoutSparsePoints(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& low, const Eigen::Vector2d& high);
 
 }  // namespace skyquilt::partition

@@ -33,7 +33,7 @@ RayGrid MakeRayGrid(const camera::Camera& camera) {
 double ShareByRays(const RayGrid& grid, const std::vector<Eigen::Vector3d>& direction, const Eigen::Vector3d& eye, const Box& box) {
   double share = 0.0;
   for (size_t i = 0; i < direction.size(); ++i) {
-    if (geo::RayMeetsBox(eye, direction[i], box.low, box.high)) share += grid.share[i];
+    if (geo::RayHitsBox(eye, direction[i], box.low, box.high)) share += grid.share[i];
   }
   return share;
 }
@@ -59,10 +59,10 @@ double ShareByProjection(const camera::Camera& camera, const survey::Photo& phot
 
 }  // namespace
 
-std::vector<BlockViews> FindViews(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width) {
+std::vector<BoxVisibility> FindVisibility(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width) {
   std::vector<RayGrid> grids;
   for (const camera::Camera& camera : survey.cameras) grids.push_back(MakeRayGrid(camera));
-  std::vector<BlockViews> views(boxes.size());
+  std::vector<BoxVisibility> views(boxes.size());
   for (size_t p = 0; p < survey.photos.size(); ++p) {
     const survey::Photo& photo = survey.photos[p];
     const camera::Camera& camera = survey.cameras.at(static_cast<size_t>(photo.camera));

@@ -13,7 +13,7 @@ struct Box {
   Eigen::Vector3d high = Eigen::Vector3d::Zero();
 };
 
-struct BlockViews {
+struct BoxVisibility {
   std::vector<int> photos;       // indices into Survey::photos, ascending; training and test
   int n_training = 0;            // of these photos, for training
   double training_pixels = 0.0;  // training pixels whose ray hits the box, at the training size
@@ -21,6 +21,6 @@ struct BlockViews {
 
 // Pixels are estimated with 16 x 12 rays per photo, image borders included (trapezoid rule). A box that none of these rays hits is projected
 // instead and counts with the rectangle around its corners. image_width: training width in pixels, 0 = full size. Result in the order of `boxes`.
-std::vector<BlockViews> FindViews(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width);
+std::vector<BoxVisibility> FindVisibility(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width);
 
 }  // namespace skyquilt::partition

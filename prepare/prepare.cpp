@@ -150,7 +150,7 @@ void FillPhotos(const survey::ColmapModel& model, const std::vector<Registered>&
     photo.name = file.name;
     photo.mask = masks[registered[i].file];
     photo.camera = found->second;
-    photo.cam_from_enu = geo::ChangeWorld(image.cam_from_world, georeference.enu_from_model);
+    photo.cam_from_enu = geo::TransformCameraWorld(image.cam_from_world, georeference.enu_from_model);
     photo.cam_from_enu.rotation.normalize();
     photo.gps = file.tags.gps;
     photo.relative_altitude_m = file.tags.relative_altitude_m;

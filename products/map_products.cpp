@@ -102,7 +102,7 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   if (options.ortho) ortho.emplace(products.orthophoto = folder / "orthophoto.tif", OrthophotoSpec(grid));
   if (options.dsm) dsm.emplace(products.dsm = folder / "dsm.tif", DsmSpec(grid));
 
-  const MapRayMaker maker(info, grid);
+  const MapRayGenerator maker(info, grid);
   base::Progress progress(options.ortho ? "orthophoto" : "surface model", static_cast<double>(grid.width) * grid.height, "cells");
   Band band;
   MapRays row_rays;

@@ -94,7 +94,7 @@ MapProjection::MapProjection(const scene::SceneInfo& info, const gis::MapGrid& g
   start_height_m_ = info.origin.height_m;
 }
 
-MapProjection::PlumbLine MapProjection::LineAt(const Eigen::Vector2d& easting_northing) const {
+MapProjection::VerticalLine MapProjection::VerticalLineAt(const Eigen::Vector2d& easting_northing) const {
   if (!grid_.georeferenced) return {{easting_northing.x(), easting_northing.y(), 0.0}, {0.0, 0.0, -1.0}};
   // The line is the ellipsoid's normal. Its direction is taken between points 1 km apart, so that rounding is below 1e-9.
   constexpr double kBase_m = 1000.0;
@@ -109,23 +109,24 @@ Eigen::Vector2d MapProjection::EastingNorthing(const Eigen::Vector3d& x_in_enu) 
   return geo::UtmFromGeodetic(frame_->GeodeticFromEnu(x_in_enu), grid_.zone);
 }
 
-MapRayMaker::MapRayMaker(const scene::SceneInfo& info, const gis::MapGrid& grid) : info_(info), grid_(grid), projection_(info, grid) {
+MapRayGenerator::MapRayGenerator(const scene::SceneInfo& info, const gis::MapGrid& grid) : info_(info), grid_(grid), projection_(info, grid) {
   step_ = static_cast<int>(std::clamp(std::floor(kLatticeSpacing_m / grid.resolution_m), 1.0, double{kLatticeCells}));
   lattice_columns_ = (grid.width - 1) / step_ + 2;
   const int lattice_rows = (grid.height - 1) / step_ + 2;
   lattice_.reserve(static_cast<size_t>(lattice_columns_) * static_cast<size_t>(lattice_rows));
   for (int j = 0; j < lattice_rows; ++j) {
-    for (int i = 0; i < lattice_columns_; ++i) lattice_.push_back(projection_.LineAt(grid.CellCentre(double{1} * i * step_, double{1} * j * step_)));
+    for (int i = 0; i < lattice_columns_; ++i)
+      lattice_.push_back(projection_.VerticalLineAt(grid.CellCentre(double{1} * i * step_, double{1} * j * step_)));
   }
 }
 
-void MapRayMaker::MakeRow(int row, MapRays* out) const {
+void MapRayGenerator::MakeRow(int row, MapRays* out) const {
   out->rays.clear();
   out->column.clear();
   out->start_height_m.clear();
   const int node_row = row / step_;
   const double v = static_cast<double>(row % step_) / step_;
-  const auto node = [&](int j, int i) -> const MapProjection::PlumbLine& {
+  const auto node = [&](int j, int i) -> const MapProjection::VerticalLine& {
     return lattice_[static_cast<size_t>(j) * static_cast<size_t>(lattice_columns_) + static_cast<size_t>(i)];
   };
   for (int column = 0; column < grid_.width; ++column) {
@@ -135,8 +136,8 @@ void MapRayMaker::MakeRow(int row, MapRays* out) const {
       return (1 - v) * ((1 - u) * node(node_row, i).*member + u * node(node_row, i + 1).*member) +
              v * ((1 - u) * node(node_row + 1, i).*member + u * node(node_row + 1, i + 1).*member);
     };
-    const Eigen::Vector3d start = blend(&MapProjection::PlumbLine::start_enu);
-    const Eigen::Vector3d down = blend(&MapProjection::PlumbLine::down_enu).normalized();
+    const Eigen::Vector3d start = blend(&MapProjection::VerticalLine::start_enu);
+    const Eigen::Vector3d down = blend(&MapProjection::VerticalLine::down_enu).normalized();
     // The point of the line at the middle height of the scene, because over kilometres vertical lines are not parallel to ENU z.
     const double middle_z = 0.5 * (info_.min_enu.z() + info_.max_enu.z());
     const Eigen::Vector3d place = start + down * ((middle_z - start.z()) / down.z());

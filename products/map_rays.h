@@ -27,12 +27,12 @@ class MapProjection {
   MapProjection(const scene::SceneInfo& info, const gis::MapGrid& grid);
 
   // Vertical line at a position on the map: the points start + s * down, s in metres. Their height is start_height_m - s, to well below a millimetre.
-  struct PlumbLine {
+  struct VerticalLine {
     Eigen::Vector3d start_enu;
     Eigen::Vector3d down_enu;  // length 1; the ellipsoid's inward normal
   };
   double start_height_m() const { return start_height_m_; }  // ellipsoidal, or local z without geo-reference
-  PlumbLine LineAt(const Eigen::Vector2d& easting_northing) const;
+  VerticalLine VerticalLineAt(const Eigen::Vector2d& easting_northing) const;
   Eigen::Vector2d EastingNorthing(const Eigen::Vector3d& x_in_enu) const;
 
  private:
@@ -48,9 +48,9 @@ struct MapRays {
   std::vector<double> start_height_m;  // height where the ray begins; the surface is at start_height_m - depth
 };
 
-class MapRayMaker {
+class MapRayGenerator {
  public:
-  MapRayMaker(const scene::SceneInfo& info, const gis::MapGrid& grid);
+  MapRayGenerator(const scene::SceneInfo& info, const gis::MapGrid& grid);
   // Replaces the content of `out`. Lines are computed exactly on a lattice with at most 100 m spacing and interpolated between, which is correct to a
   // millimetre.
   void MakeRow(int row, MapRays* out) const;
@@ -61,7 +61,7 @@ class MapRayMaker {
   MapProjection projection_;
   int step_;  // cells between lattice nodes
   int lattice_columns_;
-  std::vector<MapProjection::PlumbLine> lattice_;  // row-major
+  std::vector<MapProjection::VerticalLine> lattice_;  // row-major
 };
 
 }  // namespace skyquilt::products

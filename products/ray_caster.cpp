@@ -35,7 +35,7 @@ scene::Appearance AppearanceOf(const std::string& exposure, const scene::SceneIn
     throw base::UsageError("exposure '" + exposure + "' is not allowed: give 'normal', a number of stops, or the name of a photo of this survey" +
                            (info.response.photos() == 0 ? " (this scene stores no photos: run `skyquilt merge` again)" : ""));
   }
-  return {scene::Look::kRecorded, info.response.LogGain(*photo)};
+  return {scene::Rendition::kRecorded, info.response.LogGain(*photo)};
 }
 
 RayCaster CasterOf(const scene::Scene& scene, const scene::Appearance& appearance, base::ThreadPool& threads) {

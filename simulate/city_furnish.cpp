@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-Pad MakePad(PadKind kind, const Vector2d& centre, const Vector2d& half, double yaw_deg = 0.0) {
+PavedArea MakePad(PadKind kind, const Vector2d& centre, const Vector2d& half, double yaw_deg = 0.0) {
   const double yaw = yaw_deg * std::numbers::pi / 180.0;
-  Pad pad;
+  PavedArea pad;
   pad.kind = kind;
   pad.centre = centre.cast<float>();
   pad.half = half.cast<float>();

@@ -158,7 +158,7 @@ GroundSample CityLayout::Sample(float east, float north) const {
   if (!inside) return sample;
   sample.cell = &cells_[static_cast<size_t>(j) * static_cast<size_t>(columns_) + static_cast<size_t>(i)];
   sample.kind = GroundKind::kCell;
-  for (const Pad& pad : sample.cell->pads) {
+  for (const PavedArea& pad : sample.cell->pads) {
     const Eigen::Vector2f local = pad.Local(east, north);
     if (std::abs(local.x()) < pad.half.x() && std::abs(local.y()) < pad.half.y()) {
       sample.kind = GroundKind::kPad;

@@ -19,7 +19,7 @@ enum class CellKind { kHouses, kFlats, kTowers, kPark, kField };
 enum class PadKind { kDriveway, kPath, kParking, kTerrace, kPlaza };
 
 // A paved rectangle on the ground.
-struct Pad {
+struct PavedArea {
   PadKind kind = PadKind::kPath;
   Eigen::Vector2f centre = Eigen::Vector2f::Zero();
   Eigen::Vector2f half = Eigen::Vector2f::Ones();  // half sizes along its own axes
@@ -36,7 +36,7 @@ struct Cell {
   CellKind kind = CellKind::kHouses;
   Eigen::Vector2d min = Eigen::Vector2d::Zero();  // inside the pavements, ENU metres
   Eigen::Vector2d max = Eigen::Vector2d::Zero();
-  std::vector<Pad> pads;
+  std::vector<PavedArea> pads;
   float lot_pitch_m = 1e6F;  // width of a garden along east
 };
 
@@ -69,7 +69,7 @@ struct GroundSample {
   bool crossing = false;
   int street = 0;
   const Cell* cell = nullptr;
-  const Pad* pad = nullptr;
+  const PavedArea* pad = nullptr;
 };
 
 class CityLayout {

@@ -66,7 +66,7 @@ Vector3f Road(const GroundSample& ground, const GroundPoint& at) {
   return Mix(color, {0.62F, 0.62F, 0.59F}, std::clamp(paint, 0.0F, 1.0F) * std::clamp(wear, 0.0F, 1.0F));
 }
 
-Vector3f Paved(const Pad& pad, const GroundPoint& at) {
+Vector3f Paved(const PavedArea& pad, const GroundPoint& at) {
   const Eigen::Vector2f local = pad.Local(at.x, at.y);
   const auto key = static_cast<int>(pad.centre.x() * 10.0F);
   const float pick = HashUnit(key, static_cast<int>(pad.centre.y() * 10.0F), at.seed);

@@ -46,7 +46,7 @@ void TidalChannels::Grow(Vector2d from, double heading_rad, double half_width, d
 double TidalChannels::Height(double east, double north) const {
   const Vector2d p(east, north);
   double carved = 0.0;
-  for (const Reach& reach : reaches_) {
+  for (const Segment& reach : reaches_) {
     const Vector2d ab = reach.b - reach.a;
     const double s = std::clamp((p - reach.a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
     const double half_width = reach.half_width_a + s * (reach.half_width_b - reach.half_width_a);

@@ -16,7 +16,7 @@ class TidalChannels {
   double water_z_m() const { return -0.62; }
 
  private:
-  struct Reach {  // a straight piece of channel
+  struct Segment {  // a straight piece of channel
     Eigen::Vector2d a, b;
     double half_width_a, half_width_b;
     double depth_a, depth_b;
@@ -26,7 +26,7 @@ class TidalChannels {
   double amplitude_m_;
   uint32_t seed_;
   Eigen::Vector2d min_, max_;
-  std::vector<Reach> reaches_;
+  std::vector<Segment> reaches_;
 };
 
 }  // namespace skyquilt::simulate

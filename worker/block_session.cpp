@@ -12,8 +12,8 @@
 namespace skyquilt::worker {
 
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
-                 const ContextExtras* extras, const ContextFindings* findings) {
-  const field::TrainableState& state = trainer.state();
+                 const ContextBrightness* extras, const ContextResults* findings) {
+  const field::OptimizerState& state = trainer.state();
   target.steps = state.step;
   target.seconds = record.seconds;
   target.samples = record.samples;
@@ -42,8 +42,8 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   }
   if (findings != nullptr) {
     scene::PutBackground(findings->background, writer);
-    for (const SurfaceBand& band : findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
-    writer.Put("surface_bands", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
+    for (const SurfaceInterval& band : findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
+    writer.Put("surface_intervals", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
   }
   writer.Commit(job.checkpoint);
 }
@@ -104,11 +104,11 @@ std::optional<TrainResult> FinishedResult(const SavedSession& session) {
 }
 
 void LoadSession(const SavedSession& session, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
-                 const ContextExtras* extras) {
+                 const ContextBrightness* extras) {
   const std::filesystem::path& usable = session.file;
   const checkpoint::ArchiveReader& reader = session.reader;
   render::TrainedField loaded = scene::GetField(reader, usable, "");
-  field::TrainableState& state = trainer.state();
+  field::OptimizerState& state = trainer.state();
   const auto take = [&](std::vector<float>& to, std::vector<float> from, const char* name) {
     if (from.size() != to.size()) {
       throw base::InputError(usable,
@@ -144,8 +144,8 @@ LoadedContext LoadContext(const std::filesystem::path& checkpoint) {
   reader.RequireVersion(scene::kCheckpointVersion);
   LoadedContext context{scene::GetField(reader, usable, ""), brightness::GetResponse(reader, usable), {}, {}, {}};
   brightness::GetLuminance(reader, &context.luminance, &context.luminance_state);
-  if (reader.Has("surface_bands")) {
-    const std::vector<float> numbers = reader.Floats("surface_bands");
+  if (reader.Has("surface_intervals")) {
+    const std::vector<float> numbers = reader.Floats("surface_intervals");
     for (size_t i = 0; i + 2 < numbers.size(); i += 3) context.bands.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
   }
   return context;

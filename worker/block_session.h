@@ -11,7 +11,7 @@
 #include "core/brightness/response_learner.h"
 #include "core/checkpoint/archive.h"
 #include "worker/field_trainer.h"
-#include "worker/surface_band.h"
+#include "worker/surface_interval.h"
 #include "worker/trainer.h"
 
 namespace skyquilt::worker {
@@ -27,7 +27,7 @@ struct SessionRecord {
 };
 
 // State of the context's training that blocks do not have.
-struct ContextExtras {
+struct ContextBrightness {
   brightness::Response* response = nullptr;
   brightness::ResponseLearner* learner = nullptr;
 };
@@ -35,7 +35,7 @@ struct ContextExtras {
 // Writes job.checkpoint. kind: "context" or "block". extras: null for blocks. findings: of a finished context, otherwise null. Throws
 // base::InputError when the file cannot be written.
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
-                 const ContextExtras* extras, const ContextFindings* findings);
+                 const ContextBrightness* extras, const ContextResults* findings);
 
 // PSNR of recent training rays.
 double RunningPsnr(const SessionRecord& record);
@@ -55,7 +55,7 @@ std::optional<TrainResult> FinishedResult(const SavedSession& session);
 
 // Restores the state. Throws base::InputError when the sizes of the arrays do not fit the field.
 void LoadSession(const SavedSession& session, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
-                 const ContextExtras* extras);
+                 const ContextBrightness* extras);
 
 // Loads a context for training blocks. Throws base::InputError when neither the checkpoint nor the previous one can be read.
 LoadedContext LoadContext(const std::filesystem::path& checkpoint);

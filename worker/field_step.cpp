@@ -63,7 +63,7 @@ void FieldStep::Encode(const RayBatch& batch, std::span<const float> grid) {
   });
 }
 
-StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::TrainableState& state,
+StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::OptimizerState& state,
                             brightness::ResponseLearner* learner) {
   StepResult result;
   result.n_rays = static_cast<int>(batch.rays.size());
@@ -94,7 +94,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
     ++state.step;  // the same rays would fail the same way
     return result;
   }
-  FollowMeans(sums);
+  UpdateRunningMeans(sums);
   for (size_t k = 0; k < gain_gradients_.size(); ++k) {
     const PixelRay& ray = batch.rays[k].ray;
     if (!ray.empty) learner->Add(static_cast<size_t>(ray.photo), gain_gradients_[k].data(), ray_share);
@@ -129,7 +129,7 @@ LossSums FieldStep::SumResults(const RayBatch& batch, StepResult* result) {
   return sums;
 }
 
-bool FieldStep::SumNetworkGradients(field::TrainableState& state) const {
+bool FieldStep::SumNetworkGradients(field::OptimizerState& state) const {
   const auto network_size = static_cast<size_t>(field_.NetworkParameters());
   for (size_t slot = 0; slot < kGradientSlots; ++slot) {
     for (size_t i = 0; i < network_size; ++i) state.network_gradient[i] += slot_gradients_[slot * network_size + i];
@@ -137,7 +137,7 @@ bool FieldStep::SumNetworkGradients(field::TrainableState& state) const {
   return kernel::AllFinite(state.network_gradient.data(), static_cast<int64_t>(network_size));
 }
 
-void FieldStep::FollowMeans(const LossSums& sums) {
+void FieldStep::UpdateRunningMeans(const LossSums& sums) {
   if (!luminance_.On() || !controls_mean_) return;
   if (sums.color_rays > 0) {
     const double shown = sums.shown / (3.0 * static_cast<double>(sums.color_rays));

@@ -55,14 +55,14 @@ class FieldStep {
 
   // One step on the batch; overwrites positions of the batch. When the gradients are not finite, parameters and moments stay as they were. Gradients
   // by the photos' gains are added to the learner, which may be null; the caller makes its step.
-  StepResult Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::TrainableState& state,
+  StepResult Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::OptimizerState& state,
                    brightness::ResponseLearner* learner);
   // Only density and colour of every sample, for timing.
   void Infer(RayBatch& batch, const field::Parameters& parameters);
   // Running means with luminance; part of the checkpoint.
   brightness::LuminanceState& luminance_state() { return state_; }
   // Optical depth (tau) of one marching step per sample of the last Train; 0 where no light arrives.
-  const std::vector<float>& ObservedDepths() const { return observed_; }
+  const std::vector<float>& ObservedTaus() const { return observed_; }
 
  private:
   // Number of buffers that network gradients are summed in: packet k in buffer k modulo this.
@@ -72,8 +72,8 @@ class FieldStep {
   // Sums the packets' results in their order.
   LossSums SumResults(const RayBatch& batch, StepResult* result);
   // Adds the slots' gradients to the state's; false when one is not finite.
-  bool SumNetworkGradients(field::TrainableState& state) const;
-  void FollowMeans(const LossSums& sums);
+  bool SumNetworkGradients(field::OptimizerState& state) const;
+  void UpdateRunningMeans(const LossSums& sums);
 
   const field::HashField& field_;
   brightness::Luminance luminance_;
@@ -90,7 +90,7 @@ class FieldStep {
   std::vector<PacketResult> results_;
   std::vector<float> slot_gradients_;
   std::vector<std::array<float, 3>> gain_gradients_;  // per ray, by its log gains; empty without a learner
-  std::vector<field::GridGradient> gradient_segments_;
+  std::vector<field::FeatureGradient> gradient_segments_;
 };
 
 }  // namespace skyquilt::worker

@@ -80,7 +80,7 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
 // cell that is always behind surfaces becomes free like an empty one.
 void FieldTrainer::ObserveSamples() {
   field::OccupancyGrid& grid = target_.occupancy;
-  const std::vector<float>& depth = step_.ObservedDepths();
+  const std::vector<float>& depth = step_.ObservedTaus();
   const int64_t tasks = std::min(threads_.size(), 8);
   threads_.ParallelFor(tasks, [&](int64_t task, int thread) {
     const auto start = PhaseTimes::Clock::now();
@@ -89,14 +89,14 @@ void FieldTrainer::ObserveSamples() {
     for (const Packet& packet : batch_.packets) {
       for (auto s = static_cast<size_t>(packet.begin); s < static_cast<size_t>(packet.begin + packet.count); ++s) {
         const int64_t cell = batch_.cell[s];
-        if (cell >= first && cell < end) grid.Observe(cell, depth[s]);
+        if (cell >= first && cell < end) grid.UpdateTau(cell, depth[s]);
       }
     }
     times_.Add(thread, Phase::kOccupancy, start);
   });
 }
 
-void FieldTrainer::StepDepths(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth) {
+void FieldTrainer::StepTaus(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth) {
   const auto n = static_cast<int64_t>(x.size());
   depth->assign(x.size(), 0.0F);
   constexpr int64_t kRun = 16 * field::kChunk;
@@ -114,7 +114,7 @@ void FieldTrainer::StepDepths(const std::vector<float>& x, const std::vector<flo
     for (int64_t s = 0; s < padded; s += field::kChunk) {
       const int64_t size = std::min<int64_t>(field::kChunk, padded - s);
       field_.Density(weights, features.data() + s, stride, size, hidden.data(), field::kChunkStride, geometry.data(), field::kChunkStride);
-      kernel::ExpShifted(geometry.data(), size, static_cast<float>(target_.config.density_bias), kMaxLogDepth, geometry.data());
+      kernel::ExpShifted(geometry.data(), size, static_cast<float>(target_.config.density_bias), kMaxLogTau, geometry.data());
       std::copy_n(geometry.begin(), std::min(size, count - s), depth->begin() + begin + s);
     }
     times_.Add(thread, Phase::kOccupancy, start);
@@ -137,11 +137,11 @@ void FieldTrainer::UpdateOccupancy(bool grow) {
     y.push_back((static_cast<float>(cell_y) + random.Uniform()) * grid.cell);
     z.push_back((static_cast<float>(cell_z) + random.Uniform()) * grid.cell);
   }
-  StepDepths(x, y, z, &depth);
+  StepTaus(x, y, z, &depth);
   const auto start = PhaseTimes::Clock::now();
-  for (size_t i = 0; i < chosen.size(); ++i) grid.Observe(chosen[i], depth[i]);
-  if (grow) grid.WakeNeighbours(kSolidTau, kWakeTau);
-  grid.Refresh(kOccupancyLimit);
+  for (size_t i = 0; i < chosen.size(); ++i) grid.UpdateTau(chosen[i], depth[i]);
+  if (grow) grid.RaiseNeighbours(kSolidTau, kWakeTau);
+  grid.UpdateOccupied(kOccupancyLimit);
   times_.Add(0, Phase::kOccupancy, start);
 }
 

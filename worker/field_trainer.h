@@ -23,7 +23,7 @@ class FieldTrainer {
   FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options, uint64_t seed,
                const LuminancePlan& luminance, brightness::ResponseLearner* learner, base::ThreadPool& threads);
 
-  field::TrainableState& state() { return state_; }
+  field::OptimizerState& state() { return state_; }
   int& rays_per_step() { return rays_per_step_; }
   brightness::LuminanceState& luminance_state() { return step_.luminance_state(); }
   void InitializeParameters();
@@ -38,7 +38,7 @@ class FieldTrainer {
  private:
   void ObserveSamples();
   // Writes tau of one marching step at each position (unit frame, structure of arrays).
-  void StepDepths(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth);
+  void StepTaus(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth);
 
   render::TrainedField& target_;
   TrainOptions options_;
@@ -47,7 +47,7 @@ class FieldTrainer {
   base::ThreadPool& threads_;
   PhaseTimes times_;
   field::HashField field_;
-  field::TrainableState state_;
+  field::OptimizerState state_;
   RayDrawer drawer_;
   FieldStep step_;
   brightness::ResponseLearner* learner_;

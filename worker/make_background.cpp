@@ -37,7 +37,7 @@ scene::Background MakeBackground(const RaySource& source, const survey::Survey& 
     source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
     Splat splat;
     const auto place = static_cast<size_t>(tile.row) * kTileColumns + static_cast<size_t>(tile.column);
-    if (direction.z() > -kSteepEnough || !points.Meet(origin, direction, &splat.x) || !colors[place].allFinite()) continue;
+    if (direction.z() > -kSteepEnough || !points.Intersect(origin, direction, &splat.x) || !colors[place].allFinite()) continue;
     splat.srgb = colors[place];
     if (tile.column > 0 && !splats.empty()) spacing.push_back((splat.x - splats.back().x).head<2>().norm());
     splats.push_back(splat);

@@ -26,7 +26,7 @@ PacketResult PacketTrainer::Train(const PacketStep& step, const Packet& packet, 
   at = times_.Add(thread_, Phase::kDensity, at);
   Color();
   at = times_.Add(thread_, Phase::kColor, at);
-  LookThroughContext();
+  RenderContext();
   at = times_.Add(thread_, Phase::kContext, at);
   PacketResult result;
   result.live = live_;
@@ -75,7 +75,7 @@ void PacketTrainer::Density() {
   float* features = Features();
   ZeroPadding(features, shared_.field.FeatureRows(), packet_->stride);
   shared_.field.Density(shared_.weights, features, packet_->stride, padded, a_.density_hidden, a_.stride, a_.geometry(), a_.stride);
-  kernel::ExpShifted(a_.geometry(), padded, static_cast<float>(shared_.target.config.density_bias), kMaxLogDepth, depth_.data());
+  kernel::ExpShifted(a_.geometry(), padded, static_cast<float>(shared_.target.config.density_bias), kMaxLogTau, depth_.data());
 }
 
 void PacketTrainer::KeepAll() {
@@ -134,7 +134,7 @@ void PacketTrainer::Color() {
   float* sh = a_.color_in + static_cast<size_t>(field::kGeometryRows) * a_.stride;
   for (size_t k = 0; k < views_.size(); ++k) {
     const Eigen::Vector3f direction = Ray(k).ray.direction_enu.cast<float>();
-    shared_.field.FillDirection(direction.data(), views_[k].count, sh + views_[k].begin, a_.stride);
+    shared_.field.EncodeDirection(direction.data(), views_[k].count, sh + views_[k].begin, a_.stride);
   }
   ZeroPadding(sh, shared_.field.ColorInputRows() - field::kGeometryRows, a_.stride);
   shared_.field.Color(shared_.weights, a_.color_in, a_.stride, padded, a_.color_hidden, a_.stride, a_.color_raw, a_.stride);

@@ -22,7 +22,7 @@
 namespace skyquilt::worker {
 
 // Upper limit of the logarithm of tau of a step, so that densities and their gradients stay finite.
-constexpr float kMaxLogDepth = 15.0F;
+constexpr float kMaxLogTau = 15.0F;
 
 // Read by every packet of every step.
 struct PacketShared {
@@ -75,9 +75,9 @@ class PacketTrainer {
   bool Backward(float* network_gradient);
 
   // packet_trainer_context.cpp: renders the context in front of the block's ground plan and, where light passes through the block, behind it.
-  void LookThroughContext();
-  void AddPieces(size_t view);
-  void TakeColors();
+  void RenderContext();
+  void AddContextRays(size_t view);
+  void StoreContextColors();
 
   // packet_trainer_compose.cpp: losses, and their gradients by the networks' outputs.
   void ComposeAndLoss(LossSums& sums);

@@ -10,19 +10,19 @@ constexpr float kOpaqueTau = 4.0F;
 
 }  // namespace
 
-void PacketTrainer::LookThroughContext() {
+void PacketTrainer::RenderContext() {
   if (shared_.context == nullptr) return;
   pieces_.clear();
   owner_.clear();
   for (size_t k = 0; k < views_.size(); ++k) {
-    if (!Ray(k).ray.empty) AddPieces(k);
+    if (!Ray(k).ray.empty) AddContextRays(k);
   }
   colors_.resize(pieces_.size());
   context_->Render(pieces_, colors_);
-  TakeColors();
+  StoreContextColors();
 }
 
-void PacketTrainer::AddPieces(size_t view) {
+void PacketTrainer::AddContextRays(size_t view) {
   const PixelRay& ray = Ray(view).ray;
   const geo::Interval all = render::FieldInterval(shared_.context->map, ray.origin_enu, ray.direction_enu);
   if (all.Empty()) return;
@@ -39,7 +39,7 @@ void PacketTrainer::AddPieces(size_t view) {
   }
 }
 
-void PacketTrainer::TakeColors() {
+void PacketTrainer::StoreContextColors() {
   for (size_t i = 0; i < pieces_.size(); ++i) {
     RayView& view = views_[owner_[i].first];
     const bool behind = owner_[i].second;

@@ -18,7 +18,7 @@ double QuantileOf(const std::vector<survey::SparsePoint>& points, int axis, doub
   std::vector<double> values;
   values.reserve(points.size());
   for (const survey::SparsePoint& point : points) values.push_back(point.x_in_enu[axis]);
-  return base::NearestRank(values, share);
+  return base::NearestRankQuantile(values, share);
 }
 
 }  // namespace

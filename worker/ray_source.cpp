@@ -18,7 +18,7 @@ RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixe
     const survey::Photo& photo = survey.photos[i];
     cameras_.push_back(survey.cameras[static_cast<size_t>(photo.camera)].Resized(pixels.Width(i), pixels.Height(i)));
     enu_from_cam_.push_back(photo.cam_from_enu.Inverse());
-    per_radius2_.push_back(1.0 / (cameras_.back().FarthestCorner() * cameras_.back().FarthestCorner()));
+    per_radius2_.push_back(1.0 / (cameras_.back().MaxImageRadius() * cameras_.back().MaxImageRadius()));
   }
   UpdateExposures();
 }
@@ -88,7 +88,7 @@ bool RaySource::RayOf(int photo, int x, int y, bool empty, PixelRay* ray) const 
   RayThrough(photo, position, &ray->origin_enu, &ray->direction_enu);
   for (size_t c = 0; c < 3; ++c) ray->target_srgb[c] = static_cast<float>(rgb[c]) / 255.0F;
   ray->photo = photo;
-  ray->exposure = brightness::Response::FallenOff(exposures_[index], response_.LogVignetting(index, Radius2(photo, position)));
+  ray->exposure = brightness::Response::WithVignetting(exposures_[index], response_.LogVignetting(index, Radius2(photo, position)));
   ray->empty = empty;
   return true;
 }

@@ -123,9 +123,9 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
   }
 }
 
-void StartFromBands(const RaySource& source, const survey::Survey& survey, const std::vector<Tile>& tiles, const LoadedContext& context,
-                    render::TrainedField& target) {
-  if (!context.KnowsBands(survey)) return;
+void StartFromSurfaces(const RaySource& source, const survey::Survey& survey, const std::vector<Tile>& tiles, const LoadedContext& context,
+                       render::TrainedField& target) {
+  if (!context.HasSurfaceIntervals(survey)) return;
   field::OccupancyGrid& grid = target.occupancy;
   const std::vector<uint8_t> before = grid.occupied;
   std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
@@ -133,7 +133,7 @@ void StartFromBands(const RaySource& source, const survey::Survey& survey, const
   // The context's surfaces are blurred by about one of its marching steps.
   const double pad_m = context.field.step_m;
   for (const Tile& tile : tiles) {
-    const SurfaceBand& band = context.Band(tile.photo, tile.row, tile.column);
+    const SurfaceInterval& band = context.Band(tile.photo, tile.row, tile.column);
     render::Ray ray;
     source.RayThrough(tile.photo, source.TileCentre(tile), &ray.origin_enu, &ray.direction_enu);
     const geo::Interval box = render::FieldInterval(target.map, ray.origin_enu, ray.direction_enu);

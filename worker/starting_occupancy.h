@@ -7,7 +7,7 @@
 #include "core/render/trained_field.h"
 #include "core/scene/height_map.h"
 #include "worker/ray_source.h"
-#include "worker/surface_band.h"
+#include "worker/surface_interval.h"
 
 namespace skyquilt::worker {
 
@@ -27,7 +27,7 @@ void StartEverywhere(render::TrainedField& target);
 void StartFromPoints(const survey::Survey& survey, render::TrainedField& target);
 // Keeps only cells near the surfaces that the context shows in the given tiles (surface_band.h), and cells with sparse points. Other cells are free
 // until surfaces grow into them. Does nothing when the context has no bands.
-void StartFromBands(const RaySource& source, const survey::Survey& survey, const std::vector<Tile>& tiles, const LoadedContext& context,
-                    render::TrainedField& target);
+void StartFromSurfaces(const RaySource& source, const survey::Survey& survey, const std::vector<Tile>& tiles, const LoadedContext& context,
+                       render::TrainedField& target);
 
 }  // namespace skyquilt::worker

@@ -28,8 +28,8 @@ int64_t TotalSteps(const TrainOptions& options) {
 
 }  // namespace
 
-TrainLoop::TrainLoop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const ContextExtras* extras,
-                     const SessionRecord& record, const Reporter& report)
+TrainLoop::TrainLoop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer,
+                     const ContextBrightness* extras, const SessionRecord& record, const Reporter& report)
     : kind_(kind),
       job_(job),
       target_(target),
@@ -47,15 +47,15 @@ bool TrainLoop::Run() {
       throw base::Interrupted();
     }
     if (!Step(fraction)) return false;
-    ReportAtTimes(fraction);
-    SaveAtTimes();
+    ReportIfDue(fraction);
+    SaveIfDue();
   }
-  ForgetUnseenCells();
+  MarkUnsampledCells();
   if (recent_.seconds > 0.0) Report(1.0);
   return true;
 }
 
-TrainResult TrainLoop::SaveResult(const ContextFindings* findings) {
+TrainResult TrainLoop::SaveResult(const ContextResults* findings) {
   record_.complete = true;
   SaveSession(kind_, job_, target_, trainer_, record_, extras_, findings);
   return Summarise();
@@ -77,13 +77,13 @@ bool TrainLoop::Step(double fraction) {
   const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
   const int64_t done = trainer_.state().step;
   if (done % kOccupancyEvery == 0) trainer_.UpdateOccupancy(done % kGrowEvery == 0 && fraction < kGrowUntil);
-  if (!KeepError(step)) return false;
-  KeepCounts(step);
+  if (!RecordError(step)) return false;
+  RecordCounts(step);
   return true;
 }
 
 // Updates the running mean of the error and the number of non-finite steps in a row; false when there are too many of these.
-bool TrainLoop::KeepError(const StepResult& step) {
+bool TrainLoop::RecordError(const StepResult& step) {
   if (!step.finite) {
     ++record_.dropped_steps;
     return ++dropped_in_a_row_ < kMaxDroppedInARow;
@@ -95,7 +95,7 @@ bool TrainLoop::KeepError(const StepResult& step) {
   return true;
 }
 
-void TrainLoop::KeepCounts(const StepResult& step) {
+void TrainLoop::RecordCounts(const StepResult& step) {
   const double now = Now();
   const double step_s = now - last_;
   last_ = now;
@@ -108,7 +108,7 @@ void TrainLoop::KeepCounts(const StepResult& step) {
   loss_ = step.loss;
 }
 
-void TrainLoop::ReportAtTimes(double fraction) {
+void TrainLoop::ReportIfDue(double fraction) {
   if (last_ - last_report_ < kReportEvery_s) return;
   Report(fraction);
   recent_ = {};
@@ -130,17 +130,17 @@ void TrainLoop::Report(double fraction) {
   report_(status);
 }
 
-void TrainLoop::SaveAtTimes() {
+void TrainLoop::SaveIfDue() {
   if (last_ - last_save_ < job_.options.checkpoint_every_s) return;
   SaveSession(kind_, job_, target_, trainer_, record_, extras_, nullptr);
   last_ = last_save_ = Now();  // saving is not training
 }
 
 // Frees cells at the edge of the photos that no ray has crossed: their densities and colours were never trained.
-void TrainLoop::ForgetUnseenCells() {
+void TrainLoop::MarkUnsampledCells() {
   field::OccupancyGrid& cells = target_.occupancy;
   if (static_cast<double>(record_.samples) > kVisitsToJudge * cells.OccupiedShare() * static_cast<double>(cells.CellCount())) {
-    cells.ForgetUnsampled(kStartTau);
+    cells.MarkUnsampled(kStartTau);
   }
 }
 

@@ -11,14 +11,14 @@ namespace skyquilt::worker {
 class TrainLoop {
  public:
   // kind, extras: as for SaveSession. record: progress of earlier runs. All references must outlive the loop.
-  TrainLoop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const ContextExtras* extras,
+  TrainLoop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const ContextBrightness* extras,
             const SessionRecord& record, const Reporter& report);
 
   // False when too many steps in a row were not finite: the result is then Failure(). Throws base::Interrupted after saving when cancelled,
   // base::InputError when a checkpoint cannot be written.
   bool Run();
   // Saves the field as complete. findings: null for blocks. Throws base::InputError when the checkpoint cannot be written.
-  TrainResult SaveResult(const ContextFindings* findings);
+  TrainResult SaveResult(const ContextResults* findings);
   TrainResult Failure() const;
 
  private:
@@ -30,19 +30,19 @@ class TrainLoop {
   double Fraction() const;  // of the budget used so far
   // One step, with occupancy and counts; false when too many steps in a row were not finite.
   bool Step(double fraction);
-  bool KeepError(const StepResult& step);
-  void KeepCounts(const StepResult& step);
-  void ReportAtTimes(double fraction);
+  bool RecordError(const StepResult& step);
+  void RecordCounts(const StepResult& step);
+  void ReportIfDue(double fraction);
   void Report(double fraction);
-  void SaveAtTimes();
-  void ForgetUnseenCells();
+  void SaveIfDue();
+  void MarkUnsampledCells();
   TrainResult Summarise() const;
 
   std::string kind_;
   const TrainJob& job_;
   render::TrainedField& target_;
   FieldTrainer& trainer_;
-  const ContextExtras* extras_;
+  const ContextBrightness* extras_;
   SessionRecord record_;
   const Reporter& report_;
   int64_t total_steps_;  // 0: a time budget decides

@@ -13,7 +13,7 @@
 #include "worker/make_background.h"
 #include "worker/point_surface.h"
 #include "worker/starting_occupancy.h"
-#include "worker/surface_band.h"
+#include "worker/surface_interval.h"
 #include "worker/tie_point_gains.h"
 #include "worker/train_loop.h"
 #include "worker/view_count.h"
@@ -45,7 +45,7 @@ render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool
   render::TrainedField f;
   f.name = spec.name;
   f.box = spec.box;
-  f.map = is_context ? encoding::SpaceMap::Slab(f.box.min_enu, f.box.max_enu) : encoding::SpaceMap::Box(f.box.TrainMin(), f.box.TrainMax());
+  f.map = is_context ? encoding::SpaceMap::Contracted(f.box.min_enu, f.box.max_enu) : encoding::SpaceMap::Box(f.box.TrainMin(), f.box.TrainMax());
   f.step_m = options.step_voxels * spec.finest_voxel_m;
   auto& grid = f.config.grid;
   grid.levels = options.levels;
@@ -88,7 +88,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   }
   brightness::Response response = job.response;
   brightness::ResponseLearner learner(response, job.learn);
-  const ContextExtras extras{&response, &learner};
+  const ContextBrightness extras{&response, &learner};
   RaySource source(*job.survey, *job.pixels, response);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
   source.SetTiles(TilesWithEnoughViews(source, *job.survey, area.photos, surface, job.min_views), {}, 0.0);
@@ -97,7 +97,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
     none.reason = "no training photo sees the survey area; check the poses in the survey";
     return none;
   }
-  if (GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads)) learner.Rest();
+  if (GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads)) learner.Freeze();
   source.UpdateExposures();
   render::TrainedField target = MakeTarget(job, area, true, job.luminance, response, learner.active());
   const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};
@@ -119,7 +119,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   TrainLoop loop("context", job, target, trainer, &extras, record, report);
   if (!loop.Run()) return loop.Failure();
   if (job.learn.Gains()) brightness::PredictGains(brightness::CapturedPhotos(*job.survey), response);
-  const ContextFindings findings{SurfaceBands(source, *job.survey, target, threads), MakeBackground(source, *job.survey, surface, job.seed)};
+  const ContextResults findings{SurfaceIntervals(source, *job.survey, target, threads), MakeBackground(source, *job.survey, surface, job.seed)};
   return loop.SaveResult(&findings);
 }
 
@@ -162,7 +162,7 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
       StartEverywhere(target);
     } else {
       StartFromPoints(*job.survey, target);
-      if (context != nullptr) StartFromBands(source, *job.survey, tiles, *context, target);
+      if (context != nullptr) StartFromSurfaces(source, *job.survey, tiles, *context, target);
     }
   }
   TrainLoop loop("block", job, target, trainer, nullptr, record, report);

@@ -1,6 +1,6 @@
 #include "worker/view_count.h"
 
-#include "core/camera/sight.h"
+#include "core/camera/photo_visibility.h"
 
 namespace skyquilt::worker {
 
@@ -11,7 +11,7 @@ int CountViews(const RaySource& source, const survey::Survey& survey, const std:
     if (views >= enough) break;
     if (survey.photos[static_cast<size_t>(photo)].is_test) continue;
     const geo::Rigid3d& cam_from_enu = survey.photos[static_cast<size_t>(photo)].cam_from_enu;
-    if (camera::Shows(source.CameraOf(photo), cam_from_enu, x_in_enu, {.radius_m = radius_m})) ++views;
+    if (camera::IsVisible(source.CameraOf(photo), cam_from_enu, x_in_enu, {.radius_m = radius_m})) ++views;
   }
   return views;
 }
@@ -24,7 +24,7 @@ std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Su
   for (const Tile& tile : all) {
     Eigen::Vector3d origin, direction, x;
     source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
-    if (!surface.Meet(origin, direction, &x) || CountViews(source, survey, photos, x, 0.0, min_views) >= min_views) kept.push_back(tile);
+    if (!surface.Intersect(origin, direction, &x) || CountViews(source, survey, photos, x, 0.0, min_views) >= min_views) kept.push_back(tile);
   }
   return kept.empty() ? all : kept;
 }

@@ -50,7 +50,7 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
       "  skyquilt bench kernel --log2-table-size 22 -o out/bench\n"
       "Rates are medians over rounds; the limit is measured in the same rounds. Run nothing else on the machine meanwhile.");
   command->callback([&state, flags] {
-    state.chosen = [&state, flags] {
+    state.run_command = [&state, flags] {
       if (state.comm != nullptr && state.comm->rank() != 0) return;  // only one process measures; others would slow it down
       flags->options.threads = BenchThreads(state);
       if (flags->quick) {
@@ -110,7 +110,7 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
       "  skyquilt bench schedule --blocks 400 --ranks 64 --block-seconds 1800 --measured out/train.json\n"
       "Simulates the job twice: undisturbed, and with lost ranks, after which the job starts again from its checkpoints.");
   command->callback([&state, flags, blocks, ranks] {
-    state.chosen = [&state, flags, blocks, ranks] {
+    state.run_command = [&state, flags, blocks, ranks] {
       if (state.comm != nullptr && state.comm->rank() != 0) return;
       if (flags->quick && blocks->empty()) flags->options.blocks = kQuickBlocks;
       if (flags->quick && ranks->empty()) flags->options.ranks = kQuickRanks;

@@ -68,7 +68,7 @@ void AddNumericsBench(CLI::App& bench, CommandState& state) {
       "  skyquilt bench numerics --only space,earth\n"
       "Exit status 5 when a case fails.");
   command->callback([&state, flags] {
-    state.chosen = [&state, flags] {
+    state.run_command = [&state, flags] {
       if (state.comm != nullptr && state.comm->rank() != 0) return;
       if (!flags->out.empty()) base::RequireWritableFolder(flags->out);
       const WorkFolder work(flags->out);

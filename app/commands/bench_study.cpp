@@ -92,7 +92,7 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   if (study_command.options) study_command.options(command, flags.get());
   command->footer(study_command.footer);
   command->callback([&state, flags, study_command] {
-    state.chosen = [&state, flags, study_command] {
+    state.run_command = [&state, flags, study_command] {
       bench::Study study = Begin(state, *flags, study_command.place);
       WriteResults(study_command.run(study, *flags), study, state, *flags);
     };
@@ -143,8 +143,8 @@ bench::StudyBench RunTradeoff(bench::Study& study, const StudyFlags& flags) {
   if (flags.quick) {
     for (bench::StudiedPreset& preset : options.presets) preset.budgets = {1.0 / 3.0, 1.0};
     options.log2_table_sizes = {12, 15};
-    options.steps_per_voxel = {2.0, 4.0};
-    options.keep_every = {1, 2};
+    options.step_voxels = {2.0, 4.0};
+    options.every_nth_photo = {1, 2};
   }
   return bench::Tradeoff(study, options);
 }

@@ -153,14 +153,14 @@ int RunCommandLine(int argc, char** argv) {
       app.parse(argc, argv);
     } catch (const CLI::Success& done) {
       app.exit(done);
-      state.chosen = [] {};
+      state.run_command = [] {};
     } catch (const CLI::ParseError& error) {
       parse_status = ReportParseError(app, error);
     }
   });
   if (parse_status != kDone) return parse_status;
   if (status != kDone) return status;
-  if (!state.chosen) {
+  if (!state.run_command) {
     std::cerr << app.help();
     return kUsage;
   }
@@ -169,7 +169,7 @@ int RunCommandLine(int argc, char** argv) {
     spdlog::set_level(spdlog::level::warn);
     base::Progress::SetQuiet(true);
   }
-  return Guarded(state.chosen);
+  return Guarded(state.run_command);
 }
 
 }  // namespace skyquilt::app

@@ -84,7 +84,7 @@ std::string AllowedText(const std::string& key) {
   return range.empty() ? "" : " (" + range + ")";
 }
 
-void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help) {
+void AddOptionFlag(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help) {
   command.add_option_function<std::string>(
       flag,
       [overrides, key](const std::string& value) {
@@ -135,13 +135,13 @@ void AddMemoryFlag(CLI::App& command, const Overrides& overrides) {
 
 void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
   AddDurationFlag(command, overrides, "--time-budget", {"run.time_budget_s"}, "time for the whole training, such as 90s, 10min or 1h30m");
-  AddOverride(command, overrides, "--steps", "train.steps", "train every block for this many steps instead of a time budget");
+  AddOptionFlag(command, overrides, "--steps", "train.steps", "train every block for this many steps instead of a time budget");
   AddDurationFlag(command, overrides, "--checkpoint-every", {"context.checkpoint_every_s", "train.checkpoint_every_s"},
                   "time between two checkpoints of a field, such as 20s or 5min");
   AddMemoryFlag(command, overrides);
-  AddOverride(command, overrides, "--seed", "run.seed", "seed of the random numbers of training");
-  AddOverride(command, overrides, "--brightness", "brightness.correction",
-              "correction of exposure differences between photos: none, or any of exif,gain,vignette,luminance");
+  AddOptionFlag(command, overrides, "--seed", "run.seed", "seed of the random numbers of training");
+  AddOptionFlag(command, overrides, "--brightness", "brightness.correction",
+                "correction of exposure differences between photos: none, or any of exif,gain,vignette,luminance");
 }
 
 std::vector<std::filesystem::path> ProjectConfig(const coordinator::Project& project) {

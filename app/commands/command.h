@@ -26,7 +26,7 @@ struct CommandState {
   std::string command_line;      // as it was typed, for reports
   bool quiet = false;
   bool verbose = false;
-  std::function<void()> chosen;  // runs the command that was given; set while parsing
+  std::function<void()> run_command;  // runs the command that was given; set while parsing
 
   // Settings from, in this order: defaults, `files`, --config, --set, the command's own flags. Later ones win.
   coordinator::Settings Load(const std::vector<std::filesystem::path>& files, const std::vector<config::Override>& flags) const;
@@ -43,7 +43,7 @@ using Overrides = std::shared_ptr<std::vector<config::Override>>;
 // The range of an option in parentheses, for the help; empty without a range.
 std::string AllowedText(const std::string& key);
 // Adds a flag whose value sets the option `key` ("section.key"). The option's range and key are added to the help.
-void AddOverride(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help);
+void AddOptionFlag(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help);
 // Adds the flag for the simulated place: `take` receives its name. The old flag --preset still works, with a warning.
 void AddPlaceFlag(CLI::App& command, const std::string& names, const std::function<void(const std::string&)>& take, const std::string& help);
 // --memory.

@@ -91,11 +91,11 @@ Json DescribeProject(const std::filesystem::path& folder) {
   const coordinator::Project project{std::filesystem::absolute(folder).lexically_normal()};
   Json stages = Json::array();
   for (const coordinator::Stage& stage : coordinator::Stages()) {
-    const coordinator::Project home = stage.home == nullptr ? project : stage.home(project);
+    const coordinator::Project home = stage.separate_folder == nullptr ? project : stage.separate_folder(project);
     const std::optional<coordinator::StageStamp> stamp = coordinator::LoadStamp(home, stage.name);
     // A stage that not every project has (simulate) is shown only when it was started.
-    if (!stamp && stage.home != nullptr) continue;
-    const coordinator::Paths proof = stage.proof(home);
+    if (!stamp && stage.separate_folder != nullptr) continue;
+    const coordinator::Paths proof = stage.completion_files(home);
     const bool complete = std::all_of(proof.begin(), proof.end(), [](const auto& path) { return std::filesystem::exists(path); });
     std::string state = stamp ? stamp->state : complete ? "done" : "not started";
     if (state == "done" && !complete) state = "files missing";

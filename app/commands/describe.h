@@ -20,6 +20,6 @@ nlohmann::ordered_json DescribeTable(const std::filesystem::path& file);
 nlohmann::ordered_json DescribeConfiguration(const std::filesystem::path& file);
 
 // JSON as text for a terminal: indented "key: value" lines; lists of records become tables.
-std::string Readable(const nlohmann::ordered_json& json);
+std::string FormatReadable(const nlohmann::ordered_json& json);
 
 }  // namespace skyquilt::app

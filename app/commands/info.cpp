@@ -28,7 +28,7 @@ void AddInfo(CLI::App& app, CommandState& state) {
       "  skyquilt info out/blocks.geojson\n"
       "  skyquilt info --defaults > my.toml");
   command->callback([&state, flags] {
-    state.chosen = [&state, flags] {
+    state.run_command = [&state, flags] {
       if (flags->defaults) {
         std::cout << state.Load({}, {}).Toml();
         return;
@@ -38,7 +38,7 @@ void AddInfo(CLI::App& app, CommandState& state) {
       if (flags->json) {
         std::cout << described.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
       } else {
-        std::cout << Readable(described);
+        std::cout << FormatReadable(described);
       }
     };
   });

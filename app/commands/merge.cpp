@@ -19,7 +19,7 @@ void AddMerge(CLI::App& app, CommandState& state) {
       "  skyquilt merge out --restart\n"
       "Writes out/scene.h5. Where a block failed, the scene shows the coarse context field.");
   command->callback([&state, flags] {
-    state.chosen = [&state, flags] {
+    state.run_command = [&state, flags] {
       coordinator::Pipeline pipeline = state.BeginIn(flags->project, {}, flags->restart);
       coordinator::MergeStage(pipeline);
     };

@@ -13,11 +13,11 @@ void AddPartition(CLI::App& app, CommandState& state) {
   const auto overrides = std::make_shared<std::vector<config::Override>>();
   CLI::App* command = app.add_subcommand("partition", "divide the survey area into geo-referenced blocks");
   command->add_option("project", flags->project, "project folder with a survey")->required()->type_name("FOLDER");
-  AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
-  AddOverride(*command, overrides, "--altitudes", "partition.altitudes",
-              "altitude above ground in metres of each block, row by row from the south-west, separated by commas");
-  AddOverride(*command, overrides, "--image-width", "run.image_width",
-              "scale photos down to this width in pixels for training and scoring; 0: full size");
+  AddOptionFlag(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
+  AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",
+                "altitude above ground in metres of each block, row by row from the south-west, separated by commas");
+  AddOptionFlag(*command, overrides, "--image-width", "run.image_width",
+                "scale photos down to this width in pixels for training and scoring; 0: full size");
   command->add_flag("--restart", flags->restart, "remove the blocks and everything made from them first");
   command->footer(
       "Examples:\n"
@@ -26,7 +26,7 @@ void AddPartition(CLI::App& app, CommandState& state) {
       "  skyquilt partition out --blocks 2x2 --altitudes 150,150,300,500\n"
       "Writes out/blocks.geojson, which opens in QGIS.");
   command->callback([&state, flags, overrides] {
-    state.chosen = [&state, flags, overrides] {
+    state.run_command = [&state, flags, overrides] {
       coordinator::Pipeline pipeline = state.BeginIn(flags->project, *overrides, flags->restart);
       coordinator::PartitionStage(pipeline);
     };

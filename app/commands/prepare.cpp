@@ -18,9 +18,9 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   command->add_option("-o,--out", flags->out, "project folder; created if it does not exist")->required()->type_name("FOLDER");
   command->add_option("--model", flags->model, "folder with the COLMAP model of the photos (text or binary); without it COLMAP is run")
       ->type_name("FOLDER");
-  AddOverride(*command, overrides, "--holdout", "prepare.holdout",
-              "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
-  AddOverride(*command, overrides, "--masks", "prepare.masks", "folder of masks named PHOTO.jpg.png; pixels with value 0 are ignored");
+  AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
+                "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
+  AddOptionFlag(*command, overrides, "--masks", "prepare.masks", "folder of masks named PHOTO.jpg.png; pixels with value 0 are ignored");
   command->add_flag("--restart", flags->restart, "remove the survey and everything made from it first");
   command->footer(
       "Examples:\n"
@@ -29,7 +29,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
       "  skyquilt prepare photos/ -o out --holdout every:10\n"
       "Writes out/survey/. Exit status: 0 done, 2 wrong usage, 3 bad input, 130 interrupted.");
   command->callback([&state, flags, overrides] {
-    state.chosen = [&state, flags, overrides] {
+    state.run_command = [&state, flags, overrides] {
       coordinator::Settings settings = state.Load({}, *overrides);
       coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags->out), std::move(settings), flags->restart);
       coordinator::PrepareStage(pipeline, flags->photos, flags->model);

@@ -86,7 +86,7 @@ void Write(const Json& json, const std::string& indent, std::ostream& out) {
 
 }  // namespace
 
-std::string Readable(const nlohmann::ordered_json& json) {
+std::string FormatReadable(const nlohmann::ordered_json& json) {
   std::ostringstream out;
   Write(json, "", out);
   return out.str();

@@ -132,9 +132,9 @@ void AddRender(CLI::App& app, CommandState& state) {
   command->add_flag("--ortho", flags->ortho, "make the orthophoto as GeoTIFF");
   command->add_flag("--dsm", flags->dsm, "make the surface model as GeoTIFF");
   command->add_flag("--no-depth", flags->no_depth, "do not write depth images");
-  AddOverride(*command, overrides, "--exposure", "products.exposure",
-              "exposure of the images: normal, a number of stops above it, or a photo's name to use its exposure");
-  AddOverride(*command, overrides, "--resolution", "products.resolution_m", "cell size of orthophoto and surface model in metres");
+  AddOptionFlag(*command, overrides, "--exposure", "products.exposure",
+                "exposure of the images: normal, a number of stops above it, or a photo's name to use its exposure");
+  AddOptionFlag(*command, overrides, "--resolution", "products.resolution_m", "cell size of orthophoto and surface model in metres");
   AddMemoryFlag(*command, overrides);
   command->add_option("--width", flags->width, "image width in pixels; 0: size of the photos, with --path and --video products.video_width")
       ->type_name("N");
@@ -148,7 +148,7 @@ void AddRender(CLI::App& app, CommandState& state) {
       "  skyquilt render out --photo IMG_0007.jpg --exposure 1\n"
       "  skyquilt render out/scene.h5 --path flight.json --video -o movie\n"
       "  skyquilt render out --ortho --dsm --resolution 0.05");
-  command->callback([&state, flags, overrides] { state.chosen = [&state, flags, overrides] { Render(state, *flags, *overrides); }; });
+  command->callback([&state, flags, overrides] { state.run_command = [&state, flags, overrides] { Render(state, *flags, *overrides); }; });
 }
 
 }  // namespace skyquilt::app

@@ -62,13 +62,13 @@ void AddRun(CLI::App& app, CommandState& state) {
       "simulated place to use instead of photos" + AllowedText("simulate.place") + " [simulate.place]");
   command->add_option("--model", flags->model, "folder with the COLMAP model of the photos (text or binary); without it COLMAP is run")
       ->type_name("FOLDER");
-  AddOverride(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
-  AddOverride(*command, overrides, "--altitudes", "partition.altitudes",
-              "altitude above ground in metres of each block, row by row from the south-west, separated by commas");
-  AddOverride(*command, overrides, "--image-width", "run.image_width",
-              "scale photos down to this width in pixels for training and scoring; 0: full size");
-  AddOverride(*command, overrides, "--holdout", "prepare.holdout",
-              "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
+  AddOptionFlag(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
+  AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",
+                "altitude above ground in metres of each block, row by row from the south-west, separated by commas");
+  AddOptionFlag(*command, overrides, "--image-width", "run.image_width",
+                "scale photos down to this width in pixels for training and scoring; 0: full size");
+  AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
+                "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddTrainingFlags(*command, overrides);
   command->add_flag("--restart", flags->restart, "remove all earlier results in the project folder first");
   command->footer(
@@ -79,7 +79,7 @@ void AddRun(CLI::App& app, CommandState& state) {
       "  mpirun -n 3 skyquilt run photos/ -o out --time-budget 1h30m\n"
       "Run the same command again to continue after an interruption; finished stages are skipped.\n"
       "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 a block failed (the rest is saved), 130 interrupted (resumable).");
-  command->callback([&state, flags, overrides] { state.chosen = [&state, flags, overrides] { Run(state, *flags, *overrides); }; });
+  command->callback([&state, flags, overrides] { state.run_command = [&state, flags, overrides] { Run(state, *flags, *overrides); }; });
 }
 
 }  // namespace skyquilt::app

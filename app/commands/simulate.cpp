@@ -19,10 +19,10 @@ void AddSimulate(CLI::App& app, CommandState& state) {
       },
       "place to simulate" + AllowedText("simulate.place") + " [simulate.place]");
   command->add_option("-o,--out", flags->out, "folder for the survey; created if it does not exist")->required()->type_name("FOLDER");
-  AddOverride(*command, overrides, "--seed", "simulate.seed", "seed of the place; another number gives another place of the same kind");
-  AddOverride(*command, overrides, "--image-width", "simulate.image_width", "width of the photos in pixels");
-  AddOverride(*command, overrides, "--altitudes", "simulate.altitudes",
-              "flying height above ground in metres: one, or one per block, separated by commas");
+  AddOptionFlag(*command, overrides, "--seed", "simulate.seed", "seed of the place; another number gives another place of the same kind");
+  AddOptionFlag(*command, overrides, "--image-width", "simulate.image_width", "width of the photos in pixels");
+  AddOptionFlag(*command, overrides, "--altitudes", "simulate.altitudes",
+                "flying height above ground in metres: one, or one per block, separated by commas");
   command->add_flag("--restart", flags->restart, "remove an earlier survey in the folder first");
   command->footer(
       "Examples:\n"
@@ -30,7 +30,7 @@ void AddSimulate(CLI::App& app, CommandState& state) {
       "  skyquilt simulate town -o data/town --seed 7 --altitudes 60,80,60,80\n"
       "  skyquilt simulate tidalflat -o data/flat --set simulate.exposure_jumps_stops=1.5");
   command->callback([&state, flags, overrides] {
-    state.chosen = [&state, flags, overrides] {
+    state.run_command = [&state, flags, overrides] {
       coordinator::Pipeline pipeline{.comm = *state.comm, .project = {}, .settings = state.Load({}, *overrides), .restart = flags->restart};
       coordinator::SimulateStage(pipeline, flags->out);
     };

@@ -24,7 +24,7 @@ void AddTrain(CLI::App& app, CommandState& state) {
       "Run the same command again to continue after an interruption.\n"
       "Exit status: 0 done, 4 a block failed after all tries (the others are saved), 130 interrupted (resumable).");
   command->callback([&state, flags, overrides] {
-    state.chosen = [&state, flags, overrides] {
+    state.run_command = [&state, flags, overrides] {
       coordinator::Pipeline pipeline = state.BeginIn(flags->project, *overrides, flags->restart);
       coordinator::ThrowIfBlocksFailed(coordinator::TrainStage(pipeline), pipeline.project);
     };

@@ -69,7 +69,7 @@ NumericGroup AwayGroup(const NumericsOptions& options) {
                              const double psnr = PsnrAt(offset, false, run, &finite);
                              if (std::isnan(curves->home_db)) curves->home_db = psnr;
                              curves->ours.points.emplace_back(shown, psnr);
-                             return Finding{.seen = fmt::format("{:.3f} dB", psnr), .worst = std::abs(psnr - curves->home_db), .holds = finite};
+                             return CaseResult{.seen = fmt::format("{:.3f} dB", psnr), .worst = std::abs(psnr - curves->home_db), .holds = finite};
                            }});
   }
   for (const double distance : distances) {
@@ -83,7 +83,7 @@ NumericGroup AwayGroup(const NumericsOptions& options) {
                              bool finite = true;
                              const double psnr = PsnrAt(offset, true, run, &finite);
                              curves->naive.points.emplace_back(distance, psnr);
-                             return Finding{.seen = fmt::format("{:.3f} dB", psnr), .worst = std::abs(psnr - curves->home_db), .holds = finite};
+                             return CaseResult{.seen = fmt::format("{:.3f} dB", psnr), .worst = std::abs(psnr - curves->home_db), .holds = finite};
                            }});
   }
   group.charts = [curves] {

@@ -17,7 +17,7 @@ namespace {
 constexpr float kFarOutside = 1e30F;
 
 // Phi(x) = 1/2 - sin(asin(1 - 2x) / 3) in long double, and its slope.
-Finding ToneCurveInside() {
+CaseResult ToneCurveInside() {
   Worst worst;
   for (int i = 0; i <= 100000; ++i) {
     const float x = std::clamp(static_cast<float>(i) * 1e-5F, brightness::kSafe, 1.0F - brightness::kSafe);
@@ -32,7 +32,7 @@ Finding ToneCurveInside() {
 }
 
 // The tone curve near and beyond 0 and 1: finite, increasing, with bounded slope.
-Finding ToneCurveOutside() {
+CaseResult ToneCurveOutside() {
   bool holds = true;
   Worst worst;
   float last = -kFarOutside;
@@ -58,7 +58,7 @@ long double ExactLinear(long double srgb) {
 }
 
 // A change of exposure of display values, its slope by central differences in long double.
-Finding ExposureOf(double stops) {
+CaseResult ExposureOf(double stops) {
   const auto log_gain = static_cast<float>(stops * std::log(2.0));
   const brightness::Exposure exposure = brightness::Exposure::FromLogGain(log_gain);
   const long double gain = std::exp(static_cast<long double>(log_gain));
@@ -110,18 +110,18 @@ NumericCase PhotosCase(const EdgePhotos& photos, const NumericsOptions& options)
           .run = [photos, options] {
             const QuietStages quiet(options.silent);
             const EdgeSurvey survey(options.work_folder / "photos", photos.width, photos.height, photos.pixels);
-            brightness::Response response = brightness::Response::Plain(EdgeSurvey::kPhotos, 1);
+            brightness::Response response = brightness::Response::Neutral(EdgeSurvey::kPhotos, 1);
             for (size_t i = 0; i < response.photos(); ++i) {
               response.exif_gain[i] = static_cast<float>(std::exp2(i % 2 == 0 ? photos.stops : -photos.stops));
             }
             base::ThreadPool threads(options.threads);
             const EdgeSurvey::Outcome outcome = survey.Train(response, options.quick ? 30 : 100, threads);
-            if (!outcome.context.ok) return Finding{.seen = "context: " + outcome.context.reason, .holds = false};
-            if (!outcome.block.ok) return Finding{.seen = "block: " + outcome.block.reason, .holds = false};
-            return Finding{.seen = fmt::format("{} steps each, {}, training PSNR {:.1f} dB", outcome.block.steps,
-                                               outcome.finite ? "finite" : "not finite", outcome.block.final_psnr_db),
-                           .worst = static_cast<double>(outcome.context.dropped_steps + outcome.block.dropped_steps),
-                           .holds = outcome.finite};
+            if (!outcome.context.ok) return CaseResult{.seen = "context: " + outcome.context.reason, .holds = false};
+            if (!outcome.block.ok) return CaseResult{.seen = "block: " + outcome.block.reason, .holds = false};
+            return CaseResult{.seen = fmt::format("{} steps each, {}, training PSNR {:.1f} dB", outcome.block.steps,
+                                                  outcome.finite ? "finite" : "not finite", outcome.block.final_psnr_db),
+                              .worst = static_cast<double>(outcome.context.dropped_steps + outcome.block.dropped_steps),
+                              .holds = outcome.finite};
           }};
 }
 

@@ -85,15 +85,15 @@ NumericCase DepthsCase(const std::string& name, const std::vector<double>& depth
             worst.Take(errors.forward.value());
             worst.Take(errors.backward.value());
             worst.Take(std::abs(errors.opacity - opacity));
-            return Finding{.seen = fmt::format("transmittance {:.3g}, forward {:.1g}, gradients {:.1g}", errors.transmittance, errors.forward.value(),
-                                               errors.backward.value()),
-                           .worst = worst.value(),
-                           .holds = errors.finite};
+            return CaseResult{.seen = fmt::format("transmittance {:.3g}, forward {:.1g}, gradients {:.1g}", errors.transmittance,
+                                                  errors.forward.value(), errors.backward.value()),
+                              .worst = worst.value(),
+                              .holds = errors.finite};
           }};
 }
 
 // Optical depths from 1e-8 to 1e4 in random order, some of them of intervals without length.
-Finding RandomDepths(int rays) {
+CaseResult RandomDepths(int rays) {
   base::Random random(67);
   Worst worst;
   bool finite = true;
@@ -109,7 +109,7 @@ Finding RandomDepths(int rays) {
   return {.seen = fmt::format("{} rays of up to 200 samples", rays), .worst = worst.value(), .holds = finite};
 }
 
-Finding NoSamples() {
+CaseResult NoSamples() {
   float rgb[3] = {1.0F, 1.0F, 1.0F};
   const float transmittance = render::CompositeForward<float>(0, nullptr, nullptr, 0, nullptr, rgb);
   const bool black = rgb[0] == 0.0F && rgb[1] == 0.0F && rgb[2] == 0.0F;
@@ -127,7 +127,7 @@ double DistortionLimit() {
 }
 
 // sum_ij w_i w_j |m_i - m_j| + 1/3 sum_i w_i^2 d_i as a double sum, and its derivative.
-Finding Distortion(int rays) {
+CaseResult Distortion(int rays) {
   base::Random random(71);
   Worst worst;
   for (int k = 0; k < rays; ++k) {

@@ -164,9 +164,9 @@ NumericCase EarthCase(const EarthPlace& place, const EarthFrame& frame, const st
                                   straight_db);
             }
             seen += fmt::format("; origin {:.6f}, {:.6f}, {:.1f} m", run.origin.latitude_deg, run.origin.longitude_deg, run.origin.height_m);
-            return Finding{.seen = seen,
-                           .worst = std::abs(run.MeanPsnrDb() - wanted_db),
-                           .holds = run.dropped_steps == 0 && DistanceMetres(run.origin, place.origin) < 100.0};
+            return CaseResult{.seen = seen,
+                              .worst = std::abs(run.MeanPsnrDb() - wanted_db),
+                              .holds = run.dropped_steps == 0 && DistanceMetres(run.origin, place.origin) < 100.0};
           }};
 }
 
@@ -203,7 +203,7 @@ NumericGroup EarthGroup(const NumericsOptions& options) {
                          .run = [fitted] {
                            const std::vector<double>& psnr_db = fitted->at(0).psnr_db;
                            const auto [low, high] = std::minmax_element(psnr_db.begin(), psnr_db.end());
-                           return Finding{.seen = fmt::format("{:.3f} to {:.3f} dB", *low, *high), .worst = *high - *low};
+                           return CaseResult{.seen = fmt::format("{:.3f} to {:.3f} dB", *low, *high), .worst = *high - *low};
                          }});
   group.cases.push_back({.name = "Instead: cameras in float ECEF",
                          .expected = "how far the cameras of these surveys would move",
@@ -212,7 +212,7 @@ NumericGroup EarthGroup(const NumericsOptions& options) {
                          .run = [known] {
                            Worst worst;
                            for (const EarthRun& run : *known) worst.Take(run.worst_float_ecef_m);
-                           return Finding{.seen = fmt::format("{:.0f} pixels of a GSD of 2 cm", worst.value() / 0.02), .worst = worst.value()};
+                           return CaseResult{.seen = fmt::format("{:.0f} pixels of a GSD of 2 cm", worst.value() / 0.02), .worst = worst.value()};
                          }});
   return group;
 }

@@ -15,15 +15,15 @@ namespace {
 namespace twin = kernel::reference;
 
 // Runs the check with each instruction set, and then restores the one that was in use.
-NumericCase KernelCase(const std::string& name, const std::string& expected, double limit, const std::function<Finding()>& check) {
+NumericCase KernelCase(const std::string& name, const std::string& expected, double limit, const std::function<CaseResult()>& check) {
   return {.name = name, .expected = expected, .unit = "relative", .limit = limit, .run = [check] {
             const std::string active = kernel::ActiveInstructionSet();
             Worst worst;
-            Finding all;
+            CaseResult all;
             try {
               for (const std::string& set : kernel::InstructionSets()) {
                 kernel::ForceInstructionSet(set);
-                const Finding finding = check();
+                const CaseResult finding = check();
                 worst.Take(finding.worst);
                 all.holds = all.holds && finding.holds;
                 all.seen += (all.seen.empty() ? "" : ", ") + set;
@@ -49,7 +49,7 @@ double InDouble(float value) {
 }
 
 // Forward, gated and weight gradient of one layer, errors relative to the sum of the terms' sizes.
-Finding DenseLayers() {
+CaseResult DenseLayers() {
   base::Random random(83);
   Worst worst;
   for (const auto& [n_out, n_in] : {std::pair<int, int>{4, 4}, {16, 64}, {64, 36}, {256, 256}}) {
@@ -92,7 +92,7 @@ Finding DenseLayers() {
 }
 
 // Lookup and its gradient for batches of several sizes, some positions outside the box. Errors relative to the largest value.
-Finding HashLookups(const kernel::HashLevel& level, int features, const std::vector<int64_t>& batches) {
+CaseResult HashLookups(const kernel::GridLevel& level, int features, const std::vector<int64_t>& batches) {
   base::Random random(89);
   const size_t per_entry = static_cast<size_t>(features);
   const size_t floats = (level.entries * per_entry + kernel::kLineFloats - 1) / kernel::kLineFloats * kernel::kLineFloats;
@@ -138,8 +138,8 @@ Finding HashLookups(const kernel::HashLevel& level, int features, const std::vec
   return {.worst = worst.value(), .holds = holds};
 }
 
-kernel::HashLevel LevelOf(int cells, int log2_entries) {
-  kernel::HashLevel level;
+kernel::GridLevel LevelOf(int cells, int log2_entries) {
+  kernel::GridLevel level;
   level.cells_per_unit = static_cast<float>(cells);
   std::fill(level.size, level.size + 3, cells + 1);
   const double points = std::pow(cells + 1.0, 3.0);
@@ -149,7 +149,7 @@ kernel::HashLevel LevelOf(int cells, int log2_entries) {
 }
 
 // exp(min(limit, x + bias)) and range / (1 + exp(-x)), also for very large and very small x.
-Finding Elementwise() {
+CaseResult Elementwise() {
   std::vector<float> x = {0.0F,
                           1e-30F,
                           88.0F,
@@ -183,7 +183,7 @@ Finding Elementwise() {
 }
 
 // Fifty steps of Adam with gradients of very different size; entries without gradient must not change.
-Finding AdamSteps(double smallest, double largest) {
+CaseResult AdamSteps(double smallest, double largest) {
   constexpr size_t kFloats = 64 * kernel::kLineFloats;
   base::Random random(101);
   std::vector<float> dense = RandomFloats(random, kFloats), table = dense, m1(kFloats, 0.0F), m2(kFloats, 0.0F), t1(kFloats, 0.0F), t2(kFloats, 0.0F);
@@ -229,8 +229,8 @@ Finding AdamSteps(double smallest, double largest) {
   return {.worst = worst.value(), .holds = holds};
 }
 
-// Finding a non-finite value at every index, and packing the samples that are kept.
-Finding FiniteAndCompact() {
+// CaseResult a non-finite value at every index, and packing the samples that are kept.
+CaseResult FiniteAndCompact() {
   bool holds = true;
   for (const size_t n : {0U, 1U, 15U, 16U, 17U, 100U}) {
     std::vector<float> values(n, 3e38F);
@@ -269,7 +269,7 @@ NumericGroup FieldGroup(const NumericsOptions& options) {
           "Each kernel on every instruction set of this processor (named under \xE2\x80\x9Cseen\xE2\x80\x9D) against a scalar version in "
           "double. Errors of sums are relative to the sizes of their terms. The whole field, forward and backward, is checked under Trainer."};
   const std::vector<int64_t> batches = {0, 1, 15, 16, 17, 1000};
-  const auto lookups = [&](const std::string& name, const kernel::HashLevel& level, int features, double limit) {
+  const auto lookups = [&](const std::string& name, const kernel::GridLevel& level, int features, double limit) {
     group.cases.push_back(KernelCase(name, "features and gradients to one float step of the position in the cell; nothing else written", limit,
                                      [level, features, batches] { return HashLookups(level, features, batches); }));
   };
@@ -283,7 +283,7 @@ NumericGroup FieldGroup(const NumericsOptions& options) {
                                    [] { return AdamSteps(1e-12, 1e6); }));
   group.cases.push_back(KernelCase("Adam, gradients from 10^-17 to 10^18", "parameters as in double, resting entries untouched", 1e-5,
                                    [] { return AdamSteps(1e-17, 1e18); }));
-  group.cases.push_back(KernelCase("Finding NaN, packing samples", "every place, any number of values", 0.0, FiniteAndCompact));
+  group.cases.push_back(KernelCase("CaseResult NaN, packing samples", "every place, any number of values", 0.0, FiniteAndCompact));
   return group;
 }
 

@@ -18,7 +18,7 @@ const worker::StepOptions kPoisonOptions{.learning_rate = 1e-2, .network_l2 = 1e
 using Poison = std::function<void(worker::RayBatch& batch, TrainingState& state)>;
 
 // A few normal steps, one with a non-finite value, and a normal one.
-Finding PoisonedStep(const Poison& poison) {
+CaseResult PoisonedStep(const Poison& poison) {
   SyntheticTrainer trainer({}, 9, 1);
   base::Random random(43);
   for (int step = 0; step < 5; ++step) trainer.Train(trainer.Draw({.rays = 200}, random), kPoisonOptions);
@@ -42,7 +42,7 @@ Finding PoisonedStep(const Poison& poison) {
 }
 
 // NaN positions count as a corner of the box. The parameters must stay finite, whether the step is taken or dropped.
-Finding NanPositions() {
+CaseResult NanPositions() {
   SyntheticTrainer trainer({}, 9, 1);
   base::Random random(43);
   bool finite = true;
@@ -56,13 +56,13 @@ Finding NanPositions() {
 }
 
 // The gain of every photo is NaN, so training must fail.
-Finding FailsWithReason(const NumericsOptions& options) {
+CaseResult FailsWithReason(const NumericsOptions& options) {
   const QuietStages quiet(options.silent);
   const EdgeSurvey survey(options.work_folder / "photos", 48, 36, [](int, int x, int y) {
     const auto value = static_cast<uint8_t>(100 + (x + y) % 50);
     return std::array<uint8_t, 3>{value, value, value};
   });
-  brightness::Response response = brightness::Response::Plain(EdgeSurvey::kPhotos, 1);
+  brightness::Response response = brightness::Response::Neutral(EdgeSurvey::kPhotos, 1);
   for (float& value : response.log_gain) value = kNotANumber;
   base::ThreadPool threads(options.threads);
   const EdgeSurvey::Outcome outcome = survey.Train(response, 100, threads);

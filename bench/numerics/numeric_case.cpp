@@ -35,7 +35,7 @@ NumericRow RunCase(const std::string& group, const NumericCase& numeric_case) {
                  .seconds = 0.0};
   const auto start = std::chrono::steady_clock::now();
   try {
-    const Finding finding = numeric_case.run();
+    const CaseResult finding = numeric_case.run();
     row.seen = finding.seen;
     row.worst = finding.worst;
     const bool within = std::isnan(row.limit) || row.worst <= row.limit;

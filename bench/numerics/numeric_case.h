@@ -25,7 +25,7 @@ class Worst {
 };
 
 // Result of a case. A case with a limit passes when `holds` is true and worst <= limit; a NaN never passes.
-struct Finding {
+struct CaseResult {
   std::string seen = {};     // what was measured, in words
   double worst = kNoNumber;  // largest error, in the case's unit
   bool holds = true;         // whether everything else that was expected is true
@@ -37,7 +37,7 @@ struct NumericCase {
   std::string unit = {};        // of the worst error; may be empty
   double limit = kNoNumber;     // largest error allowed; NaN: only `holds` counts
   bool for_comparison = false;  // shown but not judged, for instance a single-precision pipeline
-  std::function<Finding()> run = {};
+  std::function<CaseResult()> run = {};
 };
 
 // Cases of one kind. charts: called after all cases of the group have run; returns HTML <figure> elements.

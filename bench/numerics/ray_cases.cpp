@@ -55,9 +55,9 @@ NumericCase BoxCase(const RayCase& ray) {
             Worst worst;
             worst.Take(std::abs(interval.t_near - ray.t_near));
             worst.Take(std::abs(interval.t_far - ray.t_far));
-            return Finding{.seen = interval.Empty() ? "empty" : fmt::format("{:.4g} to {:.4g} m", interval.t_near, interval.t_far),
-                           .worst = worst.value(),
-                           .holds = interval.Empty() == !(ray.t_far > ray.t_near)};
+            return CaseResult{.seen = interval.Empty() ? "empty" : fmt::format("{:.4g} to {:.4g} m", interval.t_near, interval.t_far),
+                              .worst = worst.value(),
+                              .holds = interval.Empty() == !(ray.t_far > ray.t_near)};
           }};
 }
 
@@ -92,7 +92,7 @@ std::optional<Span> ReferenceSpan(const Eigen::Vector3d& origin, const Eigen::Ve
 }
 
 // Random boxes up to 100 km from the origin, random rays, a third of them with zero components.
-Finding RandomBoxes(int rays) {
+CaseResult RandomBoxes(int rays) {
   base::Random random(53);
   Worst worst;
   int wrong = 0, hits = 0;
@@ -132,7 +132,7 @@ Finding RandomBoxes(int rays) {
 }
 
 // Samples of random rays through a block: inside the interval, ascending, in the box, and one for each step.
-Finding MarchedSamples(int rays) {
+CaseResult MarchedSamples(int rays) {
   const render::TrainedField field = SyntheticField({.offset_enu = {7e4, -3e4, 0.0}});
   base::Random random(59);
   Worst worst;
@@ -173,7 +173,7 @@ Finding MarchedSamples(int rays) {
           .holds = wrong == 0 && samples > rays};
 }
 
-Finding ZeroLengthInterval() {
+CaseResult ZeroLengthInterval() {
   const render::TrainedField field = SyntheticField({});
   int visits = 0;
   const Eigen::Vector3d origin(0.0, 0.0, 20.0), direction(0.0, 0.0, -1.0);

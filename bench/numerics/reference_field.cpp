@@ -58,7 +58,7 @@ ReferenceField::ReferenceField(const field::HashField& field) : field_(field), g
 }
 
 std::array<ReferenceField::Corner, 8> ReferenceField::Corners(int level, const std::array<double, 3>& position) const {
-  const kernel::HashLevel& shape = grid_.level(level);
+  const kernel::GridLevel& shape = grid_.level(level);
   std::array<uint64_t, 3> cell = {};
   std::array<double, 3> fraction = {};
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -112,7 +112,7 @@ ReferenceField::Sample ReferenceField::ForwardDensity(std::span<const double> gr
   sample.outputs.push_back(Apply(layers_[0], networks, sample.inputs.back()));
   sample.inputs.push_back(sample.outputs.back());
   sample.outputs.push_back(Apply(layers_[1], networks, sample.inputs.back()));
-  sample.log_depth = sample.outputs.back()[0];
+  sample.log_density = sample.outputs.back()[0];
   return sample;
 }
 
@@ -136,7 +136,7 @@ ReferenceField::Sample ReferenceField::Forward(std::span<const double> grid, std
   return sample;
 }
 
-void ReferenceField::Backward(std::span<const double> networks, const Sample& sample, double log_depth_gradient,
+void ReferenceField::Backward(std::span<const double> networks, const Sample& sample, double log_density_gradient,
                               const std::array<double, 3>& raw_gradient, std::span<double> grid_gradient, std::span<double> network_gradient) const {
   std::vector<double> gradient(layers_.back().outputs, 0.0);
   std::copy(raw_gradient.begin(), raw_gradient.end(), gradient.begin());
@@ -145,7 +145,7 @@ void ReferenceField::Backward(std::span<const double> networks, const Sample& sa
     if (l == 1) {
       // The density network's outputs: gradient from the colour network, and on row 0 also from the density.
       gradient.resize(layer.outputs);
-      gradient[0] += log_depth_gradient;
+      gradient[0] += log_density_gradient;
     }
     std::vector<double> below(layer.inputs, 0.0);
     for (size_t o = 0; o < layer.outputs; ++o) {

@@ -24,7 +24,7 @@ class ReferenceField {
     std::array<double, 3> position = {};
     std::vector<std::vector<double>> inputs;   // of every layer
     std::vector<std::vector<double>> outputs;  // after the ReLU where there is one
-    double log_depth = 0.0;                    // output 0 of the density network: log density, before the density bias
+    double log_density = 0.0;                  // output 0 of the density network: log density, before the density bias
     std::array<double, 3> raw = {};            // colours before the sigmoid
   };
 
@@ -35,7 +35,7 @@ class ReferenceField {
   Sample ForwardDensity(std::span<const double> grid, std::span<const double> networks, const std::array<double, 3>& position) const;
   void ForwardColor(std::span<const double> networks, const std::array<double, 3>& direction, Sample* sample) const;
   // Adds to both gradients.
-  void Backward(std::span<const double> networks, const Sample& sample, double log_depth_gradient, const std::array<double, 3>& raw_gradient,
+  void Backward(std::span<const double> networks, const Sample& sample, double log_density_gradient, const std::array<double, 3>& raw_gradient,
                 std::span<double> grid_gradient, std::span<double> network_gradient) const;
 
  private:

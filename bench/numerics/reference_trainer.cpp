@@ -6,7 +6,7 @@
 namespace skyquilt::bench {
 namespace {
 
-constexpr double kMaxLogDepth = 15.0;
+constexpr double kMaxLogTau = 15.0;
 const double kHiddenBehind = -std::log(1e-3);
 constexpr double kLeastSlope = 0.02;
 
@@ -64,8 +64,8 @@ ReferenceResult ReferenceTrainer::Ray(const worker::RayBatch& batch, const worke
     Lit one;
     one.sample = reference_.ForwardDensity(state.grid, state.networks,
                                            {static_cast<double>(batch.x[s]), static_cast<double>(batch.y[s]), static_cast<double>(batch.z[s])});
-    const double log_depth = std::min(kMaxLogDepth, one.sample.log_depth + target_.config.density_bias);
-    one.tau = std::exp(log_depth) * static_cast<double>(batch.unit_length[s]);
+    const double log_density = std::min(kMaxLogTau, one.sample.log_density + target_.config.density_bias);
+    one.tau = std::exp(log_density) * static_cast<double>(batch.unit_length[s]);
     reference_.ForwardColor(state.networks, direction, &one.sample);
     for (size_t c = 0; c < 3; ++c) one.rgb[c] = range / (1.0 + std::exp(-one.sample.raw[c]));
     one.mid = (static_cast<double>(batch.t[s]) - static_cast<double>(batch.t[static_cast<size_t>(ray.begin)])) * per_height;

@@ -63,7 +63,7 @@ NumericCase PlaceCase(const std::string& name, const geo::Geodetic& origin, int 
           .unit = "mm",
           .limit = kAllowed_mm,
           .run = [origin, places] {
-            Finding finding;
+            CaseResult finding;
             Worst over_all;
             for (const double extent : {1.0, 1e3, 1e5}) {
               const double worst = WorstRoundTripMm(origin, extent, places);
@@ -76,7 +76,7 @@ NumericCase PlaceCase(const std::string& name, const geo::Geodetic& origin, int 
 }
 
 // A camera up to 70 km from the origin looks at a block: unit-box positions of samples on its rays, against long double.
-Finding RaySamples() {
+CaseResult RaySamples() {
   base::Random random(23);
   Worst worst;
   for (int i = 0; i < 2000; ++i) {
@@ -116,7 +116,7 @@ NumericCase BoxStepCase(double edge_m) {
               const Eigen::Vector3d x(map.min_enu().x() + random.UniformDouble() * edge_m, map.min_enu().y() + random.UniformDouble() * edge_m, -3.5);
               worst.Take(1e3 * (map.EnuFromUnit(map.UnitFromEnu(x).cast<double>()) - x).cwiseAbs().maxCoeff());
             }
-            return Finding{.seen = "worst axis of 20000 places", .worst = worst.value()};
+            return CaseResult{.seen = "worst axis of 20000 places", .worst = worst.value()};
           }};
 }
 
@@ -138,7 +138,7 @@ NumericCase NaiveCase(NaiveFrame frame) {
               worst.Take(error);
               sum += error;
             }
-            return Finding{.seen = "on average " + FormatError(sum / kPlaces, "mm"), .worst = worst.value()};
+            return CaseResult{.seen = "on average " + FormatError(sum / kPlaces, "mm"), .worst = worst.value()};
           }};
 }
 

@@ -38,7 +38,7 @@ double StoredError(const ShortFormat& format, float value) {
 }
 
 // Numbers of every magnitude of the format, both signs, uniform in their logarithm.
-Finding Rounding(const ShortFormat& format) {
+CaseResult Rounding(const ShortFormat& format) {
   base::Random random(29);
   Worst worst;
   for (int i = 0; i < 1000000; ++i) {
@@ -50,7 +50,7 @@ Finding Rounding(const ShortFormat& format) {
 }
 
 // Below its normal numbers fp16 has steps of 2^-24. bf16 has the exponents of float, so its subnormal numbers are those of float.
-Finding TinyNumbers(const ShortFormat& format) {
+CaseResult TinyNumbers(const ShortFormat& format) {
   base::Random random(31);
   const double normal = std::exp2(format.least_exponent);
   const double step = std::ldexp(normal, 1 - format.precision_bits);
@@ -62,7 +62,7 @@ Finding TinyNumbers(const ShortFormat& format) {
   return {.seen = fmt::format("10^6 numbers within +-{:.2g}, steps of {:.2g}", normal, step), .worst = worst.value()};
 }
 
-Finding Overflow(const ShortFormat& format) {
+CaseResult Overflow(const ShortFormat& format) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   bool holds = std::isnan(format.to_float(format.from_float(std::numeric_limits<float>::quiet_NaN())));
   for (const float value : {std::nextafter(format.largest, kInfinity), std::numeric_limits<float>::max(), kInfinity}) {
@@ -72,7 +72,7 @@ Finding Overflow(const ShortFormat& format) {
 }
 
 // A parameter that is too large for a 16-bit format, written to a file and read back.
-Finding ArchiveOverflow(const ShortFormat& format, const NumericsOptions& options) {
+CaseResult ArchiveOverflow(const ShortFormat& format, const NumericsOptions& options) {
   const std::vector<float> values = {1e30F, -std::numeric_limits<float>::max(), 0.25F, 0.0F};
   checkpoint::ArchiveWriter first("bench", 1);
   first.Put("values", values);
@@ -131,10 +131,10 @@ NumericCase SceneCase(size_t format, const std::shared_ptr<std::vector<StoredSce
             if (scenes->empty()) *scenes = StoreHamlet(options);
             const StoredScene &wide = scenes->at(0), &stored = scenes->at(format + 1);
             const double share = stored.bytes / wide.bytes;
-            return Finding{.seen = fmt::format("{:.4f} dB, fp32 {:.4f} dB; {:.1f} % of {:.1f} MB", stored.psnr_db, wide.psnr_db, 100.0 * share,
-                                               wide.bytes / 1e6),
-                           .worst = std::abs(stored.psnr_db - wide.psnr_db),
-                           .holds = share <= kMostBytes};
+            return CaseResult{.seen = fmt::format("{:.4f} dB, fp32 {:.4f} dB; {:.1f} % of {:.1f} MB", stored.psnr_db, wide.psnr_db, 100.0 * share,
+                                                  wide.bytes / 1e6),
+                              .worst = std::abs(stored.psnr_db - wide.psnr_db),
+                              .holds = share <= kMostBytes};
           }};
 }
 

@@ -114,7 +114,7 @@ TrainingState InitialState(const field::HashField& field, uint64_t seed) {
 }
 
 bool AllFinite(const TrainingState& state) {
-  const field::TrainableState& m = state.moments;
+  const field::OptimizerState& m = state.moments;
   for (const auto* values :
        {&state.parameters.grid, &state.parameters.networks, &m.grid_moment1, &m.grid_moment2, &m.network_moment1, &m.network_moment2}) {
     if (!kernel::AllFinite(values->data(), static_cast<int64_t>(values->size()))) return false;

@@ -43,7 +43,7 @@ void RepositionInFloat(const render::TrainedField& field, worker::RayBatch* batc
 // Parameters and moments of a field in training; copied to compare them before and after a step.
 struct TrainingState {
   field::Parameters parameters;
-  field::TrainableState moments;
+  field::OptimizerState moments;
 };
 // The state at the start of training.
 TrainingState InitialState(const field::HashField& field, uint64_t seed);

@@ -22,7 +22,7 @@ worker::RayBatch SyntheticTrainer::Draw(const SyntheticRays& rays, base::Random&
 SyntheticTrainer::Gradients SyntheticTrainer::GradientsOf(worker::RayBatch batch, double distortion) {
   // After one step from zero moments, the first moment is a tenth of the gradient.
   field::Parameters parameters = state_.parameters;
-  field::TrainableState probe;
+  field::OptimizerState probe;
   probe.Allocate(field_);
   Gradients gradients;
   gradients.result = step_.Train(batch, {.learning_rate = 0.0, .network_l2 = 0.0, .distortion = distortion}, parameters, probe, nullptr);

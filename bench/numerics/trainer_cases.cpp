@@ -33,7 +33,7 @@ double RelativeDistance(const std::vector<double>& a, const std::vector<double>&
 }
 
 // Gradients at the start and after some steps, each time at the same parameters.
-Finding GradientFinding(const SyntheticOptions& scene, int steps_between) {
+CaseResult GradientFinding(const SyntheticOptions& scene, int steps_between) {
   SyntheticTrainer trainer(scene, kTrainerSeed, 1);
   const ReferenceTrainer reference(trainer.target(), trainer.field());
   base::Random random(11);
@@ -140,7 +140,7 @@ std::string RunsText(const Runs& runs) {
                      FormatError(LargestOf(runs.loss), ""), FormatError(LargestOf(runs.parameters), ""), runs.psnr_db);
 }
 
-Finding EmptyBatch() {
+CaseResult EmptyBatch() {
   SyntheticTrainer trainer({}, kTrainerSeed, 1);
   const TrainingState before = trainer.state();
   worker::RayBatch batch;
@@ -152,7 +152,7 @@ Finding EmptyBatch() {
 }
 
 // One ray with none, one or all of its samples.
-Finding OneRay() {
+CaseResult OneRay() {
   Worst worst;
   bool holds = true;
   std::string counts;
@@ -214,7 +214,7 @@ NumericGroup TrainerGroup(const NumericsOptions& options) {
            [steps, keep] {
              const Runs runs = FreeRun(steps, false);
              keep(runs, "float trainer against double", true);
-             return Finding{.seen = RunsText(runs), .worst = runs.psnr_gap_db, .holds = runs.finite && LargestOf(runs.loss) <= 1e-3};
+             return CaseResult{.seen = RunsText(runs), .worst = runs.psnr_gap_db, .holds = runs.finite && LargestOf(runs.loss) <= 1e-3};
            }},
       {.name = "Instead: the double trainer against itself",
        .expected = "started once from parameters changed by one rounding to float: a difference that no float trainer can avoid",
@@ -224,7 +224,7 @@ NumericGroup TrainerGroup(const NumericsOptions& options) {
            [steps, keep] {
              const Runs runs = FreeRun(steps, true);
              keep(runs, "double against itself, disturbed by one rounding", false);
-             return Finding{.seen = RunsText(runs), .worst = runs.psnr_gap_db};
+             return CaseResult{.seen = RunsText(runs), .worst = runs.psnr_gap_db};
            }},
   };
   group.charts = [curves] {

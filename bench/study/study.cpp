@@ -69,7 +69,7 @@ std::map<std::string, int64_t> SceneParameters(const std::filesystem::path& file
   for (int64_t i = 0; i < reader.IntAttribute("blocks"); ++i) prefixes.push_back(scene::BlockPrefix(i));
   std::map<std::string, int64_t> parameters;
   for (const std::string& prefix : prefixes) {
-    if (reader.HasAttribute(prefix + "name")) parameters[reader.StringAttribute(prefix + "name")] = scene::StoredParameters(reader, prefix);
+    if (reader.HasAttribute(prefix + "name")) parameters[reader.StringAttribute(prefix + "name")] = scene::StoredParameterCount(reader, prefix);
   }
   return parameters;
 }
@@ -82,11 +82,11 @@ void MoveFolder(const std::filesystem::path& from, const std::filesystem::path& 
 }
 
 // The survey with every n-th training photo in name order and all held-out photos.
-survey::Survey Thinned(survey::Survey survey, int keep_every) {
+survey::Survey Thinned(survey::Survey survey, int every_nth_photo) {
   std::vector<survey::Photo> kept;
   int number = 0;
   for (survey::Photo& photo : survey.photos) {
-    if (photo.is_test || number++ % keep_every == 0) kept.push_back(std::move(photo));
+    if (photo.is_test || number++ % every_nth_photo == 0) kept.push_back(std::move(photo));
   }
   survey.photos = std::move(kept);
   return survey;
@@ -127,13 +127,13 @@ std::string Study::Identity(const Variant& variant, coordinator::Settings settin
   for (const char* key : kIdle) flat.erase(key);
   // The survey file is part of the identity, so the options that made it are not needed.
   std::erase_if(flat, [](const auto& entry) { return entry.first.starts_with("simulate.") || entry.first.starts_with("prepare."); });
-  return config::Hash(flat) + " " + coordinator::FileIdentity(source_ / "survey" / "survey.json") + " " + std::to_string(variant.keep_every);
+  return config::Hash(flat) + " " + coordinator::FileIdentity(source_ / "survey" / "survey.json") + " " + std::to_string(variant.every_nth_photo);
 }
 
 coordinator::Settings Study::SettingsOf(const Variant& variant) const {
   const auto legal = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
   SKYQUILT_CHECK(!variant.name.empty() && std::all_of(variant.name.begin(), variant.name.end(), legal), variant.name);
-  SKYQUILT_CHECK(variant.keep_every >= 1, variant.name);
+  SKYQUILT_CHECK(variant.every_nth_photo >= 1, variant.name);
   coordinator::Settings settings = options_.settings;
   for (const config::Override& entry : variant.overrides) settings.Set(entry);
   settings.Check();
@@ -225,12 +225,12 @@ void Study::LinkPixels(const std::filesystem::path& run_folder, int image_width,
 evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training) {
   const coordinator::Project project = coordinator::Project::Create(RunFolder(variant));
   if (!std::filesystem::exists(project.SurveyFolder() / "survey.json")) {
-    survey::SaveSurvey(variant.keep_every > 1 ? Thinned(survey_, variant.keep_every) : survey_, project.SurveyFolder());
+    survey::SaveSurvey(variant.every_nth_photo > 1 ? Thinned(survey_, variant.every_nth_photo) : survey_, project.SurveyFolder());
   }
   coordinator::Pipeline pipeline{.comm = comm_, .project = project, .settings = settings, .quiet = options_.quiet, .verbose = options_.verbose};
   if (!merge_anew) coordinator::RequireSameConfiguration(pipeline, "partition");
   coordinator::PartitionStage(pipeline);
-  if (variant.keep_every == 1) LinkPixels(project.folder, settings.run.image_width, false);
+  if (variant.every_nth_photo == 1) LinkPixels(project.folder, settings.run.image_width, false);
   base::ResetPeakRss();
   try {
     *training = coordinator::TrainStage(pipeline);
@@ -238,7 +238,7 @@ evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settin
     throw base::BlockError(error.what());  // these settings cannot be trained, for instance for lack of memory: this is a result of the bench
   }
   coordinator::ThrowIfBlocksFailed(*training, project);
-  if (variant.keep_every == 1) LinkPixels(project.folder, settings.run.image_width, true);
+  if (variant.every_nth_photo == 1) LinkPixels(project.folder, settings.run.image_width, true);
   pipeline.restart = merge_anew;
   coordinator::MergeStage(pipeline);
   return coordinator::EvaluateStage(pipeline);

@@ -32,7 +32,7 @@ struct Variant {
   std::string name;                         // of its folder: lower-case letters, digits, '-' and '_'
   std::string label;                        // as shown in tables and plots
   std::vector<config::Override> overrides;  // changes to the study's settings
-  int keep_every = 1;                       // train with every n-th training photo in name order; 1: all
+  int every_nth_photo = 1;                  // train with every n-th training photo in name order; 1: all
 };
 
 struct VariantField {

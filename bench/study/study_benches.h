@@ -60,8 +60,8 @@ struct TradeoffOptions {
   double middle_budget_s = 60.0;       // training time of the variants that change one setting
   std::vector<StudiedPreset> presets;  // from the fastest to the best
   std::vector<int> log2_table_sizes = {14, 15, 16, 17, 18, 19};
-  std::vector<double> steps_per_voxel = {1.0, 2.0, 4.0};  // step along the ray in finest voxels: decides the number of samples
-  std::vector<int> keep_every = {1, 2, 4};                // train with every n-th training photo
+  std::vector<double> step_voxels = {1.0, 2.0, 4.0};  // step along the ray in finest voxels: decides the number of samples
+  std::vector<int> every_nth_photo = {1, 2, 4};       // train with every n-th training photo
 };
 // Measures presets at several time budgets. Then changes one setting at a time: storage precision, table size, samples per ray, their placement,
 // number of photos.

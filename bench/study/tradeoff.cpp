@@ -144,7 +144,7 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
                                 .overrides = {middle, layout, {"partition.min_log2_table_size", size}, {"partition.max_log2_table_size", size}}}));
     table_x.push_back(tables.back().parameters);
   }
-  for (const double step : options.steps_per_voxel) {
+  for (const double step : options.step_voxels) {
     const std::string text = fmt::format("{:g}", step);
     samples.push_back(study.Run({.name = "step_" + NumberInName(step),
                                  .label = "a step of " + text + " voxels",
@@ -158,11 +158,11 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
                    .label = on ? "stratified: first sample at a random position in its step" : "uniform: first sample in the middle of its step",
                    .overrides = {middle, layout, {"train.stratified", stratified}, {"context.stratified", stratified}}}));
   }
-  for (const int every : options.keep_every) {
+  for (const int every : options.every_nth_photo) {
     photos.push_back(study.Run({.name = "photos_" + std::to_string(every),
                                 .label = every == 1 ? "all photos" : fmt::format("one photo in {}", every),
                                 .overrides = {middle, layout},
-                                .keep_every = every}));
+                                .every_nth_photo = every}));
     photo_x.push_back(photos.back().training_photos);
   }
   for (const auto* group : {&tables, &samples, &placing, &photos}) keep(*group);

@@ -53,7 +53,7 @@ void SaveStamp(const Project& project, const StageStamp& stamp) {
 Freshness CheckStage(const Project& project, const std::string& stage, const FlatOptions& options, const FlatOptions& inputs,
                      const std::vector<std::filesystem::path>& proof) {
   const std::optional<StageStamp> stamp = LoadStamp(project, stage);
-  if (!stamp) return Freshness::kAbsent;
+  if (!stamp) return Freshness::kNotStarted;
   const std::vector<std::string> differences = config::Differences(stamp->options, options);
   if (!differences.empty()) {
     throw base::UsageError("the results of '" + stage + "' in " + project.folder.string() + " were made with another configuration:\n  " +
@@ -63,7 +63,7 @@ Freshness CheckStage(const Project& project, const std::string& stage, const Fla
   const bool complete = std::all_of(proof.begin(), proof.end(), [](const auto& path) { return std::filesystem::exists(path); });
   if (!config::Differences(stamp->inputs, inputs).empty()) return Freshness::kInputsChanged;
   if (stamp->state != StageStamp::kDone) return Freshness::kUnfinished;
-  return complete ? Freshness::kFresh : Freshness::kUnfinished;
+  return complete ? Freshness::kUpToDate : Freshness::kUnfinished;
 }
 
 FlatOptions Select(const FlatOptions& all, const std::vector<std::string>& keys) {

@@ -30,9 +30,9 @@ struct StageStamp {
 };
 
 enum class Freshness {
-  kAbsent,         // never started: there is no stamp
+  kNotStarted,     // never started: there is no stamp
   kUnfinished,     // same configuration and inputs, but interrupted, failed, or its files are missing: continue
-  kFresh,          // finished with the same configuration and inputs: nothing to do
+  kUpToDate,       // finished with the same configuration and inputs: nothing to do
   kInputsChanged,  // started or finished, but its inputs are different now
 };
 

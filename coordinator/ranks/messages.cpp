@@ -21,7 +21,7 @@ comm::Message WaitForMessage(comm::Communicator& comm) {
       if (!cancelled) cancelled = Clock::now();
       if (std::chrono::duration<double>(Clock::now() - *cancelled).count() > 60.0) throw base::Interrupted();
     }
-    std::this_thread::sleep_for(std::min(pause, comm.Nap() * 20));
+    std::this_thread::sleep_for(std::min(pause, comm.PollInterval() * 20));
     pause = std::min(pause * 2, std::chrono::microseconds(20000));
   }
 }

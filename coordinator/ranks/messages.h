@@ -6,20 +6,20 @@
 namespace skyquilt::coordinator {
 
 enum Tag : int {
-  kTagSetup = 101,     // 0 -> worker: start a training: settings and project (see train_all.h)
-  kTagHello = 102,     // worker -> 0: loaded and ready: host name, threads and memory, or the failure (see rank_group.h)
-  kTagThreads = 103,   // 0 -> worker: number of threads it may use
-  kTagJob = 104,       // 0 -> worker: train this field (FieldJob)
-  kTagStatus = 105,    // worker -> 0: progress: FieldJob, newline, TrainStatus
-  kTagOutcome = 106,   // worker -> 0: result of a job (FieldOutcome)
-  kTagStop = 107,      // 0 -> worker: save and stop
-  kTagDone = 108,      // 0 -> worker: this training or rendering is over
-  kTagQuit = 109,      // 0 -> worker: the program ends
-  kTagYield = 110,     // 0 -> worker: save and give the block back; a faster rank continues it
-  kTagScene = 111,     // 0 -> worker: start a rendering of this scene (see rendering/serve_rays.h)
-  kTagPart = 112,      // 0 -> worker: its threads and memory, and the owner of each block
-  kTagRays = 113,      // 0 -> worker: rays to render (RayRequest)
-  kTagRayReply = 114,  // worker -> 0: rendered rays, or the failure (RayReply)
+  kTagSetup = 101,       // 0 -> worker: start a training: settings and project (see train_all.h)
+  kTagReady = 102,       // worker -> 0: loaded and ready: host name, threads and memory, or the failure (see rank_group.h)
+  kTagThreads = 103,     // 0 -> worker: number of threads it may use
+  kTagJob = 104,         // 0 -> worker: train this field (FieldJob)
+  kTagStatus = 105,      // worker -> 0: progress: FieldJob, newline, TrainStatus
+  kTagOutcome = 106,     // worker -> 0: result of a job (FieldOutcome)
+  kTagStop = 107,        // 0 -> worker: save and stop
+  kTagDone = 108,        // 0 -> worker: this training or rendering is over
+  kTagQuit = 109,        // 0 -> worker: the program ends
+  kTagGiveBack = 110,    // 0 -> worker: save and give the block back; a faster rank continues it
+  kTagScene = 111,       // 0 -> worker: start a rendering of this scene (see rendering/serve_rays.h)
+  kTagAssignment = 112,  // 0 -> worker: its threads and memory, and the owner of each block
+  kTagRays = 113,        // 0 -> worker: rays to render (RayRequest)
+  kTagRayReply = 114,    // worker -> 0: rendered rays, or the failure (RayReply)
 };
 
 // Waits for a message. A signal (SIGINT, SIGTERM) does not end the wait, because only rank 0 decides when a worker rank ends.

@@ -31,7 +31,7 @@ std::vector<GroupMember> RankGroup::WaitForRanks() {
   std::map<std::string, int> ranks_on;
   for (int n = 1; n < comm_.size();) {
     const comm::Message message = comm_.Receive();
-    if (message.tag != kTagHello) continue;
+    if (message.tag != kTagReady) continue;
     json one = json::parse(message.bytes);
     const std::string host = one.at("host").get<std::string>();
     if (one.contains("failure")) Throw(FailureFromJson(one.at("failure")), "rank " + std::to_string(message.source) + " on " + host);
@@ -43,16 +43,16 @@ std::vector<GroupMember> RankGroup::WaitForRanks() {
   for (int rank = 1; rank < comm_.size(); ++rank) {
     const json& one = hello[static_cast<size_t>(rank)];
     GroupMember member{.rank = rank, .host = one.at("host").get<std::string>()};
-    member.sharing = ranks_on[member.host];
-    member.threads = std::max(1, one.at("threads").get<int>() / member.sharing);
-    member.memory_bytes = one.value("memory_bytes", 0.0) / member.sharing;
+    member.ranks_on_host = ranks_on[member.host];
+    member.threads = std::max(1, one.at("threads").get<int>() / member.ranks_on_host);
+    member.memory_bytes = one.value("memory_bytes", 0.0) / member.ranks_on_host;
     members.push_back(member);
   }
   return members;
 }
 
 std::string Register(comm::Communicator& comm, const json& hello, int tag) {
-  comm.Send(0, kTagHello, hello.dump());
+  comm.Send(0, kTagReady, hello.dump());
   while (true) {
     comm::Message message = WaitForMessage(comm);
     if (message.tag == tag) return std::move(message.bytes);
@@ -72,7 +72,7 @@ void ServeRankGroup(comm::Communicator& comm, const std::function<void(json& hel
     if (failure.kind == Failure::kInterrupted) return;  // rank 0 is gone
     hello["failure"] = ToJson(failure);
   }
-  comm.Send(0, kTagHello, hello.dump(-1, ' ', false, json::error_handler_t::replace));
+  comm.Send(0, kTagReady, hello.dump(-1, ' ', false, json::error_handler_t::replace));
   while (WaitForMessage(comm).tag != kTagDone) {
   }
 }

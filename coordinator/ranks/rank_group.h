@@ -14,9 +14,9 @@ namespace skyquilt::coordinator {
 struct GroupMember {
   int rank = 0;
   std::string host;
-  int sharing = 1;            // number of ranks on its machine, itself included
-  int threads = 1;            // the machine's threads divided by `sharing`, at least 1
-  double memory_bytes = 0.0;  // the machine's memory limit divided by `sharing`; 0 when the rank did not report one
+  int ranks_on_host = 1;      // number of ranks on its machine, itself included
+  int threads = 1;            // the machine's threads divided by `ranks_on_host`, at least 1
+  double memory_bytes = 0.0;  // the machine's memory limit divided by `ranks_on_host`; 0 when the rank did not report one
 };
 
 // Rank 0's side. The destructor sends kTagDone, so the other ranks return to waiting also after an exception.

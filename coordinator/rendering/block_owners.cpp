@@ -51,7 +51,7 @@ bool Overlap(const render::TrainedField& a, const render::TrainedField& b) {
 
 }  // namespace
 
-std::vector<int> DealBlocks(const scene::FieldStore& store, int n) {
+std::vector<int> AssignBlocks(const scene::FieldStore& store, int n) {
   SKYQUILT_CHECK(n >= 1, std::to_string(n));
   double total = 0.0;
   for (int k = 0; k < store.size(); ++k) total += store.Bytes(k);
@@ -66,7 +66,7 @@ std::vector<int> DealBlocks(const scene::FieldStore& store, int n) {
   return owner;
 }
 
-std::vector<std::vector<int>> LowerNeighbours(const scene::FieldStore& store) {
+std::vector<std::vector<int>> OverlappingLowerBlocks(const scene::FieldStore& store) {
   std::vector<std::vector<int>> lower(static_cast<size_t>(store.size()));
   for (int k = 0; k < store.size(); ++k) {
     for (int other = 0; other < k; ++other) {
@@ -76,7 +76,7 @@ std::vector<std::vector<int>> LowerNeighbours(const scene::FieldStore& store) {
   return lower;
 }
 
-double LargestPartBytes(const scene::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n) {
+double MaxBytesPerRank(const scene::FieldStore& store, const std::vector<std::vector<int>>& lower_neighbours, std::span<const int> owner, int n) {
   std::vector<double> bytes(static_cast<size_t>(n), 0.0);
   std::set<int> holders;
   for (size_t k = 0; k < owner.size(); ++k) {
@@ -88,17 +88,17 @@ double LargestPartBytes(const scene::FieldStore& store, const std::vector<std::v
   return *std::max_element(bytes.begin(), bytes.end()) + store.ContextBytes();
 }
 
-std::vector<SceneHolders> MakeGroups(const scene::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes) {
+std::vector<RenderGroup> MakeRenderGroups(const scene::FieldStore& store, std::span<const int> ranks, std::span<const double> memory_bytes) {
   SKYQUILT_CHECK(!ranks.empty() && ranks.size() == memory_bytes.size(), "one memory size per rank");
   const double least = *std::min_element(memory_bytes.begin(), memory_bytes.end());
   const auto n = static_cast<int>(ranks.size());
   int size = 1;
-  const std::vector<std::vector<int>> neighbours = LowerNeighbours(store);
-  while (size < n && LargestPartBytes(store, neighbours, DealBlocks(store, size), size) > least) ++size;
+  const std::vector<std::vector<int>> neighbours = OverlappingLowerBlocks(store);
+  while (size < n && MaxBytesPerRank(store, neighbours, AssignBlocks(store, size), size) > least) ++size;
   const int n_groups = n / size;
-  std::vector<SceneHolders> groups(static_cast<size_t>(n_groups));
+  std::vector<RenderGroup> groups(static_cast<size_t>(n_groups));
   for (int i = 0; i < n; ++i) groups[static_cast<size_t>(i % n_groups)].ranks.push_back(ranks[static_cast<size_t>(i)]);
-  for (SceneHolders& group : groups) group.owner = DealBlocks(store, static_cast<int>(group.ranks.size()));
+  for (RenderGroup& group : groups) group.owner = AssignBlocks(store, static_cast<int>(group.ranks.size()));
   return groups;
 }
 

@@ -195,7 +195,7 @@ std::string ToBytes(const RayReply& reply) {
   packer.Add(static_cast<uint64_t>(reply.in_flight.size()));
   size_t color = 0;
   for (const scene::RayInFlight& ray_in_flight : reply.in_flight) {
-    const bool arrived = ray_in_flight.owner == scene::kArrived;
+    const bool arrived = ray_in_flight.owner == scene::kFinished;
     packer.Add(arrived);
     if (arrived) {
       packer.Add(reply.colors.at(color++));
@@ -217,7 +217,7 @@ RayReply RayReplyFromBytes(const std::string& bytes) {
   for (size_t i = 0; i < n; ++i) {
     scene::RayInFlight ray_in_flight;
     if (unpacker.Take<bool>()) {
-      ray_in_flight.owner = scene::kArrived;
+      ray_in_flight.owner = scene::kFinished;
       reply.colors.push_back(unpacker.Take<render::RayColor>());
     } else {
       ray_in_flight = TakeRayInFlight(&unpacker);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "coordinator/ranks/failure.h"
-#include "core/scene/paged_rays.h"
+#include "core/scene/paged_renderer.h"
 
 namespace skyquilt::coordinator {
 
@@ -23,7 +23,7 @@ struct RayReply {
   uint64_t id = 0;                            // of the request
   int64_t samples = 0;                        // evaluated for this request
   int64_t field_loads = 0;                    // fields this rank has loaded from the scene file since it opened it
-  std::vector<scene::RayInFlight> in_flight;  // one per ray; of finished rays (owner = kArrived) the other members are not sent
+  std::vector<scene::RayInFlight> in_flight;  // one per ray; of finished rays (owner = kFinished) the other members are not sent
   std::vector<render::RayColor> colors;       // of the finished rays, in order
   Failure failure;                            // when set, there are no rays
 };

@@ -11,7 +11,7 @@
 namespace skyquilt::coordinator {
 namespace {
 
-using scene::kArrived;
+using scene::kFinished;
 using scene::RayInFlight;
 
 // Rays per request: enough to keep a rank's cores busy while the next request is on its way, few enough that every rank gets some.
@@ -50,12 +50,12 @@ void RemoteRenderer::Begin(const scene::FieldStore& store, const render::RaySegm
     ranks.push_back(member.rank);
     memory.push_back(member.memory_bytes);
   }
-  groups_ = MakeGroups(store, ranks, memory);
-  for (const SceneHolders& group : groups_) {
+  groups_ = MakeRenderGroups(store, ranks, memory);
+  for (const RenderGroup& group : groups_) {
     for (size_t number = 0; number < group.ranks.size(); ++number) {
       const auto member = std::find_if(members.begin(), members.end(), [&](const GroupMember& one) { return one.rank == group.ranks[number]; });
       const nlohmann::json part = {{"threads", member->threads}, {"memory_bytes", member->memory_bytes}, {"number", number}, {"owner", group.owner}};
-      comm_.Send(member->rank, kTagPart, part.dump());
+      comm_.Send(member->rank, kTagAssignment, part.dump());
     }
   }
   statistics_.ranks = static_cast<int>(ranks.size());
@@ -97,7 +97,7 @@ void RemoteRenderer::HandOut(Work& work) {
 }
 
 void RemoteRenderer::AddChunk(Work& work, size_t group) {
-  const SceneHolders& members = groups_[group];
+  const RenderGroup& members = groups_[group];
   std::map<int, Request> requests;  // per rank
   std::vector<render::RaySegment> segments;
   const size_t end = std::min(work.rays.size(), work.next_ray + work.chunk);
@@ -158,12 +158,12 @@ void RemoteRenderer::TakeBack(Work& work, const comm::Message& message) {
   statistics_.bytes_received += static_cast<int64_t>(message.bytes.size());
   statistics_.samples += reply.samples;
   statistics_.field_loads += reply.field_loads - std::exchange(loads_[rank], reply.field_loads);
-  const SceneHolders& group = groups_[request.group];
+  const RenderGroup& group = groups_[request.group];
   std::map<int, Request> onward;  // per rank
   size_t color = 0;
   for (size_t k = 0; k < request.rays.size(); ++k) {
     const size_t i = request.rays[k];
-    if (reply.in_flight[k].owner == kArrived) {
+    if (reply.in_flight[k].owner == kFinished) {
       work.out[i] = reply.colors.at(color++);
       ++work.arrived;
       --work.in_group[request.group];

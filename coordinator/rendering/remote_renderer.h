@@ -48,7 +48,7 @@ class RemoteRenderer : public scene::RayService {
   RankGroup group_;
   const scene::FieldStore* store_ = nullptr;
   const render::RaySegments* segments_ = nullptr;
-  std::vector<SceneHolders> groups_;
+  std::vector<RenderGroup> groups_;
   uint64_t next_id_ = 1;
   std::map<int, int64_t> loads_;  // per rank
   scene::RenderStatistics statistics_;

@@ -12,7 +12,7 @@
 #include "core/base/progress.h"
 #include "core/base/system.h"
 #include "core/base/thread_pool.h"
-#include "core/scene/paged_rays.h"
+#include "core/scene/paged_renderer.h"
 #include "core/scene/scene_file.h"
 
 namespace skyquilt::coordinator {
@@ -39,7 +39,7 @@ class RayServer {
       for (scene::RayInFlight& ray_in_flight : request.in_flight) ray_in_flight.owner = number_;
       reply.samples = rays_.Continue(request.rays, request.in_flight, request.options, number_, Owner());
       for (const scene::RayInFlight& ray_in_flight : request.in_flight) {
-        if (ray_in_flight.owner == scene::kArrived) reply.colors.push_back(render::Finished(ray_in_flight.state));
+        if (ray_in_flight.owner == scene::kFinished) reply.colors.push_back(render::FinalColor(ray_in_flight.state));
       }
       reply.in_flight = std::move(request.in_flight);
     } catch (...) {
@@ -50,7 +50,7 @@ class RayServer {
   }
 
  private:
-  scene::PagedRays::Owner Owner() const {
+  scene::PagedRenderer::Owner Owner() const {
     const bool alone = std::all_of(owner_.begin(), owner_.end(), [this](int number) { return number == number_; });
     if (alone) return {};
     return [this](std::span<const int> blocks) { return OwnerOf(owner_, blocks, number_); };
@@ -64,7 +64,7 @@ class RayServer {
   base::ThreadPool threads_;
   scene::FieldStore store_;
   render::RaySegments segments_;
-  scene::PagedRays rays_;
+  scene::PagedRenderer rays_;
   int number_;
   std::vector<int> owner_;
 };
@@ -94,14 +94,14 @@ void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
     if (!std::filesystem::exists(scene_h5)) throw base::InputError(scene_h5, "no such file", "All ranks must see the same project folder");
     hello["threads"] = options.UsableThreads();
     hello["memory_bytes"] = options.MemoryLimitBytes();
-    RayServer server(scene_h5, json::parse(Register(comm, hello, kTagPart)));
+    RayServer server(scene_h5, json::parse(Register(comm, hello, kTagAssignment)));
     while (true) {
       const comm::Message message = WaitForMessage(comm);
       if (message.tag == kTagDone) return;
       if (message.tag != kTagRays) continue;
       comm.Send(0, kTagRayReply, ToBytes(server.Carry(RayRequestFromBytes(message.bytes))));
       // Otherwise the reply might stay unsent while this rank renders the next request.
-      comm.Flush();
+      comm.WaitUntilSent();
     }
   });
 }

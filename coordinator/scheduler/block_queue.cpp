@@ -69,7 +69,7 @@ double BlockQueue::SecondsPerCost(double now_s, std::span<const double> busy_unt
   return low;
 }
 
-FieldJob BlockQueue::Take(double now_s, std::span<const double> busy_until_s) {
+FieldJob BlockQueue::TakeNext(double now_s, std::span<const double> busy_until_s) {
   SKYQUILT_CHECK(!waiting_.empty(), "no block waits");
   const Waiting next = waiting_.front();
   FieldJob job;
@@ -91,7 +91,7 @@ FieldJob BlockQueue::Take(double now_s, std::span<const double> busy_until_s) {
   return job;
 }
 
-bool BlockQueue::Record(const FieldOutcome& outcome) {
+bool BlockQueue::RecordOutcome(const FieldOutcome& outcome) {
   if (outcome.failure.kind == Failure::kBlock && outcome.job.attempt + 1 < options_.max_tries) {
     const auto found = std::find_if(all_.begin(), all_.end(), [&outcome](const QueueBlock& block) { return block.block == outcome.job.block; });
     SKYQUILT_CHECK(found != all_.end(), outcome.job.name);

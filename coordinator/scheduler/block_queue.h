@@ -36,10 +36,10 @@ class BlockQueue {
   bool HasWaiting() const { return !waiting_.empty(); }
   // Removes and returns the most expensive waiting block (ties: the lower index). At least one block must wait.
   // busy_until_s: when each rank that is training now will be free, on the caller's clock.
-  FieldJob Take(double now_s, std::span<const double> busy_until_s);
+  FieldJob TakeNext(double now_s, std::span<const double> busy_until_s);
   // Stores the result of a job. A failed block waits again, with another seed and half the learning rate, until its tries are used up; returns
   // true when it waits again.
-  bool Record(const FieldOutcome& outcome);
+  bool RecordOutcome(const FieldOutcome& outcome);
   // Final outcomes in the order they came.
   const std::vector<FieldOutcome>& outcomes() const { return outcomes_; }
   double Cost(int block) const;
@@ -47,7 +47,7 @@ class BlockQueue {
   // Sum over the waiting blocks.
   double WaitingCost() const;
   // Whether blocks train for a number of steps rather than for a time, so that a faster rank finishes them earlier.
-  bool FixedWork() const { return options_.steps > 0 || (!options_.has_deadline && options_.seconds <= 0.0); }
+  bool HasFixedSteps() const { return options_.steps > 0 || (!options_.has_deadline && options_.seconds <= 0.0); }
   static uint64_t Seed(uint64_t seed, int block, int attempt);
 
  private:

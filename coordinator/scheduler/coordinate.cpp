@@ -35,12 +35,12 @@ namespace {
 void CoordinateAlone(BlockQueue& queue, const FieldTrainer& trainer, int threads, const CoordinateHooks& hooks) {
   while (queue.HasWaiting()) {
     base::ThrowIfCancelled();
-    const FieldJob job = queue.Take(hooks.now_s(), {});
+    const FieldJob job = queue.TakeNext(hooks.now_s(), {});
     hooks.handed_out(job, 0);
     const FieldOutcome outcome = RunField(
         trainer, job, [&](const worker::TrainStatus& status) { hooks.status(job, status); }, 0, threads);
     ThrowIfEndsCommand(outcome);
-    hooks.finished(outcome, queue.Record(outcome));
+    hooks.finished(outcome, queue.RecordOutcome(outcome));
   }
 }
 
@@ -88,7 +88,7 @@ class Coordination {
     for (const auto& [rank, busy] : busy_) busy_until.push_back(busy.until_s);
     const double now = hooks_.now_s();
     const int rank = *idle_.begin();
-    const FieldJob job = queue_.Take(now, busy_until);
+    const FieldJob job = queue_.TakeNext(now, busy_until);
     idle_.erase(rank);
     Begin(rank, job, now);
     hooks_.handed_out(job, rank);
@@ -96,13 +96,13 @@ class Coordination {
 
   void Begin(int rank, const FieldJob& job, double now) {
     busy_[rank] = {job, now + job.seconds};
-    speeds_.HandedOut(rank, queue_.Cost(job.block), now);
+    speeds_.Started(rank, queue_.Cost(job.block), now);
     comm_.Send(rank, kTagJob, ToText(job));
   }
 
   // Asks slow ranks for their blocks while other ranks are idle; at most once a second.
   void RelieveSlowRanks() {
-    if (idle_.empty() || busy_.empty() || !queue_.FixedWork()) return;
+    if (idle_.empty() || busy_.empty() || !queue_.HasFixedSteps()) return;
     const double now = hooks_.now_s();
     if (now < relieve_again_s_) return;
     relieve_again_s_ = now + kRelieveEvery_s;
@@ -113,7 +113,7 @@ class Coordination {
       if (!from) return;
       asked_.insert(*from);
       speeds_.Keep(*from);
-      comm_.Send(*from, kTagYield, ToText(busy_.at(*from).job));
+      comm_.Send(*from, kTagGiveBack, ToText(busy_.at(*from).job));
     }
   }
 
@@ -158,7 +158,7 @@ class Coordination {
     if (finished) {
       speeds_.Finished(message.source, hooks_.now_s());
     } else {
-      speeds_.GivenUp(message.source, hooks_.now_s());
+      speeds_.Stopped(message.source, hooks_.now_s());
     }
     const bool was_asked = asked_.erase(message.source) > 0;
     if (was_asked && outcome.failure.kind == Failure::kInterrupted && !stopping_) {
@@ -178,7 +178,7 @@ class Coordination {
         break;
       case Failure::kNone:
       case Failure::kBlock:
-        hooks_.finished(outcome, queue_.Record(outcome));
+        hooks_.finished(outcome, queue_.RecordOutcome(outcome));
         break;
     }
   }
@@ -209,7 +209,7 @@ class RankReporter {
       while (const std::optional<comm::Message> message = comm_.TryReceive()) {
         if (message->tag == kTagStop) stop_ = true;
         // A request for an earlier job may arrive late, after that job has ended; it does not concern this one.
-        if (message->tag == kTagYield && message->bytes == job_text_) yield_ = true;
+        if (message->tag == kTagGiveBack && message->bytes == job_text_) yield_ = true;
         if (stop_ || yield_) base::RequestCancel();
       }
     }

@@ -19,7 +19,7 @@ struct CoordinateHooks {
 };
 
 // Trains all blocks of the queue: on the other ranks, or with `alone` in this process when there are none. A rank without work continues the block
-// of a slow rank from its checkpoint (only when BlockQueue::FixedWork).
+// of a slow rank from its checkpoint (only when BlockQueue::HasFixedSteps).
 // Throws base::Interrupted, or base::InputError or base::UsageError of a worker; all ranks have saved and stopped then.
 // Blocks that failed are in queue.outcomes() with their reason.
 void CoordinateBlocks(comm::Communicator& comm, BlockQueue& queue, const FieldTrainer& alone, int alone_threads, const CoordinateHooks& hooks);

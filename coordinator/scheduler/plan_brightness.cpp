@@ -15,7 +15,7 @@ constexpr float kTagWeight = 0.02F;
 BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::BrightnessOptions& options) {
   BrightnessPlan plan;
   const size_t n = survey.photos.size();
-  plan.response = brightness::Response::Plain(n, survey.cameras.size());
+  plan.response = brightness::Response::Neutral(n, survey.cameras.size());
   plan.learn.learns_gain.assign(n, 0);
   plan.learn.vignetting = options.Vignette();
   std::vector<std::optional<double>> exposures;

@@ -11,7 +11,7 @@ constexpr double kAfterAllElse = 1.1;  // a rank is slow when its block takes th
 
 }  // namespace
 
-void RankSpeeds::HandedOut(int rank, double cost, double now_s) {
+void RankSpeeds::Started(int rank, double cost, double now_s) {
   Block& block = busy_[rank];
   block = {};
   block.cost = cost;
@@ -47,7 +47,7 @@ void RankSpeeds::Finished(int rank, double now_s) {
   Close(rank, now_s);
 }
 
-void RankSpeeds::GivenUp(int rank, double now_s) {
+void RankSpeeds::Stopped(int rank, double now_s) {
   Close(rank, now_s);
 }
 

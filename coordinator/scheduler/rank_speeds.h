@@ -12,12 +12,12 @@ class RankSpeeds {
   // Assumed time to move a block: save it on one rank, load it on another.
   static constexpr double kMove_s = 10.0;
 
-  void HandedOut(int rank, double cost, double now_s);
+  void Started(int rank, double cost, double now_s);
   // fraction: how much of the block's training is done, earlier runs included; 0..1.
   void Progress(int rank, double fraction, double now_s);
   // The block is finished (fraction 1), or given up at the fraction that Progress reported last.
   void Finished(int rank, double now_s);
-  void GivenUp(int rank, double now_s);
+  void Stopped(int rank, double now_s);
 
   // SlowRank no longer proposes this rank's present block.
   void Keep(int rank);

@@ -90,7 +90,7 @@ class Training {
     for (const GroupMember& member : members) {
       comm_.Send(member.rank, kTagThreads, std::to_string(member.threads));
       fewest = std::min(fewest, member.threads);
-      *per_host = std::max(*per_host, member.sharing);
+      *per_host = std::max(*per_host, member.ranks_on_host);
     }
     return fewest;
   }
@@ -106,16 +106,16 @@ class Training {
     TrainProgress progress("context", 1.0, 1);
     while (queue.HasWaiting()) {
       base::ThrowIfCancelled();
-      const FieldJob job = queue.Take(Now(), {});
+      const FieldJob job = queue.TakeNext(Now(), {});
       const auto report = [&](const worker::TrainStatus& status) {
         progress.Update(job, 1.0, status);
         ledger_.SetSpent(Now(), false);
       };
       const FieldOutcome outcome = RunField(trainer, job, report, 0, threads);
       RethrowIfFatal(outcome);
-      if (queue.Record(outcome)) {
+      if (queue.RecordOutcome(outcome)) {
         spdlog::warn("the context failed and is tried again with half the learning rate: {}", outcome.failure.reason);
-        progress.FieldAgain(job);
+        progress.FieldRestarted(job);
       }
     }
     progress.FieldDone(queue.outcomes().front().job, 1.0);
@@ -134,7 +134,7 @@ class Training {
       if (block.empty) {
         spdlog::info("{} is empty and skipped: {}", name, block.empty_reason);
       } else {
-        waiting.push_back({block.id, name, block.cost, ledger_.Promised(name)});
+        waiting.push_back({block.id, name, block.cost, ledger_.AssignedSeconds(name)});
       }
     }
     if (comm_.size() - 1 > static_cast<int>(waiting.size())) {
@@ -154,7 +154,7 @@ class Training {
     CoordinateHooks hooks;
     hooks.now_s = [this] { return Now(); };
     hooks.handed_out = [&](const FieldJob& job, int rank) {
-      if (options.has_deadline) ledger_.Promise(job.name, job.seconds);
+      if (options.has_deadline) ledger_.AssignSeconds(job.name, job.seconds);
       spdlog::debug("{} is given to rank {}{}", job.name, rank, job.seconds > 0.0 ? " for " + base::FormatDuration(job.seconds) : "");
     };
     hooks.status = [&](const FieldJob& job, const worker::TrainStatus& status) {
@@ -164,7 +164,7 @@ class Training {
     hooks.finished = [&](const FieldOutcome& outcome, bool retried) {
       if (retried) {
         spdlog::warn("{} failed and is tried again with half the learning rate: {}", outcome.job.name, outcome.failure.reason);
-        progress.FieldAgain(outcome.job);
+        progress.FieldRestarted(outcome.job);
         return;
       }
       progress.FieldDone(outcome.job, queue.Cost(outcome.job.block));

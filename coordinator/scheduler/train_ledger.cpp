@@ -31,12 +31,12 @@ TrainLedger::TrainLedger(const Project& project, const std::string& config_hash)
   }
 }
 
-double TrainLedger::Promised(const std::string& field) const {
+double TrainLedger::AssignedSeconds(const std::string& field) const {
   const auto found = promised_s_.find(field);
   return found == promised_s_.end() ? 0.0 : found->second;
 }
 
-void TrainLedger::Promise(const std::string& field, double seconds) {
+void TrainLedger::AssignSeconds(const std::string& field, double seconds) {
   promised_s_[field] = seconds;
   Save();
 }

@@ -19,8 +19,8 @@ class TrainLedger {
 
   double spent_s() const { return spent_s_; }
   // Seconds assigned to a field ("context" or "block_<name>"); 0 when none were assigned yet.
-  double Promised(const std::string& field) const;
-  void Promise(const std::string& field, double seconds);
+  double AssignedSeconds(const std::string& field) const;
+  void AssignSeconds(const std::string& field, double seconds);
   // Wall seconds of training so far, earlier runs included. Written to disk at most every 5 s, or at once with `now`.
   void SetSpent(double seconds, bool now);
 

@@ -18,7 +18,7 @@ class TrainProgress {
   // The field is finished, or failed after all tries.
   void FieldDone(const FieldJob& job, double cost);
   // The field starts again; its progress so far no longer counts.
-  void FieldAgain(const FieldJob& job) { active_.erase(job.name); }
+  void FieldRestarted(const FieldJob& job) { active_.erase(job.name); }
   void Finish();
 
  private:

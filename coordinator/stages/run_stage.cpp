@@ -18,7 +18,7 @@ void RequireFile(const std::filesystem::path& file, const std::string& stage, co
 
 // Throws base::UsageError when the inputs have changed and the stage must not run again by itself.
 void RequireSameInputs(const Project& project, const Stage& stage, const FlatOptions& inputs) {
-  if (stage.on_new_inputs == OnNewInputs::kAgain) return;
+  if (stage.on_new_inputs == OnNewInputs::kRunAgain) return;
   const std::string changes = base::Join(config::Differences(LoadStamp(project, stage.name)->inputs, inputs), "\n  ");
   throw base::UsageError("the inputs of '" + stage.name + "' in " + project.folder.string() + " have changed since it ran:\n  " + changes +
                          "\nUse another project folder, or --restart to remove the results of '" + stage.name + "' and of all later stages");
@@ -28,7 +28,7 @@ void RequireSameInputs(const Project& project, const Stage& stage, const FlatOpt
 
 FlatOptions StageOptions(const Stage& stage, Settings& settings) {
   FlatOptions selected = Select(settings.Flat(), stage.options);
-  for (const std::string& key : stage.without_effect) selected.erase(key);
+  for (const std::string& key : stage.ignored_options) selected.erase(key);
   return selected;
 }
 
@@ -52,7 +52,7 @@ void RequireSameConfiguration(Pipeline& pipeline, const std::string& first) {
   for (const Stage& stage : Stages()) {
     reached = reached || stage.name == first;
     // A stage with a separate folder keeps its stamp there.
-    if (reached && stage.home == nullptr) CheckStage(pipeline.project, stage.name, StageOptions(stage, pipeline.settings), {}, {});
+    if (reached && stage.separate_folder == nullptr) CheckStage(pipeline.project, stage.name, StageOptions(stage, pipeline.settings), {}, {});
   }
 }
 
@@ -67,9 +67,9 @@ void RunStage(Pipeline& pipeline, const std::string& name) {
     RemoveStagesFrom(project, name);
     pipeline.restart = false;
   }
-  const Freshness freshness = CheckStage(project, name, stamp.options, stamp.inputs, stage.proof(project));
-  if (freshness == Freshness::kFresh) {
-    if (stage.recall == nullptr || stage.recall(pipeline)) {
+  const Freshness freshness = CheckStage(project, name, stamp.options, stamp.inputs, stage.completion_files(project));
+  if (freshness == Freshness::kUpToDate) {
+    if (stage.load_results == nullptr || stage.load_results(pipeline)) {
       spdlog::info("{}: nothing to do, results are up to date", name);
       return;
     }

@@ -15,14 +15,14 @@ using Paths = std::vector<std::filesystem::path>;
 
 // What to do when the inputs of a finished stage have changed. Later, cheap stages run again by themselves; survey, blocks and hours of training are
 // never removed without the user's consent.
-enum class OnNewInputs { kAgain, kRefuse };
+enum class OnNewInputs { kRunAgain, kRefuse };
 
 struct Stage {
   std::string name;
   // The options its results depend on: "section.key", or "section." for a whole section.
   std::vector<std::string> options;
   // Exceptions: options in those sections that do not change its results.
-  std::vector<std::string> without_effect = {};
+  std::vector<std::string> ignored_options = {};
   // Files that must exist before it starts, and the stages that make them.
   struct RequiredFile {
     std::filesystem::path (*file)(const Project& project);
@@ -36,15 +36,15 @@ struct Stage {
   // Everything it writes; removed when it is restarted.
   Paths (*outputs)(const Project& project);
   // Files that must exist for it to count as finished.
-  Paths (*proof)(const Project& project);
+  Paths (*completion_files)(const Project& project);
   // Does the work; returns StageStamp::kDone or kFailed. stamp: configuration and inputs of this run.
   std::string (*body)(Pipeline& pipeline, const StageStamp& stamp);
   // Reads the results into the pipeline when there is nothing to do; null: no results are needed. Returns false when they cannot be read, and the
   // body runs again.
-  bool (*recall)(Pipeline& pipeline) = nullptr;
-  OnNewInputs on_new_inputs = OnNewInputs::kAgain;
+  bool (*load_results)(Pipeline& pipeline) = nullptr;
+  OnNewInputs on_new_inputs = OnNewInputs::kRunAgain;
   // A separate folder for this stage and its stamp; null: the project folder.
-  Project (*home)(const Project& project) = nullptr;
+  Project (*separate_folder)(const Project& project) = nullptr;
   bool dated = true;  // false: no date and no copy of the configuration are written, so that results are the same bytes each time
 };
 

@@ -65,9 +65,9 @@ std::vector<Stage> MakeTable() {
        .options = {"simulate."},
        .inputs = [](const Pipeline&) { return FlatOptions(); },
        .outputs = [](const Project& p) { return Paths{p.SimulatedFolder()}; },
-       .proof = [](const Project& p) { return Paths{p.folder / "simulate.json"}; },
+       .completion_files = [](const Project& p) { return Paths{p.folder / "simulate.json"}; },
        .body = SimulateBody,
-       .home = [](const Project& p) { return Project{p.SimulatedFolder()}; },
+       .separate_folder = [](const Project& p) { return Project{p.SimulatedFolder()}; },
        .dated = false},
       {.name = "prepare",
        .options = {"prepare."},
@@ -78,7 +78,7 @@ std::vector<Stage> MakeTable() {
                                 {"images", PhotosIdentity(pipeline.photos, pipeline.project.folder)}};
            },
        .outputs = [](const Project& p) { return Paths{p.SurveyFolder()}; },
-       .proof = [](const Project& p) { return Paths{SurveyFile(p)}; },
+       .completion_files = [](const Project& p) { return Paths{SurveyFile(p)}; },
        .body = PrepareBody,
        .on_new_inputs = OnNewInputs::kRefuse},
       {.name = "partition",
@@ -89,13 +89,13 @@ std::vector<Stage> MakeTable() {
              return FlatOptions{{"survey", SurveyIdentity(pipeline.project)}};
            },
        .outputs = [](const Project& p) { return Paths{p.BlocksFile()}; },
-       .proof = [](const Project& p) { return Paths{p.BlocksFile()}; },
+       .completion_files = [](const Project& p) { return Paths{p.BlocksFile()}; },
        .body = PartitionBody,
        .on_new_inputs = OnNewInputs::kRefuse},
       {.name = "train",
        .options = {"brightness.", "context.", "train.", "run.image_width", "run.time_budget_s", "run.context_share", "run.seed"},
        // How often a field is saved does not change its result.
-       .without_effect = {"context.checkpoint_every_s", "train.checkpoint_every_s"},
+       .ignored_options = {"context.checkpoint_every_s", "train.checkpoint_every_s"},
        .required = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},
        .inputs =
            [](const Pipeline& pipeline) {
@@ -105,9 +105,9 @@ std::vector<Stage> MakeTable() {
            [](const Project& p) {
              return Paths{p.CheckpointFolder(), p.TrainReport(), p.PixelCacheFile().parent_path(), p.TrainLedgerFile()};
            },
-       .proof = TrainProof,
+       .completion_files = TrainProof,
        .body = TrainBody,
-       .recall = RecallTraining,
+       .load_results = RecallTraining,
        .on_new_inputs = OnNewInputs::kRefuse},
       {.name = "merge",
        .options = {"merge."},
@@ -121,7 +121,7 @@ std::vector<Stage> MakeTable() {
            [](const Project& p) {
              return Paths{p.SceneFile(), p.SceneFile().string() + ".prev"};
            },
-       .proof = [](const Project& p) { return Paths{p.SceneFile()}; },
+       .completion_files = [](const Project& p) { return Paths{p.SceneFile()}; },
        .body = MergeBody},
       {.name = "products",
        .options = {"products."},
@@ -134,7 +134,7 @@ std::vector<Stage> MakeTable() {
            [](const Project& p) {
              return Paths{p.ProductsFolder(), p.RendersFolder()};
            },
-       .proof = [](const Project& p) { return Paths{p.ProductsFolder()}; },
+       .completion_files = [](const Project& p) { return Paths{p.ProductsFolder()}; },
        .body = ProductsBody},
       {.name = "evaluate",
        .options = {"evaluate.", "run.image_width"},
@@ -145,9 +145,9 @@ std::vector<Stage> MakeTable() {
                                 {"products", FileIdentity(pipeline.project.StampFile("products"))}};
            },
        .outputs = [](const Project& p) { return Paths{p.ReportFolder()}; },
-       .proof = [](const Project& p) { return Paths{p.MetricsFile()}; },
+       .completion_files = [](const Project& p) { return Paths{p.MetricsFile()}; },
        .body = EvaluateBody,
-       .recall = RecallMetrics},
+       .load_results = RecallMetrics},
   };
 }
 

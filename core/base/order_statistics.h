@@ -27,7 +27,7 @@ const T& UpperMedian(std::vector<T>& values) {
 // The share quantile without interpolation: the value whose rank is nearest to share * (n - 1), share in [0, 1]. Reorders the values; there must be
 // at least one.
 template <typename T>
-const T& NearestRank(std::vector<T>& values, double share) {
+const T& NearestRankQuantile(std::vector<T>& values, double share) {
   return OrderStatistic(values, static_cast<size_t>(std::lround(share * static_cast<double>(values.size() - 1))));
 }
 

@@ -31,7 +31,7 @@ double LogExif(const Response& response, size_t photo) {
 
 }  // namespace
 
-double TrustInTags(const Response& response, const std::vector<CapturedPhoto>& photos) {
+double TagReliability(const Response& response, const std::vector<CapturedPhoto>& photos) {
   constexpr double kHardly = 1e-3;  // mean squared change of log exposure below which tags count as constant
   double both = 0.0, tags = 0.0, pairs = 0.0;
   for (const std::vector<size_t>& sequence : Sequences(photos)) {
@@ -133,7 +133,7 @@ void Predict(const std::vector<CapturedPhoto>& photos, bool tags, double trust, 
 
 void PredictGains(const std::vector<CapturedPhoto>& photos, Response& response) {
   SKYQUILT_CHECK(photos.size() == response.photos(), "one entry per photo");
-  const double trust = TrustInTags(response, photos);
+  const double trust = TagReliability(response, photos);
   for (const bool tags : {true, false}) Predict(photos, tags, trust, response);
 }
 

@@ -17,7 +17,7 @@ struct CapturedPhoto {
 
 // How far the tags explain the differences in brightness between successive photos: 1 fully, 0 not at all (automatic exposure followed the light,
 // and the photos are equally bright). Least squares over successive tagged, learned photos of each group; 1 when the tags hardly change.
-double TrustInTags(const Response& response, const std::vector<CapturedPhoto>& photos);
+double TagReliability(const Response& response, const std::vector<CapturedPhoto>& photos);
 
 // Sets log_gain of the photos that are not learned; `photos` has one entry per photo of the response.
 // The part of the gain that the trusted tags do not explain is interpolated over time between the learned photos of the group. It is then shrunk

@@ -17,7 +17,7 @@ constexpr const char* kNames = "response/names";
 
 }  // namespace
 
-Response Response::Plain(size_t photos, size_t cameras) {
+Response Response::Neutral(size_t photos, size_t cameras) {
   Response response;
   response.exif_gain.assign(photos, 1.0F);
   response.log_gain.assign(3 * photos, 0.0F);
@@ -43,7 +43,7 @@ std::array<Exposure, 3> Response::ExposureOf(size_t photo) const {
   return {Exposure::FromLogGain(log[0]), Exposure::FromLogGain(log[1]), Exposure::FromLogGain(log[2])};
 }
 
-std::array<Exposure, 3> Response::FallenOff(std::array<Exposure, 3> exposure, float log_vignetting) {
+std::array<Exposure, 3> Response::WithVignetting(std::array<Exposure, 3> exposure, float log_vignetting) {
   if (log_vignetting == 0.0F) return exposure;
   const Exposure vignetting = Exposure::FromLogGain(log_vignetting);
   for (Exposure& one : exposure) one = {one.log_gain + log_vignetting, one.gain * vignetting.gain, one.root * vignetting.root};

@@ -26,7 +26,7 @@ struct Response {
   std::vector<uint8_t> names;       // of the photos, one per line, UTF-8; empty when unknown
 
   // All gains 1, no vignetting, every photo of camera 0.
-  static Response Plain(size_t photos, size_t cameras);
+  static Response Neutral(size_t photos, size_t cameras);
   size_t photos() const { return exif_gain.size(); }
   // Natural logarithm of the vignetting of a photo's camera. radius2: r^2, in [0, 1].
   float LogVignetting(size_t photo, float radius2) const;
@@ -35,9 +35,9 @@ struct Response {
   // Per colour, on the optical axis.
   std::array<Exposure, 3> ExposureOf(size_t photo) const;
   // Per colour, at a pixel with this r^2.
-  std::array<Exposure, 3> ExposureOf(size_t photo, float radius2) const { return FallenOff(ExposureOf(photo), LogVignetting(photo, radius2)); }
+  std::array<Exposure, 3> ExposureOf(size_t photo, float radius2) const { return WithVignetting(ExposureOf(photo), LogVignetting(photo, radius2)); }
   // Multiplies by a vignetting factor.
-  static std::array<Exposure, 3> FallenOff(std::array<Exposure, 3> exposure, float log_vignetting);
+  static std::array<Exposure, 3> WithVignetting(std::array<Exposure, 3> exposure, float log_vignetting);
   // The photo with this name: its full name as listed, or its file name when only one photo has it.
   std::optional<size_t> Find(const std::string& name) const;
 };

@@ -47,7 +47,7 @@ void ResponseLearner::Step(double progress) {
   }
   Update(static_cast<float>(RateAt(progress, kGainRate, kLastGainRate)));
   for (float& gain : response_.log_gain) gain = std::clamp(gain, -kMaxLogGain, kMaxLogGain);
-  if (!options_.anchored) TakeOffMean();
+  if (!options_.anchored) SubtractMean();
 }
 
 void ResponseLearner::Update(float rate) {
@@ -70,7 +70,7 @@ void ResponseLearner::Update(float rate) {
   }
 }
 
-void ResponseLearner::TakeOffMean() {
+void ResponseLearner::SubtractMean() {
   std::array<double, 3> mean = {0.0, 0.0, 0.0};
   double n = 0.0;
   for (size_t i = 0; i < options_.learns_gain.size(); ++i) {
@@ -86,7 +86,7 @@ void ResponseLearner::TakeOffMean() {
 }
 
 void ResponseLearner::Put(checkpoint::ArchiveWriter& writer) const {
-  writer.SetAttribute("learner_rests", resting_ ? 1 : 0);
+  writer.SetAttribute("learner_frozen", frozen_ ? 1 : 0);
   writer.Put("learner/gain_moment1", moment1_);
   writer.Put("learner/gain_moment2", moment2_);
   writer.Put("learner/gain_steps", steps_);
@@ -102,7 +102,7 @@ void ResponseLearner::Get(const checkpoint::ArchiveReader& reader, const std::fi
     }
     to = std::move(from);
   };
-  resting_ = reader.IntAttribute("learner_rests") != 0;
+  frozen_ = reader.IntAttribute("learner_frozen") != 0;
   take(moment1_, reader.Floats("learner/gain_moment1"), "learner/gain_moment1");
   take(moment2_, reader.Floats("learner/gain_moment2"), "learner/gain_moment2");
   take(steps_, reader.Ints("learner/gain_steps"), "learner/gain_steps");

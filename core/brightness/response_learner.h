@@ -35,14 +35,14 @@ class ResponseLearner {
   // Writes into `response`, which must outlive it.
   ResponseLearner(Response& response, const LearnerOptions& options);
 
-  bool active() const { return active_ && !resting_; }
+  bool active() const { return active_ && !frozen_; }
   // Adds the gradient of one pixel: d loss / d log gain per colour. weight: the pixel's share of the loss, 1 / rays of the batch.
   void Add(size_t photo, const float gradient[3], float weight);
   // One Adam step with the gradients added since the last step. progress: of the training, 0..1, sets the learning rate. Photos whose gradient is not
   // finite keep their gains.
   void Step(double progress);
   // Freezes the gains: call it when tie points have given better gains than an unfinished field could. From then on active() is false.
-  void Rest() { resting_ = true; }
+  void Freeze() { frozen_ = true; }
 
   // Writes moments and counts under "learner/". Together with the response they are the complete state.
   void Put(checkpoint::ArchiveWriter& writer) const;
@@ -51,11 +51,11 @@ class ResponseLearner {
 
  private:
   void Update(float rate);
-  void TakeOffMean();
+  void SubtractMean();
 
   Response& response_;
   LearnerOptions options_;
-  bool active_ = false, resting_ = false;
+  bool active_ = false, frozen_ = false;
   std::vector<float> moment1_, moment2_;  // [photo][colour]
   std::vector<int64_t> steps_;            // number of updates per photo
   std::vector<double> gradient_;          // of this step

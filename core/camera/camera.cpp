@@ -138,7 +138,7 @@ Eigen::Vector2d Camera::PrincipalPoint() const {
   return {params[first], params[first + 1]};
 }
 
-double Camera::FarthestCorner() const {
+double Camera::MaxImageRadius() const {
   const Eigen::Vector2d middle = PrincipalPoint();
   return middle.cwiseAbs().cwiseMax((Eigen::Vector2d(width, height) - middle).cwiseAbs()).norm();
 }

@@ -32,7 +32,7 @@ struct Camera {
   double FocalY() const;
   Eigen::Vector2d PrincipalPoint() const;
   // Distance from the principal point to the farthest image corner, pixels.
-  double FarthestCorner() const;
+  double MaxImageRadius() const;
 
   // Projects a point in the camera frame to its pixel, which may be outside the image. Nothing when z <= 0 (fisheye models too), and beyond the
   // radius where the distortion stops growing: there its polynomial would map far-off points back into the image.

@@ -40,9 +40,9 @@ class ArchiveWriter {
   // Throws base::InputError as ArchiveReader does.
   void PutCopy(const std::string& name, const std::filesystem::path& file, const std::string& array, Precision precision = Precision::kFloat32);
   // Copies only a part of a one-dimensional array of floats, to save space. The array is divided into groups of `group` floats; a group is stored if
-  // its bit in `keep` is set (the first group is the lowest bit of the first byte). The bits are stored too; KeptFloats restores the full array.
-  void PutKept(const std::string& name, const std::filesystem::path& file, const std::string& array, std::vector<uint8_t> keep, int64_t group,
-               Precision precision = Precision::kFloat32);
+  // its bit in `keep` is set (the first group is the lowest bit of the first byte). The bits are stored too; PrunedFloats restores the full array.
+  void PutPruned(const std::string& name, const std::filesystem::path& file, const std::string& array, std::vector<uint8_t> keep, int64_t group,
+                 Precision precision = Precision::kFloat32);
   void SetAttribute(const std::string& name, const std::string& value);
   void SetAttribute(const std::string& name, double value);
   void SetAttribute(const std::string& name, int64_t value);
@@ -75,8 +75,8 @@ class ArchiveReader {
   std::string TypeName(const std::string& name) const;  // "float32", "float64", "uint8", "int64", "bfloat16", "float16"
   // Arrays and attributes by name. Throw base::InputError when absent or of another type. Floats also reads 16-bit floats.
   std::vector<float> Floats(const std::string& name) const;
-  // Like Floats, but restores the full size of an array from PutKept, with zeros for the groups that were not stored.
-  std::vector<float> KeptFloats(const std::string& name) const;
+  // Like Floats, but restores the full size of an array from PutPruned, with zeros for the groups that were not stored.
+  std::vector<float> PrunedFloats(const std::string& name) const;
   std::vector<double> Doubles(const std::string& name) const;
   std::vector<uint8_t> Bytes(const std::string& name) const;
   std::vector<int64_t> Ints(const std::string& name) const;

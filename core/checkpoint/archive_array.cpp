@@ -18,7 +18,7 @@ std::vector<std::byte> BytesOf(const std::vector<T>& values) {
 void KeepOnly(std::span<const uint8_t> keep, size_t group_bytes, std::vector<std::byte>* bytes) {
   size_t to = 0;
   for (size_t group = 0, from = 0; from < bytes->size(); ++group, from += group_bytes) {
-    if (!IsKept(keep, static_cast<int64_t>(group))) continue;
+    if (!IsStored(keep, static_cast<int64_t>(group))) continue;
     std::memmove(bytes->data() + to, bytes->data() + from, group_bytes);
     to += group_bytes;
   }
@@ -27,9 +27,9 @@ void KeepOnly(std::span<const uint8_t> keep, size_t group_bytes, std::vector<std
 
 }  // namespace
 
-int64_t CountKept(std::span<const uint8_t> keep, int64_t groups) {
+int64_t CountStored(std::span<const uint8_t> keep, int64_t groups) {
   int64_t count = 0;
-  for (int64_t group = 0; group < groups; ++group) count += IsKept(keep, group) ? 1 : 0;
+  for (int64_t group = 0; group < groups; ++group) count += IsStored(keep, group) ? 1 : 0;
   return count;
 }
 
@@ -37,7 +37,7 @@ std::vector<float> Spread(const std::vector<float>& kept, std::span<const uint8_
   std::vector<float> values(static_cast<size_t>(total), 0.0F);
   auto from = kept.begin();
   for (int64_t g = 0; g * group < total; ++g) {
-    if (!IsKept(keep, g)) continue;
+    if (!IsStored(keep, g)) continue;
     std::copy_n(from, group, values.begin() + g * group);
     from += group;
   }

@@ -25,17 +25,17 @@ struct Array {
   int64_t group = 0;                  // floats per group; 0: store all
 };
 
-// Names of the two arrays that PutKept stores in addition.
+// Names of the two arrays that PutPruned stores in addition.
 inline std::string KeepBitsName(const std::string& name) {
   return name + "_keep";
 }
 inline std::string KeepSizesName(const std::string& name) {
   return name + "_keep_sizes";
 }
-inline bool IsKept(std::span<const uint8_t> keep, int64_t group) {
+inline bool IsStored(std::span<const uint8_t> keep, int64_t group) {
   return (keep[static_cast<size_t>(group / 8)] >> static_cast<unsigned>(group % 8) & 1U) != 0;
 }
-int64_t CountKept(std::span<const uint8_t> keep, int64_t groups);
+int64_t CountStored(std::span<const uint8_t> keep, int64_t groups);
 // Puts the kept groups at their places in an array of `total` floats, with zeros elsewhere.
 std::vector<float> Spread(const std::vector<float>& kept, std::span<const uint8_t> keep, int64_t group, int64_t total);
 

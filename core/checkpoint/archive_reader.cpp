@@ -229,14 +229,14 @@ std::vector<float> ArchiveReader::Floats(const std::string& name) const {
   if (IsShortFloat(stored)) return FloatsOf(impl_->Read<uint16_t>(name, stored), stored);
   return impl_->Read<float>(name, ElementType::kFloat32);
 }
-std::vector<float> ArchiveReader::KeptFloats(const std::string& name) const {
+std::vector<float> ArchiveReader::PrunedFloats(const std::string& name) const {
   std::vector<float> kept = Floats(name);
   if (!Has(KeepBitsName(name))) return kept;
   const std::vector<uint8_t> keep = Bytes(KeepBitsName(name));
   const std::vector<int64_t> sizes = Ints(KeepSizesName(name));
   const bool plausible = sizes.size() == 2 && sizes[0] > 0 && sizes[1] >= 0 && sizes[1] % sizes[0] == 0 &&
                          static_cast<int64_t>(keep.size()) == (sizes[1] / sizes[0] + 7) / 8;
-  if (!plausible || CountKept(keep, sizes[1] / sizes[0]) * sizes[0] != static_cast<int64_t>(kept.size())) {
+  if (!plausible || CountStored(keep, sizes[1] / sizes[0]) * sizes[0] != static_cast<int64_t>(kept.size())) {
     throw InputError(impl_->path, "array " + name + " does not match the list of its stored groups", kFixDamaged);
   }
   return Spread(kept, keep, sizes[0], sizes[1]);

@@ -290,8 +290,8 @@ void ArchiveWriter::PutCopy(const std::string& name, const std::filesystem::path
   impl_->arrays.at(name).copied_from = file;
   impl_->arrays.at(name).copied_array = array;
 }
-void ArchiveWriter::PutKept(const std::string& name, const std::filesystem::path& file, const std::string& array, std::vector<uint8_t> keep,
-                            int64_t group, Precision precision) {
+void ArchiveWriter::PutPruned(const std::string& name, const std::filesystem::path& file, const std::string& array, std::vector<uint8_t> keep,
+                              int64_t group, Precision precision) {
   const ArchiveReader& reader = impl_->copies.Reader(file);
   const std::vector<int64_t> shape = reader.Shape(array);
   const ElementType type = ElementOf(reader.TypeName(array));
@@ -301,7 +301,7 @@ void ArchiveWriter::PutKept(const std::string& name, const std::filesystem::path
   SKYQUILT_CHECK(group > 0 && total % group == 0 && static_cast<int64_t>(keep.size()) == (total / group + 7) / 8,
                  "array " + array + " of " + std::to_string(total) + " floats cannot be divided into groups of " + std::to_string(group));
   const auto& bits = std::get<std::vector<uint8_t>>(impl_->owned.emplace_back(std::move(keep)));
-  impl_->Put(name, StoredAs(type, precision), nullptr, static_cast<size_t>(CountKept(bits, total / group) * group), {});
+  impl_->Put(name, StoredAs(type, precision), nullptr, static_cast<size_t>(CountStored(bits, total / group) * group), {});
   Array& kept = impl_->arrays.at(name);
   kept.copied_from = file;
   kept.copied_array = array;

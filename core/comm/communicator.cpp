@@ -57,7 +57,7 @@ Message Communicator::Receive() {
   for (;;) {
     if (std::optional<Message> message = TryReceive()) return std::move(*message);
     base::ThrowIfCancelled();
-    std::this_thread::sleep_for(Nap());
+    std::this_thread::sleep_for(PollInterval());
   }
 }
 

@@ -31,9 +31,9 @@ class Communicator {
   // The next message that has arrived from any rank; nothing if there is none.
   virtual std::optional<Message> TryReceive() = 0;
   // How long a loop that waits for a message should sleep between two calls of TryReceive; 0 while one is being received (takes many calls).
-  virtual std::chrono::microseconds Nap() const { return std::chrono::milliseconds(1); }
+  virtual std::chrono::microseconds PollInterval() const { return std::chrono::milliseconds(1); }
   // Waits until everything sent so far is transferred; messages that arrive in the meantime are kept. Call before long work without other calls.
-  virtual void Flush() {}
+  virtual void WaitUntilSent() {}
   // Waits for a message. Throws base::Interrupted when cancelled and no message has arrived.
   Message Receive();
   // Collective calls: all ranks must make them, and they cannot be cancelled. Broadcast returns rank 0's bytes on every rank.

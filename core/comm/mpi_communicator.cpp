@@ -130,13 +130,13 @@ class MpiCommunicator : public Communicator {
     return std::nullopt;
   }
 
-  std::chrono::microseconds Nap() const override {
+  std::chrono::microseconds PollInterval() const override {
     if (!incoming_.empty()) return std::chrono::microseconds(0);
     return std::chrono::microseconds(outgoing_.empty() ? 1000 : 100);
   }
 
-  void Flush() override {
-    for (Progress(); !outgoing_.empty(); Progress()) std::this_thread::sleep_for(std::min(Nap(), std::chrono::microseconds(20)));
+  void WaitUntilSent() override {
+    for (Progress(); !outgoing_.empty(); Progress()) std::this_thread::sleep_for(std::min(PollInterval(), std::chrono::microseconds(20)));
   }
 
   std::string Broadcast(const std::string& bytes_on_root) override {

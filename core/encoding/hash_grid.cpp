@@ -13,7 +13,7 @@ HashGrid::HashGrid(const HashGridConfig& config) : features_(config.features) {
       config.levels > 1 ? std::exp(std::log(config.finest_resolution / config.base_resolution) / static_cast<double>(config.levels - 1)) : 1.0;
   const auto table = static_cast<uint32_t>(1U << static_cast<uint32_t>(config.log2_table_size));
   for (int l = 0; l < config.levels; ++l) {
-    kernel::HashLevel level = DenseLattice(config.extent, config.base_resolution * std::pow(growth, l));
+    kernel::GridLevel level = DenseLattice(config.extent, config.base_resolution * std::pow(growth, l));
     const double points = LatticePoints(level);
     level.dense = points <= static_cast<double>(table);
     level.entries = level.dense ? static_cast<uint32_t>(points) : table;
@@ -22,9 +22,9 @@ HashGrid::HashGrid(const HashGridConfig& config) : features_(config.features) {
   }
 }
 
-void HashGrid::MarkReached(const float low[3], const float high[3], std::span<uint8_t> reached) const {
+void HashGrid::MarkUsed(const float low[3], const float high[3], std::span<uint8_t> reached) const {
   for (int l = 0; l < levels(); ++l) {
-    const kernel::HashLevel& lattice = level(l);
+    const kernel::GridLevel& lattice = level(l);
     uint32_t first[3], last[3];
     for (size_t axis = 0; axis < 3; ++axis) {
       // First and last cell, computed as in Forward; the last lattice point is one after the last cell.

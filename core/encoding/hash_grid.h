@@ -14,10 +14,10 @@ class HashGrid : public Encoding {
   explicit HashGrid(const HashGridConfig& config);
 
   int levels() const { return parts(); }
-  const kernel::HashLevel& level(int l) const { return levels_[static_cast<size_t>(l)]; }
+  const kernel::GridLevel& level(int l) const { return levels_[static_cast<size_t>(l)]; }
   int features() const { return features_; }
   // Sets reached[Offset(l) / features + e] = 1 for every entry e of every level l that Forward may read for positions in the box [low, high].
-  void MarkReached(const float low[3], const float high[3], std::span<uint8_t> reached) const;
+  void MarkUsed(const float low[3], const float high[3], std::span<uint8_t> reached) const;
 
   Kind kind() const override { return Kind::kHash; }
   void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out, size_t out_stride) const override;
@@ -26,7 +26,7 @@ class HashGrid : public Encoding {
 
  private:
   int features_;
-  std::vector<kernel::HashLevel> levels_;
+  std::vector<kernel::GridLevel> levels_;
 };
 
 }  // namespace skyquilt::encoding

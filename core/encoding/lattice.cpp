@@ -5,21 +5,21 @@
 
 namespace skyquilt::encoding {
 
-kernel::HashLevel DenseLattice(const double extent[3], double resolution) {
-  kernel::HashLevel level;
+kernel::GridLevel DenseLattice(const double extent[3], double resolution) {
+  kernel::GridLevel level;
   level.cells_per_unit = static_cast<float>(resolution);
   for (int axis = 0; axis < 3; ++axis) level.size[axis] = std::max(2, static_cast<int32_t>(std::ceil(extent[axis] * resolution - 1e-9)) + 1);
   level.dense = true;
   return level;
 }
 
-double LatticePoints(const kernel::HashLevel& level) {
+double LatticePoints(const kernel::GridLevel& level) {
   double points = 1.0;
   for (const int32_t size : level.size) points *= size;
   return points;
 }
 
-double FittingResolution(double budget, double finest, const std::function<double(double)>& count) {
+double FinestResolutionWithinBudget(double budget, double finest, const std::function<double(double)>& count) {
   if (count(finest) <= budget) return finest;
   double fits = 1.0, too_fine = finest;
   for (int i = 0; i < 60; ++i) {

@@ -25,7 +25,7 @@ Cell CellAt(float position, float cells_per_unit, int32_t points) {
   return {low, inside - static_cast<float>(low)};
 }
 
-double FactorEntries(const kernel::HashLevel& lattice) {
+double FactorEntries(const kernel::GridLevel& lattice) {
   const double x = lattice.size[0], y = lattice.size[1], z = lattice.size[2];
   return x * y + y * z + z * x + x + y + z;
 }
@@ -58,7 +58,7 @@ struct PlaneFactors::Block {
 PlaneFactors::PlaneFactors(const HashGridConfig& config)
     : groups_(std::max(1, static_cast<int>(std::lround(config.levels * config.features / (3.0 * kGroup))))) {
   const double entries = static_cast<double>(HashGrid(config).ParameterCount()) / (groups_ * kGroup);
-  lattice_ = DenseLattice(config.extent, FittingResolution(entries, config.finest_resolution, [&](double resolution) {
+  lattice_ = DenseLattice(config.extent, FinestResolutionWithinBudget(entries, config.finest_resolution, [&](double resolution) {
                             return FactorEntries(DenseLattice(config.extent, resolution));
                           }));
   for (int part = 0; part < 3 * groups_; ++part) AddPart(kGroup, (PlaneEntries(part) + lattice_.size[part / groups_]) * kGroup);

@@ -18,7 +18,7 @@ class PlaneFactors : public Encoding {
   explicit PlaneFactors(const HashGridConfig& config);
 
   // Resolution and points per axis; `entries` is not used.
-  const kernel::HashLevel& lattice() const { return lattice_; }
+  const kernel::GridLevel& lattice() const { return lattice_; }
   // Axes of a part, 0 to 2: {u, v} of its plane, w of its line.
   struct Axes {
     int u, v, w;
@@ -40,7 +40,7 @@ class PlaneFactors : public Encoding {
   void FindEntries(int part, const float* const position[3], int64_t begin, int count, Block& block) const;
 
   int groups_;  // parts per axis
-  kernel::HashLevel lattice_;
+  kernel::GridLevel lattice_;
 };
 
 }  // namespace skyquilt::encoding

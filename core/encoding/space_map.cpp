@@ -25,7 +25,7 @@ SpaceMap SpaceMap::Box(const Eigen::Vector3d& min_enu, const Eigen::Vector3d& ma
   return map;
 }
 
-SpaceMap SpaceMap::Slab(const Eigen::Vector3d& min_enu, const Eigen::Vector3d& max_enu) {
+SpaceMap SpaceMap::Contracted(const Eigen::Vector3d& min_enu, const Eigen::Vector3d& max_enu) {
   RequireBox(min_enu, max_enu);
   SpaceMap map;
   map.contracted_ = true;

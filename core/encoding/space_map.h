@@ -13,7 +13,7 @@ class SpaceMap {
  public:
   SpaceMap() = default;
   static SpaceMap Box(const Eigen::Vector3d& min_enu, const Eigen::Vector3d& max_enu);
-  static SpaceMap Slab(const Eigen::Vector3d& min_enu, const Eigen::Vector3d& max_enu);
+  static SpaceMap Contracted(const Eigen::Vector3d& min_enu, const Eigen::Vector3d& max_enu);
 
   bool contracted() const { return contracted_; }
   const Eigen::Vector3d& min_enu() const { return min_enu_; }

@@ -7,7 +7,7 @@ namespace skyquilt::encoding {
 
 VoxelGrid::VoxelGrid(const HashGridConfig& config) : features_(config.features) {
   const double points = static_cast<double>(HashGrid(config).ParameterCount()) / (config.levels * config.features);
-  lattice_ = DenseLattice(config.extent, FittingResolution(points, config.finest_resolution, [&](double resolution) {
+  lattice_ = DenseLattice(config.extent, FinestResolutionWithinBudget(points, config.finest_resolution, [&](double resolution) {
                             return LatticePoints(DenseLattice(config.extent, resolution));
                           }));
   lattice_.entries = static_cast<uint32_t>(LatticePoints(lattice_));

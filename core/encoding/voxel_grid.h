@@ -13,7 +13,7 @@ class VoxelGrid : public Encoding {
   explicit VoxelGrid(const HashGridConfig& config);
 
   // The lattice, the same for every part.
-  const kernel::HashLevel& lattice() const { return lattice_; }
+  const kernel::GridLevel& lattice() const { return lattice_; }
 
   Kind kind() const override { return Kind::kVoxels; }
   void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out, size_t out_stride) const override;
@@ -22,7 +22,7 @@ class VoxelGrid : public Encoding {
 
  private:
   int features_;
-  kernel::HashLevel lattice_;
+  kernel::GridLevel lattice_;
 };
 
 }  // namespace skyquilt::encoding

@@ -92,7 +92,7 @@ void HashField::Density(const NetworkWeights& weights, const float* features, si
   kernel::Dense(weights.layer[DensityOutput()].data(), kGeometryRows, config_.hidden, hidden, hidden_stride, n, false, geometry, geometry_stride);
 }
 
-void HashField::FillDirection(const float direction[3], int64_t count, float* rows, size_t stride) const {
+void HashField::EncodeDirection(const float direction[3], int64_t count, float* rows, size_t stride) const {
   float sh[16] = {};
   encoding::SphericalHarmonics(direction[0], direction[1], direction[2], config_.sh_degree, sh);
   for (int k = 0; k < color_inputs_ - kGeometryRows; ++k) std::fill_n(rows + static_cast<size_t>(k) * stride, count, sh[k]);

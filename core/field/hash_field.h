@@ -101,7 +101,7 @@ class HashField {
                float* geometry, size_t geometry_stride) const;
   // Fills the direction's rows of the colour input, ColorInputRows() - kGeometryRows, with the spherical harmonics of one direction for `count`
   // samples.
-  void FillDirection(const float direction[3], int64_t count, float* rows, size_t stride) const;
+  void EncodeDirection(const float direction[3], int64_t count, float* rows, size_t stride) const;
   // Colour network. color_in: ColorInputRows() rows, geometry first. hidden: one buffer of config().hidden rows per hidden layer.
   void Color(const NetworkWeights& weights, const float* color_in, size_t in_stride, int64_t n, float* const hidden[3], size_t hidden_stride,
              float* color_raw, size_t color_stride) const;

@@ -22,7 +22,7 @@ int64_t OccupancyGrid::IndexAt(float x, float y, float z) const {
   return Index(along(x, 0), along(y, 1), along(z, 2));
 }
 
-void OccupancyGrid::WakeNeighbours(float solid, float wake) {
+void OccupancyGrid::RaiseNeighbours(float solid, float wake) {
   const int64_t strides[3] = {1, size[0], static_cast<int64_t>(size[0]) * size[1]};
   // Raised cells stay below `solid`, so this can be done in place.
   for (int z = 0; z < size[2]; ++z) {
@@ -43,7 +43,7 @@ void OccupancyGrid::WakeNeighbours(float solid, float wake) {
   }
 }
 
-double OccupancyGrid::Refresh(float limit) {
+double OccupancyGrid::UpdateOccupied(float limit) {
   double sum = 0.0;
   int64_t seen = 0;
   for (const float value : tau) {
@@ -57,7 +57,7 @@ double OccupancyGrid::Refresh(float limit) {
   return OccupiedShare();
 }
 
-void OccupancyGrid::ForgetUnsampled(float start) {
+void OccupancyGrid::MarkUnsampled(float start) {
   for (size_t i = 0; i < tau.size(); ++i) {
     if (tau[i] != start) continue;
     tau[i] = -1.0F;

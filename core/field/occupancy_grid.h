@@ -26,16 +26,16 @@ struct OccupancyGrid {
   // Cell of a position, clamped into the grid.
   int64_t IndexAt(float x, float y, float z) const;
   // Updates the decaying maximum of a cell with the optical depth of one step in it; cells never seen do not change.
-  void Observe(int64_t index, float step_tau) {
+  void UpdateTau(int64_t index, float step_tau) {
     float& cell_tau = tau[static_cast<size_t>(index)];
     if (cell_tau >= 0.0F) cell_tau = std::max(kDecay * cell_tau, step_tau);
   }
   // Raises tau of the six neighbours of every cell with tau > solid to at least `wake`, so that a surface can grow into them. Cells never seen stay.
-  void WakeNeighbours(float solid, float wake);
+  void RaiseNeighbours(float solid, float wake);
   // Sets `occupied` where tau is above min(limit, mean over seen cells). Returns OccupiedShare().
-  double Refresh(float limit);
+  double UpdateOccupied(float limit);
   // Treats cells whose tau still has its initial value `start` as never seen: no sample was in them, so nothing was learned there.
-  void ForgetUnsampled(float start);
+  void MarkUnsampled(float start);
   // Share of all cells that are occupied, 0 to 1.
   double OccupiedShare() const;
   // Occupies every cell within `cells` (max norm) of an occupied one, unless it was never seen.

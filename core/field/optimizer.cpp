@@ -5,7 +5,7 @@
 
 namespace skyquilt::field {
 
-void TrainableState::Allocate(const HashField& field) {
+void OptimizerState::Allocate(const HashField& field) {
   const auto grid_size = static_cast<size_t>(field.GridParameters());
   const auto network_size = static_cast<size_t>(field.NetworkParameters());
   for (auto* buffer : {&grid_moment1, &grid_moment2}) AssignTable(buffer, grid_size);
@@ -14,9 +14,9 @@ void TrainableState::Allocate(const HashField& field) {
 }
 
 void AddPartGradient(const HashField& field, int part, const float* table, const float* x, const float* y, const float* z,
-                     std::span<const GridGradient> segments, float* table_gradient, uint8_t* touched) {
+                     std::span<const FeatureGradient> segments, float* table_gradient, uint8_t* touched) {
   const auto first_row = static_cast<size_t>(field.encoding().FirstRow(part));
-  for (const GridGradient& s : segments) {
+  for (const FeatureGradient& s : segments) {
     field.encoding().Backward(part, table, x + s.begin, y + s.begin, z + s.begin, s.count, s.gradient + first_row * s.stride, s.stride,
                               table_gradient, touched);
   }
@@ -25,8 +25,8 @@ void AddPartGradient(const HashField& field, int part, const float* table, const
 Optimizer::Optimizer(const HashField& field, base::ThreadPool& threads)
     : field_(field), threads_(threads), scratch_(static_cast<size_t>(threads.size())) {}
 
-void Optimizer::Update(const float* x, const float* y, const float* z, std::span<const GridGradient> segments, double learning_rate,
-                       double network_l2, Parameters& parameters, TrainableState& state, const TaskClock& scattered, const TaskClock& applied) {
+void Optimizer::Update(const float* x, const float* y, const float* z, std::span<const FeatureGradient> segments, double learning_rate,
+                       double network_l2, Parameters& parameters, OptimizerState& state, const TaskClock& scattered, const TaskClock& applied) {
   ++state.step;
   kernel::AdamStep step;
   const auto t = static_cast<double>(state.step);

@@ -15,7 +15,7 @@
 namespace skyquilt::field {
 
 // State of the optimiser: the moments of all parameters, and the gradient of the networks.
-struct TrainableState {
+struct OptimizerState {
   std::vector<float> grid_moment1, grid_moment2, network_moment1, network_moment2;
   int64_t step = 0;  // updates done
 
@@ -25,14 +25,14 @@ struct TrainableState {
 };
 
 // Gradient with respect to the features of a packet of samples; a batch consists of several.
-struct GridGradient {
+struct FeatureGradient {
   int64_t begin = 0, count = 0;     // in x, y, z
   const float* gradient = nullptr;  // FeatureRows() rows
   size_t stride = 0;
 };
 // Backward pass of one part of the encoding over all segments of a batch; table, table_gradient and touched as in encoding::Encoding::Backward.
 void AddPartGradient(const HashField& field, int part, const float* table, const float* x, const float* y, const float* z,
-                     std::span<const GridGradient> segments, float* table_gradient, uint8_t* touched);
+                     std::span<const FeatureGradient> segments, float* table_gradient, uint8_t* touched);
 
 // Called at the end of a task with its thread and start time, to measure times per phase; may be empty.
 using TaskClock = std::function<void(int thread, std::chrono::steady_clock::time_point began)>;
@@ -45,8 +45,8 @@ class Optimizer {
   Optimizer(const HashField& field, base::ThreadPool& threads);
   // One step of Adam with state.network_gradient, which is then set to zero, and the grid gradient of the segments. x, y, z: positions of the batch.
   // network_l2: weight decay of the networks. `scattered` and `applied` time the backward pass and Adam of each part.
-  void Update(const float* x, const float* y, const float* z, std::span<const GridGradient> segments, double learning_rate, double network_l2,
-              Parameters& parameters, TrainableState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
+  void Update(const float* x, const float* y, const float* z, std::span<const FeatureGradient> segments, double learning_rate, double network_l2,
+              Parameters& parameters, OptimizerState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
 
  private:
   struct PartScratch {

@@ -19,7 +19,7 @@ struct Interval {
 namespace internal {
 
 // The interval with t >= 0 inside all three slabs. t_far < t_near when the ray misses the box, t_far = t_near when it only touches it.
-inline Interval BetweenFaces(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min,
+inline Interval SlabInterval(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min,
                              const Eigen::Vector3d& max) {
   constexpr Interval kNowhere = {0.0, -1.0};
   double t_near = 0.0;
@@ -43,15 +43,15 @@ inline Interval BetweenFaces(const Eigen::Vector3d& origin, const Eigen::Vector3
 
 // The interval inside the box, for sampling along the ray; {0, 0} when the ray misses the box or only touches it.
 inline Interval RayBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
-  const Interval inside = internal::BetweenFaces(origin, direction, min, max);
+  const Interval inside = internal::SlabInterval(origin, direction, min, max);
   return inside.Empty() ? Interval{} : inside;
 }
 
 // Whether the ray (t >= 0) hits the box, for visibility tests: touching an edge or a corner is enough, and the box may be flat.
 // False when anything is NaN, and for rays that are not finite.
-inline bool RayMeetsBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+inline bool RayHitsBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
   if (!origin.allFinite() || !direction.allFinite() || min.hasNaN() || max.hasNaN()) return false;
-  const Interval inside = internal::BetweenFaces(origin, direction, min, max);
+  const Interval inside = internal::SlabInterval(origin, direction, min, max);
   return inside.t_near <= inside.t_far;
 }
 

@@ -28,6 +28,6 @@ struct Similarity3d {
 };
 
 // cam_from_b from cam_from_a and b_from_a. The camera frame is scaled too: it is in metres when b is.
-Rigid3d ChangeWorld(const Rigid3d& cam_from_a, const Similarity3d& b_from_a);
+Rigid3d TransformCameraWorld(const Rigid3d& cam_from_a, const Similarity3d& b_from_a);
 
 }  // namespace skyquilt::geo

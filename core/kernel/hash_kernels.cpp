@@ -40,7 +40,7 @@ HWY_INLINE void SplitAxis(D d, V position, float cells_per_unit, int32_t size, h
   fraction = hn::Sub(scaled, hn::ConvertTo(d, cell));
 }
 
-void FindCorners(const HashLevel& level, const float* x, const float* y, const float* z, int n, Corners& corners) {
+void FindCorners(const GridLevel& level, const float* x, const float* y, const float* z, int n, Corners& corners) {
   const FloatTag d;
   const hn::Rebind<int32_t, FloatTag> di;
   const hn::Rebind<uint32_t, FloatTag> du;
@@ -152,7 +152,7 @@ void PackRows(const float* in, size_t in_stride, int n, float* packed, float* si
 }
 
 template <int kFeatures>
-void HashForwardFeatures(const HashLevel& level, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
+void HashForwardFeatures(const GridLevel& level, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
                          size_t out_stride) {
   const EntryTag<kFeatures> d;
   constexpr int kLanes = kEntryLanes<kFeatures>;
@@ -179,7 +179,7 @@ void HashForwardFeatures(const HashLevel& level, const float* table, const float
 }
 
 template <int kFeatures>
-void HashBackwardFeatures(const HashLevel& level, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
+void HashBackwardFeatures(const GridLevel& level, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
                           size_t out_stride, float* table_gradient, uint8_t* touched) {
   const EntryTag<kFeatures> d;
   constexpr int kLanes = kEntryLanes<kFeatures>;
@@ -205,7 +205,7 @@ void HashBackwardFeatures(const HashLevel& level, const float* x, const float* y
   }
 }
 
-void HashForwardImpl(const HashLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
+void HashForwardImpl(const GridLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
                      size_t out_stride) {
   if (features == 4) {
     HashForwardFeatures<4>(level, table, x, y, z, n, out, out_stride);
@@ -214,7 +214,7 @@ void HashForwardImpl(const HashLevel& level, int features, const float* table, c
   }
 }
 
-void HashBackwardImpl(const HashLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
+void HashBackwardImpl(const GridLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
                       size_t out_stride, float* table_gradient, uint8_t* touched) {
   if (features == 4) {
     HashBackwardFeatures<4>(level, x, y, z, n, out_gradient, out_stride, table_gradient, touched);
@@ -236,7 +236,7 @@ HWY_EXPORT(HashBackwardImpl);
 namespace {
 
 // Every lattice point must have its entry, and every result its place.
-void CheckShapes(const HashLevel& level, int features, int64_t n, size_t stride) {
+void CheckShapes(const GridLevel& level, int features, int64_t n, size_t stride) {
   SKYQUILT_CHECK(features == 2 || features == 4, std::to_string(features) + " features per entry");
   SKYQUILT_CHECK(n >= 0 && stride >= static_cast<size_t>(n), "stride " + std::to_string(stride) + ", " + std::to_string(n) + " samples");
   SKYQUILT_CHECK(std::min({level.size[0], level.size[1], level.size[2]}) >= 2, "an axis of fewer than two points");
@@ -247,18 +247,18 @@ void CheckShapes(const HashLevel& level, int features, int64_t n, size_t stride)
 
 }  // namespace
 
-uint32_t HashIndex(const HashLevel& level, uint32_t x, uint32_t y, uint32_t z) {
+uint32_t HashIndex(const GridLevel& level, uint32_t x, uint32_t y, uint32_t z) {
   if (level.dense) return x + y * static_cast<uint32_t>(level.size[0]) + z * static_cast<uint32_t>(level.size[0] * level.size[1]);
   return (x ^ (y * 2654435761U) ^ (z * 805459861U)) & (level.entries - 1U);
 }
 
-void HashForward(const HashLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
+void HashForward(const GridLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
                  size_t out_stride) {
   CheckShapes(level, features, n, out_stride);
   HWY_DYNAMIC_DISPATCH(HashForwardImpl)(level, features, table, x, y, z, n, out, out_stride);
 }
 
-void HashBackward(const HashLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
+void HashBackward(const GridLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
                   size_t out_stride, float* table_gradient, uint8_t* touched) {
   CheckShapes(level, features, n, out_stride);
   HWY_DYNAMIC_DISPATCH(HashBackwardImpl)(level, features, x, y, z, n, out_gradient, out_stride, table_gradient, touched);

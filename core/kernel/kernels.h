@@ -1,10 +1,10 @@
 // The inner loops of a radiance field, where training and rendering spend most of their time: small matrix products, hash-grid lookups, exp, sigmoid
 // and Adam. Vectorised with Highway: compiled once per instruction set, chosen at run time.
 // Matrices are structures of arrays: row r of a batch starts at data + r * stride and has one column per sample. A batch of n samples is padded with
-// zeros to a multiple of kPad samples (stride >= padded n; the stride of a single row does not count). No array needs an alignment. Shapes are checked
-// once per batch; wrong ones throw std::logic_error (SKYQUILT_CHECK). core/kernel/reference.h has scalar versions of the arithmetic, for tests.
-// Every kernel runs on the calling thread and gives the same bits on every call with the same instruction set; instruction sets differ within the
-// errors given here, in ulp: the distance between neighbouring floats at the exact result. tests/core/kernel/ulp_test.cpp checks them.
+// zeros to a multiple of kPad samples (stride >= padded n; the stride of a single row does not count). No array needs an alignment. Shapes are
+// checked once per batch; wrong ones throw std::logic_error (SKYQUILT_CHECK). core/kernel/reference.h has scalar versions of the arithmetic, for
+// tests. Every kernel runs on the calling thread and gives the same bits on every call with the same instruction set; instruction sets differ within
+// the errors given here, in ulp: the distance between neighbouring floats at the exact result. tests/core/kernel/ulp_test.cpp checks them.
 #pragma once
 
 #include <cstddef>
@@ -60,7 +60,7 @@ void DenseWeightGradient(const float* out_gradient, size_t out_stride, int n_out
 bool AllFinite(const float* values, int64_t n);
 
 // The lattice of one level of the multi-resolution hash grid (Mueller et al. 2022, eq. 2-4), of different size per axis.
-struct HashLevel {
+struct GridLevel {
   float cells_per_unit = 1.0F;  // resolution: cells along an axis of length 1
   int32_t size[3] = {2, 2, 2};  // lattice points per axis, at least 2
   bool dense = true;            // every lattice point has its own entry; false: hashed
@@ -68,16 +68,16 @@ struct HashLevel {
 };
 
 // Table entry of a lattice point: x + y * size0 + z * size0 * size1 when dense, else (x ^ y * 2654435761 ^ z * 805459861) mod entries.
-uint32_t HashIndex(const HashLevel& level, uint32_t x, uint32_t y, uint32_t z);
+uint32_t HashIndex(const GridLevel& level, uint32_t x, uint32_t y, uint32_t z);
 
 // Trilinear interpolation at n positions (any n). x, y, z: n coordinates each, in [0, extent]; clamped into the lattice, NaN counts as 0.
 // table: entries x features. out: `features` rows of stride >= n. features is 2 or 4.
-void HashForward(const HashLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
+void HashForward(const GridLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
                  size_t out_stride);
 
 // Backward pass of HashForward: adds to table_gradient and sets touched[line] = 1 for every line of kLineFloats that it writes to.
 // Samples whose gradient is all zero are skipped.
-void HashBackward(const HashLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
+void HashBackward(const GridLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
                   size_t out_stride, float* table_gradient, uint8_t* touched);
 
 // The next four process whole vectors: n is a multiple of kPad. Results may replace their input.

@@ -46,7 +46,7 @@ struct Corner {
 
 // The eight corners of the cell that contains a position, with trilinear weights; positions are clamped into the lattice.
 template <typename T>
-std::vector<Corner<T>> Corners(const HashLevel& level, const T position[3]) {
+std::vector<Corner<T>> Corners(const GridLevel& level, const T position[3]) {
   uint32_t cell[3];
   T fraction[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -70,7 +70,7 @@ std::vector<Corner<T>> Corners(const HashLevel& level, const T position[3]) {
 }
 
 template <typename T>
-std::vector<T> HashForward(const HashLevel& level, int features, const std::vector<T>& table, const T position[3]) {
+std::vector<T> HashForward(const GridLevel& level, int features, const std::vector<T>& table, const T position[3]) {
   std::vector<T> out(static_cast<size_t>(features), T(0));
   for (const Corner<T>& corner : Corners(level, position)) {
     for (size_t f = 0; f < out.size(); ++f) out[f] += corner.weight * table[corner.entry * out.size() + f];
@@ -79,7 +79,7 @@ std::vector<T> HashForward(const HashLevel& level, int features, const std::vect
 }
 
 template <typename T>
-void HashBackward(const HashLevel& level, const T position[3], const std::vector<T>& out_gradient, std::vector<T>* table_gradient) {
+void HashBackward(const GridLevel& level, const T position[3], const std::vector<T>& out_gradient, std::vector<T>* table_gradient) {
   for (const Corner<T>& corner : Corners(level, position)) {
     for (size_t f = 0; f < out_gradient.size(); ++f) (*table_gradient)[corner.entry * out_gradient.size() + f] += corner.weight * out_gradient[f];
   }

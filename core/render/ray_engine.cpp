@@ -113,11 +113,11 @@ class RayRenderer::Group {
     for (size_t c = 0; c < candidates_.size(); ++c) {
       const int k = candidates_[c];
       const TrainedField& f = *all_[static_cast<size_t>(k)];
-      if (!window.Meets(BlendInterval(f, ray))) continue;
+      if (!window.Overlaps(BlendInterval(f, ray))) continue;
       marched += MarchField(ray, window, k, static_cast<int>(c), Clip(ray, f)) ? 1 : 0;
     }
     for (const geo::Interval& gap : gaps_) {
-      if (window.Meets(gap)) marched += MarchField(ray, window, context_index_, -1, gap) ? 1 : 0;
+      if (window.Overlaps(gap)) marched += MarchField(ray, window, context_index_, -1, gap) ? 1 : 0;
     }
     if (marched < 2) return;  // in order already
     const auto first = samples_.begin() + static_cast<ptrdiff_t>(begin);
@@ -310,7 +310,7 @@ class RayRenderer::Group {
       }
       if (next == first) continue;
       const Eigen::Vector3f d = rays[r].direction_enu.cast<float>();
-      all_[k]->field->FillDirection(d.data(), static_cast<int64_t>(next - first), sh + first, batch.visible_stride);
+      all_[k]->field->EncodeDirection(d.data(), static_cast<int64_t>(next - first), sh + first, batch.visible_stride);
     }
   }
 
@@ -368,7 +368,7 @@ int64_t RayRenderer::Continue(std::span<const Ray> rays, std::span<const Window>
 int64_t RayRenderer::Render(std::span<const Ray> rays, std::span<RayColor> out) {
   states_.assign(rays.size(), {});
   const int64_t samples = group_->Continue(rays, {}, states_);
-  for (size_t r = 0; r < rays.size(); ++r) out[r] = Finished(states_[r]);
+  for (size_t r = 0; r < rays.size(); ++r) out[r] = FinalColor(states_[r]);
   return samples;
 }
 

@@ -29,7 +29,7 @@ void RaySegments::Split(const Ray& ray, std::vector<RaySegment>* segments) const
     here.clear();
     const Window window{changes[i], changes[i + 1]};
     for (const auto& [interval, k] : over) {
-      if (window.Meets(interval)) here.push_back(k);
+      if (window.Overlaps(interval)) here.push_back(k);
     }
     const int set = SetOf(here);
     if (segments->size() > first && segments->back().set == set) {

@@ -5,7 +5,7 @@
 
 namespace skyquilt::render {
 
-RayColor Finished(const RayState& state) {
+RayColor FinalColor(const RayState& state) {
   RayColor color;
   const double opacity = state.ended ? 1.0 : 1.0 - state.transmittance;
   const auto gain = static_cast<float>(state.ended ? 1.0 / (1.0 - state.transmittance) : 1.0);

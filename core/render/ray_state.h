@@ -27,10 +27,10 @@ static_assert(std::is_trivially_copyable_v<RayState>);
 struct Window {
   double from = 0.0;
   double to = std::numeric_limits<double>::infinity();
-  bool Meets(const geo::Interval& interval) const { return !interval.Empty() && interval.t_far > from && interval.t_near < to; }
+  bool Overlaps(const geo::Interval& interval) const { return !interval.Empty() && interval.t_far > from && interval.t_near < to; }
 };
 
 // Final colour of a ray. A ray that ended early is scaled to opacity 1.
-RayColor Finished(const RayState& state);
+RayColor FinalColor(const RayState& state);
 
 }  // namespace skyquilt::render

@@ -15,7 +15,7 @@ constexpr const char* kColors = "background/colors";
 
 std::array<float, 3> Background::Color(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu) const {
   Eigen::Vector3d x;
-  if (!surface.Meet(origin_enu, direction_enu, &x)) return mean_srgb;
+  if (!surface.Intersect(origin_enu, direction_enu, &x)) return mean_srgb;
   const HeightMap::Corners corners = surface.Around(x.x(), x.y());
   std::array<float, 3> rgb = {0.0F, 0.0F, 0.0F};
   for (size_t i = 0; i < 4; ++i) {

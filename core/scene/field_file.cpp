@@ -8,7 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/encoding/hash_grid.h"
-#include "core/field/reached_entries.h"
+#include "core/field/used_entries.h"
 
 namespace skyquilt::scene {
 namespace {
@@ -107,8 +107,8 @@ void PutField(const render::TrainedField& f, const std::string& prefix, checkpoi
   writer.Put(prefix + "occupancy_tau", f.occupancy.tau, shape);
 }
 
-void PutFieldOf(const render::TrainedField& description, const std::filesystem::path& checkpoint, const std::string& prefix,
-                checkpoint::ArchiveWriter& writer, checkpoint::Precision tables) {
+void PutSceneField(const render::TrainedField& description, const std::filesystem::path& checkpoint, const std::string& prefix,
+                   checkpoint::ArchiveWriter& writer, checkpoint::Precision tables) {
   PutDescription(description, prefix, writer);
   const checkpoint::ArchiveReader reader(checkpoint);
   const std::vector<int64_t> size = StoredSize(reader, "");
@@ -121,7 +121,7 @@ void PutFieldOf(const render::TrainedField& description, const std::filesystem::
     if (reader.Shape("grid") != std::vector<int64_t>{grid.ParameterCount()}) {
       throw base::InputError(checkpoint, "the size of its hash tables disagrees with its configuration", kFix);
     }
-    writer.PutKept(prefix + "grid", checkpoint, "grid", field::ReachedEntries(grid, occupancy), grid.features(), tables);
+    writer.PutPruned(prefix + "grid", checkpoint, "grid", field::UsedEntries(grid, occupancy), grid.features(), tables);
   } else {
     writer.PutCopy(prefix + "grid", checkpoint, "grid", tables);
   }
@@ -152,23 +152,23 @@ render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, con
   f.blend_m = f.box.margin_m;
   try {
     f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));
-    f.map = box.contracted ? encoding::SpaceMap::Slab(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu, box.max_enu);
+    f.map = box.contracted ? encoding::SpaceMap::Contracted(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu, box.max_enu);
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, std::string("its field has an impossible configuration: ") + error.what(), kFix);
   }
   return f;
 }
 
-int64_t StoredParameters(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
+int64_t StoredParameterCount(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
   return reader.Shape(prefix + "grid").at(0) + reader.Shape(prefix + "networks").at(0);
 }
 
-int64_t HeldParameters(const render::TrainedField& description) {
+int64_t ParameterCountOf(const render::TrainedField& description) {
   const field::HashField field(description.config);
   return field.GridParameters() + field.NetworkParameters();
 }
 
-int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
+int64_t StoredCellCount(const checkpoint::ArchiveReader& reader, const std::string& prefix) {
   const std::vector<int64_t> size = StoredSize(reader, prefix);
   return std::accumulate(size.begin(), size.end(), int64_t{1}, std::multiplies<>());
 }
@@ -176,7 +176,7 @@ int64_t StoredCells(const checkpoint::ArchiveReader& reader, const std::string& 
 render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, const std::string& prefix) {
   render::TrainedField f = GetDescription(reader, file, prefix);
   try {
-    f.parameters.grid = reader.KeptFloats(prefix + "grid");
+    f.parameters.grid = reader.PrunedFloats(prefix + "grid");
     f.parameters.networks = reader.Floats(prefix + "networks");
     f.BuildNetworks();
   } catch (const std::invalid_argument& error) {

@@ -24,8 +24,8 @@ FieldStore::Entry FieldStore::ReadDescription(const std::string& prefix) const {
   entry.prefix = prefix;
   entry.field = std::make_unique<render::TrainedField>(GetDescription(reader_, file_, prefix));
   if (hard_borders_) entry.field->blend_m = 0.0;
-  entry.parameters = StoredParameters(reader_, prefix);
-  entry.bytes = 4.0 * static_cast<double>(HeldParameters(*entry.field)) + static_cast<double>(StoredCells(reader_, prefix));
+  entry.parameters = StoredParameterCount(reader_, prefix);
+  entry.bytes = 4.0 * static_cast<double>(ParameterCountOf(*entry.field)) + static_cast<double>(StoredCellCount(reader_, prefix));
   return entry;
 }
 

@@ -41,7 +41,7 @@ class FieldStore {
 
   int64_t loads() const { return loads_; }         // fields loaded so far; when it is unchanged, so are the loaded fields
   double loaded_bytes() const { return in_use_; }  // in memory now
-  double most_bytes() const { return most_; }      // peak so far
+  double peak_bytes() const { return most_; }      // peak so far
 
  private:
   struct Entry {

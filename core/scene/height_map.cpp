@@ -45,7 +45,7 @@ double HeightMap::At(double x, double y) const {
   return height;
 }
 
-bool HeightMap::Meet(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Eigen::Vector3d* x_in_enu) const {
+bool HeightMap::Intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Eigen::Vector3d* x_in_enu) const {
   constexpr double kShallowest = -0.05;  // nearly level rays meet the ground far outside the survey
   constexpr int kRounds = 6;
   if (Empty() || !(direction.z() < kShallowest)) return false;

@@ -32,7 +32,7 @@ class HeightMap {
   // Height by bilinear interpolation; outside the grid that of its edge. The map must not be empty.
   double At(double x, double y) const;
   // Where a descending ray meets the surface. False for level and rising rays, for rays that start below the surface, and for an empty map.
-  bool Meet(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Eigen::Vector3d* x_in_enu) const;
+  bool Intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Eigen::Vector3d* x_in_enu) const;
 
  private:
   double min_x_ = 0.0, min_y_ = 0.0, cell_m_ = 1.0;

@@ -10,7 +10,7 @@
 #include "core/render/ray_segments.h"
 #include "core/scene/background.h"
 #include "core/scene/field_store.h"
-#include "core/scene/paged_rays.h"
+#include "core/scene/paged_renderer.h"
 #include "core/scene/ray_service.h"
 #include "core/scene/scene_file.h"
 
@@ -42,30 +42,33 @@ void ShowConcealed(std::span<render::RayColor> colors) {
 
 struct Scene::Impl {
   // Whether a look is the concealed rendering.
-  bool Conceals(Look look) const {
-    return look == Look::kNormal ? info.luminance.mode == brightness::LuminanceMode::kOver : info.luminance.mode == brightness::LuminanceMode::kUnder;
+  bool Conceals(Rendition look) const {
+    return look == Rendition::kNormal ? info.luminance.mode == brightness::LuminanceMode::kOver
+                                      : info.luminance.mode == brightness::LuminanceMode::kUnder;
   }
-  render::EngineOptions Options(Look look) const { return Conceals(look) ? render::EngineOptions::For(info.luminance) : render::EngineOptions{}; }
+  render::EngineOptions Options(Rendition look) const {
+    return Conceals(look) ? render::EngineOptions::For(info.luminance) : render::EngineOptions{};
+  }
   // Factor from the light of the background, which has the photos' brightness, to that of a look.
-  float BackgroundGain(Look look) const {
-    if (look == Look::kRecorded || !info.luminance.On()) return 1.0F;
+  float BackgroundGain(Rendition look) const {
+    if (look == Rendition::kRecorded || !info.luminance.On()) return 1.0F;
     const double sign = info.luminance.mode == brightness::LuminanceMode::kUnder ? -1.0 : 1.0;
     return static_cast<float>(std::exp(sign * info.luminance_state.mean_log_gain));
   }
 
-  void Answer(std::span<const render::Ray> rays, std::span<render::RayColor> out, Look look, base::ThreadPool& threads) {
+  void Answer(std::span<const render::Ray> rays, std::span<render::RayColor> out, Rendition look, base::ThreadPool& threads) {
     const render::EngineOptions options = Options(look);
     if (service != nullptr) {
       service->Render(rays, out, options);
     } else {
       std::vector<RayInFlight> in_flight(rays.size());
       if (pager == nullptr || pager_threads != &threads) {
-        pager = std::make_unique<PagedRays>(*store, *segments, threads);
+        pager = std::make_unique<PagedRenderer>(*store, *segments, threads);
         pager_threads = &threads;
       }
       statistics.samples += pager->Continue(rays, in_flight, options, 0, {});
       statistics.rays += static_cast<int64_t>(rays.size());
-      for (size_t i = 0; i < rays.size(); ++i) out[i] = render::Finished(in_flight[i].state);
+      for (size_t i = 0; i < rays.size(); ++i) out[i] = render::FinalColor(in_flight[i].state);
     }
     if (Conceals(look)) ShowConcealed(out);
   }
@@ -74,7 +77,7 @@ struct Scene::Impl {
   Background background;
   std::unique_ptr<FieldStore> store;
   std::unique_ptr<render::RaySegments> segments;
-  std::unique_ptr<PagedRays> pager;  // for pager_threads
+  std::unique_ptr<PagedRenderer> pager;  // for pager_threads
   const base::ThreadPool* pager_threads = nullptr;
   RayService* service = nullptr;
   RenderStatistics statistics;
@@ -143,7 +146,7 @@ void Scene::RenderRays(std::span<const render::Ray> rays, std::span<render::RayC
 
 std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, const Appearance& appearance,
                                                   base::ThreadPool& threads) const {
-  const Look look = appearance.look;
+  const Rendition look = appearance.look;
   std::vector<render::RayColor> out(static_cast<size_t>(camera.width) * static_cast<size_t>(camera.height));
   const geo::Rigid3d enu_from_cam = cam_from_enu.Inverse();
   const float radius = static_cast<float>(0.5 / std::max(1e-9, camera.FocalX()));

@@ -57,14 +57,14 @@ struct SceneInfo {
 };
 
 // The two renderings of a scene with a concealing field. For other scenes they are the same.
-enum class Look {
+enum class Rendition {
   kNormal,    // shown to people
   kRecorded,  // as a photo at reference exposure would have recorded the scene
 };
 
 // Brightness of a rendering.
 struct Appearance {
-  Look look = Look::kNormal;
+  Rendition look = Rendition::kNormal;
   std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};  // additional exposure per colour: natural logarithm of a factor on linear light
 };
 

@@ -89,7 +89,7 @@ TEST(CommandLine, RunNeedsPhotosOrAPlaceAndNotBoth) {
 TEST(CommandLine, AFailedNumericCaseIsStatusFive) {
   const auto status_of = [](double worst) {
     bench::NumericGroup group{.id = "space", .title = "Space"};
-    group.cases.push_back({.name = "one", .limit = 1.0, .run = [worst] { return bench::Finding{.worst = worst}; }});
+    group.cases.push_back({.name = "one", .limit = 1.0, .run = [worst] { return bench::CaseResult{.worst = worst}; }});
     return Guarded([&] { bench::ThrowIfFailed(bench::RunNumerics({group}, true)); });
   };
   EXPECT_EQ(status_of(2.0), 5);
@@ -129,7 +129,7 @@ TEST(Readable, ShowsValuesTablesAndText) {
   const nlohmann::ordered_json json = {{"what", "blocks"}, {"rows", 2},
                                        {"none", nullptr},  {"list", {1, 2}},
                                        {"text", "a\nb"},   {"table", {{{"name", "r0c0"}, {"cost", 0.5}}, {{"name", "r0c1"}, {"cost", 0.25}}}}};
-  const std::string text = Readable(json);
+  const std::string text = FormatReadable(json);
   EXPECT_NE(text.find("rows: 2\n"), std::string::npos) << text;
   EXPECT_NE(text.find("none: -\n"), std::string::npos) << text;
   EXPECT_NE(text.find("list: 1, 2\n"), std::string::npos) << text;

@@ -26,7 +26,7 @@ class Numerics : public testing::Test {
     EXPECT_NO_THROW(ThrowIfFailed(result));
     return result.groups.at(0).rows;
   }
-  static NumericCase CaseOf(double limit, const Finding& finding) {
+  static NumericCase CaseOf(double limit, const CaseResult& finding) {
     return {.name = "one", .expected = "little", .unit = "mm", .limit = limit, .run = [finding] { return finding; }};
   }
   TemporaryFolder folder_;
@@ -40,11 +40,11 @@ TEST_F(Numerics, ACasePassesOnlyWithinItsLimitAndWhenAllHolds) {
   EXPECT_EQ(RunCase("g", CaseOf(1.0, {.worst = kNoNumber})).verdict, Verdict::kFailed);
   EXPECT_EQ(RunCase("g", CaseOf(kNoNumber, {.worst = kNoNumber})).verdict, Verdict::kPassed);
   NumericCase thrown = CaseOf(1.0, {});
-  thrown.run = []() -> Finding { throw std::logic_error("out of range"); };
+  thrown.run = []() -> CaseResult { throw std::logic_error("out of range"); };
   const NumericRow row = RunCase("g", thrown);
   EXPECT_EQ(row.verdict, Verdict::kFailed);
   EXPECT_NE(row.seen.find("out of range"), std::string::npos);
-  thrown.run = []() -> Finding { throw base::Interrupted(); };
+  thrown.run = []() -> CaseResult { throw base::Interrupted(); };
   EXPECT_THROW(RunCase("g", thrown), base::Interrupted);
   NumericCase shown = CaseOf(1.0, {.worst = 50.0});
   shown.for_comparison = true;

@@ -33,7 +33,7 @@ struct SlopeSurvey {
     camera.height = kHeight;
     camera.params = {50.0, 50.0, kWidth / 2.0, kHeight / 2.0};
     survey.cameras = {camera};
-    info.response = brightness::Response::Plain(stops.size(), 1);
+    info.response = brightness::Response::Neutral(stops.size(), 1);
     if (!mask.Empty()) image::SavePng(mask, folder / "mask.png");
     std::vector<image::PixelSource> sources;
     for (size_t i = 0; i < stops.size(); ++i) {
@@ -142,7 +142,7 @@ TEST(CollectBrightness, TellsVignettingAndConcealingField) {
 
 TEST(CollectBrightness, IsEmptyForASceneOfOtherPhotos) {
   SlopeSurvey small({0.0, 0.0});
-  small.info.response = brightness::Response::Plain(3, 1);
+  small.info.response = brightness::Response::Neutral(3, 1);
   EXPECT_TRUE(small.Collect().Empty());
   EXPECT_TRUE(ChooseViews(small.info, small.survey, {0, 1}).empty());
 }
@@ -151,7 +151,7 @@ TEST(ChooseViews, TakesDarkestAndBrightestThatDiffer) {
   scene::SceneInfo info;
   survey::Survey survey;
   survey.photos.resize(5);
-  info.response = brightness::Response::Plain(5, 1);
+  info.response = brightness::Response::Neutral(5, 1);
   info.response.exif_gain = {1.0F, 0.5F, 2.0F, 1.05F, 1.0F};
   // Learned gains count like the tags.
   for (size_t c = 0; c < 3; ++c) info.response.log_gain[12 + c] = -2.0F * std::log(2.0F);

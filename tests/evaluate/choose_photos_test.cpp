@@ -5,14 +5,14 @@
 namespace skyquilt::evaluate {
 namespace {
 
-TEST(EvenlySpread, TakesAllOrStandsInTheMiddleOfEqualParts) {
+TEST(SelectEvenly, TakesAllOrStandsInTheMiddleOfEqualParts) {
   const std::vector<int> photos = {3, 11, 19, 27, 35, 43};
-  EXPECT_EQ(EvenlySpread(photos, 0), photos);
-  EXPECT_EQ(EvenlySpread(photos, 6), photos);
-  EXPECT_EQ(EvenlySpread(photos, 99), photos);
-  EXPECT_EQ(EvenlySpread(photos, 2), (std::vector<int>{11, 35}));
-  EXPECT_EQ(EvenlySpread(photos, 1), (std::vector<int>{27}));
-  EXPECT_TRUE(EvenlySpread({}, 4).empty());
+  EXPECT_EQ(SelectEvenly(photos, 0), photos);
+  EXPECT_EQ(SelectEvenly(photos, 6), photos);
+  EXPECT_EQ(SelectEvenly(photos, 99), photos);
+  EXPECT_EQ(SelectEvenly(photos, 2), (std::vector<int>{11, 35}));
+  EXPECT_EQ(SelectEvenly(photos, 1), (std::vector<int>{27}));
+  EXPECT_TRUE(SelectEvenly({}, 4).empty());
 }
 
 TEST(HeldOutPhotos, AreThoseNeverTrainedOn) {

@@ -14,7 +14,7 @@ constexpr int kWidth = 100, kHeight = 80;
 
 // A camera 100 m above flat ground at height 0: 100 m x 80 m are in the frame, one pixel is one metre.
 struct FlatGround {
-  PhotoTask task;
+  HeldOutPhoto task;
   std::vector<render::RayColor> rendered;
   SceneArea area{{{{-50, -40, -1}, {0, 40, 5}, 5.0}, {{0, -40, -1}, {50, 40, 5}, 5.0}}, {-1.0, 5.0}};
   base::ThreadPool threads{2};
@@ -45,7 +45,7 @@ double Psnr(double difference) {
 
 TEST(ScorePhoto, AllPixelsCoveredGiveTheFullFrameScore) {
   FlatGround flat;
-  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
   EXPECT_EQ(findings.score.used_pixels, kWidth * kHeight);
   EXPECT_EQ(findings.score.covered_pixels, kWidth * kHeight);
   EXPECT_DOUBLE_EQ(findings.score.Coverage(), 1.0);
@@ -56,7 +56,7 @@ TEST(ScorePhoto, AllPixelsCoveredGiveTheFullFrameScore) {
 
 TEST(ScorePhoto, BlocksAndSeamsGetTheirOwnPixels) {
   FlatGround flat;
-  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
   ASSERT_EQ(findings.per_block.size(), 2U);
   EXPECT_EQ(PixelsOf(findings.per_block[0]), 50 * kHeight);
   EXPECT_EQ(PixelsOf(findings.per_block[1]), 50 * kHeight);
@@ -70,7 +70,7 @@ TEST(ScorePhoto, PixelsSeenByOneViewOnlyAreNotCovered) {
   FlatGround flat;
   // The second view is moved 50 m west: its frame ends at x = 0 + 10 (60 m half width at 120 m height).
   const TrainingViews views({NadirView(0, 0, 120), NadirView(-50, 0, 120)});
-  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
   EXPECT_EQ(findings.score.covered_pixels, 60 * kHeight);
   EXPECT_EQ(findings.scored.data[0], 1);
   EXPECT_EQ(findings.scored.data[kWidth - 1], 0);
@@ -83,7 +83,7 @@ TEST(ScorePhoto, MaskedPixelsCountNowhere) {
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 50; x < kWidth; ++x) flat.task.mask[static_cast<size_t>(y) * kWidth + static_cast<size_t>(x)] = 0;
   }
-  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
   EXPECT_EQ(findings.score.used_pixels, 50 * kHeight);
   EXPECT_NEAR(findings.score.psnr_full_db, Psnr(10.0), 1e-3);
   EXPECT_EQ(PixelsOf(findings.per_block[1]), 0);
@@ -95,7 +95,7 @@ TEST(ScorePhoto, HolesOverPhotographedGroundStillCount) {
     ray = render::RayColor{};
     ray.depth = ray.depth_median = std::numeric_limits<float>::quiet_NaN();
   }
-  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
   EXPECT_GT(findings.score.Coverage(), 0.9);
   EXPECT_NEAR(findings.score.psnr_full_db, Psnr(100.0), 1e-3);
 }
@@ -104,7 +104,7 @@ TEST(ScorePhoto, DepthIsComparedAlongTheOpticalAxis) {
   FlatGround flat;
   flat.task.true_depth = image::ImageF(2 * kWidth, 2 * kHeight, 1, 100.5F);  // of twice the size; the render is half a metre too near
   *flat.task.true_depth.At(0, 0) = std::numeric_limits<float>::quiet_NaN();
-  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
   EXPECT_NEAR(findings.score.depth_rmse_m, 0.5, 1e-4);
   EXPECT_NEAR(findings.score.depth_median_abs_m, 0.5, 1e-3);
 }
@@ -113,8 +113,8 @@ TEST(ScorePhoto, SameResultForAnyNumberOfThreads) {
   FlatGround flat;
   base::ThreadPool one(1);
   const TrainingViews views = FlatGround::TwoEverywhere();
-  const PhotoFindings a = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
-  const PhotoFindings b = ScorePhoto(flat.task, flat.rendered, views, flat.area, one);
+  const PhotoResult a = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
+  const PhotoResult b = ScorePhoto(flat.task, flat.rendered, views, flat.area, one);
   EXPECT_EQ(a.score.psnr_db, b.score.psnr_db);
   EXPECT_EQ(a.seams.AllInterior().sum, b.seams.AllInterior().sum);
   EXPECT_EQ(a.scored.data, b.scored.data);
@@ -123,7 +123,7 @@ TEST(ScorePhoto, SameResultForAnyNumberOfThreads) {
 TEST(ScorePhoto, NonFiniteRenderedColoursAreBlackNotNan) {
   FlatGround flat;
   flat.rendered[5].rgb_srgb[1] = std::numeric_limits<float>::quiet_NaN();
-  const PhotoFindings findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
   EXPECT_TRUE(std::isfinite(findings.score.psnr_db));
 }
 

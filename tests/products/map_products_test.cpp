@@ -265,7 +265,7 @@ TEST(MapProducts, RaysStayInTheBoxesAboveTheirCell) {
   scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
   info.blocks[0].max_enu.z() = 8.0;
   const gis::MapGrid grid = PlanMapGrid(info, ProductOptions{});
-  const MapRayMaker maker(info, grid);
+  const MapRayGenerator maker(info, grid);
   MapRays rays;
   maker.MakeRow(grid.height / 2, &rays);
   ASSERT_GT(rays.rays.size(), 200U);

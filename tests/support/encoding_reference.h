@@ -14,14 +14,14 @@
 namespace skyquilt::testing {
 
 // Weight of lattice point i at a position: 1 there, falling to 0 at its neighbours. Positions are clamped into the lattice, NaN counts as 0.
-inline double Hat(double position, const kernel::HashLevel& lattice, int axis, int i) {
+inline double Hat(double position, const kernel::GridLevel& lattice, int axis, int i) {
   const double scaled = position * static_cast<double>(lattice.cells_per_unit);
   const double inside = scaled > 0.0 ? std::min(scaled, lattice.size[axis] - 1.0) : 0.0;
   return std::max(0.0, 1.0 - std::abs(inside - i));
 }
 
 // table: `features` numbers for each point of a dense lattice, x fastest.
-inline std::vector<double> LookUpLattice(const kernel::HashLevel& lattice, int features, const double* table, const double x[3]) {
+inline std::vector<double> LookUpLattice(const kernel::GridLevel& lattice, int features, const double* table, const double x[3]) {
   std::vector<double> out(static_cast<size_t>(features), 0.0);
   for (int k = 0; k < lattice.size[2]; ++k) {
     for (int j = 0; j < lattice.size[1]; ++j) {
@@ -35,7 +35,7 @@ inline std::vector<double> LookUpLattice(const kernel::HashLevel& lattice, int f
 }
 
 // axes: {plane's first, plane's second, line's}; table: plane entries, then line entries, of kGroup numbers.
-inline std::vector<double> LookUpFactors(const kernel::HashLevel& lattice, const int axes[3], const double* table, const double x[3]) {
+inline std::vector<double> LookUpFactors(const kernel::GridLevel& lattice, const int axes[3], const double* table, const double x[3]) {
   constexpr size_t kGroup = encoding::PlaneFactors::kGroup;
   std::vector<double> plane(kGroup, 0.0), line(kGroup, 0.0), out;
   for (int j = 0; j < lattice.size[axes[1]]; ++j) {

@@ -17,7 +17,7 @@ inline TrainedField RandomField(uint64_t seed, const Eigen::Vector3d& low, const
   f.box.max_enu = high;
   f.box.margin_m = margin_m;
   const Eigen::Vector3d map_min = f.box.TrainMin(), map_max = f.box.TrainMax();
-  f.map = contracted ? encoding::SpaceMap::Slab(map_min, map_max) : encoding::SpaceMap::Box(map_min, map_max);
+  f.map = contracted ? encoding::SpaceMap::Contracted(map_min, map_max) : encoding::SpaceMap::Box(map_min, map_max);
   f.step_m = 0.25;
   f.config.encoding = encoding;
   f.config.density_hidden_layers = density_hidden_layers;

@@ -99,7 +99,7 @@ class SmallSurvey : public ::testing::Test {
     TrainJob job;
     job.survey = &survey_;
     job.pixels = pixels_.get();
-    job.response = brightness::Response::Plain(survey_.photos.size(), 1);
+    job.response = brightness::Response::Neutral(survey_.photos.size(), 1);
     job.learn.learns_gain.assign(survey_.photos.size(), 0);
     job.options.steps = steps;
     job.options.batch_samples = 4096;

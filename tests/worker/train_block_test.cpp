@@ -110,11 +110,11 @@ TEST(TrainOptions, RefusesImpossibleValuesByName) {
 }
 
 TEST_F(TrainBlockTest, BandsOfTheContextAreWhereABlockStarts) {
-  const brightness::Response response = brightness::Response::Plain(survey_.photos.size(), 1);
+  const brightness::Response response = brightness::Response::Neutral(survey_.photos.size(), 1);
   RaySource source(survey_, *pixels_, response);
   LoadedContext context;
   context.field.step_m = 1.0;
-  // All photos look straight down from about 30 m; the surface band is from 2 m to 1 m above ground at the ray's foot point.
+  // All photos look straight down from about 30 m; the surface interval is from 2 m to 1 m above ground at the ray's foot point.
   std::vector<int> photos;
   for (size_t photo = 0; photo < survey_.photos.size(); ++photo) {
     photos.push_back(static_cast<int>(photo));
@@ -134,7 +134,7 @@ TEST_F(TrainBlockTest, BandsOfTheContextAreWhereABlockStarts) {
   target.occupancy = field::OccupancyGrid::Make(extent, 0.5 * target.map.units_per_metre(), 4'000'000);
   survey_.points.emplace_back();
   survey_.points.back().x_in_enu = {4.2, 4.2, 12.2};
-  StartFromBands(source, survey_, TrainingTiles(survey_, photos), context, target);
+  StartFromSurfaces(source, survey_, TrainingTiles(survey_, photos), context, target);
   const auto occupied = [&](double x, double y, double z) {
     const Eigen::Vector3f unit = target.map.UnitFromEnu({x, y, z});
     return target.occupancy.occupied[static_cast<size_t>(target.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] != 0;

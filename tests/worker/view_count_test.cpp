@@ -58,7 +58,7 @@ class ViewCountTest : public ::testing::Test {
   TemporaryFolder folder_;
   survey::Survey survey_;
   image::PixelCache pixels_;
-  brightness::Response response_ = brightness::Response::Plain(2, 1);
+  brightness::Response response_ = brightness::Response::Neutral(2, 1);
   std::unique_ptr<RaySource> source_;
 };
 

@@ -9,7 +9,7 @@ namespace skyquilt::worker {
 // A saturated pixel is a lower bound of the light, a black pixel an upper bound: true when the rendering satisfies the bound. target: pixel, 0..1;
 // residual: rendering minus pixel.
 template <typename T>
-bool SaysLittle(T target, T residual) {
+bool SatisfiesClippedBound(T target, T residual) {
   return (target >= T(254.5F / 255.0F) && residual > T(0)) || (target <= T(0.5F / 255.0F) && residual < T(0));
 }
 
@@ -26,7 +26,7 @@ template <typename T>
 PhotoLoss<T> SquaredPhotoLoss(T rendered, T target) {
   const T residual = rendered - target;
   const double squared = static_cast<double>(residual) * static_cast<double>(residual);
-  if (SaysLittle(target, residual)) return {0.0, T(0), squared, false};
+  if (SatisfiesClippedBound(target, residual)) return {0.0, T(0), squared, false};
   return {squared, T(2) * residual, squared, true};
 }
 
@@ -36,7 +36,7 @@ PhotoLoss<T> TonedPhotoLoss(T rendered, T target) {
   const double squared_error = static_cast<double>(error) * static_cast<double>(error);
   const auto [toned, slope] = brightness::ToneCurve(rendered);
   const T residual = toned - brightness::ToneCurve(target).value;
-  if (SaysLittle(target, residual)) return {0.0, T(0), squared_error, false};
+  if (SatisfiesClippedBound(target, residual)) return {0.0, T(0), squared_error, false};
   return {static_cast<double>(residual) * static_cast<double>(residual), T(2) * residual * slope, squared_error, true};
 }
 

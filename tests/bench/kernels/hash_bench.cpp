@@ -22,8 +22,8 @@ const float* Axis(size_t axis) {
   return axes[axis].data();
 }
 
-kernel::HashLevel Level(int64_t log2_entries) {
-  kernel::HashLevel level;
+kernel::GridLevel Level(int64_t log2_entries) {
+  kernel::GridLevel level;
   level.cells_per_unit = 2048.0F;
   for (int32_t& size : level.size) size = 2049;
   level.dense = false;
@@ -33,7 +33,7 @@ kernel::HashLevel Level(int64_t log2_entries) {
 
 void HashForward(benchmark::State& state) {
   const auto features = static_cast<int>(state.range(0));
-  const kernel::HashLevel level = Level(state.range(1));
+  const kernel::GridLevel level = Level(state.range(1));
   std::vector<float> table = bench::Table(size_t{level.entries} * static_cast<size_t>(features));
   bench::FillRandom(table, -1e-4F, 1e-4F, 4);
   std::vector<float> out(static_cast<size_t>(features) * kStride);
@@ -50,7 +50,7 @@ void HashForward(benchmark::State& state) {
 
 void HashBackward(benchmark::State& state) {
   const auto features = static_cast<int>(state.range(0));
-  const kernel::HashLevel level = Level(state.range(1));
+  const kernel::GridLevel level = Level(state.range(1));
   std::vector<float> table_gradient = bench::Table(size_t{level.entries} * static_cast<size_t>(features));
   std::vector<uint8_t> touched(table_gradient.size() / kernel::kLineFloats, 0);
   const std::vector<float> out_gradient = bench::RandomValues(static_cast<size_t>(features) * kStride, -1e-3F, 1e-3F, 5);

@@ -13,13 +13,13 @@ namespace {
 class Stamp : public ProjectFixture {};
 
 TEST_F(Stamp, FinishedStageWithItsFilesIsFresh) {
-  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kAbsent);
+  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kNotStarted);
   Finish("merge", "running");
   EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kUnfinished);
   Finish("merge");
   EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kUnfinished) << "its file is missing";
   Touch(project_.SceneFile());
-  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kFresh);
+  EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kUpToDate);
   Finish("merge", "failed");
   EXPECT_EQ(CheckStage(project_, "merge", options_, inputs_, {project_.SceneFile()}), Freshness::kUnfinished);
 }

@@ -30,7 +30,7 @@ class BlockOwners : public ::testing::Test {
 };
 
 TEST_F(BlockOwners, PartsAreEqualAndConnected) {
-  const std::vector<int> owner = DealBlocks(*store_, 4);
+  const std::vector<int> owner = AssignBlocks(*store_, 4);
   for (int part = 0; part < 4; ++part) {
     EXPECT_EQ(std::count(owner.begin(), owner.end(), part), 4);
     // Four consecutive blocks of a Z-order curve form a square: any two of them are neighbours.
@@ -46,32 +46,32 @@ TEST_F(BlockOwners, PartsAreEqualAndConnected) {
 }
 
 TEST_F(BlockOwners, APartIncludesTheNeighboursItIsBlendedWith) {
-  const std::vector<std::vector<int>> lower = LowerNeighbours(*store_);
+  const std::vector<std::vector<int>> lower = OverlappingLowerBlocks(*store_);
   EXPECT_TRUE(lower[0].empty());
   EXPECT_EQ(lower[5], (std::vector<int>{0, 1, 2, 4}));
   const std::vector<int> one(static_cast<size_t>(store_->size()), 0);
-  EXPECT_NEAR(LargestPartBytes(*store_, lower, one, 1), AllBytes(), 1.0);
+  EXPECT_NEAR(MaxBytesPerRank(*store_, lower, one, 1), AllBytes(), 1.0);
   const std::vector<int> own = [] {
     std::vector<int> numbers(kRows * kColumns);
     std::iota(numbers.begin(), numbers.end(), 0);
     return numbers;
   }();
   // The block itself and up to four neighbours with a higher index.
-  EXPECT_NEAR(LargestPartBytes(*store_, lower, own, kRows * kColumns), store_->ContextBytes() + 5.0 * store_->Bytes(0), 0.2 * store_->Bytes(0));
+  EXPECT_NEAR(MaxBytesPerRank(*store_, lower, own, kRows * kColumns), store_->ContextBytes() + 5.0 * store_->Bytes(0), 0.2 * store_->Bytes(0));
 }
 
 TEST_F(BlockOwners, RanksThatHoldTheWholeSceneFormGroupsOfOne) {
   const std::vector<int> ranks = {1, 2, 3, 4, 5};
-  const std::vector<SceneHolders> plenty = MakeGroups(*store_, ranks, std::vector<double>(5, 2.0 * AllBytes()));
+  const std::vector<RenderGroup> plenty = MakeRenderGroups(*store_, ranks, std::vector<double>(5, 2.0 * AllBytes()));
   EXPECT_EQ(plenty.size(), 5U);
-  const std::vector<SceneHolders> half = MakeGroups(*store_, ranks, std::vector<double>(5, 0.85 * AllBytes()));
+  const std::vector<RenderGroup> half = MakeRenderGroups(*store_, ranks, std::vector<double>(5, 0.85 * AllBytes()));
   ASSERT_EQ(half.size(), 2U);
   EXPECT_EQ(half[0].ranks.size() + half[1].ranks.size(), 5U) << "every rank is in a group";
-  const std::vector<SceneHolders> scarce = MakeGroups(*store_, ranks, std::vector<double>(5, 0.01 * AllBytes()));
+  const std::vector<RenderGroup> scarce = MakeRenderGroups(*store_, ranks, std::vector<double>(5, 0.01 * AllBytes()));
   ASSERT_EQ(scarce.size(), 1U);
   EXPECT_EQ(scarce[0].ranks, ranks);
-  for (const std::vector<SceneHolders>& groups : {plenty, half, scarce}) {
-    for (const SceneHolders& group : groups) {
+  for (const std::vector<RenderGroup>& groups : {plenty, half, scarce}) {
+    for (const RenderGroup& group : groups) {
       ASSERT_EQ(group.owner.size(), static_cast<size_t>(store_->size()));
       for (const int owner : group.owner) EXPECT_LT(owner, static_cast<int>(group.ranks.size()));
     }
@@ -79,7 +79,7 @@ TEST_F(BlockOwners, RanksThatHoldTheWholeSceneFormGroupsOfOne) {
 }
 
 TEST_F(BlockOwners, MoreOwnersThanBlocks) {
-  const std::vector<int> owner = DealBlocks(*store_, 50);
+  const std::vector<int> owner = AssignBlocks(*store_, 50);
   std::vector<int> sorted = owner;
   std::sort(sorted.begin(), sorted.end());
   EXPECT_TRUE(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) << "every block has a different owner";

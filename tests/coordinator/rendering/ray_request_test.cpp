@@ -68,7 +68,7 @@ RC_GTEST_PROP(RayReplyProperty, ReadsBackUnchanged, ()) {
     ray_in_flight.owner = *rc::gen::inRange(-1, 3);
     ray_in_flight.at = i;
     sent.in_flight.push_back(ray_in_flight);
-    if (ray_in_flight.owner == scene::kArrived) sent.colors.push_back({.opacity = 0.01F * static_cast<float>(i)});
+    if (ray_in_flight.owner == scene::kFinished) sent.colors.push_back({.opacity = 0.01F * static_cast<float>(i)});
   }
   const RayReply got = RayReplyFromBytes(ToBytes(sent));
   RC_ASSERT(got.id == 7U && got.samples == 123 && got.field_loads == 4 && got.failure.kind == Failure::kInput && got.failure.reason == "why" &&

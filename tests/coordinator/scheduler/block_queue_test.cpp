@@ -33,12 +33,12 @@ TEST(BlockQueue, HandsOutEachBlockOnceMostExpensiveFirst) {
     std::set<int> seen;
     double last_cost = 2.0;
     while (queue.HasWaiting()) {
-      const FieldJob job = queue.Take(0.0, {});
+      const FieldJob job = queue.TakeNext(0.0, {});
       EXPECT_TRUE(seen.insert(job.block).second) << "block " << job.block << " twice";
       EXPECT_LE(queue.Cost(job.block), last_cost);
       last_cost = queue.Cost(job.block);
       EXPECT_EQ(job.steps, 10);
-      EXPECT_FALSE(queue.Record(Outcome(job, true)));
+      EXPECT_FALSE(queue.RecordOutcome(Outcome(job, true)));
     }
     EXPECT_EQ(static_cast<int>(seen.size()), n);
   }
@@ -46,9 +46,9 @@ TEST(BlockQueue, HandsOutEachBlockOnceMostExpensiveFirst) {
 
 TEST(BlockQueue, EqualCostsAreOrderedByIndex) {
   BlockQueue queue({{2, "c", 1.0, 0.0}, {0, "a", 1.0, 0.0}, {1, "b", 1.0, 0.0}}, {.steps = 1});
-  EXPECT_EQ(queue.Take(0.0, {}).block, 0);
-  EXPECT_EQ(queue.Take(0.0, {}).block, 1);
-  EXPECT_EQ(queue.Take(0.0, {}).block, 2);
+  EXPECT_EQ(queue.TakeNext(0.0, {}).block, 0);
+  EXPECT_EQ(queue.TakeNext(0.0, {}).block, 1);
+  EXPECT_EQ(queue.TakeNext(0.0, {}).block, 2);
 }
 
 TEST(BlockQueue, FailedBlockIsTriedThreeTimesWithOtherSeedAndHalfTheRate) {
@@ -57,12 +57,12 @@ TEST(BlockQueue, FailedBlockIsTriedThreeTimesWithOtherSeedAndHalfTheRate) {
   double rate = 2.0;
   for (int attempt = 0; attempt < 3; ++attempt) {
     ASSERT_TRUE(queue.HasWaiting());
-    const FieldJob job = queue.Take(0.0, {});
+    const FieldJob job = queue.TakeNext(0.0, {});
     EXPECT_EQ(job.attempt, attempt);
     EXPECT_DOUBLE_EQ(job.rate_factor, rate / 2.0);
     rate = job.rate_factor;
     EXPECT_TRUE(seeds.insert(job.seed).second);
-    EXPECT_EQ(queue.Record(Outcome(job, false)), attempt < 2);
+    EXPECT_EQ(queue.RecordOutcome(Outcome(job, false)), attempt < 2);
   }
   EXPECT_FALSE(queue.HasWaiting());
   ASSERT_EQ(queue.outcomes().size(), 1U);
@@ -72,9 +72,9 @@ TEST(BlockQueue, FailedBlockIsTriedThreeTimesWithOtherSeedAndHalfTheRate) {
 TEST(BlockQueue, SeedsDoNotDependOnTheOrderOfHandingOut) {
   BlockQueue one({{0, "a", 1.0, 0.0}, {1, "b", 2.0, 0.0}}, {.steps = 1, .seed = 9});
   BlockQueue two({{1, "b", 1.0, 0.0}, {0, "a", 2.0, 0.0}}, {.steps = 1, .seed = 9});
-  const FieldJob first = one.Take(0.0, {});
-  two.Take(0.0, {});
-  const FieldJob second = two.Take(0.0, {});
+  const FieldJob first = one.TakeNext(0.0, {});
+  two.TakeNext(0.0, {});
+  const FieldJob second = two.TakeNext(0.0, {});
   EXPECT_EQ(first.block, second.block);
   EXPECT_EQ(first.seed, second.seed);
 }
@@ -88,9 +88,9 @@ double PlayedEnd(BlockQueue& queue, int n_workers, double start_s) {
     for (const double t : free_at) {
       if (t > *next) busy.push_back(t);
     }
-    const FieldJob job = queue.Take(*next, busy);
+    const FieldJob job = queue.TakeNext(*next, busy);
     *next += job.seconds;
-    queue.Record(Outcome(job, true));
+    queue.RecordOutcome(Outcome(job, true));
   }
   return *std::max_element(free_at.begin(), free_at.end());
 }
@@ -115,7 +115,7 @@ TEST(BlockQueue, TimeIsDividedByCost) {
   std::vector<double> busy;
   double per_cost = 0.0;
   for (int i = 0; i < 50; ++i) {
-    const FieldJob job = queue.Take(0.001 * i, busy);
+    const FieldJob job = queue.TakeNext(0.001 * i, busy);
     if (i == 0) per_cost = job.seconds / queue.Cost(job.block);
     EXPECT_NEAR(job.seconds, per_cost * queue.Cost(job.block), 1e-6 * job.seconds);
     busy.push_back(0.001 * i + job.seconds);
@@ -124,18 +124,18 @@ TEST(BlockQueue, TimeIsDividedByCost) {
 
 TEST(BlockQueue, UnusedTimeIsGivenToTheOtherBlocks) {
   BlockQueue queue({{0, "a", 1.0, 0.0}, {1, "b", 1.0, 0.0}}, {.has_deadline = true, .deadline_s = 100.0});
-  EXPECT_NEAR(queue.Take(0.0, {}).seconds, 50.0, 1e-6);
-  EXPECT_NEAR(queue.Take(10.0, {}).seconds, 90.0, 1e-6);
+  EXPECT_NEAR(queue.TakeNext(0.0, {}).seconds, 50.0, 1e-6);
+  EXPECT_NEAR(queue.TakeNext(10.0, {}).seconds, 90.0, 1e-6);
 }
 
 TEST(BlockQueue, AssignedTimeIsKept) {
   BlockQueue queue({{0, "a", 1.0, 33.0}, {1, "b", 0.5, 0.0}}, {.has_deadline = true, .deadline_s = 100.0});
-  EXPECT_DOUBLE_EQ(queue.Take(0.0, {}).seconds, 33.0);
+  EXPECT_DOUBLE_EQ(queue.TakeNext(0.0, {}).seconds, 33.0);
 }
 
 TEST(BlockQueue, BlocksTrainALittleAfterTheDeadline) {
   BlockQueue queue({{0, "a", 1.0, 0.0}}, {.has_deadline = true, .deadline_s = 1.0});
-  const FieldJob job = queue.Take(50.0, {});
+  const FieldJob job = queue.TakeNext(50.0, {});
   EXPECT_GT(job.seconds, 0.0);
   EXPECT_LT(job.seconds, 10.0);
 }

@@ -9,11 +9,11 @@ namespace {
 RankSpeeds ThreeRanks(double slow_fraction, double now_s) {
   RankSpeeds speeds;
   for (const int rank : {1, 2}) {
-    speeds.HandedOut(rank, 100.0, 0.0);
+    speeds.Started(rank, 100.0, 0.0);
     speeds.Progress(rank, 0.0, 0.0);
     speeds.Finished(rank, 100.0);
   }
-  speeds.HandedOut(3, 100.0, 0.0);
+  speeds.Started(3, 100.0, 0.0);
   speeds.Progress(3, 0.0, 0.0);
   speeds.Progress(3, slow_fraction, now_s);
   return speeds;
@@ -53,7 +53,7 @@ TEST(RankSpeeds, ARankThatHasStoppedIsSlow) {
 
 TEST(RankSpeeds, BlocksFinishedInEarlierRunsDoNotCount) {
   RankSpeeds speeds;
-  speeds.HandedOut(1, 100.0, 0.0);
+  speeds.Started(1, 100.0, 0.0);
   speeds.Finished(1, 0.1);
   EXPECT_DOUBLE_EQ(speeds.Speed(1), 0.0);
 }

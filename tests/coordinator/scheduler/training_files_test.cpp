@@ -79,12 +79,12 @@ TEST_F(TrainingFiles, LogOfACompleteFieldIsNotChanged) {
 TEST_F(TrainingFiles, LedgerRemembersTheBudgetOfTheSameConfigurationOnly) {
   {
     TrainLedger ledger(project_, "aaaa");
-    ledger.Promise("block_r0c0", 12.5);
+    ledger.AssignSeconds("block_r0c0", 12.5);
     ledger.SetSpent(40.0, true);
   }
   const TrainLedger same(project_, "aaaa");
-  EXPECT_DOUBLE_EQ(same.Promised("block_r0c0"), 12.5);
-  EXPECT_DOUBLE_EQ(same.Promised("block_r0c1"), 0.0);
+  EXPECT_DOUBLE_EQ(same.AssignedSeconds("block_r0c0"), 12.5);
+  EXPECT_DOUBLE_EQ(same.AssignedSeconds("block_r0c1"), 0.0);
   EXPECT_DOUBLE_EQ(same.spent_s(), 40.0);
   const TrainLedger other(project_, "bbbb");
   EXPECT_DOUBLE_EQ(other.spent_s(), 0.0);

@@ -52,7 +52,7 @@ TEST(Stages, HaveUniqueNamesAndNeedOnlyEarlierOnes) {
     for (const Stage::RequiredFile& required : stage.required)
       EXPECT_TRUE(names.contains(required.stage)) << stage.name << " needs " << required.stage;
     EXPECT_TRUE(names.insert(stage.name).second) << stage.name;
-    EXPECT_TRUE(stage.inputs != nullptr && stage.outputs != nullptr && stage.proof != nullptr && stage.body != nullptr) << stage.name;
+    EXPECT_TRUE(stage.inputs != nullptr && stage.outputs != nullptr && stage.completion_files != nullptr && stage.body != nullptr) << stage.name;
   }
 }
 
@@ -61,14 +61,14 @@ TEST(Stages, NameOptionsThatExist) {
   const FlatOptions all = settings.Flat();
   for (const Stage& stage : Stages()) {
     for (const std::string& key : stage.options) EXPECT_FALSE(Select(all, {key}).empty()) << stage.name << " depends on " << key;
-    for (const std::string& key : stage.without_effect) EXPECT_FALSE(Select(all, {key}).empty()) << stage.name << " has " << key;
+    for (const std::string& key : stage.ignored_options) EXPECT_FALSE(Select(all, {key}).empty()) << stage.name << " has " << key;
   }
 }
 
 TEST_F(StageFiles, ProofOfAStageIsRemovedWithIt) {
   for (const Stage& stage : Stages()) {
-    if (stage.home != nullptr) continue;
-    for (const std::filesystem::path& proof : stage.proof(project_)) {
+    if (stage.separate_folder != nullptr) continue;
+    for (const std::filesystem::path& proof : stage.completion_files(project_)) {
       bool removed = false;
       for (const std::filesystem::path& output : stage.outputs(project_)) removed = removed || proof.string().starts_with(output.string());
       EXPECT_TRUE(removed) << stage.name << " leaves " << proof;
@@ -83,14 +83,14 @@ TEST_F(StageFiles, AStageWithUnreadableResultsRunsAgain) {
   evaluate::Metrics metrics;
   metrics.psnr = 27.5;
   Touch(project_.MetricsFile(), evaluate::MetricsJson(metrics));
-  EXPECT_TRUE(StageNamed("train").recall(pipeline));
+  EXPECT_TRUE(StageNamed("train").load_results(pipeline));
   EXPECT_EQ(pipeline.training.ranks, 2);
-  EXPECT_TRUE(StageNamed("evaluate").recall(pipeline));
+  EXPECT_TRUE(StageNamed("evaluate").load_results(pipeline));
   EXPECT_EQ(pipeline.metrics.psnr, 27.5);
   Touch(project_.TrainReport(), "{\"fields\": [");
   Touch(project_.MetricsFile(), "{\"psnr\": 2");
-  EXPECT_FALSE(StageNamed("train").recall(pipeline));
-  EXPECT_FALSE(StageNamed("evaluate").recall(pipeline));
+  EXPECT_FALSE(StageNamed("train").load_results(pipeline));
+  EXPECT_FALSE(StageNamed("evaluate").load_results(pipeline));
 }
 
 TEST_F(StageFiles, ADamagedInputChangesNoFiles) {

@@ -23,9 +23,9 @@ TEST(OrderStatistics, RanksCountFromTheSmallest) {
   EXPECT_EQ(OrderStatistic(values, 0), 10);
   EXPECT_EQ(OrderStatistic(values, 3), 40);
   EXPECT_EQ(UpperMedian(values), 30);
-  EXPECT_EQ(NearestRank(values, 0.3), 20);
-  EXPECT_EQ(NearestRank(values, 0.6), 30);
-  EXPECT_EQ(NearestRank(values, 1.0), 40);
+  EXPECT_EQ(NearestRankQuantile(values, 0.3), 20);
+  EXPECT_EQ(NearestRankQuantile(values, 0.6), 30);
+  EXPECT_EQ(NearestRankQuantile(values, 1.0), 40);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace {
 
 // Eight photos; every fourth held out; tags jump by a stop.
 struct Flight {
-  Response response = Response::Plain(8, 1);
+  Response response = Response::Neutral(8, 1);
   std::vector<CapturedPhoto> photos;
   Flight() {
     for (size_t i = 0; i < 8; ++i) {
@@ -28,7 +28,7 @@ TEST(PredictGains, TrustsTagsThatExplainTheBrightness) {
   for (size_t i = 0; i < 8; ++i) {
     if (flight.photos[i].learned) flight.Learn(i, 0.1 * static_cast<double>(i));  // light rises slowly, tags are right
   }
-  EXPECT_GT(TrustInTags(flight.response, flight.photos), 0.9);
+  EXPECT_GT(TagReliability(flight.response, flight.photos), 0.9);
   PredictGains(flight.photos, flight.response);
   EXPECT_NEAR(flight.response.log_gain[3 * 1 + 1], 0.1, 0.05);
   EXPECT_NEAR(flight.response.log_gain[3 * 5 + 1], 0.5, 0.05);
@@ -39,13 +39,13 @@ TEST(PredictGains, IgnoresTagsWhereTheShutterFollowedTheLight) {
   for (size_t i = 0; i < 8; ++i) {
     if (flight.photos[i].learned) flight.Learn(i, -std::log(static_cast<double>(flight.response.exif_gain[i])));  // all equally bright
   }
-  EXPECT_LT(TrustInTags(flight.response, flight.photos), 0.05);
+  EXPECT_LT(TagReliability(flight.response, flight.photos), 0.05);
   PredictGains(flight.photos, flight.response);
   for (size_t i = 0; i < 8; ++i) EXPECT_NEAR(flight.Total(i), 0.0, 0.05) << i;
 }
 
 TEST(PredictGains, DoesNotInterpolateUncorrelatedGains) {
-  Response response = Response::Plain(40, 1);
+  Response response = Response::Neutral(40, 1);
   std::vector<CapturedPhoto> photos;
   for (size_t i = 0; i < 40; ++i) {
     photos.push_back({static_cast<double>(i), 0, i % 8 != 3, true});
@@ -58,7 +58,7 @@ TEST(PredictGains, DoesNotInterpolateUncorrelatedGains) {
 
 TEST(PredictGains, TaggedPhotosDoNotTakeOverTheGainsOfUntaggedOnes) {
   // Every second photo has no tags; brightness rises by a tenth per photo in log light, and the tags are right.
-  Response response = Response::Plain(16, 1);
+  Response response = Response::Neutral(16, 1);
   std::vector<CapturedPhoto> photos;
   for (size_t i = 0; i < 16; ++i) {
     const bool tagged = i % 2 == 0, learned = i != 6 && i != 9;
@@ -97,12 +97,12 @@ TEST(PredictGains, LearnedPhotosKeepTheirGains) {
 }
 
 TEST(PredictGains, OnePhotoOrNone) {
-  Response one = Response::Plain(1, 1);
+  Response one = Response::Neutral(1, 1);
   PredictGains({{0.0, 0, false, true}}, one);
   EXPECT_EQ(one.log_gain[0], 0.0F);
-  Response none = Response::Plain(0, 0);
+  Response none = Response::Neutral(0, 0);
   PredictGains({}, none);
-  EXPECT_EQ(TrustInTags(none, {}), 1.0);
+  EXPECT_EQ(TagReliability(none, {}), 1.0);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace skyquilt::brightness {
 namespace {
 
 Response Sample() {
-  Response response = Response::Plain(3, 2);
+  Response response = Response::Neutral(3, 2);
   response.reference_exposure = 0.02;
   response.exif_gain = {1.0F, 2.0F, 0.5F};
   response.log_gain = {0.0F, 0.0F, 0.0F, 0.1F, 0.2F, 0.3F, -0.1F, -0.2F, -0.3F};
@@ -38,7 +38,7 @@ TEST(Response, FindsPhotosByPathOrUniqueFileName) {
   EXPECT_EQ(response.Find("two.jpg"), 1U);
   EXPECT_FALSE(response.Find("one.jpg"));
   EXPECT_FALSE(response.Find(""));
-  EXPECT_FALSE(Response::Plain(3, 1).Find("two.jpg"));
+  EXPECT_FALSE(Response::Neutral(3, 1).Find("two.jpg"));
 }
 
 TEST(Response, IsReadBackAsWritten) {
@@ -79,7 +79,7 @@ void Learn(const std::vector<float>& truth, int steps, ResponseLearner& learner,
 }
 
 TEST(ResponseLearner, FindsGainsAndKeepsTheirMeanAtZero) {
-  Response response = Response::Plain(4, 1);
+  Response response = Response::Neutral(4, 1);
   ResponseLearner learner(response, {{1, 1, 1, 1}, {}, false, false});
   const std::vector<float> truth = {0.5F, 0.6F, 0.4F, -0.3F, -0.3F, -0.3F, -0.8F, -0.5F, -0.4F, 0.6F, 0.2F, 0.3F};
   Learn(truth, 600, learner, response);
@@ -94,7 +94,7 @@ TEST(ResponseLearner, FindsGainsAndKeepsTheirMeanAtZero) {
 }
 
 TEST(ResponseLearner, TagWeightKeepsGainsThatNoPixelSupports) {
-  Response response = Response::Plain(2, 1);
+  Response response = Response::Neutral(2, 1);
   response.log_gain = {0.5F, 0.5F, 0.5F, -0.5F, -0.5F, -0.5F};
   ResponseLearner learner(response, {{1, 1}, {0.02F, 0.0F}, true, false});
   const float nothing[3] = {0.0F, 0.0F, 0.0F};
@@ -107,15 +107,15 @@ TEST(ResponseLearner, TagWeightKeepsGainsThatNoPixelSupports) {
 }
 
 TEST(ResponseLearner, IsFrozenByRest) {
-  Response response = Response::Plain(1, 1);
+  Response response = Response::Neutral(1, 1);
   ResponseLearner learner(response, {{1}, {}, true, true});
   EXPECT_TRUE(learner.active());
-  learner.Rest();
+  learner.Freeze();
   EXPECT_FALSE(learner.active());
 }
 
 TEST(ResponseLearner, LeavesAnchorsAndUnseenPhotosAlone) {
-  Response response = Response::Plain(3, 1);
+  Response response = Response::Neutral(3, 1);
   ResponseLearner learner(response, {{0, 1, 1}, {}, true, false});
   const float gradient[3] = {-1.0F, -1.0F, -1.0F};
   for (int step = 0; step < 10; ++step) {
@@ -130,7 +130,7 @@ TEST(ResponseLearner, LeavesAnchorsAndUnseenPhotosAlone) {
 }
 
 TEST(ResponseLearner, StaysFiniteAndWithinTenStops) {
-  Response response = Response::Plain(2, 1);
+  Response response = Response::Neutral(2, 1);
   ResponseLearner learner(response, {{1, 1}, {}, true, true});
   const float huge[3] = {-1e30F, 1e30F, -1e30F}, broken[3] = {std::nanf(""), 0.0F, 0.0F};
   for (int step = 0; step < 2000; ++step) {
@@ -147,11 +147,11 @@ TEST(ResponseLearner, ResumesFromItsFileWithTheSameBits) {
   const TemporaryFolder folder;
   const std::vector<float> truth = {0.5F, 0.4F, 0.3F, -0.5F, -0.4F, -0.3F};
   const LearnerOptions options{{1, 1}, {}, false, true};
-  Response undisturbed = Response::Plain(2, 1);
+  Response undisturbed = Response::Neutral(2, 1);
   ResponseLearner whole(undisturbed, options);
   Learn(truth, 20, whole, undisturbed);
   Learn(truth, 20, whole, undisturbed);
-  Response response = Response::Plain(2, 1);
+  Response response = Response::Neutral(2, 1);
   ResponseLearner first(response, options);
   Learn(truth, 20, first, response);
   checkpoint::ArchiveWriter writer("context", 1);

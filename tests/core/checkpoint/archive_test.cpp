@@ -296,25 +296,25 @@ TEST(ArchiveCopies, KeepOnlyTheChosenGroups) {
   for (const uint32_t group : {0U, 7U, 8U, 500U, 1000U}) keep[group / 8] = static_cast<uint8_t>(keep[group / 8] | 1U << group % 8);
   for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
     ArchiveWriter writer("scene", 1);
-    writer.PutKept("grid", folder / "part.h5", "grid", keep, 4, precision);
-    writer.PutKept("nothing", folder / "part.h5", "grid", std::vector<uint8_t>(126, 0), 4, precision);
+    writer.PutPruned("grid", folder / "part.h5", "grid", keep, 4, precision);
+    writer.PutPruned("nothing", folder / "part.h5", "grid", std::vector<uint8_t>(126, 0), 4, precision);
     writer.Commit(folder / "kept.h5");
     const ArchiveReader reader(folder / "kept.h5");
     EXPECT_EQ(reader.Shape("grid"), std::vector<int64_t>{20});
-    const std::vector<float> back = reader.KeptFloats("grid");
+    const std::vector<float> back = reader.PrunedFloats("grid");
     ASSERT_EQ(back.size(), values.size());
     for (size_t i = 0; i < back.size(); ++i) {
       const bool kept = (keep[i / 32] >> (i / 4) % 8 & 1U) != 0;
       ASSERT_NEAR(back[i], kept ? values[i] : 0.0F, precision == Precision::kFloat32 ? 0.0 : 0x1p-9) << i;
     }
-    EXPECT_EQ(reader.KeptFloats("nothing"), std::vector<float>(values.size(), 0.0F));
+    EXPECT_EQ(reader.PrunedFloats("nothing"), std::vector<float>(values.size(), 0.0F));
   }
   // Arrays stored whole are read whole.
-  EXPECT_EQ(ArchiveReader(folder / "part.h5").KeptFloats("grid"), values);
+  EXPECT_EQ(ArchiveReader(folder / "part.h5").PrunedFloats("grid"), values);
   ArchiveWriter writer("scene", 1);
-  EXPECT_THROW(writer.PutKept("a", folder / "part.h5", "grid", keep, 3), std::logic_error);
-  EXPECT_THROW(writer.PutKept("a", folder / "part.h5", "grid", {1}, 4), std::logic_error);
-  EXPECT_THROW(writer.PutKept("a", folder / "part.h5", "absent", keep, 4), base::InputError);
+  EXPECT_THROW(writer.PutPruned("a", folder / "part.h5", "grid", keep, 3), std::logic_error);
+  EXPECT_THROW(writer.PutPruned("a", folder / "part.h5", "grid", {1}, 4), std::logic_error);
+  EXPECT_THROW(writer.PutPruned("a", folder / "part.h5", "absent", keep, 4), base::InputError);
 }
 
 TEST(ArchiveCopies, BitsThatDoNotMatchTheStoredGroupsAreRefused) {
@@ -325,7 +325,7 @@ TEST(ArchiveCopies, BitsThatDoNotMatchTheStoredGroupsAreRefused) {
     writer.Put("grid_keep", bits);
     writer.Put("grid_keep_sizes", sizes);
     writer.Commit(folder / "foreign.h5");
-    EXPECT_THROW(ArchiveReader(folder / "foreign.h5").KeptFloats("grid"), base::InputError);
+    EXPECT_THROW(ArchiveReader(folder / "foreign.h5").PrunedFloats("grid"), base::InputError);
   };
   refused({1, 2, 3, 4}, {3}, {4, 32});
   refused({1, 2, 3, 4}, {1}, {4, 64});

@@ -173,7 +173,7 @@ TEST_P(TableEncoding, HasAboutTheParametersOfAHashGridButNeverFinerCells) {
         const auto budget = static_cast<double>(HashGrid(config).ParameterCount());
         const std::unique_ptr<const Encoding> encoding = MakeEncoding(GetParam(), config);
         const auto* voxels = dynamic_cast<const VoxelGrid*>(encoding.get());
-        const kernel::HashLevel& lattice = voxels != nullptr ? voxels->lattice() : dynamic_cast<const PlaneFactors&>(*encoding).lattice();
+        const kernel::GridLevel& lattice = voxels != nullptr ? voxels->lattice() : dynamic_cast<const PlaneFactors&>(*encoding).lattice();
         EXPECT_LE(static_cast<double>(lattice.cells_per_unit), finest);
         const double share = static_cast<double>(encoding->ParameterCount()) / budget;
         EXPECT_LE(share, 1.02) << "lines are padded";

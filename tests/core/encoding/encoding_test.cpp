@@ -89,7 +89,7 @@ TEST(SpaceMap, BoxRoundTripsAndFitsTheUnitBox) {
 }
 
 TEST(SpaceMap, SlabKeepsTheSurveyAndContractsTheRest) {
-  const SpaceMap map = SpaceMap::Slab({-100.0, -80.0, -5.0}, {100.0, 80.0, 40.0});
+  const SpaceMap map = SpaceMap::Contracted({-100.0, -80.0, -5.0}, {100.0, 80.0, 40.0});
   EXPECT_DOUBLE_EQ(map.LocalScale({0, 0, 0}), 1.0);
   EXPECT_NEAR(map.LocalScale({400, 0, 0}), 1.0 / 16.0, 1e-12);
   base::Random random(2);
@@ -105,7 +105,7 @@ TEST(SpaceMap, SlabKeepsTheSurveyAndContractsTheRest) {
 
 TEST(SpaceMap, RefusesBoxesWithoutVolume) {
   EXPECT_THROW(SpaceMap::Box({0, 0, 0}, {1, 0, 1}), std::invalid_argument);
-  EXPECT_THROW(SpaceMap::Slab({0, 0, 0}, {1, 1, std::nan("")}), std::invalid_argument);
+  EXPECT_THROW(SpaceMap::Contracted({0, 0, 0}, {1, 1, std::nan("")}), std::invalid_argument);
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   base::Random random(19);
   Parameters parameters;
   parameters.Allocate(field);
-  TrainableState state;
+  OptimizerState state;
   state.Allocate(field);
   field.Initialize(random, parameters.grid, parameters.networks);
   for (float& value : parameters.grid) value = random.Uniform() - 0.5F;  // large enough to matter
@@ -95,14 +95,14 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   field.Density(weights, features.data(), stride, padded, a.density_hidden, a.stride, a.geometry(), a.stride);
   for (size_t s = 0; s < stride; ++s) {
     const float d[3] = {direction[s], direction[stride + s], direction[2 * stride + s]};
-    field.FillDirection(d, 1, a.color_in + static_cast<size_t>(kGeometryRows) * a.stride + s, a.stride);
+    field.EncodeDirection(d, 1, a.color_in + static_cast<size_t>(kGeometryRows) * a.stride + s, a.stride);
     a.log_density_gradient[s] = density_gradient[s];
     for (size_t c = 0; c < 4; ++c) a.color_gradient[c * a.stride + s] = color_gradient[c * stride + s];
   }
   field.Color(weights, a.color_in, a.stride, padded, a.color_hidden, a.stride, a.color_raw, a.stride);
   field.Backward(weights, a, features.data(), stride, padded, state.network_gradient.data());
   // Two segments, as from two packets.
-  const GridGradient segments[2] = {{0, 2, features.data(), stride}, {2, n - 2, features.data() + 2, stride}};
+  const FeatureGradient segments[2] = {{0, 2, features.data(), stride}, {2, n - 2, features.data() + 2, stride}};
   std::vector<float> grid_gradient(parameters.grid.size(), 0.0F);
   std::vector<uint8_t> touched(parameters.grid.size() / kernel::kLineFloats, 0);
   for (int part = 0; part < field.encoding().parts(); ++part) {
@@ -206,14 +206,14 @@ TEST(Optimizer, MovesWhatSamplesTouchedOnAnyNumberOfThreads) {
     base::ThreadPool threads(n_threads);
     Parameters parameters;
     parameters.Allocate(field);
-    TrainableState state;
+    OptimizerState state;
     state.Allocate(field);
     Optimizer optimizer(field, threads);
     const float x[2] = {0.1F, 0.6F}, y[2] = {0.2F, 0.7F}, z[2] = {0.05F, 0.3F};
     std::vector<float> gradient(static_cast<size_t>(field.FeatureRows()) * 2, 0.0F);
     for (size_t row = 0; row < static_cast<size_t>(field.FeatureRows()); ++row) gradient[2 * row] = 1.0F;  // the second sample has none
     state.network_gradient[5] = 1.0F;
-    const GridGradient segment{0, 2, gradient.data(), 2};
+    const FeatureGradient segment{0, 2, gradient.data(), 2};
     optimizer.Update(x, y, z, {&segment, 1}, 0.01, 0.0, parameters, state);
     EXPECT_EQ(state.step, 1);
     EXPECT_NEAR(parameters.networks[5], -0.01F, 1e-6F);
@@ -240,13 +240,13 @@ TEST(Optimizer, TrainsNetworksWhereTheEncodingHasNoParameters) {
   base::ThreadPool threads(2);
   Parameters parameters;
   parameters.Allocate(field);
-  TrainableState state;
+  OptimizerState state;
   state.Allocate(field);
   EXPECT_TRUE(parameters.grid.empty());
   state.network_gradient[5] = 1.0F;
   const float x[2] = {0.1F, 0.6F};
   const std::vector<float> gradient(static_cast<size_t>(field.FeatureRows()) * 2, 1.0F);
-  const GridGradient segment{0, 2, gradient.data(), 2};
+  const FeatureGradient segment{0, 2, gradient.data(), 2};
   Optimizer(field, threads).Update(x, x, x, {&segment, 1}, 0.01, 0.0, parameters, state);
   EXPECT_NEAR(parameters.networks[5], -0.01F, 1e-6F);
 }

@@ -27,7 +27,7 @@ TEST(OccupancyGrid, RefreshKeepsDenseCellsAndNeverUnseenOnes) {
   const double extent[3] = {1.0, 1.0, 1.0};
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 1000);
   grid.tau = {0.5F, 0.0F, -1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.001F};
-  grid.Refresh(0.01F);
+  grid.UpdateOccupied(0.01F);
   EXPECT_EQ(grid.occupied[0], 1);
   EXPECT_EQ(grid.occupied[2], 0);
   EXPECT_EQ(grid.occupied[7], 0);
@@ -41,11 +41,11 @@ TEST(OccupancyGrid, EmptySamplesFreeACellAndDenseOnesKeepIt) {
   grid.tau.assign(8, 0.1F);
   grid.tau[5] = -1.0F;
   for (int i = 0; i < 60; ++i) {
-    grid.Observe(0, 0.001F);
-    grid.Observe(1, i % 10 == 0 ? 3.0F : 0.0F);  // a thin surface that one sample in ten hits
-    grid.Observe(5, 3.0F);
+    grid.UpdateTau(0, 0.001F);
+    grid.UpdateTau(1, i % 10 == 0 ? 3.0F : 0.0F);  // a thin surface that one sample in ten hits
+    grid.UpdateTau(5, 3.0F);
   }
-  grid.Refresh(0.01F);
+  grid.UpdateOccupied(0.01F);
   EXPECT_EQ(grid.occupied[0], 0);
   EXPECT_EQ(grid.occupied[1], 1);
   EXPECT_EQ(grid.occupied[2], 1) << "not sampled, so unchanged";
@@ -60,7 +60,7 @@ TEST(OccupancyGrid, SurfacesRaiseTheirSixNeighbours) {
   grid.tau[static_cast<size_t>(grid.Index(2, 2, 2))] = 2.0F;
   grid.tau[static_cast<size_t>(grid.Index(0, 4, 4))] = 2.0F;  // at the edge of the grid
   grid.tau[static_cast<size_t>(grid.Index(2, 2, 3))] = -1.0F;
-  grid.WakeNeighbours(0.4F, 0.03F);
+  grid.RaiseNeighbours(0.4F, 0.03F);
   int awake = 0;
   for (const float tau : grid.tau) awake += tau == 0.03F ? 1 : 0;
   EXPECT_EQ(awake, 5 + 3);
@@ -84,9 +84,9 @@ TEST(OccupancyGrid, ForgetsCellsThatWereNeverSampled) {
   const double extent[3] = {1.0, 1.0, 1.0};
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 8);
   std::fill(grid.tau.begin(), grid.tau.end(), 0.1F);
-  grid.Observe(3, 0.5F);
-  grid.Observe(4, 0.0F);
-  grid.ForgetUnsampled(0.1F);
+  grid.UpdateTau(3, 0.5F);
+  grid.UpdateTau(4, 0.0F);
+  grid.MarkUnsampled(0.1F);
   for (int64_t i = 0; i < 8; ++i) {
     EXPECT_EQ(grid.tau[static_cast<size_t>(i)] < 0.0F, i != 3 && i != 4) << i;
     EXPECT_EQ(grid.occupied[static_cast<size_t>(i)], i == 3 || i == 4 ? 1 : 0) << i;

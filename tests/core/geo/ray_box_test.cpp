@@ -57,17 +57,17 @@ TEST(RayBox, EdgesAreLegal) {
   EXPECT_TRUE(RayBox({0, 0, 1}, {kNan, kNan, kNan}, kMin, kMax).Empty() || !std::isnan(RayBox({0, 0, 1}, {kNan, kNan, kNan}, kMin, kMax).t_near));
 }
 
-RC_GTEST_PROP(RayMeetsBox, TowardsAPointInside, ()) {
+RC_GTEST_PROP(RayHitsBox, TowardsAPointInside, ()) {
   const Eigen::Vector3d origin = Anywhere(50.0);
   const Eigen::Vector3d target(Between(-0.99, 3.99), Between(-1.99, 4.99), Between(-2.99, 5.99));
   RC_PRE((target - origin).norm() > 1e-3);
-  RC_ASSERT(RayMeetsBox(origin, (target - origin).normalized(), kLow, kHigh));
+  RC_ASSERT(RayHitsBox(origin, (target - origin).normalized(), kLow, kHigh));
   // In the opposite direction only when it starts inside.
   const bool starts_inside = (origin.array() >= kLow.array()).all() && (origin.array() <= kHigh.array()).all();
-  RC_ASSERT(RayMeetsBox(origin, (origin - target).normalized(), kLow, kHigh) == starts_inside);
+  RC_ASSERT(RayHitsBox(origin, (origin - target).normalized(), kLow, kHigh) == starts_inside);
 }
 
-RC_GTEST_PROP(RayMeetsBox, AgreesWithFineMarching, ()) {
+RC_GTEST_PROP(RayHitsBox, AgreesWithFineMarching, ()) {
   const Eigen::Vector3d origin = Anywhere(15.0);
   const Eigen::Vector3d direction = Anywhere(1.0);
   RC_PRE(direction.norm() > 1e-2);
@@ -79,22 +79,22 @@ RC_GTEST_PROP(RayMeetsBox, AgreesWithFineMarching, ()) {
     deep_inside = deep_inside || ((x - kLow).minCoeff() > 0.01 && (kHigh - x).minCoeff() > 0.01);
     near_box = near_box || ((x - kLow).minCoeff() > -0.02 && (kHigh - x).minCoeff() > -0.02);
   }
-  const bool meets = RayMeetsBox(origin, unit, kLow, kHigh);
+  const bool meets = RayHitsBox(origin, unit, kLow, kHigh);
   RC_ASSERT(!deep_inside || meets);
   RC_ASSERT(near_box || !meets);
 }
 
-TEST(RayMeetsBox, AtItsFacesAndBehind) {
-  EXPECT_TRUE(RayMeetsBox({-5, -2, 0}, {1, 0, 0}, kLow, kHigh)) << "along a face";
-  EXPECT_TRUE(RayMeetsBox({-1, -2, -3}, {0, 0, -1}, kLow, kHigh)) << "from a corner";
-  EXPECT_TRUE(RayMeetsBox({0, 0, 0}, {0, 1, 0}, kLow, kHigh)) << "from inside";
-  EXPECT_FALSE(RayMeetsBox({-5, -2.0001, 0}, {1, 0, 0}, kLow, kHigh)) << "just beside";
-  EXPECT_FALSE(RayMeetsBox({10, 0, 0}, {1, 0, 0}, kLow, kHigh)) << "behind";
-  EXPECT_FALSE(RayMeetsBox({std::nan(""), 0, 0}, {1, 0, 0}, kLow, kHigh));
-  EXPECT_FALSE(RayMeetsBox({0, 0, 0}, {std::nan(""), 0, 0}, kLow, kHigh));
-  EXPECT_FALSE(RayMeetsBox({0, 0, 0}, {1, 0, 0}, {kNan, -2, -3}, kHigh));
-  EXPECT_FALSE(RayMeetsBox({0, 0, 0}, {1, 0, 0}, kLow, {kNan, 5, 6}));
-  EXPECT_TRUE(RayMeetsBox({-5, 0, 0}, {1, 0, 0}, {1, -2, -3}, {1, 5, 6})) << "a flat box";
+TEST(RayHitsBox, AtItsFacesAndBehind) {
+  EXPECT_TRUE(RayHitsBox({-5, -2, 0}, {1, 0, 0}, kLow, kHigh)) << "along a face";
+  EXPECT_TRUE(RayHitsBox({-1, -2, -3}, {0, 0, -1}, kLow, kHigh)) << "from a corner";
+  EXPECT_TRUE(RayHitsBox({0, 0, 0}, {0, 1, 0}, kLow, kHigh)) << "from inside";
+  EXPECT_FALSE(RayHitsBox({-5, -2.0001, 0}, {1, 0, 0}, kLow, kHigh)) << "just beside";
+  EXPECT_FALSE(RayHitsBox({10, 0, 0}, {1, 0, 0}, kLow, kHigh)) << "behind";
+  EXPECT_FALSE(RayHitsBox({std::nan(""), 0, 0}, {1, 0, 0}, kLow, kHigh));
+  EXPECT_FALSE(RayHitsBox({0, 0, 0}, {std::nan(""), 0, 0}, kLow, kHigh));
+  EXPECT_FALSE(RayHitsBox({0, 0, 0}, {1, 0, 0}, {kNan, -2, -3}, kHigh));
+  EXPECT_FALSE(RayHitsBox({0, 0, 0}, {1, 0, 0}, kLow, {kNan, 5, 6}));
+  EXPECT_TRUE(RayHitsBox({-5, 0, 0}, {1, 0, 0}, {1, -2, -3}, {1, 5, 6})) << "a flat box";
   EXPECT_TRUE(RayBox({-5, 0, 0}, {1, 0, 0}, {1, -2, -3}, {1, 5, 6}).Empty());
 }
 
@@ -126,19 +126,19 @@ bool ReferenceSlabTest(const Eigen::Vector3d& origin, const Eigen::Vector3d& dir
   return t_near <= t_far;
 }
 
-RC_GTEST_PROP(RayMeetsBox, AgreesWithAnIndependentSlabTest, ()) {
+RC_GTEST_PROP(RayHitsBox, AgreesWithAnIndependentSlabTest, ()) {
   for (int i = 0; i < 200; ++i) {
     const bool round = *rc::gen::arbitrary<bool>();
     const Eigen::Vector3d low = Round(true), high = Round(true);
     const Eigen::Vector3d origin = round ? Round(false) : Anywhere(6.0), direction = round ? Round(false) : Anywhere(1.0);
-    RC_ASSERT(RayMeetsBox(origin, direction, low, high) == ReferenceSlabTest(origin, direction, low, high));
+    RC_ASSERT(RayHitsBox(origin, direction, low, high) == ReferenceSlabTest(origin, direction, low, high));
   }
 }
 
-// A non-empty interval implies that RayMeetsBox is true.
+// A non-empty interval implies that RayHitsBox is true.
 RC_GTEST_PROP(RayBox, HasLengthOnlyWhereTheBoxIsMet, ()) {
   const Eigen::Vector3d origin = Round(false), direction = Round(false), low = Round(false), high = Round(false);
-  RC_ASSERT(RayBox(origin, direction, low, high).Empty() || RayMeetsBox(origin, direction, low, high));
+  RC_ASSERT(RayBox(origin, direction, low, high).Empty() || RayHitsBox(origin, direction, low, high));
 }
 
 }  // namespace

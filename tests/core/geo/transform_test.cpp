@@ -27,12 +27,12 @@ TEST(Rigid3d, InverseUndoes) {
   }
 }
 
-TEST(ChangeWorld, SameCameraSeesTheSamePoint) {
+TEST(TransformCameraWorld, SameCameraSeesTheSamePoint) {
   base::Random random(2);
   for (int i = 0; i < 100; ++i) {
     const Rigid3d cam_from_a{RandomRotation(random), RandomVector(random, 10.0)};
     const Similarity3d b_from_a{std::exp(random.Uniform(-3.0, 3.0)), RandomRotation(random), RandomVector(random, 1000.0)};
-    const Rigid3d cam_from_b = ChangeWorld(cam_from_a, b_from_a);
+    const Rigid3d cam_from_b = TransformCameraWorld(cam_from_a, b_from_a);
     const Eigen::Vector3d x_in_a = RandomVector(random, 10.0);
     // The camera frame itself becomes metric: same direction, distance times the scale.
     EXPECT_LT((cam_from_b * (b_from_a * x_in_a) - b_from_a.scale * (cam_from_a * x_in_a)).norm(), 1e-9);

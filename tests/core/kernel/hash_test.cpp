@@ -14,8 +14,8 @@ namespace {
 using HashKernels = testing::EachInstructionSet;
 SKYQUILT_EACH_INSTRUCTION_SET(HashKernels);
 
-HashLevel Hashed() {
-  HashLevel level;
+GridLevel Hashed() {
+  GridLevel level;
   level.cells_per_unit = 37.0F;
   level.size[0] = level.size[1] = 38;
   level.size[2] = 12;
@@ -24,8 +24,8 @@ HashLevel Hashed() {
   return level;
 }
 
-HashLevel DenseLevel() {
-  HashLevel level;
+GridLevel DenseLevel() {
+  GridLevel level;
   level.cells_per_unit = 5.0F;
   level.size[0] = 6;
   level.size[1] = 5;
@@ -36,7 +36,7 @@ HashLevel DenseLevel() {
 
 // Worked by hand from Mueller et al. 2022, eq. 4 (primes 1, 2654435761, 805459861) in unsigned 32-bit arithmetic.
 TEST(HashIndex, MatchesGoldenNumbers) {
-  HashLevel level = Hashed();
+  GridLevel level = Hashed();
   level.entries = 1U << 19U;
   EXPECT_EQ(HashIndex(level, 0, 0, 0), 0U);
   EXPECT_EQ(HashIndex(level, 1, 0, 0), 1U);
@@ -48,7 +48,7 @@ TEST(HashIndex, MatchesGoldenNumbers) {
 
 TEST(HashReference, TableGradientMatchesFiniteDifferences) {
   base::Random random(11);
-  for (const HashLevel& level : {Hashed(), DenseLevel()}) {
+  for (const GridLevel& level : {Hashed(), DenseLevel()}) {
     std::vector<double> table(level.entries * 2), gradient(table.size(), 0.0);
     for (double& value : table) value = random.Uniform(-1.0, 1.0);
     const double position[3] = {0.31, 0.77, 0.12};
@@ -65,7 +65,7 @@ TEST(HashReference, TableGradientMatchesFiniteDifferences) {
 
 TEST_P(HashKernels, ForwardAgreesWithReferenceAtEveryLength) {
   base::Random random(13);
-  for (const HashLevel& level : {Hashed(), DenseLevel()}) {
+  for (const GridLevel& level : {Hashed(), DenseLevel()}) {
     for (const int features : {2, 4}) {
       std::vector<float> table(level.entries * static_cast<size_t>(features));
       for (float& value : table) value = random.Uniform() - 0.5F;
@@ -90,7 +90,7 @@ TEST_P(HashKernels, ForwardAgreesWithReferenceAtEveryLength) {
 }
 
 TEST_P(HashKernels, NanPositionGivesFiniteFeatures) {
-  const HashLevel level = DenseLevel();
+  const GridLevel level = DenseLevel();
   std::vector<float> table(level.entries * 2, 0.25F);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   float out[2];
@@ -100,7 +100,7 @@ TEST_P(HashKernels, NanPositionGivesFiniteFeatures) {
 
 TEST_P(HashKernels, BackwardAgreesWithReferenceAndMarksExactlyTheLinesItWrote) {
   base::Random random(17);
-  const HashLevel level = Hashed();
+  const GridLevel level = Hashed();
   for (const size_t features : {2U, 4U}) {
     const size_t n = 23;  // few enough to leave lines untouched
     std::vector<float> x, y, z, out_gradient(features * n);
@@ -160,13 +160,13 @@ TEST_P(HashKernels, AdamMovesOnlyParametersWithAGradient) {
 
 TEST(HashKernels, RefuseShapesThatReachPastTheTable) {
   float value = 0.0F;
-  const auto forward = [&](const HashLevel& level, int features, int64_t n, size_t stride) {
+  const auto forward = [&](const GridLevel& level, int features, int64_t n, size_t stride) {
     HashForward(level, features, &value, &value, &value, &value, n, &value, stride);
   };
   EXPECT_THROW(forward(DenseLevel(), 3, 1, 1), std::logic_error);
   EXPECT_THROW(forward(DenseLevel(), 2, -1, 1), std::logic_error);
   EXPECT_THROW(forward(DenseLevel(), 2, 2, 1), std::logic_error);
-  HashLevel level = DenseLevel();
+  GridLevel level = DenseLevel();
   level.entries = 89;
   EXPECT_THROW(forward(level, 2, 1, 1), std::logic_error) << "a lattice point without an entry";
   level = Hashed();

@@ -49,7 +49,7 @@ Plain WalkPlainly(const FieldSet& set, const Ray& ray) {
     f.field->EncodeSerial(f.parameters.grid, &x.x(), &x.y(), &x.z(), 1, features.data(), kernel::kPad);
     f.field->Density(f.weights, features.data(), kernel::kPad, kernel::kPad, a.density_hidden, a.stride, a.geometry(), a.stride);
     const Eigen::Vector3f d = ray.direction_enu.cast<float>();
-    f.field->FillDirection(d.data(), 1, a.color_in + static_cast<size_t>(field::kGeometryRows) * a.stride, a.stride);
+    f.field->EncodeDirection(d.data(), 1, a.color_in + static_cast<size_t>(field::kGeometryRows) * a.stride, a.stride);
     f.field->Color(f.weights, a.color_in, a.stride, kernel::kPad, a.color_hidden, a.stride, a.color_raw, a.stride);
     const double tau = std::exp(static_cast<double>(a.geometry()[0]) + f.config.density_bias) * point.length * point.weight;
     const double after = result.transmittance * std::exp(-tau);

@@ -30,11 +30,11 @@ RC_GTEST_PROP(HeightMap, IsExactOnASlopeAndLevelBeyondIt, ()) {
 TEST(HeightMap, IsMetByRaysThatGoDown) {
   Eigen::Vector3d x;
   const Eigen::Vector3d direction = Eigen::Vector3d(0.3, 0.1, -1.0).normalized();
-  ASSERT_TRUE(Slope().Meet({10.0, 10.0, 60.0}, direction, &x));
+  ASSERT_TRUE(Slope().Intersect({10.0, 10.0, 60.0}, direction, &x));
   EXPECT_NEAR(x.z(), Slope().At(x.x(), x.y()), 0.05);
-  EXPECT_FALSE(Slope().Meet({10.0, 10.0, 60.0}, {1.0, 0.0, 0.0}, &x)) << "level";
-  EXPECT_FALSE(Slope().Meet({10.0, 10.0, 5.0}, direction, &x)) << "below it";
-  EXPECT_FALSE(HeightMap().Meet({10.0, 10.0, 60.0}, direction, &x));
+  EXPECT_FALSE(Slope().Intersect({10.0, 10.0, 60.0}, {1.0, 0.0, 0.0}, &x)) << "level";
+  EXPECT_FALSE(Slope().Intersect({10.0, 10.0, 5.0}, direction, &x)) << "below it";
+  EXPECT_FALSE(HeightMap().Intersect({10.0, 10.0, 60.0}, direction, &x));
 }
 
 TEST(HeightMap, RefusesNumbersThatDoNotFit) {

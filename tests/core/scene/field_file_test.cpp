@@ -98,7 +98,7 @@ TEST_P(TrainedFieldOf, ComesBackAsItWas) {
   EXPECT_EQ(after.parameters.grid, before.parameters.grid);
   EXPECT_EQ(after.parameters.networks, before.parameters.networks);
   const checkpoint::ArchiveReader reader(file);
-  EXPECT_EQ(StoredParameters(reader, "a/"), before.ParameterCount());
+  EXPECT_EQ(StoredParameterCount(reader, "a/"), before.ParameterCount());
   ExpectSameLook(before, after, 0.1F);
 }
 
@@ -177,15 +177,15 @@ TEST_P(TrainedFieldOf, RendersTheSameWithoutUnreadEntries) {
   const fs::path checkpoint = folder_.path() / "block.h5", scene = folder_.path() / "scene.h5";
   block.Commit(checkpoint);
   checkpoint::ArchiveWriter writer("scene", 1);
-  PutFieldOf(before, checkpoint, "a/", writer);
+  PutSceneField(before, checkpoint, "a/", writer);
   writer.Commit(scene);
   const checkpoint::ArchiveReader reader(scene);
   render::TrainedField after = Read(scene);
-  EXPECT_EQ(HeldParameters(after), before.ParameterCount());
+  EXPECT_EQ(ParameterCountOf(after), before.ParameterCount());
   if (GetParam() == encoding::Kind::kHash) {
-    EXPECT_LT(StoredParameters(reader, "a/"), before.ParameterCount() * 9 / 10);
+    EXPECT_LT(StoredParameterCount(reader, "a/"), before.ParameterCount() * 9 / 10);
   } else {
-    EXPECT_EQ(StoredParameters(reader, "a/"), before.ParameterCount());
+    EXPECT_EQ(StoredParameterCount(reader, "a/"), before.ParameterCount());
   }
   // Entries that are not in the file are read as zero; the random field has no zero entries.
   ASSERT_EQ(after.parameters.grid.size(), before.parameters.grid.size());

@@ -17,7 +17,7 @@
 
 namespace skyquilt::camera {
 
-struct SightRule {
+struct VisibilityRule {
   double radius_m = 0.0;                                     // the frame must touch a ball of this radius around the place; 0: contain the place
   double reach_m = std::numeric_limits<double>::infinity();  // largest distance from the camera
   bool far_edges = false;                                    // whether the right and lower edges count as inside; the others always do
@@ -26,6 +26,6 @@ struct SightRule {
 
 // Place and pose in the same frame, metres. A ball that intersects the camera plane counts when its centre is nearer to the camera than four radii.
 // For a ball, the mask pixel nearest to its centre is used. False for places that are not finite.
-bool Shows(const Camera& camera, const geo::Rigid3d& cam_from_enu, const Eigen::Vector3d& x_in_enu, const SightRule& rule = {});
+bool IsVisible(const Camera& camera, const geo::Rigid3d& cam_from_enu, const Eigen::Vector3d& x_in_enu, const VisibilityRule& rule = {});
 
 }  // namespace skyquilt::camera

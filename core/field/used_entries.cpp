@@ -1,4 +1,4 @@
-#include "core/field/reached_entries.h"
+#include "core/field/used_entries.h"
 
 namespace skyquilt::field {
 namespace {
@@ -8,7 +8,7 @@ constexpr float kRounding = 1e-6F;
 
 }  // namespace
 
-std::vector<uint8_t> ReachedEntries(const encoding::HashGrid& grid, const OccupancyGrid& occupancy) {
+std::vector<uint8_t> UsedEntries(const encoding::HashGrid& grid, const OccupancyGrid& occupancy) {
   std::vector<uint8_t> reached(static_cast<size_t>(grid.ParameterCount() / grid.features()), 0);
   int64_t index = 0;
   for (int z = 0; z < occupancy.size[2]; ++z) {
@@ -24,7 +24,7 @@ std::vector<uint8_t> ReachedEntries(const encoding::HashGrid& grid, const Occupa
           box_low[axis] = static_cast<float>(low[axis]) * occupancy.cell - kRounding;
           box_high[axis] = static_cast<float>(high[axis]) * occupancy.cell + kRounding;
         }
-        grid.MarkReached(box_low, box_high, reached);
+        grid.MarkUsed(box_low, box_high, reached);
       }
     }
   }

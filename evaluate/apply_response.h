@@ -14,13 +14,13 @@
 namespace skyquilt::evaluate {
 
 // Gains of a photo (natural logarithm, linear light; red, green, blue) and the vignetting of its camera.
-struct Recording {
+struct PhotoResponse {
   std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};
   std::array<float, 3> vignetting = {0.0F, 0.0F, 0.0F};  // as in brightness::Response
 };
 
 // Applies the recording in place. colors: row-major, one per pixel of the camera, at reference exposure.
-void Record(const camera::Camera& camera, const Recording& recording, std::span<render::RayColor> colors, base::ThreadPool& threads);
+void ApplyResponse(const camera::Camera& camera, const PhotoResponse& recording, std::span<render::RayColor> colors, base::ThreadPool& threads);
 
 // Tells how much of the error is brightness: three gains are fitted on the left half of a photo and scored on the right half (the protocol of
 // Martin-Brualla et al. 2021), so that no pixel is both fitted and scored.

@@ -15,15 +15,15 @@
 namespace skyquilt::worker {
 
 // Metres along the ray; NaN when the transmittance stays above the threshold.
-struct SurfaceBand {
+struct SurfaceInterval {
   float front = 0.0F;   // transmittance falls below 0.85
   float median = 0.0F;  // transmittance falls below 0.5
   float back = 0.0F;    // transmittance falls below 0.15
 };
 
 // Results of a finished context in addition to its field.
-struct ContextFindings {
-  std::vector<SurfaceBand> bands;  // [photo][row][column], kTileRows x kTileColumns per photo
+struct ContextResults {
+  std::vector<SurfaceInterval> bands;  // [photo][row][column], kTileRows x kTileColumns per photo
   scene::Background background;
 };
 
@@ -33,18 +33,18 @@ struct LoadedContext {
   brightness::Response response;
   brightness::Luminance luminance;
   brightness::LuminanceState luminance_state;
-  std::vector<SurfaceBand> bands;  // [photo][row][column], kTileRows x kTileColumns per photo; empty in old files
+  std::vector<SurfaceInterval> bands;  // [photo][row][column], kTileRows x kTileColumns per photo; empty in old files
 
-  const SurfaceBand& Band(int photo, int row, int column) const {
+  const SurfaceInterval& Band(int photo, int row, int column) const {
     return bands[(static_cast<size_t>(photo) * kTileRows + static_cast<size_t>(row)) * kTileColumns + static_cast<size_t>(column)];
   }
   // Whether `bands` has an entry for every tile of the survey.
-  bool KnowsBands(const survey::Survey& survey) const { return bands.size() == survey.photos.size() * kTileRows * kTileColumns; }
+  bool HasSurfaceIntervals(const survey::Survey& survey) const { return bands.size() == survey.photos.size() * kTileRows * kTileColumns; }
 };
 
 // Renders the depth of the context at every tile centre of all photos. Calls context.BuildNetworks().
-std::vector<SurfaceBand> SurfaceBands(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
-                                      base::ThreadPool& threads);
+std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
+                                              base::ThreadPool& threads);
 
 // Sets the tiles from which the source draws a block's rays: those of `tiles` whose surface is inside the block's ground plan, and as empty tiles
 // those whose surface is behind the block. Without a context (null) all tiles whose centre ray crosses the block's box.

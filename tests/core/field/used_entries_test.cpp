@@ -1,4 +1,4 @@
-#include "core/field/reached_entries.h"
+#include "core/field/used_entries.h"
 
 #include <gtest/gtest.h>
 
@@ -40,11 +40,11 @@ size_t Count(const std::vector<uint8_t>& bits) {
 }
 
 // Corners of random positions inside occupied cells, faces included.
-TEST(ReachedEntries, ContainAllThatPositionsInOccupiedCellsRead) {
+TEST(UsedEntries, ContainAllThatPositionsInOccupiedCellsRead) {
   for (const int log2_table_size : {6, 12, 20}) {
     const encoding::HashGrid grid = Grid(log2_table_size);
     const OccupancyGrid occupancy = Occupancy(7, 0.1);
-    const std::vector<uint8_t> bits = ReachedEntries(grid, occupancy);
+    const std::vector<uint8_t> bits = UsedEntries(grid, occupancy);
     ASSERT_EQ(bits.size(), (static_cast<size_t>(grid.ParameterCount() / grid.features()) + 7) / 8);
     base::Random random(11);
     int missing = 0;
@@ -72,12 +72,12 @@ TEST(ReachedEntries, ContainAllThatPositionsInOccupiedCellsRead) {
   }
 }
 
-TEST(ReachedEntries, OmitThoseFarFromOccupiedCells) {
+TEST(UsedEntries, OmitThoseFarFromOccupiedCells) {
   const encoding::HashGrid grid = Grid(20);
   OccupancyGrid occupancy = Occupancy(7, 0.0);
-  EXPECT_EQ(Count(ReachedEntries(grid, occupancy)), 0U);
+  EXPECT_EQ(Count(UsedEntries(grid, occupancy)), 0U);
   occupancy.occupied[static_cast<size_t>(occupancy.Index(3, 4, 2))] = 1;
-  const std::vector<uint8_t> bits = ReachedEntries(grid, occupancy);
+  const std::vector<uint8_t> bits = UsedEntries(grid, occupancy);
   size_t most = 0;
   for (int l = 0; l < grid.levels(); ++l) {
     // Number of cells per axis that the box may overlap, and one more corner than cells.
@@ -89,7 +89,7 @@ TEST(ReachedEntries, OmitThoseFarFromOccupiedCells) {
   occupancy.occupied.assign(occupancy.occupied.size(), 1);
   size_t entries = 0;
   for (int l = 0; l < grid.levels(); ++l) entries += grid.level(l).entries;
-  EXPECT_EQ(Count(ReachedEntries(grid, occupancy)), entries);
+  EXPECT_EQ(Count(UsedEntries(grid, occupancy)), entries);
 }
 
 }  // namespace

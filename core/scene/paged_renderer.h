@@ -18,17 +18,17 @@ namespace skyquilt::scene {
 struct RayInFlight {
   render::RayState state;
   double at = 0.0;  // metres along the ray up to which it has been rendered
-  int owner = 0;    // who continues it; kArrived: it is finished
+  int owner = 0;    // who continues it; kFinished: it is finished
 };
-constexpr int kArrived = -1;
+constexpr int kFinished = -1;
 
-class PagedRays {
+class PagedRenderer {
  public:
   // Returns who renders a segment that needs these blocks (a set of RaySegments): a rank or any other number from 0. Empty function: always `me`.
   using Owner = std::function<int(std::span<const int> blocks)>;
 
   // All arguments must outlive this.
-  PagedRays(FieldStore& store, const render::RaySegments& segments, base::ThreadPool& threads);
+  PagedRenderer(FieldStore& store, const render::RaySegments& segments, base::ThreadPool& threads);
 
   // Continues every ray whose owner is `me` until it is finished or reaches a segment of another owner; other rays are left as they are. The result
   // does not depend on memory, owners or threads. Returns the number of samples evaluated. Throws base::UsageError when memory is too small,

@@ -9,6 +9,6 @@ namespace skyquilt::evaluate {
 
 // index: into Survey::photos. image_width: pixels, 0 = as cached. Taken from the cache if that is large enough, otherwise decoded again. Throws
 // base::InputError when a file cannot be read.
-PhotoTask LoadTask(const survey::Survey& survey, const image::PixelCache& pixels, int index, int image_width);
+HeldOutPhoto LoadHeldOutPhoto(const survey::Survey& survey, const image::PixelCache& pixels, int index, int image_width);
 
 }  // namespace skyquilt::evaluate

@@ -1,17 +1,17 @@
-#include "evaluate/load_task.h"
+#include "evaluate/load_held_out_photo.h"
 
 #include <algorithm>
 #include <filesystem>
 
 namespace skyquilt::evaluate {
 
-PhotoTask LoadTask(const survey::Survey& survey, const image::PixelCache& pixels, int index, int image_width) {
+HeldOutPhoto LoadHeldOutPhoto(const survey::Survey& survey, const image::PixelCache& pixels, int index, int image_width) {
   const auto i = static_cast<size_t>(index);
   const survey::Photo& photo = survey.photos[i];
   const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
   const int cached_width = pixels.Width(i);
   const int width = image_width > 0 ? std::min(image_width, camera.width) : cached_width;
-  PhotoTask task;
+  HeldOutPhoto task;
   task.cam_from_enu = photo.cam_from_enu;
   image::Image8 mask;
   if (width <= cached_width) {

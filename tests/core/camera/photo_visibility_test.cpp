@@ -1,4 +1,4 @@
-#include "core/camera/sight.h"
+#include "core/camera/photo_visibility.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -20,8 +20,8 @@ geo::Rigid3d Down() {
   cam_from_enu.translation = {0.0, 0.0, 100.0};
   return cam_from_enu;
 }
-bool Seen(const Eigen::Vector3d& x, const SightRule& rule = {}) {
-  return Shows(kLens, Down(), x, rule);
+bool Seen(const Eigen::Vector3d& x, const VisibilityRule& rule = {}) {
+  return IsVisible(kLens, Down(), x, rule);
 }
 
 TEST(Shows, PlacesInTheFrame) {
@@ -107,10 +107,10 @@ RC_GTEST_PROP(Shows, AgreesWithTheRulesOfItsCallers, ()) {
     const Eigen::Vector3d x(Between(-70, 70), Between(-60, 60), *rc::gen::arbitrary<bool>() ? 0.0 : Between(-20, 130));
     const double reach = *rc::gen::arbitrary<bool>() ? Between(1, 200) : kInfinity;
     const double radius = *rc::gen::arbitrary<bool>() ? Between(0, 20) : 0.0;
-    RC_ASSERT(Shows(camera, pose, x, {.reach_m = reach, .far_edges = true}) == GroundRule(camera, pose, x, reach));
-    RC_ASSERT(Shows(camera, pose, x, {.radius_m = radius}) == BallRule(camera, pose, x, radius));
-    RC_ASSERT(Shows(camera, pose, x, {.mask = mask}) == PixelRule(camera, pose, x, mask));
-    RC_ASSERT(Shows(camera, pose, x) == PixelRule(camera, pose, x, {}));
+    RC_ASSERT(IsVisible(camera, pose, x, {.reach_m = reach, .far_edges = true}) == GroundRule(camera, pose, x, reach));
+    RC_ASSERT(IsVisible(camera, pose, x, {.radius_m = radius}) == BallRule(camera, pose, x, radius));
+    RC_ASSERT(IsVisible(camera, pose, x, {.mask = mask}) == PixelRule(camera, pose, x, mask));
+    RC_ASSERT(IsVisible(camera, pose, x) == PixelRule(camera, pose, x, {}));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "core/camera/sight.h"
+#include "core/camera/photo_visibility.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ bool Unmasked(const Camera& camera, const Eigen::Vector2d& pixel, std::span<cons
 
 }  // namespace
 
-bool Shows(const Camera& camera, const geo::Rigid3d& cam_from_enu, const Eigen::Vector3d& x_in_enu, const SightRule& rule) {
+bool IsVisible(const Camera& camera, const geo::Rigid3d& cam_from_enu, const Eigen::Vector3d& x_in_enu, const VisibilityRule& rule) {
   if (std::isfinite(rule.reach_m) && (x_in_enu - cam_from_enu.OriginInSource()).squaredNorm() > rule.reach_m * rule.reach_m) return false;
   const Eigen::Vector3d in_cam = cam_from_enu * x_in_enu;
   const double radius_m = rule.radius_m;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/survey/survey.h"
+#include "evaluate/apply_response.h"
 #include "evaluate/photo_scorer.h"
-#include "evaluate/recorded.h"
 
 namespace skyquilt::evaluate {
 
@@ -15,13 +15,13 @@ namespace skyquilt::evaluate {
 // if exif_gain is false.
 double TaggedGain(const survey::Photo& photo, double reference_exposure, bool exif_gain);
 // The recording by the gain of the tags and the vignetting of the camera.
-Recording TaggedRecording(const brightness::Response& response, int camera, double gain);
+PhotoResponse TaggedResponse(const brightness::Response& response, int camera, double gain);
 // `recording` with the gain that training predicts for the photo from the photos before and after.
-Recording PredictedRecording(const brightness::Response& response, size_t photo, Recording recording);
+PhotoResponse PredictedResponse(const brightness::Response& response, size_t photo, PhotoResponse recording);
 
 // PSNR over the scored pixels of a rendering at reference exposure, after applying the recording to it.
-double PsnrRecorded(const PhotoTask& task, const Recording& recording, std::vector<render::RayColor> colors, const image::Image8& scored,
-                    base::ThreadPool& threads);
+double PsnrWithResponse(const HeldOutPhoto& task, const PhotoResponse& recording, std::vector<render::RayColor> colors, const image::Image8& scored,
+                        base::ThreadPool& threads);
 
 struct NormalScore {
   double psnr_db = kNotMeasured;

@@ -1,4 +1,4 @@
-#include "worker/surface_band.h"
+#include "worker/surface_interval.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace skyquilt::worker {
 
-std::vector<SurfaceBand> SurfaceBands(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
-                                      base::ThreadPool& threads) {
+std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
+                                              base::ThreadPool& threads) {
   std::vector<render::Ray> rays;
   for (size_t photo = 0; photo < survey.photos.size(); ++photo) {
     for (int row = 0; row < kTileRows; ++row) {
@@ -28,7 +28,7 @@ std::vector<SurfaceBand> SurfaceBands(const RaySource& source, const survey::Sur
   render::EngineOptions options;
   options.colour_threshold = 2.0F;  // depth only
   render::RenderRays(set, rays, seen, options, threads);
-  std::vector<SurfaceBand> bands(seen.size());
+  std::vector<SurfaceInterval> bands(seen.size());
   for (size_t i = 0; i < seen.size(); ++i) bands[i] = {seen[i].depth_front, seen[i].depth_median, seen[i].depth_back};
   return bands;
 }
@@ -38,7 +38,7 @@ void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, c
   std::vector<Tile> inside, empty;
   const Eigen::Vector3d low = target.map.min_enu();
   const Eigen::Vector3d high = target.map.max_enu();
-  const bool know_depth = context != nullptr && context->KnowsBands(survey);
+  const bool know_depth = context != nullptr && context->HasSurfaceIntervals(survey);
   for (const Tile& tile : tiles) {
     Eigen::Vector3d origin, direction;
     source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);

@@ -1,5 +1,5 @@
 // A ray has the same bits however it is cut into windows, whoever renders them, and however little memory there is.
-#include "core/scene/paged_rays.h"
+#include "core/scene/paged_renderer.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -45,9 +45,9 @@ bool SameBits(const render::RayColor& a, const render::RayColor& b) {
          same(a.depth_back, b.depth_back);
 }
 
-class PagedRaysTest : public ::testing::TestWithParam<std::tuple<double, bool, double>> {
+class PagedRendererTest : public ::testing::TestWithParam<std::tuple<double, bool, double>> {
  protected:
-  PagedRaysTest() : threads_(2) {
+  PagedRendererTest() : threads_(2) {
     const auto [margin_m, hard, bias] = GetParam();
     hard_ = hard;
     WriteRandomScene(folder_ / "scene.h5", kRows, kColumns, margin_m, bias, true);
@@ -71,7 +71,7 @@ class PagedRaysTest : public ::testing::TestWithParam<std::tuple<double, bool, d
   bool hard_ = false;
 };
 
-TEST_P(PagedRaysTest, WindowsCutAnywhereGiveTheSameBits) {
+TEST_P(PagedRendererTest, WindowsCutAnywhereGiveTheSameBits) {
   const std::vector<render::Ray> rays = SlantedRays(200, 3);
   const std::vector<render::RayColor> whole = Whole(rays);
   int opaque = 0;
@@ -88,10 +88,10 @@ TEST_P(PagedRaysTest, WindowsCutAnywhereGiveTheSameBits) {
     }
     renderer.Continue(rays, windows, states);
   }
-  for (size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(SameBits(render::Finished(states[i]), whole[i])) << i;
+  for (size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(SameBits(render::FinalColor(states[i]), whole[i])) << i;
 }
 
-TEST_P(PagedRaysTest, LittleMemoryGivesTheSameBits) {
+TEST_P(PagedRendererTest, LittleMemoryGivesTheSameBits) {
   const std::vector<render::Ray> rays = SlantedRays(300, 4);
   const std::vector<render::RayColor> whole = Whole(rays);
   // Memory for the context and the four blocks that overlap at a corner.
@@ -100,16 +100,16 @@ TEST_P(PagedRaysTest, LittleMemoryGivesTheSameBits) {
   ASSERT_FALSE(small.AllFit());
   const render::RaySegments segments(small.Blocks());
   std::vector<RayInFlight> in_flight(rays.size());
-  PagedRays(small, segments, threads_).Continue(rays, in_flight, {}, 0, {});
+  PagedRenderer(small, segments, threads_).Continue(rays, in_flight, {}, 0, {});
   for (size_t i = 0; i < rays.size(); ++i) {
-    EXPECT_EQ(in_flight[i].owner, kArrived);
-    EXPECT_TRUE(SameBits(render::Finished(in_flight[i].state), whole[i])) << i;
+    EXPECT_EQ(in_flight[i].owner, kFinished);
+    EXPECT_TRUE(SameBits(render::FinalColor(in_flight[i].state), whole[i])) << i;
   }
-  EXPECT_LE(small.most_bytes(), enough);
+  EXPECT_LE(small.peak_bytes(), enough);
   EXPECT_GT(small.loads(), kRows * kColumns + 1) << "blocks are loaded again when they are needed";
 }
 
-TEST_P(PagedRaysTest, ManyOwnersGiveTheSameBits) {
+TEST_P(PagedRendererTest, ManyOwnersGiveTheSameBits) {
   const std::vector<render::Ray> rays = SlantedRays(300, 5);
   const std::vector<render::RayColor> whole = Whole(rays);
   constexpr int kOwners = 3;
@@ -135,16 +135,16 @@ TEST_P(PagedRaysTest, ManyOwnersGiveTheSameBits) {
         mine.push_back(in_flight[i]);
         place.push_back(i);
       }
-      PagedRays(*stores[static_cast<size_t>(me)], *segments[static_cast<size_t>(me)], threads_).Continue(own, mine, {}, me, owner_for(me));
+      PagedRenderer(*stores[static_cast<size_t>(me)], *segments[static_cast<size_t>(me)], threads_).Continue(own, mine, {}, me, owner_for(me));
       for (size_t k = 0; k < place.size(); ++k) {
         EXPECT_NE(mine[k].owner, me);
         in_flight[place[k]] = mine[k];
       }
     }
-    going = std::any_of(in_flight.begin(), in_flight.end(), [](const RayInFlight& t) { return t.owner != kArrived; });
+    going = std::any_of(in_flight.begin(), in_flight.end(), [](const RayInFlight& t) { return t.owner != kFinished; });
   }
   EXPECT_GT(rounds, 1) << "no ray was passed on";
-  for (size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(SameBits(render::Finished(in_flight[i].state), whole[i])) << i;
+  for (size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(SameBits(render::FinalColor(in_flight[i].state), whole[i])) << i;
   for (const auto& store : stores) {
     int loaded = 0;
     for (int k = 0; k < store->size(); ++k) loaded += store->IsLoaded(k) ? 1 : 0;
@@ -152,16 +152,16 @@ TEST_P(PagedRaysTest, ManyOwnersGiveTheSameBits) {
   }
 }
 
-TEST_P(PagedRaysTest, TooLittleMemoryIsAUsageError) {
+TEST_P(PagedRendererTest, TooLittleMemoryIsAUsageError) {
   FieldStore tiny = Small(0.5 * store_->Bytes(0));
   const render::RaySegments segments(tiny.Blocks());
   const std::vector<render::Ray> rays = SlantedRays(50, 6);
   std::vector<RayInFlight> in_flight(rays.size());
-  const std::string error = UsageErrorOf([&] { PagedRays(tiny, segments, threads_).Continue(rays, in_flight, {}, 0, {}); });
+  const std::string error = UsageErrorOf([&] { PagedRenderer(tiny, segments, threads_).Continue(rays, in_flight, {}, 0, {}); });
   EXPECT_NE(error.find("--memory"), std::string::npos) << error;
 }
 
-INSTANTIATE_TEST_SUITE_P(BordersAndDensity, PagedRaysTest,
+INSTANTIATE_TEST_SUITE_P(BordersAndDensity, PagedRendererTest,
                          ::testing::Values(std::tuple(0.6, false, -2.0), std::tuple(0.6, true, -2.0), std::tuple(0.0, false, -3.0),
                                            std::tuple(1.0, false, 2.0)));
 

@@ -1,4 +1,4 @@
-#include "core/scene/paged_rays.h"
+#include "core/scene/paged_renderer.h"
 
 #include <algorithm>
 #include <atomic>
@@ -22,10 +22,10 @@ struct Way {
 
 }  // namespace
 
-PagedRays::PagedRays(FieldStore& store, const render::RaySegments& segments, base::ThreadPool& threads)
+PagedRenderer::PagedRenderer(FieldStore& store, const render::RaySegments& segments, base::ThreadPool& threads)
     : store_(store), segments_(segments), threads_(threads) {}
 
-void PagedRays::ForGroups(size_t n, const std::function<void(size_t begin, size_t end, int thread)>& body) {
+void PagedRenderer::ForGroups(size_t n, const std::function<void(size_t begin, size_t end, int thread)>& body) {
   threads_.ParallelFor((static_cast<int64_t>(n) + kPagedGroup - 1) / kPagedGroup, [&](int64_t task, int thread) {
     base::ThrowIfCancelled();
     const auto begin = static_cast<size_t>(task * kPagedGroup);
@@ -34,8 +34,8 @@ void PagedRays::ForGroups(size_t n, const std::function<void(size_t begin, size_
 }
 
 // Continues these rays through their windows with the loaded fields.
-int64_t PagedRays::Carry(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options,
-                         std::span<const size_t> going, std::span<const render::Window> windows) {
+int64_t PagedRenderer::Carry(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options,
+                             std::span<const size_t> going, std::span<const render::Window> windows) {
   if (store_.loads() != renderers_loads_ || !(options == renderers_options_)) {
     renderers_.clear();
     renderers_.resize(static_cast<size_t>(threads_.size()));
@@ -63,18 +63,18 @@ int64_t PagedRays::Carry(std::span<const render::Ray> rays, std::span<RayInFligh
   return evaluated;
 }
 
-int64_t PagedRays::RunTogether(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options) {
+int64_t PagedRenderer::RunTogether(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options) {
   std::vector<size_t> going(rays.size());
   std::iota(going.begin(), going.end(), size_t{0});
   std::vector<render::Window> windows;
   for (const RayInFlight& ray_in_flight : in_flight) windows.push_back({.from = ray_in_flight.at});
   const int64_t evaluated = Carry(rays, in_flight, options, going, windows);
-  for (RayInFlight& ray_in_flight : in_flight) ray_in_flight.owner = kArrived;
+  for (RayInFlight& ray_in_flight : in_flight) ray_in_flight.owner = kFinished;
   return evaluated;
 }
 
-int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options, int me,
-                            const Owner& owner) {
+int64_t PagedRenderer::Continue(std::span<const render::Ray> rays, std::span<RayInFlight> in_flight, const render::EngineOptions& options, int me,
+                                const Owner& owner) {
   SKYQUILT_CHECK(rays.size() == in_flight.size(), "one state in flight per ray");
   const size_t n = rays.size();
   if (!owner && store_.AllFit()) {
@@ -98,10 +98,10 @@ int64_t PagedRays::Continue(std::span<const render::Ray> rays, std::span<RayInFl
   const auto settle = [&](size_t i) {
     const Way& way = ways[i];
     const bool arrived = in_flight[i].state.ended || way.at >= way.segments.size();
-    in_flight[i].owner = arrived ? kArrived : owner_of(way.segments[way.at].set);
+    in_flight[i].owner = arrived ? kFinished : owner_of(way.segments[way.at].set);
   };
   for (size_t i = 0; i < n; ++i) {
-    if (in_flight[i].owner != kArrived) settle(i);
+    if (in_flight[i].owner != kFinished) settle(i);
   }
 
   int64_t evaluated = 0;

@@ -1,4 +1,4 @@
-#include "evaluate/photo_recording.h"
+#include "evaluate/photo_response.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,22 +31,22 @@ double TaggedGain(const survey::Photo& photo, double reference_exposure, bool ex
   return exposure ? std::clamp(*exposure / reference_exposure, 0x1.0p-10, 0x1.0p10) : 1.0;
 }
 
-Recording TaggedRecording(const brightness::Response& response, int camera, double gain) {
-  Recording recording;
+PhotoResponse TaggedResponse(const brightness::Response& response, int camera, double gain) {
+  PhotoResponse recording;
   recording.log_gain.fill(static_cast<float>(std::log(gain)));
   const auto at = 3 * static_cast<size_t>(camera);
   if (at + 3 <= response.vignetting.size()) std::copy_n(response.vignetting.begin() + static_cast<ptrdiff_t>(at), 3, recording.vignetting.begin());
   return recording;
 }
 
-Recording PredictedRecording(const brightness::Response& response, size_t photo, Recording recording) {
+PhotoResponse PredictedResponse(const brightness::Response& response, size_t photo, PhotoResponse recording) {
   for (size_t c = 0; c < 3 && 3 * photo + c < response.log_gain.size(); ++c) recording.log_gain[c] += response.log_gain[3 * photo + c];
   return recording;
 }
 
-double PsnrRecorded(const PhotoTask& task, const Recording& recording, std::vector<render::RayColor> colors, const image::Image8& scored,
-                    base::ThreadPool& threads) {
-  Record(task.camera, recording, colors, threads);
+double PsnrWithResponse(const HeldOutPhoto& task, const PhotoResponse& recording, std::vector<render::RayColor> colors, const image::Image8& scored,
+                        base::ThreadPool& threads) {
+  ApplyResponse(task.camera, recording, colors, threads);
   return metrics::Psnr(AsImage(colors, task.photo.width, task.photo.height), image::ToImageF(task.photo), &scored);
 }
 

@@ -1,4 +1,4 @@
-#include "evaluate/recorded.h"
+#include "evaluate/apply_response.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,14 +39,14 @@ float FitLogGain(const image::ImageF& render, const image::ImageF& photo, const 
 
 }  // namespace
 
-void Record(const camera::Camera& camera, const Recording& recording, std::span<render::RayColor> colors, base::ThreadPool& threads) {
-  brightness::Response one = brightness::Response::Plain(1, 1);
+void ApplyResponse(const camera::Camera& camera, const PhotoResponse& recording, std::span<render::RayColor> colors, base::ThreadPool& threads) {
+  brightness::Response one = brightness::Response::Neutral(1, 1);
   one.log_gain.assign(recording.log_gain.begin(), recording.log_gain.end());
   one.vignetting.assign(recording.vignetting.begin(), recording.vignetting.end());
   const bool even = recording.vignetting == std::array<float, 3>{0.0F, 0.0F, 0.0F};
   if (even && recording.log_gain == std::array<float, 3>{0.0F, 0.0F, 0.0F}) return;
   const Eigen::Vector2d middle = camera.PrincipalPoint();
-  const double per_radius2 = 1.0 / (camera.FarthestCorner() * camera.FarthestCorner());
+  const double per_radius2 = 1.0 / (camera.MaxImageRadius() * camera.MaxImageRadius());
   const std::array<brightness::Exposure, 3> whole = one.ExposureOf(0);
   threads.ParallelFor(camera.height, [&](int64_t row, int) {
     for (int x = 0; x < camera.width; ++x) {

@@ -12,6 +12,6 @@ namespace skyquilt::field {
 
 // One bit per entry (`features` floats of the flat parameter buffer), the first in the lowest bit of the first byte. Of the occupancy grid only size,
 // cell and occupied are used.
-std::vector<uint8_t> ReachedEntries(const encoding::HashGrid& grid, const OccupancyGrid& occupancy);
+std::vector<uint8_t> UsedEntries(const encoding::HashGrid& grid, const OccupancyGrid& occupancy);
 
 }  // namespace skyquilt::field

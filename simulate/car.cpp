@@ -11,9 +11,9 @@ namespace skyquilt::simulate {
 using Eigen::Vector3f;
 
 Car MovingCar::At(double time_s) const {
-  const double travelled = std::fmod(offset_m + speed_mps * time_s, lane_length_m);
+  const double driven_m = std::fmod(offset_m + speed_mps * time_s, lane_length_m);
   Car car;
-  car.position = start + travelled * direction;
+  car.position = start + driven_m * direction;
   car.yaw_deg = std::atan2(direction.y(), direction.x()) * 180.0 / std::numbers::pi;
   car.seed = seed;
   return car;

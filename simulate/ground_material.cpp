@@ -94,7 +94,7 @@ Vector3f Paved(const PavedArea& pad, const GroundPoint& at) {
   return Vector3f::Zero();
 }
 
-// Plots of farmland, at an angle to the streets.
+// Crop fields, at an angle to the streets.
 Vector3f Field(const GroundPoint& at) {
   const float u = 0.956F * at.x + 0.292F * at.y;
   const float v = -0.292F * at.x + 0.956F * at.y;

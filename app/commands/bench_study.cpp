@@ -66,8 +66,7 @@ void WriteResults(bench::StudyBench bench, const bench::Study& study, const Comm
   page.machine = base::MachineDescription();
   page.date = base::UtcTimestamp();
   page.command = state.command_line;
-  coordinator::Settings settings = study.settings();
-  const std::string json = bench::StudyJson(page, bench.results, settings.Toml());
+  const std::string json = bench::StudyJson(page, bench.results, study.settings().Toml());
   bench::WriteBench(flags.out, page, json);
   std::cout << (flags.json ? json : bench::BenchText(page));
   if (!flags.json) std::cout << "\n" << (std::filesystem::path(flags.out) / (page.name + ".html")).string() << "\n";

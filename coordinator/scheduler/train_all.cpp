@@ -176,7 +176,11 @@ class Training {
       }
     };
     hooks.moved = [](const FieldJob& job, int from_rank, int to_rank) {
-      spdlog::info("{} continues on rank {}: rank {} is slow", job.name, to_rank, from_rank);
+      if (to_rank == from_rank) {
+        spdlog::info("{} stays on rank {}: no other rank would finish it earlier", job.name, from_rank);
+      } else {
+        spdlog::info("{} continues on rank {}: rank {} is slow", job.name, to_rank, from_rank);
+      }
     };
     try {
       CoordinateBlocks(comm_, queue, trainer, threads, hooks);

@@ -13,7 +13,8 @@ namespace {
 
 void RequireFile(const std::filesystem::path& file, const std::string& stage, const Project& project) {
   if (std::filesystem::exists(file)) return;
-  throw base::InputError(file, "does not exist yet", "Run 'skyquilt " + stage + " " + project.folder.string() + "' first");
+  throw base::InputError(file, "does not exist yet",
+                         "Run 'skyquilt " + stage + (stage == "prepare" ? " PHOTOS -o " : " ") + project.folder.string() + "' first");
 }
 
 // Throws base::UsageError when the inputs have changed and the stage must not run again by itself.

@@ -46,7 +46,7 @@ std::string FixOf(int code) {
     case EACCES:
     case EPERM:
     case EROFS:
-      return "Change the permissions or choose another folder with -o";
+      return "Change the permissions, or choose another folder with -o if it is for output";
     case ENOENT:
     case ENOTDIR:
     case EISDIR:
@@ -54,7 +54,7 @@ std::string FixOf(int code) {
     case EIO:
       return "The disk or its connection has errors; check it before running the command again";
     default:
-      return "";
+      return "Check the path and the disk";
   }
 }
 

@@ -21,13 +21,14 @@ std::string WhyForbidden(const Option& option) {
       place = "[" + std::to_string(i) + "]";
     }
   }
-  return is_allowed ? "" : place + " = " + TomlText(value) + " is not allowed: it must be " + option.range.Text();
+  if (is_allowed) return "";
+  return place.append(" = ").append(TomlText(value)).append(" is not allowed: it must be ").append(option.range.Text());
 }
 
 void CheckRanges(const std::string& section, const std::vector<Option>& options) {
   for (const Option& option : options) {
-    const std::string why = WhyForbidden(option);
-    if (!why.empty()) throw base::UsageError(section + "." + option.key + why);
+    if (const std::string why = WhyForbidden(option); !why.empty())
+      throw base::UsageError(std::string(section).append(".").append(option.key).append(why));
   }
 }
 

@@ -194,7 +194,7 @@ void ReadTomlText(const std::string& text, const std::string& origin, const Sect
     const Option& option = *sections.Find(name);
     std::visit(Assign{origin, name, *node}, option.value);
     const std::string why = WhyForbidden(option);
-    if (!why.empty()) throw base::UsageError(From(origin) + name + why + LineOf(*node));
+    if (!why.empty()) throw base::UsageError(From(origin).append(name).append(why).append(LineOf(*node)));
   }
 }
 

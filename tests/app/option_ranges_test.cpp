@@ -1,6 +1,7 @@
 // Every option of the program: a value out of its range is refused before any work, and help and configuration files show the same range.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +105,8 @@ TEST(OptionRanges, AreTheSameInConfigurationFilesAndHelp) {
     const std::string range = one.option.range.Text();
     const std::string key = one.key.substr(one.key.find('.') + 1);
     if (range.empty() || other_units.contains(one.key)) continue;
-    EXPECT_NE(defaults.find("# allowed: " + range + "\n" + key + " = " + config::TomlText(one.option.value)), std::string::npos) << one.key;
+    const std::string lines = fmt::format("# allowed: {}\n{} = {}\n", range, key, config::TomlText(one.option.value));
+    EXPECT_NE(defaults.find(lines), std::string::npos) << one.key;
     for (size_t at = help.find("[" + one.key + "]"); at != std::string::npos; at = help.find("[" + one.key + "]", at + 1)) {
       const std::string shown = "(" + range + ") ";
       EXPECT_EQ(help.substr(at - std::min(at, shown.size()), shown.size()), shown) << one.key;

@@ -41,6 +41,8 @@ void ApplyOverride(const Override& entry, const Sections& sections) {
   const Option* option = sections.Find(sections.CurrentName(entry.key, ""));
   const std::string value = option == nullptr ? "true" : InToml(entry.value, option->value);
   try {
+    // Two lines would be two options.
+    if ((entry.key + value).find('\n') != std::string::npos) throw base::InputError(entry.key, "has more than one line", "");
     ReadTomlText(entry.key + " = " + value, "", sections);
   } catch (const base::InputError&) {
     throw base::UsageError(entry.key + " = '" + entry.value + "' is not understood: write the value as in a TOML file, for instance " +

@@ -131,6 +131,9 @@ TEST(Override, IsReadLikeALineOfAFile) {
   EXPECT_NE(refusal("train.steps=many").find("train.steps = 'many' is not understood"), std::string::npos);
   EXPECT_NE(refusal("train.stepz=3").find("'train.steps'"), std::string::npos);
   EXPECT_NE(refusal("train.steps=").find("train.steps"), std::string::npos);
+  EXPECT_NE(refusal("train.steps=7\ntrain.rate=9").find("not understood"), std::string::npos);
+  set("train.note=two\nlines");
+  EXPECT_EQ(all.train.note, "two\nlines");
 }
 
 TEST(Sections, CheckNamesSectionAndRange) {

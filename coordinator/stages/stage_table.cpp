@@ -5,6 +5,8 @@
 #include "coordinator/stages/stage_bodies.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "core/checkpoint/archive.h"
+#include "core/scene/field_file.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -40,6 +42,13 @@ Paths TrainProof(const Project& project) {
   } catch (const base::InputError&) {
   }
   return proof;
+}
+
+// Checkpoints of another version are refused before the scene that was made from them is removed. One stands for all.
+void RequireReadableTraining(const Project& project) {
+  scene::ReadTrainReport(project.TrainReport());
+  const std::filesystem::path context = project.ContextCheckpoint();
+  if (std::filesystem::exists(context)) checkpoint::ArchiveReader(context).RequireVersion(scene::kCheckpointVersion);
 }
 
 bool RecallTraining(Pipeline& pipeline) {
@@ -112,7 +121,7 @@ std::vector<Stage> MakeTable() {
       {.name = "merge",
        .options = {"merge."},
        .required = {{BlocksFile, "partition"}, {TrainReportFile, "train"}},
-       .check = [](const Project& p) { scene::ReadTrainReport(p.TrainReport()); },
+       .check = RequireReadableTraining,
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"train", FileIdentity(pipeline.project.TrainReport())}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};

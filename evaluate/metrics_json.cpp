@@ -145,7 +145,13 @@ Metrics MetricsFrom(const Json& json) {
   metrics.n_photos = ValueAt<int>(json, "photos_registered");
   metrics.n_unregistered = ValueAt<int>(json, "photos_unregistered");
   metrics.n_test = ValueAt<int>(json, "photos_held_out");
-  for (const Json& warning : ValueAt<Json>(json, "warnings")) metrics.warnings.push_back({warning.at("finding"), warning.at("advice")});
+  for (const Json& warning : ValueAt<Json>(json, "warnings")) {
+    if (warning.is_string()) {
+      metrics.warnings.push_back({warning, ""});  // as earlier versions wrote them
+    } else {
+      metrics.warnings.push_back({warning.at("finding"), warning.at("advice")});
+    }
+  }
   metrics.machine = ValueAt<std::string>(json, "machine");
   metrics.date = ValueAt<std::string>(json, "date");
   metrics.config = ValueAt<std::string>(json, "config");

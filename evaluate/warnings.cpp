@@ -111,7 +111,7 @@ void AboutScores(const Metrics& metrics, std::vector<Warning>* warnings) {
   }
   if (metrics.photos.size() < static_cast<size_t>(metrics.n_test)) {
     warnings->push_back({fmt::format("Only {} of {} held-out photos were scored", metrics.photos.size(), metrics.n_test),
-                         "Run 'skyquilt evaluate' with --max-photos 0 to score all of them"});
+                         "Run 'skyquilt evaluate' with --max-photos 0 --restart to score all of them"});
   }
 }
 

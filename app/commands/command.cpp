@@ -94,7 +94,7 @@ void AddOptionFlag(CLI::App& command, const Overrides& overrides, const std::str
 }
 
 void AddPlaceFlag(CLI::App& command, const std::string& names, const std::function<void(const std::string&)>& take, const std::string& help) {
-  command.add_option_function<std::string>(names, take, help)->type_name("NAME");
+  CLI::Option* place = command.add_option_function<std::string>(names, take, help)->type_name("NAME");
   command
       .add_option_function<std::string>(
           "--preset",
@@ -104,7 +104,8 @@ void AddPlaceFlag(CLI::App& command, const std::string& names, const std::functi
             take(name);
           },
           "old name of --place")
-      ->group("");  // not in the help
+      ->group("")  // not in the help
+      ->excludes(place);
 }
 
 namespace {

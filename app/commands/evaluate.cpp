@@ -25,6 +25,7 @@ void AddEvaluate(CLI::App& app, CommandState& state) {
   command->callback([&state, flags, overrides] {
     state.run_command = [&state, flags, overrides] {
       coordinator::Pipeline pipeline = state.BeginIn(flags->project, *overrides, flags->restart);
+      pipeline.settings.evaluate.RequireFiles();  // before earlier results are removed
       coordinator::EvaluateStage(pipeline);
     };
   });

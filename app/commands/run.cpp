@@ -25,6 +25,9 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   if (!flags.photos.empty() && !std::filesystem::is_directory(flags.photos)) {
     throw base::InputError(flags.photos, "no such folder", "Give the folder that holds the photos");
   }
+  if (!flags.model.empty() && !std::filesystem::is_directory(flags.model)) {
+    throw base::InputError(flags.model, "no such folder", "Give the folder that holds the COLMAP model, or leave --model out to run COLMAP");
+  }
   settings.evaluate.RequireFiles();
   if (const std::string& masks = settings.prepare.masks; !masks.empty() && !std::filesystem::is_directory(masks)) {
     throw base::InputError(masks, "no such folder", "Give the folder of the masks as prepare.masks, or leave it empty");

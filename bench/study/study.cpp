@@ -97,6 +97,11 @@ survey::Survey Thinned(survey::Survey survey, int every_nth_photo) {
 Study::Study(comm::Communicator& comm, Options options) : comm_(comm), options_(std::move(options)) {
   const StudySurvey& wanted = options_.survey;
   if (wanted.folder.empty() == wanted.place.empty()) throw base::UsageError("a bench needs either --survey FOLDER or --place NAME, not both");
+  if (!wanted.place.empty()) {
+    coordinator::Settings settings = options_.settings;
+    settings.simulate.place = wanted.place;
+    settings.Check();
+  }
   options_.folder = std::filesystem::absolute(options_.folder).lexically_normal();
   base::RequireWritableFolder(options_.folder);
   if (options_.restart) RemoveOldRuns(options_.folder);

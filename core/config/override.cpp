@@ -1,6 +1,7 @@
 #include "core/config/override.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/base/errors.h"
 
@@ -24,6 +25,9 @@ std::string InToml(const std::string& value, const Value& type) {
     return TomlText(&text);
   }
   if (std::holds_alternative<std::vector<double>*>(type) && !Encloses(value, '[', ']')) return "[" + value + "]";
+  // As shells and other programs write switches.
+  if (std::holds_alternative<bool*>(type) && (value == "1" || value == "yes")) return "true";
+  if (std::holds_alternative<bool*>(type) && (value == "0" || value == "no")) return "false";
   return value;
 }
 
@@ -38,6 +42,10 @@ Override ParseOverride(const std::string& text) {
 }
 
 void ApplyOverride(const Override& entry, const Sections& sections) {
+  // TOML allows other spellings of a key, quotes and blanks, and comments: none of them is meant here.
+  const bool is_plain =
+      std::all_of(entry.key.begin(), entry.key.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.'; });
+  if (!is_plain) throw base::UsageError("'" + entry.key + "' is not an option: write section.key=value, for instance --set train.steps=4000");
   const Option* option = sections.Find(sections.CurrentName(entry.key, ""));
   const std::string value = option == nullptr ? "true" : InToml(entry.value, option->value);
   try {

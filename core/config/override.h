@@ -10,7 +10,7 @@ namespace skyquilt::config {
 // From the text "train.steps=4000".
 struct Override {
   std::string key;    // "section.key"
-  std::string value;  // in TOML syntax; quotes around a text and brackets around a list may be omitted
+  std::string value;  // as in TOML; texts may be without quotes, lists without brackets, switches 1, 0, yes or no
 };
 // Throws base::UsageError when the text has no '=' or nothing before it.
 Override ParseOverride(const std::string& text);

@@ -123,6 +123,13 @@ TEST(Override, IsReadLikeALineOfAFile) {
   EXPECT_TRUE(all.train.altitudes_m.empty());
   set("train.guided=false");
   EXPECT_FALSE(all.train.guided);
+  set("train.guided=yes");
+  EXPECT_TRUE(all.train.guided);
+  set("train.guided=0");
+  EXPECT_FALSE(all.train.guided);
+  for (const char* other : {"train . guided=false", "train.\"guided\"=false", "\"train\".guided=false", "#train.guided=true"}) {
+    EXPECT_NE(refusal(other).find("is not an option"), std::string::npos) << other;
+  }
   set("products.render.shape=square");
   EXPECT_EQ(all.render.shape, "square");
   // Options of --set have no file and no line.

@@ -29,12 +29,17 @@ std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
 void ProductOptions::Check() const {
   config::CheckRanges("products", *this);
   // A number is one of stops; anything else may be the name of a photo, which only the survey knows.
+  ExposureStops(exposure);
+}
+
+std::optional<double> ExposureStops(const std::string& exposure) {
+  const config::Range allowed{-10, 10};
   double stops = 0.0;
   const char* first = exposure.data() + (exposure.starts_with('+') ? 1 : 0);
   const auto parsed = std::from_chars(first, exposure.data() + exposure.size(), stops);
-  if (parsed.ec == std::errc() && parsed.ptr == exposure.data() + exposure.size() && !config::Range{-10, 10}.Contains(stops)) {
-    throw base::UsageError("products.exposure = " + exposure + " is not allowed: stops must be " + config::Range{-10, 10}.Text());
-  }
+  if (parsed.ec != std::errc() || parsed.ptr != exposure.data() + exposure.size()) return std::nullopt;
+  if (!allowed.Contains(stops)) throw base::UsageError("products.exposure = " + exposure + " is not allowed: stops must be " + allowed.Text());
+  return stops;
 }
 
 }  // namespace skyquilt::products

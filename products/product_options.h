@@ -1,6 +1,7 @@
 // Options of section [products] of the configuration: which maps and videos are made from a scene.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,9 @@ struct ProductOptions {
   // Throws base::UsageError that names the option, its value and the rule it breaks.
   void Check() const;
 };
+
+// The stops that ProductOptions::exposure states; none when it is no number (normal, or the name of a photo). Throws base::UsageError for a number
+// outside -10 to 10.
+std::optional<double> ExposureStops(const std::string& exposure);
 
 }  // namespace skyquilt::products

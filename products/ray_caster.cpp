@@ -1,33 +1,25 @@
 #include "products/ray_caster.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <numbers>
 #include <optional>
 #include <utility>
 
 #include "core/base/errors.h"
+#include "products/product_options.h"
 
 namespace skyquilt::products {
 namespace {
 
 constexpr int64_t kBandRays = 1 << 16;
-constexpr double kMostStops = 10.0;
 
 }  // namespace
 
 scene::Appearance AppearanceOf(const std::string& exposure, const scene::SceneInfo& info) {
   scene::Appearance appearance;
   if (exposure == "normal") return appearance;
-  double stops = 0.0;
-  const char* first = exposure.data() + (exposure.starts_with('+') ? 1 : 0);
-  const auto parsed = std::from_chars(first, exposure.data() + exposure.size(), stops);
-  if (parsed.ec == std::errc() && parsed.ptr == exposure.data() + exposure.size()) {
-    if (!(std::abs(stops) <= kMostStops)) {
-      throw base::UsageError("exposure '" + exposure + "' is not allowed: give stops from -10 to 10");
-    }
-    appearance.log_gain.fill(static_cast<float>(stops * std::numbers::ln2));
+  if (const std::optional<double> stops = ExposureStops(exposure)) {
+    appearance.log_gain.fill(static_cast<float>(*stops * std::numbers::ln2));
     return appearance;
   }
   const std::optional<size_t> photo = info.response.Find(exposure);

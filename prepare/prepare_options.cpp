@@ -22,7 +22,10 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"masks", &O::masks, Range(), "folder of masks named PHOTO.jpg.png, 0 = ignore; empty: masks/ inside the photo folder if there is one"},
       {"flight_gap_s", &O::flight_gap_s, Range{1e-3, 1e9}, "a longer pause between photos, in seconds, starts a new flight"},
       {"flight_offsets", &O::flight_offsets, Range::OneOf({"auto", "off"}),
-       "auto: flights whose tagged heights disagree get one vertical offset each; off: never"},
+       "auto: tagged heights get an offset and a drift in time per flight where they need it; off: never"},
+      {"tag_lag", &O::tag_lag, Range::OneOf({"auto", "off"}), "auto: estimate by how much time the GPS tags lag behind the photos; off: no lag"},
+      {"require_georeference", &O::require_georeference, Range(),
+       "stop with status 3 when the place on Earth is uncertain, instead of going on with a warning"},
       {"seed", &O::seed, Range::AtLeast(0), "random seed of COLMAP and of the fit to GPS"},
   };
 }

@@ -19,6 +19,8 @@ struct PrepareOptions {
   std::string masks;
   double flight_gap_s = 900.0;
   std::string flight_offsets = "auto";
+  std::string tag_lag = "auto";
+  bool require_georeference = false;
   int seed = 1;
 
   static std::vector<config::Field<PrepareOptions>> Fields();

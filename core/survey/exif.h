@@ -16,6 +16,11 @@ struct PhotoTags {
   std::optional<double> relative_altitude_m;  // XMP drone-dji:RelativeAltitude
   std::optional<double> absolute_altitude_m;  // XMP drone-dji:AbsoluteAltitude
   bool rtk = false;                           // XMP drone-dji:RtkFlag is 50 (RTK fixed): accurate, altitude is ellipsoidal
+  // Stated accuracy of the tagged position, one standard deviation in metres: XMP RtkStdLon/RtkStdLat (the larger) and RtkStdHgt, else XMP
+  // GPSXYAccuracy and GPSZAccuracy, else EXIF GPSHPositioningError.
+  std::optional<double> horizontal_accuracy_m, vertical_accuracy_m;
+  std::optional<double> dop;        // EXIF GPSDOP, dilution of precision: about 1 is good, above 5 poor
+  std::optional<double> speed_mps;  // over ground: XMP FlightXSpeed and FlightYSpeed, else EXIF GPSSpeed
   std::optional<double> gimbal_yaw_deg, gimbal_pitch_deg, gimbal_roll_deg;
   ExposureSettings exposure;
   std::optional<double> focal_length_mm;

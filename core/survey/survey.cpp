@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/survey/geo_fit_json.h"
 #include "core/survey/points_ply.h"
 
 namespace skyquilt::survey {
@@ -17,17 +18,11 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "skyquilt survey";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-ordered_json NumberOrNull(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
 ordered_json NumberOrNull(const std::optional<double>& value) {
-  return NumberOrNull(value.value_or(kNan));
-}
-double NanIfNull(const json& value) {
-  return value.is_null() ? kNan : value.get<double>();
+  return survey::NumberOrNull(value.value_or(kNan));
 }
 std::optional<double> OptionalNumber(const json& value) {
   return value.is_null() ? std::nullopt : std::optional<double>(value.get<double>());
@@ -68,6 +63,7 @@ ordered_json ToJson(const Photo& photo) {
           {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
           {"translation_m", {t.x(), t.y(), t.z()}},
           {"gps", photo.gps ? ToJson(*photo.gps) : ordered_json(nullptr)},
+          {"gps_correction_m", {photo.gps_correction_m.x(), photo.gps_correction_m.y(), photo.gps_correction_m.z()}},
           {"relative_altitude_m", NumberOrNull(photo.relative_altitude_m)},
           {"time_s", NumberOrNull(photo.time_s)},
           {"exposure_time_s", NumberOrNull(photo.exposure.time_s)},
@@ -95,6 +91,9 @@ Photo PhotoFromJson(const json& value) {
     throw std::invalid_argument("the pose of photo '" + photo.name + "' has NaN, or a rotation that is not of length 1");
   }
   if (!value.at("gps").is_null()) photo.gps = GeodeticFromJson(value.at("gps"));
+  const json& correction = value.at("gps_correction_m");
+  if (correction.size() != 3) throw std::invalid_argument("photo '" + photo.name + "' has a GPS correction of the wrong length");
+  photo.gps_correction_m = Eigen::Vector3d(correction[0].get<double>(), correction[1].get<double>(), correction[2].get<double>());
   photo.relative_altitude_m = OptionalNumber(value.at("relative_altitude_m"));
   photo.time_s = OptionalNumber(value.at("time_s"));
   photo.exposure = {OptionalNumber(value.at("exposure_time_s")), OptionalNumber(value.at("f_number")), OptionalNumber(value.at("iso"))};
@@ -104,28 +103,6 @@ Photo PhotoFromJson(const json& value) {
   photo.flight = value.at("flight").get<int>();
   photo.is_test = value.at("is_test").get<bool>();
   return photo;
-}
-
-ordered_json ToJson(const GeoFit& fit) {
-  return {{"n_matches", fit.n_matches},
-          {"n_inliers", fit.n_inliers},
-          {"rmse_m", NumberOrNull(fit.rmse_m)},
-          {"rmse_horizontal_m", NumberOrNull(fit.rmse_horizontal_m)},
-          {"rmse_vertical_m", NumberOrNull(fit.rmse_vertical_m)},
-          {"scale", fit.scale},
-          {"flight_vertical_offset_m", fit.flight_vertical_offset_m}};
-}
-
-GeoFit GeoFitFromJson(const json& value) {
-  GeoFit fit;
-  fit.n_matches = value.at("n_matches").get<int>();
-  fit.n_inliers = value.at("n_inliers").get<int>();
-  fit.rmse_m = NanIfNull(value.at("rmse_m"));
-  fit.rmse_horizontal_m = NanIfNull(value.at("rmse_horizontal_m"));
-  fit.rmse_vertical_m = NanIfNull(value.at("rmse_vertical_m"));
-  fit.scale = value.at("scale").get<double>();
-  fit.flight_vertical_offset_m = value.at("flight_vertical_offset_m").get<std::vector<double>>();
-  return fit;
 }
 
 Survey SurveyFromJson(const json& value) {
@@ -149,6 +126,8 @@ Survey SurveyFromJson(const json& value) {
   }
   survey.unregistered = value.at("unregistered").get<std::vector<std::string>>();
   survey.fit = GeoFitFromJson(value.at("fit"));
+  survey.checks = FlightChecksFromJson(value.at("checks"));
+  for (const json& problem : value.at("problems")) survey.problems.push_back(ProblemFromJson(problem));
   const json& truth = value.at("truth");
   if (!truth.is_null()) {
     survey.truth = Truth{truth.at("depth_folder").get<std::string>(), truth.at("buildings_json").get<std::string>(),
@@ -182,6 +161,8 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
                         {"photo_root", survey.photo_root.string()},
                         {"n_points", survey.points.size()},
                         {"fit", ToJson(survey.fit)},
+                        {"checks", ToJson(survey.checks)},
+                        {"problems", ordered_json::array()},
                         {"truth", nullptr},
                         {"cameras", ordered_json::array()},
                         {"unregistered", survey.unregistered},
@@ -191,6 +172,7 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
                       {"buildings_json", survey.truth->buildings_json.string()},
                       {"exposure_json", survey.truth->exposure_json.string()}};
   }
+  for (const Problem& problem : survey.problems) value["problems"].push_back(ToJson(problem));
   for (const camera::Camera& camera : survey.cameras) value["cameras"].push_back(ToJson(camera));
   for (const Photo& photo : survey.photos) value["photos"].push_back(ToJson(photo));
   // survey.json is written last: if it exists, the points are complete.

@@ -13,6 +13,7 @@
 #include "core/camera/camera.h"
 #include "core/geo/geodetic.h"
 #include "core/geo/transform.h"
+#include "core/survey/geo_fit.h"
 
 namespace skyquilt::survey {
 
@@ -23,17 +24,19 @@ struct ExposureSettings {
 };
 
 struct Photo {
-  std::string name;                           // path relative to Survey::photo_root, '/' separated; unique
-  std::string mask;                           // absolute path of the mask or empty
-  int camera = 0;                             // index into Survey::cameras
-  geo::Rigid3d cam_from_enu;                  // camera looks along +z, y down; metres
-  std::optional<geo::Geodetic> gps;           // from the photo's tags, without correction
+  std::string name;                  // path relative to Survey::photo_root, '/' separated; unique
+  std::string mask;                  // absolute path of the mask or empty
+  int camera = 0;                    // index into Survey::cameras
+  geo::Rigid3d cam_from_enu;         // camera looks along +z, y down; metres
+  std::optional<geo::Geodetic> gps;  // from the photo's tags, without correction; the height is NaN when the tags have none
+  // What the fit adds to the tagged position (ENU metres): the lag of the tags along the track, offset and drift of their heights.
+  Eigen::Vector3d gps_correction_m = Eigen::Vector3d::Zero();
   std::optional<double> relative_altitude_m;  // XMP tag, above take-off; only for checks
   std::optional<double> time_s;               // seconds since the first photo's capture
   ExposureSettings exposure;
   double agl_m = 0.0;           // camera height above the sparse points below it; NaN when unknown
-  double gps_residual_m = 0.0;  // distance between the camera centre and its GPS tag after the fit; NaN without GPS
-  bool gps_inlier = false;      // the residual is below the threshold of the fit
+  double gps_residual_m = 0.0;  // distance between the camera centre and its corrected GPS tag (horizontal if heights are not used); NaN without GPS
+  bool gps_inlier = false;      // the tag agrees with the fit
   int flight = 0;               // index of the flight the photo belongs to
   bool is_test = false;         // held out for evaluation: never trained on
 };
@@ -45,17 +48,6 @@ struct SparsePoint {
   int track_length = 0;
 };
 
-// How well the reconstruction fits the GPS tags.
-struct GeoFit {
-  int n_matches = 0;  // photos with GPS and pose
-  int n_inliers = 0;
-  double rmse_m = 0.0;  // 3-D, over the inliers
-  double rmse_horizontal_m = 0.0;
-  double rmse_vertical_m = 0.0;
-  double scale = 1.0;                            // metres per model unit
-  std::vector<double> flight_vertical_offset_m;  // added to the GPS heights of flight i; empty: no correction
-};
-
 // Ground truth of a simulated survey; absolute paths.
 struct Truth {
   std::filesystem::path depth_folder;  // <photo stem>.tiff, z-depth (along the camera's z axis) in metres, NaN = sky
@@ -65,13 +57,15 @@ struct Truth {
 
 struct Survey {
   geo::Geodetic origin;              // of the ENU frame
-  bool georeferenced = false;        // false: local frame of unknown scale, the origin has no meaning
+  bool georeferenced = false;        // false: levelled local frame of unknown scale, the origin has no meaning
   std::filesystem::path photo_root;  // absolute
   std::vector<camera::Camera> cameras;
   std::vector<Photo> photos;              // registered photos only, in name order
   std::vector<std::string> unregistered;  // names of photos without a pose
   std::vector<SparsePoint> points;
   GeoFit fit;
+  FlightChecks checks;
+  std::vector<Problem> problems;  // found while preparing, the worst first
   std::optional<Truth> truth;
 
   double MedianAgl() const;  // metres; NaN when no photo has one

@@ -9,6 +9,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/survey/geo_fit_json.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -43,7 +44,22 @@ Survey SmallSurvey() {
   }
   survey.unregistered = {"lost.jpg"};
   for (int i = 0; i < 5; ++i) survey.points.push_back({Eigen::Vector3d(0.1 * i, 1.0 / 7.0, -1e4), {1, 2, 250}, 0.25F, 3 + i});
-  survey.fit = {3, 2, 0.6, 0.5, 0.3, 12.5, {0.0, 15.5}};
+  survey.photos[1].gps_correction_m = Eigen::Vector3d(0.1, -3.0, 1.0 / 3.0);
+  survey.fit = {.n_matches = 3,
+                .n_inliers = 2,
+                .rmse_m = 0.6,
+                .rmse_horizontal_m = 0.5,
+                .rmse_vertical_m = 0.3,
+                .scale = 12.5,
+                .tag_lag_s = 0.27,
+                .tag_lag_sigma_s = 0.02,
+                .flight_vertical_offset_m = {0.0, 15.5},
+                .flight_vertical_drift_m = {1.0, -100.0},
+                .accuracy = {.scale_percent = 0.2, .tilt_deg = 0.3, .yaw_deg = 0.1, .horizontal_m = 1.5},
+                .gravity = {{.kind = "gimbal", .n = 3, .lean_east_deg = 0.1, .lean_north_deg = -0.2, .sigma_deg = 0.25, .weight = 0.9}},
+                .tags_alone_tilt_deg = 19.0};
+  survey.checks = {.speed_mps = 8.0, .speed_source = "speed tags", .camera_name = "DJI FC300S", .smear_px = 2.0, .k1 = -0.02};
+  survey.problems = {{.code = "tags_disagree", .finding = "half of the tags disagree", .advice = "look", .about_place = true}};
   survey.truth = Truth{"/t/depth", "/t/buildings.json", "/t/exposure.json"};
   return survey;
 }
@@ -70,6 +86,7 @@ TEST(Survey, SavingAndLoadingKeepsEveryBit) {
   EXPECT_EQ(after.georeferenced, true);
   EXPECT_EQ(after.photo_root, before.photo_root);
   EXPECT_EQ(after.unregistered, before.unregistered);
+  EXPECT_EQ(after.problems, before.problems);
   EXPECT_EQ(after.cameras[0].params, before.cameras[0].params);
   ASSERT_EQ(after.photos.size(), before.photos.size());
   for (size_t i = 0; i < before.photos.size(); ++i) {
@@ -89,7 +106,9 @@ TEST(Survey, SavingAndLoadingKeepsEveryBit) {
   EXPECT_EQ(after.points[3].x_in_enu, before.points[3].x_in_enu);
   EXPECT_EQ(after.points[3].rgb, before.points[3].rgb);
   EXPECT_EQ(after.points[3].track_length, 6);
-  EXPECT_EQ(after.fit.flight_vertical_offset_m, before.fit.flight_vertical_offset_m);
+  EXPECT_EQ(ToJson(after.fit), ToJson(before.fit));
+  EXPECT_EQ(ToJson(after.checks), ToJson(before.checks));
+  EXPECT_EQ(after.photos[1].gps_correction_m, before.photos[1].gps_correction_m);
   EXPECT_EQ(after.truth->depth_folder, before.truth->depth_folder);
 }
 

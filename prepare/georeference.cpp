@@ -1,20 +1,49 @@
 #include "prepare/georeference.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <numbers>
+#include <optional>
 
-#include "core/base/log.h"
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "core/geo/robust_similarity.h"
+#include "prepare/adjustment.h"
+#include "prepare/height_bias.h"
+#include "prepare/horizontal_fit.h"
+#include "prepare/place_problems.h"
+#include "prepare/tag_checks.h"
+#include "prepare/track.h"
 
 namespace skyquilt::prepare {
 namespace {
 
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kMaxOffsetRounds = 20;
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+// A receiver's error that all its tags share is invisible in residuals. Shares of the stated or typical accuracy: 1.5 m and 3 m without RTK.
+constexpr double kCommonHorizontal = 0.5;
+constexpr double kCommonVertical = 2.0 / 3.0;
+// Receivers lag by up to a few seconds; RTK drones record the time of exposure.
+constexpr double kLagSigma_s = 1.0;
+constexpr double kRtkLagSigma_s = 0.05;
+constexpr double kFirstLag_s = -1.5, kLastLag_s = 5.0, kLagStep_s = 0.25;
+constexpr double kLineRatio = 0.05;
+constexpr double kMaxUsefulSigma_deg = 5.0;
+
+double Pick(const Vector3d& x, int axis) {
+  return x[axis];
+}
+
+// The tagged position with a height that can be computed with.
+geo::Geodetic Place(const geo::Geodetic& gps) {
+  return {gps.latitude_deg, gps.longitude_deg, std::isfinite(gps.height_m) ? gps.height_m : 0.0};
+}
 
 // Medians are taken in an ENU frame, which has no special case at the poles and the date line. The frame starts at one of the tags and is moved to
 // the median, where it is level.
@@ -23,186 +52,414 @@ geo::Geodetic MedianPosition(const std::vector<Station>& stations) {
   std::optional<geo::Geodetic> centre;
   for (const Station& station : stations) {
     if (!station.gps) continue;
-    heights.push_back(station.gps->height_m);
-    if (!centre) centre = station.gps;
+    if (std::isfinite(station.gps->height_m)) heights.push_back(station.gps->height_m);
+    if (!centre) centre = Place(*station.gps);
   }
+  const double height_m = heights.empty() ? 0.0 : base::Median(heights);
+  centre->height_m = height_m;
   for (int round = 0; round < 3; ++round) {
     const geo::EnuFrame frame(*centre);
     std::vector<double> axis[3];
     for (const Station& station : stations) {
       if (!station.gps) continue;
-      const Eigen::Vector3d x = frame.EnuFromGeodetic(*station.gps);
-      for (int i = 0; i < 3; ++i) axis[i].push_back(x[i]);
+      const Vector3d x = frame.EnuFromGeodetic({station.gps->latitude_deg, station.gps->longitude_deg, height_m});
+      for (int i = 0; i < 3; ++i) axis[i].push_back(Pick(x, i));
     }
     centre = frame.GeodeticFromEnu({base::Median(axis[0]), base::Median(axis[1]), base::Median(axis[2])});
   }
-  return {centre->latitude_deg, centre->longitude_deg, base::Median(heights)};
+  return {centre->latitude_deg, centre->longitude_deg, height_m};
 }
 
-// Pairs to fit: camera centres in the model and tagged positions in ENU.
-struct Matches {
-  std::vector<size_t> station;
-  std::vector<Eigen::Vector3d> in_model;
-  std::vector<Eigen::Vector3d> in_enu;  // as tagged
-};
-
-Matches CollectMatches(const std::vector<Station>& stations, const geo::Geodetic& origin) {
+// Tags in ENU about `origin`, in the order of the track. Heights that say nothing are NaN.
+std::vector<Tag> CollectTags(const std::vector<Station>& stations, const std::vector<size_t>& order, const geo::Geodetic& origin,
+                             HeightTags heights) {
   const geo::EnuFrame frame(origin);
-  Matches matches;
-  for (size_t i = 0; i < stations.size(); ++i) {
-    if (!stations[i].gps) continue;
-    matches.station.push_back(i);
-    matches.in_model.push_back(stations[i].cam_from_model.OriginInSource());
-    matches.in_enu.push_back(frame.EnuFromGeodetic(*stations[i].gps));
+  std::vector<Tag> tags;
+  for (const size_t i : order) {
+    const Station& station = stations[i];
+    if (!station.gps) continue;
+    geo::Geodetic place = *station.gps;
+    if (heights == HeightTags::kRelative) place.height_m = station.relative_altitude_m.value_or(kNan);
+    const bool usable = heights != HeightTags::kUnknown && std::isfinite(place.height_m);
+    if (!usable) place.height_m = origin.height_m;
+    Tag tag{.station = i,
+            .x_in_enu = frame.EnuFromGeodetic(place),
+            .horizontal_sigma_m = station.horizontal_sigma_m,
+            .vertical_sigma_m = station.vertical_sigma_m};
+    if (!usable) tag.x_in_enu.z() = kNan;
+    tags.push_back(tag);
   }
-  return matches;
+  return tags;
 }
 
-std::vector<Eigen::Vector3d> WithOffsets(const Matches& matches, const std::vector<int>& flight, const std::vector<double>& offset_m) {
-  std::vector<Eigen::Vector3d> shifted = matches.in_enu;
-  if (offset_m.empty()) return shifted;
-  for (size_t m = 0; m < shifted.size(); ++m) shifted[m].z() += offset_m[static_cast<size_t>(flight[matches.station[m]])];
-  return shifted;
+void Clear(size_t n, Georeference& result) {
+  result.correction_m.assign(n, Vector3d::Zero());
+  result.residual_m.assign(n, Vector3d::Constant(kNan));
+  result.inlier.assign(n, 0);
 }
 
-// Per flight: median of fitted minus tagged height over the tags that fit horizontally. NaN for a flight without any.
-std::vector<double> FlightHeightDifference(const Matches& matches, const geo::Similarity3d& enu_from_model, const std::vector<int>& flight,
-                                           int n_flights, double threshold_m) {
-  std::vector<std::vector<double>> differences(static_cast<size_t>(n_flights));
-  for (size_t m = 0; m < matches.station.size(); ++m) {
-    const Eigen::Vector3d residual = enu_from_model * matches.in_model[m] - matches.in_enu[m];
-    if (residual.head<2>().norm() <= threshold_m) differences[static_cast<size_t>(flight[matches.station[m]])].push_back(residual.z());
+// Residuals and the errors of the fit, from the transform and the corrections in `result`.
+void Evaluate(const std::vector<Station>& stations, const std::vector<Tag>& tags, double threshold_m, Georeference& result) {
+  survey::GeoFit& fit = result.fit;
+  fit.n_matches = static_cast<int>(tags.size());
+  fit.n_inliers = 0;
+  fit.scale = result.enu_from_model.scale;
+  double horizontal = 0.0, vertical = 0.0;
+  int n_heights = 0;
+  for (const Tag& tag : tags) {
+    const size_t i = tag.station;
+    const Vector3d centre = result.enu_from_model * stations[i].cam_from_model.OriginInSource();
+    const Vector3d residual = centre - (tag.x_in_enu + result.correction_m[i]);
+    result.residual_m[i] = residual;
+    const bool has_height = std::isfinite(residual.z());
+    const bool agrees = residual.head<2>().norm() <= threshold_m && (!has_height || std::abs(residual.z()) <= threshold_m);
+    result.inlier[i] = agrees ? 1 : 0;
+    if (!agrees) continue;
+    ++fit.n_inliers;
+    horizontal += residual.head<2>().squaredNorm();
+    if (!has_height) continue;
+    vertical += residual.z() * residual.z();
+    ++n_heights;
   }
-  std::vector<double> median;
-  for (const std::vector<double>& values : differences) median.push_back(base::Median(values));
-  return median;
+  fit.rmse_horizontal_m = fit.n_inliers > 0 ? std::sqrt(horizontal / fit.n_inliers) : kNan;
+  fit.rmse_vertical_m = n_heights > 0 ? std::sqrt(vertical / n_heights) : kNan;
+  fit.rmse_m = n_heights > 0 ? std::hypot(fit.rmse_horizontal_m, fit.rmse_vertical_m) : fit.rmse_horizontal_m;
 }
 
-int ReferenceFlight(const std::vector<Station>& stations, const std::vector<int>& flight, int n_flights) {
-  std::vector<int> n_tagged(static_cast<size_t>(n_flights), 0);
-  std::vector<int> n_rtk(static_cast<size_t>(n_flights), 0);
-  for (size_t i = 0; i < stations.size(); ++i) {
-    if (!stations[i].gps) continue;
-    ++n_tagged[static_cast<size_t>(flight[i])];
-    n_rtk[static_cast<size_t>(flight[i])] += stations[i].rtk ? 1 : 0;
+// The flight with most RTK tags, else with most tags.
+int ReferenceFlight(const std::vector<Station>& stations, const std::vector<Tag>& tags, const std::vector<int>& flight) {
+  std::vector<int> n_tagged(static_cast<size_t>(CountFlights(flight)), 0), n_rtk = n_tagged;
+  for (const Tag& tag : tags) {
+    ++n_tagged[static_cast<size_t>(flight[tag.station])];
+    n_rtk[static_cast<size_t>(flight[tag.station])] += stations[tag.station].rtk ? 1 : 0;
   }
   const std::vector<int>& votes = *std::max_element(n_rtk.begin(), n_rtk.end()) > 0 ? n_rtk : n_tagged;
   return static_cast<int>(std::max_element(votes.begin(), votes.end()) - votes.begin());
 }
 
-// Fills in residuals, inliers and the errors of the fit, from the transform and the offsets in `result`.
-void Evaluate(const std::vector<Station>& stations, const Matches& matches, double threshold_m, Georeference& result) {
-  result.residual_m.assign(stations.size(), kNan);
-  result.residual_up_m.assign(stations.size(), kNan);
-  result.inlier.assign(stations.size(), 0);
-  const std::vector<Eigen::Vector3d> tags = WithOffsets(matches, result.flight, result.fit.flight_vertical_offset_m);
-  double horizontal = 0.0;
-  double vertical = 0.0;
+// Ratio of the second largest spread of the horizontal positions to the largest.
+double LineRatio(const std::vector<Station>& stations, const Matrix3d& level_from_model) {
+  Eigen::Matrix2Xd x(2, static_cast<Eigen::Index>(stations.size()));
+  for (size_t i = 0; i < stations.size(); ++i) {
+    x.col(static_cast<Eigen::Index>(i)) = (level_from_model * stations[i].cam_from_model.OriginInSource()).head<2>();
+  }
+  const Eigen::Matrix2Xd centred = x.colwise() - x.rowwise().mean();
+  const Eigen::Matrix2d spread = centred * centred.transpose();
+  const Eigen::Vector2d value = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  return value[1] > 0.0 ? value[0] / value[1] : 0.0;
+}
+
+// The fit to positions alone, for comparison.
+struct TagsAlone {
+  bool ok = false;
+  Vector3d up_in_model = Vector3d::UnitZ();
+  double sigma_deg = kNan;
+  geo::Similarity3d enu_from_model;
+};
+
+TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<Tag>& tags, const PrepareOptions& options) {
+  std::vector<Vector3d> in_model, in_enu;
+  for (const Tag& tag : tags) {
+    if (!tag.x_in_enu.allFinite()) continue;
+    in_model.push_back(stations[tag.station].cam_from_model.OriginInSource());
+    in_enu.push_back(tag.x_in_enu);
+  }
+  const geo::RobustSimilarityFit fit = geo::FitSimilarityRobustly(
+      in_model, in_enu, {.inlier_threshold_m = options.ransac_threshold_m, .iterations = 2000, .seed = static_cast<uint64_t>(options.seed)});
+  TagsAlone alone{.ok = fit.ok, .enu_from_model = fit.b_from_a};
+  if (!fit.ok) return alone;
+  alone.up_in_model = fit.b_from_a.rotation.conjugate() * Vector3d::UnitZ();
+  Eigen::Matrix3Xd inliers(3, fit.n_inliers);
+  Eigen::Index column = 0;
+  for (size_t k = 0; k < in_enu.size(); ++k) {
+    if (fit.inlier[k] != 0) inliers.col(column++) = in_enu[k];
+  }
+  const Eigen::Matrix3Xd centred = inliers.colwise() - inliers.rowwise().mean();
+  const Eigen::Vector3d spread = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues();
+  alone.sigma_deg = kDegrees * fit.rmse_m / std::max(spread[1], 1e-9);
+  return alone;
+}
+
+// Everything that a fit of one set of tags needs.
+struct Survey {
+  const std::vector<Station>& stations;
+  const Track& track;
+  const std::vector<int>& flight;
+  const PrepareOptions& options;
+};
+
+std::vector<double> LagsToTry(const Survey& survey) {
+  std::vector<double> lags = {0.0};
+  if (survey.options.tag_lag == "off" || !survey.track.timed()) return lags;
+  for (double lag = kFirstLag_s; lag <= kLastLag_s; lag += kLagStep_s) lags.push_back(lag);
+  return lags;
+}
+
+HorizontalFit FitLevelled(const Survey& survey, const std::vector<Tag>& tags, const Matrix3d& level_from_model) {
+  std::vector<Vector2d> targets;
+  targets.reserve(tags.size());
+  for (const Tag& tag : tags) targets.push_back(tag.x_in_enu.head<2>());
+  return FitHorizontally(
+      targets, [&](size_t k, double lag_s) { return Vector2d((level_from_model * survey.track.Before(tags[k].station, lag_s).position).head<2>()); },
+      {.threshold_m = survey.options.ransac_threshold_m, .lags_s = LagsToTry(survey), .seed = static_cast<uint64_t>(survey.options.seed)});
+}
+
+// The similarity of a horizontal fit; its height comes from the median of the tags.
+geo::Similarity3d Raised(const Survey& survey, const std::vector<Tag>& tags, const Eigen::Quaterniond& level_from_model, const HorizontalFit& fit) {
+  const HorizontalSimilarity& flat = fit.enu_from_level;
+  geo::Similarity3d result;
+  result.scale = flat.scale;
+  result.rotation = (Eigen::Quaterniond(Eigen::AngleAxisd(flat.angle, Vector3d::UnitZ())) * level_from_model).normalized();
+  std::vector<double> heights, cameras;
+  for (size_t k = 0; k < tags.size(); ++k) {
+    const double z = result.scale * (result.rotation * survey.track.Before(tags[k].station, fit.lag_s).position).z();
+    cameras.push_back(z);
+    if (fit.inlier[k] != 0 && std::isfinite(tags[k].x_in_enu.z())) heights.push_back(tags[k].x_in_enu.z() - z);
+  }
+  // Without heights the cameras are at the origin's height, as their tags say.
+  result.translation = {flat.translation.x(), flat.translation.y(), heights.empty() ? -base::Median(cameras) : base::Median(heights)};
+  return result;
+}
+
+HeightObservations Heights(const Survey& survey, const std::vector<Tag>& tags, const geo::Similarity3d& start, const HorizontalFit& fit,
+                           const Gravity& gravity, const Vector3d& middle) {
+  const auto n = static_cast<Eigen::Index>(tags.size());
+  HeightObservations heights;
+  heights.height_m = Eigen::VectorXd::Zero(n);
+  heights.sigma = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
+  heights.tilt = Eigen::MatrixX2d::Zero(n, 2);
+  const Vector3d middle_in_enu = start * middle;
+  for (size_t k = 0; k < tags.size(); ++k) {
+    const Vector3d x = start * survey.track.Before(tags[k].station, fit.lag_s).position;
+    const auto row = static_cast<Eigen::Index>(k);
+    // A rotation w about the middle raises a point at r by w x r.
+    const Vector3d arm = x - middle_in_enu;
+    heights.tilt.row(row) = Eigen::RowVector2d(arm.y(), -arm.x());
+    if (fit.inlier[k] == 0 || !std::isfinite(tags[k].x_in_enu.z())) continue;
+    heights.height_m[row] = tags[k].x_in_enu.z() - x.z();
+    heights.sigma[row] = tags[k].vertical_sigma_m;
+  }
+  const Matrix3d rotation = start.rotation.toRotationMatrix();
+  const Matrix3d information = rotation * gravity.information * rotation.transpose();
+  // A rotation (wx, wy) moves up by (wy, -wx).
+  Eigen::Matrix2d turn;
+  turn << 0.0, 1.0, -1.0, 0.0;
+  heights.tilt_information = turn.transpose() * information.topLeftCorner<2, 2>() * turn;
+  return heights;
+}
+
+// `start` rotated about a point and raised, by the first three numbers of a solution for the heights.
+geo::Similarity3d Turned(const geo::Similarity3d& start, const Vector3d& point, const Eigen::VectorXd& solution) {
+  const Vector3d turn(solution[1], solution[2], 0.0);
+  const double angle = turn.norm();
+  const Eigen::Quaterniond rotation(angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle) : Eigen::AngleAxisd::Identity());
+  geo::Similarity3d turned = start;
+  turned.rotation = (rotation * start.rotation).normalized();
+  turned.translation = point + Vector3d(0.0, 0.0, solution[0]) + rotation * (start.translation - point);
+  return turned;
+}
+
+double MedianSigma(const std::vector<Tag>& tags, double Tag::*sigma) {
+  std::vector<double> values;
+  values.reserve(tags.size());
+  for (const Tag& tag : tags) values.push_back(tag.*sigma);
+  return base::Median(values);
+}
+
+geo::PlaceAccuracy AccuracyOf(const Adjustment& adjustment, const std::vector<Tag>& tags, HeightTags heights, double vertical_span_m) {
+  const auto& covariance = adjustment.covariance;
+  const double common_h = kCommonHorizontal * MedianSigma(tags, &Tag::horizontal_sigma_m);
+  const double common_v = kCommonVertical * MedianSigma(tags, &Tag::vertical_sigma_m);
+  geo::PlaceAccuracy accuracy;
+  accuracy.scale_percent = 100.0 * std::sqrt(covariance(3, 3));
+  accuracy.tilt_deg = kDegrees * std::sqrt(covariance(0, 0) + covariance(1, 1));
+  accuracy.yaw_deg = kDegrees * std::sqrt(covariance(2, 2));
+  accuracy.horizontal_m = std::sqrt(covariance(4, 4) + covariance(5, 5) + 2.0 * common_h * common_h);
+  // Which moment of a drift has the right height is unknown.
+  if (heights == HeightTags::kTagged)
+    accuracy.vertical_m = std::sqrt(covariance(6, 6) + common_v * common_v + 0.25 * vertical_span_m * vertical_span_m);
+  return accuracy;
+}
+
+survey::GravityEvidence Shown(const std::string& kind, int n, const Vector3d& up_in_enu, double sigma_rad, double weight) {
+  const double sigma_deg = kDegrees * sigma_rad;
+  constexpr double kNothing_deg = 60.0;
+  return {.kind = kind,
+          .n = n,
+          .lean_east_deg = kDegrees * std::atan2(up_in_enu.x(), up_in_enu.z()),
+          .lean_north_deg = kDegrees * std::atan2(up_in_enu.y(), up_in_enu.z()),
+          .sigma_deg = sigma_deg < kNothing_deg ? sigma_deg : kNan,
+          .weight = weight};
+}
+
+// Evidence with its share of the information on the final tilt. `tilt` is the final covariance of up in the tangent plane of the model's up.
+std::vector<survey::GravityEvidence> ShownEvidence(const Gravity& gravity, const Eigen::Quaterniond& enu_from_model, double tags_share) {
+  std::vector<survey::GravityEvidence> shown;
+  double total = 0.0;
+  for (const UpEvidence& evidence : gravity.evidence) total += evidence.used ? evidence.information.trace() : 0.0;
+  for (const UpEvidence& evidence : gravity.evidence) {
+    const double share = evidence.used && total > 0.0 ? (1.0 - tags_share) * evidence.information.trace() / total : 0.0;
+    shown.push_back(Shown(evidence.kind, evidence.n, enu_from_model * evidence.up, evidence.Sigma(), share));
+  }
+  return shown;
+}
+
+void ReportBias(const Survey& survey, const std::vector<Tag>& tags, const Adjustment& adjustment, survey::GeoFit& fit) {
+  const auto n_flights = static_cast<size_t>(CountFlights(survey.flight));
+  std::vector<double> first(n_flights, kNan), last(n_flights, kNan), sum(n_flights, 0.0), count(n_flights, 0.0);
+  for (size_t k = 0; k < tags.size(); ++k) {
+    const auto f = static_cast<size_t>(survey.flight[tags[k].station]);
+    if (std::isnan(first[f])) first[f] = adjustment.bias_m[k];
+    last[f] = adjustment.bias_m[k];
+    sum[f] += adjustment.bias_m[k];
+    count[f] += 1.0;
+  }
+  for (size_t f = 0; f < n_flights; ++f) {
+    const double offset_m = count[f] > 0.0 ? -sum[f] / count[f] : 0.0;
+    constexpr double kRounding_m = 1e-9;  // of the reference flight, whose drift has mean zero
+    fit.flight_vertical_offset_m.push_back(std::abs(offset_m) > kRounding_m ? offset_m : 0.0);
+    fit.flight_vertical_drift_m.push_back(count[f] > 0.0 ? last[f] - first[f] : 0.0);
+  }
+}
+
+// All stages for tags that may fit. Sets result.ok.
+void FitTags(const Survey& survey, const Gravity& gravity, HeightTags heights, Georeference& result) {
+  const std::vector<Tag> tags = CollectTags(survey.stations, survey.track.order(), result.origin, heights);
+  const TagsAlone alone = FitTagsAlone(survey.stations, tags, survey.options);
+  Vector3d up = gravity.up;
+  const double gravity_sigma_deg = kDegrees * gravity.Sigma();
+  // Cameras that were turned at random say nothing about gravity; then the positions have to.
+  if (!(gravity_sigma_deg < kMaxUsefulSigma_deg) && alone.ok) up = alone.up_in_model;
+  const Eigen::Quaterniond level_from_model = Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitZ()).normalized();
+  const HorizontalFit flat = FitLevelled(survey, tags, level_from_model.toRotationMatrix());
+  if (!flat.ok) {
+    result.problems.push_back(NoPlace("no_fit", "the GPS tags do not determine position, scale and direction", "Use photos with good GPS tags"));
+    return;
+  }
+  geo::Similarity3d start = Raised(survey, tags, level_from_model, flat);
+  Vector3d middle = Vector3d::Zero();
+  for (const Station& station : survey.stations) middle += station.cam_from_model.OriginInSource() / static_cast<double>(survey.stations.size());
+
+  HeightBias bias;
+  if (survey.options.flight_offsets != "off" && heights != HeightTags::kUnknown) {
+    std::vector<int> flight;
+    std::vector<double> phase;
+    for (const Tag& tag : tags) {
+      flight.push_back(survey.flight[tag.station]);
+      phase.push_back(survey.track.Phase(tag.station));
+    }
+    bias = HeightBias(flight, phase, ReferenceFlight(survey.stations, tags, survey.flight));
+  }
+  const BiasChoice choice = ChooseBias(Heights(survey, tags, start, flat, gravity, middle), bias);
+  start = Turned(start, start * middle, choice.solution);
+  const auto n_rtk = std::count_if(tags.begin(), tags.end(), [&](const Tag& tag) { return survey.stations[tag.station].rtk; });
+  const bool lags = LagsToTry(survey).size() > 1;
+  const double lag_sigma_s = !lags ? 0.0 : 2 * n_rtk > static_cast<std::ptrdiff_t>(tags.size()) ? kRtkLagSigma_s : kLagSigma_s;
+  const Adjustment adjustment = Adjust({.track = survey.track,
+                                        .gravity = gravity,
+                                        .tags = tags,
+                                        .bias = bias,
+                                        .bias_sigmas = choice.sigmas,
+                                        .middle_in_model = middle,
+                                        .threshold_m = survey.options.ransac_threshold_m,
+                                        .lag_sigma_s = lag_sigma_s},
+                                       {start, flat.lag_s, choice.solution.tail(bias.size())});
+  result.enu_from_model = adjustment.enu_from_model;
   survey::GeoFit& fit = result.fit;
-  fit.n_matches = static_cast<int>(matches.station.size());
-  fit.n_inliers = 0;
-  for (size_t m = 0; m < matches.station.size(); ++m) {
-    const Eigen::Vector3d residual = result.enu_from_model * matches.in_model[m] - tags[m];
-    const size_t i = matches.station[m];
-    result.residual_m[i] = residual.norm();
-    result.residual_up_m[i] = residual.z();
-    if (residual.norm() > threshold_m) continue;
-    result.inlier[i] = 1;
-    ++fit.n_inliers;
-    horizontal += residual.head<2>().squaredNorm();
-    vertical += residual.z() * residual.z();
+  double low = 0.0, high = 0.0;
+  for (size_t k = 0; k < tags.size(); ++k) {
+    const size_t i = tags[k].station;
+    const Vector3d moved =
+        adjustment.enu_from_model.scale * (adjustment.enu_from_model.rotation *
+                                           (survey.stations[i].cam_from_model.OriginInSource() - survey.track.Before(i, adjustment.lag_s).position));
+    result.correction_m[i] = moved - adjustment.bias_m[k] * Vector3d::UnitZ();
+    low = std::min(low, adjustment.bias_m[k]);
+    high = std::max(high, adjustment.bias_m[k]);
   }
-  const double n = fit.n_inliers > 0 ? static_cast<double>(fit.n_inliers) : kNan;
-  fit.rmse_horizontal_m = std::sqrt(horizontal / n);
-  fit.rmse_vertical_m = std::sqrt(vertical / n);
-  fit.rmse_m = std::sqrt((horizontal + vertical) / n);
-  fit.scale = result.enu_from_model.scale;
+  Evaluate(survey.stations, tags, survey.options.ransac_threshold_m, result);
+  fit.tag_lag_s = adjustment.lag_s;
+  fit.tag_lag_sigma_s = lags ? std::sqrt(adjustment.covariance(7, 7)) : kNan;
+  if (bias.size() > 0) ReportBias(survey, tags, adjustment, fit);
+  fit.accuracy = AccuracyOf(adjustment, tags, heights, high - low);
+  const double tags_share = std::clamp(0.5 * (adjustment.covariance.topLeftCorner<2, 2>() * adjustment.tags_information).trace(), 0.0, 1.0);
+  fit.gravity = ShownEvidence(gravity, adjustment.enu_from_model.rotation, tags_share);
+  if (heights != HeightTags::kUnknown && adjustment.tags_covariance.allFinite()) {
+    const Vector2d turn = adjustment.tags_rotation;
+    fit.gravity.push_back(Shown("gps_heights", fit.n_inliers, Vector3d(-turn.y(), turn.x(), 1.0).normalized(),
+                                std::sqrt(adjustment.tags_covariance.trace()), tags_share));
+  }
+  if (alone.ok) {
+    const Vector3d tags_up = adjustment.enu_from_model.rotation * alone.up_in_model;
+    fit.tags_alone_tilt_deg = kDegrees * std::atan2(tags_up.head<2>().norm(), tags_up.z());
+  }
+  for (survey::Problem& problem : TooUncertain(fit)) result.problems.push_back(std::move(problem));
+  if (!result.problems.empty()) return;
+  result.ok = true;
+  PlaceFindings findings{.fit = fit,
+                         .gimbal_used = !gravity.evidence.empty() && gravity.evidence.front().kind == "gimbal",
+                         .one_line = LineRatio(survey.stations, level_from_model.toRotationMatrix()) < kLineRatio,
+                         .heights = heights,
+                         .tags_alone_sigma_deg = alone.ok ? alone.sigma_deg : 0.0,
+                         .gravity_sigma_deg = gravity_sigma_deg,
+                         .vertical_span_m = high - low};
+  for (const Tag& tag : tags) {
+    if (result.inlier[tag.station] == 0) findings.disagreeing.push_back(survey.stations[tag.station].name);
+  }
+  std::sort(findings.disagreeing.begin(), findings.disagreeing.end());
+  result.problems = PlaceProblems(findings);
 }
 
-int CountFlights(const std::vector<int>& flight) {
-  return flight.empty() ? 0 : *std::max_element(flight.begin(), flight.end()) + 1;
-}
-
-// Estimates one vertical offset per flight, in turn with the transform, until both converge. Changes nothing when the flights agree.
-void FitFlightOffsets(const std::vector<Station>& stations, const Matches& matches, const PrepareOptions& options,
-                      const geo::RobustSimilarityOptions& robust, Georeference& result) {
-  const int n_flights = CountFlights(result.flight);
-  if (n_flights < 2 || options.flight_offsets == "off") return;
-  std::vector<double> offset_m(static_cast<size_t>(n_flights), 0.0);
-  geo::Similarity3d transform = result.enu_from_model;
-  const auto reference = static_cast<size_t>(ReferenceFlight(stations, result.flight, n_flights));
-  for (int round = 0; round < kMaxOffsetRounds; ++round) {
-    const std::vector<double> difference = FlightHeightDifference(matches, transform, result.flight, n_flights, options.ransac_threshold_m);
-    if (round == 0) {
-      std::vector<double> known;
-      std::copy_if(difference.begin(), difference.end(), std::back_inserter(known), [](double value) { return std::isfinite(value); });
-      if (known.size() < 2 || !std::isfinite(difference[reference])) return;
-      if (*std::max_element(known.begin(), known.end()) - *std::min_element(known.begin(), known.end()) <= kFlightOffsetTrigger_m) return;
-    }
-    if (!std::isfinite(difference[reference])) return;
-    double change_m = 0.0;
-    for (size_t f = 0; f < offset_m.size(); ++f) {
-      const double wanted = std::isfinite(difference[f]) ? difference[f] - difference[reference] : offset_m[f];
-      change_m = std::max(change_m, std::abs(wanted - offset_m[f]));
-      offset_m[f] = wanted;
-    }
-    if (round > 0 && change_m < 0.01) break;
-    const geo::RobustSimilarityFit refit = geo::FitSimilarityRobustly(matches.in_model, WithOffsets(matches, result.flight, offset_m), robust);
-    if (!refit.ok) return;
-    transform = refit.b_from_a;
+// When most tags disagree: are their coordinates written wrongly in one of the usual ways?
+std::optional<survey::Problem> CoordinateProblem(const Survey& survey, const Gravity& gravity, int n_agreeing, int n_tags) {
+  const Matrix3d level_from_model = Eigen::Quaterniond::FromTwoVectors(gravity.up, Vector3d::UnitZ()).toRotationMatrix();
+  for (const CoordinateFault& fault : PossibleCoordinateFaults(survey.stations)) {
+    const std::vector<Tag> tags = CollectTags(fault.repaired, survey.track.order(), MedianPosition(fault.repaired), HeightTags::kUnknown);
+    const HorizontalFit fit = FitLevelled({fault.repaired, survey.track, survey.flight, survey.options}, tags, level_from_model);
+    if (fit.n_inliers >= kMinAgreeing && 2 * fit.n_inliers > n_tags && 2 * fit.n_inliers > 3 * n_agreeing) return fault.problem;
   }
-  result.enu_from_model = transform;
-  result.fit.flight_vertical_offset_m = offset_m;
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::vector<int> SplitFlights(const std::vector<Station>& stations, double gap_s) {
-  std::vector<size_t> timed;
-  for (size_t i = 0; i < stations.size(); ++i) {
-    if (stations[i].time_s) timed.push_back(i);
-  }
-  std::stable_sort(timed.begin(), timed.end(), [&](size_t a, size_t b) { return *stations[a].time_s < *stations[b].time_s; });
-  std::vector<int> flight(stations.size(), -1);
-  int current = 0;
-  for (size_t k = 0; k < timed.size(); ++k) {
-    if (k > 0 && *stations[timed[k]].time_s - *stations[timed[k - 1]].time_s > gap_s) ++current;
-    flight[timed[k]] = current;
-  }
-  int before = 0;
-  for (int& number : flight) {
-    if (number < 0) number = before;
-    before = number;
-  }
-  return flight;
-}
-
-Georeference FitToGps(const std::vector<Station>& stations, const PrepareOptions& options) {
+Georeference PlaceOnEarth(const std::vector<Station>& stations, const std::vector<Vector3d>& points, const PrepareOptions& options) {
   Georeference result;
   result.flight = SplitFlights(stations, options.flight_gap_s);
-  result.residual_m.assign(stations.size(), kNan);
-  result.residual_up_m.assign(stations.size(), kNan);
-  result.inlier.assign(stations.size(), 0);
+  Clear(stations.size(), result);
+  const Gravity gravity = FindGravity(stations, points);
   const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
   result.fit.n_matches = static_cast<int>(n_tagged);
-  if (n_tagged < 3) {
-    result.reason = n_tagged == 0 ? "no photo with a pose has a GPS tag"
-                                  : "only " + std::to_string(n_tagged) + " photo(s) with a pose have a GPS tag, 3 are needed";
-    return result;
+  const char* use_tags =
+      "Use photos with GPS tags (EXIF or XMP): at least four that agree, not all in one place. Then run the same command with --restart";
+  if (n_tagged == 0) {
+    result.problems.push_back(NoPlace("no_gps", "no photo with a pose has a GPS tag", use_tags));
+  } else if (n_tagged < kMinAgreeing) {
+    result.problems.push_back(
+        NoPlace("too_few_tags", "only " + std::to_string(n_tagged) + " photos with a pose have a GPS tag, 4 are needed", use_tags));
+  } else if (AllTagsEqual(stations)) {
+    result.problems.push_back(NoPlace("equal_tags", "all GPS tags are at one place",
+                                      "The tags were copied from one photo, or the receiver had no fix. Tag the photos from the flight log, then run "
+                                      "the same command with --restart"));
+  } else {
+    result.origin = MedianPosition(stations);
+    const Track track(stations, result.flight);
+    const Survey survey{stations, track, result.flight, options};
+    FitTags(survey, gravity, JudgeHeights(stations), result);
+    if (2 * result.fit.n_inliers < result.fit.n_matches) {
+      if (const auto fault = CoordinateProblem(survey, gravity, result.fit.n_inliers, result.fit.n_matches)) {
+        result.ok = false;
+        result.problems = {NoPlace(fault->code, fault->finding, fault->advice)};
+      }
+    }
   }
-  result.origin = MedianPosition(stations);
-  const Matches matches = CollectMatches(stations, result.origin);
-  const geo::RobustSimilarityOptions robust{
-      .inlier_threshold_m = options.ransac_threshold_m, .iterations = 2000, .seed = static_cast<uint64_t>(options.seed)};
-  const geo::RobustSimilarityFit first = geo::FitSimilarityRobustly(matches.in_model, matches.in_enu, robust);
-  if (!first.ok) {
-    result.reason = std::string("GPS tags do not determine position, scale and rotation: ") + first.reason;
-    return result;
+  if (!result.ok) {
+    result.reason = result.problems.front().finding;
+    result.origin = {};
+    Clear(stations.size(), result);
+    result.enu_from_model = LocalFrame(stations, points, gravity.up);
+    result.fit.scale = result.enu_from_model.scale;
+    result.fit.gravity = ShownEvidence(gravity, result.enu_from_model.rotation, 0.0);
   }
-  result.ok = true;
-  result.enu_from_model = first.b_from_a;
-  FitFlightOffsets(stations, matches, options, robust, result);
-  Evaluate(stations, matches, options.ransac_threshold_m, result);
   return result;
 }
 
@@ -211,7 +468,15 @@ Georeference KeepExactFrame(const std::vector<Station>& stations, const geo::Geo
   result.ok = true;
   result.origin = origin;
   result.flight = SplitFlights(stations, options.flight_gap_s);
-  Evaluate(stations, CollectMatches(stations, origin), options.ransac_threshold_m, result);
+  Clear(stations.size(), result);
+  const Track track(stations, result.flight);
+  Evaluate(stations, CollectTags(stations, track.order(), origin, HeightTags::kTagged), options.ransac_threshold_m, result);
+  result.fit.accuracy = {.scale_percent = 0.0, .tilt_deg = 0.0, .yaw_deg = 0.0, .horizontal_m = 0.0, .vertical_m = 0.0};
+  PlaceFindings findings{.fit = result.fit, .gimbal_used = true};
+  for (size_t i = 0; i < stations.size(); ++i) {
+    if (stations[i].gps && result.inlier[i] == 0) findings.disagreeing.push_back(stations[i].name);
+  }
+  result.problems = PlaceProblems(findings);
   return result;
 }
 

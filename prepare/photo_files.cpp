@@ -103,32 +103,6 @@ PhotoSet ReadPhotos(const fs::path& root, const std::vector<std::string>& names,
   return set;
 }
 
-void ResolveHeights(std::vector<PhotoFile>& photos) {
-  size_t n_tagged = 0;
-  size_t n_without = 0;
-  size_t n_relative = 0;
-  for (const PhotoFile& photo : photos) {
-    if (!photo.tags.gps) continue;
-    ++n_tagged;
-    n_without += std::isfinite(photo.tags.gps->height_m) ? 0 : 1;
-    n_relative += photo.tags.relative_altitude_m ? 1 : 0;
-  }
-  if (n_without == 0) return;
-  if (2 * n_without > n_tagged) {
-    const bool use_relative = n_relative == n_tagged;
-    spdlog::warn("{} of {} GPS tags have no altitude: all heights are {}", n_without, n_tagged,
-                 use_relative ? "taken from RelativeAltitude (above take-off)" : "set to 0, so the survey's height above the ellipsoid is unknown");
-    for (PhotoFile& photo : photos) {
-      if (photo.tags.gps) photo.tags.gps->height_m = use_relative ? *photo.tags.relative_altitude_m : 0.0;
-    }
-    return;
-  }
-  spdlog::warn("{} of {} GPS tags have no altitude and are not used for the geo-reference", n_without, n_tagged);
-  for (PhotoFile& photo : photos) {
-    if (photo.tags.gps && !std::isfinite(photo.tags.gps->height_m)) photo.tags.gps.reset();
-  }
-}
-
 std::vector<std::string> FindMasks(const fs::path& masks, const std::vector<PhotoFile>& photos) {
   std::vector<std::string> found(photos.size());
   if (masks.empty()) return found;

@@ -14,7 +14,7 @@ struct PhotoFile {
   std::string name;  // relative to the root, '/' separated
   int width = 0;     // pixels, as stored
   int height = 0;
-  survey::PhotoTags tags;  // gps, when present, has a finite height
+  survey::PhotoTags tags;
 };
 
 struct PhotoSet {
@@ -31,9 +31,6 @@ std::vector<std::string> ListPhotos(const std::filesystem::path& root, const std
 // Reads sizes and tags and checks that JPEGs are complete. Photos that cannot be used are left out, with a warning that says how to fix it.
 // Throws base::InputError when fewer than kMinPhotos remain.
 PhotoSet ReadPhotos(const std::filesystem::path& root, const std::vector<std::string>& names, base::ThreadPool& threads);
-// Handles GPS tags without a height. If most tags have none, all heights become RelativeAltitude, or 0 if that is not tagged everywhere; otherwise
-// only the tags without a height are removed. Both with a warning.
-void ResolveHeights(std::vector<PhotoFile>& photos);
 // Path of masks/<name>.png per photo, empty where there is none. Throws base::InputError when no photo has a mask or when a mask's size differs from
 // its photo's.
 std::vector<std::string> FindMasks(const std::filesystem::path& masks, const std::vector<PhotoFile>& photos);

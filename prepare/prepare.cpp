@@ -115,9 +115,9 @@ std::vector<Registered> MatchPhotos(const survey::ColmapModel& model, const std:
 
 std::vector<Station> MakeStations(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files) {
   std::vector<Station> stations;
+  stations.reserve(registered.size());
   for (const Registered& entry : registered) {
-    const survey::PhotoTags& tags = files[entry.file].tags;
-    stations.push_back({entry.image->cam_from_world, tags.gps, tags.capture_time_s, tags.rtk});
+    stations.push_back(MakeStation(files[entry.file].name, entry.image->cam_from_world, files[entry.file].tags));
   }
   return stations;
 }
@@ -156,10 +156,22 @@ void FillPhotos(const survey::ColmapModel& model, const std::vector<Registered>&
     photo.relative_altitude_m = file.tags.relative_altitude_m;
     if (file.tags.capture_time_s) photo.time_s = *file.tags.capture_time_s - *first_time_s;
     photo.exposure = file.tags.exposure;
-    photo.gps_residual_m = georeference.residual_m[i];
+    photo.gps_correction_m = georeference.correction_m[i];
+    const Eigen::Vector3d& residual = georeference.residual_m[i];
+    photo.gps_residual_m = std::isnan(residual.z()) ? residual.head<2>().norm() : residual.norm();
     photo.gps_inlier = georeference.inlier[i] != 0;
     photo.flight = georeference.flight[i];
     survey.photos.push_back(std::move(photo));
+  }
+}
+
+// Throws base::InputError for the first problem about the place.
+void RequirePlace(const survey::Survey& survey, const fs::path& folder) {
+  for (const survey::Problem& problem : survey.problems) {
+    if (!problem.about_place) continue;
+    throw base::InputError(survey.photo_root, problem.finding,
+                           problem.advice + " (residuals: " + (folder / "geo_residuals.csv").string() +
+                               "). To go on with a warning instead, leave out prepare.require_georeference");
   }
 }
 
@@ -174,7 +186,6 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   const std::vector<std::string> names =
       ListPhotos(folders.photo_root, {folders.masks, input.out_folder, fs::absolute(input.out_folder).parent_path()});
   PhotoSet photos = ReadPhotos(folders.photo_root, names, threads);
-  ResolveHeights(photos.usable);
   const std::vector<std::string> masks = FindMasks(folders.masks, photos.usable);
   base::ThrowIfCancelled();
 
@@ -186,20 +197,18 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   const std::vector<Registered> registered = MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
 
   const std::vector<Station> stations = MakeStations(registered, photos.usable);
-  Georeference georeference = folders.exact_origin ? KeepExactFrame(stations, *folders.exact_origin, options) : FitToGps(stations, options);
-  if (!georeference.ok) {
-    std::vector<Eigen::Vector3d> points;
-    for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
-    georeference.enu_from_model = LocalFrame(stations, points);
-    georeference.origin = {};
-  }
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(model.points.size());
+  for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
+  const Georeference georeference =
+      folders.exact_origin ? KeepExactFrame(stations, *folders.exact_origin, options) : PlaceOnEarth(stations, points, options);
 
   survey::Survey survey;
   survey.origin = georeference.origin;
   survey.georeferenced = georeference.ok;
   survey.photo_root = folders.photo_root;
   survey.fit = georeference.fit;
-  survey.fit.scale = georeference.enu_from_model.scale;
+  survey.problems = georeference.problems;
   survey.truth = folders.truth;
   FillPhotos(model, registered, photos.usable, masks, georeference, survey);
   std::set<std::string> with_pose;
@@ -213,7 +222,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   MarkHoldout(holdout, survey);
   base::ThrowIfCancelled();
 
-  LogSummary(survey, georeference);
+  LogSummary(survey);
   if (!survey.unregistered.empty())
     spdlog::warn("{} photos without a pose are not used: {}", survey.unregistered.size(), Joined(survey.unregistered));
   WriteResidualTable(survey, georeference, input.out_folder / "geo_residuals.csv");
@@ -222,6 +231,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   } else {
     fs::remove(input.out_folder / "cameras.geojson");
   }
+  if (options.require_georeference) RequirePlace(survey, input.out_folder);
   survey::SaveSurvey(survey, input.out_folder);
   return survey;
 }

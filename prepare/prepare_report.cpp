@@ -28,22 +28,39 @@ std::string Quoted(const std::string& text) {
   return quoted + "\"";
 }
 
-void LogFlights(const survey::Survey& survey) {
-  int n_flights = 0;
-  for (const survey::Photo& photo : survey.photos) n_flights = std::max(n_flights, photo.flight + 1);
-  if (n_flights < 2) return;
-  const std::vector<double>& offset = survey.fit.flight_vertical_offset_m;
-  for (int flight = 0; flight < n_flights; ++flight) {
+// A sentence of the report begins with a capital letter and has no full stop.
+void LogProblems(const survey::Survey& survey) {
+  for (const survey::Problem& problem : survey.problems) spdlog::warn("{}. What to do: {}", problem.finding, problem.advice);
+}
+
+void LogFlights(const survey::GeoFit& fit, const std::vector<survey::Photo>& photos) {
+  for (size_t flight = 0; flight < fit.flight_vertical_drift_m.size(); ++flight) {
+    const double offset_m = fit.flight_vertical_offset_m[flight], drift_m = fit.flight_vertical_drift_m[flight];
+    if (fit.flight_vertical_drift_m.size() < 2 && std::abs(drift_m) < 1.0) continue;
     const auto n_photos =
-        std::count_if(survey.photos.begin(), survey.photos.end(), [flight](const survey::Photo& photo) { return photo.flight == flight; });
-    const double offset_m = offset.empty() ? 0.0 : offset[static_cast<size_t>(flight)];
-    spdlog::info("flight {}: {} photos, {:+.2f} m added to its tagged heights", flight, n_photos, offset_m);
+        std::count_if(photos.begin(), photos.end(), [flight](const survey::Photo& photo) { return photo.flight == static_cast<int>(flight); });
+    spdlog::info("flight {}: {} photos, tagged heights moved by {:+.1f} m, their drift over the flight {:+.1f} m", flight + 1, n_photos, offset_m,
+                 drift_m);
+  }
+}
+
+const char* EvidenceName(const std::string& kind) {
+  if (kind == "gimbal") return "gimbal angles";
+  if (kind == "cameras") return "camera axes";
+  return kind == "ground" ? "plane of the ground" : "heights of the tags";
+}
+
+void LogGravity(const survey::GeoFit& fit) {
+  for (const survey::GravityEvidence& evidence : fit.gravity) {
+    spdlog::info("gravity by {}: leans {:.2f} deg from the result, accuracy {} deg, weight {:.0f} %", EvidenceName(evidence.kind),
+                 std::hypot(evidence.lean_east_deg, evidence.lean_north_deg),
+                 std::isfinite(evidence.sigma_deg) ? Field(evidence.sigma_deg, 2) : "unknown", 100.0 * evidence.weight);
   }
 }
 
 }  // namespace
 
-void LogSummary(const survey::Survey& survey, const Georeference& georeference) {
+void LogSummary(const survey::Survey& survey) {
   const size_t n_all = survey.photos.size() + survey.unregistered.size();
   const auto n_test = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.is_test; });
   spdlog::info("photos with a pose: {} of {}, {} of them held out for testing", survey.photos.size(), n_all, n_test);
@@ -51,26 +68,24 @@ void LogSummary(const survey::Survey& survey, const Georeference& georeference) 
     spdlog::info("camera: {} {}x{}, focal length {:.1f} px", camera::ModelName(camera.model), camera.width, camera.height, camera.FocalX());
   }
   const double agl = survey.MedianAgl();
+  LogProblems(survey);
   if (!survey.georeferenced) {
-    spdlog::warn(
-        "no geo-reference: {}. The survey gets a local frame of unknown scale (median depth {:.0f} units), and maps cannot be placed on Earth. To "
-        "geo-reference it, use photos with GPS tags",
-        georeference.reason, kLocalDepth);
+    LogGravity(survey.fit);
     return;
   }
   const survey::GeoFit& fit = survey.fit;
   spdlog::info(
       "origin: {:.7f} deg latitude, {:.7f} deg longitude, {:.2f} m (height as tagged; without RTK usually above sea level, not the ellipsoid)",
       survey.origin.latitude_deg, survey.origin.longitude_deg, survey.origin.height_m);
-  spdlog::info("GPS: {} of {} tags fit, RMSE {:.2f} m ({:.2f} m horizontal, {:.2f} m vertical), {:.6g} m per model unit", fit.n_inliers,
+  spdlog::info("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {:.2f} m vertical), {:.6g} m per model unit", fit.n_inliers,
                fit.n_matches, fit.rmse_m, fit.rmse_horizontal_m, fit.rmse_vertical_m, fit.scale);
-  for (size_t i = 0, n_named = 0; i < survey.photos.size() && n_named < 5; ++i) {
-    if (!survey.photos[i].gps || survey.photos[i].gps_inlier) continue;
-    spdlog::warn("GPS tag of {} is {:.1f} m from the fitted position and is not used; if many are, raise prepare.ransac_threshold_m",
-                 survey.photos[i].name, survey.photos[i].gps_residual_m);
-    ++n_named;
-  }
-  LogFlights(survey);
+  if (std::isfinite(fit.tag_lag_sigma_s)) spdlog::info("GPS tags lag {:.2f} s behind the photos (+- {:.2f} s)", fit.tag_lag_s, fit.tag_lag_sigma_s);
+  LogFlights(fit, survey.photos);
+  LogGravity(fit);
+  const geo::PlaceAccuracy& accuracy = fit.accuracy;
+  spdlog::info("accuracy (one standard deviation): position {} m, height {} m, scale {} %, tilt {} deg, yaw {} deg", Field(accuracy.horizontal_m, 2),
+               std::isfinite(accuracy.vertical_m) ? Field(accuracy.vertical_m, 2) : "unknown", Field(accuracy.scale_percent, 3),
+               Field(accuracy.tilt_deg, 2), Field(accuracy.yaw_deg, 2));
   std::vector<double> relative;
   for (const survey::Photo& photo : survey.photos) {
     if (photo.relative_altitude_m) relative.push_back(*photo.relative_altitude_m);
@@ -84,7 +99,8 @@ void WriteResidualTable(const survey::Survey& survey, const Georeference& georef
   const geo::EnuFrame frame(survey.origin);
   std::string text =
       "name,east_m,north_m,up_m,latitude_deg,longitude_deg,height_m,tag_latitude_deg,tag_longitude_deg,tag_height_m,"
-      "residual_m,residual_up_m,inlier,flight,flight_offset_m,agl_m,relative_altitude_m,test\n";
+      "correction_east_m,correction_north_m,correction_up_m,residual_east_m,residual_north_m,residual_up_m,residual_m,inlier,flight,agl_m,"
+      "relative_altitude_m,test\n";
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
     const Eigen::Vector3d centre = photo.cam_from_enu.OriginInSource();
@@ -97,10 +113,11 @@ void WriteResidualTable(const survey::Survey& survey, const Georeference& georef
     }
     text +=
         photo.gps ? Field(photo.gps->latitude_deg, 9) + "," + Field(photo.gps->longitude_deg, 9) + "," + Field(photo.gps->height_m, 3) + "," : ",,,";
-    const std::vector<double>& offset = survey.fit.flight_vertical_offset_m;
-    text += Field(photo.gps_residual_m, 3) + "," + Field(georeference.residual_up_m[i], 3) + "," + (photo.gps_inlier ? "1" : "0") + "," +
-            std::to_string(photo.flight) + "," + Field(offset.empty() ? 0.0 : offset[static_cast<size_t>(photo.flight)], 3) + "," +
-            Field(photo.agl_m, 2) + ",";
+    for (const Eigen::Vector3d& v : {photo.gps_correction_m, georeference.residual_m[i]}) {
+      for (const double value : {v.x(), v.y(), v.z()}) text += Field(value, 3) + ",";
+    }
+    text += Field(photo.gps_residual_m, 3) + "," + (photo.gps_inlier ? "1" : "0") + "," + std::to_string(photo.flight) + "," + Field(photo.agl_m, 2) +
+            ",";
     text += (photo.relative_altitude_m ? Field(*photo.relative_altitude_m, 2) : "") + "," + (photo.is_test ? "1" : "0") + "\n";
   }
   base::WriteFileAtomically(file, text);

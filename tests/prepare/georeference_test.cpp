@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/base/random.h"
 #include "core/geo/enu_frame.h"
 #include "tests/prepare/synthetic_flight.h"
 
@@ -13,10 +14,19 @@ namespace {
 std::vector<Station> Stations(const test::Flight& flight) {
   std::vector<Station> stations;
   for (size_t i = 0; i < flight.photos.size(); ++i) {
-    const survey::PhotoTags& tags = flight.photos[i].tags;
-    stations.push_back({flight.model.images[i].cam_from_world, tags.gps, tags.capture_time_s, tags.rtk});
+    stations.push_back(MakeStation(flight.photos[i].name, flight.model.images[i].cam_from_world, flight.photos[i].tags));
   }
   return stations;
+}
+
+std::vector<Eigen::Vector3d> Points(const test::Flight& flight) {
+  std::vector<Eigen::Vector3d> points;
+  for (const survey::ColmapPoint& point : flight.model.points) points.push_back(point.x_in_world);
+  return points;
+}
+
+Georeference Place(const test::Flight& flight, const PrepareOptions& options = {}) {
+  return PlaceOnEarth(Stations(flight), Points(flight), options);
 }
 
 TEST(Georeference, ExactTagsAreRecoveredEverywhereOnEarth) {
@@ -24,7 +34,7 @@ TEST(Georeference, ExactTagsAreRecoveredEverywhereOnEarth) {
                                   {90.0, 0.0, 10.0},    {-90.0, 0.0, 2800.0}, {89.9999, 45.0, 0.0}, {27.9, 86.9, 8900.0}};
   for (const geo::Geodetic& place : places) {
     const test::Flight flight = test::MakeFlight(place);
-    const Georeference result = FitToGps(Stations(flight), {});
+    const Georeference result = Place(flight);
     ASSERT_TRUE(result.ok) << result.reason << " at " << place.latitude_deg;
     EXPECT_LT(result.fit.rmse_m, 1e-3) << place.latitude_deg << " " << place.longitude_deg;
     EXPECT_EQ(result.fit.n_inliers, 20);
@@ -44,13 +54,13 @@ TEST(Georeference, OutliersAreFoundAndDoNotPull) {
   test::SetTags(flight, [](size_t i, const Eigen::Vector3d& centre) {
     return i % 5 == 2 ? Eigen::Vector3d(centre + Eigen::Vector3d(300.0, -150.0 * static_cast<double>(i), 60.0)) : centre;
   });
-  const Georeference result = FitToGps(Stations(flight), {});
+  const Georeference result = Place(flight);
   ASSERT_TRUE(result.ok);
   EXPECT_EQ(result.fit.n_matches, 20);
   EXPECT_EQ(result.fit.n_inliers, 16);
   EXPECT_LT(result.fit.rmse_m, 1e-3);
   for (size_t i = 0; i < 20; ++i) EXPECT_EQ(result.inlier[i] != 0, i % 5 != 2);
-  EXPECT_GT(result.residual_m[2], 300.0);
+  EXPECT_GT(result.residual_m[2].norm(), 300.0);
 }
 
 TEST(Georeference, FlightsThatDisagreeGetOneOffsetEach) {
@@ -59,7 +69,7 @@ TEST(Georeference, FlightsThatDisagreeGetOneOffsetEach) {
   for (size_t i = 0; i < 20; ++i) flight.photos[i].tags.capture_time_s = *flight.photos[i].tags.capture_time_s + (i % 3 == 1 ? 86400.0 : 0.0);
   test::SetTags(flight,
                 [](size_t i, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(0.0, 0.0, i % 3 == 1 ? 15.0 : 0.0)); });
-  const Georeference result = FitToGps(Stations(flight), {});
+  const Georeference result = Place(flight);
   ASSERT_TRUE(result.ok);
   ASSERT_EQ(result.fit.flight_vertical_offset_m.size(), 2U);
   EXPECT_EQ(result.fit.flight_vertical_offset_m[0], 0.0);  // the larger flight is the reference
@@ -69,20 +79,23 @@ TEST(Georeference, FlightsThatDisagreeGetOneOffsetEach) {
 
   PrepareOptions off;
   off.flight_offsets = "off";
-  const Georeference without = FitToGps(Stations(flight), off);
+  const Georeference without = Place(flight, off);
   EXPECT_TRUE(without.fit.flight_vertical_offset_m.empty());
   EXPECT_LT(without.fit.n_inliers, 20);
 }
 
-TEST(Georeference, FlightsThatAgreeGetNoOffset) {
+TEST(Georeference, FlightsThatAgreeAreNotMovedApart) {
   test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
   for (size_t i = 10; i < 20; ++i) flight.photos[i].tags.capture_time_s = *flight.photos[i].tags.capture_time_s + 86400.0;
-  test::SetTags(flight,
-                [](size_t i, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(0.0, 0.0, i >= 10 ? 1.0 : 0.0)); });
-  const Georeference result = FitToGps(Stations(flight), {});
+  base::Random random(5);
+  test::SetTags(flight, [&](size_t, const Eigen::Vector3d& centre) {
+    return Eigen::Vector3d(centre + Eigen::Vector3d(random.Normal(), random.Normal(), 2.0 * random.Normal()));
+  });
+  const Georeference result = Place(flight);
   EXPECT_EQ(result.flight[9], 0);
   EXPECT_EQ(result.flight[10], 1);
-  EXPECT_TRUE(result.fit.flight_vertical_offset_m.empty());
+  for (const double offset_m : result.fit.flight_vertical_offset_m) EXPECT_LT(std::abs(offset_m), 2.0);
+  for (const double drift_m : result.fit.flight_vertical_drift_m) EXPECT_LT(std::abs(drift_m), 2.0);
 }
 
 TEST(Georeference, TheRtkFlightIsTheReference) {
@@ -93,7 +106,7 @@ TEST(Georeference, TheRtkFlightIsTheReference) {
   }
   test::SetTags(flight,
                 [](size_t i, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(0.0, 0.0, i % 3 == 1 ? 0.0 : 15.0)); });
-  const Georeference result = FitToGps(Stations(flight), {});
+  const Georeference result = Place(flight);
   ASSERT_EQ(result.fit.flight_vertical_offset_m.size(), 2U);
   EXPECT_NEAR(result.fit.flight_vertical_offset_m[0], -15.0, 0.05);
   EXPECT_EQ(result.fit.flight_vertical_offset_m[1], 0.0);
@@ -103,12 +116,12 @@ TEST(Georeference, TooFewOrOnePlaceIsNotOk) {
   test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
   std::vector<Station> stations = Stations(flight);
   for (size_t i = 2; i < stations.size(); ++i) stations[i].gps.reset();
-  EXPECT_FALSE(FitToGps(stations, {}).ok);
+  EXPECT_FALSE(PlaceOnEarth(stations, {}, {}).ok);
   for (Station& station : stations) station.gps.reset();
-  EXPECT_FALSE(FitToGps(stations, {}).ok);
-  EXPECT_FALSE(FitToGps({}, {}).ok);
+  EXPECT_FALSE(PlaceOnEarth(stations, {}, {}).ok);
+  EXPECT_FALSE(PlaceOnEarth({}, {}, {}).ok);
   test::SetTags(flight, [](size_t, const Eigen::Vector3d&) { return Eigen::Vector3d(1.0, 2.0, 3.0); });
-  const Georeference one_place = FitToGps(Stations(flight), {});
+  const Georeference one_place = Place(flight);
   EXPECT_FALSE(one_place.ok);
   EXPECT_FALSE(one_place.reason.empty());
 }
@@ -142,15 +155,13 @@ TEST(SplitFlights, GoesByTimeNotByName) {
 
 TEST(LocalFrame, PutsTheGroundBelowAtAFixedDepth) {
   const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
-  std::vector<Eigen::Vector3d> points;
-  for (const survey::ColmapPoint& point : flight.model.points) points.push_back(point.x_in_world);
   const std::vector<Station> stations = Stations(flight);
-  const geo::Similarity3d local = LocalFrame(stations, points);
-  EXPECT_NEAR((local.rotation * (flight.model_from_enu.rotation * Eigen::Vector3d::UnitZ())).z(), 1.0, 1e-9);
+  const geo::Similarity3d local = LocalFrame(stations, Points(flight), FindGravity(stations, Points(flight)).up);
+  EXPECT_NEAR((local.rotation * (flight.model_from_enu.rotation * Eigen::Vector3d::UnitZ())).z(), 1.0, 1e-5);
   EXPECT_NEAR((local * stations[7].cam_from_model.OriginInSource()).z(), kLocalDepth, 5.0);
 }
 
-TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirPlane) {
+TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirHorizons) {
   std::vector<Station> stations;
   const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
   const Eigen::Quaterniond tilt = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
@@ -166,8 +177,9 @@ TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirPlane) {
     station.cam_from_model.translation = -(station.cam_from_model.rotation * (tilt * centre));
     stations.push_back(station);
   }
-  const geo::Similarity3d local =
-      LocalFrame(stations, {Eigen::Vector3d::Zero(), tilt * Eigen::Vector3d(1.0, 1.0, 0.0), tilt * Eigen::Vector3d(-1.0, 0.5, 0.0)});
+  const std::vector<Eigen::Vector3d> points = {Eigen::Vector3d::Zero(), tilt * Eigen::Vector3d(1.0, 1.0, 0.0),
+                                               tilt * Eigen::Vector3d(-1.0, 0.5, 0.0)};
+  const geo::Similarity3d local = LocalFrame(stations, points, FindGravity(stations, points).up);
   EXPECT_NEAR((local.rotation * up).z(), 1.0, 1e-9);
   EXPECT_GT((local * stations[0].cam_from_model.OriginInSource()).z(), 0.0);
 }

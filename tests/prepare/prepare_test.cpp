@@ -92,8 +92,12 @@ TEST_F(PrepareTest, TagsWithoutAltitudeStillPlaceTheSurvey) {
   Write();
   const survey::Survey survey = Run();
   EXPECT_TRUE(survey.georeferenced);
-  EXPECT_NEAR(survey.origin.height_m, test::kFlightHeight_m, 1e-6);  // RelativeAltitude
-  for (const survey::Photo& photo : survey.photos) EXPECT_TRUE(std::isfinite(photo.gps->height_m));
+  EXPECT_EQ(survey.origin.height_m, 0.0);                                                       // take-off
+  EXPECT_NEAR(survey.photos[7].cam_from_enu.OriginInSource().z(), test::kFlightHeight_m, 5.0);  // RelativeAltitude
+  EXPECT_TRUE(std::isnan(survey.fit.accuracy.vertical_m));
+  ASSERT_FALSE(survey.problems.empty());
+  EXPECT_EQ(survey.problems.front().code, "no_heights");
+  for (const survey::Photo& photo : survey.photos) EXPECT_TRUE(std::isnan(photo.gps->height_m));
 }
 
 TEST_F(PrepareTest, UnusablePhotosAreLeftOutByName) {

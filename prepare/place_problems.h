@@ -1,0 +1,37 @@
+// Says in words what is wrong with the place of a survey, and what to do about it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/survey/geo_fit.h"
+#include "prepare/tag_checks.h"
+
+namespace skyquilt::prepare {
+
+// What a geo-reference found out, as far as its problems depend on it.
+struct PlaceFindings {
+  const survey::GeoFit& fit;
+  std::vector<std::string> disagreeing = {};  // names of photos whose tags do not agree
+  bool gimbal_used = false;
+  bool one_line = false;
+  HeightTags heights = HeightTags::kTagged;
+  double tags_alone_sigma_deg = 0.0;  // accuracy of the tilt of a fit to the tags alone
+  double gravity_sigma_deg = 0.0;     // of gravity without the tags
+  double vertical_span_m = 0.0;       // range of the height errors that were found
+};
+
+// For a survey that has a place; the worst first.
+std::vector<survey::Problem> PlaceProblems(const PlaceFindings& findings);
+
+// For a survey that gets a local frame: why, as a problem. `reason` is a sentence without its full stop.
+survey::Problem NoPlace(const std::string& code, const std::string& reason, const std::string& advice);
+
+// Why the accuracy does not allow to claim a place; empty when it does.
+std::vector<survey::Problem> TooUncertain(const survey::GeoFit& fit);
+
+// Fit and gravity may disagree by this much, the scale be uncertain by this much, before a warning.
+constexpr double kWarnConflict_deg = 2.0;
+constexpr double kWarnScale_percent = 2.0;
+
+}  // namespace skyquilt::prepare

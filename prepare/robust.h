@@ -1,0 +1,43 @@
+// Small tools of robust estimation, shared by the parts of the geo-reference.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace skyquilt::prepare {
+
+// Standard deviation of normal noise over its median absolute value.
+constexpr double kMadToSigma = 1.4826;
+
+// Tukey's biweight for a residual in standard deviations: 1 at 0, 0 beyond 4.685, 95 % as efficient as least squares on normal noise.
+inline double TukeyWeight(double residual) {
+  constexpr double kLimit = 4.685;
+  const double u = residual / kLimit;
+  return std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
+}
+
+// Serial correlation of residuals that are added in the order of time. Neighbours that err alike carry less information than their number says.
+class SerialCorrelation {
+ public:
+  // `series`: 0 to 2, for instance the axis of the residual.
+  void Add(size_t series, double residual) {
+    sum_squares_ += residual * residual;
+    if (any_[series]) products_ += residual * last_[series];
+    last_[series] = residual;
+    any_[series] = true;
+  }
+  // Factor on the variance of a mean of the residuals: (1 + r) / (1 - r) for a first-order process of correlation r in [0, 0.9].
+  double VarianceFactor() const {
+    const double r = sum_squares_ > 0.0 ? std::clamp(products_ / sum_squares_, 0.0, 0.9) : 0.0;
+    return (1.0 + r) / (1.0 - r);
+  }
+
+ private:
+  double sum_squares_ = 0.0, products_ = 0.0;
+  std::array<double, 3> last_{};
+  std::array<bool, 3> any_{};
+};
+
+}  // namespace skyquilt::prepare

@@ -1,0 +1,93 @@
+#include "prepare/tag_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "core/geo/enu_frame.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+// Even a drone that holds its height, and a receiver that rounds to centimetres, vary more than this.
+constexpr double kSameHeight_m = 0.005;
+constexpr double kSamePlace_m = 1.0;
+
+bool Varies(const std::vector<double>& values) {
+  if (values.size() < 2) return !values.empty();
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high - *low > kSameHeight_m;
+}
+
+}  // namespace
+
+HeightTags JudgeHeights(const std::vector<Station>& stations) {
+  std::vector<double> tagged, relative;
+  size_t n_gps = 0;
+  for (const Station& station : stations) {
+    if (!station.gps) continue;
+    ++n_gps;
+    if (std::isfinite(station.gps->height_m)) tagged.push_back(station.gps->height_m);
+    if (station.relative_altitude_m) relative.push_back(*station.relative_altitude_m);
+  }
+  if (Varies(tagged)) return HeightTags::kTagged;
+  const bool all_zero = std::all_of(relative.begin(), relative.end(), [](double height_m) { return height_m == 0.0; });
+  return 2 * relative.size() > n_gps && !all_zero ? HeightTags::kRelative : HeightTags::kUnknown;
+}
+
+bool AllTagsEqual(const std::vector<Station>& stations) {
+  std::optional<geo::EnuFrame> frame;
+  for (const Station& station : stations) {
+    if (!station.gps) continue;
+    const geo::Geodetic place{station.gps->latitude_deg, station.gps->longitude_deg, 0.0};
+    if (!frame) {
+      frame.emplace(place);
+    } else if (!(frame->EnuFromGeodetic(place).norm() <= kSamePlace_m)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>& stations) {
+  struct Kind {
+    const char* code;
+    const char* finding;
+    const char* advice;
+    std::function<geo::Geodetic(const geo::Geodetic&)> repair;
+  };
+  const Kind kinds[] = {
+      {"swapped_coordinates", "latitude and longitude are exchanged in the GPS tags: read the other way round, they fit the camera positions",
+       "Exchange them in the photos (exiftool: \"-GPSLatitude<GPSLongitude\" \"-GPSLongitude<GPSLatitude\" and the two Ref tags likewise, XMP too) "
+       "or "
+       "tag the photos again from the flight log, then run the same command with --restart",
+       [](const geo::Geodetic& p) {
+         return geo::Geodetic{p.longitude_deg, p.latitude_deg, p.height_m};
+       }},
+      {"mirrored_longitude", "the longitudes of the GPS tags have the wrong sign (east for west): with the other sign they fit the camera positions",
+       "Correct GPSLongitudeRef (E or W) in the photos, for instance with exiftool, then run the same command with --restart",
+       [](const geo::Geodetic& p) {
+         return geo::Geodetic{p.latitude_deg, -p.longitude_deg, p.height_m};
+       }},
+      {"mirrored_latitude", "the latitudes of the GPS tags have the wrong sign (north for south): with the other sign they fit the camera positions",
+       "Correct GPSLatitudeRef (N or S) in the photos, for instance with exiftool, then run the same command with --restart",
+       [](const geo::Geodetic& p) {
+         return geo::Geodetic{-p.latitude_deg, p.longitude_deg, p.height_m};
+       }}};
+  std::vector<CoordinateFault> faults;
+  for (const Kind& kind : kinds) {
+    CoordinateFault fault{.problem = {.code = kind.code, .finding = kind.finding, .advice = kind.advice, .about_place = true}, .repaired = stations};
+    bool possible = true;
+    for (Station& station : fault.repaired) {
+      if (!station.gps) continue;
+      const geo::Geodetic place = kind.repair(*station.gps);
+      possible = possible && std::abs(place.latitude_deg) <= 90.0;
+      station.gps = geo::Geodetic{place.latitude_deg, geo::WrapLongitudeDeg(place.longitude_deg), place.height_m};
+    }
+    if (possible) faults.push_back(std::move(fault));
+  }
+  return faults;
+}
+
+}  // namespace skyquilt::prepare

@@ -13,6 +13,7 @@ namespace skyquilt::simulate {
 
 World::World(const PlaceSpec& place, double light_intensity, base::ThreadPool& threads)
     : seed_(HashCell(static_cast<int>(place.seed), 0, 4711U)),
+      hillside_rise_(HillsideRise(place.hillside_deg)),
       sky_(place.sun_azimuth_deg, place.sun_elevation_deg, light_intensity, place.sky_clouds, seed_ + 5U) {
   const Eigen::Vector2d surround = Eigen::Vector2d::Constant(place.surround_m);
   if (place.landscape == Landscape::kCity) {
@@ -32,7 +33,10 @@ const std::vector<Building>& World::buildings() const {
 void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
   city_ = std::make_unique<CityLayout>(place.city, ground_min, ground_max, seed_);
   CityContents& contents = city_->contents();
-  const auto Rolling = [&](double east, double north) { return RollingHeight(east, north, place.terrain_amplitude_m, seed_ + 1U); };
+  const Eigen::Vector2d middle = 0.5 * (place.area_min + place.area_max);
+  const auto Rolling = [&](double east, double north) {
+    return RollingHeight(east, north, place.terrain_amplitude_m, seed_ + 1U) + hillside_rise_.dot(Eigen::Vector2d(east, north) - middle);
+  };
   for (Pond& pond : contents.ponds) {
     pond.level_z_m = Rolling(pond.centre.x(), pond.centre.y()) - 0.5;
   }
@@ -56,9 +60,11 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
     return static_cast<double>(terrain_->Height(static_cast<float>(p.x()), static_cast<float>(p.y())));
   };
   for (size_t i = 0; i < contents.buildings.size(); ++i) {
-    contents.buildings[i].ground_z_m = Ground(contents.buildings[i].centre);
-    building_axis_.push_back(contents.buildings[i].Axis().cast<float>());
-    AddBuilding(contents.buildings[i], static_cast<uint32_t>(i), mesh_);
+    Building& building = contents.buildings[i];
+    building.ground_z_m = Ground(building.centre);
+    building.foundation_m += 0.5 * std::hypot(building.length_m, building.width_m) * hillside_rise_.norm();
+    building_axis_.push_back(building.Axis().cast<float>());
+    AddBuilding(building, static_cast<uint32_t>(i), mesh_);
   }
   for (size_t i = 0; i < contents.trees.size(); ++i) {
     contents.trees[i].ground_z_m = Ground(contents.trees[i].position);
@@ -66,6 +72,7 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
   }
   for (size_t i = 0; i < contents.parked.size(); ++i) {
     contents.parked[i].ground_z_m = Ground(contents.parked[i].position);
+    contents.parked[i].ground_rise = hillside_rise_;
     AddCar(contents.parked[i], static_cast<uint32_t>(i), mesh_);
   }
   base::Random random(seed_, 3);
@@ -95,6 +102,7 @@ MovingScene World::MovingAt(double time_s) const {
   for (size_t i = 0; i < moving_.size(); ++i) {
     Car car = moving_[i].At(time_s);
     car.ground_z_m = static_cast<double>(terrain_->Height(static_cast<float>(car.position.x()), static_cast<float>(car.position.y())));
+    car.ground_rise = hillside_rise_;
     AddCar(car, static_cast<uint32_t>(i), mesh);
     cars.push_back(car);
   }

@@ -47,6 +47,7 @@ class World {
   void AddWater(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double z, uint32_t object);
 
   uint32_t seed_;
+  Eigen::Vector2d hillside_rise_;
   std::unique_ptr<CityLayout> city_;
   std::unique_ptr<TidalChannels> channels_;
   std::unique_ptr<Terrain> terrain_;

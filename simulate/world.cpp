@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "simulate/building_material.h"
 #include "simulate/ground_material.h"
@@ -37,6 +38,10 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
   const auto Rolling = [&](double east, double north) {
     return RollingHeight(east, north, place.terrain_amplitude_m, seed_ + 1U) + hillside_rise_.dot(Eigen::Vector2d(east, north) - middle);
   };
+  // In units of the pond's radius. On a hillside it needs a broader dam.
+  const bool level = place.hillside_deg == 0.0;
+  const float shore_begin = level ? 1.5F : 1.6F;
+  const float shore_end = level ? 1.05F : 1.25F;
   for (Pond& pond : contents.ponds) {
     pond.level_z_m = Rolling(pond.centre.x(), pond.centre.y()) - 0.5;
   }
@@ -44,9 +49,9 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
     double height = Rolling(east, north);
     for (const Pond& pond : contents.ponds) {
       const double r = pond.Radius(east, north);
-      if (r > 1.5) continue;
+      if (r > static_cast<double>(shore_begin)) continue;
       // A level shore, and the basin inside it.
-      const auto shore = static_cast<double>(Smoothstep(1.5F, 1.05F, static_cast<float>(r)));
+      const auto shore = static_cast<double>(Smoothstep(shore_begin, shore_end, static_cast<float>(r)));
       const double basin = pond.level_z_m + (r - 1.0) * 1.6;
       height += shore * (basin - height);
     }
@@ -54,7 +59,12 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
   });
   terrain_->AddTo(mesh_);
   for (size_t i = 0; i < contents.ponds.size(); ++i) {
-    AddWater(contents.ponds[i].centre, 1.3 * contents.ponds[i].radii, contents.ponds[i].level_z_m, static_cast<uint32_t>(i));
+    const auto object = static_cast<uint32_t>(i);
+    if (level) {
+      AddWater(contents.ponds[i].centre, 1.3 * contents.ponds[i].radii, contents.ponds[i].level_z_m, object);
+    } else {
+      AddRoundWater(contents.ponds[i], object);
+    }
   }
   const auto Ground = [&](const Eigen::Vector2d& p) {
     return static_cast<double>(terrain_->Height(static_cast<float>(p.x()), static_cast<float>(p.y())));
@@ -94,6 +104,19 @@ void World::AddWater(const Eigen::Vector2d& centre, const Eigen::Vector2d& half,
     return Eigen::Vector3f(static_cast<float>(centre.x() + x * half.x()), static_cast<float>(centre.y() + y * half.y()), static_cast<float>(z));
   };
   mesh_.AddQuad(Corner(-1, -1), Corner(1, -1), Corner(1, 1), Corner(-1, 1), {Part::kWater, object});
+}
+
+void World::AddRoundWater(const Pond& pond, uint32_t object) {
+  constexpr int kSides = 48;
+  constexpr double kReach = 1.02;
+  const auto Point = [&](double reach, int side) {
+    const double angle = 2.0 * std::numbers::pi * side / kSides;
+    const Eigen::Vector2d at = pond.centre + reach * pond.radii.cwiseProduct(Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    return Eigen::Vector3f(static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(pond.level_z_m));
+  };
+  for (int side = 0; side < kSides; ++side) {
+    mesh_.AddTriangle(Point(0.0, side), Point(kReach, side), Point(kReach, side + 1), {Part::kWater, object});
+  }
 }
 
 MovingScene World::MovingAt(double time_s) const {

@@ -209,10 +209,10 @@ void ApplyHillside(const SimulateOptions& options, PlaceSpec& place) {
   const Eigen::Vector2d block = 2.0 * half.cwiseQuotient(Eigen::Vector2d(place.columns, place.rows));
   // Take-off may be in a hollow and the top on a hill.
   const double rolling = 2.0 * 1.7 * place.terrain_amplitude_m;
+  const auto columns = static_cast<size_t>(place.columns);
   for (size_t i = 0; i < place.altitudes_agl_m.size(); ++i) {
-    const auto columns = static_cast<size_t>(place.columns);
-    const Eigen::Vector2d corner =
-        -half + block.cwiseProduct(Eigen::Vector2d(static_cast<double>(i % columns + 1), static_cast<double>(i / columns + 1)));
+    const size_t row = i / columns;
+    const Eigen::Vector2d corner = -half + block.cwiseProduct(Eigen::Vector2d(static_cast<double>(i % columns + 1), static_cast<double>(row + 1)));
     const double top = HillsideRise(place.hillside_deg).dot(corner) + rolling;
     if (top + kClearance_m <= place.altitudes_agl_m[i]) continue;
     Refuse("hillside_deg", Text(place.hillside_deg),

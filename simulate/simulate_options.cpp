@@ -1,6 +1,7 @@
 #include "simulate/simulate_options.h"
 
 #include "simulate/place_spec.h"
+#include "simulate/simulate.h"
 
 namespace skyquilt::simulate {
 

@@ -97,7 +97,7 @@ TEST_F(HamletSurvey, LayoutIsComplete) {
 TEST_F(HamletSurvey, TagsTellPositionAndExposure) {
   const survey::ColmapModel model = survey::ReadColmapModel(root_ / "two/sparse/0");
   const auto summary = Json("simulate.json");
-  const auto origin = summary["origin"];
+  const auto& origin = summary["origin"];
   const geo::EnuFrame frame({origin["latitude_deg"], origin["longitude_deg"], origin["height_m"]});
   const auto truth = Json("truth/exposure.json")["photos"];
   ASSERT_EQ(truth.size(), model.images.size());

@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kFoundation = 1.5F;
 constexpr float kRoofOverhang = 0.4F;
 constexpr float kParapetThickness = 0.25F;
 
@@ -34,12 +33,12 @@ class Placer {
   float yaw_;
 };
 
-void AddWalls(const Placer& place, float hl, float hw, float eave, Tag tag, Mesh& mesh) {
+void AddWalls(const Placer& place, float hl, float hw, float foundation, float eave, Tag tag, Mesh& mesh) {
   const std::array<std::array<float, 2>, 4> corner = {{{-hl, -hw}, {hl, -hw}, {hl, hw}, {-hl, hw}}};
   for (size_t i = 0; i < 4; ++i) {
     const auto& a = corner[i];
     const auto& b = corner[(i + 1) % 4];
-    mesh.AddQuad(place(a[0], a[1], -kFoundation), place(b[0], b[1], -kFoundation), place(b[0], b[1], eave), place(a[0], a[1], eave), tag);
+    mesh.AddQuad(place(a[0], a[1], -foundation), place(b[0], b[1], -foundation), place(b[0], b[1], eave), place(a[0], a[1], eave), tag);
   }
 }
 
@@ -148,7 +147,7 @@ void AddBuilding(const Building& b, uint32_t index, Mesh& mesh) {
   const auto hw = static_cast<float>(0.5 * b.width_m);
   const auto eave = static_cast<float>(b.eave_height_m);
   const auto ridge = static_cast<float>(b.ridge_height_m);
-  AddWalls(place, hl, hw, eave, {Part::kWall, index}, mesh);
+  AddWalls(place, hl, hw, static_cast<float>(b.foundation_m), eave, {Part::kWall, index}, mesh);
   switch (b.roof) {
     case RoofKind::kFlat:
       AddFlatRoof(b, place, hl, hw, eave, index, mesh);

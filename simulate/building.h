@@ -24,6 +24,7 @@ struct Building {
   double ridge_height_m = 8.0;                       // above ground_z_m; flat roof: the eave height
   double parapet_height_m = 0.0;                     // above a flat roof's deck
   double ground_z_m = 0.0;                           // ENU height of the ground at the centre
+  double foundation_m = 1.5;                         // the walls begin this far below ground_z_m
   uint32_t seed = 0;
 
   // Unit vector of the length axis, east and north.
@@ -36,7 +37,7 @@ struct Building {
   double DistanceTo(const Eigen::Vector2d& point) const;
 };
 
-// Adds the building's triangles, tagged with `index`. Walls start below ground_z_m, so that there is no gap on slopes.
+// Adds the building's triangles, tagged with `index`. The walls' foundation leaves no gap on slopes.
 void AddBuilding(const Building& building, uint32_t index, Mesh& mesh);
 
 }  // namespace skyquilt::simulate

@@ -10,6 +10,22 @@ namespace skyquilt::simulate {
 
 using Eigen::Vector3f;
 
+namespace {
+
+// Shears what was added from vertex `first` on so that it follows the ground.
+void FollowGround(const Car& car, size_t first, Mesh& mesh) {
+  const Eigen::Vector2f rise = car.ground_rise.cast<float>();
+  const Eigen::Vector2f centre = car.position.cast<float>();
+  for (size_t i = first; i < mesh.position.size(); ++i) {
+    mesh.position[i].z() += rise.dot(mesh.position[i].head<2>() - centre);
+    Vector3f& normal = mesh.normal[i];
+    normal.head<2>() -= normal.z() * rise;
+    normal.normalize();
+  }
+}
+
+}  // namespace
+
 Car MovingCar::At(double time_s) const {
   const double driven_m = std::fmod(offset_m + speed_mps * time_s, lane_length_m);
   Car car;
@@ -20,6 +36,7 @@ Car MovingCar::At(double time_s) const {
 }
 
 void AddCar(const Car& car, uint32_t index, Mesh& mesh) {
+  const size_t first = mesh.position.size();
   const auto yaw = static_cast<float>(car.yaw_deg * std::numbers::pi / 180.0);
   const Vector3f u(std::cos(yaw), std::sin(yaw), 0.0F);
   const Vector3f v(-u.y(), u.x(), 0.0F);
@@ -49,6 +66,7 @@ void AddCar(const Car& car, uint32_t index, Mesh& mesh) {
     mesh.AddQuad(low[i], low[j], high[j], high[i], glass);
   }
   mesh.AddQuad(high[0], high[1], high[2], high[3], body);
+  if (!car.ground_rise.isZero()) FollowGround(car, first, mesh);
 }
 
 }  // namespace skyquilt::simulate

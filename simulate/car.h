@@ -13,6 +13,7 @@ struct Car {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  // ENU metres
   double yaw_deg = 0.0;                                // counter-clockwise from east
   double ground_z_m = 0.0;
+  Eigen::Vector2d ground_rise = Eigen::Vector2d::Zero();  // of the ground, per metre to the east and to the north; the car stands along it
   uint32_t seed = 0;
 };
 
@@ -25,7 +26,7 @@ struct MovingCar {
   double speed_mps = 8.0;
   uint32_t seed = 0;
 
-  Car At(double time_s) const;  // the caller must set ground_z_m
+  Car At(double time_s) const;  // the caller must set ground_z_m and ground_rise
 };
 
 // Adds the car's triangles, tagged with `index`.

@@ -24,6 +24,10 @@ double Radians(double deg) {
   return deg * std::numbers::pi / 180.0;
 }
 
+double Degrees(double rad) {
+  return rad * 180.0 / std::numbers::pi;
+}
+
 struct Station {
   Vector2d position;
   double altitude_m;
@@ -41,13 +45,18 @@ std::vector<double> Spread(double low, double high, double spacing) {
   return at;
 }
 
+// Northings of the photos of a nadir line, from the south.
+std::vector<double> AlongLine(const PlaceSpec& place, double south, double north, double altitude_m) {
+  const double along = altitude_m * place.camera.height / place.camera.FocalY() * (1.0 - place.forward_overlap);
+  return Spread(south + place.flight_inset_m, north - place.flight_inset_m, along);
+}
+
 void AddNadirLines(const PlaceSpec& place, const Vector2d& min, const Vector2d& max, double altitude_m, int* line, std::vector<Station>* stations) {
   const double across = altitude_m * place.camera.width / place.camera.FocalX() * (1.0 - place.side_overlap);
-  const double along = altitude_m * place.camera.height / place.camera.FocalY() * (1.0 - place.forward_overlap);
   const double inset = place.flight_inset_m;
   bool north = true;
   for (const double x : Spread(min.x() + inset, max.x() - inset, across)) {
-    std::vector<double> ys = Spread(min.y() + inset, max.y() - inset, along);
+    std::vector<double> ys = AlongLine(place, min.y(), max.y(), altitude_m);
     if (!north) std::reverse(ys.begin(), ys.end());
     for (const double y : ys) stations->push_back({{x, y}, altitude_m, north ? 0.0 : 180.0, -90.0, *line});
     ++*line;
@@ -81,6 +90,13 @@ std::vector<Station> PlanStations(const PlaceSpec& place) {
   std::vector<Station> stations;
   int line = 0;
   const std::vector<double>& altitudes = place.altitudes_agl_m;
+  double mean = 0.0;
+  for (const double altitude : altitudes) mean += altitude / static_cast<double>(altitudes.size());
+  if (place.single_line) {
+    const double middle = 0.5 * (place.area_min.x() + place.area_max.x());
+    for (const double y : AlongLine(place, place.area_min.y(), place.area_max.y(), mean)) stations.push_back({{middle, y}, mean, 0.0, -90.0, line});
+    return stations;
+  }
   if (std::all_of(altitudes.begin(), altitudes.end(), [&](double a) { return a == altitudes.front(); })) {
     AddNadirLines(place, place.area_min, place.area_max, altitudes.front(), &line, &stations);
   } else {
@@ -93,8 +109,6 @@ std::vector<Station> PlanStations(const PlaceSpec& place) {
       }
     }
   }
-  double mean = 0.0;
-  for (const double altitude : altitudes) mean += altitude / static_cast<double>(altitudes.size());
   AddObliqueLines(place, mean, &line, &stations);
   return stations;
 }
@@ -176,6 +190,19 @@ geo::Rigid3d PoseFromGimbal(const Vector3d& position, double yaw_deg, double pit
   return pose;
 }
 
+GimbalAngles GimbalFromPose(const geo::Rigid3d& cam_from_enu) {
+  const Eigen::Matrix3d enu_from_cam = cam_from_enu.rotation.normalized().toRotationMatrix().transpose();
+  const Vector3d right = enu_from_cam.col(0);
+  const Vector3d forward = enu_from_cam.col(2);
+  // Unlike an arcsine, this is accurate near -90 degrees too. Roll is measured from the horizontal that belongs to this yaw, so an uncertain yaw is
+  // made up for.
+  const double pitch = std::atan2(forward.z(), forward.head<2>().norm());
+  const double yaw = std::atan2(forward.x(), forward.y());
+  const Vector3d level(std::cos(yaw), -std::sin(yaw), 0.0);
+  const double roll = std::atan2(forward.cross(level).dot(right), level.dot(right));
+  return {Degrees(yaw), Degrees(pitch), Degrees(roll)};
+}
+
 std::vector<PhotoPlan> PlanFlight(const PlaceSpec& place, double takeoff_z_m) {
   const std::vector<Station> stations = PlanStations(place);
   const std::vector<double> stops = ExposureStops(place, stations.size());
@@ -199,6 +226,7 @@ std::vector<PhotoPlan> PlanFlight(const PlaceSpec& place, double takeoff_z_m) {
     const double noise = place.gps_noise_m;
     const Vector3d gps_error(noise * random.Normal(), noise * random.Normal(), 1.5 * noise * random.Normal());
     photo.tagged_position = position + gps_error;
+    photo.tagged_gimbal = GimbalAngles{photo.yaw_deg, photo.pitch_deg, photo.roll_deg};
     photo.relative_altitude_m = position.z() - takeoff_z_m + 0.15 * random.Normal();
     SetExposure(place.exposure_offset_stops + stops[i], photo);
     photo.exposure_tagged = place.exposure_tags == ExposureTags::kAll || (place.exposure_tags == ExposureTags::kHalf && i % 2 == 0);

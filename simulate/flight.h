@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,12 @@
 #include "simulate/place_spec.h"
 
 namespace skyquilt::simulate {
+
+struct GimbalAngles {
+  double yaw_deg = 0.0;
+  double pitch_deg = 0.0;
+  double roll_deg = 0.0;
+};
 
 struct PhotoPlan {
   std::string name;           // "IMG_0001.jpg", in the order of capture
@@ -20,6 +27,10 @@ struct PhotoPlan {
   double roll_deg = 0.0;
   double relative_altitude_m = 0.0;                           // above the take-off point, with the barometer's error
   Eigen::Vector3d tagged_position = Eigen::Vector3d::Zero();  // ENU metres, true position plus GPS noise
+  std::optional<GimbalAngles> tagged_gimbal;                  // empty: no such tags
+  HeightTags tagged_heights = HeightTags::kTrue;              // of the position and of relative_altitude_m
+  bool coordinates_swapped = false;                           // the tags have latitude and longitude in each other's place
+  std::optional<double> tagged_speed_mps;                     // over ground
   double time_s = 0.0;                                        // since the first photo
   int line = 0;                                               // flight line; nadir lines come first
   bool oblique = false;
@@ -33,7 +44,8 @@ struct PhotoPlan {
 };
 
 // Nadir lines run north and south with the wide side of the photo across them: one flight over the whole area when all blocks have the same altitude,
-// otherwise one per block. Oblique lines follow. takeoff_z_m: ENU height of the ground at take-off.
+// otherwise one per block. Oblique lines follow. takeoff_z_m: ENU height of the ground at take-off. The tags have noise, but not the errors of
+// place.tag_faults, which ApplyTagFaults adds.
 std::vector<PhotoPlan> PlanFlight(const PlaceSpec& place, double takeoff_z_m);
 
 // True factors on linear light relative to normal exposure: red, green, blue.
@@ -41,5 +53,10 @@ std::array<double, 3> LightRgb(const PhotoPlan& photo);
 
 // cam_from_enu of a camera at `position` (ENU metres). Yaw is clockwise from north, pitch -90 looks straight down, roll turns about the optical axis.
 geo::Rigid3d PoseFromGimbal(const Eigen::Vector3d& position, double yaw_deg, double pitch_deg, double roll_deg);
+
+// The angles for which PoseFromGimbal has this rotation; the position has no influence. Yaw and roll are in [-180, 180] and pitch in [-90, 90]. Near
+// pitch -90 and 90 yaw and roll turn about nearly the same axis: a small change of the pose may change both by a lot, but their pose is as accurate
+// as elsewhere.
+GimbalAngles GimbalFromPose(const geo::Rigid3d& cam_from_enu);
 
 }  // namespace skyquilt::simulate

@@ -7,6 +7,7 @@
 #include "core/base/errors.h"
 #include "core/base/text.h"
 #include "simulate/simulate.h"
+#include "simulate/terrain.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -168,6 +169,58 @@ void ApplyExposure(const SimulateOptions& options, PlaceSpec& place) {
   }
 }
 
+void ApplyTagOptions(const SimulateOptions& options, PlaceSpec& place) {
+  TagFaults& faults = place.tag_faults;
+  faults.lag_s = options.tag_lag_s;
+  faults.drift_m = options.tag_drift_m;
+  faults.jump_m = options.tag_jump_m;
+  faults.outlier_share = options.tag_outliers;
+  faults.outlier_m = options.tag_outlier_m;
+  faults.bias_m = options.tag_bias_m;
+  faults.height_offset_m = options.tag_height_offset_m;
+  faults.swapped = options.tags_swapped;
+  faults.equal = options.tags_equal;
+  faults.gimbal_tags = options.gimbal_tags;
+  faults.gimbal_common_error_deg = options.gimbal_common_error_deg;
+  faults.gimbal_random_error_deg = options.gimbal_random_error_deg;
+  faults.speed_tags = options.speed_tags;
+  if (options.tag_heights == "zero") {
+    faults.heights = HeightTags::kZero;
+  } else if (options.tag_heights == "none") {
+    faults.heights = HeightTags::kNone;
+  }
+  // Photos, and outliers above all, may be a degree away from the origin.
+  constexpr double kMaxLongitude_deg = 89.0;
+  constexpr double kMaxLatitude_deg = 80.0;
+  if (faults.swapped && (std::abs(options.longitude_deg) > kMaxLongitude_deg || std::abs(options.latitude_deg) > kMaxLatitude_deg)) {
+    Refuse("tags_swapped", "true",
+           "a longitude beyond 90 degrees would become an impossible latitude; choose longitude_deg within +-" + Text(kMaxLongitude_deg) +
+               " and latitude_deg within +-" + Text(kMaxLatitude_deg));
+  }
+}
+
+void ApplyHillside(const SimulateOptions& options, PlaceSpec& place) {
+  place.hillside_deg = options.hillside_deg;
+  if (place.hillside_deg == 0.0) return;
+  if (place.landscape == Landscape::kTidalFlat)
+    Refuse("hillside_deg", Text(place.hillside_deg), "the water of place 'tidalflat' is level; set it to 0");
+  constexpr double kClearance_m = 10.0;
+  const Eigen::Vector2d half = 0.5 * (place.area_max - place.area_min);
+  const Eigen::Vector2d block = 2.0 * half.cwiseQuotient(Eigen::Vector2d(place.columns, place.rows));
+  // Take-off may be in a hollow and the top on a hill.
+  const double rolling = 2.0 * 1.7 * place.terrain_amplitude_m;
+  const auto columns = static_cast<size_t>(place.columns);
+  for (size_t i = 0; i < place.altitudes_agl_m.size(); ++i) {
+    const size_t row = i / columns;
+    const Eigen::Vector2d corner = -half + block.cwiseProduct(Eigen::Vector2d(static_cast<double>(i % columns + 1), static_cast<double>(row + 1)));
+    const double top = HillsideRise(place.hillside_deg).dot(corner) + rolling;
+    if (top + kClearance_m <= place.altitudes_agl_m[i]) continue;
+    Refuse("hillside_deg", Text(place.hillside_deg),
+           "the hill may rise to " + Text(std::ceil(top)) + " m above take-off below a flight at " + Text(place.altitudes_agl_m[i]) + " m; " +
+               Text(kClearance_m) + " m must be left: choose a gentler slope or higher altitudes");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> PlaceNames() {
@@ -194,8 +247,11 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
   Overlay(options.forward_overlap, place.forward_overlap);
   Overlay(options.side_overlap, place.side_overlap);
   ApplyAltitudes(options.altitudes, place);
-  if (!options.oblique) place.oblique_lines = 0;
+  place.single_line = options.single_line;
+  if (!options.oblique || options.single_line) place.oblique_lines = 0;
+  ApplyHillside(options, place);
   Overlay(options.gps_noise_m, place.gps_noise_m);
+  ApplyTagOptions(options, place);
   ApplyExposure(options, place);
   if (options.moving_cars >= 0) {
     if (place.landscape == Landscape::kTidalFlat && options.moving_cars > 0) {

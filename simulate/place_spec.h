@@ -9,6 +9,7 @@
 
 #include "core/camera/camera.h"
 #include "simulate/simulate_options.h"
+#include "simulate/tag_faults.h"
 
 namespace skyquilt::simulate {
 
@@ -37,6 +38,7 @@ struct PlaceSpec {
   double surround_m = 150.0;  // ground modelled beyond the area on every side
   double terrain_step_m = 2.0;
   double terrain_amplitude_m = 1.5;
+  double hillside_deg = 0.0;  // slope of a plane under the terrain, through z = 0 in the middle of the area, rising to the north-east
   CityPlan city;
   int rows = 2;  // of blocks
   int columns = 2;
@@ -47,8 +49,10 @@ struct PlaceSpec {
   double speed_mps = 8.0;
   int oblique_lines = 0;  // 0, 2 or 4: passes along the edges looking inwards, 30 degrees off nadir
   double oblique_overlap = 0.65;
+  bool single_line = false;  // one nadir line through the middle of the area, from south to north, at the mean altitude, and no oblique lines
   camera::Camera camera;
   double gps_noise_m = 0.5;
+  TagFaults tag_faults;
   double exposure_drift_stops = 0.2;
   double exposure_jumps_stops = 0.0;
   double exposure_offset_stops = 0.0;

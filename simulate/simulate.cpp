@@ -1,6 +1,7 @@
 #include "simulate/simulate.h"
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "core/base/cancel.h"
@@ -9,6 +10,7 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "simulate/flight.h"
+#include "simulate/model_frame.h"
 #include "simulate/photo_renderer.h"
 #include "simulate/place_spec.h"
 #include "simulate/sparse_points.h"
@@ -50,7 +52,8 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   spdlog::info("simulate: building place {}", place.name);
   const World world(place, options.light_intensity, threads);
   const Eigen::Vector2f middle = (0.5 * (place.area_min + place.area_max)).cast<float>();
-  const std::vector<PhotoPlan> photos = PlanFlight(place, static_cast<double>(world.terrain().Height(middle.x(), middle.y())));
+  std::vector<PhotoPlan> photos = PlanFlight(place, static_cast<double>(world.terrain().Height(middle.x(), middle.y())));
+  ApplyTagFaults(place.tag_faults, place.seed, photos);
   const PhotoRenderer renderer(world, place.camera, options.samples_per_pixel, options.soft_shadows);
 
   SimulateSummary summary;
@@ -84,11 +87,17 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   progress.Finish();
   std::vector<survey::ColmapPoint> points = MakeSparsePoints(world, place.camera, photos, seeds, place.seed, threads);
   summary.n_points = static_cast<int>(points.size());
-  WriteModel(folder, place.camera, photos, std::move(points));
+  survey::ColmapModel model = MakeModel(place.camera, photos, std::move(points));
+  std::optional<geo::Similarity3d> model_from_enu;
+  if (!options.exact_frame) {
+    model_from_enu = RandomModelFrame(place.seed);
+    MoveModel(*model_from_enu, model);
+  }
+  WriteModel(folder, model);
   WriteExposureTruth(folder, photos, place);
   WriteBuildingTruth(folder, world.buildings(), place, frame);
   base::ThrowIfCancelled();
-  WriteSummary(folder, place, options, frame, photos.size());
+  WriteSummary(folder, place, options, frame, photos.size(), model_from_enu);
   fs::remove(folder / kStarted);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   spdlog::info("simulate: {} photos ({} test photos), {} points, {} buildings in {}", summary.n_photos, summary.n_test, summary.n_points,

@@ -1,12 +1,12 @@
 // `skyquilt simulate`: makes the photos of a drone survey of an invented place, for tests and demonstrations. Poses, depth, brightness and buildings
 // are known exactly, so results can be compared with the truth. Written to the folder:
 //   images/IMG_0001.jpg ...            photos with EXIF and XMP tags like those of a drone
-//   sparse/0/{cameras,images,points3D}.txt   COLMAP model of the true poses in the ENU frame of the origin, metres
+//   sparse/0/{cameras,images,points3D}.txt   COLMAP model of the true poses in the ENU frame of the origin, metres; without exact_frame in another
 //   truth/depth/<stem>.tiff            depth of the test photos (every test_every-th in name order): metres along the camera's z, NaN = sky
 //   truth/masks/<name>.jpg.png         0 on a moving car or its shadow; only for photos that show one
 //   truth/exposure.json                brightness of every photo
 //   truth/buildings.json               position and size of every building
-//   simulate.json                      place, origin, options, suggested blocks; written last
+//   simulate.json                      place, origin, options, suggested blocks, the true frame of a model without exact_frame; written last
 #pragma once
 
 #include <filesystem>

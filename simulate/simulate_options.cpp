@@ -1,6 +1,7 @@
 #include "simulate/simulate_options.h"
 
 #include "simulate/place_spec.h"
+#include "simulate/simulate.h"
 
 namespace skyquilt::simulate {
 
@@ -44,6 +45,29 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
       {"samples_per_pixel", &O::samples_per_pixel, Range::OneOf({1, 4, 16}), "rays per pixel"},
       {"soft_shadows", &O::soft_shadows, Range(), "spread the shadow rays over the sun's disc"},
       {"jpeg_quality", &O::jpeg_quality, Range{1, 100}, "quality of the JPEG files"},
+      {"single_line", &O::single_line, Range(), "fly only one straight line, from south to north through the middle, looking straight down"},
+      {"hillside_deg", &O::hillside_deg, Range{0, 45},
+       "slope of the whole terrain in degrees, rising to the north-east; the flight keeps its height above take-off"},
+      {"exact_frame", &O::exact_frame, Range(),
+       "COLMAP model in the true frame in metres; false: turned, scaled and shifted at random, as structure from motion makes it"},
+      {"tag_lag_s", &O::tag_lag_s, Range{-5, 10}, "tagged positions are those of this many seconds before the photo"},
+      {"tag_drift_m", &O::tag_drift_m, Range{-1000, 1000}, "tagged heights rise evenly by this many metres from the first to the last photo"},
+      {"tag_jump_m", &O::tag_jump_m, Range{0, 1000},
+       "tagged positions of the last 40 % of the flight are off by this many metres in a random horizontal direction, and upwards by half of it"},
+      {"tag_outliers", &O::tag_outliers, Range{0, 0.9}, "share of the photos, chosen at random, whose tagged positions are wrong by tag_outlier_m"},
+      {"tag_outlier_m", &O::tag_outlier_m, Range{0, 10000}, "error of these positions in metres, each in a random direction in space"},
+      {"tag_bias_m", &O::tag_bias_m, Range{0, 100},
+       "standard deviation per horizontal axis of an error that all tagged positions share, metres; vertically 1.5 times that"},
+      {"tag_height_offset_m", &O::tag_height_offset_m, Range{-1000, 1000}, "added to all tagged heights, as by another height datum, metres"},
+      {"tag_heights", &O::tag_heights, Range::OneOf({"true", "zero", "none"}), "tagged heights, above take-off too: as measured, 0, or not tagged"},
+      {"tags_swapped", &O::tags_swapped, Range(), "latitude and longitude in each other's place in the tags"},
+      {"tags_equal", &O::tags_equal, Range(), "every photo is tagged with the position of the first"},
+      {"gimbal_tags", &O::gimbal_tags, Range(), "tag the gimbal's angles"},
+      {"gimbal_common_error_deg", &O::gimbal_common_error_deg, Range{0, 10},
+       "standard deviation per axis of a tilt that all tagged gimbal angles share, degrees"},
+      {"gimbal_random_error_deg", &O::gimbal_random_error_deg, Range{0, 10},
+       "standard deviation per axis of each photo's own error of the tagged gimbal angles, degrees"},
+      {"speed_tags", &O::speed_tags, Range(), "tag the speed over ground"},
   };
 }
 

@@ -36,6 +36,24 @@ struct SimulateOptions {
   int samples_per_pixel = 4;        // 1, 4 or 16
   bool soft_shadows = true;         // samples spread over the sun's disc
   int jpeg_quality = 95;            // 1..100
+  bool single_line = false;         // fly one straight nadir line only
+  double hillside_deg = 0.0;        // 0..45, slope of the terrain, rising to the north-east
+  bool exact_frame = true;          // false: the COLMAP model is under a random similarity, as structure from motion makes it
+  // Errors of the tags; none by default. See tag_faults.h.
+  double tag_lag_s = 0.0;                // -5..10, the tagged position is where the drone was this long before
+  double tag_drift_m = 0.0;              // -1000..1000, rise of the tagged heights from the first to the last photo
+  double tag_jump_m = 0.0;               // 0..1000, shift of the tags of the last 40 % of the flight
+  double tag_outliers = 0.0;             // 0..0.9, share of the photos
+  double tag_outlier_m = 50.0;           // 0..10000, how far they are off
+  double tag_bias_m = 0.0;               // 0..100, standard deviation of an error that all tags share, per horizontal axis; vertically 1.5 times that
+  double tag_height_offset_m = 0.0;      // -1000..1000, added to all tagged heights
+  std::string tag_heights = "true";      // true, zero or none
+  bool tags_swapped = false;             // latitude and longitude in each other's place
+  bool tags_equal = false;               // every photo has the first one's position
+  bool gimbal_tags = true;               // the photos have gimbal angles
+  double gimbal_common_error_deg = 0.0;  // 0..10, standard deviation per axis of an error of the gimbal angles that all photos share
+  double gimbal_random_error_deg = 0.0;  // 0..10, the same of each photo's own error
+  bool speed_tags = false;               // the photos have their speed over ground
 
   static std::vector<config::Field<SimulateOptions>> Fields();
   // Throws base::UsageError that names the option, its value and what is allowed, in general and for this place.

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/base/file.h"
 #include "core/config/options.h"
 #include "core/image/srgb.h"
-#include "core/survey/exif.h"
+#include "simulate/model_frame.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -67,17 +68,24 @@ image::Image8 Develop(const image::ImageF& rgb_linear, const Development& develo
   return out;
 }
 
-void WritePhoto(const std::filesystem::path& folder, const PhotoPlan& photo, const image::Image8& pixels, const camera::Camera& camera,
-                const geo::EnuFrame& frame, int jpeg_quality) {
-  const std::filesystem::path file = folder / "images" / photo.name;
-  image::SaveJpeg(pixels, file, jpeg_quality);
+survey::PhotoTags MakeTags(const PhotoPlan& photo, const camera::Camera& camera, const geo::EnuFrame& frame) {
   survey::PhotoTags tags;
-  tags.gps = frame.GeodeticFromEnu(photo.tagged_position);
-  tags.absolute_altitude_m = Rounded(tags.gps->height_m, 0.01);
-  tags.relative_altitude_m = Rounded(photo.relative_altitude_m, 0.01);
-  tags.gimbal_yaw_deg = Rounded(std::remainder(photo.yaw_deg, 360.0), 0.01);
-  tags.gimbal_pitch_deg = Rounded(photo.pitch_deg, 0.01);
-  tags.gimbal_roll_deg = Rounded(photo.roll_deg, 0.01);
+  geo::Geodetic gps = frame.GeodeticFromEnu(photo.tagged_position);
+  if (photo.coordinates_swapped) std::swap(gps.latitude_deg, gps.longitude_deg);
+  if (photo.tagged_heights == HeightTags::kZero) gps.height_m = 0.0;
+  if (photo.tagged_heights == HeightTags::kNone) {
+    gps.height_m = std::numeric_limits<double>::quiet_NaN();
+  } else {
+    tags.absolute_altitude_m = Rounded(gps.height_m, 0.01);
+    tags.relative_altitude_m = photo.tagged_heights == HeightTags::kZero ? 0.0 : Rounded(photo.relative_altitude_m, 0.01);
+  }
+  tags.gps = gps;
+  if (photo.tagged_gimbal) {
+    tags.gimbal_yaw_deg = Rounded(std::remainder(photo.tagged_gimbal->yaw_deg, 360.0), 0.01);
+    tags.gimbal_pitch_deg = Rounded(photo.tagged_gimbal->pitch_deg, 0.01);
+    tags.gimbal_roll_deg = Rounded(photo.tagged_gimbal->roll_deg, 0.01);
+  }
+  tags.speed_mps = photo.tagged_speed_mps;
   if (photo.exposure_tagged) tags.exposure = {photo.exposure_time_s, photo.f_number, photo.iso};
   // A sensor 13.2 mm wide, as on common survey drones.
   tags.focal_length_mm = Rounded(13.2 * camera.FocalX() / camera.width, 0.01);
@@ -85,15 +93,25 @@ void WritePhoto(const std::filesystem::path& folder, const PhotoPlan& photo, con
   tags.capture_time_s = kFirstPhoto_s + photo.time_s;
   tags.make = "Skyquilt";
   tags.model = "Simulated";
-  survey::WritePhotoTags(tags, file);
+  return tags;
 }
 
-void WriteModel(const std::filesystem::path& folder, const camera::Camera& camera, const std::vector<PhotoPlan>& photos,
-                std::vector<survey::ColmapPoint> points) {
+void WritePhoto(const std::filesystem::path& folder, const PhotoPlan& photo, const image::Image8& pixels, const camera::Camera& camera,
+                const geo::EnuFrame& frame, int jpeg_quality) {
+  const std::filesystem::path file = folder / "images" / photo.name;
+  image::SaveJpeg(pixels, file, jpeg_quality);
+  survey::WritePhotoTags(MakeTags(photo, camera, frame), file);
+}
+
+survey::ColmapModel MakeModel(const camera::Camera& camera, const std::vector<PhotoPlan>& photos, std::vector<survey::ColmapPoint> points) {
   survey::ColmapModel model;
   model.cameras[1] = camera;
   for (size_t i = 0; i < photos.size(); ++i) model.images.push_back({static_cast<uint32_t>(i + 1), 1, photos[i].name, photos[i].cam_from_enu});
   model.points = std::move(points);
+  return model;
+}
+
+void WriteModel(const std::filesystem::path& folder, const survey::ColmapModel& model) {
   std::filesystem::create_directories(folder / "sparse" / "0");
   survey::WriteColmapText(model, folder / "sparse" / "0");
 }
@@ -151,22 +169,29 @@ void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<B
 }
 
 void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, const SimulateOptions& options, const geo::EnuFrame& frame,
-                  size_t n_photos) {
+                  size_t n_photos, const std::optional<geo::Similarity3d>& model_from_enu) {
   const geo::Geodetic& origin = frame.origin();
-  const Json json = {{"place", place.name},
-                     {"seed", place.seed},
-                     {"photos", n_photos},
-                     {"origin", {{"latitude_deg", origin.latitude_deg}, {"longitude_deg", origin.longitude_deg}, {"height_m", origin.height_m}}},
-                     {"exact_frame", true},
-                     {"gps_noise_m", place.gps_noise_m},
-                     {"test_every", options.test_every},
-                     {"options", OptionsJson(options)},
-                     {"blocks",
-                      {{"rows", place.rows},
-                       {"columns", place.columns},
-                       {"min_enu", {place.area_min.x(), place.area_min.y()}},
-                       {"max_enu", {place.area_max.x(), place.area_max.y()}},
-                       {"altitudes_agl_m", place.altitudes_agl_m}}}};
+  Json json = {{"place", place.name},
+               {"seed", place.seed},
+               {"photos", n_photos},
+               {"origin", {{"latitude_deg", origin.latitude_deg}, {"longitude_deg", origin.longitude_deg}, {"height_m", origin.height_m}}},
+               {"exact_frame", !model_from_enu},
+               {"gps_noise_m", place.gps_noise_m},
+               {"test_every", options.test_every},
+               {"options", OptionsJson(options)},
+               {"blocks",
+                {{"rows", place.rows},
+                 {"columns", place.columns},
+                 {"min_enu", {place.area_min.x(), place.area_min.y()}},
+                 {"max_enu", {place.area_max.x(), place.area_max.y()}},
+                 {"altitudes_agl_m", place.altitudes_agl_m}}}};
+  if (model_from_enu) {
+    const geo::Similarity3d enu_from_model = Inverse(*model_from_enu);
+    const Eigen::Quaterniond& r = enu_from_model.rotation;
+    const Eigen::Vector3d& t = enu_from_model.translation;
+    json["truth"] = {{"enu_from_model",
+                      {{"scale", enu_from_model.scale}, {"rotation_wxyz", {r.w(), r.x(), r.y(), r.z()}}, {"translation_m", {t.x(), t.y(), t.z()}}}}};
+  }
   base::WriteFileAtomically(folder / "simulate.json", json.dump(1) + "\n");
 }
 

@@ -4,10 +4,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "core/geo/enu_frame.h"
 #include "core/survey/colmap_model.h"
+#include "core/survey/exif.h"
 #include "simulate/building.h"
 #include "simulate/flight.h"
 #include "simulate/photo_renderer.h"
@@ -26,19 +28,23 @@ struct Development {
 // Linear light times gain times vignetting, clipped to [0, 1] and converted to sRGB. Vignetting is exp(log(1 - vignetting) r^2), where r is the
 // distance from the principal point, 1 at the farthest corner.
 image::Image8 Develop(const image::ImageF& rgb_linear, const Development& development);
-// images/<name> with EXIF and XMP tags; exposure tags only if photo.exposure_tagged.
+// What the photo's EXIF and XMP tags say. `frame`: of the plan's ENU metres.
+survey::PhotoTags MakeTags(const PhotoPlan& photo, const camera::Camera& camera, const geo::EnuFrame& frame);
+// images/<name> with these tags.
 void WritePhoto(const std::filesystem::path& folder, const PhotoPlan& photo, const image::Image8& pixels, const camera::Camera& camera,
                 const geo::EnuFrame& frame, int jpeg_quality);
-// sparse/0: cameras, images and points3D as text; image ids are index + 1.
-void WriteModel(const std::filesystem::path& folder, const camera::Camera& camera, const std::vector<PhotoPlan>& photos,
-                std::vector<survey::ColmapPoint> points);
+// The true poses in ENU metres; image ids are index + 1.
+survey::ColmapModel MakeModel(const camera::Camera& camera, const std::vector<PhotoPlan>& photos, std::vector<survey::ColmapPoint> points);
+// sparse/0: cameras, images and points3D as text.
+void WriteModel(const std::filesystem::path& folder, const survey::ColmapModel& model);
 // truth/exposure.json
 void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const PlaceSpec& place);
 // truth/buildings.json
 void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<Building>& buildings, const PlaceSpec& place,
                         const geo::EnuFrame& frame);
-// simulate.json: options, origin and suggested blocks. Written last, so it exists only when the survey is complete.
+// simulate.json: options, origin and suggested blocks. Written last, so it exists only when the survey is complete. model_from_enu: nothing if the
+// model is in the exact frame.
 void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, const SimulateOptions& options, const geo::EnuFrame& frame,
-                  size_t n_photos);
+                  size_t n_photos, const std::optional<geo::Similarity3d>& model_from_enu);
 
 }  // namespace skyquilt::simulate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/errors.h"
 #include "simulate/noise.h"
@@ -61,6 +62,10 @@ void Terrain::AddTo(Mesh& mesh) const {
       mesh.tag.insert(mesh.tag.end(), 2, Tag{Part::kGround, 0});
     }
   }
+}
+
+Eigen::Vector2d HillsideRise(double slope_deg) {
+  return Eigen::Vector2d::Constant(std::tan(slope_deg * std::numbers::pi / 180.0) / std::numbers::sqrt2);
 }
 
 double RollingHeight(double east, double north, double amplitude_m, uint32_t seed) {

@@ -36,4 +36,7 @@ class Terrain {
 // Gentle hills with wavelengths of 60 to 240 m; heights within about +-1.7 amplitude_m.
 double RollingHeight(double east, double north, double amplitude_m, uint32_t seed);
 
+// Rise of a hillside of this slope per metre to the east and to the north; it rises to the north-east.
+Eigen::Vector2d HillsideRise(double slope_deg);
+
 }  // namespace skyquilt::simulate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "simulate/building_material.h"
 #include "simulate/ground_material.h"
@@ -13,6 +14,7 @@ namespace skyquilt::simulate {
 
 World::World(const PlaceSpec& place, double light_intensity, base::ThreadPool& threads)
     : seed_(HashCell(static_cast<int>(place.seed), 0, 4711U)),
+      hillside_rise_(HillsideRise(place.hillside_deg)),
       sky_(place.sun_azimuth_deg, place.sun_elevation_deg, light_intensity, place.sky_clouds, seed_ + 5U) {
   const Eigen::Vector2d surround = Eigen::Vector2d::Constant(place.surround_m);
   if (place.landscape == Landscape::kCity) {
@@ -32,7 +34,14 @@ const std::vector<Building>& World::buildings() const {
 void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
   city_ = std::make_unique<CityLayout>(place.city, ground_min, ground_max, seed_);
   CityContents& contents = city_->contents();
-  const auto Rolling = [&](double east, double north) { return RollingHeight(east, north, place.terrain_amplitude_m, seed_ + 1U); };
+  const Eigen::Vector2d middle = 0.5 * (place.area_min + place.area_max);
+  const auto Rolling = [&](double east, double north) {
+    return RollingHeight(east, north, place.terrain_amplitude_m, seed_ + 1U) + hillside_rise_.dot(Eigen::Vector2d(east, north) - middle);
+  };
+  // In units of the pond's radius. On a hillside it needs a broader dam.
+  const bool level = place.hillside_deg == 0.0;
+  const float shore_begin = level ? 1.5F : 1.6F;
+  const float shore_end = level ? 1.05F : 1.25F;
   for (Pond& pond : contents.ponds) {
     pond.level_z_m = Rolling(pond.centre.x(), pond.centre.y()) - 0.5;
   }
@@ -40,9 +49,9 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
     double height = Rolling(east, north);
     for (const Pond& pond : contents.ponds) {
       const double r = pond.Radius(east, north);
-      if (r > 1.5) continue;
+      if (r > static_cast<double>(shore_begin)) continue;
       // A level shore, and the basin inside it.
-      const auto shore = static_cast<double>(Smoothstep(1.5F, 1.05F, static_cast<float>(r)));
+      const auto shore = static_cast<double>(Smoothstep(shore_begin, shore_end, static_cast<float>(r)));
       const double basin = pond.level_z_m + (r - 1.0) * 1.6;
       height += shore * (basin - height);
     }
@@ -50,15 +59,22 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
   });
   terrain_->AddTo(mesh_);
   for (size_t i = 0; i < contents.ponds.size(); ++i) {
-    AddWater(contents.ponds[i].centre, 1.3 * contents.ponds[i].radii, contents.ponds[i].level_z_m, static_cast<uint32_t>(i));
+    const auto object = static_cast<uint32_t>(i);
+    if (level) {
+      AddWater(contents.ponds[i].centre, 1.3 * contents.ponds[i].radii, contents.ponds[i].level_z_m, object);
+    } else {
+      AddRoundWater(contents.ponds[i], object);
+    }
   }
   const auto Ground = [&](const Eigen::Vector2d& p) {
     return static_cast<double>(terrain_->Height(static_cast<float>(p.x()), static_cast<float>(p.y())));
   };
   for (size_t i = 0; i < contents.buildings.size(); ++i) {
-    contents.buildings[i].ground_z_m = Ground(contents.buildings[i].centre);
-    building_axis_.push_back(contents.buildings[i].Axis().cast<float>());
-    AddBuilding(contents.buildings[i], static_cast<uint32_t>(i), mesh_);
+    Building& building = contents.buildings[i];
+    building.ground_z_m = Ground(building.centre);
+    building.foundation_m += 0.5 * std::hypot(building.length_m, building.width_m) * hillside_rise_.norm();
+    building_axis_.push_back(building.Axis().cast<float>());
+    AddBuilding(building, static_cast<uint32_t>(i), mesh_);
   }
   for (size_t i = 0; i < contents.trees.size(); ++i) {
     contents.trees[i].ground_z_m = Ground(contents.trees[i].position);
@@ -66,6 +82,7 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
   }
   for (size_t i = 0; i < contents.parked.size(); ++i) {
     contents.parked[i].ground_z_m = Ground(contents.parked[i].position);
+    contents.parked[i].ground_rise = hillside_rise_;
     AddCar(contents.parked[i], static_cast<uint32_t>(i), mesh_);
   }
   base::Random random(seed_, 3);
@@ -89,12 +106,26 @@ void World::AddWater(const Eigen::Vector2d& centre, const Eigen::Vector2d& half,
   mesh_.AddQuad(Corner(-1, -1), Corner(1, -1), Corner(1, 1), Corner(-1, 1), {Part::kWater, object});
 }
 
+void World::AddRoundWater(const Pond& pond, uint32_t object) {
+  constexpr int kSides = 48;
+  constexpr double kReach = 1.02;
+  const auto Point = [&](double reach, int side) {
+    const double angle = 2.0 * std::numbers::pi * side / kSides;
+    const Eigen::Vector2d at = pond.centre + reach * pond.radii.cwiseProduct(Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    return Eigen::Vector3f(static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(pond.level_z_m));
+  };
+  for (int side = 0; side < kSides; ++side) {
+    mesh_.AddTriangle(Point(0.0, side), Point(kReach, side), Point(kReach, side + 1), {Part::kWater, object});
+  }
+}
+
 MovingScene World::MovingAt(double time_s) const {
   std::vector<Car> cars;
   Mesh mesh;
   for (size_t i = 0; i < moving_.size(); ++i) {
     Car car = moving_[i].At(time_s);
     car.ground_z_m = static_cast<double>(terrain_->Height(static_cast<float>(car.position.x()), static_cast<float>(car.position.y())));
+    car.ground_rise = hillside_rise_;
     AddCar(car, static_cast<uint32_t>(i), mesh);
     cars.push_back(car);
   }

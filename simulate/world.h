@@ -44,9 +44,13 @@ class World {
  private:
   void BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
   void BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  // A rectangle, which the ground covers where there is no water.
   void AddWater(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double z, uint32_t object);
+  // Not beyond the shore, as the ground beside a pond on a hillside may be lower than the water.
+  void AddRoundWater(const Pond& pond, uint32_t object);
 
   uint32_t seed_;
+  Eigen::Vector2d hillside_rise_;
   std::unique_ptr<CityLayout> city_;
   std::unique_ptr<TidalChannels> channels_;
   std::unique_ptr<Terrain> terrain_;

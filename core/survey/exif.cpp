@@ -1,5 +1,6 @@
 #include "core/survey/exif.h"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -18,6 +19,11 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::optional<double> Finite(double value) {
   return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
+}
+
+// Where 0 means "not given".
+std::optional<double> Positive(std::optional<double> value) {
+  return value && *value > 0.0 ? value : std::nullopt;
 }
 
 // Component `index` of a number tag; nothing for 0/0, n/0, a wrong type or too few components.
@@ -65,20 +71,33 @@ std::string XmpText(const Exiv2::XmpData& xmp, std::string_view name) {
   return {};
 }
 
+// The number at the start of `text`, which is removed together with spaces around it. A plus sign may lead.
+std::optional<double> TakeNumber(std::string_view* text) {
+  constexpr std::string_view kSpaces = " \t\r\n";
+  text->remove_prefix(std::min(text->find_first_not_of(kSpaces), text->size()));
+  if (text->starts_with('+') && !text->starts_with("+-")) text->remove_prefix(1);
+  double value = 0.0;
+  const auto result = std::from_chars(text->data(), text->data() + text->size(), value);
+  if (result.ec != std::errc()) return std::nullopt;
+  text->remove_prefix(static_cast<size_t>(result.ptr - text->data()));
+  text->remove_prefix(std::min(text->find_first_not_of(kSpaces), text->size()));
+  return value;
+}
+
+// Nothing when the text is more than a number, such as "12abc": what it means is unknown then.
 std::optional<double> XmpNumber(const Exiv2::XmpData& xmp, std::string_view name) {
   const std::string text = XmpText(xmp, name);
   std::string_view rest = text;
-  while (!rest.empty() && (rest.front() == ' ' || rest.front() == '+')) rest.remove_prefix(1);
-  double value = 0.0;
-  const auto result = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-  if (result.ec != std::errc()) return std::nullopt;
+  std::optional<double> value = TakeNumber(&rest);
+  if (!value) return std::nullopt;
   // Some vendors write rationals ("1500/10").
-  if (result.ptr != rest.data() + rest.size() && *result.ptr == '/') {
-    double denominator = 0.0;
-    if (std::from_chars(result.ptr + 1, rest.data() + rest.size(), denominator).ec != std::errc() || denominator == 0.0) return std::nullopt;
-    value /= denominator;
+  if (rest.starts_with('/')) {
+    rest.remove_prefix(1);
+    const std::optional<double> denominator = TakeNumber(&rest);
+    if (!denominator || *denominator == 0.0) return std::nullopt;
+    *value /= *denominator;
   }
-  return Finite(value);
+  return rest.empty() ? Finite(*value) : std::nullopt;
 }
 
 std::optional<double> ExifAngle(const Exiv2::ExifData& exif, const char* value_key, const char* reference_key, char negative) {
@@ -120,22 +139,47 @@ std::optional<geo::Geodetic> ReadPosition(const Exiv2::ExifData& exif, const Exi
   return geo::Geodetic{*latitude, geo::WrapLongitudeDeg(*longitude), altitude.value_or(kNan)};
 }
 
+// Drones without RTK write zeros into its tags.
+void ReadAccuracy(const Exiv2::ExifData& exif, const Exiv2::XmpData& xmp, PhotoTags& tags) {
+  const std::optional<double> east = Positive(XmpNumber(xmp, "RtkStdLon"));
+  const std::optional<double> north = Positive(XmpNumber(xmp, "RtkStdLat"));
+  tags.horizontal_accuracy_m = std::max(east, north);  // nothing counts as less than a number
+  if (!tags.horizontal_accuracy_m) tags.horizontal_accuracy_m = Positive(XmpNumber(xmp, "GPSXYAccuracy"));
+  if (!tags.horizontal_accuracy_m) tags.horizontal_accuracy_m = Positive(ExifNumber(exif, kGpsHPositioningError));
+  tags.vertical_accuracy_m = Positive(XmpNumber(xmp, "RtkStdHgt"));
+  if (!tags.vertical_accuracy_m) tags.vertical_accuracy_m = Positive(XmpNumber(xmp, "GPSZAccuracy"));
+  tags.dop = Positive(ExifNumber(exif, "Exif.GPSInfo.GPSDOP"));
+}
+
+// 0 is a speed: the drone may have hovered.
+std::optional<double> ReadSpeed(const Exiv2::ExifData& exif, const Exiv2::XmpData& xmp) {
+  const std::optional<double> x_mps = XmpNumber(xmp, "FlightXSpeed");
+  const std::optional<double> y_mps = XmpNumber(xmp, "FlightYSpeed");
+  if (x_mps && y_mps) return std::hypot(*x_mps, *y_mps);
+  const std::optional<double> speed = ExifNumber(exif, "Exif.GPSInfo.GPSSpeed");
+  if (!speed || *speed < 0.0) return std::nullopt;
+  const std::string unit = ExifText(exif, "Exif.GPSInfo.GPSSpeedRef");
+  if (unit == "M") return *speed * 1609.344 / 3600.0;    // miles per hour
+  if (unit == "N") return *speed * 1852.0 / 3600.0;      // knots
+  if (unit == "K" || unit.empty()) return *speed / 3.6;  // km/h, also where the unit is missing
+  return std::nullopt;
+}
+
 ExposureSettings ReadExposure(const Exiv2::ExifData& exif) {
   ExposureSettings exposure;
-  const auto positive = [](std::optional<double> value) { return value && *value > 0.0 ? value : std::nullopt; };
-  exposure.time_s = positive(ExifNumber(exif, "Exif.Photo.ExposureTime"));
+  exposure.time_s = Positive(ExifNumber(exif, "Exif.Photo.ExposureTime"));
   if (!exposure.time_s) {
-    if (const auto apex = ExifNumber(exif, "Exif.Photo.ShutterSpeedValue")) exposure.time_s = positive(Finite(std::exp2(-*apex)));
+    if (const auto apex = ExifNumber(exif, "Exif.Photo.ShutterSpeedValue")) exposure.time_s = Positive(Finite(std::exp2(-*apex)));
   }
-  exposure.f_number = positive(ExifNumber(exif, "Exif.Photo.FNumber"));
+  exposure.f_number = Positive(ExifNumber(exif, "Exif.Photo.FNumber"));
   if (!exposure.f_number) {
-    if (const auto apex = ExifNumber(exif, "Exif.Photo.ApertureValue")) exposure.f_number = positive(Finite(std::exp2(*apex / 2.0)));
+    if (const auto apex = ExifNumber(exif, "Exif.Photo.ApertureValue")) exposure.f_number = Positive(Finite(std::exp2(*apex / 2.0)));
   }
-  exposure.iso = positive(ExifNumber(exif, "Exif.Photo.ISOSpeedRatings"));
+  exposure.iso = Positive(ExifNumber(exif, "Exif.Photo.ISOSpeedRatings"));
   // 65535 means that the value is in one of the 32-bit tags (EXIF 2.3).
   if (!exposure.iso || *exposure.iso >= 65535.0) {
     for (const char* key : {"Exif.Photo.RecommendedExposureIndex", "Exif.Photo.ISOSpeed", "Exif.Photo.StandardOutputSensitivity"}) {
-      if (const auto iso = positive(ExifNumber(exif, key))) {
+      if (const auto iso = Positive(ExifNumber(exif, key))) {
         exposure.iso = iso;
         break;
       }
@@ -184,6 +228,8 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
     tags.gps = ReadPosition(exif, xmp, tags.absolute_altitude_m);
     constexpr double kRtkFixed = 50.0;
     tags.rtk = XmpNumber(xmp, "RtkFlag").value_or(0.0) == kRtkFixed;
+    ReadAccuracy(exif, xmp, tags);
+    tags.speed_mps = ReadSpeed(exif, xmp);
     tags.gimbal_yaw_deg = XmpNumber(xmp, "GimbalYawDegree");
     tags.gimbal_pitch_deg = XmpNumber(xmp, "GimbalPitchDegree");
     tags.gimbal_roll_deg = XmpNumber(xmp, "GimbalRollDegree");

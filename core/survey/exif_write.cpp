@@ -17,6 +17,7 @@ std::unique_lock<std::mutex> LockExiv2() {
     Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
     Exiv2::XmpParser::initialize();
     Exiv2::XmpProperties::registerNs("http://www.dji.com/drone-dji/1.0/", "drone-dji");
+    Exiv2::XmpProperties::registerNs("http://pix4d.com/camera/1.0/", "Camera");
     return true;
   }();
   static_cast<void>(ready);
@@ -64,6 +65,28 @@ void SetPosition(Exiv2::ExifData& exif, Exiv2::XmpData& xmp, const geo::Geodetic
   }
 }
 
+// With RTK as DJI does it. Without, DJI's drones say nothing: then EXIF's own tag, and Pix4D's for heights, for which EXIF has none.
+void SetAccuracy(Exiv2::ExifData& exif, Exiv2::XmpData& xmp, const PhotoTags& tags) {
+  if (tags.dop) SetRational(exif, "Exif.GPSInfo.GPSDOP", *tags.dop, 1000);
+  if (tags.rtk) {
+    if (tags.horizontal_accuracy_m) {
+      const std::string horizontal = Format("%.5f", *tags.horizontal_accuracy_m);
+      xmp["Xmp.drone-dji.RtkStdLon"] = horizontal;
+      xmp["Xmp.drone-dji.RtkStdLat"] = horizontal;
+    }
+    if (tags.vertical_accuracy_m) xmp["Xmp.drone-dji.RtkStdHgt"] = Format("%.5f", *tags.vertical_accuracy_m);
+    return;
+  }
+  if (tags.horizontal_accuracy_m) SetRational(exif, kGpsHPositioningError, *tags.horizontal_accuracy_m, 10'000);
+  if (tags.vertical_accuracy_m) xmp["Xmp.Camera.GPSZAccuracy"] = Format("%.5f", *tags.vertical_accuracy_m);
+}
+
+// In EXIF, as the direction is not known that DJI's FlightXSpeed and FlightYSpeed need.
+void SetSpeed(Exiv2::ExifData& exif, double speed_mps) {
+  exif["Exif.GPSInfo.GPSSpeedRef"] = "K";
+  SetRational(exif, "Exif.GPSInfo.GPSSpeed", 3.6 * speed_mps, 10'000);
+}
+
 void SetCaptureTime(Exiv2::ExifData& exif, double capture_time_s) {
   // Rounded once, so that 0.9999 s carries into the next second.
   const int64_t milliseconds = std::llround(capture_time_s * 1000.0);
@@ -98,6 +121,8 @@ void WritePhotoTags(const PhotoTags& tags, const std::filesystem::path& file) {
     if (tags.absolute_altitude_m) xmp["Xmp.drone-dji.AbsoluteAltitude"] = Format("%+.3f", *tags.absolute_altitude_m);
     if (tags.relative_altitude_m) xmp["Xmp.drone-dji.RelativeAltitude"] = Format("%+.3f", *tags.relative_altitude_m);
     if (tags.rtk) xmp["Xmp.drone-dji.RtkFlag"] = "50";
+    SetAccuracy(exif, xmp, tags);
+    if (tags.speed_mps) SetSpeed(exif, *tags.speed_mps);
     if (tags.gimbal_yaw_deg) xmp["Xmp.drone-dji.GimbalYawDegree"] = Format("%+.2f", *tags.gimbal_yaw_deg);
     if (tags.gimbal_pitch_deg) xmp["Xmp.drone-dji.GimbalPitchDegree"] = Format("%+.2f", *tags.gimbal_pitch_deg);
     if (tags.gimbal_roll_deg) xmp["Xmp.drone-dji.GimbalRollDegree"] = Format("%+.2f", *tags.gimbal_roll_deg);

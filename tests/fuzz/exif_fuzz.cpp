@@ -16,6 +16,10 @@ std::vector<std::string> Seeds() {
   tags.gps = geo::Geodetic{46.5, 7.25, 812.0};
   tags.relative_altitude_m = 100.0;
   tags.gimbal_pitch_deg = -90.0;
+  tags.horizontal_accuracy_m = 1.5;
+  tags.vertical_accuracy_m = 2.5;
+  tags.dop = 1.2;
+  tags.speed_mps = 8.0;
   tags.exposure.time_s = 1.0 / 320.0;
   tags.exposure.f_number = 2.8;
   tags.exposure.iso = 100.0;

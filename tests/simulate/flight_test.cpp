@@ -9,6 +9,8 @@
 #include <functional>
 #include <map>
 
+#include "core/base/random.h"
+
 namespace skyquilt::simulate {
 namespace {
 
@@ -71,6 +73,64 @@ TEST(Flight, GimbalAnglesGiveThePose) {
   // A level camera keeps the horizon level; roll turns it.
   EXPECT_NEAR((oblique.rotation * Eigen::Vector3d(0, 0, 1)).x(), 0.0, 1e-12);
   EXPECT_GT(std::abs((PoseFromGimbal(position, 90.0, -30.0, 5.0).rotation * Eigen::Vector3d(0, 0, 1)).x()), 0.01);
+}
+
+// Straight down and up too, where yaw and roll cannot be told apart, and next to it.
+TEST(Flight, GimbalAnglesOfAPoseGiveItsRotationBack) {
+  base::Random random(7);
+  std::vector<GimbalAngles> cases;
+  for (const double pitch : {-90.0, 90.0, 0.0, -60.0}) {
+    for (const double off : {0.0, 1e-13, 1e-10, 1e-8, 1e-6, 1e-3, 0.5}) {
+      for (int i = 0; i < 20; ++i)
+        cases.push_back({random.Uniform(-180.0, 180.0), pitch + (pitch > 0.0 ? -off : off), random.Uniform(-180.0, 180.0)});
+    }
+  }
+  for (const GimbalAngles& angles : cases) {
+    const geo::Rigid3d pose = PoseFromGimbal({1, 2, 3}, angles.yaw_deg, angles.pitch_deg, angles.roll_deg);
+    const GimbalAngles found = GimbalFromPose(pose);
+    EXPECT_LE(std::abs(found.yaw_deg), 180.0);
+    EXPECT_LE(std::abs(found.pitch_deg), 90.0);
+    EXPECT_LE(std::abs(found.roll_deg), 180.0);
+    const geo::Rigid3d again = PoseFromGimbal({1, 2, 3}, found.yaw_deg, found.pitch_deg, found.roll_deg);
+    EXPECT_LT((again.rotation.toRotationMatrix() - pose.rotation.toRotationMatrix()).cwiseAbs().maxCoeff(), 1e-13)
+        << angles.yaw_deg << " " << angles.pitch_deg << " " << angles.roll_deg;
+    // Away from the poles each angle is itself.
+    if (std::abs(std::abs(angles.pitch_deg) - 90.0) < 0.1) continue;
+    EXPECT_NEAR(std::remainder(found.yaw_deg - angles.yaw_deg, 360.0), 0.0, 1e-9);
+    EXPECT_NEAR(found.pitch_deg, angles.pitch_deg, 1e-9);
+    EXPECT_NEAR(std::remainder(found.roll_deg - angles.roll_deg, 360.0), 0.0, 1e-9);
+  }
+  // Rotations that were not made from angles.
+  for (int i = 0; i < 500; ++i) {
+    const Eigen::Quaterniond rotation = Eigen::Quaterniond(random.Normal(), random.Normal(), random.Normal(), random.Normal()).normalized();
+    const GimbalAngles found = GimbalFromPose({rotation, Eigen::Vector3d::Zero()});
+    const geo::Rigid3d again = PoseFromGimbal(Eigen::Vector3d::Zero(), found.yaw_deg, found.pitch_deg, found.roll_deg);
+    EXPECT_LT((again.rotation.toRotationMatrix() - rotation.toRotationMatrix()).cwiseAbs().maxCoeff(), 1e-13);
+  }
+}
+
+TEST(Flight, ASingleLineGoesNorthThroughTheMiddle) {
+  for (const char* name : {"town", "smallcity"}) {
+    SimulateOptions options;
+    options.place = name;
+    options.single_line = true;
+    const PlaceSpec place = ResolvePlace(options);
+    const std::vector<PhotoPlan> photos = PlanFlight(place, 0.0);
+    ASSERT_GE(photos.size(), 5U);
+    double mean = 0.0;
+    for (const double altitude : place.altitudes_agl_m) mean += altitude / static_cast<double>(place.altitudes_agl_m.size());
+    double north = -1e9;
+    for (const PhotoPlan& photo : photos) {
+      const Eigen::Vector3d at = photo.cam_from_enu.OriginInSource();
+      EXPECT_NEAR(at.x(), 0.5 * (place.area_min.x() + place.area_max.x()), 1.5);
+      EXPECT_NEAR(at.z(), mean, 1.5);
+      EXPECT_GT(at.y(), north);
+      north = at.y();
+      EXPECT_FALSE(photo.oblique);
+      EXPECT_EQ(photo.line, 0);
+    }
+    EXPECT_GT(north, 0.7 * place.area_max.y());
+  }
 }
 
 TEST(Flight, GainsAreRelativeToTheMedianAndMatchTheTags) {

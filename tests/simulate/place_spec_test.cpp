@@ -72,6 +72,22 @@ TEST(Presets, LightIsAsTheTagsTellUnlessAskedFor) {
   EXPECT_EQ(ResolvePlace(options).exposure_tags, ExposureTags::kNone);
 }
 
+TEST(Presets, TagsAreRightUnlessAskedFor) {
+  SimulateOptions options;
+  const TagFaults none = ResolvePlace(options).tag_faults;
+  EXPECT_EQ(none.lag_s, 0.0);
+  EXPECT_EQ(none.drift_m, 0.0);
+  EXPECT_EQ(none.jump_m, 0.0);
+  EXPECT_EQ(none.outlier_share, 0.0);
+  EXPECT_EQ(none.bias_m, 0.0);
+  EXPECT_EQ(none.height_offset_m, 0.0);
+  EXPECT_EQ(none.heights, HeightTags::kTrue);
+  EXPECT_FALSE(none.swapped || none.equal || none.speed_tags);
+  EXPECT_TRUE(none.gimbal_tags);
+  EXPECT_EQ(none.gimbal_common_error_deg, 0.0);
+  EXPECT_EQ(none.gimbal_random_error_deg, 0.0);
+}
+
 void ExpectRefused(const std::string& named, const std::function<void(SimulateOptions&)>& change) {
   SimulateOptions options;
   options.place = "town";
@@ -112,10 +128,54 @@ TEST(Presets, BadOptionsAreRefusedByName) {
   ExpectRefused("test_every", [](SimulateOptions& o) { o.test_every = 0; });
   ExpectRefused("samples_per_pixel", [](SimulateOptions& o) { o.samples_per_pixel = 5; });
   ExpectRefused("light_intensity", [](SimulateOptions& o) { o.light_intensity = 0.0; });
+  ExpectRefused("tag_heights", [](SimulateOptions& o) { o.tag_heights = "wrong"; });
+  ExpectRefused("tag_outliers", [](SimulateOptions& o) { o.tag_outliers = 1.0; });
+  ExpectRefused("tag_lag_s", [](SimulateOptions& o) { o.tag_lag_s = 11.0; });
+  ExpectRefused("gimbal_random_error_deg", [&](SimulateOptions& o) { o.gimbal_random_error_deg = nan; });
   ExpectRefused("jpeg_quality", [](SimulateOptions& o) { o.jpeg_quality = 101; });
   ExpectRefused("moving_cars", [](SimulateOptions& o) {
     o.place = "tidalflat";
     o.moving_cars = 2;
+  });
+}
+
+// A swapped longitude of more than 90 degrees is no latitude.
+TEST(Presets, SwappedTagsNeedALongitudeThatCanBeALatitude) {
+  const auto swapped = [](double latitude, double longitude) {
+    return [=](SimulateOptions& o) {
+      o.tags_swapped = true;
+      o.latitude_deg = latitude;
+      o.longitude_deg = longitude;
+    };
+  };
+  ExpectRefused("tags_swapped", swapped(-33.9, 151.2));
+  ExpectRefused("longitude_deg", swapped(46.8, -92.0));
+  ExpectRefused("latitude_deg", swapped(89.0, 10.0));
+  SimulateOptions options;
+  swapped(47.0, 88.0)(options);
+  EXPECT_TRUE(ResolvePlace(options).tag_faults.swapped);
+}
+
+TEST(Presets, AHillMustStayBelowTheFlight) {
+  SimulateOptions options;
+  options.place = "town";
+  options.hillside_deg = 8.0;
+  EXPECT_EQ(ResolvePlace(options).hillside_deg, 8.0);
+  // The corner is 141 m from the middle: 75 m higher at 28 degrees.
+  options.hillside_deg = 24.0;
+  EXPECT_EQ(ResolvePlace(options).hillside_deg, 24.0);
+  ExpectRefused("hillside_deg", [](SimulateOptions& o) { o.hillside_deg = 28.5; });
+  options.hillside_deg = 28.5;
+  options.altitudes = {120.0};
+  EXPECT_EQ(ResolvePlace(options).hillside_deg, 28.5);
+  // Only the block in the north-east is in danger.
+  options.altitudes = {85.0, 85.0, 85.0, 120.0};
+  EXPECT_EQ(ResolvePlace(options).hillside_deg, 28.5);
+  options.altitudes = {120.0, 120.0, 120.0, 85.0};
+  EXPECT_THROW(ResolvePlace(options), base::UsageError);
+  ExpectRefused("hillside_deg", [](SimulateOptions& o) {
+    o.place = "tidalflat";
+    o.hillside_deg = 1.0;
   });
 }
 

@@ -97,7 +97,7 @@ TEST_F(HamletSurvey, LayoutIsComplete) {
 TEST_F(HamletSurvey, TagsTellPositionAndExposure) {
   const survey::ColmapModel model = survey::ReadColmapModel(root_ / "two/sparse/0");
   const auto summary = Json("simulate.json");
-  const auto origin = summary["origin"];
+  const auto& origin = summary["origin"];
   const geo::EnuFrame frame({origin["latitude_deg"], origin["longitude_deg"], origin["height_m"]});
   const auto truth = Json("truth/exposure.json")["photos"];
   ASSERT_EQ(truth.size(), model.images.size());
@@ -202,6 +202,45 @@ TEST_F(HamletSurvey, PhotosAreNeitherFlatNorClipped) {
     EXPECT_LT(sum / n, 180.0);
     EXPECT_GT(std::sqrt(squares / n - sum / n * sum / n), 20.0);
     EXPECT_LT(static_cast<double>(n_clipped), 0.02 * n);
+  }
+}
+
+// The same survey in a frame of structure from motion, with errors in the tags.
+TEST_F(HamletSurvey, FaultsAreInModelAndTagsOnly) {
+  SimulateOptions options = Hamlet();
+  options.exact_frame = false;
+  options.tag_height_offset_m = 50.0;
+  options.tag_lag_s = 2.0;
+  options.gimbal_tags = false;
+  options.speed_tags = true;
+  base::ThreadPool threads(2);
+  Simulate(options, root_ / "faults", threads);
+  EXPECT_TRUE(ReadTree(root_ / "faults/truth") == ReadTree(root_ / "two/truth"));
+  EXPECT_FALSE(Json("simulate.json").contains("truth"));
+  const auto summary = nlohmann::json::parse(base::ReadFile(root_ / "faults/simulate.json"));
+  EXPECT_EQ(summary["exact_frame"], false);
+  const auto& stored = summary["truth"]["enu_from_model"];
+  const auto q = stored["rotation_wxyz"].get<std::vector<double>>();
+  const auto t = stored["translation_m"].get<std::vector<double>>();
+  const geo::Similarity3d enu_from_model{stored["scale"].get<double>(), Eigen::Quaterniond(q[0], q[1], q[2], q[3]), {t[0], t[1], t[2]}};
+  const survey::ColmapModel exact = survey::ReadColmapModel(root_ / "two/sparse/0");
+  const survey::ColmapModel moved = survey::ReadColmapModel(root_ / "faults/sparse/0");
+  ASSERT_EQ(moved.images.size(), exact.images.size());
+  ASSERT_EQ(moved.points.size(), exact.points.size());
+  for (size_t i = 0; i < exact.points.size(); ++i) {
+    EXPECT_LT((enu_from_model * moved.points[i].x_in_world - exact.points[i].x_in_world).norm(), 1e-6);
+  }
+  for (size_t i = 0; i < exact.images.size(); ++i) {
+    const geo::Rigid3d back = geo::TransformCameraWorld(moved.images[i].cam_from_world, enu_from_model);
+    EXPECT_LT((back.OriginInSource() - exact.images[i].cam_from_world.OriginInSource()).norm(), 1e-6);
+    EXPECT_LT(back.rotation.angularDistance(exact.images[i].cam_from_world.rotation), 1e-9);
+    const fs::path name = exact.images[i].name;
+    EXPECT_TRUE(image::LoadRgb8(root_ / "faults/images" / name).data == image::LoadRgb8(root_ / "two/images" / name).data);
+    const survey::PhotoTags tags = survey::ReadPhotoTags(root_ / "faults/images" / name);
+    EXPECT_FALSE(tags.gimbal_pitch_deg);
+    ASSERT_TRUE(tags.gps && tags.speed_mps);
+    EXPECT_NEAR(tags.gps->height_m, 408.0 + 45.0 + 50.0, 4.0);
+    EXPECT_NEAR(*tags.speed_mps, 4.8, 1.0);
   }
 }
 

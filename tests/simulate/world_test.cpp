@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "simulate/flight.h"
 #include "simulate/photo_renderer.h"
@@ -153,6 +154,97 @@ TEST_F(TownWorld, CarsMoveAndAreMasked) {
   const image::ImageF far = renderer.Depth(pose, after, *threads_);
   EXPECT_GT(*far.At(16, 15) - *near.At(16, 15), 1.0F);
   EXPECT_LT(*far.At(16, 15) - *near.At(16, 15), 2.3F);
+}
+
+class HillsideWorld : public testing::Test {
+ protected:
+  static constexpr double kSlope_deg = 20.0;
+  static void SetUpTestSuite() {
+    base::ThreadPool threads(2);
+    SimulateOptions options;
+    options.place = "town";
+    options.hillside_deg = kSlope_deg;
+    PlaceSpec place = ResolvePlace(options);
+    place.city.tree_detail = 0;
+    place.ambient_voxel_m = 24.0;
+    world_ = new World(place, 1.0, threads);
+  }
+  static void TearDownTestSuite() { delete world_; }
+
+  static double Ground(double east, double north) {
+    return static_cast<double>(world_->terrain().Height(static_cast<float>(east), static_cast<float>(north)));
+  }
+  // The vertices of this part of the scene.
+  static std::vector<Eigen::Vector3d> Vertices(const Mesh& mesh, Part part) {
+    std::vector<Eigen::Vector3d> found;
+    for (size_t i = 0; i < mesh.triangle.size(); ++i) {
+      if (mesh.tag[i].part != part) continue;
+      for (const uint32_t vertex : mesh.triangle[i]) found.push_back(mesh.position[vertex].cast<double>());
+    }
+    return found;
+  }
+
+  static World* world_;
+};
+World* HillsideWorld::world_ = nullptr;
+
+TEST_F(HillsideWorld, RisesToTheNorthEast) {
+  // A plane through heights at a grid of points.
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (double east = -100.0; east <= 100.0; east += 10.0) {
+    for (double north = -100.0; north <= 100.0; north += 10.0) {
+      const Eigen::Vector3d row(east, north, 1.0);
+      normal += row * row.transpose();
+      right += Ground(east, north) * row;
+    }
+  }
+  const Eigen::Vector3d plane = normal.ldlt().solve(right);
+  // Rolling ground and ponds bend it by a degree or so.
+  EXPECT_NEAR(std::atan(plane.head<2>().norm()) * 180.0 / M_PI, kSlope_deg, 1.5);
+  EXPECT_NEAR(plane.x() / plane.y(), 1.0, 0.1);
+  EXPECT_NEAR(plane.z(), 0.0, 2.0);
+}
+
+TEST_F(HillsideWorld, BuildingsHaveNoGapBelow) {
+  for (const Building& b : world_->buildings()) {
+    EXPECT_NEAR(b.ground_z_m, Ground(b.centre.x(), b.centre.y()), 1e-4);
+    const Eigen::Vector2d u = b.Axis();
+    const Eigen::Vector2d v(-u.y(), u.x());
+    for (const double x : {-0.5, 0.5}) {
+      for (const double y : {-0.5, 0.5}) {
+        const Eigen::Vector2d corner = b.centre + x * b.length_m * u + y * b.width_m * v;
+        EXPECT_LT(b.ground_z_m - b.foundation_m, Ground(corner.x(), corner.y()));
+      }
+    }
+  }
+}
+
+// Cars would be half a metre in the air at one end if they stood level.
+TEST_F(HillsideWorld, CarsStandAlongTheGround) {
+  const MovingScene moving = world_->MovingAt(4.0);
+  for (const Mesh* mesh : {&world_->mesh(), &moving.mesh}) {
+    const std::vector<Eigen::Vector3d> tyres = Vertices(*mesh, Part::kCarTyre);
+    ASSERT_GT(tyres.size(), 10U);
+    for (const Eigen::Vector3d& vertex : tyres) {
+      const double above = vertex.z() - Ground(vertex.x(), vertex.y());
+      EXPECT_GT(above, -0.45);
+      EXPECT_LT(above, 0.65);
+    }
+  }
+}
+
+TEST_F(HillsideWorld, PondsStayWithinTheirShores) {
+  const std::vector<Eigen::Vector3d> water = Vertices(world_->mesh(), Part::kWater);
+  ASSERT_GT(water.size(), 30U);
+  for (const Eigen::Vector3d& vertex : water) EXPECT_LT(vertex.z() - Ground(vertex.x(), vertex.y()), 1.7);
+  int n_edge = 0;
+  for (size_t i = 0; i < water.size(); ++i) {
+    if (i % 3 == 0) continue;  // the middle of the pond
+    EXPECT_LT(water[i].z() - Ground(water[i].x(), water[i].y()), 0.1);
+    ++n_edge;
+  }
+  EXPECT_GT(n_edge, 20);
 }
 
 TEST_F(TownWorld, LightIsFiniteAndShadowsAreDarker) {

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <exiv2/exiv2.hpp>
 #include <fstream>
+#include <limits>
+#include <string>
 
 #include "core/base/errors.h"
 #include "core/image/image.h"
@@ -97,8 +99,121 @@ TEST(Exif, EveryTagSurvivesTheRoundTrip) {
   EXPECT_EQ(read.model, "FC300S");
 }
 
+TEST(Exif, AccuracyAndSpeedSurviveTheRoundTripWithAndWithoutRtk) {
+  PhotoTags tags;
+  tags.horizontal_accuracy_m = 0.0123;
+  tags.vertical_accuracy_m = 0.0271;
+  tags.dop = 1.25;
+  tags.speed_mps = 13.417;
+  for (const bool rtk : {true, false}) {
+    tags.rtk = rtk;
+    const PhotoTags read = RoundTrip(tags);
+    EXPECT_EQ(read.rtk, rtk);
+    ASSERT_TRUE(read.horizontal_accuracy_m && read.vertical_accuracy_m && read.dop && read.speed_mps) << rtk;
+    EXPECT_NEAR(*read.horizontal_accuracy_m, 0.0123, 1e-9);
+    EXPECT_NEAR(*read.vertical_accuracy_m, 0.0271, 1e-9);
+    EXPECT_NEAR(*read.dop, 1.25, 1e-9);
+    EXPECT_NEAR(*read.speed_mps, 13.417, 2e-5);
+  }
+  tags.speed_mps = 0.0;
+  EXPECT_EQ(RoundTrip(tags).speed_mps, 0.0);
+}
+
+TEST(Exif, AnUnknownHeightIsNotWritten) {
+  PhotoTags tags;
+  tags.gps = geo::Geodetic{46.0, 7.0, std::numeric_limits<double>::quiet_NaN()};
+  const PhotoTags read = RoundTrip(tags);
+  ASSERT_TRUE(read.gps);
+  EXPECT_NEAR(read.gps->latitude_deg, 46.0, 1e-9);
+  EXPECT_TRUE(std::isnan(read.gps->height_m));
+  EXPECT_FALSE(read.absolute_altitude_m);
+}
+
+TEST(Exif, RtkAccuracyIsTheLargerOfTheTwoAndZeroIsNone) {
+  const PhotoTags both = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData& xmp) {
+    xmp["Xmp.drone-dji.RtkStdLon"] = "0.01";
+    xmp["Xmp.drone-dji.RtkStdLat"] = "+0.03";
+    xmp["Xmp.drone-dji.RtkStdHgt"] = "0.05";
+    exif["Exif.GPSInfo.0x001f"] = Exiv2::URational(5, 1);
+  });
+  EXPECT_EQ(both.horizontal_accuracy_m, 0.03);
+  EXPECT_EQ(both.vertical_accuracy_m, 0.05);
+  // As drones without RTK write it.
+  const PhotoTags none = ReadForged([](Exiv2::ExifData&, Exiv2::XmpData& xmp) {
+    for (const char* key : {"Xmp.drone-dji.RtkStdLon", "Xmp.drone-dji.RtkStdLat", "Xmp.drone-dji.RtkStdHgt"}) xmp[key] = "0.00000";
+  });
+  EXPECT_FALSE(none.horizontal_accuracy_m);
+  EXPECT_FALSE(none.vertical_accuracy_m);
+  const PhotoTags exif_only = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData& xmp) {
+    xmp["Xmp.drone-dji.RtkStdLon"] = "0.0";
+    exif["Exif.GPSInfo.0x001f"] = Exiv2::URational(45, 10);
+    exif["Exif.GPSInfo.GPSDOP"] = Exiv2::URational(0, 1);
+  });
+  EXPECT_EQ(exif_only.horizontal_accuracy_m, 4.5);
+  EXPECT_FALSE(exif_only.vertical_accuracy_m);
+  EXPECT_FALSE(exif_only.dop);
+}
+
+// Pix4D's namespace is written with and without a slash at its end.
+TEST(Exif, Pix4dAccuracyIsReadBeforeExif) {
+  for (const std::string uri : {"http://pix4d.com/camera/1.0", "http://pix4d.com/camera/1.0/"}) {
+    const TemporaryFolder folder;
+    const auto file = MakeJpeg(folder);
+    const auto image = Exiv2::ImageFactory::open(file.string());
+    image->readMetadata();
+    image->exifData()["Exif.GPSInfo.0x001f"] = Exiv2::URational(9, 1);
+    image->setXmpPacket(R"(<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">)"
+                        R"(<rdf:Description rdf:about="" xmlns:Camera=")" +
+                        uri + R"(" Camera:GPSXYAccuracy="1.5" Camera:GPSZAccuracy="2.25"/></rdf:RDF></x:xmpmeta>)");
+    image->writeXmpFromPacket(true);
+    image->writeMetadata();
+    const PhotoTags tags = ReadPhotoTags(file);
+    EXPECT_EQ(tags.horizontal_accuracy_m, 1.5) << uri;
+    EXPECT_EQ(tags.vertical_accuracy_m, 2.25) << uri;
+  }
+}
+
+TEST(Exif, SpeedComesFromDjiFirstAndExifHasThreeUnits) {
+  const PhotoTags dji = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData& xmp) {
+    xmp["Xmp.drone-dji.FlightXSpeed"] = "+3.0";
+    xmp["Xmp.drone-dji.FlightYSpeed"] = "-4.0";
+    xmp["Xmp.drone-dji.FlightZSpeed"] = "+1.0";
+    exif["Exif.GPSInfo.GPSSpeed"] = Exiv2::URational(99, 1);
+  });
+  EXPECT_NEAR(*dji.speed_mps, 5.0, 1e-12);
+  const auto read = [](const char* unit) {
+    return ReadForged([&](Exiv2::ExifData& exif, Exiv2::XmpData&) {
+             exif["Exif.GPSInfo.GPSSpeed"] = Exiv2::URational(360, 10);
+             if (*unit != '\0') exif["Exif.GPSInfo.GPSSpeedRef"] = unit;
+           })
+        .speed_mps;
+  };
+  EXPECT_NEAR(*read("K"), 10.0, 1e-12);
+  EXPECT_NEAR(*read("M"), 16.093440, 1e-9);
+  EXPECT_NEAR(*read("N"), 18.52, 1e-9);
+  EXPECT_NEAR(*read(""), 10.0, 1e-12);
+  EXPECT_FALSE(read("X"));
+}
+
+TEST(Exif, NumbersWithOtherTextAreAbsent) {
+  const auto read = [](const char* text) {
+    return ReadForged([&](Exiv2::ExifData&, Exiv2::XmpData& xmp) { xmp["Xmp.drone-dji.RelativeAltitude"] = text; }).relative_altitude_m;
+  };
+  EXPECT_EQ(read("12"), 12.0);
+  EXPECT_EQ(read("  +12.5 \n"), 12.5);
+  EXPECT_EQ(read("-1e1 "), -10.0);
+  EXPECT_EQ(read("1500/10"), 150.0);
+  EXPECT_EQ(read("1500/10 "), 150.0);
+  for (const char* text : {"12abc", "12 m", "12,5", "1500/10x", "1500/", "1500/0", "+-12", "abc", " ", "nan", "inf"})
+    EXPECT_FALSE(read(text)) << text;
+}
+
 TEST(Exif, AnUntaggedPhotoHasNoTags) {
   const PhotoTags read = RoundTrip({});
+  EXPECT_FALSE(read.horizontal_accuracy_m);
+  EXPECT_FALSE(read.vertical_accuracy_m);
+  EXPECT_FALSE(read.dop);
+  EXPECT_FALSE(read.speed_mps);
   EXPECT_FALSE(read.gps);
   EXPECT_FALSE(read.relative_altitude_m);
   EXPECT_FALSE(read.exposure.time_s);

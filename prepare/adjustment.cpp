@@ -18,7 +18,6 @@ using Eigen::Vector3d;
 
 constexpr int kAdjustmentRounds = 30;
 constexpr Index kGlobal = 8;  // rotation 3, log scale, position 3, lag
-constexpr double kRayleighMedian = 1.17741;
 // Tukey's weights make the weighted sum of squares of normal noise smaller by this factor.
 constexpr double kTukeySquares = 0.828;
 constexpr double kLeastNoise_m = 0.01;

@@ -14,6 +14,7 @@
 #include "prepare/height_bias.h"
 #include "prepare/horizontal_fit.h"
 #include "prepare/place_problems.h"
+#include "prepare/robust.h"
 #include "prepare/tag_checks.h"
 #include "prepare/track.h"
 
@@ -30,10 +31,12 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kCommonHorizontal = 0.5;
 constexpr double kCommonVertical = 2.0 / 3.0;
 // Receivers lag by up to a few seconds; RTK drones record the time of exposure.
-constexpr double kLagSigma_s = 1.0;
+constexpr double kLagSigma_s = 1.5;
 constexpr double kRtkLagSigma_s = 0.05;
 constexpr double kFirstLag_s = -1.5, kLastLag_s = 5.0, kLagStep_s = 0.25;
 constexpr double kLineRatio = 0.05;
+constexpr double kLeastThreshold_m = 1.0;
+constexpr double kThresholdSigmas = 2.0;
 constexpr double kMaxUsefulSigma_deg = 5.0;
 
 double Pick(const Vector3d& x, int axis) {
@@ -195,13 +198,31 @@ std::vector<double> LagsToTry(const Survey& survey) {
   return lags;
 }
 
+// Standard deviation per axis of the tags by the differences of neighbours, which a jump or a wrong fit hardly changes.
+double LocalNoise(const std::vector<Vector2d>& residuals) {
+  std::vector<double> sizes;
+  sizes.reserve(residuals.size());
+  for (size_t k = 1; k < residuals.size(); ++k) sizes.push_back((residuals[k] - residuals[k - 1]).norm());
+  return sizes.empty() ? 0.0 : base::Median(sizes) / (kRayleighMedian * std::numbers::sqrt2);
+}
+
 HorizontalFit FitLevelled(const Survey& survey, const std::vector<Tag>& tags, const Matrix3d& level_from_model) {
   std::vector<Vector2d> targets;
   targets.reserve(tags.size());
   for (const Tag& tag : tags) targets.push_back(tag.x_in_enu.head<2>());
-  return FitHorizontally(
-      targets, [&](size_t k, double lag_s) { return Vector2d((level_from_model * survey.track.Before(tags[k].station, lag_s).position).head<2>()); },
-      {.threshold_m = survey.options.ransac_threshold_m, .lags_s = LagsToTry(survey), .seed = static_cast<uint64_t>(survey.options.seed)});
+  const auto level = [&](size_t k, double lag_s) {
+    return Vector2d((level_from_model * survey.track.Before(tags[k].station, lag_s).position).head<2>());
+  };
+  HorizontalFitOptions options{
+      .threshold_m = survey.options.ransac_threshold_m, .lags_s = LagsToTry(survey), .seed = static_cast<uint64_t>(survey.options.seed)};
+  HorizontalFit fit = FitHorizontally(targets, level, options);
+  if (!fit.ok) return fit;
+  // With a threshold that suits the noise, a fit that compromises between two groups of tags loses against one that follows the larger group.
+  std::vector<Vector2d> residuals(tags.size());
+  for (size_t k = 0; k < tags.size(); ++k) residuals[k] = fit.enu_from_level * level(k, fit.lag_s) - targets[k];
+  options.threshold_m = std::min(options.threshold_m, std::max(kLeastThreshold_m, kThresholdSigmas * LocalNoise(residuals)));
+  HorizontalFit narrow = FitHorizontally(targets, level, options);
+  return narrow.n_inliers >= kMinAgreeing ? narrow : fit;
 }
 
 // The similarity of a horizontal fit; its height comes from the median of the tags.
@@ -409,13 +430,19 @@ void FitTags(const Survey& survey, const Gravity& gravity, HeightTags heights, G
   result.problems = PlaceProblems(findings);
 }
 
-// When most tags disagree: are their coordinates written wrongly in one of the usual ways?
-std::optional<survey::Problem> CoordinateProblem(const Survey& survey, const Gravity& gravity, int n_agreeing, int n_tags) {
+// When most tags disagree: are their coordinates written wrongly in one of the usual ways? A mirrored line is a line, so photos on one line cannot
+// tell.
+std::optional<survey::Problem> CoordinateProblem(const Survey& survey, const Gravity& gravity, int n_tags) {
   const Matrix3d level_from_model = Eigen::Quaterniond::FromTwoVectors(gravity.up, Vector3d::UnitZ()).toRotationMatrix();
+  if (LineRatio(survey.stations, level_from_model) < kLineRatio) return std::nullopt;
+  const auto agreeing = [&](const std::vector<Station>& stations) {
+    const std::vector<Tag> tags = CollectTags(stations, survey.track.order(), MedianPosition(stations), HeightTags::kUnknown);
+    return FitLevelled({stations, survey.track, survey.flight, survey.options}, tags, level_from_model).n_inliers;
+  };
+  const int as_given = agreeing(survey.stations);
   for (const CoordinateFault& fault : PossibleCoordinateFaults(survey.stations)) {
-    const std::vector<Tag> tags = CollectTags(fault.repaired, survey.track.order(), MedianPosition(fault.repaired), HeightTags::kUnknown);
-    const HorizontalFit fit = FitLevelled({fault.repaired, survey.track, survey.flight, survey.options}, tags, level_from_model);
-    if (fit.n_inliers >= kMinAgreeing && 2 * fit.n_inliers > n_tags && 2 * fit.n_inliers > 3 * n_agreeing) return fault.problem;
+    const int repaired = agreeing(fault.repaired);
+    if (repaired >= kMinAgreeing && 2 * repaired > n_tags && 2 * repaired > 3 * as_given) return fault.problem;
   }
   return std::nullopt;
 }
@@ -446,7 +473,7 @@ Georeference PlaceOnEarth(const std::vector<Station>& stations, const std::vecto
     const Survey survey{stations, track, result.flight, options};
     FitTags(survey, gravity, JudgeHeights(stations), result);
     if (2 * result.fit.n_inliers < result.fit.n_matches) {
-      if (const auto fault = CoordinateProblem(survey, gravity, result.fit.n_inliers, result.fit.n_matches)) {
+      if (const auto fault = CoordinateProblem(survey, gravity, result.fit.n_matches)) {
         result.ok = false;
         result.problems = {NoPlace(fault->code, fault->finding, fault->advice)};
       }

@@ -48,12 +48,21 @@ Matrix3d Information(const Basis& basis, const Eigen::Matrix2d& covariance) {
   return basis * covariance.inverse() * basis.transpose();
 }
 
-// One camera's statement: in its frame, up has these components along some of its axes.
+// One camera's statement: up in its frame, of which only the components along some directions count.
 struct Statement {
   Matrix3d cam_from_model;
   Vector3d up_in_cam;  // as stated
-  std::array<bool, 3> axes;
+  Basis directions;    // unit vectors in the camera's frame, perpendicular to up
+  int n_directions = 2;
 };
+
+Statement MakeStatement(const Matrix3d& cam_from_model, const Vector3d& up_in_cam) {
+  Statement statement{.cam_from_model = cam_from_model, .up_in_cam = up_in_cam, .directions = Basis::Zero()};
+  const Vector3d right = Vector3d::UnitX() - up_in_cam.x() * up_in_cam;
+  statement.directions.col(0) = right.norm() > 1e-3 ? Vector3d(right.normalized()) : Vector3d::UnitY();
+  statement.directions.col(1) = up_in_cam.cross(statement.directions.col(0));
+  return statement;
+}
 
 struct AngleNoise {
   double common_deg;  // prior of an error of rotation that all cameras share, per axis
@@ -71,13 +80,11 @@ UpEvidence SolveUp(const std::vector<Statement>& statements, const Vector3d& sta
     std::vector<Eigen::Vector3d> residuals;
     std::vector<double> sizes;
     residuals.reserve(statements.size());
-    sizes.reserve(3 * statements.size());
+    sizes.reserve(2 * statements.size());
     for (const Statement& statement : statements) {
       const Vector3d residual = statement.cam_from_model * result.up - statement.up_in_cam - common.cross(statement.up_in_cam);
       residuals.push_back(residual);
-      for (int axis = 0; axis < 3; ++axis) {
-        if (statement.axes[static_cast<size_t>(axis)]) sizes.push_back(std::abs(residual[axis]));
-      }
+      for (int i = 0; i < statement.n_directions; ++i) sizes.push_back(std::abs(statement.directions.col(i).dot(residual)));
     }
     sigma = std::max(noise.least_deg * kRadiansPerDegree, kMadToSigma * base::Median(sizes));
     Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
@@ -90,12 +97,13 @@ UpEvidence SolveUp(const std::vector<Statement>& statements, const Vector3d& sta
       const Vector3d& s = statement.up_in_cam;
       // d(common x s) = -[s]x d(common), and the residual subtracts it.
       jacobian.rightCols<3>() << 0.0, -s.z(), s.y(), s.z(), 0.0, -s.x(), -s.y(), s.x(), 0.0;
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!statement.axes[static_cast<size_t>(axis)]) continue;
-        const double weight = TukeyWeight(residuals[i][axis] / sigma);
-        normal += weight * jacobian.row(axis).transpose() * jacobian.row(axis);
-        right += weight * jacobian.row(axis).transpose() * residuals[i][axis];
-        correlation.Add(static_cast<size_t>(axis), std::sqrt(weight) * residuals[i][axis]);
+      for (int k = 0; k < statement.n_directions; ++k) {
+        const Eigen::Matrix<double, 1, 5> row = statement.directions.col(k).transpose() * jacobian;
+        const double residual = statement.directions.col(k).dot(residuals[i]);
+        const double weight = TukeyWeight(residual / sigma);
+        normal += weight * row.transpose() * row;
+        right += weight * row.transpose() * residual;
+        correlation.Add(static_cast<size_t>(k), std::sqrt(weight) * residual);
       }
     }
     // Errors of neighbouring photos are alike: wind, a turn, the drift of a gimbal.
@@ -162,7 +170,7 @@ std::vector<UpEvidence> GimbalEvidence(const std::vector<Station>& stations) {
   std::array<std::vector<double>, 3> component;
   for (const Station& station : stations) {
     if (!station.up_in_cam) continue;
-    statements.push_back({station.cam_from_model.rotation.toRotationMatrix(), *station.up_in_cam, {true, true, true}});
+    statements.push_back(MakeStatement(station.cam_from_model.rotation.toRotationMatrix(), *station.up_in_cam));
     const Vector3d up = station.cam_from_model.rotation.conjugate() * *station.up_in_cam;
     for (size_t axis = 0; axis < 3; ++axis) component[axis].push_back(up[static_cast<Eigen::Index>(axis)]);
   }
@@ -186,7 +194,8 @@ std::vector<UpEvidence> CameraEvidence(const std::vector<Station>& stations) {
       const bool nadir = -ViewInModel(station).dot(evidence.up) > std::cos(kNadir_deg * kRadiansPerDegree);
       Vector3d up_in_cam = nadir ? Vector3d(0.0, 0.0, -1.0) : Vector3d(cam_from_model * evidence.up);
       up_in_cam.x() = 0.0;
-      statements.push_back({cam_from_model, up_in_cam.normalized(), {true, nadir, false}});
+      statements.push_back(MakeStatement(cam_from_model, up_in_cam.normalized()));
+      statements.back().n_directions = nadir ? 2 : 1;
     }
     evidence = SolveUp(statements, evidence.up, {kCameraCommon_deg, kCameraNoise_deg});
   }

@@ -30,6 +30,24 @@ double ScaleOf(const Eigen::VectorXd& residual, const Eigen::VectorXd& sigma) {
   return sizes.empty() ? 1.0 : kMadToSigma * base::Median(sizes);
 }
 
+// The noise by differences of neighbours in time, less their median, which is the drift: no curve can follow it. Over the relative accuracy, like
+// ScaleOf.
+double LocalScale(const HeightObservations& observations) {
+  std::vector<double> steps;
+  Index last = -1;
+  for (Index k = 0; k < observations.sigma.size(); ++k) {
+    if (!std::isfinite(observations.sigma[k])) continue;
+    if (last >= 0) {
+      steps.push_back((observations.height_m[k] - observations.height_m[last]) / std::hypot(observations.sigma[k], observations.sigma[last]));
+    }
+    last = k;
+  }
+  if (steps.empty()) return 0.0;
+  const double drift = base::Median(steps);
+  for (double& step : steps) step = std::abs(step - drift);
+  return kMadToSigma * base::Median(steps);
+}
+
 // The linear model of all hypotheses: columns one, two tilts, bias.
 struct Design {
   Eigen::MatrixXd columns;
@@ -134,11 +152,14 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
   std::vector<double> sigmas(observations.sigma.data(), observations.sigma.data() + n);
   std::erase_if(sigmas, [](double sigma) { return !std::isfinite(sigma); });
   const double typical_m = sigmas.empty() ? 1.0 : base::Median(sigmas);
+  // Outliers make the local estimate a little too large.
+  constexpr double kLocalShare = 0.8;
+  const double least = kLocalShare * LocalScale(observations);
   for (int round = 0; round < kBiasRounds; ++round) {
     design.Weigh(weight, observations.height_m);
     const Eigen::MatrixXd posterior = design.normal + Prior(observations, bias, kFlexible);
     const Eigen::VectorXd residual = design.columns * posterior.llt().solve(design.right) - observations.height_m;
-    scale = ScaleOf(residual, observations.sigma);
+    scale = std::max(least, ScaleOf(residual, observations.sigma));
     for (Index k = 0; k < n; ++k) {
       const double sigma_m = std::max(scale * observations.sigma[k], kLeastHeightNoise_m);
       const double r = std::abs(residual[k]) / sigma_m;
@@ -150,7 +171,7 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
   // The flexible curve follows the noise a little.
   const double used = static_cast<double>((observations.sigma.array() < std::numeric_limits<double>::infinity()).count());
   const double freedom = std::max(1.0, used - static_cast<double>(design.columns.cols()));
-  const double widen = std::sqrt(used / freedom);
+  const double widen = scale > least ? std::sqrt(used / freedom) : 1.0;
   weight /= widen * widen;
   design.Weigh(weight, observations.height_m);
   const double noise_m = std::max(widen * scale * typical_m, kLeastHeightNoise_m);

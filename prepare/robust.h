@@ -11,6 +11,9 @@ namespace skyquilt::prepare {
 // Standard deviation of normal noise over its median absolute value.
 constexpr double kMadToSigma = 1.4826;
 
+// Median length of a vector of two components, each of normal noise with standard deviation 1.
+constexpr double kRayleighMedian = 1.17741;
+
 // Tukey's biweight for a residual in standard deviations: 1 at 0, 0 beyond 4.685, 95 % as efficient as least squares on normal noise.
 inline double TukeyWeight(double residual) {
   constexpr double kLimit = 4.685;
@@ -24,20 +27,24 @@ class SerialCorrelation {
   // `series`: 0 to 2, for instance the axis of the residual.
   void Add(size_t series, double residual) {
     sum_squares_ += residual * residual;
-    if (any_[series]) products_ += residual * last_[series];
+    if (count_[series] > 0) products_ += residual * last_[series];
     last_[series] = residual;
-    any_[series] = true;
+    ++count_[series];
   }
-  // Factor on the variance of a mean of the residuals: (1 + r) / (1 - r) for a first-order process of correlation r in [0, 0.9].
+  // Factor on the variance of a mean of the residuals: (1 + r) / (1 - r) for a first-order process of correlation r in [0, 0.98]. The sample
+  // correlation of residuals about a fitted line is too small by (2 + 4 r) / n (Marriott and Pope 1954).
   double VarianceFactor() const {
-    const double r = sum_squares_ > 0.0 ? std::clamp(products_ / sum_squares_, 0.0, 0.9) : 0.0;
+    const int n = *std::max_element(count_.begin(), count_.end());
+    if (n == 0 || !(sum_squares_ > 0.0)) return 1.0;
+    const double sample = products_ / sum_squares_;
+    const double r = std::clamp(sample + (2.0 + 4.0 * sample) / n, 0.0, 0.98);
     return (1.0 + r) / (1.0 - r);
   }
 
  private:
   double sum_squares_ = 0.0, products_ = 0.0;
   std::array<double, 3> last_{};
-  std::array<bool, 3> any_{};
+  std::array<int, 3> count_{};
 };
 
 }  // namespace skyquilt::prepare

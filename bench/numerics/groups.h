@@ -25,6 +25,7 @@ NumericGroup AwayGroup(const NumericsOptions& options);
 NumericGroup BrightnessGroup(const NumericsOptions& options);
 NumericGroup NonFiniteGroup(const NumericsOptions& options);
 NumericGroup StorageGroup(const NumericsOptions& options);
+NumericGroup PlaceGroup(const NumericsOptions& options);
 NumericGroup EarthGroup(const NumericsOptions& options);
 
 }  // namespace skyquilt::bench

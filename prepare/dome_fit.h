@@ -18,9 +18,9 @@ struct Dome {
   double sigma_m = std::numeric_limits<double>::quiet_NaN();
 };
 
-// Fits 1, x, y and r^2 with Huber's weights, so that wrong tags count little. The edge is the distance from the mean position within which 95 % of the
-// positions lie. `differences` are in the order of time: sigma is larger when neighbours' residuals agree, since GPS heights drift. NaN for fewer than
-// kMinDomeTags (values that are not finite do not count), positions that do not cover an area (one line, one place) and positions on one circle.
+// Fits 1, x, y and r^2 with Huber's weights, so that wrong tags count little. The edge is the distance from the mean position within which 95 % of
+// the positions lie. `differences` are in the order of time: sigma is larger when neighbours' residuals agree, since GPS heights drift. NaN for fewer
+// than kMinDomeTags (values that are not finite do not count), positions that do not cover an area (one line, one place) and positions on one circle.
 Dome FitDome(const std::vector<HeightDifference>& differences);
 
 constexpr int kMinDomeTags = 10;

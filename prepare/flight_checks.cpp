@@ -88,14 +88,14 @@ void CheckSmear(const survey::Survey& survey, const std::vector<const survey::Ph
 
 survey::Problem RollingShutterProblem(const survey::FlightChecks& checks) {
   const bool tagged = checks.speed_source == kTagged;
-  return {"rolling_shutter",
-          fmt::format("The camera ({}) reads its sensor in {:.3g} ms; at {:.1f} m/s ({}) the ground moves {:.1f} pixels meanwhile, and the poses do not "
-                      "model this",
-                      checks.camera_name, checks.readout_ms, checks.speed_mps, tagged ? "from the speed tags" : "mean between photos",
-                      checks.smear_px),
-          fmt::format("{} errors of about this size in positions and details; next time fly slower or higher, stop for each photo, or use a camera "
-                      "with a mechanical or global shutter",
-                      tagged ? "Expect" : "If the drone stopped for each photo, ignore this. Otherwise expect")};
+  return {
+      "rolling_shutter",
+      fmt::format("The camera ({}) reads its sensor in {:.3g} ms; at {:.1f} m/s ({}) the ground moves {:.1f} pixels meanwhile, and the poses do not "
+                  "model this",
+                  checks.camera_name, checks.readout_ms, checks.speed_mps, tagged ? "from the speed tags" : "mean between photos", checks.smear_px),
+      fmt::format("{} errors of about this size in positions and details; next time fly slower or higher, stop for each photo, or use a camera "
+                  "with a mechanical or global shutter",
+                  tagged ? "Expect" : "If the drone stopped for each photo, ignore this. Otherwise expect")};
 }
 
 survey::Problem DomingProblem(const survey::FlightChecks& checks) {
@@ -108,12 +108,13 @@ survey::Problem DomingProblem(const survey::FlightChecks& checks) {
 }
 
 survey::Problem LensProblem(const survey::FlightChecks& checks, double shift_px) {
-  return {"lens_uncertain",
-          fmt::format("The photos hardly determine the lens distortion: k1 is {:.4f} with a sigma of {:.2g}, which moves the image corner by {}; the "
-                      "reconstruction may be bent",
-                      checks.k1, checks.k1_sigma, shift_px > 100.0 ? "more than 100 pixels" : fmt::format("{:.1f} pixels", shift_px)),
-          "Compare heights with control points before you trust them. Use a lens calibrated beforehand and held fixed; next time add photos that look "
-          "10 degrees or more off nadir, or lines across at another flying height"};
+  return {
+      "lens_uncertain",
+      fmt::format("The photos hardly determine the lens distortion: k1 is {:.4f} with a sigma of {:.2g}, which moves the image corner by {}; the "
+                  "reconstruction may be bent",
+                  checks.k1, checks.k1_sigma, shift_px > 100.0 ? "more than 100 pixels" : fmt::format("{:.1f} pixels", shift_px)),
+      "Compare heights with control points before you trust them. Use a lens calibrated beforehand and held fixed; next time add photos that look "
+      "10 degrees or more off nadir, or lines across at another flying height"};
 }
 
 std::string Number(double value, const char* format) {

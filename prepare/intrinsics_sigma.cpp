@@ -174,7 +174,7 @@ Reduced BuildNormalEquations(const AdjustmentBlock& block, const camera::Camera&
 std::vector<Index> EstimatedPoseUnknowns(const std::vector<geo::Rigid3d>& poses) {
   const Eigen::Vector3d first = poses.front().OriginInSource();
   size_t farthest = 1;
-  const auto baseline = [&](size_t i) { return poses[i].OriginInSource() - first; };
+  const auto baseline = [&](size_t i) -> Eigen::Vector3d { return poses[i].OriginInSource() - first; };
   for (size_t i = 2; i < poses.size(); ++i) {
     if (baseline(i).squaredNorm() > baseline(farthest).squaredNorm()) farthest = i;
   }
@@ -249,8 +249,7 @@ LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey:
   accuracy.n_photos = static_cast<int>(block.cam_from_world.size());
   accuracy.n_points = reduced.n_points;
   accuracy.n_observations = reduced.n_observations;
-  const int redundancy =
-      2 * reduced.n_observations - 6 * accuracy.n_photos - 3 * reduced.n_points - static_cast<int>(free.size()) + kFrameFreedoms;
+  const int redundancy = 2 * reduced.n_observations - 6 * accuracy.n_photos - 3 * reduced.n_points - static_cast<int>(free.size()) + kFrameFreedoms;
   if (redundancy < 1) return accuracy;
   accuracy.sigma0_px = std::sqrt(reduced.sum_of_squares / redundancy);
   if (!(accuracy.sigma0_px > kExactResidual_px)) return accuracy;

@@ -18,15 +18,15 @@ struct LensAccuracy {
   int n_observations = 0;
 };
 
-// Limits on the cost. More photos: this many consecutive ones (in name order) from the middle. More points: evenly chosen ones, and the information of
-// those left out is taken as the same on average.
+// Limits on the cost. More photos: this many consecutive ones (in name order) from the middle. More points: evenly chosen ones, and the information
+// of those left out is taken as the same on average.
 constexpr int kMaxLensPhotos = 150;
 constexpr int kMaxLensPoints = 20000;
 
 // For the camera `camera_id` of the model, from its photos and the points that at least three of them see. All its parameters are unknowns, but not
 // the principal point when it is exactly the middle of the image, where COLMAP leaves it by default. k1_sigma is NaN when nothing can be said: a
-// camera model without k1 or with all distortion 0 (not adjusted), fewer than three photos, too few observations, or observations that are the points'
-// own projections (a simulated survey). Observations of unknown points are ignored. Throws nothing for numbers of any size.
+// camera model without k1 or with all distortion 0 (not adjusted), fewer than three photos, too few observations, or observations that are the
+// points' own projections (a simulated survey). Observations of unknown points are ignored. Throws nothing for numbers of any size.
 LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey::ColmapObservations& observations, uint32_t camera_id);
 
 // Index of the first radial coefficient among a camera's parameters; -1 when the model has none.

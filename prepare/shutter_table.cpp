@@ -29,38 +29,38 @@ constexpr Shutter Mechanical(const char* camera, double electronic_readout_ms) {
   return {camera, electronic_readout_ms, electronic_readout_ms, 1.0 / 2000.0};
 }
 
-// Read-out times were measured by OpenDroneMap's users with a blinking light (OpenDroneMap, opendm/rollingshutter.py and RSCalibration). Cameras whose
-// time depends on more than the picture's shape are left out. Mechanical shutters: DJI's specifications; all of these change to the electronic shutter
-// for exposures shorter than 1/2000 s.
+// Read-out times were measured by OpenDroneMap's users with a blinking light (OpenDroneMap, opendm/rollingshutter.py and RSCalibration). Cameras
+// whose time depends on more than the picture's shape are left out. Mechanical shutters: DJI's specifications; all of these change to the electronic
+// shutter for exposures shorter than 1/2000 s.
 constexpr std::array kShutters = {
-    Rolling("djiphantomvisionfc200", 74.0),           // Phantom 2 Vision
-    Rolling("djifc300s", 33.0),                       // Phantom 3 Advanced
-    Rolling("djifc300c", 33.0),                       // Phantom 3 Standard
-    Rolling("djifc300x", 33.0),                       // Phantom 3 Professional
-    Rolling("djifc330", 33.0),                        // Phantom 4
-    Rolling("djifc350", 30.0),                        // Inspire 1
-    Rolling("djifc220", 64.0),                        // Mavic Pro
-    Rolling("djifc2103", 32.0),                       // Mavic Air
-    Rolling("djifc3170", 27.0),                       // Mavic Air 2
-    Rolling("djifc3411", 32.0),                       // Air 2S
-    Rolling("djifc3682", 23.0),                       // Mini 3
-    RollingWide("djifc7203", 25.0, 19.0),             // Mavic Mini
-    RollingWide("hasselbladl1d-20c", 56.0, 47.0),     // Mavic 2 Pro
-    Rolling("hasselbladl2d-20c", 16.6),               // Mavic 3
-    Rolling("djimavic2-enterprise-advanced", 31.0),   // its colour camera
-    Rolling("djizenmusez30", 8.0),                    //
-    Rolling("yuneece90", 44.0),                       //
-    Rolling("autelroboticsxt701", 25.0),              // EVO II 8k
-    Rolling("autelroboticsxt705", 30.0),              // EVO II Pro
-    Rolling("autelroboticsxl724", 29.0),              // EVO Nano+
-    Rolling("parrotanafi", 39.0),                     //
-    Rolling("goprohero4black", 30.0),                 //
-    Rolling("goprohero8black", 17.0),                 //
-    Mechanical("djifc6310", 33.0),                    // Phantom 4 Pro
-    Mechanical("djifc6310s", kNotMeasured),                   // Phantom 4 Pro V2
-    Mechanical("djifc6310r", kNotMeasured),                   // Phantom 4 RTK
-    Mechanical("djim3e", kNotMeasured),                       // Mavic 3 Enterprise
-    Mechanical("djizenmusep1", kNotMeasured),                 //
+    Rolling("djiphantomvisionfc200", 74.0),          // Phantom 2 Vision
+    Rolling("djifc300s", 33.0),                      // Phantom 3 Advanced
+    Rolling("djifc300c", 33.0),                      // Phantom 3 Standard
+    Rolling("djifc300x", 33.0),                      // Phantom 3 Professional
+    Rolling("djifc330", 33.0),                       // Phantom 4
+    Rolling("djifc350", 30.0),                       // Inspire 1
+    Rolling("djifc220", 64.0),                       // Mavic Pro
+    Rolling("djifc2103", 32.0),                      // Mavic Air
+    Rolling("djifc3170", 27.0),                      // Mavic Air 2
+    Rolling("djifc3411", 32.0),                      // Air 2S
+    Rolling("djifc3682", 23.0),                      // Mini 3
+    RollingWide("djifc7203", 25.0, 19.0),            // Mavic Mini
+    RollingWide("hasselbladl1d-20c", 56.0, 47.0),    // Mavic 2 Pro
+    Rolling("hasselbladl2d-20c", 16.6),              // Mavic 3
+    Rolling("djimavic2-enterprise-advanced", 31.0),  // its colour camera
+    Rolling("djizenmusez30", 8.0),                   //
+    Rolling("yuneece90", 44.0),                      //
+    Rolling("autelroboticsxt701", 25.0),             // EVO II 8k
+    Rolling("autelroboticsxt705", 30.0),             // EVO II Pro
+    Rolling("autelroboticsxl724", 29.0),             // EVO Nano+
+    Rolling("parrotanafi", 39.0),                    //
+    Rolling("goprohero4black", 30.0),                //
+    Rolling("goprohero8black", 17.0),                //
+    Mechanical("djifc6310", 33.0),                   // Phantom 4 Pro
+    Mechanical("djifc6310s", kNotMeasured),          // Phantom 4 Pro V2
+    Mechanical("djifc6310r", kNotMeasured),          // Phantom 4 RTK
+    Mechanical("djim3e", kNotMeasured),              // Mavic 3 Enterprise
+    Mechanical("djizenmusep1", kNotMeasured),        //
 };
 
 constexpr double kWide = 1.7;  // of width over height; 16:9 is 1.78, 3:2 is 1.5

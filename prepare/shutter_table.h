@@ -14,8 +14,8 @@ struct ShutterQuery {
   std::optional<double> exposure_s;  // some cameras use their mechanical shutter only for long exposures; nothing: taken as long
 };
 
-// Milliseconds from the first to the last row; 0 for a mechanical or global shutter, NaN for cameras that are not in the table. Case and spaces in the
-// name do not matter.
+// Milliseconds from the first to the last row; 0 for a mechanical or global shutter, NaN for cameras that are not in the table. Case and spaces in
+// the name do not matter.
 double SensorReadout_ms(const ShutterQuery& query);
 
 // "DJI FC300S"; without the make when the model already begins with it ("Canon PowerShot ELPH 300 HS").

@@ -133,8 +133,7 @@ void ParseImages(const std::filesystem::path& file, ColmapModel& model, ColmapOb
     image.name = in.Remainder("a photo name");
     // The observations: always one line, empty when there are none; the last may be missing.
     const bool has_line = in.Next();
-    if (observations != nullptr &&
-        !observations->emplace(image.id, has_line ? ParseObservations(in) : std::vector<ColmapObservation>()).second) {
+    if (observations != nullptr && !observations->emplace(image.id, has_line ? ParseObservations(in) : std::vector<ColmapObservation>()).second) {
       in.Fail("has image " + std::to_string(image.id) + " twice");
     }
     model.images.push_back(std::move(image));

@@ -2,6 +2,7 @@
 // RelativeAltitude), Seneca 3.6 m over 166 photos and 63.9 m.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 
 #include "prepare/prepare.h"
@@ -31,6 +32,8 @@ TEST(RealSurvey, BrightonBeachLandsOnItsTags) {
   EXPECT_NEAR(survey.MedianAgl(), 45.5, 2.0);
   EXPECT_NEAR(survey.origin.latitude_deg, 46.8427, 0.002);
   EXPECT_NEAR(survey.origin.longitude_deg, -91.994, 0.002);
+  EXPECT_EQ(survey.checks.readout_ms, 33.0);
+  EXPECT_NEAR(survey.checks.k1_sigma, 1.0e-3, 0.1e-3);
 }
 
 TEST(RealSurvey, SenecaLandsOnItsTags) {
@@ -41,6 +44,10 @@ TEST(RealSurvey, SenecaLandsOnItsTags) {
   EXPECT_GE(survey.fit.n_inliers, 160);
   EXPECT_NEAR(survey.fit.rmse_m, 3.6, 0.5);
   EXPECT_NEAR(survey.MedianAgl(), 63.9, 3.0);
+  EXPECT_NEAR(survey.checks.k1_sigma, 8e-5, 1e-5);
+  EXPECT_TRUE(std::isnan(survey.checks.readout_ms));
+  // The photos' XMP has a ground speed of 4.7 m/s in the first one.
+  EXPECT_GT(survey.checks.speed_mps, 3.0);
 }
 
 }  // namespace

@@ -32,7 +32,11 @@ TEST(RealSurvey, BrightonBeachLandsOnItsTags) {
   EXPECT_NEAR(survey.MedianAgl(), 45.5, 2.0);
   EXPECT_NEAR(survey.origin.latitude_deg, 46.8427, 0.002);
   EXPECT_NEAR(survey.origin.longitude_deg, -91.994, 0.002);
+  // The drone stopped for each photo: 0.2 m/s, but 1.9 m/s between photos.
+  EXPECT_EQ(survey.checks.speed_source, "speed tags");
+  EXPECT_LT(survey.checks.speed_mps, 0.5);
   EXPECT_EQ(survey.checks.readout_ms, 33.0);
+  EXPECT_LT(survey.checks.smear_px, 0.5);
   EXPECT_NEAR(survey.checks.k1_sigma, 1.0e-3, 0.1e-3);
 }
 

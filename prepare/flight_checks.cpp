@@ -79,7 +79,7 @@ void CheckSmear(const survey::Survey& survey, const std::vector<const survey::Ph
     if (std::isfinite(checks.speed_mps)) checks.speed_source = "positions and times";
   }
   checks.camera_name = NameOfCamera(survey, tags, camera_index);
-  checks.readout_ms = SensorReadout_ms({checks.camera_name, camera.width, camera.height, MedianExposure(survey, camera_index)});
+  checks.readout_ms = SensorReadout({checks.camera_name, camera.width, camera.height, MedianExposure(survey, camera_index)});
   const double agl_m = survey.MedianAgl();
   if (!survey.georeferenced || !(agl_m > 0.0)) return;
   const double smear_px = checks.speed_mps * 1e-3 * checks.readout_ms / camera::GroundSamplingDistance(camera, agl_m);
@@ -156,13 +156,13 @@ std::vector<survey::Problem> FlightProblems(const survey::FlightChecks& checks, 
   if (checks.smear_px > kMaxSmear_px) problems.push_back(RollingShutterProblem(checks));
   const int camera_index = MainCamera(survey);
   if (camera_index >= 0) {
-    const double shift_px = CornerShift_px(survey.cameras[static_cast<size_t>(camera_index)], checks.k1_sigma);
+    const double shift_px = CornerShift(survey.cameras[static_cast<size_t>(camera_index)], checks.k1_sigma);
     if (shift_px > kMaxCornerShift_px) problems.push_back(LensProblem(checks, shift_px));
   }
   return problems;
 }
 
-double CornerShift_px(const camera::Camera& camera, double change) {
+double CornerShift(const camera::Camera& camera, double change) {
   if (RadialParameterIndex(camera.model) < 0) return std::numeric_limits<double>::quiet_NaN();
   const Eigen::Vector2d middle = camera.PrincipalPoint();
   const Eigen::Vector2d corner(middle.x() > 0.5 * camera.width ? 0.0 : camera.width, middle.y() > 0.5 * camera.height ? 0.0 : camera.height);

@@ -22,7 +22,7 @@ survey::FlightChecks CheckFlight(const survey::Survey& survey, const std::vector
 std::vector<survey::Problem> FlightProblems(const survey::FlightChecks& checks, const survey::Survey& survey);
 
 // Displacement in pixels of the image corner farthest from the principal point when k1 changes by `change`; NaN for cameras without k1.
-double CornerShift_px(const camera::Camera& camera, double change);
+double CornerShift(const camera::Camera& camera, double change);
 
 // One line for the log, with "unknown" for what is not known.
 std::string DescribeChecks(const survey::FlightChecks& checks);

@@ -96,7 +96,7 @@ class Linearizer {
     const double value = parameter;
     // Focal lengths and principal point are in pixels, distortion near 1.
     const double step = 1e-6 * std::max(1.0, std::abs(value));
-    const auto slope = Difference(
+    auto slope = Difference(
         [&](double shift) {
           parameter = value + shift;
           return camera_.ImgFromCam(x_in_cam);

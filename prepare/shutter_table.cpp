@@ -48,19 +48,19 @@ constexpr std::array kShutters = {
     RollingWide("hasselbladl1d-20c", 56.0, 47.0),    // Mavic 2 Pro
     Rolling("hasselbladl2d-20c", 16.6),              // Mavic 3
     Rolling("djimavic2-enterprise-advanced", 31.0),  // its colour camera
-    Rolling("djizenmusez30", 8.0),                   //
-    Rolling("yuneece90", 44.0),                      //
-    Rolling("autelroboticsxt701", 25.0),             // EVO II 8k
-    Rolling("autelroboticsxt705", 30.0),             // EVO II Pro
-    Rolling("autelroboticsxl724", 29.0),             // EVO Nano+
-    Rolling("parrotanafi", 39.0),                    //
-    Rolling("goprohero4black", 30.0),                //
-    Rolling("goprohero8black", 17.0),                //
-    Mechanical("djifc6310", 33.0),                   // Phantom 4 Pro
-    Mechanical("djifc6310s", kNotMeasured),          // Phantom 4 Pro V2
-    Mechanical("djifc6310r", kNotMeasured),          // Phantom 4 RTK
-    Mechanical("djim3e", kNotMeasured),              // Mavic 3 Enterprise
-    Mechanical("djizenmusep1", kNotMeasured),        //
+    Rolling("djizenmusez30", 8.0),
+    Rolling("yuneece90", 44.0),
+    Rolling("autelroboticsxt701", 25.0),  // EVO II 8k
+    Rolling("autelroboticsxt705", 30.0),  // EVO II Pro
+    Rolling("autelroboticsxl724", 29.0),  // EVO Nano+
+    Rolling("parrotanafi", 39.0),
+    Rolling("goprohero4black", 30.0),
+    Rolling("goprohero8black", 17.0),
+    Mechanical("djifc6310", 33.0),           // Phantom 4 Pro
+    Mechanical("djifc6310s", kNotMeasured),  // Phantom 4 Pro V2
+    Mechanical("djifc6310r", kNotMeasured),  // Phantom 4 RTK
+    Mechanical("djim3e", kNotMeasured),      // Mavic 3 Enterprise
+    Mechanical("djizenmusep1", kNotMeasured),
 };
 
 constexpr double kWide = 1.7;  // of width over height; 16:9 is 1.78, 3:2 is 1.5
@@ -78,7 +78,7 @@ std::string Trimmed(const std::string& text) {
 
 }  // namespace
 
-double SensorReadout_ms(const ShutterQuery& query) {
+double SensorReadout(const ShutterQuery& query) {
   std::string key = Lower(query.camera_name);
   std::erase_if(key, [](unsigned char c) { return std::isspace(c) != 0; });
   const auto* found = std::find_if(kShutters.begin(), kShutters.end(), [&](const Shutter& shutter) { return key == shutter.camera; });
@@ -94,7 +94,7 @@ double SensorReadout_ms(const ShutterQuery& query) {
 
 std::string CameraName(const std::string& make, const std::string& model) {
   const std::string brand = Trimmed(make);
-  const std::string type = Trimmed(model);
+  std::string type = Trimmed(model);
   if (brand.empty() || Lower(type).starts_with(Lower(brand))) return type;
   return type.empty() ? brand : brand + " " + type;
 }

@@ -16,7 +16,7 @@ struct ShutterQuery {
 
 // Milliseconds from the first to the last row; 0 for a mechanical or global shutter, NaN for cameras that are not in the table. Case and spaces in
 // the name do not matter.
-double SensorReadout_ms(const ShutterQuery& query);
+double SensorReadout(const ShutterQuery& query);
 
 // "DJI FC300S"; without the make when the model already begins with it ("Canon PowerShot ELPH 300 HS").
 std::string CameraName(const std::string& make, const std::string& model);

@@ -107,6 +107,7 @@ TEST(DomeFit, SaysNothingWhenPositionsDoNotShowIt) {
   EXPECT_TRUE(unknown(FitDome(Lines(2, 60, flat))));
   EXPECT_TRUE(unknown(FitDome(std::vector<HeightDifference>(30, {{5.0, 6.0}, 1.0}))));
   std::vector<HeightDifference> circle;
+  circle.reserve(24);
   for (int i = 0; i < 24; ++i) circle.push_back({50.0 * Eigen::Vector2d(std::cos(0.2618 * i), std::sin(0.2618 * i)), 0.1 * i});
   EXPECT_TRUE(unknown(FitDome(circle)));
 }

@@ -227,7 +227,7 @@ TEST(FlightChecks, AnIllDeterminedLensIsWarnedOf) {
   EXPECT_EQ(checks.k1, -0.05);
   EXPECT_TRUE(std::isnan(checks.k1_sigma));
   // The corner is at 0.75 focal lengths as seen, a little more without distortion: 1000 px * sigma * r^3.
-  EXPECT_NEAR(CornerShift_px(flight.survey.cameras[0], 0.001), 0.455, 0.01);
+  EXPECT_NEAR(CornerShift(flight.survey.cameras[0], 0.001), 0.455, 0.01);
   checks.smear_px = 0.0;
   checks.k1_sigma = 0.0015;
   EXPECT_TRUE(FlightProblems(checks, flight.survey).empty());

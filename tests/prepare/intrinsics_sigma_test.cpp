@@ -30,7 +30,8 @@ Block MakeBlock(const camera::Camera& camera, int side, double lean_deg, double 
     image.id = static_cast<uint32_t>(i + 1);
     image.camera_id = 1;
     image.name = "p" + std::to_string(1000 + i);
-    const Eigen::Vector3d centre(15.0 * (i % side), 15.0 * (i / side), 50.0);
+    const int row = i / side;
+    const Eigen::Vector3d centre(15.0 * (i % side), 15.0 * row, 50.0);
     const double lean = i % 3 == 0 ? lean_deg * M_PI / 180.0 : 0.0;
     const Eigen::Vector3d axis(std::cos(2.0 * i), std::sin(2.0 * i), 0.0);
     image.cam_from_world.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(lean, axis)) * Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0);

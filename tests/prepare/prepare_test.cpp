@@ -57,7 +57,7 @@ TEST_F(PrepareTest, DamagedObservationsLeaveTheLensUnknown) {
   flight_.model.cameras[1] = {camera::CameraModel::kSimpleRadial, 64, 48, {60.0, 32.0, 24.0, 0.01}};
   Write();
   std::string images = base::ReadFile(folder_ / "sparse/0/images.txt");
-  images.resize(images.find_last_not_of("\n"));
+  images.resize(images.find_last_not_of('\n'));
   base::WriteFileAtomically(folder_ / "sparse/0/images.txt", images + " x");
   const survey::Survey survey = Run();
   EXPECT_EQ(survey.checks.k1, 0.01);

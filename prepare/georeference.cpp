@@ -10,7 +10,7 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "core/geo/robust_similarity.h"
-#include "prepare/adjustment.h"
+#include "prepare/place_adjustment.h"
 #include "prepare/height_bias.h"
 #include "prepare/horizontal_fit.h"
 #include "prepare/place_problems.h"

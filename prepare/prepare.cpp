@@ -15,9 +15,11 @@
 #include "core/base/text.h"
 #include "core/survey/colmap_model.h"
 #include "prepare/colmap_run.h"
+#include "prepare/flight_checks.h"
 #include "prepare/georeference.h"
 #include "prepare/holdout.h"
 #include "prepare/input_folder.h"
+#include "prepare/intrinsics_sigma.h"
 #include "prepare/photo_files.h"
 #include "prepare/prepare_report.h"
 #include "prepare/sparse_cloud.h"
@@ -175,6 +177,33 @@ void RequirePlace(const survey::Survey& survey, const fs::path& folder) {
   }
 }
 
+// NaN when the model's observations cannot be read: they serve this check alone.
+double MeasureK1Sigma(const survey::ColmapModel& model, const fs::path& model_folder, uint32_t camera_id) {
+  try {
+    return MeasureLensAccuracy(model, survey::ReadColmapObservations(model_folder), camera_id).k1_sigma;
+  } catch (const base::InputError& error) {
+    spdlog::info("the accuracy of the lens is not computed: {}", error.what());
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+// Needs the survey's photos, place and heights above ground. `has_observations`: of features in photos, not a simulation's projections.
+void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folder, const std::vector<Registered>& registered,
+                   const std::vector<PhotoFile>& files, bool has_observations, survey::Survey& survey) {
+  std::vector<const survey::PhotoTags*> tags;
+  tags.reserve(registered.size());
+  for (const Registered& entry : registered) tags.push_back(&files[entry.file].tags);
+  survey.checks = CheckFlight(survey, tags);
+  const auto main = std::find_if(survey.photos.begin(), survey.photos.end(),
+                                 [camera = MainCamera(survey)](const survey::Photo& photo) { return photo.camera == camera; });
+  if (has_observations && main != survey.photos.end()) {
+    const uint32_t camera_id = registered[static_cast<size_t>(main - survey.photos.begin())].image->camera_id;
+    survey.checks.k1_sigma = MeasureK1Sigma(model, model_folder, camera_id);
+  }
+  spdlog::info(DescribeChecks(survey.checks));
+  for (survey::Problem& problem : FlightProblems(survey.checks, survey)) survey.problems.push_back(std::move(problem));
+}
+
 }  // namespace
 
 survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads) {
@@ -219,6 +248,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   survey.points = ConvertPoints(model, georeference.enu_from_model);
   FilterSparsePoints(survey.points);
   MeasureAgl(survey, threads);
+  CheckFlightOf(model, folders.model, registered, photos.usable, !folders.exact_origin, survey);
   MarkHoldout(holdout, survey);
   base::ThrowIfCancelled();
 

@@ -92,7 +92,22 @@ void ReadCameras(const std::filesystem::path& file, ColmapModel& model) {
   in.RequireEnd();
 }
 
-void ReadImages(const std::filesystem::path& file, ColmapModel& model) {
+std::vector<ColmapObservation> ReadObservations(Cursor& in, size_t n_features) {
+  std::vector<ColmapObservation> observations;
+  observations.reserve(n_features);
+  for (size_t i = 0; i < n_features; ++i) {
+    ColmapObservation observation;
+    for (int axis = 0; axis < 2; ++axis) observation.pixel[axis] = in.Read<double>("an observation");
+    observation.point_id = in.Read<uint64_t>("an observation");
+    if (observation.point_id != kNoPoint) observations.push_back(observation);
+  }
+  // Most features belong to no point.
+  observations.shrink_to_fit();
+  return observations;
+}
+
+// Skips the observations when `observations` is null.
+void ReadImages(const std::filesystem::path& file, ColmapModel& model, ColmapObservations* observations) {
   Cursor in(file);
   const size_t n_images = in.ReadCount(4 + 56 + 4 + 1 + 8, "images");
   model.images.reserve(n_images);
@@ -105,7 +120,12 @@ void ReadImages(const std::filesystem::path& file, ColmapModel& model) {
     image.camera_id = in.Read<uint32_t>("an image");
     image.name = in.ReadName();
     constexpr size_t kObservationBytes = 24;
-    in.Skip(in.ReadCount(kObservationBytes, "observations") * kObservationBytes, "the observations of an image");
+    const size_t n_features = in.ReadCount(kObservationBytes, "observations");
+    if (observations == nullptr) {
+      in.Skip(n_features * kObservationBytes, "the observations of an image");
+    } else if (!observations->emplace(image.id, ReadObservations(in, n_features)).second) {
+      in.Fail("has image " + std::to_string(image.id) + " twice");
+    }
     model.images.push_back(std::move(image));
   }
   in.RequireEnd();
@@ -137,9 +157,16 @@ void ReadPoints(const std::filesystem::path& file, ColmapModel& model) {
 ColmapModel ReadColmapBinary(const std::filesystem::path& folder) {
   ColmapModel model;
   ReadCameras(folder / "cameras.bin", model);
-  ReadImages(folder / "images.bin", model);
+  ReadImages(folder / "images.bin", model, nullptr);
   ReadPoints(folder / "points3D.bin", model);
   return model;
+}
+
+ColmapObservations ReadObservationsBinary(const std::filesystem::path& folder) {
+  ColmapModel model;
+  ColmapObservations observations;
+  ReadImages(folder / "images.bin", model, &observations);
+  return observations;
 }
 
 }  // namespace skyquilt::survey

@@ -18,6 +18,17 @@ bool HasAll(const std::filesystem::path& folder, const std::string& extension) {
   return true;
 }
 
+// Which of the two formats the folder has; binary when both.
+bool IsBinary(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) throw base::InputError(folder, "no such folder", "Give the folder with cameras, images and points3D");
+  const bool binary = HasAll(folder, ".bin");
+  if (!binary && !HasAll(folder, ".txt")) {
+    throw base::InputError(folder, "does not contain cameras, images and points3D as .bin or .txt",
+                           "Give the folder of one COLMAP model, usually sparse/0");
+  }
+  return binary;
+}
+
 void CheckCameras(const std::filesystem::path& folder, const ColmapModel& model) {
   for (const auto& [id, camera] : model.cameras) {
     const std::string problem = camera.Problem();
@@ -55,13 +66,7 @@ void CheckImages(const std::filesystem::path& folder, ColmapModel& model) {
 }  // namespace
 
 ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
-  if (!std::filesystem::is_directory(folder)) throw base::InputError(folder, "no such folder", "Give the folder with cameras, images and points3D");
-  const bool binary = HasAll(folder, ".bin");
-  if (!binary && !HasAll(folder, ".txt")) {
-    throw base::InputError(folder, "does not contain cameras, images and points3D as .bin or .txt",
-                           "Give the folder of one COLMAP model, usually sparse/0");
-  }
-  ColmapModel model = binary ? ReadColmapBinary(folder) : ReadColmapTextFiles(folder);
+  ColmapModel model = IsBinary(folder) ? ReadColmapBinary(folder) : ReadColmapTextFiles(folder);
   CheckCameras(folder, model);
   CheckImages(folder, model);
   if (model.images.empty()) throw base::InputError(folder, "the model has no registered photo", "Run the reconstruction again");
@@ -70,6 +75,18 @@ ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
     spdlog::warn("{}: {} sparse points have no finite coordinates and are ignored; if there are many, run the reconstruction again", folder.string(),
                  n_dropped);
   return model;
+}
+
+ColmapObservations ReadColmapObservations(const std::filesystem::path& folder) {
+  ColmapObservations observations = IsBinary(folder) ? ReadObservationsBinary(folder) : ReadObservationsText(folder);
+  for (const auto& [image_id, list] : observations) {
+    for (const ColmapObservation& observation : list) {
+      if (observation.pixel.allFinite()) continue;
+      throw base::InputError(folder, "image " + std::to_string(image_id) + " has an observation whose pixel is not finite",
+                             "Run the reconstruction again");
+    }
+  }
+  return observations;
 }
 
 }  // namespace skyquilt::survey

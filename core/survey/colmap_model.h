@@ -36,10 +36,22 @@ struct ColmapModel {
   std::vector<ColmapPoint> points;
 };
 
+// Where an image shows a point: what the bundle adjustment fitted.
+struct ColmapObservation {
+  uint64_t point_id = 0;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // core/camera/camera.h
+};
+
+// Per image id. Features that belong to no point are left out.
+using ColmapObservations = std::map<uint32_t, std::vector<ColmapObservation>>;
+
 // Reads cameras, images and points3D from `folder`, as .bin (preferred) or .txt. 2-D observations are skipped, points with NaN are dropped with a
 // warning. Throws base::InputError: missing files, truncation, unsupported camera model, impossible sizes, NaN in a pose (names the image),
 // contradictions.
 ColmapModel ReadColmapModel(const std::filesystem::path& folder);
+// Reads the 2-D observations of the same model; an image without any has an empty list. They may name points that ReadColmapModel dropped. Throws
+// base::InputError: missing files, truncation, an image twice, a pixel that is not finite.
+ColmapObservations ReadColmapObservations(const std::filesystem::path& folder);
 // Throws base::InputError when the folder cannot be written.
 void WriteColmapText(const ColmapModel& model, const std::filesystem::path& folder);
 

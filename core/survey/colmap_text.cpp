@@ -45,6 +45,16 @@ class Lines {
     return word;
   }
 
+  // Takes the next word if it is `word`.
+  bool TakeWord(std::string_view word) {
+    const size_t first = rest_.find_first_not_of(kBlank);
+    if (first == std::string_view::npos) return false;
+    const std::string_view line = rest_.substr(first);
+    if (line.substr(0, line.find_first_of(kBlank)) != word) return false;
+    rest_ = line.substr(word.size());
+    return true;
+  }
+
   // Accepts "nan" and "inf": CheckImages refuses them later, with the photo's name.
   template <typename T>
   T Number(const char* what) {
@@ -97,7 +107,21 @@ void ParseCameras(const std::filesystem::path& file, ColmapModel& model) {
   }
 }
 
-void ParseImages(const std::filesystem::path& file, ColmapModel& model) {
+// The rest of a line of observations: x, y and the id of a point, or -1.
+std::vector<ColmapObservation> ParseObservations(Lines& in) {
+  std::vector<ColmapObservation> observations;
+  while (!in.AtEnd()) {
+    ColmapObservation observation;
+    for (int axis = 0; axis < 2; ++axis) observation.pixel[axis] = in.Number<double>("a pixel coordinate");
+    if (in.TakeWord("-1")) continue;
+    observation.point_id = in.Number<uint64_t>("the point id of an observation");
+    if (observation.point_id != kNoPoint) observations.push_back(observation);
+  }
+  return observations;
+}
+
+// Skips the observations when `observations` is null.
+void ParseImages(const std::filesystem::path& file, ColmapModel& model, ColmapObservations* observations) {
   Lines in(file);
   while (in.NextRecord()) {
     ColmapImage image;
@@ -107,9 +131,12 @@ void ParseImages(const std::filesystem::path& file, ColmapModel& model) {
     image.cam_from_world = PoseOf(pose);
     image.camera_id = in.Number<uint32_t>("a camera id");
     image.name = in.Remainder("a photo name");
+    // The observations: always one line, empty when there are none; the last may be missing.
+    const bool has_line = in.Next();
+    if (observations != nullptr && !observations->emplace(image.id, has_line ? ParseObservations(in) : std::vector<ColmapObservation>()).second) {
+      in.Fail("has image " + std::to_string(image.id) + " twice");
+    }
     model.images.push_back(std::move(image));
-    // Skip the observations: always one line, empty when there are none.
-    in.Next();
   }
 }
 
@@ -134,9 +161,16 @@ void ParsePoints(const std::filesystem::path& file, ColmapModel& model) {
 ColmapModel ReadColmapTextFiles(const std::filesystem::path& folder) {
   ColmapModel model;
   ParseCameras(folder / "cameras.txt", model);
-  ParseImages(folder / "images.txt", model);
+  ParseImages(folder / "images.txt", model, nullptr);
   ParsePoints(folder / "points3D.txt", model);
   return model;
+}
+
+ColmapObservations ReadObservationsText(const std::filesystem::path& folder) {
+  ColmapModel model;
+  ColmapObservations observations;
+  ParseImages(folder / "images.txt", model, &observations);
+  return observations;
 }
 
 }  // namespace skyquilt::survey

@@ -8,8 +8,10 @@
 #include <exiv2/exiv2.hpp>
 #include <limits>
 #include <string_view>
+#include <vector>
 
 #include "core/base/errors.h"
+#include "core/survey/dji_maker_note.h"
 #include "core/survey/exiv2_guard.h"
 
 namespace skyquilt::survey {
@@ -213,6 +215,14 @@ std::optional<double> ReadCaptureTime(const Exiv2::ExifData& exif) {
   return std::nullopt;
 }
 
+std::optional<double> ReadMakerNoteSpeed(const Exiv2::ExifData& exif, Exiv2::ByteOrder byte_order) {
+  const auto found = exif.findKey(Exiv2::ExifKey("Exif.Photo.MakerNote"));
+  if (found == exif.end() || found->size() <= 0) return std::nullopt;
+  std::vector<uint8_t> note(static_cast<size_t>(found->size()));
+  found->copy(note.data(), byte_order);
+  return DjiMakerNoteSpeed(note, byte_order == Exiv2::littleEndian);
+}
+
 }  // namespace
 
 PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
@@ -239,6 +249,7 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
     tags.capture_time_s = ReadCaptureTime(exif);
     tags.make = ExifText(exif, "Exif.Image.Make");
     tags.model = ExifText(exif, "Exif.Image.Model");
+    if (!tags.speed_mps && tags.make == "DJI") tags.speed_mps = ReadMakerNoteSpeed(exif, image->byteOrder());
     return tags;
   } catch (const Exiv2::AnyError& error) {
     throw base::InputError(file, std::string("is not an image that can be read (") + error.what() + ")",

@@ -20,7 +20,7 @@ struct PhotoTags {
   // GPSXYAccuracy and GPSZAccuracy, else EXIF GPSHPositioningError.
   std::optional<double> horizontal_accuracy_m, vertical_accuracy_m;
   std::optional<double> dop;        // EXIF GPSDOP, dilution of precision: about 1 is good, above 5 poor
-  std::optional<double> speed_mps;  // over ground: XMP FlightXSpeed and FlightYSpeed, else EXIF GPSSpeed
+  std::optional<double> speed_mps;  // over ground: XMP FlightXSpeed and FlightYSpeed, else EXIF GPSSpeed, else DJI's maker note
   std::optional<double> gimbal_yaw_deg, gimbal_pitch_deg, gimbal_roll_deg;
   ExposureSettings exposure;
   std::optional<double> focal_length_mm;

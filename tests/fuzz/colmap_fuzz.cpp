@@ -115,6 +115,10 @@ void Feed(const std::string& bytes) {
     survey::ReadColmapModel(folder.path());
   } catch (const base::InputError&) {
   }
+  try {
+    survey::ReadColmapObservations(folder.path());
+  } catch (const base::InputError&) {
+  }
 }
 
 }  // namespace skyquilt::fuzz

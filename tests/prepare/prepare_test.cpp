@@ -33,6 +33,37 @@ class PrepareTest : public ::testing::Test {
   base::ThreadPool threads_{2};
 };
 
+TEST_F(PrepareTest, TheFlightIsCheckedAndTheResultSaved) {
+  for (test::FlightPhoto& photo : flight_.photos) {
+    photo.tags.make = "DJI";
+    photo.tags.model = "FC220";
+  }
+  // A longer lens, so that 4 m/s in 64 ms are more than a pixel of 0.05 m.
+  flight_.model.cameras[1].params = {1000.0, 1000.0, 32.0, 24.0};
+  Write();
+  const survey::Survey survey = Run();
+  EXPECT_EQ(survey.checks.camera_name, "DJI FC220");
+  EXPECT_NEAR(survey.checks.speed_mps, 4.0, 0.5);
+  EXPECT_NEAR(survey.checks.smear_px, survey.checks.speed_mps * 0.064 * 1000.0 / survey.MedianAgl(), 1e-9);
+  EXPECT_LT(std::abs(survey.checks.dome_m), 1.0);
+  EXPECT_TRUE(std::isnan(survey.checks.k1_sigma));
+  const survey::Survey loaded = survey::LoadSurvey(folder_ / "out");
+  EXPECT_EQ(loaded.checks.smear_px, survey.checks.smear_px);
+  ASSERT_EQ(loaded.problems.size(), 1U);
+  EXPECT_EQ(loaded.problems[0].code, "rolling_shutter");
+}
+
+TEST_F(PrepareTest, DamagedObservationsLeaveTheLensUnknown) {
+  flight_.model.cameras[1] = {camera::CameraModel::kSimpleRadial, 64, 48, {60.0, 32.0, 24.0, 0.01}};
+  Write();
+  std::string images = base::ReadFile(folder_ / "sparse/0/images.txt");
+  images.resize(images.find_last_not_of('\n'));
+  base::WriteFileAtomically(folder_ / "sparse/0/images.txt", images + " x");
+  const survey::Survey survey = Run();
+  EXPECT_EQ(survey.checks.k1, 0.01);
+  EXPECT_TRUE(std::isnan(survey.checks.k1_sigma));
+}
+
 TEST_F(PrepareTest, AGoodFlightIsPlacedOnEarthAndSaved) {
   Write();
   const survey::Survey survey = Run();

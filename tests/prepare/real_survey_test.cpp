@@ -47,6 +47,12 @@ TEST(RealSurvey, BrightonBeachLandsOnItsTags) {
   EXPECT_NEAR(survey.MedianAgl(), 45.5, 2.0);
   EXPECT_NEAR(survey.origin.latitude_deg, 46.8427, 0.002);
   EXPECT_NEAR(survey.origin.longitude_deg, -91.994, 0.002);
+  // The drone stopped for each photo: 0.2 m/s, but 1.9 m/s between photos.
+  EXPECT_EQ(survey.checks.speed_source, "speed tags");
+  EXPECT_LT(survey.checks.speed_mps, 0.5);
+  EXPECT_EQ(survey.checks.readout_ms, 33.0);
+  EXPECT_LT(survey.checks.smear_px, 0.5);
+  EXPECT_NEAR(survey.checks.k1_sigma, 1.0e-3, 0.1e-3);
 }
 
 TEST(RealSurvey, SenecaLandsOnItsTags) {
@@ -59,6 +65,10 @@ TEST(RealSurvey, SenecaLandsOnItsTags) {
   EXPECT_LT(MedianTagError(survey), 1.1 * 2.156);
   EXPECT_NEAR(survey.fit.tag_lag_s, 0.25, 0.1);
   EXPECT_NEAR(survey.MedianAgl(), 63.9, 3.0);
+  EXPECT_NEAR(survey.checks.k1_sigma, 8e-5, 1e-5);
+  EXPECT_TRUE(std::isnan(survey.checks.readout_ms));
+  // The photos' XMP has a ground speed of 4.7 m/s in the first one.
+  EXPECT_GT(survey.checks.speed_mps, 3.0);
 }
 
 }  // namespace

@@ -149,6 +149,59 @@ TEST(ColmapModel, TextWithCommentsBlankLinesAndWindowsLineEndsIsRead) {
   EXPECT_EQ(model.points[0].image_ids, (std::vector<uint32_t>{1, 2}));
 }
 
+TEST(ColmapObservations, TextAndBinaryGiveTheSame) {
+  const TemporaryFolder binary;
+  WriteBinary(SmallModel(), binary.path());
+  const ColmapObservations read = ReadColmapObservations(binary.path());
+  ASSERT_EQ(read.size(), 3U);
+  for (const auto& [id, list] : read) {
+    ASSERT_EQ(list.size(), 1U);  // the second feature belongs to no point
+    EXPECT_EQ(list[0].point_id, 100U);
+    EXPECT_EQ(list[0].pixel, Eigen::Vector2d(12.5, 7.5));
+  }
+
+  const TemporaryFolder text;
+  WriteColmapText(SmallModel(), text.path());
+  const ColmapObservations from_text = ReadColmapObservations(text.path());
+  ASSERT_EQ(from_text.size(), 3U);
+  EXPECT_EQ(from_text.at(10).size(), 4U);
+  EXPECT_EQ(from_text.at(12).size(), 1U);
+  EXPECT_EQ(from_text.at(12)[0].point_id, 102U);
+
+  base::WriteFileAtomically(text / "images.txt",
+                            "# comment\r\n1 1 0 0 0 0 0 0 1 a.jpg\r\n12.5 7.5 -1 3.0 4.0 5 1 2 18446744073709551615\r\n2 1 0 0 0 0 0 0 1 b.jpg");
+  const ColmapObservations by_hand = ReadColmapObservations(text.path());
+  ASSERT_EQ(by_hand.size(), 2U);
+  ASSERT_EQ(by_hand.at(1).size(), 1U);
+  EXPECT_EQ(by_hand.at(1)[0].point_id, 5U);
+  EXPECT_EQ(by_hand.at(1)[0].pixel, Eigen::Vector2d(3.0, 4.0));
+  EXPECT_TRUE(by_hand.at(2).empty());
+}
+
+TEST(ColmapObservations, DamagedOnesAreRefused) {
+  const TemporaryFolder text;
+  const auto message = [&](const std::string& line) {
+    WriteColmapText(SmallModel(), text.path());
+    base::WriteFileAtomically(text / "images.txt", "7 1 0 0 0 0 0 0 3 a.jpg\n" + line + "\n");
+    return InputErrorOf([&] { ReadColmapObservations(text.path()); });
+  };
+  EXPECT_EQ(message("1 2 3"), "");
+  EXPECT_NE(message("1 2").find("line 2"), std::string::npos);
+  EXPECT_NE(message("1 2 -2").find("'-2'"), std::string::npos);
+  EXPECT_NE(message("1 2 3 4 x 6").find("'x'"), std::string::npos);
+  EXPECT_NE(message("1 nan 3").find("image 7"), std::string::npos);
+  EXPECT_NE(message("1 2 3\n7 1 0 0 0 0 0 0 3 b.jpg\n").find("image 7 twice"), std::string::npos);
+
+  const TemporaryFolder binary;
+  WriteBinary(SmallModel(), binary.path());
+  const std::string whole = base::ReadFile(binary / "images.bin");
+  for (size_t length = 0; length < whole.size(); ++length) {
+    std::ofstream(binary / "images.bin", std::ios::binary | std::ios::trunc) << whole.substr(0, length);
+    ASSERT_THROW(ReadColmapObservations(binary.path()), base::InputError) << length;
+  }
+  EXPECT_THROW(ReadColmapObservations(binary / "absent"), base::InputError);
+}
+
 TEST(ColmapModel, EveryTruncationOfABinaryFileIsRefused) {
   const TemporaryFolder folder;
   const ColmapModel model = SmallModel();

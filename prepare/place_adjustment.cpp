@@ -1,4 +1,4 @@
-#include "prepare/adjustment.h"
+#include "prepare/place_adjustment.h"
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>

@@ -67,13 +67,8 @@ nlohmann::ordered_json DescribeSurvey(const std::filesystem::path& folder) {
   for (const camera::Camera& camera : survey.cameras) {
     cameras.push_back({{"model", camera::ModelName(camera.model)}, {"width", camera.width}, {"height", camera.height}, {"params", camera.params}});
   }
-  Json json = {{"what", "survey"},
-               {"photo_root", survey.photo_root.string()},
-               {"photos", survey.photos.size()},
-               {"held_out", n_test},
-               {"with_gps", n_gps},
-               {"without_pose", survey.unregistered},
-               {"sparse_points", survey.points.size()}};
+  Json json = {{"what", "survey"},  {"photo_root", survey.photo_root.string()}, {"photos", survey.photos.size()},       {"held_out", n_test},
+               {"with_gps", n_gps}, {"without_pose", survey.unregistered},      {"sparse_points", survey.points.size()}};
   json.update(DescribePlace(survey));
   json["median_agl_m"] = Round(survey.MedianAgl(), 2);
   json["cameras"] = cameras;

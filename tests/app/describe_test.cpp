@@ -1,8 +1,9 @@
+#include "app/commands/describe.h"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "app/commands/describe.h"
 #include "core/base/file.h"
 #include "core/scene/scene_file.h"
 #include "partition/block.h"

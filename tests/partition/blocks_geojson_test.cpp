@@ -43,7 +43,8 @@ BlockSet TwoByTwo(const geo::Geodetic& origin, double side_m) {
     Block block;
     block.id = i;
     block.name = "r" + std::to_string(i / 2) + "c" + std::to_string(i % 2);
-    block.min_enu = {side_m * (i % 2 - 1) + 0.1 / 3.0, side_m * (i / 2 - 1), -1.0 / 3.0};
+    const int row = i / 2;
+    block.min_enu = {side_m * (i % 2 - 1) + 0.1 / 3.0, side_m * (row - 1), -1.0 / 3.0};
     block.max_enu = block.min_enu + Eigen::Vector3d(side_m, side_m, 20.0 / 7.0);
     block.margin_m = 0.06 * side_m;
     block.altitude_agl_m = 100.0 / 3.0;

@@ -6,6 +6,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/geo/enu_frame.h"
+#include "core/survey/geo_fit_json.h"
 #include "partition/block.h"
 #include "partition/lonlat_polygon.h"
 
@@ -15,6 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
+constexpr const char* kAccuracyKey = "skyquilt:accuracy";  // absent in files of older programs
 
 // JSON has no NaN: null is written instead.
 Json Number(double value) {
@@ -195,6 +197,7 @@ void SaveBlocks(const BlockSet& blocks, const std::filesystem::path& file) {
                 {{"latitude_deg", Number(blocks.origin.latitude_deg)},
                  {"longitude_deg", Number(blocks.origin.longitude_deg)},
                  {"height_m", Number(blocks.origin.height_m)}}},
+               {kAccuracyKey, survey::ToJson(blocks.accuracy)},
                {"skyquilt:rows", blocks.rows},
                {"skyquilt:columns", blocks.columns},
                {"skyquilt:image_width", blocks.image_width},
@@ -219,6 +222,7 @@ BlockSet LoadBlocks(const std::filesystem::path& file) {
     const Json& origin = root.at("skyquilt:origin");
     set.origin = {ReadNumber(origin.at("latitude_deg")), ReadNumber(origin.at("longitude_deg")), ReadNumber(origin.at("height_m"))};
     set.georeferenced = root.at("skyquilt:georeferenced").get<bool>();
+    if (root.contains(kAccuracyKey)) set.accuracy = survey::PlaceAccuracyFromJson(root.at(kAccuracyKey));
     set.rows = root.at("skyquilt:rows").get<int>();
     set.columns = root.at("skyquilt:columns").get<int>();
     set.image_width = root.at("skyquilt:image_width").get<int>();

@@ -192,6 +192,7 @@ BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& option
   BlockSet set;
   set.origin = survey.origin;
   set.georeferenced = survey.georeferenced;
+  set.accuracy = survey.fit.accuracy;
   set.rows = grid.rows();
   set.columns = grid.columns();
   set.image_width = image_width;

@@ -9,6 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
+#include "core/survey/geo_fit_json.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -140,7 +141,8 @@ void WriteCameraMap(const survey::Survey& survey, const std::filesystem::path& f
                                          {"test", photo.is_test}};
     features.push_back({{"type", "Feature"}, {"geometry", std::move(geometry)}, {"properties", std::move(properties)}});
   }
-  const nlohmann::ordered_json map = {{"type", "FeatureCollection"}, {"features", std::move(features)}};
+  const nlohmann::ordered_json map = {
+      {"type", "FeatureCollection"}, {"skyquilt:accuracy", survey::ToJson(survey.fit.accuracy)}, {"features", std::move(features)}};
   base::WriteFileAtomically(file, map.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 

@@ -9,6 +9,8 @@
 #include "core/base/file.h"
 #include "core/base/order_statistics.h"
 #include "core/gis/geotiff.h"
+#include "core/survey/geo_fit_json.h"
+#include "products/place_metadata.h"
 
 namespace skyquilt::products {
 namespace {
@@ -151,7 +153,9 @@ void WriteMapPreviews(const scene::SceneInfo& info, const gis::MapGrid& grid, co
   const nlohmann::ordered_json bounds = {{"min_enu", {info.min_enu.x(), info.min_enu.y()}},
                                          {"max_enu", {info.max_enu.x(), info.max_enu.y()}},
                                          {"resolution_m", grid.resolution_m},
-                                         {"crs", grid.georeferenced ? "EPSG:" + std::to_string(grid.zone.Epsg()) : "local"}};
+                                         {"crs", grid.georeferenced ? "EPSG:" + std::to_string(grid.zone.Epsg()) : "local"},
+                                         {"georeference", NameOfGeoreference(info)},
+                                         {"accuracy", survey::ToJson(info.accuracy)}};
   base::WriteFileAtomically(folder / "orthophoto.json", bounds.dump(1) + "\n");
 }
 

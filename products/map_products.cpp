@@ -10,6 +10,7 @@
 #include "core/base/progress.h"
 #include "core/gis/geotiff.h"
 #include "products/map_preview.h"
+#include "products/place_metadata.h"
 
 namespace skyquilt::products {
 namespace {
@@ -63,22 +64,24 @@ int64_t RenderPending(const RayCaster& caster, double min_opacity, Pending* pend
   return filled;
 }
 
-gis::GeoTiffSpec OrthophotoSpec(const gis::MapGrid& grid) {
+gis::GeoTiffSpec OrthophotoSpec(const scene::SceneInfo& info, const gis::MapGrid& grid) {
   gis::GeoTiffSpec spec;
   spec.grid = grid;
   spec.bands = 4;
   spec.band_names = {"red", "green", "blue", "alpha"};
+  spec.metadata = PlaceMetadata(info, "Orthophoto");
   spec.metadata["TIFFTAG_SOFTWARE"] = "skyquilt";
   return spec;
 }
 
-gis::GeoTiffSpec DsmSpec(const gis::MapGrid& grid) {
+gis::GeoTiffSpec DsmSpec(const scene::SceneInfo& info, const gis::MapGrid& grid) {
   gis::GeoTiffSpec spec;
   spec.grid = grid;
   spec.type = gis::PixelType::kFloat32;
   spec.nodata = static_cast<double>(kNoHeight);
   spec.band_names = {grid.georeferenced ? "ellipsoidal height" : "local height"};
   spec.unit = "m";
+  spec.metadata = PlaceMetadata(info, "Digital surface model");
   spec.metadata["TIFFTAG_SOFTWARE"] = "skyquilt";
   spec.metadata["VERTICAL_REFERENCE"] =
       grid.georeferenced ? "WGS84 ellipsoid (EPSG:4979), metres" : "local frame, metres if the survey's scale is known";
@@ -99,8 +102,8 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
     spdlog::warn("the survey has no geo-reference, so orthophoto and surface model are in local coordinates without CRS; use photos with GPS tags");
   std::optional<gis::GeoTiffWriter> ortho;
   std::optional<gis::GeoTiffWriter> dsm;
-  if (options.ortho) ortho.emplace(products.orthophoto = folder / "orthophoto.tif", OrthophotoSpec(grid));
-  if (options.dsm) dsm.emplace(products.dsm = folder / "dsm.tif", DsmSpec(grid));
+  if (options.ortho) ortho.emplace(products.orthophoto = folder / "orthophoto.tif", OrthophotoSpec(info, grid));
+  if (options.dsm) dsm.emplace(products.dsm = folder / "dsm.tif", DsmSpec(info, grid));
 
   const MapRayGenerator maker(info, grid);
   base::Progress progress(options.ortho ? "orthophoto" : "surface model", static_cast<double>(grid.width) * grid.height, "cells");

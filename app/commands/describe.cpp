@@ -1,17 +1,15 @@
 #include "app/commands/describe.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "app/commands/describe_number.h"
 #include "coordinator/project/project.h"
 #include "coordinator/project/stamp.h"
 #include "coordinator/stages/stage.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/geo/enu_frame.h"
 #include "core/survey/survey.h"
 #include "partition/block.h"
 
@@ -19,48 +17,6 @@ namespace skyquilt::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json Origin(const geo::Geodetic& origin) {
-  return {{"latitude_deg", origin.latitude_deg}, {"longitude_deg", origin.longitude_deg}, {"height_m", origin.height_m}};
-}
-
-Json Round(double value, int digits) {
-  if (!std::isfinite(value)) return nullptr;
-  const double scale = std::pow(10.0, digits);
-  return std::round(value * scale) / scale;
-}
-
-Json DescribeSurvey(const std::filesystem::path& folder) {
-  const survey::Survey survey = survey::LoadSurvey(folder);
-  const auto n_test = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.is_test; });
-  const auto n_gps = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.gps.has_value(); });
-  Json cameras = Json::array();
-  for (const camera::Camera& camera : survey.cameras) {
-    cameras.push_back({{"model", camera::ModelName(camera.model)}, {"width", camera.width}, {"height", camera.height}, {"params", camera.params}});
-  }
-  Json json = {{"what", "survey"},
-               {"photo_root", survey.photo_root.string()},
-               {"photos", survey.photos.size()},
-               {"held_out", n_test},
-               {"with_gps", n_gps},
-               {"without_pose", survey.unregistered},
-               {"sparse_points", survey.points.size()},
-               {"georeferenced", survey.georeferenced}};
-  if (survey.georeferenced) {
-    json["origin"] = Origin(survey.origin);
-    json["gps_fit"] = {{"matches", survey.fit.n_matches},
-                       {"inliers", survey.fit.n_inliers},
-                       {"rmse_m", Round(survey.fit.rmse_m, 3)},
-                       {"rmse_horizontal_m", Round(survey.fit.rmse_horizontal_m, 3)},
-                       {"rmse_vertical_m", Round(survey.fit.rmse_vertical_m, 3)},
-                       {"scale", survey.fit.scale},
-                       {"flight_vertical_offset_m", survey.fit.flight_vertical_offset_m}};
-  }
-  json["median_agl_m"] = Round(survey.MedianAgl(), 2);
-  json["cameras"] = cameras;
-  json["has_ground_truth"] = survey.truth.has_value();
-  return json;
-}
 
 Json DescribeBlocks(const std::filesystem::path& file) {
   const partition::BlockSet set = partition::LoadBlocks(file);
@@ -82,7 +38,8 @@ Json DescribeBlocks(const std::filesystem::path& file) {
   }
   Json json = {
       {"what", "blocks"}, {"rows", set.rows}, {"columns", set.columns}, {"image_width", set.image_width}, {"georeferenced", set.georeferenced}};
-  if (set.georeferenced) json["origin"] = Origin(set.origin);
+  if (set.georeferenced) json["origin"] = DescribeOrigin(set.origin);
+  json["accuracy"] = DescribeAccuracy(set.accuracy);
   json["blocks"] = blocks;
   return json;
 }
@@ -106,6 +63,14 @@ Json DescribeProject(const std::filesystem::path& folder) {
                       {"seconds", stamp ? Round(stamp->seconds, 1) : Json(nullptr)}});
   }
   Json json = {{"what", "project"}, {"folder", project.folder.string()}, {"stages", stages}};
+  if (std::filesystem::exists(project.SurveyFolder() / "survey.json")) {
+    // The stages are worth seeing also when the survey must be prepared again.
+    try {
+      json["survey"] = DescribePlace(survey::LoadSurvey(project.SurveyFolder()));
+    } catch (const base::InputError& error) {
+      json["survey"] = {{"unreadable", error.what()}};
+    }
+  }
   const std::filesystem::path metrics = project.ReportFolder() / "metrics.json";
   if (std::filesystem::exists(metrics)) {
     const Json all = Json::parse(base::ReadFile(metrics), nullptr, false);

@@ -9,6 +9,7 @@
 #include "core/base/errors.h"
 #include "core/checkpoint/archive.h"
 #include "core/checkpoint/digest.h"
+#include "core/scene/scene_file.h"
 
 namespace skyquilt::app {
 namespace {
@@ -61,6 +62,7 @@ nlohmann::ordered_json DescribeArchive(const std::filesystem::path& file) {
   json["what"] = archive.kind();
   json["version"] = archive.version();
   json["bytes"] = std::filesystem::file_size(file);
+  if (archive.kind() == scene::kSceneKind) json["accuracy"] = DescribeAccuracy(scene::GetAccuracy(archive));
   Json attributes = Json::object();
   for (const std::string& name : archive.AttributeNames()) attributes[name] = Attribute(archive, name);
   json["attributes"] = attributes;

@@ -41,7 +41,11 @@ nlohmann::ordered_json DescribeCameras(const std::filesystem::path& file) {
   } catch (const Json::exception&) {
     throw wrong();
   }
-  return {{"what", "photo positions"}, {"photos", photos.size()}, {"held_out", held_out}, {"positions", photos}};
+  return {{"what", "photo positions"},
+          {"photos", photos.size()},
+          {"held_out", held_out},
+          {"accuracy", content.value("skyquilt:accuracy", Json())},
+          {"positions", photos}};
 }
 
 nlohmann::ordered_json DescribeTable(const std::filesystem::path& file) {

@@ -29,11 +29,20 @@ std::string FlatText(const Json& value) {
   return text;
 }
 
-// Records with the same simple fields line up in columns.
-bool IsTable(const Json& value) {
+// Longer texts are sentences: in columns they would make lines that no terminal can show.
+constexpr size_t kWidestCell = 80;
+
+bool IsRecords(const Json& value) {
   return value.is_array() && !value.empty() && std::all_of(value.begin(), value.end(), [](const Json& row) {
            return row.is_object() && std::all_of(row.begin(), row.end(), [](const Json& cell) { return IsFlat(cell); });
          });
+}
+
+// Records with the same short fields line up in columns.
+bool IsTable(const Json& records) {
+  return std::all_of(records.begin(), records.end(), [](const Json& row) {
+    return std::all_of(row.begin(), row.end(), [](const Json& cell) { return FlatText(cell).size() <= kWidestCell; });
+  });
 }
 
 void WriteTable(const Json& rows, const std::string& indent, std::ostream& out) {
@@ -62,6 +71,14 @@ void WriteTable(const Json& rows, const std::string& indent, std::ostream& out) 
   }
 }
 
+void WriteRecord(const Json& record, const std::string& indent, std::ostream& out) {
+  const char* lead = "- ";
+  for (const auto& [key, value] : record.items()) {
+    out << indent << lead << key << ": " << FlatText(value) << "\n";
+    lead = "  ";
+  }
+}
+
 void Write(const Json& json, const std::string& indent, std::ostream& out) {
   for (const auto& [key, value] : json.items()) {
     if (IsFlat(value)) {
@@ -75,8 +92,10 @@ void Write(const Json& json, const std::string& indent, std::ostream& out) {
       for (std::string line; std::getline(lines, line);) out << indent << "  | " << line << "\n";
     } else {
       out << indent << key << ":\n";
-      if (IsTable(value)) {
+      if (IsRecords(value) && IsTable(value)) {
         WriteTable(value, indent + "  ", out);
+      } else if (IsRecords(value)) {
+        for (const Json& record : value) WriteRecord(record, indent + "  ", out);
       } else {
         Write(value, indent + "  ", out);
       }

@@ -76,6 +76,7 @@ std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
                           .blocks = {},
                           .origin = blocks.origin,
                           .georeferenced = blocks.georeferenced,
+                          .accuracy = blocks.accuracy,
                           .borders = pipeline.settings.merge.Borders(),
                           .storage = pipeline.settings.merge.Storage(),
                           .use_context = pipeline.settings.train.coupling != "independent",

@@ -107,6 +107,7 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
   info.origin = {reader.DoubleAttribute("origin_latitude_deg"), reader.DoubleAttribute("origin_longitude_deg"),
                  reader.DoubleAttribute("origin_height_m")};
   info.georeferenced = reader.IntAttribute("georeferenced") != 0;
+  info.accuracy = GetAccuracy(reader);
   info.response = brightness::GetResponse(reader, scene_h5);
   brightness::GetLuminance(reader, &info.luminance, &info.luminance_state);
   info.config = reader.StringAttribute("config");

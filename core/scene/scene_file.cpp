@@ -1,8 +1,23 @@
 #include "core/scene/scene_file.h"
 
+#include <array>
+#include <cmath>
+#include <utility>
+
 #include "core/base/errors.h"
 
 namespace skyquilt::scene {
+namespace {
+
+constexpr std::array<std::pair<const char*, double geo::PlaceAccuracy::*>, 5> kAccuracyAttributes = {{
+    {"accuracy_scale_percent", &geo::PlaceAccuracy::scale_percent},
+    {"accuracy_tilt_deg", &geo::PlaceAccuracy::tilt_deg},
+    {"accuracy_yaw_deg", &geo::PlaceAccuracy::yaw_deg},
+    {"accuracy_horizontal_m", &geo::PlaceAccuracy::horizontal_m},
+    {"accuracy_vertical_m", &geo::PlaceAccuracy::vertical_m},
+}};
+
+}  // namespace
 
 checkpoint::ArchiveReader OpenScene(const std::filesystem::path& scene_h5) {
   checkpoint::ArchiveReader reader(scene_h5);
@@ -16,6 +31,20 @@ checkpoint::ArchiveReader OpenScene(const std::filesystem::path& scene_h5) {
 Borders BordersOf(const checkpoint::ArchiveReader& scene) {
   const bool hard = scene.HasAttribute(kBordersAttribute) && scene.StringAttribute(kBordersAttribute) == NameOf(Borders::kHard);
   return hard ? Borders::kHard : Borders::kSmooth;
+}
+
+void PutAccuracy(const geo::PlaceAccuracy& accuracy, checkpoint::ArchiveWriter& writer) {
+  for (const auto& [name, member] : kAccuracyAttributes) {
+    if (std::isfinite(accuracy.*member)) writer.SetAttribute(name, accuracy.*member);
+  }
+}
+
+geo::PlaceAccuracy GetAccuracy(const checkpoint::ArchiveReader& scene) {
+  geo::PlaceAccuracy accuracy;
+  for (const auto& [name, member] : kAccuracyAttributes) {
+    if (scene.HasAttribute(name)) accuracy.*member = scene.DoubleAttribute(name);
+  }
+  return accuracy;
 }
 
 }  // namespace skyquilt::scene

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/checkpoint/archive.h"
+#include "core/geo/place_accuracy.h"
 #include "core/scene/scene.h"
 
 namespace skyquilt::scene {
@@ -21,5 +22,8 @@ inline std::string BlockPrefix(int64_t i) {
 // Throws base::InputError when the file is damaged, is not a scene, or has another version.
 checkpoint::ArchiveReader OpenScene(const std::filesystem::path& scene_h5);
 Borders BordersOf(const checkpoint::ArchiveReader& scene);
+// The accuracy of the scene's place on Earth: attributes accuracy_scale_percent and so on, without those that are unknown.
+void PutAccuracy(const geo::PlaceAccuracy& accuracy, checkpoint::ArchiveWriter& writer);
+geo::PlaceAccuracy GetAccuracy(const checkpoint::ArchiveReader& scene);
 
 }  // namespace skyquilt::scene

@@ -137,5 +137,11 @@ TEST(Readable, ShowsValuesTablesAndText) {
   EXPECT_NE(text.find("r0c1  0.25\n"), std::string::npos) << text;
 }
 
+TEST(Readable, ShowsSentencesBelowEachOther) {
+  const std::string sentence(81, 's');
+  const nlohmann::ordered_json json = {{"problems", {{{"code", "a"}, {"finding", sentence}}, {{"code", "b"}, {"finding", "short"}}}}};
+  EXPECT_EQ(FormatReadable(json), "problems:\n  - code: a\n    finding: " + sentence + "\n  - code: b\n    finding: short\n");
+}
+
 }  // namespace
 }  // namespace skyquilt::app

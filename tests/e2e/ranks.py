@@ -1,4 +1,6 @@
 """`run` on 1, 2 and 3 ranks gives the same quality; single stages give the same result as `run`; running again repeats nothing."""
+import json
+
 from harness import SMALL, digest, expect, main, metrics_of, replaced
 
 
@@ -45,9 +47,17 @@ def test(skyquilt, folder):
         expect(skyquilt.call("info", path).strip(), f"info prints nothing about {path}")
         expect(skyquilt.call("info", path, "--json").lstrip().startswith("{"), f"info --json does not print JSON for {path}")
 
+    accuracy = read(alone / "survey" / "survey.json")["fit"]["accuracy"]
+    expect(read(alone / "blocks.geojson")["skyquilt:accuracy"] == accuracy, "blocks.geojson has another accuracy than the survey")
+    expect(read(alone / "products" / "orthophoto.json")["accuracy"] == accuracy, "the map has another accuracy than the survey")
+
     text = skyquilt.call("run", survey, "-o", alone, *replaced(SMALL, "--steps", "301"), status=2)
     expect("train.steps: 300 -> 301" in text and "--restart" in text, f"the changed option is not named:\n{text}")
     expect(digest(alone, but=("log.txt",)) == before, "a refused run changed files")
+
+
+def read(file):
+    return json.loads(file.read_text())
 
 
 def pick(words, *flags):

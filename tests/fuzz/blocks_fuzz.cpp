@@ -15,6 +15,7 @@ std::vector<std::string> Seeds() {
     partition::BlockSet set;
     set.origin = {46.0, 7.0, 400.0};
     set.georeferenced = georeferenced;
+    set.accuracy = {.scale_percent = 0.5, .tilt_deg = 0.3, .yaw_deg = 0.2, .horizontal_m = 1.5};
     set.rows = 1;
     set.columns = 2;
     for (int i = 0; i < 2; ++i) {

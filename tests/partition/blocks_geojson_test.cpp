@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/survey/geo_fit_json.h"
 #include "partition/block.h"
 #include "partition/lonlat_polygon.h"
 
@@ -33,6 +34,7 @@ BlockSet TwoByTwo(const geo::Geodetic& origin, double side_m) {
   BlockSet set;
   set.origin = origin;
   set.georeferenced = true;
+  set.accuracy = {.scale_percent = 0.1 / 3.0, .tilt_deg = 0.3, .yaw_deg = 1.0 / 7.0, .horizontal_m = 1.5};
   set.rows = 2;
   set.columns = 2;
   set.image_width = 800;
@@ -41,7 +43,8 @@ BlockSet TwoByTwo(const geo::Geodetic& origin, double side_m) {
     Block block;
     block.id = i;
     block.name = "r" + std::to_string(i / 2) + "c" + std::to_string(i % 2);
-    block.min_enu = {side_m * (i % 2 - 1) + 0.1 / 3.0, side_m * (i / 2 - 1), -1.0 / 3.0};
+    const int row = i / 2;
+    block.min_enu = {side_m * (i % 2 - 1) + 0.1 / 3.0, side_m * (row - 1), -1.0 / 3.0};
     block.max_enu = block.min_enu + Eigen::Vector3d(side_m, side_m, 20.0 / 7.0);
     block.margin_m = 0.06 * side_m;
     block.altitude_agl_m = 100.0 / 3.0;
@@ -65,6 +68,7 @@ void ExpectEqual(const BlockSet& a, const BlockSet& b) {
   EXPECT_EQ(a.origin.longitude_deg, b.origin.longitude_deg);
   EXPECT_EQ(a.origin.height_m, b.origin.height_m);
   EXPECT_EQ(a.georeferenced, b.georeferenced);
+  EXPECT_EQ(survey::ToJson(a.accuracy), survey::ToJson(b.accuracy));
   EXPECT_EQ(a.rows, b.rows);
   EXPECT_EQ(a.columns, b.columns);
   EXPECT_EQ(a.image_width, b.image_width);
@@ -200,6 +204,24 @@ TEST(BlocksGeoJson, WithoutGeoReferenceMetresAreWritten) {
   EXPECT_EQ(root["features"][0]["geometry"]["coordinates"][0][0][1].get<double>(), -100.0);
 }
 
+TEST(BlocksGeoJson, AccuracyIsNullWhereUnknown) {
+  const Json root = SavedAndLoaded(TwoByTwo({1, 2, 3}, 100.0));
+  EXPECT_EQ(root["skyquilt:accuracy"]["tilt_deg"], 0.3);
+  EXPECT_EQ(root["skyquilt:accuracy"]["scale_percent"], 0.1 / 3.0);
+  EXPECT_TRUE(root["skyquilt:accuracy"].at("vertical_m").is_null());
+}
+
+TEST(BlocksGeoJson, FilesOfOlderProgramsHaveUnknownAccuracy) {
+  const TempFile file;
+  SaveBlocks(TwoByTwo({1, 2, 3}, 100.0), file.path());
+  Json older = Json::parse(base::ReadFile(file.path()));
+  older.erase("skyquilt:accuracy");
+  base::WriteFileAtomically(file.path(), older.dump());
+  BlockSet expected = TwoByTwo({1, 2, 3}, 100.0);
+  expected.accuracy = {};
+  ExpectEqual(LoadBlocks(file.path()), expected);
+}
+
 TEST(BlocksGeoJson, DamagedFilesAreRefusedByName) {
   const TempFile file;
   const auto expect_refused = [&](const std::string& text) {
@@ -231,6 +253,9 @@ TEST(BlocksGeoJson, DamagedFilesAreRefusedByName) {
   expect_refused(bad.dump());
   bad = good;
   bad["skyquilt:origin"]["latitude_deg"] = 91.0;
+  expect_refused(bad.dump());
+  bad = good;
+  bad["skyquilt:accuracy"]["tilt_deg"] = "small";
   expect_refused(bad.dump());
   EXPECT_THROW(LoadBlocks(file.path().string() + ".missing"), base::InputError);
 }

@@ -53,6 +53,17 @@ TEST(MakeBlocks, CoversTheSurveyOnce) {
   EXPECT_LT(area, 1.25 * 1.25 * 200 * 200);
 }
 
+TEST(MakeBlocks, KeepsTheAccuracyOfTheSurvey) {
+  survey::Survey survey = FlySurvey({});
+  survey.fit.accuracy = {.scale_percent = 0.4, .tilt_deg = 0.3, .yaw_deg = 0.2, .horizontal_m = 1.5, .vertical_m = 3.0};
+  const geo::PlaceAccuracy accuracy = MakeBlocks(survey, Request("1x1"), 0).accuracy;
+  EXPECT_EQ(accuracy.scale_percent, 0.4);
+  EXPECT_EQ(accuracy.tilt_deg, 0.3);
+  EXPECT_EQ(accuracy.yaw_deg, 0.2);
+  EXPECT_EQ(accuracy.horizontal_m, 1.5);
+  EXPECT_EQ(accuracy.vertical_m, 3.0);
+}
+
 TEST(MakeBlocks, GroundThatFewPhotosSeeIsLeftOut) {
   survey::Survey survey = FlySurvey({});
   // Keep the photos over the western half only; the points stay everywhere. Their images reach 57 m to each side.

@@ -13,6 +13,7 @@
 #include "core/base/file.h"
 #include "core/geo/enu_frame.h"
 #include "core/image/image.h"
+#include "products/place_metadata.h"
 #include "tests/products/analytic_scene.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
@@ -193,6 +194,61 @@ TEST(MapProducts, WithoutGeoReferenceTheyAreLocal) {
   const std::vector<float> height = dsm.Band(1);
   EXPECT_EQ(height[0], 5.0F);
   EXPECT_EQ(height[static_cast<size_t>(100) * 240 + 160], 25.0F);
+}
+
+// Metadata item of a file; empty when it has none.
+std::string Item(const std::filesystem::path& file, const char* key) {
+  const OtherProgram map(file);
+  const char* value = map.dataset()->GetMetadataItem(key);
+  return value == nullptr ? "" : value;
+}
+
+TEST(MapProducts, SayHowAccurateTheirPlaceIs) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
+  info.accuracy = {.scale_percent = 0.412345, .tilt_deg = 0.3, .yaw_deg = 0.25, .horizontal_m = 1.53};
+  const MapProducts products = MakeMapProducts(info, scene.Caster(), ProductOptions{}, folder.path());
+  for (const std::filesystem::path& file : {products.orthophoto, products.dsm}) {
+    EXPECT_EQ(Item(file, "GEOREFERENCE"), "fitted to GPS tags");
+    EXPECT_EQ(Item(file, "ACCURACY_SCALE_PERCENT"), "0.412");
+    EXPECT_EQ(Item(file, "ACCURACY_TILT_DEG"), "0.3");
+    EXPECT_EQ(Item(file, "ACCURACY_YAW_DEG"), "0.25");
+    EXPECT_EQ(Item(file, "ACCURACY_HORIZONTAL_M"), "1.53");
+    EXPECT_EQ(Item(file, "ACCURACY_VERTICAL_M"), "unknown");
+    EXPECT_EQ(Item(file, "TIFFTAG_SOFTWARE"), "skyquilt");
+  }
+  EXPECT_EQ(Item(products.orthophoto, "TIFFTAG_IMAGEDESCRIPTION"),
+            "Orthophoto, placed on Earth by its GPS tags with a standard deviation of 1.53 m horizontally, unknown vertically, 0.3 degrees in tilt, "
+            "0.25 degrees in yaw, 0.412 % in scale.");
+  EXPECT_EQ(Item(products.dsm, "VERTICAL_REFERENCE"), "WGS84 ellipsoid (EPSG:4979), metres");
+  const auto map = nlohmann::json::parse(base::ReadFile(folder.path() / "orthophoto.json"));
+  EXPECT_EQ(map["georeference"], "fitted to GPS tags");
+  EXPECT_EQ(map["accuracy"]["scale_percent"], 0.412345);
+  EXPECT_EQ(map["accuracy"]["horizontal_m"], 1.53);
+  EXPECT_TRUE(map["accuracy"].at("vertical_m").is_null());
+}
+
+TEST(PlaceMetadata, NamesTheGeoreference) {
+  const geo::PlaceAccuracy unknown;
+  const geo::PlaceAccuracy exact = {0.0, 0.0, 0.0, 0.0, 0.0};
+  const geo::PlaceAccuracy fitted = {0.0, 0.0, 0.0, 0.02, 0.0};
+  const geo::PlaceAccuracy level = {.tilt_deg = 2.0};
+  const auto items = [](const geo::PlaceAccuracy& accuracy, bool georeferenced) {
+    scene::SceneInfo info = AnalyticScene().Info({41.38, 2.17, 50.0}, georeferenced);
+    info.accuracy = accuracy;
+    return PlaceMetadata(info, "Map");
+  };
+  EXPECT_EQ(items(exact, true).at("GEOREFERENCE"), "exact (simulated)");
+  EXPECT_EQ(items(exact, true).at("ACCURACY_VERTICAL_M"), "0");
+  EXPECT_EQ(items(exact, true).at("TIFFTAG_IMAGEDESCRIPTION"), "Map of a simulated survey whose place on Earth is known exactly.");
+  EXPECT_EQ(items(fitted, true).at("GEOREFERENCE"), "fitted to GPS tags");
+  EXPECT_EQ(items(unknown, true).at("GEOREFERENCE"), "of unknown accuracy");
+  EXPECT_EQ(items(unknown, true).at("TIFFTAG_IMAGEDESCRIPTION"), "Map, placed on Earth with unknown accuracy.");
+  EXPECT_EQ(items(level, false).at("GEOREFERENCE"), "local frame");
+  EXPECT_EQ(items(level, false).at("ACCURACY_TILT_DEG"), "2");
+  EXPECT_EQ(items(level, false).at("ACCURACY_SCALE_PERCENT"), "unknown");
+  EXPECT_EQ(items(level, false).at("TIFFTAG_IMAGEDESCRIPTION"), "Map in a local frame of unknown scale, without a place on Earth.");
 }
 
 TEST(MapProducts, LargeMapsHaveOverviewsAndTiles) {

@@ -1,0 +1,120 @@
+#include "app/commands/describe.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+#include "core/scene/scene_file.h"
+#include "partition/block.h"
+#include "tests/support/call_program.h"
+#include "tests/support/nadir_photo.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skyquilt::app {
+namespace {
+
+survey::Survey LaggingSurvey() {
+  survey::Survey survey;
+  survey.origin = {47.0, 8.0, 400.0};
+  survey.georeferenced = true;
+  survey.photo_root = "photos";
+  survey.cameras.emplace_back();
+  survey.cameras[0].model = camera::CameraModel::kPinhole;
+  survey.cameras[0].width = 800;
+  survey.cameras[0].height = 600;
+  survey.cameras[0].params = {700.0, 700.0, 400.0, 300.0};
+  survey.photos = {NadirPhoto({0.0, 0.0, 50.0}, "a.jpg")};
+  survey.fit.n_matches = 75;
+  survey.fit.n_inliers = 18;
+  survey.fit.tag_lag_s = 1.23456;
+  survey.fit.tag_lag_sigma_s = 0.0456;
+  survey.fit.accuracy = {.scale_percent = 0.00041234, .tilt_deg = 0.3, .yaw_deg = 0.0, .horizontal_m = 1.53};
+  survey.fit.gravity = {{.kind = "gimbal", .n = 3, .lean_east_deg = 0.1, .lean_north_deg = -0.2, .sigma_deg = 0.25, .weight = 0.9}};
+  survey.problems = {{.code = "tags_disagree",
+                      .finding = "only 18 of 75 GPS tags agree with each other within the accuracy that they are tagged with",
+                      .advice = "look at the tags on the map of the report",
+                      .about_place = true}};
+  return survey;
+}
+
+void ExpectPlace(const nlohmann::ordered_json& place) {
+  EXPECT_EQ(place.at("accuracy").at("scale_percent"), 0.000412);
+  EXPECT_EQ(place.at("accuracy").at("yaw_deg"), 0.0);
+  EXPECT_EQ(place.at("accuracy").at("horizontal_m"), 1.53);
+  EXPECT_TRUE(place.at("accuracy").at("vertical_m").is_null());
+  EXPECT_EQ(place.at("gps_fit").at("inliers"), 18);
+  EXPECT_EQ(place.at("gps_fit").at("tag_lag_s"), 1.235);
+  EXPECT_EQ(place.at("gps_fit").at("tag_lag_sigma_s"), 0.0456);
+  ASSERT_EQ(place.at("problems").size(), 1U);
+  EXPECT_EQ(place.at("problems")[0].at("code"), "tags_disagree");
+  EXPECT_EQ(place.at("problems")[0].at("advice"), "look at the tags on the map of the report");
+}
+
+TEST(DescribeSurvey, ShowsAccuracyLagAndProblems) {
+  const TemporaryFolder folder;
+  survey::SaveSurvey(LaggingSurvey(), folder.path());
+  const nlohmann::ordered_json json = Describe(folder.path());
+  EXPECT_EQ(json.at("what"), "survey");
+  EXPECT_EQ(json.at("photos"), 1);
+  ExpectPlace(json);
+  EXPECT_EQ(json.at("gravity")[0].at("evidence"), "gimbal");
+  EXPECT_EQ(json.at("gravity")[0].at("weight"), 0.9);
+}
+
+TEST(DescribeProject, ShowsHowWellItsSurveyIsPlaced) {
+  const TemporaryFolder folder;
+  survey::SaveSurvey(LaggingSurvey(), folder / "survey");
+  const nlohmann::ordered_json json = Describe(folder.path());
+  EXPECT_EQ(json.at("what"), "project");
+  ExpectPlace(json.at("survey"));
+
+  const Called text = CallProgram({"info", folder.path().string()});
+  EXPECT_EQ(text.status, 0);
+  EXPECT_NE(text.out.find("    horizontal_m: 1.53\n    vertical_m: -\n"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("    tag_lag_s: 1.235\n"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("\n    - code: tags_disagree\n      finding: only 18 of 75"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("\n      advice: look at the tags"), std::string::npos) << text.out;
+}
+
+TEST(DescribeProject, ShowsItsStagesWhenTheSurveyCannotBeRead) {
+  const TemporaryFolder folder;
+  survey::SaveSurvey(LaggingSurvey(), folder / "survey");
+  base::WriteFileAtomically(folder / "survey/survey.json", R"({"format": "skyquilt survey", "version": 1})");
+  const nlohmann::ordered_json json = Describe(folder.path());
+  EXPECT_FALSE(json.at("stages").empty());
+  EXPECT_NE(json.at("survey").at("unreadable").get<std::string>().find("skyquilt prepare"), std::string::npos) << json;
+}
+
+TEST(DescribeBlocks, ShowsTheAccuracy) {
+  const TemporaryFolder folder;
+  partition::BlockSet set;
+  set.accuracy = {.tilt_deg = 1.2345};
+  partition::SaveBlocks(set, folder / "blocks.geojson");
+  const nlohmann::ordered_json json = Describe(folder / "blocks.geojson");
+  EXPECT_EQ(json.at("accuracy").at("tilt_deg"), 1.23);
+  EXPECT_TRUE(json.at("accuracy").at("yaw_deg").is_null());
+}
+
+TEST(DescribeArchive, ShowsTheAccuracyOfScenesOnly) {
+  const TemporaryFolder folder;
+  checkpoint::ArchiveWriter scene(scene::kSceneKind, scene::kSceneVersion);
+  scene::PutAccuracy({.horizontal_m = 1.5}, scene);
+  scene.Commit(folder / "scene.h5");
+  const nlohmann::ordered_json json = Describe(folder / "scene.h5");
+  EXPECT_EQ(json.at("accuracy").at("horizontal_m"), 1.5);
+  EXPECT_TRUE(json.at("accuracy").at("vertical_m").is_null());
+  checkpoint::ArchiveWriter("block", 1).Commit(folder / "block.h5");
+  EXPECT_FALSE(Describe(folder / "block.h5").contains("accuracy"));
+}
+
+TEST(DescribeCameras, ShowTheAccuracyWhereTheFileHasIt) {
+  const TemporaryFolder folder;
+  base::WriteFileAtomically(folder / "cameras.geojson", R"({"features": [], "skyquilt:accuracy": {"tilt_deg": 0.3}})");
+  EXPECT_EQ(Describe(folder / "cameras.geojson").at("accuracy").at("tilt_deg"), 0.3);
+  base::WriteFileAtomically(folder / "cameras.geojson", R"({"features": []})");
+  EXPECT_TRUE(Describe(folder / "cameras.geojson").at("accuracy").is_null());
+}
+
+}  // namespace
+}  // namespace skyquilt::app

@@ -1,0 +1,80 @@
+#include "merge/merge.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/brightness/luminance.h"
+#include "core/brightness/response.h"
+#include "core/scene/background.h"
+#include "core/scene/field_file.h"
+#include "tests/support/random_field.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skyquilt::merge {
+namespace {
+
+constexpr geo::Geodetic kOrigin = {41.0, 2.0, 100.0};
+
+// A project's finished checkpoints: one block of random parameters, and a context.
+class Merge : public testing::Test {
+ protected:
+  Merge() {
+    Write("block", "r0c0", false);
+    Write("context", "context", true);
+  }
+  void Write(const std::string& kind, const std::string& name, bool contracted) const {
+    render::TrainedField field = render::RandomField(3, Eigen::Vector3d::Zero(), {5.0, 5.0, 4.0}, 0.8, -1.0, contracted);
+    field.name = name;
+    const brightness::Response response = brightness::Response::Neutral(2, 1);
+    const scene::Background background;
+    checkpoint::ArchiveWriter writer(kind, scene::kCheckpointVersion);
+    scene::PutField(field, "", writer);
+    writer.SetAttribute("complete", 1);
+    writer.SetAttribute("origin_latitude_deg", kOrigin.latitude_deg);
+    writer.SetAttribute("origin_longitude_deg", kOrigin.longitude_deg);
+    writer.SetAttribute("origin_height_m", kOrigin.height_m);
+    brightness::PutResponse(response, writer);
+    brightness::PutLuminance({}, {}, writer);
+    scene::PutBackground(background, writer);
+    writer.Commit(folder_ / (name + ".h5"));
+  }
+  scene::SceneInfo Merged(const geo::PlaceAccuracy& accuracy) const {
+    MergeInput input;
+    input.context = folder_ / "context.h5";
+    input.blocks = {{.checkpoint = folder_ / "r0c0.h5", .gsd_m = 0.05}};
+    input.origin = kOrigin;
+    input.georeferenced = true;
+    input.accuracy = accuracy;
+    input.scene = folder_ / "scene.h5";
+    MergeScene(input);
+    return scene::Scene::Load(input.scene).info();
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Merge, TheSceneKeepsPlaceAndAccuracyOfTheSurvey) {
+  const scene::SceneInfo info = Merged({.scale_percent = 0.4, .tilt_deg = 0.3, .yaw_deg = 0.0, .horizontal_m = 1.5});
+  EXPECT_TRUE(info.georeferenced);
+  EXPECT_EQ(info.origin.latitude_deg, kOrigin.latitude_deg);
+  ASSERT_EQ(info.blocks.size(), 1U);
+  EXPECT_EQ(info.blocks[0].name, "r0c0");
+  EXPECT_EQ(info.gsd_m, 0.05);
+  EXPECT_EQ(info.accuracy.scale_percent, 0.4);
+  EXPECT_EQ(info.accuracy.tilt_deg, 0.3);
+  EXPECT_EQ(info.accuracy.yaw_deg, 0.0);
+  EXPECT_EQ(info.accuracy.horizontal_m, 1.5);
+  EXPECT_TRUE(std::isnan(info.accuracy.vertical_m));
+}
+
+TEST_F(Merge, UnknownAccuracyIsNotStored) {
+  const scene::SceneInfo info = Merged({});
+  for (const std::string& name : checkpoint::ArchiveReader(folder_ / "scene.h5").AttributeNames()) {
+    EXPECT_FALSE(name.starts_with("accuracy")) << name;
+  }
+  EXPECT_TRUE(std::isnan(info.accuracy.tilt_deg));
+}
+
+}  // namespace
+}  // namespace skyquilt::merge

@@ -1,63 +1,26 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
-#include "core/geo/enu_frame.h"
 #include "core/page/html.h"
+#include "evaluate/map_frame.h"
 #include "evaluate/report_page.h"
+#include "evaluate/tag_positions.h"
 
 namespace skyquilt::evaluate {
 
 namespace {
 
-constexpr double kMapWidth_px = 900.0;
-constexpr double kMaxHeight_px = 820.0;
-
-// Converts east and north in metres to pixels of the drawing, north up.
-class MapFrame {
- public:
-  MapFrame(Eigen::Vector2d low, Eigen::Vector2d high) {
-    Eigen::Vector2d size = high - low;
-    const double pad = 0.04 * std::max(size.maxCoeff(), 1.0);
-    low.array() -= pad;
-    high.array() += pad;
-    size = high - low;
-    scale_ = std::min(kMapWidth_px / size.x(), kMaxHeight_px / size.y());
-    width_px_ = size.x() * scale_;
-    height_px_ = size.y() * scale_;
-    west_ = low.x();
-    north_ = high.y();
-  }
-  double X(double east_m) const { return (east_m - west_) * scale_; }
-  double Y(double north_m) const { return (north_ - north_m) * scale_; }
-  double scale() const { return scale_; }
-  double width_px() const { return width_px_; }
-  double height_px() const { return height_px_; }
-
- private:
-  double scale_ = 1.0, width_px_ = 1.0, height_px_ = 1.0, west_ = 0.0, north_ = 0.0;
-};
-
-void Grow(const Eigen::Vector2d& x, Eigen::Vector2d* low, Eigen::Vector2d* high) {
-  if (!x.allFinite()) return;
-  *low = low->cwiseMin(x);
-  *high = high->cwiseMax(x);
-}
-
 // Bounds of blocks and cameras. GPS tags do not count, because one wrong tag would make the rest of the map tiny.
 MapFrame FrameOf(const ReportInput& input) {
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector2d high = -low;
+  MapBounds bounds;
   for (const partition::Block& block : input.blocks->blocks) {
-    Grow(block.TrainMin().head<2>(), &low, &high);
-    Grow(block.TrainMax().head<2>(), &low, &high);
+    bounds.Include(block.TrainMin().head<2>());
+    bounds.Include(block.TrainMax().head<2>());
   }
-  for (const survey::Photo& photo : input.survey->photos) Grow(photo.cam_from_enu.OriginInSource().head<2>(), &low, &high);
-  if (!(high.array() >= low.array()).all()) return {Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, 1)};
-  return {low, high};
+  for (const survey::Photo& photo : input.survey->photos) bounds.Include(photo.cam_from_enu.OriginInSource().head<2>());
+  return MapFrame(bounds);
 }
 
 std::string Rect(const MapFrame& frame, const Eigen::Vector3d& low, const Eigen::Vector3d& high, const char* css_class) {
@@ -100,28 +63,19 @@ std::string BlockLabels(const ReportInput& input, const MapFrame& frame) {
   return svg + "</g>";
 }
 
-// Tagged positions in photo order, one line per flight.
+// Tagged positions in the order of their times, one line per flight.
 std::string GpsTracks(const ReportInput& input, const MapFrame& frame) {
-  if (!input.survey->georeferenced || !geo::IsValid(input.survey->origin)) return "";
-  const geo::EnuFrame enu(input.survey->origin);
-  struct Tag {
-    double time_s;
-    Eigen::Vector3d x_in_enu;
-  };
-  std::map<int, std::vector<Tag>> flights;
-  for (const survey::Photo& photo : input.survey->photos) {
-    if (!photo.gps || !geo::IsValid(*photo.gps)) continue;
-    flights[photo.flight].push_back({photo.time_s.value_or(0.0), enu.EnuFromGeodetic(*photo.gps)});
-  }
+  const std::vector<std::optional<TagPosition>> tags = TagPositions(*input.survey);
   std::string svg = "<g class=\"layer-gps\">";
-  for (auto& [flight, tags] : flights) {
-    std::stable_sort(tags.begin(), tags.end(), [](const Tag& a, const Tag& b) { return a.time_s < b.time_s; });
+  for (const auto& [flight, photos] : PhotosByFlight(*input.survey)) {
     std::string line, marks;
-    for (const Tag& tag : tags) {
-      const double x = frame.X(tag.x_in_enu.x()), y = frame.Y(tag.x_in_enu.y());
+    for (const size_t i : photos) {
+      if (!tags[i]) continue;
+      const double x = frame.X(tags[i]->recorded.x()), y = frame.Y(tags[i]->recorded.y());
       line += fmt::format("{:.1f},{:.1f} ", x, y);
       marks += fmt::format("M{:.1f} {:.1f}h6m-3 -3v6", x - 3.0, y);
     }
+    if (line.empty()) continue;
     svg += fmt::format("<polyline class=\"track\" points=\"{}\"><title>GPS tags of flight {}</title></polyline><path class=\"tag\" d=\"{}\"/>", line,
                        flight + 1, marks);
   }
@@ -154,24 +108,6 @@ std::string Cameras(const ReportInput& input, const MapFrame& frame) {
   return training + "</g>" + test + "</g>";
 }
 
-std::string ScaleBarAndNorth(const ReportInput& input, const MapFrame& frame) {
-  // The largest length 1, 2 or 5 times a power of ten that fits into a quarter of the map.
-  const double room_m = 0.25 * frame.width_px() / frame.scale();
-  const double magnitude = std::pow(10.0, std::floor(std::log10(room_m)));
-  const double length_m = magnitude * (5.0 * magnitude <= room_m ? 5.0 : 2.0 * magnitude <= room_m ? 2.0 : 1.0);
-  const std::string label = !input.survey->georeferenced ? fmt::format("{:g} units (scale unknown)", length_m)
-                            : length_m >= 1000.0         ? fmt::format("{:g} km", length_m / 1000.0)
-                                                         : fmt::format("{:g} m", length_m);
-  const double x = 18.0, y = frame.height_px() - 20.0;
-  std::string svg = fmt::format("<g class=\"scale\"><path d=\"M{0:.1f} {1:.1f}v6h{2:.1f}v-6\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\">{4}</text></g>", x,
-                                y, length_m * frame.scale(), y - 5.0, label);
-  if (input.survey->georeferenced) {
-    svg += fmt::format("<g class=\"north\" transform=\"translate({:.1f} 30)\"><path d=\"M0 -16L7 8L0 3L-7 8Z\"/><text y=\"22\">N</text></g>",
-                       frame.width_px() - 26.0);
-  }
-  return svg;
-}
-
 }  // namespace
 
 std::string BlockMapSvg(const ReportInput& input) {
@@ -186,7 +122,8 @@ std::string BlockMapSvg(const ReportInput& input) {
         page::EscapeHtml(background.image), frame.X(background.min_enu.x()), frame.Y(background.max_enu.y()),
         (background.max_enu.x() - background.min_enu.x()) * frame.scale(), (background.max_enu.y() - background.min_enu.y()) * frame.scale());
   }
-  svg += Blocks(input, frame) + GpsTracks(input, frame) + Cameras(input, frame) + BlockLabels(input, frame) + ScaleBarAndNorth(input, frame);
+  svg += Blocks(input, frame) + GpsTracks(input, frame) + Cameras(input, frame) + BlockLabels(input, frame) +
+         ScaleBarAndNorth(frame, input.survey->georeferenced);
   return svg + "</svg>\n";
 }
 

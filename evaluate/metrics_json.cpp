@@ -7,6 +7,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/survey/geo_fit_json.h"
 #include "evaluate/metrics.h"
 
 namespace skyquilt::evaluate {
@@ -41,9 +42,22 @@ constexpr std::array<KeyedNumber, 3> kHeights = {
 
 using Json = nlohmann::ordered_json;
 
-Json NumberOrNull(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
+using survey::NumberOrNull;
+
+// Keys of the fit to GPS here and in survey.json.
+constexpr std::array<std::pair<const char*, const char*>, 13> kFitKeys = {{{"photos_with_gps", "n_matches"},
+                                                                           {"inliers", "n_inliers"},
+                                                                           {"rmse_m", "rmse_m"},
+                                                                           {"rmse_horizontal_m", "rmse_horizontal_m"},
+                                                                           {"rmse_vertical_m", "rmse_vertical_m"},
+                                                                           {"scale_m_per_model_unit", "scale"},
+                                                                           {"tag_lag_s", "tag_lag_s"},
+                                                                           {"tag_lag_sigma_s", "tag_lag_sigma_s"},
+                                                                           {"flight_vertical_offset_m", "flight_vertical_offset_m"},
+                                                                           {"flight_vertical_drift_m", "flight_vertical_drift_m"},
+                                                                           {"accuracy", "accuracy"},
+                                                                           {"gravity", "gravity"},
+                                                                           {"tags_alone_tilt_deg", "tags_alone_tilt_deg"}}};
 
 Json BytesOrNull(int64_t bytes) {
   return bytes > 0 ? Json(bytes) : Json(nullptr);
@@ -75,17 +89,14 @@ Json PhotoJson(const PhotoScore& score, bool has_truth) {
 }
 
 Json GeoFitJson(const Metrics& metrics) {
+  const Json fit = survey::ToJson(metrics.geo_fit);
   Json json;
   json["georeferenced"] = metrics.georeferenced;
-  json["photos_with_gps"] = metrics.geo_fit.n_matches;
-  json["inliers"] = metrics.geo_fit.n_inliers;
-  const bool fitted = metrics.georeferenced && metrics.geo_fit.n_inliers > 0;
-  json["rmse_m"] = NumberOrNull(fitted ? metrics.geo_fit.rmse_m : kNotMeasured);
-  json["rmse_horizontal_m"] = NumberOrNull(fitted ? metrics.geo_fit.rmse_horizontal_m : kNotMeasured);
-  json["rmse_vertical_m"] = NumberOrNull(fitted ? metrics.geo_fit.rmse_vertical_m : kNotMeasured);
-  json["scale_m_per_model_unit"] = NumberOrNull(fitted ? metrics.geo_fit.scale : kNotMeasured);
-  json["flight_vertical_offset_m"] = Json::array();
-  for (const double offset_m : metrics.geo_fit.flight_vertical_offset_m) json["flight_vertical_offset_m"].push_back(NumberOrNull(offset_m));
+  for (const auto& [key, fit_key] : kFitKeys) json[key] = fit.at(fit_key);
+  if (!metrics.georeferenced || metrics.geo_fit.n_inliers == 0) {
+    for (const char* key : {"rmse_m", "rmse_horizontal_m", "rmse_vertical_m", "scale_m_per_model_unit"}) json[key] = nullptr;
+  }
+  json["problems"] = metrics.problem_codes;
   return json;
 }
 
@@ -113,6 +124,20 @@ void TakeBlocks(const Json& json, Metrics* metrics) {
   for (const auto& [name, psnr] : scores.items()) {
     metrics->blocks.push_back({name, psnr.is_number() ? psnr.get<double>() : kNotMeasured, pixels.value(name, int64_t{0})});
   }
+}
+
+// Earlier versions wrote less.
+void TakeGeoFit(const Json& json, Metrics* metrics) {
+  const Json geo = ValueAt<Json>(json, "geo");
+  if (!geo.is_object()) return;
+  metrics->georeferenced = ValueAt<bool>(geo, "georeferenced");
+  metrics->problem_codes = ValueAt<std::vector<std::string>>(geo, "problems");
+  Json fit = survey::ToJson(survey::GeoFit{});
+  for (const auto& [key, fit_key] : kFitKeys) {
+    const auto found = geo.find(key);
+    if (found != geo.end() && !found->is_null()) fit[fit_key] = *found;
+  }
+  metrics->geo_fit = survey::GeoFitFromJson(fit);
 }
 
 Metrics MetricsFrom(const Json& json) {
@@ -145,6 +170,7 @@ Metrics MetricsFrom(const Json& json) {
   metrics.n_photos = ValueAt<int>(json, "photos_registered");
   metrics.n_unregistered = ValueAt<int>(json, "photos_unregistered");
   metrics.n_test = ValueAt<int>(json, "photos_held_out");
+  TakeGeoFit(json, &metrics);
   for (const Json& warning : ValueAt<Json>(json, "warnings")) {
     if (warning.is_string()) {
       metrics.warnings.push_back({warning, ""});  // as earlier versions wrote them

@@ -11,14 +11,13 @@
 #include "core/page/plot_frame.h"
 #include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
+#include "evaluate/time_axis.h"
 
 namespace skyquilt::evaluate {
 
 namespace {
 
-constexpr double kAlikeStops = 0.05;     // tags that differ by less say nothing
-constexpr double kLongPause_min = 10.0;  // between flights
-constexpr double kShownPause_min = 1.0;  // what the chart leaves of one
+constexpr double kAlikeStops = 0.05;  // tags that differ by less say nothing
 constexpr size_t kManyDots = 400;
 constexpr double kWide_px = 1160.0;  // of a drawing over the whole page
 
@@ -50,42 +49,35 @@ struct GainSeries {
   std::vector<double> x, exif;
   std::array<std::vector<double>, 3> learned;  // tags and learned gains together
   std::map<int, std::vector<size_t>> groups;
-  bool shortened = false;  // pauses
+  std::string x_label;
 };
 
 GainSeries SeriesOf(const BrightnessReport& brightness) {
   GainSeries series;
-  double x = 0.0, last_min = 0.0;
+  std::vector<double> times_s;
+  times_s.reserve(brightness.photos.size());
   for (const BrightnessPhoto& photo : brightness.photos) {
     if (!AllFinite(photo)) continue;
-    if (brightness.timed) {
-      // Two flights on two mornings would otherwise be two dots.
-      const double gap_min = photo.time_s / 60.0 - last_min;
-      x += gap_min > kLongPause_min ? kShownPause_min : gap_min;
-      last_min += gap_min;
-      series.shortened = series.shortened || gap_min > kLongPause_min;
-    } else {
-      x = photo.time_s + 1.0;
-    }
     series.groups[photo.group].push_back(series.photos.size());
     series.photos.push_back(&photo);
-    series.x.push_back(x);
+    times_s.push_back(photo.time_s);
     series.exif.push_back(photo.exif_stops);
     for (size_t c = 0; c < 3; ++c) series.learned[c].push_back(photo.exif_stops + photo.learned_stops[c]);
   }
+  TimeAxis axis = brightness.timed ? AxisOfTimes(times_s) : AxisOfNames(times_s.size());
+  series.x = std::move(axis.x);
+  series.x_label = std::move(axis.label);
   return series;
 }
 
-page::PlotFrame GainFrame(const BrightnessReport& brightness, const GainSeries& series) {
+page::PlotFrame GainFrame(const GainSeries& series) {
   page::PlotFrame frame{.title = "Exposure of the photos, 0 is the reference",
-                        .x = {.label = "photo, in order of names", .low = series.x.front(), .high = series.x.back(), .ticks = 10},
+                        .x = {.label = series.x_label, .low = series.x.front(), .high = series.x.back(), .ticks = 10},
                         .y = {.label = "exposure (stops)", .low = -0.25, .high = 0.25},
                         .width_px = kWide_px,
                         .height_px = 320.0,
                         .css_class = "wide",
                         .zero_stands_out = true};
-  if (brightness.timed) frame.x.label = "flight time (min)";
-  if (series.shortened) frame.x.label += fmt::format(", pauses of more than {:.0f} min shown as {:.0f} min", kLongPause_min, kShownPause_min);
   for (const double x : series.x) frame.x.Include(x);
   for (const double stops : series.exif) frame.y.Include(stops);
   for (const std::vector<double>& learned : series.learned) {
@@ -138,7 +130,7 @@ std::string GainDots(const page::PlotFrame& frame, const GainSeries& series, siz
 std::string GainChart(const BrightnessReport& brightness) {
   const GainSeries series = SeriesOf(brightness);
   if (series.photos.empty()) return "";
-  const page::PlotFrame frame = GainFrame(brightness, series);
+  const page::PlotFrame frame = GainFrame(series);
   const bool learned = Learned(brightness);
   std::string html = page::PlotBegin(frame) + GainPath(frame, series, series.exif, true, "c6", "EXIF");
   std::string legend = page::LegendEntry("c6", "EXIF");

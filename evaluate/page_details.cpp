@@ -11,24 +11,6 @@ namespace skyquilt::evaluate {
 
 namespace {
 
-// A table of figures in groups: name, value and what it means in one sentence. Names and meanings are escaped here.
-class FigureTable {
- public:
-  void Group(const char* name) {
-    html_ += fmt::format("{}<tbody><tr class=\"group\"><th colspan=\"3\" scope=\"rowgroup\">{}</th></tr>", html_.empty() ? "" : "</tbody>", name);
-  }
-  void Row(const std::string& name, const std::string& value, const std::string& meaning) {
-    html_ += "<tr>" + page::TextCell(name) + "<td class=\"num\">" + value + "</td>" + page::TextCell(meaning) + "</tr>";
-  }
-  std::string Html() const {
-    return "<div class=\"card scroll\"><table class=\"figures\"><thead><tr><th>Figure</th><th class=\"num\">Value</th><th>Meaning</th></tr></thead>" +
-           html_ + "</tbody></table></div>\n";
-  }
-
- private:
-  std::string html_;
-};
-
 std::string Db(double value) {
   return page::FormatFixed(value, 2, "dB");
 }
@@ -114,27 +96,6 @@ std::string DetailsSection(const ReportInput& input) {
   AddFlightRows(metrics, &table);
   AddCostRows(metrics, &table);
   return "<section id=\"details\"><div class=\"heading\"><h2>Details</h2></div>" + table.Html() + "</section>\n";
-}
-
-std::string GeoSection(const ReportInput& input) {
-  const survey::GeoFit& fit = input.metrics->geo_fit;
-  std::string html = "<section id=\"geo\"><div class=\"heading\"><h2>Geo-reference</h2></div>";
-  if (input.metrics->georeferenced) {
-    html += fmt::format(
-        "<p class=\"lead\">The camera positions were fitted to the GPS tags by one similarity transform (scale, rotation, shift). RMSE {} over {} of "
-        "{} tagged photos: {} horizontal, {} vertical.",
-        page::FormatFixed(fit.rmse_m, 2, "m"), fit.n_inliers, fit.n_matches, page::FormatFixed(fit.rmse_horizontal_m, 2, "m"),
-        page::FormatFixed(fit.rmse_vertical_m, 2, "m"));
-    html +=
-        fmt::format(" Coordinates are east, north and up of the origin at latitude {}, longitude {}, height {}.",
-                    page::FormatFixed(input.survey->origin.latitude_deg, 6, "\xC2\xB0"),
-                    page::FormatFixed(input.survey->origin.longitude_deg, 6, "\xC2\xB0"), page::FormatFixed(input.survey->origin.height_m, 1, "m"));
-    for (size_t i = 0; i < fit.flight_vertical_offset_m.size(); ++i) {
-      html += fmt::format(" The tagged heights of flight {} were moved by {}.", i + 1, page::FormatFixed(fit.flight_vertical_offset_m[i], 2, "m"));
-    }
-    html += "</p>";
-  }
-  return html + ResidualTable(input) + "</section>\n";
 }
 
 std::string MethodSection(const ReportInput& input) {

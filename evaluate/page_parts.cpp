@@ -11,6 +11,19 @@
 
 namespace skyquilt::evaluate {
 
+void FigureTable::Group(const char* name) {
+  html_ += fmt::format("{}<tbody><tr class=\"group\"><th colspan=\"3\" scope=\"rowgroup\">{}</th></tr>", html_.empty() ? "" : "</tbody>", name);
+}
+
+void FigureTable::Row(const std::string& name, const std::string& value, const std::string& meaning) {
+  html_ += "<tr>" + page::TextCell(name) + "<td class=\"num\">" + value + "</td>" + page::TextCell(meaning) + "</tr>";
+}
+
+std::string FigureTable::Html() const {
+  return "<div class=\"card scroll\"><table class=\"figures\"><thead><tr><th>Figure</th><th class=\"num\">Value</th><th>Meaning</th></tr></thead>" +
+         html_ + "</tbody></table></div>\n";
+}
+
 std::string Chip(const std::string& label, const std::string& value, const std::string& css_class) {
   return fmt::format("<span class=\"chip{}{}\"><b>{}</b>{}</span>", css_class.empty() ? "" : " ", css_class, value, page::EscapeHtml(label));
 }
@@ -36,6 +49,14 @@ std::string RangeOf(const std::vector<double>& values, int decimals, const char*
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const std::string low_text = page::FormatFixed(*low, decimals), high_text = page::FormatFixed(*high, decimals, unit);
   return page::FormatFixed(*low, decimals, unit) == high_text ? high_text : low_text + " \xE2\x80\x93 " + high_text;
+}
+
+std::string TwoDigits(double value, const char* unit) {
+  const double size = std::abs(value);
+  // Limits half a unit below the powers of ten: 9.96 becomes 10, not 10.0.
+  int decimals = 0;
+  for (double limit = 9.95; decimals < 4 && size < limit; limit /= 10.0) ++decimals;
+  return page::FormatFixed(value, std::isfinite(value) && size > 0.0 ? decimals : 0, unit);
 }
 
 std::string ShownDuration(double seconds) {

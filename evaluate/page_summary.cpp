@@ -5,6 +5,7 @@
 
 #include "core/page/html.h"
 #include "core/page/page_frame.h"
+#include "evaluate/page_geo.h"
 #include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
 
@@ -12,16 +13,31 @@ namespace skyquilt::evaluate {
 
 namespace {
 
+// "; place ±1.6 m, scale ±0.20 %, tilt ±0.30°"; without what is not known.
+std::string PlaceAccuracyNote(const survey::GeoFit& fit) {
+  if (FrameIsExact(fit)) return "; the frame is known exactly";
+  std::string note;
+  const auto add = [&](const char* name, double value, const char* unit) {
+    if (std::isfinite(value)) note += fmt::format("{} {} \xC2\xB1{}", note.empty() ? ";" : ",", name, TwoDigits(value, unit));
+  };
+  add("place", fit.accuracy.horizontal_m, "m");
+  add("scale", fit.accuracy.scale_percent, "%");
+  add("tilt", fit.accuracy.tilt_deg, "\xC2\xB0");
+  return note;
+}
+
 std::string PositionFigure(const Metrics& metrics) {
   const survey::GeoFit& fit = metrics.geo_fit;
   const std::string label = "Position error against GPS";
-  if (!metrics.georeferenced) return page::KeyFigure(label, "none", "no usable GPS: local frame, unknown scale");
-  return page::KeyFigure(label, page::FormatFixed(fit.rmse_m, 2, "m"), fmt::format("RMSE, {} of {} GPS tags used", fit.n_inliers, fit.n_matches));
+  if (!metrics.georeferenced) return page::KeyFigure(label, "none", "no geo-reference: local frame, unknown scale");
+  const double rmse_m = fit.n_inliers > 0 ? fit.rmse_m : kNotMeasured;
+  return page::KeyFigure(label, page::FormatFixed(rmse_m, 2, "m"),
+                         fmt::format("RMSE, {} of {} GPS tags used{}", fit.n_inliers, fit.n_matches, PlaceAccuracyNote(fit)));
 }
 
 std::string GroundSamplingFigure(const ReportInput& input) {
   const std::string label = "Ground sampling distance";
-  if (!input.metrics->georeferenced) return page::KeyFigure(label, page::FormatFixed(kNotMeasured, 0), "unknown without GPS");
+  if (!input.metrics->georeferenced) return page::KeyFigure(label, page::FormatFixed(kNotMeasured, 0), "unknown without a geo-reference");
   std::vector<double> gsd_cm;
   for (const partition::Block& block : input.blocks->blocks) {
     if (!block.empty) gsd_cm.push_back(100.0 * block.gsd_m);

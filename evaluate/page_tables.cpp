@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "core/page/html.h"
+#include "evaluate/page_geo.h"
 #include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
+#include "evaluate/tag_positions.h"
 
 namespace skyquilt::evaluate {
 
@@ -71,28 +73,27 @@ std::string BlockTable(const ReportInput& input) {
   return html + "</tbody></table></div>\n";
 }
 
-std::string ResidualTable(const ReportInput& input) {
-  const survey::Survey& survey = *input.survey;
-  std::vector<const survey::Photo*> tagged;
-  size_t n_untagged = 0;
-  for (const survey::Photo& photo : survey.photos) {
-    if (std::isfinite(photo.gps_residual_m) && photo.gps) {
-      tagged.push_back(&photo);
-    } else {
-      ++n_untagged;
-    }
+std::string ResidualTable(const survey::Survey& survey) {
+  if (!survey.georeferenced) return "";
+  const std::vector<std::optional<TagPosition>> tags = TagPositions(survey);
+  std::vector<size_t> tagged;
+  for (size_t i = 0; i < tags.size(); ++i) {
+    if (tags[i]) tagged.push_back(i);
   }
-  if (!survey.georeferenced || tagged.empty()) {
-    return "<p class=\"card empty\">The survey has no usable GPS: positions are in a local frame of unknown scale, and there is nothing to compare "
-           "them with.</p>\n";
-  }
-  std::stable_sort(tagged.begin(), tagged.end(), [](const auto* a, const auto* b) { return a->gps_residual_m > b->gps_residual_m; });
-  const double worst = tagged.front()->gps_residual_m;
-  const auto row = [&](const survey::Photo& photo) {
-    const double bar = worst > 0.0 ? 100.0 * photo.gps_residual_m / worst : 0.0;
+  if (tagged.empty()) return "<p class=\"card empty\">No photo has a GPS tag to compare the positions with.</p>\n";
+  const auto residual_of = [&](size_t i) {
+    const double residual_m = survey.photos[i].gps_residual_m;
+    return std::isfinite(residual_m) ? residual_m : -1.0;
+  };
+  std::stable_sort(tagged.begin(), tagged.end(), [&](size_t a, size_t b) { return residual_of(a) > residual_of(b); });
+  const double worst_m = residual_of(tagged.front());
+  const auto row = [&](size_t i) {
+    const survey::Photo& photo = survey.photos[i];
+    const double bar = worst_m > 0.0 ? std::max(residual_of(i), 0.0) / worst_m : 0.0;
     std::string html = "<tr>" + page::TextCell(photo.name);
-    html += fmt::format("<td class=\"num bar\" data-v=\"{}\"><i style=\"width:{:.1f}%\"></i>{}</td>", photo.gps_residual_m, bar,
+    html += fmt::format("<td class=\"num bar\" data-v=\"{}\"><i style=\"--share:{:.3f}\"></i>{}</td>", residual_of(i), bar,
                         page::FormatFixed(photo.gps_residual_m, 2, "m"));
+    for (const double along_m : tags[i]->residual) html += page::NumberCell(along_m, page::FormatFixed(along_m, 2));
     html += fmt::format("<td><span class=\"state {}</span></td>", photo.gps_inlier ? "good\">used" : "bad\">not used");
     html += page::NumberCell(photo.agl_m, page::FormatFixed(photo.agl_m, 1, "m"));
     const double relative_m = photo.relative_altitude_m.value_or(kNotMeasured);
@@ -101,21 +102,25 @@ std::string ResidualTable(const ReportInput& input) {
     return html + page::TextCell(photo.is_test ? "testing" : "training") + "</tr>";
   };
   const std::string head =
-      "<thead><tr><th>Photo</th><th class=\"num\">Residual</th><th>GPS tag</th><th class=\"num\">Height above ground</th><th class=\"num\">Height "
-      "above take-off (XMP)</th>"
+      "<thead><tr><th>Photo</th><th class=\"num\">Residual</th><th class=\"num\">East</th><th class=\"num\">North</th><th class=\"num\">Up</th>"
+      "<th>GPS tag</th><th class=\"num\">Height above ground</th><th class=\"num\">Height above take-off (XMP)</th>"
       "<th class=\"num\">Flight</th><th>Used for</th></tr></thead>";
   constexpr size_t kShown = 12;
-  std::string html = "<div class=\"card scroll\"><table class=\"sortable\">" + head + "<tbody>";
-  for (size_t i = 0; i < tagged.size() && i < kShown; ++i) html += row(*tagged[i]);
+  std::string html = "<div class=\"block\"><h3>Residuals by photo</h3><div class=\"card scroll\"><table class=\"sortable\">" + head + "<tbody>";
+  for (size_t k = 0; k < tagged.size() && k < kShown; ++k) html += row(tagged[k]);
   html += "</tbody></table></div>";
   if (tagged.size() > kShown) {
     html += fmt::format("<details><summary>The other {} photos</summary><div class=\"card scroll\"><table class=\"sortable\">{}<tbody>",
                         page::FormatInteger(static_cast<int64_t>(tagged.size() - kShown)), head);
-    for (size_t i = kShown; i < tagged.size(); ++i) html += row(*tagged[i]);
+    for (size_t k = kShown; k < tagged.size(); ++k) html += row(tagged[k]);
     html += "</tbody></table></div></details>";
   }
-  if (n_untagged > 0) html += fmt::format("<p class=\"note\">{} photos have no GPS tag and are not listed.</p>", n_untagged);
-  return html + "\n";
+  const size_t n_untagged = survey.photos.size() - tagged.size();
+  if (n_untagged > 0) {
+    html += fmt::format("<p class=\"note\">{} {} no usable GPS tag and {} not listed.</p>", n_untagged, n_untagged == 1 ? "photo has" : "photos have",
+                        n_untagged == 1 ? "is" : "are");
+  }
+  return html + "</div>\n";
 }
 
 }  // namespace skyquilt::evaluate

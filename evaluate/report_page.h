@@ -52,11 +52,10 @@ std::string SummarySection(const ReportInput& input);  // the key figures of the
 std::string WarningsBanner(const Metrics& metrics);
 std::string BlockMapSvg(const ReportInput& input);
 std::string PhotoSection(const ReportInput& input);
-std::string GeoSection(const ReportInput& input);
+std::string GeoSection(const ReportInput& input);      // how the survey was placed on Earth; see page_geo.h
 std::string DetailsSection(const ReportInput& input);  // every figure and its meaning
 std::string MethodSection(const ReportInput& input);
 std::string BrightnessSection(const ReportInput& input);  // empty without brightness
 std::string BlockTable(const ReportInput& input);
-std::string ResidualTable(const ReportInput& input);
 
 }  // namespace skyquilt::evaluate

@@ -52,6 +52,7 @@ void AddSurveyFacts(const survey::Survey& survey, Metrics* metrics) {
   metrics->has_truth = survey.truth.has_value();
   metrics->georeferenced = survey.georeferenced;
   metrics->geo_fit = survey.fit;
+  for (const survey::Problem& problem : survey.problems) metrics->problem_codes.push_back(problem.code);
   metrics->median_agl_m = survey.MedianAgl();
   std::vector<double> relative;
   for (const survey::Photo& photo : survey.photos) {

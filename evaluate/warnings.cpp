@@ -37,23 +37,13 @@ void AboutPlacedPhotos(const survey::Survey& survey, std::vector<Warning>* warni
        "more, and run the same command with --restart. If skyquilt ran COLMAP, its log is survey/colmap/colmap.log"});
 }
 
-void AboutPosition(const survey::Survey& survey, std::vector<Warning>* warnings) {
-  if (!survey.georeferenced) {
-    warnings->push_back(
-        {"No geo-reference: too few photos carry usable GPS. The map has a local frame of unknown scale, and lengths are not metres",
-         "Use photos with GPS tags (EXIF or XMP): at least three, not all in one place or on one line. Then run the same command with --restart"});
-    return;
+// What prepare found. A wrong place makes all else wrong, so problems with it come first.
+void AboutSurvey(const survey::Survey& survey, std::vector<Warning>* warnings) {
+  for (const bool about_place : {true, false}) {
+    for (const survey::Problem& problem : survey.problems) {
+      if (problem.about_place == about_place) warnings->push_back({problem.finding, problem.advice});
+    }
   }
-  std::vector<std::string> outliers;
-  for (const survey::Photo& photo : survey.photos) {
-    if (photo.gps && std::isfinite(photo.gps_residual_m) && !photo.gps_inlier) outliers.push_back(photo.name);
-  }
-  if (outliers.empty()) return;
-  warnings->push_back({fmt::format("The GPS {} of {} {} disagree{} with the camera positions found and {} not used: {}",
-                                   outliers.size() == 1 ? "tag" : "tags", outliers.size(), outliers.size() == 1 ? "photo" : "photos",
-                                   outliers.size() == 1 ? "s" : "", outliers.size() == 1 ? "was" : "were", Names(outliers)),
-                       "Compare the residuals under Geo-reference (or in survey/geo_residuals.csv). A few bad tags do no harm. If good tags are left "
-                       "out, raise prepare.ransac_threshold_m and run the same command with --restart"});
 }
 
 void AboutBlocks(const partition::BlockSet& blocks, const scene::TrainReport* training, std::vector<Warning>* warnings) {
@@ -120,8 +110,8 @@ void AboutScores(const Metrics& metrics, std::vector<Warning>* warnings) {
 std::vector<Warning> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport* training,
                                      const Metrics& metrics) {
   std::vector<Warning> warnings;
+  AboutSurvey(survey, &warnings);
   AboutPlacedPhotos(survey, &warnings);
-  AboutPosition(survey, &warnings);
   AboutBlocks(blocks, training, &warnings);
   AboutTraining(training, &warnings);
   AboutScores(metrics, &warnings);

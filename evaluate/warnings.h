@@ -10,7 +10,7 @@
 
 namespace skyquilt::evaluate {
 
-// `training` is null when there is no record of it.
+// Those about the place on Earth first. `training` is null when there is no record of it.
 std::vector<Warning> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport* training,
                                      const Metrics& metrics);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tuple>
 
 #include "core/page/figure.h"
 #include "core/page/html.h"
@@ -29,7 +30,7 @@ Line ToLine(const Curve& curve, const ChartOptions& options) {
     line.points.emplace_back(options.log_x ? std::log10(x) : x, options.log_y ? std::log10(y) : y);
     if (!curve.labels.empty()) line.labels.push_back(curve.labels.at(i));
   }
-  if (!curve.marks) line.points = Thin(line.points, options.max_points);
+  if (!curve.marks && !curve.dots) line.points = Thin(line.points, options.max_points);
   return line;
 }
 
@@ -38,7 +39,8 @@ std::optional<PlotFrame> FrameOf(const std::vector<Line>& lines, bool marks, con
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   PlotFrame frame{.title = options.title,
                   .x = {.label = options.x_label, .low = kInfinity, .high = -kInfinity, .ticks = 6, .logarithmic = options.log_x},
-                  .y = {.label = options.y_label, .low = kInfinity, .high = -kInfinity, .logarithmic = options.log_y}};
+                  .y = {.label = options.y_label, .low = kInfinity, .high = -kInfinity, .logarithmic = options.log_y},
+                  .zero_stands_out = options.zero_stands_out};
   for (const Line& line : lines) {
     for (const auto& [x, y] : line.points) {
       frame.x.Include(x);
@@ -54,8 +56,23 @@ std::optional<PlotFrame> FrameOf(const std::vector<Line>& lines, bool marks, con
     frame.x.high += pad;
     if (options.log_x) frame.x.low -= pad;
   }
+  if (options.y_range) {
+    std::tie(frame.y.low, frame.y.high) = *options.y_range;
+    return frame;
+  }
   frame.y.Pad(std::max(0.05 * (frame.y.high - frame.y.low), options.log_y ? 0.05 : std::min(0.5, 0.2 * std::abs(frame.y.high) + 1e-6)));
   return frame;
+}
+
+// A dot is a line of no length with round ends.
+std::string DrawDots(const PlotFrame& frame, const Line& line, const Curve& curve, const std::string& color) {
+  constexpr size_t kMany = 600;
+  std::string steps;
+  for (const auto& [x, y] : line.points) {
+    steps += curve.hollow ? fmt::format("M{:.1f} {:.1f}m-3 0a3 3 0 1 0 6 0a3 3 0 1 0-6 0", frame.X(x), frame.Y(y))
+                          : fmt::format("M{:.1f} {:.1f}h0", frame.X(x), frame.Y(y));
+  }
+  return SvgPath(fmt::format("{} {}{}", curve.hollow ? "rings" : "dots", color, line.points.size() > kMany ? " many" : ""), steps, curve.name);
 }
 
 std::string DrawLine(const PlotFrame& frame, const Line& line, const Curve& curve, const std::string& color) {
@@ -112,10 +129,13 @@ std::string CurveChart(const std::vector<Curve>& curves, const ChartOptions& opt
   std::string html = PlotBegin(*frame), legend;
   for (size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].points.empty()) continue;
-    const std::string color = fmt::format("c{}", i % 10);
-    html += DrawLine(*frame, lines[i], curves[i], color);
-    legend += LegendEntry(color, curves[i].name);
+    const Curve& curve = curves[i];
+    const std::string color = fmt::format("c{}", curve.color.value_or(static_cast<int>(i % 10)));
+    for (auto& point : lines[i].points) point.second = std::clamp(point.second, frame->y.low, frame->y.high);
+    html += curve.dots ? DrawDots(*frame, lines[i], curve, color) : DrawLine(*frame, lines[i], curve, color);
+    if (curve.in_legend) legend += LegendEntry(curve.dots ? color + (curve.hollow ? " ring" : " disc") : color, curve.name);
   }
+  if (!options.note.empty()) legend += "<span>" + EscapeHtml(options.note) + "</span>";
   return html + FigureEnd(legend);
 }
 

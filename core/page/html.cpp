@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 constexpr std::string_view kDash = "\xE2\x80\x93";
+constexpr std::string_view kDegree = "\xC2\xB0";
 constexpr std::string_view kThinSpace = "\xE2\x80\xAF";
 
 // Length of the well-formed UTF-8 sequence at the start of `text`, 0 when there is none.
@@ -36,8 +37,8 @@ size_t Utf8Length(std::string_view text) {
 }
 
 std::string WithUnit(std::string number, std::string_view unit) {
-  if (!unit.empty()) number.append(kThinSpace).append(unit);
-  return number;
+  if (!unit.empty() && unit != kDegree) number.append(kThinSpace);
+  return number.append(unit);
 }
 
 }  // namespace

@@ -9,7 +9,8 @@ namespace skyquilt::page {
 
 // Text for element content and quoted attributes: & < > " ' are replaced, control characters dropped, bytes that are not UTF-8 become U+FFFD.
 std::string EscapeHtml(std::string_view text);
-// Fixed decimals; an en dash for NaN, the infinity sign for infinity. The unit follows a thin no-break space; it is left out without a number.
+// Fixed decimals; an en dash for NaN, the infinity sign for infinity. The unit follows a thin no-break space, a degree sign
+// directly; it is left out without a number.
 std::string FormatFixed(double value, int decimals, std::string_view unit = "");
 // "0.93" as "93.0 %".
 std::string FormatPercent(double share, int decimals = 1);

@@ -112,6 +112,66 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   EXPECT_THROW(ReadMetrics(folder.path() / "metrics.json"), base::InputError);
 }
 
+TEST(MetricsJson, TheGeoReferenceIsReadBackToo) {
+  Metrics metrics;
+  metrics.georeferenced = true;
+  survey::GeoFit& fit = metrics.geo_fit;
+  fit = {.n_matches = 9, .n_inliers = 8, .rmse_m = 2.5, .rmse_horizontal_m = 2.0, .rmse_vertical_m = 1.5, .scale = 37.5, .tag_lag_s = 0.25};
+  fit.tag_lag_sigma_s = 0.0625;
+  fit.flight_vertical_offset_m = {0.0, 1.5};
+  fit.flight_vertical_drift_m = {-3.0, 4.0};
+  fit.accuracy = {.scale_percent = 0.25, .tilt_deg = 0.5, .yaw_deg = 0.75, .horizontal_m = 1.25, .vertical_m = kNotMeasured};
+  fit.gravity = {{.kind = "ground", .n = 5, .lean_east_deg = -0.5, .lean_north_deg = 0.125, .sigma_deg = kNotMeasured, .weight = 0.0}};
+  fit.tags_alone_tilt_deg = 19.0;
+  metrics.problem_codes = {"no_gimbal", "lag"};
+  const std::string text = MetricsJson(metrics);
+  const auto geo = nlohmann::json::parse(text).at("geo");
+  EXPECT_EQ(geo.at("photos_with_gps"), 9);
+  EXPECT_EQ(geo.at("scale_m_per_model_unit"), 37.5);
+  EXPECT_EQ(geo.at("tag_lag_s"), 0.25);
+  EXPECT_EQ(geo.at("tag_lag_sigma_s"), 0.0625);
+  EXPECT_EQ(geo.at("flight_vertical_drift_m").at(1), 4.0);
+  EXPECT_EQ(geo.at("accuracy").at("tilt_deg"), 0.5);
+  EXPECT_TRUE(geo.at("accuracy").at("vertical_m").is_null());
+  EXPECT_EQ(geo.at("gravity").at(0).at("kind"), "ground");
+  EXPECT_TRUE(geo.at("gravity").at(0).at("sigma_deg").is_null());
+  EXPECT_EQ(geo.at("tags_alone_tilt_deg"), 19.0);
+  EXPECT_EQ(geo.at("problems"), (nlohmann::json{"no_gimbal", "lag"}));
+
+  const TemporaryFolder folder;
+  base::WriteFileAtomically(folder.path() / "metrics.json", text);
+  const Metrics back = ReadMetrics(folder.path() / "metrics.json");
+  EXPECT_TRUE(back.georeferenced);
+  EXPECT_EQ(back.problem_codes, metrics.problem_codes);
+  EXPECT_EQ(MetricsJson(back), text);
+}
+
+TEST(MetricsJson, AFitThatSaysNothingIsNull) {
+  Metrics metrics;
+  metrics.geo_fit.rmse_m = 3.0;  // of a fit that was refused
+  metrics.geo_fit.n_inliers = 3;
+  const auto geo = nlohmann::json::parse(MetricsJson(metrics)).at("geo");
+  for (const char* key : {"rmse_m", "rmse_horizontal_m", "rmse_vertical_m", "scale_m_per_model_unit", "tag_lag_sigma_s", "tags_alone_tilt_deg"}) {
+    EXPECT_TRUE(geo.at(key).is_null()) << key;
+  }
+  EXPECT_TRUE(geo.at("accuracy").at("tilt_deg").is_null());
+  EXPECT_EQ(geo.at("gravity"), nlohmann::json::array());
+}
+
+TEST(MetricsJson, TheGeoReferenceOfAnEarlierVersionIsRead) {
+  const TemporaryFolder folder;
+  base::WriteFileAtomically(
+      folder.path() / "metrics.json",
+      R"({"geo": {"georeferenced": true, "photos_with_gps": 4, "inliers": 3, "rmse_m": 1.5, "flight_vertical_offset_m": [2.0]}})");
+  const Metrics back = ReadMetrics(folder.path() / "metrics.json");
+  EXPECT_TRUE(back.georeferenced);
+  EXPECT_EQ(back.geo_fit.n_inliers, 3);
+  EXPECT_EQ(back.geo_fit.rmse_m, 1.5);
+  EXPECT_EQ(back.geo_fit.flight_vertical_offset_m, std::vector<double>{2.0});
+  EXPECT_TRUE(std::isnan(back.geo_fit.accuracy.tilt_deg));
+  EXPECT_TRUE(back.problem_codes.empty());
+}
+
 TEST(MetricsJson, FileNamesThatAreNotUtf8AreRepaired) {
   Metrics metrics;
   PhotoScore photo;

@@ -109,7 +109,12 @@ TEST_F(ReportPage, AtMostSixKeyFiguresStandBeforeTheDetails) {
 TEST_F(ReportPage, TheFirstScreenSaysWhereOnEarthOrThatNothingDoes) {
   const std::string good = SummarySection(sample_->input), poor = SummarySection(poor_->input);
   EXPECT_NE(good.find("2.41\xE2\x80\xAFm"), std::string::npos) << good;
-  EXPECT_NE(good.find("80 of 81 GPS tags used"), std::string::npos) << good;
+  EXPECT_NE(good.find("78 of 80 GPS tags used; place \xC2\xB1"
+                      "1.6\xE2\x80\xAFm, scale \xC2\xB1"
+                      "0.21\xE2\x80\xAF%, tilt \xC2\xB1"
+                      "0.31\xC2\xB0<"),
+            std::string::npos)
+      << good;
   EXPECT_NE(good.find("6.1\xE2\x80\xAF"
                       "cm</strong>"),
             std::string::npos)
@@ -235,7 +240,7 @@ TEST(ReportPageOfNothing, SaysWhatIsMissing) {
   input.training = &training;
   const std::string html = BuildReportPage(input);
   EXPECT_NE(html.find("No photo was scored"), std::string::npos);
-  EXPECT_NE(html.find("no usable GPS"), std::string::npos);
+  EXPECT_NE(html.find("no geo-reference: local frame, unknown scale"), std::string::npos);
   EXPECT_NE(html.find("No data"), std::string::npos);
   EXPECT_EQ(CountOf(html, "\"nan\"") + CountOf(html, ">nan") + CountOf(html, ">inf"), 0U);
 }

@@ -118,7 +118,47 @@ BrightnessReport CloudyFlight(const survey::Survey& survey, const std::filesyste
   return report;
 }
 
-// Nine lines of nine photos over the town; one photo's tag is far off.
+constexpr double kLag_s = 0.3;
+constexpr double kOffset_m[2] = {0.0, 3.5};
+constexpr double kDrift_m[2] = {6.0, 2.5};
+
+// How far the tag of a photo on the given line and step is off, apart from noise: behind on the track, and its height drifts.
+Eigen::Vector3d TagError(int line, int along) {
+  const int flight = line < 5 ? 0 : 1;
+  const int n_lines = flight == 0 ? 5 : 4;
+  const double progress = (9.0 * (line - 5 * flight) + along) / (9.0 * n_lines - 1.0);
+  const double speed_mps = (line % 2 == 0 ? 1.0 : -1.0) * 32.5 / 4.0;
+  return {-kLag_s * speed_mps, 0.0, kDrift_m[flight] * (progress - 0.5) - kOffset_m[flight]};
+}
+
+// What prepare says of a survey with these tags.
+void FillGeoFit(survey::Survey* survey) {
+  survey::GeoFit& fit = survey->fit;
+  fit = {.n_matches = 80, .n_inliers = 78, .rmse_m = 2.41, .rmse_horizontal_m = 1.62, .rmse_vertical_m = 1.78, .scale = 41.7, .tag_lag_s = kLag_s};
+  fit.tag_lag_sigma_s = 0.05;
+  fit.flight_vertical_offset_m.assign(std::begin(kOffset_m), std::end(kOffset_m));
+  fit.flight_vertical_drift_m.assign(std::begin(kDrift_m), std::end(kDrift_m));
+  fit.accuracy = {.scale_percent = 0.21, .tilt_deg = 0.31, .yaw_deg = 0.17, .horizontal_m = 1.6, .vertical_m = 2.2};
+  fit.gravity = {{.kind = "gimbal", .n = 81, .lean_east_deg = 0.12, .lean_north_deg = -0.08, .sigma_deg = 0.35, .weight = 0.78},
+                 {.kind = "cameras", .n = 81, .lean_east_deg = -0.4, .lean_north_deg = 0.3, .sigma_deg = 0.9, .weight = 0.15},
+                 {.kind = "ground", .n = 5213, .lean_east_deg = -0.2, .lean_north_deg = -1.3, .sigma_deg = 1.5, .weight = 0.07},
+                 {.kind = "gps_heights", .n = 78, .lean_east_deg = 3.9, .lean_north_deg = 2.1, .sigma_deg = kNotMeasured, .weight = 0.0}};
+  fit.tags_alone_tilt_deg = 4.4;
+  survey->checks = {.speed_mps = 8.1,
+                    .speed_source = "positions and times",
+                    .readout_ms = 33.0,
+                    .camera_name = "DJI <FC300S>",
+                    .smear_px = 4.4,
+                    .dome_m = 0.42,
+                    .dome_sigma_m = 0.31,
+                    .k1 = -0.0123,
+                    .k1_sigma = 0.0004};
+  survey->problems = {
+      {"rolling_shutter", "The picture moves by 4.4 pixels while the sensor is read out", "Fly slower or higher, or use a mechanical shutter"},
+      {"tags_disagree", "The GPS tags of 2 of 80 photos disagree with the rest & were not used", "Compare the residuals under Geo-reference", true}};
+}
+
+// Nine lines of nine photos over the town in two flights; the tags of two photos are far off, one has no height and one photo has none.
 survey::Survey FlownSurvey(base::Random& random) {
   survey::Survey survey;
   survey.origin = {47.3769, 8.5417, 455.0};
@@ -136,20 +176,34 @@ survey::Survey FlownSurvey(base::Random& random) {
       const int step = line % 2 == 0 ? along : 8 - along;
       const Eigen::Vector3d center(-130.0 + 32.5 * step, -130.0 + 32.5 * line, 120.0);
       photo.name = index == 24 ? "flight2/<b>DJI & \"co\"</b>.jpg" : "flight1/DJI_" + std::to_string(1000 + index) + ".JPG";
+      photo.flight = line < 5 ? 0 : 1;
       photo.cam_from_enu.rotation = Eigen::Quaterniond(0, 1, 0, 0);
       photo.cam_from_enu.translation = -(photo.cam_from_enu.rotation * center);
-      photo.gps = frame.GeodeticFromEnu(center + Eigen::Vector3d(1.4 * random.Normal(), 1.4 * random.Normal(), 2.0 * random.Normal()));
-      photo.time_s = 4.0 * index;
+      Eigen::Vector3d residual(1.4 * random.Normal(), 1.4 * random.Normal(), 2.0 * random.Normal());
+      if (index == 40) residual += Eigen::Vector3d(22.0, 5.0, 0.0);
+      if (index == 60) residual += Eigen::Vector3d(-140.0, 400.0, 30.0);
+      photo.gps_correction_m = -TagError(line, along);
+      photo.gps = frame.GeodeticFromEnu(center - residual - photo.gps_correction_m);
+      photo.gps_residual_m = residual.norm();
+      if (index == 12) {
+        photo.gps->height_m = kNotMeasured;
+        photo.gps_residual_m = residual.head<2>().norm();
+      }
+      photo.time_s = 4.0 * index + (line < 5 ? 0.0 : 1500.0);
       photo.agl_m = 118.0 + random.Normal();
       photo.relative_altitude_m = 120.0;
-      photo.gps_residual_m = (frame.EnuFromGeodetic(*photo.gps) - center).norm() + (index == 40 ? 22.0 : 0.0);
-      photo.gps_inlier = index != 40;
+      photo.gps_inlier = index != 40 && index != 60;
       photo.is_test = index % 8 == 0;
       survey.photos.push_back(photo);
     }
   }
+  survey::Photo& untagged = survey.photos[77];
+  untagged.gps.reset();
+  untagged.gps_correction_m.setZero();
+  untagged.gps_residual_m = kNotMeasured;
+  untagged.gps_inlier = false;
   survey.unregistered = {"flight1/DJI_1082.JPG", "flight1/DJI_1083.JPG"};
-  survey.fit = {81, 80, 2.41, 1.62, 1.78, 41.7, {}};
+  FillGeoFit(&survey);
   return survey;
 }
 
@@ -265,6 +319,7 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.config = "[train]\n# resolutions of the hash grid\nlevels = 8\nfeatures = 4\n\n[partition]\nblocks = \"2x3\"\n";
   metrics.georeferenced = true;
   metrics.geo_fit = survey.fit;
+  for (const survey::Problem& problem : survey.problems) metrics.problem_codes.push_back(problem.code);
   metrics.median_agl_m = survey.MedianAgl();
   metrics.median_relative_altitude_m = 120.0;
   metrics.gsd_m = 0.061;
@@ -310,9 +365,17 @@ SampleReport::SampleReport(const std::filesystem::path& folder) {
 
 void SampleReport::MakePoor() {
   survey.georeferenced = metrics.georeferenced = false;
-  survey.fit = metrics.geo_fit = {};
+  const std::vector<survey::GravityEvidence> gravity = survey.fit.gravity;
+  survey.fit = {};
+  survey.fit.gravity = {gravity[1], gravity[2]};
+  metrics.geo_fit = survey.fit;
+  survey.checks = {.k1 = -0.0123, .k1_sigma = 0.0004};
+  survey.problems = {
+      {"no_georeference", "None of the photos <at all> has GPS tags", "Use photos with GPS tags and run the same command with --restart", true}};
+  metrics.problem_codes = {"no_georeference"};
   for (survey::Photo& photo : survey.photos) {
     photo.gps.reset();
+    photo.gps_correction_m.setZero();
     photo.gps_residual_m = kNotMeasured;
     photo.gps_inlier = false;
   }

@@ -53,5 +53,38 @@ TEST(CurveChart, SurvivesEmptySingleAndNonFiniteData) {
   EXPECT_NE(CurveChart({{"<i>", {{0.0, 1.0}, {1.0, 2.0}}}}, {}).find("&lt;i&gt;"), std::string::npos);
 }
 
+size_t CountOf(const std::string& text, const std::string& part) {
+  size_t n = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
+  return n;
+}
+
+TEST(CurveChart, DrawsThousandsOfDotsAsOnePathAndLeavesNoneOut) {
+  Curve curve{.name = "up <m>", .dots = true, .color = 7};
+  for (int i = 0; i < 5000; ++i) curve.points.emplace_back(i, i % 7);
+  curve.points.emplace_back(1.0, std::numeric_limits<double>::quiet_NaN());
+  Curve rest{.name = "rest", .points = {{0.0, 1.0}}, .dots = true, .hollow = true, .in_legend = false};
+  const std::string chart = CurveChart({curve, rest}, {.title = "t", .x_label = "x", .y_label = "y", .note = "a < b"});
+  EXPECT_EQ(CountOf(chart, "<path class=\"dots c7 many\""), 1U);
+  EXPECT_EQ(CountOf(chart, "h0"), 5000U);
+  EXPECT_EQ(CountOf(chart, "<path class=\"rings c1\""), 1U);
+  EXPECT_EQ(CountOf(chart, "<circle"), 0U);
+  EXPECT_EQ(CountOf(chart, "<i class=\"c7 disc\"></i>up &lt;m&gt;"), 1U);
+  EXPECT_EQ(CountOf(chart, "</i>rest"), 0U);
+  EXPECT_EQ(CountOf(chart, "<span>a &lt; b</span>"), 1U);
+  EXPECT_EQ(CountOf(chart, "nan"), 0U);
+}
+
+TEST(CurveChart, PointsBeyondTheRangeStandOnTheEdge) {
+  const Curve curve{.name = "a", .points = {{0.0, 0.0}, {1.0, 1000.0}, {2.0, -1000.0}}, .dots = true};
+  const std::string chart =
+      CurveChart({curve}, {.title = "t", .x_label = "x", .y_label = "y", .y_range = std::pair(-5.0, 5.0), .zero_stands_out = true});
+  // The drawing is 300 pixels high; the axes begin 14 pixels below its top and end 42 pixels above its bottom.
+  EXPECT_NE(chart.find(" 136.0h0M"), std::string::npos) << chart;
+  EXPECT_NE(chart.find(" 14.0h0M"), std::string::npos) << chart;
+  EXPECT_NE(chart.find(" 258.0h0\""), std::string::npos) << chart;
+  EXPECT_NE(chart.find("<line class=\"axis\" x1=\"52.0\" x2=\"546.0\" y1=\"136.0\" y2=\"136.0\""), std::string::npos) << chart;
+}
+
 }  // namespace
 }  // namespace skyquilt::page

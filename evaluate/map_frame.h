@@ -1,0 +1,37 @@
+// The frame of the report's maps: converts east and north to pixels of the drawing, north up.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+
+namespace skyquilt::evaluate {
+
+// Bounds of what a map shows: east and north in metres.
+struct MapBounds {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high = -low;
+
+  void Include(const Eigen::Vector2d& x);  // unless it is not finite
+  bool Empty() const { return !(high.array() >= low.array()).all(); }
+};
+
+class MapFrame {
+ public:
+  // With some room around the bounds; 2 m by 2 m about the origin when they are empty.
+  explicit MapFrame(const MapBounds& bounds);
+
+  double X(double east_m) const { return (east_m - west_) * scale_; }
+  double Y(double north_m) const { return (north_ - north_m) * scale_; }
+  double scale() const { return scale_; }  // pixels per metre
+  double width_px() const { return width_px_; }
+  double height_px() const { return height_px_; }
+
+ private:
+  double scale_ = 1.0, width_px_ = 1.0, height_px_ = 1.0, west_ = 0.0, north_ = 0.0;
+};
+
+// SVG. Without a geo-reference the bar is in units of unknown length, and no direction is north.
+std::string ScaleBarAndNorth(const MapFrame& frame, bool georeferenced);
+
+}  // namespace skyquilt::evaluate

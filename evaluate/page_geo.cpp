@@ -70,11 +70,11 @@ void AddCorrectionRows(const survey::Survey& survey, FigureTable* table) {
   table->Group("What was corrected");
   std::string lag_meaning = "Not estimated: the tags are taken to show where each photo was.";
   if (lag_known || fit.tag_lag_s != 0.0) {
-    lag_meaning = "The tags show the position of this time before the photo, and are moved along the track.";
+    lag_meaning = "The tags show the position of this time before the photo.";
     if (std::isfinite(survey.checks.speed_mps)) {
-      lag_meaning = fmt::format(
-          "The tags show the position of this time before the photo. At the flight's speed of {} they trail by {}, and are moved.",
-          page::FormatFixed(survey.checks.speed_mps, 1, "m/s"), page::FormatFixed(std::abs(fit.tag_lag_s) * survey.checks.speed_mps, 1, "m"));
+      lag_meaning =
+          fmt::format("The tags show the position of this time before the photo. At the flight's speed of {} that is {} along the track.",
+                      page::FormatFixed(survey.checks.speed_mps, 1, "m/s"), page::FormatFixed(fit.tag_lag_s * survey.checks.speed_mps, 1, "m"));
     }
   }
   table->Row("Lag of the tags", lag_known || fit.tag_lag_s != 0.0 ? WithSigma(fit.tag_lag_s, fit.tag_lag_sigma_s, 2, "s") : "none", lag_meaning);

@@ -46,7 +46,7 @@ double LeanOf(const survey::GravityEvidence& evidence) {
 std::string ShownLean(const survey::GravityEvidence& evidence, bool georeferenced) {
   constexpr std::array<const char*, 8> kDirections = {"east", "north-east", "north", "north-west", "west", "south-west", "south", "south-east"};
   const double lean_deg = LeanOf(evidence);
-  const std::string size = page::FormatFixed(lean_deg, 2, kDegree);
+  std::string size = page::FormatFixed(lean_deg, 2, kDegree);
   if (!(lean_deg >= 0.005) || !georeferenced) return size;
   const double eighth = std::atan2(evidence.lean_north_deg, evidence.lean_east_deg) / (0.25 * std::numbers::pi);
   return size + " to the " + kDirections[static_cast<size_t>(std::lround(eighth) + 8) % 8];

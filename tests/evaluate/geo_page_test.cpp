@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "evaluate/page_geo.h"
+#include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
 #include "tests/evaluate/sample_report.h"
 
@@ -67,6 +68,16 @@ void ExpectBalanced(const std::string& html) {
   EXPECT_EQ(CountOf(html, "nan") + CountOf(html, "inf\"") + CountOf(html, ">inf"), 0U);
 }
 
+TEST(TwoDigits, KeepsTwoDigitsWhateverTheSize) {
+  EXPECT_EQ(TwoDigits(123.4, "m"), "123\xE2\x80\xAFm");
+  EXPECT_EQ(TwoDigits(9.96, "m"), "10\xE2\x80\xAFm");
+  EXPECT_EQ(TwoDigits(9.94, "m"), "9.9\xE2\x80\xAFm");
+  EXPECT_EQ(TwoDigits(0.0996, kDegree), "0.10\xC2\xB0");
+  EXPECT_EQ(TwoDigits(0.034, kDegree), "0.034\xC2\xB0");
+  EXPECT_EQ(TwoDigits(0.0, "m"), "0\xE2\x80\xAFm");
+  EXPECT_EQ(TwoDigits(kNotMeasured, "m"), "\xE2\x80\x93");
+}
+
 TEST_F(GeoPage, TellsAccuracyCorrectionsAndChecks) {
   const std::string html = GeoSection(sample_->input);
   ExpectBalanced(html);
@@ -76,7 +87,7 @@ TEST_F(GeoPage, TellsAccuracyCorrectionsAndChecks) {
   EXPECT_EQ(ValueOf(html, "Horizontal position"), "1.6\xE2\x80\xAFm");
   EXPECT_EQ(ValueOf(html, "Vertical position"), "2.2\xE2\x80\xAFm");
   EXPECT_EQ(ValueOf(html, "Lag of the tags"), "0.30 \xC2\xB1 0.05\xE2\x80\xAFs");
-  EXPECT_NE(html.find("they trail by 2.4\xE2\x80\xAFm"), std::string::npos) << "0.3 s at 8.1 m/s";
+  EXPECT_NE(html.find("that is 2.4\xE2\x80\xAFm along the track"), std::string::npos) << "0.3 s at 8.1 m/s";
   EXPECT_EQ(ValueOf(html, "Offset of tagged heights"), "0.00 \xE2\x80\x93 3.50\xE2\x80\xAFm");
   EXPECT_EQ(ValueOf(html, "Drift of tagged heights"), "2.50 \xE2\x80\x93 6.00\xE2\x80\xAFm");
   EXPECT_EQ(ValueOf(html, "Rolling shutter"), "4.4\xE2\x80\xAFpx");
@@ -132,7 +143,7 @@ TEST_F(GeoPage, MapHasAnArrowPerTagAndKeepsFarOnesInside) {
   std::smatch size;
   ASSERT_TRUE(std::regex_search(map, size, std::regex("viewBox=\"0 0 ([0-9.]+) ([0-9.]+)\"")));
   const double width_px = std::stod(size[1]), height_px = std::stod(size[2]);
-  const std::regex end("<path[^>]* d=\"M[-0-9.]+ [-0-9.]+L([-0-9.]+) ([-0-9.]+)");
+  const std::regex end("</title><path[^>]* d=\"M[-0-9.]+ [-0-9.]+L([-0-9.]+) ([-0-9.]+)");
   size_t n_arrows = 0;
   for (std::sregex_iterator it(map.begin(), map.end(), end), stop; it != stop; ++it, ++n_arrows) {
     const double x_px = std::stod((*it)[1]), y_px = std::stod((*it)[2]);

@@ -29,6 +29,7 @@ TEST(FormatFixed, IsADashForNan) {
             "28.13\xE2\x80\xAF"
             "dB");
   EXPECT_EQ(FormatFixed(-0.001, 2), "0.00");
+  EXPECT_EQ(FormatFixed(0.31, 2, "\xC2\xB0"), "0.31\xC2\xB0") << "no space before the degree sign";
   EXPECT_EQ(FormatFixed(-1.5, 1),
             "\xE2\x88\x92"
             "1.5");

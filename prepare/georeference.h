@@ -1,7 +1,7 @@
 // Places a structure-from-motion model on Earth. Its frame has arbitrary position, rotation and scale. Gravity comes first (gravity.h), then scale,
 // yaw and horizontal position from the GPS tags with their lag (horizontal_fit.h), then heights (height_bias.h), and finally one adjustment of all of
-// them with its covariance (place_adjustment.h). A place that would be uncertain is not claimed: then the model gets a levelled local frame of unknown
-// scale.
+// them with its covariance (place_adjustment.h). A place that would be uncertain is not claimed: then the model gets a levelled local frame of
+// unknown scale.
 #pragma once
 
 #include <Eigen/Core>

@@ -92,6 +92,11 @@ TEST_F(Numerics, SpacePasses) {
   EXPECT_GE(rows.size(), 20U);
 }
 
+TEST_F(Numerics, PlaceOnEarthPasses) {
+  const std::vector<NumericRow> rows = RunPassing(PlaceGroup(quick_));
+  EXPECT_GE(rows.size(), 30U);
+}
+
 TEST_F(Numerics, RaysPass) {
   RunPassing(RayGroup(quick_));
 }

@@ -305,12 +305,12 @@ geo::PlaceAccuracy AccuracyOf(const Adjustment& adjustment, const std::vector<Ta
 survey::GravityEvidence Shown(const std::string& kind, int n, const Vector3d& up_in_enu, double sigma_rad, double weight) {
   const double sigma_deg = kDegrees * sigma_rad;
   constexpr double kNothing_deg = 60.0;
-  return {.kind = kind,
-          .n = n,
-          .lean_east_deg = kDegrees * std::atan2(up_in_enu.x(), up_in_enu.z()),
-          .lean_north_deg = kDegrees * std::atan2(up_in_enu.y(), up_in_enu.z()),
-          .sigma_deg = sigma_deg < kNothing_deg ? sigma_deg : kNan,
-          .weight = weight};
+  survey::GravityEvidence shown{.kind = kind, .n = n, .lean_east_deg = kNan, .lean_north_deg = kNan, .sigma_deg = kNan, .weight = weight};
+  if (!(sigma_deg < kNothing_deg)) return shown;
+  shown.lean_east_deg = kDegrees * std::atan2(up_in_enu.x(), up_in_enu.z());
+  shown.lean_north_deg = kDegrees * std::atan2(up_in_enu.y(), up_in_enu.z());
+  shown.sigma_deg = sigma_deg;
+  return shown;
 }
 
 // Evidence with its share of the information on the final tilt. `tilt` is the final covariance of up in the tangent plane of the model's up.

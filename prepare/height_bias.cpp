@@ -142,7 +142,8 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
   BiasChoice choice;
   const Index n = observations.height_m.size();
   choice.solution = Eigen::VectorXd::Zero(3 + bias.size());
-  if (n == 0) return choice;
+  const auto used = static_cast<double>((observations.sigma.array() < std::numeric_limits<double>::infinity()).count());
+  if (used == 0.0) return choice;
   Design design(observations, bias);
   // Noise and outliers by the most flexible hypothesis, so that no drift is taken for noise.
   constexpr BiasSigmas kFlexible{.offset_m = 1000.0, .drift_m = 1000.0, .wander_m = 100.0};
@@ -151,7 +152,7 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
   double scale = 1.0;
   std::vector<double> sigmas(observations.sigma.data(), observations.sigma.data() + n);
   std::erase_if(sigmas, [](double sigma) { return !std::isfinite(sigma); });
-  const double typical_m = sigmas.empty() ? 1.0 : base::Median(sigmas);
+  const double typical_m = base::Median(sigmas);
   // Outliers make the local estimate a little too large.
   constexpr double kLocalShare = 0.8;
   const double least = kLocalShare * LocalScale(observations);
@@ -169,7 +170,6 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
     }
   }
   // The flexible curve follows the noise a little.
-  const double used = static_cast<double>((observations.sigma.array() < std::numeric_limits<double>::infinity()).count());
   const double freedom = std::max(1.0, used - static_cast<double>(design.columns.cols()));
   const double widen = scale > least ? std::sqrt(used / freedom) : 1.0;
   weight /= widen * widen;

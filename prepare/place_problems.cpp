@@ -75,13 +75,14 @@ void AboutGravity(const PlaceFindings& findings, std::vector<Problem>* problems)
   const survey::GravityEvidence* ground = Find(fit, "ground");
   const double lean_deg = ground == nullptr ? 0.0 : std::hypot(ground->lean_east_deg, ground->lean_north_deg);
   if (!findings.gimbal_used && lean_deg > kWarnGround_deg) {
+    constexpr double kCertain_deg = 1.0;
     problems->push_back({"ground_leans",
-                         fmt::format("The ground leans by {:.1f}\xC2\xB0, and without gimbal angles in the tags it is open whether it slopes or the "
-                                     "cameras were tilted: the tilt of the survey is known to {:.1f}\xC2\xB0",
+                         fmt::format("The ground leans by {:.1f}\xC2\xB0 against the result, and the tags have no gimbal angles to tell a slope from "
+                                     "tilted cameras. It is mostly taken for a slope; the stated accuracy of the tilt is {:.1f}\xC2\xB0",
                                      lean_deg, fit.accuracy.tilt_deg),
                          "If the ground is known to be level, or heights matter, use photos that keep the drone's gimbal angles (XMP tags survive in "
                          "unedited files), or tags with RTK heights",
-                         true});
+                         fit.accuracy.tilt_deg > kCertain_deg});
   }
   if (findings.one_line) {
     problems->push_back({"one_line",

@@ -53,9 +53,9 @@ const char* EvidenceName(const std::string& kind) {
 
 void LogGravity(const survey::GeoFit& fit) {
   for (const survey::GravityEvidence& evidence : fit.gravity) {
-    spdlog::info("gravity by {}: leans {:.2f} deg from the result, accuracy {} deg, weight {:.0f} %", EvidenceName(evidence.kind),
-                 std::hypot(evidence.lean_east_deg, evidence.lean_north_deg),
-                 std::isfinite(evidence.sigma_deg) ? Field(evidence.sigma_deg, 2) : "unknown", 100.0 * evidence.weight);
+    if (std::isnan(evidence.sigma_deg)) continue;
+    spdlog::info("gravity by {}: leans {:.2f} deg from the result, accuracy {:.2f} deg, weight {:.0f} %", EvidenceName(evidence.kind),
+                 std::hypot(evidence.lean_east_deg, evidence.lean_north_deg), evidence.sigma_deg, 100.0 * evidence.weight);
   }
 }
 
@@ -78,14 +78,15 @@ void LogSummary(const survey::Survey& survey) {
   spdlog::info(
       "origin: {:.7f} deg latitude, {:.7f} deg longitude, {:.2f} m (height as tagged; without RTK usually above sea level, not the ellipsoid)",
       survey.origin.latitude_deg, survey.origin.longitude_deg, survey.origin.height_m);
-  spdlog::info("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {:.2f} m vertical), {:.6g} m per model unit", fit.n_inliers,
-               fit.n_matches, fit.rmse_m, fit.rmse_horizontal_m, fit.rmse_vertical_m, fit.scale);
+  const std::string vertical = std::isfinite(fit.rmse_vertical_m) ? Field(fit.rmse_vertical_m, 2) + " m vertical" : "heights not used";
+  spdlog::info("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {}), {:.6g} m per model unit", fit.n_inliers, fit.n_matches, fit.rmse_m,
+               fit.rmse_horizontal_m, vertical, fit.scale);
   if (std::isfinite(fit.tag_lag_sigma_s)) spdlog::info("GPS tags lag {:.2f} s behind the photos (+- {:.2f} s)", fit.tag_lag_s, fit.tag_lag_sigma_s);
   LogFlights(fit, survey.photos);
   LogGravity(fit);
   const geo::PlaceAccuracy& accuracy = fit.accuracy;
-  spdlog::info("accuracy (one standard deviation): position {} m, height {} m, scale {} %, tilt {} deg, yaw {} deg", Field(accuracy.horizontal_m, 2),
-               std::isfinite(accuracy.vertical_m) ? Field(accuracy.vertical_m, 2) : "unknown", Field(accuracy.scale_percent, 3),
+  spdlog::info("accuracy (one standard deviation): position {} m, height {}, scale {} %, tilt {} deg, yaw {} deg", Field(accuracy.horizontal_m, 2),
+               std::isfinite(accuracy.vertical_m) ? Field(accuracy.vertical_m, 2) + " m" : "unknown", Field(accuracy.scale_percent, 3),
                Field(accuracy.tilt_deg, 2), Field(accuracy.yaw_deg, 2));
   std::vector<double> relative;
   for (const survey::Photo& photo : survey.photos) {

@@ -32,13 +32,14 @@ class SerialCorrelation {
     ++count_[series];
   }
   // Factor on the variance of a mean of the residuals: (1 + r) / (1 - r) for a first-order process of correlation r in [0, 0.98]. The sample
-  // correlation of residuals about a fitted line is too small by (2 + 4 r) / n (Marriott and Pope 1954).
+  // correlation of residuals about their mean is too small by (1 + 3 r) / n (Marriott and Pope 1954). Never more than n, for a mean is at least as
+  // good as one residual.
   double VarianceFactor() const {
     const int n = *std::max_element(count_.begin(), count_.end());
     if (n == 0 || !(sum_squares_ > 0.0)) return 1.0;
     const double sample = products_ / sum_squares_;
-    const double r = std::clamp(sample + (2.0 + 4.0 * sample) / n, 0.0, 0.98);
-    return (1.0 + r) / (1.0 - r);
+    const double r = std::clamp(sample + (1.0 + 3.0 * sample) / n, 0.0, 0.98);
+    return std::min((1.0 + r) / (1.0 - r), static_cast<double>(n));
   }
 
  private:

@@ -85,7 +85,7 @@ NumericCase FaultCase(const Fault& fault, bool gimbal) {
       const double ratio =
           limits ? std::max({errors.tilt_deg / kTilt_deg, errors.scale_percent / kScale_percent, errors.yaw_deg / kYaw_deg})
                  : std::max({errors.tilt_deg / sigma.tilt_deg, errors.scale_percent / sigma.scale_percent, errors.yaw_deg / sigma.yaw_deg});
-      worst.holds = worst.holds && errors.georeferenced;
+      worst.holds = worst.holds && errors.georeferenced && std::isfinite(errors.vertical_m);
       if (!worst.seen.empty() && !(ratio > worst.worst)) continue;
       worst.worst = ratio;
       worst.seen = "worst: " + Seen(errors);

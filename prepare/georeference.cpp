@@ -36,6 +36,7 @@ constexpr double kRtkLagSigma_s = 0.05;
 constexpr double kFirstLag_s = -1.5, kLastLag_s = 5.0, kLagStep_s = 0.25;
 constexpr double kLineRatio = 0.05;
 constexpr double kLeastThreshold_m = 1.0;
+constexpr double kLeastGroupRadius_m = 2.0, kGroupSigmas = 3.0, kGroupShare = 0.2;
 constexpr double kThresholdSigmas = 2.0;
 constexpr double kMaxUsefulSigma_deg = 5.0;
 
@@ -181,6 +182,27 @@ TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<T
   const Eigen::Vector3d spread = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues();
   alone.sigma_deg = kDegrees * fit.rmse_m / std::max(spread[1], 1e-9);
   return alone;
+}
+
+// Tags that disagree with the result by about the same horizontal shift, as after a jump of the receiver.
+struct SecondGroup {
+  int n = 0;
+  double distance_m = 0.0;
+};
+
+SecondGroup FindSecondGroup(const std::vector<Tag>& tags, const Georeference& result, double noise_m) {
+  std::vector<Vector2d> others;
+  for (const Tag& tag : tags) {
+    if (result.inlier[tag.station] == 0) others.emplace_back(result.residual_m[tag.station].head<2>());
+  }
+  const double radius_m = std::max(kLeastGroupRadius_m, kGroupSigmas * noise_m);
+  SecondGroup best;
+  for (const Vector2d& centre : others) {
+    const auto n = static_cast<int>(std::count_if(others.begin(), others.end(), [&](const Vector2d& x) { return (x - centre).norm() <= radius_m; }));
+    if (n > best.n && centre.norm() > radius_m) best = {n, centre.norm()};
+  }
+  const bool counts = best.n >= kMinAgreeing && static_cast<double>(best.n) >= kGroupShare * static_cast<double>(tags.size());
+  return counts ? best : SecondGroup{};
 }
 
 // Everything that a fit of one set of tags needs.
@@ -413,16 +435,24 @@ void FitTags(const Survey& survey, const Gravity& gravity, HeightTags heights, G
     const Vector3d tags_up = adjustment.enu_from_model.rotation * alone.up_in_model;
     fit.tags_alone_tilt_deg = kDegrees * std::atan2(tags_up.head<2>().norm(), tags_up.z());
   }
-  for (survey::Problem& problem : TooUncertain(fit)) result.problems.push_back(std::move(problem));
+  const double noise_m = adjustment.horizontal_noise * MedianSigma(tags, &Tag::horizontal_sigma_m);
+  const SecondGroup second = FindSecondGroup(tags, result, noise_m);
+  // Two standard deviations reach the mean of both groups.
+  const double doubt = static_cast<double>(second.n) / std::max(1.0, static_cast<double>(second.n + fit.n_inliers));
+  fit.accuracy.horizontal_m = std::hypot(fit.accuracy.horizontal_m, 0.5 * doubt * second.distance_m);
+  const bool one_line = LineRatio(survey.stations, level_from_model.toRotationMatrix()) < kLineRatio;
+  for (survey::Problem& problem : TooUncertain(fit, one_line)) result.problems.push_back(std::move(problem));
   if (!result.problems.empty()) return;
   result.ok = true;
   PlaceFindings findings{.fit = fit,
                          .gimbal_used = !gravity.evidence.empty() && gravity.evidence.front().kind == "gimbal",
-                         .one_line = LineRatio(survey.stations, level_from_model.toRotationMatrix()) < kLineRatio,
+                         .one_line = one_line,
                          .heights = heights,
                          .tags_alone_sigma_deg = alone.ok ? alone.sigma_deg : 0.0,
                          .gravity_sigma_deg = gravity_sigma_deg,
-                         .vertical_span_m = high - low};
+                         .vertical_span_m = high - low,
+                         .second_group = second.n,
+                         .second_group_m = second.distance_m};
   for (const Tag& tag : tags) {
     if (result.inlier[tag.station] == 0) findings.disagreeing.push_back(survey.stations[tag.station].name);
   }

@@ -38,6 +38,16 @@ std::string GravityWords(const PlaceFindings& findings) {
 
 void AboutTags(const PlaceFindings& findings, std::vector<Problem>* problems) {
   const survey::GeoFit& fit = findings.fit;
+  if (findings.second_group > 0) {
+    problems->push_back(
+        {"two_groups",
+         fmt::format("The GPS tags form two groups {:.0f} m apart: {} tags agree with the place found, and {} others agree with each "
+                     "other. The receiver jumped, or flights disagree; tags alone cannot tell which group is right",
+                     findings.second_group_m, fit.n_inliers, findings.second_group),
+         "Compare the map with a known point on the ground. Remove or re-tag the photos of the wrong group, then run the same command "
+         "with --restart",
+         true});
+  }
   const size_t n = findings.disagreeing.size();
   if (2 * fit.n_inliers < fit.n_matches) {
     problems->push_back({"few_tags_agree",
@@ -133,15 +143,20 @@ Problem NoPlace(const std::string& code, const std::string& reason, const std::s
           advice, true};
 }
 
-std::vector<Problem> TooUncertain(const survey::GeoFit& fit) {
+std::vector<Problem> TooUncertain(const survey::GeoFit& fit, bool one_line) {
   const std::string advice =
       fmt::format("Look at survey/geo_residuals.csv: which tags are wrong? Use photos with good GPS tags from several lines, {}", kRestart);
   std::vector<Problem> problems;
+  const char* agree_advice =
+      "If the tags are less accurate than prepare.ransac_threshold_m, raise it; otherwise tag the photos again from the flight log, then run the "
+      "same "
+      "command with --restart";
   if (fit.n_inliers < kMinAgreeing) {
-    problems.push_back(
-        NoPlace("too_few_agree", fmt::format("only {} of {} GPS tags agree, {} are needed", fit.n_inliers, fit.n_matches, kMinAgreeing),
-                "If the tags are less accurate than prepare.ransac_threshold_m, raise it; otherwise tag the photos again from the flight "
-                "log, then run the same command with --restart"));
+    const std::string reason = fmt::format("only {} of {} GPS tags agree, {} are needed", fit.n_inliers, fit.n_matches, kMinAgreeing);
+    problems.push_back(NoPlace("too_few_agree", reason, agree_advice));
+  } else if (one_line && 2 * fit.n_inliers < fit.n_matches) {
+    const std::string reason = fmt::format("the photos lie on one line, and only {} of {} GPS tags agree", fit.n_inliers, fit.n_matches);
+    problems.push_back(NoPlace("too_few_agree", reason, agree_advice));
   } else if (!(fit.accuracy.scale_percent <= kMaxScaleSigma_percent)) {
     problems.push_back(NoPlace("scale_unknown", fmt::format("the tags leave the scale uncertain by {:.0f} %", fit.accuracy.scale_percent), advice));
   } else if (!(fit.accuracy.tilt_deg <= kMaxTiltSigma_deg)) {

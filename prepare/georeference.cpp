@@ -514,7 +514,14 @@ Georeference PlaceOnEarth(const std::vector<Station>& stations, const std::vecto
     result.origin = {};
     Clear(stations.size(), result);
     result.enu_from_model = LocalFrame(stations, points, gravity.up);
-    result.fit.scale = result.enu_from_model.scale;
+    // Residuals, corrections and accuracies of a fit that was refused say nothing about the local frame.
+    const survey::GeoFit refused = result.fit;
+    result.fit = {.n_matches = refused.n_matches,
+                  .n_inliers = refused.n_inliers,
+                  .rmse_m = kNan,
+                  .rmse_horizontal_m = kNan,
+                  .rmse_vertical_m = kNan,
+                  .scale = result.enu_from_model.scale};
     result.fit.gravity = ShownEvidence(gravity, result.enu_from_model.rotation, 0.0);
   }
   return result;

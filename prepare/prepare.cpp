@@ -173,7 +173,7 @@ void RequirePlace(const survey::Survey& survey, const fs::path& folder) {
     if (!problem.about_place) continue;
     throw base::InputError(survey.photo_root, problem.finding,
                            problem.advice + " (residuals: " + (folder / "geo_residuals.csv").string() +
-                               "). To go on with a warning instead, leave out prepare.require_georeference");
+                               "). To go on with a warning instead, leave out prepare.require_georeference and add --restart");
   }
 }
 

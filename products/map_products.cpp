@@ -74,17 +74,26 @@ gis::GeoTiffSpec OrthophotoSpec(const scene::SceneInfo& info, const gis::MapGrid
   return spec;
 }
 
+// A place is known, but its height is not, where the GPS tags had no usable heights.
+bool HeightsAreTagged(const scene::SceneInfo& info) {
+  return std::isfinite(info.accuracy.vertical_m) || !std::isfinite(info.accuracy.horizontal_m);
+}
+
+const char* VerticalReference(const scene::SceneInfo& info) {
+  if (!info.georeferenced) return "local frame, metres if the survey's scale is known";
+  return HeightsAreTagged(info) ? "WGS84 ellipsoid (EPSG:4979), metres" : "unknown, metres: the GPS tags have no usable heights";
+}
+
 gis::GeoTiffSpec DsmSpec(const scene::SceneInfo& info, const gis::MapGrid& grid) {
   gis::GeoTiffSpec spec;
   spec.grid = grid;
   spec.type = gis::PixelType::kFloat32;
   spec.nodata = static_cast<double>(kNoHeight);
-  spec.band_names = {grid.georeferenced ? "ellipsoidal height" : "local height"};
+  spec.band_names = {!grid.georeferenced ? "local height" : HeightsAreTagged(info) ? "ellipsoidal height" : "height"};
   spec.unit = "m";
   spec.metadata = PlaceMetadata(info, "Digital surface model");
   spec.metadata["TIFFTAG_SOFTWARE"] = "skyquilt";
-  spec.metadata["VERTICAL_REFERENCE"] =
-      grid.georeferenced ? "WGS84 ellipsoid (EPSG:4979), metres" : "local frame, metres if the survey's scale is known";
+  spec.metadata["VERTICAL_REFERENCE"] = VerticalReference(info);
   return spec;
 }
 

@@ -17,9 +17,8 @@ struct GravityEvidence {
   int n = 0;              // photos, points or tags behind it
   // Its up against the frame's final up: how far it leans towards east and north; NaN when it says nothing.
   double lean_east_deg = 0.0;
-  // up: how far it leans towards east and north
   double lean_north_deg = 0.0;
-  double sigma_deg = 0.0;  // accuracy given to it (both axes together); NaN when not used
+  double sigma_deg = 0.0;  // accuracy given to it (both axes together); NaN when it says nothing
   double weight = 0.0;     // 0..1, share of the information on gravity; 0: shown only
 };
 

@@ -221,7 +221,7 @@ TEST(MapProducts, SayHowAccurateTheirPlaceIs) {
   EXPECT_EQ(Item(products.orthophoto, "TIFFTAG_IMAGEDESCRIPTION"),
             "Orthophoto, placed on Earth by its GPS tags with a standard deviation of 1.53 m horizontally, unknown vertically, 0.3 degrees in tilt, "
             "0.25 degrees in yaw, 0.412 % in scale.");
-  EXPECT_EQ(Item(products.dsm, "VERTICAL_REFERENCE"), "WGS84 ellipsoid (EPSG:4979), metres");
+  EXPECT_EQ(Item(products.dsm, "VERTICAL_REFERENCE"), "unknown, metres: the GPS tags have no usable heights");
   const auto map = nlohmann::json::parse(base::ReadFile(folder.path() / "orthophoto.json"));
   EXPECT_EQ(map["georeference"], "fitted to GPS tags");
   EXPECT_EQ(map["accuracy"]["scale_percent"], 0.412345);

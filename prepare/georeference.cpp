@@ -470,11 +470,15 @@ std::optional<survey::Problem> CoordinateProblem(const Survey& survey, const Gra
     return FitLevelled({stations, survey.track, survey.flight, survey.options}, tags, level_from_model).n_inliers;
   };
   const int as_given = agreeing(survey.stations);
+  std::optional<survey::Problem> found;
+  int most = 0;
   for (const CoordinateFault& fault : PossibleCoordinateFaults(survey.stations)) {
     const int repaired = agreeing(fault.repaired);
-    if (repaired >= kMinAgreeing && 2 * repaired > n_tags && 2 * repaired > 3 * as_given) return fault.problem;
+    if (repaired <= most || repaired < kMinAgreeing || 2 * repaired <= n_tags || 2 * repaired <= 3 * as_given) continue;
+    most = repaired;
+    found = fault.problem;
   }
-  return std::nullopt;
+  return found;
 }
 
 }  // namespace

@@ -16,6 +16,8 @@ using Eigen::Vector2d;
 constexpr int kRefitRounds = 5;
 // A lag must explain the tags better than this share to be preferred to a smaller one.
 constexpr double kSameCost = 1.02;
+// The same, per tag, where all tags fit exactly.
+constexpr double kRounding_m2 = 1e-9;
 
 // Least squares of a similarity on the chosen pairs: in complex numbers, b = m a + t.
 std::optional<HorizontalSimilarity> LeastSquares(const std::vector<Vector2d>& a, const std::vector<Vector2d>& b, const std::vector<size_t>& chosen) {
@@ -102,6 +104,7 @@ HorizontalFit FitHorizontally(const std::vector<Vector2d>& tags, const std::func
     const size_t second = random.Below(static_cast<uint32_t>(tags.size()));
     if (first != second) samples.push_back({first, second});
   }
+  const double rounding_m2 = kRounding_m2 * static_cast<double>(tags.size());
   std::vector<double> lags = options.lags_s;
   std::stable_sort(lags.begin(), lags.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   for (const double lag_s : lags) {
@@ -109,7 +112,7 @@ HorizontalFit FitHorizontally(const std::vector<Vector2d>& tags, const std::func
     for (size_t k = 0; k < tags.size(); ++k) moved[k] = level(k, lag_s);
     HorizontalFit fit = FitWithLag(moved, tags, samples, options.threshold_m);
     fit.lag_s = lag_s;
-    if (fit.ok && (!best.ok || fit.cost * kSameCost < best.cost)) best = std::move(fit);
+    if (fit.ok && (!best.ok || fit.cost * kSameCost + rounding_m2 < best.cost)) best = std::move(fit);
   }
   return best;
 }

@@ -24,6 +24,7 @@ geo::Similarity3d LocalFrame(const std::vector<Station>& stations, const std::ve
   geo::Similarity3d local_from_model;
   if (stations.empty()) return local_from_model;
   std::vector<Eigen::Vector3d> centres;
+  centres.reserve(stations.size());
   for (const Station& station : stations) centres.push_back(station.cam_from_model.OriginInSource());
   const Eigen::Vector3d origin = MedianPoint(points.empty() ? centres : points);
   std::vector<double> depths;

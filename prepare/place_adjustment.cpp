@@ -163,7 +163,7 @@ class Solver {
 
   Eigen::VectorXd Step() {
     Build();
-    const Eigen::VectorXd step = -normal_.ldlt().solve(gradient_);
+    Eigen::VectorXd step = -normal_.ldlt().solve(gradient_);
     if (!step.allFinite()) return Eigen::VectorXd::Zero(normal_.rows());
     const Vector3d turn = step.head<3>();
     if (turn.norm() > 0.0) rotation_ = (Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * rotation_).normalized();

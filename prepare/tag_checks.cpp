@@ -65,15 +65,14 @@ std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>
        [](const geo::Geodetic& p) {
          return geo::Geodetic{p.longitude_deg, p.latitude_deg, p.height_m};
        }},
-      {"mirrored_longitude", "the longitudes of the GPS tags have the wrong sign (east for west): with the other sign they fit the camera positions",
-       "Correct GPSLongitudeRef (E or W) in the photos, for instance with exiftool, then run the same command with --restart",
+      // Either sign alone mirrors the flight, so the positions cannot tell which of the two is wrong.
+      {"mirrored_coordinates",
+       "the latitudes or the longitudes of the GPS tags have the wrong sign (north for south, or east for west): with the other sign they fit the "
+       "camera positions",
+       "Correct GPSLatitudeRef (N or S) or GPSLongitudeRef (E or W) in the photos, for instance with exiftool, then run the same command with "
+       "--restart",
        [](const geo::Geodetic& p) {
          return geo::Geodetic{p.latitude_deg, -p.longitude_deg, p.height_m};
-       }},
-      {"mirrored_latitude", "the latitudes of the GPS tags have the wrong sign (north for south): with the other sign they fit the camera positions",
-       "Correct GPSLatitudeRef (N or S) in the photos, for instance with exiftool, then run the same command with --restart",
-       [](const geo::Geodetic& p) {
-         return geo::Geodetic{-p.latitude_deg, p.longitude_deg, p.height_m};
        }}};
   std::vector<CoordinateFault> faults;
   for (const Kind& kind : kinds) {

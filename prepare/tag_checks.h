@@ -22,7 +22,7 @@ struct CoordinateFault {
   survey::Problem problem;
   std::vector<Station> repaired;
 };
-// Latitude and longitude exchanged, or one of them with the wrong sign. Candidates only: whether one of them fits better must be tried. Those that
+// Latitude and longitude exchanged, or either with the wrong sign. Candidates only: whether one of them fits better must be tried. Those that
 // would not be positions on Earth are left out.
 std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>& stations);
 

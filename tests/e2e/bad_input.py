@@ -77,6 +77,17 @@ def test(skyquilt, folder):
     text = skyquilt.call("prepare", broken, "-o", folder / "out_broken", status=3)
     expect(words[-1] in text, f"the photo with the NaN pose is not named:\n{text}")
 
+    # Tags that allow no place on Earth: a warning, or an error if asked for.
+    unplaced = folder / "unplaced"
+    skyquilt.call("simulate", "hamlet", "-o", unplaced, "--image-width", "64", "--set", "simulate.exact_frame=false", "--set", "simulate.tags_equal=true")
+    text = skyquilt.call("prepare", unplaced, "-o", folder / "out_unplaced")
+    expect("all GPS tags are at one place" in text, f"the equal tags are not named:\n{text}")
+    out_required = folder / "out_required"
+    text = skyquilt.call("prepare", unplaced, "-o", out_required, "--set", "prepare.require_georeference=true", status=3)
+    expect("all GPS tags are at one place" in text and "geo_residuals.csv" in text, text)
+    expect((out_required / "survey" / "geo_residuals.csv").exists(), "there is no table of residuals")
+    expect(not (out_required / "survey" / "survey.json").exists(), "a refused survey was saved")
+
     # Refused commands do not change what an earlier command saved.
     project = folder / "project"
     skyquilt.call("prepare", survey, "-o", project)

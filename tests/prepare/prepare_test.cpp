@@ -115,6 +115,41 @@ TEST_F(PrepareTest, AllPhotosAtOnePlaceAreNotGeoreferenced) {
   EXPECT_EQ(survey.photos.size(), 20U);
 }
 
+TEST_F(PrepareTest, ARequiredPlaceIsAnErrorWhereItIsOtherwiseAWarning) {
+  test::SetTags(flight_, [](size_t, const Eigen::Vector3d&) { return Eigen::Vector3d(1.0, 2.0, 50.0); });
+  Write();
+  options_.require_georeference = true;
+  const std::string message = InputErrorOf([&] { Run(); });
+  for (const std::string& part : {std::string("all GPS tags are at one place"), (folder_ / "out/geo_residuals.csv").string(),
+                                  std::string("leave out prepare.require_georeference")}) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "out/geo_residuals.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/survey.json"));
+
+  options_.require_georeference = false;
+  const survey::Survey survey = Run();
+  const survey::Survey loaded = survey::LoadSurvey(folder_ / "out");
+  EXPECT_FALSE(loaded.georeferenced);
+  ASSERT_FALSE(loaded.problems.empty());
+  EXPECT_EQ(loaded.problems.front().code, "equal_tags");
+  EXPECT_TRUE(loaded.problems.front().about_place);
+  EXPECT_EQ(loaded.problems, survey.problems);
+}
+
+TEST_F(PrepareTest, AGoodFlightFulfilsARequiredPlace) {
+  // A few wrong tags do not concern the place.
+  test::SetTags(flight_,
+                [](size_t i, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(i == 7 ? 80.0 : 0.0, 0.0, 0.0)); });
+  Write();
+  options_.require_georeference = true;
+  const survey::Survey survey = Run();
+  EXPECT_TRUE(survey.georeferenced);
+  ASSERT_EQ(survey.problems.size(), 1U);
+  EXPECT_EQ(survey.problems[0].code, "tags_disagree");
+  EXPECT_TRUE(fs::exists(folder_ / "out/survey.json"));
+}
+
 TEST_F(PrepareTest, TagsWithoutAltitudeStillPlaceTheSurvey) {
   for (test::FlightPhoto& photo : flight_.photos) {
     photo.tags.gps->height_m = std::numeric_limits<double>::quiet_NaN();

@@ -44,7 +44,7 @@ std::vector<UpEvidence> GroundEvidence(const std::vector<Eigen::Vector3d>& point
 // contradicts itself widens the result (Birge's ratio). `points` are in the model's frame, may be empty.
 Gravity FindGravity(const std::vector<Station>& stations, const std::vector<Eigen::Vector3d>& points);
 
-constexpr double kGimbalCommon_deg = 0.3;
+constexpr double kGimbalCommon_deg = 0.25;
 constexpr double kCameraCommon_deg = 2.0;
 constexpr double kGroundSlope_deg = 4.0;
 

@@ -173,9 +173,7 @@ TEST(ChooseBias, EqualHeightsAreNotTakenForExact) {
 
 TEST(HeightBias, ColumnsOfAFlightStayInItAndOnlyOffsetsHaveAMean) {
   const std::vector<int> flight = {0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 2, 2, 2, 2};
-  std::vector<double> phase;
-  for (int i = 0; i < 9; ++i) phase.push_back(i / 8.0 - 0.5);
-  for (const double value : {-0.5, 0.5, -0.5, -0.2, 0.1, 0.5}) phase.push_back(value);
+  const std::vector<double> phase = {-0.5, -0.375, -0.25, -0.125, 0.0, 0.125, 0.25, 0.375, 0.5, -0.5, 0.5, -0.5, -0.2, 0.1, 0.5};
   const HeightBias bias(flight, phase, 2);
   // Flight 0: offset, drift and one step; 1: offset alone; 2, the reference: drift alone.
   ASSERT_EQ(bias.size(), 5);

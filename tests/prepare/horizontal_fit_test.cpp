@@ -125,6 +125,7 @@ TEST(FitHorizontally, FailsWithoutTwoPlaces) {
   EXPECT_FALSE(Fit({Vector2d::Zero()}, {Vector2d::Zero()}).ok);
   const std::vector<Vector2d> here(10, Vector2d(3.0, 4.0));
   std::vector<Vector2d> row;
+  row.reserve(10);
   for (int i = 0; i < 10; ++i) row.emplace_back(i, 1.0);
   EXPECT_FALSE(Fit(here, row).ok);
   EXPECT_FALSE(Fit(row, here).ok);

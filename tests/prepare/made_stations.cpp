@@ -44,7 +44,8 @@ Eigen::Quaterniond SmallRotation(double sigma_deg, base::Random& random) {
 Vector3d OnLawnmower(int photo, int n_photos) {
   constexpr double kStep_m = 15.0;
   const int line = photo / kLine, along = line % 2 == 0 ? photo % kLine : kLine - 1 - photo % kLine;
-  const double middle = 0.5 * (n_photos / kLine - 1);
+  const int n_lines = n_photos / kLine;
+  const double middle = 0.5 * (n_lines - 1);
   return {kStep_m * (line - middle), kStep_m * (along - 0.5 * (kLine - 1)), 60.0};
 }
 

@@ -82,6 +82,7 @@ TEST(Track, StationsWithoutTimeDoNotMove) {
 
 TEST(Track, AHoveringCameraTellsNoLag) {
   std::vector<Station> stations;
+  stations.reserve(10);
   for (int i = 0; i < 10; ++i) stations.push_back(At({i < 7 ? 0.0 : i, 0.0, 0.0}, i));
   EXPECT_FALSE(Track(stations, std::vector<int>(10, 0)).timed());
   for (int i = 0; i < 10; ++i) stations[static_cast<size_t>(i)] = At({i < 4 ? 0.0 : i, 0.0, 0.0}, i);

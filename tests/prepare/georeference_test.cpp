@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/random.h"
@@ -61,6 +62,31 @@ TEST(Georeference, OutliersAreFoundAndDoNotPull) {
   EXPECT_LT(result.fit.rmse_m, 1e-3);
   for (size_t i = 0; i < 20; ++i) EXPECT_EQ(result.inlier[i] != 0, i % 5 != 2);
   EXPECT_GT(result.residual_m[2].norm(), 300.0);
+}
+
+TEST(Georeference, ARefusedFitLeavesNoAccuracyBehind) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  for (test::FlightPhoto& photo : flight.photos) photo.tags.gps = geo::Geodetic{photo.tags.gps->longitude_deg, photo.tags.gps->latitude_deg, 400.0};
+  const Georeference result = Place(flight);
+  ASSERT_FALSE(result.ok);
+  EXPECT_EQ(result.problems.front().code, "swapped_coordinates");
+  EXPECT_TRUE(std::isnan(result.fit.accuracy.horizontal_m));
+  EXPECT_TRUE(std::isnan(result.fit.accuracy.scale_percent));
+  EXPECT_TRUE(std::isnan(result.fit.rmse_m));
+  EXPECT_TRUE(result.fit.flight_vertical_drift_m.empty());
+}
+
+TEST(Georeference, AJumpLeavesTwoGroups) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  test::SetTags(
+      flight, [](size_t i, const Eigen::Vector3d& centre) { return i < 12 ? centre : Eigen::Vector3d(centre + Eigen::Vector3d(25.0, -15.0, 10.0)); });
+  const Georeference result = Place(flight);
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.fit.n_inliers, 12);
+  const auto group = std::find_if(result.problems.begin(), result.problems.end(), [](const auto& problem) { return problem.code == "two_groups"; });
+  ASSERT_NE(group, result.problems.end());
+  // 0.4 of the tags are 29 m away: two standard deviations reach the mean of both groups.
+  EXPECT_GT(result.fit.accuracy.horizontal_m, 0.5 * 0.4 * 29.0);
 }
 
 TEST(Georeference, FlightsThatDisagreeGetOneOffsetEach) {

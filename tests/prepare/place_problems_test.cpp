@@ -31,7 +31,7 @@ using List = std::vector<std::string>;
 TEST(PlaceProblems, AGoodFitHasNone) {
   const survey::GeoFit fit = GoodFit();
   EXPECT_TRUE(PlaceProblems({.fit = fit, .gimbal_used = true}).empty());
-  EXPECT_TRUE(TooUncertain(fit).empty());
+  EXPECT_TRUE(TooUncertain(fit, false).empty());
 }
 
 TEST(PlaceProblems, EachIsASentenceWithoutItsFullStop) {
@@ -102,21 +102,40 @@ TEST(PlaceProblems, HeightsAreMissingOrDriftButNotBoth) {
   EXPECT_EQ(Codes(PlaceProblems({.fit = fit, .heights = HeightTags::kUnknown, .vertical_span_m = 5.5})), (List{"no_heights"}));
 }
 
+TEST(PlaceProblems, TwoGroupsOfTagsAreNamed) {
+  const survey::GeoFit fit = GoodFit();
+  const std::vector<survey::Problem> problems =
+      PlaceProblems({.fit = fit, .disagreeing = {"a.jpg", "b.jpg", "c.jpg", "d.jpg"}, .second_group = 4, .second_group_m = 31.4});
+  EXPECT_EQ(Codes(problems), (List{"two_groups", "tags_disagree"}));
+  EXPECT_NE(problems.front().finding.find("two groups 31 m apart"), std::string::npos);
+  EXPECT_TRUE(problems.front().about_place);
+}
+
+TEST(TooUncertain, OnOneLineHalfOfTheTagsMustAgree) {
+  survey::GeoFit fit = GoodFit();
+  fit.n_matches = 20;
+  fit.n_inliers = 9;
+  EXPECT_TRUE(TooUncertain(fit, false).empty());
+  EXPECT_EQ(Codes(TooUncertain(fit, true)), (List{"too_few_agree"}));
+  fit.n_inliers = 10;
+  EXPECT_TRUE(TooUncertain(fit, true).empty());
+}
+
 TEST(TooUncertain, HasAThresholdForEachNumber) {
   survey::GeoFit fit = GoodFit();
   fit.n_inliers = kMinAgreeing;
   fit.accuracy.scale_percent = kMaxScaleSigma_percent;
   fit.accuracy.tilt_deg = kMaxTiltSigma_deg;
-  EXPECT_TRUE(TooUncertain(fit).empty());
+  EXPECT_TRUE(TooUncertain(fit, false).empty());
   fit.accuracy.tilt_deg = 1.01 * kMaxTiltSigma_deg;
-  EXPECT_EQ(Codes(TooUncertain(fit)), (List{"tilt_unknown"}));
+  EXPECT_EQ(Codes(TooUncertain(fit, false)), (List{"tilt_unknown"}));
   fit.accuracy.tilt_deg = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(Codes(TooUncertain(fit)), (List{"tilt_unknown"}));
+  EXPECT_EQ(Codes(TooUncertain(fit, false)), (List{"tilt_unknown"}));
   fit.accuracy.scale_percent = 1.01 * kMaxScaleSigma_percent;
-  EXPECT_EQ(Codes(TooUncertain(fit)), (List{"scale_unknown"}));
+  EXPECT_EQ(Codes(TooUncertain(fit, false)), (List{"scale_unknown"}));
   fit.n_inliers = kMinAgreeing - 1;
-  ASSERT_EQ(Codes(TooUncertain(fit)), (List{"too_few_agree"}));
-  const survey::Problem problem = TooUncertain(fit)[0];
+  ASSERT_EQ(Codes(TooUncertain(fit, false)), (List{"too_few_agree"}));
+  const survey::Problem problem = TooUncertain(fit, false)[0];
   EXPECT_TRUE(problem.about_place);
   EXPECT_TRUE(problem.finding.starts_with("No place on Earth: "));
   EXPECT_FALSE(problem.finding.ends_with("."));

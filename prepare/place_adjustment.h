@@ -9,17 +9,10 @@
 #include "core/geo/transform.h"
 #include "prepare/gravity.h"
 #include "prepare/height_bias.h"
+#include "prepare/tags.h"
 #include "prepare/track.h"
 
 namespace skyquilt::prepare {
-
-// A tagged position in ENU metres.
-struct Tag {
-  size_t station = 0;
-  Eigen::Vector3d x_in_enu = Eigen::Vector3d::Zero();  // z is NaN where the tag has no usable height
-  double horizontal_sigma_m = 3.0;                     // relative to other tags; their common scale is estimated
-  double vertical_sigma_m = 4.5;
-};
 
 struct AdjustmentInput {
   const Track& track;

@@ -34,7 +34,8 @@ HeldOutPhoto LoadHeldOutPhoto(const survey::Survey& survey, const image::PixelCa
     task.mask = std::move(mask.data);
   }
   task.camera = camera.Resized(task.photo.width, task.photo.height);
-  if (survey.truth) {
+  // A local frame has no metres to compare with.
+  if (survey.truth && survey.georeferenced) {
     const std::filesystem::path stem = std::filesystem::path(photo.name).replace_extension(".tiff");
     for (const std::filesystem::path& file : {survey.truth->depth_folder / stem, survey.truth->depth_folder / stem.filename()}) {
       if (!std::filesystem::is_regular_file(file)) continue;

@@ -49,7 +49,7 @@ void AddPooled(const scene::SceneInfo& info, const Scores& scores, Metrics* metr
 }
 
 void AddSurveyFacts(const survey::Survey& survey, Metrics* metrics) {
-  metrics->has_truth = survey.truth.has_value();
+  metrics->has_truth = survey.truth.has_value() && survey.georeferenced;
   metrics->georeferenced = survey.georeferenced;
   metrics->geo_fit = survey.fit;
   for (const survey::Problem& problem : survey.problems) metrics->problem_codes.push_back(problem.code);

@@ -42,7 +42,17 @@ class Solver {
         log_scale_(std::log(start.enu_from_model.scale)),
         position_(start.enu_from_model * input.middle_in_model),
         lag_s_(start.lag_s),
-        bias_(start.bias) {}
+        bias_(start.bias) {
+    for (Index k = 0; k < static_cast<Index>(input.tags.size()); ++k) {
+      Span span;
+      for (Index j = 0; j < input.bias.size(); ++j) {
+        if (input.bias.basis()(k, j) == 0.0) continue;
+        if (span.count == 0) span.first = j;
+        span.count = j - span.first + 1;
+      }
+      spans_.push_back(span);
+    }
+  }
 
   Adjustment Run() {
     for (int round = 0; round < kAdjustmentRounds; ++round) {
@@ -120,24 +130,32 @@ class Solver {
     const Index size = kGlobal + bias_.size();
     normal_ = Eigen::MatrixXd::Zero(size, size);
     gradient_ = Eigen::VectorXd::Zero(size);
-    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(3, size);
     for (size_t k = 0; k < input_.tags.size(); ++k) {
       if (weight_h_[k] == 0.0) continue;
       const Tag& tag = input_.tags[k];
+      Eigen::Matrix<double, 3, kGlobal> row;
       row.leftCols<3>() = -Cross(arm_[k]);
       row.col(3) = arm_[k];
       row.middleCols<3>(4).setIdentity();
       row.col(7) = -velocity_[k];
-      if (bias_.size() > 0) row.block(2, kGlobal, 1, bias_.size()) = input_.bias.basis().row(static_cast<Index>(k));
       const double h = weight_h_[k] / (SigmaH(tag) * SigmaH(tag) * noise_h_.variance);
       const double v = weight_v_[k] / (SigmaV(tag) * SigmaV(tag) * noise_v_.variance);
       for (Index axis = 0; axis < 3; ++axis) {
         const double weight = axis < 2 ? h : v;
         if (weight == 0.0) continue;
-        normal_ += weight * row.row(axis).transpose() * row.row(axis);
-        gradient_ += weight * row.row(axis).transpose() * residual_[k][axis];
+        normal_.topLeftCorner<kGlobal, kGlobal>() += weight * row.row(axis).transpose() * row.row(axis);
+        gradient_.head<kGlobal>() += weight * row.row(axis).transpose() * residual_[k][axis];
       }
+      const Span& span = spans_[k];
+      if (v == 0.0 || span.count == 0) continue;
+      // Only the parameters of the tag's own flight: with many flights the rest of the row is zero.
+      const Eigen::RowVectorXd basis = input_.bias.basis().row(static_cast<Index>(k)).segment(span.first, span.count);
+      const Index at = kGlobal + span.first;
+      normal_.block(0, at, kGlobal, span.count) += v * row.row(2).transpose() * basis;
+      normal_.block(at, at, span.count, span.count) += v * basis.transpose() * basis;
+      gradient_.segment(at, span.count) += v * basis.transpose() * residual_[k].z();
     }
+    normal_.bottomLeftCorner(bias_.size(), kGlobal) = normal_.topRightCorner(kGlobal, bias_.size()).transpose();
     if (bias_.size() > 0) {
       const Eigen::VectorXd prior = input_.bias.Sigmas(input_.bias_sigmas).array().square().inverse();
       normal_.diagonal().tail(bias_.size()) += prior;
@@ -209,7 +227,13 @@ class Solver {
     return result;
   }
 
+  // Bias parameters that a tag depends on.
+  struct Span {
+    Index first = 0, count = 0;
+  };
+
   const AdjustmentInput& input_;
+  std::vector<Span> spans_;  // per tag
   Eigen::Quaterniond rotation_;
   double log_scale_;
   Vector3d position_;

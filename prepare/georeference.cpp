@@ -255,7 +255,6 @@ Georeference PlaceOnEarth(const std::vector<Station>& stations, const std::vecto
     }
   }
   if (!result.ok) {
-    result.reason = result.problems.front().finding;
     result.origin = {};
     Clear(stations.size(), result);
     result.enu_from_model = LocalFrame(stations, points, gravity.up);

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
 #include <vector>
 
 #include "core/geo/geodetic.h"
@@ -18,8 +17,7 @@
 namespace skyquilt::prepare {
 
 struct Georeference {
-  bool ok = false;     // false: levelled local frame, unknown scale
-  std::string reason;  // why not, for the log; empty when ok
+  bool ok = false;  // false: levelled local frame, unknown scale; the first problem says why
   geo::Geodetic origin;
   geo::Similarity3d enu_from_model;
   survey::GeoFit fit;

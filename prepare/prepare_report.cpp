@@ -29,7 +29,6 @@ std::string Quoted(const std::string& text) {
   return quoted + "\"";
 }
 
-// A sentence of the report begins with a capital letter and has no full stop.
 void LogProblems(const survey::Survey& survey) {
   for (const survey::Problem& problem : survey.problems) spdlog::warn("{}. What to do: {}", problem.finding, problem.advice);
 }

@@ -138,7 +138,6 @@ TEST(PlaceOnEarth, SaysWhyThereIsNoPlace) {
   const Georeference equal = PlaceOnEarth(stations, {}, {});
   EXPECT_FALSE(equal.ok);
   EXPECT_TRUE(Has(equal, "equal_tags"));
-  EXPECT_EQ(equal.reason, equal.problems[0].finding);
   for (size_t i = 3; i < stations.size(); ++i) stations[i].gps.reset();
   EXPECT_TRUE(Has(PlaceOnEarth(stations, {}, {}), "too_few_tags"));
   for (Station& station : stations) station.gps.reset();
@@ -161,7 +160,7 @@ TEST(PlaceOnEarth, NamesAStraightLineAndMissingHeights) {
   std::vector<Station> stations = Tagged({47.0, 8.0, 400.0}, 6);
   const std::vector<Station> line(stations.begin(), stations.begin() + test::kLine);
   const Georeference on_line = PlaceOnEarth(line, {}, {});
-  EXPECT_TRUE(on_line.ok) << on_line.reason;
+  EXPECT_TRUE(on_line.ok);
   EXPECT_TRUE(Has(on_line, "one_line"));
 
   for (Station& station : stations) station.gps->height_m = 0.0;
@@ -185,7 +184,7 @@ TEST(PlaceOnEarth, SaysWhenFewTagsAgree) {
     if (i % 5 >= 2) stations[i].gps->latitude_deg += random.Uniform(5e-4, 5e-3) * (i % 2 == 0 ? 1.0 : -1.0);
   }
   const Georeference result = PlaceOnEarth(stations, {}, {});
-  EXPECT_TRUE(result.ok) << result.reason;
+  EXPECT_TRUE(result.ok);
   EXPECT_EQ(result.fit.n_inliers, 16);
   EXPECT_TRUE(Has(result, "few_tags_agree"));
   EXPECT_FALSE(Has(result, "tags_disagree"));

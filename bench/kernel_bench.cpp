@@ -1,6 +1,7 @@
 #include "bench/kernel_bench.h"
 
 #include <algorithm>
+#include <limits>
 #include <chrono>
 #include <map>
 #include <stdexcept>
@@ -46,6 +47,7 @@ worker::RayBatch MakeBatch(const KernelBenchOptions& options, int feature_rows) 
   base::Random random(7);
   const auto n = static_cast<size_t>(options.samples_per_ray);
   std::vector<float> x(n), y(n), z(n), t(n), unit_length(n, 1.0F);
+  const std::vector<float> sharpness(n, std::numeric_limits<float>::infinity());
   const std::vector<int32_t> cell(n, 0);
   for (int64_t ray = 0; ray < options.batch_samples / options.samples_per_ray; ++ray) {
     worker::BatchRay r;
@@ -60,7 +62,7 @@ worker::RayBatch MakeBatch(const KernelBenchOptions& options, int feature_rows) 
       z[i] = random.Uniform();
       t[i] = static_cast<float>(i) / static_cast<float>(n);
     }
-    batch.Append(r, x.data(), y.data(), z.data(), t.data(), unit_length.data(), cell.data());
+    batch.Append(r, x.data(), y.data(), z.data(), sharpness.data(), t.data(), unit_length.data(), cell.data());
   }
   batch.LayOutFeatures(feature_rows);
   return batch;

@@ -168,8 +168,7 @@ void MapRayGenerator::MakeRow(int row, MapRays* out) const {
     ray.origin_enu = start + s * down;
     ray.direction_enu = down;
     ray.t_far = length;
-    // pixel_radius describes a cone, but a map cell is a column: make the cone's radius half a cell at half its length.
-    ray.pixel_radius = static_cast<float>(grid_.resolution_m / std::max(length, grid_.resolution_m));
+    ray.pixel_width = static_cast<float>(grid_.resolution_m);  // a map cell is a column
     out->rays.push_back(ray);
     out->column.push_back(column);
     out->start_height_m.push_back(projection_.start_height_m() - s);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/errors.h"
+#include "core/camera/pixel_pitch.h"
 #include "products/product_options.h"
 
 namespace skyquilt::products {
@@ -45,7 +46,7 @@ ViewRenderer RendererOf(RayCaster caster) {
     const int64_t n_pixels = static_cast<int64_t>(view.camera.width) * view.camera.height;
     std::vector<render::RayColor> colors(static_cast<size_t>(n_pixels));
     const Eigen::Vector3d eye = view.cam_from_enu.OriginInSource();
-    const auto radius = static_cast<float>(0.5 / view.camera.FocalX());
+    const camera::PixelPitch pitch(view.camera);
     std::vector<render::Ray> rays;
     for (int64_t first = 0; first < n_pixels; first += kBandRays) {
       const int64_t count = std::min(kBandRays, n_pixels - first);
@@ -54,7 +55,7 @@ ViewRenderer RendererOf(RayCaster caster) {
         const int64_t row = i / view.camera.width;
         const Eigen::Vector2d pixel(static_cast<double>(i % view.camera.width) + 0.5, static_cast<double>(row) + 0.5);
         const Eigen::Vector3d direction = view.cam_from_enu.rotation.conjugate() * view.camera.RayFromImg(pixel);
-        rays.push_back({.origin_enu = eye, .direction_enu = direction.normalized(), .pixel_radius = radius});
+        rays.push_back({.origin_enu = eye, .direction_enu = direction.normalized(), .pixel_pitch = static_cast<float>(pitch.At(pixel))});
       }
       caster(rays, std::span(colors).subspan(static_cast<size_t>(first), static_cast<size_t>(count)));
     }

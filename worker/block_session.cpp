@@ -131,6 +131,8 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
     brightness::GetLuminance(reader, &as_configured, &trainer.luminance_state());
   }
   target.occupancy = std::move(loaded.occupancy);
+  target.footprint_min_m = loaded.footprint_min_m;
+  target.footprint_max_m = loaded.footprint_max_m;
   state.step = loaded.steps;
   trainer.rays_per_step() = static_cast<int>(reader.IntAttribute("rays_per_step"));
   *record = RecordOf(reader);

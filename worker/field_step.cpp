@@ -40,6 +40,7 @@ void FieldStep::Encode(const RayBatch& batch, std::span<const float> grid) {
   const auto packets = static_cast<int64_t>(batch.packets.size());
   const int64_t runs = (packets + kEncodePackets - 1) / kEncodePackets;
   const encoding::Encoding& encoding = field_.encoding();
+  const kernel::Positions at = batch.Positions(field_.config());
   threads_.ParallelFor(runs * encoding.parts(), [&](int64_t task, int thread) {
     const auto start = PhaseTimes::Clock::now();
     const int part = static_cast<int>(task / runs);
@@ -56,7 +57,7 @@ void FieldStep::Encode(const RayBatch& batch, std::span<const float> grid) {
     const auto end = std::min(first + static_cast<size_t>(kEncodePackets), batch.packets.size());
     for (size_t k = first; k < end; ++k) {
       const Packet& p = batch.packets[k];
-      encoding.Forward(part, table, batch.x.data() + p.begin, batch.y.data() + p.begin, batch.z.data() + p.begin, p.count,
+      encoding.Forward(part, table, at.From(p.begin), p.count,
                        features_.data() + p.features + static_cast<size_t>(encoding.FirstRow(part)) * p.stride, p.stride);
     }
     times_.Add(thread, Phase::kEncode, start);
@@ -101,7 +102,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   }
   times_.Add(0, Phase::kBackward, at);
   optimizer_.Update(
-      batch.x.data(), batch.y.data(), batch.z.data(), gradient_segments_, options.learning_rate, options.network_l2, parameters, state,
+      batch.Positions(field_.config()), gradient_segments_, options.learning_rate, options.network_l2, parameters, state,
       [&](int thread, PhaseTimes::Clock::time_point began) { times_.Add(thread, Phase::kScatter, began); },
       [&](int thread, PhaseTimes::Clock::time_point began) { times_.Add(thread, Phase::kOptimise, began); });
   return result;

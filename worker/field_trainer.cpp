@@ -52,8 +52,29 @@ void FieldTrainer::InitializeParameters() {
       static_cast<float>(std::log(omega / (1.0 - omega)));
 }
 
+void FieldTrainer::MeasureFootprints() {
+  if (!target_.config.cones) return;
+  constexpr int kRays = 8192;
+  constexpr uint64_t kNoStep = ~uint64_t{0};
+  // At full size, so that the range does not depend on the drawn levels.
+  drawer_.Draw(static_cast<int64_t>(kNoStep >> 1U), kRays, field_.FeatureRows(), PhotoPyramid(), &batch_);
+  std::vector<double> widths;
+  for (const BatchRay& ray : batch_.rays) {
+    for (int64_t s = ray.begin; s < ray.begin + ray.count; ++s) {
+      widths.push_back(static_cast<double>(ray.ray.pixel_pitch) * static_cast<double>(batch_.t[static_cast<size_t>(s)]));
+    }
+  }
+  if (widths.empty()) return;
+  std::sort(widths.begin(), widths.end());
+  const size_t rare = widths.size() / 100;  // on each side
+  const PyramidRange range = RangeOf(options_.pyramid, options_.pyramid_start);
+  target_.footprint_min_m = widths[rare] * (1 << range.finest);
+  target_.footprint_max_m = widths[widths.size() - 1 - rare] * (1 << range.coarsest);
+}
+
 StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
-  drawer_.Draw(state_.step, rays_per_step_, field_.FeatureRows(), &batch_);
+  const PhotoPyramid pyramid(options_.pyramid, options_.pyramid_start, options_.pyramid_until, progress);
+  drawer_.Draw(state_.step, rays_per_step_, field_.FeatureRows(), pyramid, &batch_);
   StepOptions step;
   const double warm_up = std::min(1.0, static_cast<double>(state_.step + 1) / kWarmUpSteps);
   const double decay = std::pow(options_.final_learning_rate_share, std::clamp((progress - kDecayFrom) / (1.0 - kDecayFrom), 0.0, 1.0));
@@ -110,7 +131,7 @@ void FieldTrainer::StepTaus(const std::vector<float>& x, const std::vector<float
     std::vector<float> features(static_cast<size_t>(field_.FeatureRows()) * stride, 0.0F);
     std::vector<float> geometry(static_cast<size_t>(field::kGeometryRows) * field::kChunkStride);
     std::vector<float> hidden(static_cast<size_t>(field_.DensityHiddenRows()) * field::kChunkStride);
-    field_.EncodeSerial(target_.parameters.grid, x.data() + begin, y.data() + begin, z.data() + begin, count, features.data(), stride);
+    field_.EncodeSerial(target_.parameters.grid, {x.data() + begin, y.data() + begin, z.data() + begin}, count, features.data(), stride);
     for (int64_t s = 0; s < padded; s += field::kChunk) {
       const int64_t size = std::min<int64_t>(field::kChunk, padded - s);
       field_.Density(weights, features.data() + s, stride, size, hidden.data(), field::kChunkStride, geometry.data(), field::kChunkStride);

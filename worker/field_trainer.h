@@ -28,7 +28,9 @@ class FieldTrainer {
   brightness::LuminanceState& luminance_state() { return step_.luminance_state(); }
   void InitializeParameters();
 
-  // One step. progress: of the budget, 0..1, sets learning rate and distortion loss.
+  // Sets the target's range of footprints from rays of its photos. Call it when the occupancy has its initial state.
+  void MeasureFootprints();
+  // One step. progress: of the budget, 0..1, sets learning rate, distortion loss and levels of the pyramid.
   StepResult Step(double progress, double learning_rate_scale);
   // Samples the density of some free cells, then decides which cells are occupied. grow: also marks the cells around surfaces as occupied.
   void UpdateOccupancy(bool grow);

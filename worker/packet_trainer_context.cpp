@@ -24,17 +24,18 @@ void PacketTrainer::RenderContext() {
 
 void PacketTrainer::AddContextRays(size_t view) {
   const PixelRay& ray = Ray(view).ray;
+  const float pitch = shared_.context->config.cones ? ray.pixel_pitch : 0.0F;
   const geo::Interval all = render::FieldInterval(shared_.context->map, ray.origin_enu, ray.direction_enu);
   if (all.Empty()) return;
   const geo::Interval plan = render::PlanInterval(shared_.target.map, ray.origin_enu, ray.direction_enu);
   if (plan.t_near > all.t_near + shared_.context->step_m) {
-    pieces_.push_back({ray.origin_enu, ray.direction_enu, all.t_near, plan.t_near, 0.0F});
+    pieces_.push_back({ray.origin_enu, ray.direction_enu, all.t_near, plan.t_near, pitch});
     owner_.emplace_back(view, false);
   }
   float tau = 0.0F;
   for (int64_t i = 0; i < views_[view].count; ++i) tau += tau_[static_cast<size_t>(views_[view].begin + i)];
   if (tau < kOpaqueTau && all.t_far > plan.t_far) {
-    pieces_.push_back({ray.origin_enu, ray.direction_enu, plan.t_far, all.t_far, 0.0F});
+    pieces_.push_back({ray.origin_enu, ray.direction_enu, plan.t_far, all.t_far, pitch});
     owner_.emplace_back(view, true);
   }
 }

@@ -32,15 +32,20 @@ struct RayBatch {
   std::vector<BatchRay> rays;
   std::vector<Packet> packets;
   std::vector<float> x, y, z;                                      // unit frame of the field
+  std::vector<float> sharpness;                                    // of the footprints (kernel::Positions); not used without cones
   std::vector<float> t;                                            // metres from the camera
   std::vector<float> unit_length;                                  // length of the interval in marching steps
-  std::vector<int32_t> cell;                                       // index in the occupancy grid
+  std::vector<int32_t> cell;                                       // index in the occupancy grid; -1: too coarse to tell whether the cell is free
   int64_t n_samples = 0;                                           // without padding
   int64_t Size() const { return static_cast<int64_t>(x.size()); }  // with padding
 
   void Clear();
+  // Positions of all samples, for a field with this configuration.
+  kernel::Positions Positions(const field::FieldConfig& config) const {
+    return {x.data(), y.data(), z.data(), config.cones ? sharpness.data() : nullptr};
+  }
   // Appends a ray with ray.count samples. A ray with more samples than a packet holds gets a packet of its own.
-  void Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* t_in, const float* unit_length_in,
+  void Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* sharpness_in, const float* t_in, const float* unit_length_in,
               const int32_t* cell_in);
   // Completes the last packet and sets the packets' feature ranges, for `rows` features per sample.
   void LayOutFeatures(int rows);
@@ -62,13 +67,13 @@ class RayDrawer {
             base::ThreadPool& threads, PhaseTimes& times)
       : target_(target), source_(source), seed_(seed), neighbours_(neighbours), stratified_(stratified), threads_(threads), times_(times) {}
   // About n_rays rays: masked pixels and rays that miss the field are left out.
-  void Draw(int64_t step, int n_rays, int feature_rows, RayBatch* batch);
+  void Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, RayBatch* batch);
 
  private:
   // The rays of one task; the first `count` elements of the arrays are used.
   struct Group {
     std::vector<BatchRay> rays;
-    std::vector<float> x, y, z, t, unit_length;
+    std::vector<float> x, y, z, sharpness, t, unit_length;
     std::vector<int32_t> cell;
     size_t count = 0;
     void MakeRoom(size_t samples);

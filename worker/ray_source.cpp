@@ -1,6 +1,8 @@
 #include "worker/ray_source.h"
 
 #include <algorithm>
+#include <map>
+#include <tuple>
 
 #include "core/image/srgb.h"
 
@@ -14,9 +16,13 @@ constexpr int kColorPixels = 4;
 
 RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixels, const brightness::Response& response)
     : survey_(survey), pixels_(pixels), response_(response) {
+  std::map<std::tuple<int, int, int>, size_t> known;  // camera and size
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
     cameras_.push_back(survey.cameras[static_cast<size_t>(photo.camera)].Resized(pixels.Width(i), pixels.Height(i)));
+    const auto [entry, is_new] = known.try_emplace({photo.camera, pixels.Width(i), pixels.Height(i)}, pitches_.size());
+    if (is_new) pitches_.emplace_back(cameras_.back());
+    pitch_of_.push_back(entry->second);
     enu_from_cam_.push_back(photo.cam_from_enu.Inverse());
     per_radius2_.push_back(1.0 / (cameras_.back().MaxImageRadius() * cameras_.back().MaxImageRadius()));
   }
@@ -50,14 +56,15 @@ Eigen::Vector2d RaySource::TileCentre(const Tile& tile) const {
   return {(tile.column + 0.5) * pixels_.Width(photo) / kTileColumns, (tile.row + 0.5) * pixels_.Height(photo) / kTileRows};
 }
 
-bool RaySource::Draw(base::Random& random, PixelRay* ray) const {
+bool RaySource::Draw(base::Random& random, const PhotoPyramid& pyramid, PixelRay* ray) const {
   for (int attempt = 0; attempt < 8; ++attempt) {
-    if (DrawPatch(random, 1, ray) == 1) return true;
+    if (DrawPatch(random, pyramid, 1, ray) == 1) return true;
   }
   return false;
 }
 
-int RaySource::DrawPatch(base::Random& random, int n, PixelRay* rays) const {
+int RaySource::DrawPatch(base::Random& random, const PhotoPyramid& pyramid, int n, PixelRay* rays) const {
+  const int level = pyramid.Draw(random);
   const bool empty = static_cast<double>(random.Uniform()) < empty_share_;
   const std::vector<Tile>& tiles = empty ? empty_ : inside_;
   const Tile& tile = tiles[random.Below(static_cast<uint32_t>(tiles.size()))];
@@ -69,24 +76,43 @@ int RaySource::DrawPatch(base::Random& random, int n, PixelRay* rays) const {
     *run = std::min(*run, end - begin);
     return std::min(size - 1, begin + static_cast<int>(random.Below(static_cast<uint32_t>(end - begin - *run + 1))));
   };
-  int columns = n, rows = 1;
+  const int size = 1 << level, width = pixels_.Width(photo), height = pixels_.Height(photo);
+  int columns = level == 0 ? n : 1, rows = 1;
   const int x = along(tile.column, kTileColumns, pixels_.Width(photo), &columns);
   const int y = along(tile.row, kTileRows, pixels_.Height(photo), &rows);
   int drawn = 0;
-  for (int i = 0; i < columns && x + i < pixels_.Width(photo); ++i) {
-    if (RayOf(tile.photo, x + i, y, empty, rays + drawn)) ++drawn;
+  if (level > 0) {
+    // Squares around the drawn pixel, moved into the photo; those of a patch may leave its tile.
+    if (size > width || size > height) return 0;
+    const int first_x = std::clamp(x - size / 2, 0, width - size), first_y = std::clamp(y - size / 2, 0, height - size);
+    for (int i = 0; i < n && first_x + (i + 1) * size <= width; ++i) {
+      if (RayOf(tile.photo, first_x + i * size, first_y, level, empty, rays + drawn)) ++drawn;
+    }
+    return drawn;
+  }
+  for (int i = 0; i < columns && x + i < width; ++i) {
+    if (RayOf(tile.photo, x + i, y, 0, empty, rays + drawn)) ++drawn;
   }
   return drawn;
 }
 
-bool RaySource::RayOf(int photo, int x, int y, bool empty, PixelRay* ray) const {
+bool RaySource::RayOf(int photo, int x, int y, int level, bool empty, PixelRay* ray) const {
   const auto index = static_cast<size_t>(photo);
-  const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(pixels_.Width(index)) + static_cast<size_t>(x);
-  uint8_t rgb[3];
-  if (!pixels_.Pixel(index, pixel, rgb)) return false;
-  const Eigen::Vector2d position(x + 0.5, y + 0.5);
+  const int size = 1 << level;
+  if (level == 0) {
+    const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(pixels_.Width(index)) + static_cast<size_t>(x);
+    uint8_t rgb[3];
+    if (!pixels_.Pixel(index, pixel, rgb)) return false;
+    for (size_t c = 0; c < 3; ++c) ray->target_srgb[c] = static_cast<float>(rgb[c]) / 255.0F;
+  } else {
+    float light[3];
+    if (!pixels_.MeanLight(index, x, y, size, light)) return false;
+    for (size_t c = 0; c < 3; ++c) ray->target_srgb[c] = image::SrgbFromLinear(light[c]);
+  }
+  const Eigen::Vector2d position(x + 0.5 * size, y + 0.5 * size);
   RayThrough(photo, position, &ray->origin_enu, &ray->direction_enu);
-  for (size_t c = 0; c < 3; ++c) ray->target_srgb[c] = static_cast<float>(rgb[c]) / 255.0F;
+  ray->pixel_pitch = static_cast<float>(size * pitches_[pitch_of_[index]].At(position));
+  ray->level = level;
   ray->photo = photo;
   ray->exposure = brightness::Response::WithVignetting(exposures_[index], response_.LogVignetting(index, Radius2(photo, position)));
   ray->empty = empty;
@@ -132,7 +158,7 @@ std::array<float, 3> RaySource::MeanColor(uint64_t seed) const {
   int n = 0;
   PixelRay ray;
   for (int i = 0; i < kRays; ++i) {
-    if (!Draw(random, &ray) || ray.empty) continue;
+    if (!Draw(random, PhotoPyramid(), &ray) || ray.empty) continue;
     for (size_t c = 0; c < 3; ++c) {
       sum[static_cast<Eigen::Index>(c)] += static_cast<double>(image::LinearFromSrgb(ray.target_srgb[c]) / ray.exposure[c].gain);
     }

@@ -11,14 +11,18 @@
 #include "core/base/random.h"
 #include "core/brightness/response.h"
 #include "core/camera/camera.h"
+#include "core/camera/pixel_pitch.h"
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
+#include "worker/photo_pyramid.h"
 
 namespace skyquilt::worker {
 
 struct PixelRay {
   Eigen::Vector3d origin_enu;
   Eigen::Vector3d direction_enu;                 // length 1
+  float pixel_pitch = 0.0F;                      // width of its pixel at distance 1, radians (camera::PixelPitch times the pixel's size)
+  int level = 0;                                 // its pixel is 1 << level photo pixels wide
   float target_srgb[3] = {0, 0, 0};              // recorded display value, 0..1
   std::array<brightness::Exposure, 3> exposure;  // recorded light divided by light at reference exposure, per colour
   int photo = 0;
@@ -49,9 +53,9 @@ class RaySource {
   std::array<float, 3> MeanColor(uint64_t seed) const;
   bool HasRays() const { return !inside_.empty(); }
   // Draws a ray; false when masked pixels were drawn several times in a row.
-  bool Draw(base::Random& random, PixelRay* ray) const;
-  // Draws up to n neighbouring pixels of one row of a tile, from left to right, without masked ones. Returns their number.
-  int DrawPatch(base::Random& random, int n, PixelRay* rays) const;
+  bool Draw(base::Random& random, const PhotoPyramid& pyramid, PixelRay* ray) const;
+  // Draws up to n neighbouring pixels of one row from left to right, without masked ones; photo pixels are from one tile. Returns their number.
+  int DrawPatch(base::Random& random, const PhotoPyramid& pyramid, int n, PixelRay* rays) const;
 
   // The camera at the cached image size.
   const camera::Camera& CameraOf(int photo) const { return cameras_[static_cast<size_t>(photo)]; }
@@ -65,13 +69,15 @@ class RaySource {
   Eigen::Vector2d TileCentre(const Tile& tile) const;
 
  private:
-  // False for a masked pixel.
-  bool RayOf(int photo, int x, int y, bool empty, PixelRay* ray) const;
+  // The ray of a square of photo pixels whose first is (x, y); false when it is masked.
+  bool RayOf(int photo, int x, int y, int level, bool empty, PixelRay* ray) const;
 
   const survey::Survey& survey_;
   const image::PixelCache& pixels_;
   const brightness::Response& response_;
   std::vector<camera::Camera> cameras_;                         // per photo, at cached size
+  std::vector<camera::PixelPitch> pitches_;                     // of the different ones of them
+  std::vector<size_t> pitch_of_;                                // per photo
   std::vector<geo::Rigid3d> enu_from_cam_;                      // per photo
   std::vector<std::array<brightness::Exposure, 3>> exposures_;  // per photo, on the axis
   std::vector<double> per_radius2_;                             // per photo: 1 / squared pixels from the principal point to the farthest corner

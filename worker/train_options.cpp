@@ -1,6 +1,10 @@
 #include "worker/train_options.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "core/base/errors.h"
+#include "worker/photo_pyramid.h"
 
 namespace skyquilt::worker {
 
@@ -26,6 +30,13 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
       {"step_voxels", &O::step_voxels, Range{0.25, 16}, "distance between the samples of a ray in finest voxels"},
       {"stratified", &O::stratified, Range(),
        "true: the samples of a ray are shifted by a random part of a step, new for every ray; false: they are in the middle of the steps"},
+      {"multisample", &O::multisample, Range::OneOf({0, 1}),
+       "1: samples have the footprint of their pixel, and detail finer than it fades, so that renderings from any distance are sharp without flicker; "
+       "0: samples are points"},
+      {"pyramid", &O::pyramid, Range{0, 1e6},
+       "shares of the rays that are drawn from the photos at 1, 1/2, 1/4 and 1/8 of their size; one to four numbers of any sum"},
+      {"pyramid_start", &O::pyramid_start, Range{0, 1e6}, "these shares at the start of the training; empty: as pyramid"},
+      {"pyramid_until", &O::pyramid_until, Range{0, 1}, "share of the budget in which pyramid_start changes into pyramid"},
       {"network_l2", &O::network_l2, Range{0, 1}, "weight decay of the networks"},
       {"distortion", &O::distortion, Range{0, 100}, "weight of the distortion loss, which concentrates the density of a ray at one distance; 0: off"},
       {"empty_ray_share", &O::empty_ray_share, Range{0, 0.5},
@@ -41,6 +52,12 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
 
 void TrainOptions::Check(const std::string& section) const {
   config::CheckRanges(section, *this);
+  for (const auto& [key, shares] : {std::pair{"pyramid", &pyramid}, std::pair{"pyramid_start", &pyramid_start}}) {
+    const bool may_be_empty = shares == &pyramid_start;
+    const bool usable = shares->size() <= kPyramidLevels && std::any_of(shares->begin(), shares->end(), [](double share) { return share > 0.0; });
+    if (usable || (may_be_empty && shares->empty())) continue;
+    throw base::UsageError(section + "." + key + " is not allowed: give one to four shares, of which at least one is above 0, such as [0.6, 0.2, 0.12, 0.08]");
+  }
   if (levels * features % 4 != 0) {
     throw base::UsageError(section + ".levels = " + std::to_string(levels) + " is not allowed with " + section +
                            ".features = " + std::to_string(features) + ": their product must be a multiple of 4");

@@ -33,6 +33,11 @@ struct TrainOptions {
   // Rays and losses.
   double step_voxels = 2.0;       // distance between the samples of a ray, in finest voxels
   bool stratified = true;         // samples of a ray are shifted by a random part of a step
+  int multisample = 0;            // positions per sample; 0: samples are points, without footprint (core/render/footprint.h)
+  // Shares of the rays from photos at 1, 1/2, 1/4 and 1/8 (worker/photo_pyramid.h), and how they change.
+  std::vector<double> pyramid = {1.0};
+  std::vector<double> pyramid_start = {};
+  double pyramid_until = 0.5;
   double network_l2 = 1e-6;       // weight decay of the networks
   double distortion = 1e-2;       // weight of the distortion loss (worker/losses/distortion_loss.h)
   double empty_ray_share = 0.05;  // share of a block's rays whose surface is behind the block: it must be transparent there

@@ -61,6 +61,7 @@ render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool
   f.config.sh_degree = options.sh_degree;
   f.config.color_range = ColorRange(*job.survey, response);
   if (learning) f.config.color_range = std::max(f.config.color_range, kLearnedRange);
+  f.config.cones = options.multisample > 0;
   f.config.luminance = luminance.On();
   // Light that is shown brighter than in the photos, or that was too bright for them.
   if (luminance.On()) f.config.color_range = std::max(f.config.color_range, kLuminanceRange);
@@ -114,6 +115,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
     } else {
       StartFromPoints(*job.survey, target);
     }
+    trainer.MeasureFootprints();
   }
   source.UpdateExposures();
   TrainLoop loop("context", job, target, trainer, &extras, record, report);
@@ -164,6 +166,7 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
       StartFromPoints(*job.survey, target);
       if (context != nullptr) StartFromSurfaces(source, *job.survey, tiles, *context, target);
     }
+    trainer.MeasureFootprints();
   }
   TrainLoop loop("block", job, target, trainer, nullptr, record, report);
   return loop.Run() ? loop.SaveResult(nullptr) : loop.Failure();

@@ -107,8 +107,8 @@ CaseResult HashLookups(const kernel::GridLevel& level, int features, const std::
     for (auto* axis : {&x, &y, &z}) {
       for (float& value : *axis) value = random.Uniform() < 0.05F ? 3.0F * random.Uniform() - 1.0F : random.Uniform();
     }
-    kernel::HashForward(level, features, table.data(), x.data(), y.data(), z.data(), n, out.data(), count);
-    kernel::HashBackward(level, features, x.data(), y.data(), z.data(), n, out_gradient.data(), count, gradient.data(), touched.data());
+    kernel::HashForward(level, features, table.data(), {x.data(), y.data(), z.data()}, n, out.data(), count);
+    kernel::HashBackward(level, features, {x.data(), y.data(), z.data()}, n, out_gradient.data(), count, gradient.data(), touched.data());
     // Entries that the samples read, and their expected gradients.
     std::vector<std::pair<size_t, double>> additions;
     for (size_t s = 0; s < count; ++s) {

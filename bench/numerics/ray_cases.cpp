@@ -180,7 +180,7 @@ CaseResult ZeroLengthInterval() {
   const geo::Interval empty[3] = {{3.0, 3.0}, {5.0, 3.0}, {0.0, std::nan("")}};
   for (const geo::Interval& interval : empty) {
     render::March(field, origin, direction, interval, field.step_m, 0.5F, [&](double, double, double, int64_t) { return ++visits < 10; });
-    render::MarchCoarse(field, origin, direction, interval, field.step_m, [&](double, double, double) { return ++visits < 10; });
+    render::MarchCoarse(field, origin, direction, interval, field.step_m, 0.5F, [&](double, double, double) { return ++visits < 10; });
   }
   return {.seen = fmt::format("{} samples", visits), .worst = static_cast<double>(visits)};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/render/march.h"
 
@@ -49,7 +50,7 @@ render::TrainedField SyntheticField(const SyntheticOptions& options) {
 void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOptions& scene, const SyntheticRays& rays, base::Random& random,
                         worker::RayBatch* batch) {
   batch->Clear();
-  std::vector<float> x, y, z, t, unit_length;
+  std::vector<float> x, y, z, sharpness, t, unit_length;
   std::vector<int32_t> cell;
   const double half = 0.5 * scene.edge_m;
   for (int i = 0; i < rays.rays; ++i) {
@@ -70,7 +71,7 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
     const float jitter = random.Uniform();
     const geo::Interval interval = render::FieldInterval(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
     const render::UnitRay unit(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
-    for (auto* values : {&x, &y, &z, &t, &unit_length}) values->clear();
+    for (auto* values : {&x, &y, &z, &sharpness, &t, &unit_length}) values->clear();
     cell.clear();
     render::March(field, ray.ray.origin_enu, ray.ray.direction_enu, interval, field.step_m, jitter,
                   [&](double at, double, double length, int64_t index) {
@@ -79,12 +80,13 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
                     y.push_back(p.y());
                     z.push_back(p.z());
                     t.push_back(static_cast<float>(at));
+                    sharpness.push_back(std::numeric_limits<float>::infinity());
                     unit_length.push_back(static_cast<float>(length / field.step_m));
                     cell.push_back(static_cast<int32_t>(index));
                     return true;
                   });
     ray.count = static_cast<int64_t>(x.size());
-    batch->Append(ray, x.data(), y.data(), z.data(), t.data(), unit_length.data(), cell.data());
+    batch->Append(ray, x.data(), y.data(), z.data(), sharpness.data(), t.data(), unit_length.data(), cell.data());
   }
   batch->LayOutFeatures(field.config.grid.levels * field.config.grid.features);
 }

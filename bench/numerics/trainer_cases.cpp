@@ -163,7 +163,7 @@ CaseResult OneRay() {
     worker::RayBatch batch;
     worker::BatchRay ray = full.rays.at(0);
     ray.count = std::min(ray.count, most);
-    batch.Append(ray, full.x.data(), full.y.data(), full.z.data(), full.t.data(), full.unit_length.data(), full.cell.data());
+    batch.Append(ray, full.x.data(), full.y.data(), full.z.data(), full.sharpness.data(), full.t.data(), full.unit_length.data(), full.cell.data());
     batch.LayOutFeatures(trainer.field().FeatureRows());
     const ReferenceTrainer reference(trainer.target(), trainer.field());
     std::vector<double> grid, networks;

@@ -78,15 +78,15 @@ class Unpacker {
 struct Common {
   double origin[3];
   double t_near, t_far;
-  float pixel_radius;
+  float pixel_width;
 };
 
 Common CommonOf(const render::Ray& ray) {
-  return {{ray.origin_enu.x(), ray.origin_enu.y(), ray.origin_enu.z()}, ray.t_near, ray.t_far, ray.pixel_radius};
+  return {{ray.origin_enu.x(), ray.origin_enu.y(), ray.origin_enu.z()}, ray.t_near, ray.t_far, ray.pixel_width};
 }
 
 bool Same(const render::Ray& a, const render::Ray& b) {
-  return a.origin_enu == b.origin_enu && a.t_near == b.t_near && a.t_far == b.t_far && a.pixel_radius == b.pixel_radius;
+  return a.origin_enu == b.origin_enu && a.t_near == b.t_near && a.t_far == b.t_far && a.pixel_width == b.pixel_width;
 }
 
 bool Fresh(const scene::RayInFlight& ray_in_flight) {
@@ -148,6 +148,7 @@ std::string ToBytes(const RayRequest& request) {
   if (shared && !rays.empty()) packer.Add(CommonOf(rays.front()));
   for (const render::Ray& ray : rays) {
     for (int axis = 0; axis < 3; ++axis) packer.Add(ray.direction_enu[axis]);
+    packer.Add(ray.pixel_pitch);
     if (!shared) packer.Add(CommonOf(ray));
   }
   if (!fresh) {
@@ -171,11 +172,12 @@ RayRequest RayRequestFromBytes(const std::string& bytes) {
   for (size_t i = 0; i < n; ++i) {
     render::Ray ray;
     for (int axis = 0; axis < 3; ++axis) ray.direction_enu[axis] = unpacker.Take<double>();
+    ray.pixel_pitch = unpacker.Take<float>();
     if (!shared) common = unpacker.Take<Common>();
     ray.origin_enu = {common.origin[0], common.origin[1], common.origin[2]};
     ray.t_near = common.t_near;
     ray.t_far = common.t_far;
-    ray.pixel_radius = common.pixel_radius;
+    ray.pixel_width = common.pixel_width;
     request.rays.push_back(ray);
   }
   request.in_flight.resize(n);

@@ -43,13 +43,13 @@ void HashGrid::MarkUsed(const float low[3], const float high[3], std::span<uint8
   }
 }
 
-void HashGrid::Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out, size_t out_stride) const {
-  kernel::HashForward(level(part), features_, table, x, y, z, n, out, out_stride);
+void HashGrid::Forward(int part, const float* table, const kernel::Positions& at, int64_t n, float* out, size_t out_stride) const {
+  kernel::HashForward(level(part), features_, table, at, n, out, out_stride);
 }
 
-void HashGrid::Backward(int part, const float* /*table*/, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
+void HashGrid::Backward(int part, const float* /*table*/, const kernel::Positions& at, int64_t n, const float* out_gradient,
                         size_t out_stride, float* table_gradient, uint8_t* touched) const {
-  kernel::HashBackward(level(part), features_, x, y, z, n, out_gradient, out_stride, table_gradient, touched);
+  kernel::HashBackward(level(part), features_, at, n, out_gradient, out_stride, table_gradient, touched);
 }
 
 }  // namespace skyquilt::encoding

@@ -20,8 +20,8 @@ class HashGrid : public Encoding {
   void MarkUsed(const float low[3], const float high[3], std::span<uint8_t> reached) const;
 
   Kind kind() const override { return Kind::kHash; }
-  void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out, size_t out_stride) const override;
-  void Backward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient, size_t out_stride,
+  void Forward(int part, const float* table, const kernel::Positions& at, int64_t n, float* out, size_t out_stride) const override;
+  void Backward(int part, const float* table, const kernel::Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
                 float* table_gradient, uint8_t* touched) const override;
 
  private:

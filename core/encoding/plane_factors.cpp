@@ -81,16 +81,20 @@ void PlaneFactors::Initialize(base::Random& random, std::span<float> parameters)
   }
 }
 
-void PlaneFactors::FindEntries(int part, const float* const position[3], int64_t begin, int count, Block& block) const {
+void PlaneFactors::FindEntries(int part, const kernel::Positions& at, int j, int64_t begin, int count, Block& block) const {
+  const kernel::Positions here = at.From(static_cast<int64_t>(static_cast<size_t>(j) * at.plane) + begin);
+  const float* const position[3] = {here.x, here.y, here.z};
+  const float share = 1.0F / static_cast<float>(at.points);
   const Axes axes = AxesOf(part);
   const int32_t width = lattice_.size[axes.u];
   const int64_t first_line = PlaneEntries(part);
   for (int s = 0; s < count; ++s) {
-    const Cell u = CellAt(position[axes.u][begin + s], lattice_.cells_per_unit, width);
-    const Cell v = CellAt(position[axes.v][begin + s], lattice_.cells_per_unit, lattice_.size[axes.v]);
-    const Cell w = CellAt(position[axes.w][begin + s], lattice_.cells_per_unit, lattice_.size[axes.w]);
+    const Cell u = CellAt(position[axes.u][s], lattice_.cells_per_unit, width);
+    const Cell v = CellAt(position[axes.v][s], lattice_.cells_per_unit, lattice_.size[axes.v]);
+    const Cell w = CellAt(position[axes.w][s], lattice_.cells_per_unit, lattice_.size[axes.w]);
     const int64_t corner = u.low + static_cast<int64_t>(v.low) * width;
-    const float weight_u[2] = {1.0F - u.fraction, u.fraction};
+    const float cone = at.sharpness != nullptr ? share * kernel::FootprintWeight(at.sharpness[begin + s], lattice_.cells_per_unit) : share;
+    const float weight_u[2] = {cone * (1.0F - u.fraction), cone * u.fraction};
     const float weight_v[2] = {1.0F - v.fraction, v.fraction};
     for (int k = 0; k < 4; ++k) {
       block.plane[s][k] = corner + (k & 1) + (k >> 1) * width;
@@ -102,24 +106,26 @@ void PlaneFactors::FindEntries(int part, const float* const position[3], int64_t
   }
 }
 
-void PlaneFactors::Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
-                           size_t out_stride) const {
-  const float* const position[3] = {x, y, z};
+void PlaneFactors::Forward(int part, const float* table, const kernel::Positions& at, int64_t n, float* out, size_t out_stride) const {
   Block block;
   for (int64_t begin = 0; begin < n; begin += kPlaneBlock) {
     const int count = static_cast<int>(std::min<int64_t>(kPlaneBlock, n - begin));
-    FindEntries(part, position, begin, count, block);
-    for (int s = 0; s < count; ++s) {
-      const Group product = block.Plane(table, s) * block.Line(table, s);
-      for (int c = 0; c < kGroup; ++c) out[static_cast<size_t>(c) * out_stride + static_cast<size_t>(begin + s)] = product[c];
+    for (int j = 0; j < at.points; ++j) {
+      FindEntries(part, at, j, begin, count, block);
+      for (int s = 0; s < count; ++s) {
+        const Group product = block.Plane(table, s) * block.Line(table, s);
+        for (int c = 0; c < kGroup; ++c) {
+          float& feature = out[static_cast<size_t>(c) * out_stride + static_cast<size_t>(begin + s)];
+          feature = j == 0 ? product[c] : feature + product[c];
+        }
+      }
     }
   }
 }
 
-void PlaneFactors::Backward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
-                            size_t out_stride, float* table_gradient, uint8_t* touched) const {
+void PlaneFactors::Backward(int part, const float* table, const kernel::Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
+                            float* table_gradient, uint8_t* touched) const {
   constexpr int64_t kEntriesPerLine = kernel::kLineFloats / kGroup;
-  const float* const position[3] = {x, y, z};
   Block block;
   const auto add = [&](int64_t entry, float weight, const Group& gradient) {
     Eigen::Map<Group>(table_gradient + entry * kGroup) += weight * gradient;
@@ -127,16 +133,18 @@ void PlaneFactors::Backward(int part, const float* table, const float* x, const 
   };
   for (int64_t begin = 0; begin < n; begin += kPlaneBlock) {
     const int count = static_cast<int>(std::min<int64_t>(kPlaneBlock, n - begin));
-    FindEntries(part, position, begin, count, block);
-    for (int s = 0; s < count; ++s) {
-      Group gradient;
-      for (int c = 0; c < kGroup; ++c) gradient[c] = out_gradient[static_cast<size_t>(c) * out_stride + static_cast<size_t>(begin + s)];
-      if ((gradient == 0.0F).all()) continue;
-      // Product rule.
-      const Group to_plane = gradient * block.Line(table, s);
-      const Group to_line = gradient * block.Plane(table, s);
-      for (int k = 0; k < 4; ++k) add(block.plane[s][k], block.plane_weight[s][k], to_plane);
-      for (int k = 0; k < 2; ++k) add(block.line[s] + k, block.line_weight[s][k], to_line);
+    for (int j = 0; j < at.points; ++j) {
+      FindEntries(part, at, j, begin, count, block);
+      for (int s = 0; s < count; ++s) {
+        Group gradient;
+        for (int c = 0; c < kGroup; ++c) gradient[c] = out_gradient[static_cast<size_t>(c) * out_stride + static_cast<size_t>(begin + s)];
+        if ((gradient == 0.0F).all()) continue;
+        // Product rule.
+        const Group to_plane = gradient * block.Line(table, s);
+        const Group to_line = gradient * block.Plane(table, s);
+        for (int k = 0; k < 4; ++k) add(block.plane[s][k], block.plane_weight[s][k], to_plane);
+        for (int k = 0; k < 2; ++k) add(block.line[s] + k, block.line_weight[s][k], to_line);
+      }
     }
   }
 }

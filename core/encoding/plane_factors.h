@@ -31,13 +31,14 @@ class PlaneFactors : public Encoding {
   // paper's initialisation (normal, standard deviation 0.1, for both) needs its coarse-to-fine schedule and many thousand steps: products of noise
   // must be unlearned, and small factors learn slowly.
   void Initialize(base::Random& random, std::span<float> parameters) const override;
-  void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out, size_t out_stride) const override;
-  void Backward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient, size_t out_stride,
+  void Forward(int part, const float* table, const kernel::Positions& at, int64_t n, float* out, size_t out_stride) const override;
+  void Backward(int part, const float* table, const kernel::Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
                 float* table_gradient, uint8_t* touched) const override;
 
  private:
   struct Block;
-  void FindEntries(int part, const float* const position[3], int64_t begin, int count, Block& block) const;
+  // Of position j of the samples begin .. begin + count; the weights of the plane include the sample's footprint and the share of the position.
+  void FindEntries(int part, const kernel::Positions& at, int j, int64_t begin, int count, Block& block) const;
 
   int groups_;  // parts per axis
   kernel::GridLevel lattice_;

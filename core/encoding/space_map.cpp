@@ -56,6 +56,13 @@ Eigen::Vector3d SpaceMap::EnuFromUnit(const Eigen::Vector3d& x_in_unit) const {
   return {centre_.x() + u.x() * half_size_m_, centre_.y() + u.y() * half_size_m_, min_enu_.z() + x_in_unit.z() / units_per_metre_};
 }
 
+double SpaceMap::VolumeScale(const Eigen::Vector3d& x_in_enu) const {
+  if (!contracted_) return units_per_metre_;
+  const double norm = std::max(1.0, ((x_in_enu.head<2>() - centre_) / half_size_m_).cwiseAbs().maxCoeff());
+  const double across = 0.25 / half_size_m_;
+  return std::cbrt(across * across * units_per_metre_ * (2.0 * norm - 1.0)) / (norm * std::cbrt(norm));
+}
+
 double SpaceMap::LocalScale(const Eigen::Vector3d& x_in_enu) const {
   if (!contracted_) return 1.0;
   const double norm = ((x_in_enu.head<2>() - centre_) / half_size_m_).cwiseAbs().maxCoeff();

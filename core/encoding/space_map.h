@@ -25,6 +25,9 @@ class SpaceMap {
 
   Eigen::Vector3f UnitFromEnu(const Eigen::Vector3d& x_in_enu) const;
   Eigen::Vector3d EnuFromUnit(const Eigen::Vector3d& x_in_unit) const;
+  // Cube root of the volume that a cubic metre here has in the unit frame. Without contraction units_per_metre(). Contraction with u as above divides
+  // volumes by |u|^4 / (2 |u| - 1) (Zip-NeRF, Barron et al. 2023, scales footprints in this way).
+  double VolumeScale(const Eigen::Vector3d& x_in_enu) const;
   // Length of a radial metre here relative to one in the uncontracted part, in (0, 1].
   double LocalScale(const Eigen::Vector3d& x_in_enu) const;
 

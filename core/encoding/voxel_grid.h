@@ -16,8 +16,8 @@ class VoxelGrid : public Encoding {
   const kernel::GridLevel& lattice() const { return lattice_; }
 
   Kind kind() const override { return Kind::kVoxels; }
-  void Forward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out, size_t out_stride) const override;
-  void Backward(int part, const float* table, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient, size_t out_stride,
+  void Forward(int part, const float* table, const kernel::Positions& at, int64_t n, float* out, size_t out_stride) const override;
+  void Backward(int part, const float* table, const kernel::Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
                 float* table_gradient, uint8_t* touched) const override;
 
  private:

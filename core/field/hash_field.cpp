@@ -74,10 +74,9 @@ NetworkWeights HashField::Prepare(std::span<const float> networks) const {
   return weights;
 }
 
-void HashField::EncodeSerial(std::span<const float> grid, const float* x, const float* y, const float* z, int64_t n, float* features,
-                             size_t stride) const {
+void HashField::EncodeSerial(std::span<const float> grid, const kernel::Positions& at, int64_t n, float* features, size_t stride) const {
   for (int part = 0; part < encoding_->parts(); ++part) {
-    encoding_->Forward(part, grid.data() + encoding_->Offset(part), x, y, z, n, features + static_cast<size_t>(encoding_->FirstRow(part)) * stride,
+    encoding_->Forward(part, grid.data() + encoding_->Offset(part), at, n, features + static_cast<size_t>(encoding_->FirstRow(part)) * stride,
                        stride);
   }
 }

@@ -39,6 +39,7 @@ struct FieldConfig {
   int sh_degree = 3;              // 1..4
   double color_range = 1.0;       // largest display value of a colour; > 1 leaves headroom for photos darker than the reference
   double density_bias = -5.0;     // log of the initial optical depth of one marching step
+  bool cones = false;             // whether samples have footprints (kernel::Positions); false: they are points
   bool luminance = false;         // whether the luminance row and its convolution are used
 };
 
@@ -94,8 +95,8 @@ class HashField {
   // Copies the network parameters into matrices. Throws std::invalid_argument unless there are NetworkParameters() of them.
   NetworkWeights Prepare(std::span<const float> networks) const;
 
-  // Computes features[row][s], row stride `stride`, for n positions, on the calling thread.
-  void EncodeSerial(std::span<const float> grid, const float* x, const float* y, const float* z, int64_t n, float* features, size_t stride) const;
+  // Computes features[row][s], row stride `stride`, for n samples, on the calling thread.
+  void EncodeSerial(std::span<const float> grid, const kernel::Positions& at, int64_t n, float* features, size_t stride) const;
   // Density network. n is a multiple of kernel::kPad. hidden: room for DensityHiddenRows() rows; geometry: kGeometryRows rows.
   void Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, float* hidden, size_t hidden_stride,
                float* geometry, size_t geometry_stride) const;

@@ -13,11 +13,11 @@ void OptimizerState::Allocate(const HashField& field) {
   step = 0;
 }
 
-void AddPartGradient(const HashField& field, int part, const float* table, const float* x, const float* y, const float* z,
+void AddPartGradient(const HashField& field, int part, const float* table, const kernel::Positions& at,
                      std::span<const FeatureGradient> segments, float* table_gradient, uint8_t* touched) {
   const auto first_row = static_cast<size_t>(field.encoding().FirstRow(part));
   for (const FeatureGradient& s : segments) {
-    field.encoding().Backward(part, table, x + s.begin, y + s.begin, z + s.begin, s.count, s.gradient + first_row * s.stride, s.stride,
+    field.encoding().Backward(part, table, at.From(s.begin), s.count, s.gradient + first_row * s.stride, s.stride,
                               table_gradient, touched);
   }
 }
@@ -25,7 +25,7 @@ void AddPartGradient(const HashField& field, int part, const float* table, const
 Optimizer::Optimizer(const HashField& field, base::ThreadPool& threads)
     : field_(field), threads_(threads), scratch_(static_cast<size_t>(threads.size())) {}
 
-void Optimizer::Update(const float* x, const float* y, const float* z, std::span<const FeatureGradient> segments, double learning_rate,
+void Optimizer::Update(const kernel::Positions& at, std::span<const FeatureGradient> segments, double learning_rate,
                        double network_l2, Parameters& parameters, OptimizerState& state, const TaskClock& scattered, const TaskClock& applied) {
   ++state.step;
   kernel::AdamStep step;
@@ -50,7 +50,7 @@ void Optimizer::Update(const float* x, const float* y, const float* z, std::span
     const int64_t offset = encoding.Offset(part);
     float* table = parameters.grid.data() + offset;
     const auto began = std::chrono::steady_clock::now();
-    AddPartGradient(field_, part, table, x, y, z, segments, scratch.gradient.data(), scratch.touched.data());
+    AddPartGradient(field_, part, table, at, segments, scratch.gradient.data(), scratch.touched.data());
     if (scattered) scattered(thread, began);
     const auto then = std::chrono::steady_clock::now();
     kernel::AdamTouched(step, (encoding.Offset(part + 1) - offset) / kernel::kLineFloats, scratch.touched.data(), table, scratch.gradient.data(),

@@ -26,12 +26,12 @@ struct OptimizerState {
 
 // Gradient with respect to the features of a packet of samples; a batch consists of several.
 struct FeatureGradient {
-  int64_t begin = 0, count = 0;     // in x, y, z
+  int64_t begin = 0, count = 0;     // in the batch
   const float* gradient = nullptr;  // FeatureRows() rows
   size_t stride = 0;
 };
 // Backward pass of one part of the encoding over all segments of a batch; table, table_gradient and touched as in encoding::Encoding::Backward.
-void AddPartGradient(const HashField& field, int part, const float* table, const float* x, const float* y, const float* z,
+void AddPartGradient(const HashField& field, int part, const float* table, const kernel::Positions& at,
                      std::span<const FeatureGradient> segments, float* table_gradient, uint8_t* touched);
 
 // Called at the end of a task with its thread and start time, to measure times per phase; may be empty.
@@ -43,9 +43,9 @@ using TaskClock = std::function<void(int thread, std::chrono::steady_clock::time
 class Optimizer {
  public:
   Optimizer(const HashField& field, base::ThreadPool& threads);
-  // One step of Adam with state.network_gradient, which is then set to zero, and the grid gradient of the segments. x, y, z: positions of the batch.
+  // One step of Adam with state.network_gradient, which is then set to zero, and the grid gradient of the segments. at: positions of the batch.
   // network_l2: weight decay of the networks. `scattered` and `applied` time the backward pass and Adam of each part.
-  void Update(const float* x, const float* y, const float* z, std::span<const FeatureGradient> segments, double learning_rate, double network_l2,
+  void Update(const kernel::Positions& at, std::span<const FeatureGradient> segments, double learning_rate, double network_l2,
               Parameters& parameters, OptimizerState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
 
  private:

@@ -1,10 +1,12 @@
 #include "core/image/pixel_cache.h"
 
+#include <array>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
 #include "core/image/pixel_cache_file.h"
+#include "core/image/srgb.h"
 
 namespace skyquilt::image {
 namespace {
@@ -160,6 +162,28 @@ bool PixelCache::Pixel(size_t photo, size_t pixel, uint8_t rgb[3]) const {
   const uint8_t* bytes = map_.bytes().data();
   if (entry.mask_offset != 0 && bytes[entry.mask_offset + pixel] == 0) return false;
   std::copy_n(bytes + entry.rgb_offset + 3 * pixel, 3, rgb);
+  return true;
+}
+
+bool PixelCache::MeanLight(size_t photo, int x, int y, int size, float light[3]) const {
+  static const std::array<float, 256> linear = [] {
+    std::array<float, 256> values{};
+    for (size_t i = 0; i < values.size(); ++i) values[i] = LinearFromSrgb(static_cast<float>(i) / 255.0F);
+    return values;
+  }();
+  int counted = 0;
+  float sum[3] = {0.0F, 0.0F, 0.0F};
+  for (int row = y; row < y + size; ++row) {
+    for (int column = x; column < x + size; ++column) {
+      uint8_t rgb[3];
+      const size_t pixel = static_cast<size_t>(row) * static_cast<size_t>(entries_[photo].width) + static_cast<size_t>(column);
+      if (!Pixel(photo, pixel, rgb)) continue;
+      for (size_t c = 0; c < 3; ++c) sum[c] += linear[rgb[c]];
+      ++counted;
+    }
+  }
+  if (2 * counted < size * size) return false;
+  for (size_t c = 0; c < 3; ++c) light[c] = sum[c] / static_cast<float>(counted);
   return true;
 }
 

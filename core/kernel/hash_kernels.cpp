@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/base/errors.h"
+#include "core/kernel/footprint_table.h"
 #include "core/kernel/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -40,27 +41,48 @@ HWY_INLINE void SplitAxis(D d, V position, float cells_per_unit, int32_t size, h
   fraction = hn::Sub(scaled, hn::ConvertTo(d, cell));
 }
 
-void FindCorners(const GridLevel& level, const float* x, const float* y, const float* z, int n, Corners& corners) {
+// Footprint weight per sample by linear interpolation in the table. Infinity and NaN count as points.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V WeightOf(D d, const float* table, V sharpness, float cell) {
+  const hn::Rebind<int32_t, D> di;
+  const V top = hn::Set(d, static_cast<float>(kFootprintSteps));
+  V at = hn::Mul(sharpness, hn::Set(d, cell * static_cast<float>(kFootprintStepsPerUnit)));
+  at = hn::IfThenElse(hn::Lt(at, top), at, top);
+  at = hn::Max(at, hn::Zero(d));
+  const auto index = hn::Min(hn::ConvertTo(di, at), hn::Set(di, kFootprintSteps - 1));
+  const V low = hn::GatherIndex(d, table, index);
+  const V high = hn::GatherIndex(d, table + 1, index);
+  return hn::MulAdd(hn::Sub(at, hn::ConvertTo(d, index)), hn::Sub(high, low), low);
+}
+
+// sharpness: null for points. share: weight of these positions in their samples.
+void FindCorners(const GridLevel& level, const float* x, const float* y, const float* z, const float* sharpness, float share, int n,
+                 Corners& corners) {
   const FloatTag d;
   const hn::Rebind<int32_t, FloatTag> di;
   const hn::Rebind<uint32_t, FloatTag> du;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto mask = hn::Set(du, level.entries - 1U);
-  HWY_ALIGN float tail[3][hn::MaxLanes(FloatTag())];
+  HWY_ALIGN float tail[4][hn::MaxLanes(FloatTag())];
+  const float* const table = FootprintTable();
+  const float cell = 1.0F / level.cells_per_unit;
   for (int s = 0; s < n; s += lanes) {
     const float* px = x + s;
     const float* py = y + s;
     const float* pz = z + s;
+    const float* ps = sharpness != nullptr ? sharpness + s : nullptr;
     if (s + lanes > n) {
       for (int k = 0; k < lanes; ++k) {
         const int from = std::min(k, n - s - 1);
         tail[0][k] = px[from];
         tail[1][k] = py[from];
         tail[2][k] = pz[from];
+        if (ps != nullptr) tail[3][k] = ps[from];
       }
       px = tail[0];
       py = tail[1];
       pz = tail[2];
+      if (ps != nullptr) ps = tail[3];
     }
     auto cx = hn::Zero(di);
     auto cy = hn::Zero(di);
@@ -72,7 +94,12 @@ void FindCorners(const GridLevel& level, const float* x, const float* y, const f
     const FloatVector one = hn::Set(d, 1.0F);
     const FloatVector wx[2] = {hn::Sub(one, fx), fx};
     const FloatVector wy[2] = {hn::Sub(one, fy), fy};
-    const FloatVector wz[2] = {hn::Sub(one, fz), fz};
+    FloatVector wz[2] = {hn::Sub(one, fz), fz};
+    if (ps != nullptr || share != 1.0F) {
+      FloatVector weight = hn::Set(d, share);
+      if (ps != nullptr) weight = hn::Mul(weight, WeightOf(d, table, hn::LoadU(d, ps), cell));
+      for (FloatVector& w : wz) w = hn::Mul(w, weight);
+    }
     const auto ux = hn::BitCast(du, cx);
     const auto uy = hn::BitCast(du, cy);
     const auto uz = hn::BitCast(du, cz);
@@ -151,27 +178,36 @@ void PackRows(const float* in, size_t in_stride, int n, float* packed, float* si
   }
 }
 
+// Of position j of the samples begin .. begin + n.
+void FindCornersOf(const GridLevel& level, const Positions& at, int j, int64_t begin, int n, Corners& corners) {
+  const int64_t first = static_cast<int64_t>(static_cast<size_t>(j) * at.plane) + begin;
+  FindCorners(level, at.x + first, at.y + first, at.z + first, at.sharpness != nullptr ? at.sharpness + begin : nullptr,
+              1.0F / static_cast<float>(at.points), n, corners);
+}
+
 template <int kFeatures>
-void HashForwardFeatures(const GridLevel& level, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
-                         size_t out_stride) {
+void HashForwardFeatures(const GridLevel& level, const float* table, const Positions& at, int64_t n, float* out, size_t out_stride) {
   const EntryTag<kFeatures> d;
   constexpr int kLanes = kEntryLanes<kFeatures>;
   Corners corners;
   HWY_ALIGN float packed[kHashBlock * kFeatures];
   for (int64_t begin = 0; begin < n; begin += kHashBlock) {
     const int count = static_cast<int>(std::min<int64_t>(kHashBlock, n - begin));
-    FindCorners(level, x + begin, y + begin, z + begin, count, corners);
-    for (int s = 0; s < count; ++s) {
-      for (int f = 0; f < kFeatures; f += kLanes) {
-        auto even = hn::Zero(d);
-        auto odd = hn::Zero(d);
-        for (int c = 0; c < 8; c += 2) {
-          const float* entry0 = table + static_cast<size_t>(corners.index[c * kHashBlock + s]) * kFeatures + f;
-          const float* entry1 = table + static_cast<size_t>(corners.index[(c + 1) * kHashBlock + s]) * kFeatures + f;
-          even = hn::MulAdd(hn::Set(d, corners.weight[c * kHashBlock + s]), hn::LoadU(d, entry0), even);
-          odd = hn::MulAdd(hn::Set(d, corners.weight[(c + 1) * kHashBlock + s]), hn::LoadU(d, entry1), odd);
+    for (int j = 0; j < at.points; ++j) {
+      FindCornersOf(level, at, j, begin, count, corners);
+      for (int s = 0; s < count; ++s) {
+        for (int f = 0; f < kFeatures; f += kLanes) {
+          float* const to = packed + s * kFeatures + f;
+          auto even = j == 0 ? hn::Zero(d) : hn::LoadU(d, to);
+          auto odd = hn::Zero(d);
+          for (int c = 0; c < 8; c += 2) {
+            const float* entry0 = table + static_cast<size_t>(corners.index[c * kHashBlock + s]) * kFeatures + f;
+            const float* entry1 = table + static_cast<size_t>(corners.index[(c + 1) * kHashBlock + s]) * kFeatures + f;
+            even = hn::MulAdd(hn::Set(d, corners.weight[c * kHashBlock + s]), hn::LoadU(d, entry0), even);
+            odd = hn::MulAdd(hn::Set(d, corners.weight[(c + 1) * kHashBlock + s]), hn::LoadU(d, entry1), odd);
+          }
+          hn::StoreU(hn::Add(even, odd), d, to);
         }
-        hn::StoreU(hn::Add(even, odd), d, packed + s * kFeatures + f);
       }
     }
     UnpackRows<kFeatures>(packed, count, out + begin, out_stride);
@@ -179,8 +215,8 @@ void HashForwardFeatures(const GridLevel& level, const float* table, const float
 }
 
 template <int kFeatures>
-void HashBackwardFeatures(const GridLevel& level, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
-                          size_t out_stride, float* table_gradient, uint8_t* touched) {
+void HashBackwardFeatures(const GridLevel& level, const Positions& at, int64_t n, const float* out_gradient, size_t out_stride, float* table_gradient,
+                          uint8_t* touched) {
   const EntryTag<kFeatures> d;
   constexpr int kLanes = kEntryLanes<kFeatures>;
   Corners corners;
@@ -188,38 +224,39 @@ void HashBackwardFeatures(const GridLevel& level, const float* x, const float* y
   HWY_ALIGN float size[kHashBlock];
   for (int64_t begin = 0; begin < n; begin += kHashBlock) {
     const int samples = static_cast<int>(std::min<int64_t>(kHashBlock, n - begin));
-    FindCorners(level, x + begin, y + begin, z + begin, samples, corners);
     PackRows<kFeatures>(out_gradient + begin, out_stride, samples, packed, size);
-    for (int s = 0; s < samples; ++s) {
-      if (size[s] == 0.0F) continue;
-      for (int c = 0; c < 8; ++c) {
-        const uint32_t index = corners.index[c * kHashBlock + s];
-        const auto weight = hn::Set(d, corners.weight[c * kHashBlock + s]);
-        for (int f = 0; f < kFeatures; f += kLanes) {
-          float* entry = table_gradient + static_cast<size_t>(index) * kFeatures + f;
-          hn::StoreU(hn::MulAdd(weight, hn::LoadU(d, packed + s * kFeatures + f), hn::LoadU(d, entry)), d, entry);
+    for (int j = 0; j < at.points; ++j) {
+      FindCornersOf(level, at, j, begin, samples, corners);
+      for (int s = 0; s < samples; ++s) {
+        if (size[s] == 0.0F) continue;
+        for (int c = 0; c < 8; ++c) {
+          const uint32_t index = corners.index[c * kHashBlock + s];
+          const auto weight = hn::Set(d, corners.weight[c * kHashBlock + s]);
+          for (int f = 0; f < kFeatures; f += kLanes) {
+            float* entry = table_gradient + static_cast<size_t>(index) * kFeatures + f;
+            hn::StoreU(hn::MulAdd(weight, hn::LoadU(d, packed + s * kFeatures + f), hn::LoadU(d, entry)), d, entry);
+          }
+          touched[index / (kLineFloats / kFeatures)] = 1;
         }
-        touched[index / (kLineFloats / kFeatures)] = 1;
       }
     }
   }
 }
 
-void HashForwardImpl(const GridLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
-                     size_t out_stride) {
+void HashForwardImpl(const GridLevel& level, int features, const float* table, const Positions& at, int64_t n, float* out, size_t out_stride) {
   if (features == 4) {
-    HashForwardFeatures<4>(level, table, x, y, z, n, out, out_stride);
+    HashForwardFeatures<4>(level, table, at, n, out, out_stride);
   } else {
-    HashForwardFeatures<2>(level, table, x, y, z, n, out, out_stride);
+    HashForwardFeatures<2>(level, table, at, n, out, out_stride);
   }
 }
 
-void HashBackwardImpl(const GridLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
-                      size_t out_stride, float* table_gradient, uint8_t* touched) {
+void HashBackwardImpl(const GridLevel& level, int features, const Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
+                      float* table_gradient, uint8_t* touched) {
   if (features == 4) {
-    HashBackwardFeatures<4>(level, x, y, z, n, out_gradient, out_stride, table_gradient, touched);
+    HashBackwardFeatures<4>(level, at, n, out_gradient, out_stride, table_gradient, touched);
   } else {
-    HashBackwardFeatures<2>(level, x, y, z, n, out_gradient, out_stride, table_gradient, touched);
+    HashBackwardFeatures<2>(level, at, n, out_gradient, out_stride, table_gradient, touched);
   }
 }
 
@@ -236,9 +273,11 @@ HWY_EXPORT(HashBackwardImpl);
 namespace {
 
 // Every lattice point must have its entry, and every result its place.
-void CheckShapes(const GridLevel& level, int features, int64_t n, size_t stride) {
+void CheckShapes(const GridLevel& level, int features, const Positions& at, int64_t n, size_t stride) {
   SKYQUILT_CHECK(features == 2 || features == 4, std::to_string(features) + " features per entry");
   SKYQUILT_CHECK(n >= 0 && stride >= static_cast<size_t>(n), "stride " + std::to_string(stride) + ", " + std::to_string(n) + " samples");
+  SKYQUILT_CHECK(at.points == 1 || (at.points > 1 && at.plane >= static_cast<size_t>(n)),
+                 std::to_string(at.points) + " positions per sample, " + std::to_string(at.plane) + " apart");
   SKYQUILT_CHECK(std::min({level.size[0], level.size[1], level.size[2]}) >= 2, "an axis of fewer than two points");
   const int64_t points = int64_t{level.size[0]} * level.size[1] * level.size[2];
   SKYQUILT_CHECK(level.dense ? points <= int64_t{level.entries} : std::has_single_bit(level.entries),
@@ -252,16 +291,23 @@ uint32_t HashIndex(const GridLevel& level, uint32_t x, uint32_t y, uint32_t z) {
   return (x ^ (y * 2654435761U) ^ (z * 805459861U)) & (level.entries - 1U);
 }
 
-void HashForward(const GridLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
-                 size_t out_stride) {
-  CheckShapes(level, features, n, out_stride);
-  HWY_DYNAMIC_DISPATCH(HashForwardImpl)(level, features, table, x, y, z, n, out, out_stride);
+float FootprintWeight(float sharpness, float cells_per_unit) {
+  const float at = sharpness * (1.0F / cells_per_unit * static_cast<float>(kFootprintStepsPerUnit));
+  if (!(at < static_cast<float>(kFootprintSteps))) return 1.0F;
+  const float* const table = FootprintTable();
+  const int index = static_cast<int>(std::max(at, 0.0F));
+  return table[index] + (std::max(at, 0.0F) - static_cast<float>(index)) * (table[index + 1] - table[index]);
 }
 
-void HashBackward(const GridLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
-                  size_t out_stride, float* table_gradient, uint8_t* touched) {
-  CheckShapes(level, features, n, out_stride);
-  HWY_DYNAMIC_DISPATCH(HashBackwardImpl)(level, features, x, y, z, n, out_gradient, out_stride, table_gradient, touched);
+void HashForward(const GridLevel& level, int features, const float* table, const Positions& at, int64_t n, float* out, size_t out_stride) {
+  CheckShapes(level, features, at, n, out_stride);
+  HWY_DYNAMIC_DISPATCH(HashForwardImpl)(level, features, table, at, n, out, out_stride);
+}
+
+void HashBackward(const GridLevel& level, int features, const Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
+                  float* table_gradient, uint8_t* touched) {
+  CheckShapes(level, features, at, n, out_stride);
+  HWY_DYNAMIC_DISPATCH(HashBackwardImpl)(level, features, at, n, out_gradient, out_stride, table_gradient, touched);
 }
 
 }  // namespace skyquilt::kernel

@@ -70,15 +70,37 @@ struct GridLevel {
 // Table entry of a lattice point: x + y * size0 + z * size0 * size1 when dense, else (x ^ y * 2654435761 ^ z * 805459861) mod entries.
 uint32_t HashIndex(const GridLevel& level, uint32_t x, uint32_t y, uint32_t z);
 
-// Trilinear interpolation at n positions (any n). x, y, z: n coordinates each, in [0, extent]; clamped into the lattice, NaN counts as 0.
+// Where the samples of a batch are, and how large a part of space each of them stands for. Coordinates in [0, extent]; clamped into the lattice, NaN
+// counts as 0.
+struct Positions {
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* z = nullptr;
+  // Per sample 1 / (sqrt(8) s), s: standard deviation of its footprint in unit lengths. 0: infinitely large; infinity, NaN: a point. Null: all points.
+  const float* sharpness = nullptr;
+  // A sample is the mean of this many positions; position j of sample s is element j * plane + s of x, y and z.
+  int points = 1;
+  size_t plane = 0;
+
+  // The samples from `first` on.
+  Positions From(int64_t first) const {
+    return {x + first, y + first, z + first, sharpness != nullptr ? sharpness + first : nullptr, points, plane};
+  }
+};
+
+// Share of a sample's footprint, a normal distribution, that is inside a cube of edge 1 / cells_per_unit about its centre, along one axis:
+// erf(sharpness / cells_per_unit) (Barron et al. 2023, Zip-NeRF, section 3). 1 for footprints much smaller than a cell, 0 for much larger ones.
+// From a table; within 2e-6 for sharpness >= 0.
+float FootprintWeight(float sharpness, float cells_per_unit);
+
+// Trilinear interpolation for n samples (any n), multiplied by FootprintWeight and averaged over the positions of a sample.
 // table: entries x features. out: `features` rows of stride >= n. features is 2 or 4.
-void HashForward(const GridLevel& level, int features, const float* table, const float* x, const float* y, const float* z, int64_t n, float* out,
-                 size_t out_stride);
+void HashForward(const GridLevel& level, int features, const float* table, const Positions& at, int64_t n, float* out, size_t out_stride);
 
 // Backward pass of HashForward: adds to table_gradient and sets touched[line] = 1 for every line of kLineFloats that it writes to.
-// Samples whose gradient is all zero are skipped.
-void HashBackward(const GridLevel& level, int features, const float* x, const float* y, const float* z, int64_t n, const float* out_gradient,
-                  size_t out_stride, float* table_gradient, uint8_t* touched);
+// Samples whose gradient is all zero are skipped. Positions and footprints get no gradient.
+void HashBackward(const GridLevel& level, int features, const Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
+                  float* table_gradient, uint8_t* touched);
 
 // The next four process whole vectors: n is a multiple of kPad. Results may replace their input.
 

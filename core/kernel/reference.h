@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -83,6 +84,30 @@ void HashBackward(const GridLevel& level, const T position[3], const std::vector
   for (const Corner<T>& corner : Corners(level, position)) {
     for (size_t f = 0; f < out_gradient.size(); ++f) (*table_gradient)[corner.entry * out_gradient.size() + f] += corner.weight * out_gradient[f];
   }
+}
+
+// One sample: mean over its positions, times the weight of its footprint (kernel::Positions::sharpness; infinite: a point).
+template <typename T>
+T FootprintShare(const GridLevel& level, T sharpness, size_t positions) {
+  return std::erf(sharpness / static_cast<T>(level.cells_per_unit)) / static_cast<T>(positions);
+}
+
+template <typename T>
+std::vector<T> HashForward(const GridLevel& level, int features, const std::vector<T>& table, const std::vector<std::array<T, 3>>& positions,
+                           T sharpness) {
+  std::vector<T> out(static_cast<size_t>(features), T(0));
+  for (const std::array<T, 3>& position : positions) {
+    const std::vector<T> one = HashForward(level, features, table, position.data());
+    for (size_t f = 0; f < out.size(); ++f) out[f] += FootprintShare(level, sharpness, positions.size()) * one[f];
+  }
+  return out;
+}
+
+template <typename T>
+void HashBackward(const GridLevel& level, const std::vector<std::array<T, 3>>& positions, T sharpness, std::vector<T> out_gradient,
+                  std::vector<T>* table_gradient) {
+  for (T& g : out_gradient) g *= FootprintShare(level, sharpness, positions.size());
+  for (const std::array<T, 3>& position : positions) HashBackward(level, position.data(), out_gradient, table_gradient);
 }
 
 // One value of ExpShifted, Sigmoid and SineCosine.

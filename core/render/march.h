@@ -102,16 +102,17 @@ void MarchCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eige
   });
 }
 
-// Cuts the occupied part of the ray into intervals of at most `step_m` and emits one sample in the middle of each: with steps longer than a cell,
-// samples at fixed distances would skip thin surfaces.
+// Cuts the occupied part of the ray into intervals of at most `step_m` and emits one sample in each, at the share `jitter` of its length: with steps
+// longer than a cell, samples at fixed distances would skip thin surfaces.
 template <typename Emit>
 void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
-                   Emit&& emit) {
+                   float jitter, Emit&& emit) {
+  const double share = static_cast<double>(jitter);
   double run_begin = 0.0, run_end = -1.0;  // empty
   bool more = true;
   const auto flush = [&] {
     const double length = run_end - run_begin;
-    if (more && length > 0.0) more = emit(interval.t_near + 0.5 * (run_begin + run_end), length, length);
+    if (more && length > 0.0) more = emit(interval.t_near + run_begin + share * length, length, length);
     run_end = -1.0;
   };
   WalkCells(f, origin, direction, interval, [&](double at, double leave, int64_t) {
@@ -120,7 +121,7 @@ void MarchCellRuns(const TrainedField& f, const Eigen::Vector3d& origin, const E
     if (run_end < 0.0) run_begin = at;
     run_end = leave;
     while (more && run_end - run_begin > step_m) {
-      more = emit(interval.t_near + run_begin + 0.5 * step_m, step_m, step_m);
+      more = emit(interval.t_near + run_begin + share * step_m, step_m, step_m);
       run_begin += step_m;
     }
     return more;
@@ -151,13 +152,13 @@ void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const
 // March.
 template <typename Emit>
 void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval, double step_m,
-                 Emit&& emit) {
+                 float jitter, Emit&& emit) {
   if (interval.Empty()) return;
   if (f.map.contracted()) {
-    internal::MarchContracted(f, origin, direction, interval, step_m, 0.5F,
+    internal::MarchContracted(f, origin, direction, interval, step_m, jitter,
                               [&](double t, double length_m, double unit_length_m, int64_t) { return emit(t, length_m, unit_length_m); });
   } else {
-    internal::MarchCellRuns(f, origin, direction, interval, step_m, emit);
+    internal::MarchCellRuns(f, origin, direction, interval, step_m, jitter, emit);
   }
 }
 

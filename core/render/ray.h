@@ -11,7 +11,12 @@ struct Ray {
   Eigen::Vector3d direction_enu;
   double t_near = 0.0;
   double t_far = 1e30;
-  float pixel_radius = 0.0F;  // radius of the pixel's cone at t = 1 m, metres; 0: a line
+  // What the ray stands for: a cone or a column of this width at distance t. Both 0: a line.
+  float pixel_pitch = 0.0F;  // growth of the width per metre of t; of a camera's pixel its angle in radians
+  float pixel_width = 0.0F;  // width at t = 0, metres
+
+  // Metres across the ray that belong to its pixel at distance t.
+  double Footprint(double t) const { return static_cast<double>(pixel_width) + static_cast<double>(pixel_pitch) * t; }
 };
 
 struct RayColor {

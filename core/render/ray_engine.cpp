@@ -10,6 +10,7 @@
 #include "core/base/errors.h"
 #include "core/image/srgb.h"
 #include "core/render/composite.h"
+#include "core/render/footprint.h"
 #include "core/render/march.h"
 
 namespace skyquilt::render {
@@ -28,7 +29,8 @@ constexpr double kPixelsPerStep = 4.5;
 struct Sample {
   double t;
   float length, unit_length, blend;
-  float x, y, z;  // unit frame of its field
+  float x, y, z;    // unit frame of its field
+  float sharpness;  // of its footprint (kernel::Positions)
   int field;
   float weight;  // compositing weight
   int local;     // index in its field's batch
@@ -41,7 +43,7 @@ struct Progress {
 
 // Samples of one field in one round, and those of all rounds that need colour.
 struct FieldBatch {
-  std::vector<float> x, y, z;
+  std::vector<float> x, y, z, sharpness;
   std::vector<float> features, geometry;  // rows of `stride`
   std::vector<float> step_depth;          // optical depth of one marching step
   size_t stride = 0;
@@ -154,7 +156,7 @@ class RayRenderer::Group {
 
   // Steps grow with the pixel: finer detail cannot be seen.
   double StepScale(const Ray& ray, const TrainedField& f, const geo::Interval& interval) const {
-    const double pixel_m = 2.0 * static_cast<double>(ray.pixel_radius) * interval.t_near;
+    const double pixel_m = f.config.cones ? ray.Footprint(interval.t_near) : static_cast<double>(ray.pixel_pitch) * interval.t_near;
     return std::max(options_.step_scale, kPixelsPerStep * pixel_m / f.step_m);
   }
 
@@ -180,13 +182,14 @@ class RayRenderer::Group {
       if (weight > 1e-4) {
         const Eigen::Vector3f p = unit.At(t);
         samples_.push_back(
-            {t, static_cast<float>(length), static_cast<float>(unit_length / f.step_m), static_cast<float>(weight), p.x(), p.y(), p.z(), k, 0.0F, 0});
+            {t, static_cast<float>(length), static_cast<float>(unit_length / f.step_m), static_cast<float>(weight), p.x(), p.y(), p.z(),
+             f.config.cones ? SharpnessAt(f, ray, t) : 0.0F, k, 0.0F, 0});
       }
       return ++count < kMaxRaySamples;
     };
     const double step_m = f.step_m * StepScale(ray, f, interval);
     if (step_m > 1.01 * f.step_m) {
-      MarchCoarse(f, ray.origin_enu, ray.direction_enu, interval, step_m, emit);
+      MarchCoarse(f, ray.origin_enu, ray.direction_enu, interval, step_m, 0.5F, emit);
     } else {
       March(f, ray.origin_enu, ray.direction_enu, interval, step_m, 0.5F,
             [&](double t, double length, double unit_length, int64_t) { return emit(t, length, unit_length); });
@@ -200,6 +203,7 @@ class RayRenderer::Group {
       batch.x.clear();
       batch.y.clear();
       batch.z.clear();
+      batch.sharpness.clear();
     }
     int64_t evaluated = 0;
     for (const size_t r : alive_) {
@@ -211,6 +215,7 @@ class RayRenderer::Group {
         batch.x.push_back(samples_[s].x);
         batch.y.push_back(samples_[s].y);
         batch.z.push_back(samples_[s].z);
+        batch.sharpness.push_back(samples_[s].sharpness);
       }
       evaluated += static_cast<int64_t>(end - p.next);
     }
@@ -228,7 +233,8 @@ class RayRenderer::Group {
     const auto rows = static_cast<size_t>(f.FeatureRows());
     batch.features.resize(std::max(batch.features.size(), rows * batch.stride));
     batch.geometry.resize(std::max(batch.geometry.size(), static_cast<size_t>(field::kGeometryRows) * batch.stride));
-    f.EncodeSerial(all_[k]->parameters.grid, batch.x.data(), batch.y.data(), batch.z.data(), n, batch.features.data(), batch.stride);
+    const kernel::Positions at{batch.x.data(), batch.y.data(), batch.z.data(), all_[k]->config.cones ? batch.sharpness.data() : nullptr};
+    f.EncodeSerial(all_[k]->parameters.grid, at, n, batch.features.data(), batch.stride);
     for (size_t row = 0; row < rows; ++row) std::fill_n(batch.features.data() + row * batch.stride + n, padded - n, 0.0F);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {
       f.Density(all_[k]->weights, batch.features.data() + begin, batch.stride, std::min<int64_t>(field::kChunk, padded - begin),

@@ -1,6 +1,7 @@
 // A radiance field with its parameters, occupancy grid and place in the survey: written by training, read by rendering.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -21,6 +22,8 @@ struct TrainedField {
   double step_m = 0.1;   // marching step without contraction, metres; log density refers to this length
   field::Parameters parameters;
   field::OccupancyGrid occupancy;
+  // Widths of the footprints with which a field with cones was trained, metres (core/render/footprint.h).
+  double footprint_min_m = 0.0, footprint_max_m = std::numeric_limits<double>::infinity();
   // Training record.
   int64_t steps = 0;
   double seconds = 0.0;

@@ -95,6 +95,11 @@ void PutDescription(const render::TrainedField& f, const std::string& prefix, ch
   writer.SetAttribute(prefix + "encoding", encoding::Name(f.config.encoding));
   writer.SetAttribute(prefix + "density_hidden_layers", f.config.density_hidden_layers);
   writer.SetAttribute(prefix + "luminance", f.config.luminance ? 1 : 0);
+  if (f.config.cones) {
+    writer.SetAttribute(prefix + "cones", 1);
+    writer.SetAttribute(prefix + "footprint_min_m", f.footprint_min_m);
+    writer.SetAttribute(prefix + "footprint_max_m", f.footprint_max_m);
+  }
   writer.SetAttribute(prefix + "occupancy_cell", static_cast<double>(f.occupancy.cell));
 }
 
@@ -149,6 +154,15 @@ render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, con
   f.config.luminance = reader.IntAttribute(prefix + "luminance") != 0;
   f.config.density_hidden_layers = static_cast<int>(reader.IntAttribute(prefix + "density_hidden_layers"));
   f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
+  // Missing in files of programs without cones.
+  if (reader.HasAttribute(prefix + "cones")) {
+    f.config.cones = reader.IntAttribute(prefix + "cones") != 0;
+    f.footprint_min_m = reader.DoubleAttribute(prefix + "footprint_min_m");
+    f.footprint_max_m = reader.DoubleAttribute(prefix + "footprint_max_m");
+    if (!(f.footprint_min_m >= 0.0 && f.footprint_min_m <= f.footprint_max_m)) {
+      throw base::InputError(file, "its footprints have an impossible range", kFix);
+    }
+  }
   f.blend_m = f.box.margin_m;
   try {
     f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));

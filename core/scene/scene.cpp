@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/errors.h"
 #include "core/checkpoint/archive.h"
+#include "core/camera/pixel_pitch.h"
 #include "core/image/srgb.h"
 #include "core/render/ray_engine.h"
 #include "core/render/ray_segments.h"
@@ -36,6 +38,17 @@ void ShowConcealed(std::span<render::RayColor> colors) {
       color.rgb_srgb[c] = color.opacity > 0.0F ? color.opacity * image::SrgbFromLinear(color.concealed_light[c] / color.opacity) : 0.0F;
     }
   }
+}
+
+}  // namespace
+
+namespace {
+
+void AddFootprints(const render::TrainedField& f, SceneInfo* info) {
+  if (!f.config.cones) return;
+  info->footprint_min_m = info->cones ? std::min(info->footprint_min_m, f.footprint_min_m) : f.footprint_min_m;
+  info->footprint_max_m = info->cones ? std::max(info->footprint_max_m, f.footprint_max_m) : f.footprint_max_m;
+  info->cones = true;
 }
 
 }  // namespace
@@ -123,6 +136,7 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
     const render::TrainedField& f = store.block(k);
     info.blocks.push_back({f.box, f.name, store.Parameters(k), f.steps, f.seconds, f.samples});
     info.parameters += store.Parameters(k);
+    AddFootprints(f, &info);
     info.min_enu = info.min_enu.cwiseMin(f.box.min_enu);
     info.max_enu = info.max_enu.cwiseMax(f.box.max_enu);
   }
@@ -131,6 +145,7 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
     info.parameters += store.ContextParameters();
     info.context_seconds = store.context().seconds;
     info.context_samples = store.context().samples;
+    if (store.context().config.cones) info.cones = true;
   }
   if (impl.service != nullptr) impl.service->Begin(store, *impl.segments);
   // A damaged file must be found now, not in the middle of a rendering.
@@ -150,7 +165,9 @@ std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, 
   const Rendition look = appearance.look;
   std::vector<render::RayColor> out(static_cast<size_t>(camera.width) * static_cast<size_t>(camera.height));
   const geo::Rigid3d enu_from_cam = cam_from_enu.Inverse();
-  const float radius = static_cast<float>(0.5 / std::max(1e-9, camera.FocalX()));
+  // Scenes without cones use the pitch for the length of steps only.
+  const auto nominal = static_cast<float>(1.0 / std::max(1e-9, camera.FocalX()));
+  const std::optional<camera::PixelPitch> pitch = impl_->info.cones ? std::optional<camera::PixelPitch>(camera) : std::nullopt;
   // Square tiles: rays that are rendered together see the same places, so the hash table entries they read are in cache.
   const int tile_columns = (camera.width + kTile - 1) / kTile;
   const int n_tiles = tile_columns * ((camera.height + kTile - 1) / kTile);
@@ -179,7 +196,7 @@ std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, 
         const Eigen::Vector2d img(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
         rays[i].origin_enu = enu_from_cam.translation;
         rays[i].direction_enu = (enu_from_cam.rotation * camera.RayFromImg(img)).normalized();
-        rays[i].pixel_radius = radius;
+        rays[i].pixel_pitch = pitch ? static_cast<float>(pitch->At(img)) : nominal;
       }
     });
     impl_->Answer(rays, colors, look, threads);

@@ -42,7 +42,7 @@ void HashForward(benchmark::State& state) {
   const float* z = Axis(2);
   size_t begin = 0;
   for (auto _ : state) {
-    kernel::HashForward(level, features, table.data(), x + begin, y + begin, z + begin, kSamples, out.data(), kStride);
+    kernel::HashForward(level, features, table.data(), {x + begin, y + begin, z + begin}, kSamples, out.data(), kStride);
     begin = (begin + kSamples) % kPositions;
   }
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(kSamples));
@@ -59,7 +59,7 @@ void HashBackward(benchmark::State& state) {
   const float* z = Axis(2);
   size_t begin = 0;
   for (auto _ : state) {
-    kernel::HashBackward(level, features, x + begin, y + begin, z + begin, kSamples, out_gradient.data(), kStride, table_gradient.data(),
+    kernel::HashBackward(level, features, {x + begin, y + begin, z + begin}, kSamples, out_gradient.data(), kStride, table_gradient.data(),
                          touched.data());
     begin = (begin + kSamples) % kPositions;
   }

@@ -21,7 +21,8 @@ RayRequest Request(int n, bool one_camera, bool fresh, uint64_t seed) {
     Ray ray;
     ray.origin_enu = one_camera ? Eigen::Vector3d(1.0, 2.0, 3.0) : Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal());
     ray.direction_enu = {random.Normal(), random.Normal(), random.Normal()};
-    ray.pixel_radius = 0.001F;
+    ray.pixel_pitch = 0.001F;
+    ray.pixel_width = 0.25F;
     request.rays.push_back(ray);
     RayInFlight ray_in_flight;
     if (!fresh) {
@@ -51,7 +52,8 @@ RC_GTEST_PROP(RayRequestProperty, ReadsBackUnchanged, ()) {
     RC_ASSERT(got.rays[i].direction_enu == sent.rays[i].direction_enu);
     RC_ASSERT(got.rays[i].t_near == sent.rays[i].t_near);
     RC_ASSERT(got.rays[i].t_far == sent.rays[i].t_far);
-    RC_ASSERT(got.rays[i].pixel_radius == sent.rays[i].pixel_radius);
+    RC_ASSERT(got.rays[i].pixel_pitch == sent.rays[i].pixel_pitch);
+    RC_ASSERT(got.rays[i].pixel_width == sent.rays[i].pixel_width);
     RC_ASSERT(got.in_flight[i].at == sent.in_flight[i].at);
     RC_ASSERT(got.in_flight[i].state.transmittance == sent.in_flight[i].state.transmittance);
     RC_ASSERT(got.in_flight[i].state.rgb_srgb[1] == sent.in_flight[i].state.rgb_srgb[1]);

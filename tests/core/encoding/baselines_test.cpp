@@ -52,7 +52,7 @@ class EveryEncoding : public ::testing::TestWithParam<Kind> {
   std::vector<float> Features(size_t stride) const {
     std::vector<float> out(static_cast<size_t>(encoding_->OutputRows()) * stride, 9.0F);
     for (int part = 0; part < encoding_->parts(); ++part) {
-      encoding_->Forward(part, parameters_.data() + encoding_->Offset(part), x_.data(), y_.data(), z_.data(), static_cast<int64_t>(x_.size()),
+      encoding_->Forward(part, parameters_.data() + encoding_->Offset(part), {x_.data(), y_.data(), z_.data()}, static_cast<int64_t>(x_.size()),
                          out.data() + static_cast<size_t>(encoding_->FirstRow(part)) * stride, stride);
     }
     return out;
@@ -100,7 +100,7 @@ TEST_P(EveryEncoding, GradientMatchesFiniteDifferencesAndMarksExactlyTheLinesItW
   std::vector<uint8_t> touched(parameters_.size() / kernel::kLineFloats, 0);
   for (int part = 0; part < encoding_->parts(); ++part) {
     const int64_t offset = encoding_->Offset(part);
-    encoding_->Backward(part, parameters_.data() + offset, x_.data(), y_.data(), z_.data(), n,
+    encoding_->Backward(part, parameters_.data() + offset, {x_.data(), y_.data(), z_.data()}, n,
                         out_gradient.data() + static_cast<size_t>(encoding_->FirstRow(part)) * stride, stride, gradient.data() + offset,
                         touched.data() + offset / kernel::kLineFloats);
   }
@@ -210,9 +210,9 @@ TEST(PlaneFactors, StartWithProductsThatPassGradients) {
   for (int part = 0; part < planes->parts(); ++part) {
     const int64_t offset = planes->Offset(part);
     float feature[PlaneFactors::kGroup];
-    planes->Forward(part, parameters.data() + offset, &position, &position, &position, 1, feature, 1);
+    planes->Forward(part, parameters.data() + offset, {&position, &position, &position}, 1, feature, 1);
     for (const float value : feature) EXPECT_TRUE(value != 0.0F && std::abs(value) <= 1e-4F) << value;
-    planes->Backward(part, parameters.data() + offset, &position, &position, &position, 1, ones.data(), 1, gradient.data() + offset,
+    planes->Backward(part, parameters.data() + offset, {&position, &position, &position}, 1, ones.data(), 1, gradient.data() + offset,
                      touched.data() + offset / kernel::kLineFloats);
     double to_planes = 0.0;
     for (int64_t i = offset; i < offset + dynamic_cast<const PlaneFactors&>(*planes).PlaneEntries(part) * PlaneFactors::kGroup; ++i) {

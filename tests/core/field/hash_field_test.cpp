@@ -87,7 +87,7 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   }
   const auto rows = static_cast<size_t>(field.FeatureRows());
   std::vector<float> features(rows * stride, 0.0F);
-  field.EncodeSerial(parameters.grid, x.data(), y.data(), z.data(), n, features.data(), stride);
+  field.EncodeSerial(parameters.grid, {x.data(), y.data(), z.data()}, n, features.data(), stride);
   const NetworkWeights weights = field.Prepare(parameters.networks);
   Activations a;
   a.Reserve(field, n);
@@ -107,7 +107,7 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   std::vector<uint8_t> touched(parameters.grid.size() / kernel::kLineFloats, 0);
   for (int part = 0; part < field.encoding().parts(); ++part) {
     const int64_t offset = field.encoding().Offset(part);
-    AddPartGradient(field, part, parameters.grid.data() + offset, x.data(), y.data(), z.data(), segments, grid_gradient.data() + offset,
+    AddPartGradient(field, part, parameters.grid.data() + offset, {x.data(), y.data(), z.data()}, segments, grid_gradient.data() + offset,
                     touched.data() + offset / kernel::kLineFloats);
   }
 

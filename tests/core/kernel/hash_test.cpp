@@ -77,7 +77,7 @@ TEST_P(HashKernels, ForwardAgreesWithReferenceAtEveryLength) {
           y.push_back(1.1F * random.Uniform() - 0.05F);
           z.push_back(0.35F * random.Uniform() - 0.02F);
         }
-        HashForward(level, features, table.data(), x.data(), y.data(), z.data(), n, out.data(), 640);
+        HashForward(level, features, table.data(), {x.data(), y.data(), z.data()}, n, out.data(), 640);
         for (size_t s = 0; s < static_cast<size_t>(n); ++s) {
           const float position[3] = {x[s], y[s], z[s]};
           const auto expected = reference::HashForward(level, features, table, position);
@@ -94,7 +94,7 @@ TEST_P(HashKernels, NanPositionGivesFiniteFeatures) {
   std::vector<float> table(level.entries * 2, 0.25F);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   float out[2];
-  HashForward(level, 2, table.data(), &nan, &nan, &nan, 1, out, 1);
+  HashForward(level, 2, table.data(), {&nan, &nan, &nan}, 1, out, 1);
   EXPECT_FLOAT_EQ(out[0], 0.25F);
 }
 
@@ -114,7 +114,7 @@ TEST_P(HashKernels, BackwardAgreesWithReferenceAndMarksExactlyTheLinesItWrote) {
     std::vector<float> gradient(level.entries * features, 0.0F);
     std::vector<double> expected(gradient.size(), 0.0);
     std::vector<uint8_t> touched(gradient.size() / kLineFloats, 0);
-    HashBackward(level, static_cast<int>(features), x.data(), y.data(), z.data(), static_cast<int64_t>(n), out_gradient.data(), n, gradient.data(),
+    HashBackward(level, static_cast<int>(features), {x.data(), y.data(), z.data()}, static_cast<int64_t>(n), out_gradient.data(), n, gradient.data(),
                  touched.data());
     for (size_t s = 0; s < n; ++s) {
       const double position[3] = {static_cast<double>(x[s]), static_cast<double>(y[s]), static_cast<double>(z[s])};
@@ -161,7 +161,7 @@ TEST_P(HashKernels, AdamMovesOnlyParametersWithAGradient) {
 TEST(HashKernels, RefuseShapesThatReachPastTheTable) {
   float value = 0.0F;
   const auto forward = [&](const GridLevel& level, int features, int64_t n, size_t stride) {
-    HashForward(level, features, &value, &value, &value, &value, n, &value, stride);
+    HashForward(level, features, &value, {&value, &value, &value}, n, &value, stride);
   };
   EXPECT_THROW(forward(DenseLevel(), 3, 1, 1), std::logic_error);
   EXPECT_THROW(forward(DenseLevel(), 2, -1, 1), std::logic_error);

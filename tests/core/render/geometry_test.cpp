@@ -71,7 +71,7 @@ RC_GTEST_PROP(March, LongStepsMissNothing, ()) {
   const double step_m = *rc::gen::inRange(1, 40) / 10.0;
   const geo::Interval s = geo::RayBox(origin, direction, f.map.min_enu(), f.map.max_enu());
   double length = 0.0, last = 0.0;
-  MarchCoarse(f, origin, direction, s, step_m, [&](double t, double sample_m, double) {
+  MarchCoarse(f, origin, direction, s, step_m, 0.5F, [&](double t, double sample_m, double) {
     RC_ASSERT(sample_m <= step_m * 1.000001);
     RC_ASSERT(t > last);
     last = t;

@@ -46,7 +46,7 @@ Plain WalkPlainly(const FieldSet& set, const Ray& ray) {
     field::Activations a;
     a.Reserve(*f.field, kernel::kPad);
     std::vector<float> features(static_cast<size_t>(f.field->FeatureRows()) * kernel::kPad, 0.0F);
-    f.field->EncodeSerial(f.parameters.grid, &x.x(), &x.y(), &x.z(), 1, features.data(), kernel::kPad);
+    f.field->EncodeSerial(f.parameters.grid, {&x.x(), &x.y(), &x.z()}, 1, features.data(), kernel::kPad);
     f.field->Density(f.weights, features.data(), kernel::kPad, kernel::kPad, a.density_hidden, a.stride, a.geometry(), a.stride);
     const Eigen::Vector3f d = ray.direction_enu.cast<float>();
     f.field->EncodeDirection(d.data(), 1, a.color_in + static_cast<size_t>(field::kGeometryRows) * a.stride, a.stride);
@@ -140,7 +140,7 @@ TEST(RayEngineWork, WiderPixelsTakeFewerSamplesOfTheSameDensity) {
   std::vector<RayColor> fine(rays.size()), coarse(rays.size());
   int64_t fine_samples = 0, coarse_samples = 0;
   RenderRays(set, rays, fine, {}, threads, &fine_samples);
-  for (Ray& ray : rays) ray.pixel_radius = 0.02F;  // 0.3 m wide at 8 m: steps of 1.4 m
+  for (Ray& ray : rays) ray.pixel_pitch = 0.04F;  // 0.3 m wide at 8 m: steps of 1.4 m
   RenderRays(set, rays, coarse, {}, threads, &coarse_samples);
   EXPECT_LT(2 * coarse_samples, fine_samples);
   double difference = 0.0;

@@ -29,7 +29,7 @@ std::vector<render::Ray> SlantedRays(int n, uint64_t seed) {
     ray.direction_enu = Eigen::Vector3d(random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(-0.6, 0.1)).normalized();
     if (i % 7 == 0) ray.direction_enu = {0.0, 0.0, -1.0};
     if (i % 7 == 1) ray.origin_enu.x() = kRandomBlock_m;  // along a border
-    if (i % 7 == 2) ray.pixel_radius = 0.01F;
+    if (i % 7 == 2) ray.pixel_pitch = 0.02F;
     if (i % 7 == 3) ray.t_near = 2.0, ray.t_far = 9.0;
     rays.push_back(ray);
   }

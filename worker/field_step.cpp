@@ -62,6 +62,13 @@ void FieldStep::Encode(const RayBatch& batch, std::span<const float> grid) {
     }
     times_.Add(thread, Phase::kEncode, start);
   });
+  if (field_.ScaleRows() == 0) return;
+  threads_.ParallelFor(packets, [&](int64_t k, int thread) {
+    const auto start = PhaseTimes::Clock::now();
+    const Packet& p = batch.packets[static_cast<size_t>(k)];
+    field_.EncodeScales(at.From(p.begin), p.count, features_.data() + p.features + static_cast<size_t>(encoding.OutputRows()) * p.stride, p.stride);
+    times_.Add(thread, Phase::kEncode, start);
+  });
 }
 
 StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::OptimizerState& state,

@@ -53,7 +53,7 @@ void FieldTrainer::InitializeParameters() {
 }
 
 void FieldTrainer::MeasureFootprints() {
-  if (!target_.config.cones) return;
+  if (!target_.config.Cones()) return;
   constexpr int kRays = 8192;
   constexpr uint64_t kNoStep = ~uint64_t{0};
   // At full size, so that the range does not depend on the drawn levels.

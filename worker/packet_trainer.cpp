@@ -97,7 +97,10 @@ void PacketTrainer::DropHidden() {
   kernel::Compact(keep_.data(), padded, shared_.field.FeatureRows(), features, packet_->stride, features, packet_->stride);
   kernel::Compact(keep_.data(), padded, a_.kept_rows, a_.density_hidden, a_.stride, a_.density_hidden, a_.stride);
   RayBatch& batch = step_->batch;
-  for (auto* v : {&batch.x, &batch.y, &batch.z, &batch.sharpness, &batch.t}) {
+  for (auto* v : {&batch.x, &batch.y, &batch.z}) {
+    kernel::Compact(keep_.data(), padded, batch.points, v->data() + packet_->begin, batch.plane, v->data() + packet_->begin, batch.plane);
+  }
+  for (auto* v : {&batch.sharpness, &batch.t}) {
     kernel::Compact(keep_.data(), padded, 1, v->data() + packet_->begin, 0, v->data() + packet_->begin, 0);
   }
   ZeroPadding(features, shared_.field.FeatureRows(), packet_->stride);

@@ -24,7 +24,7 @@ void PacketTrainer::RenderContext() {
 
 void PacketTrainer::AddContextRays(size_t view) {
   const PixelRay& ray = Ray(view).ray;
-  const float pitch = shared_.context->config.cones ? ray.pixel_pitch : 0.0F;
+  const float pitch = shared_.context->config.Cones() ? ray.pixel_pitch : 0.0F;
   const geo::Interval all = render::FieldInterval(shared_.context->map, ray.origin_enu, ray.direction_enu);
   if (all.Empty()) return;
   const geo::Interval plan = render::PlanInterval(shared_.target.map, ray.origin_enu, ray.direction_enu);

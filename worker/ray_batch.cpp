@@ -1,6 +1,7 @@
 #include "worker/ray_batch.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "core/field/hash_field.h"
 #include "core/render/footprint.h"
@@ -15,7 +16,7 @@ constexpr uint64_t kRayStream = 1;
 // Density that is blurred over several cells must not decide which of them are free.
 constexpr float kLeastWeightToObserve = 0.5F;
 // Marching step of rays from reduced photos in widths of their pixels.
-constexpr double kCoarsePixelsPerStep = 2.0;
+constexpr double kCoarsePixelsPerStep = 1.0;
 
 }  // namespace
 
@@ -26,31 +27,61 @@ uint64_t MixSeed(uint64_t seed, uint64_t step, uint64_t index) {
   return v ^ (v >> 32U);
 }
 
-void RayBatch::Clear() {
+void RayBatch::Clear(int positions) {
   rays.clear();
   packets.clear();
-  for (auto* v : {&x, &y, &z, &sharpness, &t, &unit_length}) v->clear();
+  for (auto* v : {&sharpness, &t, &unit_length}) v->clear();
   cell.clear();
   n_samples = 0;
+  if (positions != points) plane = 0;
+  points = positions;
+}
+
+void RayBatch::MakeRoom(size_t samples) {
+  if (samples <= plane) return;
+  const size_t wider = 2 * samples;
+  for (auto* v : {&x, &y, &z}) {
+    v->resize(std::max(v->size(), wider * static_cast<size_t>(points)));
+    for (auto j = static_cast<size_t>(points); j-- > 1;) {
+      const float* const from = v->data() + j * plane;
+      std::copy_backward(from, from + t.size(), v->data() + j * wider + t.size());
+    }
+  }
+  plane = wider;
+}
+
+void RayBatch::PadTo(size_t end) {
+  MakeRoom(end);
+  for (auto* v : {&x, &y, &z}) {
+    for (size_t j = 0; j < static_cast<size_t>(points); ++j) std::fill(v->data() + j * plane + t.size(), v->data() + j * plane + end, 0.0F);
+  }
+  for (auto* v : {&sharpness, &t, &unit_length}) v->resize(end, 0.0F);
+  cell.resize(end, 0);
 }
 
 void RayBatch::Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* sharpness_in, const float* t_in, const float* unit_length_in,
                       const int32_t* cell_in) {
   if (packets.empty() || packets.back().count + ray.count > field::kChunk) {
-    const auto begin = static_cast<size_t>(kernel::Padded(Size()));
-    for (auto* v : {&x, &y, &z, &sharpness, &t, &unit_length}) v->resize(begin, 0.0F);
-    cell.resize(begin, 0);
-    packets.push_back({static_cast<int64_t>(rays.size()), 0, static_cast<int64_t>(begin), 0, 0, 0});
+    const int64_t begin = kernel::Padded(Size());
+    PadTo(static_cast<size_t>(begin));
+    packets.push_back({static_cast<int64_t>(rays.size()), 0, begin, 0, 0, 0});
   }
   Packet& packet = packets.back();
   ray.begin = Size();
   packet.count += ray.count;
   ++packet.n_rays;
   n_samples += ray.count;
+  MakeRoom(t.size() + static_cast<size_t>(ray.count));
+  const auto add_positions = [&](std::vector<float>& to, const float* from) {
+    for (size_t j = 0; j < static_cast<size_t>(points); ++j) {
+      float* const plane_of_j = to.data() + j * plane + t.size();
+      for (size_t s = 0; s < static_cast<size_t>(ray.count); ++s) plane_of_j[s] = from[s * static_cast<size_t>(points) + j];
+    }
+  };
+  add_positions(x, x_in);
+  add_positions(y, y_in);
+  add_positions(z, z_in);
   const auto add = [&](auto& to, const auto* from) { to.insert(to.end(), from, from + ray.count); };
-  add(x, x_in);
-  add(y, y_in);
-  add(z, z_in);
   add(sharpness, sharpness_in);
   add(t, t_in);
   add(unit_length, unit_length_in);
@@ -59,9 +90,7 @@ void RayBatch::Append(BatchRay ray, const float* x_in, const float* y_in, const 
 }
 
 void RayBatch::LayOutFeatures(int rows) {
-  const auto end = static_cast<size_t>(kernel::Padded(Size()));
-  for (auto* v : {&x, &y, &z, &sharpness, &t, &unit_length}) v->resize(end, 0.0F);
-  cell.resize(end, 0);
+  PadTo(static_cast<size_t>(kernel::Padded(Size())));
   size_t at = 0;
   for (Packet& packet : packets) {
     packet.stride = kernel::StrideFor(packet.count);
@@ -70,10 +99,11 @@ void RayBatch::LayOutFeatures(int rows) {
   }
 }
 
-void RayDrawer::Group::MakeRoom(size_t samples) {
-  if (x.size() >= count + samples) return;
+void RayDrawer::Group::MakeRoom(size_t samples, int points) {
+  if (t.size() >= count + samples && x.size() >= (count + samples) * static_cast<size_t>(points)) return;
   const size_t size = 2 * (count + samples);
-  for (auto* v : {&x, &y, &z, &sharpness, &t, &unit_length}) v->resize(size);
+  for (auto* v : {&x, &y, &z}) v->resize(size * static_cast<size_t>(points));
+  for (auto* v : {&sharpness, &t, &unit_length}) v->resize(size);
   cell.resize(size);
 }
 
@@ -83,29 +113,36 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
   for (float& channel : r.background) channel = random.Uniform();
   const geo::Interval interval = render::FieldInterval(target_.map, r.ray.origin_enu, r.ray.direction_enu);
   if (interval.Empty()) return;
-  const render::UnitRay unit(target_.map, r.ray.origin_enu, r.ray.direction_enu);
-  group.MakeRoom(kMaxRaySamples);
+  const field::FieldConfig& config = target_.config;
+  const bool cones = config.Cones();
+  const int points = std::max(1, config.multisample);
+  const render::Ray cone_axis{.origin_enu = r.ray.origin_enu, .direction_enu = r.ray.direction_enu, .pixel_pitch = r.ray.pixel_pitch};
+  const render::Cone cone(target_.map, cone_axis, points);
+  group.MakeRoom(kMaxRaySamples, points);
   size_t at = group.count;
   const size_t end = at + kMaxRaySamples;
   const double per_step = 1.0 / target_.step_m;
-  const auto pitch = static_cast<double>(r.ray.pixel_pitch);
-  const auto finest = static_cast<float>(target_.config.grid.finest_resolution);
-  const auto emit = [&](double t, double, double unit_length, int64_t cell) {
-    const Eigen::Vector3f p = unit.At(t);
-    group.x[at] = p.x();
-    group.y[at] = p.y();
-    group.z[at] = p.z();
+  const auto finest = static_cast<float>(config.grid.finest_resolution);
+  const auto emit = [&](double t, double length, double unit_length, int64_t cell) {
+    const double width_m = cone_axis.Footprint(t);
+    render::Turn turn;
+    if (points > 1) {
+      turn.angle = 2.0 * std::numbers::pi * static_cast<double>(random.Uniform());
+      turn.reversed = random.Uniform() < 0.5F;
+    }
+    const size_t first = at * static_cast<size_t>(points);
+    cone.Positions(t, length, width_m, turn, &group.x[first], &group.y[first], &group.z[first], 1);
     group.t[at] = static_cast<float>(t);
     group.unit_length[at] = static_cast<float>(unit_length * per_step);
     group.cell[at] = static_cast<int32_t>(cell);
-    if (target_.config.cones) {
-      const float sharpness = render::SharpnessOf(pitch * t, target_.map.VolumeScale(r.ray.origin_enu + t * r.ray.direction_enu));
+    if (cones) {
+      const float sharpness = render::SharpnessOf(width_m, target_.map.VolumeScale(r.ray.origin_enu + t * r.ray.direction_enu), points);
       group.sharpness[at] = sharpness;
       if (kernel::FootprintWeight(sharpness, finest) < kLeastWeightToObserve) group.cell[at] = -1;
     }
     return ++at < end;
   };
-  const double coarse_step_m = r.ray.level > 0 && target_.config.cones ? kCoarsePixelsPerStep * pitch * interval.t_near : 0.0;
+  const double coarse_step_m = r.ray.level > 0 && cones ? kCoarsePixelsPerStep * cone_axis.Footprint(interval.t_near) : 0.0;
   if (coarse_step_m > 1.01 * target_.step_m) {
     render::MarchCoarse(target_, r.ray.origin_enu, r.ray.direction_enu, interval, coarse_step_m, jitter,
                         [&](double t, double length, double unit_length) { return emit(t, length, unit_length, -1); });
@@ -140,12 +177,14 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyra
     times_.Add(thread, Phase::kDraw, start);
   });
   const auto start = PhaseTimes::Clock::now();
-  batch->Clear();
+  const int points = std::max(1, target_.config.multisample);
+  batch->Clear(points);
   for (const Group& group : groups_) {
     size_t at = 0;
     for (const BatchRay& r : group.rays) {
-      batch->Append(r, group.x.data() + at, group.y.data() + at, group.z.data() + at, group.sharpness.data() + at, group.t.data() + at, group.unit_length.data() + at,
-                    group.cell.data() + at);
+      const size_t first = at * static_cast<size_t>(points);
+      batch->Append(r, group.x.data() + first, group.y.data() + first, group.z.data() + first, group.sharpness.data() + at, group.t.data() + at,
+                    group.unit_length.data() + at, group.cell.data() + at);
       at += static_cast<size_t>(r.count);
     }
   }

@@ -31,24 +31,32 @@ struct Packet {
 struct RayBatch {
   std::vector<BatchRay> rays;
   std::vector<Packet> packets;
+  int points = 1;                                                  // positions per sample
+  size_t plane = 0;                                                // room for samples: position j of sample s is element j * plane + s of x, y, z
   std::vector<float> x, y, z;                                      // unit frame of the field
   std::vector<float> sharpness;                                    // of the footprints (kernel::Positions); not used without cones
   std::vector<float> t;                                            // metres from the camera
   std::vector<float> unit_length;                                  // length of the interval in marching steps
   std::vector<int32_t> cell;                                       // index in the occupancy grid; -1: too coarse to tell whether the cell is free
   int64_t n_samples = 0;                                           // without padding
-  int64_t Size() const { return static_cast<int64_t>(x.size()); }  // with padding
+  int64_t Size() const { return static_cast<int64_t>(t.size()); }  // with padding
 
-  void Clear();
+  // positions: of every sample that is appended from now on.
+  void Clear(int positions = 1);
   // Positions of all samples, for a field with this configuration.
   kernel::Positions Positions(const field::FieldConfig& config) const {
-    return {x.data(), y.data(), z.data(), config.cones ? sharpness.data() : nullptr};
+    return {x.data(), y.data(), z.data(), config.Cones() ? sharpness.data() : nullptr, points, plane};
   }
-  // Appends a ray with ray.count samples. A ray with more samples than a packet holds gets a packet of its own.
+  // Appends a ray with ray.count samples. A ray with more samples than a packet holds gets a packet of its own. x_in, y_in, z_in: the positions of a
+  // sample follow each other.
   void Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* sharpness_in, const float* t_in, const float* unit_length_in,
               const int32_t* cell_in);
   // Completes the last packet and sets the packets' feature ranges, for `rows` features per sample.
   void LayOutFeatures(int rows);
+
+ private:
+  void MakeRoom(size_t samples);
+  void PadTo(size_t end);
 };
 
 // Which rays are neighbours (BatchRay::patch), for the convolution of a concealing field.
@@ -73,10 +81,11 @@ class RayDrawer {
   // The rays of one task; the first `count` elements of the arrays are used.
   struct Group {
     std::vector<BatchRay> rays;
+    // The positions of a sample follow each other in x, y and z.
     std::vector<float> x, y, z, sharpness, t, unit_length;
     std::vector<int32_t> cell;
     size_t count = 0;
-    void MakeRoom(size_t samples);
+    void MakeRoom(size_t samples, int points);
   };
   void AddRay(BatchRay r, base::Random& random, Group& group) const;
   const render::TrainedField& target_;

@@ -30,9 +30,11 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
       {"step_voxels", &O::step_voxels, Range{0.25, 16}, "distance between the samples of a ray in finest voxels"},
       {"stratified", &O::stratified, Range(),
        "true: the samples of a ray are shifted by a random part of a step, new for every ray; false: they are in the middle of the steps"},
-      {"multisample", &O::multisample, Range::OneOf({0, 1}),
-       "1: samples have the footprint of their pixel, and detail finer than it fades, so that renderings from any distance are sharp without flicker; "
-       "0: samples are points"},
+      {"multisample", &O::multisample, Range::OneOf({0, 1, 4, 6}),
+       "positions per sample. 1: samples have the footprint of their pixel, and detail finer than it fades, so that renderings from any distance show "
+       "no flicker; 4 and 6: the same, spread over the footprint, slower; 0: samples are points"},
+      {"scale_features", &O::scale_features, Range(),
+       "true: the network also sees how large the footprint is beside the cells of each level; not with multisample = 0"},
       {"pyramid", &O::pyramid, Range{0, 1e6},
        "shares of the rays that are drawn from the photos at 1, 1/2, 1/4 and 1/8 of their size; one to four numbers of any sum"},
       {"pyramid_start", &O::pyramid_start, Range{0, 1e6}, "these shares at the start of the training; empty: as pyramid"},
@@ -57,6 +59,9 @@ void TrainOptions::Check(const std::string& section) const {
     const bool usable = shares->size() <= kPyramidLevels && std::any_of(shares->begin(), shares->end(), [](double share) { return share > 0.0; });
     if (usable || (may_be_empty && shares->empty())) continue;
     throw base::UsageError(section + "." + key + " is not allowed: give one to four shares, of which at least one is above 0, such as [0.6, 0.2, 0.12, 0.08]");
+  }
+  if (scale_features && multisample == 0) {
+    throw base::UsageError(section + ".scale_features = true is not allowed with " + section + ".multisample = 0: points have no footprint");
   }
   if (levels * features % 4 != 0) {
     throw base::UsageError(section + ".levels = " + std::to_string(levels) + " is not allowed with " + section +

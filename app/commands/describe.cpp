@@ -10,6 +10,7 @@
 #include "coordinator/stages/stage.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/scene/scene_file.h"
 #include "core/survey/survey.h"
 #include "partition/block.h"
 
@@ -69,6 +70,13 @@ Json DescribeProject(const std::filesystem::path& folder) {
       json["survey"] = DescribePlace(survey::LoadSurvey(project.SurveyFolder()));
     } catch (const base::InputError& error) {
       json["survey"] = {{"unreadable", error.what()}};
+    }
+  }
+  if (std::filesystem::exists(project.SceneFile())) {
+    try {
+      json["scales"] = DescribeScales(scene::OpenScene(project.SceneFile()));
+    } catch (const base::InputError& error) {
+      json["scales"] = {{"unreadable", error.what()}};
     }
   }
   const std::filesystem::path metrics = project.ReportFolder() / "metrics.json";

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "core/checkpoint/archive.h"
 #include "core/geo/place_accuracy.h"
 #include "core/survey/survey.h"
 
@@ -14,6 +15,9 @@ namespace skyquilt::app {
 nlohmann::ordered_json Describe(const std::filesystem::path& path);
 // HDF5 checkpoints and scenes: kind, version, attributes, and arrays with type, shape, hash and range.
 nlohmann::ordered_json DescribeArchive(const std::filesystem::path& file);
+
+// Which footprints a scene was trained with.
+nlohmann::ordered_json DescribeScales(const checkpoint::ArchiveReader& scene);
 
 // A survey folder.
 nlohmann::ordered_json DescribeSurvey(const std::filesystem::path& folder);

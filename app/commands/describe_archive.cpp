@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/describe.h"
+#include "app/commands/describe_number.h"
 #include "core/base/errors.h"
 #include "core/checkpoint/archive.h"
 #include "core/checkpoint/digest.h"
@@ -56,13 +57,25 @@ Json Attribute(const checkpoint::ArchiveReader& archive, const std::string& name
 
 }  // namespace
 
+nlohmann::ordered_json DescribeScales(const checkpoint::ArchiveReader& scene) {
+  const scene::Scales scales = scene::GetScales(scene);
+  if (!scales.Cones()) return {{"samples", "points: sharp at the photos' own scale"}};
+  return {{"samples", "cones"},
+          {"positions", scales.multisample},
+          {"finest_m_per_pixel", RoundSignificant(scales.footprint_min_m)},
+          {"coarsest_m_per_pixel", RoundSignificant(scales.footprint_max_m)}};
+}
+
 nlohmann::ordered_json DescribeArchive(const std::filesystem::path& file) {
   const checkpoint::ArchiveReader archive(file);
   Json json;
   json["what"] = archive.kind();
   json["version"] = archive.version();
   json["bytes"] = std::filesystem::file_size(file);
-  if (archive.kind() == scene::kSceneKind) json["accuracy"] = DescribeAccuracy(scene::GetAccuracy(archive));
+  if (archive.kind() == scene::kSceneKind) {
+    json["accuracy"] = DescribeAccuracy(scene::GetAccuracy(archive));
+    json["scales"] = DescribeScales(archive);
+  }
   Json attributes = Json::object();
   for (const std::string& name : archive.AttributeNames()) attributes[name] = Attribute(archive, name);
   json["attributes"] = attributes;

@@ -42,6 +42,9 @@ struct HashGridConfig {
   void Check() const;
 };
 
+// Cells per unit length of a level: from base to finest in equal ratios.
+double LevelResolution(const HashGridConfig& config, int level);
+
 class Encoding {
  public:
   virtual ~Encoding() = default;

@@ -7,13 +7,17 @@
 
 namespace skyquilt::encoding {
 
-HashGrid::HashGrid(const HashGridConfig& config) : features_(config.features) {
-  config.Check();
+double LevelResolution(const HashGridConfig& config, int level) {
   const double growth =
       config.levels > 1 ? std::exp(std::log(config.finest_resolution / config.base_resolution) / static_cast<double>(config.levels - 1)) : 1.0;
+  return config.base_resolution * std::pow(growth, level);
+}
+
+HashGrid::HashGrid(const HashGridConfig& config) : features_(config.features) {
+  config.Check();
   const auto table = static_cast<uint32_t>(1U << static_cast<uint32_t>(config.log2_table_size));
   for (int l = 0; l < config.levels; ++l) {
-    kernel::GridLevel level = DenseLattice(config.extent, config.base_resolution * std::pow(growth, l));
+    kernel::GridLevel level = DenseLattice(config.extent, LevelResolution(config, l));
     const double points = LatticePoints(level);
     level.dense = points <= static_cast<double>(table);
     level.entries = level.dense ? static_cast<uint32_t>(points) : table;

@@ -23,6 +23,9 @@ HashField::HashField(const FieldConfig& config) : config_(config), encoding_(enc
   Require(config.color_hidden_layers >= 1 && config.color_hidden_layers <= 3, "color_hidden_layers must be 1..3");
   Require(config.sh_degree >= 1 && config.sh_degree <= 4, "sh_degree must be 1..4");
   Require(config.color_range > 0.0 && std::isfinite(config.color_range), "color_range must be positive");
+  Require(config.multisample == 0 || config.multisample == 1 || config.multisample == 4 || config.multisample == 6, "multisample must be 0, 1, 4 or 6");
+  Require(!config.scale_features || config.Cones(), "scale_features needs multisample");
+  if (config.scale_features) scale_rows_ = kernel::PaddedRows(config.grid.levels);
   color_inputs_ = kGeometryRows + kernel::PaddedRows(config.sh_degree * config.sh_degree);
   layers_.push_back({config.hidden, FeatureRows()});
   for (int l = 1; l < config.density_hidden_layers; ++l) layers_.push_back({config.hidden, config.hidden});
@@ -78,6 +81,19 @@ void HashField::EncodeSerial(std::span<const float> grid, const kernel::Position
   for (int part = 0; part < encoding_->parts(); ++part) {
     encoding_->Forward(part, grid.data() + encoding_->Offset(part), at, n, features + static_cast<size_t>(encoding_->FirstRow(part)) * stride,
                        stride);
+  }
+  EncodeScales(at, n, features + static_cast<size_t>(encoding_->OutputRows()) * stride, stride);
+}
+
+void HashField::EncodeScales(const kernel::Positions& at, int64_t n, float* rows, size_t stride) const {
+  for (int row = 0; row < scale_rows_; ++row) {
+    float* const out = rows + static_cast<size_t>(row) * stride;
+    if (at.sharpness == nullptr || row >= config_.grid.levels) {
+      std::fill_n(out, n, 0.0F);
+      continue;
+    }
+    const auto cells = static_cast<float>(encoding::LevelResolution(config_.grid, row));
+    for (int64_t s = 0; s < n; ++s) out[s] = 1.0F - kernel::FootprintWeight(at.sharpness[s], cells);
   }
 }
 

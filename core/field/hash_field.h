@@ -39,8 +39,11 @@ struct FieldConfig {
   int sh_degree = 3;              // 1..4
   double color_range = 1.0;       // largest display value of a colour; > 1 leaves headroom for photos darker than the reference
   double density_bias = -5.0;     // log of the initial optical depth of one marching step
-  bool cones = false;             // whether samples have footprints (kernel::Positions); false: they are points
+  int multisample = 0;            // positions per sample (core/render/footprint.h): 1, 4 or 6; 0: samples are points without footprint
+  bool scale_features = false;    // whether the density network also sees how much of each level its footprint leaves; not with points
   bool luminance = false;         // whether the luminance row and its convolution are used
+
+  bool Cones() const { return multisample > 0; }
 };
 
 // A copy of the network parameters as one matrix per layer, with transposed copies for the backward pass.
@@ -85,7 +88,9 @@ class HashField {
   int64_t NetworkParameters() const { return LuminanceOffset() + (config_.luminance ? kLuminanceTaps + 1 : 0); }
   // Index of the luminance taps and bias in the network parameters.
   int64_t LuminanceOffset() const { return network_offsets_.back(); }
-  int FeatureRows() const { return encoding_->OutputRows(); }
+  int FeatureRows() const { return encoding_->OutputRows() + scale_rows_; }
+  // Rows after those of the encoding that EncodeScales fills.
+  int ScaleRows() const { return scale_rows_; }
   // Rows of all hidden layers of the density network.
   int DensityHiddenRows() const { return config_.density_hidden_layers * config_.hidden; }
   int ColorInputRows() const { return color_inputs_; }
@@ -95,6 +100,9 @@ class HashField {
   // Copies the network parameters into matrices. Throws std::invalid_argument unless there are NetworkParameters() of them.
   NetworkWeights Prepare(std::span<const float> networks) const;
 
+  // Writes the rows after those of the encoding, if there are any: per level 1 - FootprintWeight, the part of it that the footprint hides. They have
+  // no parameters. rows: the first of them, of n samples.
+  void EncodeScales(const kernel::Positions& at, int64_t n, float* rows, size_t stride) const;
   // Computes features[row][s], row stride `stride`, for n samples, on the calling thread.
   void EncodeSerial(std::span<const float> grid, const kernel::Positions& at, int64_t n, float* features, size_t stride) const;
   // Density network. n is a multiple of kernel::kPad. hidden: room for DensityHiddenRows() rows; geometry: kGeometryRows rows.
@@ -123,6 +131,7 @@ class HashField {
   FieldConfig config_;
   std::unique_ptr<const encoding::Encoding> encoding_;
   int color_inputs_ = 0;
+  int scale_rows_ = 0;
   std::vector<Layer> layers_;             // density network, then colour
   std::vector<int64_t> network_offsets_;  // layers + 1
 };

@@ -38,15 +38,18 @@ class UnitRay {
   UnitRay(const encoding::SpaceMap& map, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction)
       : map_(map),
         origin_(map.contracted() ? origin : Eigen::Vector3d((origin - map.min_enu()) * map.units_per_metre())),
-        direction_(map.contracted() ? direction : Eigen::Vector3d(direction * map.units_per_metre())) {}
-  Eigen::Vector3f At(double t) const {
-    const Eigen::Vector3d p = origin_ + t * direction_;
-    return map_.contracted() ? map_.UnitFromEnu(p) : Eigen::Vector3f(p.cast<float>());
-  }
+        direction_(map.contracted() ? direction : Eigen::Vector3d(direction * map.units_per_metre())),
+        units_per_metre_(map.contracted() ? 1.0 : map.units_per_metre()) {}
+  Eigen::Vector3f At(double t) const { return Unit(origin_ + t * direction_); }
+  // The position `beside` that at distance t, ENU metres.
+  Eigen::Vector3f At(double t, const Eigen::Vector3d& beside) const { return Unit(origin_ + t * direction_ + units_per_metre_ * beside); }
 
  private:
+  Eigen::Vector3f Unit(const Eigen::Vector3d& p) const { return map_.contracted() ? map_.UnitFromEnu(p) : Eigen::Vector3f(p.cast<float>()); }
+
   const encoding::SpaceMap& map_;
-  Eigen::Vector3d origin_, direction_;
+  Eigen::Vector3d origin_, direction_;  // in the unit frame without contraction, else ENU
+  double units_per_metre_;              // of these
 };
 
 namespace internal {

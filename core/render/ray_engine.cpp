@@ -23,14 +23,15 @@ constexpr size_t kRoundSamples = 8;
 constexpr float kMaxLogTau = 30.0F;  // exp of it times any length is finite
 // A ray ends below this transmittance, and its colour is scaled to full opacity. About one step of an 8-bit colour; Mueller et al. 2022 stop at 0.01.
 constexpr double kDarkTransmittance = 5e-3;
-// Marching step in widths of a pixel, used where it is longer than the field's own step.
-constexpr double kPixelsPerStep = 4.5;
+// Marching steps in widths of a pixel, used where they are longer than the field's own step: of fields of points, and of fields with cones, which know
+// what a place looks like at this width.
+constexpr double kPixelsPerStep = 4.5, kConePixelsPerStep = 1.0;
 
 struct Sample {
   double t;
   float length, unit_length, blend;
   float x, y, z;    // unit frame of its field
-  float sharpness;  // of its footprint (kernel::Positions)
+  bool odd;         // every other sample of its ray and field
   int field;
   float weight;  // compositing weight
   int local;     // index in its field's batch
@@ -43,7 +44,9 @@ struct Progress {
 
 // Samples of one field in one round, and those of all rounds that need colour.
 struct FieldBatch {
-  std::vector<float> x, y, z, sharpness;
+  std::vector<float> x, y, z;  // planes of the positions (kernel::Positions)
+  std::vector<float> sharpness;
+  size_t count = 0;
   std::vector<float> features, geometry;  // rows of `stride`
   std::vector<float> step_depth;          // optical depth of one marching step
   size_t stride = 0;
@@ -84,7 +87,7 @@ class RayRenderer::Group {
     }
     int64_t evaluated = 0;
     while (!alive_.empty()) {
-      evaluated += EvaluateRound();
+      evaluated += EvaluateRound(rays);
       size_t kept = 0;
       for (const size_t r : alive_) {
         if (ComposeRound(progress_[r], states[r])) alive_[kept++] = r;
@@ -156,8 +159,9 @@ class RayRenderer::Group {
 
   // Steps grow with the pixel: finer detail cannot be seen.
   double StepScale(const Ray& ray, const TrainedField& f, const geo::Interval& interval) const {
-    const double pixel_m = f.config.cones ? ray.Footprint(interval.t_near) : static_cast<double>(ray.pixel_pitch) * interval.t_near;
-    return std::max(options_.step_scale, kPixelsPerStep * pixel_m / f.step_m);
+    const double wanted_m = f.config.Cones() ? kConePixelsPerStep * ray.Footprint(interval.t_near)
+                                             : kPixelsPerStep * static_cast<double>(ray.pixel_pitch) * interval.t_near;
+    return std::max(options_.step_scale, wanted_m / f.step_m);
   }
 
   // True when samples were added.
@@ -181,9 +185,8 @@ class RayRenderer::Group {
       }
       if (weight > 1e-4) {
         const Eigen::Vector3f p = unit.At(t);
-        samples_.push_back(
-            {t, static_cast<float>(length), static_cast<float>(unit_length / f.step_m), static_cast<float>(weight), p.x(), p.y(), p.z(),
-             f.config.cones ? SharpnessAt(f, ray, t) : 0.0F, k, 0.0F, 0});
+        samples_.push_back({t, static_cast<float>(length), static_cast<float>(unit_length / f.step_m), static_cast<float>(weight), p.x(), p.y(), p.z(),
+                            count % 2 != 0, k, 0.0F, 0});
       }
       return ++count < kMaxRaySamples;
     };
@@ -198,34 +201,51 @@ class RayRenderer::Group {
   }
 
   // Evaluates the densities of the next samples of every ray that is not opaque yet.
-  int64_t EvaluateRound() {
-    for (FieldBatch& batch : batches_) {
-      batch.x.clear();
-      batch.y.clear();
-      batch.z.clear();
-      batch.sharpness.clear();
-    }
+  int64_t EvaluateRound(std::span<const Ray> rays) {
+    for (FieldBatch& batch : batches_) batch.count = 0;
     int64_t evaluated = 0;
     for (const size_t r : alive_) {
       const Progress& p = progress_[r];
       const size_t end = std::min(p.end, p.next + kRoundSamples);
-      for (size_t s = p.next; s < end; ++s) {
-        FieldBatch& batch = batches_[static_cast<size_t>(samples_[s].field)];
-        samples_[s].local = static_cast<int>(batch.x.size());
-        batch.x.push_back(samples_[s].x);
-        batch.y.push_back(samples_[s].y);
-        batch.z.push_back(samples_[s].z);
-        batch.sharpness.push_back(samples_[s].sharpness);
-      }
+      for (size_t s = p.next; s < end; ++s) samples_[s].local = static_cast<int>(batches_[static_cast<size_t>(samples_[s].field)].count++);
       evaluated += static_cast<int64_t>(end - p.next);
+    }
+    for (size_t k = 0; k < all_.size(); ++k) {
+      FieldBatch& batch = batches_[k];
+      const size_t needed = batch.count * Points(*all_[k]);
+      for (auto* v : {&batch.x, &batch.y, &batch.z}) v->resize(std::max(v->size(), needed));
+      batch.sharpness.resize(std::max(batch.sharpness.size(), batch.count));
+    }
+    for (const size_t r : alive_) {
+      const Progress& p = progress_[r];
+      for (size_t s = p.next; s < std::min(p.end, p.next + kRoundSamples); ++s) PlaceSample(rays[r], samples_[s]);
     }
     for (size_t k = 0; k < all_.size(); ++k) EvaluateDensity(k);
     return evaluated;
   }
 
+  static size_t Points(const TrainedField& f) { return static_cast<size_t>(std::max(1, f.config.multisample)); }
+
+  // Writes the positions and the footprint of a sample to its field's batch.
+  void PlaceSample(const Ray& ray, const Sample& sample) {
+    const TrainedField& f = *all_[static_cast<size_t>(sample.field)];
+    FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
+    const auto local = static_cast<size_t>(sample.local);
+    batch.x[local] = sample.x;
+    batch.y[local] = sample.y;
+    batch.z[local] = sample.z;
+    if (!f.config.Cones()) return;
+    const double width_m = TrainedWidth(f, ray.Footprint(sample.t));
+    batch.sharpness[local] = SharpnessOf(width_m, f.map.VolumeScale(ray.origin_enu + sample.t * ray.direction_enu), f.config.multisample);
+    if (f.config.multisample == 1) return;
+    const Cone cone(f.map, ray, f.config.multisample);
+    cone.Positions(sample.t, static_cast<double>(sample.length), width_m, Turn::Alternating(sample.odd ? 1 : 0), &batch.x[local], &batch.y[local],
+                   &batch.z[local], batch.count);
+  }
+
   void EvaluateDensity(size_t k) {
     FieldBatch& batch = batches_[k];
-    const auto n = static_cast<int64_t>(batch.x.size());
+    const auto n = static_cast<int64_t>(batch.count);
     if (n == 0) return;
     const field::HashField& f = *all_[k]->field;
     const int64_t padded = kernel::Padded(n);
@@ -233,7 +253,8 @@ class RayRenderer::Group {
     const auto rows = static_cast<size_t>(f.FeatureRows());
     batch.features.resize(std::max(batch.features.size(), rows * batch.stride));
     batch.geometry.resize(std::max(batch.geometry.size(), static_cast<size_t>(field::kGeometryRows) * batch.stride));
-    const kernel::Positions at{batch.x.data(), batch.y.data(), batch.z.data(), all_[k]->config.cones ? batch.sharpness.data() : nullptr};
+    const kernel::Positions at{batch.x.data(), batch.y.data(), batch.z.data(), f.config().Cones() ? batch.sharpness.data() : nullptr,
+                               static_cast<int>(Points(*all_[k])), batch.count};
     f.EncodeSerial(all_[k]->parameters.grid, at, n, batch.features.data(), batch.stride);
     for (size_t row = 0; row < rows; ++row) std::fill_n(batch.features.data() + row * batch.stride + n, padded - n, 0.0F);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {

@@ -95,8 +95,9 @@ void PutDescription(const render::TrainedField& f, const std::string& prefix, ch
   writer.SetAttribute(prefix + "encoding", encoding::Name(f.config.encoding));
   writer.SetAttribute(prefix + "density_hidden_layers", f.config.density_hidden_layers);
   writer.SetAttribute(prefix + "luminance", f.config.luminance ? 1 : 0);
-  if (f.config.cones) {
-    writer.SetAttribute(prefix + "cones", 1);
+  if (f.config.Cones()) {
+    writer.SetAttribute(prefix + "multisample", f.config.multisample);
+    writer.SetAttribute(prefix + "scale_features", f.config.scale_features ? 1 : 0);
     writer.SetAttribute(prefix + "footprint_min_m", f.footprint_min_m);
     writer.SetAttribute(prefix + "footprint_max_m", f.footprint_max_m);
   }
@@ -155,8 +156,9 @@ render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, con
   f.config.density_hidden_layers = static_cast<int>(reader.IntAttribute(prefix + "density_hidden_layers"));
   f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
   // Missing in files of programs without cones.
-  if (reader.HasAttribute(prefix + "cones")) {
-    f.config.cones = reader.IntAttribute(prefix + "cones") != 0;
+  if (reader.HasAttribute(prefix + "multisample")) {
+    f.config.multisample = static_cast<int>(reader.IntAttribute(prefix + "multisample"));
+    f.config.scale_features = reader.IntAttribute(prefix + "scale_features") != 0;
     f.footprint_min_m = reader.DoubleAttribute(prefix + "footprint_min_m");
     f.footprint_max_m = reader.DoubleAttribute(prefix + "footprint_max_m");
     if (!(f.footprint_min_m >= 0.0 && f.footprint_min_m <= f.footprint_max_m)) {

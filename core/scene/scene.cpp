@@ -42,17 +42,6 @@ void ShowConcealed(std::span<render::RayColor> colors) {
 
 }  // namespace
 
-namespace {
-
-void AddFootprints(const render::TrainedField& f, SceneInfo* info) {
-  if (!f.config.cones) return;
-  info->footprint_min_m = info->cones ? std::min(info->footprint_min_m, f.footprint_min_m) : f.footprint_min_m;
-  info->footprint_max_m = info->cones ? std::max(info->footprint_max_m, f.footprint_max_m) : f.footprint_max_m;
-  info->cones = true;
-}
-
-}  // namespace
-
 struct Scene::Impl {
   // Whether a look is the concealed rendering.
   bool Conceals(Rendition look) const {
@@ -84,6 +73,7 @@ struct Scene::Impl {
       for (size_t i = 0; i < rays.size(); ++i) out[i] = render::FinalColor(in_flight[i].state);
     }
     if (Conceals(look)) ShowConcealed(out);
+    scale_check.Look(rays, out);
   }
 
   SceneInfo info;
@@ -94,6 +84,7 @@ struct Scene::Impl {
   const base::ThreadPool* pager_threads = nullptr;
   RayService* service = nullptr;
   RenderStatistics statistics;
+  ScaleCheck scale_check{Scales()};
 };
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {}
@@ -126,6 +117,8 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
   info.config = reader.StringAttribute("config");
   info.gsd_m = reader.DoubleAttribute("gsd_m");
   info.borders = BordersOf(reader);
+  info.scales = GetScales(reader);
+  impl.scale_check = ScaleCheck(info.scales);
   impl.background = GetBackground(reader, scene_h5);
   impl.store = std::make_unique<FieldStore>(std::move(reader), scene_h5, options.memory_bytes, info.borders == Borders::kHard);
   const FieldStore& store = *impl.store;
@@ -136,7 +129,6 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
     const render::TrainedField& f = store.block(k);
     info.blocks.push_back({f.box, f.name, store.Parameters(k), f.steps, f.seconds, f.samples});
     info.parameters += store.Parameters(k);
-    AddFootprints(f, &info);
     info.min_enu = info.min_enu.cwiseMin(f.box.min_enu);
     info.max_enu = info.max_enu.cwiseMax(f.box.max_enu);
   }
@@ -145,7 +137,6 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
     info.parameters += store.ContextParameters();
     info.context_seconds = store.context().seconds;
     info.context_samples = store.context().samples;
-    if (store.context().config.cones) info.cones = true;
   }
   if (impl.service != nullptr) impl.service->Begin(store, *impl.segments);
   // A damaged file must be found now, not in the middle of a rendering.
@@ -167,7 +158,7 @@ std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, 
   const geo::Rigid3d enu_from_cam = cam_from_enu.Inverse();
   // Scenes without cones use the pitch for the length of steps only.
   const auto nominal = static_cast<float>(1.0 / std::max(1e-9, camera.FocalX()));
-  const std::optional<camera::PixelPitch> pitch = impl_->info.cones ? std::optional<camera::PixelPitch>(camera) : std::nullopt;
+  const std::optional<camera::PixelPitch> pitch = impl_->info.scales.Cones() ? std::optional<camera::PixelPitch>(camera) : std::nullopt;
   // Square tiles: rays that are rendered together see the same places, so the hash table entries they read are in cache.
   const int tile_columns = (camera.width + kTile - 1) / kTile;
   const int n_tiles = tile_columns * ((camera.height + kTile - 1) / kTile);

@@ -21,6 +21,7 @@
 #include "core/geo/place_accuracy.h"
 #include "core/geo/transform.h"
 #include "core/render/ray.h"
+#include "core/scene/scales.h"
 
 namespace skyquilt::scene {
 
@@ -54,8 +55,7 @@ struct SceneInfo {
   double context_seconds = 0.0;
   int64_t context_samples = 0;
   double gsd_m = 0.0;  // ground sampling distance of the finest block
-  bool cones = false;  // whether samples have footprints (core/render/footprint.h)
-  double footprint_min_m = 0.0, footprint_max_m = 0.0;  // of the blocks, metres per pixel; with cones only
+  Scales scales;
   Borders borders = Borders::kSmooth;
   std::string config;  // TOML text of the configuration it was trained with
 };

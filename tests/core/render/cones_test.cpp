@@ -158,6 +158,26 @@ TEST_F(Cones, LargerPixelsTakeFewerSamples) {
   EXPECT_LT(2 * samples(0.0F, 0.3F), of_lines) << "columns";
 }
 
+// Rays from far above or outside: steps become longer than the whole field is high, which must not make it disappear.
+TEST_F(Cones, LongStepsKeepTheOpacityOfBlocksAndContexts) {
+  const std::vector<Ray> rays = Rays(400, 0.0F, 0.0F);
+  for (const bool contracted : {false, true}) {
+    const TrainedField field = RandomField(5, {-10, -10, 0}, {20, 20, 6}, 0.0, -3.0, contracted);
+    FieldSet set;
+    (contracted ? set.context : set.blocks.emplace_back()) = &field;
+    const auto mean_opacity = [&](double step_scale) {
+      std::vector<RayColor> out(rays.size());
+      RenderRays(set, rays, out, {.step_scale = step_scale}, threads_);
+      double sum = 0.0;
+      for (const RayColor& color : out) sum += static_cast<double>(color.opacity);
+      return sum / static_cast<double>(out.size());
+    };
+    const double fine = mean_opacity(1.0);
+    EXPECT_GT(fine, 0.2);
+    for (const double step_scale : {3.0, 10.0, 30.0, 1000.0}) EXPECT_NEAR(mean_opacity(step_scale) / fine, 1.0, 0.06) << contracted << step_scale;
+  }
+}
+
 TEST_F(Cones, OfAnyWidthRenderFinitely) {
   Load(true);
   for (const float width : {1e-30F, 1e-6F, 1.0F, 1e6F, 1e30F, std::numeric_limits<float>::infinity()}) {

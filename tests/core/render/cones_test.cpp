@@ -1,9 +1,10 @@
 // Rays that are cones or columns, through fields whose samples have footprints.
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 
 #include "core/base/random.h"
@@ -17,8 +18,8 @@ namespace {
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 bool SameColor(const RayColor& a, const RayColor& b) {
-  static_assert(sizeof(RayColor) == 11 * sizeof(float));
-  return std::memcmp(&a, &b, sizeof(RayColor)) == 0;  // NaN depths are the same too
+  using Bits = std::array<uint32_t, sizeof(RayColor) / sizeof(float)>;  // NaN depths are the same too
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
 TrainedField Coned(TrainedField f, double min_m, double max_m) {

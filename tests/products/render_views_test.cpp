@@ -75,7 +75,8 @@ TEST(RenderViews, RaysAreTheConesOfTheirPixels) {
   ASSERT_EQ(seen.size(), size_t{64} * 48);
   const camera::PixelPitch pitch(view.camera);
   for (size_t i = 0; i < seen.size(); ++i) {
-    const Eigen::Vector2d pixel(static_cast<double>(i % 64) + 0.5, static_cast<double>(i / 64) + 0.5);
+    const size_t row = i / 64, column = i % 64;
+    const Eigen::Vector2d pixel(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
     EXPECT_EQ(seen[i].pixel_pitch, static_cast<float>(pitch.At(pixel)));
     EXPECT_EQ(seen[i].pixel_width, 0.0F);
   }

@@ -56,7 +56,7 @@ void AddNumericsBench(CLI::App& bench, CommandState& state) {
   command->add_option("-o,--out,--output", flags->out, "folder for numerics.json, numerics.html and one CSV table per group")->type_name("DIR");
   command
       ->add_option("--only", flags->only,
-                   "only these groups of cases, separated by commas: space, rays, compositing, field, trainer, away, brightness, ...")
+                   "only these groups of cases, separated by commas: space, rays, compositing, field, trainer, cones, away, ...")
       ->delimiter(',')
       ->type_name("GROUPS");
   command->add_flag("--quick", flags->quick, "fewer cases and shorter trainings");

@@ -21,6 +21,7 @@ NumericGroup RayGroup(const NumericsOptions& options);
 NumericGroup CompositeGroup(const NumericsOptions& options);
 NumericGroup FieldGroup(const NumericsOptions& options);
 NumericGroup TrainerGroup(const NumericsOptions& options);
+NumericGroup ConesGroup(const NumericsOptions& options);
 NumericGroup AwayGroup(const NumericsOptions& options);
 NumericGroup BrightnessGroup(const NumericsOptions& options);
 NumericGroup NonFiniteGroup(const NumericsOptions& options);

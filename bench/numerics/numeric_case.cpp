@@ -50,6 +50,15 @@ NumericRow RunCase(const std::string& group, const NumericCase& numeric_case) {
   return row;
 }
 
+double RelativeDistance(const std::vector<double>& a, const std::vector<double>& b) {
+  double apart = 0.0, size = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    apart += (a[i] - b[i]) * (a[i] - b[i]);
+    size += b[i] * b[i];
+  }
+  return std::sqrt(size > 0.0 ? apart / size : apart);
+}
+
 std::string FormatError(double value, const std::string& unit) {
   if (std::isnan(value)) return "\xE2\x80\x93";
   const bool plain = std::abs(value) >= 100.0 && std::abs(value) < 1e6;

@@ -60,6 +60,9 @@ struct NumericRow {
 // Runs a case. When it throws, the case fails and `seen` is the message; only base::Interrupted is not caught.
 NumericRow RunCase(const std::string& group, const NumericCase& numeric_case);
 
+// |a - b| over |b|, both as vectors of one length; |a| where b is zero.
+double RelativeDistance(const std::vector<double>& a, const std::vector<double>& b);
+
 // "3.1e-05 mm"; an en dash for NaN.
 std::string FormatError(double value, const std::string& unit);
 

@@ -57,7 +57,18 @@ ReferenceField::ReferenceField(const field::HashField& field) : field_(field), g
     throw std::invalid_argument("the reference's networks differ in size from the field's");
 }
 
-std::array<ReferenceField::Corner, 8> ReferenceField::Corners(int level, const std::array<double, 3>& position) const {
+std::vector<ReferenceField::Corner> ReferenceField::Corners(int level, const Place& place) const {
+  const kernel::GridLevel& shape = grid_.level(level);
+  // Barron et al. 2023, section 3: erf(1 / sqrt(8 s^2 n^2)), n cells per unit length.
+  const double weight = std::erf(1.0 / (std::sqrt(8.0) * place.deviation * static_cast<double>(shape.cells_per_unit)));
+  std::vector<Corner> corners;
+  corners.reserve(8 * place.positions.size());
+  for (const std::array<double, 3>& position : place.positions)
+    AddCorners(level, position, weight / static_cast<double>(place.positions.size()), &corners);
+  return corners;
+}
+
+void ReferenceField::AddCorners(int level, const std::array<double, 3>& position, double share, std::vector<Corner>* corners) const {
   const kernel::GridLevel& shape = grid_.level(level);
   std::array<uint64_t, 3> cell = {};
   std::array<double, 3> fraction = {};
@@ -68,10 +79,9 @@ std::array<ReferenceField::Corner, 8> ReferenceField::Corners(int level, const s
     cell[axis] = static_cast<uint64_t>(low);
     fraction[axis] = scaled - low;
   }
-  std::array<Corner, 8> corners;
-  for (size_t c = 0; c < corners.size(); ++c) {
+  for (size_t c = 0; c < 8; ++c) {
     std::array<uint64_t, 3> at = cell;
-    double weight = 1.0;
+    double weight = share;
     for (size_t axis = 0; axis < 3; ++axis) {
       const bool upper = (c >> axis & 1U) != 0;
       at[axis] += upper ? 1 : 0;
@@ -81,9 +91,8 @@ std::array<ReferenceField::Corner, 8> ReferenceField::Corners(int level, const s
     const uint64_t hash = (at[0] ^ at[1] * 2654435761ULL ^ at[2] * 805459861ULL) & 0xFFFFFFFFULL;
     const uint64_t in_order = at[0] + static_cast<uint64_t>(shape.size[0]) * (at[1] + static_cast<uint64_t>(shape.size[1]) * at[2]);
     const uint64_t entry = shape.dense ? in_order : hash % shape.entries;
-    corners[c] = {static_cast<size_t>(grid_.Offset(level)) + entry * static_cast<size_t>(field_.config().grid.features), weight};
+    corners->push_back({static_cast<size_t>(grid_.Offset(level)) + entry * static_cast<size_t>(field_.config().grid.features), weight});
   }
-  return corners;
 }
 
 std::vector<double> ReferenceField::Apply(const Layer& layer, std::span<const double> networks, const std::vector<double>& in) {
@@ -95,20 +104,23 @@ std::vector<double> ReferenceField::Apply(const Layer& layer, std::span<const do
   return out;
 }
 
-ReferenceField::Sample ReferenceField::ForwardDensity(std::span<const double> grid, std::span<const double> networks,
-                                                      const std::array<double, 3>& position) const {
-  Sample sample;
-  sample.position = position;
+std::vector<double> ReferenceField::Features(std::span<const double> grid, const Place& place) const {
   std::vector<double> features;
   const auto per_entry = static_cast<size_t>(field_.config().grid.features);
   for (int level = 0; level < grid_.levels(); ++level) {
     std::vector<double> sum(per_entry, 0.0);
-    for (const Corner& corner : Corners(level, position)) {
+    for (const Corner& corner : Corners(level, place)) {
       for (size_t f = 0; f < per_entry; ++f) sum[f] += corner.weight * grid[corner.first + f];
     }
     features.insert(features.end(), sum.begin(), sum.end());
   }
-  sample.inputs.push_back(features);
+  return features;
+}
+
+ReferenceField::Sample ReferenceField::ForwardDensity(std::span<const double> grid, std::span<const double> networks, const Place& place) const {
+  Sample sample;
+  sample.place = place;
+  sample.inputs.push_back(Features(grid, place));
   sample.outputs.push_back(Apply(layers_[0], networks, sample.inputs.back()));
   sample.inputs.push_back(sample.outputs.back());
   sample.outputs.push_back(Apply(layers_[1], networks, sample.inputs.back()));
@@ -129,9 +141,9 @@ void ReferenceField::ForwardColor(std::span<const double> networks, const std::a
   std::copy_n(in.begin(), 3, sample->raw.begin());
 }
 
-ReferenceField::Sample ReferenceField::Forward(std::span<const double> grid, std::span<const double> networks, const std::array<double, 3>& position,
+ReferenceField::Sample ReferenceField::Forward(std::span<const double> grid, std::span<const double> networks, const Place& place,
                                                const std::array<double, 3>& direction) const {
-  Sample sample = ForwardDensity(grid, networks, position);
+  Sample sample = ForwardDensity(grid, networks, place);
   ForwardColor(networks, direction, &sample);
   return sample;
 }
@@ -159,7 +171,7 @@ void ReferenceField::Backward(std::span<const double> networks, const Sample& sa
   }
   const auto per_entry = static_cast<size_t>(field_.config().grid.features);
   for (int level = 0; level < grid_.levels(); ++level) {
-    for (const Corner& corner : Corners(level, sample.position)) {
+    for (const Corner& corner : Corners(level, sample.place)) {
       for (size_t f = 0; f < per_entry; ++f) {
         grid_gradient[corner.first + f] += corner.weight * gradient[static_cast<size_t>(level) * per_entry + f];
       }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,20 +20,26 @@ class ReferenceField {
   // The field must outlive this. Fields with luminance, another encoding or a deeper density network are not covered (std::invalid_argument).
   explicit ReferenceField(const field::HashField& field);
 
+  // What a sample stands for: the mean of its positions in the unit box (those outside are moved to its nearest face), and the standard deviation of
+  // its footprint, a normal distribution, in unit lengths; 0: a point.
+  struct Place {
+    std::vector<std::array<double, 3>> positions;
+    double deviation = 0.0;
+  };
   // Values of the forward pass that the backward pass needs.
   struct Sample {
-    std::array<double, 3> position = {};
+    Place place;
     std::vector<std::vector<double>> inputs;   // of every layer
     std::vector<std::vector<double>> outputs;  // after the ReLU where there is one
     double log_density = 0.0;                  // output 0 of the density network: log density, before the density bias
     std::array<double, 3> raw = {};            // colours before the sigmoid
   };
 
-  // position: in the unit box; positions outside are moved to its nearest face.
-  Sample Forward(std::span<const double> grid, std::span<const double> networks, const std::array<double, 3>& position,
-                 const std::array<double, 3>& direction) const;
+  // Features of the hash grid only.
+  std::vector<double> Features(std::span<const double> grid, const Place& place) const;
+  Sample Forward(std::span<const double> grid, std::span<const double> networks, const Place& place, const std::array<double, 3>& direction) const;
   // The density only: the colour network is not evaluated, raw stays zero.
-  Sample ForwardDensity(std::span<const double> grid, std::span<const double> networks, const std::array<double, 3>& position) const;
+  Sample ForwardDensity(std::span<const double> grid, std::span<const double> networks, const Place& place) const;
   void ForwardColor(std::span<const double> networks, const std::array<double, 3>& direction, Sample* sample) const;
   // Adds to both gradients.
   void Backward(std::span<const double> networks, const Sample& sample, double log_density_gradient, const std::array<double, 3>& raw_gradient,
@@ -47,7 +54,9 @@ class ReferenceField {
     size_t first = 0;  // index of the first grid parameter of the entry
     double weight = 0.0;
   };
-  std::array<Corner, 8> Corners(int level, const std::array<double, 3>& position) const;
+  // Entries that a sample reads of a level, with their shares of its feature: eight per position.
+  std::vector<Corner> Corners(int level, const Place& place) const;
+  void AddCorners(int level, const std::array<double, 3>& position, double share, std::vector<Corner>* corners) const;
   static std::vector<double> Apply(const Layer& layer, std::span<const double> networks, const std::vector<double>& in);
 
   const field::HashField& field_;

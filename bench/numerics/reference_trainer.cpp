@@ -24,6 +24,16 @@ double ToSrgbSlope(double linear) {
   return linear <= 0.0031308 ? 12.92 : 1.055 / 2.4 * std::pow(linear, 1.0 / 2.4 - 1.0);
 }
 
+// The place of a batch's sample. With sharpness a, 1 / (sqrt(8) s) is a.
+ReferenceField::Place PlaceOf(const kernel::Positions& at, size_t sample) {
+  ReferenceField::Place place;
+  for (size_t i = sample; place.positions.size() < static_cast<size_t>(at.points); i += at.plane) {
+    place.positions.push_back({static_cast<double>(at.x[i]), static_cast<double>(at.y[i]), static_cast<double>(at.z[i])});
+  }
+  if (at.sharpness != nullptr) place.deviation = 1.0 / (std::sqrt(8.0) * static_cast<double>(at.sharpness[sample]));
+  return place;
+}
+
 // A sample of a ray that is not hidden.
 struct Lit {
   ReferenceField::Sample sample;
@@ -58,12 +68,12 @@ ReferenceResult ReferenceTrainer::Ray(const worker::RayBatch& batch, const worke
   const std::array<double, 3> direction = {ray.ray.direction_enu.x(), ray.ray.direction_enu.y(), ray.ray.direction_enu.z()};
   const double range = target_.config.color_range;
   const double per_height = 1.0 / std::max(1.0, target_.map.max_enu().z() - target_.map.min_enu().z());
+  const kernel::Positions at = batch.Positions(target_.config);
   std::vector<Lit> lit;
   double passed = 0.0;
   for (auto s = static_cast<size_t>(ray.begin); s < static_cast<size_t>(ray.begin + ray.count) && passed < kHiddenBehind; ++s) {
     Lit one;
-    one.sample = reference_.ForwardDensity(state.grid, state.networks,
-                                           {static_cast<double>(batch.x[s]), static_cast<double>(batch.y[s]), static_cast<double>(batch.z[s])});
+    one.sample = reference_.ForwardDensity(state.grid, state.networks, PlaceOf(at, s));
     const double log_density = std::min(kMaxLogTau, one.sample.log_density + target_.config.density_bias);
     one.tau = std::exp(log_density) * static_cast<double>(batch.unit_length[s]);
     reference_.ForwardColor(state.networks, direction, &one.sample);

@@ -30,7 +30,7 @@ struct ReferenceResult {
 
 class ReferenceTrainer {
  public:
-  // Both must outlive this. Of the target, only map, step and colour range are used.
+  // Both must outlive this. Of the target, only map, step, colour range and whether it has cones are used.
   ReferenceTrainer(const render::TrainedField& target, const field::HashField& field);
 
   // The loss of a batch and its gradient by every parameter, without weight decay (the optimiser adds it). Gradients are overwritten; null: not

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "core/render/footprint.h"
 #include "core/render/march.h"
 
 namespace skyquilt::bench {
@@ -18,6 +18,12 @@ Eigen::Vector3d ShadeScene(const Eigen::Vector3d& origin, const Eigen::Vector3d&
   const double wave = 0.5 + 0.35 * std::sin(12.0 * p.x()) * std::cos(11.0 * p.y());
   if (block.Empty()) return {0.7 * wave, wave, 0.6 * wave};
   return {0.6 + 0.2 * std::sin(9.0 * p.x() + 7.0 * p.z()), 0.25, 0.3 + 0.15 * std::sin(8.0 * p.y())};
+}
+
+// A ray's pitch for a width at the ground, `distance_m` away.
+float DrawPitch(const SyntheticRays& rays, double distance_m, base::Random& random) {
+  if (!(rays.least_width_m < rays.most_width_m)) return static_cast<float>(rays.least_width_m / distance_m);
+  return static_cast<float>(std::exp(random.Uniform(std::log(rays.least_width_m), std::log(rays.most_width_m))) / distance_m);
 }
 
 }  // namespace
@@ -43,6 +49,7 @@ render::TrainedField SyntheticField(const SyntheticOptions& options) {
   field.config.color_hidden_layers = options.color_hidden_layers;
   field.config.color_range = 1.4;
   field.config.density_bias = -3.0;
+  field.config.cones = options.multisample > 0;
   field.occupancy = field::OccupancyGrid::Make(grid.extent, 3.0 * options.voxel_m / options.edge_m, 100'000);
   return field;
 }
@@ -68,6 +75,7 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
       ray.ray.target_srgb[c] = std::clamp(recorded, 0.0F, 1.0F);
       ray.background[c] = random.Uniform();
     }
+    if (field.config.cones) ray.ray.pixel_pitch = DrawPitch(rays, (ground - camera).norm(), random);
     const float jitter = random.Uniform();
     const geo::Interval interval = render::FieldInterval(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
     const render::UnitRay unit(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
@@ -80,7 +88,7 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
                     y.push_back(p.y());
                     z.push_back(p.z());
                     t.push_back(static_cast<float>(at));
-                    sharpness.push_back(std::numeric_limits<float>::infinity());
+                    sharpness.push_back(render::SharpnessOf(static_cast<double>(ray.ray.pixel_pitch) * at, field.map.units_per_metre()));
                     unit_length.push_back(static_cast<float>(length / field.step_m));
                     cell.push_back(static_cast<int32_t>(index));
                     return true;

@@ -21,6 +21,7 @@ struct SyntheticOptions {
   int log2_table_size = 12;
   int hidden = 16;
   int color_hidden_layers = 1;
+  int multisample = 0;  // as train.multisample: 0: samples are points; 1: they have footprints
 };
 
 // A field over the scene with every occupancy cell on and without parameters.
@@ -30,6 +31,8 @@ struct SyntheticRays {
   int rays = 256;
   float empty_share = 0.0F;  // fraction of rays that are trained to be empty (density 0)
   float most_stops = 0.0F;   // exposures are uniform between plus and minus this
+  // Footprints where a ray meets the ground, metres; the logarithm is uniform between these. Both 0: points; both infinite: no detail at all.
+  double least_width_m = 0.0, most_width_m = 0.0;
 };
 
 // Rays through random positions of the scene, with the colours that a photo of that exposure would have: display values in [0, 1], without noise.

@@ -22,16 +22,6 @@ double PsnrDb(double squared_error) {
   return -10.0 * std::log10(squared_error);
 }
 
-// |a - b| over |b|, both as vectors.
-double RelativeDistance(const std::vector<double>& a, const std::vector<double>& b) {
-  double apart = 0.0, size = 0.0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    apart += (a[i] - b[i]) * (a[i] - b[i]);
-    size += b[i] * b[i];
-  }
-  return std::sqrt(apart / size);
-}
-
 // Gradients at the start and after some steps, each time at the same parameters.
 CaseResult GradientFinding(const SyntheticOptions& scene, int steps_between) {
   SyntheticTrainer trainer(scene, kTrainerSeed, 1);

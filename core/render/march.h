@@ -149,6 +149,35 @@ void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const
   }
 }
 
+// Steps longer than the field's own, as MarchCellRuns does it: the ray is followed in steps of the field's own, so that no surface is skipped and the
+// last interval ends where the ray leaves the field.
+template <typename Emit>
+void MarchContractedRuns(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, geo::Interval interval,
+                         double step_m, float jitter, Emit&& emit) {
+  const double share = static_cast<double>(jitter);
+  double begin = 0.0, length = 0.0, unit_length = 0.0;  // of the present run
+  const auto flush = [&] {
+    const bool more = !(length > 0.0) || emit(begin + share * length, length, unit_length);
+    length = unit_length = 0.0;
+    return more;
+  };
+  double at = interval.t_near;
+  while (at < interval.t_far) {
+    const double scale = f.map.LocalScale(origin + at * direction);
+    const double step = std::min(f.step_m / scale, interval.t_far - at);
+    const Eigen::Vector3f x = f.map.UnitFromEnu(origin + (at + 0.5 * step) * direction);
+    const bool occupied = f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(x.x(), x.y(), x.z()))] != 0;
+    if ((!occupied || unit_length + step * scale > step_m) && !flush()) return;
+    if (occupied) {
+      if (!(length > 0.0)) begin = at;
+      length += step;
+      unit_length += step * scale;
+    }
+    at += step;
+  }
+  flush();
+}
+
 }  // namespace internal
 
 // For steps longer than the field's own, for pixels that cover more than the field's finest detail. emit(t, length_m, unit_length_m) -> bool as for
@@ -158,8 +187,7 @@ void MarchCoarse(const TrainedField& f, const Eigen::Vector3d& origin, const Eig
                  float jitter, Emit&& emit) {
   if (interval.Empty()) return;
   if (f.map.contracted()) {
-    internal::MarchContracted(f, origin, direction, interval, step_m, jitter,
-                              [&](double t, double length_m, double unit_length_m, int64_t) { return emit(t, length_m, unit_length_m); });
+    internal::MarchContractedRuns(f, origin, direction, interval, step_m, jitter, emit);
   } else {
     internal::MarchCellRuns(f, origin, direction, interval, step_m, jitter, emit);
   }

@@ -113,6 +113,11 @@ TEST_F(Numerics, TrainerPasses) {
   RunPassing(TrainerGroup(quick_));
 }
 
+TEST_F(Numerics, ConesPass) {
+  const std::vector<NumericRow> rows = RunPassing(ConesGroup(quick_));
+  EXPECT_GE(rows.size(), 14U);
+}
+
 TEST_F(Numerics, NonFiniteNumbersNeverReachTheParameters) {
   RunPassing(NonFiniteGroup(quick_));
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/numerics/numeric_case.h"
 #include "bench/numerics/synthetic_trainer.h"
 #include "core/encoding/spherical_harmonics.h"
 #include "tests/support/gradient_check.h"
@@ -24,11 +25,19 @@ SyntheticOptions TinyScene() {
 // Exposures of plus and minus one stop, and some empty rays, so that every loss is used.
 const SyntheticRays kMixedRays{.rays = 12, .empty_share = 0.25F, .most_stops = 1.0F};
 
-TEST(ReferenceTrainer, GradientsMatchFiniteDifferencesInDouble) {
-  SyntheticTrainer trainer(TinyScene(), 3, 1);
+// Points, and cones with each number of positions.
+class ReferenceGradients : public ::testing::TestWithParam<int> {};
+
+TEST_P(ReferenceGradients, MatchFiniteDifferencesInDouble) {
+  SyntheticOptions scene = TinyScene();
+  scene.multisample = GetParam();
+  SyntheticTrainer trainer(scene, 3, 1);
   const ReferenceTrainer reference(trainer.target(), trainer.field());
   base::Random random(5);
-  const worker::RayBatch batch = trainer.Draw(kMixedRays, random);
+  SyntheticRays rays = kMixedRays;
+  rays.least_width_m = 0.05;
+  rays.most_width_m = scene.edge_m;
+  const worker::RayBatch batch = trainer.Draw(rays, random);
   ReferenceState state = ReferenceState::From(trainer.state());
   for (double& value : state.grid) value = random.Uniform(-0.5, 0.5);  // large enough to matter
   std::vector<double> grid, networks;
@@ -49,6 +58,21 @@ TEST(ReferenceTrainer, GradientsMatchFiniteDifferencesInDouble) {
   };
   EXPECT_GT(nonzero(grid), 20);
   EXPECT_GT(nonzero(networks), 80);
+}
+
+INSTANTIATE_TEST_SUITE_P(Multisample, ReferenceGradients, ::testing::Values(0, 1));
+
+// Footprints as large as the scene leave less of the fine level than of the coarse one.
+TEST(ReferenceField, FootprintsFadeFineLevelsFirst) {
+  const SyntheticTrainer trainer(TinyScene(), 3, 1);
+  const ReferenceField reference(trainer.field());
+  const std::vector<double> grid(static_cast<size_t>(trainer.field().GridParameters()), 1.0);
+  const auto features = [&](double deviation) { return reference.Features(grid, {{{0.3, 0.4, 0.2}}, deviation}); };
+  for (const double feature : features(0.0)) EXPECT_NEAR(feature, 1.0, 1e-12);
+  // 4 cells per unit length: erf(1 / (sqrt(8) 0.1 4)).
+  EXPECT_NEAR(features(0.1)[0], std::erf(1.0 / (std::sqrt(8.0) * 0.4)), 1e-12);
+  EXPECT_LT(features(0.1).back(), features(0.1)[0]);
+  for (const double feature : features(kEver)) EXPECT_EQ(feature, 0.0);
 }
 
 // Two implementations of the same functions, in the order and with the signs of Sloan 2013.

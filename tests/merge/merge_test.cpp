@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "core/brightness/luminance.h"
 #include "core/brightness/response.h"
@@ -20,12 +21,20 @@ constexpr geo::Geodetic kOrigin = {41.0, 2.0, 100.0};
 class Merge : public testing::Test {
  protected:
   Merge() {
-    Write("block", "r0c0", false);
-    Write("context", "context", true);
+    Write("block", "r0c0", {});
+    Write("context", "context", {});
   }
-  void Write(const std::string& kind, const std::string& name, bool contracted) const {
-    render::TrainedField field = render::RandomField(3, Eigen::Vector3d::Zero(), {5.0, 5.0, 4.0}, 0.8, -1.0, contracted);
+  // Widths of a field's footprints, metres; both 0: a field of points.
+  struct Footprints {
+    double min_m = 0.0, max_m = 0.0;
+  };
+  void Write(const std::string& kind, const std::string& name, const Footprints& footprints) const {
+    const Eigen::Vector3d low(name == "r0c1" ? 5.0 : 0.0, 0.0, 0.0);
+    render::TrainedField field = render::RandomField(3, low, low + Eigen::Vector3d(5.0, 5.0, 4.0), 0.8, -1.0, kind == "context");
     field.name = name;
+    field.config.cones = footprints.max_m > 0.0;
+    field.footprint_min_m = footprints.min_m;
+    field.footprint_max_m = footprints.max_m;
     const brightness::Response response = brightness::Response::Neutral(2, 1);
     const scene::Background background;
     checkpoint::ArchiveWriter writer(kind, scene::kCheckpointVersion);
@@ -43,6 +52,7 @@ class Merge : public testing::Test {
     MergeInput input;
     input.context = folder_ / "context.h5";
     input.blocks = {{.checkpoint = folder_ / "r0c0.h5", .gsd_m = 0.05}};
+    if (std::filesystem::exists(folder_ / "r0c1.h5")) input.blocks.push_back({.checkpoint = folder_ / "r0c1.h5", .gsd_m = 0.05});
     input.origin = kOrigin;
     input.georeferenced = true;
     input.accuracy = accuracy;
@@ -74,6 +84,18 @@ TEST_F(Merge, UnknownAccuracyIsNotStored) {
     EXPECT_FALSE(name.starts_with("accuracy")) << name;
   }
   EXPECT_TRUE(std::isnan(info.accuracy.tilt_deg));
+}
+
+TEST_F(Merge, TheSceneKnowsTheFootprintsOfAllBlocks) {
+  EXPECT_FALSE(Merged({}).cones);
+  Write("context", "context", {0.3, 40.0});
+  Write("block", "r0c0", {0.1, 0.5});
+  Write("block", "r0c1", {0.05, 0.3});
+  const scene::SceneInfo info = Merged({});
+  ASSERT_EQ(info.blocks.size(), 2U);
+  EXPECT_TRUE(info.cones);
+  EXPECT_EQ(info.footprint_min_m, 0.05);
+  EXPECT_EQ(info.footprint_max_m, 0.5);
 }
 
 }  // namespace

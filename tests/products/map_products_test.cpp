@@ -333,6 +333,24 @@ TEST(MapProducts, RaysStayInTheBoxesAboveTheirCell) {
   }
 }
 
+TEST(MapProducts, RaysAreColumnsAsWideAsTheirCell) {
+  const AnalyticScene scene;
+  for (const bool georeferenced : {true, false}) {
+    const scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, georeferenced);
+    ProductOptions options;
+    options.resolution_m = 0.75;
+    const gis::MapGrid grid = PlanMapGrid(info, options);
+    MapRays rays;
+    MapRayGenerator(info, grid).MakeRow(grid.height / 2, &rays);
+    ASSERT_GT(rays.rays.size(), 100U);
+    for (const render::Ray& ray : rays.rays) {
+      EXPECT_EQ(ray.pixel_width, 0.75F);
+      EXPECT_EQ(ray.pixel_pitch, 0.0F);
+      EXPECT_EQ(ray.Footprint(ray.t_far), 0.75);
+    }
+  }
+}
+
 TEST(MapProducts, CancellingLeavesNoFileBehind) {
   const TemporaryFolder folder;
   const AnalyticScene scene;

@@ -8,6 +8,7 @@
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
+#include "core/camera/pixel_pitch.h"
 #include "products/camera_path.h"
 #include "products/video_writer.h"
 #include "tests/products/analytic_scene.h"
@@ -63,6 +64,23 @@ TEST(RenderViews, DepthRunsAlongTheRay) {
   // The house's west wall begins 50 m east of the camera and 100 m below it: 27.7 px right of the centre.
   EXPECT_EQ(picture.At(58, 24)[0], 255) << "ground";
   EXPECT_EQ(picture.At(61, 24)[2], 255) << "wall";
+}
+
+TEST(RenderViews, RaysAreTheConesOfTheirPixels) {
+  View view;
+  view.camera = PinholeCamera(64, 48, 60.0);
+  view.cam_from_enu = PoseFromAngles({-40.0, 0.0, 105.0}, 0.0, -90.0, 0.0);
+  std::vector<render::Ray> seen;
+  RendererOf([&](std::span<const render::Ray> rays, std::span<render::RayColor>) { seen.insert(seen.end(), rays.begin(), rays.end()); })(view);
+  ASSERT_EQ(seen.size(), size_t{64} * 48);
+  const camera::PixelPitch pitch(view.camera);
+  for (size_t i = 0; i < seen.size(); ++i) {
+    const size_t row = i / 64, column = i % 64;
+    const Eigen::Vector2d pixel(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
+    EXPECT_EQ(seen[i].pixel_pitch, static_cast<float>(pitch.At(pixel)));
+    EXPECT_EQ(seen[i].pixel_width, 0.0F);
+  }
+  EXPECT_NEAR(static_cast<double>(seen[24 * 64 + 32].pixel_pitch), 1.0 / view.camera.FocalX(), 2e-3 / view.camera.FocalX());
 }
 
 TEST(RenderViews, SkyIsBlackWithoutDepth) {

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
+#include <limits>
+#include <utility>
 
 #include "core/base/errors.h"
 #include "core/render/ray_engine.h"
@@ -197,6 +200,59 @@ TEST_P(TrainedFieldOf, RendersTheSameWithoutUnreadEntries) {
     }
   }
   ExpectSameLook(before, after, 0.01F);
+}
+
+// In the checkpoint of a block, and in the scene that is made from it.
+TEST_F(TrainedFieldFile, KeepsItsRangeOfFootprints) {
+  render::TrainedField before = Make(encoding::Kind::kHash, 1);
+  before.config.cones = true;
+  before.footprint_min_m = 0.1 / 3.0;
+  before.footprint_max_m = 0.7;
+  checkpoint::ArchiveWriter block("block", 1);
+  PutField(before, "", block);
+  const fs::path checkpoint = folder_.path() / "block.h5", scene = folder_.path() / "scene.h5";
+  block.Commit(checkpoint);
+  checkpoint::ArchiveWriter writer("scene", 1);
+  PutSceneField(before, checkpoint, "a/", writer);
+  writer.Commit(scene);
+  for (const render::TrainedField& after : {GetField(checkpoint::ArchiveReader(checkpoint), checkpoint, ""), Read(scene)}) {
+    EXPECT_TRUE(after.config.cones);
+    EXPECT_TRUE(after.field->config().cones);
+    EXPECT_EQ(after.footprint_min_m, before.footprint_min_m);
+    EXPECT_EQ(after.footprint_max_m, before.footprint_max_m);
+    ExpectSameLook(before, after, 0.1F);
+  }
+}
+
+// As every file of a program without cones.
+TEST_F(TrainedFieldFile, WithoutFootprintsIsAFieldOfPoints) {
+  const render::TrainedField points = Make(encoding::Kind::kHash, 1);
+  const fs::path of_points = Write(points, "points.h5");
+  for (const std::string& name : checkpoint::ArchiveReader(of_points).AttributeNames()) {
+    EXPECT_EQ(name.find("cones"), std::string::npos) << name;
+    EXPECT_EQ(name.find("footprint"), std::string::npos) << name;
+  }
+  render::TrainedField cones = Make(encoding::Kind::kHash, 1);
+  cones.config.cones = true;
+  cones.footprint_min_m = 1.0;
+  cones.footprint_max_m = 2.0;
+  const render::TrainedField after = Read(Rewrite(Write(cones, "cones.h5"), {"a/cones", "a/footprint_min_m", "a/footprint_max_m"}));
+  EXPECT_FALSE(after.config.cones);
+  EXPECT_EQ(after.footprint_min_m, 0.0);
+  EXPECT_EQ(after.footprint_max_m, std::numeric_limits<double>::infinity());
+  ExpectSameLook(points, after, 0.1F);
+}
+
+TEST_F(TrainedFieldFile, WithImpossibleFootprintsIsRefused) {
+  render::TrainedField field = Make(encoding::Kind::kHash, 1);
+  field.config.cones = true;
+  const std::pair<double, double> ranges[] = {{0.5, 0.4}, {-0.1, 0.4}, {std::nan(""), 0.4}, {0.1, std::nan("")}};
+  for (const auto& [low, high] : ranges) {
+    field.footprint_min_m = low;
+    field.footprint_max_m = high;
+    const std::string error = InputErrorOf([&, file = Write(field, "field.h5")] { Read(file); });
+    EXPECT_NE(error.find("footprints"), std::string::npos) << low << " " << high << ": " << error;
+  }
 }
 
 TEST_F(TrainedFieldFile, WithImpossibleValuesAreRefusedByName) {

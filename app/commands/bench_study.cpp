@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <iostream>
 
@@ -17,6 +18,9 @@ struct StudyFlags {
   std::string out, survey, place, model, budget, blocks;
   std::vector<int> log2_table_sizes;     // empty: the study's own
   std::vector<double> voxels_per_entry;  // empty: the study's own
+  std::vector<int> positions;            // empty: the study's own
+  std::vector<std::string> parts = {"time", "steps"};
+  int seeds = 1;
   bool quick = false, restart = false, keep = false, json = false;
 };
 
@@ -148,6 +152,44 @@ bench::StudyBench RunTradeoff(bench::Study& study, const StudyFlags& flags) {
   return bench::Tradeoff(study, options);
 }
 
+bench::StudyBench RunScales(bench::Study& study, const StudyFlags& flags) {
+  const auto asked = [&flags](const char* part) { return std::find(flags.parts.begin(), flags.parts.end(), part) != flags.parts.end(); };
+  bench::ScalesOptions options;
+  options.budget_s = BudgetOf(flags, options.budget_s, 4.0);
+  options.seeds = flags.seeds;
+  options.equal_time = asked("time");
+  options.equal_steps = asked("steps");
+  options.heights = asked("heights");
+  if (options.heights && !flags.survey.empty()) {
+    throw base::UsageError("part 'heights' simulates its photos, so it needs --place NAME instead of --survey");
+  }
+  if (flags.quick) {
+    options.positions = {0, 1};
+    options.place = "hamlet";
+    options.height_views = 3;
+  }
+  if (!flags.place.empty()) options.place = flags.place;
+  if (!flags.positions.empty()) options.positions = flags.positions;
+  return bench::ScalesBench(study, options);
+}
+
+// The options that only `bench scales` has.
+void AddScalesOptions(CLI::App* command, StudyFlags* flags) {
+  command
+      ->add_option("--positions", flags->positions,
+                   "kinds of samples to compare: 0 are points, others cones with so many positions; default: 0,1,4,6, with --quick 0,1")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 64))
+      ->type_name("N,...");
+  command->add_option("--parts", flags->parts, "comparisons: time, steps, heights; default: time,steps")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"time", "steps", "heights"}))
+      ->type_name("PART,...");
+  command->add_option("--seeds", flags->seeds, "trainings per variant, with different random numbers; default: 1")
+      ->check(CLI::Range(1, 100))
+      ->type_name("N");
+}
+
 }  // namespace
 
 void AddStudyBenches(CLI::App& bench, CommandState& state) {
@@ -221,6 +263,18 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                              "--time-budget is the training time of variants that change one setting. Presets are trained for a third of it up to\n"
                              "nine times as long.",
                    .run = RunTradeoff});
+  AddStudyCommand(bench, state,
+                  {.name = "scales",
+                   .help = "compare points with cones, trained with photos or a pyramid of them, on renderings of several widths",
+                   .place = "town",
+                   .budget = "1min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench scales -o out/bench\n"
+                             "  skyquilt bench scales --survey photos/ --model sparse/0 --parts time --seeds 3 -o out/bench\n"
+                             "  skyquilt bench scales --parts heights -o out/bench\n"
+                             "Also writes scales.png with crops side by side. After an interruption, the same command continues.",
+                   .options = AddScalesOptions,
+                   .run = RunScales});
 }
 
 }  // namespace skyquilt::app

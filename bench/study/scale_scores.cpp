@@ -79,7 +79,7 @@ std::vector<ScaleScore> ScoreGroup(const ScaleInput& input, const ScaleOptions& 
                                    const std::filesystem::path& pictures, base::Progress& progress, base::ThreadPool& threads) {
   const std::vector<int> photos = PhotosOfGroup(*input.survey, group, input.evaluate.max_photos);
   std::vector<ScaleScore> scores;
-  std::vector<std::vector<double>> psnr_db;
+  std::vector<std::vector<double>> psnr_db, seconds;
   for (size_t i = 0; i < photos.size(); ++i) {
     base::ThrowIfCancelled();
     const evaluate::HeldOutPhoto photo = evaluate::LoadHeldOutPhoto(*input.survey, *input.pixels, photos[i], input.evaluate.image_width);
@@ -91,6 +91,7 @@ std::vector<ScaleScore> ScoreGroup(const ScaleInput& input, const ScaleOptions& 
     if (i == photos.size() / 2) WritePictures(scaled, group, pictures);
     scores.resize(scaled.size(), {.group = group});
     psnr_db.resize(scaled.size());
+    seconds.resize(scaled.size());
     for (size_t k = 0; k < scaled.size(); ++k) {
       ScaleScore& score = scores[k];
       score.divisor = scaled[k].divisor;
@@ -100,10 +101,14 @@ std::vector<ScaleScore> ScoreGroup(const ScaleInput& input, const ScaleOptions& 
       score.render_seconds += scaled[k].render_seconds;
       ++score.photos;
       psnr_db[k].push_back(scaled[k].psnr_db);
+      seconds[k].push_back(scaled[k].render_seconds);
     }
     progress.Advance(1.0, input.survey->photos[static_cast<size_t>(photos[i])].name);
   }
-  for (size_t k = 0; k < scores.size(); ++k) scores[k].psnr_db = evaluate::MeanOfMeasured(psnr_db[k]);
+  for (size_t k = 0; k < scores.size(); ++k) {
+    scores[k].psnr_db = evaluate::MeanOfMeasured(psnr_db[k]);
+    scores[k].frame_seconds = evaluate::MedianOfMeasured(seconds[k]);
+  }
   return scores;
 }
 

@@ -48,7 +48,8 @@ struct ScaleScore {
   int photos = 0;          // scored
   int width = 0;           // of the first photo's reduced image, pixels
   double psnr_db = std::numeric_limits<double>::quiet_NaN();
-  double render_seconds = 0.0;  // of all these photos
+  double render_seconds = 0.0;                                      // of all these photos
+  double frame_seconds = std::numeric_limits<double>::quiet_NaN();  // median over them, which a busy machine disturbs less
 };
 
 // One photo to compare with.

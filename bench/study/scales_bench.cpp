@@ -56,8 +56,7 @@ void AddFigures(const std::vector<MethodResults>& methods, BenchPage* page) {
   if (points == nullptr || cones == nullptr) return;
   for (const int divisor : DivisorsOf(methods)) {
     const double before = points->Psnr("", divisor, false), after = cones->Psnr("", divisor, false);
-    page->figures.push_back(
-        {FractionName(divisor) + " of the width", fmt::format("{} dB", Signed(after - before, 2)), cones->label + " against " + points->label});
+    page->figures.push_back({WidthName(divisor), fmt::format("{} dB", Signed(after - before, 2)), cones->label + " against " + points->label});
   }
 }
 
@@ -115,6 +114,11 @@ StudyBench ScalesBench(Study& study, const ScalesOptions& options) {
       fmt::join(options.pyramid, ", "));
   study.MeasureScales({});
   const std::vector<ScaleMethod> methods = MethodsOf(options);
+  for (const ScaleMethod& method : methods) {
+    // Before hours of training.
+    coordinator::Settings settings = study.settings();
+    for (const config::Override& entry : method.Overrides(options.pyramid)) settings.Set(entry);
+  }
   const auto timed = [&options](int) { return std::vector<config::Override>{{"run.time_budget_s", fmt::format("{}", options.budget_s)}}; };
   std::vector<MethodResults> shown;
   if (options.equal_time) {
@@ -143,7 +147,7 @@ StudyBench ScalesBench(Study& study, const ScalesOptions& options) {
     page.sections.push_back(CropSection(shown, {.folder = study.folder(),
                                                 .runs = "",
                                                 .id = fmt::format("crops_{}", divisor),
-                                                .title = fmt::format("Images at {} of the width", FractionName(divisor)),
+                                                .title = "Images at " + WidthName(divisor),
                                                 .group = "",
                                                 .divisor = divisor}));
   }

@@ -150,7 +150,7 @@ void AddHeights(const Study& study, const ScalesOptions& options, StudyBench* be
                                                          .title = fmt::format("Images from {} m", height_m),
                                                          .group = HeightPrefix(height_m),
                                                          .divisor = 1,
-                                                         .times = 2,
+                                                         .pixels = 160,
                                                          .averaged = false}));
   }
 }

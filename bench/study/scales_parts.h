@@ -44,10 +44,12 @@ std::string ScaleChart(const std::vector<MethodResults>& methods, const std::str
 // The method with cones that has the highest mean PSNR at divisors above 1; null when none was scored.
 const MethodResults* BestCones(const std::vector<MethodResults>& methods);
 const MethodResults* Find(const std::vector<MethodResults>& methods, const ScaleMethod& method);
-// "+7.1 dB at 1/8 (29.0 against 21.9)" for each width, and frame times.
+// The best method with cones against points, at each width, and whether small frames are as fast as they should be. condition: of all trainings.
 std::vector<std::string> ScaleVerdicts(const std::vector<MethodResults>& methods, const std::string& condition);
 // "1/8", and "1" for 1.
 std::string FractionName(int divisor);
+// "1/8 of the width", and "full width".
+std::string WidthName(int divisor);
 // The distinct divisors that were scored, rising.
 std::vector<int> DivisorsOf(const std::vector<MethodResults>& methods);
 

@@ -11,7 +11,8 @@
 namespace skyquilt::bench {
 namespace {
 
-constexpr int kCropWidth = 80, kCropHeight = 60, kEnlarged = 4;
+constexpr int kCropWidth = 80, kCropHeight = 60;  // of the sheet; crops of other widths have its shape
+constexpr int kShownWidth = 320;
 constexpr int kGap_px = 10;
 constexpr double kCapital_px = 11.0;
 
@@ -21,6 +22,12 @@ std::optional<image::Image8> Saved(const std::filesystem::path& study, const Var
   const std::filesystem::path file = study / result.scale_pictures / ScalePicture(group, kind, divisor);
   if (result.scale_pictures.empty() || !std::filesystem::is_regular_file(file)) return std::nullopt;
   return image::LoadRgb8(file);
+}
+
+// At most `pixels` wide, enlarged to about kShownWidth.
+image::Image8 Crop(const image::Image8& image, int pixels) {
+  const int width = std::min(pixels, image.width);
+  return EnlargedMiddle(image, width, width * kCropHeight / kCropWidth, std::max(1, kShownWidth / width));
 }
 
 std::string RaysCaption(const MethodResults& m, int divisor) {
@@ -79,8 +86,7 @@ BenchSection CropSection(const std::vector<MethodResults>& methods, const CropRe
     if (!image) return;
     const std::filesystem::path file = std::filesystem::path("scales_images") / (request.id + "_" + name + ".png");
     base::RequireWritableFolder(request.folder / "scales_images");
-    const int shown = kEnlarged / request.times;
-    image::SavePng(EnlargedMiddle(*image, kCropWidth * shown, kCropHeight * shown, request.times), request.folder / file);
+    image::SavePng(Crop(*image, request.pixels), request.folder / file);
     section.pictures.push_back({file.generic_string(), caption});
   };
   for (const MethodResults& m : methods) {
@@ -103,7 +109,7 @@ void WriteScaleSheet(const std::vector<MethodResults>& methods, const std::vecto
     std::vector<CaptionedImage> row;
     const auto add = [&](const MethodResults& m, const std::string& kind, const std::string& caption) {
       if (const auto image = Saved(folder, m.First(), "", kind, divisor)) {
-        row.push_back({caption, EnlargedMiddle(*image, kCropWidth, kCropHeight, kEnlarged)});
+        row.push_back({caption, Crop(*image, kCropWidth)});
       }
     };
     add(*points, "truth", "photo at " + FractionName(divisor));

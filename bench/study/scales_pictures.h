@@ -30,7 +30,7 @@ struct CropRequest {
   std::string id, title;
   std::string group;
   int divisor = 1;
-  int times = 4;
+  int pixels = 80;       // width of the crop
   bool averaged = true;  // also k x k rays of the first method
 };
 BenchSection CropSection(const std::vector<MethodResults>& methods, const CropRequest& request);

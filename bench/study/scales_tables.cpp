@@ -47,6 +47,10 @@ BenchTable WithWidths(const std::vector<MethodResults>& methods, const std::stri
 
 }  // namespace
 
+std::string WidthName(int divisor) {
+  return divisor == 1 ? "full width" : FractionName(divisor) + " of the width";
+}
+
 std::string FractionName(int divisor) {
   return divisor == 1 ? "1" : fmt::format("1/{}", divisor);
 }
@@ -56,8 +60,7 @@ double MethodResults::Psnr(const std::string& group, int divisor, bool averaged)
 }
 
 double MethodResults::FrameSeconds(const std::string& group, int divisor) const {
-  return MeanOver(seeds, group, divisor, false,
-                  [](const ScaleScore& s) { return s.photos > 0 ? s.render_seconds / s.photos : evaluate::kNotMeasured; });
+  return MeanOver(seeds, group, divisor, false, [](const ScaleScore& s) { return s.frame_seconds; });
 }
 
 std::vector<int> DivisorsOf(const std::vector<MethodResults>& methods) {
@@ -86,7 +89,7 @@ BenchTable ScaleTable(const std::vector<MethodResults>& methods, const std::stri
 }
 
 BenchTable FrameTimeTable(const std::vector<MethodResults>& methods, const std::string& name) {
-  BenchTable table = WithWidths(methods, name, "Time per frame", "One ray per pixel, mean over held-out photos.");
+  BenchTable table = WithWidths(methods, name, "Time per frame", "One ray per pixel, median over held-out photos.");
   const std::vector<int> divisors = DivisorsOf(methods);
   if (divisors.empty()) return table;
   table.columns.push_back(fmt::format("{} is faster", FractionName(divisors.back())));
@@ -170,8 +173,8 @@ std::vector<std::string> ScaleVerdicts(const std::vector<MethodResults>& methods
   const std::vector<int> divisors = DivisorsOf(methods);
   for (const int divisor : divisors) {
     const double before = points->Psnr("", divisor, false), after = cones->Psnr("", divisor, false);
-    verdicts.push_back(fmt::format("{}, at {} of the width: '{}' {} dB against '{}' ({:.2f} against {:.2f}; with k x k rays {:.2f} and {:.2f}).",
-                                   condition, FractionName(divisor), cones->label, Signed(after - before, 2), points->label, after, before,
+    verdicts.push_back(fmt::format("{}, at {}: '{}' {} dB against '{}' ({:.2f} against {:.2f}; with k x k rays {:.2f} and {:.2f}).", condition,
+                                   WidthName(divisor), cones->label, Signed(after - before, 2), points->label, after, before,
                                    cones->Psnr("", divisor, divisor > 1), points->Psnr("", divisor, divisor > 1)));
   }
   const double faster = cones->FrameSeconds("", divisors.front()) / cones->FrameSeconds("", divisors.back());

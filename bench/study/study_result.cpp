@@ -69,7 +69,8 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"photos", score.photos},
                               {"width", score.width},
                               {"psnr_db", OrNull(score.psnr_db)},
-                              {"render_seconds", score.render_seconds}});
+                              {"render_seconds", score.render_seconds},
+                              {"frame_seconds", OrNull(score.frame_seconds)}});
   }
   json["scale_pictures"] = result.scale_pictures;
   json["curve"] = result.curve;
@@ -109,7 +110,8 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .photos = score.at("photos").get<int>(),
                              .width = score.at("width").get<int>(),
                              .psnr_db = OrNone(score.at("psnr_db")),
-                             .render_seconds = score.at("render_seconds").get<double>()});
+                             .render_seconds = score.at("render_seconds").get<double>(),
+                             .frame_seconds = OrNone(score.at("frame_seconds"))});
   }
   result.scale_pictures = json.value("scale_pictures", "");
   json.at("curve").get_to(result.curve);

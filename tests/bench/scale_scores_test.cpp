@@ -125,9 +125,9 @@ TEST(EnlargedMiddle, RepeatsPixelsOfTheCentre) {
 
 VariantResult Scored(double one_db, double averaged_db) {
   VariantResult r;
-  r.scales = {{.divisor = 1, .photos = 2, .width = 640, .psnr_db = 30.0, .render_seconds = 2.0},
-              {.divisor = 8, .photos = 2, .width = 80, .psnr_db = one_db, .render_seconds = 0.02},
-              {.divisor = 8, .averaged = true, .photos = 2, .width = 80, .psnr_db = averaged_db, .render_seconds = 2.0}};
+  r.scales = {{.divisor = 1, .photos = 2, .width = 640, .psnr_db = 30.0, .render_seconds = 2.0, .frame_seconds = 1.0},
+              {.divisor = 8, .photos = 2, .width = 80, .psnr_db = one_db, .render_seconds = 0.02, .frame_seconds = 0.01},
+              {.divisor = 8, .averaged = true, .photos = 2, .width = 80, .psnr_db = averaged_db, .render_seconds = 2.0, .frame_seconds = 1.0}};
   return r;
 }
 

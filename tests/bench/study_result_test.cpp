@@ -26,7 +26,9 @@ VariantResult Example() {
   r.curve = {{1.0, 20.0}, {2.0, 22.0}};
   r.render = "runs/guided/report/images/photo_00001_render.jpg";
   r.fields[1].steps = 1234;
-  r.scales = {{.group = "h060_", .divisor = 4, .averaged = true, .photos = 3, .width = 160, .psnr_db = 31.5, .render_seconds = 0.25}, {.divisor = 8}};
+  r.scales = {
+      {.group = "h060_", .divisor = 4, .averaged = true, .photos = 3, .width = 160, .psnr_db = 31.5, .render_seconds = 0.25, .frame_seconds = 0.08},
+      {.divisor = 8}};
   r.scale_pictures = "runs/guided/scales";
   return r;
 }
@@ -76,6 +78,7 @@ TEST(ResultJson, ReadsBackUnchanged) {
   EXPECT_EQ(back.scales[0].width, 160);
   EXPECT_EQ(back.scales[0].psnr_db, 31.5);
   EXPECT_EQ(back.scales[0].render_seconds, 0.25);
+  EXPECT_EQ(back.scales[0].frame_seconds, 0.08);
   EXPECT_TRUE(std::isnan(back.scales[1].psnr_db));
   EXPECT_EQ(back.scale_pictures, "runs/guided/scales");
   EXPECT_EQ(ResultJson(back, identity), ResultJson(r, "abc 1"));

@@ -36,6 +36,7 @@ struct StudyCommand {
   std::string budget;  // default training time, as shown in the help
   std::string footer;
   std::function<void(CLI::App*, StudyFlags*)> options = {};  // adds the options that only this command has
+  std::function<void(const StudyFlags&)> check = {};         // refuses combinations of options before any work
   std::function<bench::StudyBench(bench::Study&, const StudyFlags&)> run;
 };
 
@@ -96,6 +97,7 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   command->footer(study_command.footer);
   command->callback([&state, flags, study_command] {
     state.run_command = [&state, flags, study_command] {
+      if (study_command.check) study_command.check(*flags);
       bench::Study study = Begin(state, *flags, study_command.place);
       WriteResults(study_command.run(study, *flags), study, state, *flags);
     };
@@ -152,17 +154,23 @@ bench::StudyBench RunTradeoff(bench::Study& study, const StudyFlags& flags) {
   return bench::Tradeoff(study, options);
 }
 
+bool Asked(const StudyFlags& flags, const char* part) {
+  return std::find(flags.parts.begin(), flags.parts.end(), part) != flags.parts.end();
+}
+
+void CheckScales(const StudyFlags& flags) {
+  if (Asked(flags, "heights") && !flags.survey.empty()) {
+    throw base::UsageError("part 'heights' simulates its photos, so it needs --place NAME instead of --survey");
+  }
+}
+
 bench::StudyBench RunScales(bench::Study& study, const StudyFlags& flags) {
-  const auto asked = [&flags](const char* part) { return std::find(flags.parts.begin(), flags.parts.end(), part) != flags.parts.end(); };
   bench::ScalesOptions options;
   options.budget_s = BudgetOf(flags, options.budget_s, 4.0);
   options.seeds = flags.seeds;
-  options.equal_time = asked("time");
-  options.equal_steps = asked("steps");
-  options.heights = asked("heights");
-  if (options.heights && !flags.survey.empty()) {
-    throw base::UsageError("part 'heights' simulates its photos, so it needs --place NAME instead of --survey");
-  }
+  options.equal_time = Asked(flags, "time");
+  options.equal_steps = Asked(flags, "steps");
+  options.heights = Asked(flags, "heights");
   if (flags.quick) {
     options.positions = {0, 1};
     options.place = "hamlet";
@@ -274,6 +282,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                              "  skyquilt bench scales --parts heights -o out/bench\n"
                              "Also writes scales.png with crops side by side. After an interruption, the same command continues.",
                    .options = AddScalesOptions,
+                   .check = CheckScales,
                    .run = RunScales});
 }
 

@@ -207,9 +207,7 @@ TEST_F(HeightsSurvey, ACompleteSurveyIsKeptAndAnotherOneReplaced) {
 TEST(HeightsPlan, ImpossibleOnesAreUsageErrors) {
   const TemporaryFolder folder;
   base::ThreadPool threads(1);
-  const auto error = [&](const HeightsPlan& plan) {
-    return UsageErrorOf([&] { SimulateHeights(SmallHamlet(), plan, folder / "never", threads); });
-  };
+  const auto error = [&](const HeightsPlan& plan) { return UsageErrorOf([&] { SimulateHeights(SmallHamlet(), plan, folder / "never", threads); }); };
   EXPECT_NE(error({.flights_m = {}}), "");
   EXPECT_NE(error({.flights_m = {60, 0}}).find("0 m"), std::string::npos);
   EXPECT_NE(error({.flights_m = {60}, .views_m = {1000}}).find("1000 m"), std::string::npos);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -173,7 +174,7 @@ fs::path SimulateHeights(const SimulateOptions& options, const HeightsPlan& plan
   still.single_line = false;
   still.test_every = plan.test_every;
   const std::string identity = Identity(still, plan);
-  fs::path holdout = folder / "holdout.txt";
+  fs::path holdout = fs::absolute(folder / "holdout.txt").lexically_normal();
   if (IsComplete(folder, identity)) {
     spdlog::info("simulate: {} is complete", folder.string());
     return holdout;

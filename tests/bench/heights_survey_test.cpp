@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -139,6 +140,19 @@ TEST_F(HeightsSurvey, WholeFlightsAreAboveTheSamePoints) {
   EXPECT_LT((mean[120] - mean[60]).head<2>().norm(), 1.0);
   EXPECT_NEAR(mean[120].z() - mean[60].z(), 60.0, 0.5);
   EXPECT_NEAR(mean[240].z() - mean[30].z(), 210.0, 1.0);
+}
+
+TEST_F(HeightsSurvey, PointsAreThoseOfTheWholeFlights) {
+  std::set<uint32_t> whole;
+  for (const survey::ColmapImage& image : model_.images) {
+    if (HeightOfPhoto(image.name) == 60 || HeightOfPhoto(image.name) == 120) whole.insert(image.id);
+  }
+  const auto seen = std::count_if(model_.points.begin(), model_.points.end(), [&whole](const survey::ColmapPoint& point) {
+    return std::any_of(point.image_ids.begin(), point.image_ids.end(), [&whole](uint32_t id) { return whole.contains(id); });
+  });
+  ASSERT_GT(model_.points.size(), 1000U);
+  // A point found at the border of a photo is not in its track.
+  EXPECT_GT(static_cast<double>(seen), 0.99 * static_cast<double>(model_.points.size()));
 }
 
 TEST_F(HeightsSurvey, ViewsSeeLittleBeyondTheArea) {

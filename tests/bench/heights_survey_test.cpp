@@ -142,17 +142,13 @@ TEST_F(HeightsSurvey, WholeFlightsAreAboveTheSamePoints) {
   EXPECT_NEAR(mean[240].z() - mean[30].z(), 210.0, 1.0);
 }
 
-TEST_F(HeightsSurvey, PointsAreThoseOfTheWholeFlights) {
-  std::set<uint32_t> whole;
-  for (const survey::ColmapImage& image : model_.images) {
-    if (HeightOfPhoto(image.name) == 60 || HeightOfPhoto(image.name) == 120) whole.insert(image.id);
-  }
-  const auto seen = std::count_if(model_.points.begin(), model_.points.end(), [&whole](const survey::ColmapPoint& point) {
-    return std::any_of(point.image_ids.begin(), point.image_ids.end(), [&whole](uint32_t id) { return whole.contains(id); });
-  });
-  ASSERT_GT(model_.points.size(), 1000U);
-  // A point found at the border of a photo is not in its track.
-  EXPECT_GT(static_cast<double>(seen), 0.99 * static_cast<double>(model_.points.size()));
+TEST_F(HeightsSurvey, ViewsAddNoPoints) {
+  HeightsPlan plan = kPlan;
+  plan.views_m.clear();
+  SimulateHeights(SmallHamlet(), plan, *root_ / "no_views", Threads());
+  const survey::ColmapModel without = survey::ReadColmapModel(*root_ / "no_views" / "sparse/0");
+  ASSERT_EQ(without.images.size() + 8, model_.images.size());
+  EXPECT_NEAR(static_cast<double>(model_.points.size()) / static_cast<double>(without.points.size()), 1.0, 0.02);
 }
 
 TEST_F(HeightsSurvey, ViewsSeeLittleBeyondTheArea) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -95,16 +96,14 @@ std::vector<PhotoPlan> WholeFlight(const PlaceSpec& place, const World& world, i
 }
 
 std::vector<PhotoPlan> Views(const PlaceSpec& place, const World& world, int height_m, int count) {
-  const Eigen::Vector2d frame =
-      height_m * Eigen::Vector2d(place.camera.width / place.camera.FocalX(), place.camera.height / place.camera.FocalY());
+  const Eigen::Vector2d frame = height_m * Eigen::Vector2d(place.camera.width / place.camera.FocalX(), place.camera.height / place.camera.FocalY());
   const Eigen::Vector2d middle = 0.5 * (place.area_min + place.area_max);
   const Eigen::Vector2d area = place.area_max - place.area_min;
   // Frames that are larger than the area see beyond it wherever they are; so their views are only spread enough to differ.
   const Eigen::Vector2d spread = (area - frame).cwiseMax(kLeastSpread * area);
   const double cell = std::sqrt(spread.prod() / (kViewsPerPick * count));
-  const Eigen::Vector2d spacing = spread.binaryExpr(Eigen::Vector2d::Constant(cell), [](double side, double wanted) {
-    return side / std::max(1.0, std::ceil(side / wanted));
-  });
+  const Eigen::Vector2d spacing =
+      spread.binaryExpr(Eigen::Vector2d::Constant(cell), [](double side, double wanted) { return side / std::max(1.0, std::ceil(side / wanted)); });
   PlaceSpec flown = place;
   flown.area_min = middle - 0.5 * spread;
   flown.area_max = middle + 0.5 * spread;
@@ -175,7 +174,7 @@ fs::path SimulateHeights(const SimulateOptions& options, const HeightsPlan& plan
   still.single_line = false;
   still.test_every = plan.test_every;
   const std::string identity = Identity(still, plan);
-  fs::path holdout = folder / "holdout.txt";
+  fs::path holdout = fs::absolute(folder / "holdout.txt").lexically_normal();
   if (IsComplete(folder, identity)) {
     spdlog::info("simulate: {} is complete", folder.string());
     return holdout;

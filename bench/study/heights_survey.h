@@ -22,8 +22,8 @@ struct HeightsPlan {
   int test_every = 8;                      // of each whole flight, every n-th photo is held out, from the first; at least 2
 };
 
-// Simulates the survey into `folder` and returns the file of the held-out names. A complete survey of the same options and plan is kept, an incomplete
-// or another one is replaced.
+// Simulates the survey into `folder` and returns the absolute path of holdout.txt. A complete survey of the same options and plan is kept, an
+// incomplete or another one is replaced.
 //
 // Whole flights have the same number of photos, above the same points: those of the place's own flight (of options.altitudes, if given), so that
 // only their overlap grows with their height. Where one would pass closer than 8 m to a building, the others lose photos as well. Held-out views are

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -141,6 +142,15 @@ TEST_F(HeightsSurvey, WholeFlightsAreAboveTheSamePoints) {
   EXPECT_NEAR(mean[240].z() - mean[30].z(), 210.0, 1.0);
 }
 
+TEST_F(HeightsSurvey, ViewsAddNoPoints) {
+  HeightsPlan plan = kPlan;
+  plan.views_m.clear();
+  SimulateHeights(SmallHamlet(), plan, *root_ / "no_views", Threads());
+  const survey::ColmapModel without = survey::ReadColmapModel(*root_ / "no_views" / "sparse/0");
+  ASSERT_EQ(without.images.size() + 8, model_.images.size());
+  EXPECT_NEAR(static_cast<double>(model_.points.size()) / static_cast<double>(without.points.size()), 1.0, 0.02);
+}
+
 TEST_F(HeightsSurvey, ViewsSeeLittleBeyondTheArea) {
   const auto summary = nlohmann::json::parse(base::ReadFile(folder_ / "simulate.json"));
   const Eigen::Vector2d low(summary["blocks"]["min_enu"][0], summary["blocks"]["min_enu"][1]);
@@ -207,9 +217,7 @@ TEST_F(HeightsSurvey, ACompleteSurveyIsKeptAndAnotherOneReplaced) {
 TEST(HeightsPlan, ImpossibleOnesAreUsageErrors) {
   const TemporaryFolder folder;
   base::ThreadPool threads(1);
-  const auto error = [&](const HeightsPlan& plan) {
-    return UsageErrorOf([&] { SimulateHeights(SmallHamlet(), plan, folder / "never", threads); });
-  };
+  const auto error = [&](const HeightsPlan& plan) { return UsageErrorOf([&] { SimulateHeights(SmallHamlet(), plan, folder / "never", threads); }); };
   EXPECT_NE(error({.flights_m = {}}), "");
   EXPECT_NE(error({.flights_m = {60, 0}}).find("0 m"), std::string::npos);
   EXPECT_NE(error({.flights_m = {60}, .views_m = {1000}}).find("1000 m"), std::string::npos);

@@ -64,9 +64,9 @@ std::string HtmlTable(const BenchTable& table) {
   return table.note.empty() ? html : html + "<p class=\"note\">" + page::EscapeHtml(table.note) + "</p>";
 }
 
-std::string HtmlPictures(const std::vector<BenchPicture>& pictures) {
+std::string HtmlPictures(const std::vector<BenchPicture>& pictures, bool magnified) {
   if (pictures.empty()) return "";
-  std::string html = "<div class=\"pics magnified\">";
+  std::string html = magnified ? "<div class=\"pics magnified\">" : "<div class=\"pics\">";
   for (const BenchPicture& picture : pictures) {
     html += fmt::format(
         "<figure class=\"pic\"><div class=\"pane\"><img src=\"{}\" alt=\"{}\" loading=\"lazy\"></div><figcaption>{}</figcaption></figure>",
@@ -85,7 +85,7 @@ std::string HtmlSection(const BenchSection& section) {
     html += "</div>";
   }
   for (const BenchTable& table : section.tables) html += "<div class=\"block\">" + HtmlTable(table) + "</div>";
-  return html + HtmlPictures(section.pictures) + "</section>\n";
+  return html + HtmlPictures(section.pictures, section.magnified) + "</section>\n";
 }
 
 // In quotes when the text contains a comma, a quote or a line break; quotes in it are doubled.

@@ -43,6 +43,7 @@ struct BenchSection {
   std::vector<std::string> charts;  // HTML <figure> elements, from page::CurveChart and page::BarChart
   std::vector<BenchTable> tables;
   std::vector<BenchPicture> pictures;  // in rows of up to four
+  bool magnified = true;               // shows an enlarged part of all pictures, which follows the pointer
 };
 
 // A key figure at the top of the page: "Best", "27.3 dB", "3 x 3 blocks".

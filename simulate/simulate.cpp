@@ -45,14 +45,21 @@ void PrepareFolder(const fs::path& folder) {
 }  // namespace
 
 SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder, base::ThreadPool& threads) {
+  return Simulate(options, folder, threads, [&options](const PlaceSpec& place, const World& world) {
+    std::vector<PhotoPlan> photos = PlanFlight(place, world.TakeoffHeight(place));
+    for (size_t i = 0; i < photos.size(); ++i) photos[i].true_depth = i % static_cast<size_t>(options.test_every) == 0;
+    return photos;
+  });
+}
+
+SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder, base::ThreadPool& threads, const FlightPlanner& plan) {
   const auto begin = std::chrono::steady_clock::now();
   const PlaceSpec place = ResolvePlace(options);
   PrepareFolder(folder);
   const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
   spdlog::info("simulate: building place {}", place.name);
   const World world(place, options.light_intensity, threads);
-  const Eigen::Vector2f middle = (0.5 * (place.area_min + place.area_max)).cast<float>();
-  std::vector<PhotoPlan> photos = PlanFlight(place, static_cast<double>(world.terrain().Height(middle.x(), middle.y())));
+  std::vector<PhotoPlan> photos = plan(place, world);
   ApplyTagFaults(place.tag_faults, place.seed, photos);
   const PhotoRenderer renderer(world, place.camera, options.samples_per_pixel, options.soft_shadows);
 
@@ -72,17 +79,18 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
       image::SavePng(rendering.usable, folder / "truth" / "masks" / (photo.name + ".png"));
       ++summary.n_masks;
     }
-    if (i % static_cast<size_t>(options.test_every) == 0) {
+    if (photo.true_depth) {
       const image::ImageF depth = renderer.Depth(photo.cam_from_enu, moving, threads);
       image::SaveFloatTiff(depth, folder / "truth" / "depth" / (fs::path(photo.name).stem().string() + ".tiff"));
       ++summary.n_test;
     }
+    progress.Advance(1.0);
+    if (!photo.finds_points) continue;
     for (SurfaceSeed& seed : ChooseSeeds(place.camera, static_cast<int>(i), kSeedsPerPhoto, place.seed)) {
       const uint8_t* rgb = pixels.At(seed.x, seed.y);
       seed.rgb = {rgb[0], rgb[1], rgb[2]};
       seeds.push_back(seed);
     }
-    progress.Advance(1.0);
   }
   progress.Finish();
   std::vector<survey::ColmapPoint> points = MakeSparsePoints(world, place.camera, photos, seeds, place.seed, threads);

@@ -10,13 +10,18 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/base/thread_pool.h"
+#include "simulate/flight.h"
+#include "simulate/place_spec.h"
 #include "simulate/simulate_options.h"
 
 namespace skyquilt::simulate {
+
+class World;
 
 struct SimulateSummary {
   int n_photos = 0;
@@ -34,5 +39,11 @@ std::vector<std::string> PlaceNames();
 // Throws base::UsageError that names an option which cannot be used, base::InputError if the folder cannot be written or has images/, sparse/ or
 // truth/ from elsewhere, base::Interrupted.
 SimulateSummary Simulate(const SimulateOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads);
+
+// Plans a survey's photos in the order of capture, once the place is built. Names must be unique file names.
+using FlightPlanner = std::function<std::vector<PhotoPlan>(const PlaceSpec& place, const World& world)>;
+// The same with the photos of `plan`, for instance of flights at several heights. options.test_every is not used: the plan says which photos get a
+// true depth image. Errors of the tags are added to the plan.
+SimulateSummary Simulate(const SimulateOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads, const FlightPlanner& plan);
 
 }  // namespace skyquilt::simulate

@@ -119,6 +119,11 @@ void World::AddRoundWater(const Pond& pond, uint32_t object) {
   }
 }
 
+double World::TakeoffHeight(const PlaceSpec& place) const {
+  const Eigen::Vector2f middle = (0.5 * (place.area_min + place.area_max)).cast<float>();
+  return static_cast<double>(terrain_->Height(middle.x(), middle.y()));
+}
+
 MovingScene World::MovingAt(double time_s) const {
   std::vector<Car> cars;
   Mesh mesh;

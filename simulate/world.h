@@ -36,6 +36,9 @@ class World {
   // Empty without a city.
   const std::vector<Building>& buildings() const;
 
+  // ENU height of the ground in the middle of the surveyed area, where the drone takes off.
+  double TakeoffHeight(const PlaceSpec& place) const;
+
   MovingScene MovingAt(double time_s) const;
   // Surface of the static scene at a hit; of a moving car, given the cars of its MovingScene.
   Surface SurfaceAt(const Hit& hit) const;

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <iostream>
 
@@ -17,6 +18,9 @@ struct StudyFlags {
   std::string out, survey, place, model, budget, blocks;
   std::vector<int> log2_table_sizes;     // empty: the study's own
   std::vector<double> voxels_per_entry;  // empty: the study's own
+  std::vector<int> positions;            // empty: the study's own
+  std::vector<std::string> parts = {"time", "steps"};
+  int seeds = 1;
   bool quick = false, restart = false, keep = false, json = false;
 };
 
@@ -32,6 +36,7 @@ struct StudyCommand {
   std::string budget;  // default training time, as shown in the help
   std::string footer;
   std::function<void(CLI::App*, StudyFlags*)> options = {};  // adds the options that only this command has
+  std::function<void(const StudyFlags&)> check = {};         // refuses combinations of options before any work
   std::function<bench::StudyBench(bench::Study&, const StudyFlags&)> run;
 };
 
@@ -92,6 +97,7 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   command->footer(study_command.footer);
   command->callback([&state, flags, study_command] {
     state.run_command = [&state, flags, study_command] {
+      if (study_command.check) study_command.check(*flags);
       bench::Study study = Begin(state, *flags, study_command.place);
       WriteResults(study_command.run(study, *flags), study, state, *flags);
     };
@@ -146,6 +152,50 @@ bench::StudyBench RunTradeoff(bench::Study& study, const StudyFlags& flags) {
     options.every_nth_photo = {1, 2};
   }
   return bench::Tradeoff(study, options);
+}
+
+bool Asked(const StudyFlags& flags, const char* part) {
+  return std::find(flags.parts.begin(), flags.parts.end(), part) != flags.parts.end();
+}
+
+void CheckScales(const StudyFlags& flags) {
+  if (Asked(flags, "heights") && !flags.survey.empty()) {
+    throw base::UsageError("part 'heights' simulates its photos, so it needs --place NAME instead of --survey");
+  }
+}
+
+bench::StudyBench RunScales(bench::Study& study, const StudyFlags& flags) {
+  bench::ScalesOptions options;
+  options.budget_s = BudgetOf(flags, options.budget_s, 4.0);
+  options.seeds = flags.seeds;
+  options.equal_time = Asked(flags, "time");
+  options.equal_steps = Asked(flags, "steps");
+  options.heights = Asked(flags, "heights");
+  if (flags.quick) {
+    options.positions = {0, 1};
+    options.place = "hamlet";
+    options.height_views = 3;
+  }
+  if (!flags.place.empty()) options.place = flags.place;
+  if (!flags.positions.empty()) options.positions = flags.positions;
+  return bench::ScalesBench(study, options);
+}
+
+// The options that only `bench scales` has.
+void AddScalesOptions(CLI::App* command, StudyFlags* flags) {
+  command
+      ->add_option("--positions", flags->positions,
+                   "kinds of samples to compare: 0 are points, others cones with so many positions; default: 0,1,4,6, with --quick 0,1")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 64))
+      ->type_name("N,...");
+  command->add_option("--parts", flags->parts, "comparisons: time, steps, heights; default: time,steps")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"time", "steps", "heights"}))
+      ->type_name("PART,...");
+  command->add_option("--seeds", flags->seeds, "trainings per variant, with different random numbers; default: 1")
+      ->check(CLI::Range(1, 100))
+      ->type_name("N");
 }
 
 }  // namespace
@@ -221,6 +271,19 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                              "--time-budget is the training time of variants that change one setting. Presets are trained for a third of it up to\n"
                              "nine times as long.",
                    .run = RunTradeoff});
+  AddStudyCommand(bench, state,
+                  {.name = "scales",
+                   .help = "compare points with cones, trained with photos or a pyramid of them, on renderings of several widths",
+                   .place = "town",
+                   .budget = "1min",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench scales -o out/bench\n"
+                             "  skyquilt bench scales --survey photos/ --model sparse/0 --parts time --seeds 3 -o out/bench\n"
+                             "  skyquilt bench scales --parts heights -o out/bench\n"
+                             "Also writes scales.png with crops side by side. After an interruption, the same command continues.",
+                   .options = AddScalesOptions,
+                   .check = CheckScales,
+                   .run = RunScales});
 }
 
 }  // namespace skyquilt::app

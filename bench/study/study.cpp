@@ -5,6 +5,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/rendering/scene_session.h"
+#include "coordinator/scheduler/field_context.h"
 #include "coordinator/stages/pipeline.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -81,12 +83,16 @@ void MoveFolder(const std::filesystem::path& from, const std::filesystem::path& 
   std::filesystem::rename(from, to);
 }
 
-// The survey with every n-th training photo in name order and all held-out photos.
-survey::Survey Thinned(survey::Survey survey, int every_nth_photo) {
+// The survey with the variant's training photos, in name order, and all held-out photos.
+survey::Survey Thinned(survey::Survey survey, const Variant& variant) {
+  const auto chosen = [&variant](const std::string& name) {
+    return variant.photo_prefixes.empty() || std::any_of(variant.photo_prefixes.begin(), variant.photo_prefixes.end(),
+                                                         [&name](const std::string& prefix) { return name.starts_with(prefix); });
+  };
   std::vector<survey::Photo> kept;
   int number = 0;
   for (survey::Photo& photo : survey.photos) {
-    if (photo.is_test || number++ % every_nth_photo == 0) kept.push_back(std::move(photo));
+    if (photo.is_test || (chosen(photo.name) && number++ % variant.every_nth_photo == 0)) kept.push_back(std::move(photo));
   }
   survey.photos = std::move(kept);
   return survey;
@@ -132,7 +138,11 @@ std::string Study::Identity(const Variant& variant, coordinator::Settings settin
   for (const char* key : kIdle) flat.erase(key);
   // The survey file is part of the identity, so the options that made it are not needed.
   std::erase_if(flat, [](const auto& entry) { return entry.first.starts_with("simulate.") || entry.first.starts_with("prepare."); });
-  return config::Hash(flat) + " " + coordinator::FileIdentity(source_ / "survey" / "survey.json") + " " + std::to_string(variant.every_nth_photo);
+  std::string identity =
+      config::Hash(flat) + " " + coordinator::FileIdentity(source_ / "survey" / "survey.json") + " " + std::to_string(variant.every_nth_photo);
+  for (const std::string& prefix : variant.photo_prefixes) identity.append(" ").append(prefix);
+  if (scales_) identity.append(" ").append(scales_->Identity());
+  return identity;
 }
 
 coordinator::Settings Study::SettingsOf(const Variant& variant) const {
@@ -197,6 +207,7 @@ VariantResult Study::Measure(const Variant& variant, const coordinator::Settings
   try {
     const evaluate::Metrics metrics = Train(variant, settings, merge_anew, training);
     result = Collect(variant, variant, *training, metrics);
+    if (scales_) AddScales(variant, settings, &result);
   } catch (const base::BlockError& error) {
     result.failure = error.what();
   }
@@ -230,12 +241,12 @@ void Study::LinkPixels(const std::filesystem::path& run_folder, int image_width,
 evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training) {
   const coordinator::Project project = coordinator::Project::Create(RunFolder(variant));
   if (!std::filesystem::exists(project.SurveyFolder() / "survey.json")) {
-    survey::SaveSurvey(variant.every_nth_photo > 1 ? Thinned(survey_, variant.every_nth_photo) : survey_, project.SurveyFolder());
+    survey::SaveSurvey(variant.AllPhotos() ? survey_ : Thinned(survey_, variant), project.SurveyFolder());
   }
   coordinator::Pipeline pipeline{.comm = comm_, .project = project, .settings = settings, .quiet = options_.quiet, .verbose = options_.verbose};
   if (!merge_anew) coordinator::RequireSameConfiguration(pipeline, "partition");
   coordinator::PartitionStage(pipeline);
-  if (variant.every_nth_photo == 1) LinkPixels(project.folder, settings.run.image_width, false);
+  if (variant.AllPhotos()) LinkPixels(project.folder, settings.run.image_width, false);
   base::ResetPeakRss();
   try {
     *training = coordinator::TrainStage(pipeline);
@@ -243,7 +254,7 @@ evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settin
     throw base::BlockError(error.what());  // these settings cannot be trained, for instance for lack of memory: this is a result of the bench
   }
   coordinator::ThrowIfBlocksFailed(*training, project);
-  if (variant.every_nth_photo == 1) LinkPixels(project.folder, settings.run.image_width, true);
+  if (variant.AllPhotos()) LinkPixels(project.folder, settings.run.image_width, true);
   pipeline.restart = merge_anew;
   coordinator::MergeStage(pipeline);
   return coordinator::EvaluateStage(pipeline);
@@ -288,6 +299,7 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
                         .samples = field.samples,
                         .scene_parameters = stored == kept.end() ? 0 : stored->second,
                         .log2_table_size = block == blocks.blocks.end() ? 0 : block->log2_table_size,
+                        .steps = field.steps,
                         .seconds = field.seconds,
                         .psnr_db = score == metrics.blocks.end() ? VariantResult::kNone : known(score->psnr_db)});
     if (field.block >= 0) ++r.blocks;
@@ -312,6 +324,27 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   r.photo = (relative / "images" / (stem + "_photo.jpg")).generic_string();
   r.error = (relative / "images" / (stem + "_error.png")).generic_string();
   return r;
+}
+
+void Study::AddScales(const Variant& variant, const coordinator::Settings& settings, VariantResult* result) const {
+  const coordinator::Project project{RunFolder(variant)};
+  coordinator::SceneSession session(comm_, project.SceneFile(), settings.run, options_.verbose, options_.quiet);
+  const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
+  const image::PixelCache pixels =
+      image::PixelCache::Open(project.PixelCacheFile(), coordinator::PixelSources(survey), settings.run.image_width, session.threads());
+  const ScaleInput input{.scene = &session.scene(), .survey = &survey, .pixels = &pixels, .evaluate = settings.evaluate};
+  const std::filesystem::path pictures = std::filesystem::path("runs") / variant.name / "scales";
+  result->scales = ScoreScales(input, *scales_, options_.folder / pictures, session.threads());
+  result->scale_pictures = pictures.generic_string();
+}
+
+Study Study::Beside(const std::string& name, const StudySurvey& survey, const std::vector<config::Override>& overrides) const {
+  Options options = options_;
+  options.folder = options_.folder / name;
+  options.survey = survey;
+  for (const config::Override& entry : overrides) options.settings.Set(entry);
+  options.settings.Check();
+  return {comm_, std::move(options)};
 }
 
 std::optional<VariantResult> Study::Load(const Variant& variant, const std::string& identity) const {

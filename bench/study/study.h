@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/study/scale_scores.h"
 #include "coordinator/project/settings.h"
 #include "core/comm/communicator.h"
 #include "core/scene/train_report.h"
@@ -33,6 +34,10 @@ struct Variant {
   std::string label;                        // as shown in tables and plots
   std::vector<config::Override> overrides;  // changes to the study's settings
   int every_nth_photo = 1;                  // train with every n-th training photo in name order; 1: all
+  // Train only with photos whose names begin with one of these; empty: with all. Applied before every_nth_photo. Held-out photos always stay.
+  std::vector<std::string> photo_prefixes = {};
+
+  bool AllPhotos() const { return every_nth_photo == 1 && photo_prefixes.empty(); }
 };
 
 struct VariantField {
@@ -40,6 +45,7 @@ struct VariantField {
   int64_t parameters = 0, samples = 0;
   int64_t scene_parameters = 0;  // stored in the scene
   int log2_table_size = 0;       // 0: the context
+  int64_t steps = 0;
   double seconds = 0.0;
   double psnr_db = std::numeric_limits<double>::quiet_NaN();  // held-out; NaN for the context
 };
@@ -62,6 +68,8 @@ struct VariantResult {
   std::vector<std::pair<double, double>> curve;  // (training seconds of all fields together, mean PSNR of their batches)
   std::string photo, render, error;              // image files of one held-out photo, relative to FOLDER; may be empty
   std::string report;                            // its report, relative to FOLDER
+  std::vector<ScaleScore> scales;                // when the study measures them
+  std::string scale_pictures;                    // folder of their pictures, relative to FOLDER; may be empty
 };
 
 class Study {
@@ -77,8 +85,13 @@ class Study {
   // Prepares the survey. Throws as the stages of coordinator/stages/pipeline.h do.
   Study(comm::Communicator& comm, Options options);
 
+  const std::filesystem::path& folder() const { return options_.folder; }  // absolute
   const survey::Survey& survey() const { return survey_; }
   const coordinator::Settings& settings() const { return options_.settings; }
+  // Every variant that is run from now on is also scored at several scales.
+  void MeasureScales(ScaleOptions options) { scales_ = std::move(options); }
+  // A study of another survey with the same settings and `overrides`, in FOLDER/name.
+  Study Beside(const std::string& name, const StudySurvey& survey, const std::vector<config::Override>& overrides) const;
   // Trains and scores a variant, or reads its saved result. When it cannot be trained, `failure` of the result has the reason.
   // Throws base::Interrupted (the same call continues), base::UsageError when the saved result was made with other settings.
   VariantResult Run(const Variant& variant);
@@ -98,12 +111,14 @@ class Study {
   void LinkPixels(const std::filesystem::path& run_folder, int image_width, bool share) const;
   // Puts together the result of `scored` from the training of `trained` (the same variant or not), the metrics, and the files of both.
   VariantResult Collect(const Variant& trained, const Variant& scored, const scene::TrainReport& training, const evaluate::Metrics& metrics) const;
+  void AddScales(const Variant& variant, const coordinator::Settings& settings, VariantResult* result) const;
   std::optional<VariantResult> Load(const Variant& variant, const std::string& identity) const;
 
   comm::Communicator& comm_;
   Options options_;
   std::filesystem::path source_;  // project that holds the survey
   survey::Survey survey_;
+  std::optional<ScaleOptions> scales_;
 };
 
 // Writes and reads the text of FOLDER/runs/<variant>.json. identity: of settings and survey. ParseResult throws nlohmann::json::exception.

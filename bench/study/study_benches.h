@@ -67,4 +67,18 @@ struct TradeoffOptions {
 // number of photos.
 StudyBench Tradeoff(Study& study, const TradeoffOptions& options);
 
+struct ScalesOptions {
+  std::vector<int> positions = {0, 1, 4, 6};             // per sample, as train.multisample: 0 are points, the others cones
+  std::vector<double> pyramid = {0.6, 0.2, 0.12, 0.08};  // shares of the rays with which the pyramid is compared
+  double budget_s = 60.0;                                // training time of every variant of equal time
+  int seeds = 1;                                         // trainings per method, with seeds from run.seed on
+  bool equal_time = true, equal_steps = true;
+  bool heights = false;        // train with photos from several heights; the photos are simulated
+  std::string place = "town";  // simulated for `heights`
+  int height_views = 10;       // held-out photos of each height without training photos
+};
+// Compares samples that are points with samples that are cones, taught from photos or from a pyramid of photos, rendered at several widths with one
+// ray per pixel: at equal time, at equal steps, and trained and rendered from several heights. Writes scales.png into the study's folder.
+StudyBench ScalesBench(Study& study, const ScalesOptions& options);
+
 }  // namespace skyquilt::bench

@@ -57,9 +57,22 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"scene_parameters", field.scene_parameters},
                               {"log2_table_size", field.log2_table_size},
                               {"samples", field.samples},
+                              {"steps", field.steps},
                               {"seconds", field.seconds},
                               {"psnr_db", OrNull(field.psnr_db)}});
   }
+  json["scales"] = Json::array();
+  for (const ScaleScore& score : result.scales) {
+    json["scales"].push_back({{"group", score.group},
+                              {"divisor", score.divisor},
+                              {"averaged", score.averaged},
+                              {"photos", score.photos},
+                              {"width", score.width},
+                              {"psnr_db", OrNull(score.psnr_db)},
+                              {"render_seconds", score.render_seconds},
+                              {"frame_seconds", OrNull(score.frame_seconds)}});
+  }
+  json["scale_pictures"] = result.scale_pictures;
   json["curve"] = result.curve;
   json["floater_profile"] = result.floater_profile;
   for (const auto& [key, value] :
@@ -86,9 +99,21 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .samples = field.at("samples").get<int64_t>(),
                              .scene_parameters = field.at("scene_parameters").get<int64_t>(),
                              .log2_table_size = field.at("log2_table_size").get<int>(),
+                             .steps = field.value("steps", int64_t{0}),  // absent in results of older programs, as are scales
                              .seconds = field.at("seconds").get<double>(),
                              .psnr_db = OrNone(field.at("psnr_db"))});
   }
+  for (const Json& score : json.value("scales", Json::array())) {
+    result.scales.push_back({.group = score.at("group").get<std::string>(),
+                             .divisor = score.at("divisor").get<int>(),
+                             .averaged = score.at("averaged").get<bool>(),
+                             .photos = score.at("photos").get<int>(),
+                             .width = score.at("width").get<int>(),
+                             .psnr_db = OrNone(score.at("psnr_db")),
+                             .render_seconds = score.at("render_seconds").get<double>(),
+                             .frame_seconds = OrNone(score.at("frame_seconds"))});
+  }
+  result.scale_pictures = json.value("scale_pictures", "");
   json.at("curve").get_to(result.curve);
   json.at("floater_profile").get_to(result.floater_profile);
   for (const auto& [key, value] :

@@ -25,6 +25,11 @@ VariantResult Example() {
               {.name = "r0c1", .parameters = 30, .samples = 40, .seconds = 2.0}};
   r.curve = {{1.0, 20.0}, {2.0, 22.0}};
   r.render = "runs/guided/report/images/photo_00001_render.jpg";
+  r.fields[1].steps = 1234;
+  r.scales = {
+      {.group = "h060_", .divisor = 4, .averaged = true, .photos = 3, .width = 160, .psnr_db = 31.5, .render_seconds = 0.25, .frame_seconds = 0.08},
+      {.divisor = 8}};
+  r.scale_pictures = "runs/guided/scales";
   return r;
 }
 
@@ -64,7 +69,31 @@ TEST(ResultJson, ReadsBackUnchanged) {
   EXPECT_TRUE(std::isnan(back.fields[2].psnr_db));
   EXPECT_EQ(back.curve, r.curve);
   EXPECT_EQ(back.render, r.render);
+  EXPECT_EQ(back.fields[1].steps, 1234);
+  ASSERT_EQ(back.scales.size(), 2U);
+  EXPECT_EQ(back.scales[0].group, "h060_");
+  EXPECT_EQ(back.scales[0].divisor, 4);
+  EXPECT_TRUE(back.scales[0].averaged);
+  EXPECT_EQ(back.scales[0].photos, 3);
+  EXPECT_EQ(back.scales[0].width, 160);
+  EXPECT_EQ(back.scales[0].psnr_db, 31.5);
+  EXPECT_EQ(back.scales[0].render_seconds, 0.25);
+  EXPECT_EQ(back.scales[0].frame_seconds, 0.08);
+  EXPECT_TRUE(std::isnan(back.scales[1].psnr_db));
+  EXPECT_EQ(back.scale_pictures, "runs/guided/scales");
   EXPECT_EQ(ResultJson(back, identity), ResultJson(r, "abc 1"));
+}
+
+TEST(ResultJson, OfAnOlderProgramHasNoScales) {
+  nlohmann::json json = nlohmann::json::parse(ResultJson(Example(), "abc"));
+  json.erase("scales");
+  json.erase("scale_pictures");
+  for (nlohmann::json& field : json["fields"]) field.erase("steps");
+  std::string identity;
+  const VariantResult back = ParseResult(json.dump(), &identity);
+  EXPECT_TRUE(back.scales.empty());
+  EXPECT_EQ(back.fields[1].steps, 0);
+  EXPECT_EQ(back.psnr_db, Example().psnr_db);
 }
 
 TEST(ResultJson, RefusesADamagedText) {

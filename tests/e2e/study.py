@@ -77,6 +77,27 @@ def test(skyquilt, folder):
         expect(abs(stored[name]["psnr_db"] - stored["storage_fp32"]["psnr_db"]) < 0.1, stored)
         expect(stored[name]["train_seconds"] == stored["storage_fp32"]["train_seconds"], "it was trained again")
 
+    # Renderings of several widths.
+    out = folder / "scales"
+    words = ["bench", "scales", "--survey", survey, "-o", out, "--parts", "time,steps", "--positions", "0,1", *SMALL]
+    skyquilt.call("bench", "scales", "--survey", survey, "-o", out, "--parts", "heights", *SMALL, status=2)
+    skyquilt.call(*words)
+    result = check_page(out, "scales")
+    names = [f"{part}_{samples}_{photos}" for part in ("time", "steps") for samples in ("points", "cones1") for photos in ("photos", "pyramid")]
+    expect([variant["name"] for variant in result["results"]] == names, result["results"])
+    steps = {variant["name"]: [field["steps"] for field in variant["fields"]] for variant in result["results"]}
+    for name in names[4:]:
+        expect(steps[name] == steps["steps_points_photos"] and steps[name][0] == steps["time_points_photos"][0], steps)
+    for variant in result["results"]:
+        scores = [(score["divisor"], score["averaged"], score["width"]) for score in variant["scales"]]
+        expect(scores == [(1, False, 160), (2, False, 80), (2, True, 80), (4, False, 40), (4, True, 40), (8, False, 20), (8, True, 20)], scores)
+        expect(all(score["psnr_db"] > 5.0 and score["photos"] == 2 for score in variant["scales"]), variant["scales"])
+        expect(abs(variant["scales"][0]["psnr_db"] - variant["psnr_full_db"]) < 3.0, variant)
+    expect((out / "scales.png").is_file(), "no picture")
+    before = digest(out / "runs")
+    skyquilt.call(*words)
+    expect(digest(out / "runs") == before, "a finished variant was run again")
+
 
 if __name__ == "__main__":
     main(test)

@@ -16,6 +16,7 @@
 #include "core/image/image.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/exif.h"
+#include "simulate/world.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -203,6 +204,24 @@ TEST_F(HamletSurvey, PhotosAreNeitherFlatNorClipped) {
     EXPECT_GT(std::sqrt(squares / n - sum / n * sum / n), 20.0);
     EXPECT_LT(static_cast<double>(n_clipped), 0.02 * n);
   }
+}
+
+TEST_F(HamletSurvey, APlanChoosesPhotosDepthAndPoints) {
+  base::ThreadPool threads(2);
+  SimulateOptions options = Hamlet();
+  options.samples_per_pixel = 1;
+  const SimulateSummary summary = Simulate(options, root_ / "planned", threads, [](const PlaceSpec& place, const World& world) {
+    std::vector<PhotoPlan> photos = PlanFlight(place, world.TakeoffHeight(place));
+    photos.resize(5);
+    for (PhotoPlan& photo : photos) photo.finds_points = false;
+    photos[1].true_depth = true;
+    return photos;
+  });
+  EXPECT_EQ(summary.n_photos, 5);
+  EXPECT_EQ(summary.n_test, 1);
+  EXPECT_EQ(summary.n_points, 0);
+  EXPECT_TRUE(fs::exists(root_ / "planned/truth/depth/IMG_0002.tiff"));
+  EXPECT_EQ(base::ReadFile(root_ / "planned/truth/buildings.json"), base::ReadFile(root_ / "two/truth/buildings.json"));
 }
 
 // The same survey in a frame of structure from motion, with errors in the tags.

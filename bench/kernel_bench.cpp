@@ -1,8 +1,8 @@
 #include "bench/kernel_bench.h"
 
 #include <algorithm>
-#include <limits>
 #include <chrono>
+#include <limits>
 #include <map>
 #include <stdexcept>
 

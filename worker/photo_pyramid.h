@@ -1,5 +1,5 @@
-// Which sizes of the photos training rays are drawn from: at 1, 1/2, 1/4 and 1/8, each pixel the mean of a square of the photo's pixels in linear light.
-// Without the smaller sizes the networks never learn what a place looks like from farther away.
+// Which sizes of the photos training rays are drawn from: at 1, 1/2, 1/4 and 1/8, each pixel the mean of a square of the photo's pixels in linear
+// light. Without the smaller sizes the networks never learn what a place looks like from farther away.
 #pragma once
 
 #include <array>

@@ -59,8 +59,8 @@ void RayBatch::PadTo(size_t end) {
   cell.resize(end, 0);
 }
 
-void RayBatch::Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* sharpness_in, const float* t_in, const float* unit_length_in,
-                      const int32_t* cell_in) {
+void RayBatch::Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* sharpness_in, const float* t_in,
+                      const float* unit_length_in, const int32_t* cell_in) {
   if (packets.empty() || packets.back().count + ray.count > field::kChunk) {
     const int64_t begin = kernel::Padded(Size());
     PadTo(static_cast<size_t>(begin));

@@ -49,8 +49,8 @@ struct RayBatch {
   }
   // Appends a ray with ray.count samples. A ray with more samples than a packet holds gets a packet of its own. x_in, y_in, z_in: the positions of a
   // sample follow each other.
-  void Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* sharpness_in, const float* t_in, const float* unit_length_in,
-              const int32_t* cell_in);
+  void Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* sharpness_in, const float* t_in,
+              const float* unit_length_in, const int32_t* cell_in);
   // Completes the last packet and sets the packets' feature ranges, for `rows` features per sample.
   void LayOutFeatures(int rows);
 

@@ -31,7 +31,8 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
       {"stratified", &O::stratified, Range(),
        "true: the samples of a ray are shifted by a random part of a step, new for every ray; false: they are in the middle of the steps"},
       {"multisample", &O::multisample, Range::OneOf({0, 1, 4, 6}),
-       "positions per sample. 1: samples have the footprint of their pixel, and detail finer than it fades, so that renderings from any distance show "
+       "positions per sample. 1: samples have the footprint of their pixel, and detail finer than it fades, so that renderings from any distance "
+       "show "
        "no flicker; 4 and 6: the same, spread over the footprint, slower; 0: samples are points"},
       {"scale_features", &O::scale_features, Range(),
        "true: the network also sees how large the footprint is beside the cells of each level; not with multisample = 0"},
@@ -58,7 +59,8 @@ void TrainOptions::Check(const std::string& section) const {
     const bool may_be_empty = shares == &pyramid_start;
     const bool usable = shares->size() <= kPyramidLevels && std::any_of(shares->begin(), shares->end(), [](double share) { return share > 0.0; });
     if (usable || (may_be_empty && shares->empty())) continue;
-    throw base::UsageError(section + "." + key + " is not allowed: give one to four shares, of which at least one is above 0, such as [0.6, 0.2, 0.12, 0.08]");
+    throw base::UsageError(section + "." + key +
+                           " is not allowed: give one to four shares, of which at least one is above 0, such as [0.6, 0.2, 0.12, 0.08]");
   }
   if (scale_features && multisample == 0) {
     throw base::UsageError(section + ".scale_features = true is not allowed with " + section + ".multisample = 0: points have no footprint");

@@ -73,7 +73,7 @@ CaseResult ConeFeatures(const Widths& widths, int samples) {
     y[s] = random.Uniform();
     z[s] = 0.5F * random.Uniform();
     const double width_m = DrawWidth(widths, random);
-    sharpness[s] = render::SharpnessOf(width_m, field.map.units_per_metre());
+    sharpness[s] = render::SharpnessOf(width_m, field.map.units_per_metre(), 1);
     deviation[s] = width_m * field.map.units_per_metre() / std::sqrt(12.0);
   }
   field.field->EncodeSerial(field.parameters.grid, {x.data(), y.data(), z.data(), sharpness.data()}, samples, features.data(), n);
@@ -179,7 +179,7 @@ CaseResult ConeRendering(const Widths& widths, RayShape shape, int n) {
     worst.Take(std::abs(static_cast<double>(out[i].opacity) - (1.0 - exact.transmittance)));
     for (size_t c = 0; c < 3; ++c) worst.Take(std::abs(static_cast<double>(out[i].rgb_srgb[c]) - exact.rgb[c]));
   }
-  field.config.cones = false;
+  field.config.multisample = 0;
   render::RenderRays(set, rays, of_points, options, threads);
   const bool same_as_points = std::memcmp(out.data(), of_points.data(), out.size() * sizeof(render::RayColor)) == 0;
   return {.seen = fmt::format("{} rays, {} samples{}", n, samples, same_as_points ? ", the bits of points" : ""),

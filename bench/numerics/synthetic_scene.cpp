@@ -49,7 +49,7 @@ render::TrainedField SyntheticField(const SyntheticOptions& options) {
   field.config.color_hidden_layers = options.color_hidden_layers;
   field.config.color_range = 1.4;
   field.config.density_bias = -3.0;
-  field.config.cones = options.multisample > 0;
+  field.config.multisample = options.multisample;
   field.occupancy = field::OccupancyGrid::Make(grid.extent, 3.0 * options.voxel_m / options.edge_m, 100'000);
   return field;
 }
@@ -75,7 +75,7 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
       ray.ray.target_srgb[c] = std::clamp(recorded, 0.0F, 1.0F);
       ray.background[c] = random.Uniform();
     }
-    if (field.config.cones) ray.ray.pixel_pitch = DrawPitch(rays, (ground - camera).norm(), random);
+    if (field.config.Cones()) ray.ray.pixel_pitch = DrawPitch(rays, (ground - camera).norm(), random);
     const float jitter = random.Uniform();
     const geo::Interval interval = render::FieldInterval(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
     const render::UnitRay unit(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
@@ -88,7 +88,7 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
                     y.push_back(p.y());
                     z.push_back(p.z());
                     t.push_back(static_cast<float>(at));
-                    sharpness.push_back(render::SharpnessOf(static_cast<double>(ray.ray.pixel_pitch) * at, field.map.units_per_metre()));
+                    sharpness.push_back(render::SharpnessOf(static_cast<double>(ray.ray.pixel_pitch) * at, field.map.units_per_metre(), 1));
                     unit_length.push_back(static_cast<float>(length / field.step_m));
                     cell.push_back(static_cast<int32_t>(index));
                     return true;

@@ -20,7 +20,8 @@ double PitchAt(const Camera& camera, double x, double y) {
 PixelPitch::PixelPitch(const Camera& camera) : width_(camera.width), height_(camera.height) {
   lattice_.reserve(static_cast<size_t>(kColumns) * kRows);
   for (int row = 0; row < kRows; ++row) {
-    for (int column = 0; column < kColumns; ++column) lattice_.push_back(PitchAt(camera, width_ * column / (kColumns - 1), height_ * row / (kRows - 1)));
+    for (int column = 0; column < kColumns; ++column)
+      lattice_.push_back(PitchAt(camera, width_ * column / (kColumns - 1), height_ * row / (kRows - 1)));
   }
 }
 

@@ -60,7 +60,8 @@ class Encoding {
 
   // Sets the initial values of all ParameterCount() parameters. By default uniform in +-1e-4 (Mueller et al. 2022, section 4).
   virtual void Initialize(base::Random& random, std::span<float> parameters) const;
-  // Computes the part's feature rows for n samples (any n); footprints weaken features that are finer than they are. table: the part's parameters. out: the part's first row.
+  // Computes the part's feature rows for n samples (any n); footprints weaken features that are finer than they are. table: the part's parameters.
+  // out: the part's first row.
   virtual void Forward(int part, const float* table, const kernel::Positions& at, int64_t n, float* out, size_t out_stride) const = 0;
   // Backward pass: adds to table_gradient and sets touched[line] = 1 for every line of kernel::kLineFloats that it writes to. Samples whose gradient
   // is all zero are skipped. table as in Forward; out_gradient: the part's first row.

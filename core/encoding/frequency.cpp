@@ -35,7 +35,8 @@ void Frequency::Forward(int part, const float* /*table*/, const kernel::Position
   const int rows = FirstRow(part + 1) - FirstRow(part);
   const auto row = [&](int i) { return out + static_cast<size_t>(i) * out_stride; };
   for (int i = 0; i < rows; ++i) std::fill_n(row(i), n, part == 0 && i == 3 ? 1.0F : 0.0F);
-  for (int j = 0; j < at.points; ++j) AddPosition(part, at.From(static_cast<int64_t>(static_cast<size_t>(j) * at.plane)), at.sharpness, n, out, out_stride);
+  for (int j = 0; j < at.points; ++j)
+    AddPosition(part, at.From(static_cast<int64_t>(static_cast<size_t>(j) * at.plane)), at.sharpness, n, out, out_stride);
 }
 
 void Frequency::AddPosition(int part, const kernel::Positions& at, const float* sharpness, int64_t n, float* out, size_t out_stride) const {

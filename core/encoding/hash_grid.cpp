@@ -51,8 +51,8 @@ void HashGrid::Forward(int part, const float* table, const kernel::Positions& at
   kernel::HashForward(level(part), features_, table, at, n, out, out_stride);
 }
 
-void HashGrid::Backward(int part, const float* /*table*/, const kernel::Positions& at, int64_t n, const float* out_gradient,
-                        size_t out_stride, float* table_gradient, uint8_t* touched) const {
+void HashGrid::Backward(int part, const float* /*table*/, const kernel::Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
+                        float* table_gradient, uint8_t* touched) const {
   kernel::HashBackward(level(part), features_, at, n, out_gradient, out_stride, table_gradient, touched);
 }
 

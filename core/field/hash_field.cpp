@@ -23,7 +23,8 @@ HashField::HashField(const FieldConfig& config) : config_(config), encoding_(enc
   Require(config.color_hidden_layers >= 1 && config.color_hidden_layers <= 3, "color_hidden_layers must be 1..3");
   Require(config.sh_degree >= 1 && config.sh_degree <= 4, "sh_degree must be 1..4");
   Require(config.color_range > 0.0 && std::isfinite(config.color_range), "color_range must be positive");
-  Require(config.multisample == 0 || config.multisample == 1 || config.multisample == 4 || config.multisample == 6, "multisample must be 0, 1, 4 or 6");
+  Require(config.multisample == 0 || config.multisample == 1 || config.multisample == 4 || config.multisample == 6,
+          "multisample must be 0, 1, 4 or 6");
   Require(!config.scale_features || config.Cones(), "scale_features needs multisample");
   if (config.scale_features) scale_rows_ = kernel::PaddedRows(config.grid.levels);
   color_inputs_ = kGeometryRows + kernel::PaddedRows(config.sh_degree * config.sh_degree);

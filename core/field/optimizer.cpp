@@ -13,20 +13,19 @@ void OptimizerState::Allocate(const HashField& field) {
   step = 0;
 }
 
-void AddPartGradient(const HashField& field, int part, const float* table, const kernel::Positions& at,
-                     std::span<const FeatureGradient> segments, float* table_gradient, uint8_t* touched) {
+void AddPartGradient(const HashField& field, int part, const float* table, const kernel::Positions& at, std::span<const FeatureGradient> segments,
+                     float* table_gradient, uint8_t* touched) {
   const auto first_row = static_cast<size_t>(field.encoding().FirstRow(part));
   for (const FeatureGradient& s : segments) {
-    field.encoding().Backward(part, table, at.From(s.begin), s.count, s.gradient + first_row * s.stride, s.stride,
-                              table_gradient, touched);
+    field.encoding().Backward(part, table, at.From(s.begin), s.count, s.gradient + first_row * s.stride, s.stride, table_gradient, touched);
   }
 }
 
 Optimizer::Optimizer(const HashField& field, base::ThreadPool& threads)
     : field_(field), threads_(threads), scratch_(static_cast<size_t>(threads.size())) {}
 
-void Optimizer::Update(const kernel::Positions& at, std::span<const FeatureGradient> segments, double learning_rate,
-                       double network_l2, Parameters& parameters, OptimizerState& state, const TaskClock& scattered, const TaskClock& applied) {
+void Optimizer::Update(const kernel::Positions& at, std::span<const FeatureGradient> segments, double learning_rate, double network_l2,
+                       Parameters& parameters, OptimizerState& state, const TaskClock& scattered, const TaskClock& applied) {
   ++state.step;
   kernel::AdamStep step;
   const auto t = static_cast<double>(state.step);

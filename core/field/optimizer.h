@@ -31,8 +31,8 @@ struct FeatureGradient {
   size_t stride = 0;
 };
 // Backward pass of one part of the encoding over all segments of a batch; table, table_gradient and touched as in encoding::Encoding::Backward.
-void AddPartGradient(const HashField& field, int part, const float* table, const kernel::Positions& at,
-                     std::span<const FeatureGradient> segments, float* table_gradient, uint8_t* touched);
+void AddPartGradient(const HashField& field, int part, const float* table, const kernel::Positions& at, std::span<const FeatureGradient> segments,
+                     float* table_gradient, uint8_t* touched);
 
 // Called at the end of a task with its thread and start time, to measure times per phase; may be empty.
 using TaskClock = std::function<void(int thread, std::chrono::steady_clock::time_point began)>;
@@ -45,8 +45,8 @@ class Optimizer {
   Optimizer(const HashField& field, base::ThreadPool& threads);
   // One step of Adam with state.network_gradient, which is then set to zero, and the grid gradient of the segments. at: positions of the batch.
   // network_l2: weight decay of the networks. `scattered` and `applied` time the backward pass and Adam of each part.
-  void Update(const kernel::Positions& at, std::span<const FeatureGradient> segments, double learning_rate, double network_l2,
-              Parameters& parameters, OptimizerState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
+  void Update(const kernel::Positions& at, std::span<const FeatureGradient> segments, double learning_rate, double network_l2, Parameters& parameters,
+              OptimizerState& state, const TaskClock& scattered = {}, const TaskClock& applied = {});
 
  private:
   struct PartScratch {

@@ -39,8 +39,8 @@ class PixelCache {
   size_t FileBytes() const { return map_.bytes().size(); }
   // The sRGB values of one pixel (row-major index); false where the mask says to ignore it. For random access, see Stream.
   bool Pixel(size_t photo, size_t pixel, uint8_t rgb[3]) const;
-  // Mean of the size x size pixels whose first is (x, y), in linear light, without masked ones; false when fewer than half of them are left. They must
-  // be inside the photo.
+  // Mean of the size x size pixels whose first is (x, y), in linear light, without masked ones; false when fewer than half of them are left. They
+  // must be inside the photo.
   bool MeanLight(size_t photo, int x, int y, int size, float light[3]) const;
   // When on, Pixel reads from the file instead of through mapped pages: slower, but the photos take no memory.
   void Stream(bool on) { streaming_ = on; }

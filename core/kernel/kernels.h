@@ -76,16 +76,15 @@ struct Positions {
   const float* x = nullptr;
   const float* y = nullptr;
   const float* z = nullptr;
-  // Per sample 1 / (sqrt(8) s), s: standard deviation of its footprint in unit lengths. 0: infinitely large; infinity, NaN: a point. Null: all points.
+  // Per sample 1 / (sqrt(8) s), s: standard deviation of its footprint in unit lengths. 0: infinitely large; infinity, NaN: a point. Null: all
+  // points.
   const float* sharpness = nullptr;
   // A sample is the mean of this many positions; position j of sample s is element j * plane + s of x, y and z.
   int points = 1;
   size_t plane = 0;
 
   // The samples from `first` on.
-  Positions From(int64_t first) const {
-    return {x + first, y + first, z + first, sharpness != nullptr ? sharpness + first : nullptr, points, plane};
-  }
+  Positions From(int64_t first) const { return {x + first, y + first, z + first, sharpness != nullptr ? sharpness + first : nullptr, points, plane}; }
 };
 
 // Share of a sample's footprint, a normal distribution, that is inside a cube of edge 1 / cells_per_unit about its centre, along one axis:

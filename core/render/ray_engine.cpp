@@ -23,15 +23,15 @@ constexpr size_t kRoundSamples = 8;
 constexpr float kMaxLogTau = 30.0F;  // exp of it times any length is finite
 // A ray ends below this transmittance, and its colour is scaled to full opacity. About one step of an 8-bit colour; Mueller et al. 2022 stop at 0.01.
 constexpr double kDarkTransmittance = 5e-3;
-// Marching steps in widths of a pixel, used where they are longer than the field's own step: of fields of points, and of fields with cones, which know
-// what a place looks like at this width.
+// Marching steps in widths of a pixel, used where they are longer than the field's own step: of fields of points, and of fields with cones, which
+// know what a place looks like at this width.
 constexpr double kPixelsPerStep = 4.5, kConePixelsPerStep = 1.0;
 
 struct Sample {
   double t;
   float length, unit_length, blend;
-  float x, y, z;    // unit frame of its field
-  bool odd;         // every other sample of its ray and field
+  float x, y, z;  // unit frame of its field
+  bool odd;       // every other sample of its ray and field
   int field;
   float weight;  // compositing weight
   int local;     // index in its field's batch
@@ -185,8 +185,8 @@ class RayRenderer::Group {
       }
       if (weight > 1e-4) {
         const Eigen::Vector3f p = unit.At(t);
-        samples_.push_back({t, static_cast<float>(length), static_cast<float>(unit_length / f.step_m), static_cast<float>(weight), p.x(), p.y(), p.z(),
-                            count % 2 != 0, k, 0.0F, 0});
+        samples_.push_back({t, static_cast<float>(length), static_cast<float>(unit_length / f.step_m), static_cast<float>(weight), p.x(), p.y(),
+                            p.z(), count % 2 != 0, k, 0.0F, 0});
       }
       return ++count < kMaxRaySamples;
     };
@@ -253,8 +253,9 @@ class RayRenderer::Group {
     const auto rows = static_cast<size_t>(f.FeatureRows());
     batch.features.resize(std::max(batch.features.size(), rows * batch.stride));
     batch.geometry.resize(std::max(batch.geometry.size(), static_cast<size_t>(field::kGeometryRows) * batch.stride));
-    const kernel::Positions at{batch.x.data(), batch.y.data(), batch.z.data(), f.config().Cones() ? batch.sharpness.data() : nullptr,
-                               static_cast<int>(Points(*all_[k])), batch.count};
+    const kernel::Positions at{
+        batch.x.data(), batch.y.data(), batch.z.data(), f.config().Cones() ? batch.sharpness.data() : nullptr, static_cast<int>(Points(*all_[k])),
+        batch.count};
     f.EncodeSerial(all_[k]->parameters.grid, at, n, batch.features.data(), batch.stride);
     for (size_t row = 0; row < rows; ++row) std::fill_n(batch.features.data() + row * batch.stride + n, padded - n, 0.0F);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {

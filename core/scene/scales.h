@@ -1,5 +1,5 @@
-// Which scales a scene knows: the widths of the footprints with which its blocks were trained (core/render/footprint.h), and the warning of renderings
-// far beyond them.
+// Which scales a scene knows: the widths of the footprints with which its blocks were trained (core/render/footprint.h), and the warning of
+// renderings far beyond them.
 #pragma once
 
 #include <span>

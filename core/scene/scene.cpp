@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "core/base/errors.h"
-#include "core/checkpoint/archive.h"
 #include "core/camera/pixel_pitch.h"
+#include "core/checkpoint/archive.h"
 #include "core/image/srgb.h"
 #include "core/render/ray_engine.h"
 #include "core/render/ray_segments.h"

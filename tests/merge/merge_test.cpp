@@ -32,7 +32,7 @@ class Merge : public testing::Test {
     const Eigen::Vector3d low(name == "r0c1" ? 5.0 : 0.0, 0.0, 0.0);
     render::TrainedField field = render::RandomField(3, low, low + Eigen::Vector3d(5.0, 5.0, 4.0), 0.8, -1.0, kind == "context");
     field.name = name;
-    field.config.cones = footprints.max_m > 0.0;
+    field.config.multisample = footprints.max_m > 0.0 ? 1 : 0;
     field.footprint_min_m = footprints.min_m;
     field.footprint_max_m = footprints.max_m;
     const brightness::Response response = brightness::Response::Neutral(2, 1);
@@ -87,15 +87,15 @@ TEST_F(Merge, UnknownAccuracyIsNotStored) {
 }
 
 TEST_F(Merge, TheSceneKnowsTheFootprintsOfAllBlocks) {
-  EXPECT_FALSE(Merged({}).cones);
+  EXPECT_FALSE(Merged({}).scales.Cones());
   Write("context", "context", {0.3, 40.0});
   Write("block", "r0c0", {0.1, 0.5});
   Write("block", "r0c1", {0.05, 0.3});
   const scene::SceneInfo info = Merged({});
   ASSERT_EQ(info.blocks.size(), 2U);
-  EXPECT_TRUE(info.cones);
-  EXPECT_EQ(info.footprint_min_m, 0.05);
-  EXPECT_EQ(info.footprint_max_m, 0.5);
+  EXPECT_TRUE(info.scales.Cones());
+  EXPECT_EQ(info.scales.footprint_min_m, 0.05);
+  EXPECT_EQ(info.scales.footprint_max_m, 0.5);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST_P(ConesTest, TrainTheSameBitsWithAnyNumberOfThreads) {
     const TrainResult block = TrainBlock(JobOf("block" + end, 90), Box(12.0, 1.0), folder_ / ("context" + end), threads, {});
     ASSERT_TRUE(block.ok) << block.reason;
     EXPECT_EQ(block.dropped_steps, 0);
-    EXPECT_EQ(Field("block" + end).config.cones, GetParam().multisample > 0);
+    EXPECT_EQ(Field("block" + end).config.multisample, GetParam().multisample);
     if (n == 1) continue;
     ExpectSame("context1.h5", "context" + end);
     ExpectSame("block1.h5", "block" + end);
@@ -99,7 +99,7 @@ class FootprintRange : public TrainingWithCones {
 // The photos are from 30 to 32 m above the ground, and the field from 1 m below it to 6 m above. A pixel is a fiftieth of its distance wide.
 TEST_F(FootprintRange, IsThatOfThePhotosPixels) {
   const render::TrainedField f = TrainedWith("context.h5", 1, {1.0});
-  EXPECT_TRUE(f.config.cones);
+  EXPECT_TRUE(f.config.Cones());
   EXPECT_GT(f.footprint_min_m, 0.8 * 24.0 / 50.0);
   EXPECT_LT(f.footprint_min_m, 30.0 / 50.0);
   EXPECT_GT(f.footprint_max_m, 30.0 / 50.0);
@@ -119,9 +119,9 @@ TEST_F(FootprintRange, CoversEverySizeThatIsEverDrawn) {
 
 TEST_F(FootprintRange, IsNotStoredWithPoints) {
   const render::TrainedField f = TrainedWith("points.h5", 0, AllSizes());
-  EXPECT_FALSE(f.config.cones);
+  EXPECT_FALSE(f.config.Cones());
   const checkpoint::ArchiveReader reader(folder_ / "points.h5");
-  for (const char* name : {"cones", "footprint_min_m", "footprint_max_m"}) EXPECT_FALSE(reader.HasAttribute(name)) << name;
+  for (const char* name : {"multisample", "footprint_min_m", "footprint_max_m"}) EXPECT_FALSE(reader.HasAttribute(name)) << name;
 }
 
 // Photos at a quarter of the width have pixels four times as wide; so have the drawn quarter sizes of the photos.

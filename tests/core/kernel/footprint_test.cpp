@@ -46,7 +46,8 @@ struct Samples {
   Positions At() const { return {x.data(), y.data(), z.data(), sharpness.data(), points, plane}; }
   std::vector<std::array<double, 3>> Of(size_t s) const {
     std::vector<std::array<double, 3>> positions;
-    for (size_t i = s; i < x.size(); i += plane) positions.push_back({static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])});
+    for (size_t i = s; i < x.size(); i += plane)
+      positions.push_back({static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])});
     return positions;
   }
   int points;
@@ -55,7 +56,8 @@ struct Samples {
 };
 
 TEST(FootprintWeight, IsTheErrorFunctionOfVoxelOverFootprint) {
-  for (double a = 0.0; a < 5.0; a += 0.0137) EXPECT_NEAR(static_cast<double>(FootprintWeight(static_cast<float>(40.0 * a), 40.0F)), std::erf(a), 2e-6) << a;
+  for (double a = 0.0; a < 5.0; a += 0.0137)
+    EXPECT_NEAR(static_cast<double>(FootprintWeight(static_cast<float>(40.0 * a), 40.0F)), std::erf(a), 2e-6) << a;
 }
 
 TEST(FootprintWeight, KnowsPointsAndInfiniteFootprints) {

@@ -23,7 +23,7 @@ bool SameColor(const RayColor& a, const RayColor& b) {
 }
 
 TrainedField Coned(TrainedField f, double min_m, double max_m) {
-  f.config.cones = true;
+  f.config.multisample = 1;
   f.footprint_min_m = min_m;
   f.footprint_max_m = max_m;
   f.BuildNetworks();
@@ -200,9 +200,9 @@ TEST(Footprint, OfARayIsItsWidthAndPitchTimesDistance) {
 TEST(Footprint, HasTheVarianceOfASquareOfItsWidth) {
   const double width_m = 0.4, units_per_metre = 1.0 / 30.0;
   const double deviation = width_m * units_per_metre / std::sqrt(12.0);
-  EXPECT_NEAR(static_cast<double>(SharpnessOf(width_m, units_per_metre)), 1.0 / (std::sqrt(8.0) * deviation), 1e-5);
-  EXPECT_EQ(SharpnessOf(0.0, units_per_metre), std::numeric_limits<float>::infinity());
-  EXPECT_EQ(SharpnessOf(kEndless, units_per_metre), 0.0F);
+  EXPECT_NEAR(static_cast<double>(SharpnessOf(width_m, units_per_metre, 1)), 1.0 / (std::sqrt(8.0) * deviation), 1e-5);
+  EXPECT_EQ(SharpnessOf(0.0, units_per_metre, 1), std::numeric_limits<float>::infinity());
+  EXPECT_EQ(SharpnessOf(kEndless, units_per_metre, 1), 0.0F);
 }
 
 }  // namespace

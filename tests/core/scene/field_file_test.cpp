@@ -205,7 +205,7 @@ TEST_P(TrainedFieldOf, RendersTheSameWithoutUnreadEntries) {
 // In the checkpoint of a block, and in the scene that is made from it.
 TEST_F(TrainedFieldFile, KeepsItsRangeOfFootprints) {
   render::TrainedField before = Make(encoding::Kind::kHash, 1);
-  before.config.cones = true;
+  before.config.multisample = 1;
   before.footprint_min_m = 0.1 / 3.0;
   before.footprint_max_m = 0.7;
   checkpoint::ArchiveWriter block("block", 1);
@@ -216,8 +216,8 @@ TEST_F(TrainedFieldFile, KeepsItsRangeOfFootprints) {
   PutSceneField(before, checkpoint, "a/", writer);
   writer.Commit(scene);
   for (const render::TrainedField& after : {GetField(checkpoint::ArchiveReader(checkpoint), checkpoint, ""), Read(scene)}) {
-    EXPECT_TRUE(after.config.cones);
-    EXPECT_TRUE(after.field->config().cones);
+    EXPECT_EQ(after.config.multisample, 1);
+    EXPECT_EQ(after.field->config().multisample, 1);
     EXPECT_EQ(after.footprint_min_m, before.footprint_min_m);
     EXPECT_EQ(after.footprint_max_m, before.footprint_max_m);
     ExpectSameLook(before, after, 0.1F);
@@ -229,15 +229,16 @@ TEST_F(TrainedFieldFile, WithoutFootprintsIsAFieldOfPoints) {
   const render::TrainedField points = Make(encoding::Kind::kHash, 1);
   const fs::path of_points = Write(points, "points.h5");
   for (const std::string& name : checkpoint::ArchiveReader(of_points).AttributeNames()) {
-    EXPECT_EQ(name.find("cones"), std::string::npos) << name;
+    EXPECT_EQ(name.find("multisample"), std::string::npos) << name;
     EXPECT_EQ(name.find("footprint"), std::string::npos) << name;
   }
   render::TrainedField cones = Make(encoding::Kind::kHash, 1);
-  cones.config.cones = true;
+  cones.config.multisample = 1;
   cones.footprint_min_m = 1.0;
   cones.footprint_max_m = 2.0;
-  const render::TrainedField after = Read(Rewrite(Write(cones, "cones.h5"), {"a/cones", "a/footprint_min_m", "a/footprint_max_m"}));
-  EXPECT_FALSE(after.config.cones);
+  const render::TrainedField after =
+      Read(Rewrite(Write(cones, "cones.h5"), {"a/multisample", "a/scale_features", "a/footprint_min_m", "a/footprint_max_m"}));
+  EXPECT_FALSE(after.config.Cones());
   EXPECT_EQ(after.footprint_min_m, 0.0);
   EXPECT_EQ(after.footprint_max_m, std::numeric_limits<double>::infinity());
   ExpectSameLook(points, after, 0.1F);
@@ -245,7 +246,7 @@ TEST_F(TrainedFieldFile, WithoutFootprintsIsAFieldOfPoints) {
 
 TEST_F(TrainedFieldFile, WithImpossibleFootprintsIsRefused) {
   render::TrainedField field = Make(encoding::Kind::kHash, 1);
-  field.config.cones = true;
+  field.config.multisample = 1;
   const std::pair<double, double> ranges[] = {{0.5, 0.4}, {-0.1, 0.4}, {std::nan(""), 0.4}, {0.1, std::nan("")}};
   for (const auto& [low, high] : ranges) {
     field.footprint_min_m = low;

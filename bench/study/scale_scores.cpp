@@ -56,8 +56,8 @@ evaluate::PhotoResponse RecordingOf(const ScaleInput& input, int photo) {
   const brightness::Response& response = input.scene->info().response;
   const survey::Photo& taken = input.survey->photos[static_cast<size_t>(photo)];
   const double gain = evaluate::TaggedGain(taken, response.reference_exposure, input.evaluate.exif_gain);
-  evaluate::PhotoResponse recording = evaluate::TaggedResponse(response, taken.camera, gain);
-  return input.evaluate.predicted_gain ? evaluate::PredictedResponse(response, static_cast<size_t>(photo), std::move(recording)) : recording;
+  const evaluate::PhotoResponse recording = evaluate::TaggedResponse(response, taken.camera, gain);
+  return input.evaluate.predicted_gain ? evaluate::PredictedResponse(response, static_cast<size_t>(photo), recording) : recording;
 }
 
 // Held-out photos whose names begin with `prefix`.

@@ -133,7 +133,7 @@ Study::Study(comm::Communicator& comm, Options options) : comm_(comm), options_(
   survey_ = survey::LoadSurvey(source_ / "survey");
 }
 
-std::string Study::Identity(const Variant& variant, coordinator::Settings settings) const {
+std::string Study::Identity(const Variant& variant, const coordinator::Settings& settings) const {
   coordinator::FlatOptions flat = settings.Flat();
   for (const char* key : kIdle) flat.erase(key);
   // The survey file is part of the identity, so the options that made it are not needed.

@@ -106,7 +106,7 @@ class Study {
                         scene::TrainReport* training);
   void RemoveLargeFiles(const Variant& variant) const;
   std::filesystem::path RunFolder(const Variant& variant) const { return options_.folder / "runs" / variant.name; }
-  std::string Identity(const Variant& variant, coordinator::Settings settings) const;
+  std::string Identity(const Variant& variant, const coordinator::Settings& settings) const;
   evaluate::Metrics Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training);
   void LinkPixels(const std::filesystem::path& run_folder, int image_width, bool share) const;
   // Puts together the result of `scored` from the training of `trained` (the same variant or not), the metrics, and the files of both.

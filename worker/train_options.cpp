@@ -35,7 +35,7 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
        "show "
        "no flicker; 4 and 6: the same, spread over the footprint, slower; 0: samples are points"},
       {"scale_features", &O::scale_features, Range(),
-       "true: the network also sees how large the footprint is beside the cells of each level; not with multisample = 0"},
+       "true: the density network also sees how much of each level of the grid the footprint leaves; does nothing with multisample = 0"},
       {"pyramid", &O::pyramid, Range{0, 1e6},
        "shares of the rays that are drawn from the photos at 1, 1/2, 1/4 and 1/8 of their size; one to four numbers of any sum"},
       {"pyramid_start", &O::pyramid_start, Range{0, 1e6}, "these shares at the start of the training; empty: as pyramid"},
@@ -61,9 +61,6 @@ void TrainOptions::Check(const std::string& section) const {
     if (usable || (may_be_empty && shares->empty())) continue;
     throw base::UsageError(section + "." + key +
                            " is not allowed: give one to four shares, of which at least one is above 0, such as [0.6, 0.2, 0.12, 0.08]");
-  }
-  if (scale_features && multisample == 0) {
-    throw base::UsageError(section + ".scale_features = true is not allowed with " + section + ".multisample = 0: points have no footprint");
   }
   if (levels * features % 4 != 0) {
     throw base::UsageError(section + ".levels = " + std::to_string(levels) + " is not allowed with " + section +

@@ -62,7 +62,7 @@ render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool
   f.config.color_range = ColorRange(*job.survey, response);
   if (learning) f.config.color_range = std::max(f.config.color_range, kLearnedRange);
   f.config.multisample = options.multisample;
-  f.config.scale_features = options.scale_features;
+  f.config.scale_features = options.scale_features && f.config.Cones();
   f.config.luminance = luminance.On();
   // Light that is shown brighter than in the photos, or that was too bright for them.
   if (luminance.On()) f.config.color_range = std::max(f.config.color_range, kLuminanceRange);

@@ -33,10 +33,10 @@ struct TrainOptions {
   // Rays and losses.
   double step_voxels = 2.0;     // distance between the samples of a ray, in finest voxels
   bool stratified = true;       // samples of a ray are shifted by a random part of a step
-  int multisample = 0;          // positions per sample: 1, 4 or 6; 0: samples are points, without footprint (core/render/footprint.h)
+  int multisample = 1;          // positions per sample: 1, 4 or 6; 0: samples are points, without footprint (core/render/footprint.h)
   bool scale_features = true;   // the density network also sees the footprint's weight of every level
   // Shares of the rays from photos at 1, 1/2, 1/4 and 1/8 (worker/photo_pyramid.h), and how they change.
-  std::vector<double> pyramid = {1.0};
+  std::vector<double> pyramid = {0.6, 0.2, 0.12, 0.08};
   std::vector<double> pyramid_start = {};
   double pyramid_until = 0.5;
   double network_l2 = 1e-6;       // weight decay of the networks

@@ -214,7 +214,7 @@ TEST(Optimizer, MovesWhatSamplesTouchedOnAnyNumberOfThreads) {
     for (size_t row = 0; row < static_cast<size_t>(field.FeatureRows()); ++row) gradient[2 * row] = 1.0F;  // the second sample has none
     state.network_gradient[5] = 1.0F;
     const FeatureGradient segment{0, 2, gradient.data(), 2};
-    optimizer.Update(x, y, z, {&segment, 1}, 0.01, 0.0, parameters, state);
+    optimizer.Update({x, y, z}, {&segment, 1}, 0.01, 0.0, parameters, state);
     EXPECT_EQ(state.step, 1);
     EXPECT_NEAR(parameters.networks[5], -0.01F, 1e-6F);
     EXPECT_EQ(state.network_gradient[5], 0.0F);
@@ -227,7 +227,7 @@ TEST(Optimizer, MovesWhatSamplesTouchedOnAnyNumberOfThreads) {
     // Eight corners of at most four features in three levels; some corners may share an entry.
     EXPECT_GT(n_moved, 48);
     EXPECT_LE(n_moved, 96);
-    optimizer.Update(x, y, z, {}, 0.01, 0.0, parameters, state);
+    optimizer.Update({x, y, z}, {}, 0.01, 0.0, parameters, state);
     moved.push_back(parameters.grid);
   }
   EXPECT_EQ(moved[0], moved[1]);
@@ -247,7 +247,7 @@ TEST(Optimizer, TrainsNetworksWhereTheEncodingHasNoParameters) {
   const float x[2] = {0.1F, 0.6F};
   const std::vector<float> gradient(static_cast<size_t>(field.FeatureRows()) * 2, 1.0F);
   const FeatureGradient segment{0, 2, gradient.data(), 2};
-  Optimizer(field, threads).Update(x, x, x, {&segment, 1}, 0.01, 0.0, parameters, state);
+  Optimizer(field, threads).Update({x, x, x}, {&segment, 1}, 0.01, 0.0, parameters, state);
   EXPECT_NEAR(parameters.networks[5], -0.01F, 1e-6F);
 }
 

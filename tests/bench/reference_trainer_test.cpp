@@ -64,6 +64,30 @@ TEST_P(ReferenceGradients, MatchFiniteDifferencesInDouble) {
   EXPECT_GT(nonzero(networks), 80);
 }
 
+// Behind opaque samples; in several packets, from which the trainer drops them before the backward pass.
+TEST_P(ReferenceGradients, AreTheWorkersWithHiddenSamples) {
+  SyntheticOptions scene;
+  scene.log2_table_size = 8;
+  scene.hidden = 8;
+  std::tie(scene.multisample, scene.scale_features) = GetParam();
+  SyntheticTrainer trainer(scene, 3, 2);
+  base::Random random(9);
+  for (float& value : trainer.state().parameters.grid) value = 60.0F * (random.Uniform() - 0.5F);
+  SyntheticRays rays{.rays = 150, .empty_share = 0.1F, .most_stops = 1.0F, .least_width_m = 0.05, .most_width_m = 1.0};
+  const worker::RayBatch batch = trainer.Draw(rays, random);
+  ASSERT_GT(batch.packets.size(), 3U);
+  const ReferenceTrainer reference(trainer.target(), trainer.field());
+  std::vector<double> grid, networks;
+  const ReferenceResult exact = reference.Gradient(batch, ReferenceState::From(trainer.state()), 1e-2, &grid, &networks);
+  const SyntheticTrainer::Gradients seen = trainer.GradientsOf(batch, 1e-2);
+  EXPECT_EQ(seen.result.n_live, exact.live);
+  EXPECT_LT(10 * exact.live, 9 * batch.n_samples);
+  EXPECT_GT(10 * exact.live, batch.n_samples);
+  EXPECT_NEAR(seen.result.loss, exact.loss, 1e-5 * exact.loss);
+  EXPECT_LT(RelativeDistance(seen.grid, grid), 1e-4);
+  EXPECT_LT(RelativeDistance(seen.networks, networks), 1e-4);
+}
+
 INSTANTIATE_TEST_SUITE_P(Multisample, ReferenceGradients,
                          ::testing::Values(std::pair(0, false), std::pair(1, false), std::pair(1, true), std::pair(4, false), std::pair(6, false),
                                            std::pair(6, true)),

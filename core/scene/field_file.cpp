@@ -123,10 +123,13 @@ void PutSceneField(const render::TrainedField& description, const std::filesyste
   if (!(occupancy.cell > 0.0F) || !SetSize(size, &occupancy) || occupancy.CellCount() != static_cast<int64_t>(occupancy.occupied.size()))
     throw base::InputError(checkpoint, "its occupancy grid has an impossible size", kFix);
   if (description.config.encoding == encoding::Kind::kHash) {
-    const encoding::HashGrid grid(description.config.grid);
-    if (reader.Shape("grid") != std::vector<int64_t>{grid.ParameterCount()}) {
+    if (reader.Shape("grid") != std::vector<int64_t>{encoding::HashGrid(description.config.grid).ParameterCount()}) {
       throw base::InputError(checkpoint, "the size of its hash tables disagrees with its configuration", kFix);
     }
+  }
+  // Several positions of a sample reach beyond its cell, as far as its pixel is wide: they can read any entry.
+  if (description.config.encoding == encoding::Kind::kHash && description.config.multisample <= 1) {
+    const encoding::HashGrid grid(description.config.grid);
     writer.PutPruned(prefix + "grid", checkpoint, "grid", field::UsedEntries(grid, occupancy), grid.features(), tables);
   } else {
     writer.PutCopy(prefix + "grid", checkpoint, "grid", tables);

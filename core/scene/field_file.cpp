@@ -172,6 +172,7 @@ render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, con
   try {
     f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));
     f.map = box.contracted ? encoding::SpaceMap::Contracted(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu, box.max_enu);
+    const field::HashField checked(f.config);
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, std::string("its field has an impossible configuration: ") + error.what(), kFix);
   }

@@ -20,8 +20,8 @@ class ReferenceField {
   // The field must outlive this. Fields with luminance, another encoding or a deeper density network are not covered (std::invalid_argument).
   explicit ReferenceField(const field::HashField& field);
 
-  // What a sample stands for: the mean of its positions in the unit box (those outside are moved to its nearest face, NaN counts as 0), and the standard deviation of
-  // its footprint, a normal distribution, in unit lengths; 0: a point.
+  // What a sample stands for: the mean of its positions in the unit box (those outside are moved to its nearest face, NaN counts as 0), and the
+  // standard deviation of its footprint, a normal distribution, in unit lengths; 0: a point.
   struct Place {
     std::vector<std::array<double, 3>> positions;
     double deviation = 0.0;

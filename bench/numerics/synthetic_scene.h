@@ -41,8 +41,8 @@ struct SyntheticRays {
 void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOptions& scene, const SyntheticRays& rays, base::Random& random,
                         worker::RayBatch* batch);
 
-// Replaces the unit positions of samples with one position by positions computed from survey-wide single-precision coordinates, as a trainer without block frames would
-// have them.
+// Replaces the unit positions of samples with one position by positions computed from survey-wide single-precision coordinates, as a trainer without
+// block frames would have them.
 void RepositionInFloat(const render::TrainedField& field, worker::RayBatch* batch);
 
 // Parameters and moments of a field in training; copied to compare them before and after a step.

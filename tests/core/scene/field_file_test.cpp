@@ -309,7 +309,8 @@ TEST_F(TrainedFieldFile, WithImpossiblePositionsIsRefused) {
     }
   }
   // Networks that were trained with another number of inputs.
-  const fs::path without = Rewrite(cones, {"a/scale_features"}, [](checkpoint::ArchiveWriter& writer) { writer.SetAttribute("a/scale_features", 0); });
+  const fs::path without =
+      Rewrite(cones, {"a/scale_features"}, [](checkpoint::ArchiveWriter& writer) { writer.SetAttribute("a/scale_features", 0); });
   EXPECT_NE(InputErrorOf([&] { Read(without); }).find("disagree"), std::string::npos);
   EXPECT_NE(InputErrorOf([&] { Read(Rewrite(cones, {"a/scale_features"})); }).find("scale_features"), std::string::npos);
 }

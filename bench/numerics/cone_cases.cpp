@@ -18,8 +18,19 @@ namespace {
 
 constexpr uint64_t kConeSeed = 7;
 constexpr double kConeDistortion = 1e-2;
-// Values of train.multisample that have footprints.
-constexpr int kConeSettings[] = {1};
+// Samples with footprints: train.multisample and train.scale_features.
+struct ConeSetting {
+  int multisample = 1;
+  bool scale_features = false;
+
+  // With one position and nothing else, a cone without width is a point.
+  bool LikePoints() const { return multisample == 1 && !scale_features; }
+  SyntheticOptions Scene() const { return {.multisample = multisample, .scale_features = scale_features}; }
+  std::string Text() const {
+    return (multisample == 1 ? "" : fmt::format(", {} positions per sample", multisample)) + (scale_features ? ", scale features" : "");
+  }
+};
+constexpr ConeSetting kConeSettings[] = {{1, false}, {4, false}, {6, false}, {1, true}, {6, true}};
 
 // Footprints between two widths, metres.
 struct Widths {
@@ -42,9 +53,9 @@ void FillTable(base::Random& random, std::vector<float>* table) {
   for (float& value : *table) value = random.Uniform() - 0.5F;
 }
 
-// A field with one position per sample; footprints of any width count as trained.
-render::TrainedField ConeField(bool contracted) {
-  render::TrainedField field = SyntheticField({.multisample = 1});
+// Footprints of any width count as trained.
+render::TrainedField ConeField(const ConeSetting& setting, bool contracted) {
+  render::TrainedField field = SyntheticField(setting.Scene());
   field.box.margin_m = 0.0;
   if (contracted) {
     field.map = encoding::SpaceMap::Contracted(field.box.min_enu, field.box.max_enu);
@@ -59,39 +70,59 @@ render::TrainedField ConeField(bool contracted) {
   return field;
 }
 
-// Features of random places in the block.
-CaseResult ConeFeatures(const Widths& widths, int samples) {
-  const render::TrainedField field = ConeField(false);
+// Of a sample's footprint in unit lengths: with several positions, half as wide as the pixel's square.
+double DeviationOf(double width, int multisample) {
+  return width / std::sqrt(multisample > 1 ? 24.0 : 12.0);
+}
+
+// Features of random places in the block: positions of a sample are as far apart as it is wide, but not more than the block.
+CaseResult ConeFeatures(const ConeSetting& setting, const Widths& widths, int samples) {
+  const render::TrainedField field = ConeField(setting, false);
   const ReferenceField reference(*field.field);
   const std::vector<double> grid(field.parameters.grid.begin(), field.parameters.grid.end());
   const auto n = static_cast<size_t>(samples), rows = static_cast<size_t>(field.field->FeatureRows());
+  const auto points = static_cast<size_t>(setting.multisample);
   base::Random random(31);
-  std::vector<float> x(n), y(n), z(n), sharpness(n), features(rows * n), of_points(rows * n);
+  std::vector<float> x(points * n), y(points * n), z(points * n), sharpness(n), features(rows * n), of_points(rows * n);
   std::vector<double> deviation(n);
   for (size_t s = 0; s < n; ++s) {
-    x[s] = random.Uniform();
-    y[s] = random.Uniform();
-    z[s] = 0.5F * random.Uniform();
+    const float middle[3] = {random.Uniform(), random.Uniform(), 0.5F * random.Uniform()};
     const double width_m = DrawWidth(widths, random);
-    sharpness[s] = render::SharpnessOf(width_m, field.map.units_per_metre(), 1);
-    deviation[s] = width_m * field.map.units_per_metre() / std::sqrt(12.0);
+    sharpness[s] = render::SharpnessOf(width_m, field.map.units_per_metre(), setting.multisample);
+    deviation[s] = DeviationOf(width_m * field.map.units_per_metre(), setting.multisample);
+    const auto apart = points > 1 ? static_cast<float>(std::min(1.0, width_m * field.map.units_per_metre())) : 0.0F;
+    for (size_t j = 0; j < points; ++j) {
+      x[j * n + s] = middle[0] + apart * (random.Uniform() - 0.5F);
+      y[j * n + s] = middle[1] + apart * (random.Uniform() - 0.5F);
+      z[j * n + s] = middle[2] + apart * (random.Uniform() - 0.5F);
+    }
   }
-  field.field->EncodeSerial(field.parameters.grid, {x.data(), y.data(), z.data(), sharpness.data()}, samples, features.data(), n);
+  field.field->EncodeSerial(field.parameters.grid, {x.data(), y.data(), z.data(), sharpness.data(), setting.multisample, n}, samples, features.data(),
+                            n);
   field.field->EncodeSerial(field.parameters.grid, {x.data(), y.data(), z.data()}, samples, of_points.data(), n);
   Worst worst;
   for (size_t s = 0; s < n; ++s) {
-    const std::vector<double> exact =
-        reference.Features(grid, {{{static_cast<double>(x[s]), static_cast<double>(y[s]), static_cast<double>(z[s])}}, deviation[s]});
+    ReferenceField::Place place;
+    place.deviation = deviation[s];
+    for (size_t i = s; i < x.size(); i += n) {
+      place.positions.push_back({static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])});
+    }
+    std::vector<double> exact = reference.Features(grid, place);
+    const std::vector<double> scales = reference.Scales(place);
+    exact.insert(exact.end(), scales.begin(), scales.end());
+    if (exact.size() != rows) worst.Take(kNoNumber);
     for (size_t row = 0; row < exact.size(); ++row) worst.Take(std::abs(static_cast<double>(features[row * n + s]) - exact[row]));
   }
-  const bool all_zero = std::all_of(features.begin(), features.end(), [](float value) { return value == 0.0F; });
+  const auto scale_rows = static_cast<ptrdiff_t>(static_cast<size_t>(field.field->ScaleRows()) * n);
+  const bool all_zero = std::all_of(features.begin(), features.end() - scale_rows, [](float value) { return value == 0.0F; });
   const bool same_as_points = features == of_points;
+  const bool without_width = !(widths.most_m > 0.0);
   return {.seen = fmt::format("{} samples, {}", samples,
                               all_zero         ? "all features 0"
                               : same_as_points ? "the bits of points"
                                                : "finite"),
           .worst = worst.value(),
-          .holds = all_zero == std::isinf(widths.least_m) && same_as_points == !(widths.most_m > 0.0)};
+          .holds = all_zero == std::isinf(widths.least_m) && (setting.multisample > 1 || same_as_points == without_width)};
 }
 
 enum class RayShape {
@@ -130,12 +161,22 @@ ExactColor ExactRay(const render::TrainedField& field, const std::vector<double>
   const ReferenceField reference(*field.field);
   const std::array<double, 3> direction = {ray.direction_enu.x(), ray.direction_enu.y(), ray.direction_enu.z()};
   ExactColor color;
-  const auto emit = [&](double t, double, double unit_length) {
+  const int points = field.config.multisample;
+  const render::Cone cone(field.map, ray, points);
+  const auto emit = [&](double t, double length_m, double unit_length) {
     const Eigen::Vector3d p = ray.origin_enu + t * ray.direction_enu;
-    const Eigen::Vector3d unit =
-        field.map.contracted() ? field.map.UnitFromEnu(p).cast<double>() : Eigen::Vector3d((p - field.map.min_enu()) * field.map.units_per_metre());
-    const double deviation = ray.Footprint(t) * field.map.VolumeScale(p) / std::sqrt(12.0);
-    const ReferenceField::Sample sample = reference.Forward(grid, networks, {{{unit.x(), unit.y(), unit.z()}}, deviation}, direction);
+    ReferenceField::Place place;
+    place.deviation = DeviationOf(ray.Footprint(t) * field.map.VolumeScale(p), points);
+    if (points > 1) {
+      float x[render::kMaxPositions], y[render::kMaxPositions], z[render::kMaxPositions];
+      cone.Positions(t, length_m, ray.Footprint(t), render::Turn::Alternating(color.samples), x, y, z, 1);
+      for (int j = 0; j < points; ++j) place.positions.push_back({static_cast<double>(x[j]), static_cast<double>(y[j]), static_cast<double>(z[j])});
+    } else {
+      const Eigen::Vector3d unit =
+          field.map.contracted() ? field.map.UnitFromEnu(p).cast<double>() : Eigen::Vector3d((p - field.map.min_enu()) * field.map.units_per_metre());
+      place.positions.push_back({unit.x(), unit.y(), unit.z()});
+    }
+    const ReferenceField::Sample sample = reference.Forward(grid, networks, place, direction);
     const double tau = std::exp(sample.log_density + field.config.density_bias) * unit_length / field.step_m;
     const double weight = color.transmittance * -std::expm1(-tau);
     for (size_t c = 0; c < 3; ++c) color.rgb[c] += weight * field.config.color_range / (1.0 + std::exp(-sample.raw[c]));
@@ -153,9 +194,9 @@ ExactColor ExactRay(const render::TrainedField& field, const std::vector<double>
   return color;
 }
 
-CaseResult ConeRendering(const Widths& widths, RayShape shape, int n) {
+CaseResult ConeRendering(const ConeSetting& setting, const Widths& widths, RayShape shape, int n) {
   const bool contracted = shape == RayShape::kFar;
-  render::TrainedField field = ConeField(contracted);
+  render::TrainedField field = ConeField(setting, contracted);
   const std::vector<render::Ray> rays = ConeRays(widths, shape, n);
   const std::vector<double> grid(field.parameters.grid.begin(), field.parameters.grid.end());
   const std::vector<double> networks(field.parameters.networks.begin(), field.parameters.networks.end());
@@ -179,12 +220,16 @@ CaseResult ConeRendering(const Widths& widths, RayShape shape, int n) {
     worst.Take(std::abs(static_cast<double>(out[i].opacity) - (1.0 - exact.transmittance)));
     for (size_t c = 0; c < 3; ++c) worst.Take(std::abs(static_cast<double>(out[i].rgb_srgb[c]) - exact.rgb[c]));
   }
-  field.config.multisample = 0;
-  render::RenderRays(set, rays, of_points, options, threads);
-  const bool same_as_points = std::memcmp(out.data(), of_points.data(), out.size() * sizeof(render::RayColor)) == 0;
+  bool same_as_points = false;
+  if (setting.LikePoints()) {
+    field.config.multisample = 0;
+    field.BuildNetworks();
+    render::RenderRays(set, rays, of_points, options, threads);
+    same_as_points = std::memcmp(out.data(), of_points.data(), out.size() * sizeof(render::RayColor)) == 0;
+  }
   return {.seen = fmt::format("{} rays, {} samples{}", n, samples, same_as_points ? ", the bits of points" : ""),
           .worst = worst.value(),
-          .holds = 4 * visible > n && same_as_points == !(widths.most_m > 0.0)};
+          .holds = 4 * visible > n && same_as_points == (setting.LikePoints() && !(widths.most_m > 0.0))};
 }
 
 SyntheticRays RaysOf(const Widths& widths, int n) {
@@ -192,11 +237,11 @@ SyntheticRays RaysOf(const Widths& widths, int n) {
 }
 
 // Gradients at the start, and a few steps.
-CaseResult ConeSteps(const Widths& widths, int multisample) {
-  SyntheticTrainer trainer({.multisample = multisample}, kConeSeed, 1), of_points({}, kConeSeed, 1);
+CaseResult ConeSteps(const ConeSetting& setting, const Widths& widths) {
+  SyntheticTrainer trainer(setting.Scene(), kConeSeed, 1), of_points({}, kConeSeed, 1);
   base::Random random(41);
   FillTable(random, &trainer.state().parameters.grid);
-  of_points.state() = trainer.state();
+  if (setting.LikePoints()) of_points.state() = trainer.state();
   const ReferenceTrainer reference(trainer.target(), trainer.field());
   const std::vector<float> grid_before = trainer.state().parameters.grid;
   Worst worst;
@@ -211,22 +256,27 @@ CaseResult ConeSteps(const Widths& widths, int multisample) {
     worst.Take(RelativeDistance(seen.networks, networks));
     const worker::StepOptions options{.learning_rate = 1e-2, .network_l2 = 1e-6, .distortion = kConeDistortion};
     finite = trainer.Train(batch, options).finite && finite;
-    of_points.Train(batch, options);
+    if (setting.LikePoints()) of_points.Train(batch, options);
   }
   const bool resting = trainer.state().parameters.grid == grid_before;
-  const bool same_as_points = SameParameters(trainer.state(), of_points.state());
+  const bool same_as_points = setting.LikePoints() && SameParameters(trainer.state(), of_points.state());
   return {.seen = fmt::format("4 steps; {}", resting          ? "the table rests"
                                              : same_as_points ? "the bits of points"
                                                               : "all parameters finite"),
           .worst = worst.value(),
           .holds = finite && AllFinite(trainer.state()) && resting == std::isinf(widths.least_m) &&
-                   same_as_points == (multisample == 1 && !(widths.most_m > 0.0))};
+                   same_as_points == (setting.LikePoints() && !(widths.most_m > 0.0))};
 }
 
 // The step's gradient by every parameter of a small field against central differences of the double loss.
-CaseResult ConeDifferences(int multisample) {
+CaseResult ConeDifferences(const ConeSetting& setting) {
   constexpr double kStep = 1e-5;
-  SyntheticTrainer trainer({.voxel_m = 0.5, .levels = 2, .log2_table_size = 4, .hidden = 4, .multisample = multisample}, kConeSeed, 1);
+  SyntheticOptions scene = setting.Scene();
+  scene.voxel_m = 0.5;
+  scene.levels = 2;
+  scene.log2_table_size = 4;
+  scene.hidden = 4;
+  SyntheticTrainer trainer(scene, kConeSeed, 1);
   base::Random random(43);
   FillTable(random, &trainer.state().parameters.grid);
   const Widths widths{"", 0.05, trainer.scene().edge_m};
@@ -254,10 +304,6 @@ CaseResult ConeDifferences(int multisample) {
   return {.seen = fmt::format("{} parameters, footprints of 5 cm to 8 m", state.grid.size() + state.networks.size()), .worst = worst.value()};
 }
 
-std::string PositionsText(int multisample) {
-  return multisample == 1 ? "" : fmt::format(", {} positions per sample", multisample);
-}
-
 }  // namespace
 
 NumericGroup ConesGroup(const NumericsOptions& options) {
@@ -266,41 +312,42 @@ NumericGroup ConesGroup(const NumericsOptions& options) {
       .id = "cones",
       .title = "Cones",
       .lead =
-          "Footprints of samples, from nothing to infinite: features, renderings and training steps in float against double. Without footprint a "
-          "sample is a point, to the bit; an infinite one has no features."};
-  for (const Widths& widths : AllWidths()) {
-    group.cases.push_back({.name = "Features, footprint of " + widths.name,
-                           .expected = "as in double, to one float step of the position in the cell",
-                           .unit = "features",
-                           .limit = 2e-5,
-                           .run = [widths, samples] { return ConeFeatures(widths, samples); }});
-  }
-  const auto renders = [&](const std::string& name, const Widths& widths, RayShape shape) {
-    group.cases.push_back({.name = "Rendering, " + name,
-                           .expected = "colour and opacity as in double",
-                           .unit = "display value",
-                           .limit = 2e-6,
-                           .run = [widths, shape, rays] { return ConeRendering(widths, shape, rays); }});
-  };
-  for (const Widths& widths : AllWidths()) {
-    const bool one_sample = widths.least_m > 1.0, points = !(widths.most_m > 0.0);
-    if (one_sample || points) renders("columns of " + widths.name, widths, RayShape::kColumns);
-    if (!points) renders("cones of " + widths.name, widths, RayShape::kCones);
-  }
-  renders("cones of 1 mm to 1 m in a contracted field", {"", 1e-3, 1.0}, RayShape::kFar);
-  for (const int multisample : kConeSettings) {
+          "Footprints of samples, from nothing to infinite: features, renderings and training steps in float against double, with one, four and "
+          "six positions per sample. Without footprint a sample with one position is a point, to the bit; an infinite one has no features."};
+  for (const ConeSetting& setting : kConeSettings) {
+    const std::string text = setting.Text();
     for (const Widths& widths : AllWidths()) {
-      group.cases.push_back({.name = "Training steps, footprint of " + widths.name + PositionsText(multisample),
+      group.cases.push_back({.name = "Features, footprint of " + widths.name + text,
+                             .expected = "as in double, to one float step of the position in the cell",
+                             .unit = "features",
+                             .limit = 2e-5,
+                             .run = [setting, widths, samples] { return ConeFeatures(setting, widths, samples); }});
+    }
+    const auto renders = [&](const std::string& name, const Widths& widths, RayShape shape) {
+      group.cases.push_back({.name = "Rendering, " + name + text,
+                             .expected = "colour and opacity as in double",
+                             .unit = "display value",
+                             .limit = 2e-6,
+                             .run = [setting, widths, shape, rays] { return ConeRendering(setting, widths, shape, rays); }});
+    };
+    for (const Widths& widths : AllWidths()) {
+      const bool one_sample = widths.least_m > 1.0, points = !(widths.most_m > 0.0);
+      if (one_sample || points) renders("columns of " + widths.name, widths, RayShape::kColumns);
+      if (!points) renders("cones of " + widths.name, widths, RayShape::kCones);
+    }
+    renders("cones of 1 mm to 1 m in a contracted field", {"", 1e-3, 1.0}, RayShape::kFar);
+    for (const Widths& widths : AllWidths()) {
+      group.cases.push_back({.name = "Training steps, footprint of " + widths.name + text,
                              .expected = "finite; loss and gradients as the reference",
                              .unit = "relative",
                              .limit = 1e-4,
-                             .run = [widths, multisample] { return ConeSteps(widths, multisample); }});
+                             .run = [setting, widths] { return ConeSteps(setting, widths); }});
     }
-    group.cases.push_back({.name = "Gradients of a step against differences in double" + PositionsText(multisample),
+    group.cases.push_back({.name = "Gradients of a step against differences in double" + text,
                            .expected = "every parameter's, as vectors of grid and networks",
                            .unit = "relative",
                            .limit = 1e-4,
-                           .run = [multisample] { return ConeDifferences(multisample); }});
+                           .run = [setting] { return ConeDifferences(setting); }});
   }
   return group;
 }

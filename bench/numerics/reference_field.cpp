@@ -57,10 +57,13 @@ ReferenceField::ReferenceField(const field::HashField& field) : field_(field), g
     throw std::invalid_argument("the reference's networks differ in size from the field's");
 }
 
-std::vector<ReferenceField::Corner> ReferenceField::Corners(int level, const Place& place) const {
-  const kernel::GridLevel& shape = grid_.level(level);
+double ReferenceField::Weight(int level, const Place& place) const {
   // Barron et al. 2023, section 3: erf(1 / sqrt(8 s^2 n^2)), n cells per unit length.
-  const double weight = std::erf(1.0 / (std::sqrt(8.0) * place.deviation * static_cast<double>(shape.cells_per_unit)));
+  return std::erf(1.0 / (std::sqrt(8.0) * place.deviation * static_cast<double>(grid_.level(level).cells_per_unit)));
+}
+
+std::vector<ReferenceField::Corner> ReferenceField::Corners(int level, const Place& place) const {
+  const double weight = Weight(level, place);
   std::vector<Corner> corners;
   corners.reserve(8 * place.positions.size());
   for (const std::array<double, 3>& position : place.positions)
@@ -74,7 +77,8 @@ void ReferenceField::AddCorners(int level, const std::array<double, 3>& position
   std::array<double, 3> fraction = {};
   for (size_t axis = 0; axis < 3; ++axis) {
     const double last = shape.size[axis] - 1.0;
-    const double scaled = std::clamp(position[axis] * static_cast<double>(shape.cells_per_unit), 0.0, last);
+    const double at = position[axis] * static_cast<double>(shape.cells_per_unit);
+    const double scaled = at > 0.0 ? std::min(at, last) : 0.0;
     const double low = std::min(std::floor(scaled), last - 1.0);
     cell[axis] = static_cast<uint64_t>(low);
     fraction[axis] = scaled - low;
@@ -117,10 +121,20 @@ std::vector<double> ReferenceField::Features(std::span<const double> grid, const
   return features;
 }
 
+std::vector<double> ReferenceField::Scales(const Place& place) const {
+  std::vector<double> scales;
+  if (!field_.config().scale_features) return scales;
+  for (int level = 0; level < grid_.levels(); ++level) scales.push_back(1.0 - Weight(level, place));
+  while (scales.size() % 4 != 0) scales.push_back(0.0);
+  return scales;
+}
+
 ReferenceField::Sample ReferenceField::ForwardDensity(std::span<const double> grid, std::span<const double> networks, const Place& place) const {
   Sample sample;
   sample.place = place;
   sample.inputs.push_back(Features(grid, place));
+  const std::vector<double> scales = Scales(place);
+  sample.inputs.back().insert(sample.inputs.back().end(), scales.begin(), scales.end());
   sample.outputs.push_back(Apply(layers_[0], networks, sample.inputs.back()));
   sample.inputs.push_back(sample.outputs.back());
   sample.outputs.push_back(Apply(layers_[1], networks, sample.inputs.back()));

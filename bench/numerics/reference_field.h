@@ -20,8 +20,8 @@ class ReferenceField {
   // The field must outlive this. Fields with luminance, another encoding or a deeper density network are not covered (std::invalid_argument).
   explicit ReferenceField(const field::HashField& field);
 
-  // What a sample stands for: the mean of its positions in the unit box (those outside are moved to its nearest face), and the standard deviation of
-  // its footprint, a normal distribution, in unit lengths; 0: a point.
+  // What a sample stands for: the mean of its positions in the unit box (those outside are moved to its nearest face, NaN counts as 0), and the
+  // standard deviation of its footprint, a normal distribution, in unit lengths; 0: a point.
   struct Place {
     std::vector<std::array<double, 3>> positions;
     double deviation = 0.0;
@@ -37,6 +37,8 @@ class ReferenceField {
 
   // Features of the hash grid only.
   std::vector<double> Features(std::span<const double> grid, const Place& place) const;
+  // Inputs of the density network after these: the share of every level that the footprint hides. Empty without scale_features.
+  std::vector<double> Scales(const Place& place) const;
   Sample Forward(std::span<const double> grid, std::span<const double> networks, const Place& place, const std::array<double, 3>& direction) const;
   // The density only: the colour network is not evaluated, raw stays zero.
   Sample ForwardDensity(std::span<const double> grid, std::span<const double> networks, const Place& place) const;
@@ -54,6 +56,8 @@ class ReferenceField {
     size_t first = 0;  // index of the first grid parameter of the entry
     double weight = 0.0;
   };
+  // The share of a level's features that the footprint leaves.
+  double Weight(int level, const Place& place) const;
   // Entries that a sample reads of a level, with their shares of its feature: eight per position.
   std::vector<Corner> Corners(int level, const Place& place) const;
   void AddCorners(int level, const std::array<double, 3>& position, double share, std::vector<Corner>* corners) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/render/footprint.h"
 #include "core/render/march.h"
@@ -50,13 +51,15 @@ render::TrainedField SyntheticField(const SyntheticOptions& options) {
   field.config.color_range = 1.4;
   field.config.density_bias = -3.0;
   field.config.multisample = options.multisample;
+  field.config.scale_features = options.scale_features;
   field.occupancy = field::OccupancyGrid::Make(grid.extent, 3.0 * options.voxel_m / options.edge_m, 100'000);
   return field;
 }
 
 void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOptions& scene, const SyntheticRays& rays, base::Random& random,
                         worker::RayBatch* batch) {
-  batch->Clear();
+  const int points = std::max(1, field.config.multisample);
+  batch->Clear(points);
   std::vector<float> x, y, z, sharpness, t, unit_length;
   std::vector<int32_t> cell;
   const double half = 0.5 * scene.edge_m;
@@ -78,25 +81,27 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
     if (field.config.Cones()) ray.ray.pixel_pitch = DrawPitch(rays, (ground - camera).norm(), random);
     const float jitter = random.Uniform();
     const geo::Interval interval = render::FieldInterval(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
-    const render::UnitRay unit(field.map, ray.ray.origin_enu, ray.ray.direction_enu);
+    const render::Ray axis{.origin_enu = ray.ray.origin_enu, .direction_enu = ray.ray.direction_enu, .pixel_pitch = ray.ray.pixel_pitch};
+    const render::Cone cone(field.map, axis, points);
     for (auto* values : {&x, &y, &z, &sharpness, &t, &unit_length}) values->clear();
     cell.clear();
     render::March(field, ray.ray.origin_enu, ray.ray.direction_enu, interval, field.step_m, jitter,
-                  [&](double at, double, double length, int64_t index) {
-                    const Eigen::Vector3f p = unit.At(at);
-                    x.push_back(p.x());
-                    y.push_back(p.y());
-                    z.push_back(p.z());
+                  [&](double at, double length_m, double length, int64_t index) {
+                    render::Turn turn;
+                    if (points > 1) turn = {random.Uniform(0.0, 2.0 * std::numbers::pi), random.Uniform() < 0.5F};
+                    const size_t first = x.size(), end = first + static_cast<size_t>(points);
+                    for (auto* values : {&x, &y, &z}) values->resize(end);
+                    cone.Positions(at, length_m, axis.Footprint(at), turn, &x[first], &y[first], &z[first], 1);
                     t.push_back(static_cast<float>(at));
-                    sharpness.push_back(render::SharpnessOf(static_cast<double>(ray.ray.pixel_pitch) * at, field.map.units_per_metre(), 1));
+                    sharpness.push_back(render::SharpnessOf(axis.Footprint(at), field.map.units_per_metre(), points));
                     unit_length.push_back(static_cast<float>(length / field.step_m));
                     cell.push_back(static_cast<int32_t>(index));
                     return true;
                   });
-    ray.count = static_cast<int64_t>(x.size());
+    ray.count = static_cast<int64_t>(t.size());
     batch->Append(ray, x.data(), y.data(), z.data(), sharpness.data(), t.data(), unit_length.data(), cell.data());
   }
-  batch->LayOutFeatures(field.config.grid.levels * field.config.grid.features);
+  batch->LayOutFeatures(field::HashField(field.config).FeatureRows());
 }
 
 void RepositionInFloat(const render::TrainedField& field, worker::RayBatch* batch) {

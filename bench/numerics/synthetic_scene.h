@@ -21,7 +21,9 @@ struct SyntheticOptions {
   int log2_table_size = 12;
   int hidden = 16;
   int color_hidden_layers = 1;
-  int multisample = 0;  // as train.multisample: 0: samples are points; 1: they have footprints
+  // As train.multisample and train.scale_features.
+  int multisample = 0;
+  bool scale_features = false;
 };
 
 // A field over the scene with every occupancy cell on and without parameters.
@@ -39,8 +41,8 @@ struct SyntheticRays {
 void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOptions& scene, const SyntheticRays& rays, base::Random& random,
                         worker::RayBatch* batch);
 
-// Replaces the samples' unit positions by positions computed from survey-wide single-precision coordinates, as a trainer without block frames would
-// have them.
+// Replaces the unit positions of samples with one position by positions computed from survey-wide single-precision coordinates, as a trainer without
+// block frames would have them.
 void RepositionInFloat(const render::TrainedField& field, worker::RayBatch* batch);
 
 // Parameters and moments of a field in training; copied to compare them before and after a step.

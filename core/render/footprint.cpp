@@ -30,6 +30,7 @@ Turn Turn::Alternating(int index) {
 
 Cone::Cone(const encoding::SpaceMap& map, const Ray& ray, int points) : ray_(map, ray.origin_enu, ray.direction_enu), points_(points) {
   if (points <= 1) return;
+  if (ray.pixel_pitch > 0.0F) tip_m_ = static_cast<double>(ray.pixel_width) / static_cast<double>(ray.pixel_pitch);
   const Eigen::Vector3d& d = ray.direction_enu;
   // The axis farthest from the ray.
   Eigen::Index axis = 0;
@@ -47,6 +48,8 @@ void Cone::Positions(double t, double length_m, double width_m, Turn turn, float
     return;
   }
   const double cosine = std::cos(turn.angle), sine = std::sin(turn.angle);
+  const double from_tip_m = t + tip_m_;
+  const auto width_at = [&](double along) { return from_tip_m > 0.0 ? width_m * (1.0 + along / from_tip_m) : width_m; };
   for (int j = 0; j < points_; ++j) {
     double along = 0.0, across_right = 0.0, across_up = 0.0;  // metres, relative to the middle
     if (points_ == 6) {
@@ -54,12 +57,12 @@ void Cone::Positions(double t, double length_m, double width_m, Turn turn, float
       // With these distances the positions have the variance of the interval, and with this radius that of a square of the pixel's width.
       along = 0.5 * length_m * std::sqrt(5.0 / 7.0) * (0.4 * k - 1.0);
       const double angle = std::numbers::pi / 3.0 * kSixths[j];
-      const double radius = width_m * (1.0 + along / t) / std::sqrt(6.0);
+      const double radius = width_at(along) / std::sqrt(6.0);
       across_right = radius * std::cos(angle);
       across_up = radius * std::sin(angle);
     } else if (points_ == 4) {
       along = 0.5 * length_m / std::sqrt(3.0) * (turn.reversed ? -kCorners[j][2] : kCorners[j][2]);
-      const double half = width_m * (1.0 + along / t) / std::sqrt(12.0);
+      const double half = width_at(along) / std::sqrt(12.0);
       across_right = half * kCorners[j][0];
       across_up = half * kCorners[j][1];
     }

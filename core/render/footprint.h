@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "core/render/march.h"
 #include "core/render/ray.h"
@@ -39,12 +40,13 @@ class Cone {
   Cone(const encoding::SpaceMap& map, const Ray& ray, int points);
 
   // Writes `points` positions in the unit frame, `step` floats apart, of the sample in the middle of an interval of `length_m` at distance t.
-  // width_m: of the cone at t; positions before and behind the middle take their share of it.
+  // width_m: of the cone at t; positions before and behind the middle take their share of it. Not finite for an infinite width.
   void Positions(double t, double length_m, double width_m, Turn turn, float* x, float* y, float* z, size_t step) const;
 
  private:
   UnitRay ray_;
   int points_;
+  double tip_m_ = std::numeric_limits<double>::infinity();  // from the origin back to where the width is 0; infinite for columns
   Eigen::Vector3d right_ = Eigen::Vector3d::Zero(), up_ = Eigen::Vector3d::Zero();  // across the ray, ENU, length 1
 };
 

@@ -123,10 +123,13 @@ void PutSceneField(const render::TrainedField& description, const std::filesyste
   if (!(occupancy.cell > 0.0F) || !SetSize(size, &occupancy) || occupancy.CellCount() != static_cast<int64_t>(occupancy.occupied.size()))
     throw base::InputError(checkpoint, "its occupancy grid has an impossible size", kFix);
   if (description.config.encoding == encoding::Kind::kHash) {
-    const encoding::HashGrid grid(description.config.grid);
-    if (reader.Shape("grid") != std::vector<int64_t>{grid.ParameterCount()}) {
+    if (reader.Shape("grid") != std::vector<int64_t>{encoding::HashGrid(description.config.grid).ParameterCount()}) {
       throw base::InputError(checkpoint, "the size of its hash tables disagrees with its configuration", kFix);
     }
+  }
+  // Several positions of a sample reach beyond its cell, as far as its pixel is wide: they can read any entry.
+  if (description.config.encoding == encoding::Kind::kHash && description.config.multisample <= 1) {
+    const encoding::HashGrid grid(description.config.grid);
     writer.PutPruned(prefix + "grid", checkpoint, "grid", field::UsedEntries(grid, occupancy), grid.features(), tables);
   } else {
     writer.PutCopy(prefix + "grid", checkpoint, "grid", tables);
@@ -169,6 +172,7 @@ render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, con
   try {
     f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));
     f.map = box.contracted ? encoding::SpaceMap::Contracted(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu, box.max_enu);
+    const field::HashField checked(f.config);
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, std::string("its field has an impossible configuration: ") + error.what(), kFix);
   }

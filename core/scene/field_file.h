@@ -16,8 +16,8 @@ constexpr int kCheckpointVersion = 2;
 // Writes a whole field, for checkpoints. prefix: "", or for instance "blocks/0/". The field must outlive the writer's Commit.
 void PutField(const render::TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
 // Writes what rendering needs of a field, for scenes. Tables and networks are copied from the field's checkpoint at Commit: the tables with this
-// precision and without the entries that no occupied cell reads (field/used_entries.h); of the occupancy only one bit per cell. Throws
-// base::InputError when the sizes of the checkpoint's arrays do not fit together.
+// precision and, of hash grids with one position per sample, without the entries that no occupied cell reads (field/used_entries.h); of the occupancy
+// only one bit per cell. Throws base::InputError when the sizes of the checkpoint's arrays do not fit together.
 void PutSceneField(const render::TrainedField& description, const std::filesystem::path& checkpoint, const std::string& prefix,
                    checkpoint::ArchiveWriter& writer, checkpoint::Precision tables = checkpoint::Precision::kFloat32);
 // Writes box, configuration and training record of a field, without its arrays.

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "coordinator/project/project.h"
 #include "core/base/file.h"
 #include "core/scene/scene_file.h"
 #include "partition/block.h"
@@ -100,12 +101,57 @@ TEST(DescribeArchive, ShowsTheAccuracyOfScenesOnly) {
   const TemporaryFolder folder;
   checkpoint::ArchiveWriter scene(scene::kSceneKind, scene::kSceneVersion);
   scene::PutAccuracy({.horizontal_m = 1.5}, scene);
+  scene.SetAttribute("blocks", 0);
   scene.Commit(folder / "scene.h5");
   const nlohmann::ordered_json json = Describe(folder / "scene.h5");
   EXPECT_EQ(json.at("accuracy").at("horizontal_m"), 1.5);
   EXPECT_TRUE(json.at("accuracy").at("vertical_m").is_null());
   checkpoint::ArchiveWriter("block", 1).Commit(folder / "block.h5");
   EXPECT_FALSE(Describe(folder / "block.h5").contains("accuracy"));
+}
+
+// A scene of one block; multisample 0: of points.
+void WriteSceneOf(int multisample, const std::filesystem::path& file) {
+  checkpoint::ArchiveWriter scene(scene::kSceneKind, scene::kSceneVersion);
+  scene.SetAttribute("blocks", 1);
+  if (multisample > 0) {
+    scene.SetAttribute("blocks/0/multisample", multisample);
+    scene.SetAttribute("blocks/0/footprint_min_m", 0.0123456);
+    scene.SetAttribute("blocks/0/footprint_max_m", 0.25);
+  }
+  scene.Commit(file);
+}
+
+TEST(DescribeArchive, ShowsTheScalesOfScenesOnly) {
+  const TemporaryFolder folder;
+  WriteSceneOf(0, folder / "points.h5");
+  const nlohmann::ordered_json points = Describe(folder / "points.h5").at("scales");
+  EXPECT_NE(points.at("samples").get<std::string>().find("points"), std::string::npos);
+  EXPECT_FALSE(points.contains("finest_m_per_pixel"));
+  WriteSceneOf(6, folder / "cones.h5");
+  const nlohmann::ordered_json cones = Describe(folder / "cones.h5").at("scales");
+  EXPECT_EQ(cones.at("samples"), "cones");
+  EXPECT_EQ(cones.at("positions"), 6);
+  EXPECT_EQ(cones.at("finest_m_per_pixel"), 0.0123);
+  EXPECT_EQ(cones.at("coarsest_m_per_pixel"), 0.25);
+  checkpoint::ArchiveWriter("block", 1).Commit(folder / "block.h5");
+  EXPECT_FALSE(Describe(folder / "block.h5").contains("scales"));
+}
+
+TEST(DescribeProject, ShowsTheScalesOfItsScene) {
+  const TemporaryFolder folder;
+  survey::SaveSurvey(LaggingSurvey(), folder / "survey");
+  EXPECT_FALSE(Describe(folder.path()).contains("scales"));
+  const std::filesystem::path file = coordinator::Project{folder.path()}.SceneFile();
+  std::filesystem::create_directories(file.parent_path());
+  WriteSceneOf(4, file);
+  EXPECT_EQ(Describe(folder.path()).at("scales").at("positions"), 4);
+  const Called text = CallProgram({"info", folder.path().string()});
+  EXPECT_NE(text.out.find("  finest_m_per_pixel: 0.0123\n"), std::string::npos) << text.out;
+  base::WriteFileAtomically(file, "not a scene");
+  const nlohmann::ordered_json damaged = Describe(folder.path());
+  EXPECT_NE(damaged.at("scales").at("unreadable").get<std::string>().find(file.filename().string()), std::string::npos) << damaged;
+  EXPECT_FALSE(damaged.at("stages").empty());
 }
 
 TEST(DescribeCameras, ShowTheAccuracyWhereTheFileHasIt) {

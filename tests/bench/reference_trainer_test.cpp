@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "bench/numerics/numeric_case.h"
 #include "bench/numerics/synthetic_trainer.h"
@@ -25,12 +29,12 @@ SyntheticOptions TinyScene() {
 // Exposures of plus and minus one stop, and some empty rays, so that every loss is used.
 const SyntheticRays kMixedRays{.rays = 12, .empty_share = 0.25F, .most_stops = 1.0F};
 
-// Points, and cones with each number of positions.
-class ReferenceGradients : public ::testing::TestWithParam<int> {};
+// Points, and cones with each number of positions; with and without rows that tell the scale.
+class ReferenceGradients : public ::testing::TestWithParam<std::pair<int, bool>> {};
 
 TEST_P(ReferenceGradients, MatchFiniteDifferencesInDouble) {
   SyntheticOptions scene = TinyScene();
-  scene.multisample = GetParam();
+  std::tie(scene.multisample, scene.scale_features) = GetParam();
   SyntheticTrainer trainer(scene, 3, 1);
   const ReferenceTrainer reference(trainer.target(), trainer.field());
   base::Random random(5);
@@ -60,7 +64,34 @@ TEST_P(ReferenceGradients, MatchFiniteDifferencesInDouble) {
   EXPECT_GT(nonzero(networks), 80);
 }
 
-INSTANTIATE_TEST_SUITE_P(Multisample, ReferenceGradients, ::testing::Values(0, 1));
+// Behind opaque samples; in several packets, from which the trainer drops them before the backward pass.
+TEST_P(ReferenceGradients, AreTheWorkersWithHiddenSamples) {
+  SyntheticOptions scene;
+  scene.log2_table_size = 8;
+  scene.hidden = 8;
+  std::tie(scene.multisample, scene.scale_features) = GetParam();
+  SyntheticTrainer trainer(scene, 3, 2);
+  base::Random random(9);
+  for (float& value : trainer.state().parameters.grid) value = 60.0F * (random.Uniform() - 0.5F);
+  SyntheticRays rays{.rays = 150, .empty_share = 0.1F, .most_stops = 1.0F, .least_width_m = 0.05, .most_width_m = 1.0};
+  const worker::RayBatch batch = trainer.Draw(rays, random);
+  ASSERT_GT(batch.packets.size(), 3U);
+  const ReferenceTrainer reference(trainer.target(), trainer.field());
+  std::vector<double> grid, networks;
+  const ReferenceResult exact = reference.Gradient(batch, ReferenceState::From(trainer.state()), 1e-2, &grid, &networks);
+  const SyntheticTrainer::Gradients seen = trainer.GradientsOf(batch, 1e-2);
+  EXPECT_EQ(seen.result.n_live, exact.live);
+  EXPECT_LT(10 * exact.live, 9 * batch.n_samples);
+  EXPECT_GT(10 * exact.live, batch.n_samples);
+  EXPECT_NEAR(seen.result.loss, exact.loss, 1e-5 * exact.loss);
+  EXPECT_LT(RelativeDistance(seen.grid, grid), 1e-4);
+  EXPECT_LT(RelativeDistance(seen.networks, networks), 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Multisample, ReferenceGradients,
+                         ::testing::Values(std::pair(0, false), std::pair(1, false), std::pair(1, true), std::pair(4, false), std::pair(6, false),
+                                           std::pair(6, true)),
+                         [](const auto& of) { return std::to_string(of.param.first) + (of.param.second ? "_with_scales" : ""); });
 
 // Footprints as large as the scene leave less of the fine level than of the coarse one.
 TEST(ReferenceField, FootprintsFadeFineLevelsFirst) {
@@ -73,6 +104,21 @@ TEST(ReferenceField, FootprintsFadeFineLevelsFirst) {
   EXPECT_NEAR(features(0.1)[0], std::erf(1.0 / (std::sqrt(8.0) * 0.4)), 1e-12);
   EXPECT_LT(features(0.1).back(), features(0.1)[0]);
   for (const double feature : features(kEver)) EXPECT_EQ(feature, 0.0);
+}
+
+// Two levels are padded to four rows.
+TEST(ReferenceField, ScalesAreWhatTheFootprintHides) {
+  SyntheticOptions scene = TinyScene();
+  scene.multisample = 6;
+  EXPECT_TRUE(ReferenceField(SyntheticTrainer(scene, 3, 1).field()).Scales({{{0.3, 0.4, 0.2}}, 0.1}).empty());
+  scene.scale_features = true;
+  const SyntheticTrainer trainer(scene, 3, 1);
+  const ReferenceField reference(trainer.field());
+  const auto scales = [&](double deviation) { return reference.Scales({{{0.3, 0.4, 0.2}}, deviation}); };
+  EXPECT_EQ(scales(0.0), std::vector<double>(4, 0.0));
+  EXPECT_EQ(scales(kEver), (std::vector<double>{1.0, 1.0, 0.0, 0.0}));
+  EXPECT_NEAR(scales(0.1)[0], std::erfc(1.0 / (std::sqrt(8.0) * 0.4)), 1e-12);
+  EXPECT_GT(scales(0.1)[1], scales(0.1)[0]);
 }
 
 // Two implementations of the same functions, in the order and with the signs of Sloan 2013.
@@ -117,11 +163,16 @@ TEST(ReferenceTrainer, LearnsAndDoesNotChangeUntouchedEntries) {
   EXPECT_LT(last, 0.7 * first);
 }
 
-TEST(ReferenceTrainer, AgreesWithTheWorkerFromTheSameStart) {
-  SyntheticTrainer trainer(TinyScene(), 3, 1);
+TEST_P(ReferenceGradients, AreTheWorkersFromTheSameStart) {
+  SyntheticOptions scene = TinyScene();
+  std::tie(scene.multisample, scene.scale_features) = GetParam();
+  SyntheticTrainer trainer(scene, 3, 1);
   const ReferenceTrainer reference(trainer.target(), trainer.field());
   base::Random random(5);
-  const worker::RayBatch batch = trainer.Draw(kMixedRays, random);
+  SyntheticRays rays = kMixedRays;
+  rays.least_width_m = 0.05;
+  rays.most_width_m = scene.edge_m;
+  const worker::RayBatch batch = trainer.Draw(rays, random);
   std::vector<double> grid, networks;
   const ReferenceResult exact = reference.Gradient(batch, ReferenceState::From(trainer.state()), 1e-2, &grid, &networks);
   const SyntheticTrainer::Gradients seen = trainer.GradientsOf(batch, 1e-2);

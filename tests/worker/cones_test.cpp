@@ -16,6 +16,7 @@ struct Rays {
   std::string name;
   int multisample;
   std::vector<double> pyramid, pyramid_start;
+  bool scale_features = false;
 };
 
 std::vector<double> AllSizes() {
@@ -28,6 +29,7 @@ class TrainingWithCones : public SmallSurvey {
     job.options.multisample = rays.multisample;
     job.options.pyramid = rays.pyramid;
     job.options.pyramid_start = rays.pyramid_start;
+    job.options.scale_features = rays.scale_features;
     return job;
   }
   render::TrainedField Field(const std::string& name) const { return scene::GetField(checkpoint::ArchiveReader(folder_ / name), folder_ / name, ""); }
@@ -54,6 +56,7 @@ TEST_P(ConesTest, TrainTheSameBitsWithAnyNumberOfThreads) {
     ASSERT_TRUE(block.ok) << block.reason;
     EXPECT_EQ(block.dropped_steps, 0);
     EXPECT_EQ(Field("block" + end).config.multisample, GetParam().multisample);
+    EXPECT_EQ(Field("block" + end).config.scale_features, GetParam().scale_features);
     if (n == 1) continue;
     ExpectSame("context1.h5", "context" + end);
     ExpectSame("block1.h5", "block" + end);
@@ -83,7 +86,10 @@ TEST_P(ConesTest, LearnTheScene) {
 INSTANTIATE_TEST_SUITE_P(Rays, ConesTest,
                          ::testing::Values(Rays{"points_of_all_sizes", 0, AllSizes(), {}}, Rays{"cones", 1, {1.0}, {}},
                                            Rays{"cones_of_all_sizes", 1, AllSizes(), {}},
-                                           Rays{"cones_from_coarse_to_fine", 1, {1.0}, {0.0, 0.0, 1.0}}),
+                                           Rays{"cones_from_coarse_to_fine", 1, {1.0}, {0.0, 0.0, 1.0}}, Rays{"four_positions", 4, {1.0}, {}},
+                                           Rays{"six_positions_of_all_sizes", 6, AllSizes(), {}},
+                                           Rays{"cones_with_scale_features", 1, AllSizes(), {}, true},
+                                           Rays{"four_positions_with_scale_features", 4, AllSizes(), {}, true}),
                          [](const auto& of) { return of.param.name; });
 
 class FootprintRange : public TrainingWithCones {
@@ -91,7 +97,7 @@ class FootprintRange : public TrainingWithCones {
   render::TrainedField TrainedWith(const std::string& name, int multisample, const std::vector<double>& pyramid,
                                    const std::vector<double>& pyramid_start = {}) {
     base::ThreadPool threads(1);
-    EXPECT_TRUE(TrainContext(With({name, multisample, pyramid, pyramid_start}, Job(name, 2)), Box(20.0, 0.0), threads, {}).ok);
+    EXPECT_TRUE(TrainContext(With({name, multisample, pyramid, pyramid_start, false}, Job(name, 2)), Box(20.0, 0.0), threads, {}).ok);
     return Field(name);
   }
 };
@@ -121,7 +127,7 @@ TEST_F(FootprintRange, IsNotStoredWithPoints) {
   const render::TrainedField f = TrainedWith("points.h5", 0, AllSizes());
   EXPECT_FALSE(f.config.Cones());
   const checkpoint::ArchiveReader reader(folder_ / "points.h5");
-  for (const char* name : {"multisample", "footprint_min_m", "footprint_max_m"}) EXPECT_FALSE(reader.HasAttribute(name)) << name;
+  for (const char* name : {"multisample", "scale_features", "footprint_min_m", "footprint_max_m"}) EXPECT_FALSE(reader.HasAttribute(name)) << name;
 }
 
 // Photos at a quarter of the width have pixels four times as wide; so have the drawn quarter sizes of the photos.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "core/base/errors.h"
@@ -202,25 +203,60 @@ TEST_P(TrainedFieldOf, RendersTheSameWithoutUnreadEntries) {
   ExpectSameLook(before, after, 0.01F);
 }
 
+// A field with cones whose networks fit its configuration.
+render::TrainedField ConesOf(int multisample, bool scale_features, uint64_t seed = 4) {
+  render::TrainedField f = render::RandomField(seed, {0, 0, 0}, {5, 5, 4}, 0.8, -1.0);
+  f.config.multisample = multisample;
+  f.config.scale_features = scale_features;
+  base::Random random(seed);
+  const field::HashField shape(f.config);
+  std::vector<float> grid(f.parameters.grid.size());
+  f.parameters.networks.resize(static_cast<size_t>(shape.NetworkParameters()));
+  shape.Initialize(random, grid, f.parameters.networks);
+  f.footprint_min_m = 0.1 / 3.0;
+  f.footprint_max_m = 0.7;
+  f.BuildNetworks();
+  return f;
+}
+
 // In the checkpoint of a block, and in the scene that is made from it.
-TEST_F(TrainedFieldFile, KeepsItsRangeOfFootprints) {
-  render::TrainedField before = Make(encoding::Kind::kHash, 1);
-  before.config.multisample = 1;
-  before.footprint_min_m = 0.1 / 3.0;
-  before.footprint_max_m = 0.7;
-  checkpoint::ArchiveWriter block("block", 1);
-  PutField(before, "", block);
-  const fs::path checkpoint = folder_.path() / "block.h5", scene = folder_.path() / "scene.h5";
-  block.Commit(checkpoint);
-  checkpoint::ArchiveWriter writer("scene", 1);
-  PutSceneField(before, checkpoint, "a/", writer);
-  writer.Commit(scene);
-  for (const render::TrainedField& after : {GetField(checkpoint::ArchiveReader(checkpoint), checkpoint, ""), Read(scene)}) {
-    EXPECT_EQ(after.config.multisample, 1);
-    EXPECT_EQ(after.field->config().multisample, 1);
-    EXPECT_EQ(after.footprint_min_m, before.footprint_min_m);
-    EXPECT_EQ(after.footprint_max_m, before.footprint_max_m);
-    ExpectSameLook(before, after, 0.1F);
+TEST_F(TrainedFieldFile, KeepsItsFootprints) {
+  for (const auto& [multisample, scale_features] : {std::pair(1, false), {1, true}, {4, false}, {6, false}, {6, true}}) {
+    const render::TrainedField before = ConesOf(multisample, scale_features);
+    checkpoint::ArchiveWriter block("block", 1);
+    PutField(before, "", block);
+    const fs::path checkpoint = folder_.path() / "block.h5", scene = folder_.path() / "scene.h5";
+    block.Commit(checkpoint);
+    checkpoint::ArchiveWriter writer("scene", 1);
+    PutSceneField(before, checkpoint, "a/", writer);
+    writer.Commit(scene);
+    for (const render::TrainedField& after : {GetField(checkpoint::ArchiveReader(checkpoint), checkpoint, ""), Read(scene)}) {
+      EXPECT_EQ(after.config.multisample, multisample);
+      EXPECT_EQ(after.config.scale_features, scale_features);
+      EXPECT_EQ(after.field->config().multisample, multisample);
+      EXPECT_EQ(after.field->FeatureRows(), before.field->FeatureRows());
+      EXPECT_EQ(after.footprint_min_m, before.footprint_min_m);
+      EXPECT_EQ(after.footprint_max_m, before.footprint_max_m);
+      ExpectSameLook(before, after, 0.1F);
+    }
+  }
+}
+
+// Several positions of a sample are also outside its cell.
+TEST_F(TrainedFieldFile, OfASceneRendersTheSameWithAnyNumberOfPositions) {
+  for (const int multisample : {1, 4, 6}) {
+    render::TrainedField before = ConesOf(multisample, false);
+    before.footprint_min_m = 0.5;
+    base::Random random(8);
+    for (uint8_t& cell : before.occupancy.occupied) cell = random.Uniform() < 0.05F ? 1 : 0;
+    checkpoint::ArchiveWriter block("block", 1);
+    PutField(before, "", block);
+    const fs::path checkpoint = folder_.path() / "block.h5", scene = folder_.path() / "scene.h5";
+    block.Commit(checkpoint);
+    checkpoint::ArchiveWriter writer("scene", 1);
+    PutSceneField(before, checkpoint, "a/", writer);
+    writer.Commit(scene);
+    ExpectSameLook(before, Read(scene), 0.01F);
   }
 }
 
@@ -254,6 +290,29 @@ TEST_F(TrainedFieldFile, WithImpossibleFootprintsIsRefused) {
     const std::string error = InputErrorOf([&, file = Write(field, "field.h5")] { Read(file); });
     EXPECT_NE(error.find("footprints"), std::string::npos) << low << " " << high << ": " << error;
   }
+}
+
+// Also where only the description is read, as for a scene that is larger than the memory.
+TEST_F(TrainedFieldFile, WithImpossiblePositionsIsRefused) {
+  const fs::path cones = Write(ConesOf(1, true), "field.h5");
+  const std::vector<std::string> names = {"a/multisample", "a/scale_features"};
+  for (const auto& [multisample, scale_features, why] :
+       {std::tuple(3, 0, "multisample"), {-1, 0, "multisample"}, {1000, 1, "multisample"}, {0, 1, "scale_features"}}) {
+    const fs::path file = Rewrite(cones, names, [&, m = multisample, f = scale_features](checkpoint::ArchiveWriter& writer) {
+      writer.SetAttribute("a/multisample", m);
+      writer.SetAttribute("a/scale_features", f);
+    });
+    const checkpoint::ArchiveReader reader(file);
+    for (const std::string& error : {InputErrorOf([&] { Read(file); }), InputErrorOf([&] { GetDescription(reader, file, "a/"); })}) {
+      EXPECT_NE(error.find("rewritten.h5"), std::string::npos) << error;
+      EXPECT_NE(error.find(why), std::string::npos) << error;
+    }
+  }
+  // Networks that were trained with another number of inputs.
+  const fs::path without =
+      Rewrite(cones, {"a/scale_features"}, [](checkpoint::ArchiveWriter& writer) { writer.SetAttribute("a/scale_features", 0); });
+  EXPECT_NE(InputErrorOf([&] { Read(without); }).find("disagree"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { Read(Rewrite(cones, {"a/scale_features"})); }).find("scale_features"), std::string::npos);
 }
 
 TEST_F(TrainedFieldFile, WithImpossibleValuesAreRefusedByName) {

@@ -1,0 +1,75 @@
+// Rules of the options of training that concern cones and photos of several sizes.
+#include "worker/train_options.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/support/error_of.h"
+
+namespace skyquilt::worker {
+namespace {
+
+std::string Refusal(const TrainOptions& options, const std::string& section = "train") {
+  return UsageErrorOf([&] { options.Check(section); });
+}
+
+TEST(TrainOptions, TakeOneToFourSharesOfPhotoSizes) {
+  for (const std::vector<double>& shares : {std::vector<double>{1.0}, {0.6, 0.2, 0.12, 0.08}, {0.0, 0.0, 1.0}, {3.0, 1.0}}) {
+    TrainOptions options;
+    options.pyramid = shares;
+    EXPECT_EQ(Refusal(options), "");
+    options.pyramid_start = shares;
+    EXPECT_EQ(Refusal(options), "");
+  }
+}
+
+TEST(TrainOptions, RefuseImpossibleSharesByName) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::vector<double>> impossible = {{0.0}, {0.0, 0.0}, {0.2, 0.2, 0.2, 0.2, 0.2}, {-0.1, 1.0}, {nan}, {1e9}};
+  for (const std::vector<double>& shares : impossible) {
+    TrainOptions options;
+    options.pyramid = shares;
+    EXPECT_NE(Refusal(options).find("train.pyramid"), std::string::npos) << shares.size() << ": " << Refusal(options);
+    options = {};
+    options.pyramid_start = shares;
+    EXPECT_NE(Refusal(options, "context").find("context.pyramid_start"), std::string::npos) << shares.size() << ": " << Refusal(options);
+  }
+}
+
+// Without shares at the start, training begins with those of the end; at the end there must be some.
+TEST(TrainOptions, MayLackSharesAtTheStartOnly) {
+  TrainOptions options;
+  options.pyramid_start = {};
+  EXPECT_EQ(Refusal(options), "");
+  options.pyramid = {};
+  EXPECT_NE(Refusal(options).find("train.pyramid"), std::string::npos) << Refusal(options);
+}
+
+TEST(TrainOptions, TakeNoOtherNumbersOfPositions) {
+  TrainOptions options;
+  for (const int positions : {0, 1, 4, 6}) {
+    options.multisample = positions;
+    EXPECT_EQ(Refusal(options), "") << positions;
+  }
+  for (const int positions : {-1, 2, 3, 5, 7}) {
+    options.multisample = positions;
+    EXPECT_NE(Refusal(options).find("train.multisample"), std::string::npos) << positions;
+  }
+}
+
+TEST(TrainOptions, HaveScaleFeaturesOnlyWithFootprints) {
+  TrainOptions options;
+  options.scale_features = true;
+  EXPECT_NE(Refusal(options, "context").find("context.scale_features"), std::string::npos) << Refusal(options);
+  EXPECT_NE(Refusal(options, "context").find("context.multisample"), std::string::npos) << Refusal(options);
+  for (const int positions : {1, 4, 6}) {
+    options.multisample = positions;
+    EXPECT_EQ(Refusal(options), "") << positions;
+  }
+}
+
+}  // namespace
+}  // namespace skyquilt::worker

@@ -142,7 +142,9 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
     }
     return ++at < end;
   };
-  const double coarse_step_m = r.ray.level > 0 && cones ? kCoarsePixelsPerStep * cone_axis.Footprint(interval.t_near) : 0.0;
+  // A concealing field may dim by every sample that light passes, so their number must not depend on the photo's size.
+  const bool may_step_far = cones && r.ray.level > 0 && neighbours_ == Neighbours::kNone;
+  const double coarse_step_m = may_step_far ? kCoarsePixelsPerStep * cone_axis.Footprint(interval.t_near) : 0.0;
   if (coarse_step_m > 1.01 * target_.step_m) {
     render::MarchCoarse(target_, r.ray.origin_enu, r.ray.direction_enu, interval, coarse_step_m, jitter,
                         [&](double t, double length, double unit_length) { return emit(t, length, unit_length, -1); });

@@ -317,14 +317,14 @@ NumericGroup ConesGroup(const NumericsOptions& options) {
   for (const ConeSetting& setting : kConeSettings) {
     const std::string text = setting.Text();
     for (const Widths& widths : AllWidths()) {
-      group.cases.push_back({.name = "Features, footprint of " + widths.name + text,
+      group.cases.push_back({.name = fmt::format("Features, footprint of {}{}", widths.name, text),
                              .expected = "as in double, to one float step of the position in the cell",
                              .unit = "features",
                              .limit = 2e-5,
                              .run = [setting, widths, samples] { return ConeFeatures(setting, widths, samples); }});
     }
     const auto renders = [&](const std::string& name, const Widths& widths, RayShape shape) {
-      group.cases.push_back({.name = "Rendering, " + name + text,
+      group.cases.push_back({.name = fmt::format("Rendering, {}{}", name, text),
                              .expected = "colour and opacity as in double",
                              .unit = "display value",
                              .limit = 2e-6,
@@ -337,7 +337,7 @@ NumericGroup ConesGroup(const NumericsOptions& options) {
     }
     renders("cones of 1 mm to 1 m in a contracted field", {"", 1e-3, 1.0}, RayShape::kFar);
     for (const Widths& widths : AllWidths()) {
-      group.cases.push_back({.name = "Training steps, footprint of " + widths.name + text,
+      group.cases.push_back({.name = fmt::format("Training steps, footprint of {}{}", widths.name, text),
                              .expected = "finite; loss and gradients as the reference",
                              .unit = "relative",
                              .limit = 1e-4,

@@ -48,7 +48,7 @@ class TrainedFieldFile : public ::testing::Test {
       if (std::find(without.begin(), without.end(), name) == without.end()) CopyAttribute(reader, name, writer);
     }
     add(writer);
-    const fs::path rewritten = folder_.path() / "rewritten.h5";
+    fs::path rewritten = folder_.path() / "rewritten.h5";
     writer.Commit(rewritten);
     return rewritten;
   }
@@ -68,6 +68,7 @@ class TrainedFieldFile : public ::testing::Test {
     render::FieldSet set;
     set.blocks = {&f};
     std::vector<render::Ray> rays;
+    rays.reserve(40);
     for (int i = 0; i < 40; ++i) rays.push_back({{0.12 * i, 5.0 - 0.1 * i, 9.0}, Eigen::Vector3d(0.1, 0.05, -1.0).normalized()});
     std::vector<render::RayColor> out(rays.size());
     base::ThreadPool threads(1);

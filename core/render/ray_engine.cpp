@@ -253,9 +253,12 @@ class RayRenderer::Group {
     const auto rows = static_cast<size_t>(f.FeatureRows());
     batch.features.resize(std::max(batch.features.size(), rows * batch.stride));
     batch.geometry.resize(std::max(batch.geometry.size(), static_cast<size_t>(field::kGeometryRows) * batch.stride));
-    const kernel::Positions at{
-        batch.x.data(), batch.y.data(), batch.z.data(), all_[k]->config.Cones() ? batch.sharpness.data() : nullptr, static_cast<int>(Points(*all_[k])),
-        batch.count};
+    const kernel::Positions at{batch.x.data(),
+                               batch.y.data(),
+                               batch.z.data(),
+                               all_[k]->config.Cones() ? batch.sharpness.data() : nullptr,
+                               static_cast<int>(Points(*all_[k])),
+                               batch.count};
     f.EncodeSerial(all_[k]->parameters.grid, at, n, batch.features.data(), batch.stride);
     for (size_t row = 0; row < rows; ++row) std::fill_n(batch.features.data() + row * batch.stride + n, padded - n, 0.0F);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {

@@ -21,11 +21,10 @@ Scales GetScales(const checkpoint::ArchiveReader& scene) {
   Scales scales;
   bool first = true;
   const int64_t blocks = scene.IntAttribute("blocks");
-  for (int64_t i = -1; i < blocks; ++i) {
-    const std::string prefix = i < 0 ? kContextPrefix : BlockPrefix(i);
+  for (int64_t i = 0; i < blocks; ++i) {
+    const std::string prefix = BlockPrefix(i);
     if (!scene.HasAttribute(prefix + "multisample")) continue;
     scales.multisample = std::max(scales.multisample, static_cast<int>(scene.IntAttribute(prefix + "multisample")));
-    if (i < 0) continue;
     const double low = scene.DoubleAttribute(prefix + "footprint_min_m"), high = scene.DoubleAttribute(prefix + "footprint_max_m");
     scales.footprint_min_m = first ? low : std::min(scales.footprint_min_m, low);
     scales.footprint_max_m = first ? high : std::max(scales.footprint_max_m, high);

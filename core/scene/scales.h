@@ -10,13 +10,13 @@
 namespace skyquilt::scene {
 
 struct Scales {
-  int multisample = 0;                                  // positions per sample, the most of all fields; 0: points, without footprints
+  int multisample = 0;                                  // positions per sample, the most of all blocks; 0: points, without footprints
   double footprint_min_m = 0.0, footprint_max_m = 0.0;  // metres per pixel, of all blocks; 0 for points
 
   bool Cones() const { return multisample > 0; }
 };
 
-// Of a scene's fields, from their attributes.
+// Of a scene's blocks, from their attributes.
 Scales GetScales(const checkpoint::ArchiveReader& scene);
 
 // Logs one warning when many pixels are more than twice as wide as the widest, or less than half as wide as the narrowest footprint that was trained.

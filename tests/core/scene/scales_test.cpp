@@ -59,7 +59,7 @@ TEST_F(GetScalesOf, BlocksAreTheirRangeTogether) {
 // The context is seen from farther away than the blocks and says nothing about how sharp they are.
 TEST_F(GetScalesOf, BlocksDoNotIncludeTheContext) {
   const Scales scales = Of({Trained{1, 0.2, 0.5}}, Trained{4, 0.01, 50.0});
-  EXPECT_EQ(scales.multisample, 4);
+  EXPECT_EQ(scales.multisample, 1);
   EXPECT_EQ(scales.footprint_min_m, 0.2);
   EXPECT_EQ(scales.footprint_max_m, 0.5);
 }

@@ -151,7 +151,7 @@ bool PacketTrainer::Backward(float* network_gradient) {
   float* features = Features();
   shared_.field.Backward(shared_.weights, a_, features, packet_->stride, kernel::Padded(live_), network_gradient);
   bool finite = true;
-  for (int row = 0; row < shared_.field.FeatureRows(); ++row) {
+  for (int row = 0; row < shared_.field.encoding().OutputRows(); ++row) {
     finite = finite && kernel::AllFinite(features + static_cast<size_t>(row) * packet_->stride, live_);
   }
   return finite;

@@ -13,8 +13,9 @@ namespace {
 constexpr int kGroupRays = 64;
 constexpr int kMaxRaySamples = 1024;
 constexpr uint64_t kRayStream = 1;
-// Density that is blurred over several cells must not decide which of them are free.
-constexpr float kLeastWeightToObserve = 0.5F;
+// Density that is blurred over several cells must not decide which of them are free: least sharpness in cells, where the finest level's weight is a
+// half.
+constexpr float kLeastSharpnessToObserve = 0.4769F;
 // Marching step of rays from reduced photos in widths of their pixels.
 constexpr double kCoarsePixelsPerStep = 1.0;
 
@@ -73,6 +74,10 @@ void RayBatch::Append(BatchRay ray, const float* x_in, const float* y_in, const 
   n_samples += ray.count;
   MakeRoom(t.size() + static_cast<size_t>(ray.count));
   const auto add_positions = [&](std::vector<float>& to, const float* from) {
+    if (points == 1) {
+      std::copy_n(from, ray.count, to.data() + t.size());
+      return;
+    }
     for (size_t j = 0; j < static_cast<size_t>(points); ++j) {
       float* const plane_of_j = to.data() + j * plane + t.size();
       for (size_t s = 0; s < static_cast<size_t>(ray.count); ++s) plane_of_j[s] = from[s * static_cast<size_t>(points) + j];
@@ -122,7 +127,7 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
   size_t at = group.count;
   const size_t end = at + kMaxRaySamples;
   const double per_step = 1.0 / target_.step_m;
-  const auto finest = static_cast<float>(config.grid.finest_resolution);
+  const float observing = kLeastSharpnessToObserve * static_cast<float>(config.grid.finest_resolution);
   const auto emit = [&](double t, double length, double unit_length, int64_t cell) {
     const double width_m = cone_axis.Footprint(t);
     render::Turn turn;
@@ -138,7 +143,7 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
     if (cones) {
       const float sharpness = render::SharpnessOf(width_m, target_.map.VolumeScale(r.ray.origin_enu + t * r.ray.direction_enu), points);
       group.sharpness[at] = sharpness;
-      if (kernel::FootprintWeight(sharpness, finest) < kLeastWeightToObserve) group.cell[at] = -1;
+      if (sharpness < observing) group.cell[at] = -1;
     }
     return ++at < end;
   };

@@ -37,6 +37,8 @@ SpaceMap SpaceMap::Contracted(const Eigen::Vector3d& min_enu, const Eigen::Vecto
   // If the slab is higher than the contracted square is wide, its height determines the unit.
   map.units_per_metre_ = std::min(0.25 / map.half_size_m_, 1.0 / height);
   map.extent_ = Eigen::Vector3d(1.0, 1.0, height * map.units_per_metre_);
+  const double across = 0.25 / map.half_size_m_;
+  map.inner_volume_scale_ = std::cbrt(across * across * map.units_per_metre_);
   return map;
 }
 
@@ -59,8 +61,7 @@ Eigen::Vector3d SpaceMap::EnuFromUnit(const Eigen::Vector3d& x_in_unit) const {
 double SpaceMap::VolumeScale(const Eigen::Vector3d& x_in_enu) const {
   if (!contracted_) return units_per_metre_;
   const double norm = std::max(1.0, ((x_in_enu.head<2>() - centre_) / half_size_m_).cwiseAbs().maxCoeff());
-  const double across = 0.25 / half_size_m_;
-  return std::cbrt(across * across * units_per_metre_ * (2.0 * norm - 1.0)) / (norm * std::cbrt(norm));
+  return norm > 1.0 ? inner_volume_scale_ * std::cbrt((2.0 * norm - 1.0) / norm) / norm : inner_volume_scale_;
 }
 
 double SpaceMap::LocalScale(const Eigen::Vector3d& x_in_enu) const {

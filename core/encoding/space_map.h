@@ -39,6 +39,7 @@ class SpaceMap {
   Eigen::Vector2d centre_ = Eigen::Vector2d::Zero();  // Slab only
   double half_size_m_ = 1.0;                          // Slab only
   double units_per_metre_ = 1.0;
+  double inner_volume_scale_ = 1.0;  // VolumeScale where space is not contracted; slab only
 };
 
 }  // namespace skyquilt::encoding

@@ -94,7 +94,7 @@ void HashField::EncodeScales(const kernel::Positions& at, int64_t n, float* rows
       continue;
     }
     const auto cells = static_cast<float>(encoding::LevelResolution(config_.grid, row));
-    for (int64_t s = 0; s < n; ++s) out[s] = 1.0F - kernel::FootprintWeight(at.sharpness[s], cells);
+    kernel::FootprintHidden(at.sharpness, n, cells, out);
   }
 }
 
@@ -162,7 +162,8 @@ void HashField::Backward(const NetworkWeights& weights, Activations& a, float* f
     std::swap(current, next);
   }
   kernel::DenseWeightGradient(current, stride, hidden, features, feature_stride, layers_[0].inputs, n, gradient_of(0));
-  kernel::Dense(weights.transposed[0].data(), layers_[0].inputs, hidden, current, stride, n, false, features, feature_stride);
+  // The rows after the encoding have no parameters.
+  kernel::Dense(weights.transposed[0].data(), encoding_->OutputRows(), hidden, current, stride, n, false, features, feature_stride);
 }
 
 double HashField::ForwardFlops() const {

@@ -115,7 +115,7 @@ class HashField {
   void Color(const NetworkWeights& weights, const float* color_in, size_t in_stride, int64_t n, float* const hidden[3], size_t hidden_stride,
              float* color_raw, size_t color_stride) const;
   // Backward pass of Density and Color, whose activations are in `a`. Inputs: a.color_gradient, a.log_density_gradient, features. Replaces the
-  // features by their gradient and adds to network_gradient.
+  // encoding's features by their gradient and adds to network_gradient.
   void Backward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n, float* network_gradient) const;
   // Multiplications and additions of the networks for one sample, in the forward pass and in a training step, without padding.
   double ForwardFlops() const;

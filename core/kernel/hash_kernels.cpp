@@ -55,6 +55,25 @@ HWY_INLINE V WeightOf(D d, const float* table, V sharpness, float cell) {
   return hn::MulAdd(hn::Sub(at, hn::ConvertTo(d, index)), hn::Sub(high, low), low);
 }
 
+void FootprintHiddenImpl(const float* sharpness, int64_t n, float cells_per_unit, float* out) {
+  const FloatTag d;
+  const auto lanes = static_cast<int64_t>(hn::Lanes(d));
+  const float* const table = FootprintTable();
+  const float cell = 1.0F / cells_per_unit;
+  const FloatVector one = hn::Set(d, 1.0F);
+  HWY_ALIGN float tail[hn::MaxLanes(FloatTag())];
+  for (int64_t s = 0; s < n; s += lanes) {
+    if (s + lanes <= n) {
+      hn::StoreU(hn::Sub(one, WeightOf(d, table, hn::LoadU(d, sharpness + s), cell)), d, out + s);
+      continue;
+    }
+    std::fill(std::begin(tail), std::end(tail), 0.0F);
+    std::copy(sharpness + s, sharpness + n, tail);
+    hn::Store(hn::Sub(one, WeightOf(d, table, hn::Load(d, tail), cell)), d, tail);
+    std::copy_n(tail, n - s, out + s);
+  }
+}
+
 // sharpness: null for points. share: weight of these positions in their samples.
 void FindCorners(const GridLevel& level, const float* x, const float* y, const float* z, const float* sharpness, float share, int n,
                  Corners& corners) {
@@ -269,6 +288,7 @@ namespace skyquilt::kernel {
 
 HWY_EXPORT(HashForwardImpl);
 HWY_EXPORT(HashBackwardImpl);
+HWY_EXPORT(FootprintHiddenImpl);
 
 namespace {
 
@@ -297,6 +317,10 @@ float FootprintWeight(float sharpness, float cells_per_unit) {
   const float* const table = FootprintTable();
   const int index = static_cast<int>(std::max(at, 0.0F));
   return table[index] + (std::max(at, 0.0F) - static_cast<float>(index)) * (table[index + 1] - table[index]);
+}
+
+void FootprintHidden(const float* sharpness, int64_t n, float cells_per_unit, float* out) {
+  HWY_DYNAMIC_DISPATCH(FootprintHiddenImpl)(sharpness, n, cells_per_unit, out);
 }
 
 void HashForward(const GridLevel& level, int features, const float* table, const Positions& at, int64_t n, float* out, size_t out_stride) {

@@ -91,6 +91,8 @@ struct Positions {
 // erf(sharpness / cells_per_unit) (Barron et al. 2023, Zip-NeRF, section 3). 1 for footprints much smaller than a cell, 0 for much larger ones.
 // From a table; within 2e-6 for sharpness >= 0.
 float FootprintWeight(float sharpness, float cells_per_unit);
+// 1 - FootprintWeight of n samples (any n): the share that is hidden.
+void FootprintHidden(const float* sharpness, int64_t n, float cells_per_unit, float* out);
 
 // Trilinear interpolation for n samples (any n), multiplied by FootprintWeight and averaged over the positions of a sample.
 // table: entries x features. out: `features` rows of stride >= n. features is 2 or 4.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/base/random.h"
 #include "core/kernel/kernels.h"
@@ -58,6 +59,18 @@ struct Samples {
 TEST(FootprintWeight, IsTheErrorFunctionOfVoxelOverFootprint) {
   for (double a = 0.0; a < 5.0; a += 0.0137)
     EXPECT_NEAR(static_cast<double>(FootprintWeight(static_cast<float>(40.0 * a), 40.0F)), std::erf(a), 2e-6) << a;
+}
+
+TEST(FootprintWeight, IsOneLessTheHiddenShareOfAnyNumberOfSamples) {
+  base::Random random(3);
+  for (const int64_t n : {0, 1, 7, 16, 37}) {
+    std::vector<float> sharpness(static_cast<size_t>(n)), hidden(static_cast<size_t>(n) + 1, -1.0F);
+    for (float& value : sharpness) value = 60.0F * random.Uniform();
+    if (n > 2) sharpness[1] = kInfinity;
+    FootprintHidden(sharpness.data(), n, 20.0F, hidden.data());
+    for (size_t s = 0; s < sharpness.size(); ++s) EXPECT_NEAR(hidden[s], 1.0F - FootprintWeight(sharpness[s], 20.0F), 1e-6F) << n << " " << s;
+    EXPECT_EQ(hidden.back(), -1.0F);
+  }
 }
 
 TEST(FootprintWeight, KnowsPointsAndInfiniteFootprints) {

@@ -28,6 +28,7 @@ float MeanBrightnessPull(float weight, double mean_shown, double target) {
 ConcealedGradient LossOfConcealedRay(const BatchRay& ray, const RayView& view, const ConcealedRay& composed, const ConcealedTask& task,
                                      float ray_share, LossSums& sums) {
   ConcealedGradient gradient;
+  const float weight = kPhotoLossWeight[ray.ray.level];
   for (size_t c = 0; c < 3; ++c) {
     const float behind = view.behind_rgb[c] + view.background_share * ray.background[c];
     const float plain = view.front_rgb[c] + view.front_transmittance * (composed.plain.rgb[c] + composed.plain.transmittance * behind);
@@ -38,8 +39,8 @@ ConcealedGradient LossOfConcealedRay(const BatchRay& ray, const RayView& view, c
     sums.squared_error += photo.squared_error;
     float recorded_gradient = 0.0F;
     if (photo.counts) {
-      sums.loss += photo.value;
-      const float toned_gradient = photo.gradient * ray_share;
+      sums.loss += static_cast<double>(weight) * photo.value;
+      const float toned_gradient = weight * photo.gradient * ray_share;
       recorded_gradient = toned_gradient * slope * view.front_transmittance;
       gradient.plain.log_gain[c] = toned_gradient * log_gain_slope;
     }

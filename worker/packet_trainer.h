@@ -86,6 +86,7 @@ class PacketTrainer {
   void ScatterComposed(const RayView& view, const ComposedRay& composed, const ComposedGradient& gradient, const float* weight_gradient);
   void KeepGainGradient(size_t view, const ComposedGradient& gradient) const;
   // Distortion loss of one ray; its gradient is added to weight_gradient_.
+  bool WantsDistortionLoss(const BatchRay& ray, const RayView& view) const;
   void AddDistortion(const RayView& view, LossSums& sums);
   // Turns gradients by optical depths and colours into gradients by the networks' outputs.
   void FinishGradients();

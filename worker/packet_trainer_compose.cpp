@@ -23,7 +23,7 @@ void PacketTrainer::ComposeAndLoss(LossSums& sums) {
     } else {
       gradient = LossOfRay(r, view, composed, step_->ray_share, sums);
       KeepGainGradient(k, gradient);
-      if (step_->distortion > 0.0 && view.count > 0) {
+      if (WantsDistortionLoss(r, view)) {
         weight_gradient_.assign(static_cast<size_t>(view.count), 0.0F);
         AddDistortion(view, sums);
         weight_gradient = weight_gradient_.data();
@@ -54,6 +54,11 @@ void PacketTrainer::ScatterComposed(const RayView& view, const ComposedRay& comp
 void PacketTrainer::KeepGainGradient(size_t view, const ComposedGradient& gradient) const {
   if (step_->gain_gradients == nullptr) return;
   std::copy(gradient.log_gain, gradient.log_gain + 3, step_->gain_gradients[static_cast<size_t>(packet_->first_ray) + view].begin());
+}
+
+// A pixel of a reduced photo may show several distances.
+bool PacketTrainer::WantsDistortionLoss(const BatchRay& ray, const RayView& view) const {
+  return step_->distortion > 0.0 && view.count > 0 && ray.ray.level == 0;
 }
 
 void PacketTrainer::AddDistortion(const RayView& view, LossSums& sums) {

@@ -87,7 +87,7 @@ void PacketTrainer::ConcealAndLoss(float* network_gradient, LossSums& sums) {
         sums.log_share += static_cast<double>(composed.log_share);
         ++sums.solid_rays;
       }
-      if (step_->distortion > 0.0 && view.count > 0) AddDistortion(view, sums);
+      if (WantsDistortionLoss(r, view)) AddDistortion(view, sums);
     }
     ScatterConcealed(view, composed, gradient);
   }

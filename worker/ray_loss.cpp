@@ -8,6 +8,7 @@ namespace skyquilt::worker {
 
 ComposedGradient LossOfRay(const BatchRay& ray, const RayView& view, const ComposedRay& composed, float ray_share, LossSums& sums) {
   ComposedGradient gradient;
+  const float weight = kPhotoLossWeight[ray.ray.level];
   for (size_t c = 0; c < 3; ++c) {
     const float behind = view.behind_rgb[c] + view.background_share * ray.background[c];
     const float shown = view.front_rgb[c] + view.front_transmittance * (composed.rgb[c] + composed.transmittance * behind);
@@ -15,9 +16,10 @@ ComposedGradient LossOfRay(const BatchRay& ray, const RayView& view, const Compo
     const PhotoLoss<float> photo = SquaredPhotoLoss(value, ray.ray.target_srgb[c]);
     sums.squared_error += photo.squared_error;
     if (!photo.counts) continue;
-    sums.loss += photo.value;
-    gradient.log_gain[c] = photo.gradient * log_gain_slope * ray_share;
-    gradient.rgb[c] = photo.gradient * slope * view.front_transmittance * ray_share;
+    sums.loss += static_cast<double>(weight) * photo.value;
+    const float photo_gradient = weight * photo.gradient * ray_share;
+    gradient.log_gain[c] = photo_gradient * log_gain_slope;
+    gradient.rgb[c] = photo_gradient * slope * view.front_transmittance;
     gradient.transmittance += gradient.rgb[c] * behind;
   }
   ++sums.color_rays;

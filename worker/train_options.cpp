@@ -38,8 +38,7 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
        "true: the density network also sees how much of each level of the grid the footprint leaves; does nothing with multisample = 0"},
       {"pyramid", &O::pyramid, Range{0, 1e6},
        "shares of the rays that are drawn from the photos at 1, 1/2, 1/4 and 1/8 of their size; one to four numbers of any sum. All rays come from "
-       "the "
-       "photos at full size with brightness.luminance_form = product"},
+       "the photos at full size with brightness.luminance_form = product"},
       {"pyramid_start", &O::pyramid_start, Range{0, 1e6}, "these shares at the start of the training; empty: as pyramid"},
       {"pyramid_until", &O::pyramid_until, Range{0, 1}, "share of the budget in which pyramid_start changes into pyramid"},
       {"network_l2", &O::network_l2, Range{0, 1}, "weight decay of the networks"},

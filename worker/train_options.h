@@ -36,9 +36,9 @@ struct TrainOptions {
   int multisample = 1;         // positions per sample: 1, 4 or 6; 0: samples are points, without footprint (core/render/footprint.h)
   bool scale_features = true;  // the density network also sees the footprint's weight of every level
   // Shares of the rays from photos at 1, 1/2, 1/4 and 1/8 (worker/photo_pyramid.h), and how they change.
-  std::vector<double> pyramid = {0.6, 0.2, 0.12, 0.08};
-  std::vector<double> pyramid_start = {};
-  double pyramid_until = 0.5;
+  std::vector<double> pyramid = {0.6, 0.18, 0.11, 0.11};
+  std::vector<double> pyramid_start = {0.9, 0.05, 0.025, 0.025};
+  double pyramid_until = 1.0;
   double network_l2 = 1e-6;       // weight decay of the networks
   double distortion = 1e-2;       // weight of the distortion loss (worker/losses/distortion_loss.h)
   double empty_ray_share = 0.05;  // share of a block's rays whose surface is behind the block: it must be transparent there

@@ -96,6 +96,7 @@ ReferenceResult ReferenceTrainer::Ray(const worker::RayBatch& batch, const worke
   std::array<double, 3> rgb_gradient = {};
   double transmittance_gradient = 0.0;
   std::vector<double> weight_gradient(lit.size(), 0.0);
+  const double photo_weight = std::pow(1.5, ray.ray.level);
   if (ray.ray.empty) {
     result.loss = (1.0 - transmittance) * (1.0 - transmittance);
     transmittance_gradient = -2.0 * (1.0 - transmittance) * ray_share;
@@ -110,11 +111,11 @@ ReferenceResult ReferenceTrainer::Ray(const worker::RayBatch& batch, const worke
       result.squared_error += residual * residual;
       // A saturated pixel means "at least this bright", a black one "at most this bright".
       if ((target >= 254.5 / 255.0 && residual > 0.0) || (target <= 0.5 / 255.0 && residual < 0.0)) continue;
-      result.loss += residual * residual;
-      rgb_gradient[c] = 2.0 * residual * ToSrgbSlope(light) * gain * ToLinearSlope(shown) * ray_share;
+      result.loss += photo_weight * residual * residual;
+      rgb_gradient[c] = photo_weight * 2.0 * residual * ToSrgbSlope(light) * gain * ToLinearSlope(shown) * ray_share;
       transmittance_gradient += rgb_gradient[c] * behind;
     }
-    if (distortion > 0.0) {
+    if (distortion > 0.0 && ray.ray.level == 0) {
       // Barron et al. 2022, eq. 15, pair by pair.
       const double width = target_.step_m * per_height;
       for (size_t i = 0; i < lit.size(); ++i) {

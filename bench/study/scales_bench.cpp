@@ -70,11 +70,12 @@ std::string ScaleMethod::Label() const {
   return (positions == 0 ? "points" : fmt::format("cones of {}", positions)) + (pyramid ? ", pyramid" : ", photos");
 }
 
-std::vector<config::Override> ScaleMethod::Overrides(const std::vector<double>& shares) const {
+std::vector<config::Override> ScaleMethod::Overrides() const {
   std::vector<config::Override> overrides;
   for (const char* section : {"context", "train"}) {
     overrides.push_back({fmt::format("{}.multisample", section), std::to_string(positions)});
-    overrides.push_back({fmt::format("{}.pyramid", section), pyramid ? fmt::format("{}", fmt::join(shares, ",")) : "1"});
+    if (pyramid) continue;
+    overrides.push_back({fmt::format("{}.pyramid", section), "1"});
     overrides.push_back({fmt::format("{}.pyramid_start", section), ""});
   }
   return overrides;
@@ -88,7 +89,7 @@ std::vector<MethodResults> RunMethods(Study& study, const std::string& part, con
     results.push_back({.method = method, .label = method.Label() + like.label, .seeds = {}});
     for (int seed = 1; seed <= options.seeds; ++seed) {
       std::vector<config::Override> overrides = own(seed);
-      const std::vector<config::Override> of_method = method.Overrides(options.pyramid);
+      const std::vector<config::Override> of_method = method.Overrides();
       overrides.insert(overrides.end(), of_method.begin(), of_method.end());
       overrides.push_back({"run.seed", std::to_string(study.settings().run.seed + seed - 1)});
       const std::string suffix = seed == 1 ? "" : fmt::format("_s{}", seed);
@@ -110,14 +111,14 @@ StudyBench ScalesBench(Study& study, const ScalesOptions& options) {
   page.lead = fmt::format(
       "Held-out photos rendered at 1, 1/2, 1/4 and 1/8 of their width with one ray per pixel, against the photo averaged to the same size in linear "
       "light. Methods: samples as points or as cones with 1 or more positions each, taught from the photos alone or from a pyramid of them "
-      "(shares of the rays at 1, 1/2, 1/4, 1/8: {:g}).",
-      fmt::join(options.pyramid, ", "));
+      "(final shares of the rays at 1, 1/2, 1/4, 1/8: {:g}).",
+      fmt::join(study.settings().train.pyramid, ", "));
   study.MeasureScales({});
   const std::vector<ScaleMethod> methods = MethodsOf(options);
   for (const ScaleMethod& method : methods) {
     // Before hours of training.
     coordinator::Settings settings = study.settings();
-    for (const config::Override& entry : method.Overrides(options.pyramid)) settings.Set(entry);
+    for (const config::Override& entry : method.Overrides()) settings.Set(entry);
   }
   const auto timed = [&options](int) { return std::vector<config::Override>{{"run.time_budget_s", fmt::format("{}", options.budget_s)}}; };
   std::vector<MethodResults> shown;

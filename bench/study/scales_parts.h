@@ -18,7 +18,7 @@ struct ScaleMethod {
 
   std::string Name() const;   // "points_photos", "cones4_pyramid"
   std::string Label() const;  // "points, photos", "cones of 4, pyramid"
-  std::vector<config::Override> Overrides(const std::vector<double>& shares) const;
+  std::vector<config::Override> Overrides() const;
 };
 
 // All trainings of one method, which differ in their random numbers.

@@ -68,10 +68,9 @@ struct TradeoffOptions {
 StudyBench Tradeoff(Study& study, const TradeoffOptions& options);
 
 struct ScalesOptions {
-  std::vector<int> positions = {0, 1, 4, 6};             // per sample, as train.multisample: 0 are points, the others cones
-  std::vector<double> pyramid = {0.6, 0.2, 0.12, 0.08};  // shares of the rays with which the pyramid is compared
-  double budget_s = 60.0;                                // training time of every variant of equal time
-  int seeds = 1;                                         // trainings per method, with seeds from run.seed on
+  std::vector<int> positions = {0, 1, 4, 6};  // per sample, as train.multisample: 0 are points, the others cones
+  double budget_s = 60.0;                     // training time of every variant of equal time
+  int seeds = 1;                              // trainings per method, with seeds from run.seed on
   bool equal_time = true, equal_steps = true;
   bool heights = false;        // train with photos from several heights; the photos are simulated
   std::string place = "town";  // simulated for `heights`

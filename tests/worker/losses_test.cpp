@@ -9,6 +9,7 @@
 #include "worker/losses/mean_loss.h"
 #include "worker/losses/photo_loss.h"
 #include "worker/losses/smoothness_loss.h"
+#include "worker/ray_loss.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -42,6 +43,34 @@ TEST(Losses, SaturatedAndBlackPixelsAreBounds) {
       EXPECT_EQ(at.gradient != 0.0, counts) << rendered;
       EXPECT_NEAR(at.squared_error, (rendered - target) * (rendered - target), 1e-15) << "the squared error is counted in any case";
     }
+  }
+}
+
+TEST(Losses, ReducedPhotosWeighMoreByLevel) {
+  constexpr float kShare = 0.25F, kStep = 1e-3F;
+  const auto loss_of = [&](int level, float red, ComposedGradient* gradient) {
+    BatchRay ray;
+    ray.ray.level = level;
+    ray.ray.target_srgb[0] = ray.ray.target_srgb[1] = ray.ray.target_srgb[2] = 0.3F;
+    ComposedRay composed;
+    composed.rgb[0] = red;
+    composed.rgb[1] = composed.rgb[2] = 0.3F;
+    composed.transmittance = 0.0F;
+    LossSums sums;
+    *gradient = LossOfRay(ray, RayView{}, composed, kShare, sums);
+    return sums.loss;
+  };
+  ComposedGradient full, at, unused;
+  const double full_loss = loss_of(0, 0.5F, &full);
+  EXPECT_NEAR(full_loss, 0.04, 1e-5);
+  float weight = 1.0F;
+  for (int level = 1; level < kPyramidLevels; ++level) {
+    weight *= 1.5F;
+    EXPECT_NEAR(loss_of(level, 0.5F, &at), weight * full_loss, 1e-6);
+    EXPECT_NEAR(at.rgb[0], weight * full.rgb[0], 1e-6F);
+    EXPECT_NEAR(at.log_gain[0], weight * full.log_gain[0], 1e-6F);
+    const double slope = (loss_of(level, 0.5F + kStep, &unused) - loss_of(level, 0.5F - kStep, &unused)) / (2.0 * kStep);
+    EXPECT_NEAR(at.rgb[0], kShare * slope, 2e-3 * kShare * slope);
   }
 }
 

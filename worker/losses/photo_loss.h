@@ -6,8 +6,8 @@
 
 namespace skyquilt::worker {
 
-// Weight of the photo loss of a pixel of a photo reduced to 1, 1/2, 1/4, 1/8 (level 0 to 3). The mean of many pixels has smaller errors than one, which
-// would otherwise be learned last (Barron et al. 2021, Mip-NeRF, section 3.1, weights by area, which takes more from the full size than it gives).
+// Weight of the photo loss of a pixel of a photo reduced to 1, 1/2, 1/4, 1/8 (level 0 to 3). The mean of many pixels has smaller errors than one
+// pixel, which would otherwise be learned last. (Barron et al. 2021, Mip-NeRF, weigh by area: 1, 4, 16, 64.)
 constexpr float kPhotoLossWeight[] = {1.0F, 1.5F, 2.25F, 3.375F};
 
 // A saturated pixel is a lower bound of the light, a black pixel an upper bound: true when the rendering satisfies the bound. target: pixel, 0..1;

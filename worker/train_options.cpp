@@ -35,7 +35,7 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
        "show "
        "no flicker; 4 and 6: the same, spread over the footprint, slower; 0: samples are points"},
       {"scale_features", &O::scale_features, Range(),
-       "true: the density network also sees how much of each level of the grid the footprint leaves; does nothing with multisample = 0"},
+       "true: the density network also sees how much the footprint leaves of the levels of the grid; does nothing with multisample = 0"},
       {"pyramid", &O::pyramid, Range{0, 1e6},
        "shares of the rays that are drawn from the photos at 1, 1/2, 1/4 and 1/8 of their size; one to four numbers of any sum. All rays come from "
        "the photos at full size with brightness.luminance_form = product"},

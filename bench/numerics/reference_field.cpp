@@ -124,7 +124,7 @@ std::vector<double> ReferenceField::Features(std::span<const double> grid, const
 std::vector<double> ReferenceField::Scales(const Place& place) const {
   std::vector<double> scales;
   if (!field_.config().scale_features) return scales;
-  for (int level = 0; level < grid_.levels(); ++level) scales.push_back(1.0 - Weight(level, place));
+  for (int level = (grid_.levels() - 1) % 2; level < grid_.levels(); level += 2) scales.push_back(1.0 - Weight(level, place));
   while (scales.size() % 4 != 0) scales.push_back(0.0);
   return scales;
 }

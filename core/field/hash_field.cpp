@@ -26,7 +26,7 @@ HashField::HashField(const FieldConfig& config) : config_(config), encoding_(enc
   Require(config.multisample == 0 || config.multisample == 1 || config.multisample == 4 || config.multisample == 6,
           "multisample must be 0, 1, 4 or 6");
   Require(!config.scale_features || config.Cones(), "scale_features needs multisample");
-  if (config.scale_features) scale_rows_ = kernel::PaddedRows(config.grid.levels);
+  if (config.scale_features) scale_rows_ = kernel::PaddedRows(ScaledLevels());
   color_inputs_ = kGeometryRows + kernel::PaddedRows(config.sh_degree * config.sh_degree);
   layers_.push_back({config.hidden, FeatureRows()});
   for (int l = 1; l < config.density_hidden_layers; ++l) layers_.push_back({config.hidden, config.hidden});
@@ -89,11 +89,11 @@ void HashField::EncodeSerial(std::span<const float> grid, const kernel::Position
 void HashField::EncodeScales(const kernel::Positions& at, int64_t n, float* rows, size_t stride) const {
   for (int row = 0; row < scale_rows_; ++row) {
     float* const out = rows + static_cast<size_t>(row) * stride;
-    if (at.sharpness == nullptr || row >= config_.grid.levels) {
+    if (at.sharpness == nullptr || row >= ScaledLevels()) {
       std::fill_n(out, n, 0.0F);
       continue;
     }
-    const auto cells = static_cast<float>(encoding::LevelResolution(config_.grid, row));
+    const auto cells = static_cast<float>(encoding::LevelResolution(config_.grid, ScaledLevel(row)));
     kernel::FootprintHidden(at.sharpness, n, cells, out);
   }
 }

@@ -40,7 +40,7 @@ struct FieldConfig {
   double color_range = 1.0;       // largest display value of a colour; > 1 leaves headroom for photos darker than the reference
   double density_bias = -5.0;     // log of the initial optical depth of one marching step
   int multisample = 0;            // positions per sample (core/render/footprint.h): 1, 4 or 6; 0: samples are points without footprint
-  bool scale_features = false;    // whether the density network also sees how much of each level its footprint leaves; not with points
+  bool scale_features = false;    // whether the density network also sees how much its footprint leaves of the levels; not with points
   bool luminance = false;         // whether the luminance row and its convolution are used
 
   bool Cones() const { return multisample > 0; }
@@ -91,6 +91,9 @@ class HashField {
   int FeatureRows() const { return encoding_->OutputRows() + scale_rows_; }
   // Rows after those of the encoding that EncodeScales fills.
   int ScaleRows() const { return scale_rows_; }
+  // Of these rows the first are of levels, the rest padding: every second level, with the finest, since neighbouring levels fade alike.
+  int ScaledLevels() const { return (config_.grid.levels + 1) / 2; }
+  int ScaledLevel(int row) const { return (config_.grid.levels - 1) % 2 + 2 * row; }
   // Rows of all hidden layers of the density network.
   int DensityHiddenRows() const { return config_.density_hidden_layers * config_.hidden; }
   int ColorInputRows() const { return color_inputs_; }
@@ -100,8 +103,8 @@ class HashField {
   // Copies the network parameters into matrices. Throws std::invalid_argument unless there are NetworkParameters() of them.
   NetworkWeights Prepare(std::span<const float> networks) const;
 
-  // Writes the rows after those of the encoding, if there are any: per level 1 - FootprintWeight, the part of it that the footprint hides. They have
-  // no parameters. rows: the first of them, of n samples.
+  // Writes the rows after those of the encoding, if there are any: 1 - FootprintWeight of every second level, the part of it that the footprint
+  // hides. They have no parameters. rows: the first of them, of n samples.
   void EncodeScales(const kernel::Positions& at, int64_t n, float* rows, size_t stride) const;
   // Computes features[row][s], row stride `stride`, for n samples, on the calling thread.
   void EncodeSerial(std::span<const float> grid, const kernel::Positions& at, int64_t n, float* features, size_t stride) const;

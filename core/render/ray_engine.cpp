@@ -16,7 +16,8 @@
 namespace skyquilt::render {
 namespace {
 
-constexpr int64_t kGroupRays = 1024;  // one task: enough samples that a level's table stays in cache
+// Rays of one task: enough samples that a level's table stays in cache, but in small pictures enough tasks that threads end together.
+constexpr int64_t kMaxGroupRays = 1024, kMinGroupRays = 128, kTasks = 32;
 constexpr int kMaxRaySamples = 2048;  // per ray and field; later ones are left out
 // Samples of a ray that are evaluated together. Opaque rays take no part in later rounds, which saves the samples behind surfaces.
 constexpr size_t kRoundSamples = 8;
@@ -408,13 +409,14 @@ void RenderRays(const FieldSet& fields, std::span<const Ray> rays, std::span<Ray
   if (rays.empty()) return;
   std::vector<std::unique_ptr<RayRenderer>> renderers(static_cast<size_t>(threads.size()));
   const auto n = static_cast<int64_t>(rays.size());
+  const int64_t per_task = std::clamp((n + kTasks - 1) / kTasks, kMinGroupRays, kMaxGroupRays);
   std::atomic<int64_t> evaluated{0};
-  threads.ParallelFor((n + kGroupRays - 1) / kGroupRays, [&](int64_t task, int thread) {
+  threads.ParallelFor((n + per_task - 1) / per_task, [&](int64_t task, int thread) {
     base::ThrowIfCancelled();
     auto& renderer = renderers[static_cast<size_t>(thread)];
     if (!renderer) renderer = std::make_unique<RayRenderer>(fields, options);
-    const auto begin = static_cast<size_t>(task * kGroupRays);
-    const size_t count = std::min(static_cast<size_t>(kGroupRays), rays.size() - begin);
+    const auto begin = static_cast<size_t>(task * per_task);
+    const size_t count = std::min(static_cast<size_t>(per_task), rays.size() - begin);
     evaluated += renderer->Render(rays.subspan(begin, count), out.subspan(begin, count));
   });
   if (samples != nullptr) *samples += evaluated;

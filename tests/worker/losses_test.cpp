@@ -66,11 +66,11 @@ TEST(Losses, ReducedPhotosWeighMoreByLevel) {
   float weight = 1.0F;
   for (int level = 1; level < kPyramidLevels; ++level) {
     weight *= 1.5F;
-    EXPECT_NEAR(loss_of(level, 0.5F, &at), weight * full_loss, 1e-6);
+    EXPECT_NEAR(loss_of(level, 0.5F, &at), static_cast<double>(weight) * full_loss, 1e-6);
     EXPECT_NEAR(at.rgb[0], weight * full.rgb[0], 1e-6F);
     EXPECT_NEAR(at.log_gain[0], weight * full.log_gain[0], 1e-6F);
-    const double slope = (loss_of(level, 0.5F + kStep, &unused) - loss_of(level, 0.5F - kStep, &unused)) / (2.0 * kStep);
-    EXPECT_NEAR(at.rgb[0], kShare * slope, 2e-3 * kShare * slope);
+    const double slope = (loss_of(level, 0.5F + kStep, &unused) - loss_of(level, 0.5F - kStep, &unused)) / (2.0 * static_cast<double>(kStep));
+    EXPECT_NEAR(static_cast<double>(at.rgb[0]) / static_cast<double>(kShare), slope, 2e-3 * slope);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "core/base/random.h"
@@ -61,11 +62,12 @@ TEST(ScaleFeatures, AreRowsOfTheDensityNetworkOnly) {
   for (const int levels : {1, 3, 4, 5, 16}) {
     const HashField without(Config(levels, 1, false)), with(Config(levels, 1, true));
     EXPECT_EQ(without.ScaleRows(), 0);
-    EXPECT_EQ(with.ScaleRows(), kernel::PaddedRows(levels));
-    EXPECT_EQ(with.FeatureRows(), without.FeatureRows() + kernel::PaddedRows(levels));
+    const int rows = kernel::PaddedRows((levels + 1) / 2);
+    EXPECT_EQ(with.ScaleRows(), rows);
+    EXPECT_EQ(with.FeatureRows(), without.FeatureRows() + rows);
     EXPECT_EQ(with.FeatureRows(), with.encoding().OutputRows() + with.ScaleRows());
     EXPECT_EQ(with.GridParameters(), without.GridParameters());
-    EXPECT_EQ(with.NetworkParameters() - without.NetworkParameters(), 8 * kernel::PaddedRows(levels)) << "inputs of the first layer";
+    EXPECT_EQ(with.NetworkParameters() - without.NetworkParameters(), 8 * rows) << "inputs of the first layer";
     EXPECT_EQ(with.ColorInputRows(), without.ColorInputRows());
     EXPECT_EQ(with.DensityHiddenRows(), without.DensityHiddenRows());
   }
@@ -74,7 +76,7 @@ TEST(ScaleFeatures, AreRowsOfTheDensityNetworkOnly) {
 TEST(ScaleFeatures, FollowWithEveryEncoding) {
   for (const auto kind : {encoding::Kind::kHash, encoding::Kind::kVoxels, encoding::Kind::kPlanes, encoding::Kind::kFrequency}) {
     const HashField field(Config(5, 1, true, kind));
-    EXPECT_EQ(field.FeatureRows(), field.encoding().OutputRows() + 8);
+    EXPECT_EQ(field.FeatureRows(), field.encoding().OutputRows() + 4);
     const Samples samples(1);
     const std::vector<float> features = Encoded(field, samples.At(true));
     const float* const first = features.data() + static_cast<size_t>(field.encoding().OutputRows()) * kStride;
@@ -83,25 +85,27 @@ TEST(ScaleFeatures, FollowWithEveryEncoding) {
   }
 }
 
-TEST(ScaleFeatures, AreWhatTheFootprintHidesOfEachLevel) {
-  for (const int points : {1, 4, 6}) {
-    const FieldConfig config = Config(5, points, true);
+TEST(ScaleFeatures, AreWhatTheFootprintHidesOfEverySecondLevel) {
+  for (const auto& [points, levels] : {std::pair{1, 5}, {4, 6}, {6, 5}, {1, 9}}) {
+    const FieldConfig config = Config(levels, points, true);
     const HashField field(config);
     const Samples samples(points);
     const std::vector<float> features = Encoded(field, samples.At(true));
     const auto scale = [&](int row, size_t s) { return features[static_cast<size_t>(field.encoding().OutputRows() + row) * kStride + s]; };
     for (size_t s = 0; s < static_cast<size_t>(kSamples); ++s) {
-      for (int level = 0; level < 5; ++level) {
-        const double cells = 2.0 * std::pow(20.0, level / 4.0);
+      for (int row = 0; row < (levels + 1) / 2; ++row) {
+        const int level = levels % 2 == 1 ? 2 * row : 2 * row + 1;
+        const double cells = 2.0 * std::pow(20.0, level / (levels - 1.0));
         EXPECT_NEAR(encoding::LevelResolution(config.grid, level), cells, 1e-9);
-        EXPECT_EQ(scale(level, s), 1.0F - kernel::FootprintWeight(samples.sharpness[s], static_cast<float>(cells))) << level << " " << s;
+        EXPECT_EQ(scale(row, s), 1.0F - kernel::FootprintWeight(samples.sharpness[s], static_cast<float>(cells))) << level << " " << s;
         const auto sharpness = static_cast<double>(samples.sharpness[s]);
         const double hidden = std::isnan(sharpness) ? 0.0 : std::erfc(sharpness / cells);
-        EXPECT_NEAR(static_cast<double>(scale(level, s)), hidden, 3e-6) << level << " " << s;
+        EXPECT_NEAR(static_cast<double>(scale(row, s)), hidden, 3e-6) << level << " " << s;
       }
-      for (int row = 5; row < 8; ++row) EXPECT_EQ(scale(row, s), 0.0F) << "padding";
+      for (int row = (levels + 1) / 2; row < field.ScaleRows(); ++row) EXPECT_EQ(scale(row, s), 0.0F) << "padding";
     }
-    EXPECT_LT(scale(0, 2), scale(4, 2)) << "finer levels fade first";
+    EXPECT_EQ(field.ScaleRows(), levels == 9 ? 8 : 4);
+    EXPECT_LT(scale(0, 2), scale((levels - 1) / 2, 2)) << "finer levels fade first";
   }
 }
 

@@ -187,7 +187,7 @@ void AddScalesOptions(CLI::App* command, StudyFlags* flags) {
       ->add_option("--positions", flags->positions,
                    "kinds of samples to compare: 0 are points, others cones with so many positions; default: 0,1,4,6, with --quick 0,1")
       ->delimiter(',')
-      ->check(CLI::Range(0, 64))
+      ->check(CLI::IsMember({0, 1, 4, 6}))
       ->type_name("N,...");
   command->add_option("--parts", flags->parts, "comparisons: time, steps, heights; default: time,steps")
       ->delimiter(',')

@@ -37,7 +37,7 @@ class ReferenceField {
 
   // Features of the hash grid only.
   std::vector<double> Features(std::span<const double> grid, const Place& place) const;
-  // Inputs of the density network after these: the share of every level that the footprint hides. Empty without scale_features.
+  // Inputs of the density network after these: the share of every second level that the footprint hides. Empty without scale_features.
   std::vector<double> Scales(const Place& place) const;
   Sample Forward(std::span<const double> grid, std::span<const double> networks, const Place& place, const std::array<double, 3>& direction) const;
   // The density only: the colour network is not evaluated, raw stays zero.

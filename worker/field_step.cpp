@@ -85,8 +85,13 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   slot_gradients_.assign(network_size * kGradientSlots, 0.0F);
   gain_gradients_.assign(learner != nullptr ? batch.rays.size() : 0, {0.0F, 0.0F, 0.0F});
   const float ray_share = 1.0F / static_cast<float>(std::max(1, result.n_rays));
-  const PacketStep step{batch,     features_.data(),   observed_.data(),
-                        ray_share, options.distortion, gain_gradients_.empty() ? nullptr : gain_gradients_.data()};
+  const PacketStep step{batch,
+                        features_.data(),
+                        observed_.data(),
+                        ray_share,
+                        options.distortion,
+                        options.priors,
+                        gain_gradients_.empty() ? nullptr : gain_gradients_.data()};
   threads_.ParallelFor(kGradientSlots, [&](int64_t slot, int thread) {
     PacketTrainer& trainer = *trainers_[static_cast<size_t>(thread)];
     float* network_gradient = slot_gradients_.data() + static_cast<size_t>(slot) * network_size;
@@ -157,7 +162,7 @@ void FieldStep::UpdateRunningMeans(const LossSums& sums) {
 void FieldStep::Infer(RayBatch& batch, const field::Parameters& parameters) {
   weights_ = field_.Prepare(parameters.networks);
   Encode(batch, parameters.grid);
-  const PacketStep step{batch, features_.data(), nullptr, 0.0F, 0.0, nullptr};
+  const PacketStep step{batch, features_.data(), nullptr, 0.0F, 0.0, {}, nullptr};
   threads_.ParallelFor(static_cast<int64_t>(batch.packets.size()),
                        [&](int64_t k, int thread) { trainers_[static_cast<size_t>(thread)]->Infer(step, batch.packets[static_cast<size_t>(k)]); });
 }

@@ -34,7 +34,8 @@ TrainOptions WithoutPyramid(TrainOptions options) {
 }  // namespace
 
 FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options,
-                           uint64_t seed, const LuminancePlan& luminance, brightness::ResponseLearner* learner, base::ThreadPool& threads)
+                           uint64_t seed, const LuminancePlan& luminance, brightness::ResponseLearner* learner, const FieldPriors& priors,
+                           base::ThreadPool& threads)
     : target_(target),
       options_(luminance.luminance.On() && luminance.luminance.product ? WithoutPyramid(options) : options),
       start_log_gain_(luminance.start.mean_log_gain),
@@ -45,6 +46,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
       drawer_(target, source, seed, NeighboursOf(luminance.luminance), options.stratified, threads, times_),
       step_(target, field_, context, luminance, threads, times_),
       learner_(learner),
+      priors_(priors),
       source_(source),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / 24)) {
   target.parameters.Allocate(field_);
@@ -65,7 +67,7 @@ void FieldTrainer::MeasureFootprints() {
   constexpr int kRays = 8192;
   constexpr uint64_t kNoStep = ~uint64_t{0};
   // At full size, so that the range does not depend on the drawn levels.
-  drawer_.Draw(static_cast<int64_t>(kNoStep >> 1U), kRays, field_.FeatureRows(), PhotoPyramid(), &batch_);
+  drawer_.Draw(static_cast<int64_t>(kNoStep >> 1U), kRays, field_.FeatureRows(), PhotoPyramid(), {}, &batch_);
   std::vector<double> widths;
   for (const BatchRay& ray : batch_.rays) {
     for (int64_t s = ray.begin; s < ray.begin + ray.count; ++s) {
@@ -82,8 +84,13 @@ void FieldTrainer::MeasureFootprints() {
 
 StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   const PhotoPyramid pyramid(options_.pyramid, options_.pyramid_start, options_.pyramid_until, progress);
-  drawer_.Draw(state_.step, rays_per_step_, field_.FeatureRows(), pyramid, &batch_);
+  const double strength = priors_.options.Strength(progress);
+  SegmentShare segments;
+  if (strength > 0.0 && priors_.options.Segments()) segments = {priors_.segments, priors_.options.segment_share};
+  drawer_.Draw(state_.step, rays_per_step_, field_.FeatureRows(), pyramid, segments, &batch_);
   StepOptions step;
+  step.priors = {
+      .planar = strength * priors_.options.planar, .upright = strength * priors_.options.upright, .voxel_m = target_.step_m / options_.step_voxels};
   const double warm_up = std::min(1.0, static_cast<double>(state_.step + 1) / kWarmUpSteps);
   const double decay = std::pow(options_.final_learning_rate_share, std::clamp((progress - kDecayFrom) / (1.0 - kDecayFrom), 0.0, 1.0));
   step.learning_rate = options_.learning_rate * learning_rate_scale * warm_up * decay;

@@ -10,18 +10,26 @@
 #include "core/field/optimizer.h"
 #include "core/render/trained_field.h"
 #include "worker/field_step.h"
+#include "worker/photo_segments.h"
+#include "worker/prior_options.h"
 #include "worker/ray_batch.h"
 #include "worker/ray_source.h"
 #include "worker/train_options.h"
 
 namespace skyquilt::worker {
 
+// What a field is taught beside the photos. Nothing by default.
+struct FieldPriors {
+  PriorOptions options;
+  const PhotoSegments* segments = nullptr;  // of the field's photos; needed for options.Segments()
+};
+
 class FieldTrainer {
  public:
   // Trains target.parameters in place. They are allocated here and are zero until InitializeParameters() or LoadSession() sets them. context may be
   // null. learner may be null: the photos' gains are then not learned.
   FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options, uint64_t seed,
-               const LuminancePlan& luminance, brightness::ResponseLearner* learner, base::ThreadPool& threads);
+               const LuminancePlan& luminance, brightness::ResponseLearner* learner, const FieldPriors& priors, base::ThreadPool& threads);
 
   field::OptimizerState& state() { return state_; }
   int& rays_per_step() { return rays_per_step_; }
@@ -53,6 +61,7 @@ class FieldTrainer {
   RayDrawer drawer_;
   FieldStep step_;
   brightness::ResponseLearner* learner_;
+  FieldPriors priors_;
   RaySource& source_;
   RayBatch batch_;
   int rays_per_step_ = 1024;

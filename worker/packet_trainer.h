@@ -16,6 +16,7 @@
 #include "worker/losses/distortion_loss.h"
 #include "worker/luminance_convolution.h"
 #include "worker/phase_times.h"
+#include "worker/prior_weights.h"
 #include "worker/ray_batch.h"
 #include "worker/ray_loss.h"
 
@@ -37,11 +38,12 @@ struct PacketShared {
 
 // Used by all packets of one step. Each packet writes only to its own ranges of the arrays.
 struct PacketStep {
-  RayBatch& batch;                       // x, y, z and t of hidden samples are overwritten
-  float* features;                       // at Packet::features; overwritten by their gradient
-  float* observed;                       // per sample: tau of a marching step, 0 where no light arrives; not used by Infer
-  float ray_share;                       // 1 / rays of the batch
-  double distortion;                     // weight of the distortion loss
+  RayBatch& batch;    // x, y, z and t of hidden samples are overwritten
+  float* features;    // at Packet::features; overwritten by their gradient
+  float* observed;    // per sample: tau of a marching step, 0 where no light arrives; not used by Infer
+  float ray_share;    // 1 / rays of the batch
+  double distortion;  // weight of the distortion loss
+  PriorWeights priors;
   std::array<float, 3>* gain_gradients;  // per ray, by its log gains; null without a learner
 };
 
@@ -88,6 +90,12 @@ class PacketTrainer {
   // Distortion loss of one ray; its gradient is added to weight_gradient_.
   bool WantsDistortionLoss(const BatchRay& ray, const RayView& view) const;
   void AddDistortion(const RayView& view, LossSums& sums);
+  // packet_trainer_priors.cpp: losses of the distances at which rays end.
+  void AddSegmentLosses(LossSums& sums);
+  void AddSegmentLoss(size_t first, size_t end, LossSums& sums);
+  bool HasWeightGradient(size_t view) const { return !distance_gradient_.empty() && distance_gradient_[view] != 0.0F; }
+  void AddDistanceGradient(size_t view);
+
   // Turns gradients by optical depths and colours into gradients by the networks' outputs.
   void FinishGradients();
 
@@ -110,6 +118,9 @@ class PacketTrainer {
   std::vector<float> depth_, keep_, tau_, weight_, rgb_, weight_gradient_;
   DistortionScratch<float> distortion_;
   std::vector<RayView> views_;  // rays of the packet
+  std::vector<ComposedRay> composed_;
+  std::vector<RayEnd> ends_;              // per view; only with priors
+  std::vector<float> distance_gradient_;  // of the batch's mean loss by the mean distance of each view; empty without priors
   // Intervals of rays that are rendered from the context.
   std::unique_ptr<render::RayRenderer> context_;
   std::vector<render::Ray> pieces_;

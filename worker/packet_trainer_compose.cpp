@@ -12,10 +12,13 @@ constexpr float kLeastColorSlope = 0.02F;
 }  // namespace
 
 void PacketTrainer::ComposeAndLoss(LossSums& sums) {
+  composed_.clear();
+  for (const RayView& view : views_) composed_.push_back(Compose(view));
+  AddSegmentLosses(sums);
   for (size_t k = 0; k < views_.size(); ++k) {
     const BatchRay& r = Ray(k);
     const RayView& view = views_[k];
-    const ComposedRay composed = Compose(view);
+    const ComposedRay& composed = composed_[k];
     ComposedGradient gradient;
     const float* weight_gradient = nullptr;
     if (r.ray.empty) {
@@ -23,9 +26,11 @@ void PacketTrainer::ComposeAndLoss(LossSums& sums) {
     } else {
       gradient = LossOfRay(r, view, composed, step_->ray_share, sums);
       KeepGainGradient(k, gradient);
-      if (WantsDistortionLoss(r, view)) {
+      const bool distorted = WantsDistortionLoss(r, view);
+      if (distorted || HasWeightGradient(k)) {
         weight_gradient_.assign(static_cast<size_t>(view.count), 0.0F);
-        AddDistortion(view, sums);
+        if (distorted) AddDistortion(view, sums);
+        if (HasWeightGradient(k)) AddDistanceGradient(k);
         weight_gradient = weight_gradient_.data();
       }
     }

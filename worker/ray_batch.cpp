@@ -62,7 +62,8 @@ void RayBatch::PadTo(size_t end) {
 
 void RayBatch::Append(BatchRay ray, const float* x_in, const float* y_in, const float* z_in, const float* sharpness_in, const float* t_in,
                       const float* unit_length_in, const int32_t* cell_in) {
-  if (packets.empty() || packets.back().count + ray.count > field::kChunk) {
+  const int64_t together = std::clamp<int64_t>(ray.segment_samples, ray.count, std::max<int64_t>(ray.count, field::kChunk));
+  if (packets.empty() || packets.back().count + together > field::kChunk) {
     const int64_t begin = kernel::Padded(Size());
     PadTo(static_cast<size_t>(begin));
     packets.push_back({static_cast<int64_t>(rays.size()), 0, begin, 0, 0, 0});
@@ -161,7 +162,25 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
   group.rays.push_back(r);
 }
 
-void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, RayBatch* batch) {
+int RayDrawer::AddSegments(const SegmentShare& segments, int64_t task, base::Random& random, Group& group) const {
+  if (segments.segments == nullptr) return 0;
+  const int n_segments = static_cast<int>(std::lround(segments.share * kGroupRays / kSegmentRays));
+  PixelRay rays[kSegmentRays];
+  for (int s = 0; s < n_segments; ++s) {
+    int drawn = 0;
+    const bool together = source_.DrawSegment(random, *segments.segments, rays, &drawn);
+    for (int k = 0; k < drawn; ++k) {
+      BatchRay r;
+      r.ray = rays[k];
+      r.patch = task * kGroupRays + s * kSegmentRays + k;
+      if (together) r.segment = task * kGroupRays + s;
+      AddRay(r, random, group);
+    }
+  }
+  return n_segments * kSegmentRays;
+}
+
+void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, const SegmentShare& segments, RayBatch* batch) {
   const int n_groups = (n_rays + kGroupRays - 1) / kGroupRays;
   groups_.resize(static_cast<size_t>(n_groups));
   threads_.ParallelFor(n_groups, [&](int64_t task, int thread) {
@@ -172,7 +191,7 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyra
     base::Random random(MixSeed(seed_, static_cast<uint64_t>(step), static_cast<uint64_t>(task)), kRayStream);
     PixelRay patch[kPatchPixels];
     const int per_patch = neighbours_ == Neighbours::kPatch ? kPatchPixels : 1;
-    for (int i = 0; i < kGroupRays; i += per_patch) {
+    for (int i = AddSegments(segments, task, random, group); i < kGroupRays; i += per_patch) {
       const int n = per_patch > 1 ? source_.DrawPatch(random, pyramid, per_patch, patch) : source_.Draw(random, pyramid, patch) ? 1 : 0;
       for (int k = 0; k < n; ++k) {
         BatchRay r;
@@ -188,7 +207,10 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyra
   batch->Clear(points);
   for (const Group& group : groups_) {
     size_t at = 0;
-    for (const BatchRay& r : group.rays) {
+    for (size_t i = 0; i < group.rays.size(); ++i) {
+      BatchRay r = group.rays[i];
+      const bool starts_segment = r.segment >= 0 && (i == 0 || group.rays[i - 1].segment != r.segment);
+      for (size_t k = i; starts_segment && k < group.rays.size() && group.rays[k].segment == r.segment; ++k) r.segment_samples += group.rays[k].count;
       const size_t first = at * static_cast<size_t>(points);
       batch->Append(r, group.x.data() + first, group.y.data() + first, group.z.data() + first, group.sharpness.data() + at, group.t.data() + at,
                     group.unit_length.data() + at, group.cell.data() + at);

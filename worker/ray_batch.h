@@ -18,6 +18,8 @@ struct BatchRay {
   int64_t begin = 0, count = 0;     // its samples in the batch
   float background[3] = {0, 0, 0};  // random colour behind everything, so that surfaces must become opaque
   int64_t patch = 0;                // rays of one patch are neighbours and follow each other
+  int64_t segment = -1;             // rays of one segment of a photo have its number and follow each other in one packet; -1: none
+  int64_t segment_samples = 0;      // of the first ray of a segment: samples of all its rays
 };
 
 struct Packet {
@@ -67,6 +69,12 @@ enum class Neighbours {
 };
 constexpr int kPatchPixels = 8;
 
+// Which part of the rays is drawn in groups of kSegmentRays within segments.
+struct SegmentShare {
+  const PhotoSegments* segments = nullptr;
+  double share = 0.0;
+};
+
 // Draws the pixels of a batch and samples their rays in occupied cells. A pure function of (seed, step) for any number of threads.
 class RayDrawer {
  public:
@@ -74,8 +82,8 @@ class RayDrawer {
   RayDrawer(const render::TrainedField& target, const RaySource& source, uint64_t seed, Neighbours neighbours, bool stratified,
             base::ThreadPool& threads, PhaseTimes& times)
       : target_(target), source_(source), seed_(seed), neighbours_(neighbours), stratified_(stratified), threads_(threads), times_(times) {}
-  // About n_rays rays: masked pixels and rays that miss the field are left out.
-  void Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, RayBatch* batch);
+  // About n_rays rays: masked pixels and rays that miss the field are left out. segments: rays in segments are drawn too; null: none.
+  void Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, const SegmentShare& segments, RayBatch* batch);
 
  private:
   // The rays of one task; the first `count` elements of the arrays are used.
@@ -88,6 +96,8 @@ class RayDrawer {
     void MakeRoom(size_t samples, int points);
   };
   void AddRay(BatchRay r, base::Random& random, Group& group) const;
+  // Returns the number of rays drawn.
+  int AddSegments(const SegmentShare& segments, int64_t task, base::Random& random, Group& group) const;
   const render::TrainedField& target_;
   const RaySource& source_;
   uint64_t seed_;

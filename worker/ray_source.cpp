@@ -96,6 +96,36 @@ int RaySource::DrawPatch(base::Random& random, const PhotoPyramid& pyramid, int 
   return drawn;
 }
 
+bool RaySource::DrawSegment(base::Random& random, const PhotoSegments& segments, PixelRay* rays, int* drawn) const {
+  *drawn = 0;
+  const Tile& tile = inside_[random.Below(static_cast<uint32_t>(inside_.size()))];
+  const auto photo = static_cast<size_t>(tile.photo);
+  const int width = pixels_.Width(photo), height = pixels_.Height(photo);
+  const auto within = [&random](int begin, int end) {
+    return begin + static_cast<int>(random.Below(static_cast<uint32_t>(std::max(1, end - begin))));
+  };
+  const int first_x = within(tile.column * width / kTileColumns, (tile.column + 1) * width / kTileColumns);
+  const int first_y = within(tile.row * height / kTileRows, (tile.row + 1) * height / kTileRows);
+  const uint16_t segment = segments.At(tile.photo, first_x, first_y);
+  bool together = segment != 0;
+  if (RayOf(tile.photo, first_x, first_y, 0, false, rays)) ++*drawn;
+  constexpr int kAttempts = 8;
+  while (*drawn < kSegmentRays) {
+    int x = first_x, y = first_y, attempt = 0;
+    for (; together && attempt < kAttempts; ++attempt) {
+      x = within(std::max(0, first_x - kSegmentReach), std::min(width, first_x + kSegmentReach + 1));
+      y = within(std::max(0, first_y - kSegmentReach), std::min(height, first_y + kSegmentReach + 1));
+      if (segments.At(tile.photo, x, y) == segment && RayOf(tile.photo, x, y, 0, false, rays + *drawn)) break;
+    }
+    if (!together || attempt == kAttempts) {
+      together = false;
+      if (!Draw(random, PhotoPyramid(), rays + *drawn)) break;
+    }
+    ++*drawn;
+  }
+  return together;
+}
+
 bool RaySource::RayOf(int photo, int x, int y, int level, bool empty, PixelRay* ray) const {
   const auto index = static_cast<size_t>(photo);
   const int size = 1 << level;

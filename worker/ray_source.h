@@ -15,6 +15,7 @@
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
 #include "worker/photo_pyramid.h"
+#include "worker/photo_segments.h"
 
 namespace skyquilt::worker {
 
@@ -28,6 +29,10 @@ struct PixelRay {
   int photo = 0;
   bool empty = false;  // the surface is behind the field, so the field must be transparent along this ray
 };
+
+// Rays that are drawn together in one segment of a photo, and how far apart they are at most along each axis, pixels of the cached photo.
+constexpr int kSegmentRays = 6;
+constexpr int kSegmentReach = 16;
 
 // Tiles per photo.
 constexpr int kTileColumns = 48;
@@ -56,6 +61,9 @@ class RaySource {
   bool Draw(base::Random& random, const PhotoPyramid& pyramid, PixelRay* ray) const;
   // Draws up to n neighbouring pixels of one row from left to right, without masked ones; photo pixels are from one tile. Returns their number.
   int DrawPatch(base::Random& random, const PhotoPyramid& pyramid, int n, PixelRay* rays) const;
+  // Draws kSegmentRays pixels of a photo at full size. Returns true when all of them are in one segment; otherwise they are unrelated, and *drawn
+  // says how many were found.
+  bool DrawSegment(base::Random& random, const PhotoSegments& segments, PixelRay* rays, int* drawn) const;
 
   // The camera at the cached image size.
   const camera::Camera& CameraOf(int photo) const { return cameras_[static_cast<size_t>(photo)]; }

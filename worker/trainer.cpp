@@ -103,7 +103,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   source.UpdateExposures();
   render::TrainedField target = MakeTarget(job, area, true, job.luminance, response, learner.active());
   const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};
-  FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, threads);
+  FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, {}, threads);
   SessionRecord record;
   if (saved) {
     LoadSession(*saved, target, trainer, &record, &extras);
@@ -153,7 +153,10 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
     return none;
   }
   const LuminancePlan luminance{loaded.luminance, loaded.luminance_state, false};
-  FieldTrainer trainer(target, source, context != nullptr ? &context->field : nullptr, job.options, job.seed, luminance, nullptr, threads);
+  std::optional<PhotoSegments> segments;
+  if (job.priors.Segments()) segments.emplace(*job.pixels, block.photos, threads);
+  const FieldPriors priors{job.priors, segments ? &*segments : nullptr};
+  FieldTrainer trainer(target, source, context != nullptr ? &context->field : nullptr, job.options, job.seed, luminance, nullptr, priors, threads);
   SessionRecord record;
   if (saved) {
     LoadSession(*saved, target, trainer, &record, nullptr);

@@ -16,6 +16,7 @@
 #include "core/survey/survey.h"
 #include "worker/block_spec.h"
 #include "worker/phase_times.h"
+#include "worker/prior_options.h"
 #include "worker/train_options.h"
 
 namespace skyquilt::worker {
@@ -58,6 +59,7 @@ struct TrainJob {
   brightness::LearnerOptions learn;
   brightness::Luminance luminance;   // for the context; blocks use the one stored with it
   TrainOptions options;              // with the budget of this field
+  PriorOptions priors;               // of blocks; the context has none
   int min_views = 2;                 // number of training photos that must see a place for the field to learn it
   double learning_rate_scale = 1.0;  // factor on the learning rate; below 1 in retries
   std::string config_hash;           // stored in the checkpoint; one with another hash is refused

@@ -13,6 +13,7 @@ config::Sections Settings::AllSections() {
   sections.Add("brightness", brightness, "correction of exposure differences between photos");
   sections.Add("context", context, "the coarse field of the whole survey");
   sections.Add("train", train, "the fine field of each block");
+  sections.Add("priors", priors, "what the blocks are taught about surfaces beside the photos");
   sections.Add("merge", merge, "how blocks are joined into one scene");
   sections.Add("products", products, "orthophoto, surface model, images, video");
   sections.Add("evaluate", evaluate, "scores and report");

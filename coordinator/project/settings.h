@@ -15,6 +15,7 @@
 #include "prepare/prepare_options.h"
 #include "products/product_options.h"
 #include "simulate/simulate_options.h"
+#include "worker/prior_options.h"
 #include "worker/train_options.h"
 
 namespace skyquilt::coordinator {
@@ -27,6 +28,7 @@ struct Settings {
   brightness::BrightnessOptions brightness;
   worker::TrainOptions context;
   worker::TrainOptions train;
+  worker::PriorOptions priors;
   merge::MergeOptions merge;
   products::ProductOptions products;
   evaluate::EvaluateOptions evaluate;

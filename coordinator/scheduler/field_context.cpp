@@ -87,6 +87,7 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
     train.survey = &survey;
     train.pixels = &pixels;
     train.options = job.block < 0 ? settings.context : settings.train;
+    train.priors = settings.priors;
     train.options.steps = job.steps;
     train.options.seconds = job.seconds;
     train.response = plan.response;

@@ -8,6 +8,8 @@
 #include "worker/losses/emptiness_loss.h"
 #include "worker/losses/mean_loss.h"
 #include "worker/losses/photo_loss.h"
+#include "worker/losses/point_depth_loss.h"
+#include "worker/losses/robust_loss.h"
 #include "worker/losses/smoothness_loss.h"
 #include "worker/ray_loss.h"
 
@@ -32,6 +34,46 @@ TEST(Losses, TonedPhotoLossHasItsGradient) {
   // Beyond its ends the curve is a straight line.
   ExpectLossGradient([](double weight, const Inputs& x) { return Weighted(weight, TonedPhotoLoss(x[0], 0.62)); }, {1, 1.01, 1.4});
   ExpectLossGradient([](double weight, const Inputs& x) { return Weighted(weight, TonedPhotoLoss(x[0], 0.62)); }, {1, -0.4, -0.01});
+}
+
+TEST(Losses, RobustLossHasItsGradient) {
+  for (const double kappa : {0.3, 1.0, 20.0}) {
+    ExpectLossGradient(
+        [kappa](double weight, const Inputs& x) {
+          const Loss<double> loss = RobustLoss(weight, x[0], kappa);
+          return CheckedLoss{loss.value, {loss.gradient}};
+        },
+        {1, -3.0, 3.0});
+  }
+}
+
+TEST(Losses, RobustLossLetsGoOfFarPoints) {
+  EXPECT_NEAR(RobustLoss(1.0, 1e-3, 1.0).value, 1e-6, 1e-11);
+  EXPECT_NEAR(RobustLoss(1.0, 1e6, 2.0).value, 4.0, 1e-6);
+  EXPECT_LT(RobustLoss(1.0, 1e3, 1.0).gradient, 1e-8);
+}
+
+TEST(Losses, PointDepthLossHasItsGradient) {
+  const Inputs t = {9.0, 9.5, 10.0, 10.5, 11.0};
+  ExpectLossGradient(
+      [&](double weight, const Inputs& w) {
+        CheckedLoss loss;
+        loss.gradient.assign(t.size(), 0.0);
+        loss.value = AddPointDepthLoss(weight, t.size(), w.data(), t.data(), 0.5, 10.1, 0.4, loss.gradient.data());
+        return loss;
+      },
+      {t.size(), 0.01, 0.4});
+}
+
+// Of all distributions over the samples that with weight where the point is has the smallest loss.
+TEST(Losses, PointDepthLossIsSmallestAtThePoint) {
+  const Inputs t = {9.0, 9.5, 10.0, 10.5, 11.0};
+  const auto loss_at = [&](size_t peak) {
+    Inputs w(t.size(), 0.025), unused(t.size());
+    w[peak] = 0.9;
+    return AddPointDepthLoss(1.0, t.size(), w.data(), t.data(), 0.5, 10.1, 0.2, unused.data());
+  };
+  for (const size_t other : {0U, 1U, 3U, 4U}) EXPECT_LT(loss_at(2), loss_at(other));
 }
 
 TEST(Losses, SaturatedAndBlackPixelsAreBounds) {

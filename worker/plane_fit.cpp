@@ -1,0 +1,38 @@
+#include "worker/plane_fit.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace skyquilt::worker {
+namespace {
+
+using Eigen::Vector3d;
+
+// Variances of the points along their three axes, smallest first: the second must be so many times the smallest, and such a share of the largest.
+constexpr double kFlatness = 4.0, kBreadth = 1e-3;
+// Upward components of the normals of planes that are nearly level (10 degrees) or vertical (20 degrees).
+constexpr double kNearlyLevel = 0.985, kNearlyVertical = 0.35;
+
+}  // namespace
+
+std::optional<Plane> FitPlane(const std::vector<Vector3d>& points) {
+  if (points.size() < kFewestPlanePoints) return std::nullopt;
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& x : points) mean += x;
+  mean /= static_cast<double>(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3d& x : points) spread += (x - mean) * (x - mean).transpose();
+  if (!spread.allFinite()) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  const Vector3d& variance = solver.eigenvalues();
+  if (!(variance[1] > kFlatness * variance[0] && variance[1] > kBreadth * variance[2])) return std::nullopt;
+  return Plane{mean, solver.eigenvectors().col(0)};
+}
+
+std::optional<Plane> UprightPlane(const Plane& plane) {
+  const double up = std::abs(plane.normal.z());
+  if (up > kNearlyLevel) return Plane{plane.point, Vector3d::UnitZ()};
+  if (up < kNearlyVertical) return Plane{plane.point, Vector3d(plane.normal.x(), plane.normal.y(), 0.0).normalized()};
+  return std::nullopt;
+}
+
+}  // namespace skyquilt::worker

@@ -1,0 +1,34 @@
+#include "worker/prior_options.h"
+
+#include <algorithm>
+
+#include "core/base/errors.h"
+
+namespace skyquilt::worker {
+
+double PriorOptions::Strength(double progress) const {
+  if (progress < from || progress <= 0.0) return 0.0;
+  return until > from ? std::min(1.0, (progress - from) / (until - from)) : 1.0;
+}
+
+std::vector<config::Field<PriorOptions>> PriorOptions::Fields() {
+  using config::Range;
+  using O = PriorOptions;
+  return {
+      {"planar", &O::planar, Range{0, 1e3}, "weight of the loss that makes the surface plane within segments of a photo; 0: off"},
+      {"upright", &O::upright, Range{0, 1e3}, "weight of the loss that makes such planes level or vertical when they nearly are; 0: off"},
+      {"points", &O::points, Range{0, 1e3}, "weight of the loss that brings the surface to the sparse points; 0: off"},
+      {"from", &O::from, Range{0, 1}, "share of the budget up to which these weights are 0"},
+      {"until", &O::until, Range{0, 1}, "share of the budget from which on they have their full size; between, they grow linearly"},
+      {"segment_share", &O::segment_share, Range{0, 0.5}, "share of the rays that are drawn in groups within a segment, for planar and upright"},
+      {"point_share", &O::point_share, Range{0, 0.5}, "share of the rays that are drawn towards sparse points"},
+  };
+}
+
+void PriorOptions::Check(const std::string& section) const {
+  config::CheckRanges(section, *this);
+  if (until < from)
+    throw base::UsageError(section + ".until = " + std::to_string(until) + " is not allowed: it must not be below " + section + ".from");
+}
+
+}  // namespace skyquilt::worker

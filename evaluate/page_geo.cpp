@@ -160,7 +160,7 @@ std::string GeoSection(const ReportInput& input) {
   }
   html += GeoMap(survey) + GeoCharts(survey) + GravityEvidenceTable(survey);
   if (fitted) html += FlightTable(survey);
-  return html + ResidualTable(survey) + "</section>\n";
+  return html + DirectionsTable(survey) + ResidualTable(survey) + "</section>\n";
 }
 
 }  // namespace skyquilt::evaluate

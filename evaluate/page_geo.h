@@ -16,6 +16,8 @@ std::string GeoMap(const survey::Survey& survey);
 std::string GeoCharts(const survey::Survey& survey);
 // What each kind of evidence says about the direction of gravity, as a plot and a table. Empty without evidence.
 std::string GravityEvidenceTable(const survey::Survey& survey);
+// Directions of buildings and streets, as a plot and a table. Empty when no lines were searched.
+std::string DirectionsTable(const survey::Survey& survey);
 // Per photo, the largest residual first.
 std::string ResidualTable(const survey::Survey& survey);
 

@@ -18,6 +18,7 @@
 #include "prepare/flight_checks.h"
 #include "prepare/georeference.h"
 #include "prepare/holdout.h"
+#include "prepare/horizontal_lines.h"
 #include "prepare/input_folder.h"
 #include "prepare/intrinsics_sigma.h"
 #include "prepare/photo_files.h"
@@ -204,6 +205,15 @@ void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folde
   for (survey::Problem& problem : FlightProblems(survey.checks, survey)) survey.problems.push_back(std::move(problem));
 }
 
+void LogDirections(const survey::DominantDirections& directions) {
+  std::string text;
+  for (const survey::YawMode& mode : directions.modes) {
+    text += fmt::format("{}{:.1f} +- {:.1f} degrees ({:.0f} %)", text.empty() ? "" : ", ", mode.yaw_deg, mode.sigma_deg, 100.0 * mode.share);
+  }
+  spdlog::info("{} straight lines in {} photos; directions of buildings and streets: {}", directions.lines, directions.photos,
+               text.empty() ? "none" : text);
+}
+
 }  // namespace
 
 survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads) {
@@ -251,6 +261,9 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   CheckFlightOf(model, folders.model, registered, photos.usable, !folders.exact_origin, survey);
   MarkHoldout(holdout, survey);
   base::ThrowIfCancelled();
+  const FoundLines lines = FindHorizontalLines(survey, threads);
+  survey.directions = FindDirections(lines.lines, lines.photos);
+  LogDirections(survey.directions);
 
   LogSummary(survey);
   if (!survey.unregistered.empty())

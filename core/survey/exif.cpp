@@ -17,8 +17,6 @@
 namespace skyquilt::survey {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 std::optional<double> Finite(double value) {
   return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
@@ -138,7 +136,7 @@ std::optional<geo::Geodetic> ReadPosition(const Exiv2::ExifData& exif, const Exi
   if (!latitude || !longitude || !IsPlausible(*latitude, *longitude)) return std::nullopt;
   auto altitude = absolute_altitude_m;
   if (!altitude) altitude = ExifAltitude(exif);
-  return geo::Geodetic{*latitude, geo::WrapLongitudeDeg(*longitude), altitude.value_or(kNan)};
+  return geo::Geodetic{*latitude, geo::WrapLongitudeDeg(*longitude), altitude.value_or(std::numeric_limits<double>::quiet_NaN())};
 }
 
 // Drones without RTK write zeros into its tags.

@@ -177,6 +177,7 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
   for (const Photo& photo : survey.photos) value["photos"].push_back(ToJson(photo));
   // survey.json is written last: if it exists, the points are complete.
   WritePointsPly(survey.points, folder / "points.ply");
+  SaveDirections(survey.directions, folder / "directions.json");
   base::WriteFileAtomically(folder / "survey.json", value.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
@@ -195,6 +196,7 @@ Survey LoadSurvey(const std::filesystem::path& folder) {
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, error.what(), "Run 'skyquilt prepare' again");
   }
+  survey.directions = LoadDirections(folder / "directions.json");
   survey.points = ReadPointsPly(folder / "points.ply");
   if (survey.points.size() != n_points) {
     throw base::InputError(folder / "points.ply",

@@ -1,5 +1,6 @@
 // A prepared survey, the result of the prepare stage and the input of all later ones: photos with pose, time and exposure in one local ENU frame,
-// their cameras and the sparse points. On disk it is a folder with survey.json (readable text) and points.ply (the points, for any viewer).
+// their cameras and the sparse points. On disk it is a folder with survey.json (readable text), points.ply (the points, for any viewer) and
+// directions.json.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,6 +14,7 @@
 #include "core/camera/camera.h"
 #include "core/geo/geodetic.h"
 #include "core/geo/transform.h"
+#include "core/survey/directions.h"
 #include "core/survey/geo_fit.h"
 
 namespace skyquilt::survey {
@@ -63,6 +65,7 @@ struct Survey {
   std::vector<Photo> photos;              // registered photos only, in name order
   std::vector<std::string> unregistered;  // names of photos without a pose
   std::vector<SparsePoint> points;
+  DominantDirections directions;
   GeoFit fit;
   FlightChecks checks;
   std::vector<Problem> problems;  // found while preparing, the worst first

@@ -136,7 +136,30 @@ Survey SurveyFromJson(const json& value) {
   return survey;
 }
 
+// Reads a file of points that must have so many.
+std::vector<SparsePoint> LoadPoints(const std::filesystem::path& file, size_t n_points) {
+  std::vector<SparsePoint> points = ReadPointsPly(file);
+  if (points.size() != n_points) {
+    throw base::InputError(file, "has " + std::to_string(points.size()) + " points, but survey.json says " + std::to_string(n_points),
+                           "The two files are from different runs: run 'skyquilt prepare' again");
+  }
+  return points;
+}
+
+// Tracks of all points or of none.
+void CheckTracks(const Survey& survey) {
+  const auto fits = [](const PointTracks& tracks, const std::vector<SparsePoint>& points) {
+    return tracks.Empty() || tracks.points() == points.size();
+  };
+  SKYQUILT_CHECK(fits(survey.tracks, survey.points) && fits(survey.kept_tracks, survey.kept_points), "one track per point");
+  SKYQUILT_CHECK(survey.HasTracks() || (survey.tracks.Empty() && survey.kept_tracks.Empty()), "tracks of all points or of none");
+}
+
 }  // namespace
+
+bool Survey::HasTracks() const {
+  return tracks.points() == points.size() && kept_tracks.points() == kept_points.size() && points.size() + kept_points.size() > 0;
+}
 
 double Survey::MedianAgl() const {
   std::vector<double> known;
@@ -153,6 +176,7 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
   for (const Photo& photo : survey.photos) {
     SKYQUILT_CHECK(photo.cam_from_enu.rotation.coeffs().allFinite() && photo.cam_from_enu.translation.allFinite(), photo.name);
   }
+  CheckTracks(survey);
   base::RequireWritableFolder(folder);
   ordered_json value = {{"format", kFormat},
                         {"version", kVersion},
@@ -160,6 +184,8 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
                         {"georeferenced", survey.georeferenced},
                         {"photo_root", survey.photo_root.string()},
                         {"n_points", survey.points.size()},
+                        {"n_kept_points", survey.kept_points.size()},
+                        {"n_observations", nullptr},
                         {"fit", ToJson(survey.fit)},
                         {"checks", ToJson(survey.checks)},
                         {"problems", ordered_json::array()},
@@ -167,6 +193,7 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
                         {"cameras", ordered_json::array()},
                         {"unregistered", survey.unregistered},
                         {"photos", ordered_json::array()}};
+  if (survey.HasTracks()) value["n_observations"] = survey.tracks.observations() + survey.kept_tracks.observations();
   if (survey.truth) {
     value["truth"] = {{"depth_folder", survey.truth->depth_folder.string()},
                       {"buildings_json", survey.truth->buildings_json.string()},
@@ -178,6 +205,16 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
   // survey.json is written last: if it exists, the points are complete.
   WritePointsPly(survey.points, folder / "points.ply");
   SaveDirections(survey.directions, folder / "directions.json");
+  if (survey.kept_points.empty()) {
+    std::filesystem::remove(folder / "kept_points.ply");
+  } else {
+    WritePointsPly(survey.kept_points, folder / "kept_points.ply");
+  }
+  if (survey.HasTracks()) {
+    WriteTracks(survey.tracks, survey.kept_tracks, survey.photos.size(), folder / "tracks.bin");
+  } else {
+    std::filesystem::remove(folder / "tracks.bin");
+  }
   base::WriteFileAtomically(folder / "survey.json", value.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
@@ -186,22 +223,28 @@ Survey LoadSurvey(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(file)) throw base::InputError(file, "no such file", "Run 'skyquilt prepare' first");
   const std::string text = base::ReadFile(file);
   Survey survey;
-  size_t n_points = 0;
+  TrackCounts counts;
+  bool has_tracks = false;
   try {
     const json value = json::parse(text);
     survey = SurveyFromJson(value);
-    n_points = value.at("n_points").get<size_t>();
+    counts.photos = survey.photos.size();
+    counts.points = value.at("n_points").get<size_t>();
+    counts.kept_points = value.value("n_kept_points", size_t{0});  // absent in surveys of older programs, as are tracks
+    has_tracks = value.contains("n_observations") && !value.at("n_observations").is_null();
+    if (has_tracks) counts.observations = value.at("n_observations").get<size_t>();
   } catch (const json::exception& error) {
     throw base::InputError(file, std::string("is damaged (") + error.what() + ")", "Run 'skyquilt prepare' again");
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, error.what(), "Run 'skyquilt prepare' again");
   }
   survey.directions = LoadDirections(folder / "directions.json");
-  survey.points = ReadPointsPly(folder / "points.ply");
-  if (survey.points.size() != n_points) {
-    throw base::InputError(folder / "points.ply",
-                           "has " + std::to_string(survey.points.size()) + " points, but survey.json says " + std::to_string(n_points),
-                           "The two files are from different runs: run 'skyquilt prepare' again");
+  survey.points = LoadPoints(folder / "points.ply", counts.points);
+  if (counts.kept_points > 0) survey.kept_points = LoadPoints(folder / "kept_points.ply", counts.kept_points);
+  if (has_tracks) {
+    SurveyTracks tracks = ReadTracks(folder / "tracks.bin", counts);
+    survey.tracks = std::move(tracks.points);
+    survey.kept_tracks = std::move(tracks.kept_points);
   }
   return survey;
 }

@@ -1,6 +1,6 @@
 // A prepared survey, the result of the prepare stage and the input of all later ones: photos with pose, time and exposure in one local ENU frame,
-// their cameras and the sparse points. On disk it is a folder with survey.json (readable text), points.ply (the points, for any viewer) and
-// directions.json.
+// their cameras and the sparse points. On disk it is a folder with survey.json (readable text), points.ply and kept_points.ply (the points, for any
+// viewer), tracks.bin (which photos saw them) and directions.json.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,6 +16,7 @@
 #include "core/geo/transform.h"
 #include "core/survey/directions.h"
 #include "core/survey/geo_fit.h"
+#include "core/survey/point_tracks.h"
 
 namespace skyquilt::survey {
 
@@ -66,15 +67,22 @@ struct Survey {
   std::vector<std::string> unregistered;  // names of photos without a pose
   std::vector<SparsePoint> points;
   DominantDirections directions;
+  PointTracks tracks;  // of `points`; may be empty
+  // Sparse points that nothing may use which leads to a scene: only scores of finished scenes.
+  std::vector<SparsePoint> kept_points;
+  PointTracks kept_tracks;  // of `kept_points`; may be empty
   GeoFit fit;
   FlightChecks checks;
   std::vector<Problem> problems;  // found while preparing, the worst first
   std::optional<Truth> truth;
 
+  // Which photos saw each point is known, of `points` and of `kept_points`.
+  bool HasTracks() const;
   double MedianAgl() const;  // metres; NaN when no photo has one
 };
 
-// Throw base::InputError if the folder cannot be written or read, or its content is damaged (NaN in a pose included).
+// Throw base::InputError if the folder cannot be written or read, or its content is damaged (NaN in a pose included). Surveys of older programs are
+// loaded without kept points and tracks.
 void SaveSurvey(const Survey& survey, const std::filesystem::path& folder);
 Survey LoadSurvey(const std::filesystem::path& folder);
 

@@ -44,6 +44,9 @@ Survey SmallSurvey() {
   }
   survey.unregistered = {"lost.jpg"};
   for (int i = 0; i < 5; ++i) survey.points.push_back({Eigen::Vector3d(0.1 * i, 1.0 / 7.0, -1e4), {1, 2, 250}, 0.25F, 3 + i});
+  for (int i = 0; i < 5; ++i) survey.tracks.Add({0, i % 3});
+  for (int i = 0; i < 2; ++i) survey.kept_points.push_back({Eigen::Vector3d(7.0, 1.0 / 3.0, i), {3, 4, 5}, 0.75F, 2});
+  for (int i = 0; i < 2; ++i) survey.kept_tracks.Add({1, 2});
   survey.photos[1].gps_correction_m = Eigen::Vector3d(0.1, -3.0, 1.0 / 3.0);
   survey.fit = {.n_matches = 3,
                 .n_inliers = 2,
@@ -106,6 +109,11 @@ TEST(Survey, SavingAndLoadingKeepsEveryBit) {
   EXPECT_EQ(after.points[3].x_in_enu, before.points[3].x_in_enu);
   EXPECT_EQ(after.points[3].rgb, before.points[3].rgb);
   EXPECT_EQ(after.points[3].track_length, 6);
+  ASSERT_EQ(after.kept_points.size(), 2U);
+  EXPECT_EQ(after.kept_points[1].x_in_enu, before.kept_points[1].x_in_enu);
+  EXPECT_EQ(after.kept_points[1].error_px, 0.75F);
+  EXPECT_EQ(after.tracks, before.tracks);
+  EXPECT_EQ(after.kept_tracks, before.kept_tracks);
   EXPECT_EQ(ToJson(after.fit), ToJson(before.fit));
   EXPECT_EQ(ToJson(after.checks), ToJson(before.checks));
   EXPECT_EQ(after.photos[1].gps_correction_m, before.photos[1].gps_correction_m);
@@ -126,6 +134,34 @@ TEST(Survey, AnEmptySurveyIsSavedAndLoaded) {
   EXPECT_FALSE(survey.truth);
 }
 
+TEST(Survey, OfAnOlderProgramHasNeitherKeptPointsNorTracks) {
+  const TemporaryFolder folder;
+  SaveSurvey(SmallSurvey(), folder.path());
+  nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
+  json.erase("n_kept_points");
+  json.erase("n_observations");
+  base::WriteFileAtomically(folder / "survey.json", json.dump());
+  std::filesystem::remove(folder / "kept_points.ply");
+  std::filesystem::remove(folder / "tracks.bin");
+  const Survey survey = LoadSurvey(folder.path());
+  EXPECT_EQ(survey.points.size(), 5U);
+  EXPECT_TRUE(survey.kept_points.empty());
+  EXPECT_TRUE(survey.tracks.Empty());
+  EXPECT_FALSE(survey.HasTracks());
+}
+
+TEST(Survey, SavedWithoutKeptPointsOrTracksLeavesNoFilesOfThem) {
+  const TemporaryFolder folder;
+  Survey survey = SmallSurvey();
+  SaveSurvey(survey, folder.path());
+  survey.kept_points.clear();
+  survey.tracks = survey.kept_tracks = {};
+  SaveSurvey(survey, folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder / "kept_points.ply"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "tracks.bin"));
+  EXPECT_FALSE(LoadSurvey(folder.path()).HasTracks());
+}
+
 TEST(Survey, DamagedDescriptionsAreRefusedWithTheReason) {
   ExpectRefused("p1.jpg", [](nlohmann::json& json) { json["photos"][1]["translation_m"][0] = nullptr; });
   ExpectRefused("p2.jpg", [](nlohmann::json& json) { json["photos"][2]["rotation_wxyz"] = {1.0, 1.0, 0.0, 0.0}; });
@@ -135,16 +171,25 @@ TEST(Survey, DamagedDescriptionsAreRefusedWithTheReason) {
   ExpectRefused("another version", [](nlohmann::json& json) { json["version"] = 99; });
   ExpectRefused("damaged", [](nlohmann::json& json) { json.erase("fit"); });
   ExpectRefused("survey.json says", [](nlohmann::json& json) { json["n_points"] = 6; });
+  ExpectRefused("kept_points.ply", [](nlohmann::json& json) { json["n_kept_points"] = 3; });
+  ExpectRefused("tracks.bin", [](nlohmann::json& json) { json["n_observations"] = 3; });
+  ExpectRefused("tracks.bin", [](nlohmann::json& json) { json["photos"].erase(2); });
 }
 
 TEST(Survey, DamagedPointFilesAreRefused) {
   const TemporaryFolder folder;
   EXPECT_THROW(LoadSurvey(folder.path()), base::InputError);
   SaveSurvey(SmallSurvey(), folder.path());
-  const std::string whole = base::ReadFile(folder / "points.ply");
-  for (const size_t length : {size_t{0}, size_t{10}, whole.size() / 2, whole.size() - 1}) {
-    std::ofstream(folder / "points.ply", std::ios::binary | std::ios::trunc) << whole.substr(0, length);
-    EXPECT_THROW(LoadSurvey(folder.path()), base::InputError) << "cut to " << length;
+  for (const char* name : {"points.ply", "kept_points.ply", "tracks.bin"}) {
+    const std::string whole = base::ReadFile(folder / name);
+    for (const size_t length : {size_t{0}, size_t{10}, whole.size() / 2, whole.size() - 1}) {
+      std::ofstream(folder / name, std::ios::binary | std::ios::trunc) << whole.substr(0, length);
+      EXPECT_THROW(LoadSurvey(folder.path()), base::InputError) << name << " cut to " << length;
+    }
+    std::filesystem::remove(folder / name);
+    EXPECT_THROW(LoadSurvey(folder.path()), base::InputError) << "without " << name;
+    base::WriteFileAtomically(folder / name, whole);
+    EXPECT_NO_THROW(LoadSurvey(folder.path()));
   }
 }
 

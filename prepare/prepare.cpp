@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <span>
+#include <unordered_map>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -24,6 +25,7 @@
 #include "prepare/photo_files.h"
 #include "prepare/prepare_report.h"
 #include "prepare/sparse_cloud.h"
+#include "prepare/survey_points.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -125,15 +127,11 @@ std::vector<Station> MakeStations(const std::vector<Registered>& registered, con
   return stations;
 }
 
-std::vector<survey::SparsePoint> ConvertPoints(const survey::ColmapModel& model, const geo::Similarity3d& enu_from_model) {
-  std::vector<survey::SparsePoint> points;
-  points.reserve(model.points.size());
-  for (const survey::ColmapPoint& point : model.points) {
-    // A point may be seen more than once in one photo; only the number of photos counts.
-    const std::set<uint32_t> photos(point.image_ids.begin(), point.image_ids.end());
-    points.push_back({enu_from_model * point.x_in_world, point.rgb, static_cast<float>(point.error_px), static_cast<int>(photos.size())});
-  }
-  return points;
+// Index into the survey's photos by COLMAP's image id.
+std::unordered_map<uint32_t, int32_t> PhotoOfImage(const std::vector<Registered>& registered) {
+  std::unordered_map<uint32_t, int32_t> photo_of_image;
+  for (size_t i = 0; i < registered.size(); ++i) photo_of_image.emplace(registered[i].image->id, static_cast<int32_t>(i));
+  return photo_of_image;
 }
 
 // Puts poses, tags and cameras into the survey. Cameras without photos are left out.
@@ -255,8 +253,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   for (const std::string& name : names) {
     if (!with_pose.contains(name)) survey.unregistered.push_back(name);
   }
-  survey.points = ConvertPoints(model, georeference.enu_from_model);
-  FilterSparsePoints(survey.points);
+  FillPoints(model, georeference.enu_from_model, PhotoOfImage(registered), options.keep_points, survey);
   MeasureAgl(survey, threads);
   CheckFlightOf(model, folders.model, registered, photos.usable, !folders.exact_origin, survey);
   MarkHoldout(holdout, survey);

@@ -1,6 +1,6 @@
 // Turns photos into a prepared survey: camera poses and sparse points in one local ENU frame, the input of all later stages. A COLMAP model of the
 // photos is used if given, otherwise COLMAP is run. Written to `out_folder`:
-//   survey.json, points.ply     the survey (core/survey/survey.h)
+//   survey.json, points.ply, kept_points.ply, tracks.bin     the survey (core/survey/survey.h)
 //   geo_residuals.csv           per photo: camera position, GPS tag, residual, height above ground
 //   cameras.geojson             camera positions, when geo-referenced (opens in QGIS)
 //   colmap/                     database, models and log, when COLMAP was run; a second call resumes where the first stopped

@@ -26,6 +26,8 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"tag_lag", &O::tag_lag, Range::OneOf({"auto", "off"}), "auto: estimate by how much time the GPS tags lag behind the photos; off: no lag"},
       {"require_georeference", &O::require_georeference, Range(),
        "stop with status 3 when the place on Earth is uncertain, instead of going on with a warning"},
+      {"keep_points", &O::keep_points, Range{2, 1e6}.Or(0),
+       "one sparse point in so many, by a hash of its id, is kept from training, to measure depth errors with; 0: none"},
       {"seed", &O::seed, Range::AtLeast(0), "random seed of COLMAP and of the fit to GPS"},
   };
 }

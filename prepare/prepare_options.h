@@ -21,6 +21,7 @@ struct PrepareOptions {
   std::string flight_offsets = "auto";
   std::string tag_lag = "auto";
   bool require_georeference = false;
+  int keep_points = 10;
   int seed = 1;
 
   static std::vector<config::Field<PrepareOptions>> Fields();

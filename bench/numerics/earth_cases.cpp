@@ -88,7 +88,9 @@ void TurnSurvey(const std::filesystem::path& folder, double turn_deg) {
   survey::Survey survey = survey::LoadSurvey(folder);
   const Eigen::Quaterniond turned_from_enu(Eigen::AngleAxisd(turn_deg * kDegree, Eigen::Vector3d::UnitZ()));
   for (survey::Photo& photo : survey.photos) photo.cam_from_enu.rotation = photo.cam_from_enu.rotation * turned_from_enu.conjugate();
-  for (survey::SparsePoint& point : survey.points) point.x_in_enu = turned_from_enu * point.x_in_enu;
+  for (std::vector<survey::SparsePoint>* points : {&survey.points, &survey.kept_points}) {
+    for (survey::SparsePoint& point : *points) point.x_in_enu = turned_from_enu * point.x_in_enu;
+  }
   survey::SaveSurvey(survey, folder);
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstring>
+#include <fstream>
 #include <string>
 
 #include "core/base/errors.h"
@@ -88,7 +89,7 @@ TEST(TracksFile, DamageIsFound) {
   WriteTracks(Points(), KeptPoints(), kPhotos, folder / "tracks.bin");
   const std::string whole = base::ReadFile(folder / "tracks.bin");
   const auto read = [&](const std::string& content) {
-    base::WriteFileAtomically(folder / "damaged.bin", content);
+    std::ofstream(folder / "damaged.bin", std::ios::binary | std::ios::trunc) << content;
     return ReadTracks(folder / "damaged.bin", kCounts);
   };
   for (size_t length = 0; length < whole.size(); ++length) EXPECT_THROW(read(whole.substr(0, length)), base::InputError) << length;

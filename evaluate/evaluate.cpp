@@ -9,6 +9,7 @@
 #include "core/base/progress.h"
 #include "evaluate/choose_photos.h"
 #include "evaluate/held_out_scorer.h"
+#include "evaluate/kept_points.h"
 #include "evaluate/report_writer.h"
 #include "evaluate/summary.h"
 
@@ -53,6 +54,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   HeldOutScorer scorer(input);
   ReportPictures pictures(input, held_out);
   const Scores scores = ScorePhotos(input, held_out, scorer, pictures, threads);
+  metrics.kept_points = MeasureKeptPoints(*input.scene, *input.survey, *input.pixels, scorer.area().boxes, threads);
   metrics.evaluate_seconds = std::chrono::duration<double>(Clock::now() - start).count();
 
   Summarise(input, scores, &metrics);

@@ -31,6 +31,7 @@ class HeldOutScorer {
   ScoredPhoto Score(int photo, bool keep_normal, base::ThreadPool& threads);
 
   const std::vector<TrainingView>& training() const { return training_; }
+  const SceneArea& area() const { return area_; }
   size_t n_boxes() const { return area_.boxes.size(); }  // size of PhotoResult::per_block
 
  private:

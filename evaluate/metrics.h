@@ -50,6 +50,17 @@ struct BlockScore {
   int64_t pixels = 0;
 };
 
+// Depth of the scene along rays to sparse points that were kept from training (kept_points.h): rendered distance minus distance of the point,
+// positive behind it. Median, median of the absolute values, and NMAD (1.4826 times the median distance from the median), in metres and in units of
+// the photo's ground sampling distance there.
+struct KeptPointErrors {
+  int64_t points = 0;
+  int64_t rays = 0;  // 0: nothing was measured
+  double median_m = kNotMeasured, median_abs_m = kNotMeasured, nmad_m = kNotMeasured;
+  double median_gsd = kNotMeasured, median_abs_gsd = kNotMeasured, nmad_gsd = kNotMeasured;
+  double share_beyond_10_gsd = kNotMeasured;  // of the rays, those that never become half opaque included
+};
+
 // What a reader must know before believing the figures, each without a full stop at its end.
 struct Warning {
   std::string finding;
@@ -85,6 +96,7 @@ struct Metrics {
   double floater_opacity = kNotMeasured;                   // of the free space in front of the true surface, mean over rays (floater_opacity.h)
   std::vector<std::pair<double, double>> floater_profile;  // pairs (metres in front of the true surface, opacity up to there)
   bool has_truth = false;                                  // simulated survey with true depth
+  KeptPointErrors kept_points;
 
   double train_seconds = kNotMeasured;
   double samples_per_second = kNotMeasured;

@@ -40,6 +40,15 @@ constexpr std::array<KeyedNumber, 2> kTraining = {{{"train_seconds", &Metrics::t
 constexpr std::array<KeyedNumber, 3> kHeights = {
     {{"median_agl_m", &Metrics::median_agl_m}, {"median_relative_altitude_m", &Metrics::median_relative_altitude_m}, {"gsd_m", &Metrics::gsd_m}}};
 
+constexpr std::array<std::pair<const char*, double KeptPointErrors::*>, 7> kKeptPoints = {
+    {{"median_m", &KeptPointErrors::median_m},
+     {"median_abs_m", &KeptPointErrors::median_abs_m},
+     {"nmad_m", &KeptPointErrors::nmad_m},
+     {"median_gsd", &KeptPointErrors::median_gsd},
+     {"median_abs_gsd", &KeptPointErrors::median_abs_gsd},
+     {"nmad_gsd", &KeptPointErrors::nmad_gsd},
+     {"share_beyond_10_gsd", &KeptPointErrors::share_beyond_10_gsd}}};
+
 using Json = nlohmann::ordered_json;
 
 using survey::NumberOrNull;
@@ -100,6 +109,13 @@ Json GeoFitJson(const Metrics& metrics) {
   return json;
 }
 
+Json KeptPointsJson(const KeptPointErrors& errors) {
+  if (errors.rays == 0) return nullptr;
+  Json json = {{"points", errors.points}, {"rays", errors.rays}};
+  for (const auto& [key, member] : kKeptPoints) json[key] = NumberOrNull(errors.*member);
+  return json;
+}
+
 void PutNumbers(std::span<const KeyedNumber> numbers, const Metrics& metrics, Json* json) {
   for (const auto& [key, member] : numbers) (*json)[key] = NumberOrNull(metrics.*member);
 }
@@ -126,6 +142,15 @@ void TakeBlocks(const Json& json, Metrics* metrics) {
   }
 }
 
+// Absent in files of earlier versions.
+void TakeKeptPoints(const Json& json, KeptPointErrors* errors) {
+  const Json kept = ValueAt<Json>(json, "kept_points");
+  if (!kept.is_object()) return;
+  errors->points = ValueAt<int64_t>(kept, "points");
+  errors->rays = ValueAt<int64_t>(kept, "rays");
+  for (const auto& [key, member] : kKeptPoints) errors->*member = NumberAt(kept, key);
+}
+
 // Earlier versions wrote less.
 void TakeGeoFit(const Json& json, Metrics* metrics) {
   const Json geo = ValueAt<Json>(json, "geo");
@@ -148,6 +173,7 @@ Metrics MetricsFrom(const Json& json) {
     TakeNumbers(numbers, json, &metrics);
   }
   metrics.has_truth = json.contains("depth_rmse_m");
+  TakeKeptPoints(json, &metrics.kept_points);
   const Json profile = ValueAt<Json>(json, "floater_profile"), photos = ValueAt<Json>(json, "psnr_per_image");
   for (const Json& place : profile) {
     metrics.floater_profile.emplace_back(NumberAt(place, "clearance_m"), NumberAt(place, "opacity"));
@@ -202,6 +228,7 @@ std::string MetricsJson(const Metrics& metrics) {
       json["floater_profile"].push_back({{"clearance_m", clearance_m}, {"opacity", NumberOrNull(opacity)}});
     }
   }
+  json["kept_points"] = KeptPointsJson(metrics.kept_points);
   PutNumbers(kTraining, metrics, &json);
   json["peak_rss_bytes"] = BytesOrNull(metrics.peak_rss_bytes);
   json["parameters"] = metrics.parameters;

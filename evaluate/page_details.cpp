@@ -50,6 +50,25 @@ void AddSurfaceRows(const Metrics& metrics, FigureTable* table) {
              "How much a ray loses in the air between the camera and 1 m in front of the true surface. Air should be empty: 0 % is best.");
 }
 
+void AddKeptPointRows(const Metrics& metrics, FigureTable* table) {
+  const KeptPointErrors& errors = metrics.kept_points;
+  if (errors.rays == 0) return;
+  table->Group("Surface, against sparse points that were kept from training");
+  const auto row = [&](const char* name, double gsd, double metres, const std::string& meaning) {
+    std::string value = page::FormatFixed(gsd, 2, "GSD");
+    if (std::isfinite(metres)) value += " (" + page::FormatFixed(metres, 3, "m") + ")";
+    table->Row(name, value, meaning);
+  };
+  row("Distance error, median", errors.median_gsd, errors.median_m,
+      fmt::format("Where {} rays from photos to {} points find the surface, minus where the point is; positive behind it. GSD is the size of a pixel "
+                  "of the photo there.",
+                  page::FormatInteger(errors.rays), page::FormatInteger(errors.points)));
+  row("Distance error, median size", errors.median_abs_gsd, errors.median_abs_m, "Half of the rays have a smaller error.");
+  row("Distance error, NMAD", errors.nmad_gsd, errors.nmad_m,
+      "Spread about the median: the standard deviation, if errors are normal. The points have errors of their own.");
+  table->Row("Rays beyond 10 GSD", page::FormatPercent(errors.share_beyond_10_gsd), "Rays that miss the point by more, or meet no surface.");
+}
+
 void AddSeamRows(const Metrics& metrics, FigureTable* table) {
   table->Group("Seams");
   if (std::isfinite(metrics.seam_psnr_gap_db)) {
@@ -92,6 +111,7 @@ std::string DetailsSection(const ReportInput& input) {
   FigureTable table;
   AddPictureRows(metrics, &table);
   AddSurfaceRows(metrics, &table);
+  AddKeptPointRows(metrics, &table);
   AddSeamRows(metrics, &table);
   AddFlightRows(metrics, &table);
   AddCostRows(metrics, &table);

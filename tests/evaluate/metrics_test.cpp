@@ -37,6 +37,8 @@ TEST(MetricsJson, HasEveryPromisedKeyEvenWhenNothingWasMeasured) {
   EXPECT_TRUE(json["psnr_per_image"].is_object());
   EXPECT_FALSE(json.contains("depth_rmse_m"));
   EXPECT_FALSE(json.contains("floater_opacity"));
+  ASSERT_TRUE(json.contains("kept_points"));
+  EXPECT_TRUE(json["kept_points"].is_null());
 }
 
 TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
@@ -81,6 +83,7 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   metrics.floater_opacity = 0.02;
   metrics.floater_profile = {{1.0, 0.03}, {10.0, kNotMeasured}};
   metrics.blocks = {{"r0c0", 28.0, 100}, {"r0c1", kNotMeasured, 0}};
+  metrics.kept_points = {.points = 5, .rays = 18, .median_gsd = -0.25, .median_abs_gsd = 1.5, .nmad_gsd = 1.75, .share_beyond_10_gsd = 0.125};
   metrics.train_seconds = 12.5;
   metrics.peak_rss_bytes = 123456789012;
   metrics.parameters = 7;
@@ -102,6 +105,12 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   EXPECT_EQ(back.blocks[0].name, "r0c0");
   EXPECT_EQ(back.blocks[0].pixels, 100);
   EXPECT_TRUE(std::isnan(back.blocks[1].psnr_db));
+  EXPECT_EQ(back.kept_points.points, 5);
+  EXPECT_EQ(back.kept_points.rays, 18);
+  EXPECT_EQ(back.kept_points.median_gsd, -0.25);
+  EXPECT_EQ(back.kept_points.nmad_gsd, 1.75);
+  EXPECT_EQ(back.kept_points.share_beyond_10_gsd, 0.125);
+  EXPECT_TRUE(std::isnan(back.kept_points.nmad_m));
   EXPECT_EQ(back.train_seconds, metrics.train_seconds);
   EXPECT_EQ(back.peak_rss_bytes, metrics.peak_rss_bytes);
   EXPECT_EQ(back.n_test, 3);

@@ -306,6 +306,11 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.depth_rmse_m = 1.12;
   metrics.depth_median_abs_m = 0.21;
   metrics.floater_opacity = 0.0184;
+  metrics.kept_points = {.points = 4100, .rays = 16210, .median_m = 0.012, .median_abs_m = 0.081, .nmad_m = 0.115};
+  metrics.kept_points.median_gsd = 0.2;
+  metrics.kept_points.median_abs_gsd = 1.34;
+  metrics.kept_points.nmad_gsd = 1.91;
+  metrics.kept_points.share_beyond_10_gsd = 0.031;
   metrics.exposure_seam = 0.0031;
   metrics.exposure_seam_control = 0.0027;
   metrics.train_seconds = training.TrainSeconds();

@@ -155,6 +155,30 @@ TEST_F(HamletSurvey, DepthAgreesWithThePoints) {
   EXPECT_LT(differences[differences.size() * 8 / 10], 0.6);
 }
 
+// What COLMAP's tools and prepare need: each photo of a track has the point among its observations, inside the frame, and no other point.
+TEST_F(HamletSurvey, TracksAndObservationsAgree) {
+  const survey::ColmapModel model = survey::ReadColmapModel(root_ / "two/sparse/0");
+  const survey::ColmapObservations observations = survey::ReadColmapObservations(root_ / "two/sparse/0");
+  std::map<std::pair<uint32_t, uint64_t>, Eigen::Vector2d> pixels;
+  for (const auto& [image_id, list] : observations) {
+    for (const survey::ColmapObservation& o : list) EXPECT_TRUE(pixels.emplace(std::pair(image_id, o.point_id), o.pixel).second);
+  }
+  size_t n = 0;
+  for (const survey::ColmapPoint& point : model.points) {
+    for (const uint32_t image_id : point.image_ids) {
+      const survey::ColmapImage& image = model.images[image_id - 1];
+      ASSERT_EQ(image.id, image_id);
+      const camera::Camera& camera = model.cameras.at(image.camera_id);
+      const auto found = pixels.find({image_id, point.id});
+      ASSERT_NE(found, pixels.end());
+      EXPECT_LT((found->second - *camera.ImgFromCam(image.cam_from_world * point.x_in_world)).norm(), 1e-6);
+      EXPECT_TRUE(found->second.minCoeff() > 0.0 && found->second.x() < camera.width && found->second.y() < camera.height);
+      ++n;
+    }
+  }
+  EXPECT_EQ(n, pixels.size());
+}
+
 // Heights of flat and pitched roofs in the depth images of the test photos: the highest point of each building.
 TEST_F(HamletSurvey, DepthShowsTheBuildingsAtTheirHeights) {
   const survey::ColmapModel model = survey::ReadColmapModel(root_ / "two/sparse/0");

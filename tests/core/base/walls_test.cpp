@@ -198,6 +198,24 @@ TEST(Rooms, IncludeOnlyWhatIsAllowed) {
   EXPECT_EQ(report, "");
 }
 
+// Scores against kept points mean nothing when anything that leads to a scene has seen them.
+TEST(Rooms, ThoseThatLeadToASceneDoNotReadKeptPoints) {
+  static const std::set<std::string> kMayRead = {"app", "bench", "coordinator", "prepare", "evaluate", "core/survey"};
+  static const std::regex kRead("^[^/]*(kept_points|kept_tracks).*");  // not in comments
+  std::set<std::string> readers;
+  for (const fs::path& file : Sources()) {
+    std::ifstream in(fs::path(SKYQUILT_SOURCE_DIR) / file);
+    for (std::string line; std::getline(in, line);) {
+      if (!std::regex_match(line, kRead)) continue;
+      const std::string room = RoomOf(file.generic_string());
+      readers.insert(room);
+      EXPECT_TRUE(kMayRead.contains(room)) << file << ": " << line;
+      EXPECT_FALSE(file.generic_string().starts_with("coordinator/scheduler")) << file << ": " << line;
+    }
+  }
+  EXPECT_TRUE(readers.contains("prepare") && readers.contains("evaluate"));
+}
+
 TEST(Rooms, ForbiddenIncludesAreFound) {
   const std::vector<std::pair<std::string, std::string>> violators = {
       {"worker/trainer.cpp", "#include <mpi.h>"},

@@ -113,7 +113,7 @@ nlohmann::ordered_json Describe(const std::filesystem::path& path) {
   }
   const std::string name = path.filename().string();
   const std::string extension = path.extension().string();
-  if (name == "survey.json" || name == "points.ply") return DescribeSurvey(path.parent_path());
+  if (name == "survey.json" || name == "points.ply" || name == "kept_points.ply" || name == "tracks.bin") return DescribeSurvey(path.parent_path());
   if (name == "cameras.geojson") return DescribeCameras(path);
   if (extension == ".geojson") return DescribeBlocks(path);
   if (extension == ".csv") return DescribeTable(path);

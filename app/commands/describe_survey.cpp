@@ -70,6 +70,8 @@ nlohmann::ordered_json DescribeSurvey(const std::filesystem::path& folder) {
   Json json = {{"what", "survey"},  {"photo_root", survey.photo_root.string()}, {"photos", survey.photos.size()},       {"held_out", n_test},
                {"with_gps", n_gps}, {"without_pose", survey.unregistered},      {"sparse_points", survey.points.size()}};
   json.update(DescribePlace(survey));
+  json["kept_points"] = survey.kept_points.size();
+  json["observations"] = survey.tracks.observations() + survey.kept_tracks.observations();
   json["median_agl_m"] = Round(survey.MedianAgl(), 2);
   json["cameras"] = cameras;
   json["has_ground_truth"] = survey.truth.has_value();

@@ -90,11 +90,16 @@ survey::Survey Thinned(survey::Survey survey, const Variant& variant) {
                                                          [&name](const std::string& prefix) { return name.starts_with(prefix); });
   };
   std::vector<survey::Photo> kept;
+  std::vector<int32_t> new_index;
   int number = 0;
   for (survey::Photo& photo : survey.photos) {
-    if (photo.is_test || (chosen(photo.name) && number++ % variant.every_nth_photo == 0)) kept.push_back(std::move(photo));
+    const bool keep = photo.is_test || (chosen(photo.name) && number++ % variant.every_nth_photo == 0);
+    new_index.push_back(keep ? static_cast<int32_t>(kept.size()) : -1);
+    if (keep) kept.push_back(std::move(photo));
   }
   survey.photos = std::move(kept);
+  survey.tracks = survey.tracks.Renumbered(new_index);
+  survey.kept_tracks = survey.kept_tracks.Renumbered(new_index);
   return survey;
 }
 
@@ -275,6 +280,8 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   r.depth_rmse_m = known(metrics.depth_rmse_m);
   r.depth_median_abs_m = known(metrics.depth_median_abs_m);
   r.floater_opacity = known(metrics.floater_opacity);
+  r.kept_median_gsd = known(metrics.kept_points.median_gsd);
+  r.kept_nmad_gsd = known(metrics.kept_points.nmad_gsd);
   r.train_seconds = known(metrics.train_seconds);
   r.samples_per_second = known(metrics.samples_per_second);
   r.peak_rss_bytes = metrics.peak_rss_bytes > 0 ? static_cast<double>(metrics.peak_rss_bytes) : VariantResult::kNone;

@@ -58,6 +58,7 @@ struct VariantResult {
   std::string failure;  // empty when it has results
   double psnr_db = kNone, ssim = kNone, lpips = kNone, psnr_full_db = kNone, coverage = kNone, seam_gap_db = kNone;
   double depth_rmse_m = kNone, depth_median_abs_m = kNone, floater_opacity = kNone;  // simulated surveys
+  double kept_median_gsd = kNone, kept_nmad_gsd = kNone;  // against sparse points kept from training, evaluate::KeptPointErrors
   double train_seconds = kNone, samples_per_second = kNone, samples = kNone, peak_rss_bytes = kNone;
   std::vector<std::pair<double, double>> floater_profile;  // simulated surveys: (metres in front of the true surface, opacity up to there)
   double parameters = kNone;                               // trained, of all fields

@@ -20,6 +20,8 @@ void EachNumber(Result& r, const Each& each) {
   each("depth_rmse_m", r.depth_rmse_m);
   each("depth_median_abs_m", r.depth_median_abs_m);
   each("floater_opacity", r.floater_opacity);
+  each("kept_median_gsd", r.kept_median_gsd);
+  each("kept_nmad_gsd", r.kept_nmad_gsd);
   each("train_seconds", r.train_seconds);
   each("samples_per_second", r.samples_per_second);
   each("samples", r.samples);
@@ -89,7 +91,8 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
   json.at("label").get_to(result.label);
   json.at("identity").get_to(*identity);
   result.failure = json.value("failure", "");
-  EachNumber(result, [&](const char* key, double& value) { value = OrNone(json.at(key)); });
+  // Results of older programs lack the newer numbers.
+  EachNumber(result, [&](const char* key, double& value) { value = json.contains(key) ? OrNone(json.at(key)) : VariantResult::kNone; });
   json.at("blocks").get_to(result.blocks);
   json.at("layout").get_to(result.layout);
   json.at("training_photos").get_to(result.training_photos);

@@ -25,6 +25,7 @@ const std::vector<Column>& Columns() {
       {"full frame", [](const VariantResult& r) { return BenchCell::Number(r.psnr_full_db, 2, "dB"); }},
       {"depth, median", [](const VariantResult& r) { return BenchCell::Number(r.depth_median_abs_m, 2, "m"); }},
       {"depth, RMSE", [](const VariantResult& r) { return BenchCell::Number(r.depth_rmse_m, 2, "m"); }},
+      {"kept points, NMAD", [](const VariantResult& r) { return BenchCell::Number(r.kept_nmad_gsd, 2, "GSD"); }},
       {"floater opacity", [](const VariantResult& r) { return BenchCell::Percent(r.floater_opacity, 2); }},
       {"training", [](const VariantResult& r) { return BenchCell::Seconds(r.train_seconds); }},
       {"samples", [](const VariantResult& r) { return BenchCell::Count(r.samples); }},

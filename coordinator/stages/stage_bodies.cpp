@@ -145,6 +145,10 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   if (metrics.has_truth) {
     spdlog::info("depth error against ground truth: median {:.2f} m, RMSE {:.2f} m", metrics.depth_median_abs_m, metrics.depth_rmse_m);
   }
+  if (const evaluate::KeptPointErrors& kept = metrics.kept_points; kept.rays > 0) {
+    spdlog::info("distance error against {} sparse points kept from training: median {:+.2f} GSD, NMAD {:.2f} GSD", kept.points, kept.median_gsd,
+                 kept.nmad_gsd);
+  }
   spdlog::info("report: {}", (project.ReportFolder() / "index.html").string());
   return StageStamp::kDone;
 }

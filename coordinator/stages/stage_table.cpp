@@ -28,7 +28,11 @@ std::filesystem::path SceneFile(const Project& project) {
 }
 
 std::string SurveyIdentity(const Project& project) {
-  return FileIdentity(SurveyFile(project)) + " " + FileIdentity(project.SurveyFolder() / "points.ply");
+  const std::filesystem::path tracks = project.SurveyFolder() / "tracks.bin";
+  std::string identity = FileIdentity(SurveyFile(project)) + " " + FileIdentity(project.SurveyFolder() / "points.ply");
+  // Surveys of older programs have none, and keep their identity.
+  if (std::filesystem::exists(tracks)) identity.append(" ").append(FileIdentity(tracks));
+  return identity;
 }
 
 // The checkpoints of the context and of every block that train.json lists as trained. When train.json is damaged, no blocks are required here;

@@ -1,14 +1,15 @@
 #include "evaluate/kept_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "core/base/errors.h"
-#include "core/base/order_statistics.h"
 #include "core/base/mix_bits.h"
+#include "core/base/order_statistics.h"
 #include "core/camera/pixel_pitch.h"
 #include "evaluate/choose_photos.h"
 #include "evaluate/pixel_groups.h"

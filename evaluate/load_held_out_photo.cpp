@@ -3,7 +3,32 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/image/normal_image.h"
+
 namespace skyquilt::evaluate {
+
+namespace {
+
+// The file of a photo in a folder of truth, which may have the photos' sub-folders or not; empty when there is none.
+std::filesystem::path TruthFile(const std::filesystem::path& folder, const std::string& photo, const char* extension) {
+  if (folder.empty()) return {};
+  const std::filesystem::path name = std::filesystem::path(photo).replace_extension(extension);
+  for (const std::filesystem::path& file : {folder / name, folder / name.filename()}) {
+    if (std::filesystem::is_regular_file(file)) return file;
+  }
+  return {};
+}
+
+// A local frame has no metres and no north to compare with.
+void LoadTruth(const survey::Survey& survey, const std::string& photo, HeldOutPhoto* task) {
+  if (!survey.truth || !survey.georeferenced) return;
+  const survey::Truth& truth = *survey.truth;
+  if (const auto file = TruthFile(truth.depth_folder, photo, ".tiff"); !file.empty()) task->true_depth = image::LoadFloatTiff(file);
+  if (const auto file = TruthFile(truth.normals_folder, photo, ".png"); !file.empty()) task->true_normals = image::LoadNormals(file);
+  if (const auto file = TruthFile(truth.classes_folder, photo, ".png"); !file.empty()) task->true_class = image::LoadLabels(file);
+}
+
+}  // namespace
 
 HeldOutPhoto LoadHeldOutPhoto(const survey::Survey& survey, const image::PixelCache& pixels, int index, int image_width) {
   const auto i = static_cast<size_t>(index);
@@ -34,15 +59,7 @@ HeldOutPhoto LoadHeldOutPhoto(const survey::Survey& survey, const image::PixelCa
     task.mask = std::move(mask.data);
   }
   task.camera = camera.Resized(task.photo.width, task.photo.height);
-  // A local frame has no metres to compare with.
-  if (survey.truth && survey.georeferenced) {
-    const std::filesystem::path stem = std::filesystem::path(photo.name).replace_extension(".tiff");
-    for (const std::filesystem::path& file : {survey.truth->depth_folder / stem, survey.truth->depth_folder / stem.filename()}) {
-      if (!std::filesystem::is_regular_file(file)) continue;
-      task.true_depth = image::LoadFloatTiff(file);
-      break;
-    }
-  }
+  LoadTruth(survey, photo.name, &task);
   return task;
 }
 

@@ -1,4 +1,4 @@
-// Loads a held-out photo for scoring: pixels, mask, camera and, for simulated surveys, true depth.
+// Loads a held-out photo for scoring: pixels, mask, camera and, for simulated surveys, the true surface.
 #pragma once
 
 #include "core/image/pixel_cache.h"

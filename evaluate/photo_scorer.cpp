@@ -9,6 +9,7 @@
 #include "core/metrics/depth_errors.h"
 #include "core/metrics/psnr.h"
 #include "core/metrics/ssim.h"
+#include "core/scene/depth_normals.h"
 #include "evaluate/apply_response.h"
 
 namespace skyquilt::evaluate {
@@ -110,11 +111,14 @@ class FrameComparison {
 };
 
 // Nearest pixel, because averaging would give wrong depths between roof and ground.
-image::ImageF ResizeNearest(const image::ImageF& image, int width, int height) {
+template <typename T>
+image::BasicImage<T> ResizeNearest(const image::BasicImage<T>& image, int width, int height) {
   const auto scaled = [](int i, int n, int m) { return std::min(static_cast<int>((i + 0.5) * m / n), m - 1); };
-  image::ImageF resized(width, height, 1);
+  image::BasicImage<T> resized(width, height, image.channels);
   for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) *resized.At(x, y) = *image.At(scaled(x, width, image.width), scaled(y, height, image.height));
+    for (int x = 0; x < width; ++x) {
+      std::copy_n(image.At(scaled(x, width, image.width), scaled(y, height, image.height)), image.channels, resized.At(x, y));
+    }
   }
   return resized;
 }
@@ -174,6 +178,11 @@ PhotoResult ScorePhoto(const HeldOutPhoto& task, std::span<const render::RayColo
     const metrics::DepthErrors errors = metrics::CompareDepth(findings.z_depth, findings.true_depth, &findings.scored);
     score.depth_rmse_m = errors.rmse_m;
     score.depth_median_abs_m = errors.median_abs_m;
+  }
+  if (!task.true_class.Empty()) findings.true_class = ResizeNearest(task.true_class, width, height);
+  if (!task.true_normals.Empty()) {
+    findings.true_normals = ResizeNearest(task.true_normals, width, height);
+    findings.normals = scene::NormalsOfDepth(task.camera, task.cam_from_enu, findings.z_depth, {}, threads);
   }
   return findings;
 }

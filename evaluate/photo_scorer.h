@@ -23,7 +23,10 @@ struct HeldOutPhoto {
   geo::Rigid3d cam_from_enu;
   image::Image8 photo;        // RGB, width * height of the camera
   std::vector<uint8_t> mask;  // per pixel, 0 = ignored; empty: every pixel counts
-  image::ImageF true_depth;   // metres along z of the camera, NaN = none, any size; empty: unknown
+  // Of the true surface, any size; empty: unknown.
+  image::ImageF true_depth;    // metres along z of the camera, NaN = none
+  image::ImageF true_normals;  // three channels: unit vectors in ENU, NaN = none
+  image::Image8 true_class;    // survey::SurfaceClass
 
   image::Image8 UsedPixels() const;  // the mask as an image of one channel; empty: every pixel counts
 };
@@ -40,7 +43,11 @@ struct PhotoResult {
   image::Image8 scored;                          // one channel, 1 = unmasked and covered
   image::Image8 render;                          // the rendering, as shown in the report
   image::ImageF z_depth;                         // metres along z of the camera, NaN where the render has none
-  image::ImageF true_depth;                      // resized to the scored size; empty when unknown
+  // The true surface at the scored size (nearest pixel), and the normals of z_depth to compare with; empty when unknown.
+  image::ImageF true_depth;
+  image::ImageF true_normals;
+  image::Image8 true_class;
+  image::ImageF normals;  // three channels: unit vectors in ENU, NaN where the depth has none
 };
 
 // rendered: row-major, one per pixel of the camera. The same result for any number of threads.

@@ -42,6 +42,9 @@ void ReadSimulated(const fs::path& folder, bool own_model, InputFolder& found) {
   const fs::path truth = folder / "truth";
   if (fs::is_directory(truth)) {
     found.truth = survey::Truth{truth / "depth", truth / "buildings.json", truth / "exposure.json"};
+    if (fs::is_directory(truth / "normals")) found.truth->normals_folder = truth / "normals";
+    if (fs::is_directory(truth / "classes")) found.truth->classes_folder = truth / "classes";
+    if (fs::is_regular_file(truth / "surface.ply")) found.truth->surface_ply = truth / "surface.ply";
   }
 }
 

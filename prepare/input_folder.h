@@ -14,7 +14,7 @@ struct InputFolder {
   std::filesystem::path model;                // folder of a COLMAP model; empty: COLMAP must be run
   std::filesystem::path masks;                // empty: none
   std::optional<geo::Geodetic> exact_origin;  // the model already is in ENU about this origin (simulated survey)
-  std::optional<survey::Truth> truth;         // true depth, buildings and exposure (simulated survey)
+  std::optional<survey::Truth> truth;         // of a simulated survey
 };
 
 // `photos` may be a folder of photos, a folder with the photos in images/, or a folder made by `simulate` (it has a simulate.json). `model` and

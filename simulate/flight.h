@@ -41,7 +41,7 @@ struct PhotoPlan {
   double gain = 1.0;               // factor on linear light by the three values above, relative to the median photo
   double development_gain = 1.0;   // the true factor on linear light, relative to normal exposure
   double color_drift_stops = 0.0;  // of the white balance: added to red, subtracted from blue
-  bool true_depth = false;         // its true depth image is written
+  bool true_depth = false;         // its true depth, normals and classes are written
   bool finds_points = true;        // sparse points are sought in it; false: it only sees those found in other photos
 };
 

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "core/base/errors.h"
+#include "core/survey/surface_class.h"
+#include "simulate/classify.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -150,8 +152,10 @@ Rendering PhotoRenderer::Render(const geo::Rigid3d& cam_from_enu, const MovingSc
   return out;
 }
 
-image::ImageF PhotoRenderer::Depth(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const {
-  image::ImageF depth(camera_.width, camera_.height, 1, std::numeric_limits<float>::quiet_NaN());
+SurfaceImages PhotoRenderer::Surfaces(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  SurfaceImages out{image::ImageF(camera_.width, camera_.height, 1, kNan), image::ImageF(camera_.width, camera_.height, 3, kNan),
+                    image::Image8(camera_.width, camera_.height, 1, static_cast<uint8_t>(survey::SurfaceClass::kNone))};
   const Vector3f origin = cam_from_enu.OriginInSource().cast<float>();
   const Eigen::Matrix3d enu_from_cam = cam_from_enu.rotation.conjugate().toRotationMatrix();
   const int packet = static_cast<int>(raytrace::kPacket);
@@ -169,15 +173,26 @@ image::ImageF PhotoRenderer::Depth(const geo::Rigid3d& cam_from_enu, const Movin
         if (lane >= n) rays.valid[slot] = 0;
       }
       world_.scene().Intersect(rays);
-      moving.scene.Intersect(rays);
+      const uint32_t on_moving = moving.scene.Intersect(rays);
       for (int lane = 0; lane < n; ++lane) {
         const auto slot = static_cast<size_t>(lane);
-        if (rays.triangle[slot] != raytrace::kNoTriangle)
-          *depth.At(begin + lane, y) = static_cast<float>(z_per_metre[slot] * static_cast<double>(rays.t_far[slot]));
+        const uint32_t triangle = rays.triangle[slot];
+        if (triangle == raytrace::kNoTriangle) continue;
+        const int x = begin + lane;
+        const bool moves = ((on_moving >> slot) & 1U) != 0;
+        const Mesh& mesh = moves ? moving.mesh : world_.mesh();
+        const Vector3f direction(rays.dx[slot], rays.dy[slot], rays.dz[slot]);
+        const Vector3f face = mesh.FaceNormal(triangle);
+        const Vector3f normal = face.dot(direction) > 0.0F ? Vector3f(-face) : face;
+        const survey::SurfaceClass seen =
+            moves ? survey::SurfaceClass::kMovingCar : ClassOf(mesh.tag[triangle], origin + rays.t_far[slot] * direction, world_.city());
+        *out.z_depth.At(x, y) = static_cast<float>(z_per_metre[slot] * static_cast<double>(rays.t_far[slot]));
+        std::copy_n(normal.data(), 3, out.normals.At(x, y));
+        *out.classes.At(x, y) = static_cast<uint8_t>(seen);
       }
     }
   });
-  return depth;
+  return out;
 }
 
 }  // namespace skyquilt::simulate

@@ -1,4 +1,4 @@
-// Renders the photos of a simulated survey by ray tracing: linear colour, true depth and a mask of moving cars.
+// Renders the photos of a simulated survey by ray tracing: linear colour, a mask of moving cars, and the true surface.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,6 +17,13 @@ struct Rendering {
   image::Image8 usable;      // mask: 0 on a moving car or its shadow, 255 elsewhere; empty when the photo shows none
 };
 
+// The surface that a camera sees at its pixel centres, moving cars included.
+struct SurfaceImages {
+  image::ImageF z_depth;  // metres along the camera's z axis; NaN for sky
+  image::ImageF normals;  // three channels: unit normal of the triangle in ENU, on the camera's side; NaN for sky
+  image::Image8 classes;  // survey::SurfaceClass
+};
+
 class PhotoRenderer {
  public:
   // samples_per_pixel 1, 4 or 16, on a regular grid. Holds references: world and camera must outlive it.
@@ -24,8 +31,8 @@ class PhotoRenderer {
 
   // The same image for any number of threads.
   Rendering Render(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const;
-  // Metres along the camera's z axis at pixel centres, moving cars included; NaN for sky.
-  image::ImageF Depth(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const;
+  // The same images for any number of threads.
+  SurfaceImages Surfaces(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const;
 
  private:
   struct Frame;  // one photo's pose in single precision

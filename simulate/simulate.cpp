@@ -14,6 +14,7 @@
 #include "simulate/photo_renderer.h"
 #include "simulate/place_spec.h"
 #include "simulate/sparse_points.h"
+#include "simulate/surface_mesh.h"
 #include "simulate/survey_writer.h"
 #include "simulate/world.h"
 
@@ -39,7 +40,7 @@ void PrepareFolder(const fs::path& folder) {
   base::WriteFileAtomically(folder / kStarted, "");
   fs::remove(folder / "simulate.json");
   for (const char* name : {"images", "sparse", "truth"}) fs::remove_all(folder / name);
-  for (const char* name : {"images", "sparse/0", "truth/depth", "truth/masks"}) fs::create_directories(folder / name);
+  for (const char* name : {"images", "sparse/0", "truth/depth", "truth/normals", "truth/classes", "truth/masks"}) fs::create_directories(folder / name);
 }
 
 }  // namespace
@@ -80,8 +81,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
       ++summary.n_masks;
     }
     if (photo.true_depth) {
-      const image::ImageF depth = renderer.Depth(photo.cam_from_enu, moving, threads);
-      image::SaveFloatTiff(depth, folder / "truth" / "depth" / (fs::path(photo.name).stem().string() + ".tiff"));
+      WriteSurfaceTruth(folder, photo, renderer.Surfaces(photo.cam_from_enu, moving, threads));
       ++summary.n_test;
     }
     progress.Advance(1.0);
@@ -104,6 +104,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   WriteModel(folder, model);
   WriteExposureTruth(folder, photos, place);
   WriteBuildingTruth(folder, world.buildings(), place, frame);
+  WriteSurfaceMesh(world, folder / "truth" / "surface.ply");
   base::ThrowIfCancelled();
   WriteSummary(folder, place, options, frame, photos.size(), model_from_enu);
   fs::remove(folder / kStarted);

@@ -1,8 +1,11 @@
-// `skyquilt simulate`: makes the photos of a drone survey of an invented place, for tests and demonstrations. Poses, depth, brightness and buildings
+// `skyquilt simulate`: makes the photos of a drone survey of an invented place, for tests and demonstrations. Poses, surfaces, brightness and buildings
 // are known exactly, so results can be compared with the truth. Written to the folder:
 //   images/IMG_0001.jpg ...            photos with EXIF and XMP tags like those of a drone
 //   sparse/0/{cameras,images,points3D}.txt   COLMAP model of the true poses in the ENU frame of the origin, metres; without exact_frame in another
 //   truth/depth/<stem>.tiff            depth of the test photos (every test_every-th in name order): metres along the camera's z, NaN = sky
+//   truth/normals/<stem>.png           normals of their surfaces (core/image/normal_image.h): of the triangles, ENU, on the camera's side
+//   truth/classes/<stem>.png           what their surfaces are: 8 bits, one channel, the numbers of core/survey/surface_class.h
+//   truth/surface.ply                  the static surface as a mesh, ENU metres, with the class of each face (simulate/surface_mesh.h)
 //   truth/masks/<name>.jpg.png         0 on a moving car or its shadow; only for photos that show one
 //   truth/exposure.json                brightness of every photo
 //   truth/buildings.json               position and size of every building
@@ -42,8 +45,8 @@ SimulateSummary Simulate(const SimulateOptions& options, const std::filesystem::
 
 // Plans a survey's photos in the order of capture, once the place is built. Names must be unique file names.
 using FlightPlanner = std::function<std::vector<PhotoPlan>(const PlaceSpec& place, const World& world)>;
-// The same with the photos of `plan`, for instance of flights at several heights. options.test_every is not used: the plan says which photos get a
-// true depth image. Errors of the tags are added to the plan.
+// The same with the photos of `plan`, for instance of flights at several heights. options.test_every is not used: the plan says which photos get
+// true depth, normals and classes. Errors of the tags are added to the plan.
 SimulateSummary Simulate(const SimulateOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads, const FlightPlanner& plan);
 
 }  // namespace skyquilt::simulate

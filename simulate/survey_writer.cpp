@@ -9,6 +9,7 @@
 
 #include "core/base/file.h"
 #include "core/config/options.h"
+#include "core/image/normal_image.h"
 #include "core/image/srgb.h"
 #include "simulate/model_frame.h"
 
@@ -114,6 +115,14 @@ survey::ColmapModel MakeModel(const camera::Camera& camera, const std::vector<Ph
 void WriteModel(const std::filesystem::path& folder, const survey::ColmapModel& model) {
   std::filesystem::create_directories(folder / "sparse" / "0");
   survey::WriteColmapText(model, folder / "sparse" / "0");
+}
+
+void WriteSurfaceTruth(const std::filesystem::path& folder, const PhotoPlan& photo, const SurfaceImages& surfaces) {
+  const std::string stem = std::filesystem::path(photo.name).stem().string();
+  const std::filesystem::path truth = folder / "truth";
+  image::SaveFloatTiff(surfaces.z_depth, truth / "depth" / (stem + ".tiff"));
+  image::SaveNormals(surfaces.normals, truth / "normals" / (stem + ".png"));
+  image::SavePng(surfaces.classes, truth / "classes" / (stem + ".png"));
 }
 
 void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const PlaceSpec& place) {

@@ -37,6 +37,8 @@ void WritePhoto(const std::filesystem::path& folder, const PhotoPlan& photo, con
 survey::ColmapModel MakeModel(const camera::Camera& camera, const std::vector<PhotoPlan>& photos, std::vector<survey::ColmapPoint> points);
 // sparse/0: cameras, images and points3D as text.
 void WriteModel(const std::filesystem::path& folder, const survey::ColmapModel& model);
+// truth/depth/<stem>.tiff, truth/normals/<stem>.png and truth/classes/<stem>.png of a photo.
+void WriteSurfaceTruth(const std::filesystem::path& folder, const PhotoPlan& photo, const SurfaceImages& surfaces);
 // truth/exposure.json
 void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const PlaceSpec& place);
 // truth/buildings.json

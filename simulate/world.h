@@ -33,6 +33,7 @@ class World {
   const Sky& sky() const { return sky_; }
   const AmbientVolume& ambient() const { return *ambient_; }
   const Terrain& terrain() const { return *terrain_; }
+  const CityLayout* city() const { return city_.get(); }  // null without a city
   // Empty without a city.
   const std::vector<Building>& buildings() const;
 

@@ -137,6 +137,15 @@ Image8 LoadMask(const std::filesystem::path& file) {
   return mask;
 }
 
+Image8 LoadLabels(const std::filesystem::path& file) {
+  const cv::Mat pixels = Decode(base::ReadFile(file), file);
+  if (pixels.type() != CV_8UC1) throw InputError(file, "is not an image of one channel with 8 bits", "Images of classes hold one number per pixel");
+  Image8 labels(pixels.cols, pixels.rows, 1);
+  cv::Mat target(labels.height, labels.width, CV_8UC1, labels.data.data());
+  pixels.copyTo(target);
+  return labels;
+}
+
 ImageF LoadFloatTiff(const std::filesystem::path& file) {
   const cv::Mat pixels = Decode(base::ReadFile(file), file);
   if (pixels.channels() != 1 || (pixels.depth() != CV_32F && pixels.depth() != CV_64F)) {

@@ -51,11 +51,14 @@ struct SparsePoint {
   int track_length = 0;
 };
 
-// Ground truth of a simulated survey; absolute paths.
+// Ground truth of a simulated survey; absolute paths. The last three are empty for surveys that were simulated or prepared by versions without them.
 struct Truth {
   std::filesystem::path depth_folder;  // <photo stem>.tiff, z-depth (along the camera's z axis) in metres, NaN = sky
   std::filesystem::path buildings_json;
   std::filesystem::path exposure_json;
+  std::filesystem::path normals_folder = {};  // <photo stem>.png, core/image/normal_image.h
+  std::filesystem::path classes_folder = {};  // <photo stem>.png, core/survey/surface_class.h
+  std::filesystem::path surface_ply = {};     // mesh with a class per face
 };
 
 struct Survey {

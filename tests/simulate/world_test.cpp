@@ -150,8 +150,8 @@ TEST_F(TownWorld, CarsMoveAndAreMasked) {
   if (!gone.usable.Empty()) {
     EXPECT_EQ(*gone.usable.At(16, 15), 255);
   }
-  const image::ImageF near = renderer.Depth(pose, before, *threads_);
-  const image::ImageF far = renderer.Depth(pose, after, *threads_);
+  const image::ImageF near = renderer.Surfaces(pose, before, *threads_).z_depth;
+  const image::ImageF far = renderer.Surfaces(pose, after, *threads_).z_depth;
   EXPECT_GT(*far.At(16, 15) - *near.At(16, 15), 1.0F);
   EXPECT_LT(*far.At(16, 15) - *near.At(16, 15), 2.3F);
 }

@@ -1,0 +1,26 @@
+// What the surfaces of a simulated survey are, as numbered in truth/classes/*.png and truth/surface.ply.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace skyquilt::survey {
+
+enum class SurfaceClass : uint8_t {
+  kNone = 0,       // sky, or unknown
+  kRoof = 1,       // decks and slopes, with what stands on them: parapets, stair housings, machines, chimneys; tops and sides
+  kWall = 2,       // of buildings, gables included
+  kGround = 3,     // everything else that one can walk on: gardens, fields, sand, pavements, paths, driveways, terraces, plazas
+  kRoad = 4,       // carriageways of streets, and car parks
+  kTree = 5,       // crowns and trunks
+  kParkedCar = 6,  // part of the static scene
+  kMovingCar = 7,  // at another place in every photo
+  kWater = 8
+};
+inline constexpr int kSurfaceClasses = 9;
+
+// Name of a class by its number.
+inline constexpr std::array<const char*, kSurfaceClasses> kSurfaceClassNames = {"none", "roof",       "wall",       "ground", "road",
+                                                                                "tree", "parked car", "moving car", "water"};
+
+}  // namespace skyquilt::survey

@@ -1,0 +1,42 @@
+#include "simulate/classify.h"
+
+namespace skyquilt::simulate {
+
+using survey::SurfaceClass;
+
+namespace {
+
+// Driveways are ground: they are of concrete and brick as often as of asphalt.
+SurfaceClass ClassOfGround(const GroundSample& ground) {
+  const bool car_park = ground.kind == GroundKind::kPad && ground.pad->kind == PadKind::kParking;
+  return ground.kind == GroundKind::kRoad || car_park ? SurfaceClass::kRoad : SurfaceClass::kGround;
+}
+
+}  // namespace
+
+SurfaceClass ClassOf(const Tag& tag, const Eigen::Vector3f& position, const CityLayout* city) {
+  switch (tag.part) {
+    case Part::kGround:
+      return city == nullptr ? SurfaceClass::kGround : ClassOfGround(city->Sample(position.x(), position.y()));
+    case Part::kWater:
+      return SurfaceClass::kWater;
+    case Part::kWall:
+      return SurfaceClass::kWall;
+    case Part::kFlatRoof:
+    case Part::kPitchedRoof:
+    case Part::kParapet:
+    case Part::kRooftopBox:
+    case Part::kChimney:
+      return SurfaceClass::kRoof;
+    case Part::kTrunk:
+    case Part::kLeaves:
+      return SurfaceClass::kTree;
+    case Part::kCarBody:
+    case Part::kCarGlass:
+    case Part::kCarTyre:
+      return SurfaceClass::kParkedCar;
+  }
+  return SurfaceClass::kNone;
+}
+
+}  // namespace skyquilt::simulate

@@ -26,9 +26,16 @@ void CheckInput(const EvaluateInput& input) {
   input.options.Check();
 }
 
+// Where to look for flat roofs; none without a truth that says so.
+std::vector<RoofArea> FlatRoofsOf(const survey::Survey& survey) {
+  if (!survey.truth || !survey.georeferenced || !std::filesystem::is_regular_file(survey.truth->buildings_json)) return {};
+  return ReadFlatRoofs(survey.truth->buildings_json);
+}
+
 Scores ScorePhotos(const EvaluateInput& input, const std::vector<int>& held_out, HeldOutScorer& scorer, ReportPictures& pictures,
                    base::ThreadPool& threads) {
   Scores scores(scorer.n_boxes());
+  scores.flat_roofs = FlatRoofPoints(FlatRoofsOf(*input.survey));
   base::Progress progress("evaluate", static_cast<double>(held_out.size()), "photos");
   for (const int photo : held_out) {
     base::ThrowIfCancelled();

@@ -61,6 +61,19 @@ struct KeptPointErrors {
   double share_beyond_10_gsd = kNotMeasured;  // of the rays, those that never become half opaque included
 };
 
+// Errors of one class of surface in a simulated survey, pooled over the scored pixels of all test photos.
+struct ClassScore {
+  std::string name;                          // roof, wall, ground (roads included), road, tree
+  int64_t pixels = 0;                        // with rendered and true depth
+  int64_t missing_pixels = 0;                // without rendered depth
+  double depth_bias_m = kNotMeasured;        // median of the errors: rendered minus true depth along the ray
+  double depth_median_abs_m = kNotMeasured;  // median size of the errors
+  double depth_nmad_m = kNotMeasured;        // 1.4826 times the median distance of the errors from the bias
+  double depth_rmse_m = kNotMeasured;        // root mean square of the errors
+  double normal_median_deg = kNotMeasured;   // angle between the normals of the rendered depth and the true ones
+  double normal_mean_deg = kNotMeasured;
+};
+
 // What a reader must know before believing the figures, each without a full stop at its end.
 struct Warning {
   std::string finding;
@@ -95,6 +108,9 @@ struct Metrics {
   double depth_median_abs_m = kNotMeasured;
   double floater_opacity = kNotMeasured;                   // of the free space in front of the true surface, mean over rays (floater_opacity.h)
   std::vector<std::pair<double, double>> floater_profile;  // pairs (metres in front of the true surface, opacity up to there)
+  std::vector<ClassScore> classes;                         // empty without true classes
+  int flat_roofs = 0;                                      // that were measured
+  double flat_roof_rms_m = kNotMeasured;                   // median over them of the rms about the plane that fits best (flat_roofs.h)
   bool has_truth = false;                                  // simulated survey with true depth
   KeptPointErrors kept_points;
 

@@ -49,6 +49,13 @@ constexpr std::array<std::pair<const char*, double KeptPointErrors::*>, 7> kKept
      {"nmad_gsd", &KeptPointErrors::nmad_gsd},
      {"share_beyond_10_gsd", &KeptPointErrors::share_beyond_10_gsd}}};
 
+constexpr std::array<std::pair<const char*, double ClassScore::*>, 6> kClassErrors = {{{"depth_bias_m", &ClassScore::depth_bias_m},
+                                                                                       {"depth_median_abs_m", &ClassScore::depth_median_abs_m},
+                                                                                       {"depth_nmad_m", &ClassScore::depth_nmad_m},
+                                                                                       {"depth_rmse_m", &ClassScore::depth_rmse_m},
+                                                                                       {"normal_median_deg", &ClassScore::normal_median_deg},
+                                                                                       {"normal_mean_deg", &ClassScore::normal_mean_deg}}};
+
 using Json = nlohmann::ordered_json;
 
 using survey::NumberOrNull;
@@ -120,6 +127,18 @@ void PutNumbers(std::span<const KeyedNumber> numbers, const Metrics& metrics, Js
   for (const auto& [key, member] : numbers) (*json)[key] = NumberOrNull(metrics.*member);
 }
 
+// Nothing without true classes.
+void PutClasses(const Metrics& metrics, Json* json) {
+  if (metrics.classes.empty()) return;
+  Json& classes = (*json)["classes"] = Json::object();
+  for (const ClassScore& score : metrics.classes) {
+    Json& one = classes[score.name] = {{"pixels", score.pixels}, {"missing_pixels", score.missing_pixels}};
+    for (const auto& [key, member] : kClassErrors) one[key] = NumberOrNull(score.*member);
+  }
+  (*json)["flat_roofs"] = metrics.flat_roofs;
+  (*json)["flat_roof_rms_m"] = NumberOrNull(metrics.flat_roof_rms_m);
+}
+
 double NumberAt(const Json& json, const std::string& key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_number() ? found->get<double>() : kNotMeasured;
@@ -149,6 +168,20 @@ void TakeKeptPoints(const Json& json, KeptPointErrors* errors) {
   errors->points = ValueAt<int64_t>(kept, "points");
   errors->rays = ValueAt<int64_t>(kept, "rays");
   for (const auto& [key, member] : kKeptPoints) errors->*member = NumberAt(kept, key);
+}
+
+void TakeClasses(const Json& json, Metrics* metrics) {
+  const Json classes = ValueAt<Json>(json, "classes");
+  for (const auto& [name, one] : classes.items()) {
+    ClassScore score;
+    score.name = name;
+    score.pixels = ValueAt<int64_t>(one, "pixels");
+    score.missing_pixels = ValueAt<int64_t>(one, "missing_pixels");
+    for (const auto& [key, member] : kClassErrors) score.*member = NumberAt(one, key);
+    metrics->classes.push_back(std::move(score));
+  }
+  metrics->flat_roofs = ValueAt<int>(json, "flat_roofs");
+  metrics->flat_roof_rms_m = NumberAt(json, "flat_roof_rms_m");
 }
 
 // Earlier versions wrote less.
@@ -186,6 +219,7 @@ Metrics MetricsFrom(const Json& json) {
     metrics.photos.push_back(std::move(photo));
   }
   TakeBlocks(json, &metrics);
+  TakeClasses(json, &metrics);
   metrics.peak_rss_bytes = ValueAt<int64_t>(json, "peak_rss_bytes");
   metrics.parameters = ValueAt<int64_t>(json, "parameters");
   metrics.ranks = ValueAt<int>(json, "ranks");
@@ -227,6 +261,7 @@ std::string MetricsJson(const Metrics& metrics) {
     for (const auto& [clearance_m, opacity] : metrics.floater_profile) {
       json["floater_profile"].push_back({{"clearance_m", clearance_m}, {"opacity", NumberOrNull(opacity)}});
     }
+    PutClasses(metrics, &json);
   }
   json["kept_points"] = KeptPointsJson(metrics.kept_points);
   PutNumbers(kTraining, metrics, &json);

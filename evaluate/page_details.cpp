@@ -115,7 +115,7 @@ std::string DetailsSection(const ReportInput& input) {
   AddSeamRows(metrics, &table);
   AddFlightRows(metrics, &table);
   AddCostRows(metrics, &table);
-  return "<section id=\"details\"><div class=\"heading\"><h2>Details</h2></div>" + table.Html() + "</section>\n";
+  return "<section id=\"details\"><div class=\"heading\"><h2>Details</h2></div>" + table.Html() + ClassTable(metrics) + "</section>\n";
 }
 
 std::string MethodSection(const ReportInput& input) {

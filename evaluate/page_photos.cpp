@@ -41,6 +41,8 @@ std::string PhotoCard(const ReportInput& input, size_t index) {
   picture("error-pic", images.error, "Error", Legend(input, "0", page::FormatFixed(input.error_high, 2)));
   picture("depth-pic", images.depth, "Depth",
           Legend(input, page::FormatFixed(images.depth_low_m, 1), page::FormatFixed(images.depth_high_m, 1, "m")));
+  picture("normals-pic", images.normals, "Normals of the render");
+  picture("true-normals-pic", images.true_normals, "True normals");
   return html + "</div></article>\n";
 }
 

@@ -10,6 +10,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
+#include "core/image/normal_image.h"
 
 namespace skyquilt::evaluate {
 
@@ -96,6 +97,11 @@ PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::p
     images.depth_low_m = static_cast<double>(low);
     images.depth_high_m = static_cast<double>(high);
   }
+  const auto write_normals = [&](const image::ImageF* normals, const char* name) {
+    return normals == nullptr ? std::string() : WriteColors(image::ShowNormals(*normals), report_folder, prefix + name, max_width);
+  };
+  images.normals = write_normals(pixels.normals, "_normals.png");
+  images.true_normals = write_normals(pixels.true_normals, "_true_normals.png");
   return images;
 }
 

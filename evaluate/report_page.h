@@ -18,7 +18,8 @@ namespace skyquilt::evaluate {
 // Pictures of one held-out photo; paths relative to the page, empty when not written.
 struct PhotoImages {
   std::string photo, render, error, depth;
-  int width = 0;  // pixels
+  std::string normals, true_normals;  // of rendering and truth
+  int width = 0;                      // pixels
   int height = 0;
   double depth_low_m = kNotMeasured;  // range of the depth colours
   double depth_high_m = kNotMeasured;
@@ -54,6 +55,7 @@ std::string BlockMapSvg(const ReportInput& input);
 std::string PhotoSection(const ReportInput& input);
 std::string GeoSection(const ReportInput& input);      // how the survey was placed on Earth; see page_geo.h
 std::string DetailsSection(const ReportInput& input);  // every figure and its meaning
+std::string ClassTable(const Metrics& metrics);        // empty without true classes
 std::string MethodSection(const ReportInput& input);
 std::string BrightnessSection(const ReportInput& input);  // empty without brightness
 std::string BlockTable(const ReportInput& input);

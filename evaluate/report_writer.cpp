@@ -14,7 +14,8 @@ namespace skyquilt::evaluate {
 
 namespace {
 
-constexpr float kErrorHigh = 0.25F;  // display values at the top of the error colours
+constexpr float kErrorHigh = 0.25F;    // display values at the top of the error colours
+constexpr int kPhotosWithNormals = 2;  // enough to see how rough surfaces are
 
 std::string TitleOf(const std::filesystem::path& project_folder) {
   const std::filesystem::path folder = std::filesystem::absolute(project_folder).lexically_normal();
@@ -25,7 +26,7 @@ std::string TitleOf(const std::filesystem::path& project_folder) {
 // Removes images of an earlier evaluation that the page no longer shows.
 void RemoveStalePictures(const std::filesystem::path& report_folder, const std::vector<PhotoImages>& images) {
   std::set<std::string> kept;
-  for (const PhotoImages& one : images) kept.insert({one.photo, one.render, one.error, one.depth});
+  for (const PhotoImages& one : images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals});
   std::vector<std::filesystem::path> stale;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
@@ -54,8 +55,14 @@ void ReportPictures::Write(const ScoredPhoto& scored) {
   const int photo = findings.score.photo;
   images_.emplace_back();
   if (std::find(pictured_.begin(), pictured_.end(), photo) != pictured_.end()) {
-    images_.back() = WritePhotoImages({&scored.task.photo, &findings.render, &findings.z_depth, findings.scored.data}, input_.ReportFolder(),
-                                      fmt::format("photo_{:05d}", photo), input_.options.report_image_width, kErrorHigh);
+    PhotoPixels pixels{&scored.task.photo, &findings.render, &findings.z_depth, findings.scored.data};
+    if (!findings.true_normals.Empty() && n_with_normals_ < kPhotosWithNormals) {
+      pixels.normals = &findings.normals;
+      pixels.true_normals = &findings.true_normals;
+      ++n_with_normals_;
+    }
+    images_.back() =
+        WritePhotoImages(pixels, input_.ReportFolder(), fmt::format("photo_{:05d}", photo), input_.options.report_image_width, kErrorHigh);
   }
   const auto place = std::find(contrasted_.begin(), contrasted_.end(), photo);
   if (place != contrasted_.end()) WriteView(scored, static_cast<size_t>(place - contrasted_.begin()));

@@ -31,6 +31,7 @@ class ReportPictures {
   const EvaluateInput& input_;
   std::vector<int> pictured_, contrasted_;
   std::vector<PhotoImages> images_;
+  int n_with_normals_ = 0;
   BrightnessReport brightness_;
 };
 

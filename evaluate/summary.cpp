@@ -44,6 +44,10 @@ void AddPooled(const scene::SceneInfo& info, const Scores& scores, Metrics* metr
   const metrics::DepthErrors errors = scores.depth.Result();
   metrics->depth_rmse_m = errors.rmse_m;
   metrics->depth_median_abs_m = errors.median_abs_m;
+  metrics->classes = scores.classes.Result();
+  const FlatRoofScore roofs = scores.flat_roofs.Result();
+  metrics->flat_roofs = roofs.roofs;
+  metrics->flat_roof_rms_m = roofs.rms_m;
   metrics->floater_opacity = scores.floaters.Mean();
   metrics->floater_profile = scores.floaters.Profile();
 }
@@ -72,6 +76,8 @@ void Scores::Add(const ScoredPhoto& photo) {
   for (size_t b = 0; b < per_block.size(); ++b) per_block[b] += findings.per_block[b];
   seams += findings.seams;
   if (!findings.true_depth.Empty()) depth.Add(findings.z_depth, findings.true_depth, &findings.scored);
+  classes.Add(photo.task, findings);
+  flat_roofs.Add(photo.task, findings);
   floaters += photo.floaters;
 }
 

@@ -5,8 +5,10 @@
 
 #include "core/metrics/depth_errors.h"
 #include "core/metrics/psnr.h"
+#include "evaluate/class_scores.h"
 #include "evaluate/evaluate_input.h"
 #include "evaluate/exposure_seams.h"
+#include "evaluate/flat_roofs.h"
 #include "evaluate/floater_opacity.h"
 #include "evaluate/held_out_scorer.h"
 #include "evaluate/metrics.h"
@@ -20,6 +22,8 @@ struct Scores {
   std::vector<metrics::SquaredError> per_block;
   SeamErrors seams;
   metrics::DepthErrorCollector depth;
+  ClassErrors classes;
+  FlatRoofPoints flat_roofs;
   FloaterOpacity floaters;
   ExposureSeams exposure_seams;
 

@@ -40,7 +40,8 @@ void PrepareFolder(const fs::path& folder) {
   base::WriteFileAtomically(folder / kStarted, "");
   fs::remove(folder / "simulate.json");
   for (const char* name : {"images", "sparse", "truth"}) fs::remove_all(folder / name);
-  for (const char* name : {"images", "sparse/0", "truth/depth", "truth/normals", "truth/classes", "truth/masks"}) fs::create_directories(folder / name);
+  for (const char* name : {"images", "sparse/0", "truth/depth", "truth/normals", "truth/classes", "truth/masks"})
+    fs::create_directories(folder / name);
 }
 
 }  // namespace

@@ -130,9 +130,12 @@ Survey SurveyFromJson(const json& value) {
   for (const json& problem : value.at("problems")) survey.problems.push_back(ProblemFromJson(problem));
   const json& truth = value.at("truth");
   if (!truth.is_null()) {
-    survey.truth = Truth{truth.at("depth_folder").get<std::string>(), truth.at("buildings_json").get<std::string>(),
-                         truth.at("exposure_json").get<std::string>(), truth.value("normals_folder", ""),
-                         truth.value("classes_folder", ""),            truth.value("surface_ply", "")};
+    survey.truth = Truth{truth.at("depth_folder").get<std::string>(),
+                         truth.at("buildings_json").get<std::string>(),
+                         truth.at("exposure_json").get<std::string>(),
+                         truth.value("normals_folder", ""),
+                         truth.value("classes_folder", ""),
+                         truth.value("surface_ply", "")};
   }
   return survey;
 }
@@ -196,12 +199,9 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
                         {"photos", ordered_json::array()}};
   if (survey.HasTracks()) value["n_observations"] = survey.tracks.observations() + survey.kept_tracks.observations();
   if (survey.truth) {
-    value["truth"] = {{"depth_folder", survey.truth->depth_folder.string()},
-                      {"buildings_json", survey.truth->buildings_json.string()},
-                      {"exposure_json", survey.truth->exposure_json.string()},
-                      {"normals_folder", survey.truth->normals_folder.string()},
-                      {"classes_folder", survey.truth->classes_folder.string()},
-                      {"surface_ply", survey.truth->surface_ply.string()}};
+    value["truth"] = {{"depth_folder", survey.truth->depth_folder.string()},     {"buildings_json", survey.truth->buildings_json.string()},
+                      {"exposure_json", survey.truth->exposure_json.string()},   {"normals_folder", survey.truth->normals_folder.string()},
+                      {"classes_folder", survey.truth->classes_folder.string()}, {"surface_ply", survey.truth->surface_ply.string()}};
   }
   for (const Problem& problem : survey.problems) value["problems"].push_back(ToJson(problem));
   for (const camera::Camera& camera : survey.cameras) value["cameras"].push_back(ToJson(camera));

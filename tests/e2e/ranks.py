@@ -20,6 +20,9 @@ def test(skyquilt, folder):
         print(f"{ranks} ranks: PSNR {metrics['psnr']:.3f} dB, SSIM {metrics['ssim']:.4f}, coverage {metrics['coverage']:.3f}, "
               f"median depth error {metrics['depth_median_abs_m']:.2f} m")
         expect(metrics["ranks"] == ranks, f"the report says {metrics['ranks']} ranks")
+        ground = metrics["classes"]["ground"]
+        expect(ground["pixels"] > 10000 and ground["normal_median_deg"] < 45.0, f"the ground was scored as {ground}")
+        expect(metrics["classes"]["roof"]["depth_nmad_m"] < 20.0, f"roofs were scored as {metrics['classes']['roof']}")
         for name in ("blocks.geojson", "scene.h5", "checkpoints/context.h5", "checkpoints/context.log.csv", "report/index.html", "log.txt", "config.toml"):
             expect((project / name).exists(), f"{name} is missing")
     expect(max(psnr.values()) - min(psnr.values()) <= 0.1, f"PSNR depends on the ranks: {psnr}")

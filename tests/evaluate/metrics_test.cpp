@@ -39,6 +39,7 @@ TEST(MetricsJson, HasEveryPromisedKeyEvenWhenNothingWasMeasured) {
   EXPECT_FALSE(json.contains("floater_opacity"));
   ASSERT_TRUE(json.contains("kept_points"));
   EXPECT_TRUE(json["kept_points"].is_null());
+  EXPECT_FALSE(json.contains("classes"));
 }
 
 TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
@@ -119,6 +120,33 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   EXPECT_THROW(ReadMetrics(folder.path() / "metrics.json"), base::InputError);
   base::WriteFileAtomically(folder.path() / "metrics.json", "{\"n_test\": 1, \"photos_held_out\": \"many\"}");
   EXPECT_THROW(ReadMetrics(folder.path() / "metrics.json"), base::InputError);
+}
+
+TEST(MetricsJson, ScoresByClassAreReadBackToo) {
+  Metrics metrics;
+  metrics.has_truth = true;
+  EXPECT_FALSE(nlohmann::json::parse(MetricsJson(metrics)).contains("classes"));
+  EXPECT_FALSE(nlohmann::json::parse(MetricsJson(metrics)).contains("flat_roof_rms_m"));
+  ClassScore roof{.name = "roof", .pixels = 12, .missing_pixels = 3, .depth_bias_m = -0.125, .depth_median_abs_m = 0.25, .depth_nmad_m = 0.5};
+  roof.depth_rmse_m = 0.75;
+  roof.normal_median_deg = 7.5;
+  roof.normal_mean_deg = 12.0;
+  metrics.classes = {roof, {.name = "tree"}};
+  metrics.flat_roofs = 4;
+  metrics.flat_roof_rms_m = 0.0625;
+  const std::string text = MetricsJson(metrics);
+  const auto json = nlohmann::json::parse(text);
+  EXPECT_EQ(json["classes"]["roof"]["depth_bias_m"], -0.125);
+  EXPECT_EQ(json["classes"]["roof"]["normal_mean_deg"], 12.0);
+  EXPECT_EQ(json["classes"]["tree"]["pixels"], 0);
+  EXPECT_TRUE(json["classes"]["tree"]["depth_nmad_m"].is_null());
+  const TemporaryFolder folder;
+  base::WriteFileAtomically(folder.path() / "metrics.json", text);
+  const Metrics back = ReadMetrics(folder.path() / "metrics.json");
+  ASSERT_EQ(back.classes.size(), 2U);
+  EXPECT_EQ(back.classes[0].missing_pixels, 3);
+  EXPECT_EQ(back.flat_roofs, 4);
+  EXPECT_EQ(MetricsJson(back), text);
 }
 
 TEST(MetricsJson, TheGeoReferenceIsReadBackToo) {

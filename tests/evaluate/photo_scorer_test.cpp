@@ -109,6 +109,24 @@ TEST(ScorePhoto, DepthIsComparedAlongTheOpticalAxis) {
   EXPECT_NEAR(findings.score.depth_median_abs_m, 0.5, 1e-3);
 }
 
+TEST(ScorePhoto, NormalsAndClassesComeAtTheScoredSize) {
+  FlatGround flat;
+  EXPECT_TRUE(ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads).normals.Empty());
+  flat.task.true_normals = image::ImageF(2 * kWidth, 2 * kHeight, 3, 0.0F);
+  for (size_t i = 2; i < flat.task.true_normals.data.size(); i += 3) flat.task.true_normals.data[i] = 1.0F;
+  flat.task.true_class = image::Image8(2 * kWidth, 2 * kHeight, 1, 3);
+  for (int y = 0; y < 2 * kHeight; ++y) {
+    for (int x = 20; x < 40; ++x) *flat.task.true_class.At(x, y) = 5;
+  }
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  ASSERT_EQ(findings.true_class.width, kWidth);
+  ASSERT_EQ(findings.true_class.height, kHeight);
+  for (int x = 0; x < kWidth; ++x) EXPECT_EQ(*findings.true_class.At(x, 7), x >= 10 && x < 20 ? 5 : 3) << x;
+  ASSERT_EQ(findings.true_normals.data.size(), findings.normals.data.size());
+  EXPECT_EQ(findings.true_normals.At(kWidth - 1, kHeight - 1)[2], 1.0F);
+  EXPECT_NEAR(findings.normals.At(30, 30)[2], 1.0F, 1e-5F);  // of the rendered level ground
+}
+
 TEST(ScorePhoto, SameResultForAnyNumberOfThreads) {
   FlatGround flat;
   base::ThreadPool one(1);

@@ -55,6 +55,18 @@ TEST_F(ReportPage, TellsWhereTrainingTimeWent) {
   EXPECT_NE(html_.find("60.0\xE2\x80\xAF%", at), std::string::npos);
 }
 
+TEST_F(ReportPage, SurfacesAreScoredByClassWhereTheTruthIsKnown) {
+  const size_t at = html_.find("Surface by class");
+  ASSERT_NE(at, std::string::npos);
+  for (const char* text : {">roof<", ">tree<", "0.093\xE2\x80\xAFm", "9.4\xC2\xB0", "14 flat roofs are rough by", "0.087\xE2\x80\xAFm"}) {
+    EXPECT_NE(html_.find(text, at), std::string::npos) << text;
+  }
+  EXPECT_EQ(CountOf(html_, "alt=\"Normals of the render\""), 1U);
+  EXPECT_EQ(CountOf(html_, "alt=\"True normals\""), 1U);
+  const std::string poor = BuildReportPage(poor_->input);
+  EXPECT_EQ(poor.find("Surface by class"), std::string::npos);
+}
+
 TEST_F(ReportPage, OpensOfflineAndEveryPictureExists) {
   EXPECT_EQ(html_.find("http://"), std::string::npos);
   EXPECT_EQ(html_.find("https://"), std::string::npos);

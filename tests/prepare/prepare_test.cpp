@@ -247,6 +247,7 @@ TEST_F(PrepareTest, ASimulatedSurveyKeepsItsFrameAndItsTruth) {
   test::SetTags(flight_, [](size_t, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(1.0, 0.0, 0.0)); });
   Write();
   fs::create_directories(folder_ / "truth/depth");
+  fs::create_directories(folder_ / "truth/classes");
   fs::create_directories(folder_ / "truth/masks");
   image::SavePng(image::Image8(64, 48, 1, 255), folder_ / "truth/masks/photo_02.jpg.png");
   base::WriteFileAtomically(folder_ / "simulate.json", R"({"origin":{"latitude_deg":47.0,"longitude_deg":8.0,"height_m":400.0},"exact_frame":true})");
@@ -258,6 +259,8 @@ TEST_F(PrepareTest, ASimulatedSurveyKeepsItsFrameAndItsTruth) {
   EXPECT_LT((survey.photos[4].cam_from_enu.OriginInSource() - flight_.photos[4].centre_in_enu).norm(), 1e-9);
   ASSERT_TRUE(survey.truth);
   EXPECT_EQ(survey.truth->depth_folder, folder_ / "truth/depth");
+  EXPECT_EQ(survey.truth->classes_folder, folder_ / "truth/classes");
+  EXPECT_TRUE(survey.truth->normals_folder.empty());  // a survey made before there were any
   EXPECT_TRUE(survey.photos[2].mask.empty());
   EXPECT_EQ(survey.photo_root, folder_ / "images");
 }

@@ -14,8 +14,10 @@
 #include "core/base/progress.h"
 #include "core/geo/enu_frame.h"
 #include "core/image/image.h"
+#include "core/image/normal_image.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/exif.h"
+#include "core/survey/surface_class.h"
 #include "simulate/world.h"
 
 namespace skyquilt::simulate {
@@ -92,6 +94,9 @@ TEST_F(HamletSurvey, LayoutIsComplete) {
     const fs::path name = model.images[i].name;
     EXPECT_TRUE(fs::exists(root_ / "two/images" / name));
     EXPECT_EQ(fs::exists(root_ / "two/truth/depth" / (name.stem().string() + ".tiff")), IsTest(i));
+    const std::string png = name.stem().string() + ".png";
+    EXPECT_EQ(fs::exists(root_ / "two/truth/normals" / png), IsTest(i));
+    EXPECT_EQ(fs::exists(root_ / "two/truth/classes" / png), IsTest(i));
   }
 }
 
@@ -123,6 +128,27 @@ TEST_F(HamletSurvey, TagsTellPositionAndExposure) {
     if (i == 0) first_ratio = ratio;
     EXPECT_NEAR(ratio / first_ratio, 1.0, 1e-4);
   }
+}
+
+// The files hold what the renderer saw: where there is depth there is a normal and a class, at the size of the photo.
+TEST_F(HamletSurvey, NormalsAndClassesAreWhereDepthIs) {
+  const image::ImageF depth = image::LoadFloatTiff(root_ / "two/truth/depth/IMG_0009.tiff");
+  const image::ImageF normals = image::LoadNormals(root_ / "two/truth/normals/IMG_0009.png");
+  const image::Image8 classes = image::LoadLabels(root_ / "two/truth/classes/IMG_0009.png");
+  ASSERT_EQ(normals.width, depth.width);
+  ASSERT_EQ(normals.height, depth.height);
+  ASSERT_EQ(classes.data.size(), depth.data.size());
+  size_t n_roof = 0, n_roof_up = 0;
+  for (size_t i = 0; i < depth.data.size(); ++i) {
+    const auto seen = static_cast<survey::SurfaceClass>(classes.data[i]);
+    ASSERT_EQ(std::isfinite(depth.data[i]), std::isfinite(normals.data[3 * i]));
+    ASSERT_EQ(std::isfinite(depth.data[i]), seen != survey::SurfaceClass::kNone);
+    if (seen != survey::SurfaceClass::kRoof) continue;
+    ++n_roof;
+    if (normals.data[3 * i + 2] > 0.5F) ++n_roof_up;
+  }
+  EXPECT_GT(n_roof, 100U);
+  EXPECT_GT(n_roof_up, n_roof * 8 / 10);
 }
 
 // Sparse points are within a few centimetres of the surface, so where a photo's track has them its depth must agree,
@@ -245,6 +271,7 @@ TEST_F(HamletSurvey, APlanChoosesPhotosDepthAndPoints) {
   EXPECT_EQ(summary.n_test, 1);
   EXPECT_EQ(summary.n_points, 0);
   EXPECT_TRUE(fs::exists(root_ / "planned/truth/depth/IMG_0002.tiff"));
+  EXPECT_TRUE(fs::exists(root_ / "planned/truth/normals/IMG_0002.png"));
   EXPECT_EQ(base::ReadFile(root_ / "planned/truth/buildings.json"), base::ReadFile(root_ / "two/truth/buildings.json"));
 }
 

@@ -170,6 +170,20 @@ TEST(FloatTiff, RefusesOtherPixels) {
   EXPECT_NE(InputErrorOf([&] { LoadFloatTiff(folder.path() / "photo.png"); }).find("floating-point"), std::string::npos);
 }
 
+TEST(Labels, AreKeptAsTheyAre) {
+  const TemporaryFolder folder;
+  Image8 labels(3, 2, 1);
+  labels.data = {0, 1, 2, 8, 255, 7};
+  SavePng(labels, folder.path() / "classes.png");
+  const Image8 loaded = LoadLabels(folder.path() / "classes.png");
+  EXPECT_EQ(loaded.width, 3);
+  EXPECT_EQ(loaded.channels, 1);
+  EXPECT_EQ(loaded.data, labels.data);
+  SavePng(Image8(3, 2, 3), folder.path() / "rgb.png");
+  EXPECT_NE(InputErrorOf([&] { LoadLabels(folder.path() / "rgb.png"); }).find("one channel"), std::string::npos);
+  EXPECT_THROW(LoadLabels(folder.path() / "none.png"), base::InputError);
+}
+
 TEST(ParseJpeg, SurvivesAnyBytes) {
   const std::string whole = JpegOf(Pattern(40, 30));
   // Replaces each byte by a few values with a meaning in JPEG.

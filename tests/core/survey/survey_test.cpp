@@ -63,7 +63,7 @@ Survey SmallSurvey() {
                 .tags_alone_tilt_deg = 19.0};
   survey.checks = {.speed_mps = 8.0, .speed_source = "speed tags", .camera_name = "DJI FC300S", .smear_px = 2.0, .k1 = -0.02};
   survey.problems = {{.code = "tags_disagree", .finding = "half of the tags disagree", .advice = "look", .about_place = true}};
-  survey.truth = Truth{"/t/depth", "/t/buildings.json", "/t/exposure.json"};
+  survey.truth = Truth{"/t/depth", "/t/buildings.json", "/t/exposure.json", "/t/normals", "/t/classes", "/t/surface.ply"};
   return survey;
 }
 
@@ -118,6 +118,24 @@ TEST(Survey, SavingAndLoadingKeepsEveryBit) {
   EXPECT_EQ(ToJson(after.checks), ToJson(before.checks));
   EXPECT_EQ(after.photos[1].gps_correction_m, before.photos[1].gps_correction_m);
   EXPECT_EQ(after.truth->depth_folder, before.truth->depth_folder);
+  EXPECT_EQ(after.truth->normals_folder, before.truth->normals_folder);
+  EXPECT_EQ(after.truth->classes_folder, before.truth->classes_folder);
+  EXPECT_EQ(after.truth->surface_ply, before.truth->surface_ply);
+}
+
+// As earlier versions wrote it.
+TEST(Survey, ATruthWithoutNormalsAndClassesIsLoaded) {
+  const TemporaryFolder folder;
+  SaveSurvey(SmallSurvey(), folder.path());
+  nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
+  for (const char* key : {"normals_folder", "classes_folder", "surface_ply"}) ASSERT_EQ(json["truth"].erase(key), 1U) << key;
+  base::WriteFileAtomically(folder / "survey.json", json.dump());
+  const Survey survey = LoadSurvey(folder.path());
+  ASSERT_TRUE(survey.truth);
+  EXPECT_EQ(survey.truth->depth_folder, "/t/depth");
+  EXPECT_TRUE(survey.truth->normals_folder.empty());
+  EXPECT_TRUE(survey.truth->classes_folder.empty());
+  EXPECT_TRUE(survey.truth->surface_ply.empty());
 }
 
 TEST(Survey, MedianAglIgnoresUnknownOnes) {

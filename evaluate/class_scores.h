@@ -1,0 +1,34 @@
+// Scores the surface by what it is: roofs, walls, ground, trees. Simulated surveys only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/survey/surface_class.h"
+#include "evaluate/metrics.h"
+#include "evaluate/photo_scorer.h"
+
+namespace skyquilt::evaluate {
+
+// Errors of depth and normals over several photos. Keeps eight bytes per scored pixel, as medians need all values.
+class ClassErrors {
+ public:
+  // Adds the pixels of a photo that are scored and have a true depth and a true class. findings: result of ScorePhoto for this task; without true
+  // classes nothing is added.
+  void Add(const HeldOutPhoto& task, const PhotoResult& findings);
+  // One entry for each of roof, wall, ground (roads included), road and tree, in this order; figures that no pixel measured are NaN. Empty if no
+  // photo had true classes.
+  std::vector<ClassScore> Result() const;
+
+ private:
+  struct Errors {
+    std::vector<float> depth_m;     // along the ray, rendered minus true
+    std::vector<float> normal_deg;  // 0 to 180
+    int64_t missing = 0;            // pixels without rendered depth
+  };
+  std::array<Errors, survey::kSurfaceClasses> errors_;
+  bool any_ = false;
+};
+
+}  // namespace skyquilt::evaluate

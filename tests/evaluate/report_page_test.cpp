@@ -23,6 +23,7 @@ class ReportPage : public testing::Test {
     keep_ = kept != nullptr;
     folder_ = keep_ ? std::filesystem::path(kept) : std::filesystem::temp_directory_path() / ("skyquilt_report_" + std::to_string(::getpid()));
     sample_ = std::make_unique<SampleReport>(folder_);
+    AddSurface();
     html_ = BuildReportPage(sample_->input);
     poor_ = std::make_unique<SampleReport>(folder_);
     poor_->MakePoor();
@@ -34,6 +35,19 @@ class ReportPage : public testing::Test {
     sample_.reset();
     poor_.reset();
     if (!keep_) std::filesystem::remove_all(folder_);
+  }
+  // Scores by class, and normals of the first photo.
+  static void AddSurface() {
+    Metrics& metrics = sample_->metrics;
+    metrics.classes = {{"roof", 123456, 789, 0.021, 0.084, 0.093, 0.612, 9.4, 14.2}, {.name = "tree"}};
+    metrics.flat_roofs = 14;
+    metrics.flat_roof_rms_m = 0.087;
+    const image::Image8 photo(64, 42, 3, 100);
+    const image::ImageF normals(64, 42, 3, 0.57735F);
+    const std::vector<uint8_t> scored(photo.data.size() / 3, 1);
+    const PhotoImages written = WritePhotoImages({&photo, &photo, nullptr, scored, &normals, &normals}, folder_, "surface", 960, 0.25F);
+    sample_->input.images[0].normals = written.normals;
+    sample_->input.images[0].true_normals = written.true_normals;
   }
   static inline std::filesystem::path folder_;
   static inline bool keep_ = false;

@@ -280,9 +280,7 @@ PhotoImages PicturesOf(const survey::Photo& photo, const std::filesystem::path& 
       TownPicture(640, 420, center.x() - 320 * metres_per_pixel, center.y() + 210 * metres_per_pixel, metres_per_pixel, 0.3, &depth);
   std::vector<uint8_t> scored(640 * 420, 1);
   for (size_t p = 0; p < scored.size(); ++p) scored[p] = p % 640 < 580 ? 1 : 0;
-  const image::ImageF facing_north_east(640, 420, 3, 0.57735F);
-  const image::ImageF* normals = prefix == "t0" ? &facing_north_east : nullptr;
-  return WritePhotoImages({&taken, &render, &depth, scored, normals, normals}, folder, prefix, 960, 0.25F);
+  return WritePhotoImages({&taken, &render, &depth, scored}, folder, prefix, 960, 0.25F);
 }
 
 // Everything but the scores of photos and blocks.
@@ -313,9 +311,6 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.kept_points.median_abs_gsd = 1.34;
   metrics.kept_points.nmad_gsd = 1.91;
   metrics.kept_points.share_beyond_10_gsd = 0.031;
-  metrics.classes = {{"roof", 123456, 789, 0.021, 0.084, 0.093, 0.612, 9.4, 14.2}, {.name = "tree"}};
-  metrics.flat_roofs = 14;
-  metrics.flat_roof_rms_m = 0.087;
   metrics.exposure_seam = 0.0031;
   metrics.exposure_seam_control = 0.0027;
   metrics.train_seconds = training.TrainSeconds();
@@ -392,7 +387,6 @@ void SampleReport::MakePoor() {
   for (int i = 0; i < 200; ++i) survey.unregistered.push_back("flight1/DJI_" + std::to_string(2000 + i) + ".JPG");
   metrics.n_unregistered = static_cast<int>(survey.unregistered.size());
   metrics.has_truth = false;
-  metrics.classes.clear();
   metrics.coverage = 0.31;
   metrics.seam_psnr_gap_db = kNotMeasured;
   metrics.n_test = 3 * static_cast<int>(metrics.photos.size());

@@ -1,4 +1,5 @@
-// Scores the surface by what it is: roofs, walls, ground, trees. Simulated surveys only.
+// Scores the surface by what it is: roofs, walls, ground, trees. Simulated surveys only. Where the survey's frame was fitted to GPS tags, the errors
+// of normals include its tilt.
 #pragma once
 
 #include <array>

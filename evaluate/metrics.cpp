@@ -13,7 +13,8 @@ const char* const kCoverageDefinition =
     "is covered when this point lies inside the blocks and inside the unmasked frame of at least two training photos. Whether something hides the "
     "point from these photos is not tested.";
 const char* const kPsnrDefinition =
-    "PSNR and SSIM: computed per held-out photo over its covered pixels in sRGB display values, then averaged over the photos. Full frame: the same "
+    "PSNR, SSIM and FLIP: computed per held-out photo over its covered pixels in sRGB display values, then averaged over the photos. Full frame: the "
+    "same "
     "over every pixel that no mask excludes. PSNR of a block: from the squared errors of all covered pixels of all held-out photos whose surface "
     "point lies in the block's core box, seen from above.";
 const char* const kSeamDefinition =

@@ -1,6 +1,7 @@
 // Result of an evaluation, and its JSON form (report/metrics.json).
 // NaN means "not measured" and becomes null in JSON; so does an infinite PSNR (identical images).
-// PSNR in dB with display values in [0,1] (MAX = 1), higher better; SSIM at most 1, higher better; LPIPS a distance, lower better.
+// PSNR in dB with display values in [0,1] (MAX = 1), higher better; SSIM at most 1, higher better; FLIP from 0 to
+// 1 and LPIPS, a distance, lower better.
 #pragma once
 
 #include <array>
@@ -31,8 +32,10 @@ struct PhotoScore {
   double psnr_normal_db = kNotMeasured;  // at normal brightness against a normally exposed photo (evaluate.normal_photos), covered pixels
   double ssim_normal = kNotMeasured;
   double ssim = kNotMeasured;
+  double flip = kNotMeasured;
   double psnr_full_db = kNotMeasured;  // over all pixels that are not masked
   double ssim_full = kNotMeasured;
+  double flip_full = kNotMeasured;
   double lpips = kNotMeasured;                           // full frame
   double right_half_db = kNotMeasured;                   // PSNR over the covered pixels of the right half,
   double right_half_fitted_db = kNotMeasured;            // and with gains per colour fitted to the left half
@@ -89,9 +92,11 @@ struct Metrics {
   double psnr_normal = kNotMeasured;
   double ssim_normal = kNotMeasured;
   double ssim = kNotMeasured;
+  double flip = kNotMeasured;
   double coverage = kNotMeasured;  // pooled: all covered pixels / all used pixels
   double psnr_full_frame = kNotMeasured;
   double ssim_full_frame = kNotMeasured;
+  double flip_full_frame = kNotMeasured;
   double psnr_right_half = kNotMeasured;
   double psnr_right_half_fitted = kNotMeasured;
   double lpips = kNotMeasured;

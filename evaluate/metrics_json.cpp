@@ -17,11 +17,13 @@ namespace {
 using KeyedNumber = std::pair<const char*, double Metrics::*>;
 
 // Numbers of the whole evaluation and their keys, for writing and reading.
-constexpr std::array<KeyedNumber, 13> kScores = {{{"psnr", &Metrics::psnr},
+constexpr std::array<KeyedNumber, 15> kScores = {{{"psnr", &Metrics::psnr},
                                                   {"ssim", &Metrics::ssim},
+                                                  {"flip", &Metrics::flip},
                                                   {"coverage", &Metrics::coverage},
                                                   {"psnr_full_frame", &Metrics::psnr_full_frame},
                                                   {"ssim_full_frame", &Metrics::ssim_full_frame},
+                                                  {"flip_full_frame", &Metrics::flip_full_frame},
                                                   {"psnr_exif_gain", &Metrics::psnr_exif_gain},
                                                   {"exposure_seam", &Metrics::exposure_seam},
                                                   {"exposure_seam_control", &Metrics::exposure_seam_control},
@@ -86,9 +88,11 @@ Json PhotoJson(const PhotoScore& score, bool has_truth) {
   json["height"] = score.height;
   json["psnr"] = NumberOrNull(score.psnr_db);
   json["ssim"] = NumberOrNull(score.ssim);
+  json["flip"] = NumberOrNull(score.flip);
   json["coverage"] = NumberOrNull(score.Coverage());
   json["psnr_full_frame"] = NumberOrNull(score.psnr_full_db);
   json["ssim_full_frame"] = NumberOrNull(score.ssim_full);
+  json["flip_full_frame"] = NumberOrNull(score.flip_full);
   json["lpips"] = NumberOrNull(score.lpips);
   json["exposure_gain"] = NumberOrNull(score.exposure_gain);
   json["predicted_stops"] = score.predicted_stops;

@@ -23,6 +23,9 @@ void AddPictureRows(const Metrics& metrics, FigureTable* table) {
   table->Row("PSNR, full frame", Db(metrics.psnr_full_frame), "The same over all pixels that no mask excludes.");
   table->Row("SSIM", page::FormatFixed(metrics.ssim, 3), "Structural similarity over covered pixels. 1 is identical.");
   table->Row("SSIM, full frame", page::FormatFixed(metrics.ssim_full_frame, 3), "The same over all pixels that no mask excludes.");
+  table->Row("FLIP", page::FormatFixed(metrics.flip, 3),
+             "Difference that a person sees who flips between rendering and photo on a screen, over covered pixels. 0 is identical, 1 is the most.");
+  table->Row("FLIP, full frame", page::FormatFixed(metrics.flip_full_frame, 3), "The same over all pixels that no mask excludes.");
   table->Row("LPIPS", page::FormatFixed(metrics.lpips, 3), "Perceptual distance, " + metrics.lpips_note + ". Lower is better.");
   table->Row("Coverage", page::FormatPercent(metrics.coverage),
              fmt::format("Pixels of {} held-out photos that show ground seen by at least two training photos.", metrics.photos.size()));

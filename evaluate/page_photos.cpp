@@ -23,6 +23,7 @@ std::string PhotoCard(const ReportInput& input, size_t index) {
                   index, std::isfinite(score.psnr_db) ? fmt::format("{:.4f}", score.psnr_db) : "", page::EscapeHtml(score.name));
   html += Chip("PSNR", page::FormatFixed(score.psnr_db, 2, "dB"), "main");
   html += Chip("SSIM", page::FormatFixed(score.ssim, 3));
+  html += Chip("FLIP", page::FormatFixed(score.flip, 3));
   html += Chip("coverage", page::FormatPercent(score.Coverage()));
   html += Chip("full frame", page::FormatFixed(score.psnr_full_db, 2, "dB"));
   if (input.metrics->has_truth) html += Chip("median depth error", page::FormatFixed(score.depth_median_abs_m, 2, "m"));
@@ -50,7 +51,9 @@ std::string PhotoTable(const ReportInput& input) {
   const bool truth = input.metrics->has_truth;
   std::string html =
       "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Held-out photo</th><th class=\"num\">PSNR</th><th class=\"num\">SSIM</th>"
-      "<th class=\"num\">Coverage</th><th class=\"num\">PSNR, full frame</th><th class=\"num\">SSIM, full frame</th><th class=\"num\">LPIPS</th>";
+      "<th class=\"num\">FLIP</th>"
+      "<th class=\"num\">Coverage</th><th class=\"num\">PSNR, full frame</th><th class=\"num\">SSIM, full frame</th>"
+      "<th class=\"num\">FLIP, full frame</th><th class=\"num\">LPIPS</th>";
   if (truth) html += "<th class=\"num\">Depth error, RMSE</th><th class=\"num\">Depth error, median</th>";
   html += "<th class=\"num\">Exposure gain</th><th class=\"num\">Size</th><th class=\"num\">Render time</th></tr></thead><tbody>";
   for (size_t i = 0; i < input.metrics->photos.size(); ++i) {
@@ -60,9 +63,11 @@ std::string PhotoTable(const ReportInput& input) {
         pictured ? fmt::format("<tr><td><a href=\"#photo-{}\">{}</a></td>", i, page::EscapeHtml(score.name)) : "<tr>" + page::TextCell(score.name);
     html +=
         page::NumberCell(score.psnr_db, page::FormatFixed(score.psnr_db, 2, "dB")) + page::NumberCell(score.ssim, page::FormatFixed(score.ssim, 3));
+    html += page::NumberCell(score.flip, page::FormatFixed(score.flip, 3));
     html += page::NumberCell(score.Coverage(), page::FormatPercent(score.Coverage()));
     html += page::NumberCell(score.psnr_full_db, page::FormatFixed(score.psnr_full_db, 2, "dB")) +
             page::NumberCell(score.ssim_full, page::FormatFixed(score.ssim_full, 3));
+    html += page::NumberCell(score.flip_full, page::FormatFixed(score.flip_full, 3));
     html += page::NumberCell(score.lpips, page::FormatFixed(score.lpips, 3));
     if (truth) {
       html += page::NumberCell(score.depth_rmse_m, page::FormatFixed(score.depth_rmse_m, 2, "m"));

@@ -7,6 +7,7 @@
 
 #include "core/base/errors.h"
 #include "core/metrics/depth_errors.h"
+#include "core/metrics/flip.h"
 #include "core/metrics/psnr.h"
 #include "core/metrics/ssim.h"
 #include "core/scene/depth_normals.h"
@@ -123,15 +124,18 @@ image::BasicImage<T> ResizeNearest(const image::BasicImage<T>& image, int width,
   return resized;
 }
 
-// Scores that are not sums over pixels; the three are computed in parallel.
+// Scores that are not sums over pixels. FLIP spreads its rows over the threads, the others are computed side by side.
 void AddWholeFrameScores(const HeldOutPhoto& task, const FrameComparison& frame, base::ThreadPool& threads, PhotoScore* score) {
   const image::Image8 used = task.UsedPixels();
+  const image::Image8* unmasked = used.Empty() ? nullptr : &used;
   HalfScores halves;
   threads.ParallelFor(3, [&](int64_t which, int) {
     if (which == 0) score->ssim = metrics::Ssim(frame.render, frame.photo, &frame.scored);
-    if (which == 1) score->ssim_full = metrics::Ssim(frame.render, frame.photo, used.Empty() ? nullptr : &used);
+    if (which == 1) score->ssim_full = metrics::Ssim(frame.render, frame.photo, unmasked);
     if (which == 2) halves = ScoreHalves(frame.unclamped, frame.photo, frame.scored);
   });
+  score->flip = metrics::Flip(frame.render, frame.photo, &frame.scored, threads);
+  score->flip_full = metrics::Flip(frame.render, frame.photo, unmasked, threads);
   score->right_half_db = metrics::PsnrOf(halves.right);
   score->right_half_fitted_db = metrics::PsnrOf(halves.right_fitted);
   for (size_t c = 0; c < 3; ++c) score->fitted_stops[c] = static_cast<double>(halves.log_gain[c]) / std::numbers::ln2;

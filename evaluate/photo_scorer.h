@@ -1,4 +1,4 @@
-// Compares one rendered held-out photo with the real one, pixel by pixel: coverage, squared errors per group, SSIM, depth.
+// Compares one rendered held-out photo with the real one, pixel by pixel: coverage, squared errors per group, SSIM, FLIP, depth.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct SceneArea {
 };
 
 struct PhotoResult {
-  PhotoScore score;  // sizes, pixel counts, PSNR, SSIM and depth; the caller fills the rest
+  PhotoScore score;  // sizes, pixel counts, PSNR, SSIM, FLIP and depth; the caller fills the rest
   SeamErrors seams;
   std::vector<metrics::SquaredError> per_block;  // one per box of the area, covered pixels
   image::Image8 scored;                          // one channel, 1 = unmasked and covered

@@ -22,8 +22,10 @@ void AddMeans(const Scores& scores, Metrics* metrics) {
   metrics->ssim_normal = MeanOver(scores.photos, &PhotoScore::ssim_normal);
   metrics->psnr_exif_gain = MeanOver(scores.photos, &PhotoScore::psnr_exif_gain_db);
   metrics->ssim = MeanOver(scores.photos, &PhotoScore::ssim);
+  metrics->flip = MeanOver(scores.photos, &PhotoScore::flip);
   metrics->psnr_full_frame = MeanOver(scores.photos, &PhotoScore::psnr_full_db);
   metrics->ssim_full_frame = MeanOver(scores.photos, &PhotoScore::ssim_full);
+  metrics->flip_full_frame = MeanOver(scores.photos, &PhotoScore::flip_full);
   metrics->psnr_right_half = MeanOver(scores.photos, &PhotoScore::right_half_db);
   metrics->psnr_right_half_fitted = MeanOver(scores.photos, &PhotoScore::right_half_fitted_db);
   metrics->lpips = MeanOver(scores.photos, &PhotoScore::lpips);

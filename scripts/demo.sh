@@ -40,6 +40,7 @@ def line(label, key, unit, digits):
 
 line("PSNR, held-out views", "psnr", " dB", 2)
 line("SSIM, held-out views", "ssim", "", 3)
+line("FLIP, held-out views", "flip", "", 3)
 line("median depth error", "depth_median_abs_m", " m", 3)
 PYTHON
 }

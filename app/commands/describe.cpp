@@ -82,7 +82,7 @@ Json DescribeProject(const std::filesystem::path& folder) {
   const std::filesystem::path metrics = project.ReportFolder() / "metrics.json";
   if (std::filesystem::exists(metrics)) {
     const Json all = Json::parse(base::ReadFile(metrics), nullptr, false);
-    for (const char* key : {"psnr", "ssim", "coverage", "psnr_full_frame", "depth_median_abs_m"}) {
+    for (const char* key : {"psnr", "ssim", "flip", "coverage", "psnr_full_frame", "depth_median_abs_m"}) {
       if (all.is_object() && all.contains(key)) json[key] = all.at(key);
     }
     json["report"] = (project.ReportFolder() / "index.html").string();

@@ -273,6 +273,7 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   const auto known = [](double value) { return std::isfinite(value) ? value : VariantResult::kNone; };
   r.psnr_db = known(metrics.psnr);
   r.ssim = known(metrics.ssim);
+  r.flip = known(metrics.flip);
   r.lpips = known(metrics.lpips);
   r.psnr_full_db = known(metrics.psnr_full_frame);
   r.coverage = known(metrics.coverage);

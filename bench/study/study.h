@@ -56,7 +56,7 @@ struct VariantResult {
 
   std::string name, label;
   std::string failure;  // empty when it has results
-  double psnr_db = kNone, ssim = kNone, lpips = kNone, psnr_full_db = kNone, coverage = kNone, seam_gap_db = kNone;
+  double psnr_db = kNone, ssim = kNone, flip = kNone, lpips = kNone, psnr_full_db = kNone, coverage = kNone, seam_gap_db = kNone;
   double depth_rmse_m = kNone, depth_median_abs_m = kNone, floater_opacity = kNone;  // simulated surveys
   double kept_median_gsd = kNone, kept_nmad_gsd = kNone;  // against sparse points kept from training, evaluate::KeptPointErrors
   double train_seconds = kNone, samples_per_second = kNone, samples = kNone, peak_rss_bytes = kNone;

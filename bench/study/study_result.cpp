@@ -13,6 +13,7 @@ template <typename Result, typename Each>
 void EachNumber(Result& r, const Each& each) {
   each("psnr_db", r.psnr_db);
   each("ssim", r.ssim);
+  each("flip", r.flip);
   each("lpips", r.lpips);
   each("psnr_full_db", r.psnr_full_db);
   each("coverage", r.coverage);
@@ -91,8 +92,8 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
   json.at("label").get_to(result.label);
   json.at("identity").get_to(*identity);
   result.failure = json.value("failure", "");
-  // Results of older programs lack the newer numbers.
-  EachNumber(result, [&](const char* key, double& value) { value = json.contains(key) ? OrNone(json.at(key)) : VariantResult::kNone; });
+  // Older programs had fewer scores.
+  EachNumber(result, [&](const char* key, double& value) { value = OrNone(json.value(key, Json(nullptr))); });
   json.at("blocks").get_to(result.blocks);
   json.at("layout").get_to(result.layout);
   json.at("training_photos").get_to(result.training_photos);

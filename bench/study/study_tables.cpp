@@ -21,6 +21,7 @@ const std::vector<Column>& Columns() {
   static const std::vector<Column> kColumns = {
       {"PSNR", [](const VariantResult& r) { return BenchCell::Number(r.psnr_db, 2, "dB"); }},
       {"SSIM", [](const VariantResult& r) { return BenchCell::Number(r.ssim, 3); }},
+      {"FLIP", [](const VariantResult& r) { return BenchCell::Number(r.flip, 3); }},
       {"LPIPS", [](const VariantResult& r) { return BenchCell::Number(r.lpips, 3); }},
       {"full frame", [](const VariantResult& r) { return BenchCell::Number(r.psnr_full_db, 2, "dB"); }},
       {"depth, median", [](const VariantResult& r) { return BenchCell::Number(r.depth_median_abs_m, 2, "m"); }},
@@ -45,7 +46,7 @@ BenchTable QualityTable(const std::vector<VariantResult>& results, const std::st
   BenchTable table{
       .name = name,
       .title = "",
-      .note = "PSNR and SSIM over the pixels of held-out photos that at least two training photos see. Memory is the peak during training.",
+      .note = "PSNR, SSIM and FLIP over the pixels of held-out photos that at least two training photos see. Memory is the peak during training.",
       .columns = {"variant"},
       .rows = {}};
   for (const VariantResult& r : results) table.rows.push_back({BenchCell::Text(r.failure.empty() ? r.label : r.label + " (" + r.failure + ")")});

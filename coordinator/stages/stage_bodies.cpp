@@ -140,8 +140,9 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
                                       .options = pipeline.settings.evaluate};
   pipeline.metrics = evaluate::Evaluate(input, threads);
   const evaluate::Metrics& metrics = pipeline.metrics;
-  spdlog::info("{} held-out photos: PSNR {:.2f} dB, SSIM {:.3f} over the {:.0f} % of pixels that are covered; PSNR of full frames {:.2f} dB",
-               metrics.photos.size(), metrics.psnr, metrics.ssim, 100.0 * metrics.coverage, metrics.psnr_full_frame);
+  spdlog::info(
+      "{} held-out photos: PSNR {:.2f} dB, SSIM {:.3f}, FLIP {:.3f} over the {:.0f} % of pixels that are covered; PSNR of full frames {:.2f} dB",
+      metrics.photos.size(), metrics.psnr, metrics.ssim, metrics.flip, 100.0 * metrics.coverage, metrics.psnr_full_frame);
   if (metrics.has_truth) {
     spdlog::info("depth error against ground truth: median {:.2f} m, RMSE {:.2f} m", metrics.depth_median_abs_m, metrics.depth_rmse_m);
   }

@@ -18,6 +18,7 @@ VariantResult Example() {
   r.label = "blocks, \"guided\"";
   r.psnr_db = 27.5;
   r.kept_nmad_gsd = 1.25;
+  r.flip = 0.125;
   r.train_seconds = 61.0;
   r.blocks = 2;
   r.layout = "1x2";
@@ -65,6 +66,7 @@ TEST(ResultJson, ReadsBackUnchanged) {
   EXPECT_TRUE(std::isnan(back.ssim));
   EXPECT_EQ(back.kept_nmad_gsd, 1.25);
   EXPECT_TRUE(std::isnan(back.kept_median_gsd));
+  EXPECT_EQ(back.flip, 0.125);
   ASSERT_EQ(back.fields.size(), 3U);
   EXPECT_EQ(back.fields[1].psnr_db, 28.0);
   EXPECT_EQ(back.fields[1].scene_parameters, 25);
@@ -87,18 +89,20 @@ TEST(ResultJson, ReadsBackUnchanged) {
   EXPECT_EQ(ResultJson(back, identity), ResultJson(r, "abc 1"));
 }
 
-TEST(ResultJson, OfAnOlderProgramHasNoScalesAndNoKeptPoints) {
+TEST(ResultJson, OfAnOlderProgramHasFewerScores) {
   nlohmann::json json = nlohmann::json::parse(ResultJson(Example(), "abc"));
   json.erase("scales");
   json.erase("scale_pictures");
   json.erase("kept_median_gsd");
   json.erase("kept_nmad_gsd");
+  json.erase("flip");
   for (nlohmann::json& field : json["fields"]) field.erase("steps");
   std::string identity;
   const VariantResult back = ParseResult(json.dump(), &identity);
   EXPECT_TRUE(back.scales.empty());
   EXPECT_TRUE(std::isnan(back.kept_nmad_gsd));
   EXPECT_EQ(back.fields[1].steps, 0);
+  EXPECT_TRUE(std::isnan(back.flip));
   EXPECT_EQ(back.psnr_db, Example().psnr_db);
 }
 
@@ -136,8 +140,8 @@ TEST(BenchPage, IsEscapedAndHasNumbersInFullPrecision) {
   EXPECT_EQ(html.find("blocks, \"guided\""), std::string::npos);
   EXPECT_EQ(html.find("http"), std::string::npos) << "the page opens offline";
   const std::string csv = BenchCsv(page.sections[0].tables[0]);
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "variant,PSNR,\"kept points, NMAD\",training");
-  EXPECT_NE(csv.find("\"blocks, \"\"guided\"\"\",27.5,1.25,61"), std::string::npos) << csv;
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "variant,PSNR,FLIP,\"kept points, NMAD\",training");
+  EXPECT_NE(csv.find("\"blocks, \"\"guided\"\"\",27.5,0.125,1.25,61"), std::string::npos) << csv;
   const std::string text = BenchText(page);
   EXPECT_NE(text.find("27.50"), std::string::npos);
   EXPECT_NE(text.find("- It works."), std::string::npos);

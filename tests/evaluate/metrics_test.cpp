@@ -26,8 +26,8 @@ TEST(MedianOfMeasured, IsTheMiddle) {
 
 TEST(MetricsJson, HasEveryPromisedKeyEvenWhenNothingWasMeasured) {
   const auto json = nlohmann::json::parse(MetricsJson(Metrics{}));
-  for (const char* key : {"psnr", "ssim", "coverage", "psnr_full_frame", "ssim_full_frame", "lpips", "seam_psnr_gap_db", "train_seconds",
-                          "samples_per_second", "peak_rss_bytes"}) {
+  for (const char* key : {"psnr", "ssim", "flip", "coverage", "psnr_full_frame", "ssim_full_frame", "flip_full_frame", "lpips", "seam_psnr_gap_db",
+                          "train_seconds", "samples_per_second", "peak_rss_bytes"}) {
     ASSERT_TRUE(json.contains(key)) << key;
     EXPECT_TRUE(json[key].is_null()) << key;
   }

@@ -52,6 +52,8 @@ TEST(ScorePhoto, AllPixelsCoveredGiveTheFullFrameScore) {
   EXPECT_NEAR(findings.score.psnr_db, Psnr(std::sqrt(250.0)), 1e-3);
   EXPECT_NEAR(findings.score.psnr_full_db, findings.score.psnr_db, 1e-9);
   EXPECT_NEAR(findings.score.ssim, findings.score.ssim_full, 1e-6);
+  EXPECT_GT(findings.score.flip, 0.0);
+  EXPECT_EQ(findings.score.flip, findings.score.flip_full);
 }
 
 TEST(ScorePhoto, BlocksAndSeamsGetTheirOwnPixels) {
@@ -135,6 +137,7 @@ TEST(ScorePhoto, SameResultForAnyNumberOfThreads) {
   const PhotoResult b = ScorePhoto(flat.task, flat.rendered, views, flat.area, one);
   EXPECT_EQ(a.score.psnr_db, b.score.psnr_db);
   EXPECT_EQ(a.seams.AllInterior().sum, b.seams.AllInterior().sum);
+  EXPECT_EQ(a.score.flip, b.score.flip);
   EXPECT_EQ(a.scored.data, b.scored.data);
 }
 

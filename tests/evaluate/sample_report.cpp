@@ -264,6 +264,8 @@ PhotoScore ScoreOf(const survey::Survey& survey, int index, base::Random& random
   score.ssim = 0.86 + 0.02 * random.Normal();
   score.psnr_full_db = score.psnr_db - 1.3;
   score.ssim_full = score.ssim - 0.03;
+  score.flip = 0.11 + 0.01 * random.Normal();
+  score.flip_full = score.flip + 0.01;
   score.depth_rmse_m = 1.1 + 0.1 * random.Normal();
   score.depth_median_abs_m = 0.21 + 0.03 * random.Normal();
   score.render_seconds = 1.7 + 0.1 * random.Normal();
@@ -285,18 +287,21 @@ PhotoImages PicturesOf(const survey::Photo& photo, const std::filesystem::path& 
 
 // Everything but the scores of photos and blocks.
 void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport& training, Metrics& metrics) {
-  std::vector<double> psnr, ssim;
+  std::vector<double> psnr, ssim, flip;
   for (const PhotoScore& photo : metrics.photos) {
     psnr.push_back(photo.psnr_db);
     ssim.push_back(photo.ssim);
+    flip.push_back(photo.flip);
   }
   metrics.psnr = MeanOfMeasured(psnr);
   metrics.ssim = MeanOfMeasured(ssim);
+  metrics.flip = MeanOfMeasured(flip);
   metrics.psnr_exif_gain = metrics.psnr - 0.9;
   metrics.psnr_right_half = metrics.psnr - 0.1;
   metrics.psnr_right_half_fitted = metrics.psnr + 0.3;
   metrics.psnr_full_frame = metrics.psnr - 1.3;
   metrics.ssim_full_frame = metrics.ssim - 0.03;
+  metrics.flip_full_frame = metrics.flip + 0.01;
   metrics.coverage = 0.912;
   metrics.lpips_note = "not measured: evaluate.lpips_network is not set";
   metrics.psnr_interior_db = 28.4;

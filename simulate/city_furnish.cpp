@@ -54,15 +54,19 @@ void AddHouseLot(Cell& cell, double lot_x, double lot_width, double front, CityC
   if (random.UniformDouble() < 0.12) FlatRoofed(house, random.Uniform(3.0, 6.0), 0.3);
   const double depth = across ? house.length_m : house.width_m;
   const double breadth = across ? house.width_m : house.length_m;
-  const double setback = random.Uniform(4.0, 6.5);
+  const double middle_y = 0.5 * (cell.min.y() + cell.max.y());
+  // Room is left at the back, where a turned plot is small.
+  const double setback = std::min(random.Uniform(4.0, 6.5), std::abs(street_y - middle_y) - depth - 1.0);
   house.centre = {lot_x + 1.0 + 0.5 * (lot_width - breadth) - 1.0, street_y - front * (setback + 0.5 * depth)};
   house.seed = random.NextU32();
   contents.buildings.push_back(house);
 
   const double drive_x = house.centre.x() + 0.5 * breadth + 1.9;
   const double drive_half = 0.5 * (setback + 0.7 * depth);
-  cell.pads.push_back(MakePad(PadKind::kDriveway, {drive_x, street_y - front * drive_half}, {1.5, drive_half}));
-  cell.pads.push_back(MakePad(PadKind::kPath, {house.centre.x() - 0.2 * breadth, street_y - front * 0.5 * setback}, {0.7, 0.5 * setback}));
+  const double reach = 0.5 * cell.to_street_m;
+  cell.pads.push_back(MakePad(PadKind::kDriveway, {drive_x, street_y - front * (drive_half - reach)}, {1.5, drive_half + reach}));
+  cell.pads.push_back(
+      MakePad(PadKind::kPath, {house.centre.x() - 0.2 * breadth, street_y - front * (0.5 * setback - reach)}, {0.7, 0.5 * setback + reach}));
   const double behind = street_y - front * (setback + depth);
   cell.pads.push_back(
       MakePad(PadKind::kTerrace, {house.centre.x(), behind - front * 1.6}, {0.32 * breadth, 1.8}, house.yaw_deg - (across ? 90.0 : 0.0)));
@@ -73,7 +77,6 @@ void AddHouseLot(Cell& cell, double lot_x, double lot_width, double front, CityC
     car.seed = random.NextU32();
     contents.parked.push_back(car);
   }
-  const double middle_y = 0.5 * (cell.min.y() + cell.max.y());
   if (random.UniformDouble() < 0.3) {
     Building shed;
     shed.kind = BuildingKind::kShed;
@@ -97,6 +100,7 @@ void FurnishHouses(const CityPlan& plan, Cell& cell, CityContents& contents, bas
   const double width = cell.max.x() - cell.min.x();
   const int n_lots = std::max(1, static_cast<int>(std::lround(width / 17.0)));
   const double lot_width = width / n_lots;
+  cell.lots_begin_m = cell.min.x();
   cell.lot_pitch_m = static_cast<float>(lot_width);
   for (const double front : {-1.0, 1.0}) {
     for (int lot = 0; lot < n_lots; ++lot) {
@@ -202,22 +206,8 @@ void FurnishPark(Cell& cell, CityContents& contents, base::Random& random) {
   }
 }
 
-}  // namespace
-
-bool TreeFits(const Tree& tree, const CityContents& contents, size_t first_building) {
-  for (size_t i = first_building; i < contents.buildings.size(); ++i) {
-    if (contents.buildings[i].DistanceTo(tree.position) < 1.15 * tree.crown_radius_m + 0.6) return false;
-  }
-  for (const Pond& pond : contents.ponds) {
-    if (pond.Radius(tree.position.x(), tree.position.y()) < 1.3) return false;
-  }
-  return true;
-}
-
-void FurnishCell(const CityPlan& plan, Cell& cell, CityContents& contents, base::Random& random) {
-  // Cells outside the built-up rectangle are meadows.
-  const Vector2d middle = 0.5 * (cell.min + cell.max);
-  if ((middle - plan.min).minCoeff() < -0.25 * plan.pitch_m || (plan.max - middle).minCoeff() < -0.25 * plan.pitch_m) cell.kind = CellKind::kField;
+// Along the axes of the city.
+void FurnishPlot(const CityPlan& plan, Cell& cell, CityContents& contents, base::Random& random) {
   switch (cell.kind) {
     case CellKind::kHouses:
       FurnishHouses(plan, cell, contents, random);
@@ -234,6 +224,87 @@ void FurnishCell(const CityPlan& plan, Cell& cell, CityContents& contents, base:
     case CellKind::kField:
       break;
   }
+}
+
+// Whether a point is inside the cell, at least this far from its edge.
+bool Inside(const Cell& cell, const Vector2d& point, double margin_m) {
+  return (point - cell.min).minCoeff() >= margin_m && (cell.max - point).minCoeff() >= margin_m;
+}
+
+bool Inside(const Cell& cell, const Building& building) {
+  const Vector2d u = 0.5 * building.length_m * building.Axis();
+  const Vector2d v = 0.5 * building.width_m * Vector2d(-building.Axis().y(), building.Axis().x());
+  for (const Vector2d& corner : {Vector2d(u + v), Vector2d(u - v), Vector2d(-u - v), Vector2d(v - u)}) {
+    if (!Inside(cell, building.centre + corner, 0.0)) return false;
+  }
+  return true;
+}
+
+// False, and nothing is changed, when a building would reach into the street.
+bool FurnishTurned(const CityPlan& plan, const PlaneTurn& turn, Cell& cell, CityContents& contents, base::Random random) {
+  Cell plot = cell;
+  if (cell.kind == CellKind::kHouses) {
+    // The largest square of this turn inside the cell.
+    const Vector2d middle = 0.5 * (cell.min + cell.max);
+    const double share = 1.0 / (turn.cosine() + std::abs(turn.sine()));
+    plot.min = middle + share * (cell.min - middle);
+    plot.max = middle + share * (cell.max - middle);
+    plot.to_street_m = 10.0;  // more than enough; pavements are not covered
+  }
+  CityContents turned;
+  FurnishPlot(plan, plot, turned, random);
+  TurnAll(turn, turned);
+  if (!std::all_of(turned.buildings.begin(), turned.buildings.end(), [&](const Building& b) { return Inside(cell, b); })) return false;
+  std::erase_if(turned.trees, [&](const Tree& tree) { return !Inside(cell, tree.position, 1.0); });
+  std::erase_if(turned.parked, [&](const Car& car) { return !Inside(cell, car.position, 2.0); });
+  for (PavedArea& pad : plot.pads) {
+    pad.centre = turn.Turned(pad.centre.cast<double>()).cast<float>();
+    const Vector2d axis = turn.TurnedDirection(Vector2d(static_cast<double>(pad.cosine), static_cast<double>(pad.sine)));
+    pad.cosine = static_cast<float>(axis.x());
+    pad.sine = static_cast<float>(axis.y());
+  }
+  plot.min = cell.min;
+  plot.max = cell.max;
+  plot.turn = turn;
+  cell = plot;
+  contents.buildings.insert(contents.buildings.end(), turned.buildings.begin(), turned.buildings.end());
+  contents.trees.insert(contents.trees.end(), turned.trees.begin(), turned.trees.end());
+  contents.parked.insert(contents.parked.end(), turned.parked.begin(), turned.parked.end());
+  return true;
+}
+
+}  // namespace
+
+bool TreeFits(const Tree& tree, const CityContents& contents, size_t first_building) {
+  for (size_t i = first_building; i < contents.buildings.size(); ++i) {
+    if (contents.buildings[i].DistanceTo(tree.position) < 1.15 * tree.crown_radius_m + 0.6) return false;
+  }
+  for (const Pond& pond : contents.ponds) {
+    if (pond.Radius(tree.position.x(), tree.position.y()) < 1.3) return false;
+  }
+  return true;
+}
+
+void TurnAll(const PlaneTurn& turn, CityContents& contents) {
+  for (Building& building : contents.buildings) {
+    building.centre = turn.Turned(building.centre);
+    building.yaw_deg = turn.TurnedYaw(building.yaw_deg);
+  }
+  for (Tree& tree : contents.trees) tree.position = turn.Turned(tree.position);
+  for (Car& car : contents.parked) {
+    car.position = turn.Turned(car.position);
+    car.yaw_deg = turn.TurnedYaw(car.yaw_deg);
+  }
+  for (Pond& pond : contents.ponds) {
+    pond.centre = turn.Turned(pond.centre);
+    pond.axis = turn.TurnedDirection(pond.axis);
+  }
+}
+
+void FurnishCell(const CityPlan& plan, double turn_deg, Cell& cell, CityContents& contents, base::Random& random) {
+  const bool turnable = cell.kind == CellKind::kHouses || cell.kind == CellKind::kFlats || cell.kind == CellKind::kTowers;
+  if (turn_deg != 0.0 && turnable && FurnishTurned(plan, {0.5 * (cell.min + cell.max), turn_deg}, cell, contents, random)) return;
+  FurnishPlot(plan, cell, contents, random);
 }
 
 }  // namespace skyquilt::simulate

@@ -14,12 +14,35 @@ constexpr double kCurbToCentre = static_cast<double>(kRoadHalfWidth + kPavementW
 
 }  // namespace
 
+// A street's centre line inside a rectangle.
+struct CityLayout::Lane {
+  double line = 0.0;  // coordinate of the centre line across the street, in the city
+  double from = 0.0;  // coordinates along it, in the city
+  double to = 0.0;
+};
+
 CityLayout::CityLayout(const CityPlan& plan, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max, uint32_t seed)
-    : pitch_(static_cast<float>(plan.pitch_m)), phase_(plan.phase.cast<float>()) {
-  first_x_ = static_cast<int>(std::ceil((plan.min.x() - plan.phase.x()) / plan.pitch_m)) - 1;
-  last_x_ = static_cast<int>(std::floor((plan.max.x() - plan.phase.x()) / plan.pitch_m)) + 1;
-  first_y_ = static_cast<int>(std::ceil((plan.min.y() - plan.phase.y()) / plan.pitch_m)) - 1;
-  last_y_ = static_cast<int>(std::floor((plan.max.y() - plan.phase.y()) / plan.pitch_m)) + 1;
+    : turn_(0.5 * (ground_min + ground_max), plan.yaw_deg), pitch_(static_cast<float>(plan.pitch_m)), phase_(plan.phase.cast<float>()) {
+  AddCells(plan);
+  base::Random random(seed, 1);
+  ChooseKinds(plan, random);
+  FurnishCells(plan, seed);
+  AddStreetLife(plan, random);
+  TurnContents(ground_min, ground_max);
+  AddFieldTrees(plan, ground_min, ground_max, random);
+}
+
+void CityLayout::AddCells(const CityPlan& plan) {
+  // The streets around the built-up rectangle, which the axes of the city may cross at any angle.
+  Eigen::Vector2d low = turn_.TurnedBack(plan.min), high = low;
+  for (const Eigen::Vector2d& corner : {plan.max, Eigen::Vector2d(plan.min.x(), plan.max.y()), Eigen::Vector2d(plan.max.x(), plan.min.y())}) {
+    low = low.cwiseMin(turn_.TurnedBack(corner));
+    high = high.cwiseMax(turn_.TurnedBack(corner));
+  }
+  first_x_ = static_cast<int>(std::ceil((low.x() - plan.phase.x()) / plan.pitch_m)) - 1;
+  last_x_ = static_cast<int>(std::floor((high.x() - plan.phase.x()) / plan.pitch_m)) + 1;
+  first_y_ = static_cast<int>(std::ceil((low.y() - plan.phase.y()) / plan.pitch_m)) - 1;
+  last_y_ = static_cast<int>(std::floor((high.y() - plan.phase.y()) / plan.pitch_m)) + 1;
   columns_ = last_x_ - first_x_;
   rows_ = last_y_ - first_y_;
   for (int j = 0; j < rows_; ++j) {
@@ -30,21 +53,40 @@ CityLayout::CityLayout(const CityPlan& plan, const Eigen::Vector2d& ground_min, 
       cells_.push_back(cell);
     }
   }
-  base::Random random(seed, 1);
-  ChooseKinds(plan, random);
+}
+
+void CityLayout::FurnishCells(const CityPlan& plan, uint32_t seed) {
+  // A line through the middle of the city divides it into two districts.
+  base::Random district_random(seed, 4);
+  const Eigen::Vector2d across = PlaneTurn({0.0, 0.0}, district_random.Uniform(0.0, 360.0)).TurnedDirection(Eigen::Vector2d::UnitX());
+  const Eigen::Vector2d city_middle = turn_.TurnedBack(0.5 * (plan.min + plan.max));
   for (size_t i = 0; i < cells_.size(); ++i) {
+    Cell& cell = cells_[i];
+    const Eigen::Vector2d in_city = 0.5 * (cell.min + cell.max);
+    // Cells outside the built-up rectangle are meadows.
+    const Eigen::Vector2d middle = turn_.Turned(in_city);
+    if ((middle - plan.min).minCoeff() < -0.25 * plan.pitch_m || (plan.max - middle).minCoeff() < -0.25 * plan.pitch_m) cell.kind = CellKind::kField;
     base::Random cell_random(seed, 100 + i);
-    FurnishCell(plan, cells_[i], contents_, cell_random);
+    FurnishCell(plan, across.dot(in_city - city_middle) > 0.0 ? plan.district_turn_deg : 0.0, cell, contents_, cell_random);
   }
-  AddStreetLife(plan, random);
-  AddFieldTrees(plan, ground_min, ground_max, random);
+}
+
+void CityLayout::TurnContents(const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
+  TurnAll(turn_, contents_);
+  // A street along the edge of the ground keeps both sides.
+  const auto beyond = [&](const auto& object) {
+    const Eigen::Vector2d& at = object.position;
+    return std::max((ground_min - at).maxCoeff(), (at - ground_max).maxCoeff()) > kCurbToCentre;
+  };
+  std::erase_if(contents_.trees, beyond);
+  std::erase_if(contents_.parked, beyond);
 }
 
 void CityLayout::ChooseKinds(const CityPlan& plan, base::Random& random) {
   // The middle of the city gets one cell of each rarer kind, so that they exist for every seed.
   std::vector<size_t> by_distance(cells_.size());
   for (size_t i = 0; i < by_distance.size(); ++i) by_distance[i] = i;
-  const Eigen::Vector2d middle = 0.5 * (plan.min + plan.max);
+  const Eigen::Vector2d middle = turn_.TurnedBack(0.5 * (plan.min + plan.max));
   std::stable_sort(by_distance.begin(), by_distance.end(), [&](size_t a, size_t b) {
     return (0.5 * (cells_[a].min + cells_[a].max) - middle).norm() < (0.5 * (cells_[b].min + cells_[b].max) - middle).norm();
   });
@@ -129,8 +171,9 @@ void CityLayout::AddFieldTrees(const CityPlan& plan, const Eigen::Vector2d& grou
 }
 
 GroundSample CityLayout::Sample(float east, float north) const {
-  const float u = (east - phase_.x()) / pitch_;
-  const float v = (north - phase_.y()) / pitch_;
+  const Eigen::Vector2f city = turn_.TurnedBack({static_cast<double>(east), static_cast<double>(north)}).cast<float>();
+  const float u = (city.x() - phase_.x()) / pitch_;
+  const float v = (city.y() - phase_.y()) / pitch_;
   const int near_x = std::clamp(FloorInt(u + 0.5F), first_x_, last_x_);
   const int near_y = std::clamp(FloorInt(v + 0.5F), first_y_, last_y_);
   const float dx = (u - static_cast<float>(near_x)) * pitch_;
@@ -138,12 +181,13 @@ GroundSample CityLayout::Sample(float east, float north) const {
   const float ax = std::abs(dx);
   const float ay = std::abs(dy);
   GroundSample sample;
+  sample.city = city;
   if (ax < kRoadHalfWidth || ay < kRoadHalfWidth) {
     sample.kind = GroundKind::kRoad;
     sample.crossing = ax < kRoadHalfWidth && ay < kRoadHalfWidth;
     const bool north_south = ax <= ay;
     sample.across = north_south ? dx : dy;
-    sample.along = north_south ? north : east;
+    sample.along = north_south ? city.y() : city.x();
     sample.to_crossing = north_south ? ay : ax;
     sample.street = north_south ? near_x * 2 : near_y * 2 + 1;
     return sample;
@@ -159,7 +203,7 @@ GroundSample CityLayout::Sample(float east, float north) const {
   sample.cell = &cells_[static_cast<size_t>(j) * static_cast<size_t>(columns_) + static_cast<size_t>(i)];
   sample.kind = GroundKind::kCell;
   for (const PavedArea& pad : sample.cell->pads) {
-    const Eigen::Vector2f local = pad.Local(east, north);
+    const Eigen::Vector2f local = pad.Local(city.x(), city.y());
     if (std::abs(local.x()) < pad.half.x() && std::abs(local.y()) < pad.half.y()) {
       sample.kind = GroundKind::kPad;
       sample.pad = &pad;
@@ -168,24 +212,50 @@ GroundSample CityLayout::Sample(float east, float north) const {
   return sample;
 }
 
+std::vector<CityLayout::Lane> CityLayout::LanesAcross(int axis, const Eigen::Vector2d& min, const Eigen::Vector2d& max) const {
+  const double pitch = static_cast<double>(pitch_), phase = static_cast<double>(phase_[axis]);
+  Eigen::Vector2d low = turn_.TurnedBack(min), high = low;
+  for (const Eigen::Vector2d& corner : {max, Eigen::Vector2d(min.x(), max.y()), Eigen::Vector2d(max.x(), min.y())}) {
+    low = low.cwiseMin(turn_.TurnedBack(corner));
+    high = high.cwiseMax(turn_.TurnedBack(corner));
+  }
+  const Eigen::Vector2d along = turn_.TurnedDirection(axis == 1 ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY());
+  std::vector<Lane> lanes;
+  double longest = 0.0;
+  const auto first = static_cast<int>(std::ceil((low[axis] - phase) / pitch));
+  const auto last = static_cast<int>(std::floor((high[axis] - phase) / pitch));
+  for (int street = first; street <= std::max(first, last); ++street) {
+    Lane lane{phase + street * pitch, low[1 - axis], high[1 - axis]};
+    const Eigen::Vector2d origin = turn_.Turned(axis == 1 ? Eigen::Vector2d(0.0, lane.line) : Eigen::Vector2d(lane.line, 0.0));
+    for (int side = 0; side < 2; ++side) {
+      if (along[side] == 0.0) continue;
+      const double one = (min[side] - origin[side]) / along[side], other = (max[side] - origin[side]) / along[side];
+      lane.from = std::max(lane.from, std::min(one, other));
+      lane.to = std::min(lane.to, std::max(one, other));
+    }
+    lanes.push_back(lane);
+    longest = std::max(longest, lane.to - lane.from);
+  }
+  // Not the streets that only cut a corner of the rectangle.
+  std::erase_if(lanes, [&](const Lane& lane) { return lane.to - lane.from < 0.5 * longest; });
+  return lanes;
+}
+
 std::vector<MovingCar> CityLayout::MakeMovingCars(int count, const Eigen::Vector2d& min, const Eigen::Vector2d& max, base::Random& random) const {
   std::vector<MovingCar> cars;
   for (int k = 0; k < count; ++k) {
     MovingCar car;
-    const bool eastward = k % 2 == 0;
-    const int axis = eastward ? 1 : 0;
-    // The streets inside the rectangle; the nearest one when there is none.
-    const auto first = static_cast<int>(std::ceil((min[axis] - static_cast<double>(phase_[axis])) / static_cast<double>(pitch_)));
-    const auto last = static_cast<int>(std::floor((max[axis] - static_cast<double>(phase_[axis])) / static_cast<double>(pitch_)));
-    const int street = first + static_cast<int>(random.Below(static_cast<uint32_t>(std::max(last - first + 1, 1))));
-    const double line = static_cast<double>(phase_[axis]) + street * static_cast<double>(pitch_);
+    const bool along_x = k % 2 == 0;
+    const std::vector<Lane> lanes = LanesAcross(along_x ? 1 : 0, min, max);
+    const Lane& lane = lanes[random.Below(static_cast<uint32_t>(lanes.size()))];
     const bool forward = random.UniformDouble() < 0.5;
     constexpr double kLane = 1.1;
-    const double side = (eastward == forward) ? -kLane : kLane;  // traffic keeps right
-    car.direction = eastward ? Eigen::Vector2d(forward ? 1.0 : -1.0, 0.0) : Eigen::Vector2d(0.0, forward ? 1.0 : -1.0);
-    const double from = (forward ? min : max)[1 - axis];
-    car.start = eastward ? Eigen::Vector2d(from, line + side) : Eigen::Vector2d(line + side, from);
-    car.lane_length_m = (max - min)[1 - axis];
+    const double side = (along_x == forward) ? -kLane : kLane;  // traffic keeps right
+    const double sign = forward ? 1.0 : -1.0;
+    const double from = forward ? lane.from : lane.to;
+    car.direction = turn_.TurnedDirection(along_x ? Eigen::Vector2d(sign, 0.0) : Eigen::Vector2d(0.0, sign));
+    car.start = turn_.Turned(along_x ? Eigen::Vector2d(from, lane.line + side) : Eigen::Vector2d(lane.line + side, from));
+    car.lane_length_m = lane.to - lane.from;
     car.offset_m = random.UniformDouble() * car.lane_length_m;
     car.speed_mps = random.Uniform(5.0, 11.0);
     car.seed = random.NextU32();

@@ -1,5 +1,7 @@
 // Plan of a simulated city: a grid of streets, the cells between them, and the contents of each cell. East and north only; heights are added later,
-// from the terrain.
+// from the terrain. Streets and cells are laid out along the axes of the city, x and y, whose origin is that of ENU. The city is then turned about
+// the middle of the ground: contents and everything that CityLayout takes and gives are in ENU. The contents of cells in one half of the city, the
+// second district, are turned a little further, each about the middle of its cell.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,6 +13,7 @@
 #include "simulate/building.h"
 #include "simulate/car.h"
 #include "simulate/place_spec.h"
+#include "simulate/plane_turn.h"
 #include "simulate/tree.h"
 
 namespace skyquilt::simulate {
@@ -18,34 +21,45 @@ namespace skyquilt::simulate {
 enum class CellKind { kHouses, kFlats, kTowers, kPark, kField };
 enum class PadKind { kDriveway, kPath, kParking, kTerrace, kPlaza };
 
-// A paved rectangle on the ground.
+// A paved rectangle on the ground, along the axes of the city.
 struct PavedArea {
   PadKind kind = PadKind::kPath;
   Eigen::Vector2f centre = Eigen::Vector2f::Zero();
   Eigen::Vector2f half = Eigen::Vector2f::Ones();  // half sizes along its own axes
   float cosine = 1.0F;                             // of its yaw
   float sine = 0.0F;
-  Eigen::Vector2f Local(float east, float north) const {
-    const float x = east - centre.x();
-    const float y = north - centre.y();
+  Eigen::Vector2f Local(float x_in_city, float y_in_city) const {
+    const float x = x_in_city - centre.x();
+    const float y = y_in_city - centre.y();
     return {cosine * x + sine * y, cosine * y - sine * x};
   }
 };
 
 struct Cell {
   CellKind kind = CellKind::kHouses;
-  Eigen::Vector2d min = Eigen::Vector2d::Zero();  // inside the pavements, ENU metres
+  Eigen::Vector2d min = Eigen::Vector2d::Zero();  // inside the pavements, along the axes of the city, metres
   Eigen::Vector2d max = Eigen::Vector2d::Zero();
   std::vector<PavedArea> pads;
-  float lot_pitch_m = 1e6F;  // width of a garden along east
+  PlaneTurn turn;             // of the contents
+  double lots_begin_m = 0.0;  // x of the first garden, before the turn
+  float lot_pitch_m = 1e6F;   // width of a garden along x
+  double to_street_m = 0.0;   // paths and drives are longer by this, because a turned plot does not reach the street everywhere
 };
 
 struct Pond {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  Eigen::Vector2d radii = Eigen::Vector2d::Ones();
+  Eigen::Vector2d radii = Eigen::Vector2d::Ones();  // along `axis` and across it
+  Eigen::Vector2d axis = Eigen::Vector2d::UnitX();
   double level_z_m = 0.0;
   // Relative distance from the centre: 0 at the centre, 1 at the shore.
-  double Radius(double east, double north) const { return std::hypot((east - centre.x()) / radii.x(), (north - centre.y()) / radii.y()); }
+  double Radius(double east, double north) const {
+    const Eigen::Vector2d d(east - centre.x(), north - centre.y());
+    return std::hypot((axis.x() * d.x() + axis.y() * d.y()) / radii.x(), (axis.x() * d.y() - axis.y() * d.x()) / radii.y());
+  }
+  // A point this many radii along the axis and across it from the centre.
+  Eigen::Vector2d At(double along, double across) const {
+    return centre + along * radii.x() * axis + across * radii.y() * Eigen::Vector2d(-axis.y(), axis.x());
+  }
 };
 
 struct CityContents {
@@ -63,9 +77,10 @@ enum class GroundKind { kRoad, kPavement, kPad, kCell, kField };
 // What the ground is at a point.
 struct GroundSample {
   GroundKind kind = GroundKind::kField;
-  float across = 0.0F;       // roads: signed distance to the centre line of the nearer street
-  float along = 0.0F;        // roads: coordinate along it
-  float to_crossing = 0.0F;  // roads: distance along it to the centre of the nearest crossing; 1e6 when there is none
+  Eigen::Vector2f city = Eigen::Vector2f::Zero();  // the point along the axes of the city
+  float across = 0.0F;                             // roads: signed distance to the centre line of the nearer street
+  float along = 0.0F;                              // roads: coordinate along it
+  float to_crossing = 0.0F;                        // roads: distance along it to the centre of the nearest crossing; 1e6 when there is none
   bool crossing = false;
   int street = 0;
   const Cell* cell = nullptr;
@@ -74,19 +89,28 @@ struct GroundSample {
 
 class CityLayout {
  public:
+  // ground_min, ground_max: the modelled ground, ENU. Nothing stands beyond it.
   CityLayout(const CityPlan& plan, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max, uint32_t seed);
 
   GroundSample Sample(float east, float north) const;
   const CityContents& contents() const { return contents_; }
   CityContents& contents() { return contents_; }
-  // `count` cars at random positions on lanes of the streets that cross the rectangle.
+  // `count` cars at random positions on lanes of the streets that cross the rectangle, each from one of its edges to another.
   std::vector<MovingCar> MakeMovingCars(int count, const Eigen::Vector2d& min, const Eigen::Vector2d& max, base::Random& random) const;
 
  private:
+  struct Lane;  // where a street crosses a rectangle
+
+  void AddCells(const CityPlan& plan);
   void ChooseKinds(const CityPlan& plan, base::Random& random);
+  void FurnishCells(const CityPlan& plan, uint32_t seed);
   void AddStreetLife(const CityPlan& plan, base::Random& random);
+  // Turns the contents with the city, and removes what is beyond the ground.
+  void TurnContents(const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  std::vector<Lane> LanesAcross(int axis, const Eigen::Vector2d& min, const Eigen::Vector2d& max) const;
   void AddFieldTrees(const CityPlan& plan, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max, base::Random& random);
 
+  PlaneTurn turn_;
   float pitch_ = 66.0F;
   Eigen::Vector2f phase_ = Eigen::Vector2f::Zero();
   int first_x_ = 0, last_x_ = 0, first_y_ = 0, last_y_ = 0;  // indices of the streets
@@ -95,8 +119,12 @@ class CityLayout {
   CityContents contents_;
 };
 
-// Fills one cell with buildings, trees, cars and pads. Buildings do not overlap each other, and trees do not overlap buildings.
-void FurnishCell(const CityPlan& plan, Cell& cell, CityContents& contents, base::Random& random);
+// Fills one cell with buildings, trees, cars and pads, along the axes of the city. Buildings do not overlap each other, and trees do not overlap
+// buildings. Houses, flats and towers are turned by turn_deg about the middle of the cell; houses fill a smaller square then, so that they fit. Flats
+// and towers that would reach into the street are not turned.
+void FurnishCell(const CityPlan& plan, double turn_deg, Cell& cell, CityContents& contents, base::Random& random);
+// Turns everything in `contents`.
+void TurnAll(const PlaneTurn& turn, CityContents& contents);
 // False when the crown would touch a building or the tree would be in a pond. Only buildings from index `first_building` on are checked.
 bool TreeFits(const Tree& tree, const CityContents& contents, size_t first_building);
 

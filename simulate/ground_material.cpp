@@ -16,7 +16,7 @@ Vector3f Mix(const Vector3f& a, const Vector3f& b, float share) {
 
 // What the colour of the ground depends on.
 struct GroundPoint {
-  float x, y, footprint;
+  float x, y, footprint;  // x, y: along the axes of the city
   uint32_t seed;
   float Noise(float wavelength, int octaves, uint32_t channel, float persistence = 0.5F) const {
     return FractalNoise(x, y, {wavelength, octaves, persistence}, seed + 100U * channel, footprint);
@@ -114,27 +114,26 @@ Vector3f Field(const GroundPoint& at) {
   return Vector3f(0.095F, 0.150F, 0.045F) * furrows * (1.0F + 0.12F * at.Noise(9.0F, 5, 10));
 }
 
-Vector3f Garden(const CityLayout& layout, const GroundSample& ground, const GroundPoint& at) {
+Vector3f Garden(const CityLayout& layout, const GroundSample& ground, const Hit& hit, const GroundPoint& at) {
   const Cell& cell = *ground.cell;
-  const double x = static_cast<double>(at.x);
-  const double y = static_cast<double>(at.y);
   switch (cell.kind) {
     case CellKind::kHouses: {
-      const auto east = static_cast<float>(x - cell.min.x());
-      const int lot = FloorInt(east / cell.lot_pitch_m);
-      const bool north = y > 0.5 * (cell.min.y() + cell.max.y());
-      const int key = lot * 2 + (north ? 1 : 0) + static_cast<int>(cell.min.x()) * 31 + static_cast<int>(cell.min.y()) * 57;
+      const Eigen::Vector2d in_plot = cell.turn.TurnedBack({static_cast<double>(at.x), static_cast<double>(at.y)});
+      const auto along = static_cast<float>(in_plot.x() - cell.lots_begin_m);
+      const double to_back = in_plot.y() - 0.5 * (cell.min.y() + cell.max.y());
+      const int lot = FloorInt(along / cell.lot_pitch_m);
+      const int key = lot * 2 + (to_back > 0.0 ? 1 : 0) + static_cast<int>(cell.min.x()) * 31 + static_cast<int>(cell.min.y()) * 57;
       // Hedges between the gardens.
-      const float to_side = std::abs(east - cell.lot_pitch_m * std::round(east / cell.lot_pitch_m));
-      const auto to_back = static_cast<float>(std::abs(y - 0.5 * (cell.min.y() + cell.max.y())));
-      if (std::min(to_side, to_back) < 0.4F) return Vector3f(0.035F, 0.062F, 0.020F) * (1.0F + 0.2F * at.Noise(2.0F, 3, 11));
+      const float to_side = std::abs(along - cell.lot_pitch_m * std::round(along / cell.lot_pitch_m));
+      if (std::min(to_side, static_cast<float>(std::abs(to_back))) < 0.4F)
+        return Vector3f(0.035F, 0.062F, 0.020F) * (1.0F + 0.2F * at.Noise(2.0F, 3, 11));
       const float beds = at.Noise(8.0F, 3, 12);
       if (beds > 0.85F) return Vector3f(0.15F, 0.11F, 0.075F) * (1.0F + 0.2F * at.Noise(1.7F, 3, 13));
       return Grass(at, 0.55F * HashUnit(key, 1, at.seed), 0.85F + 0.35F * HashUnit(key, 2, at.seed));
     }
     case CellKind::kPark:
       for (const Pond& pond : layout.contents().ponds) {
-        const double r = pond.Radius(x, y);
+        const double r = pond.Radius(static_cast<double>(hit.position.x()), static_cast<double>(hit.position.y()));
         if (r < 1.16) return Mix({0.14F, 0.115F, 0.07F}, {0.06F, 0.085F, 0.03F}, Smoothstep(0.95F, 1.16F, static_cast<float>(r)));
       }
       return Grass(at, 0.2F, 0.95F);
@@ -151,8 +150,8 @@ Vector3f Garden(const CityLayout& layout, const GroundSample& ground, const Grou
 }  // namespace
 
 Surface CityGround(const CityLayout& layout, const Hit& hit, uint32_t seed) {
-  const GroundPoint at{hit.position.x(), hit.position.y(), SurfaceFootprint(hit), seed};
-  const GroundSample ground = layout.Sample(at.x, at.y);
+  const GroundSample ground = layout.Sample(hit.position.x(), hit.position.y());
+  const GroundPoint at{ground.city.x(), ground.city.y(), SurfaceFootprint(hit), seed};
   Surface surface;
   surface.normal = hit.normal;
   switch (ground.kind) {
@@ -168,7 +167,7 @@ Surface CityGround(const CityLayout& layout, const Hit& hit, uint32_t seed) {
       surface.albedo = Paved(*ground.pad, at);
       break;
     case GroundKind::kCell:
-      surface.albedo = Garden(layout, ground, at);
+      surface.albedo = Garden(layout, ground, hit, at);
       break;
     case GroundKind::kField:
       surface.albedo = Field(at);

@@ -5,7 +5,9 @@
 #include <sstream>
 
 #include "core/base/errors.h"
+#include "core/base/random.h"
 #include "core/base/text.h"
+#include "simulate/noise.h"
 #include "simulate/simulate.h"
 #include "simulate/terrain.h"
 
@@ -221,6 +223,17 @@ void ApplyHillside(const SimulateOptions& options, PlaceSpec& place) {
   }
 }
 
+// The buildings of a place must not stand along north and east, which would flatter whatever prefers these directions.
+void ApplyCityYaw(const SimulateOptions& options, PlaceSpec& place) {
+  if (place.landscape != Landscape::kCity) return;
+  base::Random random(HashCell(static_cast<int>(place.seed), 1, 4711U), 5);
+  place.city.yaw_deg = random.Uniform(0.0, 360.0);
+  const double side = random.UniformDouble() < 0.5 ? -1.0 : 1.0;
+  place.city.district_turn_deg = side * random.Uniform(8.0, 12.0);
+  Overlay(options.city_yaw_deg, place.city.yaw_deg);
+  Overlay(options.district_turn_deg, place.city.district_turn_deg);
+}
+
 }  // namespace
 
 std::vector<std::string> PlaceNames() {
@@ -240,6 +253,7 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
     place = TidalFlat();
   }
   place.seed = static_cast<uint32_t>(options.seed);
+  ApplyCityYaw(options, place);
   if (options.image_width != 0) {
     const double scale = static_cast<double>(options.image_width) / place.camera.width;
     place.camera = place.camera.Resized(options.image_width, static_cast<int>(std::lround(scale * place.camera.height)));

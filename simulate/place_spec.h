@@ -17,10 +17,13 @@ enum class Landscape { kCity, kTidalFlat };
 enum class ExposureTags { kAll, kNone, kHalf };  // kHalf: every second photo has none, beginning with the second
 
 struct CityPlan {
-  Eigen::Vector2d min = Eigen::Vector2d::Zero();  // built-up rectangle, ENU metres; fields beyond
+  Eigen::Vector2d min =
+      Eigen::Vector2d::Zero();  // built-up rectangle, ENU metres; fields beyond. Cells between streets belong to it as a whole or not
   Eigen::Vector2d max = Eigen::Vector2d::Zero();
+  double yaw_deg = 0.0;                             // of the streets, counter-clockwise from east
+  double district_turn_deg = 0.0;                   // of the buildings in one half of the city relative to the streets
   double pitch_m = 66.0;                            // between street centre lines
-  Eigen::Vector2d phase = Eigen::Vector2d::Zero();  // one crossing of streets
+  Eigen::Vector2d phase = Eigen::Vector2d::Zero();  // one crossing of streets, along the axes of the city
   double tower_share = 0.1;                         // of the cells between streets
   double flats_share = 0.2;
   double park_share = 0.1;

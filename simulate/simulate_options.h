@@ -38,6 +38,8 @@ struct SimulateOptions {
   int jpeg_quality = 95;            // 1..100
   bool single_line = false;         // fly one straight nadir line only
   double hillside_deg = 0.0;        // 0..45, slope of the terrain, rising to the north-east
+  double city_yaw_deg = -1.0;       // 0..360, of the streets, counter-clockwise from east; negative: random, from the seed
+  double district_turn_deg = -1.0;  // 0..12, of the buildings in half of the city relative to the streets; negative: +-8 to 12, from the seed
   bool exact_frame = true;          // false: the COLMAP model is under a random similarity, as structure from motion makes it
   // Errors of the tags; none by default. See tag_faults.h.
   double tag_lag_s = 0.0;                // -5..10, the tagged position is where the drone was this long before

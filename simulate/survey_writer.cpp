@@ -194,6 +194,11 @@ void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, c
                  {"min_enu", {place.area_min.x(), place.area_min.y()}},
                  {"max_enu", {place.area_max.x(), place.area_max.y()}},
                  {"altitudes_agl_m", place.altitudes_agl_m}}}};
+  if (place.landscape == Landscape::kCity) {
+    const double yaw_deg = place.city.yaw_deg, turn_deg = place.city.district_turn_deg;
+    json["city_yaw_deg"] = yaw_deg;
+    json["district_yaw_deg"] = {yaw_deg, std::remainder(yaw_deg + turn_deg, 360.0)};
+  }
   if (model_from_enu) {
     const geo::Similarity3d enu_from_model = Inverse(*model_from_enu);
     const Eigen::Quaterniond& r = enu_from_model.rotation;

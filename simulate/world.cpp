@@ -61,7 +61,7 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
   for (size_t i = 0; i < contents.ponds.size(); ++i) {
     const auto object = static_cast<uint32_t>(i);
     if (level) {
-      AddWater(contents.ponds[i].centre, 1.3 * contents.ponds[i].radii, contents.ponds[i].level_z_m, object);
+      AddWater(contents.ponds[i], 1.3, object);
     } else {
       AddRoundWater(contents.ponds[i], object);
     }
@@ -96,12 +96,17 @@ void World::BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground
                                        [&](double east, double north) { return channels_->Height(east, north); });
   terrain_->AddTo(mesh_);
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(0.5);
-  AddWater(0.5 * (ground_min + ground_max), 0.5 * (ground_max - ground_min) - margin, channels_->water_z_m(), 0);
+  Pond sea;
+  sea.centre = 0.5 * (ground_min + ground_max);
+  sea.radii = 0.5 * (ground_max - ground_min) - margin;
+  sea.level_z_m = channels_->water_z_m();
+  AddWater(sea, 1.0, 0);
 }
 
-void World::AddWater(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double z, uint32_t object) {
+void World::AddWater(const Pond& pond, double reach, uint32_t object) {
   const auto Corner = [&](double x, double y) {
-    return Eigen::Vector3f(static_cast<float>(centre.x() + x * half.x()), static_cast<float>(centre.y() + y * half.y()), static_cast<float>(z));
+    const Eigen::Vector2d at = pond.At(x * reach, y * reach);
+    return Eigen::Vector3f(static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(pond.level_z_m));
   };
   mesh_.AddQuad(Corner(-1, -1), Corner(1, -1), Corner(1, 1), Corner(-1, 1), {Part::kWater, object});
 }
@@ -111,7 +116,7 @@ void World::AddRoundWater(const Pond& pond, uint32_t object) {
   constexpr double kReach = 1.02;
   const auto Point = [&](double reach, int side) {
     const double angle = 2.0 * std::numbers::pi * side / kSides;
-    const Eigen::Vector2d at = pond.centre + reach * pond.radii.cwiseProduct(Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    const Eigen::Vector2d at = pond.At(reach * std::cos(angle), reach * std::sin(angle));
     return Eigen::Vector3f(static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(pond.level_z_m));
   };
   for (int side = 0; side < kSides; ++side) {

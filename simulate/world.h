@@ -48,8 +48,8 @@ class World {
  private:
   void BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
   void BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
-  // A rectangle, which the ground covers where there is no water.
-  void AddWater(const Eigen::Vector2d& centre, const Eigen::Vector2d& half, double z, uint32_t object);
+  // A rectangle whose half sides are `reach` radii; the ground covers it where there is no water.
+  void AddWater(const Pond& pond, double reach, uint32_t object);
   // Not beyond the shore, as the ground beside a pond on a hillside may be lower than the water.
   void AddRoundWater(const Pond& pond, uint32_t object);
 

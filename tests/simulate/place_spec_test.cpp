@@ -122,6 +122,8 @@ TEST(Presets, BadOptionsAreRefusedByName) {
   ExpectRefused("color_drift_stops", [&](SimulateOptions& o) { o.color_drift_stops = nan; });
   ExpectRefused("vignetting", [](SimulateOptions& o) { o.vignetting = 0.95; });
   ExpectRefused("vignetting", [](SimulateOptions& o) { o.vignetting = -0.1; });
+  ExpectRefused("city_yaw_deg", [](SimulateOptions& o) { o.city_yaw_deg = 361.0; });
+  ExpectRefused("district_turn_deg", [](SimulateOptions& o) { o.district_turn_deg = 13.0; });
   ExpectRefused("exposure_tags", [](SimulateOptions& o) { o.exposure_tags = "some"; });
   ExpectRefused("all, half or none", [](SimulateOptions& o) { o.exposure_tags = ""; });
   ExpectRefused("latitude_deg", [](SimulateOptions& o) { o.latitude_deg = 91.0; });

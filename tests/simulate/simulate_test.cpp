@@ -82,6 +82,9 @@ TEST_F(HamletSurvey, LayoutIsComplete) {
   const auto summary = Json("simulate.json");
   EXPECT_EQ(summary["place"], "hamlet");
   EXPECT_EQ(summary["photos"], summary_.n_photos);
+  EXPECT_EQ(summary["city_yaw_deg"], ResolvePlace(Hamlet()).city.yaw_deg);
+  ASSERT_EQ(summary["district_yaw_deg"].size(), 2U);
+  EXPECT_EQ(summary["district_yaw_deg"][0], summary["city_yaw_deg"]);
   EXPECT_EQ(summary["blocks"]["rows"].get<size_t>() * summary["blocks"]["columns"].get<size_t>(), summary["blocks"]["altitudes_agl_m"].size());
   EXPECT_GE(summary_.n_photos, 20);
   EXPECT_LE(summary_.n_photos, 30);

@@ -57,7 +57,8 @@ void AddHouseLot(Cell& cell, double lot_x, double lot_width, double front, CityC
   const double middle_y = 0.5 * (cell.min.y() + cell.max.y());
   // Room is left at the back, where a turned plot is small.
   const double setback = std::min(random.Uniform(4.0, 6.5), std::abs(street_y - middle_y) - depth - 1.0);
-  house.centre = {lot_x + 1.0 + 0.5 * (lot_width - breadth) - 1.0, street_y - front * (setback + 0.5 * depth)};
+  // The drive, with its margins, is 5 m wide.
+  house.centre = {lot_x + 0.6 + 0.5 * (lot_width - 5.0), street_y - front * (setback + 0.5 * depth)};
   house.seed = random.NextU32();
   contents.buildings.push_back(house);
 

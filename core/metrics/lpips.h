@@ -1,5 +1,5 @@
 // LPIPS, the perceptual distance of Zhang et al. 2018: closer to what people see than PSNR. Lower is better, 0 for identical images. The user
-// provides the network as an ONNX file, for instance LPIPS(net='alex') of the Python package `lpips`, exported by torch.onnx.export. The network has
+// provides the network as an ONNX file, for instance from scripts/export_lpips.py, which exports the networks of the Python package `lpips`. It has
 // two inputs of 1 x 3 x H x W floats, RGB display values scaled to [-1,1], and one output of one number. H and W are free, or fixed to the size of
 // the photos. Run by OpenCV on the CPU; deterministic.
 #pragma once

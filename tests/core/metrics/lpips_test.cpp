@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 
+#include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
@@ -57,7 +58,7 @@ std::string UnitLength(const std::string& input, const std::string& prefix) {
          Text(1, Node("Sqrt", {prefix + "sum"}, prefix + "length")) + Text(1, Node("Div", {input, prefix + "length"}, prefix + "unit"));
 }
 
-// mean((in0 - in1)^2): the simplest network with the inputs and the output of LPIPS.
+// mean((in0 - in1)^2): the simplest network with the inputs and the output that scripts/export_lpips.py writes.
 std::string SquaredDifferenceModel(int height, int width, bool second_input = true) {
   const std::string other = second_input ? "in1" : "in0";
   const std::string mean = Axes({1, 2, 3}) + Flag("keepdims", 1);
@@ -152,6 +153,48 @@ TEST_F(LpipsTest, ErrorsTellWhatIsWrongWithAFile) {
   EXPECT_NE(message(SquaredDifferenceModel(12, 16, false)).find("with 1 inputs"), std::string::npos);
   const std::string good = SquaredDifferenceModel(12, 16);
   EXPECT_NE(message(good.substr(0, good.size() - 30)), "");
+}
+
+// The script that exports LPIPS checks files by the same contract as the program reads them.
+class ExportScript : public LpipsTest {
+ protected:
+  // Exit status, and what it printed.
+  std::pair<int, std::string> Run(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all = {"-S", SKYQUILT_SOURCE_DIR "/scripts/export_lpips.py"};  // -S: without installed modules
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    base::ChildProcess script = base::ChildProcess::StartReading({base::FindProgram("python3"), all});
+    std::string text;
+    while (script.Receive(&text)) {
+    }
+    return {script.Wait().ShellStatus(), text};
+  }
+};
+
+TEST_F(ExportScript, AcceptsWhatTheProgramReads) {
+  for (const std::string& model : {SquaredDifferenceModel(12, 16), SquaredDifferenceModel(-1, -2)}) {
+    const std::filesystem::path file = Write(model);
+    EXPECT_NO_THROW(Lpips{file});
+    const auto [status, text] = Run({"--check", file.string()});
+    EXPECT_EQ(status, 0) << text;
+  }
+}
+
+TEST_F(ExportScript, RefusesWhatTheProgramRefuses) {
+  for (const std::string& model : {std::string(), std::string("some text, long enough to be looked at"), SquaredDifferenceModel(12, 16, false)}) {
+    const std::filesystem::path file = Write(model);
+    EXPECT_THROW(Lpips{file}, base::InputError);
+    const auto [status, text] = Run({"--check", file.string()});
+    EXPECT_EQ(status, 1) << text;
+    EXPECT_NE(text.find("network.onnx"), std::string::npos) << text;
+  }
+}
+
+TEST_F(ExportScript, TellsHowToInstallWhatIsMissing) {
+  const std::filesystem::path file = folder_.path() / "new.onnx";
+  const auto [status, text] = Run({file.string()});
+  EXPECT_EQ(status, 2);
+  EXPECT_NE(text.find("pip install torch lpips"), std::string::npos) << text;
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST_F(LpipsTest, RefusesAnUnknownLayer) {

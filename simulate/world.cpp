@@ -82,12 +82,22 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
   }
   for (size_t i = 0; i < contents.parked.size(); ++i) {
     contents.parked[i].ground_z_m = Ground(contents.parked[i].position);
-    contents.parked[i].ground_rise = hillside_rise_;
+    contents.parked[i].ground_rise = RiseUnderCar(contents.parked[i].position);
     AddCar(contents.parked[i], static_cast<uint32_t>(i), mesh_);
   }
   base::Random random(seed_, 3);
   const Eigen::Vector2d beyond = Eigen::Vector2d::Constant(40.0);
   moving_ = city_->MakeMovingCars(place.moving_cars, place.area_min - beyond, place.area_max + beyond, random);
+}
+
+Eigen::Vector2d World::RiseUnderCar(const Eigen::Vector2d& at) const {
+  if (hillside_rise_.isZero()) return Eigen::Vector2d::Zero();
+  const Eigen::Vector2f p = at.cast<float>();
+  constexpr float kReach_m = 2.0F;
+  const auto rise = [&](float east, float north) {
+    return static_cast<double>((terrain_->Height(p.x() + east, p.y() + north) - terrain_->Height(p.x() - east, p.y() - north)) / (2.0F * kReach_m));
+  };
+  return {rise(kReach_m, 0.0F), rise(0.0F, kReach_m)};
 }
 
 void World::BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
@@ -135,7 +145,7 @@ MovingScene World::MovingAt(double time_s) const {
   for (size_t i = 0; i < moving_.size(); ++i) {
     Car car = moving_[i].At(time_s);
     car.ground_z_m = static_cast<double>(terrain_->Height(static_cast<float>(car.position.x()), static_cast<float>(car.position.y())));
-    car.ground_rise = hillside_rise_;
+    car.ground_rise = RiseUnderCar(car.position);
     AddCar(car, static_cast<uint32_t>(i), mesh);
     cars.push_back(car);
   }

@@ -234,7 +234,7 @@ TEST_F(HamletSurvey, DepthShowsTheBuildingsAtTheirHeights) {
       if (std::abs(seen - in_cam.z()) < 0.45) ++n_agree;
     }
   }
-  ASSERT_GT(n_checked, 15);
+  ASSERT_GT(n_checked, 10);
   // Trees, chimneys and roof boxes hide some.
   EXPECT_GT(n_agree, n_checked * 8 / 10);
 }

@@ -7,7 +7,7 @@
 //   map    if not null: one channel of the images' size, the error per pixel, NaN where the mask ignores
 // Ignored pixels have no influence: both images are mid-grey (0.5) there. Beyond the border the images repeat their outermost pixels.
 // Mean over the pixels that count; nothing to count gives NaN, and so does a NaN in a pixel that counts.
-// The same bits for any number of threads. Memory: about 140 rows of 12 floats per pixel for each thread, in addition to the images.
+// The same bits for any number of threads. Memory: about 6 kB per column of the image for each thread, in addition to the images.
 // Wrong shapes throw std::logic_error.
 #pragma once
 

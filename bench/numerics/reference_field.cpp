@@ -41,6 +41,7 @@ std::vector<double> ReferenceHarmonics(const std::array<double, 3>& direction, i
 ReferenceField::ReferenceField(const field::HashField& field) : field_(field), grid_(field.config().grid) {
   if (field.config().encoding != encoding::Kind::kHash) throw std::invalid_argument("the reference supports hash grids only");
   if (field.config().density_hidden_layers != 1) throw std::invalid_argument("the reference's density network has one hidden layer");
+  if (field.config().normal_head) throw std::invalid_argument("the reference does not support normal heads");
   if (field.config().luminance) throw std::invalid_argument("the reference does not support luminance");
   const auto hidden = static_cast<size_t>(field.config().hidden);
   size_t offset = 0;

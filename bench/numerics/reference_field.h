@@ -17,7 +17,8 @@ std::vector<double> ReferenceHarmonics(const std::array<double, 3>& direction, i
 
 class ReferenceField {
  public:
-  // The field must outlive this. Fields with luminance, another encoding or a deeper density network are not covered (std::invalid_argument).
+  // The field must outlive this. Fields with luminance, a normal head, another encoding or a deeper density network are not covered
+  // (std::invalid_argument).
   explicit ReferenceField(const field::HashField& field);
 
   // What a sample stands for: the mean of its positions in the unit box (those outside are moved to its nearest face, NaN counts as 0), and the

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/errors.h"
 #include "core/encoding/frequency.h"
 #include "core/encoding/hash_grid.h"
 #include "core/encoding/plane_factors.h"
@@ -59,6 +60,30 @@ void Encoding::Initialize(base::Random& random, std::span<float> parameters) con
 void Encoding::AddPart(int rows, int64_t floats) {
   rows_.push_back(rows_.back() + rows);
   offsets_.push_back(offsets_.back() + (floats + kernel::kLineFloats - 1) / kernel::kLineFloats * kernel::kLineFloats);
+}
+
+const kernel::GridLevel& Encoding::RequireLattice(int part) const {
+  const kernel::GridLevel* const lattice = InterpolatesIn(part);
+  if (lattice == nullptr) {
+    throw base::UsageError("the encoding \"" + Name(kind()) +
+                           "\" has no normals of the density: choose \"hash\" or \"voxels\" (train.encoding), or " + "normals of the depth");
+  }
+  return *lattice;
+}
+
+void Encoding::Slope(int part, const float* table, const kernel::Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
+                     float* position_gradient, size_t position_stride) const {
+  kernel::HashSlope(RequireLattice(part), RowsOf(part), table, at, n, out_gradient, out_stride, position_gradient, position_stride);
+}
+
+void Encoding::Tangent(int part, const float* table, const kernel::Positions& at, int64_t n, const float* along, size_t along_stride, float* out,
+                       size_t out_stride) const {
+  kernel::HashTangent(RequireLattice(part), RowsOf(part), table, at, n, along, along_stride, out, out_stride);
+}
+
+void Encoding::TangentBackward(int part, const kernel::Positions& at, int64_t n, const float* along, size_t along_stride, const float* out_gradient,
+                               size_t out_stride, float* table_gradient, uint8_t* touched) const {
+  kernel::HashTangentBackward(RequireLattice(part), RowsOf(part), at, n, along, along_stride, out_gradient, out_stride, table_gradient, touched);
 }
 
 std::unique_ptr<const Encoding> MakeEncoding(Kind kind, const HashGridConfig& config) {

@@ -68,11 +68,26 @@ class Encoding {
   virtual void Backward(int part, const float* table, const kernel::Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
                         float* table_gradient, uint8_t* touched) const = 0;
 
+  // The lattice in which a part interpolates all its features; null for encodings that do something else.
+  virtual const kernel::GridLevel* InterpolatesIn(int /*part*/) const { return nullptr; }
+  // The features' derivatives by position, for normals, as kernel::HashSlope, HashTangent and HashTangentBackward. Only encodings whose parts
+  // interpolate in a lattice (`hash`, `voxels`) have them; the functions throw base::UsageError for others.
+  bool HasSlope() const { return InterpolatesIn(0) != nullptr; }
+  void Slope(int part, const float* table, const kernel::Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
+             float* position_gradient, size_t position_stride) const;
+  void Tangent(int part, const float* table, const kernel::Positions& at, int64_t n, const float* along, size_t along_stride, float* out,
+               size_t out_stride) const;
+  void TangentBackward(int part, const kernel::Positions& at, int64_t n, const float* along, size_t along_stride, const float* out_gradient,
+                       size_t out_stride, float* table_gradient, uint8_t* touched) const;
+
  protected:
   // For constructors: appends a part with this many feature rows and parameters (rounded up to whole lines of kernel::kLineFloats).
   void AddPart(int rows, int64_t floats);
 
  private:
+  const kernel::GridLevel& RequireLattice(int part) const;
+  int RowsOf(int part) const { return FirstRow(part + 1) - FirstRow(part); }
+
   std::vector<int> rows_ = {0};         // parts + 1
   std::vector<int64_t> offsets_ = {0};  // parts + 1
 };

@@ -58,6 +58,21 @@ Eigen::Vector3d SpaceMap::EnuFromUnit(const Eigen::Vector3d& x_in_unit) const {
   return {centre_.x() + u.x() * half_size_m_, centre_.y() + u.y() * half_size_m_, min_enu_.z() + x_in_unit.z() / units_per_metre_};
 }
 
+Eigen::Matrix3d SpaceMap::UnitPerEnu(const Eigen::Vector3d& x_in_enu) const {
+  Eigen::Matrix3d derivative = units_per_metre_ * Eigen::Matrix3d::Identity();
+  if (!contracted_) return derivative;
+  const Eigen::Vector2d u = (x_in_enu.head<2>() - centre_) / half_size_m_;
+  Eigen::Index axis = 0;
+  const double norm = u.cwiseAbs().maxCoeff(&axis);
+  Eigen::Matrix2d contraction = Eigen::Matrix2d::Identity();
+  if (norm > 1.0) {
+    contraction *= (2.0 - 1.0 / norm) / norm;
+    contraction.col(axis) += 2.0 * (1.0 / norm - 1.0) / (norm * norm) * std::copysign(1.0, u[axis]) * u;
+  }
+  derivative.topLeftCorner<2, 2>() = 0.25 / half_size_m_ * contraction;
+  return derivative;
+}
+
 double SpaceMap::VolumeScale(const Eigen::Vector3d& x_in_enu) const {
   if (!contracted_) return units_per_metre_;
   const double norm = std::max(1.0, ((x_in_enu.head<2>() - centre_) / half_size_m_).cwiseAbs().maxCoeff());

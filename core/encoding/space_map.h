@@ -25,6 +25,9 @@ class SpaceMap {
 
   Eigen::Vector3f UnitFromEnu(const Eigen::Vector3d& x_in_enu) const;
   Eigen::Vector3d EnuFromUnit(const Eigen::Vector3d& x_in_unit) const;
+  // Derivative of UnitFromEnu by position, 1/m: column j is the change per metre along axis j. A gradient in the unit frame times it (transposed) is
+  // the gradient in ENU.
+  Eigen::Matrix3d UnitPerEnu(const Eigen::Vector3d& x_in_enu) const;
   // Cube root of the volume that a cubic metre here has in the unit frame. Without contraction units_per_metre(). Contraction with u as above divides
   // volumes by |u|^4 / (2 |u| - 1) (Zip-NeRF, Barron et al. 2023, scales footprints in this way).
   double VolumeScale(const Eigen::Vector3d& x_in_enu) const;

@@ -19,6 +19,7 @@ class VoxelGrid : public Encoding {
   void Forward(int part, const float* table, const kernel::Positions& at, int64_t n, float* out, size_t out_stride) const override;
   void Backward(int part, const float* table, const kernel::Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
                 float* table_gradient, uint8_t* touched) const override;
+  const kernel::GridLevel* InterpolatesIn(int /*part*/) const override { return &lattice_; }
 
  private:
   int features_;

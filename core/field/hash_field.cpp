@@ -51,10 +51,12 @@ void HashField::Initialize(base::Random& random, std::span<float> grid, std::spa
       }
     }
   }
-  if (!config_.luminance) return;
-  float* taps = networks.data() + LuminanceOffset();
-  std::fill_n(taps, kLuminanceTaps, 1.0F / kLuminanceTaps);
-  taps[kLuminanceTaps] = 0.0F;
+  if (config_.luminance) {
+    float* taps = networks.data() + LuminanceOffset();
+    std::fill_n(taps, kLuminanceTaps, 1.0F / kLuminanceTaps);
+    taps[kLuminanceTaps] = 0.0F;
+  }
+  if (config_.normal_head) InitializeNormalHead(random, networks.data() + NormalHeadOffset());
 }
 
 NetworkWeights HashField::Prepare(std::span<const float> networks) const {
@@ -75,6 +77,7 @@ NetworkWeights HashField::Prepare(std::span<const float> networks) const {
     weights.transposed.push_back(std::move(transposed));
   }
   if (config_.luminance) std::copy_n(networks.data() + LuminanceOffset(), weights.luminance.size(), weights.luminance.begin());
+  if (config_.normal_head) PrepareNormalHead(networks.data() + NormalHeadOffset(), weights);
   return weights;
 }
 
@@ -128,8 +131,8 @@ void HashField::Color(const NetworkWeights& weights, const float* color_in, size
   kernel::Dense(weights.layer.back().data(), kColorRows, config_.hidden, in, in_stride, n, false, color_raw, color_stride);
 }
 
-void HashField::Backward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n,
-                         float* network_gradient) const {
+void HashField::Backward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n, float* network_gradient,
+                         const float* more_geometry_gradient) const {
   const size_t last = layers_.size() - 1;
   const size_t stride = a.stride;
   const int hidden = config_.hidden;
@@ -150,6 +153,10 @@ void HashField::Backward(const NetworkWeights& weights, Activations& a, float* f
   // Only the geometry rows need a gradient: the direction has no parameters.
   kernel::Dense(weights.transposed[ColorInput()].data(), kGeometryRows, hidden, current, stride, n, false, a.geometry_gradient, stride);
   for (int64_t s = 0; s < n; ++s) a.geometry_gradient[s] += a.log_density_gradient[s];
+  for (size_t row = 0; more_geometry_gradient != nullptr && row < kGeometryRows; ++row) {
+    for (int64_t s = 0; s < n; ++s)
+      a.geometry_gradient[row * stride + static_cast<size_t>(s)] += more_geometry_gradient[row * stride + static_cast<size_t>(s)];
+  }
   // Density network.
   const auto density_hidden = [&](size_t layer) { return a.density_hidden + layer * static_cast<size_t>(hidden) * stride; };
   size_t below = DensityOutput() - 1;

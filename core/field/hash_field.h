@@ -6,6 +6,8 @@
 // Both networks may have more than one hidden layer.
 // W4 has a fourth row. With `luminance` it is the log luminance of the samples, from which a convolution of width 7 over neighbouring pixels computes
 // Omega (core/brightness/luminance.h); the taps and the bias of the convolution are the last parameters. Without `luminance` the row stays zero.
+// With `normal_head` a linear map of the geometry rows predicts a normal: its first three rows, in ENU out of the surface, of any length. Its
+// kNormalRows x kGeometryRows weights are the last parameters of all.
 // The field owns no parameters: it works on flat buffers of the caller (grid: the encoding's parameters; networks: all others), so that optimiser and
 // checkpoint handle plain arrays. Batches are structures of arrays, padded as in core/kernel/kernels.h. Functions are const; threads may call them at
 // the same time with separate buffers. Source: Mueller et al. 2022; network sizes are configurable.
@@ -25,6 +27,7 @@ namespace skyquilt::field {
 constexpr int kGeometryRows = 16;
 constexpr int kColorRows = 4;      // red, green, blue, luminance
 constexpr int kLuminanceTaps = 7;  // of the convolution
+constexpr int kNormalRows = 4;     // of the normal head: east, north, up, padding
 // Callers should process this many samples at a time: their activations fit into the second-level cache.
 constexpr int kChunk = 512;
 // Row stride of buffers for one chunk: an odd number of cache lines, so that rows do not fall on the same cache sets.
@@ -42,6 +45,7 @@ struct FieldConfig {
   int multisample = 0;            // positions per sample (core/render/footprint.h): 1, 4 or 6; 0: samples are points without footprint
   bool scale_features = false;    // whether the density network also sees how much its footprint leaves of the levels; not with points
   bool luminance = false;         // whether the luminance row and its convolution are used
+  bool normal_head = false;       // whether normals are predicted
 
   bool Cones() const { return multisample > 0; }
 };
@@ -51,6 +55,7 @@ struct NetworkWeights {
   std::vector<std::vector<float>> layer;                 // density network, then colour
   std::vector<std::vector<float>> transposed;            // same order
   std::array<float, kLuminanceTaps + 1> luminance = {};  // taps, then bias
+  std::vector<float> normal_head, normal_head_transposed;
 };
 
 // Activations and gradients of a packet of samples, kept between the forward and the backward pass. One object per thread.
@@ -77,6 +82,26 @@ class Activations {
   std::vector<float> buffer_;
 };
 
+// Workspace of HashField::DensityGradient and its backward pass. Rows of `stride` floats; one object per thread.
+class DensitySlope {
+ public:
+  // Makes room for n samples (any n).
+  void Reserve(const class HashField& field, int64_t n);
+
+  size_t stride = 0;
+  float* gradient = nullptr;          // 3 rows: d log density / d position, x first
+  float* feature_gradient = nullptr;  // d log density / d feature, of the encoding's rows
+  float* features = nullptr;
+  float* hidden = nullptr;           // of all layers of the density network, after the ReLU
+  float* hidden_gradient = nullptr;  // of the same rows, before the ReLU
+  float* tangent = nullptr;          // growth of the features along `along`
+  float* hidden_tangent[2] = {nullptr, nullptr};
+  float* ones = nullptr;  // kernel::kRowPad rows: 1 in the first row of the samples, else 0
+
+ private:
+  std::vector<float> buffer_;
+};
+
 class HashField {
  public:
   // Throws std::invalid_argument with the member that is out of range.
@@ -85,9 +110,11 @@ class HashField {
   const FieldConfig& config() const { return config_; }
   const encoding::Encoding& encoding() const { return *encoding_; }
   int64_t GridParameters() const { return encoding_->ParameterCount(); }
-  int64_t NetworkParameters() const { return LuminanceOffset() + (config_.luminance ? kLuminanceTaps + 1 : 0); }
+  int64_t NetworkParameters() const { return NormalHeadOffset() + (config_.normal_head ? kNormalRows * kGeometryRows : 0); }
   // Index of the luminance taps and bias in the network parameters.
   int64_t LuminanceOffset() const { return network_offsets_.back(); }
+  // Index of the normal head's weights in the network parameters.
+  int64_t NormalHeadOffset() const { return LuminanceOffset() + (config_.luminance ? kLuminanceTaps + 1 : 0); }
   int FeatureRows() const { return encoding_->OutputRows() + scale_rows_; }
   // Rows after those of the encoding that EncodeScales fills.
   int ScaleRows() const { return scale_rows_; }
@@ -118,8 +145,27 @@ class HashField {
   void Color(const NetworkWeights& weights, const float* color_in, size_t in_stride, int64_t n, float* const hidden[3], size_t hidden_stride,
              float* color_raw, size_t color_stride) const;
   // Backward pass of Density and Color, whose activations are in `a`. Inputs: a.color_gradient, a.log_density_gradient, features. Replaces the
-  // encoding's features by their gradient and adds to network_gradient.
-  void Backward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n, float* network_gradient) const;
+  // encoding's features by their gradient and adds to network_gradient. more_geometry_gradient: null, or kGeometryRows rows of a.stride that are
+  // added to the gradient of the geometry, such as those of NormalHeadBackward.
+  void Backward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n, float* network_gradient,
+                const float* more_geometry_gradient = nullptr) const;
+  // The normal head's rows, before they are made unit vectors (UnitNormal in core/render/density_normal.h). n is a multiple of kernel::kPad; raw:
+  // kNormalRows rows, the last zero. Only for fields with a head.
+  void PredictNormals(const NetworkWeights& weights, const float* geometry, size_t geometry_stride, int64_t n, float* raw, size_t raw_stride) const;
+  // Backward pass of PredictNormals: adds to network_gradient. raw_gradient: kNormalRows rows, the last zero. Writes geometry_gradient (rows of
+  // geometry_stride) unless it is null: then the head learns without changing the geometry.
+  void NormalHeadBackward(const NetworkWeights& weights, const float* raw_gradient, size_t raw_stride, const float* geometry, size_t geometry_stride,
+                          int64_t n, float* geometry_gradient, float* network_gradient) const;
+  // The gradient of the log density (row 0 of the geometry) by position in the unit frame, of n samples (any n) on the calling thread: all positions
+  // of a sample move together, its footprint stays as it is. Density grows along it, so the outward normal is its negative
+  // (core/render/density_normal.h). Writes slope.gradient; slope keeps what the backward pass needs. Throws base::UsageError for an encoding without
+  // slope (encoding::Encoding::HasSlope).
+  void DensityGradient(const NetworkWeights& weights, std::span<const float> grid, const kernel::Positions& at, int64_t n, DensitySlope& slope) const;
+  // Backward pass of DensityGradient, whose content is in `slope`. along: d loss / d gradient, 3 rows of slope.stride. Adds to network_gradient. The
+  // gradient of the tables is that of Encoding::TangentBackward with `along` and slope.feature_gradient, see FeatureGradient::along. Positions get no
+  // gradient, and a ReLU has no second derivative.
+  void DensityGradientBackward(const NetworkWeights& weights, std::span<const float> grid, const kernel::Positions& at, int64_t n, const float* along,
+                               DensitySlope& slope, float* network_gradient) const;
   // Multiplications and additions of the networks for one sample, in the forward pass and in a training step, without padding.
   double ForwardFlops() const;
   double TrainFlops() const;
@@ -131,6 +177,9 @@ class HashField {
   // Indices into layers_: the last layer of the density network and the first of the colour network.
   size_t DensityOutput() const { return static_cast<size_t>(config_.density_hidden_layers); }
   size_t ColorInput() const { return DensityOutput() + 1; }
+  static void InitializeNormalHead(base::Random& random, float* head);
+  static void PrepareNormalHead(const float* head, NetworkWeights& weights);
+
   FieldConfig config_;
   std::unique_ptr<const encoding::Encoding> encoding_;
   int color_inputs_ = 0;

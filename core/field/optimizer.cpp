@@ -17,7 +17,13 @@ void AddPartGradient(const HashField& field, int part, const float* table, const
                      float* table_gradient, uint8_t* touched) {
   const auto first_row = static_cast<size_t>(field.encoding().FirstRow(part));
   for (const FeatureGradient& s : segments) {
-    field.encoding().Backward(part, table, at.From(s.begin), s.count, s.gradient + first_row * s.stride, s.stride, table_gradient, touched);
+    const kernel::Positions places = (s.at != nullptr ? *s.at : at).From(s.begin);
+    const float* const gradient = s.gradient + first_row * s.stride;
+    if (s.along != nullptr) {
+      field.encoding().TangentBackward(part, places, s.count, s.along, s.stride, gradient, s.stride, table_gradient, touched);
+    } else {
+      field.encoding().Backward(part, table, places, s.count, gradient, s.stride, table_gradient, touched);
+    }
   }
 }
 

@@ -29,6 +29,10 @@ struct FeatureGradient {
   int64_t begin = 0, count = 0;     // in the batch
   const float* gradient = nullptr;  // FeatureRows() rows
   size_t stride = 0;
+  // Not null: `gradient` is that of the features' growth along these directions (HashField::DensityGradientBackward), 3 rows of `stride`.
+  const float* along = nullptr;
+  // Not null: the segment has positions of its own instead of those of the batch.
+  const kernel::Positions* at = nullptr;
 };
 // Backward pass of one part of the encoding over all segments of a batch; table, table_gradient and touched as in encoding::Encoding::Backward.
 void AddPartGradient(const HashField& field, int part, const float* table, const kernel::Positions& at, std::span<const FeatureGradient> segments,

@@ -1,9 +1,7 @@
 #include <algorithm>
-#include <bit>
-#include <string>
 
-#include "core/base/errors.h"
 #include "core/kernel/footprint_table.h"
+#include "core/kernel/hash_shapes.h"
 #include "core/kernel/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -11,49 +9,18 @@
 #include <hwy/foreach_target.h>  // re-includes this file once per instruction set
 // clang-format off
 #include <hwy/highway.h>
+#include "core/kernel/hash_lattice-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace skyquilt::kernel::HWY_NAMESPACE {
 namespace {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using FloatTag = hn::ScalableTag<float>;
-using FloatVector = hn::Vec<FloatTag>;
-
-constexpr int kHashBlock = 256;
 
 // Entries and weights of the eight corners for up to kHashBlock positions; corner c of position s at [c * kHashBlock + s].
 struct Corners {
   HWY_ALIGN uint32_t index[8 * kHashBlock];
   HWY_ALIGN float weight[8 * kHashBlock];
 };
-
-// Lower lattice coordinate and fraction along one axis. NaN fails the comparison and becomes 0.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void SplitAxis(D d, V position, float cells_per_unit, int32_t size, hn::Vec<hn::Rebind<int32_t, D>>& cell, V& fraction) {
-  const hn::Rebind<int32_t, D> di;
-  const V top = hn::Set(d, static_cast<float>(size - 1));
-  V scaled = hn::Mul(position, hn::Set(d, cells_per_unit));
-  scaled = hn::IfThenElseZero(hn::Gt(scaled, hn::Zero(d)), scaled);
-  scaled = hn::Min(scaled, top);
-  cell = hn::Min(hn::ConvertTo(di, scaled), hn::Set(di, size - 2));
-  fraction = hn::Sub(scaled, hn::ConvertTo(d, cell));
-}
-
-// Footprint weight per sample by linear interpolation in the table. Infinity and NaN count as points.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V WeightOf(D d, const float* table, V sharpness, float cell) {
-  const hn::Rebind<int32_t, D> di;
-  const V top = hn::Set(d, static_cast<float>(kFootprintSteps));
-  V at = hn::Mul(sharpness, hn::Set(d, cell * static_cast<float>(kFootprintStepsPerUnit)));
-  at = hn::IfThenElse(hn::Lt(at, top), at, top);
-  at = hn::Max(at, hn::Zero(d));
-  const auto index = hn::Min(hn::ConvertTo(di, at), hn::Set(di, kFootprintSteps - 1));
-  const V low = hn::GatherIndex(d, table, index);
-  const V high = hn::GatherIndex(d, table + 1, index);
-  return hn::MulAdd(hn::Sub(at, hn::ConvertTo(d, index)), hn::Sub(high, low), low);
-}
 
 void FootprintHiddenImpl(const float* sharpness, int64_t n, float cells_per_unit, float* out) {
   const FloatTag d;
@@ -137,62 +104,6 @@ void FindCorners(const GridLevel& level, const float* x, const float* y, const f
       const auto index = level.dense ? hn::Add(hn::Add(ix[bx], iy[by]), iz[bz]) : hn::And(hn::Xor(hn::Xor(ix[bx], iy[by]), iz[bz]), mask);
       hn::Store(index, du, corners.index + c * kHashBlock + s);
       hn::Store(hn::Mul(hn::Mul(wx[bx], wy[by]), wz[bz]), d, corners.weight + c * kHashBlock + s);
-    }
-  }
-}
-
-// A vector of one table entry; of one lane on the scalar path.
-template <int kFeatures>
-using EntryTag = hn::CappedTag<float, kFeatures>;
-template <int kFeatures>
-constexpr int kEntryLanes = static_cast<int>(hn::MaxLanes(EntryTag<kFeatures>()));
-
-// Converts features from one entry per sample (packed) to one row per feature. The lookup stores whole entries and this writes whole vectors: storing
-// single floats and loading them as a wider vector would stall the processor for every sample.
-template <int kFeatures>
-void UnpackRows(const float* packed, int n, float* out, size_t out_stride) {
-  const FloatTag d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  int s = 0;
-  for (; s + lanes <= n; s += lanes) {
-    FloatVector row[4];
-    if constexpr (kFeatures == 2) {
-      hn::LoadInterleaved2(d, packed + s * 2, row[0], row[1]);
-    } else {
-      hn::LoadInterleaved4(d, packed + s * 4, row[0], row[1], row[2], row[3]);
-    }
-    for (int f = 0; f < kFeatures; ++f) hn::StoreU(row[f], d, out + static_cast<size_t>(f) * out_stride + s);
-  }
-  for (; s < n; ++s) {
-    for (int f = 0; f < kFeatures; ++f) out[static_cast<size_t>(f) * out_stride + static_cast<size_t>(s)] = packed[s * kFeatures + f];
-  }
-}
-
-// The inverse of UnpackRows. size[s] is the sum of the features' absolute values: 0 exactly where all are 0.
-template <int kFeatures>
-void PackRows(const float* in, size_t in_stride, int n, float* packed, float* size) {
-  const FloatTag d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  int s = 0;
-  for (; s + lanes <= n; s += lanes) {
-    FloatVector row[4];
-    FloatVector sum = hn::Zero(d);
-    for (int f = 0; f < kFeatures; ++f) {
-      row[f] = hn::LoadU(d, in + static_cast<size_t>(f) * in_stride + s);
-      sum = hn::Add(sum, hn::Abs(row[f]));
-    }
-    if constexpr (kFeatures == 2) {
-      hn::StoreInterleaved2(row[0], row[1], d, packed + s * 2);
-    } else {
-      hn::StoreInterleaved4(row[0], row[1], row[2], row[3], d, packed + s * 4);
-    }
-    hn::StoreU(sum, d, size + s);
-  }
-  for (; s < n; ++s) {
-    size[s] = 0.0F;
-    for (int f = 0; f < kFeatures; ++f) {
-      packed[s * kFeatures + f] = in[static_cast<size_t>(f) * in_stride + static_cast<size_t>(s)];
-      size[s] += packed[s * kFeatures + f] < 0.0F ? -packed[s * kFeatures + f] : packed[s * kFeatures + f];
     }
   }
 }
@@ -290,22 +201,6 @@ HWY_EXPORT(HashForwardImpl);
 HWY_EXPORT(HashBackwardImpl);
 HWY_EXPORT(FootprintHiddenImpl);
 
-namespace {
-
-// Every lattice point must have its entry, and every result its place.
-void CheckShapes(const GridLevel& level, int features, const Positions& at, int64_t n, size_t stride) {
-  SKYQUILT_CHECK(features == 2 || features == 4, std::to_string(features) + " features per entry");
-  SKYQUILT_CHECK(n >= 0 && stride >= static_cast<size_t>(n), "stride " + std::to_string(stride) + ", " + std::to_string(n) + " samples");
-  SKYQUILT_CHECK(at.points == 1 || (at.points > 1 && at.plane >= static_cast<size_t>(n)),
-                 std::to_string(at.points) + " positions per sample, " + std::to_string(at.plane) + " apart");
-  SKYQUILT_CHECK(std::min({level.size[0], level.size[1], level.size[2]}) >= 2, "an axis of fewer than two points");
-  const int64_t points = int64_t{level.size[0]} * level.size[1] * level.size[2];
-  SKYQUILT_CHECK(level.dense ? points <= int64_t{level.entries} : std::has_single_bit(level.entries),
-                 std::to_string(level.entries) + " entries for " + std::to_string(points) + " points");
-}
-
-}  // namespace
-
 uint32_t HashIndex(const GridLevel& level, uint32_t x, uint32_t y, uint32_t z) {
   if (level.dense) return x + y * static_cast<uint32_t>(level.size[0]) + z * static_cast<uint32_t>(level.size[0] * level.size[1]);
   return (x ^ (y * 2654435761U) ^ (z * 805459861U)) & (level.entries - 1U);
@@ -324,13 +219,13 @@ void FootprintHidden(const float* sharpness, int64_t n, float cells_per_unit, fl
 }
 
 void HashForward(const GridLevel& level, int features, const float* table, const Positions& at, int64_t n, float* out, size_t out_stride) {
-  CheckShapes(level, features, at, n, out_stride);
+  CheckHashShapes(level, features, at, n, out_stride);
   HWY_DYNAMIC_DISPATCH(HashForwardImpl)(level, features, table, at, n, out, out_stride);
 }
 
 void HashBackward(const GridLevel& level, int features, const Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
                   float* table_gradient, uint8_t* touched) {
-  CheckShapes(level, features, at, n, out_stride);
+  CheckHashShapes(level, features, at, n, out_stride);
   HWY_DYNAMIC_DISPATCH(HashBackwardImpl)(level, features, at, n, out_gradient, out_stride, table_gradient, touched);
 }
 

@@ -103,6 +103,20 @@ void HashForward(const GridLevel& level, int features, const float* table, const
 void HashBackward(const GridLevel& level, int features, const Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
                   float* table_gradient, uint8_t* touched);
 
+// Derivatives of the features of HashForward by position, in 1 / unit length, for normals. All positions of a sample move together, and its footprint
+// stays as it is. Inside a cell the slope along an axis does not change along that axis; at the cell's faces it jumps. It is 0 along an axis on which
+// the position is clamped. Shapes as above; along and position_gradient: 3 rows of stride >= n, x first.
+
+// The backward pass of HashForward to the positions: adds sum_f out_gradient[f][s] d out[f][s] / d position to position_gradient.
+void HashSlope(const GridLevel& level, int features, const float* table, const Positions& at, int64_t n, const float* out_gradient, size_t out_stride,
+               float* position_gradient, size_t position_stride);
+// How the features grow when each sample moves by its `along`: out[f][s] = d out[f][s] / d position . along[s].
+void HashTangent(const GridLevel& level, int features, const float* table, const Positions& at, int64_t n, const float* along, size_t along_stride,
+                 float* out, size_t out_stride);
+// Backward pass of HashTangent to the table, as HashBackward. Samples are also skipped when `along` is zero.
+void HashTangentBackward(const GridLevel& level, int features, const Positions& at, int64_t n, const float* along, size_t along_stride,
+                         const float* out_gradient, size_t out_stride, float* table_gradient, uint8_t* touched);
+
 // The next four process whole vectors: n is a multiple of kPad. Results may replace their input.
 
 // The largest `limit` of ExpShifted: exp of it is finite.

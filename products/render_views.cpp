@@ -8,6 +8,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/progress.h"
+#include "core/image/normal_image.h"
 #include "products/video_writer.h"
 
 namespace skyquilt::products {
@@ -49,14 +50,16 @@ image::ImageF DepthImage(const std::vector<render::RayColor>& colors, int width,
   return depth;
 }
 
-RenderStats RenderViews(const ViewRenderer& renderer, const std::vector<View>& views, const std::filesystem::path& folder, bool with_depth) {
+RenderStats RenderViews(const ViewRenderer& renderer, const std::vector<View>& views, const std::filesystem::path& folder, const ViewImages& images,
+                        base::ThreadPool& threads) {
   RenderStats stats;
   base::RequireWritableFolder(folder);
   base::Progress progress("render", static_cast<double>(views.size()), "views");
   for (const View& view : views) {
     const std::vector<render::RayColor> colors = Render(renderer, view, &stats);
     image::SavePng(ColorImage(colors, view.camera.width, view.camera.height), folder / (view.name + ".png"));
-    if (with_depth) image::SaveFloatTiff(DepthImage(colors, view.camera.width, view.camera.height), folder / (view.name + "_depth.tiff"));
+    if (images.depth) image::SaveFloatTiff(DepthImage(colors, view.camera.width, view.camera.height), folder / (view.name + "_depth.tiff"));
+    if (images.normals) image::SaveNormals(NormalsOfView(*images.normals, view, colors, threads), folder / (view.name + "_normals.png"));
     progress.Advance(1.0, RateText(stats));
   }
   progress.Finish(RateText(stats));

@@ -3,9 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
+#include "core/base/thread_pool.h"
 #include "core/image/image.h"
+#include "products/normal_pictures.h"
 #include "products/ray_caster.h"
 
 namespace skyquilt::products {
@@ -17,10 +20,17 @@ struct RenderStats {
   double RaysPerSecond() const { return seconds > 0.0 ? static_cast<double>(rays) / seconds : 0.0; }
 };
 
-// Writes <folder>/<name>.png (colours on black) and, if with_depth, <folder>/<name>_depth.tiff: float, metres along the ray (not along the optical
-// axis) to where the transmittance falls below one half, NaN where it never does. The folder is created; existing files are replaced. Throws
-// base::InputError when a file cannot be written, and base::Interrupted between views.
-RenderStats RenderViews(const ViewRenderer& renderer, const std::vector<View>& views, const std::filesystem::path& folder, bool with_depth);
+// What is written beside the colours of a view.
+struct ViewImages {
+  bool depth = true;
+  std::optional<NormalKind> normals;
+};
+
+// Writes <folder>/<name>.png (colours on black) and, if chosen, <folder>/<name>_depth.tiff: float, metres along the ray (not along the optical axis)
+// to where the transmittance falls below one half, NaN where it never does; and <folder>/<name>_normals.png (core/image/normal_image.h). The folder
+// is created; existing files are replaced. Throws base::InputError when a file cannot be written, and base::Interrupted between views.
+RenderStats RenderViews(const ViewRenderer& renderer, const std::vector<View>& views, const std::filesystem::path& folder, const ViewImages& images,
+                        base::ThreadPool& threads);
 
 // Writes an MP4 with one frame per view. Throws std::logic_error unless all views have the same size with even width and height.
 RenderStats RenderVideo(const ViewRenderer& renderer, const std::vector<View>& views, int fps, const std::filesystem::path& file);

@@ -26,8 +26,10 @@ struct RenderFlags {
   bool ortho = false;
   bool dsm = false;
   bool no_depth = false;
+  std::string normals;  // kind; empty: none
   bool restart = false;
 
+  bool Views() const { return !photos.empty() || test || (!path.empty() && !video); }
   bool Anything() const { return !photos.empty() || test || !path.empty() || video || ortho || dsm; }
 };
 
@@ -56,7 +58,13 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
   const products::ProductOptions& options = settings.products;
   base::ThreadPool& threads = session.threads();
   const scene::Scene& scene = session.scene();
-  const products::ViewRenderer renderer = products::RendererOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads);
+  products::ViewImages images;
+  images.depth = !flags.no_depth;
+  if (!flags.normals.empty()) images.normals = products::NormalKindNamed(flags.normals);
+  if (images.normals) products::RequireNormals(*images.normals, scene.info());
+  scene::Appearance appearance = products::AppearanceOf(options.exposure, scene.info());
+  appearance.normals = images.normals && products::NeedsRenderedNormals(*images.normals);
+  const products::ViewRenderer renderer = products::RendererOf(scene, appearance, threads);
   const int path_width = flags.width > 0 ? flags.width / 2 * 2 : options.video_width;
   const int path_height = std::max(2, path_width * options.video_height / options.video_width / 2 * 2);
   if (!flags.photos.empty() || flags.test) {
@@ -70,7 +78,7 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
       const std::vector<products::View> named = products::ViewsOfPhotos(survey, flags.photos, flags.width);
       views.insert(views.end(), named.begin(), named.end());
     }
-    LogStats(products::RenderViews(renderer, views, renders, !flags.no_depth), renders);
+    LogStats(products::RenderViews(renderer, views, renders, images, threads), renders);
   }
   if (!flags.path.empty()) {
     const std::vector<products::View> views = products::LoadCameraPath(flags.path, scene.info(), path_width, path_height);
@@ -79,7 +87,7 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
       std::filesystem::create_directories(renders);
       LogStats(products::RenderVideo(renderer, views, options.video_fps, renders / (stem + ".mp4")), renders / (stem + ".mp4"));
     } else {
-      LogStats(products::RenderViews(renderer, views, renders / stem, !flags.no_depth), renders / stem);
+      LogStats(products::RenderViews(renderer, views, renders / stem, images, threads), renders / stem);
     }
   } else if (flags.video) {
     products::ProductOptions video = options;
@@ -102,6 +110,10 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
 
 void Render(const CommandState& state, const RenderFlags& flags, const std::vector<config::Override>& overrides) {
   if (flags.width < 0) throw base::UsageError("--width " + std::to_string(flags.width) + " is not allowed: give a number of pixels, or 0");
+  if (!flags.normals.empty()) {
+    products::NormalKindNamed(flags.normals);
+    if (!flags.Views()) throw base::UsageError("--normals needs views to draw: give --photo, --test, or --path without --video");
+  }
   const Target target = FindTarget(flags.target);
   coordinator::Settings settings = state.Load(target.project ? ProjectConfig(*target.project) : std::vector<std::filesystem::path>{}, overrides);
   if (!flags.Anything()) {
@@ -132,6 +144,10 @@ void AddRender(CLI::App& app, CommandState& state) {
   command->add_flag("--ortho", flags->ortho, "make the orthophoto as GeoTIFF");
   command->add_flag("--dsm", flags->dsm, "make the surface model as GeoTIFF");
   command->add_flag("--no-depth", flags->no_depth, "do not write depth images");
+  command->add_option("--normals", flags->normals, "also write the surface normals of the views: depth (the default), density or predicted")
+      ->type_name("KIND")
+      ->expected(0, 1)
+      ->default_str("depth");
   AddOptionFlag(*command, overrides, "--exposure", "products.exposure",
                 "exposure of the images: normal, a number of stops above it, or a photo's name to use its exposure");
   AddOptionFlag(*command, overrides, "--resolution", "products.resolution_m", "cell size of orthophoto and surface model in metres");

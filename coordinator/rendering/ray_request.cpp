@@ -1,6 +1,8 @@
 #include "coordinator/rendering/ray_request.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -93,8 +95,15 @@ bool Fresh(const scene::RayInFlight& ray_in_flight) {
   return ray_in_flight.at == 0.0 && ray_in_flight.state.transmittance == 1.0 && !ray_in_flight.state.ended;
 }
 
+// Normals are sent only in messages that have any: they would make each ray half as large again.
+template <typename Rendered>
+bool HasNormals(const Rendered& ray) {
+  const auto any = [](const float(&n)[3]) { return n[0] != 0.0F || n[1] != 0.0F || n[2] != 0.0F; };
+  return any(ray.density_normal) || any(ray.predicted_normal);
+}
+
 // Member by member, because the padding bytes of the struct are not initialised.
-void AddRayInFlight(const scene::RayInFlight& ray_in_flight, Packer* packer) {
+void AddRayInFlight(const scene::RayInFlight& ray_in_flight, bool normals, Packer* packer) {
   const render::RayState& s = ray_in_flight.state;
   packer->Add(s.transmittance);
   packer->Add(s.depth_moment);
@@ -107,6 +116,9 @@ void AddRayInFlight(const scene::RayInFlight& ray_in_flight, Packer* packer) {
   packer->Add(s.ended);
   packer->Add(ray_in_flight.at);
   packer->Add(ray_in_flight.owner);
+  if (!normals) return;
+  packer->Add(s.density_normal);
+  packer->Add(s.predicted_normal);
 }
 
 template <typename T, size_t kCount>
@@ -114,7 +126,7 @@ void TakeArray(T (&values)[kCount], Unpacker* unpacker) {
   for (T& value : values) value = unpacker->Take<T>();
 }
 
-scene::RayInFlight TakeRayInFlight(Unpacker* unpacker) {
+scene::RayInFlight TakeRayInFlight(bool normals, Unpacker* unpacker) {
   scene::RayInFlight ray_in_flight;
   render::RayState& s = ray_in_flight.state;
   s.transmittance = unpacker->Take<double>();
@@ -128,7 +140,35 @@ scene::RayInFlight TakeRayInFlight(Unpacker* unpacker) {
   s.ended = unpacker->Take<bool>();
   ray_in_flight.at = unpacker->Take<double>();
   ray_in_flight.owner = unpacker->Take<int>();
+  if (normals) {
+    TakeArray(s.density_normal, unpacker);
+    TakeArray(s.predicted_normal, unpacker);
+  }
   return ray_in_flight;
+}
+
+// The members before the normals, which are the last.
+constexpr size_t kColorBytes = offsetof(render::RayColor, density_normal);
+static_assert(sizeof(render::RayColor) == kColorBytes + 6 * sizeof(float));
+
+void AddColor(const render::RayColor& color, bool normals, Packer* packer) {
+  std::array<char, kColorBytes> without_normals;
+  std::memcpy(without_normals.data(), &color, kColorBytes);
+  packer->Add(without_normals);
+  if (!normals) return;
+  packer->Add(color.density_normal);
+  packer->Add(color.predicted_normal);
+}
+
+render::RayColor TakeColor(bool normals, Unpacker* unpacker) {
+  render::RayColor color;
+  const auto without_normals = unpacker->Take<std::array<char, kColorBytes>>();
+  std::memcpy(static_cast<void*>(&color), without_normals.data(), kColorBytes);
+  if (normals) {
+    TakeArray(color.density_normal, unpacker);
+    TakeArray(color.predicted_normal, unpacker);
+  }
+  return color;
 }
 
 }  // namespace
@@ -139,6 +179,7 @@ std::string ToBytes(const RayRequest& request) {
   packer.Add(request.options.step_scale);
   packer.Add(request.options.colour_threshold);
   packer.Add(request.options.concealing);
+  packer.Add(request.options.normals);
   const auto& rays = request.rays;
   const bool shared = std::all_of(rays.begin(), rays.end(), [&](const render::Ray& ray) { return Same(ray, rays.front()); });
   const bool fresh = std::all_of(request.in_flight.begin(), request.in_flight.end(), Fresh);
@@ -152,7 +193,7 @@ std::string ToBytes(const RayRequest& request) {
     if (!shared) packer.Add(CommonOf(ray));
   }
   if (!fresh) {
-    for (const scene::RayInFlight& ray_in_flight : request.in_flight) AddRayInFlight(ray_in_flight, &packer);
+    for (const scene::RayInFlight& ray_in_flight : request.in_flight) AddRayInFlight(ray_in_flight, request.options.normals, &packer);
   }
   return packer.Take();
 }
@@ -164,6 +205,7 @@ RayRequest RayRequestFromBytes(const std::string& bytes) {
   request.options.step_scale = unpacker.Take<double>();
   request.options.colour_threshold = unpacker.Take<float>();
   request.options.concealing = unpacker.Take<render::Concealing>();
+  request.options.normals = unpacker.Take<bool>();
   const bool shared = unpacker.Take<bool>();
   const bool fresh = unpacker.Take<bool>();
   const size_t n = unpacker.TakeCount(3 * sizeof(double));
@@ -182,7 +224,7 @@ RayRequest RayRequestFromBytes(const std::string& bytes) {
   }
   request.in_flight.resize(n);
   if (!fresh) {
-    for (scene::RayInFlight& ray_in_flight : request.in_flight) ray_in_flight = TakeRayInFlight(&unpacker);
+    for (scene::RayInFlight& ray_in_flight : request.in_flight) ray_in_flight = TakeRayInFlight(request.options.normals, &unpacker);
   }
   unpacker.End();
   return request;
@@ -194,15 +236,19 @@ std::string ToBytes(const RayReply& reply) {
   packer.Add(reply.samples);
   packer.Add(reply.field_loads);
   packer.AddText(ToJson(reply.failure).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  const auto in_flight_normals = [](const scene::RayInFlight& ray_in_flight) { return HasNormals(ray_in_flight.state); };
+  const bool normals = std::any_of(reply.in_flight.begin(), reply.in_flight.end(), in_flight_normals) ||
+                       std::any_of(reply.colors.begin(), reply.colors.end(), HasNormals<render::RayColor>);
+  packer.Add(normals);
   packer.Add(static_cast<uint64_t>(reply.in_flight.size()));
   size_t color = 0;
   for (const scene::RayInFlight& ray_in_flight : reply.in_flight) {
     const bool arrived = ray_in_flight.owner == scene::kFinished;
     packer.Add(arrived);
     if (arrived) {
-      packer.Add(reply.colors.at(color++));
+      AddColor(reply.colors.at(color++), normals, &packer);
     } else {
-      AddRayInFlight(ray_in_flight, &packer);
+      AddRayInFlight(ray_in_flight, normals, &packer);
     }
   }
   return packer.Take();
@@ -215,14 +261,15 @@ RayReply RayReplyFromBytes(const std::string& bytes) {
   reply.samples = unpacker.Take<int64_t>();
   reply.field_loads = unpacker.Take<int64_t>();
   reply.failure = unpacker.TakeFailure();
+  const bool normals = unpacker.Take<bool>();
   const size_t n = unpacker.TakeCount(sizeof(bool));
   for (size_t i = 0; i < n; ++i) {
     scene::RayInFlight ray_in_flight;
     if (unpacker.Take<bool>()) {
       ray_in_flight.owner = scene::kFinished;
-      reply.colors.push_back(unpacker.Take<render::RayColor>());
+      reply.colors.push_back(TakeColor(normals, &unpacker));
     } else {
-      ray_in_flight = TakeRayInFlight(&unpacker);
+      ray_in_flight = TakeRayInFlight(normals, &unpacker);
     }
     reply.in_flight.push_back(ray_in_flight);
   }

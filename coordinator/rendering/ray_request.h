@@ -28,7 +28,8 @@ struct RayReply {
   Failure failure;                            // when set, there are no rays
 };
 
-// A ray takes 24 bytes when the rays of the request differ only in direction and none has been rendered in part; otherwise at most 152.
+// A ray takes 24 bytes when the rays of the request differ only in direction and none has been rendered in part; otherwise at most 152, or with
+// normals 176.
 std::string ToBytes(const RayRequest& request);
 std::string ToBytes(const RayReply& reply);
 // Throw std::runtime_error for bytes that are not such a message.

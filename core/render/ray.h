@@ -27,6 +27,9 @@ struct RayColor {
   float depth_median = 0.0F;             // t where the transmittance falls below 0.5; NaN if it never does
   float depth_front = 0.0F;              // the same for 0.85: front of the surface
   float depth_back = 0.0F;               // the same for 0.15: back of the surface
+  // With EngineOptions::normals: means by compositing weight, ENU, out of the surface, length 1; 0 where there is none. Last, see ray_request.cpp.
+  float density_normal[3] = {0, 0, 0};    // of the density's gradient
+  float predicted_normal[3] = {0, 0, 0};  // of the fields' heads
 };
 
 }  // namespace skyquilt::render

@@ -10,33 +10,20 @@
 #include "core/base/errors.h"
 #include "core/image/srgb.h"
 #include "core/render/composite.h"
+#include "core/render/density_normal.h"
 #include "core/render/footprint.h"
-#include "core/render/march.h"
+#include "core/render/sample_marcher.h"
 
 namespace skyquilt::render {
 namespace {
 
 // Rays of one task: enough samples that a level's table stays in cache, but in small pictures enough tasks that threads end together.
 constexpr int64_t kMaxGroupRays = 1024, kMinGroupRays = 128, kTasks = 32;
-constexpr int kMaxRaySamples = 2048;  // per ray and field; later ones are left out
 // Samples of a ray that are evaluated together. Opaque rays take no part in later rounds, which saves the samples behind surfaces.
 constexpr size_t kRoundSamples = 8;
 constexpr float kMaxLogTau = 30.0F;  // exp of it times any length is finite
 // A ray ends below this transmittance, and its colour is scaled to full opacity. About one step of an 8-bit colour; Mueller et al. 2022 stop at 0.01.
 constexpr double kDarkTransmittance = 5e-3;
-// Marching steps in widths of a pixel, used where they are longer than the field's own step: of fields of points, and of fields with cones, which
-// know what a place looks like at this width.
-constexpr double kPixelsPerStep = 4.5, kConePixelsPerStep = 1.0;
-
-struct Sample {
-  double t;
-  float length, unit_length, blend;
-  float x, y, z;  // unit frame of its field
-  bool odd;       // every other sample of its ray and field
-  int field;
-  float weight;  // compositing weight
-  int local;     // index in its field's batch
-};
 
 // Samples of a ray: first, next to be evaluated, one past the last.
 struct Progress {
@@ -53,6 +40,8 @@ struct FieldBatch {
   size_t stride = 0;
   std::vector<float> visible_geometry;  // kGeometryRows values per visible sample
   std::vector<float> color_in, color;
+  std::vector<float> density_gradient;  // of the visible samples, 3 rows of visible_stride, unit frame
+  std::vector<float> predicted_normal;  // of the visible samples of a field with a head: rows of visible_stride, ENU, of any length
   size_t visible = 0, visible_stride = 0;
 };
 
@@ -60,12 +49,9 @@ struct FieldBatch {
 
 class RayRenderer::Group {
  public:
-  Group(const FieldSet& fields, const EngineOptions& options) : options_(options) {
-    for (const TrainedField* f : fields.blocks) all_.push_back(f);
-    context_index_ = static_cast<int>(all_.size());
+  Group(const FieldSet& fields, const EngineOptions& options) : options_(options), marcher_(fields, options.step_scale), all_(fields.blocks) {
     if (fields.context != nullptr) all_.push_back(fields.context);
     batches_.resize(all_.size());
-    fields_ = fields;
     scratch_.resize(all_.size());
     for (size_t k = 0; k < all_.size(); ++k) {
       if (all_[k]->field) scratch_[k].Reserve(*all_[k]->field, field::kChunk);
@@ -82,7 +68,7 @@ class RayRenderer::Group {
     alive_.clear();
     for (size_t r = 0; r < rays.size(); ++r) {
       progress_[r].begin = progress_[r].next = samples_.size();
-      if (!states[r].ended) MarchRay(rays[r], windows.empty() ? Window{} : windows[r]);
+      if (!states[r].ended) marcher_.March(rays[r], windows.empty() ? Window{} : windows[r], &samples_);
       progress_[r].end = samples_.size();
       if (progress_[r].end > progress_[r].begin) alive_.push_back(r);
     }
@@ -97,110 +83,11 @@ class RayRenderer::Group {
     }
     for (size_t k = 0; k < all_.size(); ++k) EvaluateColor(k, rays);
     for (size_t r = 0; r < rays.size(); ++r) ComposeColor(progress_[r], states[r]);
+    if (options_.normals) AddNormals(rays, states);
     return evaluated;
   }
 
  private:
-  void MarchRay(const Ray& ray, const Window& window) {
-    candidates_.clear();
-    gaps_.clear();
-    const bool with_context = context_index_ < static_cast<int>(all_.size());
-    if (with_context) gaps_.push_back(Clip(ray, *all_.back()));
-    for (int k = 0; k < context_index_; ++k) {
-      const TrainedField& f = *all_[static_cast<size_t>(k)];
-      // Inside its ground plan a block replaces the context even above its box, where there is free space.
-      if (PlanInterval(f.map, ray.origin_enu, ray.direction_enu).Empty()) continue;
-      candidates_.push_back(k);
-      if (with_context) CutCore(f, ray);
-    }
-    block_weights_.assign(candidates_.size(), 0.0);
-    const size_t begin = samples_.size();
-    int marched = 0;
-    for (size_t c = 0; c < candidates_.size(); ++c) {
-      const int k = candidates_[c];
-      const TrainedField& f = *all_[static_cast<size_t>(k)];
-      if (!window.Overlaps(BlendInterval(f, ray))) continue;
-      marched += MarchField(ray, window, k, static_cast<int>(c), Clip(ray, f)) ? 1 : 0;
-    }
-    for (const geo::Interval& gap : gaps_) {
-      if (window.Overlaps(gap)) marched += MarchField(ray, window, context_index_, -1, gap) ? 1 : 0;
-    }
-    if (marched < 2) return;  // in order already
-    const auto first = samples_.begin() + static_cast<ptrdiff_t>(begin);
-    std::stable_sort(first, samples_.end(), [](const Sample& a, const Sample& b) { return a.t < b.t; });
-  }
-
-  static geo::Interval Clip(const Ray& ray, const TrainedField& f) {
-    geo::Interval interval = FieldInterval(f.map, ray.origin_enu, ray.direction_enu);
-    interval.t_near = std::max(interval.t_near, ray.t_near);
-    interval.t_far = std::min(interval.t_far, ray.t_far);
-    return interval;
-  }
-
-  // The interval of a ray where the block's weight is 1.
-  static geo::Interval CoreInterval(const TrainedField& f, const Ray& ray) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const double m = f.blend_m;
-    return geo::RayBox(ray.origin_enu, ray.direction_enu, {f.box.min_enu.x() + m, f.box.min_enu.y() + m, -kInfinity},
-                       {f.box.max_enu.x() - m, f.box.max_enu.y() - m, kInfinity});
-  }
-
-  // Takes that interval out of the context's intervals.
-  void CutCore(const TrainedField& f, const Ray& ray) {
-    const geo::Interval core = CoreInterval(f, ray);
-    if (core.Empty()) return;
-    const size_t n = gaps_.size();
-    for (size_t i = 0; i < n; ++i) {
-      const geo::Interval gap = gaps_[i];
-      if (core.t_far <= gap.t_near || core.t_near >= gap.t_far) continue;
-      gaps_[i].t_far = std::min(gap.t_far, core.t_near);
-      if (gap.t_far > core.t_far) gaps_.push_back({core.t_far, gap.t_far});
-    }
-  }
-
-  // Steps grow with the pixel: finer detail cannot be seen.
-  double StepScale(const Ray& ray, const TrainedField& f, const geo::Interval& interval) const {
-    const double wanted_m = f.config.Cones() ? kConePixelsPerStep * ray.Footprint(interval.t_near)
-                                             : kPixelsPerStep * static_cast<double>(ray.pixel_pitch) * interval.t_near;
-    return std::max(options_.step_scale, wanted_m / f.step_m);
-  }
-
-  // True when samples were added.
-  bool MarchField(const Ray& ray, const Window& window, int k, int candidate, const geo::Interval& interval) {
-    const TrainedField& f = *all_[static_cast<size_t>(k)];
-    SKYQUILT_CHECK(f.field != nullptr, "field '" + f.name + "' is not loaded");
-    const size_t before = samples_.size();
-    const UnitRay unit(f.map, ray.origin_enu, ray.direction_enu);
-    // No blending where the block's weight is 1.
-    const geo::Interval alone = candidate < 0 ? geo::Interval{} : CoreInterval(f, ray);
-    int count = 0;
-    // Samples are at the same positions as without a window, so that the result does not depend on where a ray is cut.
-    const auto emit = [&](double t, double length, double unit_length) {
-      if (!(t < window.to)) return false;
-      if (t < window.from) return ++count < kMaxRaySamples;
-      double weight = 1.0;
-      if (!(t > alone.t_near && t < alone.t_far)) {
-        const double context_weight = BlendWeights(fields_, candidates_, ray.origin_enu.x() + t * ray.direction_enu.x(),
-                                                   ray.origin_enu.y() + t * ray.direction_enu.y(), block_weights_);
-        weight = candidate < 0 ? context_weight : block_weights_[static_cast<size_t>(candidate)];
-      }
-      if (weight > 1e-4) {
-        const Eigen::Vector3f p = unit.At(t);
-        samples_.push_back({t, static_cast<float>(length), static_cast<float>(unit_length / f.step_m), static_cast<float>(weight), p.x(), p.y(),
-                            p.z(), count % 2 != 0, k, 0.0F, 0});
-      }
-      return ++count < kMaxRaySamples;
-    };
-    const double step_m = f.step_m * StepScale(ray, f, interval);
-    if (step_m > 1.01 * f.step_m) {
-      MarchCoarse(f, ray.origin_enu, ray.direction_enu, interval, step_m, 0.5F, emit);
-    } else {
-      March(f, ray.origin_enu, ray.direction_enu, interval, step_m, 0.5F,
-            [&](double t, double length, double unit_length, int64_t) { return emit(t, length, unit_length); });
-    }
-    return samples_.size() > before;
-  }
-
   // Evaluates the densities of the next samples of every ray that is not opaque yet.
   int64_t EvaluateRound(std::span<const Ray> rays) {
     for (FieldBatch& batch : batches_) batch.count = 0;
@@ -211,18 +98,27 @@ class RayRenderer::Group {
       for (size_t s = p.next; s < end; ++s) samples_[s].local = static_cast<int>(batches_[static_cast<size_t>(samples_[s].field)].count++);
       evaluated += static_cast<int64_t>(end - p.next);
     }
-    for (size_t k = 0; k < all_.size(); ++k) {
-      FieldBatch& batch = batches_[k];
-      const size_t needed = batch.count * Points(*all_[k]);
-      for (auto* v : {&batch.x, &batch.y, &batch.z}) v->resize(std::max(v->size(), needed));
-      batch.sharpness.resize(std::max(batch.sharpness.size(), batch.count));
-    }
+    for (size_t k = 0; k < all_.size(); ++k) MakeRoom(k);
     for (const size_t r : alive_) {
       const Progress& p = progress_[r];
       for (size_t s = p.next; s < std::min(p.end, p.next + kRoundSamples); ++s) PlaceSample(rays[r], samples_[s]);
     }
     for (size_t k = 0; k < all_.size(); ++k) EvaluateDensity(k);
     return evaluated;
+  }
+
+  // For the positions of batch.count samples.
+  void MakeRoom(size_t k) {
+    FieldBatch& batch = batches_[k];
+    const size_t needed = batch.count * Points(*all_[k]);
+    for (auto* v : {&batch.x, &batch.y, &batch.z}) v->resize(std::max(v->size(), needed));
+    batch.sharpness.resize(std::max(batch.sharpness.size(), batch.count));
+  }
+
+  kernel::Positions PlacesOf(size_t k) const {
+    const FieldBatch& batch = batches_[k];
+    const float* const sharpness = all_[k]->config.Cones() ? batch.sharpness.data() : nullptr;
+    return {batch.x.data(), batch.y.data(), batch.z.data(), sharpness, static_cast<int>(Points(*all_[k])), batch.count};
   }
 
   static size_t Points(const TrainedField& f) { return static_cast<size_t>(std::max(1, f.config.multisample)); }
@@ -254,13 +150,7 @@ class RayRenderer::Group {
     const auto rows = static_cast<size_t>(f.FeatureRows());
     batch.features.resize(std::max(batch.features.size(), rows * batch.stride));
     batch.geometry.resize(std::max(batch.geometry.size(), static_cast<size_t>(field::kGeometryRows) * batch.stride));
-    const kernel::Positions at{batch.x.data(),
-                               batch.y.data(),
-                               batch.z.data(),
-                               all_[k]->config.Cones() ? batch.sharpness.data() : nullptr,
-                               static_cast<int>(Points(*all_[k])),
-                               batch.count};
-    f.EncodeSerial(all_[k]->parameters.grid, at, n, batch.features.data(), batch.stride);
+    f.EncodeSerial(all_[k]->parameters.grid, PlacesOf(k), n, batch.features.data(), batch.stride);
     for (size_t row = 0; row < rows; ++row) std::fill_n(batch.features.data() + row * batch.stride + n, padded - n, 0.0F);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {
       f.Density(all_[k]->weights, batch.features.data() + begin, batch.stride, std::min<int64_t>(field::kChunk, padded - begin),
@@ -374,18 +264,79 @@ class RayRenderer::Group {
     }
   }
 
+  bool Visible(const Sample& sample) const { return sample.weight > options_.colour_threshold; }
+
+  // Normals of the samples that have a colour, which are placed again in the order of their colours.
+  void AddNormals(std::span<const Ray> rays, std::span<RayState> states) {
+    for (size_t k = 0; k < all_.size(); ++k) {
+      batches_[k].count = batches_[k].visible;
+      MakeRoom(k);
+    }
+    for (size_t r = 0; r < rays.size(); ++r) {
+      for (size_t s = progress_[r].begin; s < progress_[r].next; ++s) {
+        if (Visible(samples_[s])) PlaceSample(rays[r], samples_[s]);
+      }
+    }
+    for (size_t k = 0; k < all_.size(); ++k) {
+      EvaluateDensityGradient(k);
+      PredictNormals(k);
+    }
+    for (size_t r = 0; r < rays.size(); ++r) ComposeNormals(rays[r], progress_[r], states[r]);
+  }
+
+  void EvaluateDensityGradient(size_t k) {
+    FieldBatch& batch = batches_[k];
+    const auto n = static_cast<int64_t>(batch.visible);
+    if (n == 0) return;
+    batch.density_gradient.resize(std::max(batch.density_gradient.size(), 3 * batch.visible_stride));
+    for (int64_t begin = 0; begin < n; begin += field::kChunk) {
+      const int64_t count = std::min<int64_t>(field::kChunk, n - begin);
+      all_[k]->field->DensityGradient(all_[k]->weights, all_[k]->parameters.grid, PlacesOf(k).From(begin), count, slope_);
+      for (size_t axis = 0; axis < 3; ++axis) {
+        std::copy_n(slope_.gradient + axis * slope_.stride, count, batch.density_gradient.data() + axis * batch.visible_stride + begin);
+      }
+    }
+  }
+
+  void PredictNormals(size_t k) {
+    FieldBatch& batch = batches_[k];
+    if (!all_[k]->config.normal_head || batch.visible == 0) return;
+    batch.predicted_normal.resize(std::max(batch.predicted_normal.size(), field::kNormalRows * batch.visible_stride));
+    all_[k]->field->PredictNormals(all_[k]->weights, batch.color_in.data(), batch.visible_stride, kernel::Padded(static_cast<int64_t>(batch.visible)),
+                                   batch.predicted_normal.data(), batch.visible_stride);
+  }
+
+  // A sample's column of three rows.
+  static Eigen::Vector3d Column(const std::vector<float>& rows, const FieldBatch& batch, const Sample& sample) {
+    const float* const first = rows.data() + sample.local;
+    return {static_cast<double>(first[0]), static_cast<double>(first[batch.visible_stride]), static_cast<double>(first[2 * batch.visible_stride])};
+  }
+
+  static void Add(float weight, const Eigen::Vector3d& normal, float (&sum)[3]) {
+    for (size_t axis = 0; axis < 3; ++axis) sum[axis] += weight * static_cast<float>(normal[static_cast<Eigen::Index>(axis)]);
+  }
+
+  void ComposeNormals(const Ray& ray, const Progress& p, RayState& state) const {
+    for (size_t s = p.begin; s < p.next; ++s) {
+      const Sample& sample = samples_[s];
+      if (!Visible(sample)) continue;
+      const FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
+      const TrainedField& f = *all_[static_cast<size_t>(sample.field)];
+      const Eigen::Matrix3d to_unit = f.map.UnitPerEnu(ray.origin_enu + sample.t * ray.direction_enu);
+      Add(sample.weight, OutwardNormal<double>(to_unit.transpose() * Column(batch.density_gradient, batch, sample)), state.density_normal);
+      if (f.config.normal_head) Add(sample.weight, UnitNormal<double>(Column(batch.predicted_normal, batch, sample)), state.predicted_normal);
+    }
+  }
+
   EngineOptions options_;
-  FieldSet fields_;
+  SampleMarcher marcher_;
   std::vector<const TrainedField*> all_;
-  int context_index_ = 0;
   std::vector<FieldBatch> batches_;
   std::vector<field::Activations> scratch_;
+  field::DensitySlope slope_;
   std::vector<Sample> samples_;
   std::vector<Progress> progress_;
   std::vector<size_t> alive_;
-  std::vector<geo::Interval> gaps_;  // intervals where the context is marched
-  std::vector<int> candidates_;
-  std::vector<double> block_weights_;
 };
 
 RayRenderer::RayRenderer(const FieldSet& fields, const EngineOptions& options) : group_(std::make_unique<Group>(fields, options)) {}

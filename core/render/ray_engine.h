@@ -31,6 +31,7 @@ struct EngineOptions {
 
   double step_scale = 1.0;                    // marching step as a multiple of the field's own step
   float colour_threshold = 1e-4F;             // samples with a smaller compositing weight get no colour
+  bool normals = false;                       // also fill the normals of RayColor, from the samples that get a colour
   Concealing concealing = Concealing::kNone;  // not kNone: fill RayColor::concealed_light (fields with luminance only)
 };
 

@@ -4,6 +4,14 @@
 #include <iterator>
 
 namespace skyquilt::render {
+namespace {
+
+void Normalise(const float (&sum)[3], float (&normal)[3]) {
+  const Eigen::Vector3f direction = Eigen::Vector3f(sum[0], sum[1], sum[2]).stableNormalized();
+  if (direction.allFinite()) std::copy_n(direction.data(), 3, normal);
+}
+
+}  // namespace
 
 RayColor FinalColor(const RayState& state) {
   RayColor color;
@@ -19,6 +27,8 @@ RayColor FinalColor(const RayState& state) {
   color.depth_front = state.depth_front;
   color.depth_median = state.depth_median;
   color.depth_back = state.depth_back;
+  Normalise(state.density_normal, color.density_normal);
+  Normalise(state.predicted_normal, color.predicted_normal);
   return color;
 }
 

@@ -19,7 +19,9 @@ struct RayState {
   float depth_front = std::numeric_limits<float>::quiet_NaN();  // as in RayColor
   float depth_median = std::numeric_limits<float>::quiet_NaN();
   float depth_back = std::numeric_limits<float>::quiet_NaN();
-  bool ended = false;  // transmittance is too small to continue
+  float density_normal[3] = {0, 0, 0};    // sums of weight * normal, ENU
+  float predicted_normal[3] = {0, 0, 0};  // of fields with a head
+  bool ended = false;                     // transmittance is too small to continue
 };
 static_assert(std::is_trivially_copyable_v<RayState>);
 

@@ -95,6 +95,7 @@ void PutDescription(const render::TrainedField& f, const std::string& prefix, ch
   writer.SetAttribute(prefix + "encoding", encoding::Name(f.config.encoding));
   writer.SetAttribute(prefix + "density_hidden_layers", f.config.density_hidden_layers);
   writer.SetAttribute(prefix + "luminance", f.config.luminance ? 1 : 0);
+  if (f.config.normal_head) writer.SetAttribute(prefix + "normal_head", 1);
   if (f.config.Cones()) {
     writer.SetAttribute(prefix + "multisample", f.config.multisample);
     writer.SetAttribute(prefix + "scale_features", f.config.scale_features ? 1 : 0);
@@ -156,6 +157,8 @@ render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, con
     }
   });
   f.config.luminance = reader.IntAttribute(prefix + "luminance") != 0;
+  // Missing in files of fields without one.
+  f.config.normal_head = reader.HasAttribute(prefix + "normal_head") && reader.IntAttribute(prefix + "normal_head") != 0;
   f.config.density_hidden_layers = static_cast<int>(reader.IntAttribute(prefix + "density_hidden_layers"));
   f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
   // Missing in files of programs without cones.

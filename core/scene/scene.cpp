@@ -48,8 +48,10 @@ struct Scene::Impl {
     return look == Rendition::kNormal ? info.luminance.mode == brightness::LuminanceMode::kOver
                                       : info.luminance.mode == brightness::LuminanceMode::kUnder;
   }
-  render::EngineOptions Options(Rendition look) const {
-    return Conceals(look) ? render::EngineOptions::For(info.luminance) : render::EngineOptions{};
+  render::EngineOptions Options(const Appearance& appearance) const {
+    render::EngineOptions options = Conceals(appearance.look) ? render::EngineOptions::For(info.luminance) : render::EngineOptions{};
+    options.normals = appearance.normals;
+    return options;
   }
   // Factor from the light of the background, which has the photos' brightness, to that of a look.
   float BackgroundGain(Rendition look) const {
@@ -58,8 +60,8 @@ struct Scene::Impl {
     return static_cast<float>(std::exp(sign * info.luminance_state.mean_log_gain));
   }
 
-  void Answer(std::span<const render::Ray> rays, std::span<render::RayColor> out, Rendition look, base::ThreadPool& threads) {
-    const render::EngineOptions options = Options(look);
+  void Answer(std::span<const render::Ray> rays, std::span<render::RayColor> out, const Appearance& appearance, base::ThreadPool& threads) {
+    const render::EngineOptions options = Options(appearance);
     if (service != nullptr) {
       service->Render(rays, out, options);
     } else {
@@ -72,7 +74,7 @@ struct Scene::Impl {
       statistics.rays += static_cast<int64_t>(rays.size());
       for (size_t i = 0; i < rays.size(); ++i) out[i] = render::FinalColor(in_flight[i].state);
     }
-    if (Conceals(look)) ShowConcealed(out);
+    if (Conceals(appearance.look)) ShowConcealed(out);
     scale_check.Look(rays, out);
   }
 
@@ -125,8 +127,10 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
   if (store.size() == 0) throw base::InputError(scene_h5, "has no blocks", "Train at least one block, then merge again");
   info.min_enu = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   info.max_enu = -info.min_enu;
+  info.normal_head = true;
   for (int k = 0; k < store.size(); ++k) {
     const render::TrainedField& f = store.block(k);
+    info.normal_head = info.normal_head && f.config.normal_head;
     info.blocks.push_back({f.box, f.name, store.Parameters(k), f.steps, f.seconds, f.samples});
     info.parameters += store.Parameters(k);
     info.min_enu = info.min_enu.cwiseMin(f.box.min_enu);
@@ -147,7 +151,7 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
 void Scene::RenderRays(std::span<const render::Ray> rays, std::span<render::RayColor> out, const Appearance& appearance,
                        base::ThreadPool& threads) const {
   SKYQUILT_CHECK(rays.size() == out.size(), std::to_string(rays.size()) + " rays, " + std::to_string(out.size()) + " results");
-  impl_->Answer(rays, out, appearance.look, threads);
+  impl_->Answer(rays, out, appearance, threads);
   Expose(appearance.log_gain, out);
 }
 
@@ -190,7 +194,7 @@ std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, 
         rays[i].pixel_pitch = pitch ? static_cast<float>(pitch->At(img)) : nominal;
       }
     });
-    impl_->Answer(rays, colors, look, threads);
+    impl_->Answer(rays, colors, appearance, threads);
     for (size_t i = 0; i < colors.size(); ++i) {
       if (colors[i].opacity >= 1.0F) continue;
       std::array<float, 3> behind = impl_->background.Color(rays[i].origin_enu, rays[i].direction_enu);

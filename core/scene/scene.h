@@ -57,7 +57,8 @@ struct SceneInfo {
   double gsd_m = 0.0;  // ground sampling distance of the finest block
   Scales scales;
   Borders borders = Borders::kSmooth;
-  std::string config;  // TOML text of the configuration it was trained with
+  bool normal_head = false;  // whether all blocks predict normals
+  std::string config;        // TOML text of the configuration it was trained with
 };
 
 // The two renderings of a scene with a concealing field. For other scenes they are the same.
@@ -66,10 +67,11 @@ enum class Rendition {
   kRecorded,  // as a photo at reference exposure would have recorded the scene
 };
 
-// Brightness of a rendering.
+// Brightness of a rendering, and what it shows beside colours.
 struct Appearance {
   Rendition look = Rendition::kNormal;
   std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};  // additional exposure per colour: natural logarithm of a factor on linear light
+  bool normals = false;                                // also the normals of render::RayColor, which takes longer
 };
 
 // Counts of all rays rendered so far.

@@ -48,9 +48,22 @@ def test(skyquilt, folder):
     # Memory of each rank: too little for the whole scene, but enough for the context and any two neighbouring blocks.
     little = str(2 * int(sum(fields.values()) - 0.5 * min(fields.values())))
 
-    asked = ("--test", "--width", "120", "--ortho", "--dsm")
+    asked = ("--test", "--width", "120", "--ortho", "--dsm", "--normals", "density")
     skyquilt.call("render", project, *asked, "-o", folder / "alone")
     alone = pictures_of(folder / "alone")
+    views = [name for name in alone if name.endswith("_depth.tiff")]
+    normals = {name: digest for name, digest in alone.items() if name.endswith("_normals.png")}
+    expect(len(normals) == len(views) > 0, f"{len(normals)} pictures of normals for {len(views)} views")
+    skyquilt.call("render", project, "--normals", "--test", "--width", "120", "-o", folder / "depth_normals")
+    of_depth = pictures_of(folder / "depth_normals")
+    for name, digest in alone.items():
+        if name in of_depth:
+            expect((of_depth[name] == digest) == (name not in normals), f"{name} with normals of the depth")
+    expect(set(normals) <= set(of_depth), "the views lack normals of the depth")
+    text = skyquilt.call("render", project, "--test", "--normals", "predicted", "-o", folder / "predicted", status=2)
+    expect("normal head" in text, f"the missing head is not named:\n{text}")
+    text = skyquilt.call("render", project, "--ortho", "--normals", "depth", "-o", folder / "map_normals", status=2)
+    expect("--photo" in text, f"the missing views are not named:\n{text}")
 
     for ranks in (2, 3, 4):
         out = folder / f"ranks{ranks}"

@@ -9,6 +9,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/camera/pixel_pitch.h"
+#include "core/image/normal_image.h"
 #include "products/camera_path.h"
 #include "products/video_writer.h"
 #include "tests/products/analytic_scene.h"
@@ -48,7 +49,8 @@ TEST(RenderViews, DepthRunsAlongTheRay) {
   view.name = "nadir";
   view.camera = PinholeCamera(64, 48, 60.0);
   view.cam_from_enu = PoseFromAngles({-40.0, 0.0, 105.0}, 0.0, -90.0, 0.0);
-  const RenderStats stats = RenderViews(RendererOf(scene.Caster()), {view}, folder.path(), true);
+  base::ThreadPool threads(2);
+  const RenderStats stats = RenderViews(RendererOf(scene.Caster()), {view}, folder.path(), {}, threads);
   EXPECT_EQ(stats.views, 1);
   EXPECT_EQ(stats.rays, 64 * 48);
   const image::ImageF depth = image::LoadFloatTiff(folder.path() / "nadir_depth.tiff");
@@ -89,9 +91,72 @@ TEST(RenderViews, SkyIsBlackWithoutDepth) {
   view.name = "up";
   view.camera = PinholeCamera(8, 6, 60.0);
   view.cam_from_enu = PoseFromAngles({0.0, 0.0, 105.0}, 0.0, 80.0, 0.0);
-  RenderViews(RendererOf(AnalyticScene{}.Caster()), {view}, folder.path(), true);
+  base::ThreadPool threads(2);
+  RenderViews(RendererOf(AnalyticScene{}.Caster()), {view}, folder.path(), {}, threads);
   EXPECT_TRUE(std::isnan(*image::LoadFloatTiff(folder.path() / "up_depth.tiff").At(3, 3)));
   EXPECT_EQ(image::LoadRgb8(folder.path() / "up.png").At(3, 3)[0], 0);
+}
+
+// Ground, roof and the wall that the camera sees, in a camera that looks down at an angle.
+TEST(RenderViews, NormalsPointOutOfGroundRoofAndWall) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  View view;
+  view.name = "oblique";
+  view.camera = PinholeCamera(120, 90, 60.0);
+  view.cam_from_enu = PoseFromAngles({-40.0, -5.0, 60.0}, 90.0, -40.0, 0.0);
+  base::ThreadPool threads(2);
+  RenderViews(RendererOf(scene.Caster()), {view}, folder.path(), {.depth = false, .normals = NormalKind::kDepth}, threads);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "oblique_depth.tiff"));
+  const image::ImageF normals = image::LoadNormals(folder.path() / "oblique_normals.png");
+  ASSERT_EQ(normals.width, 120);
+  const auto normal_at = [&](const Eigen::Vector3d& x_in_enu) {
+    const std::optional<Eigen::Vector2d> pixel = view.camera.ImgFromCam(view.cam_from_enu * x_in_enu);
+    const float* n = normals.At(static_cast<int>(pixel->x()), static_cast<int>(pixel->y()));
+    return Eigen::Vector3f(n[0], n[1], n[2]);
+  };
+  EXPECT_LT((normal_at({-5.0, -5.0, 5.0}) - Eigen::Vector3f(0, 0, 1)).norm(), 2e-3F) << "ground";
+  EXPECT_LT((normal_at({22.0, -5.0, 25.0}) - Eigen::Vector3f(0, 0, 1)).norm(), 2e-3F) << "roof";
+  EXPECT_LT((normal_at({10.0, -5.0, 15.0}) - Eigen::Vector3f(-1, 0, 0)).norm(), 2e-3F) << "wall towards the west";
+}
+
+TEST(RenderViews, NormalsHaveNames) {
+  EXPECT_EQ(NormalKindNamed("depth"), NormalKind::kDepth);
+  EXPECT_EQ(NormalKindNamed("density"), NormalKind::kDensity);
+  EXPECT_EQ(NormalKindNamed("predicted"), NormalKind::kPredicted);
+  EXPECT_THROW(NormalKindNamed("guessed"), base::UsageError);
+}
+
+TEST(RenderViews, PredictedNormalsNeedAHead) {
+  scene::SceneInfo info = AnalyticScene{}.Info({41.0, 2.0, 0.0}, true);
+  EXPECT_NO_THROW(RequireNormals(NormalKind::kDensity, info));
+  EXPECT_THROW(RequireNormals(NormalKind::kPredicted, info), base::UsageError);
+  info.normal_head = true;
+  EXPECT_NO_THROW(RequireNormals(NormalKind::kPredicted, info));
+}
+
+// Rays that return their normals: pixels that are not half opaque have none.
+TEST(RenderViews, RenderedNormalsAreThoseOfTheRays) {
+  const TemporaryFolder folder;
+  const RayCaster caster = [](std::span<const render::Ray> rays, std::span<render::RayColor> out) {
+    for (size_t i = 0; i < rays.size(); ++i) {
+      out[i].depth_median = i == 0 ? std::nanf("") : 3.0F;
+      out[i].density_normal[i == 1 ? 0 : 2] = i == 2 ? 0.0F : 1.0F;
+      out[i].predicted_normal[1] = -1.0F;
+    }
+  };
+  View view;
+  view.name = "v";
+  view.camera = PinholeCamera(4, 2, 60.0);
+  base::ThreadPool threads(1);
+  RenderViews(RendererOf(caster), {view}, folder.path(), {.depth = true, .normals = NormalKind::kDensity}, threads);
+  const image::ImageF density = image::LoadNormals(folder.path() / "v_normals.png");
+  EXPECT_TRUE(std::isnan(*density.At(0, 0))) << "not half opaque";
+  EXPECT_NEAR(density.At(1, 0)[0], 1.0F, 1e-4F);
+  EXPECT_TRUE(std::isnan(*density.At(2, 0))) << "no normal";
+  EXPECT_NEAR(density.At(3, 0)[2], 1.0F, 1e-4F);
+  RenderViews(RendererOf(caster), {view}, folder.path(), {.depth = true, .normals = NormalKind::kPredicted}, threads);
+  EXPECT_NEAR(image::LoadNormals(folder.path() / "v_normals.png").At(2, 0)[1], -1.0F, 1e-4F);
 }
 
 TEST(RenderVideo, HasOneFramePerView) {
@@ -172,8 +237,9 @@ TEST(RenderViews, StopsWhenCancelled) {
   View view;
   view.name = "x";
   view.camera = PinholeCamera(8, 6, 60.0);
+  base::ThreadPool threads(1);
   base::RequestCancel();
-  EXPECT_THROW(RenderViews(RendererOf(AnalyticScene{}.Caster()), {view}, folder.path(), false), base::Interrupted);
+  EXPECT_THROW(RenderViews(RendererOf(AnalyticScene{}.Caster()), {view}, folder.path(), {}, threads), base::Interrupted);
   base::ClearCancel();
 }
 

@@ -40,4 +40,15 @@ inline TrainedField RandomField(uint64_t seed, const Eigen::Vector3d& low, const
   return f;
 }
 
+// The same field with a normal head of random weights.
+inline TrainedField WithHead(TrainedField f, uint64_t seed) {
+  base::Random random(seed);
+  f.config.normal_head = true;
+  for (int i = 0; i < field::kNormalRows * field::kGeometryRows; ++i) {
+    f.parameters.networks.push_back(i < 3 * field::kGeometryRows ? random.Uniform() - 0.5F : 0.0F);
+  }
+  f.BuildNetworks();
+  return f;
+}
+
 }  // namespace skyquilt::render

@@ -1,4 +1,5 @@
-// Lookup in one fine, hashed level, forward and backward, at random positions, which use the caches as badly as a shuffled batch of rays.
+// Lookup in one fine, hashed level, forward and backward, and its derivatives by position, at random positions, which use the caches as badly as a
+// shuffled batch of rays.
 #include <benchmark/benchmark.h>
 
 #include <cstddef>
@@ -66,12 +67,39 @@ void HashBackward(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(kSamples));
 }
 
+// Back to the positions (slope), forward along directions (tangent), and back from there to the table.
+enum class Pass { kSlope, kTangent, kTangentBackward };
+
+void HashDerivative(benchmark::State& state, Pass pass) {
+  const auto features = static_cast<int>(state.range(0));
+  const kernel::GridLevel level = Level(state.range(1));
+  std::vector<float> table = bench::Table(size_t{level.entries} * static_cast<size_t>(features));
+  bench::FillRandom(table, -1e-4F, 1e-4F, 4);
+  std::vector<uint8_t> touched(table.size() / kernel::kLineFloats, 0);
+  const std::vector<float> along = bench::RandomValues(3 * kStride, -1.0F, 1.0F, 6);
+  std::vector<float> rows = bench::RandomValues(static_cast<size_t>(features) * kStride, -1e-3F, 1e-3F, 5), slope(3 * kStride);
+  size_t begin = 0;
+  for (auto _ : state) {
+    const kernel::Positions at{Axis(0) + begin, Axis(1) + begin, Axis(2) + begin};
+    if (pass == Pass::kSlope) kernel::HashSlope(level, features, table.data(), at, kSamples, rows.data(), kStride, slope.data(), kStride);
+    if (pass == Pass::kTangent) kernel::HashTangent(level, features, table.data(), at, kSamples, along.data(), kStride, rows.data(), kStride);
+    if (pass == Pass::kTangentBackward) {
+      kernel::HashTangentBackward(level, features, at, kSamples, along.data(), kStride, rows.data(), kStride, table.data(), touched.data());
+    }
+    begin = (begin + kSamples) % kPositions;
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(kSamples));
+}
+
 // From a table that fits into the second-level cache to one that fits only into main memory.
 void Sizes(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"features", "log2_entries"})->ArgsProduct({{2, 4}, {14, 17, 19, 22}})->Unit(benchmark::kMicrosecond);
 }
 BENCHMARK(HashForward)->Apply(Sizes);
 BENCHMARK(HashBackward)->Apply(Sizes);
+BENCHMARK_CAPTURE(HashDerivative, slope, Pass::kSlope)->Apply(Sizes);
+BENCHMARK_CAPTURE(HashDerivative, tangent, Pass::kTangent)->Apply(Sizes);
+BENCHMARK_CAPTURE(HashDerivative, tangent_backward, Pass::kTangentBackward)->Apply(Sizes);
 
 }  // namespace
 }  // namespace skyquilt

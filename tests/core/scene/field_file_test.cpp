@@ -261,6 +261,21 @@ TEST_F(TrainedFieldFile, OfASceneRendersTheSameWithAnyNumberOfPositions) {
   }
 }
 
+// A file without a head has no attribute of it, as files of programs that knew none.
+TEST_F(TrainedFieldFile, KeepsItsNormalHead) {
+  const render::TrainedField plain = ConesOf(1, true);
+  const fs::path without = Write(plain, "plain.h5");
+  EXPECT_FALSE(checkpoint::ArchiveReader(without).HasAttribute("a/normal_head"));
+  EXPECT_FALSE(Read(without).config.normal_head);
+  const render::TrainedField before = render::WithHead(ConesOf(1, true), 3);
+  const fs::path with = Write(before, "head.h5");
+  const render::TrainedField after = Read(with);
+  EXPECT_TRUE(after.config.normal_head);
+  EXPECT_EQ(after.weights.normal_head, before.weights.normal_head);
+  ExpectSameLook(plain, after, 0.1F);
+  EXPECT_NE(InputErrorOf([&] { Read(Rewrite(with, {"a/normal_head"})); }), "") << "weights without a head";
+}
+
 // As every file of a program without cones.
 TEST_F(TrainedFieldFile, WithoutFootprintsIsAFieldOfPoints) {
   const render::TrainedField points = Make(encoding::Kind::kHash, 1);

@@ -1,0 +1,44 @@
+// Places the samples of rays in all fields that they pass, with their blend weights.
+#pragma once
+
+#include <vector>
+
+#include "core/render/ray_engine.h"
+
+namespace skyquilt::render {
+
+struct Sample {
+  double t;
+  float length, unit_length, blend;
+  float x, y, z;  // unit frame of its field
+  bool odd;       // every other sample of its ray and field
+  int field;
+  float weight;  // compositing weight
+  int local;     // index in its field's batch
+};
+
+// Not thread-safe.
+class SampleMarcher {
+ public:
+  // The fields must outlive it. A sample's `field` counts the blocks in order, then the context.
+  SampleMarcher(const FieldSet& fields, double step_scale);
+
+  // Appends the samples of a ray inside a window, in order of distance. They are at the same places as without a window.
+  void March(const Ray& ray, const Window& window, std::vector<Sample>* samples);
+
+ private:
+  void CutCore(const TrainedField& f, const Ray& ray);
+  double StepScale(const Ray& ray, const TrainedField& f, const geo::Interval& interval) const;
+  bool MarchField(const Ray& ray, const Window& window, int k, int candidate, const geo::Interval& interval, std::vector<Sample>* samples);
+
+  FieldSet fields_;
+  std::vector<const TrainedField*> all_;
+  int context_index_ = 0;
+  double step_scale_ = 1.0;
+  // Workspace of one ray.
+  std::vector<geo::Interval> gaps_;  // intervals where the context is marched
+  std::vector<int> candidates_;
+  std::vector<double> block_weights_;
+};
+
+}  // namespace skyquilt::render

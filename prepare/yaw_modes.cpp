@@ -35,6 +35,21 @@ double Wrapped(double yaw_deg) {
   return wrapped < 90.0 ? wrapped : 0.0;
 }
 
+// Local maxima of the density of lines, to kStep_deg.
+std::vector<double> Peaks(const std::vector<HorizontalLine>& lines) {
+  constexpr int kSteps = 180;
+  constexpr double kStep_deg = 90.0 / kSteps;
+  std::vector<double> density(kSteps, 0.0), peaks;
+  for (size_t i = 0; i < kSteps; ++i) {
+    for (const HorizontalLine& line : lines) density[i] += Weight(line) * Gauss(YawDifference(line.yaw_deg, static_cast<double>(i) * kStep_deg));
+  }
+  for (size_t i = 0; i < kSteps; ++i) {
+    if (density[i] > density[(i + kSteps - 1) % kSteps] && density[i] >= density[(i + 1) % kSteps])
+      peaks.push_back(static_cast<double>(i) * kStep_deg);
+  }
+  return peaks;
+}
+
 // Where mean shift from `yaw_deg` ends.
 double MeanShift(const std::vector<HorizontalLine>& lines, double yaw_deg) {
   for (int iteration = 0; iteration < 50; ++iteration) {
@@ -114,8 +129,8 @@ survey::DominantDirections FindDirections(const std::vector<HorizontalLine>& lin
     directions.histogram[std::min<size_t>(89, static_cast<size_t>(Wrapped(line.yaw_deg)))] += Weight(line) / total;
   }
   std::vector<survey::YawMode> found;
-  for (int degree = 0; degree < 90; ++degree) {
-    const double yaw_deg = MeanShift(lines, degree);
+  for (const double peak_deg : Peaks(lines)) {
+    const double yaw_deg = MeanShift(lines, peak_deg);
     const bool known = std::any_of(found.begin(), found.end(),
                                    [&](const survey::YawMode& mode) { return std::abs(YawDifference(mode.yaw_deg, yaw_deg)) < kSameMode_deg; });
     if (!known) found.push_back(Describe(lines, yaw_deg, total));

@@ -33,7 +33,7 @@ struct StepOptions {
   double learning_rate = 0.0;
   double network_l2 = 0.0;
   double distortion = 0.0;  // weight of the distortion loss (Barron et al. 2022, eq. 15), distances in units of the box height
-  PriorWeights priors;
+  PriorWeights priors = {};
 };
 
 struct StepResult {

@@ -85,12 +85,21 @@ void FieldTrainer::MeasureFootprints() {
 StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   const PhotoPyramid pyramid(options_.pyramid, options_.pyramid_start, options_.pyramid_until, progress);
   const double strength = priors_.options.Strength(progress);
-  SegmentShare segments;
-  if (strength > 0.0 && priors_.options.Segments()) segments = {priors_.segments, priors_.options.segment_share};
-  drawer_.Draw(state_.step, rays_per_step_, field_.FeatureRows(), pyramid, segments, &batch_);
+  PriorRays prior_rays;
+  if (strength > 0.0 && priors_.options.Segments()) {
+    prior_rays.segments = priors_.segments;
+    prior_rays.segment_share = priors_.options.segment_share;
+  }
+  if (strength > 0.0 && priors_.options.points > 0.0 && !priors_.points->Empty()) {
+    prior_rays.points = priors_.points;
+    prior_rays.point_share = priors_.options.point_share;
+  }
+  drawer_.Draw(state_.step, rays_per_step_, field_.FeatureRows(), pyramid, prior_rays, &batch_);
   StepOptions step;
-  step.priors = {
-      .planar = strength * priors_.options.planar, .upright = strength * priors_.options.upright, .voxel_m = target_.step_m / options_.step_voxels};
+  step.priors = {.planar = strength * priors_.options.planar,
+                 .upright = strength * priors_.options.upright,
+                 .points = strength * priors_.options.points,
+                 .voxel_m = target_.step_m / options_.step_voxels};
   const double warm_up = std::min(1.0, static_cast<double>(state_.step + 1) / kWarmUpSteps);
   const double decay = std::pow(options_.final_learning_rate_share, std::clamp((progress - kDecayFrom) / (1.0 - kDecayFrom), 0.0, 1.0));
   step.learning_rate = options_.learning_rate * learning_rate_scale * warm_up * decay;

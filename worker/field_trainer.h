@@ -22,6 +22,7 @@ namespace skyquilt::worker {
 struct FieldPriors {
   PriorOptions options;
   const PhotoSegments* segments = nullptr;  // of the field's photos; needed for options.Segments()
+  const DepthPoints* points = nullptr;      // of the field; needed for options.points > 0; may be empty
 };
 
 class FieldTrainer {

@@ -93,8 +93,10 @@ class PacketTrainer {
   // packet_trainer_priors.cpp: losses of the distances at which rays end.
   void AddSegmentLosses(LossSums& sums);
   void AddSegmentLoss(size_t first, size_t end, LossSums& sums);
-  bool HasWeightGradient(size_t view) const { return !distance_gradient_.empty() && distance_gradient_[view] != 0.0F; }
+  bool HasDistanceGradient(size_t view) const { return !distance_gradient_.empty() && distance_gradient_[view] != 0.0F; }
   void AddDistanceGradient(size_t view);
+  bool WantsPointLoss(const BatchRay& ray, const RayView& view) const;
+  void AddPointLoss(const BatchRay& ray, const RayView& view, LossSums& sums);
 
   // Turns gradients by optical depths and colours into gradients by the networks' outputs.
   void FinishGradients();

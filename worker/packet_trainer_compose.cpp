@@ -26,11 +26,12 @@ void PacketTrainer::ComposeAndLoss(LossSums& sums) {
     } else {
       gradient = LossOfRay(r, view, composed, step_->ray_share, sums);
       KeepGainGradient(k, gradient);
-      const bool distorted = WantsDistortionLoss(r, view);
-      if (distorted || HasWeightGradient(k)) {
+      const bool distorted = WantsDistortionLoss(r, view), at_point = WantsPointLoss(r, view);
+      if (distorted || at_point || HasDistanceGradient(k)) {
         weight_gradient_.assign(static_cast<size_t>(view.count), 0.0F);
         if (distorted) AddDistortion(view, sums);
-        if (HasWeightGradient(k)) AddDistanceGradient(k);
+        if (at_point) AddPointLoss(r, view, sums);
+        if (HasDistanceGradient(k)) AddDistanceGradient(k);
         weight_gradient = weight_gradient_.data();
       }
     }

@@ -1,8 +1,10 @@
-// Losses of rays of one segment of a photo: they end on a plane, and on a level or vertical one when it nearly is.
+// Losses of the distances at which rays end: rays of one segment of a photo end on a plane, and on a level or vertical one when it nearly is; rays
+// towards a sparse point end there.
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "worker/losses/point_depth_loss.h"
 #include "worker/losses/robust_loss.h"
 #include "worker/packet_trainer.h"
 #include "worker/plane_fit.h"
@@ -79,6 +81,21 @@ void PacketTrainer::AddDistanceGradient(size_t view) {
   const float* t = step_->batch.t.data() + packet_->begin + views_[view].begin;
   const auto per_weight = static_cast<float>(static_cast<double>(distance_gradient_[view]) / end.weight);
   for (size_t k = 0; k < static_cast<size_t>(views_[view].count); ++k) weight_gradient_[k] += per_weight * (t[k] - static_cast<float>(end.mean_m));
+}
+
+bool PacketTrainer::WantsPointLoss(const BatchRay& ray, const RayView& view) const {
+  return step_->priors.points > 0.0 && ray.ray.point_sigma_m > 0.0F && view.count > 0;
+}
+
+// Samples are farther apart than many points are uncertain: the wider of both decides which samples are near the point.
+void PacketTrainer::AddPointLoss(const BatchRay& ray, const RayView& view, LossSums& sums) {
+  const auto step_m = static_cast<float>(shared_.target.step_m);
+  const float sigma_m = std::hypot(ray.ray.point_sigma_m, 0.5F * step_m);
+  const float weight = static_cast<float>(step_->priors.points) * step_->ray_share;
+  const float loss =
+      AddPointDepthLoss(weight, static_cast<size_t>(view.count), weight_.data() + view.begin, step_->batch.t.data() + packet_->begin + view.begin,
+                        step_m, ray.ray.point_distance_m, sigma_m, weight_gradient_.data());
+  sums.loss += static_cast<double>(loss) / static_cast<double>(step_->ray_share);
 }
 
 }  // namespace skyquilt::worker

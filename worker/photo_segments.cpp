@@ -13,8 +13,8 @@ namespace {
 constexpr float kBlur = 0.5F, kThreshold = 200.0F;
 constexpr int kSmallest = 40;
 // A segment is left out when its mean excess green 2 g - r - b (shares of the sum of colours) is above the first, or its mean absolute step between
-// neighbouring pixels (display values, 0..1) above the second.
-constexpr double kMostGreen = 0.1, kMostTexture = 0.05;
+// neighbouring pixels (display values, 0..1) above the second. Pixels of other segments with a step above the third are left out.
+constexpr double kMostGreen = 0.1, kMostTexture = 0.05, kLargestStep = 0.1;
 
 struct SegmentSums {
   double green = 0.0, texture = 0.0;
@@ -62,7 +62,9 @@ image::BasicImage<uint16_t> SegmentPhoto(const image::Image8& rgb) {
       const int own = found.at<int>(y, x);
       const bool inside =
           found.at<int>(y, x - 1) == own && found.at<int>(y, x + 1) == own && found.at<int>(y - 1, x) == own && found.at<int>(y + 1, x) == own;
-      if (inside) *labels.At(x, y) = name[static_cast<size_t>(own)];
+      const double grey = Grey(rgb.At(x, y));
+      const auto even = [&](int u, int v) { return std::abs(Grey(rgb.At(u, v)) - grey) < kLargestStep; };
+      if (inside && even(x - 1, y) && even(x + 1, y) && even(x, y - 1) && even(x, y + 1)) *labels.At(x, y) = name[static_cast<size_t>(own)];
     }
   }
   return labels;

@@ -5,7 +5,7 @@ namespace skyquilt::worker {
 
 // Relative to the photo loss; 0: off.
 struct PriorWeights {
-  double planar = 0.0, upright = 0.0;
+  double planar = 0.0, upright = 0.0, points = 0.0;
   double voxel_m = 0.0;  // finest voxel of the field
 
   bool Segments() const { return planar > 0.0 || upright > 0.0; }

@@ -162,13 +162,13 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
   group.rays.push_back(r);
 }
 
-int RayDrawer::AddSegments(const SegmentShare& segments, int64_t task, base::Random& random, Group& group) const {
-  if (segments.segments == nullptr) return 0;
-  const int n_segments = static_cast<int>(std::lround(segments.share * kGroupRays / kSegmentRays));
+int RayDrawer::AddPriorRays(const PriorRays& priors, int64_t task, base::Random& random, Group& group) const {
+  const int n_segments = priors.segments == nullptr ? 0 : static_cast<int>(std::lround(priors.segment_share * kGroupRays / kSegmentRays));
+  const int n_points = priors.points == nullptr ? 0 : static_cast<int>(std::lround(priors.point_share * kGroupRays));
   PixelRay rays[kSegmentRays];
   for (int s = 0; s < n_segments; ++s) {
     int drawn = 0;
-    const bool together = source_.DrawSegment(random, *segments.segments, rays, &drawn);
+    const bool together = source_.DrawSegment(random, *priors.segments, rays, &drawn);
     for (int k = 0; k < drawn; ++k) {
       BatchRay r;
       r.ray = rays[k];
@@ -177,10 +177,15 @@ int RayDrawer::AddSegments(const SegmentShare& segments, int64_t task, base::Ran
       AddRay(r, random, group);
     }
   }
-  return n_segments * kSegmentRays;
+  for (int i = 0; i < n_points; ++i) {
+    BatchRay r;
+    r.patch = task * kGroupRays + n_segments * kSegmentRays + i;
+    if (source_.PointRay(priors.points->Draw(random), &r.ray)) AddRay(r, random, group);
+  }
+  return n_segments * kSegmentRays + n_points;
 }
 
-void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, const SegmentShare& segments, RayBatch* batch) {
+void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, const PriorRays& priors, RayBatch* batch) {
   const int n_groups = (n_rays + kGroupRays - 1) / kGroupRays;
   groups_.resize(static_cast<size_t>(n_groups));
   threads_.ParallelFor(n_groups, [&](int64_t task, int thread) {
@@ -191,7 +196,7 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyra
     base::Random random(MixSeed(seed_, static_cast<uint64_t>(step), static_cast<uint64_t>(task)), kRayStream);
     PixelRay patch[kPatchPixels];
     const int per_patch = neighbours_ == Neighbours::kPatch ? kPatchPixels : 1;
-    for (int i = AddSegments(segments, task, random, group); i < kGroupRays; i += per_patch) {
+    for (int i = AddPriorRays(priors, task, random, group); i < kGroupRays; i += per_patch) {
       const int n = per_patch > 1 ? source_.DrawPatch(random, pyramid, per_patch, patch) : source_.Draw(random, pyramid, patch) ? 1 : 0;
       for (int k = 0; k < n; ++k) {
         BatchRay r;

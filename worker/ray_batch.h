@@ -8,6 +8,7 @@
 #include "core/base/thread_pool.h"
 #include "core/geo/ray_box.h"
 #include "core/render/trained_field.h"
+#include "worker/depth_points.h"
 #include "worker/phase_times.h"
 #include "worker/ray_source.h"
 
@@ -69,10 +70,12 @@ enum class Neighbours {
 };
 constexpr int kPatchPixels = 8;
 
-// Which part of the rays is drawn in groups of kSegmentRays within segments.
-struct SegmentShare {
+// Shares of the rays that are drawn in groups of kSegmentRays within segments, and towards sparse points. Null: none.
+struct PriorRays {
   const PhotoSegments* segments = nullptr;
-  double share = 0.0;
+  double segment_share = 0.0;
+  const DepthPoints* points = nullptr;
+  double point_share = 0.0;
 };
 
 // Draws the pixels of a batch and samples their rays in occupied cells. A pure function of (seed, step) for any number of threads.
@@ -82,8 +85,8 @@ class RayDrawer {
   RayDrawer(const render::TrainedField& target, const RaySource& source, uint64_t seed, Neighbours neighbours, bool stratified,
             base::ThreadPool& threads, PhaseTimes& times)
       : target_(target), source_(source), seed_(seed), neighbours_(neighbours), stratified_(stratified), threads_(threads), times_(times) {}
-  // About n_rays rays: masked pixels and rays that miss the field are left out. segments: rays in segments are drawn too; null: none.
-  void Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, const SegmentShare& segments, RayBatch* batch);
+  // About n_rays rays: masked pixels and rays that miss the field are left out.
+  void Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, const PriorRays& priors, RayBatch* batch);
 
  private:
   // The rays of one task; the first `count` elements of the arrays are used.
@@ -97,7 +100,7 @@ class RayDrawer {
   };
   void AddRay(BatchRay r, base::Random& random, Group& group) const;
   // Returns the number of rays drawn.
-  int AddSegments(const SegmentShare& segments, int64_t task, base::Random& random, Group& group) const;
+  int AddPriorRays(const PriorRays& priors, int64_t task, base::Random& random, Group& group) const;
   const render::TrainedField& target_;
   const RaySource& source_;
   uint64_t seed_;

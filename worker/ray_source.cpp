@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "core/image/srgb.h"
+#include "worker/depth_points.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -124,6 +125,16 @@ bool RaySource::DrawSegment(base::Random& random, const PhotoSegments& segments,
     ++*drawn;
   }
   return together;
+}
+
+bool RaySource::PointRay(const DepthPoint& point, PixelRay* ray) const {
+  const auto photo = static_cast<size_t>(point.photo);
+  const int x = std::clamp(static_cast<int>(point.pixel_x), 0, pixels_.Width(photo) - 1);
+  const int y = std::clamp(static_cast<int>(point.pixel_y), 0, pixels_.Height(photo) - 1);
+  if (!RayOf(point.photo, x, y, 0, false, ray)) return false;
+  ray->point_distance_m = point.distance_m;
+  ray->point_sigma_m = point.sigma_m;
+  return true;
 }
 
 bool RaySource::RayOf(int photo, int x, int y, int level, bool empty, PixelRay* ray) const {

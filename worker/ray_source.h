@@ -27,8 +27,11 @@ struct PixelRay {
   float target_srgb[3] = {0, 0, 0};              // recorded display value, 0..1
   std::array<brightness::Exposure, 3> exposure;  // recorded light divided by light at reference exposure, per colour
   int photo = 0;
-  bool empty = false;  // the surface is behind the field, so the field must be transparent along this ray
+  bool empty = false;                                   // the surface is behind the field, so the field must be transparent along this ray
+  float point_distance_m = 0.0F, point_sigma_m = 0.0F;  // of a sparse point at its pixel, along the ray; sigma 0: none
 };
+
+struct DepthPoint;  // worker/depth_points.h
 
 // Rays that are drawn together in one segment of a photo, and how far apart they are at most along each axis, pixels of the cached photo.
 constexpr int kSegmentRays = 6;
@@ -64,6 +67,8 @@ class RaySource {
   // Draws kSegmentRays pixels of a photo at full size. Returns true when all of them are in one segment; otherwise they are unrelated, and *drawn
   // says how many were found.
   bool DrawSegment(base::Random& random, const PhotoSegments& segments, PixelRay* rays, int* drawn) const;
+  // The ray of the pixel that shows a sparse point; false when it is masked.
+  bool PointRay(const DepthPoint& point, PixelRay* ray) const;
 
   // The camera at the cached image size.
   const camera::Camera& CameraOf(int photo) const { return cameras_[static_cast<size_t>(photo)]; }

@@ -155,7 +155,8 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
   const LuminancePlan luminance{loaded.luminance, loaded.luminance_state, false};
   std::optional<PhotoSegments> segments;
   if (job.priors.Segments()) segments.emplace(*job.pixels, block.photos, threads);
-  const FieldPriors priors{job.priors, segments ? &*segments : nullptr};
+  const DepthPoints points = job.priors.points > 0.0 ? DepthPoints(*job.survey, source, block.box) : DepthPoints();
+  const FieldPriors priors{job.priors, segments ? &*segments : nullptr, &points};
   FieldTrainer trainer(target, source, context != nullptr ? &context->field : nullptr, job.options, job.seed, luminance, nullptr, priors, threads);
   SessionRecord record;
   if (saved) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <Eigen/Geometry>
 #include <limits>
 
 #include "core/base/random.h"

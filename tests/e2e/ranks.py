@@ -25,6 +25,10 @@ def test(skyquilt, folder):
         expect(metrics["classes"]["roof"]["depth_nmad_m"] < 20.0, f"roofs were scored as {metrics['classes']['roof']}")
         for name in ("blocks.geojson", "scene.h5", "checkpoints/context.h5", "checkpoints/context.log.csv", "report/index.html", "log.txt", "config.toml"):
             expect((project / name).exists(), f"{name} is missing")
+    found = json.loads((folder / "ranks1" / "survey" / "directions.json").read_text())["modes"]
+    for yaw in json.loads((survey / "simulate.json").read_text())["district_yaw_deg"]:
+        off = min(abs((mode["yaw_deg"] - yaw + 45.0) % 90.0 - 45.0) for mode in found)
+        expect(off < 0.5, f"the district turned by {yaw} degrees is {off} degrees from the nearest of {found}")
     expect(max(psnr.values()) - min(psnr.values()) <= 0.1, f"PSNR depends on the ranks: {psnr}")
     # A field that learned only the mean colour would have about 15 dB.
     expect(psnr[1] > 18.0, f"PSNR {psnr[1]:.2f} dB: nothing was learned")

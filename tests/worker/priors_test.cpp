@@ -1,0 +1,121 @@
+// Trains blocks of the small survey with priors.
+#include <gtest/gtest.h>
+
+#include "core/render/ray_engine.h"
+#include "core/scene/field_file.h"
+#include "tests/worker/small_survey.h"
+#include "worker/trainer.h"
+
+namespace skyquilt::worker {
+namespace {
+
+using Eigen::Vector3d;
+
+class PriorsTest : public SmallSurvey {
+ protected:
+  // Sparse points on the ground and on the box, lifted by `lift_m`, with the photos that show them.
+  void AddPoints(double lift_m) {
+    for (double y = -8.0; y <= 8.0; y += 1.0) {
+      for (double x = -8.0; x <= 8.0; x += 1.0) {
+        const bool on_box = std::abs(x) <= 3.0 && std::abs(y) <= 3.0;
+        const Vector3d point(x, y, (on_box ? 4.0 : 0.0) + lift_m);
+        std::vector<int32_t> photos;
+        for (size_t i = 0; i < survey_.photos.size(); ++i) {
+          const std::optional<Eigen::Vector2d> pixel = survey_.cameras[0].ImgFromCam(survey_.photos[i].cam_from_enu * point);
+          if (pixel && (pixel->array() > 0.0).all() && pixel->x() < kSmallWidth && pixel->y() < kSmallHeight)
+            photos.push_back(static_cast<int32_t>(i));
+        }
+        survey_.points.push_back({point, {}, 0.5F, static_cast<int>(photos.size())});
+        survey_.tracks.Add(std::move(photos));
+      }
+    }
+  }
+  TrainJob JobWith(const std::string& name, int steps, const PriorOptions& priors) const {
+    TrainJob job = Job(name, steps);
+    job.priors = priors;
+    return job;
+  }
+  // Median depth of rays straight down from 30 m onto the ground beside the box.
+  std::vector<float> GroundDepths(const std::string& checkpoint, base::ThreadPool& threads) const {
+    const checkpoint::ArchiveReader reader(folder_ / checkpoint);
+    const render::TrainedField field = scene::GetField(reader, folder_ / checkpoint, "");
+    render::FieldSet set;
+    set.blocks = {&field};
+    std::vector<render::Ray> rays;
+    for (double x = -7.0; x <= 7.0; x += 0.5) rays.push_back({{x, 6.0, 30.0}, {0, 0, -1}});
+    std::vector<render::RayColor> out(rays.size());
+    render::RenderRays(set, rays, out, {}, threads);
+    std::vector<float> depths;
+    for (const render::RayColor& ray : out) depths.push_back(ray.depth_median);
+    return depths;
+  }
+};
+
+PriorOptions AllPriors() {
+  PriorOptions priors;
+  priors.planar = priors.upright = priors.points = 1e-2;
+  priors.from = 0.1;
+  priors.until = 0.3;
+  return priors;
+}
+
+TEST_F(PriorsTest, BitsDoNotDependOnThreadsNorOnInterruption) {
+  AddPoints(0.0);
+  base::ThreadPool one(1), three(3);
+  TrainContext(Job("context.h5", 60), Box(20.0, 0.0), one, {});
+  const auto train = [&](const TrainJob& job, base::ThreadPool& threads) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
+  train(JobWith("a.h5", 90, AllPriors()), one);
+  train(JobWith("b.h5", 90, AllPriors()), three);
+  EXPECT_EQ(Bytes("a.h5"), Bytes("b.h5"));
+  TrainInterrupted(JobWith("c.h5", 90, AllPriors()), [&](const TrainJob& job) { train(job, one); });
+  EXPECT_EQ(Bytes("a.h5"), Bytes("c.h5"));
+}
+
+TEST_F(PriorsTest, WithoutWeightsNothingChanges) {
+  AddPoints(0.0);
+  base::ThreadPool threads(1);
+  TrainContext(Job("context.h5", 60), Box(20.0, 0.0), threads, {});
+  PriorOptions off;
+  off.from = off.until = 0.0;
+  off.segment_share = off.point_share = 0.5;
+  const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
+  train(Job("a.h5", 60));
+  train(JobWith("b.h5", 60, off));
+  EXPECT_EQ(Bytes("a.h5"), Bytes("b.h5"));
+  // Before their time they change nothing either, later they do.
+  PriorOptions late = AllPriors();
+  late.from = late.until = 1.0;
+  train(JobWith("c.h5", 60, late));
+  EXPECT_EQ(Bytes("a.h5"), Bytes("c.h5"));
+  PriorOptions segments = AllPriors(), points = AllPriors();
+  segments.points = 0.0;
+  points.planar = points.upright = 0.0;
+  train(JobWith("d.h5", 60, segments));
+  train(JobWith("e.h5", 60, points));
+  EXPECT_NE(Bytes("a.h5"), Bytes("d.h5"));
+  EXPECT_NE(Bytes("a.h5"), Bytes("e.h5"));
+}
+
+// Points that lie are believed when their weight is large: the surface comes to them.
+TEST_F(PriorsTest, PointsMoveTheSurface) {
+  AddPoints(1.0);
+  base::ThreadPool threads(2);
+  TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
+  PriorOptions strong;
+  strong.points = 1.0;
+  strong.point_share = 0.3;
+  strong.from = 0.1;
+  strong.until = 0.2;
+  const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
+  train(Job("free.h5", 500));
+  train(JobWith("held.h5", 500, strong));
+  const auto close_to = [](const std::vector<float>& depths, float depth) {
+    return std::count_if(depths.begin(), depths.end(), [depth](float d) { return std::abs(d - depth) < 0.5F; });
+  };
+  const std::vector<float> free = GroundDepths("free.h5", threads), held = GroundDepths("held.h5", threads);
+  EXPECT_GT(close_to(free, 30.0F), close_to(free, 29.0F));
+  EXPECT_GT(close_to(held, 29.0F), static_cast<std::ptrdiff_t>(held.size() * 3 / 4));
+}
+
+}  // namespace
+}  // namespace skyquilt::worker

@@ -8,6 +8,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/survey/geo_fit_json.h"
+#include "evaluate/class_json.h"
 #include "evaluate/metrics.h"
 
 namespace skyquilt::evaluate {
@@ -50,13 +51,6 @@ constexpr std::array<std::pair<const char*, double KeptPointErrors::*>, 7> kKept
      {"median_abs_gsd", &KeptPointErrors::median_abs_gsd},
      {"nmad_gsd", &KeptPointErrors::nmad_gsd},
      {"share_beyond_10_gsd", &KeptPointErrors::share_beyond_10_gsd}}};
-
-constexpr std::array<std::pair<const char*, double ClassScore::*>, 6> kClassErrors = {{{"depth_bias_m", &ClassScore::depth_bias_m},
-                                                                                       {"depth_median_abs_m", &ClassScore::depth_median_abs_m},
-                                                                                       {"depth_nmad_m", &ClassScore::depth_nmad_m},
-                                                                                       {"depth_rmse_m", &ClassScore::depth_rmse_m},
-                                                                                       {"normal_median_deg", &ClassScore::normal_median_deg},
-                                                                                       {"normal_mean_deg", &ClassScore::normal_mean_deg}}};
 
 using Json = nlohmann::ordered_json;
 
@@ -134,11 +128,7 @@ void PutNumbers(std::span<const KeyedNumber> numbers, const Metrics& metrics, Js
 // Nothing without true classes.
 void PutClasses(const Metrics& metrics, Json* json) {
   if (metrics.classes.empty()) return;
-  Json& classes = (*json)["classes"] = Json::object();
-  for (const ClassScore& score : metrics.classes) {
-    Json& one = classes[score.name] = {{"pixels", score.pixels}, {"missing_pixels", score.missing_pixels}};
-    for (const auto& [key, member] : kClassErrors) one[key] = NumberOrNull(score.*member);
-  }
+  (*json)["classes"] = ToJson(std::span<const ClassScore>(metrics.classes));
   (*json)["flat_roofs"] = metrics.flat_roofs;
   (*json)["flat_roof_rms_m"] = NumberOrNull(metrics.flat_roof_rms_m);
 }
@@ -175,15 +165,7 @@ void TakeKeptPoints(const Json& json, KeptPointErrors* errors) {
 }
 
 void TakeClasses(const Json& json, Metrics* metrics) {
-  const Json classes = ValueAt<Json>(json, "classes");
-  for (const auto& [name, one] : classes.items()) {
-    ClassScore score;
-    score.name = name;
-    score.pixels = ValueAt<int64_t>(one, "pixels");
-    score.missing_pixels = ValueAt<int64_t>(one, "missing_pixels");
-    for (const auto& [key, member] : kClassErrors) score.*member = NumberAt(one, key);
-    metrics->classes.push_back(std::move(score));
-  }
+  metrics->classes = ClassScoresFromJson(ValueAt<Json>(json, "classes"));
   metrics->flat_roofs = ValueAt<int>(json, "flat_roofs");
   metrics->flat_roof_rms_m = NumberAt(json, "flat_roof_rms_m");
 }

@@ -6,15 +6,12 @@
 #include <optional>
 
 #include "core/base/file.h"
-#include "core/image/draw_text.h"
 
 namespace skyquilt::bench {
 namespace {
 
 constexpr int kCropWidth = 80, kCropHeight = 60;  // of the sheet; crops of other widths have its shape
 constexpr int kShownWidth = 320;
-constexpr int kGap_px = 10;
-constexpr double kCapital_px = 11.0;
 
 // kind: one, averaged or truth. Empty when the file is gone.
 std::optional<image::Image8> Saved(const std::filesystem::path& study, const VariantResult& result, const std::string& group, const std::string& kind,
@@ -35,43 +32,6 @@ std::string RaysCaption(const MethodResults& m, int divisor) {
 }
 
 }  // namespace
-
-image::Image8 EnlargedMiddle(const image::Image8& image, int width, int height, int times) {
-  const int w = std::min(width, image.width), h = std::min(height, image.height);
-  const int left = (image.width - w) / 2, top = (image.height - h) / 2;
-  image::Image8 enlarged(w * times, h * times, image.channels);
-  for (int y = 0; y < enlarged.height; ++y) {
-    for (int x = 0; x < enlarged.width; ++x) std::copy_n(image.At(left + x / times, top + y / times), image.channels, enlarged.At(x, y));
-  }
-  return enlarged;
-}
-
-image::Image8 PictureSheet(const std::vector<std::vector<CaptionedImage>>& rows) {
-  const int caption_px = static_cast<int>(2.0 * kCapital_px);
-  int width = kGap_px, height = kGap_px;
-  for (const auto& row : rows) {
-    int row_width = kGap_px, row_height = 0;
-    for (const CaptionedImage& cell : row) {
-      row_width += std::max(cell.image.width, image::TextWidth(cell.caption, kCapital_px)) + kGap_px;
-      row_height = std::max(row_height, cell.image.height);
-    }
-    width = std::max(width, row_width);
-    height += caption_px + row_height + kGap_px;
-  }
-  image::Image8 sheet(width, height, 3, 255);
-  int top = kGap_px;
-  for (const auto& row : rows) {
-    int left = kGap_px, row_height = 0;
-    for (const CaptionedImage& cell : row) {
-      image::DrawText(&sheet, cell.caption, left, top + static_cast<int>(1.3 * kCapital_px), kCapital_px);
-      for (int y = 0; y < cell.image.height; ++y) std::copy_n(cell.image.At(0, y), cell.image.width * 3, sheet.At(left, top + caption_px + y));
-      left += std::max(cell.image.width, image::TextWidth(cell.caption, kCapital_px)) + kGap_px;
-      row_height = std::max(row_height, cell.image.height);
-    }
-    top += caption_px + row_height + kGap_px;
-  }
-  return sheet;
-}
 
 BenchSection CropSection(const std::vector<MethodResults>& methods, const CropRequest& request) {
   BenchSection section{.id = request.id,

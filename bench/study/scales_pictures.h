@@ -6,20 +6,11 @@
 #include <vector>
 
 #include "bench/bench_page.h"
+#include "bench/study/picture_sheet.h"
 #include "bench/study/scales_parts.h"
 #include "core/image/image.h"
 
 namespace skyquilt::bench {
-
-// The middle of the image, at most width x height pixels, every pixel enlarged to a square of `times` pixels.
-image::Image8 EnlargedMiddle(const image::Image8& image, int width, int height, int times);
-
-struct CaptionedImage {
-  std::string caption;  // ASCII
-  image::Image8 image;
-};
-// Rows of images on white, each with its caption above.
-image::Image8 PictureSheet(const std::vector<std::vector<CaptionedImage>>& rows);
 
 // The same crop of the photo and of the rendering by each method, at one width. Writes NAME_*.png into folder/scales_images. All images are missing,
 // and so is the section's list, when the pictures of the first training are gone. folder: of the page, in which the study lies. runs: folder of the

@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "bench/study/scene_views.h"
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/stages/pipeline.h"
@@ -147,6 +148,7 @@ std::string Study::Identity(const Variant& variant, const coordinator::Settings&
       config::Hash(flat) + " " + coordinator::FileIdentity(source_ / "survey" / "survey.json") + " " + std::to_string(variant.every_nth_photo);
   for (const std::string& prefix : variant.photo_prefixes) identity.append(" ").append(prefix);
   if (scales_) identity.append(" ").append(scales_->Identity());
+  if (views_ > 0) identity.append(" views ").append(std::to_string(views_));
   return identity;
 }
 
@@ -212,7 +214,7 @@ VariantResult Study::Measure(const Variant& variant, const coordinator::Settings
   try {
     const evaluate::Metrics metrics = Train(variant, settings, merge_anew, training);
     result = Collect(variant, variant, *training, metrics);
-    if (scales_) AddScales(variant, settings, &result);
+    AddFromScene(variant, settings, &result);
   } catch (const base::BlockError& error) {
     result.failure = error.what();
   }
@@ -283,6 +285,8 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   r.floater_opacity = known(metrics.floater_opacity);
   r.kept_median_gsd = known(metrics.kept_points.median_gsd);
   r.kept_nmad_gsd = known(metrics.kept_points.nmad_gsd);
+  r.classes = metrics.classes;
+  r.flat_roof_rms_m = known(metrics.flat_roof_rms_m);
   r.train_seconds = known(metrics.train_seconds);
   r.samples_per_second = known(metrics.samples_per_second);
   r.peak_rss_bytes = metrics.peak_rss_bytes > 0 ? static_cast<double>(metrics.peak_rss_bytes) : VariantResult::kNone;
@@ -334,16 +338,31 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   return r;
 }
 
-void Study::AddScales(const Variant& variant, const coordinator::Settings& settings, VariantResult* result) const {
+void Study::AddFromScene(const Variant& variant, const coordinator::Settings& settings, VariantResult* result) const {
+  if (!scales_ && views_ == 0) return;
   const coordinator::Project project{RunFolder(variant)};
   coordinator::SceneSession session(comm_, project.SceneFile(), settings.run, options_.verbose, options_.quiet);
   const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
   const image::PixelCache pixels =
       image::PixelCache::Open(project.PixelCacheFile(), coordinator::PixelSources(survey), settings.run.image_width, session.threads());
-  const ScaleInput input{.scene = &session.scene(), .survey = &survey, .pixels = &pixels, .evaluate = settings.evaluate};
-  const std::filesystem::path pictures = std::filesystem::path("runs") / variant.name / "scales";
-  result->scales = ScoreScales(input, *scales_, options_.folder / pictures, session.threads());
-  result->scale_pictures = pictures.generic_string();
+  const std::filesystem::path own = std::filesystem::path("runs") / variant.name;
+  if (scales_) {
+    const ScaleInput input{.scene = &session.scene(), .survey = &survey, .pixels = &pixels, .evaluate = settings.evaluate};
+    result->scale_pictures = (own / "scales").generic_string();
+    result->scales = ScoreScales(input, *scales_, options_.folder / result->scale_pictures, session.threads());
+  }
+  if (views_ > 0) {
+    const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
+    evaluate::EvaluateInput input;
+    input.scene = &session.scene();
+    input.survey = &survey;
+    input.blocks = &blocks;
+    input.pixels = &pixels;
+    input.project_folder = project.folder;
+    input.options = settings.evaluate;
+    result->views = (own / "views").generic_string();
+    WriteViews(input, views_, options_.folder / result->views, session.threads());
+  }
 }
 
 Study Study::Beside(const std::string& name, const StudySurvey& survey, const std::vector<config::Override>& overrides) const {

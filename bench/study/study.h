@@ -71,6 +71,9 @@ struct VariantResult {
   std::string report;                            // its report, relative to FOLDER
   std::vector<ScaleScore> scales;                // when the study measures them
   std::string scale_pictures;                    // folder of their pictures, relative to FOLDER; may be empty
+  std::vector<evaluate::ClassScore> classes;     // simulated surveys with true classes
+  double flat_roof_rms_m = kNone;                // the same; evaluate::FlatRoofScore
+  std::string views;                             // folder of the pictures that WriteViews makes, relative to FOLDER; may be empty
 };
 
 class Study {
@@ -89,8 +92,11 @@ class Study {
   const std::filesystem::path& folder() const { return options_.folder; }  // absolute
   const survey::Survey& survey() const { return survey_; }
   const coordinator::Settings& settings() const { return options_.settings; }
+  const std::string& place() const { return options_.survey.place; }  // that is simulated; empty: none
   // Every variant that is run from now on is also scored at several scales.
   void MeasureScales(ScaleOptions options) { scales_ = std::move(options); }
+  // Every variant that is run from now on leaves pictures of so many held-out photos, as its scene may be removed (scene_views.h).
+  void KeepViews(int photos) { views_ = photos; }
   // A study of another survey with the same settings and `overrides`, in FOLDER/name.
   Study Beside(const std::string& name, const StudySurvey& survey, const std::vector<config::Override>& overrides) const;
   // Trains and scores a variant, or reads its saved result. When it cannot be trained, `failure` of the result has the reason.
@@ -112,7 +118,8 @@ class Study {
   void LinkPixels(const std::filesystem::path& run_folder, int image_width, bool share) const;
   // Puts together the result of `scored` from the training of `trained` (the same variant or not), the metrics, and the files of both.
   VariantResult Collect(const Variant& trained, const Variant& scored, const scene::TrainReport& training, const evaluate::Metrics& metrics) const;
-  void AddScales(const Variant& variant, const coordinator::Settings& settings, VariantResult* result) const;
+  // What is asked for beside the report: scores at several scales, pictures.
+  void AddFromScene(const Variant& variant, const coordinator::Settings& settings, VariantResult* result) const;
   std::optional<VariantResult> Load(const Variant& variant, const std::string& identity) const;
 
   comm::Communicator& comm_;
@@ -120,6 +127,7 @@ class Study {
   std::filesystem::path source_;  // project that holds the survey
   survey::Survey survey_;
   std::optional<ScaleOptions> scales_;
+  int views_ = 0;
 };
 
 // Writes and reads the text of FOLDER/runs/<variant>.json. identity: of settings and survey. ParseResult throws nlohmann::json::exception.

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/study/study.h"
+#include "evaluate/class_json.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -21,6 +22,7 @@ void EachNumber(Result& r, const Each& each) {
   each("depth_rmse_m", r.depth_rmse_m);
   each("depth_median_abs_m", r.depth_median_abs_m);
   each("floater_opacity", r.floater_opacity);
+  each("flat_roof_rms_m", r.flat_roof_rms_m);
   each("kept_median_gsd", r.kept_median_gsd);
   each("kept_nmad_gsd", r.kept_nmad_gsd);
   each("train_seconds", r.train_seconds);
@@ -76,6 +78,8 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"frame_seconds", OrNull(score.frame_seconds)}});
   }
   json["scale_pictures"] = result.scale_pictures;
+  json["classes"] = evaluate::ToJson(std::span<const evaluate::ClassScore>(result.classes));
+  json["views"] = result.views;
   json["curve"] = result.curve;
   json["floater_profile"] = result.floater_profile;
   for (const auto& [key, value] :
@@ -118,6 +122,8 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .frame_seconds = OrNone(score.at("frame_seconds"))});
   }
   result.scale_pictures = json.value("scale_pictures", "");
+  result.classes = evaluate::ClassScoresFromJson(json.value("classes", Json()));
+  result.views = json.value("views", "");
   json.at("curve").get_to(result.curve);
   json.at("floater_profile").get_to(result.floater_profile);
   for (const auto& [key, value] :

@@ -21,6 +21,8 @@ struct StudyFlags {
   std::vector<int> positions;            // empty: the study's own
   std::vector<std::string> parts = {"time", "steps"};
   int seeds = 1;
+  std::vector<std::string> priors;  // empty: all variants
+  std::vector<int> seed_list;       // empty: the settings' own
   bool quick = false, restart = false, keep = false, json = false;
 };
 
@@ -35,8 +37,9 @@ struct StudyCommand {
   std::string place;   // simulated when no survey is given
   std::string budget;  // default training time, as shown in the help
   std::string footer;
-  std::function<void(CLI::App*, StudyFlags*)> options = {};  // adds the options that only this command has
-  std::function<void(const StudyFlags&)> check = {};         // refuses combinations of options before any work
+  std::function<void(CLI::App*, StudyFlags*)> options = {};                        // adds the options that only this command has
+  std::function<std::vector<config::Override>(const StudyFlags&)> overrides = {};  // changes to the settings, after --config and --set
+  std::function<void(const StudyFlags&)> check = {};                               // refuses combinations of options before any work
   std::function<bench::StudyBench(bench::Study&, const StudyFlags&)> run;
 };
 
@@ -45,15 +48,18 @@ double BudgetOf(const StudyFlags& flags, double otherwise_s, double quick_s) {
   return flags.quick ? quick_s : otherwise_s;
 }
 
-bench::Study Begin(const CommandState& state, const StudyFlags& flags, const std::string& place) {
+bench::Study Begin(const CommandState& state, const StudyFlags& flags, const StudyCommand& command) {
   std::vector<config::Override> own = kLean;
   if (flags.quick) own.insert(own.end(), kQuick.begin(), kQuick.end());
   // --config and --set come last, so that the user's values win.
   coordinator::Settings settings;
   for (const config::Override& entry : own) settings.Set(entry);
   settings = state.LoadOver(settings);
+  if (command.overrides) {
+    for (const config::Override& entry : command.overrides(flags)) settings.Set(entry);
+  }
   bench::StudySurvey survey{.folder = flags.survey, .place = flags.place, .model = flags.model};
-  if (survey.folder.empty() && survey.place.empty()) survey.place = flags.quick ? "hamlet" : place;
+  if (survey.folder.empty() && survey.place.empty()) survey.place = flags.quick ? "hamlet" : command.place;
   if (!survey.folder.empty() && !std::filesystem::is_directory(survey.folder)) {
     throw base::InputError(survey.folder, "no such folder", "Give the folder that holds the photos, or a project");
   }
@@ -98,7 +104,7 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   command->callback([&state, flags, study_command] {
     state.run_command = [&state, flags, study_command] {
       if (study_command.check) study_command.check(*flags);
-      bench::Study study = Begin(state, *flags, study_command.place);
+      bench::Study study = Begin(state, *flags, study_command);
       WriteResults(study_command.run(study, *flags), study, state, *flags);
     };
   });
@@ -198,6 +204,42 @@ void AddScalesOptions(CLI::App* command, StudyFlags* flags) {
       ->type_name("N");
 }
 
+void CheckPriors(const StudyFlags& flags) {
+  std::vector<int> seeds = flags.seed_list;
+  std::sort(seeds.begin(), seeds.end());
+  if (std::adjacent_find(seeds.begin(), seeds.end()) != seeds.end()) throw base::UsageError("--seeds names a seed twice");
+}
+
+bench::StudyBench RunPriors(bench::Study& study, const StudyFlags& flags) {
+  bench::PriorsOptions options;
+  options.variants = flags.priors;
+  options.budget_s = BudgetOf(flags, options.budget_s, 4.0);
+  options.seeds = flags.seed_list;
+  return bench::PriorsBench(study, options);
+}
+
+// The study simulates the place of the first seed.
+std::vector<config::Override> FirstPlace(const StudyFlags& flags) {
+  if (flags.seed_list.empty() || !flags.survey.empty()) return {};
+  return {{"simulate.seed", std::to_string(flags.seed_list.front())}};
+}
+
+// The options that only `bench priors` has.
+void AddPriorsOptions(CLI::App* command, StudyFlags* flags) {
+  std::string names;
+  for (const bench::StudiedPrior& prior : bench::StudiedPriors()) names += ", " + prior.name;
+  command->add_option("--priors", flags->priors, "variants to train: none (always)" + names + ", all, default; default: all of these")
+      ->delimiter(',')
+      ->check(CLI::IsMember(bench::PriorVariantNames()))
+      ->type_name("NAME,...");
+  command
+      ->add_option("--seeds", flags->seed_list,
+                   "seeds of training and of the simulated place: every variant is trained once with each; default: those of the settings, 1")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N,...");
+}
+
 }  // namespace
 
 void AddStudyBenches(CLI::App& bench, CommandState& state) {
@@ -284,6 +326,21 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                    .options = AddScalesOptions,
                    .check = CheckScales,
                    .run = RunScales});
+  AddStudyCommand(bench, state,
+                  {.name = "priors",
+                   .help = "compare losses that say what surfaces usually are: none, each alone, all",
+                   .place = "town",
+                   .budget = "90s",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench priors -o out/bench\n"
+                             "  skyquilt bench priors --priors planar,upright,all --seeds 11,12,13 -o out/bench\n"
+                             "  skyquilt bench priors --survey photos/ --model sparse/0 -o out/bench\n"
+                             "Also writes priors.png with crops side by side. After an interruption, the same command continues; seeds may be added\n"
+                             "behind the first.",
+                   .options = AddPriorsOptions,
+                   .overrides = FirstPlace,
+                   .check = CheckPriors,
+                   .run = RunPriors});
 }
 
 }  // namespace skyquilt::app

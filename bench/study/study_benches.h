@@ -80,4 +80,23 @@ struct ScalesOptions {
 // ray per pixel: at equal time, at equal steps, and trained and rendered from several heights. Writes scales.png into the study's folder.
 StudyBench ScalesBench(Study& study, const ScalesOptions& options);
 
+struct StudiedPrior {
+  std::string name;     // of its weight in section [priors]
+  double weight = 0.0;  // with which it is studied
+  std::string what;     // it makes true
+};
+const std::vector<StudiedPrior>& StudiedPriors();
+// none, the priors one by one, all, default.
+std::vector<std::string> PriorVariantNames();
+
+struct PriorsOptions {
+  std::vector<std::string> variants;  // among PriorVariantNames(); "none" is always trained; empty: all of them
+  double budget_s = 90.0;             // training time of every variant
+  std::vector<int> seeds;             // of training, each once; empty: that of the settings
+};
+// Compares training without priors, with each of them alone, with all at their studied weights and with the program's defaults: time, images, depth
+// and normals by class of surface, depth at sparse points. When the study simulates its place, it is that of the first seed, and every other seed has
+// a place of its own, simulated into FOLDER/seed_N. Writes priors.png into the study's folder.
+StudyBench PriorsBench(Study& study, const PriorsOptions& options);
+
 }  // namespace skyquilt::bench

@@ -1,0 +1,218 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/study/priors_parts.h"
+#include "bench/study/study_tables.h"
+#include "core/page/bar_chart.h"
+#include "evaluate/metrics.h"
+
+namespace skyquilt::bench {
+namespace {
+
+constexpr int kPercentDecimals = 1;
+
+double OfClass(const VariantResult& result, const char* name, double evaluate::ClassScore::*figure) {
+  const auto at = std::find_if(result.classes.begin(), result.classes.end(), [name](const evaluate::ClassScore& c) { return c.name == name; });
+  return at == result.classes.end() ? VariantResult::kNone : (*at).*figure;
+}
+
+PriorFigure DepthOf(const char* title, const char* name) {
+  return {title, "m", 3, ChangeKind::kPercent, [name](const VariantResult& r) { return OfClass(r, name, &evaluate::ClassScore::depth_nmad_m); }};
+}
+
+PriorFigure NormalsOf(const char* title, const char* name) {
+  return {title, "\xC2\xB0", 1, ChangeKind::kDifference,
+          [name](const VariantResult& r) { return OfClass(r, name, &evaluate::ClassScore::normal_median_deg); }};
+}
+
+// Mean over the blocks.
+double StepsOfBlocks(const VariantResult& result) {
+  double steps = 0.0;
+  int blocks = 0;
+  for (const VariantField& field : result.fields) {
+    if (field.name == "context") continue;
+    steps += static_cast<double>(field.steps);
+    ++blocks;
+  }
+  return blocks == 0 ? VariantResult::kNone : steps / blocks;
+}
+
+bool MeasuredInAny(const std::vector<PriorResults>& results, const PriorFigure& figure) {
+  return std::any_of(results.begin(), results.end(), [&](const PriorResults& r) { return std::isfinite(MeanOverSeeds(r, figure)); });
+}
+
+// The unit as the change of the figure has it, with a space in front where there is one.
+std::string UnitOfChange(const PriorFigure& figure) {
+  if (figure.change == ChangeKind::kPercent) return " %";
+  return figure.unit.empty() || figure.unit == "\xC2\xB0" ? figure.unit : " " + figure.unit;
+}
+
+int DecimalsOfChange(const PriorFigure& figure) {
+  return figure.change == ChangeKind::kPercent ? kPercentDecimals : figure.decimals;
+}
+
+// "-12.3 % (-15.0 to -9.6)"; an en dash when nothing was measured.
+BenchCell ChangeCell(const PriorChange& change, const PriorFigure& figure) {
+  if (std::isnan(change.mean)) return BenchCell::Number(change.mean, 0);
+  const int decimals = DecimalsOfChange(figure);
+  std::string shown = Signed(change.mean, decimals) + UnitOfChange(figure);
+  if (change.seeds > 1) shown += fmt::format(" ({} to {})", Signed(change.lowest, decimals), Signed(change.highest, decimals));
+  return {std::move(shown), change.mean};
+}
+
+std::string WithFailures(const PriorResults& results) {
+  std::string text = results.label;
+  for (const VariantResult& r : results.seeds) {
+    if (!r.failure.empty()) text += " (" + r.failure + ")";
+  }
+  return text;
+}
+
+double Change(double before, double after, ChangeKind kind) {
+  if (kind == ChangeKind::kDifference) return after - before;
+  return before != 0.0 ? 100.0 * (after / before - 1.0) : VariantResult::kNone;
+}
+
+}  // namespace
+
+const std::vector<PriorFigure>& PriorFigures() {
+  using R = const VariantResult&;
+  static const std::vector<PriorFigure> kFigures = {
+      {"steps", "", 0, ChangeKind::kPercent, StepsOfBlocks},
+      {"training", "s", 1, ChangeKind::kNone, [](R r) { return r.train_seconds; }},
+      {"PSNR", "dB", 2, ChangeKind::kDifference, [](R r) { return r.psnr_db; }},
+      {"SSIM", "", 4, ChangeKind::kDifference, [](R r) { return r.ssim; }},
+      {"FLIP", "", 4, ChangeKind::kDifference, [](R r) { return r.flip; }},
+      DepthOf("roofs, NMAD", "roof"),
+      DepthOf("ground, NMAD", "ground"),
+      DepthOf("walls, NMAD", "wall"),
+      DepthOf("trees, NMAD", "tree"),
+      NormalsOf("roofs, normals", "roof"),
+      NormalsOf("walls, normals", "wall"),
+      NormalsOf("ground, normals", "ground"),
+      {"flat roofs, rms", "m", 3, ChangeKind::kPercent, [](R r) { return r.flat_roof_rms_m; }},
+      {"kept points, median", "GSD", 2, ChangeKind::kDifference, [](R r) { return r.kept_median_gsd; }},
+      {"kept points, NMAD", "GSD", 2, ChangeKind::kPercent, [](R r) { return r.kept_nmad_gsd; }},
+  };
+  return kFigures;
+}
+
+double MeanOverSeeds(const PriorResults& results, const PriorFigure& figure) {
+  std::vector<double> values;
+  for (const VariantResult& r : results.seeds) {
+    if (const double value = figure.value(r); std::isfinite(value)) values.push_back(value);
+  }
+  return evaluate::MeanOfMeasured(values);
+}
+
+PriorChange ChangeOf(const PriorResults& before, const PriorResults& after, const PriorFigure& figure) {
+  PriorChange change;
+  if (figure.change == ChangeKind::kNone) return change;
+  double sum_before = 0.0, sum_after = 0.0;
+  for (size_t seed = 0; seed < std::min(before.seeds.size(), after.seeds.size()); ++seed) {
+    const double from = figure.value(before.seeds[seed]), to = figure.value(after.seeds[seed]);
+    if (!std::isfinite(from) || !std::isfinite(to)) continue;
+    const double own = Change(from, to, figure.change);
+    sum_before += from;
+    sum_after += to;
+    // std::fmin ignores NaN.
+    change.lowest = std::fmin(change.lowest, own);
+    change.highest = std::fmax(change.highest, own);
+    ++change.seeds;
+  }
+  if (change.seeds > 0) change.mean = Change(sum_before / change.seeds, sum_after / change.seeds, figure.change);
+  return change;
+}
+
+BenchTable PriorTable(const std::vector<PriorResults>& results, const std::string& name) {
+  BenchTable table{.name = name,
+                   .title = "",
+                   .note =
+                       "Means over the seeds. Steps: mean over blocks. PSNR, SSIM and FLIP over the pixels of held-out photos that at least two "
+                       "training photos see. NMAD: spread of the depth error, 1.4826 times the median distance from its median. Normals: median "
+                       "angle to the true surface. Flat roofs: rms about the plane that fits best. Kept points: depth at sparse points that were "
+                       "kept from training, in ground sampling distances.",
+                   .columns = {"variant"},
+                   .rows = {}};
+  for (const PriorResults& r : results) table.rows.push_back({BenchCell::Text(WithFailures(r))});
+  for (const PriorFigure& figure : PriorFigures()) {
+    if (!MeasuredInAny(results, figure)) continue;
+    table.columns.push_back(figure.title);
+    for (size_t i = 0; i < results.size(); ++i) {
+      table.rows[i].push_back(BenchCell::Number(MeanOverSeeds(results[i], figure), figure.decimals, figure.unit));
+    }
+  }
+  return table;
+}
+
+BenchTable PriorChangeTable(const std::vector<PriorResults>& results, const std::string& name) {
+  BenchTable table{.name = name,
+                   .title = "Change against no priors",
+                   .note = "Of the means over those seeds in which both were measured; in parentheses the range over seeds.",
+                   .columns = {"variant"},
+                   .rows = {}};
+  for (size_t i = 1; i < results.size(); ++i) table.rows.push_back({BenchCell::Text(results[i].label)});
+  for (const PriorFigure& figure : PriorFigures()) {
+    if (figure.change == ChangeKind::kNone || !MeasuredInAny(results, figure)) continue;
+    table.columns.push_back(figure.title);
+    for (size_t i = 1; i < results.size(); ++i) table.rows[i - 1].push_back(ChangeCell(ChangeOf(results.front(), results[i], figure), figure));
+  }
+  return table;
+}
+
+BenchTable PriorTrainingTable(const std::vector<PriorResults>& results, const std::string& name) {
+  BenchTable table{.name = name, .title = "", .note = "", .columns = {"training"}, .rows = {}};
+  for (const PriorResults& of_variant : results) {
+    for (const VariantResult& r : of_variant.seeds) {
+      table.rows.push_back({BenchCell::Text(r.failure.empty() ? r.label : r.label + " (" + r.failure + ")")});
+    }
+  }
+  for (const PriorFigure& figure : PriorFigures()) {
+    if (!MeasuredInAny(results, figure)) continue;
+    table.columns.push_back(figure.title);
+    size_t row = 0;
+    for (const PriorResults& of_variant : results) {
+      for (const VariantResult& r : of_variant.seeds) {
+        table.rows[row++].push_back(BenchCell::Number(figure.value(r), figure.decimals, figure.unit));
+      }
+    }
+  }
+  return table;
+}
+
+std::vector<std::string> PriorCharts(const std::vector<PriorResults>& results) {
+  std::vector<std::string> charts;
+  for (const PriorFigure& figure : PriorFigures()) {
+    if (!figure.title.ends_with(", NMAD")) continue;
+    std::vector<page::Bar> bars;
+    for (size_t i = 1; i < results.size(); ++i) {
+      const PriorChange change = ChangeOf(results.front(), results[i], figure);
+      page::Bar bar{.label = results[i].label, .value = 100.0 + change.mean, .limit = 100.0, .limit_shown = "100 %"};
+      if (std::isfinite(change.mean)) bar.shown = Signed(change.mean, kPercentDecimals) + " %";
+      bars.push_back(std::move(bar));
+    }
+    if (std::none_of(bars.begin(), bars.end(), [](const page::Bar& bar) { return std::isfinite(bar.value); })) continue;
+    charts.push_back(page::BarChart(
+        bars, {.title = figure.title, .x_label = "percent of training without priors", .value_name = "with priors", .limit_name = "without"}));
+  }
+  return charts;
+}
+
+std::vector<std::string> PriorVerdicts(const std::vector<PriorResults>& results) {
+  std::vector<std::string> verdicts;
+  for (size_t i = 1; i < results.size(); ++i) {
+    std::string text;
+    for (const PriorFigure& figure : PriorFigures()) {
+      const PriorChange change = ChangeOf(results.front(), results[i], figure);
+      const bool told = figure.change == ChangeKind::kPercent || figure.title == "PSNR";
+      if (!told || std::isnan(change.mean)) continue;
+      text += fmt::format("{}{} {}{}", text.empty() ? "" : "; ", figure.title, Signed(change.mean, DecimalsOfChange(figure)), UnitOfChange(figure));
+    }
+    if (!text.empty()) verdicts.push_back(fmt::format("'{}' against '{}': {}.", results[i].label, results.front().label, text));
+  }
+  return verdicts;
+}
+
+}  // namespace skyquilt::bench

@@ -1,7 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "bench/study/priors_parts.h"
 #include "bench/study/study_tables.h"
@@ -133,18 +132,18 @@ StudyBench PriorsBench(Study& study, const PriorsOptions& options) {
   page.lead += "all of them, and the program's defaults. Changes are against training without any.";
   AddPriorFigures(results, &page);
   page.verdicts = PriorVerdicts(results);
-  page.sections.push_back({.id = "quality",
-                           .title = "Images, surface and time",
-                           .lead = "",
-                           .charts = {},
-                           .tables = {PriorTable(results, ""), PriorChangeTable(results, "changes")},
-                           .pictures = {}});
-  page.sections.push_back({.id = "surface",
-                           .title = "Spread of the depth",
-                           .lead = "NMAD of depth in percent of that without priors. The mark is training without priors; shorter is better.",
-                           .charts = PriorCharts(results),
-                           .tables = {},
-                           .pictures = {}});
+  BenchSection quality{
+      .id = "quality", .title = "Images, surface and time", .lead = "", .charts = {}, .tables = {PriorTable(results, "")}, .pictures = {}};
+  if (results.size() > 1) quality.tables.push_back(PriorChangeTable(results, "changes"));
+  page.sections.push_back(std::move(quality));
+  if (std::vector<std::string> charts = PriorCharts(results); !charts.empty()) {
+    page.sections.push_back({.id = "surface",
+                             .title = "Spread of the depth",
+                             .lead = "NMAD of depth in percent of that without priors. The mark is training without priors; shorter is better.",
+                             .charts = std::move(charts),
+                             .tables = {},
+                             .pictures = {}});
+  }
   for (BenchSection& section : WritePriorPictures(CropsOfPriors(results, study.folder()), study.folder())) {
     page.sections.push_back(std::move(section));
   }

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "bench/study/scales_parts.h"
-#include "bench/study/scales_pictures.h"
 #include "core/image/srgb.h"
 
 namespace skyquilt::bench {
@@ -109,18 +108,6 @@ TEST(KeepArea, ScoresOnlyPixelsWhoseSurfaceIsInside) {
   KeepArea(photo, {{-100.0, -100.0}, {100.0, 100.0}}, &view);
   EXPECT_TRUE(std::isnan(ScoreAtScales(view, {1}, [](const camera::Camera& c) { return Even(c, 0.5F); }).front().psnr_db))
       << "without true depth no pixel is known to be inside";
-}
-
-TEST(EnlargedMiddle, RepeatsPixelsOfTheCentre) {
-  image::Image8 image(4, 4, 3);
-  for (size_t i = 0; i < image.data.size(); ++i) image.data[i] = static_cast<uint8_t>(i);
-  const image::Image8 enlarged = EnlargedMiddle(image, 2, 2, 3);
-  ASSERT_EQ(enlarged.width, 6);
-  ASSERT_EQ(enlarged.height, 6);
-  EXPECT_EQ(*enlarged.At(0, 0), *image.At(1, 1));
-  EXPECT_EQ(*enlarged.At(2, 2), *image.At(1, 1));
-  EXPECT_EQ(*enlarged.At(3, 2), *image.At(2, 1));
-  EXPECT_EQ(EnlargedMiddle(image, 100, 100, 1).data, image.data);
 }
 
 VariantResult Scored(double one_db, double averaged_db) {

@@ -32,6 +32,10 @@ VariantResult Example() {
       {.group = "h060_", .divisor = 4, .averaged = true, .photos = 3, .width = 160, .psnr_db = 31.5, .render_seconds = 0.25, .frame_seconds = 0.08},
       {.divisor = 8}};
   r.scale_pictures = "runs/guided/scales";
+  r.classes = {{.name = "roof", .pixels = 1200, .missing_pixels = 7, .depth_bias_m = -0.25, .depth_nmad_m = 0.125, .normal_median_deg = 4.5},
+               {.name = "tree"}};
+  r.flat_roof_rms_m = 0.0625;
+  r.views = "runs/guided/views";
   return r;
 }
 
@@ -86,6 +90,17 @@ TEST(ResultJson, ReadsBackUnchanged) {
   EXPECT_EQ(back.scales[0].frame_seconds, 0.08);
   EXPECT_TRUE(std::isnan(back.scales[1].psnr_db));
   EXPECT_EQ(back.scale_pictures, "runs/guided/scales");
+  ASSERT_EQ(back.classes.size(), 2U);
+  EXPECT_EQ(back.classes[0].name, "roof");
+  EXPECT_EQ(back.classes[0].pixels, 1200);
+  EXPECT_EQ(back.classes[0].missing_pixels, 7);
+  EXPECT_EQ(back.classes[0].depth_bias_m, -0.25);
+  EXPECT_EQ(back.classes[0].depth_nmad_m, 0.125);
+  EXPECT_EQ(back.classes[0].normal_median_deg, 4.5);
+  EXPECT_TRUE(std::isnan(back.classes[0].depth_rmse_m));
+  EXPECT_TRUE(std::isnan(back.classes[1].depth_nmad_m));
+  EXPECT_EQ(back.flat_roof_rms_m, 0.0625);
+  EXPECT_EQ(back.views, "runs/guided/views");
   EXPECT_EQ(ResultJson(back, identity), ResultJson(r, "abc 1"));
 }
 
@@ -96,11 +111,17 @@ TEST(ResultJson, OfAnOlderProgramHasFewerScores) {
   json.erase("kept_median_gsd");
   json.erase("kept_nmad_gsd");
   json.erase("flip");
+  json.erase("classes");
+  json.erase("flat_roof_rms_m");
+  json.erase("views");
   for (nlohmann::json& field : json["fields"]) field.erase("steps");
   std::string identity;
   const VariantResult back = ParseResult(json.dump(), &identity);
   EXPECT_TRUE(back.scales.empty());
   EXPECT_TRUE(std::isnan(back.kept_nmad_gsd));
+  EXPECT_TRUE(back.classes.empty());
+  EXPECT_TRUE(std::isnan(back.flat_roof_rms_m));
+  EXPECT_EQ(back.views, "");
   EXPECT_EQ(back.fields[1].steps, 0);
   EXPECT_TRUE(std::isnan(back.flip));
   EXPECT_EQ(back.psnr_db, Example().psnr_db);

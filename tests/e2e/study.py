@@ -98,6 +98,33 @@ def test(skyquilt, folder):
     skyquilt.call(*words)
     expect(digest(out / "runs") == before, "a finished variant was run again")
 
+    # Priors: every seed has a place of its own, and the pictures remain when the scenes are removed.
+    out = folder / "priors"
+    words = ["bench", "priors", "-o", out, "--priors", "all", "--seeds", "5,6", *SMALL, "--set", "simulate.image_width=160"]
+    skyquilt.call("bench", "priors", "-o", out, "--seeds", "5,5", *SMALL, status=2)
+    text = skyquilt.call(*words)
+    expect("'all' against 'none': " in text, text)
+    result = check_page(out, "priors")
+    expect([variant["name"] for variant in result["results"]] == ["none_s5", "all_s5", "none_s6", "all_s6"], result["results"])
+    for variant in result["results"]:
+        expect("failure" not in variant, variant)
+        expect({"roof", "wall", "ground", "tree"} <= set(variant["classes"]), variant["classes"])
+        expect((out / variant["report"]).is_file() and (out / variant["views"] / "view_0_normals.png").is_file(), variant)
+        expect(not list((out / variant["report"]).parents[1].glob("scene.h5")), "large files were kept")
+    towns = [(out / source / "simulated" / "truth" / "buildings.json").read_text() for source in ("source", "seed_6/source")]
+    expect(towns[0] != towns[1], "both seeds have the same place")
+    expect((out / "priors.png").is_file(), "no picture")
+    before = digest(out / "runs"), digest(out / "seed_6" / "runs")
+    skyquilt.call(*words)
+    expect((digest(out / "runs"), digest(out / "seed_6" / "runs")) == before, "a finished variant was run again")
+
+    # A survey of its own is trained with several seeds.
+    out = folder / "priors_of_survey"
+    skyquilt.call("bench", "priors", "--survey", survey, "-o", out, "--priors", "none", "--seeds", "5,6", *SMALL)
+    result = check_page(out, "priors")
+    expect([variant["name"] for variant in result["results"]] == ["none_s5", "none_s6"], result["results"])
+    expect(not (out / "seed_6").exists(), "the survey was prepared twice")
+
 
 if __name__ == "__main__":
     main(test)

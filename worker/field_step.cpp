@@ -81,6 +81,8 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   Grow(observed_, static_cast<size_t>(batch.Size()));
   const size_t n_packets = batch.packets.size();
   results_.assign(n_packets, {});
+  // Later, packets have other points than in the step before, but the buffers stay.
+  surface_points_.resize(options.priors.Normals() ? n_packets : 0);
   const auto network_size = static_cast<size_t>(field_.NetworkParameters());
   slot_gradients_.assign(network_size * kGradientSlots, 0.0F);
   gain_gradients_.assign(learner != nullptr ? batch.rays.size() : 0, {0.0F, 0.0F, 0.0F});
@@ -91,7 +93,9 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
                         ray_share,
                         options.distortion,
                         options.priors,
-                        gain_gradients_.empty() ? nullptr : gain_gradients_.data()};
+                        gain_gradients_.empty() ? nullptr : gain_gradients_.data(),
+                        parameters.grid,
+                        options.priors.Normals() ? surface_points_.data() : nullptr};
   threads_.ParallelFor(kGradientSlots, [&](int64_t slot, int thread) {
     PacketTrainer& trainer = *trainers_[static_cast<size_t>(thread)];
     float* network_gradient = slot_gradients_.data() + static_cast<size_t>(slot) * network_size;
@@ -136,6 +140,9 @@ LossSums FieldStep::SumResults(const RayBatch& batch, StepResult* result) {
     const Packet& packet = batch.packets[k];
     gradient_segments_.push_back({packet.begin, p.live, features_.data() + packet.features, packet.stride});
   }
+  for (const SurfacePoints& points : surface_points_) {
+    if (points.count > 0) gradient_segments_.push_back(points.Gradient());
+  }
   const float ray_share = 1.0F / static_cast<float>(std::max(1, result->n_rays));
   result->loss = sums.loss * static_cast<double>(ray_share);
   result->squared_error = sums.squared_error / (3.0 * static_cast<double>(std::max<int64_t>(1, sums.color_rays)));
@@ -162,7 +169,7 @@ void FieldStep::UpdateRunningMeans(const LossSums& sums) {
 void FieldStep::Infer(RayBatch& batch, const field::Parameters& parameters) {
   weights_ = field_.Prepare(parameters.networks);
   Encode(batch, parameters.grid);
-  const PacketStep step{batch, features_.data(), nullptr, 0.0F, 0.0, {}, nullptr};
+  const PacketStep step{batch, features_.data(), nullptr, 0.0F, 0.0, {}, nullptr, {}, nullptr};
   threads_.ParallelFor(static_cast<int64_t>(batch.packets.size()),
                        [&](int64_t k, int thread) { trainers_[static_cast<size_t>(thread)]->Infer(step, batch.packets[static_cast<size_t>(k)]); });
 }

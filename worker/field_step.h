@@ -33,7 +33,7 @@ struct StepOptions {
   double learning_rate = 0.0;
   double network_l2 = 0.0;
   double distortion = 0.0;  // weight of the distortion loss (Barron et al. 2022, eq. 15), distances in units of the box height
-  PriorWeights priors = {};
+  StepPriors priors = {};
 };
 
 struct StepResult {
@@ -89,6 +89,7 @@ class FieldStep {
   std::vector<float> features_;                           // per packet; overwritten by their gradient
   std::vector<float> observed_;
   std::vector<PacketResult> results_;
+  std::vector<SurfacePoints> surface_points_;  // per packet; empty without losses of normals
   std::vector<float> slot_gradients_;
   std::vector<std::array<float, 3>> gain_gradients_;  // per ray, by its log gains; empty without a learner
   std::vector<field::FeatureGradient> gradient_segments_;

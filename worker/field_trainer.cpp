@@ -98,8 +98,13 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   StepOptions step;
   step.priors = {.planar = strength * priors_.options.planar,
                  .upright = strength * priors_.options.upright,
+                 .planes = strength * priors_.options.planes,
                  .points = strength * priors_.options.points,
-                 .voxel_m = target_.step_m / options_.step_voxels};
+                 .normals = strength * priors_.options.normals,
+                 .orientation = strength * priors_.options.orientation,
+                 .voxel_m = target_.step_m / options_.step_voxels,
+                 .known_planes = priors_.planes,
+                 .known_directions = priors_.directions};
   const double warm_up = std::min(1.0, static_cast<double>(state_.step + 1) / kWarmUpSteps);
   const double decay = std::pow(options_.final_learning_rate_share, std::clamp((progress - kDecayFrom) / (1.0 - kDecayFrom), 0.0, 1.0));
   step.learning_rate = options_.learning_rate * learning_rate_scale * warm_up * decay;

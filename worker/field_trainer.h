@@ -11,6 +11,7 @@
 #include "core/render/trained_field.h"
 #include "worker/field_step.h"
 #include "worker/photo_segments.h"
+#include "worker/point_planes.h"
 #include "worker/prior_options.h"
 #include "worker/ray_batch.h"
 #include "worker/ray_source.h"
@@ -21,8 +22,10 @@ namespace skyquilt::worker {
 // What a field is taught beside the photos. Nothing by default.
 struct FieldPriors {
   PriorOptions options;
-  const PhotoSegments* segments = nullptr;  // of the field's photos; needed for options.Segments()
-  const DepthPoints* points = nullptr;      // of the field; needed for options.points > 0; may be empty
+  const PhotoSegments* segments = nullptr;                 // of the field's photos; needed for options.Segments()
+  const DepthPoints* points = nullptr;                     // of the field; needed for options.points > 0; may be empty
+  const PointPlanes* planes = nullptr;                     // of the field; needed for options.Planes(); may be empty
+  const survey::DominantDirections* directions = nullptr;  // of buildings, for options.upright; may be null
 };
 
 class FieldTrainer {

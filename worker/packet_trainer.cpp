@@ -35,8 +35,15 @@ PacketResult PacketTrainer::Train(const PacketStep& step, const Packet& packet, 
   } else {
     ComposeAndLoss(result.sums);
   }
+  const float* more_geometry_gradient = nullptr;
+  if (step.surface_points != nullptr) {
+    SurfacePoints& points = step.surface_points[&packet - step.batch.packets.data()];
+    if (AddNormalLosses(points, network_gradient, result.sums)) more_geometry_gradient = geometry_gradient_.data();
+    result.finite = kernel::AllFinite(points.feature_gradient.data(), static_cast<int64_t>(points.feature_gradient.size())) &&
+                    kernel::AllFinite(points.along.data(), static_cast<int64_t>(points.along.size()));
+  }
   at = times_.Add(thread_, Phase::kCompose, at);
-  if (live_ > 0) result.finite = Backward(network_gradient);
+  if (live_ > 0) result.finite = Backward(network_gradient, more_geometry_gradient) && result.finite;
   times_.Add(thread_, Phase::kBackward, at);
   return result;
 }
@@ -147,9 +154,9 @@ void PacketTrainer::Color() {
 }
 
 // Replaces the features by their gradient; false when it is not finite.
-bool PacketTrainer::Backward(float* network_gradient) {
+bool PacketTrainer::Backward(float* network_gradient, const float* more_geometry_gradient) {
   float* features = Features();
-  shared_.field.Backward(shared_.weights, a_, features, packet_->stride, kernel::Padded(live_), network_gradient);
+  shared_.field.Backward(shared_.weights, a_, features, packet_->stride, kernel::Padded(live_), network_gradient, more_geometry_gradient);
   bool finite = true;
   for (int row = 0; row < shared_.field.encoding().OutputRows(); ++row) {
     finite = finite && kernel::AllFinite(features + static_cast<size_t>(row) * packet_->stride, live_);

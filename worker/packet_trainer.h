@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,9 +17,10 @@
 #include "worker/losses/distortion_loss.h"
 #include "worker/luminance_convolution.h"
 #include "worker/phase_times.h"
-#include "worker/prior_weights.h"
 #include "worker/ray_batch.h"
 #include "worker/ray_loss.h"
+#include "worker/step_priors.h"
+#include "worker/surface_points.h"
 
 namespace skyquilt::worker {
 
@@ -43,8 +45,10 @@ struct PacketStep {
   float* observed;    // per sample: tau of a marching step, 0 where no light arrives; not used by Infer
   float ray_share;    // 1 / rays of the batch
   double distortion;  // weight of the distortion loss
-  PriorWeights priors;
+  StepPriors priors;
   std::array<float, 3>* gain_gradients;  // per ray, by its log gains; null without a learner
+  std::span<const float> grid;           // parameters of the encoding
+  SurfacePoints* surface_points;         // per packet, written; null without losses of normals
 };
 
 struct PacketResult {
@@ -74,7 +78,7 @@ class PacketTrainer {
   void ZeroPadding(float* rows, int n_rows, size_t stride) const;
   void KeepAll();
   void Color();
-  bool Backward(float* network_gradient);
+  bool Backward(float* network_gradient, const float* more_geometry_gradient);
 
   // packet_trainer_context.cpp: renders the context in front of the block's ground plan and, where light passes through the block, behind it.
   void RenderContext();
@@ -91,12 +95,19 @@ class PacketTrainer {
   bool WantsDistortionLoss(const BatchRay& ray, const RayView& view) const;
   void AddDistortion(const RayView& view, LossSums& sums);
   // packet_trainer_priors.cpp: losses of the distances at which rays end.
-  void AddSegmentLosses(LossSums& sums);
+  void AddEndLosses(LossSums& sums);
+  void AddDistanceLoss(size_t view, double weight, const Eigen::Vector3d& on_plane, const Eigen::Vector3d& normal, LossSums& sums);
+  void AddKnownPlaneLoss(size_t view, LossSums& sums);
   void AddSegmentLoss(size_t first, size_t end, LossSums& sums);
   bool HasDistanceGradient(size_t view) const { return !distance_gradient_.empty() && distance_gradient_[view] != 0.0F; }
   void AddDistanceGradient(size_t view);
   bool WantsPointLoss(const BatchRay& ray, const RayView& view) const;
   void AddPointLoss(const BatchRay& ray, const RayView& view, LossSums& sums);
+
+  // packet_trainer_normals.cpp: losses of normals at the ends of rays. Returns whether geometry_gradient_ has a gradient by the samples' geometry.
+  bool AddNormalLosses(SurfacePoints& points, float* network_gradient, LossSums& sums);
+  void PlaceSurfacePoints(SurfacePoints& points) const;
+  void AddNormalLoss(size_t view, size_t point, bool head, LossSums& sums);
 
   // Turns gradients by optical depths and colours into gradients by the networks' outputs.
   void FinishGradients();
@@ -121,8 +132,14 @@ class PacketTrainer {
   DistortionScratch<float> distortion_;
   std::vector<RayView> views_;  // rays of the packet
   std::vector<ComposedRay> composed_;
-  std::vector<RayEnd> ends_;              // per view; only with priors
+  std::vector<RayEnd> ends_;              // per view; empty unless a prior needs them
   std::vector<float> distance_gradient_;  // of the batch's mean loss by the mean distance of each view; empty without priors
+  // With losses of normals only.
+  std::vector<size_t> normal_views_;  // whose ends have such a loss
+  field::DensitySlope slope_;
+  std::vector<float> slope_along_;                     // 3 rows of slope_.stride: by the gradient of the log density
+  std::vector<float> predicted_, predicted_gradient_;  // rows of the normal head
+  std::vector<float> geometry_gradient_;
   // Intervals of rays that are rendered from the context.
   std::unique_ptr<render::RayRenderer> context_;
   std::vector<render::Ray> pieces_;

@@ -14,7 +14,7 @@ constexpr float kLeastColorSlope = 0.02F;
 void PacketTrainer::ComposeAndLoss(LossSums& sums) {
   composed_.clear();
   for (const RayView& view : views_) composed_.push_back(Compose(view));
-  AddSegmentLosses(sums);
+  AddEndLosses(sums);
   for (size_t k = 0; k < views_.size(); ++k) {
     const BatchRay& r = Ray(k);
     const RayView& view = views_[k];

@@ -1,5 +1,5 @@
 // Losses of the distances at which rays end: rays of one segment of a photo end on a plane, and on a level or vertical one when it nearly is; rays
-// towards a sparse point end there.
+// that end near a plane of sparse points end on it; rays towards a sparse point end there.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,6 +14,11 @@ namespace {
 
 using Eigen::Vector3d;
 
+// A ray that grazes a plane says little about where it meets it.
+constexpr double kLeastFacing = 0.2;
+// Rays that end farther from a plane of sparse points, in voxels, belong to something else.
+constexpr double kPlaneReachVoxels = 3.0;
+
 RayEnd EndOf(size_t n, const float* weights, const float* t, double voxel_m) {
   constexpr double kFront = 0.15, kBack = 0.85;
   RayEnd end;
@@ -26,18 +31,33 @@ RayEnd EndOf(size_t n, const float* weights, const float* t, double voxel_m) {
     if (before < kBack) back = at;
   }
   if (!(end.weight > kOpaqueWeight)) return end;
+  end.opaque = true;
   end.mean_m = moment / end.weight;
-  end.sharp = back - front < kSharpVoxels * voxel_m;
+  end.depth_m = back - front;
+  end.sharp = end.depth_m < kSharpVoxels * voxel_m;
   return end;
 }
 
 }  // namespace
 
-void PacketTrainer::AddSegmentLosses(LossSums& sums) {
+void PacketTrainer::AddEndLosses(LossSums& sums) {
   distance_gradient_.clear();
-  if (!step_->priors.Segments()) return;
+  ends_.clear();
+  const StepPriors& priors = step_->priors;
+  if (!priors.Ends()) return;
   distance_gradient_.assign(views_.size(), 0.0F);
   ends_.assign(views_.size(), {});
+  const bool everywhere = priors.planes > 0.0 && priors.known_planes != nullptr;
+  for (size_t k = 0; k < views_.size(); ++k) {
+    const BatchRay& r = Ray(k);
+    // A pixel of a reduced photo may show several surfaces.
+    if (r.ray.empty || r.ray.level != 0 || !(everywhere || r.segment >= 0)) continue;
+    const RayView& view = views_[k];
+    ends_[k] =
+        EndOf(static_cast<size_t>(view.count), weight_.data() + view.begin, step_->batch.t.data() + packet_->begin + view.begin, priors.voxel_m);
+    if (everywhere && ends_[k].opaque) AddKnownPlaneLoss(k, sums);
+  }
+  if (!priors.Segments()) return;
   for (size_t first = 0; first < views_.size();) {
     size_t end = first + 1;
     while (Ray(first).segment >= 0 && end < views_.size() && Ray(end).segment == Ray(first).segment) ++end;
@@ -46,32 +66,47 @@ void PacketTrainer::AddSegmentLosses(LossSums& sums) {
   }
 }
 
+// The robust square of the distance between a ray's end and a plane, in ground sampling distances; one voxel is far.
+void PacketTrainer::AddDistanceLoss(size_t view, double weight, const Vector3d& on_plane, const Vector3d& normal, LossSums& sums) {
+  const PixelRay& ray = Ray(view).ray;
+  const double gsd_m = static_cast<double>(ray.pixel_pitch) * ends_[view].mean_m;
+  const double off = (ray.origin_enu + ends_[view].mean_m * ray.direction_enu - on_plane).dot(normal);
+  const Loss<double> loss = RobustLoss(weight, off / gsd_m, step_->priors.voxel_m / gsd_m);
+  sums.loss += loss.value;
+  distance_gradient_[view] += static_cast<float>(loss.gradient * normal.dot(ray.direction_enu) / gsd_m) * step_->ray_share;
+}
+
+void PacketTrainer::AddKnownPlaneLoss(size_t view, LossSums& sums) {
+  const StepPriors& priors = step_->priors;
+  const PixelRay& ray = Ray(view).ray;
+  const PointPlane* const plane =
+      priors.known_planes->At(ray.origin_enu + ends_[view].mean_m * ray.direction_enu, kPlaneReachVoxels * priors.voxel_m);
+  if (plane == nullptr) return;
+  // Light that grazes a wall is stopped over a long way, but near the wall.
+  const double facing = std::abs(plane->normal.dot(ray.direction_enu));
+  if (facing < kLeastFacing || facing * ends_[view].depth_m > kSharpVoxels * priors.voxel_m) return;
+  AddDistanceLoss(view, priors.planes, plane->point, plane->normal, sums);
+}
+
 void PacketTrainer::AddSegmentLoss(size_t first, size_t end, LossSums& sums) {
-  const PriorWeights& priors = step_->priors;
+  const StepPriors& priors = step_->priors;
   std::vector<size_t> used;
   std::vector<Vector3d> points;
   for (size_t k = first; k < end; ++k) {
-    const RayView& view = views_[k];
-    ends_[k] =
-        EndOf(static_cast<size_t>(view.count), weight_.data() + view.begin, step_->batch.t.data() + packet_->begin + view.begin, priors.voxel_m);
     if (!ends_[k].sharp) continue;
     used.push_back(k);
     points.emplace_back(Ray(k).ray.origin_enu + ends_[k].mean_m * Ray(k).ray.direction_enu);
   }
   const std::optional<Plane> plane = FitPlane(points);
   if (!plane) return;
-  const std::optional<Plane> upright = priors.upright > 0.0 ? UprightPlane(*plane) : std::nullopt;
-  for (size_t i = 0; i < used.size(); ++i) {
-    const PixelRay& ray = Ray(used[i]).ray;
-    const double gsd_m = static_cast<double>(ray.pixel_pitch) * ends_[used[i]].mean_m;
-    const auto add = [&](double weight, const Plane& target) {
-      const double off = (points[i] - target.point).dot(target.normal);
-      const Loss<double> loss = RobustLoss(weight, off / gsd_m, priors.voxel_m / gsd_m);
-      sums.loss += loss.value;
-      distance_gradient_[used[i]] += static_cast<float>(loss.gradient * target.normal.dot(ray.direction_enu) / gsd_m) * step_->ray_share;
-    };
-    if (priors.planar > 0.0) add(priors.planar, *plane);
-    if (upright) add(priors.upright, *upright);
+  std::optional<Plane> upright;
+  if (priors.upright > 0.0) {
+    const auto yaw_deg = priors.known_directions != nullptr ? priors.known_directions->YawAt(plane->point.head<2>()) : std::nullopt;
+    upright = UprightPlane(*plane, yaw_deg);
+  }
+  for (const size_t k : used) {
+    if (priors.planar > 0.0) AddDistanceLoss(k, priors.planar, plane->point, plane->normal, sums);
+    if (upright) AddDistanceLoss(k, priors.upright, upright->point, upright->normal, sums);
   }
 }
 

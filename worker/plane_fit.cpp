@@ -1,6 +1,8 @@
 #include "worker/plane_fit.h"
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
 
 namespace skyquilt::worker {
 namespace {
@@ -11,6 +13,9 @@ using Eigen::Vector3d;
 constexpr double kFlatness = 4.0, kBreadth = 1e-3;
 // Upward components of the normals of planes that are nearly level (10 degrees) or vertical (20 degrees).
 constexpr double kNearlyLevel = 0.985, kNearlyVertical = 0.35;
+// Walls that are turned more against the buildings around them stay as they are.
+constexpr double kNearlyAligned_deg = 10.0;
+constexpr double kRadians = std::numbers::pi / 180.0;
 
 }  // namespace
 
@@ -28,11 +33,14 @@ std::optional<Plane> FitPlane(const std::vector<Vector3d>& points) {
   return Plane{mean, solver.eigenvectors().col(0)};
 }
 
-std::optional<Plane> UprightPlane(const Plane& plane) {
+std::optional<Plane> UprightPlane(const Plane& plane, std::optional<double> yaw_deg) {
   const double up = std::abs(plane.normal.z());
   if (up > kNearlyLevel) return Plane{plane.point, Vector3d::UnitZ()};
-  if (up < kNearlyVertical) return Plane{plane.point, Vector3d(plane.normal.x(), plane.normal.y(), 0.0).normalized()};
-  return std::nullopt;
+  if (!(up < kNearlyVertical)) return std::nullopt;
+  const double normal_yaw = std::atan2(plane.normal.y(), plane.normal.x());
+  const double turn = yaw_deg ? std::remainder(*yaw_deg * kRadians - normal_yaw, 0.5 * std::numbers::pi) : 0.0;
+  const double yaw = std::abs(turn) < kNearlyAligned_deg * kRadians ? normal_yaw + turn : normal_yaw;
+  return Plane{plane.point, Vector3d(std::cos(yaw), std::sin(yaw), 0.0)};
 }
 
 }  // namespace skyquilt::worker

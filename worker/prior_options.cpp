@@ -16,11 +16,18 @@ std::vector<config::Field<PriorOptions>> PriorOptions::Fields() {
   using O = PriorOptions;
   return {
       {"planar", &O::planar, Range{0, 1e3}, "weight of the loss that makes the surface plane within segments of a photo; 0: off"},
-      {"upright", &O::upright, Range{0, 1e3}, "weight of the loss that makes such planes level or vertical when they nearly are; 0: off"},
+      {"upright", &O::upright, Range{0, 1e3},
+       "weight of the loss that makes such planes level or vertical when they nearly are, and walls follow the direction of the buildings there; 0: "
+       "off"},
+      {"planes", &O::planes, Range{0, 1e3}, "weight of the loss that brings the surface onto planes of sparse points; 0: off"},
       {"points", &O::points, Range{0, 1e3}, "weight of the loss that brings the surface to the sparse points; 0: off"},
+      {"normals", &O::normals, Range{0, 1e3},
+       "weight of the loss that makes normals agree: those of the density, of a predicting head and of planes of sparse points; 0: off"},
+      {"orientation", &O::orientation, Range{0, 1e3}, "weight of the loss that turns the normals of the density towards the camera; 0: off"},
       {"from", &O::from, Range{0, 1}, "share of the budget up to which these weights are 0"},
       {"until", &O::until, Range{0, 1}, "share of the budget from which on they have their full size; between, they grow linearly"},
-      {"segment_share", &O::segment_share, Range{0, 0.5}, "share of the rays that are drawn in groups within a segment, for planar and upright"},
+      {"segment_share", &O::segment_share, Range{0, 0.5},
+       "share of the rays that are drawn in groups within a segment, for all but planes and points"},
       {"point_share", &O::point_share, Range{0, 0.5}, "share of the rays that are drawn towards sparse points"},
   };
 }

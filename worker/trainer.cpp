@@ -64,6 +64,7 @@ render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool
   f.config.multisample = options.multisample;
   f.config.scale_features = options.scale_features && f.config.Cones();
   f.config.luminance = luminance.On();
+  f.config.normal_head = !is_context && job.priors.normals > 0.0;
   // Light that is shown brighter than in the photos, or that was too bright for them.
   if (luminance.On()) f.config.color_range = std::max(f.config.color_range, kLuminanceRange);
   f.occupancy = field::OccupancyGrid::Make(grid.extent, kCellPerVoxel * spec.finest_voxel_m * f.map.units_per_metre(), kMaxOccupancyCells);
@@ -156,7 +157,8 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
   std::optional<PhotoSegments> segments;
   if (job.priors.Segments()) segments.emplace(*job.pixels, block.photos, threads);
   const DepthPoints points = job.priors.points > 0.0 ? DepthPoints(*job.survey, source, block.box) : DepthPoints();
-  const FieldPriors priors{job.priors, segments ? &*segments : nullptr, &points};
+  const PointPlanes planes = job.priors.Planes() ? PointPlanes(*job.survey, block.box, block.gsd_m) : PointPlanes();
+  const FieldPriors priors{job.priors, segments ? &*segments : nullptr, &points, &planes, &job.survey->directions};
   FieldTrainer trainer(target, source, context != nullptr ? &context->field : nullptr, job.options, job.seed, luminance, nullptr, priors, threads);
   SessionRecord record;
   if (saved) {

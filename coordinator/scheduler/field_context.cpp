@@ -24,6 +24,7 @@ worker::BlockSpec SpecOfBlock(const partition::Block& block) {
   spec.name = block.name;
   spec.box = block;
   spec.finest_voxel_m = block.finest_voxel_m;
+  spec.gsd_m = block.gsd_m;
   spec.log2_table_size = block.log2_table_size;
   spec.photos = block.photos;
   return spec;

@@ -32,6 +32,15 @@ int DominantDirections::ModeNear(double yaw_deg) const {
   return best;
 }
 
+std::optional<double> DominantDirections::YawAt(const Eigen::Vector2d& place_enu) const {
+  for (const YawCell& cell : cells) {
+    const Eigen::Array2d inside = (place_enu - cell.min_enu).array();
+    if ((inside < 0.0).any() || (inside >= cell_m).any()) continue;
+    return cell.share > 0.5 ? std::optional(modes[static_cast<size_t>(cell.mode)].yaw_deg) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
 void SaveDirections(const DominantDirections& directions, const std::filesystem::path& file) {
   Json json = {{"about", kAbout},
                {"up", {0, 0, 1}},

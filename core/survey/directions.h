@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace skyquilt::survey {
@@ -38,6 +39,8 @@ struct DominantDirections {
 
   // Index of the mode within kModeReach_deg of a yaw (any number of degrees), or -1.
   int ModeNear(double yaw_deg) const;
+  // The yaw that prevails at a place, metres in ENU: that of its cell, if more than half of the cell's lines follow it.
+  std::optional<double> YawAt(const Eigen::Vector2d& place_enu) const;
 };
 
 // Difference a - b of two yaws, -45 to 45 degrees.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "worker/losses/distortion_loss.h"
 #include "worker/losses/emptiness_loss.h"
 #include "worker/losses/mean_loss.h"
+#include "worker/losses/normal_loss.h"
 #include "worker/losses/photo_loss.h"
 #include "worker/losses/point_depth_loss.h"
 #include "worker/losses/robust_loss.h"
@@ -44,6 +46,35 @@ TEST(Losses, RobustLossHasItsGradient) {
           return CheckedLoss{loss.value, {loss.gradient}};
         },
         {1, -3.0, 3.0});
+  }
+}
+
+CheckedLoss Checked(const VectorLoss<double>& loss) {
+  return {loss.value, {loss.gradient.x(), loss.gradient.y(), loss.gradient.z()}};
+}
+
+TEST(Losses, NormalLossHasItsGradient) {
+  const Eigen::Vector3d target = Eigen::Vector3d(0.3, -0.2, 0.8).normalized();
+  ExpectLossGradient([&](double weight, const Inputs& x) { return Checked(NormalLoss<double>(weight, {x[0], x[1], x[2] + 4.0}, target)); },
+                     {3, -3.0, 3.0});
+}
+
+TEST(Losses, OrientationLossHasItsGradientWhereTheSurfaceTurnsAway) {
+  const Eigen::Vector3d camera = Eigen::Vector3d(0.1, 0.2, 1.0).normalized();
+  ExpectLossGradient([&](double weight, const Inputs& x) { return Checked(OrientationLoss<double>(weight, {x[0], x[1], x[2] - 4.0}, camera)); },
+                     {3, -3.0, 3.0});
+  EXPECT_EQ(OrientationLoss<double>(1.0, {0.1, 0.0, 2.0}, camera).value, 0.0) << "a surface that faces the camera";
+  EXPECT_NEAR(OrientationLoss<double>(1.0, -7.0 * camera, camera).value, 1.0, 1e-12);
+}
+
+TEST(Losses, VectorsWithoutDirectionHaveNoNormalLoss) {
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& v : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1e-200, 0, 0), Eigen::Vector3d(nan, 0, 1), Eigen::Vector3d(inf, 0, 0)}) {
+    for (const VectorLoss<double>& loss : {NormalLoss<double>(1.0, v, up), OrientationLoss<double>(1.0, v, up)}) {
+      EXPECT_EQ(loss.value, 0.0);
+      EXPECT_TRUE(loss.gradient.isZero(0.0));
+    }
   }
 }
 

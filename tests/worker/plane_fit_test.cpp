@@ -4,7 +4,9 @@
 #include <rapidcheck/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/base/random.h"
 
@@ -48,6 +50,22 @@ TEST(PlaneFit, OnlyNearlyLevelAndVerticalPlanesAreUpright) {
   ASSERT_TRUE(wall);
   EXPECT_NEAR((wall->normal - Vector3d(0.6, -0.8, 0.0)).norm(), 0.0, 1e-12);
   EXPECT_FALSE(UprightPlane({x, Vector3d(0.5, 0.0, 0.9).normalized()})) << "a pitched roof";
+}
+
+TEST(PlaneFit, WallsFollowTheDirectionOfBuildings) {
+  const auto wall = [](double yaw_deg, double up) {
+    const double yaw = yaw_deg * std::numbers::pi / 180.0;
+    return Plane{Vector3d(1, 2, 3), Vector3d(std::cos(yaw), std::sin(yaw), up).normalized()};
+  };
+  const auto yaw_of = [](const std::optional<Plane>& plane) { return std::atan2(plane->normal.y(), plane->normal.x()) * 180.0 / std::numbers::pi; };
+  for (const double side : {0.0, 90.0, 180.0, -90.0}) {
+    const std::optional<Plane> turned = UprightPlane(wall(side + 24.0, 0.2), 30.0);
+    ASSERT_TRUE(turned);
+    EXPECT_EQ(turned->normal.z(), 0.0);
+    EXPECT_NEAR(std::remainder(yaw_of(turned) - side - 30.0, 360.0), 0.0, 1e-9);
+  }
+  EXPECT_NEAR(yaw_of(UprightPlane(wall(15.0, 0.2), 30.0)), 15.0, 1e-9) << "a wall of another direction keeps it";
+  EXPECT_EQ(UprightPlane({Vector3d::Zero(), Vector3d(0.0, 0.05, 1.0).normalized()}, 30.0)->normal, Vector3d::UnitZ());
 }
 
 }  // namespace

@@ -1,6 +1,10 @@
 // Trains blocks of the small survey with priors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "core/render/ray_engine.h"
 #include "core/scene/field_file.h"
 #include "tests/worker/small_survey.h"
@@ -35,8 +39,8 @@ class PriorsTest : public SmallSurvey {
     job.priors = priors;
     return job;
   }
-  // Median depth of rays straight down from 30 m onto the ground beside the box.
-  std::vector<float> GroundDepths(const std::string& checkpoint, base::ThreadPool& threads) const {
+  // Rays straight down from 30 m onto the ground beside the box.
+  std::vector<render::RayColor> LookDown(const std::string& checkpoint, base::ThreadPool& threads) const {
     const checkpoint::ArchiveReader reader(folder_ / checkpoint);
     const render::TrainedField field = scene::GetField(reader, folder_ / checkpoint, "");
     render::FieldSet set;
@@ -44,16 +48,19 @@ class PriorsTest : public SmallSurvey {
     std::vector<render::Ray> rays;
     for (double x = -7.0; x <= 7.0; x += 0.5) rays.push_back({{x, 6.0, 30.0}, {0, 0, -1}});
     std::vector<render::RayColor> out(rays.size());
-    render::RenderRays(set, rays, out, {}, threads);
-    std::vector<float> depths;
-    for (const render::RayColor& ray : out) depths.push_back(ray.depth_median);
-    return depths;
+    render::RenderRays(set, rays, out, {.normals = true}, threads);
+    return out;
+  }
+  // How many of these rays end within `reach` of a distance.
+  std::ptrdiff_t EndAt(const std::string& checkpoint, float distance, float reach, base::ThreadPool& threads) const {
+    const std::vector<render::RayColor> rays = LookDown(checkpoint, threads);
+    return std::count_if(rays.begin(), rays.end(), [=](const render::RayColor& r) { return std::abs(r.depth_median - distance) < reach; });
   }
 };
 
 PriorOptions AllPriors() {
   PriorOptions priors;
-  priors.planar = priors.upright = priors.points = 1e-2;
+  priors.planar = priors.upright = priors.planes = priors.points = priors.normals = priors.orientation = 1e-2;
   priors.from = 0.1;
   priors.until = 0.3;
   return priors;
@@ -87,13 +94,16 @@ TEST_F(PriorsTest, WithoutWeightsNothingChanges) {
   late.from = late.until = 1.0;
   train(JobWith("c.h5", 60, late));
   EXPECT_EQ(Bytes("a.h5"), Bytes("c.h5"));
-  PriorOptions segments = AllPriors(), points = AllPriors();
-  segments.points = 0.0;
-  points.planar = points.upright = 0.0;
-  train(JobWith("d.h5", 60, segments));
-  train(JobWith("e.h5", 60, points));
-  EXPECT_NE(Bytes("a.h5"), Bytes("d.h5"));
-  EXPECT_NE(Bytes("a.h5"), Bytes("e.h5"));
+  int run = 0;
+  for (double PriorOptions::*weight : {&PriorOptions::planar, &PriorOptions::upright, &PriorOptions::planes, &PriorOptions::points,
+                                       &PriorOptions::normals, &PriorOptions::orientation}) {
+    PriorOptions one = AllPriors();
+    one.planar = one.upright = one.planes = one.points = one.normals = one.orientation = 0.0;
+    one.*weight = 1.0;
+    const std::string name = "one" + std::to_string(run++) + ".h5";
+    train(JobWith(name, 60, one));
+    EXPECT_NE(Bytes("a.h5"), Bytes(name)) << name;
+  }
 }
 
 // Points that lie are believed when their weight is large: the surface comes to them.
@@ -109,12 +119,50 @@ TEST_F(PriorsTest, PointsMoveTheSurface) {
   const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
   train(Job("free.h5", 500));
   train(JobWith("held.h5", 500, strong));
-  const auto close_to = [](const std::vector<float>& depths, float depth) {
-    return std::count_if(depths.begin(), depths.end(), [depth](float d) { return std::abs(d - depth) < 0.5F; });
-  };
-  const std::vector<float> free = GroundDepths("free.h5", threads), held = GroundDepths("held.h5", threads);
-  EXPECT_GT(close_to(free, 30.0F), close_to(free, 29.0F));
-  EXPECT_GT(close_to(held, 29.0F), static_cast<std::ptrdiff_t>(held.size() * 3 / 4));
+  EXPECT_GT(EndAt("free.h5", 30.0F, 0.5F, threads), EndAt("free.h5", 29.0F, 0.5F, threads));
+  EXPECT_GT(EndAt("held.h5", 29.0F, 0.5F, threads), 21);  // of 29
+}
+
+TEST_F(PriorsTest, PlanesOfPointsMoveTheSurface) {
+  AddPoints(0.6);
+  base::ThreadPool threads(2);
+  TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
+  PriorOptions strong;
+  strong.planes = 1.0;
+  strong.from = 0.1;
+  strong.until = 0.2;
+  const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
+  train(Job("free.h5", 500));
+  train(JobWith("held.h5", 500, strong));
+  EXPECT_GT(EndAt("free.h5", 30.0F, 0.3F, threads), EndAt("free.h5", 29.4F, 0.3F, threads));
+  EXPECT_GT(EndAt("held.h5", 29.4F, 0.3F, threads), 21);
+}
+
+// Angle between the up direction and the mean normal, degrees; 180 without one.
+double Tilt_deg(const float (&normal)[3]) {
+  return std::acos(std::clamp(static_cast<double>(normal[2]), -1.0, 1.0)) * 180.0 / std::numbers::pi;
+}
+
+TEST_F(PriorsTest, NormalsOfDensityAndHeadAgreeWithTheSurface) {
+  AddPoints(0.0);
+  base::ThreadPool threads(2);
+  TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
+  PriorOptions priors;
+  priors.normals = 0.1;
+  priors.segment_share = 0.3;
+  priors.from = 0.1;
+  priors.until = 0.2;
+  const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
+  train(Job("free.h5", 500));
+  train(JobWith("held.h5", 500, priors));
+  double free = 0.0, held = 0.0, head = 0.0;
+  for (const render::RayColor& ray : LookDown("free.h5", threads)) free += Tilt_deg(ray.density_normal) / 29.0;
+  for (const render::RayColor& ray : LookDown("held.h5", threads)) {
+    held += Tilt_deg(ray.density_normal) / 29.0;
+    head += Tilt_deg(ray.predicted_normal) / 29.0;
+  }
+  EXPECT_LT(held, 0.7 * free);
+  EXPECT_LT(head, 15.0);
 }
 
 }  // namespace

@@ -95,6 +95,7 @@ class PacketTrainer {
   bool WantsDistortionLoss(const BatchRay& ray, const RayView& view) const;
   void AddDistortion(const RayView& view, LossSums& sums);
   // packet_trainer_priors.cpp: losses of the distances at which rays end.
+  void FindStops();
   void AddEndLosses(LossSums& sums);
   void AddDistanceLoss(size_t view, double weight, const Eigen::Vector3d& on_plane, const Eigen::Vector3d& normal, LossSums& sums);
   void AddKnownPlaneLoss(size_t view, LossSums& sums);
@@ -132,6 +133,7 @@ class PacketTrainer {
   DistortionScratch<float> distortion_;
   std::vector<RayView> views_;  // rays of the packet
   std::vector<ComposedRay> composed_;
+  std::vector<float> stops_;              // per sample: metres from the camera at which its light is stopped on average; only with priors
   std::vector<RayEnd> ends_;              // per view; empty unless a prior needs them
   std::vector<float> distance_gradient_;  // of the batch's mean loss by the mean distance of each view; empty without priors
   // With losses of normals only.

@@ -14,6 +14,7 @@ constexpr float kLeastColorSlope = 0.02F;
 void PacketTrainer::ComposeAndLoss(LossSums& sums) {
   composed_.clear();
   for (const RayView& view : views_) composed_.push_back(Compose(view));
+  FindStops();
   AddEndLosses(sums);
   for (size_t k = 0; k < views_.size(); ++k) {
     const BatchRay& r = Ray(k);

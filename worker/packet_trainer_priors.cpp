@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/render/composite.h"
 #include "worker/losses/point_depth_loss.h"
 #include "worker/losses/robust_loss.h"
 #include "worker/packet_trainer.h"
@@ -19,12 +20,12 @@ constexpr double kLeastFacing = 0.2;
 // Rays that end farther from a plane of sparse points, in voxels, belong to something else.
 constexpr double kPlaneReachVoxels = 3.0;
 
-RayEnd EndOf(size_t n, const float* weights, const float* t, double voxel_m) {
+RayEnd EndOf(size_t n, const float* weights, const float* stops, double voxel_m) {
   constexpr double kFront = 0.15, kBack = 0.85;
   RayEnd end;
   double moment = 0.0, front = 0.0, back = 0.0;
   for (size_t k = 0; k < n; ++k) {
-    const double before = end.weight, at = static_cast<double>(t[k]);
+    const double before = end.weight, at = static_cast<double>(stops[k]);
     end.weight += static_cast<double>(weights[k]);
     moment += static_cast<double>(weights[k]) * at;
     if (before < kFront) front = at;
@@ -40,6 +41,17 @@ RayEnd EndOf(size_t n, const float* weights, const float* t, double voxel_m) {
 
 }  // namespace
 
+// A sample stands in the middle of its interval, but a dense one stops the light near the front. Without the difference, surfaces would come to lie
+// too near to the camera, by up to half a step.
+void PacketTrainer::FindStops() {
+  if (!step_->priors.Distances()) return;
+  const auto n = static_cast<size_t>(live_);
+  Grow(stops_, n);
+  const float* t = step_->batch.t.data() + packet_->begin;
+  const auto step_m = static_cast<float>(shared_.target.step_m);
+  for (size_t i = 0; i < n; ++i) stops_[i] = t[i] + step_m * (render::MeanStop(tau_[i]) - 0.5F);
+}
+
 void PacketTrainer::AddEndLosses(LossSums& sums) {
   distance_gradient_.clear();
   ends_.clear();
@@ -53,8 +65,7 @@ void PacketTrainer::AddEndLosses(LossSums& sums) {
     // A pixel of a reduced photo may show several surfaces.
     if (r.ray.empty || r.ray.level != 0 || !(everywhere || r.segment >= 0)) continue;
     const RayView& view = views_[k];
-    ends_[k] =
-        EndOf(static_cast<size_t>(view.count), weight_.data() + view.begin, step_->batch.t.data() + packet_->begin + view.begin, priors.voxel_m);
+    ends_[k] = EndOf(static_cast<size_t>(view.count), weight_.data() + view.begin, stops_.data() + view.begin, priors.voxel_m);
     if (everywhere && ends_[k].opaque) AddKnownPlaneLoss(k, sums);
   }
   if (!priors.Segments()) return;
@@ -110,12 +121,13 @@ void PacketTrainer::AddSegmentLoss(size_t first, size_t end, LossSums& sums) {
   }
 }
 
-// The mean distance is sum w t / sum w.
+// The mean distance is sum w s / sum w over the stops s, which are taken as given.
 void PacketTrainer::AddDistanceGradient(size_t view) {
   const RayEnd& end = ends_[view];
-  const float* t = step_->batch.t.data() + packet_->begin + views_[view].begin;
+  const float* stops = stops_.data() + views_[view].begin;
   const auto per_weight = static_cast<float>(static_cast<double>(distance_gradient_[view]) / end.weight);
-  for (size_t k = 0; k < static_cast<size_t>(views_[view].count); ++k) weight_gradient_[k] += per_weight * (t[k] - static_cast<float>(end.mean_m));
+  for (size_t k = 0; k < static_cast<size_t>(views_[view].count); ++k)
+    weight_gradient_[k] += per_weight * (stops[k] - static_cast<float>(end.mean_m));
 }
 
 bool PacketTrainer::WantsPointLoss(const BatchRay& ray, const RayView& view) const {
@@ -127,9 +139,8 @@ void PacketTrainer::AddPointLoss(const BatchRay& ray, const RayView& view, LossS
   const auto step_m = static_cast<float>(shared_.target.step_m);
   const float sigma_m = std::hypot(ray.ray.point_sigma_m, 0.5F * step_m);
   const float weight = static_cast<float>(step_->priors.points) * step_->ray_share;
-  const float loss =
-      AddPointDepthLoss(weight, static_cast<size_t>(view.count), weight_.data() + view.begin, step_->batch.t.data() + packet_->begin + view.begin,
-                        step_m, ray.ray.point_distance_m, sigma_m, weight_gradient_.data());
+  const float loss = AddPointDepthLoss(weight, static_cast<size_t>(view.count), weight_.data() + view.begin, stops_.data() + view.begin, step_m,
+                                       ray.ray.point_distance_m, sigma_m, weight_gradient_.data());
   sums.loss += static_cast<double>(loss) / static_cast<double>(step_->ray_share);
 }
 

@@ -17,6 +17,7 @@ struct StepPriors {
   bool Normals() const { return normals > 0.0 || orientation > 0.0; }
   // Whether it matters where rays end.
   bool Ends() const { return Segments() || planes > 0.0 || Normals(); }
+  bool Distances() const { return Ends() || points > 0.0; }
 };
 
 // Where a ray ends, by its compositing weights.

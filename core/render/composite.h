@@ -12,6 +12,15 @@
 
 namespace skyquilt::render {
 
+// Where in an interval of even density its light is stopped on average, as a share of its length: 1/2 for tau near 0, towards 0 for large ones, whose
+// light is stopped at the front.
+template <typename T>
+T MeanStop(T tau) {
+  // Below, the difference loses digits; above, the second term is 0.
+  if (tau < T(0.02)) return T(0.5) - tau / T(12);
+  return tau < T(80) ? T(1) / tau - T(1) / std::expm1(tau) : T(1) / tau;
+}
+
 // Writes weights (n) and rgb; returns the transmittance behind the last sample. n = 0 gives 1 and black.
 template <typename T>
 T CompositeForward(int n, const T* tau, const T* color, size_t stride, T* weights, T rgb[3]) {

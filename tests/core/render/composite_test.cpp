@@ -13,6 +13,22 @@
 namespace skyquilt::render {
 namespace {
 
+TEST(Composite, MeanStopIsTheMeanOfTheStoppedLight) {
+  for (const double tau : {1e-6, 0.01, 0.0199, 0.0201, 0.3, 1.0, 4.0, 30.0, 79.0, 81.0, 1e4}) {
+    // The mean of s with density tau exp(-tau s) on 0..1, by the midpoint rule.
+    constexpr int kParts = 1'000'000;
+    double sum = 0.0, moment = 0.0;
+    for (int i = 0; i < kParts; ++i) {
+      const double s = (i + 0.5) / kParts, light = std::exp(-tau * s);
+      sum += light;
+      moment += light * s;
+    }
+    EXPECT_NEAR(MeanStop(tau), moment / sum, 1e-6) << tau;
+    EXPECT_NEAR(static_cast<double>(MeanStop(static_cast<float>(tau))), MeanStop(tau), 1e-5) << tau;
+  }
+  EXPECT_EQ(MeanStop(std::numeric_limits<double>::infinity()), 0.0);
+}
+
 TEST(Composite, GradientsMatchFiniteDifferences) {
   base::Random random(23);
   const int n = 6;

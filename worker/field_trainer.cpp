@@ -31,6 +31,15 @@ TrainOptions WithoutPyramid(TrainOptions options) {
   return options;
 }
 
+// Without what a prior needs, it is off.
+FieldPriors WithoutImpossible(FieldPriors priors) {
+  PriorOptions& o = priors.options;
+  if (priors.segments == nullptr) o.planar = o.upright = o.normals = o.orientation = 0.0;
+  if (priors.points == nullptr || priors.points->Empty()) o.points = 0.0;
+  if (priors.planes == nullptr || priors.planes->Empty()) o.planes = 0.0;
+  return priors;
+}
+
 }  // namespace
 
 FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options,
@@ -46,7 +55,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
       drawer_(target, source, seed, NeighboursOf(luminance.luminance), options.stratified, threads, times_),
       step_(target, field_, context, luminance, threads, times_),
       learner_(learner),
-      priors_(priors),
+      priors_(WithoutImpossible(priors)),
       source_(source),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / 24)) {
   target.parameters.Allocate(field_);
@@ -90,7 +99,7 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
     prior_rays.segments = priors_.segments;
     prior_rays.segment_share = priors_.options.segment_share;
   }
-  if (strength > 0.0 && priors_.options.points > 0.0 && !priors_.points->Empty()) {
+  if (strength > 0.0 && priors_.options.points > 0.0) {
     prior_rays.points = priors_.points;
     prior_rays.point_share = priors_.options.point_share;
   }

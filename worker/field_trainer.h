@@ -21,7 +21,7 @@ namespace skyquilt::worker {
 
 // What a field is taught beside the photos. Nothing by default.
 struct FieldPriors {
-  PriorOptions options;
+  PriorOptions options;                                    // weights of what is not given count as 0
   const PhotoSegments* segments = nullptr;                 // of the field's photos; needed for options.Segments()
   const DepthPoints* points = nullptr;                     // of the field; needed for options.points > 0; may be empty
   const PointPlanes* planes = nullptr;                     // of the field; needed for options.Planes(); may be empty

@@ -22,6 +22,7 @@ NumericGroup CompositeGroup(const NumericsOptions& options);
 NumericGroup FieldGroup(const NumericsOptions& options);
 NumericGroup TrainerGroup(const NumericsOptions& options);
 NumericGroup ConesGroup(const NumericsOptions& options);
+NumericGroup PriorsGroup(const NumericsOptions& options);
 NumericGroup AwayGroup(const NumericsOptions& options);
 NumericGroup BrightnessGroup(const NumericsOptions& options);
 NumericGroup NonFiniteGroup(const NumericsOptions& options);

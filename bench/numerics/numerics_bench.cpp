@@ -44,9 +44,10 @@ std::vector<NumericRow> NumericsResult::Failed() const {
 }
 
 std::vector<NumericGroup> AllGroups(const NumericsOptions& options) {
-  std::vector<NumericGroup> groups = {SpaceGroup(options),     RayGroup(options),     CompositeGroup(options), FieldGroup(options),
-                                      TrainerGroup(options),   ConesGroup(options),   AwayGroup(options),      BrightnessGroup(options),
-                                      NonFiniteGroup(options), StorageGroup(options), PlaceGroup(options),     EarthGroup(options)};
+  std::vector<NumericGroup> groups = {SpaceGroup(options),      RayGroup(options),       CompositeGroup(options), FieldGroup(options),
+                                      TrainerGroup(options),    ConesGroup(options),     PriorsGroup(options),    AwayGroup(options),
+                                      BrightnessGroup(options), NonFiniteGroup(options), StorageGroup(options),   PlaceGroup(options),
+                                      EarthGroup(options)};
   std::erase_if(groups, [](const NumericGroup& group) { return group.cases.empty(); });
   return groups;
 }

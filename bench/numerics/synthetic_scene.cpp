@@ -51,6 +51,7 @@ render::TrainedField SyntheticField(const SyntheticOptions& options) {
   field.config.color_range = 1.4;
   field.config.density_bias = -3.0;
   field.config.multisample = options.multisample;
+  field.config.normal_head = options.normal_head;
   field.config.scale_features = options.scale_features;
   field.occupancy = field::OccupancyGrid::Make(grid.extent, 3.0 * options.voxel_m / options.edge_m, 100'000);
   return field;

@@ -24,6 +24,7 @@ struct SyntheticOptions {
   // As train.multisample and train.scale_features.
   int multisample = 0;
   bool scale_features = false;
+  bool normal_head = false;  // whether normals are predicted
 };
 
 // A field over the scene with every occupancy cell on and without parameters.

@@ -64,12 +64,12 @@ std::vector<VariantResult> FirstSeeds(const std::vector<PriorResults>& results) 
 
 const std::vector<StudiedPrior>& StudiedPriors() {
   static const std::vector<StudiedPrior> kPriors = {
-      {"planar", 0.03, "rays within a segment of a photo end on a plane"},
-      {"upright", 0.03, "such planes are level or vertical when they nearly are"},
-      {"planes", 0.03, "rays end on planes of sparse points"},
-      {"points", 0.01, "rays towards sparse points end there"},
-      {"normals", 0.001, "normals of the density agree with those of neighbouring rays"},
-      {"orientation", 0.0001, "normals of visible surfaces face the camera"},
+      {"planar", 0.1, "rays within a segment of a photo end on a plane"},
+      {"upright", 0.1, "such planes are level or vertical when they nearly are, and walls follow the direction of buildings"},
+      {"planes", 0.01, "rays end on planes of sparse points"},
+      {"points", 0.05, "rays towards sparse points end there"},
+      {"normals", 0.01, "normals of the density, of a predicting head and of planes of sparse points agree"},
+      {"orientation", 0.001, "normals of visible surfaces face the camera"},
   };
   return kPriors;
 }

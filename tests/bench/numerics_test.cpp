@@ -118,6 +118,10 @@ TEST_F(Numerics, ConesPass) {
   EXPECT_GE(rows.size(), 80U);
 }
 
+TEST_F(Numerics, PriorsPass) {
+  RunPassing(PriorsGroup(quick_));
+}
+
 TEST_F(Numerics, NonFiniteNumbersNeverReachTheParameters) {
   RunPassing(NonFiniteGroup(quick_));
 }

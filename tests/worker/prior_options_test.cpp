@@ -32,7 +32,8 @@ TEST(PriorOptions, ImpossibleOnesAreRefused) {
   EXPECT_THROW(options.Check("priors"), base::UsageError);
   options = {};
   EXPECT_NO_THROW(options.Check("priors"));
-  EXPECT_FALSE(options.On());
+  EXPECT_FALSE(options.Segments());
+  EXPECT_TRUE(options.Planes());
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ TEST_F(PriorsTest, WithoutWeightsNothingChanges) {
   AddPoints(0.0);
   base::ThreadPool threads(1);
   TrainContext(Job("context.h5", 60), Box(20.0, 0.0), threads, {});
-  PriorOptions off;
+  PriorOptions off = NoPriors();
   off.from = off.until = 0.0;
   off.segment_share = off.point_share = 0.5;
   const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
@@ -95,11 +95,11 @@ TEST_F(PriorsTest, WithoutWeightsNothingChanges) {
   train(JobWith("c.h5", 60, late));
   EXPECT_EQ(Bytes("a.h5"), Bytes("c.h5"));
   int run = 0;
-  for (double PriorOptions::*weight : {&PriorOptions::planar, &PriorOptions::upright, &PriorOptions::planes, &PriorOptions::points,
-                                       &PriorOptions::normals, &PriorOptions::orientation}) {
+  const std::vector<double PriorOptions::*> weights = {&PriorOptions::planar, &PriorOptions::upright, &PriorOptions::planes,
+                                                       &PriorOptions::points, &PriorOptions::normals, &PriorOptions::orientation};
+  for (const auto weight : weights) {
     PriorOptions one = AllPriors();
-    one.planar = one.upright = one.planes = one.points = one.normals = one.orientation = 0.0;
-    one.*weight = 1.0;
+    for (const auto other : weights) one.*other = other == weight ? 1.0 : 0.0;
     const std::string name = "one" + std::to_string(run++) + ".h5";
     train(JobWith(name, 60, one));
     EXPECT_NE(Bytes("a.h5"), Bytes(name)) << name;
@@ -111,7 +111,7 @@ TEST_F(PriorsTest, PointsMoveTheSurface) {
   AddPoints(1.0);
   base::ThreadPool threads(2);
   TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
-  PriorOptions strong;
+  PriorOptions strong = NoPriors();
   strong.points = 1.0;
   strong.point_share = 0.3;
   strong.from = 0.1;
@@ -127,7 +127,7 @@ TEST_F(PriorsTest, PlanesOfPointsMoveTheSurface) {
   AddPoints(0.6);
   base::ThreadPool threads(2);
   TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
-  PriorOptions strong;
+  PriorOptions strong = NoPriors();
   strong.planes = 1.0;
   strong.from = 0.1;
   strong.until = 0.2;
@@ -147,7 +147,7 @@ TEST_F(PriorsTest, NormalsOfDensityAndHeadAgreeWithTheSurface) {
   AddPoints(0.0);
   base::ThreadPool threads(2);
   TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
-  PriorOptions priors;
+  PriorOptions priors = NoPriors();
   priors.normals = 0.1;
   priors.segment_share = 0.3;
   priors.from = 0.1;

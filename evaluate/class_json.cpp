@@ -8,12 +8,15 @@
 namespace skyquilt::evaluate {
 namespace {
 
-constexpr std::array<std::pair<const char*, double ClassScore::*>, 6> kClassErrors = {{{"depth_bias_m", &ClassScore::depth_bias_m},
-                                                                                       {"depth_median_abs_m", &ClassScore::depth_median_abs_m},
-                                                                                       {"depth_nmad_m", &ClassScore::depth_nmad_m},
-                                                                                       {"depth_rmse_m", &ClassScore::depth_rmse_m},
-                                                                                       {"normal_median_deg", &ClassScore::normal_median_deg},
-                                                                                       {"normal_mean_deg", &ClassScore::normal_mean_deg}}};
+constexpr std::array<std::pair<const char*, double ClassScore::*>, 8> kClassErrors = {
+    {{"depth_bias_m", &ClassScore::depth_bias_m},
+     {"depth_median_abs_m", &ClassScore::depth_median_abs_m},
+     {"depth_nmad_m", &ClassScore::depth_nmad_m},
+     {"depth_rmse_m", &ClassScore::depth_rmse_m},
+     {"normal_median_deg", &ClassScore::normal_median_deg},
+     {"normal_mean_deg", &ClassScore::normal_mean_deg},
+     {"density_normal_median_deg", &ClassScore::density_normal_median_deg},
+     {"head_normal_median_deg", &ClassScore::head_normal_median_deg}}};
 
 }  // namespace
 

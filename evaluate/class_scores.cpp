@@ -54,8 +54,14 @@ void ClassErrors::Add(const HeldOutPhoto& task, const PhotoResult& findings) {
       }
       errors.depth_m.push_back(static_cast<float>((rendered_m - true_m) / task.camera.RayFromImg({x + 0.5, y + 0.5}).z()));
       if (findings.true_normals.Empty()) continue;
-      const double angle_deg = AngleDeg(findings.normals.At(x, y), findings.true_normals.At(x, y));
-      if (std::isfinite(angle_deg)) errors.normal_deg.push_back(static_cast<float>(angle_deg));
+      const auto add_angle = [&](const image::ImageF& normals, std::vector<float>* angles_deg) {
+        if (normals.Empty()) return;
+        const double angle_deg = AngleDeg(normals.At(x, y), findings.true_normals.At(x, y));
+        if (std::isfinite(angle_deg)) angles_deg->push_back(static_cast<float>(angle_deg));
+      };
+      add_angle(findings.normals, &errors.normal_deg);
+      add_angle(findings.density_normals, &errors.density_normal_deg);
+      add_angle(findings.head_normals, &errors.head_normal_deg);
     }
   }
 }
@@ -66,17 +72,22 @@ std::vector<ClassScore> ClassErrors::Result() const {
   const auto add = [&](SurfaceClass name, std::initializer_list<SurfaceClass> members) {
     ClassScore score;
     score.name = survey::kSurfaceClassNames[static_cast<size_t>(name)];
-    std::vector<double> depth_m, normal_deg;
+    std::vector<double> depth_m, normal_deg, density_normal_deg, head_normal_deg;
     for (const SurfaceClass member : members) {
       const Errors& errors = errors_[static_cast<size_t>(member)];
-      depth_m.insert(depth_m.end(), errors.depth_m.begin(), errors.depth_m.end());
-      normal_deg.insert(normal_deg.end(), errors.normal_deg.begin(), errors.normal_deg.end());
+      const auto append = [](const std::vector<float>& from, std::vector<double>* to) { to->insert(to->end(), from.begin(), from.end()); };
+      append(errors.depth_m, &depth_m);
+      append(errors.normal_deg, &normal_deg);
+      append(errors.density_normal_deg, &density_normal_deg);
+      append(errors.head_normal_deg, &head_normal_deg);
       score.missing_pixels += errors.missing;
     }
     score.pixels = static_cast<int64_t>(depth_m.size());
     SetDepthScores(depth_m, &score);
     score.normal_mean_deg = MeanOfMeasured(normal_deg);
     score.normal_median_deg = base::Median(std::move(normal_deg));
+    score.density_normal_median_deg = base::Median(std::move(density_normal_deg));
+    score.head_normal_median_deg = base::Median(std::move(head_normal_deg));
     scores.push_back(std::move(score));
   };
   add(SurfaceClass::kRoof, {SurfaceClass::kRoof});

@@ -25,8 +25,9 @@ class ClassErrors {
  private:
   struct Errors {
     std::vector<float> depth_m;     // along the ray, rendered minus true
-    std::vector<float> normal_deg;  // 0 to 180
-    int64_t missing = 0;            // pixels without rendered depth
+    std::vector<float> normal_deg;  // 0 to 180; of the rendered depth
+    std::vector<float> density_normal_deg, head_normal_deg;
+    int64_t missing = 0;  // pixels without rendered depth
   };
   std::array<Errors, survey::kSurfaceClasses> errors_;
   bool any_ = false;

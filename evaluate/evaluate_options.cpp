@@ -19,6 +19,8 @@ std::vector<config::Field<EvaluateOptions>> EvaluateOptions::Fields() {
       {"normal_photos", &O::normal_photos, Range(),
        "folder of the same photos at normal exposure, to score renderings at normal brightness too; empty: none"},
       {"normal_stops", &O::normal_stops, Range{-10, 10}, "stops to brighten the renderings by for normal_photos"},
+      {"field_normals", &O::field_normals, Range(),
+       "simulated surveys: also score the normals of the density and of the normal head by class; takes longer"},
       {"report_photos", &O::report_photos, Range::AtLeast(0), "held-out photos shown as images in the report, evenly spread; its tables have all"},
       {"report_image_width", &O::report_image_width, Range{16, 65536}, "largest width of the report's images in pixels"},
   };

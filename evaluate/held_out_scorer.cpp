@@ -1,7 +1,10 @@
 #include "evaluate/held_out_scorer.h"
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <numbers>
+#include <span>
 
 #include "evaluate/load_held_out_photo.h"
 
@@ -26,6 +29,16 @@ std::vector<TrainingView> ViewsOf(const EvaluateInput& input) {
     views.push_back({camera.Resized(input.pixels->Width(i), input.pixels->Height(i)), photo.cam_from_enu, input.pixels->Mask(i)});
   }
   return views;
+}
+
+// Normals of rendered rays as an image; NaN where there is none.
+image::ImageF NormalsOf(std::span<const render::RayColor> rendered, const image::Image8& size, const float (render::RayColor::*normal)[3]) {
+  image::ImageF normals(size.width, size.height, 3, std::numeric_limits<float>::quiet_NaN());
+  for (size_t i = 0; i < rendered.size(); ++i) {
+    const float(&n)[3] = rendered[i].*normal;
+    if (n[0] != 0.0F || n[1] != 0.0F || n[2] != 0.0F) std::copy_n(n, 3, normals.data.data() + 3 * i);
+  }
+  return normals;
 }
 
 double LpipsOf(metrics::Lpips& network, const HeldOutPhoto& task, const image::Image8& render) {
@@ -55,12 +68,18 @@ PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, ba
   using Clock = std::chrono::steady_clock;
   const Recordings recordings = RecordingsOf(photo);
   const Clock::time_point start = Clock::now();
-  std::vector<render::RayColor> rendered = input_.scene->RenderCamera(task.camera, task.cam_from_enu, {scene::Rendition::kRecorded, {}}, threads);
+  const bool field_normals = input_.options.field_normals && !task.true_normals.Empty();
+  const scene::Appearance appearance{.look = scene::Rendition::kRecorded, .normals = field_normals};
+  std::vector<render::RayColor> rendered = input_.scene->RenderCamera(task.camera, task.cam_from_enu, appearance, threads);
   const std::vector<render::RayColor> as_reference = recordings.Differ() ? rendered : std::vector<render::RayColor>();
   ApplyResponse(task.camera, recordings.predicted, rendered, threads);
   const double render_seconds = std::chrono::duration<double>(Clock::now() - start).count();
 
   PhotoResult findings = ScorePhoto(task, rendered, views_, area_, threads);
+  if (field_normals) findings.density_normals = NormalsOf(rendered, findings.scored, &render::RayColor::density_normal);
+  if (field_normals && input_.scene->info().normal_head) {
+    findings.head_normals = NormalsOf(rendered, findings.scored, &render::RayColor::predicted_normal);
+  }
   PhotoScore& score = findings.score;
   score.photo = photo;
   score.name = input_.survey->photos[static_cast<size_t>(photo)].name;

@@ -75,6 +75,9 @@ struct ClassScore {
   double depth_rmse_m = kNotMeasured;        // root mean square of the errors
   double normal_median_deg = kNotMeasured;   // angle between the normals of the rendered depth and the true ones
   double normal_mean_deg = kNotMeasured;
+  // The same medians for the normals of the density's gradient and of the normal heads (EvaluateOptions::field_normals).
+  double density_normal_median_deg = kNotMeasured;
+  double head_normal_median_deg = kNotMeasured;
 };
 
 // What a reader must know before believing the figures, each without a full stop at its end.

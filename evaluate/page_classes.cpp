@@ -1,5 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <cmath>
+
 #include "core/page/html.h"
 #include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
@@ -8,12 +10,17 @@ namespace skyquilt::evaluate {
 
 namespace {
 
-std::string ScoreRow(const ClassScore& score) {
+struct FieldNormals {
+  bool density = false, head = false;  // measured
+};
+
+std::string ScoreRow(const ClassScore& score, const FieldNormals& measured) {
   const auto metres = [](double value) { return page::NumberCell(value, page::FormatFixed(value, 3, "m")); };
   const auto degrees = [](double value) { return page::NumberCell(value, page::FormatFixed(value, 1, kDegree)); };
   return "<tr>" + page::TextCell(score.name) + page::NumberCell(static_cast<double>(score.pixels), page::FormatInteger(score.pixels)) +
          metres(score.depth_bias_m) + metres(score.depth_median_abs_m) + metres(score.depth_nmad_m) + metres(score.depth_rmse_m) +
-         degrees(score.normal_median_deg) + degrees(score.normal_mean_deg) + "</tr>";
+         degrees(score.normal_median_deg) + degrees(score.normal_mean_deg) + (measured.density ? degrees(score.density_normal_median_deg) : "") +
+         (measured.head ? degrees(score.head_normal_median_deg) : "") + "</tr>";
 }
 
 }  // namespace
@@ -29,8 +36,16 @@ std::string ClassTable(const Metrics& metrics) {
       "the rendered and the true surface; rough surfaces have large ones. Roads are part of the ground.</p>"
       "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Surface</th><th class=\"num\">Pixels</th><th class=\"num\">Depth bias</th>"
       "<th class=\"num\">Median error</th><th class=\"num\">NMAD</th><th class=\"num\">RMSE</th><th class=\"num\">Normal error, median</th>"
-      "<th class=\"num\">Normal error, mean</th></tr></thead><tbody>";
-  for (const ClassScore& score : metrics.classes) html += ScoreRow(score);
+      "<th class=\"num\">Normal error, mean</th>";
+  FieldNormals measured;
+  for (const ClassScore& score : metrics.classes) {
+    measured.density |= std::isfinite(score.density_normal_median_deg);
+    measured.head |= std::isfinite(score.head_normal_median_deg);
+  }
+  if (measured.density) html += "<th class=\"num\">Of the density's normals, median</th>";
+  if (measured.head) html += "<th class=\"num\">Of the predicted normals, median</th>";
+  html += "</tr></thead><tbody>";
+  for (const ClassScore& score : metrics.classes) html += ScoreRow(score, measured);
   html += "</tbody></table></div>";
   if (metrics.flat_roofs > 0) {
     html += fmt::format("<p class=\"note\">{} flat {} {} about the plane that fits best (rms{}), without the rim, machines and stair housings.</p>",

@@ -48,6 +48,9 @@ struct PhotoResult {
   image::ImageF true_normals;
   image::Image8 true_class;
   image::ImageF normals;  // three channels: unit vectors in ENU, NaN where the depth has none
+  // The same of the density's gradient and of the normal heads; empty unless the caller rendered and set them.
+  image::ImageF density_normals;
+  image::ImageF head_normals;
 };
 
 // rendered: row-major, one per pixel of the camera. The same result for any number of threads.

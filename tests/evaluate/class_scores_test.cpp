@@ -147,6 +147,27 @@ TEST(ClassErrors, NormalErrorsAreAngles) {
   EXPECT_EQ(Named(scores, "ground").normal_mean_deg, 0.0);
 }
 
+TEST(ClassErrors, NormalsOfDensityAndHeadAreScoredWhenTheyWereRendered) {
+  Surface surface;
+  EXPECT_TRUE(std::isnan(Named(surface.Scores(), "roof").density_normal_median_deg));
+  EXPECT_TRUE(std::isnan(Named(surface.Scores(), "roof").head_normal_median_deg));
+  const auto leaning = [](double angle_deg) {
+    image::ImageF normals(kWidth, kHeight, 3, 0.0F);
+    const double angle = angle_deg * 3.141592653589793 / 180.0;
+    for (size_t i = 0; i < normals.data.size(); i += 3) {
+      normals.data[i] = static_cast<float>(std::sin(angle));
+      normals.data[i + 2] = static_cast<float>(std::cos(angle));
+    }
+    return normals;
+  };
+  surface.findings.density_normals = leaning(20.0);
+  surface.findings.head_normals = leaning(5.0);
+  const std::vector<ClassScore> scores = surface.Scores();
+  EXPECT_NEAR(Named(scores, "roof").density_normal_median_deg, 20.0, 1e-4);
+  EXPECT_NEAR(Named(scores, "roof").head_normal_median_deg, 5.0, 1e-4);
+  EXPECT_EQ(Named(scores, "roof").normal_median_deg, 0.0);
+}
+
 // Pooling does not depend on how pixels are spread over photos.
 TEST(ClassErrors, PhotosArePooled) {
   Surface good, bad;

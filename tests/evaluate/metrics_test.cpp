@@ -131,6 +131,7 @@ TEST(MetricsJson, ScoresByClassAreReadBackToo) {
   roof.depth_rmse_m = 0.75;
   roof.normal_median_deg = 7.5;
   roof.normal_mean_deg = 12.0;
+  roof.head_normal_median_deg = 6.5;
   metrics.classes = {roof, {.name = "tree"}};
   metrics.flat_roofs = 4;
   metrics.flat_roof_rms_m = 0.0625;
@@ -138,6 +139,8 @@ TEST(MetricsJson, ScoresByClassAreReadBackToo) {
   const auto json = nlohmann::json::parse(text);
   EXPECT_EQ(json["classes"]["roof"]["depth_bias_m"], -0.125);
   EXPECT_EQ(json["classes"]["roof"]["normal_mean_deg"], 12.0);
+  EXPECT_EQ(json["classes"]["roof"]["head_normal_median_deg"], 6.5);
+  EXPECT_TRUE(json["classes"]["roof"]["density_normal_median_deg"].is_null());
   EXPECT_EQ(json["classes"]["tree"]["pixels"], 0);
   EXPECT_TRUE(json["classes"]["tree"]["depth_nmad_m"].is_null());
   const TemporaryFolder folder;

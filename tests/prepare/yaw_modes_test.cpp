@@ -93,5 +93,17 @@ TEST(YawModes, AreReadAsWritten) {
   EXPECT_TRUE(survey::LoadDirections(file.parent_path() / "absent.json").modes.empty());
 }
 
+TEST(Directions, APlaceHasTheYawOfItsCellIfMostLinesFollowIt) {
+  survey::DominantDirections directions;
+  directions.modes = {{.yaw_deg = 12.0}, {.yaw_deg = 57.0}};
+  directions.cell_m = 10.0;
+  directions.cells = {{{0.0, 0.0}, 1, 0.8}, {{10.0, 0.0}, 0, 0.4}, {{-10.0, 0.0}, 0, 0.9}};
+  EXPECT_EQ(directions.YawAt({3.0, 9.9}), 57.0);
+  EXPECT_EQ(directions.YawAt({-0.1, 0.0}), 12.0);
+  EXPECT_EQ(directions.YawAt({12.0, 3.0}), std::nullopt) << "no direction prevails";
+  EXPECT_EQ(directions.YawAt({3.0, 10.0}), std::nullopt) << "outside all cells";
+  EXPECT_EQ(survey::DominantDirections().YawAt({0.0, 0.0}), std::nullopt);
+}
+
 }  // namespace
 }  // namespace skyquilt::prepare

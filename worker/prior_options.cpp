@@ -6,6 +6,12 @@
 
 namespace skyquilt::worker {
 
+PriorOptions PriorOptions::Off() {
+  PriorOptions off;
+  off.planar = off.upright = off.planes = off.points = off.normals = off.orientation = 0.0;
+  return off;
+}
+
 double PriorOptions::Strength(double progress) const {
   if (progress < from || progress <= 0.0) return 0.0;
   return until > from ? std::min(1.0, (progress - from) / (until - from)) : 1.0;

@@ -22,6 +22,8 @@ struct PriorOptions {
   double segment_share = 0.1;  // of the rays, for all but planes and points
   double point_share = 0.1;    // of the rays, for points
 
+  // All weights 0.
+  static PriorOptions Off();
   // Whether rays are drawn in groups within segments.
   bool Segments() const { return planar > 0.0 || upright > 0.0 || normals > 0.0 || orientation > 0.0; }
   // Whether planes of sparse points are needed.

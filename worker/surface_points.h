@@ -2,6 +2,7 @@
 // to bring the gradient into the tables of the encoding.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -10,19 +11,17 @@
 
 namespace skyquilt::worker {
 
-class SurfacePoints {
- public:
+struct SurfacePoints {
   // Makes room for n points of a field; n = 0: there are none.
   void Reset(int64_t n, const field::HashField& field) {
     count = n;
-    points_ = std::max(1, field.config().multisample);
-    cones_ = field.config().Cones();
+    const int points = std::max(1, field.config().multisample);
     stride = kernel::StrideFor(n);
-    for (auto* v : {&x, &y, &z}) v->assign(stride * static_cast<size_t>(points_), 0.0F);
+    for (auto* v : {&x, &y, &z}) v->assign(stride * static_cast<size_t>(points), 0.0F);
     sharpness.assign(stride, 0.0F);
     along.assign(3 * stride, 0.0F);
     feature_gradient.assign(static_cast<size_t>(field.encoding().OutputRows()) * stride, 0.0F);
-    at = {x.data(), y.data(), z.data(), cones_ ? sharpness.data() : nullptr, points_, stride};
+    at = {x.data(), y.data(), z.data(), field.config().Cones() ? sharpness.data() : nullptr, points, stride};
   }
   // Valid until the next Reset.
   field::FeatureGradient Gradient() const { return {0, count, feature_gradient.data(), stride, along.data(), &at}; }
@@ -34,10 +33,6 @@ class SurfacePoints {
   std::vector<float> along;             // 3 rows: d loss / d gradient of the log density
   std::vector<float> feature_gradient;  // d log density / d feature
   kernel::Positions at;
-
- private:
-  int points_ = 1;
-  bool cones_ = false;
 };
 
 }  // namespace skyquilt::worker

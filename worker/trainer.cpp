@@ -40,7 +40,7 @@ double ColorRange(const survey::Survey& survey, const brightness::Response& resp
 
 // A field without parameters. response: as known so far; learning: whether gains are learned while the field trains.
 render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool is_context, const brightness::Luminance& luminance,
-                                const brightness::Response& response, bool learning) {
+                                const brightness::Response& response, bool learning, const PriorOptions& priors) {
   const TrainOptions& options = job.options;
   render::TrainedField f;
   f.name = spec.name;
@@ -64,7 +64,7 @@ render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool
   f.config.multisample = options.multisample;
   f.config.scale_features = options.scale_features && f.config.Cones();
   f.config.luminance = luminance.On();
-  f.config.normal_head = !is_context && job.priors.normals > 0.0;
+  f.config.normal_head = priors.normals > 0.0;
   // Light that is shown brighter than in the photos, or that was too bright for them.
   if (luminance.On()) f.config.color_range = std::max(f.config.color_range, kLuminanceRange);
   f.occupancy = field::OccupancyGrid::Make(grid.extent, kCellPerVoxel * spec.finest_voxel_m * f.map.units_per_metre(), kMaxOccupancyCells);
@@ -102,7 +102,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   }
   if (GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads)) learner.Freeze();
   source.UpdateExposures();
-  render::TrainedField target = MakeTarget(job, area, true, job.luminance, response, learner.active());
+  render::TrainedField target = MakeTarget(job, area, true, job.luminance, response, learner.active(), PriorOptions::Off());
   const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};
   FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, {}, threads);
   SessionRecord record;
@@ -143,7 +143,9 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
         "was trained with " + std::to_string(loaded.response.photos()) + " photos, but the survey has " + std::to_string(job.survey->photos.size()),
         "Train it again with --restart");
   }
-  render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false);
+  // The losses of a concealing field know no distances of rays.
+  const PriorOptions prior_options = loaded.luminance.On() ? PriorOptions::Off() : job.priors;
+  render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false, prior_options);
   RaySource source(*job.survey, *job.pixels, loaded.response);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
   const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, block.photos, surface, job.min_views);
@@ -155,10 +157,10 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
   }
   const LuminancePlan luminance{loaded.luminance, loaded.luminance_state, false};
   std::optional<PhotoSegments> segments;
-  if (job.priors.Segments()) segments.emplace(*job.pixels, block.photos, threads);
-  const DepthPoints points = job.priors.points > 0.0 ? DepthPoints(*job.survey, source, block.box) : DepthPoints();
-  const PointPlanes planes = job.priors.Planes() ? PointPlanes(*job.survey, block.box, block.gsd_m) : PointPlanes();
-  const FieldPriors priors{job.priors, segments ? &*segments : nullptr, &points, &planes, &job.survey->directions};
+  if (prior_options.Segments()) segments.emplace(*job.pixels, block.photos, threads);
+  const DepthPoints points = prior_options.points > 0.0 ? DepthPoints(*job.survey, source, block.box) : DepthPoints();
+  const PointPlanes planes = prior_options.Planes() ? PointPlanes(*job.survey, block.box, block.gsd_m) : PointPlanes();
+  const FieldPriors priors{prior_options, segments ? &*segments : nullptr, &points, &planes, &job.survey->directions};
   FieldTrainer trainer(target, source, context != nullptr ? &context->field : nullptr, job.options, job.seed, luminance, nullptr, priors, threads);
   SessionRecord record;
   if (saved) {

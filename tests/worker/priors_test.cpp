@@ -82,7 +82,7 @@ TEST_F(PriorsTest, WithoutWeightsNothingChanges) {
   AddPoints(0.0);
   base::ThreadPool threads(1);
   TrainContext(Job("context.h5", 60), Box(20.0, 0.0), threads, {});
-  PriorOptions off = NoPriors();
+  PriorOptions off = PriorOptions::Off();
   off.from = off.until = 0.0;
   off.segment_share = off.point_share = 0.5;
   const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
@@ -114,7 +114,7 @@ TEST_F(PriorsTest, PointsMoveTheSurface) {
   AddPoints(1.0);
   base::ThreadPool threads(2);
   TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
-  PriorOptions strong = NoPriors();
+  PriorOptions strong = PriorOptions::Off();
   strong.points = 1.0;
   strong.point_share = 0.3;
   strong.from = 0.1;
@@ -130,7 +130,7 @@ TEST_F(PriorsTest, PlanesOfPointsMoveTheSurface) {
   AddPoints(0.6);
   base::ThreadPool threads(2);
   TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
-  PriorOptions strong = NoPriors();
+  PriorOptions strong = PriorOptions::Off();
   strong.planes = 1.0;
   strong.from = 0.1;
   strong.until = 0.2;
@@ -150,7 +150,7 @@ TEST_F(PriorsTest, NormalsOfDensityAndHeadAgreeWithTheSurface) {
   AddPoints(0.0);
   base::ThreadPool threads(2);
   TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
-  PriorOptions priors = NoPriors();
+  PriorOptions priors = PriorOptions::Off();
   priors.normals = 0.1;
   priors.segment_share = 0.3;
   priors.from = 0.1;

@@ -42,12 +42,6 @@ struct SmallWorld {
   }
 };
 
-inline PriorOptions NoPriors() {
-  PriorOptions priors;
-  priors.planar = priors.upright = priors.planes = priors.points = priors.normals = priors.orientation = 0.0;
-  return priors;
-}
-
 class SmallSurvey : public ::testing::Test {
  protected:
   // From a display value of the world to the one that photo i records at a pixel. r2: squared distance from the centre, 1 in the corners.
@@ -112,7 +106,7 @@ class SmallSurvey : public ::testing::Test {
     job.options.hidden = 32;
     job.config_hash = "abc";
     job.seed = 7;
-    job.priors = NoPriors();
+    job.priors = PriorOptions::Off();
     job.checkpoint = folder_ / name;
     return job;
   }

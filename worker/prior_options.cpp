@@ -14,7 +14,9 @@ PriorOptions PriorOptions::Off() {
 
 double PriorOptions::Strength(double progress) const {
   if (progress < from || progress <= 0.0) return 0.0;
-  return until > from ? std::min(1.0, (progress - from) / (until - from)) : 1.0;
+  if (progress < until) return (progress - from) / (until - from);
+  if (until >= 1.0) return 1.0;
+  return 1.0 + (final_share - 1.0) * std::min(1.0, (progress - until) / (1.0 - until));
 }
 
 std::vector<config::Field<PriorOptions>> PriorOptions::Fields() {
@@ -31,7 +33,9 @@ std::vector<config::Field<PriorOptions>> PriorOptions::Fields() {
        "weight of the loss that makes normals agree: those of the density, of a predicting head and of planes of sparse points; 0: off"},
       {"orientation", &O::orientation, Range{0, 1e3}, "weight of the loss that turns the normals of the density towards the camera; 0: off"},
       {"from", &O::from, Range{0, 1}, "share of the budget up to which these weights are 0"},
-      {"until", &O::until, Range{0, 1}, "share of the budget from which on they have their full size; between, they grow linearly"},
+      {"until", &O::until, Range{0, 1}, "share of the budget at which they have their full size; between, they grow linearly"},
+      {"final_share", &O::final_share, Range{0, 1},
+       "share of their full size that they have at the end, to which they fall linearly: what holds a surface may cost sharpness in long trainings"},
       {"segment_share", &O::segment_share, Range{0, 0.5},
        "share of the rays that are drawn in groups within a segment, for all but planes and points"},
       {"point_share", &O::point_share, Range{0, 0.5}, "share of the rays that are drawn towards sparse points"},

@@ -16,9 +16,11 @@ struct PriorOptions {
   double points = 0.05;      // rays towards sparse points end there (worker/losses/point_depth_loss.h)
   double normals = 0.0;      // normals of the density, of a predicting head and of planes of sparse points agree (worker/losses/normal_loss.h)
   double orientation = 0.0;  // the density's normals face the camera
-  // The weights are 0 up to the share `from` of the budget, and rise linearly to their full size at `until`.
+  // The weights are 0 up to the share `from` of the budget, rise linearly to their full size at `until`, and fall linearly to `final_share` of it at
+  // the end.
   double from = 0.3;
   double until = 0.6;
+  double final_share = 1.0;
   double segment_share = 0.1;  // of the rays, for all but planes and points
   double point_share = 0.1;    // of the rays, for points
 

@@ -16,6 +16,18 @@ TEST(PriorOptions, WeightsGrowBetweenTheTwoShares) {
   EXPECT_EQ(options.Strength(1.0), 1.0);
 }
 
+TEST(PriorOptions, MayFallUntilTheEnd) {
+  PriorOptions options;
+  options.final_share = 0.2;
+  EXPECT_NEAR(options.Strength(0.45), 0.5, 1e-12);
+  EXPECT_EQ(options.Strength(0.6), 1.0);
+  EXPECT_NEAR(options.Strength(0.8), 0.6, 1e-12);
+  EXPECT_NEAR(options.Strength(1.0), 0.2, 1e-12);
+  EXPECT_NEAR(options.Strength(1.5), 0.2, 1e-12);
+  options.from = options.until = 1.0;
+  EXPECT_EQ(options.Strength(1.0), 1.0);
+}
+
 TEST(PriorOptions, MayBeginAtFullSize) {
   PriorOptions options;
   options.from = options.until = 0.5;

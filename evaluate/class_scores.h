@@ -12,7 +12,8 @@
 
 namespace skyquilt::evaluate {
 
-// Errors of depth and normals over several photos. Keeps eight bytes per scored pixel, as medians need all values.
+// Errors of depth and normals over several photos. Keeps eight bytes per scored pixel, and four more for each kind of field normals, as medians need
+// all values.
 class ClassErrors {
  public:
   // Adds the pixels of a photo that are scored and have a true depth and a true class. findings: result of ScorePhoto for this task; without true

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <span>
 
+#include "core/base/log.h"
 #include "evaluate/load_held_out_photo.h"
 
 namespace skyquilt::evaluate {
@@ -50,6 +51,9 @@ double LpipsOf(metrics::Lpips& network, const HeldOutPhoto& task, const image::I
 
 HeldOutScorer::HeldOutScorer(const EvaluateInput& input)
     : input_(input), area_(AreaOf(input.scene->info())), training_(ViewsOf(input)), views_(training_) {
+  if (input.options.field_normals && !input.scene->info().density_normals) {
+    spdlog::warn("The scene's encoding has no normals of the density, so they are not scored. evaluate.field_normals needs \"hash\" or \"voxels\"");
+  }
   if (!input.options.lpips_network.empty()) lpips_.emplace(input.options.lpips_network);
 }
 
@@ -68,7 +72,8 @@ PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, ba
   using Clock = std::chrono::steady_clock;
   const Recordings recordings = RecordingsOf(photo);
   const Clock::time_point start = Clock::now();
-  const bool field_normals = input_.options.field_normals && !task.true_normals.Empty();
+  // A field whose encoding has no slope cannot be rendered with normals, not even with those of a head.
+  const bool field_normals = input_.options.field_normals && input_.scene->info().density_normals && !task.true_normals.Empty();
   const scene::Appearance appearance{.look = scene::Rendition::kRecorded, .normals = field_normals};
   std::vector<render::RayColor> rendered = input_.scene->RenderCamera(task.camera, task.cam_from_enu, appearance, threads);
   const std::vector<render::RayColor> as_reference = recordings.Differ() ? rendered : std::vector<render::RayColor>();

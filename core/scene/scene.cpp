@@ -7,6 +7,7 @@
 #include "core/base/errors.h"
 #include "core/camera/pixel_pitch.h"
 #include "core/checkpoint/archive.h"
+#include "core/field/hash_field.h"
 #include "core/image/srgb.h"
 #include "core/render/ray_engine.h"
 #include "core/render/ray_segments.h"
@@ -127,9 +128,12 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
   if (store.size() == 0) throw base::InputError(scene_h5, "has no blocks", "Train at least one block, then merge again");
   info.min_enu = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   info.max_enu = -info.min_enu;
+  const auto has_slope = [](const render::TrainedField& f) { return field::HashField(f.config).encoding().HasSlope(); };
+  info.density_normals = !store.HasContext() || has_slope(store.context());
   info.normal_head = true;
   for (int k = 0; k < store.size(); ++k) {
     const render::TrainedField& f = store.block(k);
+    info.density_normals = info.density_normals && has_slope(f);
     info.normal_head = info.normal_head && f.config.normal_head;
     info.blocks.push_back({f.box, f.name, store.Parameters(k), f.steps, f.seconds, f.samples});
     info.parameters += store.Parameters(k);

@@ -57,8 +57,9 @@ struct SceneInfo {
   double gsd_m = 0.0;  // ground sampling distance of the finest block
   Scales scales;
   Borders borders = Borders::kSmooth;
-  bool normal_head = false;  // whether all blocks predict normals
-  std::string config;        // TOML text of the configuration it was trained with
+  bool density_normals = false;  // whether all fields have normals of the density: not every encoding has
+  bool normal_head = false;      // whether all blocks predict normals
+  std::string config;            // TOML text of the configuration it was trained with
 };
 
 // The two renderings of a scene with a concealing field. For other scenes they are the same.

@@ -21,6 +21,20 @@ def scores_of(project):
     return stripped(metrics_of(project))
 
 
+def medians_of(scores, kind):
+    """Of the normals of the field ("density" or "head"), by class where they were measured."""
+    medians = [one[f"{kind}_normal_median_deg"] for one in scores["classes"].values()]
+    return [median for median in medians if median is not None]
+
+
+def without_normals(scores):
+    """Scores that do not depend on evaluate.field_normals."""
+    kept = {key: value for key, value in scores.items() if key != "config"}
+    kept["classes"] = {name: {key: value for key, value in one.items() if not key.startswith(("density_", "head_"))}
+                       for name, one in scores["classes"].items()}
+    return kept
+
+
 def pictures_of(folder):
     files = sorted(path for path in folder.rglob("*") if path.suffix in (".png", ".tiff", ".tif"))
     expect(len(files) >= 6, f"{folder} has only {[path.name for path in files]}")
@@ -83,9 +97,18 @@ def test(skyquilt, folder):
     skyquilt.call("evaluate", project)
     expected = scores_of(project)
     expect(expected["psnr"] > 10.0, f"PSNR {expected['psnr']}")
+    expect(all(medians_of(expected, kind) == [] for kind in ("density", "head")), "normals of the field are scored without being asked for")
+    field_normals = ("--set", "evaluate.field_normals=true")
+    skyquilt.call("evaluate", project, "--restart", *field_normals)
+    with_normals = scores_of(project)
+    medians = medians_of(with_normals, "density")
+    expect(medians and all(0.0 < median < 180.0 for median in medians), f"errors of the density's normals: {medians}")
+    expect(medians_of(with_normals, "head") == [], "normals are predicted without a head")
+    expect(without_normals(with_normals) == without_normals(expected), "scoring the field's normals changes other scores")
+    expected = with_normals
     for ranks in (2, 4):
         shutil.rmtree(project / "report")
-        skyquilt.call("evaluate", project, "--restart", ranks=ranks)
+        skyquilt.call("evaluate", project, "--restart", *field_normals, ranks=ranks)
         expect(scores_of(project) == expected, f"{ranks} ranks give other scores: {scores_of(project)['psnr']} dB, alone {expected['psnr']} dB")
         expect(metrics_of(project)["rendering"]["ranks"] == ranks - 1, "the report does not say who rendered")
         expect(metrics_of(project)["rendering"]["bytes_received"] > 0, "the report does not count the bytes received")

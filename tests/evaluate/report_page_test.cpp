@@ -81,6 +81,22 @@ TEST_F(ReportPage, SurfacesAreScoredByClassWhereTheTruthIsKnown) {
   EXPECT_EQ(poor.find("Surface by class"), std::string::npos);
 }
 
+// Columns of the density's and the predicted normals are there only when those were measured.
+TEST_F(ReportPage, NormalsOfTheFieldHaveColumnsWhenTheyWereMeasured) {
+  Metrics metrics;
+  metrics.classes = {{.name = "roof"}, {.name = "tree"}};
+  const std::string density = "Of the density's normals", head = "Of the predicted normals";
+  const auto has = [&](const std::string& column) { return ClassTable(metrics).find(column) != std::string::npos; };
+  EXPECT_FALSE(has(density) || has(head));
+  metrics.classes[1].density_normal_median_deg = 21.5;
+  EXPECT_TRUE(has(density) && has("21.5\xC2\xB0"));
+  EXPECT_FALSE(has(head));
+  metrics.classes[0].head_normal_median_deg = 6.5;
+  EXPECT_TRUE(has(density) && has(head) && has("6.5\xC2\xB0"));
+  const std::string table = ClassTable(metrics);
+  EXPECT_EQ(CountOf(table, "<td"), 2 * CountOf(table, "<th class") + 2);
+}
+
 TEST_F(ReportPage, OpensOfflineAndEveryPictureExists) {
   EXPECT_EQ(html_.find("http://"), std::string::npos);
   EXPECT_EQ(html_.find("https://"), std::string::npos);

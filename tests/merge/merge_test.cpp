@@ -28,9 +28,9 @@ class Merge : public testing::Test {
   struct Footprints {
     double min_m = 0.0, max_m = 0.0;
   };
-  void Write(const std::string& kind, const std::string& name, const Footprints& footprints) const {
+  void Write(const std::string& kind, const std::string& name, const Footprints& footprints, encoding::Kind encoding = encoding::Kind::kHash) const {
     const Eigen::Vector3d low(name == "r0c1" ? 5.0 : 0.0, 0.0, 0.0);
-    render::TrainedField field = render::RandomField(3, low, low + Eigen::Vector3d(5.0, 5.0, 4.0), 0.8, -1.0, kind == "context");
+    render::TrainedField field = render::RandomField(3, low, low + Eigen::Vector3d(5.0, 5.0, 4.0), 0.8, -1.0, kind == "context", encoding);
     field.name = name;
     field.config.multisample = footprints.max_m > 0.0 ? 1 : 0;
     field.footprint_min_m = footprints.min_m;
@@ -96,6 +96,17 @@ TEST_F(Merge, TheSceneKnowsTheFootprintsOfAllBlocks) {
   EXPECT_TRUE(info.scales.Cones());
   EXPECT_EQ(info.scales.footprint_min_m, 0.05);
   EXPECT_EQ(info.scales.footprint_max_m, 0.5);
+}
+
+// A single field without them is enough, the context included.
+TEST_F(Merge, TheSceneKnowsWhetherAllFieldsHaveNormalsOfTheDensity) {
+  EXPECT_TRUE(Merged({}).density_normals);
+  Write("block", "r0c1", {}, encoding::Kind::kFrequency);
+  EXPECT_FALSE(Merged({}).density_normals);
+  Write("block", "r0c1", {}, encoding::Kind::kVoxels);
+  EXPECT_TRUE(Merged({}).density_normals);
+  Write("context", "context", {}, encoding::Kind::kPlanes);
+  EXPECT_FALSE(Merged({}).density_normals);
 }
 
 }  // namespace

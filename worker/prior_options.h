@@ -20,7 +20,7 @@ struct PriorOptions {
   // the end.
   double from = 0.3;
   double until = 0.6;
-  double final_share = 1.0;
+  double final_share = 0.1;
   double segment_share = 0.1;  // of the rays, for all but planes and points
   double point_share = 0.1;    // of the rays, for points
 

@@ -63,6 +63,7 @@ PriorOptions AllPriors() {
   priors.planar = priors.upright = priors.planes = priors.points = priors.normals = priors.orientation = 1e-2;
   priors.from = 0.1;
   priors.until = 0.3;
+  priors.final_share = 1.0;
   return priors;
 }
 
@@ -119,6 +120,7 @@ TEST_F(PriorsTest, PointsMoveTheSurface) {
   strong.point_share = 0.3;
   strong.from = 0.1;
   strong.until = 0.2;
+  strong.final_share = 1.0;
   const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
   train(Job("free.h5", 500));
   train(JobWith("held.h5", 500, strong));
@@ -134,6 +136,7 @@ TEST_F(PriorsTest, PlanesOfPointsMoveTheSurface) {
   strong.planes = 1.0;
   strong.from = 0.1;
   strong.until = 0.2;
+  strong.final_share = 1.0;
   const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
   train(Job("free.h5", 500));
   train(JobWith("held.h5", 500, strong));
@@ -155,6 +158,7 @@ TEST_F(PriorsTest, NormalsOfDensityAndHeadAgreeWithTheSurface) {
   priors.segment_share = 0.3;
   priors.from = 0.1;
   priors.until = 0.2;
+  priors.final_share = 1.0;
   const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
   train(Job("free.h5", 500));
   train(JobWith("held.h5", 500, priors));

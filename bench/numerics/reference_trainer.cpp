@@ -24,16 +24,6 @@ double ToSrgbSlope(double linear) {
   return linear <= 0.0031308 ? 12.92 : 1.055 / 2.4 * std::pow(linear, 1.0 / 2.4 - 1.0);
 }
 
-// The place of a batch's sample. With sharpness a, 1 / (sqrt(8) s) is a.
-ReferenceField::Place PlaceOf(const kernel::Positions& at, size_t sample) {
-  ReferenceField::Place place;
-  for (size_t i = sample; place.positions.size() < static_cast<size_t>(at.points); i += at.plane) {
-    place.positions.push_back({static_cast<double>(at.x[i]), static_cast<double>(at.y[i]), static_cast<double>(at.z[i])});
-  }
-  if (at.sharpness != nullptr) place.deviation = 1.0 / (std::sqrt(8.0) * static_cast<double>(at.sharpness[sample]));
-  return place;
-}
-
 // A sample of a ray that is not hidden.
 struct Lit {
   ReferenceField::Sample sample;
@@ -49,6 +39,16 @@ void Adam(double learning_rate, double correction1, double correction2, double g
 }
 
 }  // namespace
+
+// With sharpness a, 1 / (sqrt(8) s) is a.
+ReferenceField::Place PlaceOf(const kernel::Positions& at, size_t sample) {
+  ReferenceField::Place place;
+  for (size_t i = sample; place.positions.size() < static_cast<size_t>(at.points); i += at.plane) {
+    place.positions.push_back({static_cast<double>(at.x[i]), static_cast<double>(at.y[i]), static_cast<double>(at.z[i])});
+  }
+  if (at.sharpness != nullptr) place.deviation = 1.0 / (std::sqrt(8.0) * static_cast<double>(at.sharpness[sample]));
+  return place;
+}
 
 ReferenceState ReferenceState::From(const TrainingState& state) {
   const auto doubled = [](const std::vector<float>& values) { return std::vector<double>(values.begin(), values.end()); };

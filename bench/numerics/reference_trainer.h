@@ -22,6 +22,9 @@ struct ReferenceState {
   static ReferenceState From(const TrainingState& state);
 };
 
+// The place of a batch's sample.
+ReferenceField::Place PlaceOf(const kernel::Positions& at, size_t sample);
+
 struct ReferenceResult {
   double loss = 0.0;           // mean over rays
   double squared_error = 0.0;  // mean over colour rays and channels

@@ -49,7 +49,7 @@ render::TrainedField SyntheticField(const SyntheticOptions& options) {
   field.config.hidden = options.hidden;
   field.config.color_hidden_layers = options.color_hidden_layers;
   field.config.color_range = 1.4;
-  field.config.density_bias = -3.0;
+  field.config.density_bias = options.density_bias;
   field.config.multisample = options.multisample;
   field.config.normal_head = options.normal_head;
   field.config.scale_features = options.scale_features;

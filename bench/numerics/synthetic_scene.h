@@ -21,6 +21,7 @@ struct SyntheticOptions {
   int log2_table_size = 12;
   int hidden = 16;
   int color_hidden_layers = 1;
+  double density_bias = -3.0;  // log of the optical depth of a step before training; 1: rays end where they enter
   // As train.multisample and train.scale_features.
   int multisample = 0;
   bool scale_features = false;

@@ -20,12 +20,20 @@ worker::RayBatch SyntheticTrainer::Draw(const SyntheticRays& rays, base::Random&
 }
 
 SyntheticTrainer::Gradients SyntheticTrainer::GradientsOf(worker::RayBatch batch, double distortion) {
+  return GradientsOf(std::move(batch), worker::StepOptions{.learning_rate = 0.0, .network_l2 = 0.0, .distortion = distortion});
+}
+
+SyntheticTrainer::Gradients SyntheticTrainer::GradientsOf(worker::RayBatch batch, const worker::StepPriors& priors) {
+  return GradientsOf(std::move(batch), worker::StepOptions{.priors = priors});
+}
+
+SyntheticTrainer::Gradients SyntheticTrainer::GradientsOf(worker::RayBatch batch, const worker::StepOptions& options) {
   // After one step from zero moments, the first moment is a tenth of the gradient.
   field::Parameters parameters = state_.parameters;
   field::OptimizerState probe;
   probe.Allocate(field_);
   Gradients gradients;
-  gradients.result = step_.Train(batch, {.learning_rate = 0.0, .network_l2 = 0.0, .distortion = distortion}, parameters, probe, nullptr);
+  gradients.result = step_.Train(batch, options, parameters, probe, nullptr);
   const auto share = static_cast<double>(1.0F - kernel::AdamStep{}.beta1);
   for (const float moment : probe.grid_moment1) gradients.grid.push_back(static_cast<double>(moment) / share);
   for (const float moment : probe.network_moment1) gradients.networks.push_back(static_cast<double>(moment) / share);

@@ -32,8 +32,12 @@ class SyntheticTrainer {
     std::vector<double> grid, networks;
   };
   Gradients GradientsOf(worker::RayBatch batch, double distortion);
+  // With these priors and without distortion loss.
+  Gradients GradientsOf(worker::RayBatch batch, const worker::StepPriors& priors);
 
  private:
+  Gradients GradientsOf(worker::RayBatch batch, const worker::StepOptions& options);
+
   SyntheticOptions scene_;
   base::ThreadPool threads_;
   worker::PhaseTimes times_;

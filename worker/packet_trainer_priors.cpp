@@ -17,8 +17,9 @@ using Eigen::Vector3d;
 
 // A ray that grazes a plane says little about where it meets it.
 constexpr double kLeastFacing = 0.2;
-// Rays that end farther from a plane of sparse points, in voxels, belong to something else.
-constexpr double kPlaneReachVoxels = 3.0;
+// Rays that end farther from a plane of sparse points, in voxels, belong to something else. With twice as much, the feet of walls and low things are
+// drawn to the ground.
+constexpr double kPlaneReachVoxels = 1.5;
 
 RayEnd EndOf(size_t n, const float* weights, const float* stops, double voxel_m) {
   constexpr double kFront = 0.15, kBack = 0.85;

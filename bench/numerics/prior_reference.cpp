@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 const double kPriorsHiddenBehind = -std::log(1e-3);
-constexpr double kLeastFacing = 0.2, kReachVoxels = 3.0, kLeastSlopePerVoxel = 0.05;
+constexpr double kLeastFacing = 0.2, kReachVoxels = 1.5, kLeastSlopePerVoxel = 0.05;
 
 double Square(double x) {
   return x * x;

@@ -13,7 +13,7 @@ TEST(PriorOptions, WeightsGrowBetweenTheTwoShares) {
   EXPECT_EQ(options.Strength(0.29), 0.0);
   EXPECT_NEAR(options.Strength(0.45), 0.5, 1e-12);
   EXPECT_EQ(options.Strength(0.6), 1.0);
-  EXPECT_NEAR(options.Strength(1.0), 0.1, 1e-12);
+  EXPECT_EQ(options.Strength(1.0), 1.0);
 }
 
 TEST(PriorOptions, MayFallUntilTheEnd) {

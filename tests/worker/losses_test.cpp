@@ -55,14 +55,20 @@ CheckedLoss Checked(const VectorLoss<double>& loss) {
 
 TEST(Losses, NormalLossHasItsGradient) {
   const Eigen::Vector3d target = Eigen::Vector3d(0.3, -0.2, 0.8).normalized();
-  ExpectLossGradient([&](double weight, const Inputs& x) { return Checked(NormalLoss<double>(weight, {x[0], x[1], x[2] + 4.0}, target)); },
-                     {3, -3.0, 3.0});
+  ExpectLossGradient(
+      [&](double weight, const Inputs& x) {
+        return Checked(NormalLoss<double>(weight, {x[0], x[1], x[2] + 4.0}, target));
+      },
+      {3, -3.0, 3.0});
 }
 
 TEST(Losses, OrientationLossHasItsGradientWhereTheSurfaceTurnsAway) {
   const Eigen::Vector3d camera = Eigen::Vector3d(0.1, 0.2, 1.0).normalized();
-  ExpectLossGradient([&](double weight, const Inputs& x) { return Checked(OrientationLoss<double>(weight, {x[0], x[1], x[2] - 4.0}, camera)); },
-                     {3, -3.0, 3.0});
+  ExpectLossGradient(
+      [&](double weight, const Inputs& x) {
+        return Checked(OrientationLoss<double>(weight, {x[0], x[1], x[2] - 4.0}, camera));
+      },
+      {3, -3.0, 3.0});
   EXPECT_EQ(OrientationLoss<double>(1.0, {0.1, 0.0, 2.0}, camera).value, 0.0) << "a surface that faces the camera";
   EXPECT_NEAR(OrientationLoss<double>(1.0, -7.0 * camera, camera).value, 1.0, 1e-12);
 }

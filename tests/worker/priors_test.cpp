@@ -39,6 +39,16 @@ class PriorsTest : public SmallSurvey {
     job.priors = priors;
     return job;
   }
+  // Trains free.h5 without priors and held.h5 with these, at full size from early on until the end.
+  void TrainFreeAndHeld(double lift_m, PriorOptions priors, base::ThreadPool& threads) {
+    AddPoints(lift_m);
+    priors.from = 0.1;
+    priors.until = 0.2;
+    priors.final_share = 1.0;
+    TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
+    TrainBlock(Job("free.h5", 500), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
+    TrainBlock(JobWith("held.h5", 500, priors), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
+  }
   // Rays straight down from 30 m onto the ground beside the box.
   std::vector<render::RayColor> LookDown(const std::string& checkpoint, base::ThreadPool& threads) const {
     const checkpoint::ArchiveReader reader(folder_ / checkpoint);
@@ -112,56 +122,35 @@ TEST_F(PriorsTest, WithoutWeightsNothingChanges) {
 
 // Points that lie are believed when their weight is large: the surface comes to them.
 TEST_F(PriorsTest, PointsMoveTheSurface) {
-  AddPoints(1.0);
-  base::ThreadPool threads(2);
-  TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
   PriorOptions strong = PriorOptions::Off();
   strong.points = 1.0;
   strong.point_share = 0.3;
-  strong.from = 0.1;
-  strong.until = 0.2;
-  strong.final_share = 1.0;
-  const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
-  train(Job("free.h5", 500));
-  train(JobWith("held.h5", 500, strong));
+  base::ThreadPool threads(2);
+  TrainFreeAndHeld(1.0, strong, threads);
   EXPECT_GT(EndAt("free.h5", 30.0F, 0.5F, threads), EndAt("free.h5", 29.0F, 0.5F, threads));
   EXPECT_GT(EndAt("held.h5", 29.0F, 0.5F, threads), 21);  // of 29
 }
 
 TEST_F(PriorsTest, PlanesOfPointsMoveTheSurface) {
-  AddPoints(0.4);
-  base::ThreadPool threads(2);
-  TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
   PriorOptions strong = PriorOptions::Off();
   strong.planes = 1.0;
-  strong.from = 0.1;
-  strong.until = 0.2;
-  strong.final_share = 1.0;
-  const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
-  train(Job("free.h5", 500));
-  train(JobWith("held.h5", 500, strong));
+  base::ThreadPool threads(2);
+  TrainFreeAndHeld(0.4, strong, threads);
   EXPECT_GT(EndAt("free.h5", 30.0F, 0.2F, threads), EndAt("free.h5", 29.6F, 0.2F, threads));
   EXPECT_GT(EndAt("held.h5", 29.6F, 0.2F, threads), 21);
 }
 
-// Angle between the up direction and the mean normal, degrees; 180 without one.
+// Angle between the up direction and the mean normal, degrees; 90 without one.
 double Tilt_deg(const float (&normal)[3]) {
   return std::acos(std::clamp(static_cast<double>(normal[2]), -1.0, 1.0)) * 180.0 / std::numbers::pi;
 }
 
 TEST_F(PriorsTest, NormalsOfDensityAndHeadAgreeWithTheSurface) {
-  AddPoints(0.0);
-  base::ThreadPool threads(2);
-  TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
   PriorOptions priors = PriorOptions::Off();
   priors.normals = 0.1;
   priors.segment_share = 0.3;
-  priors.from = 0.1;
-  priors.until = 0.2;
-  priors.final_share = 1.0;
-  const auto train = [&](const TrainJob& job) { TrainBlock(job, Box(12.0, 1.0), folder_ / "context.h5", threads, {}); };
-  train(Job("free.h5", 500));
-  train(JobWith("held.h5", 500, priors));
+  base::ThreadPool threads(2);
+  TrainFreeAndHeld(0.0, priors, threads);
   double free = 0.0, held = 0.0, head = 0.0;
   for (const render::RayColor& ray : LookDown("free.h5", threads)) free += Tilt_deg(ray.density_normal) / 29.0;
   for (const render::RayColor& ray : LookDown("held.h5", threads)) {

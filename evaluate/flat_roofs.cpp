@@ -42,8 +42,8 @@ std::vector<RoofArea> ReadFlatRoofs(const std::filesystem::path& buildings_json)
   return roofs;
 }
 
-double RmsAboutPlane(std::span<const Vector3d> points) {
-  if (points.size() < 3) return kNotMeasured;
+PlaneSpread SpreadAboutPlane(std::span<const Vector3d> points) {
+  if (points.size() < 3) return {};
   Vector3d mean = Vector3d::Zero();
   for (const Vector3d& point : points) mean += point;
   mean /= static_cast<double>(points.size());
@@ -58,12 +58,15 @@ double RmsAboutPlane(std::span<const Vector3d> points) {
   spread += Eigen::Matrix2d::Identity() * (1e-12 * spread.trace() + std::numeric_limits<double>::min());
   const Vector2d slope = spread.ldlt().solve(with_height);
   double squares = 0.0;
+  std::vector<double> off_m;
   for (const Vector3d& point : points) {
     const Vector3d step = point - mean;
-    const double residual = step.z() - slope.dot(step.head<2>());
-    squares += residual * residual;
+    off_m.push_back(step.z() - slope.dot(step.head<2>()));
+    squares += off_m.back() * off_m.back();
   }
-  return std::sqrt(squares / static_cast<double>(points.size()));
+  const double median_m = base::Median(off_m);
+  for (double& off : off_m) off = std::abs(off - median_m);
+  return {.rms_m = std::sqrt(squares / static_cast<double>(points.size())), .nmad_m = 1.4826 * base::Median(std::move(off_m))};
 }
 
 void FlatRoofPoints::Add(const HeldOutPhoto& task, const PhotoResult& findings) {
@@ -90,7 +93,7 @@ void FlatRoofPoints::Add(const HeldOutPhoto& task, const PhotoResult& findings) 
 }
 
 FlatRoofScore FlatRoofPoints::Result() const {
-  std::vector<double> rms_m;
+  std::vector<double> rms_m, nmad_m;
   for (const std::vector<RoofPoint>& roof : points_) {
     std::vector<double> heights_m;
     for (const RoofPoint& point : roof) heights_m.push_back(point.true_z_m);
@@ -100,11 +103,14 @@ FlatRoofScore FlatRoofPoints::Result() const {
     for (const RoofPoint& point : roof) {
       if (std::abs(point.true_z_m - deck_z_m) <= kDeckTolerance_m) on_deck.push_back(point.rendered);
     }
-    if (on_deck.size() >= kFewestRoofPoints) rms_m.push_back(RmsAboutPlane(on_deck));
+    if (on_deck.size() < kFewestRoofPoints) continue;
+    const PlaneSpread spread = SpreadAboutPlane(on_deck);
+    rms_m.push_back(spread.rms_m);
+    nmad_m.push_back(spread.nmad_m);
   }
   FlatRoofScore score;
   score.roofs = static_cast<int>(rms_m.size());
-  score.rms_m = base::Median(std::move(rms_m));
+  score.spread = {.rms_m = base::Median(std::move(rms_m)), .nmad_m = base::Median(std::move(nmad_m))};
   return score;
 }
 

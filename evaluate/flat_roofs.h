@@ -27,12 +27,16 @@ struct RoofArea {
 // Flat roofs in truth/buildings.json that are wider than twice the rim. Throws base::InputError for a file that cannot be read or is damaged.
 std::vector<RoofArea> ReadFlatRoofs(const std::filesystem::path& buildings_json);
 
-// Root mean square of vertical distances to the plane z = a + b x + c y that fits the points best; NaN for fewer than three points.
-double RmsAboutPlane(std::span<const Eigen::Vector3d> points);
+// Spread of the vertical distances to the plane z = a + b x + c y that fits the points best; NaN for fewer than three points.
+struct PlaneSpread {
+  double rms_m = kNotMeasured;
+  double nmad_m = kNotMeasured;  // 1.4826 times the median distance from the median: of most points, when some are far off
+};
+PlaneSpread SpreadAboutPlane(std::span<const Eigen::Vector3d> points);
 
 struct FlatRoofScore {
-  int roofs = 0;                // measured ones
-  double rms_m = kNotMeasured;  // median over them of the rms about the plane
+  int roofs = 0;       // measured ones
+  PlaneSpread spread;  // medians over them
 };
 
 // Collects the field's surface points (median depth) on flat roofs over several photos.

@@ -119,6 +119,7 @@ struct Metrics {
   std::vector<ClassScore> classes;                         // empty without true classes
   int flat_roofs = 0;                                      // that were measured
   double flat_roof_rms_m = kNotMeasured;                   // median over them of the rms about the plane that fits best (flat_roofs.h)
+  double flat_roof_nmad_m = kNotMeasured;                  // and of the NMAD
   bool has_truth = false;                                  // simulated survey with true depth
   KeptPointErrors kept_points;
 

@@ -131,6 +131,7 @@ void PutClasses(const Metrics& metrics, Json* json) {
   (*json)["classes"] = ToJson(std::span<const ClassScore>(metrics.classes));
   (*json)["flat_roofs"] = metrics.flat_roofs;
   (*json)["flat_roof_rms_m"] = NumberOrNull(metrics.flat_roof_rms_m);
+  (*json)["flat_roof_nmad_m"] = NumberOrNull(metrics.flat_roof_nmad_m);
 }
 
 double NumberAt(const Json& json, const std::string& key) {
@@ -168,6 +169,7 @@ void TakeClasses(const Json& json, Metrics* metrics) {
   metrics->classes = ClassScoresFromJson(ValueAt<Json>(json, "classes"));
   metrics->flat_roofs = ValueAt<int>(json, "flat_roofs");
   metrics->flat_roof_rms_m = NumberAt(json, "flat_roof_rms_m");
+  metrics->flat_roof_nmad_m = NumberAt(json, "flat_roof_nmad_m");
 }
 
 // Earlier versions wrote less.

@@ -48,9 +48,11 @@ std::string ClassTable(const Metrics& metrics) {
   for (const ClassScore& score : metrics.classes) html += ScoreRow(score, measured);
   html += "</tbody></table></div>";
   if (metrics.flat_roofs > 0) {
-    html += fmt::format("<p class=\"note\">{} flat {} {} about the plane that fits best (rms{}), without the rim, machines and stair housings.</p>",
-                        metrics.flat_roofs, metrics.flat_roofs == 1 ? "roof is rough by" : "roofs are rough by",
-                        page::FormatFixed(metrics.flat_roof_rms_m, 3, "m"), metrics.flat_roofs == 1 ? "" : ", median over the roofs");
+    html += fmt::format(
+        "<p class=\"note\">{} flat {} {} about the plane that fits best (rms{}) and {} without the pixels that are far off (NMAD), without the rim, "
+        "machines and stair housings.</p>",
+        metrics.flat_roofs, metrics.flat_roofs == 1 ? "roof is rough by" : "roofs are rough by", page::FormatFixed(metrics.flat_roof_rms_m, 3, "m"),
+        metrics.flat_roofs == 1 ? "" : ", median over the roofs", page::FormatFixed(metrics.flat_roof_nmad_m, 3, "m"));
   }
   return html + "</div>\n";
 }

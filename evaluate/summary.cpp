@@ -49,7 +49,8 @@ void AddPooled(const scene::SceneInfo& info, const Scores& scores, Metrics* metr
   metrics->classes = scores.classes.Result();
   const FlatRoofScore roofs = scores.flat_roofs.Result();
   metrics->flat_roofs = roofs.roofs;
-  metrics->flat_roof_rms_m = roofs.rms_m;
+  metrics->flat_roof_rms_m = roofs.spread.rms_m;
+  metrics->flat_roof_nmad_m = roofs.spread.nmad_m;
   metrics->floater_opacity = scores.floaters.Mean();
   metrics->floater_profile = scores.floaters.Profile();
 }

@@ -94,12 +94,13 @@ void FieldTrainer::MeasureFootprints() {
 StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   const PhotoPyramid pyramid(options_.pyramid, options_.pyramid_start, options_.pyramid_until, progress);
   const double strength = priors_.options.Strength(progress);
+  const double point_strength = priors_.options.PointStrength(progress);
   PriorRays prior_rays;
   if (strength > 0.0 && priors_.options.Segments()) {
     prior_rays.segments = priors_.segments;
     prior_rays.segment_share = priors_.options.segment_share;
   }
-  if (strength > 0.0 && priors_.options.points > 0.0) {
+  if (point_strength > 0.0 && priors_.options.points > 0.0) {
     prior_rays.points = priors_.points;
     prior_rays.point_share = priors_.options.point_share;
   }
@@ -108,7 +109,7 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   step.priors = {.planar = strength * priors_.options.planar,
                  .upright = strength * priors_.options.upright,
                  .planes = strength * priors_.options.planes,
-                 .points = strength * priors_.options.points,
+                 .points = point_strength * priors_.options.points,
                  .normals = strength * priors_.options.normals,
                  .orientation = strength * priors_.options.orientation,
                  .voxel_m = target_.step_m / options_.step_voxels,

@@ -20,6 +20,8 @@ constexpr double kLeastFacing = 0.2;
 // Rays that end farther from a plane of sparse points, in voxels, belong to something else. With twice as much, the feet of walls and low things are
 // drawn to the ground.
 constexpr double kPlaneReachVoxels = 1.5;
+// Pixels are nowhere taken to be narrower than this: next to the camera they are, and the loss would have no bound.
+constexpr double kLeastWidthVoxels = 0.1;
 
 RayEnd EndOf(size_t n, const float* weights, const float* stops, double voxel_m) {
   constexpr double kFront = 0.15, kBack = 0.85;
@@ -78,14 +80,17 @@ void PacketTrainer::AddEndLosses(LossSums& sums) {
   }
 }
 
-// The robust square of the distance between a ray's end and a plane, in ground sampling distances; one voxel is far.
+// The robust square of the distance between a ray's end and a plane, in widths of its pixel; one voxel is far. No loss where the ray grazes the
+// plane.
 void PacketTrainer::AddDistanceLoss(size_t view, double weight, const Vector3d& on_plane, const Vector3d& normal, LossSums& sums) {
   const PixelRay& ray = Ray(view).ray;
-  const double gsd_m = static_cast<double>(ray.pixel_pitch) * ends_[view].mean_m;
+  const double along = normal.dot(ray.direction_enu), voxel_m = step_->priors.voxel_m;
+  if (std::abs(along) < kLeastFacing) return;
+  const double width_m = std::max(static_cast<double>(ray.pixel_pitch) * ends_[view].mean_m, kLeastWidthVoxels * voxel_m);
   const double off = (ray.origin_enu + ends_[view].mean_m * ray.direction_enu - on_plane).dot(normal);
-  const Loss<double> loss = RobustLoss(weight, off / gsd_m, step_->priors.voxel_m / gsd_m);
+  const Loss<double> loss = RobustLoss(weight, off / width_m, voxel_m / width_m);
   sums.loss += loss.value;
-  distance_gradient_[view] += static_cast<float>(loss.gradient * normal.dot(ray.direction_enu) / gsd_m) * step_->ray_share;
+  distance_gradient_[view] += static_cast<float>(loss.gradient * along / width_m) * step_->ray_share;
 }
 
 void PacketTrainer::AddKnownPlaneLoss(size_t view, LossSums& sums) {
@@ -96,7 +101,7 @@ void PacketTrainer::AddKnownPlaneLoss(size_t view, LossSums& sums) {
   if (plane == nullptr) return;
   // Light that grazes a wall is stopped over a long way, but near the wall.
   const double facing = std::abs(plane->normal.dot(ray.direction_enu));
-  if (facing < kLeastFacing || facing * ends_[view].depth_m > kSharpVoxels * priors.voxel_m) return;
+  if (facing * ends_[view].depth_m > kSharpVoxels * priors.voxel_m) return;
   AddDistanceLoss(view, priors.planes, plane->point, plane->normal, sums);
 }
 

@@ -14,9 +14,12 @@ PriorOptions PriorOptions::Off() {
 
 double PriorOptions::Strength(double progress) const {
   if (progress < from || progress <= 0.0) return 0.0;
-  if (progress < until) return (progress - from) / (until - from);
-  if (until >= 1.0) return 1.0;
-  return 1.0 + (final_share - 1.0) * std::min(1.0, (progress - until) / (1.0 - until));
+  return progress < until ? (progress - from) / (until - from) : 1.0;
+}
+
+double PriorOptions::PointStrength(double progress) const {
+  if (progress >= points_end) return 0.0;
+  return Strength(progress) * std::min(1.0, (points_end - progress) / (points_end - until));
 }
 
 std::vector<config::Field<PriorOptions>> PriorOptions::Fields() {
@@ -34,8 +37,8 @@ std::vector<config::Field<PriorOptions>> PriorOptions::Fields() {
       {"orientation", &O::orientation, Range{0, 1e3}, "weight of the loss that turns the normals of the density towards the camera; 0: off"},
       {"from", &O::from, Range{0, 1}, "share of the budget up to which these weights are 0"},
       {"until", &O::until, Range{0, 1}, "share of the budget at which they have their full size; between, they grow linearly"},
-      {"final_share", &O::final_share, Range{0, 1},
-       "share of their full size that they have at the end, to which they fall linearly: what holds a surface may cost sharpness in long trainings"},
+      {"points_end", &O::points_end, Range{0, 1},
+       "share of the budget at which the weight of points has fallen back to 0: to the end, points would cost sharpness"},
       {"segment_share", &O::segment_share, Range{0, 0.5},
        "share of the rays that are drawn in groups within a segment, for all but planes and points"},
       {"point_share", &O::point_share, Range{0, 0.5}, "share of the rays that are drawn towards sparse points"},
@@ -46,6 +49,8 @@ void PriorOptions::Check(const std::string& section) const {
   config::CheckRanges(section, *this);
   if (until < from)
     throw base::UsageError(section + ".until = " + std::to_string(until) + " is not allowed: it must not be below " + section + ".from");
+  if (points_end < until)
+    throw base::UsageError(section + ".points_end = " + std::to_string(points_end) + " is not allowed: it must not be below " + section + ".until");
 }
 
 }  // namespace skyquilt::worker

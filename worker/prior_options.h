@@ -13,14 +13,14 @@ struct PriorOptions {
   double planar = 0.0;       // rays of one segment of a photo end on a plane (worker/losses/robust_loss.h)
   double upright = 0.0;      // and that plane is level or vertical when it nearly is, and vertical ones follow the direction of the buildings there
   double planes = 0.01;      // rays that end near a plane of sparse points (worker/point_planes.h) end on it
-  double points = 0.0;       // rays towards sparse points end there (worker/losses/point_depth_loss.h)
+  double points = 0.05;      // rays towards sparse points end there (worker/losses/point_depth_loss.h)
   double normals = 0.0;      // normals of the density, of a predicting head and of planes of sparse points agree (worker/losses/normal_loss.h)
   double orientation = 0.0;  // the density's normals face the camera
-  // The weights are 0 up to the share `from` of the budget, rise linearly to their full size at `until`, and fall linearly to `final_share` of it at
-  // the end.
+  // The weights are 0 up to the share `from` of the budget and rise linearly to their full size at `until`. That of points falls linearly from there
+  // to 0 at `points_end`: points bring surfaces near to where they belong, but in the end make them thinner than the steps that sample them.
   double from = 0.3;
   double until = 0.6;
-  double final_share = 1.0;
+  double points_end = 1.0;
   double segment_share = 0.1;  // of the rays, for all but planes and points
   double point_share = 0.1;    // of the rays, for points
 
@@ -30,8 +30,9 @@ struct PriorOptions {
   bool Segments() const { return planar > 0.0 || upright > 0.0 || normals > 0.0 || orientation > 0.0; }
   // Whether planes of sparse points are needed.
   bool Planes() const { return planes > 0.0 || normals > 0.0; }
-  // Share of the full weights, 0..1. progress: of the budget, 0..1.
+  // Share of the full weights, 0..1; of points. progress: of the budget, 0..1.
   double Strength(double progress) const;
+  double PointStrength(double progress) const;
 
   static std::vector<config::Field<PriorOptions>> Fields();
   // Throws base::UsageError that names the option and its rule.

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 const double kPriorsHiddenBehind = -std::log(1e-3);
-constexpr double kLeastFacing = 0.2, kReachVoxels = 1.5, kLeastSlopePerVoxel = 0.05;
+constexpr double kLeastFacing = 0.2, kReachVoxels = 1.5, kLeastWidthVoxels = 0.1, kLeastSlopePerVoxel = 0.05;
 
 double Square(double x) {
   return x * x;
@@ -73,7 +73,9 @@ PriorReference::Ray PriorReference::Start(const worker::RayBatch& batch, const w
 }
 
 void PriorReference::AddPull(Ray& ray, double weight, const worker::Plane& plane) {
-  ray.pulls.push_back({.weight = weight, .gsd_m = static_cast<double>(ray.ray->ray.pixel_pitch) * ray.mean_m, .plane = plane});
+  if (std::abs(plane.normal.dot(ray.ray->ray.direction_enu)) < kLeastFacing) return;
+  const double width_m = std::max(static_cast<double>(ray.ray->ray.pixel_pitch) * ray.mean_m, kLeastWidthVoxels * priors_.voxel_m);
+  ray.pulls.push_back({.weight = weight, .width_m = width_m, .plane = plane});
   ++pulls_;
 }
 
@@ -81,7 +83,7 @@ void PriorReference::AddKnownPlane(Ray& ray) {
   const worker::PointPlane* const plane = priors_.known_planes->At(ray.At(ray.mean_m), kReachVoxels * priors_.voxel_m);
   if (plane == nullptr) return;
   const double facing = std::abs(plane->normal.dot(ray.ray->ray.direction_enu));
-  if (facing < kLeastFacing || facing * ray.depth_m > worker::kSharpVoxels * priors_.voxel_m) return;
+  if (facing * ray.depth_m > worker::kSharpVoxels * priors_.voxel_m) return;
   AddPull(ray, priors_.planes, {plane->point, plane->normal});
 }
 
@@ -153,7 +155,7 @@ double PriorReference::LossOf(const ReferenceState& state, const Ray& ray) const
   }
   for (const Pull& pull : ray.pulls) {
     const double off = (ray.At(moment / opacity) - pull.plane.point).dot(pull.plane.normal);
-    loss += pull.weight * Robust(off / pull.gsd_m, priors_.voxel_m / pull.gsd_m);
+    loss += pull.weight * Robust(off / pull.width_m, priors_.voxel_m / pull.width_m);
   }
   const auto sigma_m = static_cast<double>(ray.ray->ray.point_sigma_m);
   if (priors_.points > 0.0 && sigma_m > 0.0) {

@@ -31,7 +31,7 @@ class PriorReference {
   };
   // Towards a plane.
   struct Pull {
-    double weight = 0.0, gsd_m = 0.0;
+    double weight = 0.0, width_m = 0.0;
     worker::Plane plane;
   };
   struct Ray {

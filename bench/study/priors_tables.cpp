@@ -93,6 +93,7 @@ const std::vector<PriorFigure>& PriorFigures() {
       NormalsOf("walls, normals", "wall"),
       NormalsOf("ground, normals", "ground"),
       {"flat roofs, rms", "m", 3, ChangeKind::kPercent, [](R r) { return r.flat_roof_rms_m; }},
+      {"flat roofs, NMAD", "m", 3, ChangeKind::kPercent, [](R r) { return r.flat_roof_nmad_m; }},
       {"kept points, median", "GSD", 2, ChangeKind::kDifference, [](R r) { return r.kept_median_gsd; }},
       {"kept points, NMAD", "GSD", 2, ChangeKind::kPercent, [](R r) { return r.kept_nmad_gsd; }},
   };

@@ -287,6 +287,7 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   r.kept_nmad_gsd = known(metrics.kept_points.nmad_gsd);
   r.classes = metrics.classes;
   r.flat_roof_rms_m = known(metrics.flat_roof_rms_m);
+  r.flat_roof_nmad_m = known(metrics.flat_roof_nmad_m);
   r.train_seconds = known(metrics.train_seconds);
   r.samples_per_second = known(metrics.samples_per_second);
   r.peak_rss_bytes = metrics.peak_rss_bytes > 0 ? static_cast<double>(metrics.peak_rss_bytes) : VariantResult::kNone;

@@ -64,16 +64,16 @@ struct VariantResult {
   double parameters = kNone;                               // trained, of all fields
   double scene_parameters = kNone, scene_bytes = kNone, evaluate_seconds = kNone;
   int blocks = 0, training_photos = 0;
-  std::string layout;                            // of the blocks, rows x columns: "3x3"
-  std::vector<VariantField> fields;              // context first
-  std::vector<std::pair<double, double>> curve;  // (training seconds of all fields together, mean PSNR of their batches)
-  std::string photo, render, error;              // image files of one held-out photo, relative to FOLDER; may be empty
-  std::string report;                            // its report, relative to FOLDER
-  std::vector<ScaleScore> scales;                // when the study measures them
-  std::string scale_pictures;                    // folder of their pictures, relative to FOLDER; may be empty
-  std::vector<evaluate::ClassScore> classes;     // simulated surveys with true classes
-  double flat_roof_rms_m = kNone;                // the same; evaluate::FlatRoofScore
-  std::string views;                             // folder of the pictures that WriteViews makes, relative to FOLDER; may be empty
+  std::string layout;                                        // of the blocks, rows x columns: "3x3"
+  std::vector<VariantField> fields;                          // context first
+  std::vector<std::pair<double, double>> curve;              // (training seconds of all fields together, mean PSNR of their batches)
+  std::string photo, render, error;                          // image files of one held-out photo, relative to FOLDER; may be empty
+  std::string report;                                        // its report, relative to FOLDER
+  std::vector<ScaleScore> scales;                            // when the study measures them
+  std::string scale_pictures;                                // folder of their pictures, relative to FOLDER; may be empty
+  std::vector<evaluate::ClassScore> classes;                 // simulated surveys with true classes
+  double flat_roof_rms_m = kNone, flat_roof_nmad_m = kNone;  // the same; evaluate::FlatRoofScore
+  std::string views;                                         // folder of the pictures that WriteViews makes, relative to FOLDER; may be empty
 };
 
 class Study {

@@ -23,6 +23,7 @@ void EachNumber(Result& r, const Each& each) {
   each("depth_median_abs_m", r.depth_median_abs_m);
   each("floater_opacity", r.floater_opacity);
   each("flat_roof_rms_m", r.flat_roof_rms_m);
+  each("flat_roof_nmad_m", r.flat_roof_nmad_m);
   each("kept_median_gsd", r.kept_median_gsd);
   each("kept_nmad_gsd", r.kept_nmad_gsd);
   each("train_seconds", r.train_seconds);

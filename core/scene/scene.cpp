@@ -32,6 +32,10 @@ void Expose(const std::array<float, 3>& log_gain, std::span<render::RayColor> co
   }
 }
 
+// Trained surfaces become thinner than the steps of training, whose phases are random. A rendering has one phase: with steps of that length its
+// depths and colours would depend on where the surface lies between two samples.
+constexpr double kStepScale = 0.5;
+
 // Replaces the colours by the concealed rendering, as premultiplied display values.
 void ShowConcealed(std::span<render::RayColor> colors) {
   for (render::RayColor& color : colors) {
@@ -51,6 +55,7 @@ struct Scene::Impl {
   }
   render::EngineOptions Options(const Appearance& appearance) const {
     render::EngineOptions options = Conceals(appearance.look) ? render::EngineOptions::For(info.luminance) : render::EngineOptions{};
+    options.step_scale = kStepScale;
     options.normals = appearance.normals;
     return options;
   }

@@ -35,6 +35,7 @@ VariantResult Example() {
   r.classes = {{.name = "roof", .pixels = 1200, .missing_pixels = 7, .depth_bias_m = -0.25, .depth_nmad_m = 0.125, .normal_median_deg = 4.5},
                {.name = "tree"}};
   r.flat_roof_rms_m = 0.0625;
+  r.flat_roof_nmad_m = 0.03125;
   r.views = "runs/guided/views";
   return r;
 }
@@ -100,6 +101,7 @@ TEST(ResultJson, ReadsBackUnchanged) {
   EXPECT_TRUE(std::isnan(back.classes[0].depth_rmse_m));
   EXPECT_TRUE(std::isnan(back.classes[1].depth_nmad_m));
   EXPECT_EQ(back.flat_roof_rms_m, 0.0625);
+  EXPECT_EQ(back.flat_roof_nmad_m, 0.03125);
   EXPECT_EQ(back.views, "runs/guided/views");
   EXPECT_EQ(ResultJson(back, identity), ResultJson(r, "abc 1"));
 }
@@ -113,6 +115,7 @@ TEST(ResultJson, OfAnOlderProgramHasFewerScores) {
   json.erase("flip");
   json.erase("classes");
   json.erase("flat_roof_rms_m");
+  json.erase("flat_roof_nmad_m");
   json.erase("views");
   for (nlohmann::json& field : json["fields"]) field.erase("steps");
   std::string identity;

@@ -55,7 +55,7 @@ struct Deck {
 TEST(FlatRoofs, AnExactRoofIsFlat) {
   const FlatRoofScore score = Deck().Score();
   EXPECT_EQ(score.roofs, 1);
-  EXPECT_NEAR(score.rms_m, 0.0, 1e-5);
+  EXPECT_NEAR(score.spread.rms_m, 0.0, 1e-5);
 }
 
 TEST(FlatRoofs, RoughnessIsMeasuredOnTheDeckOnly) {
@@ -82,7 +82,8 @@ TEST(FlatRoofs, RoughnessIsMeasuredOnTheDeckOnly) {
   }
   const FlatRoofScore score = deck.Score();
   EXPECT_EQ(score.roofs, 1);
-  EXPECT_NEAR(score.rms_m, 0.25, 0.02);
+  EXPECT_NEAR(score.spread.rms_m, 0.25, 0.02);
+  EXPECT_NEAR(score.spread.nmad_m, 0.25, 0.02);
 }
 
 TEST(FlatRoofs, ATiltedPlaneIsFlatToo) {
@@ -93,14 +94,22 @@ TEST(FlatRoofs, ATiltedPlaneIsFlatToo) {
       *deck.findings.z_depth.At(x, y) = static_cast<float>(100.0 / (1.0 + 0.1 * (x + 0.5 - 50) / 100.0));
     }
   }
-  EXPECT_NEAR(deck.Score().rms_m, 0.0, 1e-4);
+  EXPECT_NEAR(deck.Score().spread.rms_m, 0.0, 1e-4);
+}
+
+TEST(FlatRoofs, FewPixelsThatAreFarOffCountInTheRmsOnly) {
+  Deck deck;
+  for (int x = 40; x < 46; ++x) *deck.findings.z_depth.At(x, 40) += 5.0F;  // 6 of 504
+  const PlaneSpread spread = deck.Score().spread;
+  EXPECT_NEAR(spread.rms_m, 5.0 * std::sqrt(6.0 / 504.0), 0.05);
+  EXPECT_LT(spread.nmad_m, 0.05);
 }
 
 TEST(FlatRoofs, FewPointsAreNotMeasured) {
   Deck deck;
   deck.area.half_m = {3.4, 3.4};  // 36 pixels
   EXPECT_EQ(deck.Score().roofs, 0);
-  EXPECT_TRUE(std::isnan(deck.Score().rms_m));
+  EXPECT_TRUE(std::isnan(deck.Score().spread.rms_m));
   FlatRoofPoints two_photos({deck.area});
   two_photos.Add(deck.task, deck.findings);
   two_photos.Add(deck.task, deck.findings);
@@ -132,16 +141,16 @@ TEST(FlatRoofs, AreasAreTheFootprintsWithoutTheRim) {
   EXPECT_THROW(ReadFlatRoofs(file), base::InputError);
 }
 
-TEST(RmsAboutPlane, NeedsThreePointsAndSurvivesThoseOnALine) {
+TEST(SpreadAboutPlane, NeedsThreePointsAndSurvivesThoseOnALine) {
   const std::vector<Vector3d> points = {{0, 0, 5}, {1, 1, 6}, {2, 2, 7}};
-  EXPECT_TRUE(std::isnan(RmsAboutPlane(std::span(points).first(2))));
-  EXPECT_NEAR(RmsAboutPlane(points), 0.0, 1e-6);
+  EXPECT_TRUE(std::isnan(SpreadAboutPlane(std::span(points).first(2)).rms_m));
+  EXPECT_NEAR(SpreadAboutPlane(points).rms_m, 0.0, 1e-6);
   const std::vector<Vector3d> one_place = {{1, 1, 4}, {1, 1, 6}, {1, 1, 5}};
-  EXPECT_NEAR(RmsAboutPlane(one_place), std::sqrt(2.0 / 3.0), 1e-12);
+  EXPECT_NEAR(SpreadAboutPlane(one_place).rms_m, std::sqrt(2.0 / 3.0), 1e-12);
 }
 
 // Any plane may be added to points without making them rougher, and turning them about the vertical changes nothing.
-RC_GTEST_PROP(RmsAboutPlane, DoesNotDependOnThePlaneOrTheYaw, ()) {
+RC_GTEST_PROP(SpreadAboutPlane, DoesNotDependOnThePlaneOrTheYaw, ()) {
   base::Random random(*rc::gen::arbitrary<uint32_t>());
   const double yaw = random.Uniform(0.0, 6.28);
   const Vector3d plane(random.Uniform(-2.0, 2.0), random.Uniform(-2.0, 2.0), random.Uniform(-500.0, 500.0));
@@ -153,7 +162,7 @@ RC_GTEST_PROP(RmsAboutPlane, DoesNotDependOnThePlaneOrTheYaw, ()) {
     moved.emplace_back(std::cos(yaw) * p.x() - std::sin(yaw) * p.y(), std::sin(yaw) * p.x() + std::cos(yaw) * p.y(),
                        p.z() + plane.x() * p.x() + plane.y() * p.y() + plane.z());
   }
-  RC_ASSERT(std::abs(RmsAboutPlane(points) - RmsAboutPlane(moved)) < 1e-6);
+  RC_ASSERT(std::abs(SpreadAboutPlane(points).rms_m - SpreadAboutPlane(moved).rms_m) < 1e-6);
 }
 
 }  // namespace

@@ -135,6 +135,7 @@ TEST(MetricsJson, ScoresByClassAreReadBackToo) {
   metrics.classes = {roof, {.name = "tree"}};
   metrics.flat_roofs = 4;
   metrics.flat_roof_rms_m = 0.0625;
+  metrics.flat_roof_nmad_m = 0.03125;
   const std::string text = MetricsJson(metrics);
   const auto json = nlohmann::json::parse(text);
   EXPECT_EQ(json["classes"]["roof"]["depth_bias_m"], -0.125);

@@ -42,6 +42,7 @@ class ReportPage : public testing::Test {
     metrics.classes = {{"roof", 123456, 789, 0.021, 0.084, 0.093, 0.612, 9.4, 14.2}, {.name = "tree"}};
     metrics.flat_roofs = 14;
     metrics.flat_roof_rms_m = 0.087;
+    metrics.flat_roof_nmad_m = 0.031;
     const image::Image8 photo(64, 42, 3, 100);
     const image::ImageF normals(64, 42, 3, 0.57735F);
     const std::vector<uint8_t> scored(photo.data.size() / 3, 1);
@@ -72,7 +73,8 @@ TEST_F(ReportPage, TellsWhereTrainingTimeWent) {
 TEST_F(ReportPage, SurfacesAreScoredByClassWhereTheTruthIsKnown) {
   const size_t at = html_.find("Surface by class");
   ASSERT_NE(at, std::string::npos);
-  for (const char* text : {">roof<", ">tree<", "0.093\xE2\x80\xAFm", "9.4\xC2\xB0", "14 flat roofs are rough by", "0.087\xE2\x80\xAFm"}) {
+  for (const char* text :
+       {">roof<", ">tree<", "0.093\xE2\x80\xAFm", "9.4\xC2\xB0", "14 flat roofs are rough by", "0.087\xE2\x80\xAFm", "0.031\xE2\x80\xAFm"}) {
     EXPECT_NE(html_.find(text, at), std::string::npos) << text;
   }
   EXPECT_EQ(CountOf(html_, "alt=\"Normals of the render\""), 1U);

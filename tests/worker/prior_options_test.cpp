@@ -16,16 +16,18 @@ TEST(PriorOptions, WeightsGrowBetweenTheTwoShares) {
   EXPECT_EQ(options.Strength(1.0), 1.0);
 }
 
-TEST(PriorOptions, MayFallUntilTheEnd) {
+TEST(PriorOptions, PointsFadeFromTheSecondShareToTheirEnd) {
   PriorOptions options;
-  options.final_share = 0.2;
-  EXPECT_NEAR(options.Strength(0.45), 0.5, 1e-12);
-  EXPECT_EQ(options.Strength(0.6), 1.0);
-  EXPECT_NEAR(options.Strength(0.8), 0.6, 1e-12);
-  EXPECT_NEAR(options.Strength(1.0), 0.2, 1e-12);
-  EXPECT_NEAR(options.Strength(1.5), 0.2, 1e-12);
-  options.from = options.until = 1.0;
-  EXPECT_EQ(options.Strength(1.0), 1.0);
+  options.points_end = 0.8;
+  EXPECT_EQ(options.PointStrength(0.29), 0.0);
+  EXPECT_NEAR(options.PointStrength(0.45), 0.5, 1e-12);
+  EXPECT_NEAR(options.PointStrength(0.6), 1.0, 1e-12);
+  EXPECT_NEAR(options.PointStrength(0.7), 0.5, 1e-12);
+  EXPECT_EQ(options.PointStrength(0.8), 0.0);
+  EXPECT_EQ(options.PointStrength(1.5), 0.0);
+  options.points_end = options.until;
+  EXPECT_NEAR(options.PointStrength(0.5), 2.0 / 3.0, 1e-12);
+  EXPECT_EQ(options.PointStrength(0.6), 0.0);
 }
 
 TEST(PriorOptions, MayBeginAtFullSize) {
@@ -38,6 +40,9 @@ TEST(PriorOptions, MayBeginAtFullSize) {
 TEST(PriorOptions, ImpossibleOnesAreRefused) {
   PriorOptions options;
   options.until = 0.1;
+  EXPECT_THROW(options.Check("priors"), base::UsageError);
+  options = {};
+  options.points_end = 0.5;
   EXPECT_THROW(options.Check("priors"), base::UsageError);
   options = {};
   options.planar = -1.0;

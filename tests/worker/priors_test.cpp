@@ -39,12 +39,11 @@ class PriorsTest : public SmallSurvey {
     job.priors = priors;
     return job;
   }
-  // Trains free.h5 without priors and held.h5 with these, at full size from early on until the end.
+  // Trains free.h5 without priors and held.h5 with these, which grow from early on, planes to their full size at once.
   void TrainFreeAndHeld(double lift_m, PriorOptions priors, base::ThreadPool& threads) {
     AddPoints(lift_m);
     priors.from = 0.1;
-    priors.until = 0.2;
-    priors.final_share = 1.0;
+    priors.until = priors.points > 0.0 ? 0.9 : 0.2;  // points begin to fade then
     TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
     TrainBlock(Job("free.h5", 500), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
     TrainBlock(JobWith("held.h5", 500, priors), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
@@ -73,7 +72,6 @@ PriorOptions AllPriors() {
   priors.planar = priors.upright = priors.planes = priors.points = priors.normals = priors.orientation = 1e-2;
   priors.from = 0.1;
   priors.until = 0.3;
-  priors.final_share = 1.0;
   return priors;
 }
 

@@ -20,7 +20,7 @@ struct PriorOptions {
   // to 0 at `points_end`: points bring surfaces near to where they belong, but in the end make them thinner than the steps that sample them.
   double from = 0.3;
   double until = 0.6;
-  double points_end = 1.0;
+  double points_end = 0.8;
   double segment_share = 0.1;  // of the rays, for all but planes and points
   double point_share = 0.1;    // of the rays, for points
 

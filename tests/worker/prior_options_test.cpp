@@ -17,8 +17,7 @@ TEST(PriorOptions, WeightsGrowBetweenTheTwoShares) {
 }
 
 TEST(PriorOptions, PointsFadeFromTheSecondShareToTheirEnd) {
-  PriorOptions options;
-  options.points_end = 0.8;
+  PriorOptions options;  // 0.3, 0.6, 0.8
   EXPECT_EQ(options.PointStrength(0.29), 0.0);
   EXPECT_NEAR(options.PointStrength(0.45), 0.5, 1e-12);
   EXPECT_NEAR(options.PointStrength(0.6), 1.0, 1e-12);

@@ -29,9 +29,8 @@ void SetDepthScores(const std::vector<double>& errors_m, ClassScore* score) {
   score->depth_bias_m = base::Median(errors_m);
   std::vector<double> apart(errors_m.size());
   std::transform(errors_m.begin(), errors_m.end(), apart.begin(), [](double error) { return std::abs(error); });
-  score->depth_median_abs_m = base::Median(apart);
-  std::transform(errors_m.begin(), errors_m.end(), apart.begin(), [&](double error) { return std::abs(error - score->depth_bias_m); });
-  score->depth_nmad_m = 1.4826 * base::Median(std::move(apart));
+  score->depth_median_abs_m = base::Median(std::move(apart));
+  score->depth_nmad_m = base::Nmad(errors_m);
 }
 
 }  // namespace

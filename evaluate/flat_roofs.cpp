@@ -64,9 +64,7 @@ PlaneSpread SpreadAboutPlane(std::span<const Vector3d> points) {
     off_m.push_back(step.z() - slope.dot(step.head<2>()));
     squares += off_m.back() * off_m.back();
   }
-  const double median_m = base::Median(off_m);
-  for (double& off : off_m) off = std::abs(off - median_m);
-  return {.rms_m = std::sqrt(squares / static_cast<double>(points.size())), .nmad_m = 1.4826 * base::Median(std::move(off_m))};
+  return {.rms_m = std::sqrt(squares / static_cast<double>(points.size())), .nmad_m = base::Nmad(std::move(off_m))};
 }
 
 void FlatRoofPoints::Add(const HeldOutPhoto& task, const PhotoResult& findings) {

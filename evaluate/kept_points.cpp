@@ -17,7 +17,6 @@
 namespace skyquilt::evaluate {
 namespace {
 
-constexpr double kNmadFactor = 1.4826;  // makes the median absolute deviation of normal errors their standard deviation
 constexpr double kFarGsd = 10.0;
 
 // Held-out photos first, because they were not used either, then training photos.
@@ -54,7 +53,7 @@ std::array<double, 3> Robust(const std::vector<double>& errors) {
   const double median_abs = base::UpperMedian(sizes);
   if (!std::isfinite(median)) return {kNotMeasured, finite(median_abs), kNotMeasured};
   for (size_t i = 0; i < errors.size(); ++i) sizes[i] = std::abs(errors[i] - median);
-  return {median, finite(median_abs), finite(kNmadFactor * base::UpperMedian(sizes))};
+  return {median, finite(median_abs), finite(base::kMadToSigma * base::UpperMedian(sizes))};
 }
 
 }  // namespace

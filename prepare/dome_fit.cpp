@@ -14,7 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kHuber = 1.345;  // 95 % efficient for normal errors
-constexpr double kNormalMad = 1.4826;
 constexpr int kMaxRounds = 50;
 constexpr double kEdgeShare = 0.95;
 constexpr double kMinBreadth = 0.1;  // of the positions' length
@@ -30,7 +29,7 @@ bool CoverAnArea(const Eigen::Matrix2Xd& centred) {
 
 double MadScale(const VectorXd& residual) {
   const VectorXd size = residual.cwiseAbs();
-  return kNormalMad * base::Median({size.begin(), size.end()});
+  return base::kMadToSigma * base::Median({size.begin(), size.end()});
 }
 
 // How many times the variance of a mean of neighbours exceeds that of independent values: 1 + 2 (r_1 + r_2 + ...) with the autocorrelations up to the

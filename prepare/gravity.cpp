@@ -86,7 +86,7 @@ UpEvidence SolveUp(const std::vector<Statement>& statements, const Vector3d& sta
       residuals.push_back(residual);
       for (int i = 0; i < statement.n_directions; ++i) sizes.push_back(std::abs(statement.directions.col(i).dot(residual)));
     }
-    sigma = std::max(noise.least_deg * kRadiansPerDegree, kMadToSigma * base::Median(sizes));
+    sigma = std::max(noise.least_deg * kRadiansPerDegree, base::kMadToSigma * base::Median(sizes));
     Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
     Eigen::Matrix<double, 5, 1> right = Eigen::Matrix<double, 5, 1>::Zero();
     SerialCorrelation correlation;
@@ -237,7 +237,7 @@ std::vector<UpEvidence> GroundEvidence(const std::vector<Vector3d>& points, cons
     for (size_t i = 0; i < points.size(); ++i) {
       if (radius[i] <= farthest) distance.push_back(std::abs(normal.dot(points[i] - middle)));
     }
-    roughness = kMadToSigma * base::Median(distance);
+    roughness = base::kMadToSigma * base::Median(distance);
     if (!(roughness > 0.0)) break;
     for (size_t i = 0; i < points.size(); ++i) weight[i] = radius[i] <= farthest ? TukeyWeight(normal.dot(points[i] - middle) / roughness) : 0.0;
   }

@@ -27,7 +27,7 @@ double ScaleOf(const Eigen::VectorXd& residual, const Eigen::VectorXd& sigma) {
   for (Index k = 0; k < residual.size(); ++k) {
     if (std::isfinite(sigma[k])) sizes.push_back(std::abs(residual[k]) / sigma[k]);
   }
-  return sizes.empty() ? 1.0 : kMadToSigma * base::Median(sizes);
+  return sizes.empty() ? 1.0 : base::kMadToSigma * base::Median(sizes);
 }
 
 // The noise by differences of neighbours in time, less their median, which is the drift: no curve can follow it. Over the relative accuracy, like
@@ -45,7 +45,7 @@ double LocalScale(const HeightObservations& observations) {
   if (steps.empty()) return 0.0;
   const double drift = base::Median(steps);
   for (double& step : steps) step = std::abs(step - drift);
-  return kMadToSigma * base::Median(steps);
+  return base::kMadToSigma * base::Median(steps);
 }
 
 // The linear model of all hypotheses: columns one, two tilts, bias.

@@ -90,7 +90,7 @@ class Solver {
       if (std::abs(residual_[k].z()) <= input_.threshold_m) vertical.push_back(std::abs(residual_[k].z()) / tag.vertical_sigma_m);
     }
     noise_h_.robust = horizontal.empty() ? 1.0 : base::Median(horizontal) / kRayleighMedian;
-    noise_v_.robust = vertical.empty() ? 1.0 : base::Median(vertical) * kMadToSigma;
+    noise_v_.robust = vertical.empty() ? 1.0 : base::Median(vertical) * base::kMadToSigma;
     SerialCorrelation correlation_h, correlation_v;
     double squares_h = 0.0, squares_v = 0.0, sum_h = 0.0, sum_v = 0.0;
     for (size_t k = 0; k < n; ++k) {

@@ -8,9 +8,6 @@
 
 namespace skyquilt::prepare {
 
-// Standard deviation of normal noise over its median absolute value.
-constexpr double kMadToSigma = 1.4826;
-
 // Median length of a vector of two components, each of normal noise with standard deviation 1.
 constexpr double kRayleighMedian = 1.17741;
 

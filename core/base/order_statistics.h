@@ -47,4 +47,15 @@ inline double Median(std::vector<double> values) {
   return Quantile(std::move(values), 0.5);
 }
 
+// Standard deviation of normal noise over its median absolute value.
+inline constexpr double kMadToSigma = 1.4826;
+
+// Normalised median absolute deviation: the standard deviation that normal values with this median distance from their median have. NaN when there
+// are no values.
+inline double Nmad(std::vector<double> values) {
+  const double median = Median(values);
+  for (double& value : values) value = std::abs(value - median);
+  return kMadToSigma * Median(std::move(values));
+}
+
 }  // namespace skyquilt::base

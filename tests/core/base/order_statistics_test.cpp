@@ -18,6 +18,12 @@ TEST(OrderStatistics, QuantilesAreLinearBetweenRanks) {
   EXPECT_DOUBLE_EQ(Median({5.0, 1.0, 2.0, 4.0}), 3.0);
 }
 
+TEST(OrderStatistics, NmadIsTheSpreadOfMostValues) {
+  EXPECT_DOUBLE_EQ(Nmad({10.0, 11.0, 12.0, 8.0, 1000.0}), kMadToSigma * 1.0) << "1, 0, 1, 3 and 989 from the median";
+  EXPECT_DOUBLE_EQ(Nmad({4.0}), 0.0);
+  EXPECT_TRUE(std::isnan(Nmad({})));
+}
+
 TEST(OrderStatistics, RanksCountFromTheSmallest) {
   std::vector<int> values = {40, 10, 30, 20};
   EXPECT_EQ(OrderStatistic(values, 0), 10);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/order_statistics.h"
 #include "prepare/robust.h"
@@ -43,9 +44,7 @@ double LocalScale(const HeightObservations& observations) {
     last = k;
   }
   if (steps.empty()) return 0.0;
-  const double drift = base::Median(steps);
-  for (double& step : steps) step = std::abs(step - drift);
-  return base::kMadToSigma * base::Median(steps);
+  return base::Nmad(std::move(steps));
 }
 
 // The linear model of all hypotheses: columns one, two tilts, bias.

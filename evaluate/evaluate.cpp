@@ -1,6 +1,7 @@
 #include "evaluate/evaluate.h"
 
 #include <chrono>
+#include <memory>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -12,6 +13,8 @@
 #include "evaluate/kept_points.h"
 #include "evaluate/report_writer.h"
 #include "evaluate/summary.h"
+#include "evaluate/surface_scorer.h"
+#include "surface/make_surface.h"
 
 namespace skyquilt::evaluate {
 
@@ -32,14 +35,22 @@ std::vector<RoofArea> FlatRoofsOf(const survey::Survey& survey) {
   return ReadFlatRoofs(survey.truth->buildings_json);
 }
 
-Scores ScorePhotos(const EvaluateInput& input, const std::vector<int>& held_out, HeldOutScorer& scorer, ReportPictures& pictures,
+// Nothing when no surface was made.
+std::unique_ptr<SurfaceScorer> SurfaceOf(const EvaluateInput& input) {
+  std::vector<surface::TexturedTile> tiles = surface::LoadFinestTiles(input.project_folder / "cache" / "surface");
+  return tiles.empty() ? nullptr : std::make_unique<SurfaceScorer>(std::move(tiles));
+}
+
+// made: null without a surface.
+Scores ScorePhotos(const EvaluateInput& input, const std::vector<int>& held_out, HeldOutScorer& scorer, SurfaceScorer* made, ReportPictures& pictures,
                    base::ThreadPool& threads) {
   Scores scores(scorer.n_boxes());
   scores.flat_roofs = FlatRoofPoints(FlatRoofsOf(*input.survey));
   base::Progress progress("evaluate", static_cast<double>(held_out.size()), "photos");
   for (const int photo : held_out) {
     base::ThrowIfCancelled();
-    const ScoredPhoto scored = scorer.Score(photo, pictures.ShowsNormal(photo), threads);
+    ScoredPhoto scored = scorer.Score(photo, pictures.ShowsNormal(photo), threads);
+    if (made != nullptr) scored.mesh = made->Score(scored, threads);
     pictures.Write(scored);
     scores.Add(scored);
     progress.Advance(1.0, fmt::format("{} {:.2f} dB", scored.findings.score.name, scored.findings.score.psnr_db));
@@ -60,7 +71,9 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   const std::vector<int> held_out = SelectEvenly(HeldOutPhotos(*input.survey), input.options.max_photos);
   HeldOutScorer scorer(input);
   ReportPictures pictures(input, held_out);
-  const Scores scores = ScorePhotos(input, held_out, scorer, pictures, threads);
+  const std::unique_ptr<SurfaceScorer> made = SurfaceOf(input);
+  const Scores scores = ScorePhotos(input, held_out, scorer, made.get(), pictures, threads);
+  if (made) metrics.surface = made->Result(input, scorer, threads);
   metrics.kept_points = MeasureKeptPoints(*input.scene, *input.survey, *input.pixels, scorer.area().boxes, threads);
   metrics.evaluate_seconds = std::chrono::duration<double>(Clock::now() - start).count();
 

@@ -107,6 +107,7 @@ ScoredPhoto HeldOutScorer::Score(int photo, bool keep_normal, base::ThreadPool& 
   ScoredPhoto scored;
   scored.task = LoadHeldOutPhoto(*input_.survey, *input_.pixels, photo, input_.options.image_width);
   scored.findings = ScoreRecorded(photo, scored.task, threads);
+  scored.recording = RecordingsOf(photo).predicted;
   PhotoScore& score = scored.findings.score;
   if (lpips_) score.lpips = LpipsOf(*lpips_, scored.task, scored.findings.render);
   if (!scored.findings.true_depth.Empty()) scored.floaters = MeasureFloaterOpacity(*input_.scene, scored.task, scored.findings, threads);

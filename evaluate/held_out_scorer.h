@@ -19,7 +19,9 @@ struct ScoredPhoto {
   HeldOutPhoto task;
   PhotoResult findings;                  // with all scores filled in
   FloaterOpacity floaters;               // no rays without true depth
+  PhotoResponse recording;               // that was applied to the rendering
   std::vector<render::RayColor> normal;  // rendered at normal brightness, row-major; empty when not requested
+  image::Image8 mesh;                    // the surface's mesh at the photo's brightness (surface_scorer.h); empty without a surface
 };
 
 class HeldOutScorer {
@@ -31,6 +33,7 @@ class HeldOutScorer {
   ScoredPhoto Score(int photo, bool keep_normal, base::ThreadPool& threads);
 
   const std::vector<TrainingView>& training() const { return training_; }
+  const TrainingViews& views() const { return views_; }  // the same
   const SceneArea& area() const { return area_; }
   size_t n_boxes() const { return area_.boxes.size(); }  // size of PhotoResult::per_block
 

@@ -8,11 +8,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
+#include "evaluate/surface_scores.h"
 
 namespace skyquilt::evaluate {
 
@@ -122,6 +124,7 @@ struct Metrics {
   double flat_roof_nmad_m = kNotMeasured;                  // and of the NMAD
   bool has_truth = false;                                  // simulated survey with true depth
   KeptPointErrors kept_points;
+  std::optional<SurfaceScores> surface;  // nothing when no surface was made
 
   double train_seconds = kNotMeasured;
   double samples_per_second = kNotMeasured;

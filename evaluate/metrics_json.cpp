@@ -10,6 +10,7 @@
 #include "core/survey/geo_fit_json.h"
 #include "evaluate/class_json.h"
 #include "evaluate/metrics.h"
+#include "evaluate/surface_json.h"
 
 namespace skyquilt::evaluate {
 
@@ -195,6 +196,7 @@ Metrics MetricsFrom(const Json& json) {
   }
   metrics.has_truth = json.contains("depth_rmse_m");
   TakeKeptPoints(json, &metrics.kept_points);
+  if (json.contains("surface") && json.at("surface").is_object()) metrics.surface = SurfaceScoresFromJson(json.at("surface"));
   const Json profile = ValueAt<Json>(json, "floater_profile"), photos = ValueAt<Json>(json, "psnr_per_image");
   for (const Json& place : profile) {
     metrics.floater_profile.emplace_back(NumberAt(place, "clearance_m"), NumberAt(place, "opacity"));
@@ -252,6 +254,7 @@ std::string MetricsJson(const Metrics& metrics) {
     PutClasses(metrics, &json);
   }
   json["kept_points"] = KeptPointsJson(metrics.kept_points);
+  if (metrics.surface) json["surface"] = ToJson(*metrics.surface);
   PutNumbers(kTraining, metrics, &json);
   json["peak_rss_bytes"] = BytesOrNull(metrics.peak_rss_bytes);
   json["parameters"] = metrics.parameters;

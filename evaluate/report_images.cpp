@@ -102,6 +102,7 @@ PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::p
   };
   images.normals = write_normals(pixels.normals, "_normals.png");
   images.true_normals = write_normals(pixels.true_normals, "_true_normals.png");
+  if (pixels.mesh != nullptr) images.mesh = Write(*pixels.mesh, report_folder, prefix + "_mesh.jpg", max_width);
   return images;
 }
 

@@ -19,6 +19,7 @@ struct PhotoPixels {
   std::span<const uint8_t> scored;              // row-major, 0 = masked or not covered
   const image::ImageF* normals = nullptr;       // of the rendering, ENU; null: not shown
   const image::ImageF* true_normals = nullptr;  // null: not shown
+  const image::Image8* mesh = nullptr;          // of the surface, at the photo's brightness; null: not shown
 };
 
 // Mean over RGB of |photo - render| in display values, one channel. Sizes must agree.
@@ -28,8 +29,8 @@ image::Image8 ErrorPicture(const PhotoPixels& pixels, float error_high);
 // Quantiles `low` and `high` (0..1) of the finite values; false when there is none.
 bool PercentileRange(const image::ImageF& image, double low, double high, float* low_value, float* high_value);
 
-// Writes <prefix>_photo.jpg, _render.jpg, _error.png, _depth.png and, if given, _normals.png and _true_normals.png under report_folder/images, at
-// most max_width pixels wide. Throws base::InputError.
+// Writes <prefix>_photo.jpg, _render.jpg, _error.png, _depth.png and, if given, _normals.png, _true_normals.png and _mesh.jpg under
+// report_folder/images, at most max_width pixels wide. Throws base::InputError.
 PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::path& report_folder, const std::string& prefix, int max_width,
                              float error_high);
 // Writes images/<prefix>_taken.jpg, _recorded.jpg and _normal.jpg under report_folder, at most max_width pixels wide. The caller fills in name

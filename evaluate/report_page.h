@@ -19,6 +19,7 @@ namespace skyquilt::evaluate {
 struct PhotoImages {
   std::string photo, render, error, depth;
   std::string normals, true_normals;  // of rendering and truth
+  std::string mesh;                   // the surface's mesh as the photo would show it
   int width = 0;                      // pixels
   int height = 0;
   double depth_low_m = kNotMeasured;  // range of the depth colours
@@ -53,6 +54,7 @@ std::string SummarySection(const ReportInput& input);  // the key figures of the
 std::string WarningsBanner(const Metrics& metrics);
 std::string BlockMapSvg(const ReportInput& input);
 std::string PhotoSection(const ReportInput& input);
+std::string SurfaceSection(const ReportInput& input);  // what was made of the scene's surface, and its scores; empty without a surface
 std::string GeoSection(const ReportInput& input);      // how the survey was placed on Earth; see page_geo.h
 std::string DetailsSection(const ReportInput& input);  // every figure and its meaning
 std::string ClassTable(const Metrics& metrics);        // empty without true classes

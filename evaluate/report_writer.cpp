@@ -16,6 +16,7 @@ namespace {
 
 constexpr float kErrorHigh = 0.25F;    // display values at the top of the error colours
 constexpr int kPhotosWithNormals = 2;  // enough to see how rough surfaces are
+constexpr int kPhotosWithMesh = 3;
 
 std::string TitleOf(const std::filesystem::path& project_folder) {
   const std::filesystem::path folder = std::filesystem::absolute(project_folder).lexically_normal();
@@ -26,7 +27,7 @@ std::string TitleOf(const std::filesystem::path& project_folder) {
 // Removes images of an earlier evaluation that the page no longer shows.
 void RemoveStalePictures(const std::filesystem::path& report_folder, const std::vector<PhotoImages>& images) {
   std::set<std::string> kept;
-  for (const PhotoImages& one : images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals});
+  for (const PhotoImages& one : images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.mesh});
   std::vector<std::filesystem::path> stale;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
@@ -42,6 +43,7 @@ ReportPictures::ReportPictures(const EvaluateInput& input, const std::vector<int
     : input_(input), brightness_(CollectBrightness(input.scene->info(), *input.survey, *input.pixels)) {
   if (input.options.report_photos == 0) return;
   pictured_ = SelectEvenly(held_out, input.options.report_photos);
+  with_mesh_ = SelectEvenly(pictured_, kPhotosWithMesh);
   contrasted_ = ChooseViews(input.scene->info(), *input.survey, held_out);
   brightness_.views.resize(contrasted_.size());
 }
@@ -61,6 +63,7 @@ void ReportPictures::Write(const ScoredPhoto& scored) {
       pixels.true_normals = &findings.true_normals;
       ++n_with_normals_;
     }
+    if (!scored.mesh.Empty() && std::find(with_mesh_.begin(), with_mesh_.end(), photo) != with_mesh_.end()) pixels.mesh = &scored.mesh;
     images_.back() =
         WritePhotoImages(pixels, input_.ReportFolder(), fmt::format("photo_{:05d}", photo), input_.options.report_image_width, kErrorHigh);
   }

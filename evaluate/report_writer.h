@@ -29,7 +29,7 @@ class ReportPictures {
   void WriteView(const ScoredPhoto& scored, size_t view);
 
   const EvaluateInput& input_;
-  std::vector<int> pictured_, contrasted_;
+  std::vector<int> pictured_, contrasted_, with_mesh_;
   std::vector<PhotoImages> images_;
   int n_with_normals_ = 0;
   BrightnessReport brightness_;

@@ -1,10 +1,11 @@
 #include "prepare/dome_fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/order_statistics.h"
+#include "prepare/dense.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -22,9 +23,11 @@ constexpr double kMinCurvature = 0.02;
 constexpr Index kUnknowns = 4;
 
 bool CoverAnArea(const Eigen::Matrix2Xd& centred) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(centred * centred.transpose());
+  VectorXd squares;
+  MatrixXd directions;
+  if (!SymmetricEigen(centred * centred.transpose(), &squares, &directions)) return false;
   // Eigenvalues are squares of singular values, in increasing order.
-  return spread.eigenvalues()[1] > 0.0 && spread.eigenvalues()[0] > kMinBreadth * kMinBreadth * spread.eigenvalues()[1];
+  return squares[1] > 0.0 && squares[0] > kMinBreadth * kMinBreadth * squares[1];
 }
 
 double MadScale(const VectorXd& residual) {
@@ -73,17 +76,17 @@ Dome FitDome(const std::vector<HeightDifference>& differences) {
   design.middleCols(1, 2) = centred.transpose() / edge_m;
   design.col(3) = (radius / edge_m).cwiseAbs2();
   const MatrixXd plane = design.leftCols(3);
-  const VectorXd curvature = design.col(3) - plane * plane.colPivHouseholderQr().solve(design.col(3));
+  const VectorXd curvature = design.col(3) - plane * SolveLeastSquares(plane, design.col(3));
   if (curvature.norm() < kMinCurvature * std::sqrt(static_cast<double>(n))) return {};
 
-  VectorXd solution = design.colPivHouseholderQr().solve(up);
+  VectorXd solution = SolveLeastSquares(design, up);
   VectorXd residual = up - design * solution;
   double scale = MadScale(residual);
   // Residuals of rounding size: an exact fit, where weights mean nothing.
   const double rounding = 1e-12 * (1.0 + up.cwiseAbs().maxCoeff());
   for (int round = 0; round < kMaxRounds && scale > rounding; ++round) {
     const VectorXd root_weight = (kHuber * scale * residual.cwiseAbs().cwiseMax(rounding).cwiseInverse()).cwiseMin(1.0).cwiseSqrt();
-    const VectorXd next = (root_weight.asDiagonal() * design).colPivHouseholderQr().solve(root_weight.cwiseProduct(up));
+    const VectorXd next = SolveLeastSquares(root_weight.asDiagonal() * design, root_weight.cwiseProduct(up));
     const double change = (next - solution).cwiseAbs().maxCoeff();
     solution = next;
     residual = up - design * solution;
@@ -95,7 +98,7 @@ Dome FitDome(const std::vector<HeightDifference>& differences) {
   const VectorXd cut = residual.cwiseMax(-limit).cwiseMin(limit);
   const double share_uncut = static_cast<double>((residual.cwiseAbs().array() <= limit).count()) / static_cast<double>(n);
   const double variance = cut.squaredNorm() / static_cast<double>(n - kUnknowns) / (share_uncut * share_uncut);
-  const MatrixXd normal_inverse = (design.transpose() * design).inverse();
+  const MatrixXd normal_inverse = InverseOf(design.transpose() * design);
   const double sigma = std::sqrt(variance * normal_inverse(3, 3) * CorrelationFactor(cut));
   if (!std::isfinite(solution[3]) || !std::isfinite(sigma)) return {};
   return {-solution[3], sigma};

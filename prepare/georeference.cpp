@@ -10,6 +10,7 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "core/geo/robust_similarity.h"
+#include "prepare/dense.h"
 #include "prepare/fit_report.h"
 #include "prepare/height_bias.h"
 #include "prepare/levelled_fit.h"
@@ -103,8 +104,11 @@ TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<T
     if (fit.inlier[k] != 0) inliers.col(column++) = in_enu[k];
   }
   const Eigen::Matrix3Xd centred = inliers.colwise() - inliers.rowwise().mean();
-  const Eigen::Vector3d spread = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues();
-  alone.sigma_deg = kDegrees * fit.rmse_m / std::max(spread[1], 1e-9);
+  Eigen::VectorXd squares;
+  Eigen::MatrixXd directions;
+  SymmetricEigen(centred * centred.transpose(), &squares, &directions);
+  // The second largest singular value of the positions.
+  alone.sigma_deg = kDegrees * fit.rmse_m / std::max(std::sqrt(std::max(squares[1], 0.0)), 1e-9);
   return alone;
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/order_statistics.h"
+#include "prepare/dense.h"
 #include "prepare/robust.h"
 
 namespace skyquilt::prepare {
@@ -115,7 +116,7 @@ UpEvidence SolveUp(const std::vector<Statement>& statements, const Vector3d& sta
     right.tail<3>() += prior * common;
     // Keeps directions without any evidence in place; their variance stays large.
     normal.topLeftCorner<2, 2>().diagonal().array() += 1e-3;
-    const Eigen::Matrix<double, 5, 5> inverse = normal.inverse();
+    const Eigen::Matrix<double, 5, 5> inverse = InverseOf(normal);
     const Eigen::Matrix<double, 5, 1> step = -(inverse * right);
     result.up = (result.up + basis * step.head<2>()).normalized();
     common += step.tail<3>();

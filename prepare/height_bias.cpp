@@ -1,12 +1,13 @@
 #include "prepare/height_bias.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "core/base/order_statistics.h"
+#include "prepare/dense.h"
 #include "prepare/robust.h"
 
 namespace skyquilt::prepare {
@@ -79,15 +80,10 @@ Eigen::MatrixXd Prior(const HeightObservations& observations, const HeightBias& 
   return prior;
 }
 
-double LogDeterminant(const Eigen::MatrixXd& matrix) {
-  const Eigen::LLT<Eigen::MatrixXd> llt(matrix);
-  return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
-}
-
 // Logarithm of the likelihood with all parameters integrated out, up to a constant. The weights in `design` are inverse variances.
 double MarginalLikelihood(const Design& design, const Eigen::MatrixXd& prior) {
   const Eigen::MatrixXd posterior = design.normal + prior;
-  const Eigen::VectorXd solution = posterior.llt().solve(design.right);
+  const Eigen::VectorXd solution = SolvePositive(posterior, design.right);
   return -0.5 * (design.square - design.right.dot(solution)) - 0.5 * LogDeterminant(posterior) + 0.5 * LogDeterminant(prior);
 }
 
@@ -158,7 +154,7 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
   for (int round = 0; round < kBiasRounds; ++round) {
     design.Weigh(weight, observations.height_m);
     const Eigen::MatrixXd posterior = design.normal + Prior(observations, bias, kFlexible);
-    const Eigen::VectorXd residual = design.columns * posterior.llt().solve(design.right) - observations.height_m;
+    const Eigen::VectorXd residual = design.columns * SolvePositive(posterior, design.right) - observations.height_m;
     scale = std::max(least, ScaleOf(residual, observations.sigma));
     for (Index k = 0; k < n; ++k) {
       const double sigma_m = std::max(scale * observations.sigma[k], kLeastHeightNoise_m);
@@ -190,7 +186,7 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
     }
   }
   const Eigen::MatrixXd posterior = design.normal + Prior(observations, bias, choice.sigmas);
-  choice.solution = posterior.llt().solve(design.right);
+  choice.solution = SolvePositive(posterior, design.right);
   return choice;
 }
 

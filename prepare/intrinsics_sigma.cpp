@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "prepare/adjustment_block.h"
+#include "prepare/dense.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -198,9 +199,8 @@ std::optional<MatrixXd> CameraInformation(const Reduced& reduced, const std::vec
   const VectorXd inverse = scale.cwiseInverse();
   poses = inverse.asDiagonal() * poses * inverse.asDiagonal();
   pose_camera = inverse.asDiagonal() * pose_camera;
-  const Eigen::LLT<MatrixXd, Eigen::Lower> cholesky(poses);
-  if (cholesky.info() != Eigen::Success) return std::nullopt;
-  const MatrixXd taken = cholesky.matrixL().solve(pose_camera);
+  MatrixXd taken;
+  if (!SolveLowerCholesky(poses, pose_camera, &taken)) return std::nullopt;
   return MatrixXd(reduced.camera - taken.transpose() * taken);
 }
 
@@ -209,11 +209,12 @@ double InverseDiagonal(const MatrixXd& information, Index index) {
   const VectorXd scale = information.diagonal().cwiseMax(0.0).cwiseSqrt();
   if (!scale.allFinite() || !(scale.minCoeff() > 0.0)) return std::numeric_limits<double>::quiet_NaN();
   const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled);
-  if (eigen.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
-  const double floor = kInformationFloor * eigen.eigenvalues().maxCoeff();
-  const VectorXd along = eigen.eigenvectors().row(index);
-  return along.cwiseAbs2().dot(eigen.eigenvalues().cwiseMax(floor).cwiseInverse()) / (scale[index] * scale[index]);
+  VectorXd values;
+  MatrixXd vectors;
+  if (!SymmetricEigen(scaled, &values, &vectors)) return std::numeric_limits<double>::quiet_NaN();
+  const double floor = kInformationFloor * values.maxCoeff();
+  const VectorXd along = vectors.row(index);
+  return along.cwiseAbs2().dot(values.cwiseMax(floor).cwiseInverse()) / (scale[index] * scale[index]);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
+#include "prepare/dense.h"
 #include "prepare/robust.h"
 
 namespace skyquilt::prepare {
@@ -181,7 +182,7 @@ class Solver {
 
   Eigen::VectorXd Step() {
     Build();
-    Eigen::VectorXd step = -normal_.ldlt().solve(gradient_);
+    Eigen::VectorXd step = -SolveSymmetric(normal_, gradient_);
     if (!step.allFinite()) return Eigen::VectorXd::Zero(normal_.rows());
     const Vector3d turn = step.head<3>();
     if (turn.norm() > 0.0) rotation_ = (Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * rotation_).normalized();
@@ -211,13 +212,13 @@ class Solver {
     result.horizontal_noise = noise_h_.robust;
     result.vertical_noise = noise_v_.robust;
     const Index size = normal_.rows();
-    const Eigen::MatrixXd inverse = normal_.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+    const Eigen::MatrixXd inverse = SolveSymmetric(normal_, Eigen::MatrixXd::Identity(size, size));
     result.covariance = inverse.topLeftCorner<kGlobal, kGlobal>();
     // The tags' own statement on the rotation about east and north: everything else eliminated.
     const Index rest = size - 2;
     const Eigen::MatrixXd others = tags_normal_.bottomRightCorner(rest, rest);
     const Eigen::MatrixXd coupling = tags_normal_.topRightCorner(2, rest);
-    result.tags_information = tags_normal_.topLeftCorner<2, 2>() - coupling * others.ldlt().solve(coupling.transpose());
+    result.tags_information = tags_normal_.topLeftCorner<2, 2>() - coupling * SolveSymmetric(others, coupling.transpose());
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(result.tags_information);
     if (solver.eigenvalues()[0] > 1e-9 * std::max(1.0, solver.eigenvalues()[1])) {
       result.tags_covariance = result.tags_information.inverse();

@@ -9,6 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/gis/geotiff.h"
+#include "products/map_area.h"
 #include "products/map_preview.h"
 #include "products/place_metadata.h"
 
@@ -105,6 +106,8 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   MapProducts products;
   products.grid = PlanMapGrid(info, options);
   if (!options.ortho && !options.dsm) return products;
+  const std::optional<gis::Boundary> boundary = BoundaryOf(products.grid, options);
+  if (boundary) products.grid = CropTo(products.grid, *boundary);
   base::RequireWritableFolder(folder);
   const gis::MapGrid& grid = products.grid;
   if (!grid.georeferenced)
@@ -128,8 +131,9 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
     band.height.assign(cells, kNoHeight);
     for (int row = 0; row < band.n_rows; ++row) {
       maker.MakeRow(band.first_row + row, &row_rays);
-      products.rays += static_cast<int64_t>(row_rays.rays.size());
       for (size_t i = 0; i < row_rays.rays.size(); ++i) {
+        if (boundary && !boundary->Contains(grid.CellCentre(row_rays.column[i], band.first_row + row))) continue;
+        ++products.rays;
         pending.rays.push_back(row_rays.rays[i]);
         pending.cell.push_back(static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(row_rays.column[i]));
         pending.start_height_m.push_back(row_rays.start_height_m[i]);

@@ -18,6 +18,8 @@ std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
       {"preview_width", &O::preview_width, Range{16, 16384}, "width of the PNG previews in pixels"},
       {"exposure", &O::exposure, Range(),
        "brightness of images, video and orthophoto: normal, stops above normal (-10..10), or the name of a photo whose brightness to use"},
+      {"boundary", &O::boundary, Range(),
+       "file with polygons (GeoJSON or GeoPackage) that limit orthophoto, surface model, mesh, cloud, tiles and terrain; empty: the whole scene"},
       {"video_path", &O::video_path, Range::OneOf({"orbit", "flyover"}), "camera path of the video: orbit circles the scene, flyover crosses it"},
       {"video_seconds", &O::video_seconds, Range{0, 3600}, "length of the video in seconds; 0: no video"},
       {"video_fps", &O::video_fps, Range{1, 120}, "frames per second of the video"},

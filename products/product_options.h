@@ -17,6 +17,7 @@ struct ProductOptions {
   double min_opacity = 0.5;          // map cells with a lower opacity have no data, in (0, 1)
   int preview_width = 1600;          // of the PNG previews, pixels
   std::string exposure = "normal";   // or stops above it, or the name of a photo; for images, video and orthophoto
+  std::string boundary;              // GeoJSON or GeoPackage with polygons that limit all products; empty: the whole scene
   std::string video_path = "orbit";  // "orbit" or "flyover"
   double video_seconds = 5.0;        // 0: no video
   int video_fps = 12;

@@ -91,6 +91,7 @@ void AddCommands(CLI::App& app, CommandState& state) {
   AddTrain(app, state);
   AddMerge(app, state);
   AddRender(app, state);
+  AddSurface(app, state);
   AddEvaluate(app, state);
   AddInfo(app, state);
   AddBench(app, state);

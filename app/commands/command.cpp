@@ -125,6 +125,17 @@ void AddDurationFlag(CLI::App& command, const Overrides& overrides, const std::s
 
 }  // namespace
 
+void AddBoundaryFlag(CLI::App& command, const Overrides& overrides) {
+  command
+      .add_option_function<std::string>(
+          "--boundary",
+          [overrides](const std::string& file) {
+            overrides->push_back({"products.boundary", file.empty() ? file : std::filesystem::absolute(file).lexically_normal().string()});
+          },
+          "GeoJSON or GeoPackage file with polygons that limit all products [products.boundary]")
+      ->type_name("FILE");
+}
+
 void AddMemoryFlag(CLI::App& command, const Overrides& overrides) {
   command.add_option_function<std::string>(
       "--memory",

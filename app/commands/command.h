@@ -46,6 +46,8 @@ std::string AllowedText(const std::string& key);
 void AddOptionFlag(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help);
 // Adds the flag for the simulated place: `take` receives its name. The old flag --preset still works, with a warning.
 void AddPlaceFlag(CLI::App& command, const std::string& names, const std::function<void(const std::string&)>& take, const std::string& help);
+// --boundary: a file; stored as an absolute path, as later commands may run elsewhere.
+void AddBoundaryFlag(CLI::App& command, const Overrides& overrides);
 // --memory.
 void AddMemoryFlag(CLI::App& command, const Overrides& overrides);
 // --time-budget, --steps, --checkpoint-every, --memory, --seed, --brightness.
@@ -59,6 +61,7 @@ void AddPartition(CLI::App& app, CommandState& state);
 void AddTrain(CLI::App& app, CommandState& state);
 void AddMerge(CLI::App& app, CommandState& state);
 void AddRender(CLI::App& app, CommandState& state);
+void AddSurface(CLI::App& app, CommandState& state);
 void AddEvaluate(CLI::App& app, CommandState& state);
 void AddInfo(CLI::App& app, CommandState& state);
 void AddBench(CLI::App& app, CommandState& state);

@@ -151,6 +151,7 @@ void AddRender(CLI::App& app, CommandState& state) {
   AddOptionFlag(*command, overrides, "--exposure", "products.exposure",
                 "exposure of the images: normal, a number of stops above it, or a photo's name to use its exposure");
   AddOptionFlag(*command, overrides, "--resolution", "products.resolution_m", "cell size of orthophoto and surface model in metres");
+  AddBoundaryFlag(*command, overrides);
   AddMemoryFlag(*command, overrides);
   command->add_option("--width", flags->width, "image width in pixels; 0: size of the photos, with --path and --video products.video_width")
       ->type_name("N");

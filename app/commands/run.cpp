@@ -29,6 +29,9 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
     throw base::InputError(flags.model, "no such folder", "Give the folder that holds the COLMAP model, or leave --model out to run COLMAP");
   }
   settings.evaluate.RequireFiles();
+  if (const std::string& boundary = settings.products.boundary; !boundary.empty() && !std::filesystem::is_regular_file(boundary)) {
+    throw base::InputError(boundary, "no such file", "Give a GeoJSON or GeoPackage file as products.boundary, or leave it empty");
+  }
   if (const std::string& masks = settings.prepare.masks; !masks.empty() && !std::filesystem::is_directory(masks)) {
     throw base::InputError(masks, "no such folder", "Give the folder of the masks as prepare.masks, or leave it empty");
   }
@@ -44,6 +47,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   coordinator::TrainStage(pipeline);
   coordinator::MergeStage(pipeline);
   coordinator::ProductsStage(pipeline);
+  if (pipeline.settings.surface.enabled) coordinator::SurfaceStage(pipeline);
   coordinator::EvaluateStage(pipeline);
   coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);
 }
@@ -72,6 +76,7 @@ void AddRun(CLI::App& app, CommandState& state) {
                 "scale photos down to this width in pixels for training and scoring; 0: full size");
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
+  AddBoundaryFlag(*command, overrides);
   AddTrainingFlags(*command, overrides);
   command->add_flag("--restart", flags->restart, "remove all earlier results in the project folder first");
   command->footer(

@@ -28,6 +28,7 @@ NumericGroup BrightnessGroup(const NumericsOptions& options);
 NumericGroup NonFiniteGroup(const NumericsOptions& options);
 NumericGroup StorageGroup(const NumericsOptions& options);
 NumericGroup PlaceGroup(const NumericsOptions& options);
+NumericGroup TilesGroup(const NumericsOptions& options);
 NumericGroup EarthGroup(const NumericsOptions& options);
 
 }  // namespace skyquilt::bench

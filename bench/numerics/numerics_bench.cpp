@@ -47,7 +47,7 @@ std::vector<NumericGroup> AllGroups(const NumericsOptions& options) {
   std::vector<NumericGroup> groups = {SpaceGroup(options),      RayGroup(options),       CompositeGroup(options), FieldGroup(options),
                                       TrainerGroup(options),    ConesGroup(options),     PriorsGroup(options),    AwayGroup(options),
                                       BrightnessGroup(options), NonFiniteGroup(options), StorageGroup(options),   PlaceGroup(options),
-                                      EarthGroup(options)};
+                                      TilesGroup(options),      EarthGroup(options)};
   std::erase_if(groups, [](const NumericGroup& group) { return group.cases.empty(); });
   return groups;
 }

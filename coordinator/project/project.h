@@ -21,6 +21,9 @@ struct Project {
   std::filesystem::path SceneFile() const { return folder / "scene.h5"; }
   std::filesystem::path RendersFolder() const { return folder / "renders"; }
   std::filesystem::path ProductsFolder() const { return folder / "products"; }
+  std::filesystem::path SurfaceFolder() const { return folder / "surface"; }
+  std::filesystem::path SurfaceTable() const { return SurfaceFolder() / "surface.json"; }
+  std::filesystem::path SurfaceWorkFolder() const { return folder / "cache" / "surface"; }
   std::filesystem::path ReportFolder() const { return folder / "report"; }
   std::filesystem::path MetricsFile() const { return ReportFolder() / "metrics.json"; }
   std::filesystem::path ConfigFile() const { return folder / "config.toml"; }

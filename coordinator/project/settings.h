@@ -15,6 +15,7 @@
 #include "prepare/prepare_options.h"
 #include "products/product_options.h"
 #include "simulate/simulate_options.h"
+#include "surface/surface_options.h"
 #include "worker/prior_options.h"
 #include "worker/train_options.h"
 
@@ -31,6 +32,7 @@ struct Settings {
   worker::PriorOptions priors;
   merge::MergeOptions merge;
   products::ProductOptions products;
+  surface::SurfaceOptions surface;
   evaluate::EvaluateOptions evaluate;
 
   // The result holds references to this object.

@@ -43,6 +43,10 @@ void ProductsStage(Pipeline& pipeline) {
   RunStage(pipeline, "products");
 }
 
+void SurfaceStage(Pipeline& pipeline) {
+  RunStage(pipeline, "surface");
+}
+
 const evaluate::Metrics& EvaluateStage(Pipeline& pipeline) {
   RunStage(pipeline, "evaluate");
   return pipeline.metrics;

@@ -44,6 +44,8 @@ const scene::TrainReport& TrainStage(Pipeline& pipeline);
 void MergeStage(Pipeline& pipeline);
 // Makes orthophoto, surface model and video, as chosen in [products].
 void ProductsStage(Pipeline& pipeline);
+// Makes mesh, point cloud, tiles and terrain, as chosen in [surface].
+void SurfaceStage(Pipeline& pipeline);
 const evaluate::Metrics& EvaluateStage(Pipeline& pipeline);
 
 // Throws base::BlockError with the names of the failed blocks, if there are any.

@@ -14,6 +14,7 @@ std::string PartitionBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string TrainBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string MergeBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string ProductsBody(Pipeline& pipeline, const StageStamp& stamp);
+std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp);
 
 }  // namespace skyquilt::coordinator

@@ -35,6 +35,18 @@ std::string SurveyIdentity(const Project& project) {
   return identity;
 }
 
+// Of the file that limits the products.
+std::string BoundaryIdentity(const Pipeline& pipeline) {
+  const std::string& file = pipeline.settings.products.boundary;
+  return file.empty() ? "" : FileIdentity(file);
+}
+
+FlatOptions SurfaceInputs(const Pipeline& pipeline) {
+  return {{"scene", FileIdentity(pipeline.project.StampFile("merge"))},
+          {"survey", SurveyIdentity(pipeline.project)},
+          {"boundary", BoundaryIdentity(pipeline)}};
+}
+
 // The checkpoints of the context and of every block that train.json lists as trained. When train.json is damaged, no blocks are required here;
 // reading the report fails later (RecallTraining), and the stage runs again.
 Paths TrainProof(const Project& project) {
@@ -138,10 +150,12 @@ std::vector<Stage> MakeTable() {
        .body = MergeBody},
       {.name = "products",
        .options = {"products."},
+       // Its content is an input, so that another boundary makes the products again.
+       .ignored_options = {"products.boundary"},
        .required = {{SceneFile, "merge"}},
        .inputs =
            [](const Pipeline& pipeline) {
-             return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))}};
+             return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))}, {"boundary", BoundaryIdentity(pipeline)}};
            },
        .outputs =
            [](const Project& p) {
@@ -149,13 +163,25 @@ std::vector<Stage> MakeTable() {
            },
        .completion_files = [](const Project& p) { return Paths{p.ProductsFolder()}; },
        .body = ProductsBody},
+      {.name = "surface",
+       .options = {"surface.", "products.exposure", "products.resolution_m", "products.max_pixels", "run.image_width"},
+       .ignored_options = {"surface.enabled"},
+       .required = {{SceneFile, "merge"}, {SurveyFile, "prepare"}},
+       .inputs = SurfaceInputs,
+       .outputs =
+           [](const Project& p) {
+             return Paths{p.SurfaceFolder(), p.SurfaceWorkFolder()};
+           },
+       .completion_files = [](const Project& p) { return Paths{p.SurfaceTable()}; },
+       .body = SurfaceBody},
       {.name = "evaluate",
        .options = {"evaluate.", "run.image_width"},
        .required = {{SceneFile, "merge"}},
        .inputs =
            [](const Pipeline& pipeline) {
              return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))},
-                                {"products", FileIdentity(pipeline.project.StampFile("products"))}};
+                                {"products", FileIdentity(pipeline.project.StampFile("products"))},
+                                {"surface", FileIdentity(pipeline.project.StampFile("surface"))}};
            },
        .outputs = [](const Project& p) { return Paths{p.ReportFolder()}; },
        .completion_files = [](const Project& p) { return Paths{p.MetricsFile()}; },

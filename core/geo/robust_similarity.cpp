@@ -31,10 +31,8 @@ constexpr int kRefitRounds = 10;
 // Standard deviations of the points along their principal directions, largest first.
 Eigen::Vector3d Spread(const Points& points) {
   const Points centred = points.colwise() - points.rowwise().mean();
-  const Eigen::JacobiSVD<Points> svd(centred);
-  Eigen::Vector3d spread = Eigen::Vector3d::Zero();
-  spread.head(svd.singularValues().size()) = svd.singularValues();
-  return spread / std::sqrt(static_cast<double>(points.cols()));
+  const Eigen::Matrix3d products = centred * centred.transpose() / static_cast<double>(points.cols());
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(products).eigenvalues().cwiseMax(0.0).cwiseSqrt().reverse();
 }
 
 // Why points of this shape cannot determine a similarity; null when they can.

@@ -1,57 +1,30 @@
 #include "core/gis/geotiff.h"
 
-#include <cpl_conv.h>
-#include <cpl_string.h>
-#include <gdal_priv.h>
-#include <ogr_spatialref.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/base/cancel.h"
-#include "core/base/errors.h"
-#include "core/base/file.h"
+#include "core/gis/gdal_support.h"
 
 namespace skyquilt::gis {
 namespace {
 
-// Keeps GDAL from printing its errors: they are reported as exceptions.
-class QuietErrors {
- public:
-  QuietErrors() {
-    CPLPushErrorHandler(CPLQuietErrorHandler);
-    CPLErrorReset();
-  }
-  ~QuietErrors() { CPLPopErrorHandler(); }
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
-};
-
-struct CloseDataset {
-  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
-
-[[noreturn]] void Fail(const std::filesystem::path& file, const std::string& what) {
-  const std::string reason = CPLGetLastErrorMsg();
-  throw base::InputError(file, what + (reason.empty() ? "" : ": " + reason), "Check the free space and permissions of its folder");
-}
+using internal::Dataset;
+using internal::FailWriting;
+using internal::QuietErrors;
 
 GDALDataType TypeOf(PixelType type) {
   return type == PixelType::kUint8 ? GDT_Byte : GDT_Float32;
 }
 
-int ContinueUnlessCancelled(double /*fraction*/, const char* /*message*/, void* /*data*/) {
-  return base::CancelRequested() ? FALSE : TRUE;
-}
-
+// Of the plain file that the rows are written to: it is only read once more, so that fast compression is better than good compression.
 CPLStringList CreationOptions(const GeoTiffSpec& spec) {
   CPLStringList options;
   options.SetNameValue("TILED", "YES");
   options.SetNameValue("BLOCKXSIZE", std::to_string(GeoTiffWriter::kTile).c_str());
   options.SetNameValue("BLOCKYSIZE", std::to_string(GeoTiffWriter::kTile).c_str());
   options.SetNameValue("COMPRESS", "DEFLATE");
+  options.SetNameValue("ZLEVEL", "1");
   options.SetNameValue("PREDICTOR", spec.type == PixelType::kFloat32 ? "3" : "2");
   options.SetNameValue("BIGTIFF", "IF_SAFER");
   if (spec.type == PixelType::kUint8 && spec.bands == 4) {
@@ -61,22 +34,38 @@ CPLStringList CreationOptions(const GeoTiffSpec& spec) {
   return options;
 }
 
+CPLStringList CogOptions() {
+  CPLStringList options;
+  options.SetNameValue("COMPRESS", "DEFLATE");
+  options.SetNameValue("PREDICTOR", "YES");  // the one for the type of the values
+  options.SetNameValue("BLOCKSIZE", std::to_string(GeoTiffWriter::kTile).c_str());
+  options.SetNameValue("OVERVIEWS", "AUTO");
+  options.SetNameValue("RESAMPLING", "AVERAGE");
+  options.SetNameValue("BIGTIFF", "IF_SAFER");
+  options.SetNameValue("NUM_THREADS", "ALL_CPUS");  // tiles are compressed in parallel, but written in order
+  return options;
+}
+
 }  // namespace
 
 struct GeoTiffWriter::Impl {
   std::filesystem::path file;
-  std::filesystem::path partial;
+  std::filesystem::path partial;      // the rows as they come
+  std::filesystem::path cog_partial;  // rearranged, with overviews
   GeoTiffSpec spec;
   Dataset dataset;
+  bool finished = false;
 
   ~Impl() {
-    if (!dataset) return;
+    if (finished) return;
     const QuietErrors quiet;
     dataset.reset();
     std::error_code ignored;
     std::filesystem::remove(partial, ignored);
+    std::filesystem::remove(cog_partial, ignored);
   }
   void Write(int first_row, int n_rows, const void* values, size_t count, PixelType type);
+  void Rearrange();
 };
 
 GeoTiffWriter::GeoTiffWriter(const std::filesystem::path& file, const GeoTiffSpec& spec) : impl_(std::make_unique<Impl>()) {
@@ -84,24 +73,21 @@ GeoTiffWriter::GeoTiffWriter(const std::filesystem::path& file, const GeoTiffSpe
   impl_->file = file;
   impl_->partial = file;
   impl_->partial += ".partial";
+  impl_->cog_partial = file;
+  impl_->cog_partial += ".cog.partial";
   impl_->spec = spec;
   GDALRegister_GTiff();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   SKYQUILT_CHECK(driver != nullptr, "GDAL without GeoTIFF");
   impl_->dataset.reset(
       driver->Create(impl_->partial.c_str(), spec.grid.width, spec.grid.height, spec.bands, TypeOf(spec.type), CreationOptions(spec).List()));
-  if (!impl_->dataset) Fail(file, "cannot be created");
+  if (!impl_->dataset) FailWriting(file, "cannot be created");
   GDALDataset& dataset = *impl_->dataset;
   double transform[6] = {spec.grid.left, spec.grid.resolution_m, 0.0, spec.grid.top, 0.0, -spec.grid.resolution_m};
-  if (dataset.SetGeoTransform(transform) != CE_None) Fail(file, "cannot store its position");
+  if (dataset.SetGeoTransform(transform) != CE_None) FailWriting(file, "cannot store its position");
   if (spec.grid.georeferenced) {
-    OGRSpatialReference reference;
-    if (reference.importFromEPSG(spec.grid.zone.Epsg()) != OGRERR_NONE) {
-      throw base::InputError(file, "needs the definition of EPSG:" + std::to_string(spec.grid.zone.Epsg()) + ", which PROJ cannot find",
-                             "Install PROJ's data files (proj.db)");
-    }
-    reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    if (dataset.SetSpatialRef(&reference) != CE_None) Fail(file, "cannot store its coordinate system");
+    const OGRSpatialReference reference = internal::ReferenceOf(spec.grid.zone, file);
+    if (dataset.SetSpatialRef(&reference) != CE_None) FailWriting(file, "cannot store its coordinate system");
   }
   for (const auto& [key, value] : spec.metadata) dataset.SetMetadataItem(key.c_str(), value.c_str());
   dataset.SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
@@ -126,7 +112,7 @@ void GeoTiffWriter::Impl::Write(int first_row, int n_rows, const void* values, s
   // RasterIO both reads and writes, so its buffer is not const; it does not change the buffer when writing.
   const CPLErr error = dataset->RasterIO(GF_Write, 0, first_row, spec.grid.width, n_rows, const_cast<void*>(values), spec.grid.width, n_rows,
                                          TypeOf(type), spec.bands, nullptr, pixel, pixel * spec.grid.width, size, nullptr);
-  if (error != CE_None) Fail(file, "cannot be written");
+  if (error != CE_None) FailWriting(file, "cannot be written");
 }
 
 void GeoTiffWriter::WriteRows(int first_row, int n_rows, std::span<const uint8_t> values) {
@@ -137,31 +123,29 @@ void GeoTiffWriter::WriteRows(int first_row, int n_rows, std::span<const float> 
   impl_->Write(first_row, n_rows, values.data(), values.size(), PixelType::kFloat32);
 }
 
+// Copies the complete file into a cloud-optimised one: GDAL writes those only as a copy, because the overviews come first.
+void GeoTiffWriter::Impl::Rearrange() {
+  GDALRegister_COG();
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
+  SKYQUILT_CHECK(driver != nullptr, "GDAL without cloud-optimised GeoTIFF");
+  const Dataset source(GDALDataset::Open(partial.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  if (!source) FailWriting(file, "cannot be read back");
+  CPLErrorReset();
+  Dataset copy(driver->CreateCopy(cog_partial.c_str(), source.get(), FALSE, CogOptions().List(), internal::ContinueUnlessCancelled, nullptr));
+  base::ThrowIfCancelled();
+  if (!copy || CPLGetLastErrorType() >= CE_Failure) FailWriting(file, "cannot be completed");
+  internal::CloseWritten(&copy, file);
+}
+
 void GeoTiffWriter::Close() {
   SKYQUILT_CHECK(impl_->dataset != nullptr, "closed twice");
   const QuietErrors quiet;
-  std::vector<int> levels;
-  for (int level = 2; std::max(impl_->spec.grid.width, impl_->spec.grid.height) / level >= kTile / 2; level *= 2) levels.push_back(level);
-  if (!levels.empty() && impl_->dataset->BuildOverviews("AVERAGE", static_cast<int>(levels.size()), levels.data(), 0, nullptr,
-                                                        ContinueUnlessCancelled, nullptr) != CE_None) {
-    base::ThrowIfCancelled();
-    Fail(impl_->file, "overviews cannot be added");
-  }
-  // The last tiles are written only when the file is closed; GDALClose reports failure only through the error state.
-  CPLErrorReset();
-  impl_->dataset.reset();
-  if (CPLGetLastErrorType() >= CE_Failure) {
-    const std::string reason = CPLGetLastErrorMsg();
-    std::error_code ignored;
-    std::filesystem::remove(impl_->partial, ignored);
-    throw base::InputError(impl_->file, "cannot be completed: " + reason, "Check the free space of its folder");
-  }
-  base::SyncPath(impl_->partial);
-  std::error_code error;
-  std::filesystem::rename(impl_->partial, impl_->file, error);
-  if (error)
-    throw base::InputError(impl_->file, "cannot be renamed from " + impl_->partial.string() + ": " + error.message(),
-                           "Check the permissions of its folder");
+  internal::CloseWritten(&impl_->dataset, impl_->file);
+  impl_->Rearrange();
+  internal::RenameComplete(impl_->cog_partial, impl_->file);
+  impl_->finished = true;
+  std::error_code ignored;
+  std::filesystem::remove(impl_->partial, ignored);
 }
 
 ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width) {

@@ -28,8 +28,9 @@ struct GeoTiffSpec {
   std::map<std::string, std::string> metadata;
 };
 
-// Tiled, deflate-compressed, with overviews down to 256 pixels. Written under another name and renamed by Close, so that the file is either complete
-// or missing.
+// A cloud-optimised GeoTIFF (OGC 21-026): tiled, deflate-compressed, with averaged overviews down to 256 pixels in front of the full resolution, so
+// that programs can read parts of it over a network. Rows go to a plain GeoTIFF first, which Close rearranges, so that the disk must hold the map
+// twice for a while. Both have other names until the file is complete: it is either complete or missing. The same rows give the same bytes.
 class GeoTiffWriter {
  public:
   // Throws base::InputError when the disk or GDAL refuses, as do the functions below; the message names the file and GDAL's reason.
@@ -40,7 +41,7 @@ class GeoTiffWriter {
   // Writes rows [first_row, first_row + n_rows): n_rows * width * bands values, interleaved by pixel. Their type must be spec.type.
   void WriteRows(int first_row, int n_rows, std::span<const uint8_t> values);
   void WriteRows(int first_row, int n_rows, std::span<const float> values);
-  // Adds overviews and completes the file. Throws base::Interrupted when cancelled.
+  // Adds overviews and completes the file. Throws base::Interrupted when cancelled. After an error the writer can only be destroyed.
   void Close();
 
   static constexpr int kTile = 256;  // rows of a tile: write a multiple of them per call

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ using ImageF = BasicImage<float>;
 // rotation is NOT applied, because camera models refer to stored pixels. A truncated JPEG is an error: decoders would fill the missing rows with
 // grey. Throws base::InputError.
 Image8 LoadRgb8(const std::filesystem::path& file);
+// The same for the bytes of an image file.
+Image8 DecodeRgb8(std::span<const uint8_t> bytes);
 // Width and height; JPEG and PNG are not decoded for it. Throws base::InputError.
 void ReadImageSize(const std::filesystem::path& file, int* width, int* height);
 // Loads a mask as one channel, 0 = ignore and 255 = use. A pixel is used when any of its colour channels is not 0 (alpha does not count).

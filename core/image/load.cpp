@@ -4,6 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <span>
+#include <string_view>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -18,22 +19,22 @@ using base::InputError;
 
 constexpr const char* kFixDamaged = "Copy it again from the memory card, or remove it from the folder";
 
-std::span<const uint8_t> AsBytes(const std::string& content) {
+std::span<const uint8_t> AsBytes(std::string_view content) {
   return {reinterpret_cast<const uint8_t*>(content.data()), content.size()};
 }
 
-bool StartsWith(const std::string& content, std::string_view magic) {
-  return std::string_view(content).substr(0, magic.size()) == magic;
+bool StartsWith(std::string_view content, std::string_view magic) {
+  return content.substr(0, magic.size()) == magic;
 }
 
-bool LooksLikeImage(const std::string& content) {
+bool LooksLikeImage(std::string_view content) {
   using std::string_view_literals::operator""sv;
   return StartsWith(content, "\xFF\xD8\xFF"sv) || StartsWith(content, "\x89PNG"sv) || StartsWith(content, "II*\0"sv) ||
          StartsWith(content, "MM\0*"sv);
 }
 
 // Decodes without conversion: bit depth and channels as in the file, BGR(A) order.
-cv::Mat Decode(const std::string& content, const std::filesystem::path& file) {
+cv::Mat Decode(std::string_view content, const std::filesystem::path& file) {
   if (content.empty()) throw InputError(file, "is empty", kFixDamaged);
   const JpegStructure jpeg = ParseJpeg(AsBytes(content), false);
   if (jpeg.is_jpeg && !jpeg.complete) throw InputError(file, "ends early (truncated JPEG)", kFixDamaged);
@@ -67,10 +68,7 @@ void WarnAboutAlpha(const std::filesystem::path& file) {
   });
 }
 
-}  // namespace
-
-Image8 LoadRgb8(const std::filesystem::path& file) {
-  cv::Mat pixels = Decode(base::ReadFile(file), file);
+Image8 ToRgb8(cv::Mat pixels, const std::filesystem::path& file) {
   if (pixels.depth() == CV_16U) {
     cv::Mat narrow;
     pixels.convertTo(narrow, CV_8U, 1.0 / 257.0);
@@ -90,6 +88,17 @@ Image8 LoadRgb8(const std::filesystem::path& file) {
   cv::Mat target(image.height, image.width, CV_8UC3, image.data.data());
   cv::cvtColor(pixels, target, conversion);
   return image;
+}
+
+}  // namespace
+
+Image8 LoadRgb8(const std::filesystem::path& file) {
+  return ToRgb8(Decode(base::ReadFile(file), file), file);
+}
+
+Image8 DecodeRgb8(std::span<const uint8_t> bytes) {
+  const std::filesystem::path name = "image in memory";
+  return ToRgb8(Decode({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name), name);
 }
 
 void ReadImageSize(const std::filesystem::path& file, int* width, int* height) {

@@ -12,7 +12,8 @@ import time
 STEPS = "300"
 # Small fields: these tests are about the pipeline, not about image quality.
 SMALL = ["--steps", STEPS, "--blocks", "1x2", "--image-width", "240", "--set", "train.batch_samples=8192", "--set", "context.batch_samples=8192",
-         "--set", "partition.max_log2_table_size=15", "--set", "products.video_seconds=0"]
+         "--set", "partition.max_log2_table_size=15", "--set", "products.video_seconds=0",
+         "--set", "surface.enabled=false"]
 
 # For small_project: two blocks of some seconds each, saved so often that a checkpoint is always recent.
 QUICK_TRAIN = ["--steps", "700", "--set", "train.checkpoint_every_s=0.1", "--set", "context.checkpoint_every_s=0.1", "--set", "train.batch_samples=4096",

@@ -48,7 +48,7 @@ struct AnalyticScene {
         }
         const Eigen::Vector3d x = rays[i].origin_enu + t * rays[i].direction_enu;
         out[i].opacity = 1.0F;
-        out[i].depth = out[i].depth_median = static_cast<float>(t);
+        out[i].depth = out[i].depth_median = out[i].depth_front = out[i].depth_back = static_cast<float>(t);
         const bool house = x.z() > ground_z + 1e-6;
         out[i].rgb_srgb[0] = !house && x.x() >= 0.0 ? 1.0F : 0.0F;
         out[i].rgb_srgb[1] = !house && x.x() < 0.0 ? 1.0F : 0.0F;

@@ -1,0 +1,49 @@
+// The work of stage "surface".
+#include "coordinator/rendering/scene_session.h"
+#include "coordinator/scheduler/field_context.h"
+#include "coordinator/stages/stage_bodies.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/image/pixel_cache.h"
+#include "core/scene/scene.h"
+#include "products/map_area.h"
+#include "products/map_rays.h"
+#include "products/ray_caster.h"
+#include "surface/make_surface.h"
+
+namespace skyquilt::coordinator {
+
+std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
+  const Project& project = pipeline.project;
+  const Settings& settings = pipeline.settings;
+  SceneSession session(pipeline.comm, project.SceneFile(), settings.run, pipeline.verbose, pipeline.quiet);
+  const scene::Scene& scene = session.scene();
+  const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
+  const gis::MapGrid grid = products::PlanMapGrid(scene.info(), settings.products);
+  surface::SurfaceInput input;
+  input.options = settings.surface;
+  input.info = &scene.info();
+  input.survey = &survey;
+  input.caster = products::CasterOf(scene, products::AppearanceOf(settings.products.exposure, scene.info()), session.threads());
+  input.boundary = products::BoundaryOf(grid, settings.products);
+  input.map_resolution_m = grid.resolution_m;
+  // The fields may take up to half of the limit beside what the surface keeps.
+  input.memory_bytes = 0.5 * settings.run.MemoryLimitBytes();
+  input.work_key = stamp.Hash();
+  input.work_folder = project.SurfaceWorkFolder();
+  input.out_folder = project.SurfaceFolder();
+  input.maps_folder = project.ProductsFolder();
+  std::optional<image::PixelCache> photos;
+  if (settings.surface.photo_detail > 0.0) {
+    std::filesystem::create_directories(project.PixelCacheFile().parent_path());
+    photos = image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), settings.run.image_width, session.threads());
+    input.photos = &*photos;
+  }
+  const surface::SurfaceResult made = surface::MakeSurface(input, session.threads());
+  spdlog::info("surface from {} photos and {} virtual views: {} triangles, {} points, {} file(s) in {}: {}", made.photos, made.virtual_views,
+               base::FormatCount(static_cast<double>(made.triangles)), base::FormatCount(static_cast<double>(made.points)), made.files.size(),
+               base::FormatDuration(made.seconds), project.SurfaceFolder().string());
+  return StageStamp::kDone;
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,46 @@
+// A file that is either complete or missing under its final name: it is written as <name>.partial and renamed when it is complete.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace skyquilt::surface {
+
+class OutputFile {
+ public:
+  // Replaces an older partial file. Throws base::InputError, as do all other functions (disk full, no permission).
+  explicit OutputFile(const std::filesystem::path& target);
+  ~OutputFile();  // removes the partial file unless it was published
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void Append(std::span<const uint8_t> bytes);
+  void Append(std::string_view text);
+  // Replaces bytes that were appended before.
+  void WriteAt(uint64_t offset, std::span<const uint8_t> bytes);
+  // Appends all that the other file holds so far. Throws base::Interrupted when cancelled.
+  void AppendContentOf(OutputFile* other);
+  uint64_t size() const { return written_ + buffer_.size(); }
+
+  // Waits until everything is on disk and closes the file; nothing may be appended afterwards.
+  void Complete();
+  // Gives the complete file its name.
+  void Publish() { Publish(target_); }
+  void Publish(const std::filesystem::path& target);
+
+ private:
+  void Flush();
+  void Write(std::span<const uint8_t> bytes, uint64_t offset);
+
+  std::filesystem::path target_;
+  std::filesystem::path partial_;
+  int descriptor_ = -1;
+  bool published_ = false;
+  uint64_t written_ = 0;
+  std::vector<uint8_t> buffer_;
+};
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,211 @@
+#include "surface/fuse_mesh.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "surface/fusion/fuse.h"
+#include "surface/map_frame.h"
+#include "surface/mesh/simplify.h"
+#include "surface/tile_store.h"
+
+namespace skyquilt::surface {
+namespace {
+
+constexpr double kLargestGrowth = 3.0;  // of voxels when the memory is short
+
+int FloorDivide(int value, int by) {
+  return value >= 0 ? value / by : -((by - 1 - value) / by);
+}
+
+// The cell of a vertex from its key, see VertexKey.
+Eigen::Vector3i CellOf(uint64_t key) {
+  const auto value = [](uint64_t bits, unsigned n) {
+    const uint64_t sign = uint64_t{1} << (n - 1);
+    return static_cast<int>(static_cast<int64_t>((bits & ((uint64_t{1} << n) - 1)) ^ sign) - static_cast<int64_t>(sign));
+  };
+  return {value(key >> 44U, 20), value(key >> 24U, 20), value(key >> 6U, 18)};
+}
+
+LatticeBox BoxOf(const scene::SceneInfo& info, double voxel_m) {
+  LatticeBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] = static_cast<int>(std::floor(info.min_enu[axis] / voxel_m)) - 1;
+    box.max[axis] = static_cast<int>(std::ceil(info.max_enu[axis] / voxel_m)) + 2;
+  }
+  return box;
+}
+
+FuseOptions FuseOptionsOf(const SurfaceOptions& options, double voxel_m) {
+  FuseOptions fuse;
+  fuse.voxel_m = voxel_m;
+  fuse.min_views = options.min_views;
+  fuse.min_photos = std::min(2, options.min_views);
+  fuse.tile_voxels = kTileVoxels;
+  fuse.max_angle_deg = options.max_angle_deg;
+  return fuse;
+}
+
+struct Plan {
+  FuseOptions fuse;
+  std::vector<LatticeBox> pieces;
+};
+
+// Pieces that fit in memory, of larger voxels if they must be.
+Plan MakePlan(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads) {
+  double voxel = voxel_m;
+  while (true) {
+    Plan plan{FuseOptionsOf(input.options, voxel), {}};
+    try {
+      plan.pieces = PlanPieces(views, BoxOf(*input.info, voxel), plan.fuse, input.memory_bytes, threads);
+      if (voxel > voxel_m) {
+        spdlog::warn(
+            "the surface is fused in voxels of {:.3g} m instead of {:.3g} m, because a piece of it would not fit into the memory limit; a "
+            "larger --memory gives the finer surface",
+            voxel, voxel_m);
+      }
+      return plan;
+    } catch (const base::UsageError&) {
+      voxel *= 1.25;
+      if (voxel > kLargestGrowth * voxel_m) throw;
+    }
+  }
+}
+
+std::filesystem::path PieceFile(const SurfaceInput& input, const LatticeBox& piece) {
+  return input.work_folder / "pieces" / fmt::format("{}_{}_{}_{}.bin", piece.min.x(), piece.min.y(), piece.max.x(), piece.max.y());
+}
+
+// A finished piece from an earlier call; false when there is none, or it is damaged.
+bool LoadPiece(const std::filesystem::path& file, std::vector<MeshTile>* tiles) {
+  if (!std::filesystem::exists(file)) return false;
+  try {
+    *tiles = LoadMeshTiles(file);
+    return true;
+  } catch (const base::InputError& error) {
+    spdlog::warn("{}; the piece is made again", error.what());
+    return false;
+  }
+}
+
+void SimplifyTiles(std::vector<MeshTile>* tiles, double max_error_m, base::ThreadPool& threads) {
+  if (!(max_error_m > 0.0)) return;
+  threads.ParallelFor(static_cast<int64_t>(tiles->size()), [&](int64_t i, int) {
+    if (base::CancelRequested()) return;
+    MeshTile& tile = (*tiles)[static_cast<size_t>(i)];
+    tile.mesh = Simplify(tile.mesh, max_error_m, &tile.error_m);
+  });
+  base::ThrowIfCancelled();
+}
+
+// Before simplification, while triangles are as small as voxels, so that the new border is smooth.
+void CutToBoundary(const SurfaceInput& input, std::vector<MeshTile>* tiles) {
+  if (!input.boundary) return;
+  const MapFrame frame(*input.info);
+  for (MeshTile& tile : *tiles) {
+    Mesh& mesh = tile.mesh;
+    std::erase_if(mesh.triangle, [&](const Triangle& t) {
+      const Eigen::Vector3d middle = (mesh.position[t[0]] + mesh.position[t[1]] + mesh.position[t[2]]) / 3.0;
+      return !input.boundary->Contains(frame.MapFromEnu(middle).head<2>());
+    });
+    DropUnusedVertices(&mesh);
+  }
+}
+
+std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& views, const Plan& plan, base::ThreadPool& threads) {
+  std::filesystem::create_directories(input.work_folder / "pieces");
+  std::vector<MeshTile> all;
+  base::Progress progress("surface mesh", static_cast<double>(plan.pieces.size()), "pieces");
+  for (const LatticeBox& piece : plan.pieces) {
+    base::ThrowIfCancelled();
+    const std::filesystem::path file = PieceFile(input, piece);
+    std::vector<MeshTile> tiles;
+    if (!LoadPiece(file, &tiles)) {
+      tiles = SplitAlongLattice(FusePiece(views, piece, plan.fuse, threads), kTileVoxels);
+      CutToBoundary(input, &tiles);
+      SimplifyTiles(&tiles, input.options.simplify_voxels * plan.fuse.voxel_m, threads);
+      SaveMeshTiles(tiles, file);
+    }
+    std::move(tiles.begin(), tiles.end(), std::back_inserter(all));
+    progress.Advance();
+  }
+  // In an order that does not depend on the pieces.
+  std::sort(all.begin(), all.end(), [](const MeshTile& a, const MeshTile& b) { return a.id < b.id; });
+  progress.Finish();
+  return all;
+}
+
+}  // namespace
+
+std::vector<MeshTile> SplitAlongLattice(const Mesh& mesh, int tile_voxels) {
+  // The four cells around a lattice edge reach from its lower node to one less in both directions across it, so the largest cell of any three of them
+  // is that node.
+  std::map<TileId, std::vector<Triangle>> triangles;
+  for (const Triangle& t : mesh.triangle) {
+    const Eigen::Vector3i node = CellOf(mesh.key[t[0]]).cwiseMax(CellOf(mesh.key[t[1]])).cwiseMax(CellOf(mesh.key[t[2]]));
+    triangles[{0, FloorDivide(node.x(), tile_voxels), FloorDivide(node.y(), tile_voxels)}].push_back(t);
+  }
+  std::vector<MeshTile> tiles;
+  for (auto& [id, of_tile] : triangles) {
+    MeshTile tile{.id = id, .mesh = {}, .error_m = 0.0};
+    std::vector<uint32_t> vertices;
+    for (const Triangle& t : of_tile) vertices.insert(vertices.end(), t.begin(), t.end());
+    std::sort(vertices.begin(), vertices.end(), [&](uint32_t a, uint32_t b) { return mesh.key[a] < mesh.key[b]; });
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    for (const uint32_t v : vertices) {
+      tile.mesh.position.push_back(mesh.position[v]);
+      tile.mesh.key.push_back(mesh.key[v]);
+      tile.mesh.views.push_back(mesh.views[v]);
+      tile.mesh.filled.push_back(mesh.filled[v]);
+    }
+    const auto index_of = [&](uint32_t v) {
+      const auto found = std::lower_bound(tile.mesh.key.begin(), tile.mesh.key.end(), mesh.key[v]);
+      return static_cast<uint32_t>(found - tile.mesh.key.begin());
+    };
+    for (const Triangle& t : of_tile) {
+      // Begin with the smallest index, so that the order does not depend on the piece either.
+      Triangle own = {index_of(t[0]), index_of(t[1]), index_of(t[2])};
+      std::rotate(own.begin(), std::min_element(own.begin(), own.end()), own.end());
+      tile.mesh.triangle.push_back(own);
+    }
+    std::sort(tile.mesh.triangle.begin(), tile.mesh.triangle.end());
+    tiles.push_back(std::move(tile));
+  }
+  return tiles;
+}
+
+FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads) {
+  const Plan plan = MakePlan(input, views, voxel_m, threads);
+  FusedMesh result;
+  result.voxel_m = plan.fuse.voxel_m;
+  result.tile_size_m = kTileVoxels * plan.fuse.voxel_m;
+  std::vector<MeshTile> tiles = FusePieces(input, views, plan, threads);
+  const bool any = !tiles.empty();  // also when the boundary left nothing of them
+  double error_m = 0.0;
+  std::vector<Mesh> meshes;
+  for (MeshTile& tile : tiles) {
+    error_m = std::max(error_m, tile.error_m);
+    meshes.push_back(std::move(tile.mesh));
+  }
+  Mesh mesh = MergeMeshes(std::move(meshes));
+  if (input.boundary && mesh.triangle.empty() && any) {
+    throw base::UsageError("products.boundary leaves nothing of the surface: the boundary does not meet it. Give a polygon that does, or none");
+  }
+  const int islands = DropIslands(&mesh, input.options.min_island_m2);
+  result.filled_m2 = FillGroundHoles(&mesh, input.options.max_hole_m2, 4.0 * result.voxel_m);
+  result.edges = CountEdges(mesh);
+  result.area_m2 = Area(mesh);
+  result.tiles = SplitIntoTiles(mesh, result.tile_size_m);
+  for (MeshTile& tile : result.tiles) tile.error_m = error_m;
+  spdlog::info("surface of {} triangles and {:.0f} m2 in {} tile(s); {} small piece(s) dropped, {:.0f} m2 of holes in the ground closed",
+               base::FormatCount(static_cast<double>(mesh.triangle.size())), result.area_m2, result.tiles.size(), islands, result.filled_m2);
+  return result;
+}
+
+}  // namespace skyquilt::surface

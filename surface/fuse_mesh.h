@@ -1,0 +1,34 @@
+// The step from pictures of depth to the finished mesh of level 0: pieces are fused within the memory limit, simplified tile by tile, joined and
+// cleaned.
+#pragma once
+
+#include <vector>
+
+#include "surface/mesh.h"
+#include "surface/mesh/mesh_tools.h"
+#include "surface/surface_input.h"
+#include "surface/views/depth_views.h"
+
+namespace skyquilt::surface {
+
+struct FusedMesh {
+  double voxel_m = 0.0;  // larger than asked for where a piece would not fit in memory
+  double tile_size_m = 0.0;
+  std::vector<MeshTile> tiles;  // level 0, sorted; empty: no surface was seen
+  EdgeCounts edges;
+  double area_m2 = 0.0;
+  double filled_m2 = 0.0;
+};
+
+// Side of a tile in voxels.
+inline constexpr int kTileVoxels = 256;
+
+// Finished pieces are kept in input.work_folder and not computed again. The result does not depend on the memory limit as long as the voxel stays the
+// same. Throws base::UsageError when even three times larger voxels need too much memory, or when the boundary leaves nothing of the surface.
+FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads);
+
+// Cuts the mesh of a piece along the lattice: each triangle belongs to the tile of the lattice edge that it crosses, whatever the piece. Only for
+// meshes straight from FusePiece.
+std::vector<MeshTile> SplitAlongLattice(const Mesh& mesh, int tile_voxels);
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,182 @@
+#include "surface/make_surface.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "surface/files/surface_files.h"
+#include "surface/fuse_mesh.h"
+#include "surface/maps/surface_maps.h"
+#include "surface/mesh/simplify.h"
+#include "surface/odm_names.h"
+#include "surface/surface_table.h"
+#include "surface/views/render_views.h"
+
+namespace skyquilt::surface {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kWorkVersion = "1";  // of the files in the work folder
+
+fs::path TextureFolder(const fs::path& work_folder) {
+  return work_folder / "textures";
+}
+
+// Results of other inputs or options are removed.
+void OpenWorkFolder(const SurfaceInput& input) {
+  const fs::path key_file = input.work_folder / "key.txt";
+  const std::string key = std::string(kWorkVersion) + " " + input.work_key + "\n";
+  if (fs::exists(key_file) && base::ReadFile(key_file) == key) return;
+  std::error_code error;
+  fs::remove_all(input.work_folder, error);
+  if (error) throw base::InputError(input.work_folder, "cannot be removed: " + error.message(), "Check the permissions of the project folder");
+  base::RequireWritableFolder(input.work_folder);
+  base::WriteFileAtomically(key_file, key);
+}
+
+// A texture from an earlier call; false when there is none, or it is damaged.
+bool LoadFinished(const fs::path& file, BakedTile* baked) {
+  if (!fs::exists(file)) return false;
+  try {
+    *baked = LoadBakedTile(file);
+    return true;
+  } catch (const base::InputError& error) {
+    spdlog::warn("{}; the texture is made again", error.what());
+    return false;
+  }
+}
+
+BakeOptions BakeOptionsOf(const SurfaceInput& input, const MeshTile& tile, double voxel_m) {
+  BakeOptions bake;
+  bake.texel_m = input.options.texel_gsd * input.info->gsd_m * static_cast<double>(1U << static_cast<unsigned>(std::min(tile.id.level, 20)));
+  bake.jpeg_quality = input.options.jpeg_quality;
+  bake.photo_detail = input.options.photo_detail;
+  bake.point_spacing_m = tile.id.level == 0 && input.options.cloud ? voxel_m : 0.0;
+  return bake;
+}
+
+// Sets which points are ground: those of the terrain's height.
+void ClassifyPoints(const HeightRaster& terrain, const MapFrame& frame, double low_m, std::vector<CloudPoint>* points) {
+  constexpr uint8_t kGround = 2;
+  const gis::MapGrid& grid = terrain.grid;
+  for (CloudPoint& point : *points) {
+    const Eigen::Vector3d in_map = frame.MapFromEnu(point.position);
+    const Eigen::Vector2d cell = grid.CellOf(in_map.head<2>()).array().round();
+    if (!(cell.x() >= 0.0 && cell.y() >= 0.0 && cell.x() < grid.width && cell.y() < grid.height)) continue;
+    const float ground = terrain.height_m[static_cast<size_t>(cell.y()) * static_cast<size_t>(grid.width) + static_cast<size_t>(cell.x())];
+    if (std::abs(in_map.z() - static_cast<double>(ground)) <= low_m) point.las_class = kGround;
+  }
+}
+
+class SurfaceMaker {
+ public:
+  SurfaceMaker(const SurfaceInput& input, base::ThreadPool& threads) : input_(input), threads_(threads), frame_(*input.info) {}
+
+  SurfaceResult Make() {
+    const auto start = std::chrono::steady_clock::now();
+    OpenWorkFolder(input_);
+    base::RequireWritableFolder(input_.out_folder);
+    {
+      const double voxel_m = input_.options.voxel_gsd * input_.info->gsd_m;
+      const DepthViews views = RenderDepthViews(input_, voxel_m, threads_);
+      for (size_t i = 0; i < views.size(); ++i) ++(views.pose(i).photo >= 0 ? result_.photos : result_.virtual_views);
+      FusedMesh fused = FuseMesh(input_, views, voxel_m, threads_);
+      result_.voxel_m = fused.voxel_m;
+      result_.area_m2 = fused.area_m2;
+      result_.filled_m2 = fused.filled_m2;
+      edges_ = fused.edges;
+      for (const MeshTile& tile : fused.tiles) result_.triangles += static_cast<int64_t>(tile.mesh.triangle.size());
+      if (result_.triangles == 0) {
+        spdlog::warn(
+            "no surface was found: too few photos see the same places, or the scene is still fog. No mesh, cloud, tiles or maps are made. Train "
+            "longer, or lower surface.min_opacity and surface.min_views");
+      } else {
+        MakeProducts(std::move(fused), views);
+      }
+    }
+    result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    WriteSurfaceTable(result_, edges_, frame_, input_.out_folder / "surface.json");
+    if (input_.options.odm_names) ProvideOdmNames(input_.out_folder, input_.maps_folder);
+    // Only the textures are needed again, by scores.
+    std::error_code ignored;
+    for (const char* done : {"views", "views.bin", "pieces"}) fs::remove_all(input_.work_folder / done, ignored);
+    return std::move(result_);
+  }
+
+ private:
+  void MakeProducts(FusedMesh fused, const DepthViews& views) {
+    SurfaceMaps maps = MakeMaps(fused.tiles);
+    const double max_error_m = std::max(input_.options.simplify_voxels, 0.25) * fused.voxel_m;
+    const double tile_size_m = fused.tile_size_m;
+    const std::vector<MeshTile> levels = input_.options.tiles ? BuildLevels(std::move(fused.tiles), max_error_m, threads_) : std::move(fused.tiles);
+    const SurfaceOptions& options = input_.options;
+    SurfaceFiles files(frame_, {.glb = options.glb, .obj = options.obj, .ply = options.ply, .cloud = options.cloud, .tiles = options.tiles},
+                       tile_size_m, input_.out_folder);
+    BakeAll(levels, views, fused.voxel_m, maps.terrain, &files);
+    result_.files = files.Close();
+    std::move(maps.files.begin(), maps.files.end(), std::back_inserter(result_.files));
+  }
+
+  SurfaceMaps MakeMaps(const std::vector<MeshTile>& tiles) {
+    if (!input_.options.maps && !input_.options.cloud) return {};  // the cloud needs the terrain for its classes
+    const gis::MapGrid grid = PlanSurfaceGrid(tiles, frame_, input_.map_resolution_m);
+    return MakeSurfaceMaps(RasteriseSurface(tiles, frame_, grid), frame_, input_.boundary, input_.options, input_.out_folder, threads_);
+  }
+
+  void BakeAll(const std::vector<MeshTile>& tiles, const DepthViews& views, double voxel_m, const HeightRaster& terrain, SurfaceFiles* files) {
+    fs::create_directories(TextureFolder(input_.work_folder));
+    double triangles = 0.0;
+    for (const MeshTile& tile : tiles) triangles += static_cast<double>(tile.mesh.triangle.size());
+    const TextureBaker baker(input_, views, voxel_m);
+    base::Progress progress("surface texture", triangles, "triangles");
+    for (const MeshTile& tile : tiles) {
+      base::ThrowIfCancelled();
+      const fs::path file = TextureFolder(input_.work_folder) / (tile.id.Name() + ".bin");
+      BakedTile baked;
+      if (!LoadFinished(file, &baked)) {
+        baked = baker.Bake(tile, BakeOptionsOf(input_, tile, voxel_m), threads_);
+        ClassifyPoints(terrain, frame_, input_.options.terrain_low_m, &baked.points);
+        SaveBakedTile(baked, file);
+      }
+      files->Add(baked.tile);
+      files->AddPoints(baked.points);
+      result_.points += static_cast<int64_t>(baked.points.size());
+      progress.Advance(static_cast<double>(tile.mesh.triangle.size()));
+    }
+    progress.Finish();
+  }
+
+  const SurfaceInput& input_;
+  base::ThreadPool& threads_;
+  MapFrame frame_;
+  SurfaceResult result_;
+  EdgeCounts edges_;
+};
+
+}  // namespace
+
+SurfaceResult MakeSurface(const SurfaceInput& input, base::ThreadPool& threads) {
+  SKYQUILT_CHECK(input.info != nullptr && input.survey != nullptr && input.caster, "scene, survey and caster must be set");
+  input.options.Check();
+  return SurfaceMaker(input, threads).Make();
+}
+
+std::vector<TexturedTile> LoadFinestTiles(const fs::path& work_folder) {
+  std::set<fs::path> files;
+  if (fs::is_directory(TextureFolder(work_folder))) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(TextureFolder(work_folder))) {
+      if (entry.path().filename().string().starts_with("0_") && entry.path().extension() == ".bin") files.insert(entry.path());
+    }
+  }
+  std::vector<TexturedTile> tiles;
+  for (const fs::path& file : files) tiles.push_back(std::move(LoadBakedTile(file).tile));
+  return tiles;
+}
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,45 @@
+// The coordinates of the maps and of all files of the surface but the 3D tiles: easting and northing of the survey's UTM (or UPS) zone and
+// ellipsoidal height; without geo-reference the local x, y, z.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "core/geo/enu_frame.h"
+#include "core/geo/utm.h"
+#include "core/scene/scene.h"
+
+namespace skyquilt::surface {
+
+class MapFrame {
+ public:
+  explicit MapFrame(const scene::SceneInfo& info);
+
+  bool georeferenced() const { return frame_.has_value(); }
+  const geo::UtmZone& zone() const { return zone_; }  // without meaning when not geo-referenced
+  const geo::Geodetic& origin() const { return origin_; }
+  // Easting, northing, height in metres.
+  Eigen::Vector3d MapFromEnu(const Eigen::Vector3d& x_in_enu) const;
+  Eigen::Vector3d EnuFromMap(const Eigen::Vector3d& x_in_map) const;
+  // A direction in ENU near this place, turned by the convergence of the meridians; length 1.
+  Eigen::Vector3f MapDirection(const Eigen::Vector3f& direction_enu) const;
+  // Subtracted from coordinates in files of single precision: whole multiples of 100 m near the middle of the scene in easting and northing, 0 in
+  // height, which OpenDroneMap's and CloudCompare's offsets do not have either; (0, 0, 0) without geo-reference.
+  const Eigen::Vector3d& offset() const { return offset_; }
+
+  // "EPSG:32617", or "local frame, metres" when not geo-referenced.
+  std::string CrsName() const;
+  // What heights are above: "WGS84 ellipsoid (EPSG:4979)", "unknown: the GPS tags have no usable heights", or "local frame".
+  std::string VerticalName() const;
+
+ private:
+  std::optional<geo::EnuFrame> frame_;
+  geo::Geodetic origin_;
+  geo::UtmZone zone_;
+  Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d map_from_enu_ = Eigen::Matrix3d::Identity();
+  std::string vertical_;
+};
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,21 @@
+// Lowest and highest values in square windows, and what is made of them (grey-scale morphology). The time does not depend on the window: van Herk
+// 1992, Gil and Werman 1993.
+#pragma once
+
+#include "surface/maps/float_grid.h"
+
+namespace skyquilt::surface {
+
+// The lowest (highest) value in the window of 2 * half + 1 cells around each cell. Windows are cut off at the grid's edge; NaN is left out. NaN where
+// the window has no value.
+FloatGrid WindowMinimum(const FloatGrid& grid, int half);
+FloatGrid WindowMaximum(const FloatGrid& grid, int half);
+
+// The highest of the minima of all windows that hold the cell: removes what is narrower than the window and rises above its surroundings. Only
+// windows around cells with a value count, so that an object beside a gap is not hidden from the ground by windows that end in the gap. NaN stays
+// NaN.
+FloatGrid Opening(const FloatGrid& grid, int half);
+// The same for what lies lower.
+FloatGrid Closing(const FloatGrid& grid, int half);
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,211 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <unordered_map>
+
+#include "core/base/mix_bits.h"
+#include "surface/mesh/border_loops.h"
+#include "surface/mesh/edge_uses.h"
+#include "surface/mesh/hole_patch.h"
+#include "surface/mesh/mesh_tools.h"
+#include "surface/mesh/vectors.h"
+
+namespace skyquilt::surface {
+namespace {
+
+constexpr size_t kMostHoleEdges = 2000;
+constexpr double kLevelShare = 0.5, kLevelMargin_m = 0.5;
+constexpr double kUpwards = 0.5, kUpwardsShare = 0.7;
+constexpr double kDeepBelow_m = 3.0;
+constexpr uint32_t kNoHole = std::numeric_limits<uint32_t>::max();
+
+struct GroundHole {
+  std::vector<uint32_t> vertex;           // counter-clockwise seen from above
+  std::vector<Eigen::Vector3d> position;  // of these vertices
+  Eigen::Vector2d low, high;              // box around them
+  double lowest_m = 0.0;
+  bool blocked = false;  // something lies above or below
+};
+
+// A hole if this border may be one, with an empty list of vertices if not.
+GroundHole HoleOf(const Mesh& mesh, const BorderLoop& loop, double max_area_m2) {
+  const size_t n = loop.vertex.size();
+  if (n < 3 || n > kMostHoleEdges) return {};
+  GroundHole hole;
+  Eigen::Vector3d low = mesh.position[loop.vertex[0]], high = low;
+  const Eigen::Vector2d origin = low.head<2>();
+  double double_area = 0.0, length = 0.0, upwards_length = 0.0;
+  for (size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d &x = mesh.position[loop.vertex[i]], &y = mesh.position[loop.vertex[(i + 1) % n]];
+    if (!x.allFinite()) return {};
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+    double_area -= DoubleAreaFromAbove(origin, x.head<2>(), y.head<2>());  // the border runs clockwise around a hole
+    const Triangle& t = mesh.triangle[loop.triangle[i]];
+    const Eigen::Vector3d normal = DoubleAreaNormal(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]);
+    length += (y - x).norm();
+    if (normal.z() > kUpwards * normal.norm()) upwards_length += (y - x).norm();
+  }
+  const double area = 0.5 * double_area;
+  if (!(area > 0.0 && area <= max_area_m2) || upwards_length < kUpwardsShare * length) return {};
+  if (high.z() - low.z() > kLevelShare * std::sqrt(area) + kLevelMargin_m) return {};
+  hole.vertex.assign(loop.vertex.rbegin(), loop.vertex.rend());
+  for (const uint32_t v : hole.vertex) hole.position.push_back(mesh.position[v]);
+  if (CrossesItself(hole.position)) return {};
+  hole.low = low.head<2>();
+  hole.high = high.head<2>();
+  hole.lowest_m = low.z();
+  return hole;
+}
+
+bool IsInside(const Eigen::Vector2d& x, const std::vector<Eigen::Vector3d>& polygon) {
+  bool inside = false;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    if ((a.y() > x.y()) == (b.y() > x.y())) continue;
+    const double side = DoubleAreaFromAbove(a.head<2>(), b.head<2>(), x);
+    if ((side > 0.0) == (b.y() > a.y())) inside = !inside;
+  }
+  return inside;
+}
+
+bool Crosses(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c, const Eigen::Vector2d& d) {
+  const auto apart = [](double s, double t) { return (s < 0.0 && t > 0.0) || (s > 0.0 && t < 0.0); };
+  return apart(DoubleAreaFromAbove(a, b, c), DoubleAreaFromAbove(a, b, d)) && apart(DoubleAreaFromAbove(c, d, a), DoubleAreaFromAbove(c, d, b));
+}
+
+class HoleBlocker {
+ public:
+  HoleBlocker(const Mesh& mesh, std::vector<GroundHole>* holes) : mesh_(mesh), holes_(*holes), hole_of_(mesh.position.size(), kNoHole) {
+    double sum = 0.0;
+    for (const GroundHole& hole : holes_) sum += (hole.high - hole.low).maxCoeff();
+    cell_m_ = std::max(sum / static_cast<double>(std::max<size_t>(holes_.size(), 1)), 0.01);
+    for (uint32_t i = 0; i < holes_.size(); ++i) {
+      for (const uint32_t v : holes_[i].vertex) hole_of_[v] = i;
+      const int64_t x1 = CellOf(holes_[i].high.x()), y1 = CellOf(holes_[i].high.y());
+      for (int64_t y = CellOf(holes_[i].low.y()); y <= y1; ++y) {
+        for (int64_t x = CellOf(holes_[i].low.x()); x <= x1; ++x) in_cell_[CellKey(x, y)].push_back(i);
+      }
+    }
+  }
+
+  // Marks the holes that have a triangle of the mesh inside.
+  void Run() {
+    for (const Triangle& t : mesh_.triangle) {
+      const Eigen::Vector3d &a = mesh_.position[t[0]], &b = mesh_.position[t[1]], &c = mesh_.position[t[2]];
+      if (!a.allFinite() || !b.allFinite() || !c.allFinite()) continue;
+      const Eigen::Vector3d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+      const int64_t x0 = CellOf(low.x()), x1 = CellOf(high.x()), y0 = CellOf(low.y()), y1 = CellOf(high.y());
+      const auto visit = [&](uint32_t i) {
+        GroundHole& hole = holes_[i];
+        if (hole.blocked || high.z() < hole.lowest_m - kDeepBelow_m) return;
+        if ((low.head<2>().array() > hole.high.array()).any() || (high.head<2>().array() < hole.low.array()).any()) return;
+        hole.blocked = Overlaps(t, i);
+      };
+      if (static_cast<double>(x1 - x0 + 1) * static_cast<double>(y1 - y0 + 1) > static_cast<double>(holes_.size())) {
+        for (uint32_t i = 0; i < holes_.size(); ++i) visit(i);
+        continue;
+      }
+      for (int64_t y = y0; y <= y1; ++y) {
+        for (int64_t x = x0; x <= x1; ++x) {
+          const auto found = in_cell_.find(CellKey(x, y));
+          if (found == in_cell_.end()) continue;
+          for (const uint32_t i : found->second) visit(i);
+        }
+      }
+    }
+  }
+
+ private:
+  int64_t CellOf(double coordinate_m) const {
+    constexpr double kLargest = 1e15;
+    return static_cast<int64_t>(std::clamp(std::floor(coordinate_m / cell_m_), -kLargest, kLargest));
+  }
+  // Different cells may share a key; boxes are compared anyway.
+  static uint64_t CellKey(int64_t x, int64_t y) { return base::MixBits(static_cast<uint64_t>(x)) + static_cast<uint64_t>(y); }
+
+  // Whether the triangle covers a part of the hole seen from above. The triangles along the border touch it without that.
+  bool Overlaps(const Triangle& t, uint32_t index) const {
+    const GroundHole& hole = holes_[index];
+    const auto at = [&](size_t k) -> Eigen::Vector2d { return mesh_.position[t[k % 3]].head<2>(); };
+    if (IsInside((at(0) + at(1) + at(2)) / 3.0, hole.position)) return true;
+    for (size_t k = 0; k < 3; ++k) {
+      if (hole_of_[t[k]] != index && IsInside(at(k), hole.position)) return true;
+    }
+    for (size_t i = 0; i < hole.vertex.size(); ++i) {
+      const Eigen::Vector2d x = hole.position[i].head<2>(), y = hole.position[(i + 1) % hole.position.size()].head<2>();
+      const double s0 = DoubleAreaFromAbove(at(0), at(1), x), s1 = DoubleAreaFromAbove(at(1), at(2), x), s2 = DoubleAreaFromAbove(at(2), at(0), x);
+      if ((s0 > 0.0 && s1 > 0.0 && s2 > 0.0) || (s0 < 0.0 && s1 < 0.0 && s2 < 0.0)) return true;
+      for (size_t k = 0; k < 3; ++k) {
+        if (Crosses(x, y, at(k), at(k + 1))) return true;
+      }
+    }
+    return false;
+  }
+
+  const Mesh& mesh_;
+  std::vector<GroundHole>& holes_;
+  std::vector<uint32_t> hole_of_;  // per vertex of the mesh: the hole on whose border it is
+  double cell_m_ = 1.0;
+  std::unordered_map<uint64_t, std::vector<uint32_t>> in_cell_;  // holes whose box meets the cell
+};
+
+// Whether an edge of the patch between vertices of the border is an edge of the mesh already; together they would have too many triangles.
+bool DoublesAnEdge(const HolePatch& patch, const GroundHole& hole, const std::vector<EdgeUse>& uses) {
+  const size_t n = hole.vertex.size();
+  for (const Triangle& t : patch.triangle) {
+    for (size_t k = 0; k < 3; ++k) {
+      const size_t a = t[k], b = t[(k + 1) % 3];
+      if (a < n && b < n && b != (a + 1) % n && HasEdge(uses, hole.vertex[a], hole.vertex[b])) return true;
+    }
+  }
+  return false;
+}
+
+// Returns the area of the patch.
+double AddPatch(const HolePatch& patch, const GroundHole& hole, uint64_t* next_key, Mesh* mesh) {
+  const size_t first = mesh->position.size();
+  for (const Eigen::Vector3d& x : patch.inner) {
+    mesh->position.push_back(x);
+    mesh->key.push_back(*next_key);
+    mesh->views.push_back(0);
+    mesh->filled.push_back(1);
+    *next_key += 2 * kFilledKeyBit;
+  }
+  double area = 0.0;
+  for (const Triangle& t : patch.triangle) {
+    Triangle own = t;
+    for (uint32_t& v : own) v = v < hole.vertex.size() ? hole.vertex[v] : static_cast<uint32_t>(first + v - hole.vertex.size());
+    mesh->triangle.push_back(own);
+    area += 0.5 * DoubleAreaNormal(mesh->position[own[0]], mesh->position[own[1]], mesh->position[own[2]]).norm();
+  }
+  return area;
+}
+
+}  // namespace
+
+double FillGroundHoles(Mesh* mesh, double max_area_m2, double spacing_m) {
+  if (!(max_area_m2 > 0.0)) return 0.0;
+  const std::vector<EdgeUse> uses = SortedEdgeUses(*mesh);
+  std::vector<GroundHole> holes;
+  for (const BorderLoop& loop : SimpleBorderLoops(*mesh, uses)) {
+    GroundHole hole = HoleOf(*mesh, loop, max_area_m2);
+    if (!hole.vertex.empty()) holes.push_back(std::move(hole));
+  }
+  if (holes.empty()) return 0.0;
+  HoleBlocker(*mesh, &holes).Run();
+  uint64_t next_key = kFilledKeyBit;
+  for (const uint64_t key : mesh->key) {
+    if ((key & kFilledKeyBit) != 0) next_key = std::max(next_key, (key | (2 * kFilledKeyBit - 1)) + 1 + kFilledKeyBit);
+  }
+  double area = 0.0;
+  for (const GroundHole& hole : holes) {
+    if (hole.blocked) continue;
+    const std::optional<HolePatch> patch = MakeHolePatch(hole.position, spacing_m);
+    if (patch && !DoublesAnEdge(*patch, hole, uses)) area += AddPatch(*patch, hole, &next_key, mesh);
+  }
+  return area;
+}
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,40 @@
+// Operations on whole meshes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "surface/mesh.h"
+
+namespace skyquilt::surface {
+
+// One mesh of pieces that share vertices: those with the same key become one, with the larger number of views, filled only if all are. Triangles that
+// have no three different vertices, or come twice, are dropped. Vertices are sorted by key and triangles by vertices, so the result does not depend
+// on the order of the pieces.
+Mesh MergeMeshes(std::vector<Mesh> pieces);
+// Removes vertices that no triangle uses; keeps the order of the others.
+void DropUnusedVertices(Mesh* mesh);
+// Removes connected pieces with a smaller area, square metres. Returns how many pieces were removed.
+int DropIslands(Mesh* mesh, double min_area_m2);
+// Set in the keys of vertices that close holes: a bit between sheet and cell, which VertexKey never sets.
+inline constexpr uint64_t kFilledKeyBit = uint64_t{1} << 5U;
+
+// Closes holes in the ground: open borders of at most 2000 edges that
+//   - run around free space as seen from above, with an area there of at most max_area_m2, and do not cross or touch themselves or another border;
+//   - are roughly level: highest minus lowest vertex at most 0.5 sqrt(area) + 0.5 m;
+//   - belong to triangles that mostly (70 % of the border's length) point up, with a normal whose z is above 0.5;
+//   - have nothing of the mesh inside as seen from above, whatever its height, but what is more than 3 m below the lowest vertex.
+// The new surface is a membrane over the border in steps of about spacing_m (0 or less: as few triangles as possible). Each of its triangles has at
+// least one new vertex, with filled = 1, views = 0 and a key with kFilledKeyBit, which no lattice vertex has. The mesh stays manifold. Returns the
+// area that was closed, square metres.
+double FillGroundHoles(Mesh* mesh, double max_area_m2, double spacing_m);
+
+struct EdgeCounts {
+  int64_t edges = 0;
+  int64_t boundary = 0;      // of one triangle
+  int64_t non_manifold = 0;  // of three or more, or of two with opposite orientation
+};
+EdgeCounts CountEdges(const Mesh& mesh);
+double Area(const Mesh& mesh);  // square metres
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,21 @@
+#include "surface/mesh/simplify.h"
+
+#include "surface/mesh/edge_collapse.h"
+#include "surface/mesh/mesh_tools.h"
+
+namespace skyquilt::surface {
+
+Mesh Simplify(const Mesh& mesh, double max_error_m, double* error_m) {
+  if (error_m != nullptr) *error_m = 0.0;
+  Mesh simple = mesh;
+  if (max_error_m > 0.0) {
+    EdgeCollapse collapse(mesh);
+    const double error = collapse.Run(max_error_m);
+    if (error_m != nullptr) *error_m = error;
+    simple.triangle = collapse.Triangles();
+  }
+  DropUnusedVertices(&simple);
+  return simple;
+}
+
+}  // namespace skyquilt::surface

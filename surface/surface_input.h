@@ -1,0 +1,39 @@
+// What the surface of a scene is made from.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/base/thread_pool.h"
+#include "core/geo/block_box.h"
+#include "core/gis/boundary.h"
+#include "core/image/pixel_cache.h"
+#include "core/scene/scene.h"
+#include "core/survey/survey.h"
+#include "surface/surface_options.h"
+
+namespace skyquilt::surface {
+
+// Renders any number of rays (ENU, metres); both spans have the same length. May throw base::Interrupted.
+using RayCaster = std::function<void(std::span<const render::Ray>, std::span<render::RayColor>)>;
+
+// The pointers must outlive it.
+struct SurfaceInput {
+  SurfaceOptions options;
+  const scene::SceneInfo* info = nullptr;
+  const survey::Survey* survey = nullptr;
+  RayCaster caster;                           // of the scene, at the brightness that the texture shall have
+  const image::PixelCache* photos = nullptr;  // for fine detail of the texture; null: none. Entry i belongs to survey->photos[i]
+  std::optional<gis::Boundary> boundary;      // in coordinates of the maps; none: the whole scene
+  double map_resolution_m = 0.0;              // cells of the maps
+  double memory_bytes = 0.0;                  // limit for what is kept at once, without the fields of the scene
+  std::string work_key;                       // identity of scene and options: results of another key are not used
+  std::filesystem::path work_folder;          // results of finished steps, for going on after an interruption
+  std::filesystem::path maps_folder;          // of orthophoto.tif and dsm.tif, for SurfaceOptions::odm_names
+  std::filesystem::path out_folder;
+};
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,40 @@
+// Options of section [surface] of the configuration: how the mesh, the point cloud, the tiles and the maps of a scene are made.
+#pragma once
+
+#include <vector>
+
+#include "core/config/options.h"
+
+namespace skyquilt::surface {
+
+struct SurfaceOptions {
+  bool enabled = true;             // made by 'skyquilt run'
+  double voxel_gsd = 1.5;          // cells in which depths are fused, in ground sampling distances of the finest block
+  double view_gsd = 2.0;           // pixels of the pictures of depth, in ground sampling distances
+  bool virtual_views = true;       // also look from above and obliquely where photos leave gaps
+  double min_opacity = 0.5;        // depths of pixels with a lower opacity are not used
+  double max_spread_voxels = 6.0;  // nor where the surface is blurred by more than this along the ray
+  double max_angle_deg = 80.0;     // nor where it is seen at a larger angle from its normal
+  int min_views = 3;               // faces seen by fewer views are dropped
+  double min_island_m2 = 1.0;      // as are separate pieces with a smaller area
+  double max_hole_m2 = 30.0;       // holes in the ground up to this area are closed
+  double simplify_voxels = 0.5;    // largest error of the simplification, in voxels; 0: none
+  double texel_gsd = 1.5;          // pixels of the texture, in ground sampling distances
+  double photo_detail = 0.0;       // share of the fine detail of photos that is added to the texture, 0 to 1
+  int jpeg_quality = 88;           // of the texture
+  bool glb = true, obj = true, ply = true, cloud = true, tiles = true;  // files
+  bool maps = true;                                                     // terrain model, height above ground, hillshade, contours
+  double terrain_cell_m = 0.5;      // cells in which ground is told from what stands on it; see maps/terrain.h for the others
+  double terrain_window_m = 60.0;   // size of the largest building
+  double terrain_slope = 0.3;       // steepest ground, metres of height per metre
+  double terrain_low_m = 0.3;       // what rises less than this above the ground belongs to it
+  double terrain_high_m = 3.0;      // what rises more than this never does
+  double contour_interval_m = 0.0;  // 0: chosen from the relief
+  bool odm_names = false;           // also under the names that OpenDroneMap uses
+
+  static std::vector<config::Field<SurfaceOptions>> Fields();
+  // Throws base::UsageError that names the option, its value and the rule it breaks.
+  void Check() const;
+};
+
+}  // namespace skyquilt::surface

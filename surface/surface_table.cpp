@@ -1,0 +1,37 @@
+#include "surface/surface_table.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+
+namespace skyquilt::surface {
+
+void WriteSurfaceTable(const SurfaceResult& result, const EdgeCounts& edges, const MapFrame& frame, const std::filesystem::path& file) {
+  nlohmann::ordered_json table;
+  table["crs"] = frame.CrsName();
+  table["vertical"] = frame.VerticalName();
+  table["voxel_m"] = result.voxel_m;
+  table["triangles"] = result.triangles;
+  table["edges"] = edges.edges;
+  table["boundary_edges"] = edges.boundary;
+  table["non_manifold_edges"] = edges.non_manifold;
+  table["area_m2"] = result.area_m2;
+  table["filled_m2"] = result.filled_m2;
+  table["points"] = result.points;
+  table["photos"] = result.photos;
+  table["virtual_views"] = result.virtual_views;
+  table["seconds"] = result.seconds;
+  table["files"] = nlohmann::ordered_json::array();
+  for (const WrittenFile& written : result.files) {
+    table["files"].push_back({{"file", written.file.generic_string()},
+                              {"content", written.content},
+                              {"format", written.format},
+                              {"crs", written.crs},
+                              {"vertical", written.vertical},
+                              {"bytes", written.bytes},
+                              {"detail", written.detail}});
+  }
+  base::WriteFileAtomically(file, table.dump(2) + "\n");
+}
+
+}  // namespace skyquilt::surface

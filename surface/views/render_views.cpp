@@ -1,0 +1,159 @@
+#include "surface/views/render_views.h"
+
+#include <chrono>
+#include <optional>
+#include <span>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "surface/views/view_files.h"
+#include "surface/views/view_gaps.h"
+#include "surface/views/view_poses.h"
+#include "surface/views/view_rendering.h"
+
+namespace skyquilt::surface {
+namespace {
+
+constexpr double kCoarseBytes = 64e6;   // of the pictures that are kept for the search for gaps
+constexpr double kVirtualShare = 0.75;  // rays of virtual views, in rays of photo views
+
+int64_t RaysOf(std::span<const ViewPose> poses) {
+  int64_t rays = 0;
+  for (const ViewPose& pose : poses) rays += static_cast<int64_t>(pose.width) * pose.height;
+  return rays;
+}
+
+// Of everything that the pictures depend on, so that those of other options or of another scene are not taken for these.
+std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double voxel_m) {
+  std::string text;
+  const auto add = [&text](const auto& value) {
+    static_assert(std::is_arithmetic_v<std::decay_t<decltype(value)>>);
+    text.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  const auto add_pose = [&add](const ViewPose& pose) {
+    for (const int value : {pose.photo, pose.width, pose.height}) add(value);
+    for (const double value : {pose.focal_px, pose.cx, pose.cy}) add(value);
+    for (const double value : pose.cam_from_enu.rotation.coeffs()) add(value);
+    for (const double value : pose.cam_from_enu.translation) add(value);
+  };
+  const SurfaceOptions& options = input.options;
+  for (const double value : {voxel_m, options.min_opacity, options.max_spread_voxels, options.max_angle_deg, places.agl_m}) add(value);
+  add(options.virtual_views);
+  add(options.min_views);
+  for (const double value : input.info->min_enu) add(value);
+  for (const double value : input.info->max_enu) add(value);
+  add(input.info->parameters);
+  text.append(input.info->config);
+  for (const ViewPose& pose : places.training) add_pose(pose);
+  for (const ViewPose& pose : places.held_out) add_pose(pose);
+  return base::HashHex(text);
+}
+
+// The views of an earlier run, if they are whole and were made from the same.
+std::optional<DepthViews> OpenFinished(const std::filesystem::path& file, const std::string& key) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return std::nullopt;
+  try {
+    DepthViews views = DepthViews::Open(file);
+    if (views.key() == key) return views;
+    spdlog::info("surface views: options or scene have changed; they are rendered again");
+  } catch (const base::InputError& error) {
+    spdlog::warn("surface views are rendered again: {}", error.what());
+  }
+  return std::nullopt;
+}
+
+// Renders lists of views, or loads those that an earlier run has finished.
+class ViewMaker {
+ public:
+  ViewMaker(const SurfaceInput& input, double voxel_m, std::string key, std::filesystem::path folder, base::ThreadPool& threads)
+      : input_(input), limits_(LimitsOf(input, voxel_m)), key_(std::move(key)), folder_(std::move(folder)), threads_(threads) {}
+
+  // `coarse`: takes those of photos; may be null.
+  void Make(std::span<const ViewPose> poses, const std::string& label, CoarseDepths* coarse) {
+    if (poses.empty()) return;
+    base::Progress progress(label, static_cast<double>(RaysOf(poses)), "rays");
+    for (size_t i = 0; i < poses.size(); ++i) {
+      const RenderedView view = MakeOne(poses[i], folder_ / ViewFileName(made_.size()), progress);
+      if (coarse != nullptr && view.pose.photo >= 0) coarse->Add(view.Get());
+      made_.push_back(view.pose);
+      progress.Advance(0.0, std::to_string(i + 1) + " of " + std::to_string(poses.size()) + " views");
+    }
+    progress.Finish();
+  }
+
+  const std::vector<ViewPose>& made() const { return made_; }
+  int64_t rendered_rays() const { return rendered_rays_; }
+  double seconds() const { return seconds_; }
+
+ private:
+  RenderedView MakeOne(const ViewPose& pose, const std::filesystem::path& file, base::Progress& progress) {
+    if (std::optional<RenderedView> finished = LoadView(file, pose, key_)) {
+      progress.Advance(static_cast<double>(RaysOf({&pose, 1})));
+      return std::move(*finished);
+    }
+    const auto start = std::chrono::steady_clock::now();
+    RenderedView view = RenderView(pose, input_.caster, limits_, threads_, [&](int64_t pixels) { progress.Advance(static_cast<double>(pixels)); });
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    rendered_rays_ += RaysOf({&pose, 1});
+    SaveView(view, key_, file);
+    return view;
+  }
+
+  const SurfaceInput& input_;
+  DepthLimits limits_;
+  std::string key_;
+  std::filesystem::path folder_;
+  base::ThreadPool& threads_;
+  std::vector<ViewPose> made_;
+  int64_t rendered_rays_ = 0;
+  double seconds_ = 0.0;
+};
+
+void Report(const ViewMaker& maker, size_t photos) {
+  std::string rate;
+  if (maker.rendered_rays() > 0 && maker.seconds() > 0.0) {
+    rate = ", " + base::FormatCount(static_cast<double>(maker.rendered_rays()) / maker.seconds()) + " rays/s";
+  }
+  spdlog::info("surface views: {} of photos, {} virtual, {} pixels{}", photos, maker.made().size() - photos,
+               base::FormatCount(static_cast<double>(RaysOf(maker.made()))), rate);
+}
+
+}  // namespace
+
+DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::ThreadPool& threads) {
+  PhotoPlaces places = PlacesOfPhotos(input);
+  const auto budget = static_cast<int64_t>(kVirtualShare * static_cast<double>(RaysOf(places.training)));
+  if (!input.options.virtual_views) places.held_out.clear();
+  while (RaysOf(places.held_out) > budget) places.held_out.pop_back();
+  const std::string key = KeyOf(input, places, voxel_m);
+  const std::filesystem::path folder = input.work_folder / "views", joined = input.work_folder / "views.bin";
+  std::error_code ignored;
+  if (std::optional<DepthViews> finished = OpenFinished(joined, key)) {
+    // Left over when a run was killed just after it had joined them.
+    std::filesystem::remove_all(folder, ignored);
+    return std::move(*finished);
+  }
+
+  base::RequireWritableFolder(folder);
+  ViewMaker maker(input, voxel_m, key, folder, threads);
+  CoarseDepths coarse(RaysOf(places.training), kCoarseBytes);
+  std::vector<ViewPose> at_photos = places.training;
+  at_photos.insert(at_photos.end(), places.held_out.begin(), places.held_out.end());
+  maker.Make(at_photos, "surface views", input.options.virtual_views ? &coarse : nullptr);
+  if (input.options.virtual_views) {
+    const GapOptions gaps{voxel_m, input.options.min_views, places.agl_m, budget - RaysOf(places.held_out)};
+    maker.Make(PlanGapViews(coarse, gaps, threads), "surface views of gaps", nullptr);
+  }
+  JoinViews(maker.made(), key, folder, joined);
+  std::filesystem::remove_all(folder, ignored);
+  Report(maker, places.training.size());
+  return DepthViews::Open(joined);
+}
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,15 @@
+// Renders the pictures of depth from which a surface is fused: one per training photo, and virtual ones where photos leave gaps.
+// The places of held-out photos may be used for virtual views, their pixels are not: a rendering knows only the scene.
+#pragma once
+
+#include "surface/surface_input.h"
+#include "surface/views/depth_views.h"
+
+namespace skyquilt::surface {
+
+// Renders the views that are missing in input.work_folder ("views/", one file each, complete or absent), with a progress bar, and joins them in
+// views.bin there. A later call with the same work folder continues after the last finished view. Same bits for any number of threads and ranks.
+// Throws base::InputError (disk full), base::Interrupted, and what the caster throws.
+DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::ThreadPool& threads);
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,153 @@
+#include "surface/views/view_files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+#include <system_error>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/progress.h"
+#include "surface/views/view_record.h"
+
+namespace skyquilt::surface {
+namespace {
+
+constexpr std::string_view kViewMagic = "SQVIEW01";
+constexpr size_t kHashChars = 16;
+
+template <typename T>
+std::string_view BytesOf(const T& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof(T)};
+}
+
+template <typename T>
+std::string_view BytesOf(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+std::array<char, kHashChars> FixedText(const std::string& text) {
+  std::array<char, kHashChars> fixed = {};
+  std::copy_n(text.begin(), std::min(text.size(), kHashChars), fixed.begin());
+  return fixed;
+}
+
+// What a file of this view begins with.
+std::string Preamble(const ViewPose& pose, const std::string& key) {
+  const ViewRecord record = RecordOf(pose);
+  const std::array<char, kHashChars> fixed_key = FixedText(key);
+  std::string text(kViewMagic);
+  text.append(BytesOf(fixed_key)).append(BytesOf(record));
+  return text;
+}
+
+// A file that is written piece by piece under a temporary name; it is removed again unless finished.
+class JoinedFile {
+ public:
+  explicit JoinedFile(const std::filesystem::path& file) : file_(file), partial_(file.string() + ".tmp") {
+    descriptor_ = open(partial_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) base::ThrowFileError(partial_, "cannot create", errno);
+  }
+  ~JoinedFile() {
+    if (descriptor_ >= 0) close(descriptor_);
+    if (!finished_) unlink(partial_.c_str());
+  }
+  JoinedFile(const JoinedFile&) = delete;
+  JoinedFile& operator=(const JoinedFile&) = delete;
+
+  void Append(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const ssize_t written = write(descriptor_, bytes.data(), bytes.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) base::ThrowFileError(partial_, "cannot write", errno);
+      bytes.remove_prefix(static_cast<size_t>(written));
+    }
+  }
+  void Finish() {
+    const int descriptor = descriptor_;
+    descriptor_ = -1;
+    // Network file systems report some write errors only here.
+    if (close(descriptor) != 0) base::ThrowFileError(partial_, "cannot write", errno);
+    base::SyncPath(partial_);
+    if (rename(partial_.c_str(), file_.c_str()) != 0) base::ThrowFileError(file_, "cannot write", errno);
+    finished_ = true;
+    base::SyncPath(file_.has_parent_path() ? file_.parent_path() : std::filesystem::path("."));
+  }
+
+ private:
+  std::filesystem::path file_, partial_;
+  int descriptor_ = -1;
+  bool finished_ = false;
+};
+
+}  // namespace
+
+std::string ViewFileName(size_t view) {
+  std::string number = std::to_string(view);
+  if (number.size() < 5) number.insert(0, 5 - number.size(), '0');
+  return "view_" + number + ".bin";
+}
+
+void SaveView(const RenderedView& view, const std::string& key, const std::filesystem::path& file) {
+  std::string content = Preamble(view.pose, key);
+  content.append(BytesOf(view.depth_m)).append(BytesOf(view.cosine));
+  content.append(base::HashHex(content));
+  base::WriteFileAtomically(file, content);
+}
+
+std::optional<RenderedView> LoadView(const std::filesystem::path& file, const ViewPose& pose, const std::string& key) {
+  const std::string preamble = Preamble(pose, key);
+  const size_t n_pixels = PixelsOf(pose), depth_bytes = n_pixels * sizeof(float);
+  const size_t content_bytes = preamble.size() + depth_bytes + n_pixels;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored) || std::filesystem::file_size(file, ignored) != content_bytes + kHashChars)
+    return std::nullopt;
+  const std::string text = base::ReadFile(file);
+  if (text.size() != content_bytes + kHashChars || text.compare(0, preamble.size(), preamble) != 0) return std::nullopt;
+  const std::string_view content = std::string_view(text).substr(0, content_bytes);
+  if (base::HashHex(content) != std::string_view(text).substr(content_bytes)) return std::nullopt;
+  RenderedView view;
+  view.pose = pose;
+  view.depth_m.resize(n_pixels);
+  view.cosine.resize(n_pixels);
+  if (n_pixels > 0) {
+    std::memcpy(view.depth_m.data(), text.data() + preamble.size(), depth_bytes);
+    std::memcpy(view.cosine.data(), text.data() + preamble.size() + depth_bytes, n_pixels);
+  }
+  return view;
+}
+
+void JoinViews(const std::vector<ViewPose>& poses, const std::string& key, const std::filesystem::path& folder, const std::filesystem::path& file) {
+  std::vector<ViewRecord> records;
+  records.reserve(poses.size());
+  for (const ViewPose& pose : poses) records.push_back(RecordOf(pose));
+  ViewsHeader header;
+  header.key = FixedText(key);
+  header.checksum = FixedText(base::HashHex(BytesOf(records)));
+  header.views = poses.size();
+
+  base::Progress progress("joining surface views", static_cast<double>(poses.size()), "views");
+  JoinedFile joined(file);
+  joined.Append(BytesOf(header));
+  joined.Append(BytesOf(records));
+  for (size_t i = 0; i < poses.size(); ++i) {
+    base::ThrowIfCancelled();
+    const std::filesystem::path part = folder / ViewFileName(i);
+    const std::optional<RenderedView> view = LoadView(part, poses[i], key);
+    if (!view) throw base::InputError(part, "is missing or damaged", "Run the command again; it renders this view again");
+    joined.Append(BytesOf(view->depth_m));
+    joined.Append(BytesOf(view->cosine));
+    joined.Append(std::string(PictureBytes(poses[i]) - PixelsOf(poses[i]) * (sizeof(float) + 1), '\0'));
+    progress.Update(static_cast<double>(i + 1));
+  }
+  joined.Finish();
+  progress.Finish();
+}
+
+}  // namespace skyquilt::surface

@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <functional>
+#include <set>
+
+#include "core/base/file.h"
+#include "core/geo/ecef.h"
+#include "surface/files/surface_files.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/surface/files/sample_surface.h"
+
+namespace skyquilt::surface {
+namespace {
+
+using nlohmann::json;
+
+constexpr FileSelection kOnlyTiles = {.glb = false, .obj = false, .ply = false, .cloud = false, .tiles = true};
+
+void WriteTiles(const MapFrame& frame, const std::vector<TexturedTile>& tiles, const std::filesystem::path& folder) {
+  SurfaceFiles files(frame, kOnlyTiles, kSampleTile_m, folder);
+  for (const TexturedTile& tile : tiles) files.Add(tile);
+  files.Close();
+}
+
+json ReadTileset(const std::filesystem::path& folder) {
+  return json::parse(base::ReadFile(folder / "tiles" / "tileset.json"));
+}
+
+Eigen::Matrix4d TransformOf(const json& tile) {
+  const auto values = tile["transform"].get<std::vector<double>>();
+  return Eigen::Map<const Eigen::Matrix4d>(values.data());  // both column-major
+}
+
+// The vertices of a content in the frame of its tile, as a viewer computes them: glTF's node, then y up to z up.
+std::vector<Eigen::Vector3d> ContentPositions(const Glb& glb) {
+  const auto t = glb.json["nodes"][0].value("translation", std::vector<double>{0.0, 0.0, 0.0});
+  std::vector<Eigen::Vector3d> positions;
+  for (const auto& p : glb.Accessor(glb.primitive(0)["attributes"]["POSITION"])) {
+    positions.emplace_back(p[0] + t[0], -(p[2] + t[2]), p[1] + t[1]);
+  }
+  return positions;
+}
+
+struct Box {
+  Eigen::Vector3d min, max;
+  explicit Box(const json& tile) {
+    const auto values = tile["boundingVolume"]["box"].get<std::vector<double>>();
+    const Eigen::Map<const Eigen::Vector3d> middle(values.data());
+    const Eigen::Vector3d half(values[3], values[7], values[11]);
+    EXPECT_EQ(values.size(), 12U);
+    EXPECT_GT(half.minCoeff(), 0.0);
+    min = middle - half;
+    max = middle + half;
+  }
+  bool Contains(const Eigen::Vector3d& x) const { return (x.array() >= min.array() - 1e-6).all() && (x.array() <= max.array() + 1e-6).all(); }
+};
+
+void Visit(const json& tile, const std::function<void(const json&)>& action) {
+  action(tile);
+  if (!tile.contains("children")) return;
+  for (const json& child : tile["children"]) Visit(child, action);
+}
+
+TEST(Tileset, VerticesStandWhereTheyAreOnEarth) {
+  for (const geo::Geodetic& origin : DifficultOrigins()) {
+    const TemporaryFolder folder;
+    const TexturedTile tile = SampleTile({0, 30, -20});  // 2 km from the origin
+    WriteTiles(MapFrame(SampleInfo(origin)), {tile}, folder.path());
+    const Eigen::Matrix4d ecef_from_tile = TransformOf(ReadTileset(folder.path())["root"]);
+    const Glb glb(folder.path() / "tiles" / "0_30_-20.glb");
+    const std::vector<Eigen::Vector3d> positions = ContentPositions(glb);
+    const auto indices = glb.Accessor(glb.primitive(0)["indices"]);
+    const geo::EnuFrame frame(origin);
+    for (size_t corner = 0; corner < indices.size(); ++corner) {
+      const Eigen::Vector3d expected = geo::EcefFromGeodetic(frame.GeodeticFromEnu(tile.position[tile.triangle[corner / 3][corner % 3]]));
+      const Eigen::Vector3d moved = (ecef_from_tile * positions.at(static_cast<size_t>(indices[corner][0])).homogeneous()).head<3>();
+      EXPECT_LT((moved - expected).norm(), 0.01) << origin.latitude_deg << " " << origin.longitude_deg;
+    }
+  }
+}
+
+TEST(Tileset, ContentsStandUpright) {
+  for (const geo::Geodetic& origin : DifficultOrigins()) {
+    const TemporaryFolder folder;
+    TexturedTile tile = SampleTile({0, 0, 0});
+    for (Eigen::Vector3f& normal : tile.normal) normal = Eigen::Vector3f::UnitZ();
+    WriteTiles(MapFrame(SampleInfo(origin)), {tile}, folder.path());
+    const Eigen::Matrix3d rotation = TransformOf(ReadTileset(folder.path())["root"]).topLeftCorner<3, 3>();
+    const Glb glb(folder.path() / "tiles" / "0_0_0.glb");
+    const Eigen::Vector3d up =
+        geo::EcefFromGeodetic({origin.latitude_deg, origin.longitude_deg, origin.height_m + 1.0}) - geo::EcefFromGeodetic(origin);
+    for (const auto& n : glb.Accessor(glb.primitive(0)["attributes"]["NORMAL"])) {
+      EXPECT_LT((rotation * Eigen::Vector3d(n[0], -n[2], n[1]) - up).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(Tileset, IsAQuadtreeOfAllTilesWithGrowingBoxesAndErrors) {
+  const TemporaryFolder folder;
+  const std::vector<TexturedTile> tiles = SamplePyramid();
+  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), tiles, folder.path());
+  const json tileset = ReadTileset(folder.path());
+  EXPECT_EQ(tileset["asset"]["version"], "1.1");
+  EXPECT_EQ(tileset["root"]["refine"], "REPLACE");
+  EXPECT_GE(tileset["geometricError"].get<double>(), tileset["root"]["geometricError"].get<double>());
+  EXPECT_FALSE(tileset["root"].contains("content")) << "several tiles are at the top";
+  // A root without content must be refined wherever the survey can be seen at all.
+  EXPECT_GE(tileset["root"]["geometricError"].get<double>(), 256.0);
+  std::set<std::string> contents;
+  Visit(tileset["root"], [&](const json& tile) {
+    const Box box(tile);
+    if (tile.contains("content")) {
+      const std::string uri = tile["content"]["uri"];
+      EXPECT_TRUE(contents.insert(uri).second) << uri;
+      for (const Eigen::Vector3d& position : ContentPositions(Glb(folder.path() / "tiles" / uri))) EXPECT_TRUE(box.Contains(position)) << uri;
+    }
+    if (!tile.contains("children")) {
+      EXPECT_EQ(tile["geometricError"], 0.0);
+      return;
+    }
+    for (const json& child : tile["children"]) {
+      EXPECT_FALSE(child.contains("transform"));
+      EXPECT_TRUE(box.Contains(Box(child).min) && box.Contains(Box(child).max));
+      EXPECT_LT(child["geometricError"].get<double>(), tile["geometricError"].get<double>());
+      if (!tile.contains("content")) continue;
+      int level = 0, column = 0, row = 0;
+      ASSERT_EQ(std::sscanf(child["content"]["uri"].get<std::string>().c_str(), "%d_%d_%d", &level, &column, &row), 3);
+      EXPECT_EQ((TileId{level, column, row}.Parent().Name() + ".glb"), tile["content"]["uri"]);
+    }
+  });
+  EXPECT_EQ(contents.size(), tiles.size());
+}
+
+TEST(Tileset, BoxesAreTight) {
+  const TemporaryFolder folder;
+  const TexturedTile tile = SampleTile({0, -3, 2});
+  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), {tile}, folder.path());
+  const Box box(ReadTileset(folder.path())["root"]);
+  Eigen::Vector3d min = tile.position[0], max = tile.position[0];
+  for (const Eigen::Vector3d& position : tile.position) {
+    min = min.cwiseMin(position);
+    max = max.cwiseMax(position);
+  }
+  EXPECT_LT((box.min - min).norm(), 1e-4);
+  EXPECT_LT((box.max - max).norm(), 1e-4);
+}
+
+TEST(Tileset, ErrorsFollowTheTextureWhereTheGroundIsFlat) {
+  const TemporaryFolder folder;
+  TexturedTile coarse = SampleTile({1, 0, 0});
+  coarse.error_m = 0.0;
+  for (Eigen::Vector3d& position : coarse.position) position.z() = 0.0;
+  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), {SampleTile({0, 0, 0}), coarse}, folder.path());
+  // 128 m in 64 x 48 texels: their middle side is 2.3 m.
+  EXPECT_NEAR(ReadTileset(folder.path())["root"]["geometricError"].get<double>(), 8.0 * 128.0 / std::sqrt(64.0 * 48.0), 0.01);
+}
+
+TEST(Tileset, TilesBelowAMissingOneHangOnWhatIsAbove) {
+  const TemporaryFolder folder;
+  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), {SampleTile({2, 0, 0}), SampleTile({0, 1, 1}), SampleTile({1, 1, 1})}, folder.path());
+  const json root = ReadTileset(folder.path())["root"];
+  EXPECT_EQ(root["content"]["uri"], "2_0_0.glb");
+  ASSERT_EQ(root["children"].size(), 2U);
+  EXPECT_EQ(root["children"][0]["content"]["uri"], "0_1_1.glb");
+}
+
+TEST(Tileset, DoesNotDependOnTheOrderOfTiles) {
+  const TemporaryFolder one, other;
+  std::vector<TexturedTile> tiles = SamplePyramid();
+  const MapFrame frame(SampleInfo({60.0, 24.9, 30.0}));
+  WriteTiles(frame, tiles, one.path());
+  std::reverse(tiles.begin(), tiles.end());
+  WriteTiles(frame, tiles, other.path());
+  EXPECT_EQ(NamesIn(one / "tiles"), NamesIn(other / "tiles"));
+  for (const std::string& name : NamesIn(one / "tiles")) {
+    EXPECT_EQ(base::ReadFile(one.path() / "tiles" / name), base::ReadFile(other.path() / "tiles" / name)) << name;
+  }
+}
+
+TEST(Tileset, WithoutGeoReferenceThereIsNoTransform) {
+  const TemporaryFolder folder;
+  WriteTiles(MapFrame(SampleInfo({0.0, 0.0, 0.0}, false)), {SampleTile({0, 0, 0})}, folder.path());
+  const json tileset = ReadTileset(folder.path());
+  EXPECT_FALSE(tileset["root"].contains("transform"));
+  EXPECT_NE(tileset["asset"]["extras"]["crs"].get<std::string>().find("local frame"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace skyquilt::surface

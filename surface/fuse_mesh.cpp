@@ -13,6 +13,7 @@
 #include "surface/fusion/fuse.h"
 #include "surface/map_frame.h"
 #include "surface/mesh/simplify.h"
+#include "surface/surface_box.h"
 #include "surface/tile_store.h"
 
 namespace skyquilt::surface {
@@ -34,10 +35,11 @@ Eigen::Vector3i CellOf(uint64_t key) {
 }
 
 LatticeBox BoxOf(const scene::SceneInfo& info, double voxel_m) {
+  const SurfaceBox bounds = SurfaceBoxOf(info);
   LatticeBox box;
   for (int axis = 0; axis < 3; ++axis) {
-    box.min[axis] = static_cast<int>(std::floor(info.min_enu[axis] / voxel_m)) - 1;
-    box.max[axis] = static_cast<int>(std::ceil(info.max_enu[axis] / voxel_m)) + 2;
+    box.min[axis] = static_cast<int>(std::floor(bounds.min_enu[axis] / voxel_m)) - 1;
+    box.max[axis] = static_cast<int>(std::ceil(bounds.max_enu[axis] / voxel_m)) + 2;
   }
   return box;
 }
@@ -46,7 +48,7 @@ FuseOptions FuseOptionsOf(const SurfaceOptions& options, double voxel_m) {
   FuseOptions fuse;
   fuse.voxel_m = voxel_m;
   fuse.min_views = options.min_views;
-  fuse.min_photos = std::min(2, options.min_views);
+  fuse.min_photos = 1;
   fuse.tile_voxels = kTileVoxels;
   fuse.max_angle_deg = options.max_angle_deg;
   return fuse;

@@ -13,13 +13,13 @@ struct SurfaceOptions {
   double view_gsd = 2.0;           // pixels of the pictures of depth, in ground sampling distances
   bool virtual_views = true;       // also look from above and obliquely where photos leave gaps
   double min_opacity = 0.5;        // depths of pixels with a lower opacity are not used
-  double max_spread_voxels = 6.0;  // nor where the surface is blurred by more than this along the ray
-  double max_angle_deg = 80.0;     // nor where it is seen at a larger angle from its normal
+  double max_spread_voxels = 20.0; // nor where the surface is blurred by more than this along the ray
+  double max_angle_deg = 85.0;     // nor where it is seen at a larger angle from its normal
   int min_views = 3;               // faces seen by fewer views are dropped
   double min_island_m2 = 1.0;      // as are separate pieces with a smaller area
   double max_hole_m2 = 30.0;       // holes in the ground up to this area are closed
   double simplify_voxels = 0.5;    // largest error of the simplification, in voxels; 0: none
-  double texel_gsd = 1.5;          // pixels of the texture, in ground sampling distances
+  double texel_gsd = 1.0;          // pixels of the texture, in ground sampling distances
   double photo_detail = 0.0;       // share of the fine detail of photos that is added to the texture, 0 to 1
   int jpeg_quality = 88;           // of the texture
   bool glb = true, obj = true, ply = true, cloud = true, tiles = true;  // files

@@ -19,7 +19,7 @@ struct FuseOptions {
   int min_views = 3;            // views, virtual ones included, that must have seen a face
   int min_photos = 2;           // of them photos
   int tile_voxels = 256;        // borders between pieces are at multiples of it
-  double max_angle_deg = 80.0;  // a surface seen at a larger angle from its normal counts as seen at this angle
+  double max_angle_deg = 85.0;  // a surface seen at a larger angle from its normal counts as seen at this angle
 };
 
 // Pieces whose columns cover all surface in `whole`, none without surface, each small enough to be fused in `memory_bytes`. Only their x and y

@@ -6,6 +6,7 @@
 
 #include "core/base/cancel.h"
 #include "core/geo/ray_box.h"
+#include "surface/surface_box.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -33,12 +34,13 @@ render::Ray RayThrough(const ViewPose& pose, const Eigen::Vector3d& centre, int6
 
 DepthLimits LimitsOf(const SurfaceInput& input, double voxel_m) {
   const SurfaceOptions& options = input.options;
+  const SurfaceBox box = SurfaceBoxOf(*input.info);
   return {.min_opacity = options.min_opacity,
           .max_spread_m = options.max_spread_voxels * voxel_m,
           .max_step_m = kMaxStepVoxels * voxel_m,
           .max_angle_deg = options.max_angle_deg,
-          .min_enu = input.info->min_enu,
-          .max_enu = input.info->max_enu};
+          .min_enu = box.min_enu,
+          .max_enu = box.max_enu};
 }
 
 RenderedView RenderView(const ViewPose& pose, const RayCaster& caster, const DepthLimits& limits, base::ThreadPool& threads,

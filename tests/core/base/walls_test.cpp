@@ -70,7 +70,6 @@ const std::vector<Library>& Libraries() {
       {"Exiv2", std::regex("exiv2/.*"), "core/survey"},
       {"Embree", std::regex("embree[0-9]*/.*"), "core/raytrace"},
       {"GDAL", std::regex("(gdal/)?(gdal|ogr_|ogrsf|cpl_|vrt)[^/]*\\.h"), "core/gis"},
-      {"meshoptimizer", std::regex("meshoptimizer\\.h"), "surface"},
       {"toml++", std::regex("toml\\+\\+/.*|toml\\.hpp"), "core/config"},
   };
   return libraries;
@@ -254,7 +253,6 @@ TEST(Rooms, ForbiddenIncludesAreFound) {
       {"core/camera/a.cpp", "#include \"../render/scene.h\""},
       {"core/extra/a.cpp", "#include \"core/base/errors.h\""},
       {"surface/mesh/a.cpp", "#include \"products/map_rays.h\""},
-      {"core/gis/a.cpp", "#include <meshoptimizer.h>"},
   };
   for (const auto& [file, line] : violators) {
     const std::vector<std::string> found = ViolationsIn(file, "#include <vector>\n" + line + "  // why\nint x;\n");
@@ -281,7 +279,6 @@ TEST(Rooms, AllowedIncludesAreAccepted) {
       {"app/commands/render.cpp", "#include \"products/render_views.h\""},
       {"evaluate/a.cpp", "#include \"partition/block.h\""},
       {"evaluate/a.cpp", "#include \"surface/make_surface.h\""},
-      {"surface/mesh/a.cpp", "#include <meshoptimizer.h>"},
       {"core/field/a.cpp", "// #include <mpi.h>"},
   };
   for (const auto& [file, line] : accepted) EXPECT_TRUE(ViolationsIn(file, line + "\n").empty()) << file << ": " << line;

@@ -72,7 +72,8 @@ class MakeSurfaceTest : public testing::Test {
   void ExpectSameFiles(const fs::path& a, const fs::path& b) {
     ASSERT_EQ(Names(a), Names(b));
     for (const std::string& name : Names(a)) {
-      if (name != "surface.json") EXPECT_TRUE(base::ReadFile(a / name) == base::ReadFile(b / name)) << name << " differs";
+      if (name == "surface.json") continue;
+      EXPECT_TRUE(base::ReadFile(a / name) == base::ReadFile(b / name)) << name << " differs";
     }
   }
 
@@ -97,10 +98,12 @@ TEST_F(MakeSurfaceTest, GroundAndRoofAreWhereTheyAre) {
     for (const Eigen::Vector3d& x : tile.position) {
       // Away from the walls, where the mesh turns.
       const bool roof = x.x() > 12.0 && x.x() < 38.0 && x.y() > -18.0 && x.y() < 8.0;
-      const bool ground = x.x() < 5.0 || x.x() > 45.0;
+      // Nor at the border of the scene, where few views see the ground, and at a small angle.
+      const bool ground = std::abs(x.x()) < 60.0 && (x.x() < 5.0 || x.x() > 45.0);
       // Depths of a level surface have no error but that of single precision; a vertex is the mean of exact crossings.
-      if (roof) EXPECT_NEAR(x.z(), scene_.roof_z, 0.05 * result.voxel_m);
-      if (ground) EXPECT_NEAR(x.z(), scene_.ground_z, 0.05 * result.voxel_m);
+      if (roof || ground) {
+        EXPECT_NEAR(x.z(), roof ? scene_.roof_z : scene_.ground_z, 0.05 * result.voxel_m) << x.transpose();
+      }
       n_roof += roof ? 1 : 0;
       n_ground += ground ? 1 : 0;
     }
@@ -119,14 +122,12 @@ TEST_F(MakeSurfaceTest, AnInterruptedRunGoesOnWithTheSameResult) {
   MakeSurface(Input("whole"), threads_);
   const int64_t all = rays_;
   const SurfaceInput input = Input("stopped");
-  // In the middle of the views, and again in the middle of the textures.
-  for (const double share : {0.3, 0.97}) {
-    rays_ = 0;
+  // In the middle of the views, and again in the textures. Rays of finished views are not cast again, so the counts go on.
+  rays_ = 0;
+  for (const double share : {0.3, 0.99}) {
     stop_after_ = static_cast<int64_t>(share * static_cast<double>(all));
-    try {
-      MakeSurface(input, threads_);
-    } catch (const base::Interrupted&) {
-    }
+    EXPECT_THROW(MakeSurface(input, threads_), base::Interrupted);
+    EXPECT_FALSE(fs::exists(input.out_folder / "surface.json"));
   }
   stop_after_ = -1;
   rays_ = 0;
@@ -165,17 +166,17 @@ TEST_F(MakeSurfaceTest, TheBoundaryLimitsTheMesh) {
 
 TEST_F(MakeSurfaceTest, LittleMemoryGivesTheSameMeshAndTooLittleAnAnswer) {
   SurfaceInput input = Input("large");
-  input.options.voxel_gsd = 0.5;  // several tiles
+  input.options.voxel_gsd = 1.0;  // several tiles
   MakeSurface(input, threads_);
   double least = 1e9;
   // Halve it until pieces must be smaller, but none fails.
-  for (double memory = 64e6; memory > 1e4; memory /= 2.0) {
+  for (double memory = 512e6; memory > 1e4; memory /= 2.0) {
     input = Input("small");
-    input.options.voxel_gsd = 0.5;
+    input.options.voxel_gsd = 1.0;
     input.memory_bytes = memory;
     input.work_key = std::to_string(memory);
     try {
-      if (std::abs(MakeSurface(input, threads_).voxel_m - 0.5 * info_.gsd_m) > 1e-9) break;
+      if (std::abs(MakeSurface(input, threads_).voxel_m - info_.gsd_m) > 1e-9) break;
     } catch (const base::UsageError& error) {
       EXPECT_NE(std::string(error.what()).find("memory"), std::string::npos) << error.what();
       break;

@@ -42,6 +42,11 @@ line("PSNR, held-out views", "psnr", " dB", 2)
 line("SSIM, held-out views", "ssim", "", 3)
 line("FLIP, held-out views", "flip", "", 3)
 line("median depth error", "depth_median_abs_m", " m", 3)
+surface = metrics.get("surface")
+if surface:
+    metrics = {"mesh": surface["psnr"], "agree": next((entry["f"] for entry in surface["f_scores"] if entry["tau"] == "2 GSD"), None)}
+    line("PSNR of the textured mesh", "mesh", " dB", 2)
+    line("F-score of the mesh, 2 GSD", "agree", "", 3)
 PYTHON
 }
 
@@ -56,3 +61,4 @@ printf '%s\n' "${times[@]}"
 printf '%-28s %5d s\n' "all" "$SECONDS"
 scores
 echo "report: $out/report/index.html"
+echo "mesh, cloud, tiles, terrain: $out/surface"

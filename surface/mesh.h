@@ -32,7 +32,7 @@ struct TileId {
   std::string Name() const { return std::to_string(level) + "_" + std::to_string(column) + "_" + std::to_string(row); }
 };
 
-// Triangles belong to the tile of their lattice edge, so they may reach over its border by a voxel.
+// Triangles belong to the tile that holds their middle, so they may reach over its border.
 struct MeshTile {
   TileId id;
   Mesh mesh;

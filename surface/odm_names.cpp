@@ -3,7 +3,6 @@
 #include <string>
 
 #include "core/base/errors.h"
-#include "core/base/file.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -28,20 +27,12 @@ void Provide(const fs::path& from, const fs::path& to) {
   if (error) FailOdm(to, error);
 }
 
-void ReplaceAll(std::string* text, const std::string& from, const std::string& to) {
-  for (size_t at = text->find(from); at != std::string::npos; at = text->find(from, at + to.size())) text->replace(at, from.size(), to);
-}
-
-// The OBJ names its material file in its head, which is copied with the new name; textures keep theirs.
+// The OBJ names its material file in its head, so that file is there under both names; textures keep theirs.
 void ProvideObj(const fs::path& surface_folder, const fs::path& to) {
   const fs::path obj = surface_folder / "mesh.obj";
   if (!fs::exists(obj)) return;
-  std::error_code error;
-  fs::create_directories(to, error);
-  if (error) FailOdm(to, error);
-  std::string text = base::ReadFile(obj);
-  ReplaceAll(&text, "mtllib mesh.mtl", "mtllib odm_textured_model_geo.mtl");
-  base::WriteFileAtomically(to / "odm_textured_model_geo.obj", text);
+  Provide(obj, to / "odm_textured_model_geo.obj");
+  Provide(surface_folder / "mesh.mtl", to / "mesh.mtl");
   Provide(surface_folder / "mesh.mtl", to / "odm_textured_model_geo.mtl");
   for (const fs::directory_entry& entry : fs::directory_iterator(surface_folder)) {
     const std::string name = entry.path().filename().string();

@@ -29,7 +29,7 @@ struct SurfaceInput {
   const image::PixelCache* photos = nullptr;  // for fine detail of the texture; null: none. Entry i belongs to survey->photos[i]
   std::optional<gis::Boundary> boundary;      // in coordinates of the maps; none: the whole scene
   double map_resolution_m = 0.0;              // cells of the maps
-  double memory_bytes = 0.0;                  // limit for what is kept at once, without the fields of the scene
+  double memory_bytes = 0.0;                  // the limit, of which the fields of the scene may take half
   std::string work_key;                       // identity of scene and options: results of another key are not used
   std::filesystem::path work_folder;          // results of finished steps, for going on after an interruption
   std::filesystem::path maps_folder;          // of orthophoto.tif and dsm.tif, for SurfaceOptions::odm_names

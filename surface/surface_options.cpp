@@ -14,7 +14,7 @@ std::vector<config::Field<SurfaceOptions>> SurfaceOptions::Fields() {
       {"voxel_gsd", &O::voxel_gsd, Range{0.25, 100}, "cells in which depths are fused, in ground sampling distances of the finest block"},
       {"view_gsd", &O::view_gsd, Range{0.25, 100}, "pixels of the pictures of depth, in ground sampling distances"},
       {"virtual_views", &O::virtual_views, Range(), "also look at the scene from above and obliquely where photos leave gaps"},
-      {"min_opacity", &O::min_opacity, Range{0.01, 0.999}, "depths of pixels with a lower opacity are not used"},
+      {"min_opacity", &O::min_opacity, Range{0.85, 0.999}, "depths of pixels with a lower opacity are not used"},
       {"max_spread_voxels", &O::max_spread_voxels, Range{0.1, 1e6}, "nor depths where the surface is blurred by more than this along the ray"},
       {"max_angle_deg", &O::max_angle_deg, Range{10, 89.9}, "nor depths where the surface is seen at a larger angle from its normal, degrees"},
       {"min_views", &O::min_views, Range{1, 100}, "parts of the surface that fewer views saw are dropped"},

@@ -8,20 +8,20 @@
 namespace skyquilt::surface {
 
 struct SurfaceOptions {
-  bool enabled = true;             // made by 'skyquilt run'
-  double voxel_gsd = 1.5;          // cells in which depths are fused, in ground sampling distances of the finest block
-  double view_gsd = 2.0;           // pixels of the pictures of depth, in ground sampling distances
-  bool virtual_views = true;       // also look from above and obliquely where photos leave gaps
-  double min_opacity = 0.5;        // depths of pixels with a lower opacity are not used
-  double max_spread_voxels = 20.0; // nor where the surface is blurred by more than this along the ray
-  double max_angle_deg = 85.0;     // nor where it is seen at a larger angle from its normal
-  int min_views = 3;               // faces seen by fewer views are dropped
-  double min_island_m2 = 1.0;      // as are separate pieces with a smaller area
-  double max_hole_m2 = 30.0;       // holes in the ground up to this area are closed
-  double simplify_voxels = 0.5;    // largest error of the simplification, in voxels; 0: none
-  double texel_gsd = 1.0;          // pixels of the texture, in ground sampling distances
-  double photo_detail = 0.0;       // share of the fine detail of photos that is added to the texture, 0 to 1
-  int jpeg_quality = 88;           // of the texture
+  bool enabled = true;              // made by 'skyquilt run'
+  double voxel_gsd = 1.5;           // cells in which depths are fused, in ground sampling distances of the finest block
+  double view_gsd = 2.0;            // pixels of the pictures of depth, in ground sampling distances
+  bool virtual_views = true;        // also look from above and obliquely where photos leave gaps
+  double min_opacity = 0.85;        // depths of pixels with a lower opacity are not used; at least 0.85, where a ray reaches the back of a surface
+  double max_spread_voxels = 20.0;  // nor where the surface is blurred by more than this along the ray
+  double max_angle_deg = 85.0;      // nor where it is seen at a larger angle from its normal
+  int min_views = 3;                // faces seen by fewer views are dropped
+  double min_island_m2 = 1.0;       // as are separate pieces with a smaller area
+  double max_hole_m2 = 30.0;        // holes in the ground up to this area are closed
+  double simplify_voxels = 0.5;     // largest error of the simplification, in voxels; 0: none
+  double texel_gsd = 1.0;           // pixels of the texture, in ground sampling distances
+  double photo_detail = 0.0;        // share of the fine detail of photos that is added to the texture, 0 to 1
+  int jpeg_quality = 88;            // of the texture
   bool glb = true, obj = true, ply = true, cloud = true, tiles = true;  // files
   bool maps = true;                                                     // terrain model, height above ground, hillshade, contours
   double terrain_cell_m = 0.5;      // cells in which ground is told from what stands on it; see maps/terrain.h for the others

@@ -73,7 +73,8 @@ CaseResult TileAt(const geo::Geodetic& origin, const fs::path& folder) {
   const surface::TexturedTile wall = Wall();
   fs::remove_all(folder);
   {
-    surface::SurfaceFiles files(surface::MapFrame(info), {.glb = false, .obj = false, .ply = false, .cloud = false, .tiles = true}, 2000.0, folder);
+    const surface::MapFrame map_frame(info);
+    surface::SurfaceFiles files(map_frame, {.glb = false, .obj = false, .ply = false, .cloud = false, .tiles = true}, 2000.0, folder);
     files.Add(wall);
     files.Close();
   }

@@ -16,7 +16,10 @@ namespace skyquilt::coordinator {
 std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   const Project& project = pipeline.project;
   const Settings& settings = pipeline.settings;
-  SceneSession session(pipeline.comm, project.SceneFile(), settings.run, pipeline.verbose, pipeline.quiet);
+  // Half of the limit is for the fields.
+  RunOptions run = settings.run;
+  run.memory_gb = 0.5 * settings.run.MemoryLimitBytes() / 1073741824.0;
+  SceneSession session(pipeline.comm, project.SceneFile(), run, pipeline.verbose, pipeline.quiet);
   const scene::Scene& scene = session.scene();
   const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
   const gis::MapGrid grid = products::PlanMapGrid(scene.info(), settings.products);
@@ -27,8 +30,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   input.caster = products::CasterOf(scene, products::AppearanceOf(settings.products.exposure, scene.info()), session.threads());
   input.boundary = products::BoundaryOf(grid, settings.products);
   input.map_resolution_m = grid.resolution_m;
-  // The fields may take up to half of the limit beside what the surface keeps.
-  input.memory_bytes = 0.5 * settings.run.MemoryLimitBytes();
+  input.memory_bytes = settings.run.MemoryLimitBytes();
   input.work_key = stamp.Hash();
   input.work_folder = project.SurfaceWorkFolder();
   input.out_folder = project.SurfaceFolder();

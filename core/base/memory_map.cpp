@@ -13,6 +13,11 @@
 
 namespace skyquilt::base {
 
+void MemoryMap::ReleasePages() const {
+  // Only a hint: when it is refused, the system drops the pages by itself when memory is short.
+  if (data_ != nullptr) static_cast<void>(madvise(const_cast<uint8_t*>(data_), size_, MADV_DONTNEED));
+}
+
 MemoryMap::MemoryMap(const std::filesystem::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) ThrowFileError(file, "cannot open", errno);

@@ -20,6 +20,8 @@ class MemoryMap {
   MemoryMap& operator=(const MemoryMap&) = delete;
 
   std::span<const uint8_t> bytes() const { return {data_, size_}; }
+  // Gives back the memory of pages that were read; they are read from the file again when they are used.
+  void ReleasePages() const;
   // Copies bytes with a file read instead of through mapped pages: slower than bytes(), but takes no memory. Throws InputError.
   void ReadAt(size_t offset, std::span<uint8_t> to) const;
 

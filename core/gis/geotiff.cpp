@@ -154,7 +154,7 @@ ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width) {
   const Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
   if (!dataset)
     throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(),
-                           "Give a GeoTIFF that 'skyquilt products' wrote, or run that again");
+                           "Give a GeoTIFF that 'skyquilt render' or 'skyquilt surface' wrote, or make it again");
   const int width = std::min(max_width, dataset->GetRasterXSize());
   const int height = std::max(1, static_cast<int>(std::lround(static_cast<double>(dataset->GetRasterYSize()) * width / dataset->GetRasterXSize())));
   const int bands = dataset->GetRasterCount();
@@ -169,7 +169,7 @@ ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width) {
   if (dataset->RasterIO(GF_Read, 0, 0, dataset->GetRasterXSize(), dataset->GetRasterYSize(), reduced.image.data.data(), width, height, GDT_Float32,
                         bands, nullptr, pixel, pixel * width, sizeof(float), &extra) != CE_None) {
     throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(),
-                           "Give a GeoTIFF that 'skyquilt products' wrote, or run that again");
+                           "Give a GeoTIFF that 'skyquilt render' or 'skyquilt surface' wrote, or make it again");
   }
   int has_nodata = FALSE;
   const double nodata = dataset->GetRasterBand(1)->GetNoDataValue(&has_nodata);

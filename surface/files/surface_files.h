@@ -32,6 +32,7 @@ class SurfaceFiles {
   // the other functions.
   SurfaceFiles(const MapFrame& frame, const FileSelection& selection, double tile_size_m, const std::filesystem::path& folder,
                int64_t las_points = kLasPoints);
+  SurfaceFiles(MapFrame&&, const FileSelection&, double, const std::filesystem::path&, int64_t = kLasPoints) = delete;  // it keeps a reference
   ~SurfaceFiles();  // without Close: removes what is not complete
   SurfaceFiles(const SurfaceFiles&) = delete;
   SurfaceFiles& operator=(const SurfaceFiles&) = delete;

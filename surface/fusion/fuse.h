@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/errors.h"
 #include "core/base/thread_pool.h"
 #include "surface/fusion/lattice.h"
 #include "surface/mesh.h"
@@ -13,17 +14,22 @@
 
 namespace skyquilt::surface {
 
+// A piece does not fit into the memory limit.
+struct TooLittleMemory : base::UsageError {
+  using UsageError::UsageError;
+};
+
 struct FuseOptions {
   double voxel_m = 0.0;
   double truncation_voxels = 4.0;
   int min_views = 3;            // views, virtual ones included, that must have seen a face
-  int min_photos = 2;           // of them photos
+  int min_photos = 1;           // of them photos
   int tile_voxels = 256;        // borders between pieces are at multiples of it
   double max_angle_deg = 85.0;  // a surface seen at a larger angle from its normal counts as seen at this angle
 };
 
 // Pieces whose columns cover all surface in `whole`, none without surface, each small enough to be fused in `memory_bytes`. Only their x and y
-// extents differ; they do not overlap, and do not reach out of `whole`. Throws base::UsageError when a single tile needs more memory, naming how
+// extents differ; they do not overlap, and do not reach out of `whole`. Throws TooLittleMemory when a single tile needs more memory, naming how
 // much, and when `whole` has more voxels than VertexKey can tell apart; base::Interrupted.
 std::vector<LatticeBox> PlanPieces(const DepthViews& views, const LatticeBox& whole, const FuseOptions& options, double memory_bytes,
                                    base::ThreadPool& threads);

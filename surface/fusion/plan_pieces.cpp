@@ -16,11 +16,11 @@
 namespace skyquilt::surface {
 namespace {
 
-// Nodes take 5 KiB; lists of bricks, cells, vertices and triangles the rest. A town of flat roofs was measured to take 7 KiB; trees have more
+// Nodes take 3 KiB; lists of bricks, cells, vertices and triangles the rest. A town of flat roofs was measured to take 7 KiB; trees have more
 // surface.
 constexpr double kBytesPerBrick = 12.0 * 1024.0;
-// Of the memory limit that one piece may use: the caller keeps and simplifies finished pieces meanwhile.
-constexpr double kShareOfMemory = 0.5;
+// Of the memory limit that one piece may use: the fields of the scene take half, and finished pieces are kept and simplified meanwhile.
+constexpr double kShareOfMemory = 0.25;
 constexpr size_t kMostSampledBricks = size_t{1} << 22U;
 constexpr size_t kViewsPerBatch = 64;
 
@@ -190,7 +190,7 @@ std::vector<LatticeBox> PlanPieces(std::span<const DepthView> views, const Latti
   const double largest_bytes = LargestOf(tiles);
   if (!tiles.empty() && !(largest_bytes <= limit_bytes)) {
     constexpr double kMegabyte = 1e6;
-    throw base::UsageError(
+    throw TooLittleMemory(
         fmt::format("--memory: {:.0f} MB are too small to fuse the surface: a piece needs about {:.0f} MB. Give more memory, or choose "
                     "larger voxels with surface.voxel_gsd",
                     std::floor(memory_bytes / kMegabyte), std::ceil(largest_bytes / kShareOfMemory / kMegabyte)));

@@ -60,11 +60,16 @@ FloatGrid LowHeights(const HeightRaster& surface, const WorkingCells& cells) {
   return low;
 }
 
+// In working cells. Windows larger than the grid, which has at most `most` columns or rows, see no more than one of its size.
+int HalfWindow(double window_m, double cell_m, int most) {
+  return static_cast<int>(std::clamp(std::ceil(0.5 * window_m / cell_m), 1.0, static_cast<double>(std::max(1, most))));
+}
+
 // Half widths of the windows in working cells; a window has 2 * half + 1.
-std::vector<int> WindowHalves(const TerrainOptions& options, double cell_m) {
+std::vector<int> WindowHalves(const TerrainOptions& options, double cell_m, int most) {
   const double allowed = options.slope > 0.0 ? (options.high_m - options.low_m) / options.slope : kLargestGrowth_m;
   const int largest_step = std::max(1, static_cast<int>(std::min(kLargestGrowth_m, allowed) / (2.0 * cell_m)));
-  const int last = static_cast<int>(std::ceil(0.5 * options.window_m / cell_m));
+  const int last = HalfWindow(options.window_m, cell_m, most);
   std::vector<int> halves;
   for (int half = 1; half < last; half += std::clamp(half / 4, 1, largest_step)) halves.push_back(half);
   halves.push_back(std::max(1, last));
@@ -75,7 +80,7 @@ std::vector<int> WindowHalves(const TerrainOptions& options, double cell_m) {
 void KeepGround(const TerrainOptions& options, double cell_m, FloatGrid* low, base::Progress* progress) {
   FloatGrid opened = *low;
   int previous = 0;
-  const std::vector<int> halves = WindowHalves(options, cell_m);
+  const std::vector<int> halves = WindowHalves(options, cell_m, std::max(low->columns, low->rows));
   for (size_t step = 0; step < halves.size(); ++step) {
     base::ThrowIfCancelled();
     const double growth_m = 2.0 * (halves[step] - previous) * cell_m;
@@ -190,7 +195,7 @@ FloatGrid GroundMeans(const HeightRaster& surface, const std::vector<uint8_t>& g
 
 // 1 for working cells inside the outline of the data, closed over gaps.
 std::vector<uint8_t> ClosedOutline(const FloatGrid& data, double window_m, double cell_m) {
-  const int half = std::max(1, static_cast<int>(std::ceil(0.5 * window_m / cell_m)));
+  const int half = HalfWindow(window_m, cell_m, std::max(data.columns, data.rows));
   // With a border as wide as the window reaches, so that the outline is not drawn to the grid's edge.
   FloatGrid padded(data.columns + 2 * half, data.rows + 2 * half, 0.0F);
   for (int row = 0; row < data.rows; ++row) {

@@ -258,6 +258,7 @@ double EdgeCollapse::Run(double max_error_m) {
 
 std::vector<Triangle> EdgeCollapse::Triangles() const {
   std::vector<Triangle> left;
+  left.reserve(static_cast<size_t>(std::count(alive_.begin(), alive_.end(), 1)));
   for (size_t t = 0; t < triangle_.size(); ++t) {
     if (alive_[t] != 0) left.push_back(triangle_[t]);
   }

@@ -54,6 +54,11 @@ std::vector<MeshTile> SplitIntoTiles(const Mesh& mesh, double tile_size_m) {
     for (const size_t i : of_tile) vertices.insert(vertices.end(), mesh.triangle[i].begin(), mesh.triangle[i].end());
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    tile.mesh.position.reserve(vertices.size());
+    tile.mesh.key.reserve(vertices.size());
+    tile.mesh.views.reserve(vertices.size());
+    tile.mesh.filled.reserve(vertices.size());
+    tile.mesh.triangle.reserve(of_tile.size());
     for (const uint32_t v : vertices) {
       tile.mesh.position.push_back(mesh.position[v]);
       tile.mesh.key.push_back(mesh.key[v]);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "core/base/errors.h"
 #include "surface/mesh/mesh_tools.h"
@@ -25,6 +26,13 @@ Triangle SmallestFirst(const Triangle& t) {
   return t;
 }
 
+void ReserveVertices(Mesh* mesh, size_t n) {
+  mesh->position.reserve(n);
+  mesh->key.reserve(n);
+  mesh->views.reserve(n);
+  mesh->filled.reserve(n);
+}
+
 }  // namespace
 
 Mesh MergeMeshes(std::vector<Mesh> pieces) {
@@ -44,6 +52,9 @@ Mesh MergeMeshes(std::vector<Mesh> pieces) {
   }
   std::sort(vertices.begin(), vertices.end(),
             [](const KeyedVertex& a, const KeyedVertex& b) { return std::tie(a.key, a.piece, a.vertex) < std::tie(b.key, b.piece, b.vertex); });
+  size_t n_keys = 0;
+  for (size_t i = 0; i < vertices.size(); ++i) n_keys += i == 0 || vertices[i].key != vertices[i - 1].key ? 1 : 0;
+  ReserveVertices(&merged, n_keys);
   for (size_t i = 0; i < vertices.size();) {
     const uint64_t key = vertices[i].key;
     const KeyedVertex* chosen = &vertices[i];
@@ -60,41 +71,55 @@ Mesh MergeMeshes(std::vector<Mesh> pieces) {
     merged.views.push_back(views);
     merged.filled.push_back(filled);
   }
+  // Their memory is needed no longer.
+  vertices = {};
+  for (Mesh& piece : pieces) {
+    piece.position = {};
+    piece.key = {};
+    piece.views = {};
+    piece.filled = {};
+  }
   merged.triangle.reserve(n_triangles);
   for (size_t i = 0; i < pieces.size(); ++i) {
     for (const Triangle& t : pieces[i].triangle) {
       const Triangle own = {index_of[i][t[0]], index_of[i][t[1]], index_of[i][t[2]]};
       if (own[0] != own[1] && own[1] != own[2] && own[2] != own[0]) merged.triangle.push_back(SmallestFirst(own));
     }
-    pieces[i] = Mesh();  // its memory is needed no longer
+    pieces[i].triangle = {};
+    index_of[i] = {};
   }
   std::sort(merged.triangle.begin(), merged.triangle.end());
   merged.triangle.erase(std::unique(merged.triangle.begin(), merged.triangle.end()), merged.triangle.end());
   return merged;
 }
 
-void DropUnusedVertices(Mesh* mesh) {
-  std::vector<uint8_t> used(mesh->position.size(), 0);
-  for (const Triangle& t : mesh->triangle) {
-    for (const uint32_t v : t) used[v] = 1;
+Mesh Compacted(const Mesh& mesh, std::vector<Triangle> triangles) {
+  constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
+  std::vector<uint32_t> index_of(mesh.position.size(), kUnused);
+  for (const Triangle& t : triangles) {
+    for (const uint32_t v : t) index_of[v] = 0;
   }
-  std::vector<uint32_t> index_of(mesh->position.size(), 0);
-  uint32_t n = 0;
-  for (size_t v = 0; v < used.size(); ++v) {
-    if (used[v] == 0) continue;
-    mesh->position[n] = mesh->position[v];
-    mesh->key[n] = mesh->key[v];
-    mesh->views[n] = mesh->views[v];
-    mesh->filled[n] = mesh->filled[v];
-    index_of[v] = n++;
+  const auto n_used = static_cast<size_t>(std::count_if(index_of.begin(), index_of.end(), [](uint32_t index) { return index != kUnused; }));
+  Mesh compact;
+  ReserveVertices(&compact, n_used);
+  for (size_t v = 0; v < index_of.size(); ++v) {
+    if (index_of[v] == kUnused) continue;
+    index_of[v] = static_cast<uint32_t>(compact.position.size());
+    compact.position.push_back(mesh.position[v]);
+    compact.key.push_back(mesh.key[v]);
+    compact.views.push_back(mesh.views[v]);
+    compact.filled.push_back(mesh.filled[v]);
   }
-  mesh->position.resize(n);
-  mesh->key.resize(n);
-  mesh->views.resize(n);
-  mesh->filled.resize(n);
-  for (Triangle& t : mesh->triangle) {
+  for (Triangle& t : triangles) {
     for (uint32_t& v : t) v = index_of[v];
   }
+  compact.triangle = std::move(triangles);
+  return compact;
+}
+
+void DropUnusedVertices(Mesh* mesh) {
+  std::vector<Triangle> triangles = std::move(mesh->triangle);
+  *mesh = Compacted(*mesh, std::move(triangles));
 }
 
 }  // namespace skyquilt::surface

@@ -12,6 +12,8 @@ namespace skyquilt::surface {
 // have no three different vertices, or come twice, are dropped. Vertices are sorted by key and triangles by vertices, so the result does not depend
 // on the order of the pieces.
 Mesh MergeMeshes(std::vector<Mesh> pieces);
+// These triangles of a mesh with the vertices that they use, in the order of the mesh, in no more memory than that takes.
+Mesh Compacted(const Mesh& mesh, std::vector<Triangle> triangles);
 // Removes vertices that no triangle uses; keeps the order of the others.
 void DropUnusedVertices(Mesh* mesh);
 // Removes connected pieces with a smaller area, square metres. Returns how many pieces were removed.

@@ -7,15 +7,11 @@ namespace skyquilt::surface {
 
 Mesh Simplify(const Mesh& mesh, double max_error_m, double* error_m) {
   if (error_m != nullptr) *error_m = 0.0;
-  Mesh simple = mesh;
-  if (max_error_m > 0.0) {
-    EdgeCollapse collapse(mesh);
-    const double error = collapse.Run(max_error_m);
-    if (error_m != nullptr) *error_m = error;
-    simple.triangle = collapse.Triangles();
-  }
-  DropUnusedVertices(&simple);
-  return simple;
+  if (!(max_error_m > 0.0)) return Compacted(mesh, mesh.triangle);
+  EdgeCollapse collapse(mesh);
+  const double error = collapse.Run(max_error_m);
+  if (error_m != nullptr) *error_m = error;
+  return Compacted(mesh, collapse.Triangles());
 }
 
 }  // namespace skyquilt::surface

@@ -48,6 +48,8 @@ class DepthViews {
  public:
   // Throws base::InputError when the file cannot be read or is damaged.
   static DepthViews Open(const std::filesystem::path& file);
+  // Gives back the memory of pictures that were read.
+  void ReleasePages() const { map_.ReleasePages(); }
   size_t size() const { return poses_.size(); }
   const ViewPose& pose(size_t view) const { return poses_[view]; }
   DepthView operator[](size_t view) const;

@@ -143,7 +143,7 @@ class Faults:
         print("stopped by SIGTERM: status 130, resumed", flush=True)
 
     def full_disk(self):
-        disk = self.folder / "disk"
+        disk = self.folder / "small"
         disk.mkdir()
         need = bytes_below(self.template)
         mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={need + 2_000_000}", "tmpfs", str(disk)], stderr=subprocess.PIPE, text=True)
@@ -180,7 +180,7 @@ class Faults:
 
     def expect_named(self, text, project, what):
         lower = text.lower()
-        expect("space" in lower or "disk" in lower or "too large" in lower, f"{what}, the reason is not named:\n{text}")
+        expect("no space left" in lower or "too large" in lower, f"{what}, the reason is not named:\n{text}")
         expect(str(project / "surface") in text or str(project / "cache") in text, f"{what}, the file is not named:\n{text}")
         if (project / "surface").exists():
             self.no_half_files(project, what)

@@ -31,7 +31,8 @@ TEST(OdmNames, EveryProductIsFoundWhereOpenDroneMapPutsIt) {
   write(maps / "dsm.tif", "heights");
   ProvideOdmNames(surface, maps);
   const fs::path odm = surface / "odm";
-  EXPECT_EQ(base::ReadFile(odm / "odm_texturing" / "odm_textured_model_geo.obj"), "# a\nmtllib odm_textured_model_geo.mtl\nusemtl tile_0_0_0\n");
+  EXPECT_EQ(base::ReadFile(odm / "odm_texturing" / "odm_textured_model_geo.obj"), "# a\nmtllib mesh.mtl\nusemtl tile_0_0_0\n");
+  EXPECT_EQ(base::ReadFile(odm / "odm_texturing" / "mesh.mtl"), "newmtl tile_0_0_0\nmap_Kd mesh_0_0_0.jpg\n");
   EXPECT_EQ(base::ReadFile(odm / "odm_texturing" / "odm_textured_model_geo.mtl"), "newmtl tile_0_0_0\nmap_Kd mesh_0_0_0.jpg\n");
   EXPECT_EQ(base::ReadFile(odm / "odm_texturing" / "mesh_0_0_0.jpg"), "jpeg");
   EXPECT_EQ(base::ReadFile(odm / "odm_texturing" / "odm_textured_model_geo.glb"), "glb");

@@ -111,7 +111,7 @@ TEST_F(RenderViews, AFinishedFileIsOpenedAtOnce) {
   EXPECT_EQ(survey_.scene.rays, rays);
   EXPECT_GT(again.size(), 9U);
   // But not with other options.
-  survey_.input.options.min_opacity = 0.7;
+  survey_.input.options.min_opacity = 0.9;
   Render(survey_);
   EXPECT_EQ(survey_.scene.rays, 2 * rays);
 }

@@ -44,7 +44,7 @@ std::string MadeFacts(const SurfaceScores& scores) {
   const auto fact = [&](const char* name, const std::string& value) { html += Fact(name, value); };
   fact("Triangles", CountOrDash(record.triangles));
   if (record.points >= 0) fact("Points of the cloud", page::FormatInteger(record.points));
-  if (std::isfinite(record.area_m2)) fact("Area", page::FormatLarge(record.area_m2, "m\xC2\xB2"));
+  if (std::isfinite(record.area_m2)) fact("Area", page::FormatInteger(std::llround(record.area_m2)) + " m\xC2\xB2");
   if (std::isfinite(record.filled_m2)) fact("Closed holes", page::FormatFixed(record.filled_m2, 0, "m\xC2\xB2"));
   if (std::isfinite(record.voxel_m)) fact("Cells in which depths were fused", Centimetres(record.voxel_m));
   if (record.photos >= 0) {

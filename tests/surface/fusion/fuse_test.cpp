@@ -131,8 +131,10 @@ TEST(FusePiece, DropsWhatTooFewViewsSaw) {
 
 TEST(FusePiece, DropsWhatTooFewPhotosSaw) {
   base::ThreadPool threads(1);
-  EXPECT_TRUE(FusePiece(PlaneSeenBy(6, 0, 1).views, Cube(16), BallOptions(), threads).triangle.empty());
-  const Mesh mesh = FusePiece(PlaneSeenBy(6, 0, 2).views, Cube(16), BallOptions(), threads);
+  FuseOptions options = BallOptions();
+  options.min_photos = 2;
+  EXPECT_TRUE(FusePiece(PlaneSeenBy(6, 0, 1).views, Cube(16), options, threads).triangle.empty());
+  const Mesh mesh = FusePiece(PlaneSeenBy(6, 0, 2).views, Cube(16), options, threads);
   ASSERT_FALSE(mesh.triangle.empty());
   EXPECT_EQ(*std::max_element(mesh.views.begin(), mesh.views.end()), 6);
 }

@@ -62,3 +62,4 @@ printf '%-28s %5d s\n' "all" "$SECONDS"
 scores
 echo "report: $out/report/index.html"
 echo "mesh, cloud, tiles, terrain: $out/surface"
+echo "look at it in the browser: $skyquilt view $out"

@@ -10,11 +10,11 @@ run_packages=(
   build-essential cmake ninja-build ccache pkg-config
   libopenmpi-dev openmpi-bin libeigen3-dev libopencv-dev colmap libgeographiclib-dev libhdf5-dev libhwy-dev
   libgdal-dev gdal-bin libexiv2-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libspdlog-dev libembree-dev
-  ffmpeg python3
+  libboost-dev zlib1g-dev ffmpeg python3
 )
-test_packages=(libgtest-dev librapidcheck-dev libbenchmark-dev git clang-format clang-tidy procps iproute2 dpkg-dev file assimp-utils)
+test_packages=(libgtest-dev librapidcheck-dev libbenchmark-dev git clang-format clang-tidy procps iproute2 dpkg-dev file assimp-utils chromium)
 # Node from elsewhere brings its own npm, with which Debian's package conflicts.
-command -v npm >/dev/null || test_packages+=(nodejs npm)
+command -v npm >/dev/null || run_packages+=(nodejs npm)
 
 case "${1:-}" in
   --run) wanted=("${run_packages[@]}") ;;

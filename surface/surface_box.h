@@ -1,5 +1,5 @@
-// Where a scene has surface that is worth meshing: its blocks with their margins, in which fields are trained too. Beyond them there is only the coarse
-// context. Survey ENU, metres.
+// Where a scene has surface that is worth meshing: its blocks with their margins, in which fields are trained too. Beyond them there is only the
+// coarse context. Survey ENU, metres.
 #pragma once
 
 #include <Eigen/Core>

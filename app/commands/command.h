@@ -63,6 +63,7 @@ void AddMerge(CLI::App& app, CommandState& state);
 void AddRender(CLI::App& app, CommandState& state);
 void AddSurface(CLI::App& app, CommandState& state);
 void AddEvaluate(CLI::App& app, CommandState& state);
+void AddView(CLI::App& app, CommandState& state);
 void AddInfo(CLI::App& app, CommandState& state);
 void AddBench(CLI::App& app, CommandState& state);
 // The subcommands of `bench` that train whole surveys.

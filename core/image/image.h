@@ -35,7 +35,9 @@ using ImageF = BasicImage<float>;
 // rotation is NOT applied, because camera models refer to stored pixels. A truncated JPEG is an error: decoders would fill the missing rows with
 // grey. Throws base::InputError.
 Image8 LoadRgb8(const std::filesystem::path& file);
-// The same for the bytes of an image file.
+// The same, but a JPEG is decoded at a half, a quarter or an eighth of its size when that still has `width` pixels across: up to ten times faster.
+Image8 LoadReducedRgb8(const std::filesystem::path& file, int width);
+// As LoadRgb8 for the bytes of an image file.
 Image8 DecodeRgb8(std::span<const uint8_t> bytes);
 // Width and height; JPEG and PNG are not decoded for it. Throws base::InputError.
 void ReadImageSize(const std::filesystem::path& file, int* width, int* height);

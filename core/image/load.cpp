@@ -34,14 +34,14 @@ bool LooksLikeImage(std::string_view content) {
 }
 
 // Decodes without conversion: bit depth and channels as in the file, BGR(A) order.
-cv::Mat Decode(std::string_view content, const std::filesystem::path& file) {
+cv::Mat Decode(std::string_view content, const std::filesystem::path& file, int mode = cv::IMREAD_UNCHANGED) {
   if (content.empty()) throw InputError(file, "is empty", kFixDamaged);
   const JpegStructure jpeg = ParseJpeg(AsBytes(content), false);
   if (jpeg.is_jpeg && !jpeg.complete) throw InputError(file, "ends early (truncated JPEG)", kFixDamaged);
   cv::Mat pixels;
   try {
     const cv::Mat wrapped(1, static_cast<int>(std::min<size_t>(content.size(), INT32_MAX)), CV_8UC1, const_cast<char*>(content.data()));
-    pixels = cv::imdecode(wrapped, cv::IMREAD_UNCHANGED);  // UNCHANGED does not apply the EXIF orientation either
+    pixels = cv::imdecode(wrapped, mode);  // UNCHANGED does not apply the EXIF orientation either
   } catch (const cv::Exception& error) {
     throw InputError(file, "cannot be decoded (" + error.err + ")", kFixDamaged);
   }
@@ -94,6 +94,23 @@ Image8 ToRgb8(cv::Mat pixels, const std::filesystem::path& file) {
 
 Image8 LoadRgb8(const std::filesystem::path& file) {
   return ToRgb8(Decode(base::ReadFile(file), file), file);
+}
+
+Image8 LoadReducedRgb8(const std::filesystem::path& file, int width) {
+  const std::string content = base::ReadFile(file);
+  const JpegStructure jpeg = ParseJpeg(AsBytes(content), false);
+  int mode = cv::IMREAD_UNCHANGED;
+  if (jpeg.is_jpeg && width > 0) {
+    if (jpeg.width / 8 >= width) {
+      mode = cv::IMREAD_REDUCED_COLOR_8;
+    } else if (jpeg.width / 4 >= width) {
+      mode = cv::IMREAD_REDUCED_COLOR_4;
+    } else if (jpeg.width / 2 >= width) {
+      mode = cv::IMREAD_REDUCED_COLOR_2;
+    }
+    if (mode != cv::IMREAD_UNCHANGED) mode |= cv::IMREAD_IGNORE_ORIENTATION;
+  }
+  return ToRgb8(Decode(content, file, mode), file);
 }
 
 Image8 DecodeRgb8(std::span<const uint8_t> bytes) {

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "core/base/errors.h"
-#include "core/camera/pixel_pitch.h"
 #include "core/checkpoint/archive.h"
 #include "core/field/hash_field.h"
 #include "core/image/srgb.h"
 #include "core/render/ray_engine.h"
 #include "core/render/ray_segments.h"
 #include "core/scene/background.h"
+#include "core/scene/camera_rays.h"
 #include "core/scene/field_store.h"
 #include "core/scene/paged_renderer.h"
 #include "core/scene/ray_service.h"
@@ -20,7 +19,6 @@
 namespace skyquilt::scene {
 namespace {
 
-constexpr int kTile = 32;                // pixels
 constexpr int kBandTiles = 128;          // tiles rendered at a time: memory does not grow with the image
 constexpr int kServiceBandTiles = 1024;  // with a service: more at a time, because its ranks wait for each other at the end of each band
 
@@ -164,55 +162,42 @@ void Scene::RenderRays(std::span<const render::Ray> rays, std::span<render::RayC
   Expose(appearance.log_gain, out);
 }
 
+void Scene::RenderRaysOverBackground(std::span<const render::Ray> rays, std::span<render::RayColor> out, const Appearance& appearance,
+                                     base::ThreadPool& threads) const {
+  SKYQUILT_CHECK(rays.size() == out.size(), std::to_string(rays.size()) + " rays, " + std::to_string(out.size()) + " results");
+  const float background_gain = impl_->BackgroundGain(appearance.look);
+  impl_->Answer(rays, out, appearance, threads);
+  for (size_t i = 0; i < out.size(); ++i) {
+    if (out[i].opacity >= 1.0F) continue;
+    std::array<float, 3> behind = impl_->background.Color(rays[i].origin_enu, rays[i].direction_enu);
+    if (background_gain != 1.0F) {
+      for (float& value : behind) value = image::SrgbFromLinear(background_gain * image::LinearFromSrgb(value));
+    }
+    for (size_t c = 0; c < 3; ++c) out[i].rgb_srgb[c] += (1.0F - out[i].opacity) * behind[c];
+  }
+  Expose(appearance.log_gain, out);
+}
+
 std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, const Appearance& appearance,
                                                   base::ThreadPool& threads) const {
-  const Rendition look = appearance.look;
   std::vector<render::RayColor> out(static_cast<size_t>(camera.width) * static_cast<size_t>(camera.height));
-  const geo::Rigid3d enu_from_cam = cam_from_enu.Inverse();
-  // Scenes without cones use the pitch for the length of steps only.
-  const auto nominal = static_cast<float>(1.0 / std::max(1e-9, camera.FocalX()));
-  const std::optional<camera::PixelPitch> pitch = impl_->info.scales.Cones() ? std::optional<camera::PixelPitch>(camera) : std::nullopt;
-  // Square tiles: rays that are rendered together see the same places, so the hash table entries they read are in cache.
-  const int tile_columns = (camera.width + kTile - 1) / kTile;
-  const int n_tiles = tile_columns * ((camera.height + kTile - 1) / kTile);
-  const float background_gain = impl_->BackgroundGain(look);
+  const CameraRays maker(camera, cam_from_enu, impl_->info.scales.Cones());
+  const int n_tiles = TileCount(camera.width, camera.height);
   std::vector<size_t> pixels;
   std::vector<render::Ray> rays;
   std::vector<render::RayColor> colors;
   const int band_tiles = impl_->service != nullptr ? kServiceBandTiles : kBandTiles;
   for (int first = 0; first < n_tiles; first += band_tiles) {
     pixels.clear();
-    for (int tile = first; tile < std::min(first + band_tiles, n_tiles); ++tile) {
-      const int x0 = tile % tile_columns * kTile, y0 = tile / tile_columns * kTile;
-      for (int y = y0; y < std::min(y0 + kTile, camera.height); ++y) {
-        for (int x = x0; x < std::min(x0 + kTile, camera.width); ++x) {
-          pixels.push_back(static_cast<size_t>(y) * static_cast<size_t>(camera.width) + static_cast<size_t>(x));
-        }
-      }
-    }
-    rays.assign(pixels.size(), render::Ray{});
+    AppendTilePixels(camera.width, camera.height, first, std::min(first + band_tiles, n_tiles), &pixels);
+    rays.resize(pixels.size());
     colors.resize(pixels.size());
     threads.ParallelFor(static_cast<int64_t>((pixels.size() + 255) / 256), [&](int64_t task, int) {
       const size_t begin = static_cast<size_t>(task) * 256;
-      for (size_t i = begin; i < std::min(begin + 256, pixels.size()); ++i) {
-        const auto width = static_cast<size_t>(camera.width);
-        const size_t row = pixels[i] / width, column = pixels[i] % width;
-        const Eigen::Vector2d img(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
-        rays[i].origin_enu = enu_from_cam.translation;
-        rays[i].direction_enu = (enu_from_cam.rotation * camera.RayFromImg(img)).normalized();
-        rays[i].pixel_pitch = pitch ? static_cast<float>(pitch->At(img)) : nominal;
-      }
+      const size_t count = std::min<size_t>(256, pixels.size() - begin);
+      maker.Make(std::span(pixels).subspan(begin, count), std::span(rays).subspan(begin, count));
     });
-    impl_->Answer(rays, colors, appearance, threads);
-    for (size_t i = 0; i < colors.size(); ++i) {
-      if (colors[i].opacity >= 1.0F) continue;
-      std::array<float, 3> behind = impl_->background.Color(rays[i].origin_enu, rays[i].direction_enu);
-      if (background_gain != 1.0F) {
-        for (float& value : behind) value = image::SrgbFromLinear(background_gain * image::LinearFromSrgb(value));
-      }
-      for (size_t c = 0; c < 3; ++c) colors[i].rgb_srgb[c] += (1.0F - colors[i].opacity) * behind[c];
-    }
-    Expose(appearance.log_gain, colors);
+    RenderRaysOverBackground(rays, colors, appearance, threads);
     for (size_t i = 0; i < pixels.size(); ++i) out[pixels[i]] = colors[i];
   }
   return out;

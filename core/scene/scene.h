@@ -107,7 +107,10 @@ class Scene {
   // Any number of rays, 0 included; out has the same length. Same bits for any memory, service and number of threads.
   // Throws base::Interrupted when cancelled, base::UsageError when the overlapping blocks of one place do not fit in memory.
   void RenderRays(std::span<const render::Ray> rays, std::span<render::RayColor> out, const Appearance& appearance, base::ThreadPool& threads) const;
-  // All pixels of a camera, row-major, width * height results, composited over the scene's background, which shows where opacity is below 1.
+  // The same, composited over the scene's background, which shows where opacity is below 1: the colours that RenderCamera gives these rays.
+  void RenderRaysOverBackground(std::span<const render::Ray> rays, std::span<render::RayColor> out, const Appearance& appearance,
+                                base::ThreadPool& threads) const;
+  // All pixels of a camera, row-major, width * height results, over the background. See core/scene/camera_rays.h for some pixels.
   std::vector<render::RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, const Appearance& appearance,
                                              base::ThreadPool& threads) const;
 

@@ -19,7 +19,7 @@
 namespace skyquilt::surface {
 namespace {
 
-constexpr double kCoarseBytes = 64e6;   // of the pictures that are kept for the search for gaps
+constexpr double kCoarseBytes = 64e6;  // of the pictures that are kept for the search for gaps
 constexpr double kVirtualShare = 1.0;  // rays of virtual views, in rays of photo views
 
 int64_t RaysOf(std::span<const ViewPose> poses) {

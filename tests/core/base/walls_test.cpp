@@ -20,8 +20,9 @@ namespace fs = std::filesystem;
 // Every room, with the other rooms that it may include. "core" means all rooms of core.
 const std::map<std::string, std::set<std::string>>& AllowedIncludes() {
   static const std::map<std::string, std::set<std::string>> allowed = {
-      {"app", {"bench", "coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "evaluate", "core"}},
+      {"app", {"bench", "viewer", "coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "evaluate", "core"}},
       {"bench", {"coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "evaluate", "core"}},
+      {"viewer", {"coordinator", "partition", "products", "surface", "core"}},
       {"coordinator", {"simulate", "prepare", "partition", "worker", "merge", "products", "surface", "evaluate", "core"}},
       {"simulate", {"core"}},
       {"prepare", {"core"}},
@@ -70,6 +71,7 @@ const std::vector<Library>& Libraries() {
       {"Exiv2", std::regex("exiv2/.*"), "core/survey"},
       {"Embree", std::regex("embree[0-9]*/.*"), "core/raytrace"},
       {"GDAL", std::regex("(gdal/)?(gdal|ogr_|ogrsf|cpl_|vrt)[^/]*\\.h"), "core/gis"},
+      {"Boost", std::regex("boost/.*"), "viewer"},
       {"toml++", std::regex("toml\\+\\+/.*|toml\\.hpp"), "core/config"},
   };
   return libraries;

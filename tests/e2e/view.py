@@ -1,0 +1,290 @@
+"""`skyquilt view` as its users meet it: in a real browser, over several ranks, with unfinished projects, a full disk, and a process that is killed."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+from harness import Failure, Skyquilt, expect, main
+from web_client import Viewer, WebSocket, looking
+
+# Good enough that a house can be measured; half a minute of training on two cores.
+WIDTH = 480
+TRAIN = ["--blocks", "1x1", "--image-width", str(WIDTH), "--time-budget", "40s", "--set", "products.video_seconds=0"]
+
+
+def skip(text):
+    print(f"skipped: {text}", flush=True)
+
+
+def views(description):
+    """An eye, a rotation and the middle of the scene."""
+    low, high = description["min_enu"], description["max_enu"]
+    middle = [(a + b) / 2 for a, b in zip(low, high)]
+    middle[2] = description["ground_m"]
+    eye = [middle[0] + 20, middle[1] - 60, middle[2] + 60]
+    return eye, looking(eye, middle), middle
+
+
+def check_page(skyquilt, project, survey, web, out):
+    """The front end in Chromium."""
+    front_end = web / "dist_test"
+    if not (front_end / "app.js").exists():
+        skip("the page: its front end was not built (nodejs, npm or the network was missing)")
+        return
+    if not shutil.which("chromium"):
+        skip("the page: chromium is not installed")
+        return
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    viewer = Viewer(skyquilt, project, "--front-end", front_end)
+    try:
+        done = subprocess.run(["node", "test/page/view_page.mjs", viewer.link, str(project), str(survey / "truth" / "buildings.json"), skyquilt.program, str(out)],
+                              cwd=web, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=400)
+        print(done.stdout, flush=True)
+        expect(done.returncode == 0, f"the page, see {out}:\n{done.stdout}")
+    finally:
+        viewer.close()
+
+
+def check_session(skyquilt, project):
+    """The link, the cookie, and what others get."""
+    viewer = Viewer(skyquilt, project)
+    try:
+        status, headers, body = viewer.request("GET", "/", cookie=False)
+        expect(status == 403 and b"skyquilt" in body.lower() and "Set-Cookie" not in headers, f"without the link: {status}")
+        first = viewer.link
+        viewer.log_in()
+        second = viewer.next_link()
+        expect(second != first, "the same link again")
+        path = first[first.index("/?"):]
+        expect(viewer.request("GET", path, cookie=False)[0] == 403, "the link works twice")
+        status, headers, body = viewer.request("GET", "/")
+        expect(status == 200 and b"<script" in body, f"the page: {status}")
+        policy = headers["Content-Security-Policy"]
+        expect("default-src 'self'" in policy and "unsafe" not in policy, policy)
+        for wrong in ({"Host": "evil.example"}, {"Host": f"evil.example:{viewer.port}"}):
+            expect(viewer.request("GET", "/data/project.json", headers=wrong)[0] in (403, 421), f"{wrong} is served")
+        expect(viewer.request("PUT", "/data/measurements.geojson", body=b"{}", headers={"Origin": "http://evil.example"})[0] == 403, "a foreign page saves")
+        expect(WebSocket(viewer.port, viewer.cookie, origin="http://evil.example").status == 403, "a foreign page opens the socket")
+        expect(WebSocket(viewer.port, None).status == 403, "the socket opens without a session")
+        for path in ("/data/../config.toml", "/data/%2e%2e/config.toml", "/data/..%2fconfig.toml", "/data//etc/passwd", "/data/config.toml"):
+            status, _, body = viewer.request("GET", path)
+            expect(status in (400, 404) and b"image_width" not in body, f"{path}: {status}")
+        expect(viewer.close() == 0, f"ended with {viewer.process.returncode}:\n{viewer.printed}")
+    finally:
+        if viewer.process.poll() is None:
+            viewer.process.kill()
+
+
+def exact_frame(skyquilt, project, *flags, ranks=0):
+    """The last pass as PNG bytes."""
+    viewer = Viewer(skyquilt, project, *flags, ranks=ranks).log_in()
+    try:
+        description = viewer.project()
+        expect(description["scene"] is not None and description["tiles"] is not None, f"{description['missing']}")
+        socket = viewer.socket()
+        while not socket.welcome["engine"]["ready"]:
+            socket.welcome = socket.text("engine")
+        eye, rotation, _ = views(description)
+        socket.view(1, eye, rotation, 320, 180)
+        frame = socket.last_frame(1)
+        expect(frame.format == 1 and frame.width == 320 and len(frame.depth) == 2 * frame.depth_width * frame.depth_height, "last pass")
+        return frame.color, frame.depth
+    finally:
+        expect(viewer.close() == 0, f"ended with {viewer.process.returncode}:\n{viewer.printed}")
+
+
+def check_ranks(skyquilt, project):
+    """Other ranks, and too little memory for all fields, give the same bytes."""
+    alone = exact_frame(skyquilt, project)
+    expect(exact_frame(skyquilt, project, ranks=3) == alone, "three ranks give another picture")
+    return alone
+
+
+def check_new_merge(skyquilt, project):
+    """A scene that is merged while the viewer is open is loaded."""
+    viewer = Viewer(skyquilt, project).log_in()
+    try:
+        socket = viewer.socket()
+        while not socket.welcome["engine"]["ready"]:
+            socket.welcome = socket.text("engine")
+        revision = socket.welcome["engine"]["revision"]
+        time.sleep(1.1)
+        skyquilt.call("merge", project, "--restart")
+        engine = socket.text("engine")["engine"]
+        while not engine["ready"] or engine["revision"] == revision:
+            engine = socket.text("engine")["engine"]
+        expect(engine["revision"] > revision, f"revision {engine['revision']} after {revision}")
+        eye, rotation, _ = views(viewer.project())
+        socket.view(5, eye, rotation, 160, 90)
+        expect(socket.last_frame(5).revision == engine["revision"], "a frame of the old scene")
+    finally:
+        viewer.close()
+
+
+def feature(index):
+    return {"type": "Feature", "properties": {"kind": "point", "name": f"point {index}", "filler": "x" * 200},
+            "geometry": {"type": "Point", "coordinates": [8.5417, 47.3769, 408.0 + index]}}
+
+
+def collection(size):
+    return json.dumps({"type": "FeatureCollection", "features": [feature(index) for index in range(size)]})
+
+
+def check_killed_while_saving(skyquilt, project):
+    """The old or the new file, never half."""
+    file = project / "measurements.geojson"
+    sizes = (3, 900)
+    for attempt in range(6):
+        viewer = Viewer(skyquilt, project).log_in()
+        expect(viewer.request("PUT", "/data/measurements.geojson", body=collection(3))[0] in (200, 204), "saving")
+        child = os.fork()
+        if child == 0:
+            try:
+                for turn in range(1000):
+                    viewer.request("PUT", "/data/measurements.geojson", body=collection(sizes[turn % 2]))
+            finally:
+                os._exit(0)
+        time.sleep(0.05 + 0.03 * attempt)
+        os.killpg(viewer.process.pid, signal.SIGKILL)
+        viewer.process.wait()
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        saved = json.loads(file.read_text())
+        expect(len(saved["features"]) in sizes, f"{len(saved['features'])} features")
+    viewer = Viewer(skyquilt, project).log_in()
+    status, _, body = viewer.request("GET", "/data/measurements.geojson")
+    expect(status == 200 and len(json.loads(body)["features"]) in sizes, f"after the kills: {status}")
+    viewer.close()
+    file.unlink()
+
+
+def check_full_disk(skyquilt, project, folder):
+    """Saving fails with a reason, and the old file stays."""
+    disk = folder / "disk"
+    disk.mkdir()
+    if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=3m", "tmpfs", str(disk)], stderr=subprocess.DEVNULL).returncode != 0:
+        skip("full disk: needs root and tmpfs")
+        return
+    try:
+        small = disk / "small"
+        small.mkdir()
+        shutil.copytree(project / "survey", small / "survey", ignore=shutil.ignore_patterns("*.ply", "*.bin"))
+        viewer = Viewer(skyquilt, small).log_in()
+        try:
+            expect(viewer.request("PUT", "/data/measurements.geojson", body=collection(2))[0] in (200, 204), "saving on a disk with space")
+            with open(disk / "filler", "wb") as filler:
+                try:
+                    while True:
+                        filler.write(bytes(4096))
+                        filler.flush()
+                except OSError:
+                    pass
+            status, _, body = viewer.request("PUT", "/data/measurements.geojson", body=collection(900))
+            expect(status == 507 and b"space" in body.lower(), f"full disk: {status} {body[:200]}")
+            expect(len(json.loads((small / "measurements.geojson").read_text())["features"]) == 2, "the old file is gone")
+        finally:
+            viewer.close()
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+def check_unfinished(skyquilt, project, survey, folder):
+    """Projects that lack something open as far as possible and say why."""
+    young = folder / "young"
+    skyquilt.call("prepare", survey, "-o", young)
+    viewer = Viewer(skyquilt, young).log_in()
+    try:
+        description = viewer.project()
+        expect(description["scene"] is None and description["tiles"] is None and description["photos"], "a project in training")
+        what = {one["what"]: one for one in description["missing"]}
+        expect(what and all(one["reason"] and one["advice"] for one in what.values()), f"{description['missing']}")
+        socket = viewer.socket()
+        expect(not socket.welcome["engine"]["ready"] and "train" in json.dumps(socket.welcome["engine"]), f"{socket.welcome}")
+        socket.send({"type": "pick", "id": 7, "project": "main", "origin": [0, 0, 100], "direction": [0, 0, -1], "pixel_pitch": 0.001, "pixel_width_m": 0})
+        while True:
+            message = socket.receive()
+            if not isinstance(message, bytes) and message.get("id") == 7:
+                break
+        expect(message["type"] == "error" and message["message"], f"{message}")
+    finally:
+        viewer.close()
+
+    # Without photos, and with a scene of another version.
+    bare = folder / "bare"
+    shutil.copytree(project, bare, ignore=shutil.ignore_patterns("checkpoints", "cache"))
+    survey_file = bare / "survey" / "survey.json"
+    described = json.loads(survey_file.read_text())
+    described["photo_root"] = str(folder / "nowhere")
+    survey_file.write_text(json.dumps(described))
+    scene = bytearray((bare / "scene.h5").read_bytes())
+    at = scene.index(b"version ") + len(b"version ")
+    scene[at:at + 1] = b"9"
+    (bare / "scene.h5").write_bytes(bytes(scene))
+    viewer = Viewer(skyquilt, bare).log_in()
+    try:
+        description = viewer.project()
+        expect(description["tiles"] is not None, "the surface is shown without scene and photos")
+        expect(not any(photo["available"] for photo in description["photos"]), "photos that are gone")
+        text = json.dumps(description["missing"])
+        expect("nowhere" in text and "scene" in text, text)
+        expect(viewer.request("GET", "/data/photos/0/thumbnail.jpg")[0] == 404, "a photo that is gone")
+        expect(not viewer.socket().welcome["engine"]["ready"], "a scene of another version")
+    finally:
+        viewer.close()
+    # No surface: the orthophoto over the surface model.
+    shutil.rmtree(bare / "surface")
+    viewer = Viewer(skyquilt, bare).log_in()
+    try:
+        description = viewer.project()
+        expect(description["tiles"] is None and description["terrain"], f"{description['missing']}")
+        for path in (description["terrain"], "orthophoto.jpg"):
+            status, _, body = viewer.request("GET", f"/data/{path}")
+            expect(status == 200 and len(body) > 1000, f"{path}: {status}")
+    finally:
+        viewer.close()
+    text = skyquilt.call("view", folder / "nothing", status=3)
+    expect("nothing" in text, text)
+    empty = folder / "empty"
+    empty.mkdir()
+    expect("project" in skyquilt.call("view", empty, status=3), "an empty folder")
+
+
+def check_port(skyquilt, project):
+    viewer = Viewer(skyquilt, project)
+    try:
+        text = skyquilt.call("view", project, "--port", viewer.port, status=2, timeout=60)
+        expect(str(viewer.port) in text and "port" in text, text)
+    finally:
+        viewer.close()
+
+
+def test(skyquilt: Skyquilt, folder):
+    build = pathlib.Path(sys.argv[2])
+    survey, project = folder / "hamlet", folder / "project"
+    skyquilt.call("simulate", "hamlet", "-o", survey, "--set", f"simulate.image_width={WIDTH}")
+    skyquilt.call("run", survey, "-o", project, *TRAIN)
+    try:
+        probe = Viewer(skyquilt, project)
+        probe.close()
+    except Failure as failure:
+        if "without the viewer's front end" not in str(failure):
+            raise
+        skip("all: the program has no front end, because nodejs, npm or the network was missing when it was built")
+        return
+    check_session(skyquilt, project)
+    check_page(skyquilt, project, survey, build / "web", build / "Testing" / "view")
+    check_ranks(skyquilt, project)
+    check_new_merge(skyquilt, project)
+    check_killed_while_saving(skyquilt, project)
+    check_full_disk(skyquilt, project, folder)
+    check_unfinished(skyquilt, project, survey, folder)
+    check_port(skyquilt, project)
+
+
+if __name__ == "__main__":
+    main(test)

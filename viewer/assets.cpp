@@ -1,0 +1,47 @@
+#include "viewer/assets.h"
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+
+// Defined in front_end.S.
+extern "C" {
+extern const char skyquilt_index_html_begin[], skyquilt_index_html_end[];
+extern const char skyquilt_app_js_begin[], skyquilt_app_js_end[];
+extern const char skyquilt_app_css_begin[], skyquilt_app_css_end[];
+extern const char skyquilt_licences_txt_begin[], skyquilt_licences_txt_end[];
+}
+
+namespace skyquilt::viewer {
+namespace {
+
+struct AssetName {
+  const char* path;
+  const char* file;
+  const char* content_type;
+};
+
+constexpr AssetName kAssetNames[] = {{"/", "index.html", "text/html; charset=utf-8"},
+                                     {"/app.js", "app.js", "text/javascript; charset=utf-8"},
+                                     {"/app.css", "app.css", "text/css; charset=utf-8"},
+                                     {"/licences.txt", "licences.txt", "text/plain; charset=utf-8"}};
+
+}  // namespace
+
+std::vector<Asset> FrontEnd() {
+  const std::string bodies[] = {{skyquilt_index_html_begin, skyquilt_index_html_end},
+                                {skyquilt_app_js_begin, skyquilt_app_js_end},
+                                {skyquilt_app_css_begin, skyquilt_app_css_end},
+                                {skyquilt_licences_txt_begin, skyquilt_licences_txt_end}};
+  if (bodies[0].empty() || bodies[1].empty()) return {};
+  std::vector<Asset> assets;
+  for (size_t i = 0; i < std::size(kAssetNames); ++i) assets.push_back({kAssetNames[i].path, kAssetNames[i].content_type, bodies[i]});
+  return assets;
+}
+
+std::vector<Asset> FrontEndFrom(const std::filesystem::path& folder) {
+  std::vector<Asset> assets;
+  for (const AssetName& name : kAssetNames) assets.push_back({name.path, name.content_type, base::ReadFile(folder / name.file)});
+  return assets;
+}
+
+}  // namespace skyquilt::viewer

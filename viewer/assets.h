@@ -1,0 +1,16 @@
+// The front end, built from web/ and embedded in the program.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "viewer/server/server.h"
+
+namespace skyquilt::viewer {
+
+// Empty when it was not built, because Node.js or its packages were missing.
+std::vector<Asset> FrontEnd();
+// The same files from a folder, for work on the front end and for its tests. Throws base::InputError.
+std::vector<Asset> FrontEndFrom(const std::filesystem::path& folder);
+
+}  // namespace skyquilt::viewer

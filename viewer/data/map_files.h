@@ -1,0 +1,22 @@
+// Maps and points of a project in the formats of docs/viewer_protocol.md. All throw base::InputError when a file of the project cannot be read.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/survey/survey.h"
+#include "viewer/data/survey_frame.h"
+
+namespace skyquilt::viewer {
+
+// terrain.bin from dsm.tif: at most 512 cells along the longer side.
+std::string TerrainFile(const std::filesystem::path& dsm, const SurveyFrame& frame);
+// orthophoto.jpg from orthophoto.tif: at most 2048 pixels along the longer side; cells without data are grey.
+std::string OrthophotoFile(const std::filesystem::path& orthophoto);
+// points.bin: at most 2,000,000 points, every n-th when there are more.
+std::string PointsFile(const std::vector<survey::SparsePoint>& points);
+// contours.json: at most 300,000 vertices.
+std::string ContoursFile(const std::filesystem::path& gpkg, const SurveyFrame& frame);
+
+}  // namespace skyquilt::viewer

@@ -1,0 +1,33 @@
+// A project as the viewer shows it: what there is, and for what is missing the reason and the command that helps.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "coordinator/project/project.h"
+#include "core/survey/survey.h"
+#include "viewer/data/survey_frame.h"
+
+namespace skyquilt::viewer {
+
+struct OpenedProject {
+  coordinator::Project project;
+  std::shared_ptr<const survey::Survey> survey;  // null when it cannot be read
+  geo::Geodetic origin;
+  bool georeferenced = false;
+  std::set<std::string> tiles;  // names of files in surface/tiles; empty: there is no finished surface
+  bool terrain = false, orthophoto = false, contours = false;
+  nlohmann::json description;  // project.json without "before" and "revision"
+};
+
+// Reads as much as there is. Never throws for what is missing or damaged.
+OpenedProject OpenProject(const coordinator::Project& project);
+
+// "enu_from_before" of project.json: 16 numbers, row-major. The identity when either is without geo-reference.
+nlohmann::json EnuFromOther(const OpenedProject& main, const OpenedProject& other);
+
+}  // namespace skyquilt::viewer

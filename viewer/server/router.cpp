@@ -1,0 +1,151 @@
+#include "viewer/server/router.h"
+
+#include <string_view>
+#include <utility>
+
+#include "viewer/server/request_target.h"
+
+namespace skyquilt::viewer::server {
+namespace {
+
+constexpr std::string_view kDataPrefix = "/data/";
+constexpr size_t kMaxDataPath = 200, kMaxDataQuery = 100;
+
+Answer WrongHost() {
+  return PageAnswer(403, "Open the link as it is printed",
+                    {"The viewer answers only under the address in the link that it printed in the terminal.",
+                     "If you forward the port from another machine, use the same port number on both sides, for instance "
+                     "ssh -L 8080:127.0.0.1:8080 for a viewer started with --port 8080."});
+}
+
+Answer NeedsLink() {
+  return PageAnswer(403, "This viewer needs its link",
+                    {"Copy the newest link from the terminal where skyquilt view runs, and open it in this browser. A link works once.",
+                     "If you have just opened that link from another page, continue here:"},
+                    "Open the viewer");
+}
+
+Answer UsedLink() {
+  return PageAnswer(403, "This link does not work any more",
+                    {"Each link works once, and only while its viewer runs. Copy the newest link from the terminal where skyquilt view runs."});
+}
+
+Answer TooManyGuesses() {
+  Answer answer =
+      PageAnswer(429, "Too many wrong links", {"Wait for a minute, then open the newest link from the terminal where skyquilt view runs."});
+  answer.headers.emplace_back("Retry-After", "60");
+  return answer;
+}
+
+Answer ToStart() {
+  Answer answer = PlainAnswer(303, "see /");
+  answer.headers.emplace_back("Location", "/");
+  return answer;
+}
+
+Answer WrongMethod(const std::string& allowed) {
+  Answer answer = PlainAnswer(405, "this method is not allowed here");
+  answer.headers.emplace_back("Allow", allowed);
+  return answer;
+}
+
+// Browsers send with the Origin header which page makes a request; other pages' requests must not change anything or read the WebSocket.
+bool IsOwnOrigin(const std::vector<std::string>& origins, const std::string& host) {
+  return origins.size() == 1 && LowerCase(origins.front()) == "http://" + LowerCase(host);
+}
+
+}  // namespace
+
+Router::Router(const std::vector<Asset>& assets, HostList hosts, Access& access, std::function<void()> link_used)
+    : hosts_(std::move(hosts)), access_(access), link_used_(std::move(link_used)) {
+  for (const Asset& asset : assets) {
+    assets_[asset.path] = {.status = 200, .content_type = asset.content_type, .body = std::make_shared<const std::string>(asset.body), .file = {}};
+  }
+}
+
+Decision Router::Decide(const RequestHead& head, Access::Clock::time_point now) const {
+  Decision decision;
+  if (head.hosts.size() != 1 || !hosts_.Allows(head.hosts.front())) {
+    decision.answer = WrongHost();
+    return decision;
+  }
+  decision.host = LowerCase(head.hosts.front());
+  if (head.target.size() > kMaxTargetBytes) {
+    decision.answer = PlainAnswer(414, "the address is too long");
+    return decision;
+  }
+  const auto target = ParseTarget(head.target);
+  if (!target) {
+    decision.answer = PlainAnswer(400, "this address is not allowed");
+    return decision;
+  }
+  decision.trusted = access_.HasSession(head.cookies);
+  const auto token = QueryValue(target->query, "token");
+  if (token && head.method == Method::kGet && target->path == "/") {
+    decision.answer = AnswerToken(*token, decision.trusted, now);
+  } else if (!decision.trusted) {
+    decision.answer = NeedsLink();
+  } else {
+    DecideTrusted(head, target->path, target->query, decision);
+  }
+  return decision;
+}
+
+Answer Router::AnswerToken(const std::string& token, bool trusted, Access::Clock::time_point now) const {
+  std::string set_cookie;
+  switch (access_.TryToken(token, trusted, now, set_cookie)) {
+    case Access::Exchange::kGranted: {
+      Answer answer = ToStart();
+      answer.headers.emplace_back("Set-Cookie", set_cookie);
+      link_used_();
+      return answer;
+    }
+    case Access::Exchange::kTooManyGuesses:
+      return TooManyGuesses();
+    case Access::Exchange::kWrong:
+      break;
+  }
+  return trusted ? ToStart() : UsedLink();
+}
+
+void Router::DecideTrusted(const RequestHead& head, const std::string& path, const std::string& query, Decision& decision) const {
+  const bool reads = head.method == Method::kGet || head.method == Method::kHead;
+  const bool is_data = path.starts_with(kDataPrefix);
+  if (!reads && !(head.method == Method::kPut && is_data)) {
+    decision.answer = WrongMethod(is_data ? "GET, HEAD, PUT" : "GET, HEAD");
+  } else if (reads && head.has_body) {
+    decision.answer = PlainAnswer(400, "a request that reads has no body");
+  } else if (is_data) {
+    decision.path = path.substr(kDataPrefix.size());
+    decision.query = query;
+    if (decision.path.empty() || decision.path.size() > kMaxDataPath) {
+      decision.answer = PlainAnswer(404, "there is no such file");
+    } else if (query.size() > kMaxDataQuery) {
+      decision.answer = PlainAnswer(414, "the address is too long");
+    } else if (reads) {
+      decision.action = Action::kGetData;
+    } else if (!IsOwnOrigin(head.origins, decision.host)) {
+      decision.answer = PlainAnswer(403, "only the viewer's own page may change documents");
+    } else {
+      decision.action = Action::kPutData;
+    }
+  } else if (path == "/ws") {
+    if (!IsOwnOrigin(head.origins, decision.host)) {
+      decision.answer = PlainAnswer(403, "only the viewer's own page may connect");
+    } else if (head.upgrade) {
+      decision.action = Action::kOpenWebsocket;
+    } else {
+      decision.answer = PlainAnswer(426, "this address is for a WebSocket");
+      decision.answer.headers.emplace_back("Upgrade", "websocket");
+    }
+  } else if (const auto asset = assets_.find(path); asset != assets_.end()) {
+    decision.answer = asset->second;
+  } else if (path == "/favicon.ico") {
+    // Browsers ask for it on their own; 404 would be an error in their console.
+    decision.answer.status = 204;
+  } else {
+    decision.answer = PlainAnswer(404, "there is no such file");
+  }
+}
+
+}  // namespace skyquilt::viewer::server

@@ -1,0 +1,70 @@
+#include "viewer/view.h"
+
+#include <iostream>
+
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "viewer/assets.h"
+#include "viewer/data/project_data.h"
+#include "viewer/engine/engine.h"
+#include "viewer/server/own_hosts.h"
+#include "viewer/server/server.h"
+
+namespace skyquilt::viewer {
+namespace {
+
+bool IsLoopback(const std::string& address) {
+  return address.empty() || address == "localhost" || address == "::1" || address.starts_with("127.");
+}
+
+std::vector<Asset> Assets(const ViewOptions& options) {
+  if (!options.front_end.empty()) return FrontEndFrom(options.front_end);
+  std::vector<Asset> assets = FrontEnd();
+  if (assets.empty()) {
+    throw base::UsageError(
+        "this program was built without the viewer's front end, because Node.js or npm's packages were missing. "
+        "Install the Debian packages nodejs and npm and build again while the network is up");
+  }
+  return assets;
+}
+
+void PrintLink(const std::string& text, const std::string& link) {
+  std::cout << text << "\n\n    " << link << "\n\n" << std::flush;
+}
+
+}  // namespace
+
+void View(comm::Communicator& comm, const ViewOptions& options) {
+  ServerOptions server_options;
+  server_options.assets = Assets(options);
+  server_options.port = options.port;
+  if (!options.listen.empty()) server_options.address = options.listen == "localhost" ? "127.0.0.1" : options.listen;
+  if (!IsLoopback(options.listen)) {
+    server_options.extra_hosts = OwnHosts();
+    spdlog::warn(
+        "--listen {}: other machines can reach this viewer, and the connection is not encrypted. Whoever has the link can see the project and change "
+        "its measurements. Better: keep the default and forward the port, for instance with ssh -L",
+        options.listen);
+  }
+  ProjectData data(options.project, options.before);
+  Engine engine({.comm = comm,
+                 .project = options.project,
+                 .before = options.before,
+                 .run = options.run,
+                 .exposure = options.exposure,
+                 .verbose = options.verbose,
+                 .quiet = options.quiet},
+                data);
+  Server server(server_options, engine, data);
+  server.OnLinkUsed([](const std::string& next) { PrintLink("The link was opened. For another browser:", next); });
+  PrintLink("Open this link in a browser on this machine (it works once; Ctrl-C ends the viewer):", server.LaunchLink());
+  try {
+    engine.Run({.send = [&server](ClientId client, OutMessage message) { server.Send(client, std::move(message)); },
+                .queued = [&server](ClientId client) { return server.QueuedBytes(client); }});
+  } catch (const base::Interrupted&) {
+    // The normal end.
+  }
+  spdlog::info("viewer closed");
+}
+
+}  // namespace skyquilt::viewer

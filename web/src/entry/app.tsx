@@ -1,0 +1,65 @@
+// Joins the rooms: project, store, engine, scene, tools, panels.
+import { StrictMode } from "react";
+import { createRoot, type Root } from "react-dom/client";
+import { AppView } from "../panels/app_view.js";
+import type { AppContext } from "../panels/context.js";
+import { addViewCommands } from "../panels/view_commands.js";
+import { connect } from "../protocol/link.js";
+import { loadProject } from "../protocol/project_client.js";
+import { createScene } from "../scene/viewer_scene.js";
+import { CommandTable } from "../state/commands.js";
+import { initialState } from "../state/initial.js";
+import { Store } from "../state/store.js";
+import { createTools } from "../tools/tools.js";
+import { watchProject } from "./project_watch.js";
+import { requireWebGl2, StartErrorPage } from "./start_error.js";
+import { installTestHook } from "./test_hook.js";
+import { ViewLog } from "./view_log.js";
+import { wireLink } from "./wire_link.js";
+
+declare const SKYQUILT_TEST_HOOK: boolean | undefined;
+
+const withTestHook = typeof SKYQUILT_TEST_HOOK !== "undefined" && SKYQUILT_TEST_HOOK;
+
+async function start(root: Root, container: HTMLElement): Promise<void> {
+  requireWebGl2();
+  dropToken();
+  const project = await loadProject();
+  const store = new Store(initialState(project));
+  const commands = new CommandTable();
+  const views = withTestHook ? new ViewLog() : null;
+  const connected = connect();
+  const link = views === null ? connected : views.watch(connected);
+  wireLink(link, store);
+  const scene = createScene({ container, project, store, link });
+  const context: AppContext = { project, store, scene, link, commands };
+  createTools(context);
+  addViewCommands(context);
+  const draw = (changed: boolean): void =>
+    root.render(
+      <StrictMode>
+        <AppView context={context} changed={changed} />
+      </StrictMode>,
+    );
+  draw(false);
+  watchProject(store, project, loadProject, () => draw(true));
+  if (views !== null) installTestHook(context, views);
+}
+
+/** The link's token has done its work and must not stay in the address, from where it would be copied or bookmarked. */
+function dropToken(): void {
+  const url = new URL(window.location.href);
+  if (!url.searchParams.has("token")) return;
+  url.searchParams.delete("token");
+  window.history.replaceState(null, "", url);
+}
+
+const ui = document.getElementById("ui");
+const stage = document.getElementById("stage");
+if (ui !== null && stage !== null) {
+  const root = createRoot(ui);
+  start(root, stage).catch((error: unknown) => {
+    console.warn(error);
+    root.render(<StartErrorPage error={error} />);
+  });
+}

@@ -1,0 +1,63 @@
+// Everything around the 3-D view: tools, panels, status, dialogs, messages.
+import { type ReactElement, useEffect } from "react";
+import { BusyList } from "./busy_list.js";
+import type { AppContext } from "./context.js";
+import { HelpDialog } from "./help_dialog.js";
+import { Notices } from "./notices.js";
+import { PhotoCompareView } from "./photo_compare.js";
+import { PanelTabs, SidePanel } from "./side_panel.js";
+import { StatusBar } from "./status_bar.js";
+import { SwipeHandle } from "./swipe_handle.js";
+import { Toolbar } from "./toolbar.js";
+import { AppProvider } from "./use_store.js";
+import { ViewControls } from "./view_controls.js";
+
+interface AppViewProps {
+  readonly context: AppContext;
+  /** The files of the project are newer than what is shown. */
+  readonly changed?: boolean;
+}
+
+export function AppView({ context, changed = false }: AppViewProps): ReactElement {
+  const { canvas } = context.scene;
+  const { name } = context.project;
+  useEffect(() => {
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "application");
+    canvas.setAttribute("aria-label", `3-D view of ${name}. Question mark lists the keys.`);
+    document.title = `${name} – Skyquilt`;
+  }, [canvas, name]);
+  return (
+    <AppProvider value={context}>
+      <h1 className="sr-only">{name}</h1>
+      <SwipeHandle />
+      <div className="frame">
+        <Toolbar />
+        <main className="stage-area">
+          <ViewControls />
+          <div className="messages">
+            {changed ? <ChangedCard /> : null}
+            <BusyList />
+            <Notices />
+          </div>
+        </main>
+        <SidePanel />
+        <PanelTabs />
+        <StatusBar />
+      </div>
+      <PhotoCompareView />
+      <HelpDialog />
+    </AppProvider>
+  );
+}
+
+function ChangedCard(): ReactElement {
+  return (
+    <div className="notice notice-info card" role="status">
+      <p>The project has changed. Reload the page to see its new surface and numbers.</p>
+      <button type="button" className="primary" onClick={() => window.location.reload()}>
+        Reload
+      </button>
+    </div>
+  );
+}

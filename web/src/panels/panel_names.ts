@@ -1,0 +1,11 @@
+// The panels in the order of their tabs.
+import type { PanelName } from "../state/app_state.js";
+
+export const PANELS: readonly { readonly name: PanelName; readonly label: string }[] = [
+  { name: "layers", label: "Layers" },
+  { name: "measure", label: "Measurements" },
+  { name: "photos", label: "Photos" },
+  { name: "control", label: "Control points" },
+  { name: "path", label: "Camera path" },
+  { name: "about", label: "About this project" },
+];

@@ -1,0 +1,33 @@
+// What panels and tools may ask of the 3-D scene. Coordinates: ENU metres in doubles; positions on the canvas in CSS pixels from its upper left corner.
+import type { Vec2, Vec3 } from "../base/vec.js";
+import type { CameraPose, Enu, SurfacePoint } from "../state/app_state.js";
+
+export interface Ray {
+  readonly originEnu: Enu;
+  readonly direction: Vec3;
+  /** Radians per CSS pixel (perspective), metres per CSS pixel (orthographic); the other is 0. */
+  readonly pixelPitch: number;
+  readonly pixelWidthM: number;
+}
+
+export interface SceneApi {
+  /** Canvas that pointer events of tools come from. */
+  readonly canvas: HTMLCanvasElement;
+  pose(): CameraPose;
+  /** Moves there; duration 0 or reduced motion: jumps. Resolves when it has arrived or another move replaced it. */
+  flyTo(pose: CameraPose, durationMs?: number): Promise<void>;
+  /** Looks at the box from obliquely above, so that it fills the view. */
+  frameBox(min: Enu, max: Enu): Promise<void>;
+  rayAt(px: Vec2): Ray;
+  /** The surface (tiles or terrain, whatever is shown; the clip box counts) under this place; null: nothing. */
+  pickSurface(px: Vec2): SurfacePoint | null;
+  /** Canvas position of a point; null: behind the camera. */
+  project(point: Enu): Vec2 | null;
+  /** Asks for a new frame; the scene draws only on change. */
+  invalidate(): void;
+  /** Resolves when tiles are loaded, textures uploaded and a frame was drawn since the call. */
+  whenIdle(): Promise<void>;
+  /** Picture of the canvas as it is now (PNG). */
+  capture(): Promise<Blob>;
+  dispose(): void;
+}

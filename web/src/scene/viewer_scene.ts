@@ -1,0 +1,383 @@
+// The 3-D view: joins camera, surfaces, exact frames, navigation and marks, and keeps them in step with the store and the engine.
+import { systemClock } from "../base/clock.js";
+import { Disposer } from "../base/disposer.js";
+import type { Vec2, Vec3 } from "../base/vec.js";
+import { add, dot, scale } from "../base/vec_math.js";
+import { anglesOfPose, forward } from "../geo/camera.js";
+import type { Link, Which } from "../protocol/link_api.js";
+import type { AppState, CameraPose, Enu, SurfacePoint } from "../state/app_state.js";
+import type { Project } from "../state/project.js";
+import type { Store } from "../state/store.js";
+import { CameraMoves } from "./camera_moves.js";
+import { CameraRig } from "./camera_rig.js";
+import { watchContext } from "./context_loss.js";
+import { ErrorDrape } from "./error_drape.js";
+import { ExactControl } from "./exact_control.js";
+import { obliquePose, topPose } from "./framing.js";
+import { Navigation } from "./navigation.js";
+import { addNotice } from "./notices.js";
+import { Overlay } from "./overlay.js";
+import { pickSurfaces } from "./picking.js";
+import { FrameMeter } from "./quality.js";
+import { ReadoutWriter, type ViewReadout } from "./readout.js";
+import { RenderLoop } from "./render_loop.js";
+import type { Ray, SceneApi } from "./scene_api.js";
+import { Stage } from "./stage.js";
+import { pixelSizeM, type Size } from "./view_math.js";
+import { type Box, makeWorld, sceneFromEnu, type World } from "./world.js";
+
+export interface SceneOptions {
+  readonly container: HTMLElement;
+  readonly project: Project;
+  readonly store: Store;
+  readonly link: Link;
+}
+
+/** Throws an Error for the user when the browser has no WebGL 2. */
+export function createScene(options: SceneOptions): SceneApi {
+  return new ViewerScene(options);
+}
+
+/** Frames after a pause do not make keys jump. */
+const LONGEST_STEP_MS = 100;
+const USUAL_STEP_MS = 16;
+
+class ViewerScene implements SceneApi {
+  readonly canvas: HTMLCanvasElement;
+  private readonly store: Store;
+  private readonly world: World;
+  private readonly disposer = new Disposer();
+  private readonly stage: Stage;
+  private readonly rig: CameraRig;
+  private readonly loop: RenderLoop;
+  private readonly meter: FrameMeter;
+  private readonly moves: CameraMoves;
+  private readonly navigation: Navigation;
+  private readonly exact: ExactControl;
+  private readonly overlay: Overlay;
+  private readonly readout: ReadoutWriter;
+  private readonly drape: ErrorDrape;
+  private readonly photosBox: Box;
+  private drawnVersion = -1;
+  private drawnRatio = 0;
+  private lastFrameMs = Number.NEGATIVE_INFINITY;
+  private waiters: { readonly after: number; readonly done: () => void }[] = [];
+
+  constructor({ container, project, store, link }: SceneOptions) {
+    this.store = store;
+    this.world = makeWorld(project);
+    this.photosBox = boxOfPhotos(project, this.world);
+    const d = this.disposer;
+    const motion = window.matchMedia("(prefers-reduced-motion: reduce)");
+    const reducedMotion = () => motion.matches;
+    const invalidate = () => this.loop.invalidate();
+    const failed = (text: string) => {
+      addNotice(store, "error", text);
+    };
+    this.loop = d.own(new RenderLoop((nowMs) => this.frame(nowMs)));
+    this.stage = d.own(
+      new Stage({ project, world: this.world, reducedMotion, events: { changed: invalidate, failed } }),
+    );
+    this.canvas = this.stage.renderer.domElement;
+    this.meter = new FrameMeter(this.stage.software);
+    placeCanvas(
+      container,
+      this.canvas,
+      `3-D view of ${project.name}: drag moves, right button turns, wheel zooms, arrow keys move`,
+    );
+    d.add(() => this.canvas.remove());
+    const size: Size = [container.clientWidth, container.clientHeight];
+    const top = store.get().navigation === "top";
+    const first = top ? topPose(this.world.boxEnu, size, this.world) : obliquePose(this.world.boxEnu, size);
+    this.rig = new CameraRig(this.world, first);
+    this.rig.resize(size);
+    this.overlay = d.own(new Overlay(container, project, this.world.sizeM));
+    const { world, rig } = this;
+    this.moves = d.own(new CameraMoves({ rig, world, store, reducedMotion, focus: () => this.focus(), invalidate }));
+    this.navigation = d.own(
+      new Navigation({
+        canvas: this.canvas,
+        rig,
+        world,
+        mode: () => store.get().navigation,
+        reducedMotion,
+        pick: (px) => this.pickSurface(px)?.enu ?? null,
+        groundAt: (x, y) => this.groundAt(x, y),
+        onInput: () => this.moves.interrupt(),
+        invalidate,
+      }),
+    );
+    this.exact = d.own(
+      new ExactControl({
+        project,
+        store,
+        link,
+        rig,
+        clock: systemClock,
+        layer: (side) => this.stage.exact(side),
+        canvasPx: () => Stage.canvasPx(rig.size, Stage.fullPixelRatio()),
+        drawn: () => rig.version === this.drawnVersion,
+        invalidate,
+      }),
+    );
+    this.readout = d.own(new ReadoutWriter(store, systemClock, () => this.measure()));
+    this.drape = d.own(
+      new ErrorDrape(world, {
+        changed: (drape) => {
+          this.stage.setDrape(drape);
+          invalidate();
+        },
+        failed,
+      }),
+    );
+    this.listen(container);
+    this.loop.invalidate();
+  }
+
+  // ---- what scene_api.ts offers ----
+
+  pose(): CameraPose {
+    return this.rig.pose;
+  }
+
+  flyTo(pose: CameraPose, durationMs?: number): Promise<void> {
+    this.navigation.stop();
+    return this.moves.flyTo(pose, durationMs);
+  }
+
+  frameBox(min: Enu, max: Enu): Promise<void> {
+    this.navigation.stop();
+    return this.moves.frameBox(min, max);
+  }
+
+  rayAt(px: Vec2): Ray {
+    return this.rig.rayAt(px);
+  }
+
+  pickSurface(px: Vec2): SurfacePoint | null {
+    const ray = this.rig.rayAt(px);
+    const { swipe } = this.store.get();
+    const side: Which = this.exact.swiping && px[0] < swipe.at * this.rig.size[0] ? "before" : "main";
+    const t = pickSurfaces(
+      this.stage.surfaces(side),
+      sceneFromEnu(this.world, ray.originEnu),
+      ray.direction,
+      this.stage.clipBox,
+    );
+    if (t === null) return null;
+    return {
+      enu: add(ray.originEnu, scale(ray.direction, t)),
+      direction: ray.direction,
+      spreadM: null,
+      pixelM: ray.pixelWidthM + ray.pixelPitch * t,
+      source: "mesh",
+    };
+  }
+
+  project(point: Enu): Vec2 | null {
+    return this.rig.project(point);
+  }
+
+  invalidate(): void {
+    this.loop.invalidate();
+  }
+
+  whenIdle(): Promise<void> {
+    if (this.disposer.disposed) return Promise.resolve();
+    return new Promise((done) => {
+      this.waiters.push({ after: this.loop.drawn, done });
+      this.loop.invalidate();
+    });
+  }
+
+  capture(): Promise<Blob> {
+    // Read in the same task as it is drawn: the drawing buffer is empty afterwards.
+    this.loop.drawNow();
+    return new Promise((resolve, reject) => {
+      this.canvas.toBlob((blob) => {
+        if (blob === null) reject(new Error("the browser made no picture of the view"));
+        else resolve(blob);
+      }, "image/png");
+    });
+  }
+
+  dispose(): void {
+    this.disposer.dispose();
+    for (const { done } of this.waiters.splice(0)) done();
+  }
+
+  // ---- frames ----
+
+  private frame(nowMs: number): boolean {
+    const { rig, stage, store, meter } = this;
+    const passed = nowMs - this.lastFrameMs;
+    const stepMs = passed > 2 * LONGEST_STEP_MS ? USUAL_STEP_MS : Math.min(LONGEST_STEP_MS, Math.max(0, passed));
+    this.lastFrameMs = nowMs;
+    this.moves.step(nowMs);
+    if (!this.moves.active) this.navigation.step(stepMs);
+    const fullRatio = Stage.fullPixelRatio();
+    const moved = rig.version !== this.drawnVersion;
+    if (moved || fullRatio !== this.drawnRatio) {
+      this.drawnVersion = rig.version;
+      this.drawnRatio = fullRatio;
+      this.exact.renew();
+      this.readout.changed();
+    }
+    meter.frame(nowMs, moved);
+    stage.eachExact((exact) => exact.step(nowMs));
+    const state = store.get();
+    const quality = meter.quality(!this.exact.resting);
+    stage.resize(rig.size, Math.min(fullRatio, quality.pixelRatio));
+    stage.draw(
+      rig.update(this.visibleBox(state)),
+      rig.size,
+      quality,
+      state.layers.surface,
+      this.exact.swiping ? state.swipe.at : null,
+    );
+    this.overlay.update(state, rig.pose, rig.size);
+    const again = this.moves.active || this.navigation.active || stage.fading;
+    if (!again) this.tellIdle();
+    return again;
+  }
+
+  /** Those who wait for a still picture, when nothing more will change it. */
+  private tellIdle(): void {
+    if (this.waiters.length === 0 || this.loop.pending || this.stage.busy || this.drape.busy) return;
+    if (this.exact.swiping && this.stage.beforeBusy) return;
+    // While moving less may be drawn than at rest.
+    if (!this.exact.resting && this.meter.quality(true) !== this.meter.quality(false)) return;
+    const waiters = this.waiters.filter(({ after }) => this.loop.drawn >= after);
+    this.waiters = this.waiters.filter((waiter) => !waiters.includes(waiter));
+    for (const { done } of waiters) done();
+  }
+
+  /** All that near and far must hold. */
+  private visibleBox(state: AppState): Box {
+    const margin = 0.05 * this.world.sizeM;
+    let { min, max } = this.world.boxEnu;
+    const include = (low: Vec3, high: Vec3): void => {
+      min = [Math.min(min[0], low[0], high[0]), Math.min(min[1], low[1], high[1]), Math.min(min[2], low[2], high[2])];
+      max = [Math.max(max[0], low[0], high[0]), Math.max(max[1], low[1], high[1]), Math.max(max[2], low[2], high[2])];
+    };
+    if (state.layers.cameras) include(this.photosBox.min, this.photosBox.max);
+    if (this.stage.clipBox !== null) include(state.clip.min, state.clip.max);
+    const by: Vec3 = [margin, margin, margin];
+    return { min: add(min, scale(by, -1)), max: add(max, by) };
+  }
+
+  // ---- places ----
+
+  private focus(): Vec3 {
+    const { rig, world } = this;
+    const middle: Vec2 = [rig.size[0] / 2, rig.size[1] / 2];
+    return this.pickSurface(middle)?.enu ?? add(rig.pose.eyeEnu, scale(forward(rig.pose.rotation), world.sizeM / 2));
+  }
+
+  private groundAt(x: number, y: number): number | null {
+    const topM = this.world.boxEnu.max[2] + this.world.sizeM;
+    const t = pickSurfaces(this.stage.surfaces("main"), sceneFromEnu(this.world, [x, y, topM]), [0, 0, -1], null);
+    return t === null ? null : topM - t;
+  }
+
+  private measure(): ViewReadout {
+    const { rig } = this;
+    const { yawDeg, pitchDeg } = anglesOfPose(rig.pose.rotation);
+    const ray = rig.rayAt([rig.size[0] / 2, rig.size[1] / 2]);
+    const t = pickSurfaces(this.stage.surfaces("main"), sceneFromEnu(this.world, ray.originEnu), ray.direction, null);
+    const depthM = t === null ? null : t * dot(ray.direction, forward(rig.pose.rotation));
+    const metresPerPx =
+      rig.pose.orthoHeightM === null && depthM === null ? null : pixelSizeM(rig.pose, rig.size, depthM ?? 0);
+    return { headingDeg: yawDeg, pitchDeg, metresPerPx, fps: this.meter.fps };
+  }
+
+  // ---- store and window ----
+
+  private listen(container: HTMLElement): void {
+    const { disposer: d, store, stage } = this;
+    const invalidate = () => this.loop.invalidate();
+    const resized = new ResizeObserver(() => {
+      this.rig.resize([container.clientWidth, container.clientHeight]);
+      invalidate();
+    });
+    resized.observe(container);
+    d.add(() => resized.disconnect());
+    d.listen(window, "resize", invalidate);
+    d.add(
+      watchContext(this.canvas, store, this.loop, () => {
+        stage.prepare();
+        this.exact.reset();
+      }),
+    );
+    d.add(
+      store.subscribe(
+        (state) => state.layers,
+        (layers) => {
+          stage.extras.show(layers);
+          invalidate();
+        },
+      ),
+    );
+    d.add(
+      store.subscribe(
+        (state) => state.clip,
+        (clip) => {
+          stage.setClip(clip);
+          invalidate();
+        },
+      ),
+    );
+    d.add(
+      store.subscribe(
+        (state) => (state.layers.errorMap ? state.errorMap : null),
+        (map) => this.drape.show(map),
+      ),
+    );
+    d.add(store.subscribe((state) => state.swipe, invalidate));
+    d.add(
+      store.subscribe(
+        (state) => state.navigation,
+        (mode) => {
+          this.navigation.stop();
+          this.moves.setMode(mode);
+        },
+      ),
+    );
+    d.add(
+      store.subscribeAll(() => {
+        if (this.overlay.needs(store.get())) invalidate();
+      }),
+    );
+    const state = store.get();
+    stage.extras.show(state.layers);
+    stage.setClip(state.clip);
+    this.drape.show(state.layers.errorMap ? state.errorMap : null);
+  }
+}
+
+function boxOfPhotos(project: Project, world: World): Box {
+  let [min, max] = [world.boxEnu.min, world.boxEnu.max];
+  for (const { position } of project.photos) {
+    if (!position.every(Number.isFinite)) continue;
+    min = [Math.min(min[0], position[0]), Math.min(min[1], position[1]), Math.min(min[2], position[2])];
+    max = [Math.max(max[0], position[0]), Math.max(max[1], position[1]), Math.max(max[2], position[2])];
+  }
+  return { min, max };
+}
+
+function placeCanvas(container: HTMLElement, canvas: HTMLCanvasElement, label: string): void {
+  canvas.tabIndex = 0;
+  canvas.className = "scene-canvas";
+  canvas.setAttribute("role", "application");
+  canvas.setAttribute("aria-label", label);
+  const { style } = canvas;
+  style.position = "absolute";
+  style.left = "0";
+  style.top = "0";
+  style.width = "100%";
+  style.height = "100%";
+  style.display = "block";
+  // Fingers move the camera, not the page.
+  style.touchAction = "none";
+  container.append(canvas);
+}

@@ -1,0 +1,75 @@
+// No tool: the mouse moves the camera. A click on a measurement selects it.
+import type { Vec2 } from "../base/vec.js";
+import type { Enu, Measurement } from "../state/app_state.js";
+import type { Tool, ToolPointer } from "./tool.js";
+import type { ToolContext } from "./tool_context.js";
+
+const NEAR_PX = 8;
+
+export class NavigateTool implements Tool {
+  readonly name = "navigate";
+  private readonly context: Pick<ToolContext, "store" | "scene">;
+
+  constructor(context: Pick<ToolContext, "store" | "scene">) {
+    this.context = context;
+  }
+
+  activate(): void {}
+  deactivate(): void {}
+  hover(): void {}
+
+  click({ px }: ToolPointer): boolean {
+    const { store, scene } = this.context;
+    const { documents, layers, selected } = store.get();
+    const found = layers.measurements
+      ? measurementAt(documents.measurements, px, (point) => scene.project(point))
+      : null;
+    if (found !== selected) store.set({ selected: found });
+    return found !== null;
+  }
+
+  doubleClick(): boolean {
+    return false;
+  }
+
+  key(key: string): boolean {
+    const { store } = this.context;
+    if (key !== "Escape" || store.get().selected === null) return false;
+    store.set({ selected: null });
+    return true;
+  }
+}
+
+/** Id of the measurement whose points or lines are nearest to the place, within 8 pixels; null: none. */
+export function measurementAt(
+  measurements: readonly Measurement[],
+  px: Vec2,
+  project: (point: Enu) => Vec2 | null,
+): string | null {
+  let nearest = NEAR_PX;
+  let id: string | null = null;
+  for (const { id: own, kind, points } of measurements) {
+    const places = points.map(({ enu }) => project(enu));
+    const closed = kind === "area" || kind === "volume";
+    places.forEach((a, i) => {
+      const b = i + 1 < places.length ? places[i + 1] : closed ? places[0] : a;
+      // A line that leaves behind the camera has no place on the canvas.
+      if (a === null || a === undefined || b === null || b === undefined) return;
+      const distance = distanceToLine(px, a, b);
+      if (distance <= nearest) {
+        nearest = distance;
+        id = own;
+      }
+    });
+  }
+  return id;
+}
+
+/** From p to the line between a and b. */
+function distanceToLine(p: Vec2, a: Vec2, b: Vec2): number {
+  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+  const square = dx * dx + dy * dy;
+  const along = square > 0 ? ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / square : 0;
+  const u = Math.min(1, Math.max(0, along));
+  return Math.hypot(p[0] - a[0] - u * dx, p[1] - a[1] - u * dy);
+}

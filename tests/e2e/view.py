@@ -95,7 +95,9 @@ def exact_frame(skyquilt, project, *flags, ranks=0):
         expect(frame.format == 1 and frame.width == 320 and len(frame.depth) == 2 * frame.depth_width * frame.depth_height, "last pass")
         return frame.color, frame.depth
     finally:
-        expect(viewer.close() == 0, f"ended with {viewer.process.returncode}:\n{viewer.printed}")
+        status = viewer.close()
+        # mpirun itself ends with 1 after Ctrl-C.
+        expect((status == 0 or ranks) and "viewer closed" in viewer.printed, f"ended with {status}:\n{viewer.printed}")
 
 
 def check_ranks(skyquilt, project):
@@ -177,13 +179,14 @@ def check_full_disk(skyquilt, project, folder):
         viewer = Viewer(skyquilt, small).log_in()
         try:
             expect(viewer.request("PUT", "/data/measurements.geojson", body=collection(2))[0] in (200, 204), "saving on a disk with space")
-            with open(disk / "filler", "wb") as filler:
-                try:
-                    while True:
-                        filler.write(bytes(4096))
-                        filler.flush()
-                except OSError:
+            filler = os.open(disk / "filler", os.O_WRONLY | os.O_CREAT)
+            try:
+                while os.write(filler, bytes(4096)):
                     pass
+            except OSError:
+                pass
+            finally:
+                os.close(filler)
             status, _, body = viewer.request("PUT", "/data/measurements.geojson", body=collection(900))
             expect(status == 507 and b"space" in body.lower(), f"full disk: {status} {body[:200]}")
             expect(len(json.loads((small / "measurements.geojson").read_text())["features"]) == 2, "the old file is gone")
@@ -279,11 +282,12 @@ def test(skyquilt: Skyquilt, folder):
     check_session(skyquilt, project)
     check_page(skyquilt, project, survey, build / "web", build / "Testing" / "view")
     check_ranks(skyquilt, project)
-    check_new_merge(skyquilt, project)
     check_killed_while_saving(skyquilt, project)
     check_full_disk(skyquilt, project, folder)
     check_unfinished(skyquilt, project, survey, folder)
     check_port(skyquilt, project)
+    # Last: it removes what was made from the former scene.
+    check_new_merge(skyquilt, project)
 
 
 if __name__ == "__main__":

@@ -3,11 +3,12 @@ import base64
 import http.client
 import json
 import os
+import queue
 import re
-import selectors
 import socket
 import struct
 import subprocess
+import threading
 import time
 import zlib
 
@@ -21,23 +22,29 @@ class Viewer:
         self.process = subprocess.Popen(skyquilt.command(["view", project, *flags], ranks), env=dict(skyquilt.environment, **(environment or {})),
                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)
         self.printed = ""
+        self.lines = queue.Queue()
+        self.reader = threading.Thread(target=self.read_lines, daemon=True)
+        self.reader.start()
         self.link = self.next_link()
         self.port = int(re.search(r":(\d+)/", self.link).group(1))
         self.cookie = None
 
+    def read_lines(self):
+        for line in self.process.stdout:
+            self.printed += line
+            self.lines.put(line)
+        self.lines.put(None)
+
     def next_link(self, seconds=60):
         """The next link that it prints."""
-        selector = selectors.DefaultSelector()
-        selector.register(self.process.stdout, selectors.EVENT_READ)
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            if not selector.select(0.2):
-                expect(self.process.poll() is None, f"the viewer ended with {self.process.returncode}:\n{self.printed}")
+            try:
+                line = self.lines.get(timeout=0.2)
+            except queue.Empty:
                 continue
-            line = self.process.stdout.readline()
-            if not line:
+            if line is None:
                 raise Failure(f"the viewer ended with {self.process.wait()}:\n{self.printed}")
-            self.printed += line
             found = re.search(r"http://\S+/\?token=\S+", line)
             if found:
                 return found.group(0)
@@ -81,7 +88,8 @@ class Viewer:
         if self.process.poll() is None:
             self.process.send_signal(2)
         try:
-            self.printed += self.process.communicate(timeout=seconds)[0] or ""
+            self.process.wait(timeout=seconds)
+            self.reader.join(5)
         except subprocess.TimeoutExpired as late:
             self.process.kill()
             raise Failure(f"the viewer does not end within {seconds} s of SIGINT:\n{self.printed}") from late

@@ -221,8 +221,9 @@ class ViewerScene implements SceneApi {
       this.drawnVersion = rig.version;
       this.drawnRatio = fullRatio;
       this.exact.renew();
-      this.readout.changed();
     }
+    // Also when only tiles arrived: they tell how large a pixel is.
+    this.readout.changed();
     meter.frame(nowMs, moved);
     stage.eachExact((exact) => exact.step(nowMs));
     const state = store.get();

@@ -165,11 +165,10 @@ async function checkHouse(page, description) {
   }
   await screenshot(page, out, "house");
   const errors = figures.houses.map((one) => Math.abs(one.measured_m - one.truth_m));
-  // Of the houses nearest to the middle one must be right and none far off.
-  expect(
-    errors.length > 0 && Math.min(...errors) <= 2 * description.gsd_m,
-    `lengths of houses are ${errors} m off, ground sampling distance ${description.gsd_m} m`,
-  );
+  // One of the three may be hidden by a tree.
+  errors.sort((a, b) => a - b);
+  const median = errors[Math.floor(errors.length / 2)];
+  expect(median <= 2 * description.gsd_m, `houses are ${errors} m too long or short; GSD ${description.gsd_m} m`);
 }
 
 async function checkTools(page, description) {

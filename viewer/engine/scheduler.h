@@ -27,7 +27,7 @@ using QueryMaker = std::function<std::unique_ptr<Query>(const ClientMessage&)>;
 
 class Scheduler {
  public:
-  static constexpr size_t kCacheBytes = 32U << 20U;
+  static constexpr size_t kCacheBytes = 12U << 20U;
   static constexpr size_t kMaxQuestions = 32;  // per client
 
   // All must outlive it.

@@ -107,6 +107,45 @@ def check_ranks(skyquilt, project):
     return alone
 
 
+def check_questions(skyquilt, project):
+    """What the tools of the page ask, and two surveys side by side: here the same one, so that nothing has changed between them."""
+    viewer = Viewer(skyquilt, project, "--compare", project).log_in()
+    try:
+        description = viewer.project()
+        expect(description["before"]["tiles"] == "before/tiles/tileset.json", f"{description['before']['tiles']}")
+        expect(viewer.request("GET", "/data/before/tiles/tileset.json")[0] == 200, "tiles of the earlier survey")
+        socket = viewer.socket()
+        while not socket.welcome["engine"]["ready"]:
+            socket.welcome = socket.text("engine")
+        _, _, middle = views(description)
+        socket.send({"type": "pick", "id": 1, "project": "main", "origin": middle[:2] + [middle[2] + 80], "direction": [0, 0, -1],
+                     "pixel_pitch": 0.001, "pixel_width_m": 0})
+        picked = socket.text("picked")
+        expect(picked["hit"] and 0 < picked["spread_m"] < 5, f"{picked}")
+        socket.send({"type": "photos_at", "id": 2, "point": picked["point"]})
+        sights = socket.text("photos")
+        seen = [one for one in sights["photos"] if one["visible"]]
+        expect(sights["checked"] and len(seen) >= 3, f"{len(seen)} of {len(sights['photos'])} photos see the middle")
+        low, high = description["min_enu"], description["max_enu"]
+        socket.send({"type": "profile", "id": 3, "project": "main", "from": low[:2], "to": high[:2], "samples": 200})
+        heights = [height for height in socket.text("profile")["heights_m"] if height is not None]
+        expect(len(heights) > 150 and max(heights) - min(heights) > 2, f"profile: {len(heights)} heights")
+        x, y = middle[:2]
+        square = [[x - 10, y - 10], [x + 10, y - 10], [x + 10, y + 10], [x - 10, y + 10]]
+        for number, (base, least) in enumerate({"lowest": 1.0, "before": 0.0}.items()):
+            socket.send({"type": "volume", "id": 10 + number, "project": "main", "polygon": square, "base": base})
+            volume = socket.text("volume")
+            expect(abs(volume["plan_area_m2"] - 400) < 1e-6 and volume["filled"] > 0.95, f"{volume}")
+            expect(volume["cut_m3"] + volume["fill_m3"] >= least, f"{base}: {volume}")
+        expect(volume["cut_m3"] < 1e-6 and volume["fill_m3"] < 1e-6, f"a survey differs from itself: {volume}")
+        socket.send({"type": "error_map", "id": 20})
+        error_map = socket.text("error_map")
+        status, headers, picture = viewer.request("GET", f"/data/{error_map['url']}")
+        expect(status == 200 and picture.startswith(b"\x89PNG") and error_map["photos"] >= 1, f"{error_map} {status} {headers}")
+    finally:
+        viewer.close()
+
+
 def check_new_merge(skyquilt, project):
     """A scene that is merged while the viewer is open is loaded."""
     viewer = Viewer(skyquilt, project).log_in()
@@ -281,6 +320,7 @@ def test(skyquilt: Skyquilt, folder):
         return
     check_session(skyquilt, project)
     check_page(skyquilt, project, survey, build / "web", build / "Testing" / "view")
+    check_questions(skyquilt, project)
     check_ranks(skyquilt, project)
     check_killed_while_saving(skyquilt, project)
     check_full_disk(skyquilt, project, folder)

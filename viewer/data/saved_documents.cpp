@@ -155,8 +155,9 @@ std::string Content(const std::filesystem::path& file) {
   }
 }
 
-std::string Indented(const Json& json) {
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+// Keys stay in the order of the client.
+std::string Indented(const std::string& body) {
+  return nlohmann::ordered_json::parse(body).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 void WriteGcpList(const std::filesystem::path& folder, const std::string& old_json, const Json& gcp) {
@@ -211,7 +212,7 @@ DataReply PutDocument(const OpenedProject& opened, const std::string& name, cons
     return TextReply(400, name + " was not saved: " + refused.what());
   }
   const std::filesystem::path file = folder / name;
-  const std::string old = Content(file), wanted = Indented(json);
+  const std::string old = Content(file), wanted = Indented(body);
   try {
     if (old != wanted) base::WriteFileAtomically(file, wanted);
     if (name == "gcp.json") WriteGcpList(folder, old, json);

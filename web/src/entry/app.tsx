@@ -26,6 +26,8 @@ async function start(root: Root, container: HTMLElement): Promise<void> {
   dropToken();
   const project = await loadProject();
   const store = new Store(initialState(project));
+  // On a phone the panel would hide half of the first picture.
+  if (window.matchMedia("(max-width: 640px)").matches) store.set({ panel: null });
   const commands = new CommandTable();
   const views = withTestHook ? new ViewLog() : null;
   const connected = connect();

@@ -85,7 +85,8 @@ function pointLines(point: SurfacePoint, project: Project): readonly ResultLine[
 
 /** Heights keep their centimetres, also where ± is metres. */
 function heightText(m: number, sigma: number | null): string {
-  return `${m.toFixed(2)} m${sigma === null ? "" : ` ± ${formatLength(sigma)}`}`;
+  if (sigma === null) return `${m.toFixed(2)} m`;
+  return `${m.toFixed(2)} m ± ${sigma < 0.01 ? "<0.01" : sigma.toFixed(2)} m`;
 }
 
 function profileLines(lengthM: number, heightsM: readonly (number | null)[]): readonly ResultLine[] {

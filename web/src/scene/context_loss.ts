@@ -1,7 +1,7 @@
 // The browser may take the graphics card away (a driver update, sleep, too many tabs) and give it back. three.js uploads its data again by itself.
 import { Disposer } from "../base/disposer.js";
+import { addNotice, removeNotice } from "../state/notices.js";
 import type { Store } from "../state/store.js";
-import { addNotice, removeNotice } from "./notices.js";
 import type { RenderLoop } from "./render_loop.js";
 
 const LOST = "The graphics card was reset. The view comes back by itself; if it does not, reload the page.";

@@ -4,13 +4,17 @@ import type { Store } from "./store.js";
 
 const MOST_NOTICES = 6;
 
-export function addNotice(store: Store, kind: "info" | "error", text: string): void {
-  store.update(({ notices }) => {
-    // The same text twice says nothing new.
-    const others = notices.filter((notice) => notice.text !== text);
-    const id = notices.reduce((largest, notice) => Math.max(largest, notice.id), 0) + 1;
-    return { notices: [...others, { id, kind, text }].slice(-MOST_NOTICES) };
-  });
+/** Returns its id. The same text twice says nothing new: the older one goes. */
+export function addNotice(store: Store, kind: "info" | "error", text: string): number {
+  const { notices } = store.get();
+  const id = notices.reduce((largest, notice) => Math.max(largest, notice.id), 0) + 1;
+  const others = notices.filter((notice) => notice.text !== text);
+  store.set({ notices: [...others, { id, kind, text }].slice(-MOST_NOTICES) });
+  return id;
+}
+
+export function removeNotice(store: Store, id: number): void {
+  store.update((state) => ({ notices: state.notices.filter((notice) => notice.id !== id) }));
 }
 
 /** What was given up on purpose is no news. */

@@ -135,7 +135,10 @@ async function checkPictures(page, description) {
 
 /** The eaves along a house's length, measured between two clicks from obliquely above. */
 async function checkHouse(page, description) {
-  const houses = JSON.parse(readFileSync(truth, "utf8")).buildings.filter((one) => one.inside_area && one.length_m > 6);
+  // The ridge of a gable roof is as long as the house; that of a hip roof is not.
+  const houses = JSON.parse(readFileSync(truth, "utf8")).buildings.filter(
+    (one) => one.inside_area && one.length_m > 6 && (one.roof === "gable" || one.roof === "flat"),
+  );
   const at = (one) => Math.hypot(one.east_m, one.north_m);
   houses.sort((a, b) => at(a) - at(b));
   expect(houses.length > 0, "no house in the truth");
@@ -165,10 +168,9 @@ async function checkHouse(page, description) {
   }
   await screenshot(page, out, "house");
   const errors = figures.houses.map((one) => Math.abs(one.measured_m - one.truth_m));
-  // One of the three may be hidden by a tree.
-  errors.sort((a, b) => a - b);
-  const median = errors[Math.floor(errors.length / 2)];
-  expect(median <= 2 * description.gsd_m, `houses are ${errors} m too long or short; GSD ${description.gsd_m} m`);
+  expect(errors.length >= 2, `only ${errors.length} houses could be measured`);
+  const worst = Math.max(...errors);
+  expect(worst <= 2 * description.gsd_m, `houses are ${errors} m too long or short; GSD ${description.gsd_m} m`);
 }
 
 async function checkTools(page, description) {

@@ -47,7 +47,7 @@ SceneHolder::SceneHolder(const EngineInput& input, ProjectData& data)
   main_.project = input.project;
   main_.comm = &comm_;
   if (input.before) {
-    before_.emplace();
+    before_ = Place();
     before_->project = *input.before;
     before_->comm = comm_.size() > 1 ? static_cast<comm::Communicator*>(&alone_) : &comm_;
   }

@@ -16,10 +16,10 @@ Which ProjectOf(JsonFields& fields) {
   return fields.OneOf("project", {"main", "before"}) == 0 ? Which::kMain : Which::kBefore;
 }
 
-template <int n>
-Eigen::Matrix<double, n, 1> Coordinates(JsonFields& fields, const char* key) {
-  Eigen::Matrix<double, n, 1> x;
-  fields.Numbers(key, kMaxCoordinateM, {x.data(), static_cast<size_t>(n)});
+template <int kN>
+Eigen::Matrix<double, kN, 1> Coordinates(JsonFields& fields, const char* key) {
+  Eigen::Matrix<double, kN, 1> x;
+  fields.Numbers(key, kMaxCoordinateM, {x.data(), static_cast<size_t>(kN)});
   return x;
 }
 

@@ -27,10 +27,10 @@ std::string Shortened(std::string_view text) {
   return std::string(text.substr(0, end)) + " ...";
 }
 
-template <int n>
-Reply ListOf(const Eigen::Matrix<double, n, 1>& x) {
+template <int kN>
+Reply ListOf(const Eigen::Matrix<double, kN, 1>& x) {
   Reply list = Reply::array();
-  for (int i = 0; i < n; ++i) list.push_back(x[i]);
+  for (int i = 0; i < kN; ++i) list.push_back(x[i]);
   return list;
 }
 

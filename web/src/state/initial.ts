@@ -9,6 +9,8 @@ export const NO_DOCUMENTS: Documents = {
 };
 
 export function initialState(project: Project): AppState {
+  // A young project has neither mesh nor maps: then its points and cameras are what there is to see.
+  const bare = project.tiles === null && project.terrain === null;
   return {
     documents: NO_DOCUMENTS,
     tool: "navigate",
@@ -24,8 +26,8 @@ export function initialState(project: Project): AppState {
       surface: true,
       exact: true,
       blocks: false,
-      cameras: false,
-      points: false,
+      cameras: bare,
+      points: bare,
       contours: false,
       errorMap: false,
       measurements: true,

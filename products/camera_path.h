@@ -28,6 +28,8 @@ std::vector<View> ViewsOfPhotos(const survey::Survey& survey, const std::vector<
 // video: positions follow a Catmull-Rom curve, orientations and fields of view are interpolated between neighbours. Throws base::InputError that
 // names the entry and the key.
 std::vector<View> LoadCameraPath(const std::filesystem::path& file, const scene::SceneInfo& info, int width, int height);
+// The same for the text of such a file; messages name `file`.
+std::vector<View> ParseCameraPath(const std::string& text, const std::filesystem::path& file, const scene::SceneInfo& info, int width, int height);
 
 // Frames of the built-in path options.video_path: "orbit" circles the scene's centre, looking 50 degrees down; "flyover" crosses the scene from
 // south-west to north-east, looking ahead and down. Both stay above the highest box.

@@ -113,10 +113,14 @@ std::string NumberedName(size_t index) {
 }  // namespace
 
 std::vector<View> LoadCameraPath(const std::filesystem::path& file, const scene::SceneInfo& info, int width, int height) {
+  return ParseCameraPath(base::ReadFile(file), file, info, width, height);
+}
+
+std::vector<View> ParseCameraPath(const std::string& text, const std::filesystem::path& file, const scene::SceneInfo& info, int width, int height) {
   if (width <= 0 || height <= 0)
     throw base::UsageError("the image size " + std::to_string(width) + " x " + std::to_string(height) +
                            " is not allowed: width and height must be positive");
-  const Json root = Json::parse(base::ReadFile(file), nullptr, false);
+  const Json root = Json::parse(text, nullptr, false);
   const bool is_object = root.is_object() && root.contains("views");
   const Json& list = is_object ? root["views"] : root;
   if (root.is_discarded() || !list.is_array() || list.empty()) {

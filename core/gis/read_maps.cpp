@@ -2,8 +2,11 @@
 
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <cstdlib>
+#include <limits>
+#include <optional>
 
 #include "core/gis/gdal_support.h"
 
@@ -13,21 +16,89 @@ namespace {
 constexpr const char* kMakeAgain = "Make it again with 'skyquilt render' or 'skyquilt surface'";
 
 internal::Dataset OpenToRead(const std::filesystem::path& file, unsigned kind) {
-  if (!std::filesystem::exists(file)) throw base::InputError(file, "does not exist", kMakeAgain);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) throw base::InputError(file, "does not exist", kMakeAgain);
   internal::Dataset dataset(GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY));
   if (!dataset) throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), kMakeAgain);
   return dataset;
 }
 
+// Nothing without a CRS, or with a local one.
+std::optional<geo::UtmZone> ZoneOf(const OGRSpatialReference* reference, const std::filesystem::path& file) {
+  if (reference == nullptr || reference->IsEmpty() || reference->IsLocal()) return {};
+  const char* authority = reference->GetAuthorityName(nullptr);
+  const char* code_text = reference->GetAuthorityCode(nullptr);
+  const int code = authority != nullptr && code_text != nullptr && std::string(authority) == "EPSG" ? std::atoi(code_text) : 0;
+  if (code == 32661 || code == 32761) return geo::UtmZone{.zone = 0, .north = code == 32661};
+  for (const int base : {32600, 32700}) {
+    if (code > base && code <= base + 60) return geo::UtmZone{.zone = code - base, .north = base == 32600};
+  }
+  const char* name = reference->GetName();
+  throw base::InputError(file, std::string("is in ") + (name != nullptr ? name : "an unknown CRS") + ", which is no UTM or UPS zone of WGS84",
+                         kMakeAgain);
+}
+
+MapGrid GridOf(GDALDataset* dataset, const std::filesystem::path& file) {
+  double transform[6];
+  if (dataset->GetGeoTransform(transform) != CE_None) throw base::InputError(file, "has no place on the map", kMakeAgain);
+  const bool north_up =
+      transform[2] == 0.0 && transform[4] == 0.0 && transform[1] > 0.0 && std::abs(transform[1] + transform[5]) < 1e-9 * transform[1];
+  if (!north_up || !std::isfinite(transform[0]) || !std::isfinite(transform[3])) {
+    throw base::InputError(file, "is not north-up with square cells", kMakeAgain);
+  }
+  MapGrid grid;
+  if (const auto zone = ZoneOf(dataset->GetSpatialRef(), file)) {
+    grid.georeferenced = true;
+    grid.zone = *zone;
+  }
+  grid.left = transform[0];
+  grid.top = transform[3];
+  grid.resolution_m = transform[1];
+  grid.width = dataset->GetRasterXSize();
+  grid.height = dataset->GetRasterYSize();
+  return grid;
+}
+
+// One axis of a part: the pixels of the result that lie in the raster, and the cells under them (not whole numbers).
+struct Axis {
+  int begin = 0, end = 0;  // pixels
+  double from = 0.0, to = 0.0;
+
+  // cell_from, cell_to: cells at the edges of the result, which has so many pixels.
+  Axis(double cell_from, double cell_to, int pixels, int cells) {
+    const double cells_per_pixel = (cell_to - cell_from) / pixels;
+    const auto pixel_at = [&](double cell) { return std::clamp((cell - cell_from) / cells_per_pixel, 0.0, static_cast<double>(pixels)); };
+    // A little of slack, so that rounding does not lose the outermost pixels.
+    begin = static_cast<int>(std::ceil(pixel_at(0.0) - 1e-6));
+    end = static_cast<int>(std::floor(pixel_at(cells) + 1e-6));
+    from = std::clamp(cell_from + begin * cells_per_pixel, 0.0, static_cast<double>(cells));
+    to = std::clamp(cell_from + end * cells_per_pixel, 0.0, static_cast<double>(cells));
+  }
+  bool Empty() const { return begin >= end || !(from < to); }
+  int FirstCell() const { return static_cast<int>(std::floor(from)); }
+  int Cells() const { return static_cast<int>(std::ceil(to)) - FirstCell(); }
+};
+
+void ForgetNoData(GDALDataset* dataset, image::ImageF* image) {
+  int has_nodata = FALSE;
+  const double nodata = dataset->GetRasterBand(1)->GetNoDataValue(&has_nodata);
+  if (!has_nodata) return;
+  for (float& value : image->data) {
+    if (value == static_cast<float>(nodata)) value = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
 void AppendLine(const OGRLineString& part, double height_m, bool index, std::vector<ContourLine>* lines) {
   ContourLine line{height_m, index, {}};
-  for (int i = 0; i < part.getNumPoints(); ++i) line.map_xy.emplace_back(part.getX(i), part.getY(i));
+  for (int i = 0; i < part.getNumPoints(); ++i) {
+    if (std::isfinite(part.getX(i)) && std::isfinite(part.getY(i))) line.map_xy.emplace_back(part.getX(i), part.getY(i));
+  }
   if (line.map_xy.size() > 1) lines->push_back(std::move(line));
 }
 
 // Lines of one feature; contours may be single or multiple lines.
 void AppendGeometry(const OGRGeometry* geometry, double height_m, bool index, std::vector<ContourLine>* lines) {
-  if (geometry == nullptr) return;
+  if (geometry == nullptr || !std::isfinite(height_m)) return;
   const OGRwkbGeometryType type = wkbFlatten(geometry->getGeometryType());
   if (type == wkbLineString) AppendLine(*geometry->toLineString(), height_m, index, lines);
   if (type == wkbMultiLineString) {
@@ -61,18 +132,37 @@ MapGrid ReadMapGrid(const std::filesystem::path& file) {
   const internal::QuietErrors quiet;
   GDALRegister_GTiff();
   const internal::Dataset dataset = OpenToRead(file, GDAL_OF_RASTER);
-  double transform[6];
-  if (dataset->GetGeoTransform(transform) != CE_None) throw base::InputError(file, "has no place on the map", kMakeAgain);
-  const bool north_up =
-      transform[2] == 0.0 && transform[4] == 0.0 && transform[1] > 0.0 && std::abs(transform[1] + transform[5]) < 1e-9 * transform[1];
-  if (!north_up) throw base::InputError(file, "is not north-up with square cells", kMakeAgain);
-  MapGrid grid;
-  grid.left = transform[0];
-  grid.top = transform[3];
-  grid.resolution_m = transform[1];
-  grid.width = dataset->GetRasterXSize();
-  grid.height = dataset->GetRasterYSize();
-  return grid;
+  return GridOf(dataset.get(), file);
+}
+
+image::ImageF ReadMapPart(const std::filesystem::path& file, const Eigen::AlignedBox2d& part, int width, int height) {
+  SKYQUILT_CHECK(width > 0 && height > 0 && part.min().allFinite() && part.max().allFinite() && part.sizes().minCoeff() > 0.0,
+                 std::to_string(width) + " x " + std::to_string(height));
+  const internal::QuietErrors quiet;
+  GDALRegister_GTiff();
+  const internal::Dataset dataset = OpenToRead(file, GDAL_OF_RASTER);
+  const MapGrid grid = GridOf(dataset.get(), file);
+  const int bands = dataset->GetRasterCount();
+  image::ImageF image(width, height, bands, std::numeric_limits<float>::quiet_NaN());
+  const Axis x((part.min().x() - grid.left) / grid.resolution_m, (part.max().x() - grid.left) / grid.resolution_m, width, grid.width);
+  const Axis y((grid.top - part.max().y()) / grid.resolution_m, (grid.top - part.min().y()) / grid.resolution_m, height, grid.height);
+  if (x.Empty() || y.Empty()) return image;
+  GDALRasterIOExtraArg extra;
+  INIT_RASTERIO_EXTRA_ARG(extra);
+  const bool shrinks = x.to - x.from >= 1.5 * (x.end - x.begin);
+  extra.eResampleAlg = shrinks ? GRIORA_Average : GRIORA_Bilinear;
+  extra.bFloatingPointWindowValidity = TRUE;
+  extra.dfXOff = x.from;
+  extra.dfYOff = y.from;
+  extra.dfXSize = x.to - x.from;
+  extra.dfYSize = y.to - y.from;
+  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
+  if (dataset->RasterIO(GF_Read, x.FirstCell(), y.FirstCell(), x.Cells(), y.Cells(), image.At(x.begin, y.begin), x.end - x.begin, y.end - y.begin,
+                        GDT_Float32, bands, nullptr, pixel, pixel * width, sizeof(float), &extra) != CE_None) {
+    throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), kMakeAgain);
+  }
+  ForgetNoData(dataset.get(), &image);
+  return image;
 }
 
 Contours ReadContours(const std::filesystem::path& gpkg, int64_t max_vertices) {
@@ -82,6 +172,10 @@ Contours ReadContours(const std::filesystem::path& gpkg, int64_t max_vertices) {
   OGRLayer* layer = dataset->GetLayerByName("contours");
   if (layer == nullptr) throw base::InputError(gpkg, "has no layer \"contours\"", kMakeAgain);
   Contours contours;
+  if (const auto zone = ZoneOf(layer->GetSpatialRef(), gpkg)) {
+    contours.georeferenced = true;
+    contours.zone = *zone;
+  }
   contours.lines = ReadLines(layer, false, max_vertices, &contours.thinned);
   if (contours.thinned) {
     bool stopped = false;

@@ -1,30 +1,39 @@
-// Reads back the maps that this program wrote: where a raster lies, and contour lines.
+// Reads back the maps that this program wrote: where a raster lies, a part of it as a picture, and contour lines.
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
 
 #include "core/gis/map_grid.h"
+#include "core/image/image.h"
 
 namespace skyquilt::gis {
 
-// Size and place of a GeoTIFF; `georeferenced` and `zone` are left as they are by default, because the survey knows them. Throws base::InputError
-// when the file cannot be read or is not north-up with square cells.
+// Size, place and zone of a GeoTIFF; not geo-referenced when it has no CRS. Throws base::InputError when the file cannot be read, is not north-up
+// with square cells, or has a CRS other than a UTM or UPS zone of WGS84.
 MapGrid ReadMapGrid(const std::filesystem::path& file);
+
+// All bands, interleaved as float, of a rectangle in map coordinates, whose edges are the outer edges of the result. Averaged when cells are smaller
+// than pixels, else interpolated; transparent cells (alpha) do not count. NaN outside the map and where it has no data. width and height must be
+// positive, the rectangle not empty. Throws base::InputError.
+image::ImageF ReadMapPart(const std::filesystem::path& file, const Eigen::AlignedBox2d& part, int width, int height);
 
 struct ContourLine {
   double height_m = 0.0;
   bool index = false;                   // every fifth line
   std::vector<Eigen::Vector2d> map_xy;  // easting and northing, or local metres
 };
-// The layer "contours" of contours.gpkg, in its order. At most max_vertices are read: when there are more, only index lines, and of those as many as
-// fit; `thinned` tells. Throws base::InputError when it cannot be read.
 struct Contours {
+  bool georeferenced = false;
+  geo::UtmZone zone;  // then
   std::vector<ContourLine> lines;
-  bool thinned = false;
+  bool thinned = false;  // lines were left out
 };
+// The layer "contours" of contours.gpkg, in its order. At most max_vertices are read: when there are more, only index lines, and of those as many as
+// fit. Throws base::InputError when it cannot be read, or has a CRS that is none of ReadMapGrid's.
 Contours ReadContours(const std::filesystem::path& gpkg, int64_t max_vertices);
 
 }  // namespace skyquilt::gis

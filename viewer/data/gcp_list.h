@@ -2,18 +2,28 @@
 // Source: https://docs.opendronemap.org/gcp/
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "core/geo/utm.h"
+#include "viewer/data/control_points.h"
+
 namespace skyquilt::viewer {
 
-// gcp: checked gcp.json. Blanks in names become '_', because fields are separated by blanks. Points without marks are comments: the format has no
-// place for them. Without a CRS the first line is "LOCAL", which other programs do not know.
-std::string GcpListText(const nlohmann::json& gcp);
+// gcp: checked gcp.json. Photos are named without their folders, as OpenDroneMap wants them. Fields are separated by blanks: in names of points they
+// become '_', marks in photos with blanks in their name become comments, as do points without marks. Without a CRS the first line is "LOCAL", which
+// other programs do not know.
+std::string GcpListText(const nlohmann::json& gcp, const MarkablePhotos& photos);
 
-// gcp.json of a list that was written elsewhere; "crs" is its first line. Comments (#) and blank lines are skipped; "skipped" counts lines that are
-// not understood. Marks with the same name, or without a name at the same place, belong to one point.
-nlohmann::json ReadGcpList(std::string_view text);
+struct GcpList {
+  nlohmann::json gcp;  // gcp.json, with "skipped", the number of lines that were left out, if there are any; null: see problem
+  std::string problem;
+};
+// A list that was written elsewhere. Coordinates in other UTM zones, or in longitude and latitude, are converted (zone: of the project; none without
+// geo-reference); heights are taken as they are, ETRS89 as WGS84, which differ by less than a metre. Lines with the same name, or without a name at
+// the same place, belong to one point. Marks in photos that are not in the survey have "unknown": true.
+GcpList ReadGcpList(std::string_view text, const std::optional<geo::UtmZone>& zone, const MarkablePhotos& photos);
 
 }  // namespace skyquilt::viewer

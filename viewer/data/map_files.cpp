@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/base/errors.h"
 #include "core/gis/geotiff.h"
 #include "core/gis/read_maps.h"
 #include "core/image/image.h"
@@ -37,12 +38,24 @@ void AppendOffset(std::string* bytes, const Eigen::Vector3d& offset) {
   for (int axis = 0; axis < 3; ++axis) Append(bytes, static_cast<float>(offset(axis)));
 }
 
-// Columns to read a raster with, so that its longer side has at most `most`.
-int ReducedWidth(const gis::MapGrid& grid, int most) {
-  const int longer = std::max(grid.width, grid.height);
-  if (longer <= most) return grid.width;
-  return std::max(1, static_cast<int>(static_cast<int64_t>(grid.width) * most / longer));
-}
+// The reduced surface model: points at the centres of cells, in rows.
+struct PointGrid {
+  gis::MapGrid map;
+  int columns = 0, rows = 0;
+
+  // Throws base::InputError, also when there is no place between the points.
+  explicit PointGrid(const std::filesystem::path& dsm) : map(gis::ReadMapGrid(dsm)) {
+    // Whole cells are read by columns, from which the rows follow.
+    const int longer = std::max(map.width, map.height);
+    columns = longer <= kTerrainCells ? map.width : static_cast<int>(std::lround(static_cast<double>(map.width) * kTerrainCells / longer));
+    if (columns > 0) rows = static_cast<int>(std::lround(static_cast<double>(map.height) * columns / map.width));
+    if (columns < 2 || rows < 2) throw base::InputError(dsm, "is too small or too narrow to be shown", "");
+  }
+  // Easting and northing.
+  Eigen::Vector2d At(int column, int row) const {
+    return map.CellCentre((column + 0.5) * map.width / columns - 0.5, (row + 0.5) * map.height / rows - 0.5);
+  }
+};
 
 uint8_t Byte(float value) {
   return static_cast<uint8_t>(std::lround(std::clamp(std::isfinite(value) ? value : 0.0F, 0.0F, 255.0F)));
@@ -51,29 +64,23 @@ uint8_t Byte(float value) {
 }  // namespace
 
 std::string TerrainFile(const std::filesystem::path& dsm, const SurveyFrame& frame) {
-  const gis::MapGrid grid = gis::ReadMapGrid(dsm);
-  const gis::ReducedRaster heights = gis::ReadReduced(dsm, ReducedWidth(grid, kTerrainCells));
-  const int columns = heights.image.width, rows = heights.image.height;
+  const PointGrid grid(dsm);
+  frame.RequireFits(grid.map.georeferenced, dsm);
+  const gis::ReducedRaster heights = gis::ReadReduced(dsm, grid.columns);
+  SKYQUILT_CHECK(heights.image.width == grid.columns && heights.image.height == grid.rows, dsm.string());
   std::string bytes = "SKYTERR1";
-  Append(&bytes, static_cast<uint32_t>(columns));
-  Append(&bytes, static_cast<uint32_t>(rows));
-  const Eigen::Vector2d middle = grid.CellCentre(0.5 * grid.width, 0.5 * grid.height);
-  double ground = 0.0;
-  for (const float value : heights.image.data) {
-    if (!std::isfinite(value)) continue;
-    ground = static_cast<double>(value);
-    break;
-  }
-  const Eigen::Vector3d anchor = frame.EnuFromMap(middle, ground);
+  Append(&bytes, static_cast<uint32_t>(grid.columns));
+  Append(&bytes, static_cast<uint32_t>(grid.rows));
+  const auto known = std::find_if(heights.image.data.begin(), heights.image.data.end(), [](float height) { return std::isfinite(height); });
+  const double some_height = known == heights.image.data.end() ? 0.0 : static_cast<double>(*known);
+  const Eigen::Vector3d anchor = frame.EnuFromMap(grid.At(grid.columns / 2, grid.rows / 2), some_height, grid.map.zone);
   AppendAnchor(&bytes, anchor);
   bytes.reserve(bytes.size() + heights.image.data.size() * 12);
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
       const float height = *heights.image.At(column, row);
-      // The middle of the cells that this one stands for.
-      const Eigen::Vector2d map = grid.CellCentre((column + 0.5) * heights.scale - 0.5, (row + 0.5) * heights.scale_down - 0.5);
       if (std::isfinite(height)) {
-        AppendOffset(&bytes, frame.EnuFromMap(map, static_cast<double>(height)) - anchor);
+        AppendOffset(&bytes, frame.EnuFromMap(grid.At(column, row), static_cast<double>(height), grid.map.zone) - anchor);
       } else {
         AppendOffset(&bytes, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
       }
@@ -82,16 +89,24 @@ std::string TerrainFile(const std::filesystem::path& dsm, const SurveyFrame& fra
   return bytes;
 }
 
-std::string OrthophotoFile(const std::filesystem::path& orthophoto) {
-  const gis::MapGrid grid = gis::ReadMapGrid(orthophoto);
-  const gis::ReducedRaster raster = gis::ReadReduced(orthophoto, ReducedWidth(grid, kOrthophotoPixels));
-  image::Image8 picture(raster.image.width, raster.image.height, 3, 128);
-  const int channels = raster.image.channels;
+std::string OrthophotoFile(const std::filesystem::path& orthophoto, const std::filesystem::path& dsm) {
+  const PointGrid grid(dsm);
+  const gis::MapGrid own = gis::ReadMapGrid(orthophoto);
+  if (own.georeferenced != grid.map.georeferenced || (own.georeferenced && own.zone.Epsg() != grid.map.zone.Epsg())) {
+    throw base::InputError(orthophoto, "has another coordinate system than dsm.tif", "Make both again with 'skyquilt render'");
+  }
+  // The picture's edges are the outermost points, not the outer edges of their cells: that is how it is laid over them.
+  Eigen::AlignedBox2d part(grid.At(0, 0));
+  part.extend(grid.At(grid.columns - 1, grid.rows - 1));
+  const double pixel_m = std::max(own.resolution_m, part.sizes().maxCoeff() / kOrthophotoPixels);
+  const auto pixels = [&](double length_m) { return std::clamp(static_cast<int>(std::lround(length_m / pixel_m)), 1, kOrthophotoPixels); };
+  const image::ImageF raster = gis::ReadMapPart(orthophoto, part, pixels(part.sizes().x()), pixels(part.sizes().y()));
+  image::Image8 picture(raster.width, raster.height, 3, 128);
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
-      const float* from = raster.image.At(x, y);
-      if (channels == 4 && !(from[3] > 0.0F)) continue;
-      for (int c = 0; c < 3; ++c) picture.At(x, y)[c] = Byte(from[std::min(c, channels - 1)]);
+      const float* from = raster.At(x, y);
+      if (!std::isfinite(from[0]) || (raster.channels == 4 && !(from[3] > 0.0F))) continue;
+      for (int c = 0; c < 3; ++c) picture.At(x, y)[c] = Byte(from[std::min(c, raster.channels - 1)]);
     }
   }
   const std::vector<uint8_t> jpeg = image::EncodeJpeg(picture, kPictureQuality);
@@ -114,6 +129,7 @@ std::string PointsFile(const std::vector<survey::SparsePoint>& points) {
 
 std::string ContoursFile(const std::filesystem::path& gpkg, const SurveyFrame& frame) {
   const gis::Contours contours = gis::ReadContours(gpkg, kMaxContourVertices);
+  frame.RequireFits(contours.georeferenced, gpkg);
   double interval = 0.0;
   nlohmann::json lines = nlohmann::json::array();
   double last = std::numeric_limits<double>::quiet_NaN();
@@ -123,7 +139,8 @@ std::string ContoursFile(const std::filesystem::path& gpkg, const SurveyFrame& f
     last = line.height_m;
     nlohmann::json points = nlohmann::json::array();
     for (const Eigen::Vector2d& map : line.map_xy) {
-      const Eigen::Vector3d enu = frame.EnuFromMap(map, line.height_m);
+      const Eigen::Vector3d enu = frame.EnuFromMap(map, line.height_m, contours.zone);
+      // Millimetres.
       points.push_back(std::round(enu.x() * 1000.0) / 1000.0);
       points.push_back(std::round(enu.y() * 1000.0) / 1000.0);
     }

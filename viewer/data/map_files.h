@@ -12,8 +12,9 @@ namespace skyquilt::viewer {
 
 // terrain.bin from dsm.tif: at most 512 cells along the longer side.
 std::string TerrainFile(const std::filesystem::path& dsm, const SurveyFrame& frame);
-// orthophoto.jpg from orthophoto.tif: at most 2048 pixels along the longer side; cells without data are grey.
-std::string OrthophotoFile(const std::filesystem::path& orthophoto);
+// orthophoto.jpg from orthophoto.tif: from the first to the last column and row of points of that grid, at most 2048 pixels along the longer side;
+// grey where it has no data.
+std::string OrthophotoFile(const std::filesystem::path& orthophoto, const std::filesystem::path& dsm);
 // points.bin: at most 2,000,000 points, every n-th when there are more.
 std::string PointsFile(const std::vector<survey::SparsePoint>& points);
 // contours.json: at most 300,000 vertices.

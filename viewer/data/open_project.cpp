@@ -1,319 +1,227 @@
 #include "viewer/data/open_project.h"
 
+#include <sys/stat.h>
+
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/base/errors.h"
-#include "core/base/file.h"
+#include "core/base/order_statistics.h"
 #include "core/geo/ecef.h"
+#include "core/scene/field_store.h"
 #include "core/scene/scene_file.h"
 #include "partition/block.h"
 #include "surface/map_frame.h"
+#include "viewer/data/describe_files.h"
+#include "viewer/data/opening.h"
 
 namespace skyquilt::viewer {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kCopyOption = "--restart";
+// What scene.h5 says of itself, without its fields.
+struct SceneFacts {
+  geo::Geodetic origin;
+  bool georeferenced = false;
+  geo::PlaceAccuracy accuracy;
+  double gsd_m = 0.0;
+  std::vector<geo::BlockBox> boxes;
+  int64_t parameters = 0;
+};
 
-Json NullIfUnknown(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json ListOf(const Eigen::Vector3d& vector) {
-  return {vector.x(), vector.y(), vector.z()};
-}
-
-void Miss(OpenedProject* opened, const std::string& what, const std::string& reason, const std::string& advice) {
-  opened->description["missing"].push_back({{"what", what}, {"reason", reason}, {"advice", advice}});
-}
-
-std::string Command(const OpenedProject& opened, const std::string& words) {
-  return "skyquilt " + words + " " + opened.project.folder.string();
-}
-
-// A JSON file of the project, or null when it is missing or damaged.
-Json ReadJson(const std::filesystem::path& file) {
-  try {
-    Json json = Json::parse(base::ReadFile(file), nullptr, false);
-    return json.is_discarded() ? Json(nullptr) : json;
-  } catch (const base::InputError&) {
-    return nullptr;
-  }
-}
-
-double NumberIn(const Json& json, const char* key) {
-  if (!json.is_object()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at = json.find(key);
-  return at != json.end() && at->is_number() ? at->get<double>() : std::numeric_limits<double>::quiet_NaN();
+// Changes when the file is replaced or written; empty when it is missing.
+std::string StateOf(const std::filesystem::path& file) {
+  struct stat status = {};
+  if (stat(file.c_str(), &status) != 0) return "";
+  return std::to_string(status.st_dev) + " " + std::to_string(status.st_ino) + " " + std::to_string(status.st_size) + " " +
+         std::to_string(status.st_mtim.tv_sec) + "." + std::to_string(status.st_mtim.tv_nsec);
 }
 
 std::optional<partition::BlockSet> ReadBlocks(OpenedProject* opened) {
-  if (!std::filesystem::exists(opened->project.BlocksFile())) {
-    Miss(opened, "blocks", "the area is not divided into blocks yet", Command(*opened, "partition"));
+  if (!opening::Exists(opened->project.BlocksFile())) {
+    opening::Miss(opened, "blocks", "the area is not divided into blocks yet", opening::Command(*opened, "partition"));
     return {};
   }
   try {
     return partition::LoadBlocks(opened->project.BlocksFile());
   } catch (const base::InputError& error) {
-    Miss(opened, "blocks", error.what(), Command(*opened, "partition") + " " + kCopyOption);
+    opening::Miss(opened, "blocks", error.what(), opening::Command(*opened, "partition") + opening::kRestart);
     return {};
   }
 }
 
-void ReadSurvey(OpenedProject* opened) {
-  try {
-    auto survey = std::make_shared<survey::Survey>(survey::LoadSurvey(opened->project.SurveyFolder()));
-    opened->origin = survey->origin;
-    opened->georeferenced = survey->georeferenced;
-    opened->survey = std::move(survey);
-  } catch (const base::InputError& error) {
-    Miss(opened, "photos and sparse points", error.what(), "skyquilt prepare PHOTOS -o " + opened->project.folder.string() + " " + kCopyOption);
+void ReadSurvey(OpenedProject* opened, const OpenedProject* earlier) {
+  opened->survey_state = StateOf(opened->project.SurveyFolder() / "survey.json");
+  if (earlier != nullptr && earlier->survey != nullptr && earlier->survey_state == opened->survey_state) {
+    opened->survey = earlier->survey;
+  } else {
+    try {
+      opened->survey = std::make_shared<const survey::Survey>(survey::LoadSurvey(opened->project.SurveyFolder()));
+    } catch (const base::InputError& error) {
+      opening::Miss(opened, "photos and sparse points", error.what(),
+                    opening::Command(*opened, "prepare PHOTOS -o") + (opened->survey_state.empty() ? "" : opening::kRestart));
+      return;
+    }
   }
+  opened->origin = opened->survey->origin;
+  opened->georeferenced = opened->survey->georeferenced;
 }
 
-// Scene's attributes; the place of the project when there is no survey.
-void DescribeScene(OpenedProject* opened) {
-  Json& json = opened->description;
-  json["scene"] = nullptr;
+std::optional<SceneFacts> ReadScene(OpenedProject* opened) {
   const std::filesystem::path file = opened->project.SceneFile();
-  if (!std::filesystem::exists(file)) {
-    const bool trained = std::filesystem::exists(opened->project.TrainReport());
-    Miss(opened, "exact frames", trained ? "the trained blocks are not merged yet" : "the scene is not trained yet",
-         Command(*opened, trained ? "merge" : "train"));
-    return;
+  if (!opening::Exists(file)) {
+    if (opening::Exists(opened->project.TrainReport())) {
+      opening::Miss(opened, "exact frames", "the trained blocks are not merged yet", opening::Command(*opened, "merge"));
+    } else if (opening::IsUnfinished(*opened, "train")) {
+      opening::Miss(opened, "exact frames", "the scene is still being trained, or its training was interrupted",
+                    "Wait for it, or go on with `" + opening::Command(*opened, "train") + "` and then `" + opening::Command(*opened, "merge") + "`");
+    } else {
+      opening::Miss(opened, "exact frames", "the scene is not trained yet",
+                    opening::Command(*opened, "train") + "\n" + opening::Command(*opened, "merge"));
+    }
+    return {};
   }
   try {
-    const checkpoint::ArchiveReader reader = scene::OpenScene(file);
-    const int64_t blocks = reader.IntAttribute("blocks");
-    const Json training = ReadJson(opened->project.TrainReport());
-    const double parameters = NumberIn(training, "parameters");
-    json["scene"] = {{"blocks", blocks}, {"parameters", std::isfinite(parameters) ? static_cast<int64_t>(parameters) : 0}};
-    json["gsd_m"] = NullIfUnknown(reader.DoubleAttribute("gsd_m"));
-    if (opened->survey == nullptr) {
-      opened->origin = {reader.DoubleAttribute("origin_latitude_deg"), reader.DoubleAttribute("origin_longitude_deg"),
-                        reader.DoubleAttribute("origin_height_m")};
-      opened->georeferenced = reader.IntAttribute("georeferenced") != 0;
+    checkpoint::ArchiveReader reader = scene::OpenScene(file);
+    SceneFacts facts;
+    facts.origin = {reader.DoubleAttribute("origin_latitude_deg"), reader.DoubleAttribute("origin_longitude_deg"),
+                    reader.DoubleAttribute("origin_height_m")};
+    facts.georeferenced = reader.IntAttribute("georeferenced") != 0;
+    facts.accuracy = scene::GetAccuracy(reader);
+    facts.gsd_m = reader.DoubleAttribute("gsd_m");
+    const scene::FieldStore store(std::move(reader), file, 1.0, false);
+    for (int k = 0; k < store.size(); ++k) {
+      facts.boxes.push_back(store.block(k).box);
+      facts.parameters += store.Parameters(k);
     }
+    if (store.HasContext()) facts.parameters += store.ContextParameters();
+    return facts;
   } catch (const base::InputError& error) {
-    Miss(opened, "exact frames", std::string("the scene cannot be used: ") + error.what(), Command(*opened, "merge") + " " + kCopyOption);
+    opening::Miss(opened, "exact frames", std::string("the scene cannot be used: ") + error.what(),
+                  opening::Command(*opened, "merge") + opening::kRestart);
+    return {};
   }
 }
 
 Json AccuracyJson(const geo::PlaceAccuracy& accuracy) {
-  return {{"scale_percent", NullIfUnknown(accuracy.scale_percent)},
-          {"tilt_deg", NullIfUnknown(accuracy.tilt_deg)},
-          {"yaw_deg", NullIfUnknown(accuracy.yaw_deg)},
-          {"horizontal_m", NullIfUnknown(accuracy.horizontal_m)},
-          {"vertical_m", NullIfUnknown(accuracy.vertical_m)}};
+  return {{"scale_percent", opening::NullIfUnknown(accuracy.scale_percent)},
+          {"tilt_deg", opening::NullIfUnknown(accuracy.tilt_deg)},
+          {"yaw_deg", opening::NullIfUnknown(accuracy.yaw_deg)},
+          {"horizontal_m", opening::NullIfUnknown(accuracy.horizontal_m)},
+          {"vertical_m", opening::NullIfUnknown(accuracy.vertical_m)}};
 }
 
-void DescribePlace(OpenedProject* opened) {
+// Without a survey, the scene or the blocks know the place.
+void DescribePlace(OpenedProject* opened, const std::optional<SceneFacts>& scene, const std::optional<partition::BlockSet>& blocks) {
   Json& json = opened->description;
   scene::SceneInfo info;
+  info.min_enu = info.max_enu = Eigen::Vector3d::Zero();
+  if (opened->survey != nullptr) {
+    info.accuracy = opened->survey->fit.accuracy;
+  } else if (scene) {
+    opened->origin = scene->origin;
+    opened->georeferenced = scene->georeferenced;
+    info.accuracy = scene->accuracy;
+  } else if (blocks) {
+    opened->origin = blocks->origin;
+    opened->georeferenced = blocks->georeferenced;
+    info.accuracy = blocks->accuracy;
+  }
   info.origin = opened->origin;
   info.georeferenced = opened->georeferenced && geo::IsValid(opened->origin);
-  if (opened->survey != nullptr) info.accuracy = opened->survey->fit.accuracy;
   json["georeferenced"] = opened->georeferenced = info.georeferenced;
   json["origin"] = {{"latitude_deg", info.georeferenced ? info.origin.latitude_deg : 0.0},
                     {"longitude_deg", info.georeferenced ? info.origin.longitude_deg : 0.0},
                     {"height_m", info.georeferenced ? info.origin.height_m : 0.0}};
   const surface::MapFrame frame(info);
+  opened->zone = frame.zone();
   json["crs"] = info.georeferenced ? Json{{"name", frame.CrsName()}, {"zone", frame.zone().zone}, {"north", frame.zone().north}} : Json(nullptr);
   json["vertical"] = frame.VerticalName();
   json["accuracy"] = AccuracyJson(info.accuracy);
 }
 
-double Quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+void Extend(const geo::BlockBox& box, Eigen::AlignedBox3d* all) {
+  all->extend(box.min_enu);
+  all->extend(box.max_enu);
 }
 
-// The box of the scene, from blocks, else from what most sparse points show, else from the cameras.
-void DescribeBox(OpenedProject* opened, const std::optional<partition::BlockSet>& blocks) {
+// Box of the scene: of its blocks, else of what most sparse points show, else of the cameras.
+void DescribeBox(OpenedProject* opened, const std::optional<SceneFacts>& scene, const std::optional<partition::BlockSet>& blocks) {
   Json& json = opened->description;
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  Eigen::AlignedBox3d box;
   double gsd = std::numeric_limits<double>::infinity();
+  if (scene) {
+    for (const geo::BlockBox& block : scene->boxes) Extend(block, &box);
+    if (scene->gsd_m > 0.0) gsd = scene->gsd_m;
+  }
   if (blocks) {
+    const bool from_blocks = box.isEmpty();
     for (const partition::Block& block : blocks->blocks) {
       if (block.empty) continue;
-      low = low.cwiseMin(block.min_enu);
-      high = high.cwiseMax(block.max_enu);
-      if (block.gsd_m > 0.0) gsd = std::min(gsd, block.gsd_m);
+      if (from_blocks) Extend(block, &box);
+      if (block.gsd_m > 0.0 && !(scene && scene->gsd_m > 0.0)) gsd = std::min(gsd, block.gsd_m);
     }
   }
-  std::vector<double> axis[3];
+  std::array<std::vector<double>, 3> places;
   if (opened->survey != nullptr) {
-    for (const survey::SparsePoint& point : opened->survey->points) {
-      for (int i = 0; i < 3; ++i) axis[i].push_back(point.x_in_enu(i));
-    }
-    if (axis[0].empty()) {
-      for (const survey::Photo& photo : opened->survey->photos) {
-        for (int i = 0; i < 3; ++i) axis[i].push_back(photo.cam_from_enu.OriginInSource()(i));
-      }
-    }
-  }
-  if (!(low.x() <= high.x()) && !axis[0].empty()) {
-    for (int i = 0; i < 3; ++i) {
-      low(i) = Quantile(axis[i], 0.02);
-      high(i) = Quantile(axis[i], 0.98);
-    }
-  }
-  if (!low.allFinite() || !high.allFinite()) {
-    low = Eigen::Vector3d::Constant(-50.0);
-    high = Eigen::Vector3d::Constant(50.0);
-  }
-  json["min_enu"] = ListOf(low);
-  json["max_enu"] = ListOf(high);
-  json["ground_m"] = axis[2].empty() ? low.z() : std::clamp(Quantile(axis[2], 0.3), low.z(), high.z());
-  if (!json.contains("gsd_m") || json["gsd_m"].is_null()) json["gsd_m"] = NullIfUnknown(gsd);
-}
-
-bool IsTileName(const std::string& name) {
-  if (name.size() < 5 || name.size() > 60 || !name.ends_with(".glb")) return false;
-  return std::all_of(name.begin(), name.end() - 4, [](unsigned char c) { return std::isdigit(c) != 0 || c == '_' || c == '-'; });
-}
-
-void DescribeSurface(OpenedProject* opened) {
-  Json& json = opened->description;
-  json["surface"] = json["tiles"] = json["terrain"] = json["orthophoto"] = json["contours"] = nullptr;
-  const std::filesystem::path folder = opened->project.SurfaceFolder();
-  const Json table = ReadJson(opened->project.SurfaceTable());
-  if (table.is_object()) {
-    const auto count = [&](const char* key) {
-      const double value = NumberIn(table, key);
-      return std::isfinite(value) && value > 0.0 ? static_cast<int64_t>(value) : 0;
+    const auto add = [&places](const Eigen::Vector3d& x) {
+      for (size_t i = 0; i < 3; ++i) places[i].push_back(x(static_cast<int>(i)));
     };
-    const auto size = [&](const char* key) {
-      const double value = NumberIn(table, key);
-      return std::isfinite(value) && value > 0.0 ? value : 0.0;
-    };
-    json["surface"] = {{"triangles", count("triangles")}, {"points", count("points")}, {"area_m2", size("area_m2")}, {"voxel_m", size("voxel_m")}};
-    std::error_code error;
-    if (std::filesystem::exists(folder / "tiles" / "tileset.json", error)) {
-      for (const auto& entry : std::filesystem::directory_iterator(folder / "tiles", error)) {
-        const std::string name = entry.path().filename().string();
-        if (IsTileName(name) && entry.is_regular_file(error)) opened->tiles.insert(name);
-      }
-    }
-    if (!opened->tiles.empty()) {
-      opened->tiles.insert("tileset.json");
-      json["tiles"] = "tiles/tileset.json";
-    }
-    opened->contours = std::filesystem::exists(folder / "contours.gpkg", error);
-    if (opened->contours) json["contours"] = "contours.json";
-  }
-  const bool begun = !table.is_object() && std::filesystem::exists(folder);
-  if (opened->tiles.empty()) {
-    const std::string reason = table.is_object() ? "the surface was made without tiles (surface.tiles)"
-                               : begun           ? "the surface is not finished"
-                                                 : "there is no textured surface yet";
-    Miss(opened, "textured surface", reason,
-         table.is_object() ? Command(*opened, "surface") + " --restart --set surface.tiles=true" : Command(*opened, "surface"));
-  }
-  if (!opened->contours) {
-    Miss(opened, "contours", table.is_object() ? "the surface was made without maps (surface.maps)" : "they are made together with the surface",
-         Command(*opened, "surface"));
-  }
-  opened->terrain = std::filesystem::exists(opened->project.ProductsFolder() / "dsm.tif");
-  opened->orthophoto = std::filesystem::exists(opened->project.ProductsFolder() / "orthophoto.tif");
-  if (opened->terrain) json["terrain"] = "terrain.bin";
-  if (opened->orthophoto) json["orthophoto"] = "orthophoto.jpg";
-  if (opened->tiles.empty() && !opened->terrain) {
-    Miss(opened, "surface model", "there is no orthophoto and no surface model yet", Command(*opened, "render"));
-  }
-}
-
-void DescribeBlocks(OpenedProject* opened, const std::optional<partition::BlockSet>& blocks, const Json& metrics) {
-  Json list = Json::array();
-  const Json per_block = metrics.is_object() && metrics.contains("psnr_per_block") ? metrics["psnr_per_block"] : Json(nullptr);
-  if (blocks) {
-    for (const partition::Block& block : blocks->blocks) {
-      list.push_back({{"name", block.name},
-                      {"min_enu", ListOf(block.min_enu)},
-                      {"max_enu", ListOf(block.max_enu)},
-                      {"empty", block.empty},
-                      {"photos", block.photos.size()},
-                      {"psnr_db", NullIfUnknown(NumberIn(per_block, block.name.c_str()))}});
+    for (const survey::SparsePoint& point : opened->survey->points) add(point.x_in_enu);
+    if (places[0].empty()) {
+      for (const survey::Photo& photo : opened->survey->photos) add(photo.cam_from_enu.OriginInSource());
     }
   }
-  opened->description["blocks"] = std::move(list);
-}
-
-void DescribePhotos(OpenedProject* opened, const Json& metrics) {
-  Json cameras = Json::array(), photos = Json::array();
-  if (opened->survey != nullptr) {
-    const survey::Survey& survey = *opened->survey;
-    const Json per_photo = metrics.is_object() && metrics.contains("psnr_per_image") ? metrics["psnr_per_image"] : Json(nullptr);
-    for (const camera::Camera& camera : survey.cameras) {
-      cameras.push_back({{"model", camera::ModelName(camera.model)}, {"width", camera.width}, {"height", camera.height}, {"params", camera.params}});
+  if (box.isEmpty() && !places[0].empty()) {
+    Eigen::Vector3d low, high;
+    for (size_t i = 0; i < 3; ++i) {
+      low(static_cast<int>(i)) = base::NearestRankQuantile(places[i], 0.02);
+      high(static_cast<int>(i)) = base::NearestRankQuantile(places[i], 0.98);
     }
-    size_t gone = 0;
-    for (const survey::Photo& photo : survey.photos) {
-      std::error_code error;
-      const bool available = std::filesystem::is_regular_file(survey.photo_root / photo.name, error);
-      if (!available) ++gone;
-      const Eigen::Quaterniond& q = photo.cam_from_enu.rotation;
-      photos.push_back({{"name", photo.name},
-                        {"camera", photo.camera},
-                        {"position", ListOf(photo.cam_from_enu.OriginInSource())},
-                        {"rotation", {q.w(), q.x(), q.y(), q.z()}},
-                        {"is_test", photo.is_test},
-                        {"psnr_db", NullIfUnknown(NumberIn(per_photo, photo.name.c_str()))},
-                        {"available", available}});
-    }
-    if (gone > 0) {
-      Miss(opened, "pictures of photos",
-           std::to_string(gone) + " of " + std::to_string(survey.photos.size()) + " photos are not in " + survey.photo_root.string() + " any more",
-           "Put them back there");
-    }
+    box = Eigen::AlignedBox3d(low, high);
   }
-  opened->description["cameras"] = std::move(cameras);
-  opened->description["photos"] = std::move(photos);
-  const bool points = opened->survey != nullptr && !opened->survey->points.empty();
-  opened->description["points"] = points ? Json("points.bin") : Json(nullptr);
-}
-
-void DescribeMetrics(OpenedProject* opened, const Json& metrics) {
-  opened->description["metrics"] = nullptr;
-  if (!metrics.is_object()) {
-    Miss(opened, "scores", "the held-out photos are not scored yet", Command(*opened, "evaluate"));
-    return;
+  if (box.isEmpty() || !box.min().allFinite() || !box.max().allFinite()) {
+    box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-50.0), Eigen::Vector3d::Constant(50.0));
   }
-  Json kept = Json::object();
-  for (const char* key : {"psnr", "ssim", "flip", "lpips", "coverage", "psnr_full_frame", "depth_rmse_m", "depth_median_abs_m", "seam_psnr_gap_db"}) {
-    kept[key] = NullIfUnknown(NumberIn(metrics, key));
-  }
-  if (metrics.contains("surface")) kept["surface_psnr"] = NullIfUnknown(NumberIn(metrics["surface"], "psnr"));
-  opened->description["metrics"] = std::move(kept);
+  json["min_enu"] = opening::ListOf(box.min());
+  json["max_enu"] = opening::ListOf(box.max());
+  json["ground_m"] = places[2].empty() ? box.min().z() : std::clamp(base::NearestRankQuantile(places[2], 0.3), box.min().z(), box.max().z());
+  json["gsd_m"] = opening::NullIfUnknown(gsd);
 }
 
 }  // namespace
 
-OpenedProject OpenProject(const coordinator::Project& project) {
+OpenedProject OpenProject(const coordinator::Project& project, const OpenedProject* earlier) {
   OpenedProject opened;
   opened.project = project;
-  opened.description = {{"name", project.folder.filename().string()}, {"missing", Json::array()}};
-  ReadSurvey(&opened);
-  DescribeScene(&opened);
+  std::filesystem::path folder = project.folder.lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  opened.description = {{"name", folder.filename().string()}, {"missing", Json::array()}};
+  ReadSurvey(&opened, earlier);
+  const std::optional<SceneFacts> scene = ReadScene(&opened);
+  opened.description["scene"] = scene ? Json{{"blocks", scene->boxes.size()}, {"parameters", scene->parameters}} : Json(nullptr);
   const std::optional<partition::BlockSet> blocks = ReadBlocks(&opened);
-  if (opened.survey == nullptr && blocks) {
-    opened.origin = blocks->origin;
-    opened.georeferenced = blocks->georeferenced;
-  }
-  const Json metrics = ReadJson(project.MetricsFile());
-  DescribePlace(&opened);
-  DescribeBox(&opened, blocks);
-  DescribeSurface(&opened);
-  DescribeBlocks(&opened, blocks, metrics);
-  DescribePhotos(&opened, metrics);
-  DescribeMetrics(&opened, metrics);
+  const opening::JsonFile metrics = opening::ReadJson(project.MetricsFile());
+  DescribePlace(&opened, scene, blocks);
+  DescribeBox(&opened, scene, blocks);
+  opening::DescribeSurface(&opened);
+  opening::DescribeMaps(&opened);
+  opening::DescribeBlocks(&opened, blocks, metrics.json);
+  opening::DescribePhotos(&opened, metrics.json);
+  opening::DescribeMetrics(&opened, metrics);
   return opened;
+}
+
+std::filesystem::path PhotoFile(const survey::Survey& survey, const survey::Photo& photo) {
+  const std::filesystem::path name = std::filesystem::path(photo.name).lexically_normal();
+  if (name.empty() || name.is_absolute() || *name.begin() == "..") return {};
+  return survey.photo_root / name;
 }
 
 nlohmann::json EnuFromOther(const OpenedProject& main, const OpenedProject& other) {

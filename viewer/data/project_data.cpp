@@ -18,6 +18,8 @@
 namespace skyquilt::viewer {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr size_t kCacheBytes = 64U << 20U;
 constexpr size_t kPictures = 8;
 
@@ -68,155 +70,159 @@ std::optional<std::pair<size_t, std::string_view>> PhotoPath(std::string_view pa
   return std::pair(index, path.substr(static_cast<size_t>(end - path.data()) + 1));
 }
 
-}  // namespace
-
-struct ProjectData::Impl {
-  mutable std::mutex mutex;  // of what is not named below; held while a file is made
+// What is served: one reading of the files. Replaced as a whole when they have changed.
+struct Served {
   OpenedProject main;
   std::optional<OpenedProject> before;
   uint32_t revision = 0;
-  MadeFiles made;
+  MadeFiles made;  // only for the thread that answers
+};
 
-  // For the engine, which must not wait while a file is made.
-  mutable std::mutex engine_mutex;
-  std::shared_ptr<const survey::Survey> survey;
+void RefuseStrangers(Served* served) {
+  if (!served->before || served->before->georeferenced == served->main.georeferenced) return;
+  served->main.description["missing"].push_back(
+      {{"what", "place of the earlier survey"},
+       {"reason", "only one of the two surveys has a geo-reference, so they cannot be laid over each other"},
+       {"advice", "Prepare both with GPS tags, or both without"}});
+}
+
+std::shared_ptr<Served> Open(const coordinator::Project& project, const std::optional<coordinator::Project>& before, const Served* earlier) {
+  auto served = std::make_shared<Served>();
+  served->main = OpenProject(project, earlier != nullptr ? &earlier->main : nullptr);
+  if (before) served->before = OpenProject(*before, earlier != nullptr && earlier->before ? &*earlier->before : nullptr);
+  served->revision = earlier != nullptr ? earlier->revision + 1 : 0;
+  RefuseStrangers(served.get());
+  return served;
+}
+
+std::string Description(const Served& served) {
+  nlohmann::json json = served.main.description;
+  json["revision"] = served.revision;
+  json["before"] = nullptr;
+  if (served.before) {
+    nlohmann::json earlier = served.before->description;
+    earlier["revision"] = served.revision;
+    earlier["enu_from_before"] = EnuFromOther(served.main, *served.before);
+    // Its URLs are relative to /data/ as well.
+    for (const char* key : {"tiles", "terrain", "orthophoto", "points", "contours"}) {
+      if (earlier[key].is_string()) earlier[key] = "before/" + earlier[key].get<std::string>();
+    }
+    json["before"] = std::move(earlier);
+  }
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+// The files that both projects have. `prefix`: of their names in the cache.
+DataReply ProjectFile(MadeFiles* made, const OpenedProject& opened, const std::string& path, const std::string& prefix) {
+  if (path.starts_with("tiles/")) {
+    const std::string name = path.substr(6);
+    if (!opened.tiles.contains(name)) return DataReply::NotFound("there is no such tile");
+    return File(name.ends_with(".json") ? "application/json" : "model/gltf-binary", opened.project.SurfaceFolder() / "tiles" / name);
+  }
+  const fs::path products = opened.project.ProductsFolder();
+  const auto frame = [&] { return SurveyFrame(opened.origin, opened.georeferenced); };
+  if (path == "terrain.bin" && opened.terrain) {
+    return Bytes("application/octet-stream", made->Get(prefix + path, [&] { return TerrainFile(products / "dsm.tif", frame()); }));
+  }
+  if (path == "orthophoto.jpg" && opened.orthophoto) {
+    return Bytes("image/jpeg", made->Get(prefix + path, [&] { return OrthophotoFile(products / "orthophoto.tif", products / "dsm.tif"); }));
+  }
+  if (path == "points.bin" && opened.survey != nullptr && !opened.survey->points.empty()) {
+    return Bytes("application/octet-stream", made->Get(prefix + path, [&] { return PointsFile(opened.survey->points); }));
+  }
+  if (path == "contours.json" && opened.contours) {
+    return Bytes("application/json",
+                 made->Get(prefix + path, [&] { return ContoursFile(opened.project.SurfaceFolder() / "contours.gpkg", frame()); }));
+  }
+  return DataReply::NotFound("there is nothing of this name");
+}
+
+DataReply Photo(Served* served, size_t index, std::string_view size) {
+  const survey::Survey* survey = served->main.survey.get();
+  if (survey == nullptr || index >= survey->photos.size()) return DataReply::NotFound("there is no such photo");
+  const fs::path file = PhotoFile(*survey, survey->photos[index]);
+  if (file.empty()) return DataReply::NotFound("this photo is not in the folder of the photos");
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return DataReply::NotFound(file.string() + " does not exist any more. Put the photo back there");
+  const std::string key = "photo " + std::to_string(index) + " " + std::string(size);
+  if (size == "thumbnail.jpg") return Bytes("image/jpeg", served->made.Get(key, [&] { return PhotoPicture(file, 256); }));
+  if (size == "photo.jpg") return Bytes("image/jpeg", served->made.Get(key, [&] { return PhotoPicture(file, 2048); }));
+  if (size == "full.jpg" && IsJpeg(file)) return File("image/jpeg", file);
+  return DataReply::NotFound("only JPEG photos are sent in full size");
+}
+
+DataReply Answer(Served* served, const std::string& path) {
+  if (path == "project.json") return Bytes("application/json", Description(*served));
+  if (IsDocument(path)) return GetDocument(served->main, path);
+  if (const auto photo = PhotoPath(path)) return Photo(served, photo->first, photo->second);
+  if (!path.starts_with("before/")) return ProjectFile(&served->made, served->main, path, "");
+  if (!served->before) return DataReply::NotFound("there is no earlier project");
+  return ProjectFile(&served->made, *served->before, path.substr(7), "before/");
+}
+
+}  // namespace
+
+struct ProjectData::Impl {
+  std::mutex answering;  // while a file is made, for which the engine must not wait
+  mutable std::mutex mutex;
+  std::shared_ptr<Served> served;
   std::deque<std::pair<std::string, std::string>> pictures;
   size_t next_picture = 0;
 
-  void SetSurvey() {
-    const std::lock_guard lock(engine_mutex);
-    survey = main.survey;
+  std::shared_ptr<Served> Current() const {
+    const std::lock_guard lock(mutex);
+    return served;
   }
-
-  std::string Description() const {
-    nlohmann::json json = main.description;
-    json["revision"] = revision;
-    json["before"] = nullptr;
-    if (before) {
-      nlohmann::json earlier = before->description;
-      earlier["revision"] = revision;
-      earlier["enu_from_before"] = EnuFromOther(main, *before);
-      // Its URLs are relative to /data/ as well.
-      for (const char* key : {"tiles", "terrain", "orthophoto", "points", "contours"}) {
-        if (earlier[key].is_string()) earlier[key] = "before/" + earlier[key].get<std::string>();
-      }
-      json["before"] = std::move(earlier);
+  DataReply Picture(const std::string& path) const {
+    const std::lock_guard lock(mutex);
+    for (const auto& [name, png] : pictures) {
+      if (name == path) return Bytes("image/png", png);
     }
-    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  }
-
-  // The files that both projects have. `prefix`: of their names in the cache.
-  std::optional<DataReply> ProjectFile(const OpenedProject& opened, const std::string& path, const std::string& prefix) {
-    if (path.starts_with("tiles/")) {
-      const std::string name = path.substr(6);
-      if (!opened.tiles.contains(name)) return DataReply::NotFound("there is no such tile");
-      return File(name.ends_with(".json") ? "application/json" : "model/gltf-binary", opened.project.SurfaceFolder() / "tiles" / name);
-    }
-    const auto frame = [&] { return SurveyFrame(opened.origin, opened.georeferenced); };
-    if (path == "terrain.bin" && opened.terrain) {
-      return Bytes("application/octet-stream",
-                   made.Get(prefix + path, [&] { return TerrainFile(opened.project.ProductsFolder() / "dsm.tif", frame()); }));
-    }
-    if (path == "orthophoto.jpg" && opened.orthophoto) {
-      return Bytes("image/jpeg", made.Get(prefix + path, [&] { return OrthophotoFile(opened.project.ProductsFolder() / "orthophoto.tif"); }));
-    }
-    if (path == "points.bin" && opened.survey != nullptr) {
-      return Bytes("application/octet-stream", made.Get(prefix + path, [&] { return PointsFile(opened.survey->points); }));
-    }
-    if (path == "contours.json" && opened.contours) {
-      return Bytes("application/json",
-                   made.Get(prefix + path, [&] { return ContoursFile(opened.project.SurfaceFolder() / "contours.gpkg", frame()); }));
-    }
-    return {};
-  }
-
-  DataReply Photo(size_t index, std::string_view size) {
-    if (main.survey == nullptr || index >= main.survey->photos.size()) return DataReply::NotFound("there is no such photo");
-    const std::filesystem::path file = main.survey->photo_root / main.survey->photos[index].name;
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) {
-      return DataReply::NotFound(file.string() + " does not exist any more. Put the photo back there");
-    }
-    const std::string key = "photo " + std::to_string(index) + " " + std::string(size);
-    if (size == "thumbnail.jpg") return Bytes("image/jpeg", made.Get(key, [&] { return PhotoPicture(file, 256); }));
-    if (size == "photo.jpg") return Bytes("image/jpeg", made.Get(key, [&] { return PhotoPicture(file, 2048); }));
-    if (size == "full.jpg" && IsJpeg(file)) return File("image/jpeg", file);
-    return DataReply::NotFound("only JPEG photos are sent in full size");
-  }
-
-  DataReply Answer(const std::string& path) {
-    if (path == "project.json") return Bytes("application/json", Description());
-    if (IsDocument(path)) return GetDocument(main, path);
-    if (const auto photo = PhotoPath(path)) return Photo(photo->first, photo->second);
-    if (path.starts_with("pictures/")) {
-      const std::lock_guard lock(engine_mutex);
-      for (const auto& [name, png] : pictures) {
-        if (name == path) return Bytes("image/png", png);
-      }
-      return DataReply::NotFound("this picture is not kept any more");
-    }
-    if (path.starts_with("before/") && before) {
-      if (auto reply = ProjectFile(*before, path.substr(7), "before/")) return *std::move(reply);
-    }
-    if (auto reply = ProjectFile(main, path, "")) return *std::move(reply);
-    return DataReply::NotFound("there is nothing of this name");
+    return DataReply::NotFound("this picture is not kept any more");
   }
 };
 
 ProjectData::ProjectData(const coordinator::Project& project, const std::optional<coordinator::Project>& before) : impl_(std::make_unique<Impl>()) {
-  impl_->main = OpenProject(project);
-  impl_->SetSurvey();
-  if (before) {
-    impl_->before = OpenProject(*before);
-    if (impl_->before->georeferenced != impl_->main.georeferenced) {
-      impl_->main.description["missing"].push_back(
-          {{"what", "place of the earlier survey"},
-           {"reason", "only one of the two surveys has a geo-reference, so they cannot be laid over each other"},
-           {"advice", "Prepare both with GPS tags, or both without"}});
-    }
-  }
+  impl_->served = Open(project, before, nullptr);
 }
 
 ProjectData::~ProjectData() = default;
 
 DataReply ProjectData::Get(const std::string& path, const std::string& query) {
-  const std::lock_guard lock(impl_->mutex);
+  if (path.starts_with("pictures/")) return impl_->Picture(path);
+  const std::lock_guard lock(impl_->answering);
+  const std::shared_ptr<Served> served = impl_->Current();
   try {
-    DataReply reply = impl_->Answer(path);
-    // A URL with a query names one revision of the file.
-    reply.cache = reply.status == 200 && !query.empty();
+    DataReply reply = Answer(served.get(), path);
+    // A URL with a query names one revision of a file; what can be saved, and the description, are always asked for.
+    reply.cache = reply.status == 200 && !query.empty() && path != "project.json" && !IsDocument(path);
     return reply;
   } catch (const base::InputError& error) {
     spdlog::warn("{}", error.what());
-    return {.status = 404, .content_type = "text/plain; charset=utf-8", .body = error.what(), .file = {}};
+    return DataReply::NotFound(error.what());
   }
 }
 
 DataReply ProjectData::Put(const std::string& path, const std::string& body) {
-  const std::lock_guard lock(impl_->mutex);
   if (!IsDocument(path)) return {.status = 405, .content_type = "text/plain; charset=utf-8", .body = "only documents can be saved", .file = {}};
-  return PutDocument(impl_->main, path, body);
+  const std::lock_guard lock(impl_->answering);
+  return PutDocument(impl_->Current()->main, path, body);
 }
 
 std::shared_ptr<const survey::Survey> ProjectData::survey() const {
-  const std::lock_guard lock(impl_->engine_mutex);
-  return impl_->survey;
+  return impl_->Current()->main.survey;
 }
 
 void ProjectData::Reload() {
-  OpenedProject main = OpenProject(impl_->main.project);
-  std::optional<OpenedProject> before;
-  if (impl_->before) before = OpenProject(impl_->before->project);
+  const std::shared_ptr<Served> earlier = impl_->Current();
+  const auto before = earlier->before ? std::optional(earlier->before->project) : std::nullopt;
+  std::shared_ptr<Served> served = Open(earlier->main.project, before, earlier.get());
   const std::lock_guard lock(impl_->mutex);
-  impl_->main = std::move(main);
-  impl_->before = std::move(before);
-  impl_->SetSurvey();
-  impl_->made.Clear();
-  ++impl_->revision;
+  impl_->served = std::move(served);
 }
 
 std::string ProjectData::AddPicture(std::string png) {
-  const std::lock_guard lock(impl_->engine_mutex);
+  const std::lock_guard lock(impl_->mutex);
   std::string name = "pictures/" + std::to_string(impl_->next_picture++) + ".png";
   impl_->pictures.emplace_back(name, std::move(png));
   if (impl_->pictures.size() > kPictures) impl_->pictures.pop_front();

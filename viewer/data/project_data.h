@@ -2,10 +2,12 @@
 // made when the project is opened; docs/viewer_protocol.md lists them.
 //   project.json                     what there is and, for what is missing, the reason and the command that makes it
 //   tiles/tileset.json, tiles/*.glb  surface/tiles
-//   terrain.bin, orthophoto.jpg      DSM as a grid and orthophoto, at most 512 cells and 2048 pixels along the longer side: shown when there are no
-//   tiles points.bin, contours.json        sparse points; contours.gpkg as lines photos/<i>/thumbnail.jpg, /photo.jpg, /full.jpg   256 and 2048
-//   pixels wide; the photo itself measurements.geojson, gcp.json, camera_path.json  saved documents (GET, PUT) pictures/<n>.png                 made
-//   by queries before/...                       the same of the earlier project, without the saved documents
+//   terrain.bin, orthophoto.jpg      DSM as a grid and orthophoto, at most 512 points and 2048 pixels long: shown when there are no tiles
+//   points.bin, contours.json        sparse points; contours.gpkg as lines
+//   photos/<i>/thumbnail.jpg, /photo.jpg, /full.jpg   256 and 2048 pixels wide; the photo itself
+//   measurements.geojson, gcp.json, camera_path.json  saved documents (GET, PUT)
+//   pictures/<n>.png                 made by queries
+//   before/...                       the same of the earlier project, without the saved documents
 #pragma once
 
 #include <cstdint>

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <optional>
 
+#include "core/base/errors.h"
 #include "core/geo/enu_frame.h"
 #include "core/geo/utm.h"
 
@@ -13,19 +15,23 @@ class SurveyFrame {
  public:
   // Not geo-referenced: maps are in local metres already.
   SurveyFrame(const geo::Geodetic& origin, bool georeferenced) {
-    if (!georeferenced) return;
-    zone_ = geo::UtmZoneOf(origin);
-    frame_.emplace(origin);
+    if (georeferenced) frame_.emplace(origin);
   }
-  // Easting, northing (of the survey's zone) and height above the ellipsoid; local x, y, z without geo-reference.
-  Eigen::Vector3d EnuFromMap(const Eigen::Vector2d& map_xy, double height_m) const {
+  // Throws base::InputError when only one of map and survey is geo-referenced, so that the map's place is unknown.
+  void RequireFits(bool map_georeferenced, const std::filesystem::path& map) const {
+    if (map_georeferenced == frame_.has_value()) return;
+    throw base::InputError(map,
+                           frame_ ? "has local coordinates, but the survey has a geo-reference" : "has a CRS, but the survey has no geo-reference",
+                           "Make it again from this survey with 'skyquilt render' or 'skyquilt surface'");
+  }
+  // Easting, northing (of the map's zone) and height above the ellipsoid; local x, y, z without geo-reference.
+  Eigen::Vector3d EnuFromMap(const Eigen::Vector2d& map_xy, double height_m, const geo::UtmZone& zone) const {
     if (!frame_) return {map_xy.x(), map_xy.y(), height_m};
-    return frame_->EnuFromGeodetic(geo::GeodeticFromUtm(map_xy, height_m, zone_));
+    return frame_->EnuFromGeodetic(geo::GeodeticFromUtm(map_xy, height_m, zone));
   }
 
  private:
   std::optional<geo::EnuFrame> frame_;
-  geo::UtmZone zone_;
 };
 
 }  // namespace skyquilt::viewer

@@ -86,7 +86,8 @@ void PassRays::Make(std::span<const size_t> pixels, std::span<render::Ray> out) 
   const geo::Rigid3d scene_from_cam = cam_from_scene_.Inverse();
   const auto width = static_cast<size_t>(size_.width);
   for (size_t i = 0; i < pixels.size(); ++i) {
-    const auto row = static_cast<double>(pixels[i] / width), column = static_cast<double>(pixels[i] % width);
+    const size_t row_number = pixels[i] / width;
+    const auto row = static_cast<double>(row_number), column = static_cast<double>(pixels[i] % width);
     const Eigen::Vector3d start((column + 0.5 - 0.5 * size_.width) * pixel_m_, (row + 0.5 - 0.5 * size_.height) * pixel_m_, -back_m_);
     out[i] = {.origin_enu = scene_from_cam * start, .direction_enu = ahead_.normalized(), .pixel_width = static_cast<float>(pixel_m_)};
   }

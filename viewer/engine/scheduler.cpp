@@ -181,9 +181,7 @@ std::optional<Scheduler::Level> Scheduler::Choose(const std::array<std::optional
   for (size_t level = 0; level < kLevels; ++level) {
     if (!turns[level]) {
       passed_over_[level] = 0;
-    } else if (!chosen) {
-      chosen = static_cast<Level>(level);
-    } else if (passed_over_[level] >= kPatience && passed_over_[level] > passed_over_[*chosen]) {
+    } else if (!chosen || (passed_over_[level] >= kPatience && passed_over_[level] > passed_over_[*chosen])) {
       chosen = static_cast<Level>(level);
     }
   }

@@ -2,43 +2,114 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
+#include "core/geo/utm.h"
+#include "tests/support/nadir_photo.h"
 
 namespace skyquilt::viewer {
 namespace {
 
+const geo::UtmZone kZone = {32, true};
+
+survey::Survey SurveyOf(const std::vector<std::string>& names) {
+  survey::Survey survey;
+  survey.cameras.push_back({camera::CameraModel::kSimplePinhole, 4000, 3000, {3000.0, 2000.0, 1500.0}});
+  for (const std::string& name : names) survey.photos.push_back(NadirPhoto({0.0, 0.0, 50.0}, name));
+  survey.unregistered.push_back("blurred.jpg");
+  return survey;
+}
+
 TEST(GcpList, ReadsWhatOthersWrite) {
-  const nlohmann::json gcp = ReadGcpList(
-      "# comment\r\n"
+  const survey::Survey survey = SurveyOf({"a.jpg", "west/b.jpg", "west/c.jpg", "east/c.jpg"});
+  const GcpList list = ReadGcpList(
+      "\xEF\xBB\xBF# comment\r\n"
       "WGS84 UTM 32N\r\n"
-      "465400.5\t5247100.25 410 100.5 200.25 a.jpg north\r\n"
+      "465400.5\t5247100.25 410 100.5 200.25 A.JPG north\r\n"
       "\n"
       "465400.5 5247100.25 410 1 2 b.jpg north extra words\n"
+      "465400.5 5247100.25 410 7 8 b.jpg north\n"
       "1 2 3 4 5 c.jpg\n"
-      "1 2 3 6 7 d.jpg\n"
+      "1 2 3 6 7 blurred.jpg\n"
       "1 2 3 4\n"
-      "1 2 three 4 5 e.jpg\n"
-      "1 2 nan 4 5 e.jpg");
-  EXPECT_EQ(gcp["crs"], "WGS84 UTM 32N");
+      "1 2 three 4 5 a.jpg\n"
+      "1 2 3 4001 5 a.jpg\n"
+      "1 2 nan 4 5 a.jpg",
+      kZone, MarkablePhotos(&survey));
+  ASSERT_EQ(list.problem, "");
+  const nlohmann::json& gcp = list.gcp;
+  EXPECT_EQ(gcp["crs"], "EPSG:32632");
   ASSERT_EQ(gcp["points"].size(), 2U);
   EXPECT_EQ(gcp["points"][0]["name"], "north");
-  EXPECT_EQ(gcp["points"][0]["marks"].size(), 2U);
-  EXPECT_EQ(gcp["points"][0]["marks"][0]["pixel"], nlohmann::json({100.5, 200.25}));
-  EXPECT_EQ(gcp["points"][1]["marks"].size(), 2U) << "the same place without a name is one point";
-  EXPECT_EQ(gcp["skipped"], 3);
+  ASSERT_EQ(gcp["points"][0]["marks"].size(), 2U);
+  EXPECT_EQ(gcp["points"][0]["marks"][0], nlohmann::json::parse(R"({"photo": "a.jpg", "pixel": [100.5, 200.25]})"));
+  EXPECT_EQ(gcp["points"][0]["marks"][1], nlohmann::json::parse(R"({"photo": "west/b.jpg", "pixel": [7.0, 8.0]})"))
+      << "the last mark in a photo counts";
+  EXPECT_EQ(gcp["points"][1]["name"], "GCP_1");
+  ASSERT_EQ(gcp["points"][1]["marks"].size(), 2U) << "the same place without a name is one point";
+  EXPECT_EQ(gcp["points"][1]["marks"][0]["unknown"], true) << "two photos have this name";
+  EXPECT_FALSE(gcp["points"][1]["marks"][1].contains("unknown")) << "a photo without pose can be marked";
+  EXPECT_EQ(gcp["skipped"], 4);
+}
+
+TEST(GcpList, KnowsTheUsualCoordinateSystems) {
+  const survey::Survey survey = SurveyOf({"a.jpg"});
+  const MarkablePhotos photos(&survey);
+  const geo::Geodetic place{47.3769, 8.5417, 410.0};
+  const Eigen::Vector2d own = geo::UtmFromGeodetic(place, kZone), neighbour = geo::UtmFromGeodetic(place, {31, true});
+  const auto line = [](double x, double y) { return "\n" + std::to_string(x) + " " + std::to_string(y) + " 410 1 2 a.jpg p\n"; };
+  const auto x_of = [&](const std::string& text) {
+    const GcpList list = ReadGcpList(text, kZone, photos);
+    EXPECT_EQ(list.problem, "") << text;
+    return list.gcp.is_null() || list.gcp["points"].empty() ? 0.0 : list.gcp["points"][0]["x"].get<double>();
+  };
+  for (const char* header :
+       {"EPSG:32632", "epsg: 32632", "WGS84 UTM 32N", "WGS84 UTM 32 N", "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs", "EPSG:25832"}) {
+    EXPECT_NEAR(x_of(header + line(own.x(), own.y())), own.x(), 1e-3) << header;
+  }
+  for (const char* header : {"EPSG:32631", "+proj=utm +zone=31 +ellps=WGS84"}) {
+    EXPECT_NEAR(x_of(header + line(neighbour.x(), neighbour.y())), own.x(), 1e-3) << header;
+  }
+  for (const char* header : {"EPSG:4326", "+proj=longlat +datum=WGS84", "WGS84"}) {
+    EXPECT_NEAR(x_of(header + line(place.longitude_deg, place.latitude_deg)), own.x(), 0.1) << header;
+  }
+  for (const char* header : {"EPSG:2056", "WGS84 UTM 61N", "+proj=utm +zone=32 +datum=NAD27", "465400 5247100 410 1 2 a.jpg", "LOCAL"}) {
+    EXPECT_NE(ReadGcpList(header + std::string("\n1 2 3 4 5 a.jpg p\n"), kZone, photos).problem, "") << header;
+  }
+  EXPECT_EQ(ReadGcpList("LOCAL\n1 2 3 4 5 a.jpg p\n", {}, photos).gcp["points"][0]["x"], 1.0);
+  EXPECT_TRUE(ReadGcpList("EPSG:32632\n1 2 3 4 5 a.jpg p\n", {}, photos).gcp.is_null());
 }
 
 TEST(GcpList, ReadsBackWhatItWrites) {
+  const survey::Survey survey = SurveyOf({"west/1.jpg", "east/1.jpg", "west/2.jpg"});
+  const MarkablePhotos photos(&survey);
   const nlohmann::json gcp = nlohmann::json::parse(R"({"crs": "EPSG:32632", "points": [
-    {"name": "a", "x": 465400.1234, "y": 5247100.25, "z": -410.5, "marks": [{"photo": "1.jpg", "pixel": [0.25, 3999.75]}, {"photo": "2.jpg", "pixel": [1.0, 2.0]}]},
-    {"name": "b", "x": 1.0, "y": 2.0, "z": 3.0, "marks": [{"photo": "1.jpg", "pixel": [5.0, 6.0]}]}]})");
-  EXPECT_EQ(ReadGcpList(GcpListText(gcp)), gcp);
+    {"name": "a", "x": 465400.1234, "y": 5247100.25, "z": -410.5,
+     "marks": [{"photo": "west/1.jpg", "pixel": [0.25, 2999.75]}, {"photo": "west/2.jpg", "pixel": [1.0, 2.0]}]},
+    {"name": "b", "x": 1.0, "y": 2.0, "z": 3.0, "marks": [{"photo": "east/1.jpg", "pixel": [5.0, 6.0]}]}]})");
+  const std::string text = GcpListText(gcp, photos);
+  EXPECT_NE(text.find(" 2.jpg a\n"), std::string::npos) << "without the folder, as OpenDroneMap wants it";
+  EXPECT_NE(text.find(" west/1.jpg a\n"), std::string::npos) << "but not when another photo has this name";
+  EXPECT_EQ(ReadGcpList(text, kZone, photos).gcp, gcp);
+}
+
+TEST(GcpList, BlanksInNamesDoNotMoveFields) {
+  const survey::Survey survey = SurveyOf({"my photo.jpg", "b.jpg"});
+  const MarkablePhotos photos(&survey);
+  const nlohmann::json gcp = nlohmann::json::parse(R"({"crs": null, "points": [
+    {"name": "p 1", "x": 1, "y": 2, "z": 3, "marks": [{"photo": "my photo.jpg", "pixel": [4, 5]}, {"photo": "b.jpg", "pixel": [6, 7]}]},
+    {"name": "p_1", "x": 1, "y": 2, "z": 3, "marks": [{"photo": "b.jpg", "pixel": [8, 9]}]}]})");
+  EXPECT_EQ(GcpListText(gcp, photos),
+            "LOCAL\n# a photo with blanks in its name: 1.0000 2.0000 3.0000 4.00 5.00 my photo.jpg p_1\n"
+            "1.0000 2.0000 3.0000 6.00 7.00 b.jpg p_1\n1.0000 2.0000 3.0000 8.00 9.00 b.jpg p_1_2\n");
 }
 
 TEST(GcpList, EmptyAndOddTextsAreNoPoints) {
-  for (const char* text : {"", "\n\n", "#", "EPSG:32632", "EPSG:32632\n\n#x\n", "\xff\xfe\x00"}) {
-    EXPECT_TRUE(ReadGcpList(text)["points"].empty()) << text;
+  const MarkablePhotos none(nullptr);
+  for (const char* text : {"", "\n\n", "#", "EPSG:32632", "EPSG:32632\n\n#x\n", "\xff\xfe", "EPSG:", "WGS84 UTM", "WGS84 UTM N",
+                           "+proj=", "EPSG:99999999999", "EPSG:32632\n1e400 2 3 4 5 a.jpg", "EPSG:4326\n8 91 0 1 2 a.jpg"}) {
+    const GcpList list = ReadGcpList(text, kZone, none);
+    EXPECT_TRUE(list.gcp.is_null() || list.gcp["points"].empty()) << text;
   }
+  EXPECT_NE(ReadGcpList(std::string(5U << 20U, 'x'), kZone, none).problem, "");
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // A small project in a temporary folder: a survey of two photos, a surface model with its orthophoto, and a surface with one tile.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -61,12 +63,23 @@ struct SampleProject {
     gis::GeoTiffWriter dsm(project.ProductsFolder() / "dsm.tif", heights_spec);
     dsm.WriteRows(0, height, std::span<const float>(heights));
     dsm.Close();
-    std::vector<uint8_t> colors(4 * heights.size(), 200);
-    gis::GeoTiffSpec colors_spec;
-    colors_spec.grid = grid;
-    colors_spec.bands = 4;
-    gis::GeoTiffWriter ortho(project.ProductsFolder() / "orthophoto.tif", colors_spec);
-    ortho.WriteRows(0, height, std::span<const uint8_t>(colors));
+    WriteOrthophoto(grid, [](double, double) { return std::array<uint8_t, 4>{200, 200, 200, 200}; });
+  }
+
+  // color: red, green, blue, alpha at easting and northing.
+  void WriteOrthophoto(const gis::MapGrid& grid, const std::function<std::array<uint8_t, 4>(double, double)>& color) const {
+    std::vector<uint8_t> colors;
+    for (int row = 0; row < grid.height; ++row) {
+      for (int column = 0; column < grid.width; ++column) {
+        const Eigen::Vector2d at = grid.CellCentre(column, row);
+        for (const uint8_t value : color(at.x(), at.y())) colors.push_back(value);
+      }
+    }
+    gis::GeoTiffSpec spec;
+    spec.grid = grid;
+    spec.bands = 4;
+    gis::GeoTiffWriter ortho(project.ProductsFolder() / "orthophoto.tif", spec);
+    ortho.WriteRows(0, grid.height, std::span<const uint8_t>(colors));
     ortho.Close();
   }
 

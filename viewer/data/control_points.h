@@ -1,0 +1,44 @@
+// Ground control points: gcp.json, {"crs", "points": [{"name", "x", "y", "z", "marks": [{"photo", "pixel"}]}]}, in the CRS of the project's maps.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+
+#include "core/geo/utm.h"
+#include "core/survey/survey.h"
+
+namespace skyquilt::viewer {
+
+// The photos in which points can be marked, by name: those of a survey, and those without a pose.
+class MarkablePhotos {
+ public:
+  // survey: may be null.
+  explicit MarkablePhotos(const survey::Survey* survey);
+
+  bool Has(const std::string& name) const { return photos_.contains(name); }
+  // Whether the pixel is in the photo, its edges included. Unknown sizes (no pose) end nowhere.
+  bool Contains(const std::string& name, double x, double y) const;
+  // The photo of this name; else the only one whose name without folders is this one's, in any case. Empty: there is none.
+  std::string Find(const std::string& name) const;
+  // Without folders, unless another photo would have the same name then.
+  std::string ShortName(const std::string& name) const;
+
+ private:
+  std::unordered_map<std::string, const camera::Camera*> photos_;
+  std::unordered_map<std::string, std::string> by_short_name_;  // lower case; empty: several photos
+};
+
+// "EPSG:32632"; nothing for a project without geo-reference.
+std::optional<std::string> CrsNameOf(bool georeferenced, const geo::UtmZone& zone);
+
+// Names of photos that are marked in gcp.json but are not markable: marks of photos that have left the survey may stay.
+std::set<std::string> UnknownMarks(const nlohmann::json& gcp, const MarkablePhotos& photos);
+
+// Throws Refused (check_document.h). crs: as CrsNameOf. allowed: unknown photos that may be marked.
+void CheckControlPoints(const nlohmann::json& gcp, const std::optional<std::string>& crs, const MarkablePhotos& photos,
+                        const std::set<std::string>& allowed);
+
+}  // namespace skyquilt::viewer

@@ -69,6 +69,8 @@ def four_clients(viewer, orbit, seq, turn):
         thread.join()
     for socket in sockets:
         socket.close()
+    if len(seconds) != len(sockets):
+        raise RuntimeError(f"only {len(seconds)} of {len(sockets)} clients got a picture")
     return max(seconds)
 
 

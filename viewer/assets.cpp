@@ -5,10 +5,10 @@
 
 // Defined in front_end.S.
 extern "C" {
-extern const char skyquilt_index_html_begin[], skyquilt_index_html_end[];
-extern const char skyquilt_app_js_begin[], skyquilt_app_js_end[];
-extern const char skyquilt_app_css_begin[], skyquilt_app_css_end[];
-extern const char skyquilt_licences_txt_begin[], skyquilt_licences_txt_end[];
+extern const char kSkyquiltIndexHtmlBegin[], kSkyquiltIndexHtmlEnd[];
+extern const char kSkyquiltAppJsBegin[], kSkyquiltAppJsEnd[];
+extern const char kSkyquiltAppCssBegin[], kSkyquiltAppCssEnd[];
+extern const char kSkyquiltLicencesTxtBegin[], kSkyquiltLicencesTxtEnd[];
 }
 
 namespace skyquilt::viewer {
@@ -28,10 +28,10 @@ constexpr AssetName kAssetNames[] = {{"/", "index.html", "text/html; charset=utf
 }  // namespace
 
 std::vector<Asset> FrontEnd() {
-  const std::string bodies[] = {{skyquilt_index_html_begin, skyquilt_index_html_end},
-                                {skyquilt_app_js_begin, skyquilt_app_js_end},
-                                {skyquilt_app_css_begin, skyquilt_app_css_end},
-                                {skyquilt_licences_txt_begin, skyquilt_licences_txt_end}};
+  const std::string bodies[] = {{kSkyquiltIndexHtmlBegin, kSkyquiltIndexHtmlEnd},
+                                {kSkyquiltAppJsBegin, kSkyquiltAppJsEnd},
+                                {kSkyquiltAppCssBegin, kSkyquiltAppCssEnd},
+                                {kSkyquiltLicencesTxtBegin, kSkyquiltLicencesTxtEnd}};
   if (bodies[0].empty() || bodies[1].empty()) return {};
   std::vector<Asset> assets;
   for (size_t i = 0; i < std::size(kAssetNames); ++i) assets.push_back({kAssetNames[i].path, kAssetNames[i].content_type, bodies[i]});

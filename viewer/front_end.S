@@ -1,17 +1,17 @@
 /* The files of the front end, as bytes of the program (viewer/assets.cpp). */
     .section .rodata
     .macro embed name, file
-    .global \name\()_begin
-    .global \name\()_end
-\name\()_begin:
+    .global \name\()Begin
+    .global \name\()End
+\name\()Begin:
     .incbin "\file"
-\name\()_end:
+\name\()End:
     .byte 0
     .endm
 
-    embed skyquilt_index_html, "index.html"
-    embed skyquilt_app_js, "app.js"
-    embed skyquilt_app_css, "app.css"
-    embed skyquilt_licences_txt, "licences.txt"
+    embed kSkyquiltIndexHtml, "index.html"
+    embed kSkyquiltAppJs, "app.js"
+    embed kSkyquiltAppCss, "app.css"
+    embed kSkyquiltLicencesTxt, "licences.txt"
 
     .section .note.GNU-stack,"",%progbits

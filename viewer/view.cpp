@@ -1,5 +1,6 @@
 #include "viewer/view.h"
 
+#include <csignal>
 #include <iostream>
 
 #include "core/base/errors.h"
@@ -29,12 +30,16 @@ std::vector<Asset> Assets(const ViewOptions& options) {
 }
 
 void PrintLink(const std::string& text, const std::string& link) {
+  // The terminal may be gone, and another may have come (a closed pipe; a full disk): each link is tried anew.
+  std::cout.clear();
   std::cout << text << "\n\n    " << link << "\n\n" << std::flush;
 }
 
 }  // namespace
 
 void View(comm::Communicator& comm, const ViewOptions& options) {
+  // When the terminal or a pipe that reads our output closes, the viewer goes on.
+  std::signal(SIGPIPE, SIG_IGN);
   ServerOptions server_options;
   server_options.assets = Assets(options);
   server_options.port = options.port;
@@ -43,7 +48,8 @@ void View(comm::Communicator& comm, const ViewOptions& options) {
     server_options.extra_hosts = OwnHosts();
     spdlog::warn(
         "--listen {}: other machines can reach this viewer, and the connection is not encrypted. Whoever has the link can see the project and change "
-        "its measurements. Better: keep the default and forward the port, for instance with ssh -L",
+        "its measurements. Better: keep the default and forward the port, for instance with ssh -t -L 8000:127.0.0.1:8000 host skyquilt view out "
+        "--port 8000",
         options.listen);
   }
   ProjectData data(options.project, options.before);

@@ -19,8 +19,9 @@ struct ViewFlags {
 
 void RunView(const CommandState& state, const ViewFlags& flags, const std::vector<config::Override>& overrides) {
   viewer::ViewOptions options;
-  options.project = coordinator::Project::Open(flags.project);
-  if (!flags.compare.empty()) options.before = coordinator::Project::Open(flags.compare);
+  // Looking needs no right to write, and goes on when the disk is full.
+  options.project = coordinator::Project::OpenToRead(flags.project);
+  if (!flags.compare.empty()) options.before = coordinator::Project::OpenToRead(flags.compare);
   const coordinator::Settings settings = state.Load(ProjectConfig(options.project), overrides);
   options.listen = flags.listen;
   options.port = flags.port;
@@ -54,7 +55,7 @@ void AddView(CLI::App& app, CommandState& state) {
       "  skyquilt view out\n"
       "  skyquilt view out/november --compare out/june\n"
       "  mpirun -n 4 skyquilt view out                  the other ranks render\n"
-      "Prints a link, and opens nothing by itself. On another machine: ssh -L 8000:127.0.0.1:8000 host skyquilt view out --port 8000");
+      "Prints a link, and opens nothing by itself. On another machine: ssh -t -L 8000:127.0.0.1:8000 host skyquilt view out --port 8000");
   command->callback([&state, flags, overrides] { state.run_command = [&state, flags, overrides] { RunView(state, *flags, *overrides); }; });
 }
 

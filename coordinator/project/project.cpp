@@ -16,7 +16,7 @@ bool Project::IsProject(const std::filesystem::path& folder) {
   return std::filesystem::exists(folder / ".state" / "prepare.json", ignored) || std::filesystem::exists(folder / "survey" / "survey.json", ignored);
 }
 
-Project Project::Open(const std::filesystem::path& folder) {
+Project Project::OpenToRead(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
     throw base::InputError(folder, "no such project folder", "Make one with 'skyquilt prepare PHOTOS -o " + folder.string() + "' or 'skyquilt run'");
@@ -25,7 +25,11 @@ Project Project::Open(const std::filesystem::path& folder) {
     throw base::InputError(folder, "is not a skyquilt project: it holds no survey/survey.json",
                            "Give the folder that was named with -o, or start with 'skyquilt prepare'");
   }
-  return Create(folder);
+  return Project{std::filesystem::absolute(folder).lexically_normal()};
+}
+
+Project Project::Open(const std::filesystem::path& folder) {
+  return Create(OpenToRead(folder).folder);
 }
 
 }  // namespace skyquilt::coordinator

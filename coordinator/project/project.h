@@ -34,8 +34,10 @@ struct Project {
 
   // Creates the folder and proves it writable. Throws base::InputError.
   static Project Create(const std::filesystem::path& folder);
-  // Throws base::InputError when the folder does not exist or is not a project (see IsProject).
+  // Throws base::InputError when the folder does not exist, is not a project (see IsProject) or cannot be written.
   static Project Open(const std::filesystem::path& folder);
+  // The same without the writing test: for a folder that may be read-only, or on a full disk.
+  static Project OpenToRead(const std::filesystem::path& folder);
   // Whether the folder holds a survey, or the stamp of a "prepare" that was started.
   static bool IsProject(const std::filesystem::path& folder);
 };

@@ -25,7 +25,7 @@ int RunOptions::UsableThreads() const {
 }
 
 double RunOptions::MemoryLimitBytes() const {
-  return memory_gb > 0.0 ? memory_gb * 1073741824.0 : 0.5 * static_cast<double>(base::TotalMemoryBytes());
+  return memory_share * (memory_gb > 0.0 ? memory_gb * 1073741824.0 : 0.5 * static_cast<double>(base::TotalMemoryBytes()));
 }
 
 void RunOptions::Check() const {

@@ -15,6 +15,8 @@ struct RunOptions {
   int threads = 0;         // per machine; 0: every core this process may use
   double memory_gb = 0.0;  // per machine; 0: half of it
 
+  double memory_share = 1.0;  // of the limit, for one of several scenes in the same process; not an option
+
   // For all ranks on this machine together.
   int UsableThreads() const;
   double MemoryLimitBytes() const;

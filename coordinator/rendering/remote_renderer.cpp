@@ -64,6 +64,7 @@ void RemoteRenderer::Begin(const scene::FieldStore& store, const render::RaySegm
 
 void RemoteRenderer::Render(std::span<const render::Ray> rays, std::span<render::RayColor> out, const render::EngineOptions& options) {
   SKYQUILT_CHECK(store_ != nullptr, "Begin comes first");
+  if (broken_) Throw(*broken_);
   Work work;
   work.rays = rays;
   work.out = out;
@@ -76,6 +77,13 @@ void RemoteRenderer::Render(std::span<const render::Ray> rays, std::span<render:
     HandOut(work);
     const comm::Message message = comm_.Receive();
     if (message.tag == kTagRayReply) TakeBack(work, message);
+    // A rank says this a second time when it cannot open the scene after all.
+    if (message.tag == kTagReady) {
+      const nlohmann::json hello = nlohmann::json::parse(message.bytes);
+      if (!hello.contains("failure")) continue;
+      broken_ = FailureFromJson(hello.at("failure"));
+      Throw(*broken_, "rank " + std::to_string(message.source));
+    }
   }
 }
 

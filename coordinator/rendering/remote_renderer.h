@@ -8,9 +8,11 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "coordinator/ranks/failure.h"
 #include "coordinator/ranks/rank_group.h"
 #include "coordinator/rendering/block_owners.h"
 #include "coordinator/rendering/ray_request.h"
@@ -50,7 +52,8 @@ class RemoteRenderer : public scene::RayService {
   const render::RaySegments* segments_ = nullptr;
   std::vector<RenderGroup> groups_;
   uint64_t next_id_ = 1;
-  std::map<int, int64_t> loads_;  // per rank
+  std::optional<Failure> broken_;  // a rank cannot go on, and nor can any later call
+  std::map<int, int64_t> loads_;   // per rank
   scene::RenderStatistics statistics_;
 };
 

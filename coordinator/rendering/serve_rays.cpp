@@ -1,5 +1,7 @@
 #include "coordinator/rendering/serve_rays.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -19,6 +21,13 @@ namespace skyquilt::coordinator {
 namespace {
 
 using nlohmann::json;
+
+// Size and time of a file, which all ranks must see alike; null when it cannot be looked at.
+json LookAt(const std::filesystem::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) return nullptr;
+  return {{"bytes", status.st_size}, {"seconds", status.st_mtim.tv_sec}, {"nanoseconds", status.st_mtim.tv_nsec}};
+}
 
 // Renders rays with the blocks of a scene that this rank owns.
 class RayServer {
@@ -75,6 +84,8 @@ std::string RenderingSetup(const std::filesystem::path& scene_h5, const RunOptio
   const json setup = {{"scene", std::filesystem::absolute(scene_h5).string()},
                       {"threads", options.threads},
                       {"memory_gb", options.memory_gb},
+                      {"memory_share", options.memory_share},
+                      {"file", LookAt(scene_h5)},
                       {"verbose", verbose},
                       {"quiet", quiet}};
   return setup.dump();
@@ -89,9 +100,14 @@ void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
     RunOptions options;
     options.threads = setup.at("threads").get<int>();
     options.memory_gb = setup.at("memory_gb").get<double>();
+    options.memory_share = setup.at("memory_share").get<double>();
     const std::filesystem::path scene_h5 = setup.at("scene").get<std::string>();
     // Checked before Register, so that rank 0 hears of it before it sends rays.
     if (!std::filesystem::exists(scene_h5)) throw base::InputError(scene_h5, "no such file", "All ranks must see the same project folder");
+    scene::OpenScene(scene_h5);
+    if (LookAt(scene_h5) != setup.at("file")) {
+      throw base::InputError(scene_h5, "is not the file that rank 0 sees", "Wait until all hosts see the same file, then try again");
+    }
     hello["threads"] = options.UsableThreads();
     hello["memory_bytes"] = options.MemoryLimitBytes();
     RayServer server(scene_h5, json::parse(Register(comm, hello, kTagAssignment)));

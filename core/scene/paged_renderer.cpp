@@ -12,7 +12,8 @@
 namespace skyquilt::scene {
 namespace {
 
-constexpr int64_t kPagedGroup = 1024;  // one task
+// Rays of one task: enough to be worth its overhead, few enough that small calls use all threads.
+constexpr int64_t kMostInGroup = 1024, kFewestInGroup = 128;
 
 // The segments of a ray, front to back.
 struct Way {
@@ -26,10 +27,12 @@ PagedRenderer::PagedRenderer(FieldStore& store, const render::RaySegments& segme
     : store_(store), segments_(segments), threads_(threads) {}
 
 void PagedRenderer::ForGroups(size_t n, const std::function<void(size_t begin, size_t end, int thread)>& body) {
-  threads_.ParallelFor((static_cast<int64_t>(n) + kPagedGroup - 1) / kPagedGroup, [&](int64_t task, int thread) {
+  const int64_t each = (static_cast<int64_t>(n) + threads_.size() - 1) / threads_.size();
+  const int64_t group = std::clamp(each, kFewestInGroup, kMostInGroup);
+  threads_.ParallelFor((static_cast<int64_t>(n) + group - 1) / group, [&](int64_t task, int thread) {
     base::ThrowIfCancelled();
-    const auto begin = static_cast<size_t>(task * kPagedGroup);
-    body(begin, std::min(n, begin + static_cast<size_t>(kPagedGroup)), thread);
+    const auto begin = static_cast<size_t>(task * group);
+    body(begin, std::min(n, begin + static_cast<size_t>(group)), thread);
   });
 }
 

@@ -79,9 +79,16 @@ class Viewer:
         return WebSocket(self.port, self.cookie, **options)
 
     def rss_bytes(self):
-        """Resident memory of the process that serves."""
-        with open(f"/proc/{self.process.pid}/status", encoding="utf-8") as file:
-            return int(re.search(r"VmRSS:\s+(\d+)", file.read()).group(1)) * 1024
+        """Resident memory of all processes that belong to it: under mpirun, the ranks too."""
+        total = 0
+        for name in os.listdir("/proc"):
+            try:
+                if name.isdigit() and os.getsid(int(name)) == self.process.pid:
+                    with open(f"/proc/{name}/status", encoding="utf-8") as file:
+                        total += int(re.search(r"VmRSS:\s+(\d+)", file.read()).group(1)) * 1024
+            except (OSError, AttributeError):
+                continue  # it has just ended
+        return total
 
     def close(self, seconds=30):
         """Ends it as Ctrl-C does; returns its exit status."""

@@ -33,7 +33,8 @@ void CheckMark(const Json& mark, const MarkablePhotos& photos, const std::set<st
   for (const Json& number : pixel) RequireNumber(number, where + ".pixel");
   const std::string name = mark["photo"];
   if (!photos.Has(name)) {
-    if (!allowed.contains(name)) throw Refused(where + ": the survey has no photo \"" + name + "\"");
+    const bool said = mark.contains("unknown") && mark["unknown"].is_boolean() && mark["unknown"].get<bool>();
+    if (!said && !allowed.contains(name)) throw Refused(where + ": the survey has no photo \"" + name + "\"");
   } else if (!photos.Contains(name, pixel[0], pixel[1])) {
     throw Refused(where + ".pixel is outside the photo \"" + name + "\"");
   }

@@ -27,17 +27,17 @@ constexpr size_t kPictures = 8;
 class MadeFiles {
  public:
   // `make` is called when the file is not kept.
-  std::string Get(const std::string& name, const std::function<std::string()>& make) {
+  std::shared_ptr<const std::string> Get(const std::string& name, const std::function<std::string()>& make) {
     for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
       if (entry->first != name) continue;
       entries_.splice(entries_.begin(), entries_, entry);
       return entry->second;
     }
-    entries_.emplace_front(name, make());
-    bytes_ += entries_.front().second.size();
-    const std::string made = entries_.front().second;
+    auto made = std::make_shared<const std::string>(make());
+    entries_.emplace_front(name, made);
+    bytes_ += made->size();
     while (bytes_ > kCacheBytes) {
-      bytes_ -= entries_.back().second.size();
+      bytes_ -= entries_.back().second->size();
       entries_.pop_back();
     }
     return made;
@@ -48,12 +48,16 @@ class MadeFiles {
   }
 
  private:
-  std::list<std::pair<std::string, std::string>> entries_;
+  std::list<std::pair<std::string, std::shared_ptr<const std::string>>> entries_;
   size_t bytes_ = 0;
 };
 
 DataReply Bytes(const std::string& type, std::string body) {
   return {.status = 200, .content_type = type, .body = std::move(body), .file = {}};
+}
+
+DataReply Kept(const std::string& type, std::shared_ptr<const std::string> content) {
+  return {.status = 200, .content_type = type, .body = "", .file = {}, .kept = std::move(content)};
 }
 
 DataReply File(const std::string& type, const std::filesystem::path& file) {
@@ -122,17 +126,17 @@ DataReply ProjectFile(MadeFiles* made, const OpenedProject& opened, const std::s
   const fs::path products = opened.project.ProductsFolder();
   const auto frame = [&] { return SurveyFrame(opened.origin, opened.georeferenced); };
   if (path == "terrain.bin" && opened.terrain) {
-    return Bytes("application/octet-stream", made->Get(prefix + path, [&] { return TerrainFile(products / "dsm.tif", frame()); }));
+    return Kept("application/octet-stream", made->Get(prefix + path, [&] { return TerrainFile(products / "dsm.tif", frame()); }));
   }
   if (path == "orthophoto.jpg" && opened.orthophoto) {
-    return Bytes("image/jpeg", made->Get(prefix + path, [&] { return OrthophotoFile(products / "orthophoto.tif", products / "dsm.tif"); }));
+    return Kept("image/jpeg", made->Get(prefix + path, [&] { return OrthophotoFile(products / "orthophoto.tif", products / "dsm.tif"); }));
   }
   if (path == "points.bin" && opened.survey != nullptr && !opened.survey->points.empty()) {
-    return Bytes("application/octet-stream", made->Get(prefix + path, [&] { return PointsFile(opened.survey->points); }));
+    return Kept("application/octet-stream", made->Get(prefix + path, [&] { return PointsFile(opened.survey->points); }));
   }
   if (path == "contours.json" && opened.contours) {
-    return Bytes("application/json",
-                 made->Get(prefix + path, [&] { return ContoursFile(opened.project.SurfaceFolder() / "contours.gpkg", frame()); }));
+    return Kept("application/json",
+                made->Get(prefix + path, [&] { return ContoursFile(opened.project.SurfaceFolder() / "contours.gpkg", frame()); }));
   }
   return DataReply::NotFound("there is nothing of this name");
 }
@@ -145,8 +149,8 @@ DataReply Photo(Served* served, size_t index, std::string_view size) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return DataReply::NotFound(file.string() + " does not exist any more. Put the photo back there");
   const std::string key = "photo " + std::to_string(index) + " " + std::string(size);
-  if (size == "thumbnail.jpg") return Bytes("image/jpeg", served->made.Get(key, [&] { return PhotoPicture(file, 256); }));
-  if (size == "photo.jpg") return Bytes("image/jpeg", served->made.Get(key, [&] { return PhotoPicture(file, 2048); }));
+  if (size == "thumbnail.jpg") return Kept("image/jpeg", served->made.Get(key, [&] { return PhotoPicture(file, 256); }));
+  if (size == "photo.jpg") return Kept("image/jpeg", served->made.Get(key, [&] { return PhotoPicture(file, 2048); }));
   if (size == "full.jpg" && IsJpeg(file)) return File("image/jpeg", file);
   return DataReply::NotFound("only JPEG photos are sent in full size");
 }
@@ -166,7 +170,7 @@ struct ProjectData::Impl {
   std::mutex answering;  // while a file is made, for which the engine must not wait
   mutable std::mutex mutex;
   std::shared_ptr<Served> served;
-  std::deque<std::pair<std::string, std::string>> pictures;
+  std::deque<std::pair<std::string, std::shared_ptr<const std::string>>> pictures;
   size_t next_picture = 0;
 
   std::shared_ptr<Served> Current() const {
@@ -176,7 +180,7 @@ struct ProjectData::Impl {
   DataReply Picture(const std::string& path) const {
     const std::lock_guard lock(mutex);
     for (const auto& [name, png] : pictures) {
-      if (name == path) return Bytes("image/png", png);
+      if (name == path) return Kept("image/png", png);
     }
     return DataReply::NotFound("this picture is not kept any more");
   }
@@ -203,10 +207,10 @@ DataReply ProjectData::Get(const std::string& path, const std::string& query) {
   }
 }
 
-DataReply ProjectData::Put(const std::string& path, const std::string& body) {
+DataReply ProjectData::Put(const std::string& path, const std::string& body, const std::string& if_match) {
   if (!IsDocument(path)) return {.status = 405, .content_type = "text/plain; charset=utf-8", .body = "only documents can be saved", .file = {}};
   const std::lock_guard lock(impl_->answering);
-  return PutDocument(impl_->Current()->main, path, body);
+  return PutDocument(impl_->Current()->main, path, body, if_match);
 }
 
 std::shared_ptr<const survey::Survey> ProjectData::survey() const {
@@ -224,7 +228,7 @@ void ProjectData::Reload() {
 std::string ProjectData::AddPicture(std::string png) {
   const std::lock_guard lock(impl_->mutex);
   std::string name = "pictures/" + std::to_string(impl_->next_picture++) + ".png";
-  impl_->pictures.emplace_back(name, std::move(png));
+  impl_->pictures.emplace_back(name, std::make_shared<const std::string>(std::move(png)));
   if (impl_->pictures.size() > kPictures) impl_->pictures.pop_front();
   return name;
 }

@@ -29,7 +29,7 @@ class ProjectData : public DataSource {
   ~ProjectData() override;
 
   DataReply Get(const std::string& path, const std::string& query) override;
-  DataReply Put(const std::string& path, const std::string& body) override;
+  DataReply Put(const std::string& path, const std::string& body, const std::string& if_match) override;
 
   // The survey of the main project; null when it cannot be read. Thread-safe, as are the following.
   std::shared_ptr<const survey::Survey> survey() const;

@@ -27,19 +27,19 @@ DataReply TextReply(int status, const std::string& text) {
   return {.status = status, .content_type = "text/plain; charset=utf-8", .body = text, .file = {}};
 }
 
-DataReply NoContent() {
-  return {.status = 204, .content_type = "", .body = "", .file = {}};
+// content: of the document's file.
+DataReply NoContent(const std::string& content) {
+  return {.status = 204, .content_type = "", .body = "", .file = {}, .etag = base::HashHex(content)};
 }
 
-// Nothing when the file does not exist or cannot be read.
+// Empty when there is no such file. Throws base::InputError when there is something of this name that cannot be read.
 std::string ContentOf(const fs::path& file) {
   std::error_code error;
-  if (!fs::is_regular_file(file, error)) return "";
-  try {
-    return base::ReadFile(file);
-  } catch (const base::InputError&) {
-    return "";
-  }
+  const fs::file_type type = fs::status(file, error).type();
+  if (type == fs::file_type::not_found) return "";
+  if (error) base::ThrowFileError(file, "cannot read", error.value());
+  if (type != fs::file_type::regular) throw base::InputError(file, "is not a file", "Move it away");
+  return base::ReadFile(file);
 }
 
 std::string Indented(const Json& json) {
@@ -50,14 +50,14 @@ std::optional<geo::UtmZone> ZoneOf(const OpenedProject& opened) {
   return opened.georeferenced ? std::optional(opened.zone) : std::nullopt;
 }
 
-// What a failed write of a file of the project means for the user.
+// What a failed reading or writing of a file of the project means for the user.
 DataReply FailureReply(const base::InputError& failure) {
   struct Kind {
     int code, status;
     const char* advice;
   };
   static constexpr const char* kFree = "Free some space on this disk, then save again";
-  static constexpr const char* kAllow = "Allow this user to write into the project folder, then save again";
+  static constexpr const char* kAllow = "Allow this user to read and write in the project folder, then save again";
   static constexpr std::array<Kind, 5> kKinds = {
       {{ENOSPC, 507, kFree}, {EDQUOT, 507, kFree}, {EACCES, 409, kAllow}, {EPERM, 409, kAllow}, {EROFS, 409, kAllow}}};
   spdlog::warn("{}", failure.what());
@@ -79,7 +79,14 @@ GcpList ListFromElsewhere(const OpenedProject& opened, const MarkablePhotos& pho
     if (root.filename() == "images") files.push_back(root.parent_path() / "gcp_list.txt");
   }
   for (const fs::path& file : files) {
-    const std::string text = ContentOf(file);
+    std::string text;
+    try {
+      text = ContentOf(file);
+    } catch (const base::InputError& failure) {
+      // Only the project's own list is ever replaced, so the others may be passed over.
+      if (&file == &files.front()) throw;
+      spdlog::warn("{}", failure.what());
+    }
     if (text.empty()) continue;
     GcpList list = ReadGcpList(text, ZoneOf(opened), photos);
     if (!list.problem.empty()) spdlog::warn("{}: not shown as control points: {}", file.string(), list.problem);
@@ -88,9 +95,8 @@ GcpList ListFromElsewhere(const OpenedProject& opened, const MarkablePhotos& pho
   return {};
 }
 
-// The control points that a browser gets now; null when there are none, or gcp.json is damaged.
-Json CurrentControlPoints(const OpenedProject& opened, const MarkablePhotos& photos) {
-  const std::string text = ContentOf(opened.project.folder / kControlPoints);
+// The control points that a browser gets now; null when there are none, or gcp.json, whose content is `text`, is damaged.
+Json CurrentControlPoints(const OpenedProject& opened, const MarkablePhotos& photos, const std::string& text) {
   if (text.empty()) return ListFromElsewhere(opened, photos).gcp;
   try {
     return ParseDocument(text);
@@ -103,40 +109,66 @@ void WriteIfChanged(const fs::path& file, const std::string& content) {
   if (ContentOf(file) != content) base::WriteFileAtomically(file, content);
 }
 
-void SaveControlPoints(const OpenedProject& opened, const Json& gcp) {
+// Keeps a list of somebody else beside those that were kept before, unless one of them is the same.
+void KeepOriginal(const fs::path& list, const std::string& content) {
+  constexpr int kMostOriginals = 1000;
+  for (int n = 1; n <= kMostOriginals; ++n) {
+    fs::path original = list;
+    original += n == 1 ? ".orig" : ".orig." + std::to_string(n);
+    std::error_code error;
+    if (fs::symlink_status(original, error).type() == fs::file_type::not_found) {
+      base::WriteFileAtomically(original, content);
+      return;
+    }
+    try {
+      if (ContentOf(original) == content) return;
+    } catch (const base::InputError&) {
+      // Taken by something else.
+    }
+  }
+  throw base::InputError(list, "is not ours, and there are too many older lists beside it", "Move the files gcp_list.txt.orig.* away");
+}
+
+// Returns what gcp.json contains now.
+std::string SaveControlPoints(const OpenedProject& opened, const Json& gcp) {
   const fs::path& folder = opened.project.folder;
   const MarkablePhotos photos(opened.survey.get());
   const std::optional<std::string> crs = CrsNameOf(opened.georeferenced, opened.zone);
-  const Json current = CurrentControlPoints(opened, photos);
+  const std::string before = ContentOf(folder / kControlPoints);
+  const Json current = CurrentControlPoints(opened, photos, before);
   const std::set<std::string> unknown = UnknownMarks(current, photos);
   CheckControlPoints(gcp, crs, photos, unknown);
 
-  const fs::path list = folder / "gcp_list.txt", original = folder / "gcp_list.txt.orig";
+  const fs::path list = folder / "gcp_list.txt";
   const std::string present = ContentOf(list), wanted = GcpListText(gcp, photos);
   if (!present.empty() && present != wanted) {
     // Somebody's own list is kept; what we made from the control points so far is not.
     bool ours = false;
     try {
       CheckControlPoints(current, crs, photos, unknown);
-      ours = fs::exists(folder / kControlPoints) && GcpListText(current, photos) == present;
+      ours = !before.empty() && GcpListText(current, photos) == present;
     } catch (const Refused&) {
     }
-    std::error_code error;
-    if (!ours && !fs::exists(original, error)) base::WriteFileAtomically(original, present);
+    if (!ours) KeepOriginal(list, present);
   }
-  WriteIfChanged(folder / kControlPoints, Indented(gcp));
+  std::string content = Indented(gcp);
+  WriteIfChanged(folder / kControlPoints, content);
   WriteIfChanged(list, wanted);
+  return content;
 }
 
-void SaveCameraPath(const OpenedProject& opened, const Json& json, const std::string& body) {
+// Returns what the file contains now.
+std::string SaveCameraPath(const OpenedProject& opened, const Json& json, const std::string& body) {
   const fs::path file = opened.project.folder / kCameraPath;
   if (!IsEmptyPath(json)) {
     CheckCameraPath(json, body, opened.origin, opened.georeferenced);
-    WriteIfChanged(file, Indented(json));
-    return;
+    std::string content = Indented(json);
+    WriteIfChanged(file, content);
+    return content;
   }
   std::error_code error;
   if (!fs::remove(file, error) && error) base::ThrowFileError(file, "cannot remove", error.value());
+  return "";
 }
 
 }  // namespace
@@ -147,28 +179,37 @@ bool IsDocument(const std::string& name) {
 
 DataReply GetDocument(const OpenedProject& opened, const std::string& name) {
   const char* type = name == kMeasurements ? "application/geo+json" : "application/json";
-  const fs::path file = opened.project.folder / name;
-  std::error_code error;
-  if (fs::is_regular_file(file, error)) return {.status = 200, .content_type = type, .body = base::ReadFile(file), .file = {}};
-  if (name == kControlPoints) {
-    const GcpList list = ListFromElsewhere(opened, MarkablePhotos(opened.survey.get()));
-    if (!list.gcp.is_null()) return {.status = 200, .content_type = type, .body = Indented(list.gcp), .file = {}};
+  const auto found = [type](std::string body, std::string etag) -> DataReply {
+    return {.status = 200, .content_type = type, .body = std::move(body), .file = {}, .etag = std::move(etag)};
+  };
+  try {
+    std::string content = ContentOf(opened.project.folder / name);
+    std::string etag = base::HashHex(content);
+    if (!content.empty()) return found(std::move(content), std::move(etag));
+    if (name == kControlPoints) {
+      const GcpList list = ListFromElsewhere(opened, MarkablePhotos(opened.survey.get()));
+      if (!list.gcp.is_null()) return found(Indented(list.gcp), std::move(etag));
+    }
+    return NoContent("");
+  } catch (const base::InputError& failure) {
+    spdlog::warn("{}", failure.what());
+    return TextReply(500, failure.file().filename().string() + ": " + failure.finding());
   }
-  return NoContent();
 }
 
-DataReply PutDocument(const OpenedProject& opened, const std::string& name, const std::string& body) {
+DataReply PutDocument(const OpenedProject& opened, const std::string& name, const std::string& body, const std::string& if_match) {
+  const fs::path file = opened.project.folder / name;
   try {
-    const Json json = ParseDocument(body);
-    if (name == kMeasurements) {
-      CheckMeasurements(json);
-      WriteIfChanged(opened.project.folder / name, Indented(json));
-    } else if (name == kControlPoints) {
-      SaveControlPoints(opened, json);
-    } else {
-      SaveCameraPath(opened, json, body);
+    if (!if_match.empty() && base::HashHex(ContentOf(file)) != if_match) {
+      return TextReply(412, name + " was changed in another window. Reload the page to see it");
     }
-    return NoContent();
+    const Json json = ParseDocument(body);
+    if (name == kControlPoints) return NoContent(SaveControlPoints(opened, json));
+    if (name == kCameraPath) return NoContent(SaveCameraPath(opened, json, body));
+    CheckMeasurements(json);
+    const std::string content = Indented(json);
+    WriteIfChanged(file, content);
+    return NoContent(content);
   } catch (const Refused& refused) {
     return TextReply(400, name + " is not saved: " + refused.what());
   } catch (const base::InputError& failure) {

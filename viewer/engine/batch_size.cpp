@@ -7,12 +7,11 @@ namespace skyquilt::viewer {
 namespace {
 
 constexpr double kTargetSeconds = 0.008;
-// Using all threads is worth this much.
-constexpr double kMostSeconds = 0.016;
 constexpr size_t kFewestRays = 256;
 constexpr size_t kMostRays = 16384;
 constexpr size_t kRaysPerRank = 2048;  // fewer cost more in messages than in rendering
-constexpr size_t kTask = 1024;         // rays that one thread takes at a time (scene::PagedRenderer)
+constexpr size_t kFirstRays = 1024;    // of a thread, before its speed is known
+constexpr size_t kSmallestTask = 128;  // rays that one thread takes at a time, at least (scene::PagedRenderer)
 constexpr double kWeightOfNewest = 0.3;
 
 }  // namespace
@@ -27,18 +26,15 @@ size_t BatchSize::rays() const {
   }
   // Loading takes much longer than rendering: the more rays share it, the better.
   if (loading_) return kMostRays;
-  const size_t all_threads = kTask * static_cast<size_t>(threads_);
-  if (speed_ <= 0.0) return std::min(all_threads, 4 * kTask);
-  const double task_seconds = static_cast<double>(kTask) / speed_;
-  if (task_seconds > kMostSeconds) return std::clamp(in_target(speed_), kFewestRays, kTask);
-  return std::min(kMostRays, all_threads * std::max<size_t>(1, in_target(speed_) / kTask));
+  if (speed_ <= 0.0) return kFirstRays * static_cast<size_t>(std::min(threads_, 4));
+  return std::clamp(in_target(speed_ * threads_), kFewestRays, kMostRays);
 }
 
 void BatchSize::Add(size_t rays, double seconds, bool loaded_fields) {
   loading_ = loaded_fields;
   // Small batches measure overhead.
   if (loaded_fields || rays < kFewestRays || !(seconds > 0.0) || !std::isfinite(seconds)) return;
-  const size_t busy = remote_ranks_ > 0 ? 1 : std::min(static_cast<size_t>(threads_), (rays + kTask - 1) / kTask);
+  const size_t busy = remote_ranks_ > 0 ? 1 : std::min(static_cast<size_t>(threads_), (rays + kSmallestTask - 1) / kSmallestTask);
   const double measured = static_cast<double>(rays) / static_cast<double>(busy) / seconds;
   speed_ = speed_ > 0.0 ? speed_ + kWeightOfNewest * (measured - speed_) : measured;
 }

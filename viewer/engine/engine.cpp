@@ -24,7 +24,7 @@ constexpr std::chrono::seconds kLookEvery(1);   // at the files
 }  // namespace
 
 struct Engine::Impl {
-  Impl(EngineInput input, ProjectData& project_data) : data(project_data), scenes(input, project_data), told(scenes.state()) {}
+  Impl(const EngineInput& input, ProjectData& project_data) : data(project_data), scenes(input, project_data), told(scenes.state()) {}
 
   std::unique_ptr<Query> MakeQuery(const ClientMessage& message) {
     return std::visit(
@@ -132,7 +132,7 @@ struct Engine::Impl {
   EngineState told;
 };
 
-Engine::Engine(EngineInput input, ProjectData& data) : impl_(std::make_unique<Impl>(std::move(input), data)) {}
+Engine::Engine(const EngineInput& input, ProjectData& data) : impl_(std::make_unique<Impl>(input, data)) {}
 
 Engine::~Engine() = default;
 

@@ -34,7 +34,7 @@ struct Outbox {
 
 class Engine : public ClientHandler {
  public:
-  Engine(EngineInput input, ProjectData& data);
+  Engine(const EngineInput& input, ProjectData& data);
   ~Engine() override;
 
   // Loads the scene, then serves until base::CancelRequested. Looks once a second whether scene.h5 (or surface.json, metrics.json) is a new file:

@@ -14,11 +14,10 @@
 namespace skyquilt::viewer {
 namespace {
 
-constexpr double kBytesPerGib = 1073741824.0;
 constexpr double kFallbackGsd_m = 0.05;
 
 coordinator::RunOptions WithHalfTheMemory(coordinator::RunOptions run) {
-  run.memory_gb = 0.5 * run.MemoryLimitBytes() / kBytesPerGib;
+  run.memory_share *= 0.5;
   return run;
 }
 
@@ -60,8 +59,15 @@ SceneHolder::SceneHolder(const EngineInput& input, ProjectData& data)
 SceneHolder::~SceneHolder() = default;
 
 std::vector<FileLook> SceneHolder::LookAtData() const {
-  std::vector<FileLook> looks = {LookAt(main_.project.SurfaceTable()), LookAt(main_.project.MetricsFile())};
-  if (before_) looks.push_back(LookAt(before_->project.SurfaceTable()));
+  std::vector<FileLook> looks;
+  // The stamp of the maps is written when they are begun and when they are done.
+  const auto look_at = [&](const coordinator::Project& project) {
+    for (const std::filesystem::path& file : {project.SurfaceTable(), project.MetricsFile(), project.StampFile("products"), project.BlocksFile()}) {
+      looks.push_back(LookAt(file));
+    }
+  };
+  look_at(main_.project);
+  if (before_) look_at(before_->project);
   return looks;
 }
 
@@ -95,8 +101,11 @@ void SceneHolder::Load() {
 }
 
 void SceneHolder::ReloadData() {
-  data_read_ = LookAtData();
-  if (loaded_once_) {
+  std::vector<FileLook> looks = LookAtData();
+  // ProjectData read everything when it was made.
+  const bool again = loaded_once_ || looks != data_read_;
+  data_read_ = std::move(looks);
+  if (again) {
     try {
       data_.Reload();
     } catch (const base::Interrupted&) {
@@ -225,11 +234,20 @@ void SceneHolder::RenderAsPhoto(int photo, std::span<const render::Ray> rays, st
   const auto survey = data_.survey();
   if (!survey || photo < 0 || static_cast<size_t>(photo) >= survey->photos.size()) throw BadMessage("the survey has no such photo");
   const brightness::Response& response = loaded.session->scene().info().response;
-  scene::Appearance appearance;
-  if (const std::optional<size_t> index = response.Find(survey->photos[static_cast<size_t>(photo)].name)) {
-    appearance = {.look = scene::Rendition::kRecorded, .log_gain = response.LogGain(*index)};
+  const scene::Appearance recorded{.look = scene::Rendition::kRecorded};
+  Timed(loaded, rays.size(), [&] { loaded.session->scene().RenderRaysOverBackground(rays, out, recorded, loaded.session->threads()); });
+  const survey::Photo& taken = survey->photos[static_cast<size_t>(photo)];
+  const std::optional<size_t> index = response.Find(taken.name);
+  if (!index) return;
+  // Gain and vignetting, as evaluate/apply_response.cpp.
+  const camera::Camera& camera = survey->cameras.at(static_cast<size_t>(taken.camera));
+  const double per_radius2 = 1.0 / (camera.MaxImageRadius() * camera.MaxImageRadius());
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const auto pixel = camera.ImgFromCam(taken.cam_from_enu.rotation * rays[i].direction_enu);
+    const double radius2 = pixel ? (*pixel - camera.PrincipalPoint()).squaredNorm() * per_radius2 : 0.0;
+    const std::array<brightness::Exposure, 3> exposure = response.ExposureOf(*index, static_cast<float>(std::min(1.0, radius2)));
+    for (size_t c = 0; c < 3; ++c) out[i].rgb_srgb[c] = brightness::Expose(out[i].rgb_srgb[c], exposure[c]).value;
   }
-  Timed(loaded, rays.size(), [&] { loaded.session->scene().RenderRaysOverBackground(rays, out, appearance, loaded.session->threads()); });
 }
 
 products::View SceneHolder::PhotoView(int photo, int width) const {
@@ -280,13 +298,16 @@ FieldAccess SceneHolder::Access() {
     access.before = caster(Which::kBefore);
     // What stood higher or lay lower before must be inside too.
     const geo::Rigid3d main_from_before = before->scene_from_main.value_or(geo::Rigid3d()).Inverse();
+    Eigen::AlignedBox3d box;
     for (int corner = 0; corner < 8; ++corner) {
       Eigen::Vector3d x;
       for (int axis = 0; axis < 3; ++axis) x[axis] = (corner >> axis & 1) != 0 ? before->max_enu[axis] : before->min_enu[axis];
-      const double z = (main_from_before * x).z();
-      access.min_enu.z() = std::min(access.min_enu.z(), z);
-      access.max_enu.z() = std::max(access.max_enu.z(), z);
+      box.extend(main_from_before * x);
     }
+    access.before_min_enu = box.min();
+    access.before_max_enu = box.max();
+    access.min_enu.z() = std::min(access.min_enu.z(), box.min().z());
+    access.max_enu.z() = std::max(access.max_enu.z(), box.max().z());
     access.batch = access.main ? std::min(access.batch, Batch(Which::kBefore)) : Batch(Which::kBefore);
   }
   return access;

@@ -21,7 +21,7 @@ constexpr size_t kMaxPhotos = 200;
 constexpr int kPhotoWidth = 250;
 constexpr double kScaleShare = 0.95;
 constexpr double kSmallestScale = 0.02;
-constexpr std::chrono::milliseconds kPatience(5);  // of a step, for a photo that is being read
+constexpr std::chrono::milliseconds kPatience(1);  // of a step, for a photo that is being read
 
 // A photo that is being compared.
 struct Comparison {

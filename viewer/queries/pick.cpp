@@ -10,9 +10,11 @@ namespace {
 // Orthographic pictures also show what lies behind the eye, so the ray of one of their pixels begins before the scene's box.
 double StartsBehind(const PickRequest& request, const FieldAccess& access) {
   if (request.pixel_pitch > 0.0 || request.pixel_width_m <= 0.0) return 0.0;
-  const Eigen::Array3d low = access.min_enu.array() - request.origin_enu.array(), high = access.max_enu.array() - request.origin_enu.array();
+  const bool before = request.project == Which::kBefore;
+  const Eigen::Vector3d &min_enu = before ? access.before_min_enu : access.min_enu, &max_enu = before ? access.before_max_enu : access.max_enu;
+  const Eigen::Array3d low = min_enu.array() - request.origin_enu.array(), high = max_enu.array() - request.origin_enu.array();
   const Eigen::Array3d nearest = (low * request.direction_enu.array()).min(high * request.direction_enu.array());
-  const double behind = -nearest.sum() + 0.05 * (access.max_enu - access.min_enu).norm();
+  const double behind = -nearest.sum() + 0.05 * (max_enu - min_enu).norm();
   return std::isfinite(behind) ? std::max(0.0, behind) : 0.0;
 }
 

@@ -21,6 +21,8 @@ struct FieldAccess {
   size_t batch = 2048;  // rays per call, so that a step takes about 10 ms
   // Of the main project's scene (or its survey): where surfaces are, metres ENU. Vertical rays start above it.
   Eigen::Vector3d min_enu = Eigen::Vector3d::Zero(), max_enu = Eigen::Vector3d::Zero();
+  // The same of the earlier survey alone.
+  Eigen::Vector3d before_min_enu = Eigen::Vector3d::Zero(), before_max_enu = Eigen::Vector3d::Zero();
   double gsd_m = 0.05;
 };
 

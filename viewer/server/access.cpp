@@ -24,7 +24,7 @@ std::string Access::token() const {
 
 Access::Exchange Access::TryToken(std::string_view token, bool trusted, Clock::time_point now, std::string& set_cookie) {
   const std::lock_guard lock(mutex_);
-  if (!trusted && now < paused_until_) return Exchange::kTooManyGuesses;
+  // First of all: strangers' guesses must not lock out whoever has the link. A token is too long to be guessed meanwhile.
   if (EqualInConstantTime(token, token_)) {
     token_ = NewSecret();
     sessions_.push_back(NewSecret());
@@ -33,6 +33,7 @@ Access::Exchange Access::TryToken(std::string_view token, bool trusted, Clock::t
     return Exchange::kGranted;
   }
   if (trusted) return Exchange::kWrong;
+  if (now < paused_until_) return Exchange::kTooManyGuesses;
   while (!wrong_.empty() && now - wrong_.front() >= kGuessPause) wrong_.pop_front();
   wrong_.push_back(now);
   if (wrong_.size() >= kMaxWrongTokens) {

@@ -11,7 +11,7 @@
 namespace skyquilt::viewer::server {
 
 constexpr size_t kMaxSessions = 64;     // the oldest is dropped
-constexpr size_t kMaxWrongTokens = 20;  // within kGuessPause; then no token is looked at for kGuessPause
+constexpr size_t kMaxWrongTokens = 20;  // within kGuessPause; then wrong ones are answered with kTooManyGuesses for kGuessPause
 constexpr std::chrono::seconds kGuessPause{60};
 
 // Thread-safe.
@@ -26,7 +26,7 @@ class Access {
   // The token that works now.
   std::string token() const;
   // kGranted: `token` is used up, there is a new one, and set_cookie is the value of the Set-Cookie header. `trusted`: the request has a valid
-  // cookie, so a wrong token is an old link and no guess.
+  // cookie, so a wrong token is an old link and no guess. The right token is always granted.
   Exchange TryToken(std::string_view token, bool trusted, Clock::time_point now, std::string& set_cookie);
   // Whether one of the Cookie headers holds a session.
   bool HasSession(const std::vector<std::string>& cookie_headers) const;

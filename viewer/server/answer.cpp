@@ -25,6 +25,8 @@ const char* Reason(int status) {
       return "Method Not Allowed";
     case 409:
       return "Conflict";
+    case 412:
+      return "Precondition Failed";
     case 413:
       return "Payload Too Large";
     case 414:
@@ -41,6 +43,8 @@ const char* Reason(int status) {
       return "Internal Server Error";
     case 503:
       return "Service Unavailable";
+    case 507:
+      return "Insufficient Storage";
     default:
       return "Status";
   }
@@ -94,7 +98,9 @@ Answer PageAnswer(int status, const std::string& title, const std::vector<std::s
 Answer DataAnswer(DataReply reply) {
   if (reply.status < 200 || reply.status > 599) return PlainAnswer(500, "the viewer made an invalid answer");
   Answer answer{.status = reply.status, .content_type = std::move(reply.content_type), .body = {}, .file = std::move(reply.file)};
-  answer.body = std::make_shared<const std::string>(std::move(reply.body));
+  answer.body = reply.kept != nullptr ? std::move(reply.kept) : std::make_shared<const std::string>(std::move(reply.body));
+  const bool is_tag = !reply.etag.empty() && IsPrintable(reply.etag) && reply.etag.find('"') == std::string::npos;
+  if (is_tag) answer.headers.emplace_back("ETag", "\"" + reply.etag + "\"");
   answer.cache = reply.cache;
   return answer;
 }

@@ -14,11 +14,11 @@ DataThread::~DataThread() {
 }
 
 void DataThread::Get(std::string path, std::string query, Done done) {
-  Add({.put = false, .path = std::move(path), .text = std::move(query), .done = std::move(done)});
+  Add({.put = false, .path = std::move(path), .text = std::move(query), .if_match = {}, .done = std::move(done)});
 }
 
-void DataThread::Put(std::string path, std::string body, Done done) {
-  Add({.put = true, .path = std::move(path), .text = std::move(body), .done = std::move(done)});
+void DataThread::Put(std::string path, std::string body, std::string if_match, Done done) {
+  Add({.put = true, .path = std::move(path), .text = std::move(body), .if_match = std::move(if_match), .done = std::move(done)});
 }
 
 void DataThread::Add(Job job) {
@@ -48,7 +48,7 @@ DataReply DataThread::Answer(const Job& job) const {
                      .file = {}};
   };
   try {
-    return job.put ? source_.Put(job.path, job.text) : source_.Get(job.path, job.text);
+    return job.put ? source_.Put(job.path, job.text, job.if_match) : source_.Get(job.path, job.text);
   } catch (const std::exception& error) {
     return failed(error.what());
   } catch (...) {

@@ -25,14 +25,14 @@ class DataThread {
 
   // done is called by `post`. A source that throws is answered with status 500.
   void Get(std::string path, std::string query, Done done);
-  void Put(std::string path, std::string body, Done done);
+  void Put(std::string path, std::string body, std::string if_match, Done done);
   // Drops what waits and waits for the call that runs.
   void Stop();
 
  private:
   struct Job {
     bool put = false;
-    std::string path, text;
+    std::string path, text, if_match;
     Done done;
   };
   void Add(Job job);

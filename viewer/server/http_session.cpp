@@ -27,6 +27,14 @@ constexpr uint64_t kMaxBodyBytes = 1U << 20U;
 constexpr size_t kReadBufferBytes = 16U << 10U;
 constexpr std::chrono::seconds kLinger{2};
 
+// The tag in a header If-Match; empty: none, or any.
+std::string TagOf(std::string_view header) {
+  if (header == "*") return {};
+  if (header.starts_with("W/")) header.remove_prefix(2);
+  if (header.size() >= 2 && header.front() == '"' && header.back() == '"') header = header.substr(1, header.size() - 2);
+  return std::string(header);
+}
+
 // A request is read, routed and answered; then the next one of the same connection.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
@@ -94,6 +102,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         break;
       case Action::kPutData:
         path_ = std::move(decision.path);
+        {
+          const auto header = parser_->get()[http::field::if_match];
+          if_match_ = TagOf({header.data(), header.size()});
+        }
         ContinueThenReadBody();
         break;
       case Action::kOpenWebsocket:
@@ -139,7 +151,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void ReadBody() {
     http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](const beast::error_code& error, size_t) {
       if (self->AnsweredParseError(error) || self->Failed(error)) return;
-      self->server_.data.Put(std::move(self->path_), std::move(self->parser_->get().body()),
+      self->server_.data.Put(std::move(self->path_), std::move(self->parser_->get().body()), std::move(self->if_match_),
                              [self](DataReply reply) { self->Send(DataAnswer(std::move(reply))); });
     });
   }
@@ -198,7 +210,16 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     head_ = FormatHead(answer_, body_bytes, keep_alive_, host_);
     head_left_ = head_;
     body_left_ = empty || file_ || answer_.body == nullptr ? std::string_view() : std::string_view(*answer_.body);
+    sent_before_ = stream_.rate_policy().sent();
+    send_began_ = std::chrono::steady_clock::now();
     SendSome();
+  }
+
+  // A client that takes in a large answer byte by byte would hold its memory or file for hours.
+  bool IsTooSlow() {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - send_began_).count();
+    const auto sent = static_cast<double>(stream_.rate_policy().sent() - sent_before_);
+    return seconds > server_.options.slow_answer_s && sent < server_.options.min_answer_bytes_per_s * seconds;
   }
 
   void SendSome() {
@@ -221,6 +242,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       const size_t of_head = std::min(bytes, self->head_left_.size());
       self->head_left_.remove_prefix(of_head);
       self->body_left_.remove_prefix(bytes - of_head);
+      const bool more = !self->body_left_.empty() || (self->file_ && self->file_->left() > 0);
+      if (more && self->IsTooSlow()) {
+        spdlog::debug("viewer: a client that reads its answer too slowly is disconnected");
+        self->Abort();
+        return;
+      }
       self->SendSome();
     });
   }
@@ -257,11 +284,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   bool aborted_ = false;
   // Of the current request:
   bool trusted_ = false, keep_alive_ = false, without_body_ = false;
-  std::string host_, path_;
+  std::string host_, path_, if_match_;
   Answer answer_;
   std::string head_, piece_;
   std::string_view head_left_, body_left_;
   std::optional<FileReader> file_;
+  uint64_t sent_before_ = 0;  // by this connection, before this answer
+  std::chrono::steady_clock::time_point send_began_{};
 };
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 
+#include <exception>
+
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "viewer/server/http_session.h"
@@ -70,7 +72,12 @@ void Listener::Accept() {
     if (!acceptor_.is_open()) return;
     if (!error) {
       CloseOnExec(socket.native_handle());
-      StartHttpSession(*server_, std::move(socket));
+      try {
+        StartHttpSession(*server_, std::move(socket));
+      } catch (const std::exception& failure) {
+        // This connection only (out of memory, say): others must still be accepted.
+        spdlog::error("viewer: {}", failure.what());
+      }
       Accept();
       return;
     }

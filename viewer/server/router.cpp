@@ -14,8 +14,8 @@ constexpr size_t kMaxDataPath = 200, kMaxDataQuery = 100;
 Answer WrongHost() {
   return PageAnswer(403, "Open the link as it is printed",
                     {"The viewer answers only under the address in the link that it printed in the terminal.",
-                     "If you forward the port from another machine, use the same port number on both sides, for instance "
-                     "ssh -L 8080:127.0.0.1:8080 for a viewer started with --port 8080."});
+                     "If you forward the port from another machine, use the same port number on both sides, for instance: "
+                     "ssh -t -L 8000:127.0.0.1:8000 host skyquilt view out --port 8000"});
 }
 
 Answer NeedsLink() {
@@ -31,8 +31,7 @@ Answer UsedLink() {
 }
 
 Answer TooManyGuesses() {
-  Answer answer =
-      PageAnswer(429, "Too many wrong links", {"Wait for a minute, then open the newest link from the terminal where skyquilt view runs."});
+  Answer answer = PageAnswer(429, "Too many wrong links", {"Open the newest link from the terminal where skyquilt view runs."});
   answer.headers.emplace_back("Retry-After", "60");
   return answer;
 }

@@ -44,6 +44,11 @@ struct DataReply {
   std::string body;            // or
   std::filesystem::path file;  // sent from disk when not empty
   bool cache = false;          // may be kept by the browser for this page's lifetime: its URL changes with its content
+  std::string etag = {};       // header ETag, without quotes; empty: none
+  // Sent instead of `body` when not null: a file that the source keeps, so that all connections that send it share one copy.
+  std::shared_ptr<const std::string> kept = {};
+
+  const std::string& Content() const { return kept != nullptr ? *kept : body; }
   static DataReply NotFound(const std::string& reason) {
     return {.status = 404, .content_type = "text/plain; charset=utf-8", .body = reason, .file = {}};
   }
@@ -56,7 +61,8 @@ class DataSource {
   // path: without the leading "/data/", 1 to 200 characters of [A-Za-z0-9_./-] without ".." or "//"; query: the URL's part after '?', unparsed, up to
   // 100 characters. Must look the path up in a table and never use it to open a file. Exceptions become status 500 and are logged.
   virtual DataReply Get(const std::string& path, const std::string& query) = 0;
-  virtual DataReply Put(const std::string& path, const std::string& body) = 0;
+  // if_match: the header If-Match without quotes, empty when there is none or it is "*": what the client knows as the present file's etag.
+  virtual DataReply Put(const std::string& path, const std::string& body, const std::string& if_match) = 0;
 };
 
 struct Asset {
@@ -77,8 +83,10 @@ struct ServerOptions {
   double handshake_s = 10.0;             // until a request is complete and for its answer to make progress
   double idle_s = 300.0;                 // without a message or a pong
   double keep_alive_s = 30.0;            // between two requests of one connection
-  double write_stall_s = 30.0;           // for a client that does not read what is sent to it
-  int max_messages_per_s = 200;          // per client; above it is disconnected
+  double slow_answer_s = 30.0;           // after which an HTTP answer must have gone out at this rate since it began:
+  double min_answer_bytes_per_s = 16384.0;
+  double write_stall_s = 30.0;   // for a client that does not read what is sent to it
+  int max_messages_per_s = 200;  // per client; above it is disconnected
 };
 
 class Server {

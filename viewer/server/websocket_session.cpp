@@ -43,6 +43,16 @@ class WebsocketSession : public std::enable_shared_from_this<WebsocketSession> {
         rate_(server.options.max_messages_per_s, opened_) {
     ++server_.websockets;
   }
+  // Usually finished already. An operation that threw has released this object otherwise.
+  ~WebsocketSession() {
+    try {
+      Finish();
+    } catch (const std::exception& error) {
+      spdlog::error("viewer: client {}: {}", id_, error.what());
+    }
+  }
+  WebsocketSession(const WebsocketSession&) = delete;
+  WebsocketSession& operator=(const WebsocketSession&) = delete;
 
   void Start(const std::string& host) {
     const std::weak_ptr<WebsocketSession> weak = weak_from_this();
@@ -136,8 +146,9 @@ class WebsocketSession : public std::enable_shared_from_this<WebsocketSession> {
     } else if (hello->version != kProtocolVersion) {
       Close(close_code::protocol_error, "this page is of another version than the viewer: reload it");
     } else {
-      greeted_ = known_ = true;
+      greeted_ = true;
       server_.clients.Add(id_, queue_);
+      known_ = true;
       Guarded([&] { server_.handler.OnOpen(id_); });
     }
   }
@@ -205,15 +216,15 @@ class WebsocketSession : public std::enable_shared_from_this<WebsocketSession> {
     if (finished_) return;
     finished_ = true;
     --server_.websockets;
-    timer_.cancel();
-    Lowest().close();
     slot_.reset();
     Leave();
+    timer_.cancel();
+    Lowest().close();
   }
 
   // From now on nothing is sent to this client or heard from it.
   void Leave() {
-    queue_->Close();
+    if (queue_ != nullptr) queue_->Close();
     if (!std::exchange(known_, false)) return;
     server_.clients.Remove(id_);
     try {

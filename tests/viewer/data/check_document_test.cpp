@@ -18,7 +18,7 @@ TEST(CheckDocument, ControlPointsFitTheProject) {
   const auto refused = [&](const std::function<void(nlohmann::json&)>& spoil) {
     nlohmann::json json = OnePoint();
     spoil(json);
-    return data.Put("gcp.json", json.dump()).status == 400;
+    return data.Put("gcp.json", json.dump(), "").status == 400;
   };
   // The front end would not read these again.
   EXPECT_TRUE(refused([](auto& json) { json["crs"] = nullptr; }));
@@ -42,11 +42,15 @@ TEST(CheckDocument, MarksInPhotosThatHaveLeftTheSurveyMayStay) {
   EXPECT_EQ(gcp["points"][0]["marks"][0]["unknown"], true);
   EXPECT_EQ(gcp["points"][0]["marks"][1]["photo"], "IMG_1.jpg");
   gcp["points"][0]["marks"][0].erase("unknown");
-  for (int i = 0; i < 2; ++i) EXPECT_EQ(data.Put("gcp.json", gcp.dump()).status, 204);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(data.Put("gcp.json", gcp.dump(), "").status, 204);
   EXPECT_NE(base::ReadFile(sample.project.folder / "gcp_list.txt").find("gone.jpg a"), std::string::npos);
   EXPECT_NE(base::ReadFile(list).find("9999"), std::string::npos) << "the list beside the photos is not ours";
   gcp["points"][0]["marks"][0]["photo"] = "gone_too.jpg";
-  EXPECT_EQ(data.Put("gcp.json", gcp.dump()).status, 400);
+  EXPECT_EQ(data.Put("gcp.json", gcp.dump(), "").status, 400);
+  gcp["points"][0]["marks"][0]["unknown"] = "yes";
+  EXPECT_EQ(data.Put("gcp.json", gcp.dump(), "").status, 400);
+  gcp["points"][0]["marks"][0]["unknown"] = true;
+  EXPECT_EQ(data.Put("gcp.json", gcp.dump(), "").status, 204) << "the page takes a deletion back";
 }
 
 TEST(CheckDocument, ADamagedOldDocumentDoesNotPreventSaving) {
@@ -57,7 +61,7 @@ TEST(CheckDocument, ADamagedOldDocumentDoesNotPreventSaving) {
        {std::string("{"), std::string("[]"), std::string(R"({"points": [{}]})"), std::string(R"({"points": [{"marks": [{"photo": 1}]}]})"), deep}) {
     base::WriteFileAtomically(sample.project.folder / "gcp.json", old);
     base::WriteFileAtomically(sample.project.folder / "gcp_list.txt", "EPSG:32632\n");
-    EXPECT_EQ(data.Put("gcp.json", OnePoint().dump()).status, 204) << old.substr(0, 40);
+    EXPECT_EQ(data.Put("gcp.json", OnePoint().dump(), "").status, 204) << old.substr(0, 40);
   }
 }
 
@@ -68,11 +72,11 @@ TEST(CheckDocument, DeepNestingIsRefused) {
   std::string objects;
   for (int i = 0; i < 100'000; ++i) objects += "{\"a\":";
   for (const char* name : {"measurements.geojson", "gcp.json", "camera_path.json"}) {
-    EXPECT_EQ(data.Put(name, std::string(500'000, '[') + std::string(500'000, ']')).status, 400);
-    EXPECT_EQ(data.Put(name, objects).status, 400);
+    EXPECT_EQ(data.Put(name, std::string(500'000, '[') + std::string(500'000, ']'), "").status, 400);
+    EXPECT_EQ(data.Put(name, objects, "").status, 400);
   }
   const std::string in_text = R"({"type": "FeatureCollection", "features": [], "note": "\")" + std::string(100, '[') + "\"}";
-  EXPECT_EQ(data.Put("measurements.geojson", in_text).status, 204) << "brackets in texts are no nesting";
+  EXPECT_EQ(data.Put("measurements.geojson", in_text, "").status, 204) << "brackets in texts are no nesting";
 }
 
 TEST(CheckDocument, GeometriesHaveTheShapeOfTheirType) {
@@ -81,7 +85,7 @@ TEST(CheckDocument, GeometriesHaveTheShapeOfTheirType) {
   const auto status = [&](const std::string& type, const std::string& coordinates, const std::string& name = "a") {
     const std::string feature = R"({"type": "Feature", "properties": {"name": ")" + name + R"("}, "geometry": {"type": ")" + type +
                                 R"(", "coordinates": )" + coordinates + "}}";
-    return data.Put("measurements.geojson", R"({"type": "FeatureCollection", "features": [)" + feature + "]}").status;
+    return data.Put("measurements.geojson", R"({"type": "FeatureCollection", "features": [)" + feature + "]}", "").status;
   };
   EXPECT_EQ(status("Point", "[1, 2, 3]"), 204);
   EXPECT_EQ(status("Point", "[[1, 2, 3]]"), 400);
@@ -98,9 +102,9 @@ TEST(CheckDocument, AnEmptyCameraPathIsNone) {
   SampleProject sample;
   ProjectData data(sample.project);
   const std::filesystem::path file = sample.project.folder / "camera_path.json";
-  EXPECT_EQ(data.Put("camera_path.json", R"([{"position_enu": [1, 2, 3]}])").status, 204);
+  EXPECT_EQ(data.Put("camera_path.json", R"([{"position_enu": [1, 2, 3]}])", "").status, 204);
   EXPECT_TRUE(std::filesystem::exists(file));
-  for (int i = 0; i < 2; ++i) EXPECT_EQ(data.Put("camera_path.json", R"({"views": [], "frames_between": 3})").status, 204);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(data.Put("camera_path.json", R"({"views": [], "frames_between": 3})", "").status, 204);
   EXPECT_FALSE(std::filesystem::exists(file)) << "`render --path` would refuse it";
   EXPECT_EQ(data.Get("camera_path.json", "").status, 204);
 }
@@ -110,20 +114,21 @@ TEST(CheckDocument, CameraPathsAreThoseThatRenderReads) {
   SampleProject sample;
   ProjectData data(sample.project);
   EXPECT_EQ(data.Put("camera_path.json", R"({"views": [{"position_enu": [1, 2, 3], "name": "a"}, {"position_enu": [5, 2, 3], "name": "b"}],
-                                            "frames_between": 5, "skyquilt": {"speed": 3}})")
+                                            "frames_between": 5, "skyquilt": {"speed": 3}})",
+                     "")
                 .status,
             204);
   const scene::SceneInfo info;
   EXPECT_EQ(products::LoadCameraPath(sample.project.folder / "camera_path.json", info, 64, 36).size(), 7U);
   for (const char* wrong : {R"("fov": 180)", R"("name": "../a")", R"("name": "")", R"("yaw": "north")", R"("yaw": 1e999)", R"("speed": 2)"}) {
-    EXPECT_EQ(data.Put("camera_path.json", std::string(R"([{"position_enu": [1, 2, 3], )") + wrong + "}]").status, 400) << wrong;
+    EXPECT_EQ(data.Put("camera_path.json", std::string(R"([{"position_enu": [1, 2, 3], )") + wrong + "}]", "").status, 400) << wrong;
   }
-  EXPECT_EQ(data.Put("camera_path.json", R"([{"position_enu": [1, 2, 3], "name": "a"}, {"position_enu": [1, 2, 3], "name": "a"}])").status, 400);
-  EXPECT_EQ(data.Put("camera_path.json", R"({"views": [{"position_enu": [1, 2, 3]}], "frames_between": -1})").status, 400);
+  EXPECT_EQ(data.Put("camera_path.json", R"([{"position_enu": [1, 2, 3], "name": "a"}, {"position_enu": [1, 2, 3], "name": "a"}])", "").status, 400);
+  EXPECT_EQ(data.Put("camera_path.json", R"({"views": [{"position_enu": [1, 2, 3]}], "frames_between": -1})", "").status, 400);
   // Frames are made when a path is read, so their number is limited.
   std::string many = R"({"frames_between": 10000, "views": [{"position_enu": [1, 2, 3]})";
   for (int i = 0; i < 5000; ++i) many += R"(,{"position_enu": [1, 2, 3]})";
-  EXPECT_EQ(data.Put("camera_path.json", many + "]}").status, 400);
+  EXPECT_EQ(data.Put("camera_path.json", many + "]}", "").status, 400);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 
 #include "tests/viewer/data/sample_project.h"
@@ -30,7 +31,7 @@ TEST(Documents, AreAbsentThenSavedThenRead) {
   SampleProject sample;
   ProjectData data(sample.project);
   EXPECT_EQ(data.Get("measurements.geojson", "").status, 204);
-  EXPECT_EQ(data.Put("measurements.geojson", Points(3)).status, 204);
+  EXPECT_EQ(data.Put("measurements.geojson", Points(3), "").status, 204);
   const nlohmann::json read = nlohmann::json::parse(data.Get("measurements.geojson", "").body);
   EXPECT_EQ(read, nlohmann::json::parse(Points(3))) << "nothing is lost, also what the server does not know";
   EXPECT_TRUE(std::filesystem::exists(sample.project.folder / "measurements.geojson"));
@@ -39,7 +40,7 @@ TEST(Documents, AreAbsentThenSavedThenRead) {
 TEST(Documents, RefusesWhatIsNotOne) {
   SampleProject sample;
   ProjectData data(sample.project);
-  ASSERT_EQ(data.Put("measurements.geojson", Points(1)).status, 204);
+  ASSERT_EQ(data.Put("measurements.geojson", Points(1), "").status, 204);
   const std::string deep = std::string(100, '[') + std::string(100, ']');
   for (
       const std::string& wrong :
@@ -51,7 +52,7 @@ TEST(Documents, RefusesWhatIsNotOne) {
        std::string(
            R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": [1e300, 1]}}]})"),
        Points(5001)}) {
-    const DataReply reply = data.Put("measurements.geojson", wrong);
+    const DataReply reply = data.Put("measurements.geojson", wrong, "");
     EXPECT_EQ(reply.status, 400) << wrong.substr(0, 80);
     EXPECT_NE(reply.body.find("not saved"), std::string::npos);
   }
@@ -65,16 +66,76 @@ TEST(Documents, ControlPointsAreAlsoWrittenForOtherPrograms) {
   base::WriteFileAtomically(list, "EPSG:32632\n465400.5 5247100.25 410 1 2 IMG_1.jpg old\n");
   const nlohmann::json converted = nlohmann::json::parse(data.Get("gcp.json", "").body);
   EXPECT_EQ(converted["points"][0]["name"], "old");
-  EXPECT_EQ(data.Put("gcp.json", Gcps().dump()).status, 204);
+  EXPECT_EQ(data.Put("gcp.json", Gcps().dump(), "").status, 204);
   EXPECT_EQ(base::ReadFile(list),
             "EPSG:32632\n465400.5000 5247100.2500 410.0000 100.50 200.25 IMG_0.jpg GCP_1\n# no marks yet: 1.0000 2.0000 3.0000 later\n");
   EXPECT_NE(base::ReadFile(sample.project.folder / "gcp_list.txt.orig").find("old"), std::string::npos) << "a list from elsewhere is kept";
   nlohmann::json changed = Gcps();
   changed["points"].erase(1);
-  EXPECT_EQ(data.Put("gcp.json", changed.dump()).status, 204);
+  EXPECT_EQ(data.Put("gcp.json", changed.dump(), "").status, 204);
   EXPECT_EQ(base::ReadFile(list).find("later"), std::string::npos);
   EXPECT_NE(base::ReadFile(sample.project.folder / "gcp_list.txt.orig").find("old"), std::string::npos) << "and not replaced by our own";
   EXPECT_EQ(nlohmann::json::parse(data.Get("gcp.json", "").body), changed);
+}
+
+TEST(Documents, EveryListFromElsewhereIsKept) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const std::filesystem::path list = sample.project.folder / "gcp_list.txt";
+  const std::string first = "EPSG:32632\n1 2 3 1 2 IMG_1.jpg first\n", second = "EPSG:32632\n1 2 3 1 2 IMG_1.jpg second\n";
+  for (const std::string& theirs : {first, second, first, second}) {
+    base::WriteFileAtomically(list, theirs);
+    ASSERT_EQ(data.Put("gcp.json", Gcps().dump(), "").status, 204);
+  }
+  EXPECT_EQ(base::ReadFile(sample.project.folder / "gcp_list.txt.orig"), first);
+  EXPECT_EQ(base::ReadFile(sample.project.folder / "gcp_list.txt.orig.2"), second);
+  EXPECT_FALSE(std::filesystem::exists(sample.project.folder / "gcp_list.txt.orig.3"));
+}
+
+TEST(Documents, TwoWindowsDoNotOverwriteEachOther) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const std::pair<const char*, std::array<std::string, 2>> documents[] = {
+      {"measurements.geojson", {Points(1), Points(2)}},
+      {"gcp.json", {Gcps().dump(), R"({"crs": "EPSG:32632", "points": []})"}},
+      {"camera_path.json", {R"([{"position_enu": [1, 2, 3]}])", R"({"views": [], "frames_between": 3})"}}};
+  for (const auto& [name, bodies] : documents) {
+    const std::string none = data.Get(name, "").etag;
+    EXPECT_EQ(none, base::HashHex(""));
+    const DataReply saved = data.Put(name, bodies[0], none);
+    ASSERT_EQ(saved.status, 204) << name;
+    EXPECT_EQ(saved.etag, base::HashHex(base::ReadFile(sample.project.folder / name)));
+    EXPECT_EQ(data.Get(name, "").etag, saved.etag);
+    const DataReply late = data.Put(name, bodies[1], none);
+    EXPECT_EQ(late.status, 412);
+    EXPECT_EQ(late.body, std::string(name) + " was changed in another window. Reload the page to see it");
+    EXPECT_EQ(data.Get(name, "").etag, saved.etag) << "nothing was saved";
+    const DataReply second = data.Put(name, bodies[1], saved.etag);
+    EXPECT_EQ(second.status, 204) << name;
+    EXPECT_EQ(second.etag, data.Get(name, "").etag);
+  }
+}
+
+// Whoever takes a document that cannot be read for none replaces it.
+TEST(Documents, WhatCannotBeReadIsNoAbsence) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  for (const char* name : {"measurements.geojson", "gcp.json", "camera_path.json", "gcp_list.txt"}) {
+    const std::filesystem::path file = sample.project.folder / name;
+    std::filesystem::create_directories(file / "inside");
+    const std::string document = std::string(name) == "gcp_list.txt" ? "gcp.json" : name;
+    const DataReply reply = data.Get(document, "");
+    EXPECT_EQ(reply.status, 500) << name;
+    EXPECT_NE(reply.body.find(name), std::string::npos);
+    EXPECT_TRUE(reply.etag.empty());
+    const std::string body = document == "gcp.json" ? Gcps().dump() : document == "camera_path.json" ? R"([{"position_enu": [1, 2, 3]}])" : Points(1);
+    EXPECT_EQ(data.Put(document, body, "").status, 500) << name;
+    EXPECT_TRUE(std::filesystem::is_directory(file / "inside"));
+    EXPECT_EQ(std::filesystem::exists(sample.project.folder / "gcp.json"), std::string(name) == "gcp.json");
+    std::filesystem::remove_all(file);
+  }
+  std::filesystem::create_directories(sample.photos / "gcp_list.txt");
+  EXPECT_EQ(data.Get("gcp.json", "").status, 204) << "beside the photos it is never replaced";
 }
 
 TEST(Documents, RefusesControlPointsThatCannotBeUsed) {
@@ -83,7 +144,7 @@ TEST(Documents, RefusesControlPointsThatCannotBeUsed) {
   const auto refused = [&](const std::function<void(nlohmann::json&)>& spoil) {
     nlohmann::json json = Gcps();
     spoil(json);
-    return data.Put("gcp.json", json.dump()).status == 400;
+    return data.Put("gcp.json", json.dump(), "").status == 400;
   };
   EXPECT_TRUE(refused([](auto& json) { json["points"][1]["name"] = "GCP 1"; }));
   EXPECT_TRUE(refused([](auto& json) { json["points"][0]["name"] = ""; }));
@@ -99,10 +160,10 @@ TEST(Documents, CameraPathsAreThoseOfRender) {
   ProjectData data(sample.project);
   const std::string path =
       R"({"views": [{"position_enu": [1, 2, 3], "yaw": 10, "pitch": -20, "fov": 60, "name": "a"}], "frames_between": 5, "skyquilt": {"speed": 3}})";
-  EXPECT_EQ(data.Put("camera_path.json", path).status, 204);
-  EXPECT_EQ(data.Put("camera_path.json", R"([{"position_enu": [1, 2]}])").status, 400);
-  EXPECT_EQ(data.Put("camera_path.json", R"([{"yaw": 2}])").status, 400);
-  EXPECT_EQ(data.Put("camera_path.json", R"([{"position_enu": [1, 2, 3], "speed": 2}])").status, 400);
+  EXPECT_EQ(data.Put("camera_path.json", path, "").status, 204);
+  EXPECT_EQ(data.Put("camera_path.json", R"([{"position_enu": [1, 2]}])", "").status, 400);
+  EXPECT_EQ(data.Put("camera_path.json", R"([{"yaw": 2}])", "").status, 400);
+  EXPECT_EQ(data.Put("camera_path.json", R"([{"position_enu": [1, 2, 3], "speed": 2}])", "").status, 400);
 }
 
 TEST(Documents, AReadOnlyFolderIsAnAnswer) {
@@ -110,21 +171,21 @@ TEST(Documents, AReadOnlyFolderIsAnAnswer) {
   SampleProject sample;
   ProjectData data(sample.project);
   std::filesystem::permissions(sample.project.folder, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-  EXPECT_EQ(data.Put("measurements.geojson", Points(1)).status, 409);
+  EXPECT_EQ(data.Put("measurements.geojson", Points(1), "").status, 409);
   std::filesystem::permissions(sample.project.folder, std::filesystem::perms::owner_all);
 }
 
 TEST(Documents, AreOldOrNewWhenTheProcessIsKilled) {
   SampleProject sample;
   const std::string small = Points(2), large = Points(3000);
-  ASSERT_EQ(ProjectData(sample.project).Put("measurements.geojson", small).status, 204);
+  ASSERT_EQ(ProjectData(sample.project).Put("measurements.geojson", small, "").status, 204);
   for (int attempt = 0; attempt < 12; ++attempt) {
     const pid_t child = fork();
     if (child == 0) {
       ProjectData data(sample.project);
       for (;;) {
-        data.Put("measurements.geojson", large);
-        data.Put("measurements.geojson", small);
+        data.Put("measurements.geojson", large, "");
+        data.Put("measurements.geojson", small, "");
       }
     }
     usleep(static_cast<useconds_t>(20'000 + 7'000 * attempt));

@@ -21,7 +21,7 @@ T Value(const std::string& bytes, size_t at) {
 }
 
 image::Image8 PictureOf(ProjectData& data) {
-  const std::string picture = data.Get("orthophoto.jpg", "").body;
+  const std::string picture = data.Get("orthophoto.jpg", "").Content();
   return image::DecodeRgb8({reinterpret_cast<const uint8_t*>(picture.data()), picture.size()});
 }
 
@@ -42,7 +42,7 @@ TEST(OpenedFiles, TheOrthophotoLiesOnThePointsOfTheTerrain) {
   grid.height = 400;
   sample.WriteOrthophoto(grid, [&](double easting, double) { return easting < line ? Color{200, 0, 0, 255} : Color{0, 200, 0, 255}; });
   ProjectData data(sample.project);
-  const std::string terrain = data.Get("terrain.bin", "").body;
+  const std::string terrain = data.Get("terrain.bin", "").Content();
   const auto columns = Value<uint32_t>(terrain, 8), rows = Value<uint32_t>(terrain, 12);
   const auto east_of = [&](uint32_t column) {
     return Value<double>(terrain, 16) + static_cast<double>(Value<float>(terrain, 40U + 12U * (columns * (rows / 2) + column)));

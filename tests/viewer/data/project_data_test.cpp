@@ -1,11 +1,13 @@
 #include "viewer/data/project_data.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
 #include <fstream>
 
+#include "core/base/errors.h"
 #include "core/geo/enu_frame.h"
 #include "tests/viewer/data/sample_project.h"
 
@@ -68,8 +70,8 @@ TEST(ProjectData, GivesNothingThatIsNotInItsTable) {
                            "photos/99999999999999999999/full.jpg", "before/project.json", "pictures/0.png", "", "/etc/passwd", "tiles/"}) {
     EXPECT_EQ(data.Get(path, "").status, 404) << path;
   }
-  EXPECT_EQ(data.Put("project.json", "{}").status, 405);
-  EXPECT_EQ(data.Put("../evil.json", "{}").status, 405);
+  EXPECT_EQ(data.Put("project.json", "{}", "").status, 405);
+  EXPECT_EQ(data.Put("../evil.json", "{}", "").status, 405);
 }
 
 TEST(ProjectData, TerrainLiesWhereTheMapSays) {
@@ -77,7 +79,7 @@ TEST(ProjectData, TerrainLiesWhereTheMapSays) {
   sample.AddMaps();
   ProjectData data(sample.project);
   ASSERT_EQ(DescriptionOf(data)["terrain"], "terrain.bin");
-  const std::string terrain = data.Get("terrain.bin", "").body;
+  const std::string terrain = data.Get("terrain.bin", "").Content();
   ASSERT_EQ(terrain.substr(0, 8), "SKYTERR1");
   const auto columns = ValueAt<uint32_t>(terrain, 8), rows = ValueAt<uint32_t>(terrain, 12);
   ASSERT_EQ(columns, 40U);
@@ -99,7 +101,7 @@ TEST(ProjectData, TerrainLiesWhereTheMapSays) {
   EXPECT_NEAR(middle.z(), 10.0, 1e-3);
   EXPECT_NEAR((vertex(21, 15) - vertex(20, 15)).norm(), 0.5, 1e-3);
   EXPECT_GT(vertex(20, 10).y(), vertex(20, 20).y()) << "rows go from north to south";
-  const std::string picture = data.Get("orthophoto.jpg", "").body;
+  const std::string picture = data.Get("orthophoto.jpg", "").Content();
   const image::Image8 decoded = image::DecodeRgb8({reinterpret_cast<const uint8_t*>(picture.data()), picture.size()});
   EXPECT_EQ(decoded.width, 39) << "from the first to the last column of points";
   EXPECT_NEAR(*decoded.At(5, 5), 200, 3);
@@ -109,7 +111,7 @@ TEST(ProjectData, LargeMapsAreReduced) {
   SampleProject sample;
   sample.AddMaps(1500, 700);
   ProjectData data(sample.project);
-  const std::string terrain = data.Get("terrain.bin", "").body;
+  const std::string terrain = data.Get("terrain.bin", "").Content();
   EXPECT_EQ(ValueAt<uint32_t>(terrain, 8), 512U);
   EXPECT_NEAR(ValueAt<uint32_t>(terrain, 12), 239, 1);
 }
@@ -117,7 +119,7 @@ TEST(ProjectData, LargeMapsAreReduced) {
 TEST(ProjectData, SendsPointsAndPhotos) {
   SampleProject sample;
   ProjectData data(sample.project);
-  const std::string points = data.Get("points.bin", "").body;
+  const std::string points = data.Get("points.bin", "").Content();
   ASSERT_EQ(points.substr(0, 8), "SKYPNTS1");
   EXPECT_EQ(ValueAt<uint32_t>(points, 8), 100U);
   ASSERT_EQ(points.size(), 40U + 1500U);
@@ -125,7 +127,7 @@ TEST(ProjectData, SendsPointsAndPhotos) {
   EXPECT_EQ(points[40 + 1200], 10);
 
   const auto width = [&](const std::string& path) {
-    const std::string body = data.Get(path, "").body;
+    const std::string body = data.Get(path, "").Content();
     return image::DecodeRgb8({reinterpret_cast<const uint8_t*>(body.data()), body.size()}).width;
   };
   EXPECT_EQ(width("photos/0/thumbnail.jpg"), 256);
@@ -189,9 +191,31 @@ TEST(ProjectData, KeepsTheNewestPictures) {
   SampleProject sample;
   ProjectData data(sample.project);
   const std::string first = data.AddPicture("one");
-  EXPECT_EQ(data.Get(first, "").body, "one");
+  EXPECT_EQ(data.Get(first, "").Content(), "one");
   for (int i = 0; i < 8; ++i) data.AddPicture("more");
   EXPECT_EQ(data.Get(first, "").status, 404);
+}
+
+TEST(ProjectData, FilesThatAreKeptAreNotCopied) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const DataReply first = data.Get("photos/0/photo.jpg", ""), second = data.Get("photos/0/photo.jpg", "");
+  ASSERT_NE(first.kept, nullptr);
+  EXPECT_EQ(first.kept, second.kept);
+}
+
+TEST(Project, IsOpenedToReadWithoutWriting) {
+  if (geteuid() == 0) {
+    // Root may write everywhere; at least nothing is left behind or created.
+    EXPECT_THROW(coordinator::Project::OpenToRead("/nowhere/at/all"), base::InputError);
+  }
+  SampleProject sample;
+  const auto time = std::filesystem::last_write_time(sample.project.folder);
+  std::filesystem::permissions(sample.project.folder, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_EQ(coordinator::Project::OpenToRead(sample.project.folder / "." / "survey" / "..").folder.lexically_relative(sample.project.folder), ".");
+  std::filesystem::permissions(sample.project.folder, std::filesystem::perms::owner_all);
+  EXPECT_EQ(std::filesystem::last_write_time(sample.project.folder), time) << "a test file in the folder would change it";
+  EXPECT_THROW(coordinator::Project::OpenToRead(sample.photos), base::InputError);
 }
 
 }  // namespace

@@ -71,8 +71,18 @@ TEST(AccessTest, GuessingIsPausedForAMinute) {
   const Access::Clock::time_point start{std::chrono::hours(1)};
   std::string set_cookie;
   for (size_t i = 0; i < kMaxWrongTokens; ++i) EXPECT_EQ(access.TryToken("wrong", false, start, set_cookie), Exchange::kWrong);
-  EXPECT_EQ(access.TryToken(access.token(), false, start + std::chrono::seconds(59), set_cookie), Exchange::kTooManyGuesses);
-  EXPECT_EQ(access.TryToken(access.token(), false, start + std::chrono::seconds(60), set_cookie), Exchange::kGranted);
+  EXPECT_EQ(access.TryToken("wrong", false, start + std::chrono::seconds(59), set_cookie), Exchange::kTooManyGuesses);
+  EXPECT_EQ(access.TryToken("wrong", true, start + std::chrono::seconds(59), set_cookie), Exchange::kWrong);
+  EXPECT_EQ(access.TryToken("wrong", false, start + std::chrono::seconds(60), set_cookie), Exchange::kWrong);
+}
+
+TEST(AccessTest, GuessesOfOthersDoNotLockOutTheRightToken) {
+  Access access("name");
+  const Access::Clock::time_point start{std::chrono::hours(1)};
+  std::string set_cookie;
+  for (size_t i = 0; i < 2 * kMaxWrongTokens; ++i) access.TryToken("wrong", false, start, set_cookie);
+  EXPECT_EQ(access.TryToken(access.token(), false, start, set_cookie), Exchange::kGranted);
+  EXPECT_TRUE(access.HasSession({CookieOf(set_cookie)}));
 }
 
 TEST(AccessTest, RareAndTrustedMistakesAreNoGuesses) {

@@ -104,6 +104,22 @@ TEST_F(HostileTest, ClientThatDoesNotReadItsAnswerIsCutOff) {
   std::filesystem::remove(data_.file);
 }
 
+TEST_F(HostileTest, ClientThatReadsItsAnswerTooSlowlyIsCutOff) {
+  // A rate that no client reaches after it has waited.
+  Start({.slow_answer_s = 0.2, .min_answer_bytes_per_s = 1e9});
+  const std::string cookie = Login();
+  data_.file = std::filesystem::path(::testing::TempDir()) / "skyquilt_server_slow.bin";
+  std::ofstream(data_.file, std::ios::binary) << "";
+  std::filesystem::resize_file(data_.file, 64U << 20U);
+  RawClient client(server_->port(), 4096);
+  client.Send(Request("GET /data/file", cookie));
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  EXPECT_FALSE(client.ReadReply()) << "reading goes on, but below the rate";
+  EXPECT_TRUE(client.IsClosed());
+  EXPECT_EQ(Status(Ask("GET /data/text", cookie)), 200);
+  std::filesystem::remove(data_.file);
+}
+
 TEST_F(HostileTest, TwoHundredConnectionsDoNotLockOthersOut) {
   Start({.max_connections = 32});
   const std::string cookie = Login();

@@ -69,8 +69,9 @@ TEST_F(HttpTest, GuessingTokensIsStopped) {
   const std::string cookie = Login();
   for (int i = 0; i < 20; ++i) EXPECT_EQ(Status(Ask("GET /?token=" + std::to_string(i), "")), 403);
   EXPECT_EQ(Status(Ask("GET /?token=1", "")), 429);
-  EXPECT_EQ(Status(Ask("GET " + LinkTarget(), "")), 429);
+  EXPECT_EQ(Status(Ask("GET /?token=x", cookie)), 303) << "an old link";
   EXPECT_EQ(Status(Ask("GET /", cookie)), 200);
+  EXPECT_EQ(Status(Ask("GET " + LinkTarget(), "")), 303) << "strangers must not lock out whoever has the link";
 }
 
 TEST_F(HttpTest, ForeignHostsAreRefusedFirst) {
@@ -203,6 +204,33 @@ TEST_F(HttpTest, PutOnlyFromTheOwnPage) {
   EXPECT_TRUE(data_.saved.empty());
   EXPECT_EQ(Status(Ask("PUT /data/gcp.json", cookie, "Origin: " + origin_ + "\r\n", "{}")), 204);
   EXPECT_EQ(data_.saved["gcp.json"], "{}");
+}
+
+TEST_F(HttpTest, TagsOfDocumentsPass) {
+  Start();
+  const std::string cookie = Login(), origin = "Origin: " + origin_ + "\r\n";
+  const auto kept = Ask("GET /data/kept", cookie);
+  ASSERT_EQ(Status(kept), 200);
+  EXPECT_EQ(kept->body, "shared");
+  EXPECT_EQ(kept->headers.at("etag"), "\"a1\"");
+  EXPECT_EQ(Ask("GET /data/text", cookie)->headers.count("etag"), 0U);
+  for (const std::string line : {"", "If-Match: \"a1\"\r\n", "If-Match: W/\"a2\"\r\n", "If-Match: *\r\n", "if-match: a3\r\n"}) {
+    const auto put = Ask("PUT /data/gcp.json", cookie, origin + line, "{}");
+    ASSERT_EQ(Status(put), 204);
+    EXPECT_EQ(put->headers.at("etag"), "\"new\"");
+  }
+  EXPECT_EQ(data_.matched, std::vector<std::string>({"", "a1", "a2", "", "a3"}));
+}
+
+TEST_F(HttpTest, TagOfOneRequestIsNotThatOfTheNext) {
+  Start();
+  const std::string cookie = Login(), origin = "Origin: " + origin_ + "\r\n";
+  RawClient client(server_->port());
+  for (const std::string line : {"If-Match: \"a1\"\r\n", ""}) {
+    client.Send(Request("PUT /data/gcp.json", cookie, origin + line, "{}"));
+    EXPECT_EQ(Status(client.ReadReply()), 204);
+  }
+  EXPECT_EQ(data_.matched, std::vector<std::string>({"a1", ""}));
 }
 
 TEST_F(HttpTest, PutOfAMegabyteAndMore) {

@@ -67,20 +67,25 @@ class RecordingData : public DataSource {
     asked.push_back(path + (query.empty() ? "" : "?" + query));
     if (path == "text") return {.status = 200, .content_type = "text/plain", .body = "hello", .file = {}};
     if (path == "cached") return {.status = 200, .content_type = "text/plain", .body = "kept", .file = {}, .cache = true};
+    if (path == "kept")
+      return {
+          .status = 200, .content_type = "text/plain", .body = "", .file = {}, .etag = "a1", .kept = std::make_shared<const std::string>("shared")};
     if (path == "file") return {.status = 200, .content_type = "model/gltf-binary", .body = "", .file = file};
     if (path == "folder") return {.status = 200, .content_type = "text/plain", .body = "", .file = "/tmp"};
     if (path == "throws") throw std::runtime_error("<b>secret reason</b>");
     if (path == "split") return {.status = 200, .content_type = "text/plain\r\nSet-Cookie: a=b", .body = "x", .file = {}};
     return DataReply::NotFound("no such thing");
   }
-  DataReply Put(const std::string& path, const std::string& body) override {
+  DataReply Put(const std::string& path, const std::string& body, const std::string& if_match) override {
     const std::lock_guard lock(mutex);
     saved[path] = body;
-    return {.status = 204, .content_type = "", .body = "", .file = {}};
+    matched.push_back(if_match);
+    return {.status = 204, .content_type = "", .body = "", .file = {}, .etag = "new"};
   }
   std::mutex mutex;
   std::vector<std::string> asked;
   std::map<std::string, std::string> saved;
+  std::vector<std::string> matched;
   std::filesystem::path file;
 };
 

@@ -2,10 +2,10 @@
 import type { Link } from "../protocol/link_api.js";
 import type { Store } from "../state/store.js";
 
-/** Returns the function that ends it. `pass` and `passes` are the scene's: it knows what is drawn. */
+/** Returns the function that ends it. `pass` and `passes` are the scene's: it knows what is drawn, also while the engine is away. */
 export function wireLink(link: Link, store: Store): () => void {
   const endEngine = link.onEngine((status) => {
-    store.update((state) => ({ engine: { ...state.engine, ...status, pass: status.ready ? state.engine.pass : -1 } }));
+    store.update((state) => ({ engine: { ...state.engine, ...status } }));
   });
   const endProgress = link.onProgress((id, what, fraction, done) => {
     store.update((state) => {

@@ -164,16 +164,20 @@ function useSights(xyz: Vec3): { readonly sights: readonly PhotoSight[]; readonl
     const show = (sights: readonly PhotoSight[], state: string): void => {
       if (wanted) setReply({ sights, state });
     };
+    // Without an answer what is known stays.
+    const tell = (state: string): void => {
+      if (wanted) setReply(({ sights }) => ({ sights, state }));
+    };
     const enu = enuOf(project, xyz);
     if (enu === null || enu.some((value) => Math.abs(value) > 1e6))
       show([], "These coordinates are far from the project: check them.");
-    else if (!connected) show([], "Not connected: photos that should see the point cannot be found now.");
+    else if (!connected) tell("Not connected: photos that should see the point cannot be found now.");
     else {
-      show([], "Looking for photos …");
+      tell("Looking for photos …");
       link.photosAt(enu).then(
         (found) =>
           show(found.photos, found.photos.length === 0 ? "No photo looks at these coordinates: check them." : ""),
-        (error: unknown) => show([], errorText(error)),
+        (error: unknown) => tell(errorText(error)),
       );
     }
     return () => {

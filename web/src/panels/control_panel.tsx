@@ -91,7 +91,9 @@ function LoadButton(): ReactElement {
     setReading(true);
     try {
       if (file.size > LARGEST_FILE_BYTES) throw new Error("the file is larger than 1 MiB");
-      const { points, problems } = readGcpList(await file.text(), project);
+      const text = await file.text();
+      const taken = store.get().documents.controlPoints.map(({ name }) => name);
+      const { points, problems } = readGcpList(text, project, taken);
       store.changeDocuments("load control points", (documents) => ({
         ...documents,
         controlPoints: mergeControlPoints(documents.controlPoints, points),

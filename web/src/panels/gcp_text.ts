@@ -32,8 +32,8 @@ interface Row {
 const MOST_POINTS = 1000;
 const MOST_PROBLEMS = 8;
 
-/** Throws an Error for the user when nothing can be used. */
-export function readGcpList(text: string, project: GcpProject): GcpList {
+/** `taken`: names of the points that are there already; points without a name get others. Throws an Error for the user when nothing can be used. */
+export function readGcpList(text: string, project: GcpProject, taken: readonly string[] = []): GcpList {
   const lines = text.replace(/^\uFEFF/, "").split(/\r\n|\r|\n/);
   const first = lines.findIndex((line) => line.trim() !== "" && !line.trim().startsWith("#"));
   if (first < 0)
@@ -69,7 +69,7 @@ export function readGcpList(text: string, project: GcpProject): GcpList {
     problems.push(`${unknownPhotos.size} photos are not in this project, their marks were left out: ${examples}.`);
   }
   if (points.size === 0) throw new Error(problems[0] ?? "The file has a coordinate system but no points.");
-  return { points: named([...points.values()]), problems: shortened(problems) };
+  return { points: named([...points.values()], taken), problems: shortened(problems) };
 }
 
 /** Points of the same name get the loaded coordinates; marks in the same photo are replaced, the others stay. */
@@ -174,8 +174,11 @@ function baseName(path: string): string {
   return path.slice(Math.max(path.lastIndexOf("/"), path.lastIndexOf("\\")) + 1).toLowerCase();
 }
 
-function named(points: readonly { name: string | null; xyz: Vec3; marks: readonly ControlMark[] }[]): ControlPoint[] {
-  const taken = new Set<string | null>(points.map((point) => point.name));
+function named(
+  points: readonly { name: string | null; xyz: Vec3; marks: readonly ControlMark[] }[],
+  existing: readonly string[],
+): ControlPoint[] {
+  const taken = new Set<string | null>([...existing, ...points.map((point) => point.name)]);
   return points.map(({ name, xyz, marks }) => {
     const own = name ?? freePointName(taken);
     taken.add(own);

@@ -2,12 +2,12 @@
 import type { ReactElement } from "react";
 import type { Vec3 } from "../base/vec.js";
 import { formatEstimate, formatLength } from "../geo/format.js";
+import { outlineOffsetM } from "../geo/heights.js";
 import type { Measurement } from "../state/app_state.js";
 import { profileCsv } from "../state/csv.js";
 import { changeMeasurement, withoutMeasurement } from "../state/measurements.js";
 import { addNotice } from "../state/notices.js";
 import type { Project } from "../state/project.js";
-import { outlineOffsetM } from "../state/volumes.js";
 import type { AppContext } from "./context.js";
 import { downloadText } from "./download.js";
 import { Icon } from "./icons.js";

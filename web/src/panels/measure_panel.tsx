@@ -211,7 +211,7 @@ function Explanation({ project }: { readonly project: Project }): ReactElement {
         differences
         {scalePercent === null || tiltDeg === null ? "; it is not known for this project, so it is left out" : ""}.
         {example} Coordinates of points also contain the accuracy of the place. Volumes contain the spread of the depths
-        inside and of the outline.
+        inside and of the outline; over a height or the earlier survey also the vertical accuracy.
       </p>
     </details>
   );

@@ -1,12 +1,13 @@
 // Results of measurements as lines of text, for the panel and the clipboard.
 import { geodeticFromEnu } from "../geo/earth.js";
 import { formatArea, formatEstimate, formatLatLon, formatLength, formatMap, formatVolume } from "../geo/format.js";
+import { outlineOffsetM } from "../geo/heights.js";
 import { knowsGeoReference, pointSigma } from "../geo/measure.js";
 import { mapFromEnu } from "../geo/projection.js";
-import type { Measurement, SurfacePoint } from "../state/app_state.js";
+import type { Measurement, SurfacePoint, Survey } from "../state/app_state.js";
 import { middleOf } from "../state/measurements_file.js";
 import type { Project } from "../state/project.js";
-import { BASE_LABELS, outlineOffsetM } from "../state/volumes.js";
+import { BASE_LABELS, levelSigmaM, measuredSurvey } from "../state/volumes.js";
 
 export interface ResultLine {
   readonly label: string;
@@ -28,7 +29,7 @@ export function resultLines(measurement: Measurement, project: Project): readonl
       ];
     }
     case "profile":
-      return profileLines(measurement.lengthM, measurement.heightsM);
+      return [...profileLines(measurement.lengthM, measurement.heightsM), ...surveyLines(measurement.survey, project)];
     case "area": {
       const { plan, sloped, perimeter } = measurement.result;
       return [
@@ -46,11 +47,17 @@ export function resultLines(measurement: Measurement, project: Project): readonl
         { label: "Base", text: baseText(measurement, project) },
         { label: "Surface", text: formatArea(surfaceArea) },
         { label: "Grid", text: `${formatLength(cellM)} cells, ${(100 * filled).toFixed(0)} % with a surface` },
+        ...surveyLines(measuredSurvey(measurement), project),
       ];
     }
     default:
       return measurement satisfies never;
   }
+}
+
+/** Only what is on the earlier survey says so. */
+function surveyLines(survey: Survey, project: Project): readonly ResultLine[] {
+  return survey === "main" ? [] : [{ label: "Survey", text: project.before?.name ?? "the earlier one" }];
 }
 
 function baseText(measurement: Extract<Measurement, { kind: "volume" }>, project: Project): string {
@@ -104,8 +111,12 @@ export function deviationNote(measurement: Measurement, project: Project): strin
   if (measurement.kind !== "profile" && measurement.points.some(({ spreadM }) => spreadM === null)) {
     return "Without ±: not all points are confirmed by the field.";
   }
-  if (!knowsGeoReference(project.accuracy)) return "± without the geo-reference's share, which is unknown.";
-  return "";
+  const notes: string[] = [];
+  if (!knowsGeoReference(project.accuracy)) notes.push("± without the geo-reference's share, which is unknown.");
+  if (measurement.kind === "volume" && levelSigmaM(project, measurement) === null) {
+    notes.push("± without the vertical accuracy, which is unknown.");
+  }
+  return notes.join(" ");
 }
 
 /** For the clipboard. */

@@ -1,9 +1,10 @@
 // The surface that a volume is measured against: for the next one, and for one that is finished, which is then measured again.
 import { type ReactElement, useEffect, useRef, useState } from "react";
+import { levelAtOutlineM, outlineOffsetM, projectOffsetM } from "../geo/heights.js";
 import type { VolumeBase, VolumeMeasurement } from "../state/app_state.js";
 import { addErrorNotice } from "../state/notices.js";
 import type { Project } from "../state/project.js";
-import { BASE_LABELS, heightOffsetM, outlineOffsetM, remeasureVolume } from "../state/volumes.js";
+import { BASE_LABELS, remeasureVolume } from "../state/volumes.js";
 import type { AppContext } from "./context.js";
 import { NumberField } from "./number_field.js";
 import { useStore } from "./use_store.js";
@@ -63,14 +64,12 @@ export function NextVolumeBase({ context }: { readonly context: AppContext }): R
   const base = useStore((state) => state.volumeBase);
   const heightM = useStore((state) => state.volumeBaseHeightM);
   if (tool !== "volume") return null;
-  const { min, max, groundM } = project;
-  const offsetM = heightOffsetM(project, [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2], groundM);
   return (
     <BaseFields
       project={project}
       base={base}
       heightM={heightM}
-      offsetM={offsetM}
+      offsetM={projectOffsetM(project)}
       disabled={false}
       onChange={(volumeBase, volumeBaseHeightM) => store.set({ volumeBase, volumeBaseHeightM })}
     />
@@ -95,7 +94,7 @@ export function FinishedVolumeBase(props: {
   const change = async (next: VolumeBase, heightM: number): Promise<void> => {
     setAsking(true);
     try {
-      await remeasureVolume(store, link, project.accuracy, id, next, heightM);
+      await remeasureVolume(store, link, project, id, next, heightM);
     } catch (error) {
       addErrorNotice(store, "The volume could not be measured again", error);
     } finally {
@@ -108,7 +107,7 @@ export function FinishedVolumeBase(props: {
       <BaseFields
         project={project}
         base={base}
-        heightM={baseHeightM ?? nextHeightM}
+        heightM={baseHeightM ?? levelAtOutlineM(project, points, nextHeightM)}
         offsetM={outlineOffsetM(project, points)}
         disabled={asking}
         onChange={(next, heightM) => void change(next, heightM)}

@@ -6,17 +6,35 @@ import { request } from "./project_client.js";
 const LARGEST_BYTES = 1024 * 1024;
 const MOST_TEXT = 300;
 
-/** The file's text; null: there is none yet. Throws an Error whose message is for the user. */
-export async function loadDocument(file: DocumentFile): Promise<string | null> {
-  const response = await request(`/data/${file}`);
-  // Browsers write every 404 on the console, so a server may say "nothing" by 204.
-  if (response.status === 404 || response.status === 204) return null;
-  if (!response.ok) throw new Error(await reason(response));
-  return response.text();
+/** A file as it is in the project now. */
+export interface LoadedDocument {
+  /** Null: there is none yet. */
+  readonly text: string | null;
+  /** Names this content, for saving; null: the server gave none. */
+  readonly tag: string | null;
 }
 
-/** `keepalive`: for a page that is being left; browsers then send at most 64 KiB. Throws an Error whose message is for the user. */
-export async function saveDocument(file: DocumentFile, text: string, keepalive = false): Promise<void> {
+export interface SaveOptions {
+  /** What the file must still be; null: anything. */
+  readonly ifMatch: string | null;
+  /** For a page that is being left; browsers then send at most 64 KiB. */
+  readonly keepalive?: boolean;
+}
+
+/** Nothing was saved: the file is no longer the one that was loaded or saved here. */
+export class ChangedElsewhere extends Error {}
+
+/** Throws an Error whose message is for the user. */
+export async function loadDocument(file: DocumentFile): Promise<LoadedDocument> {
+  const response = await request(`/data/${file}`);
+  // Browsers write every 404 on the console, so a server may say "nothing" by 204.
+  if (response.status === 404 || response.status === 204) return { text: null, tag: tagOf(response) };
+  if (!response.ok) throw new Error(await reason(response));
+  return { text: await response.text(), tag: tagOf(response) };
+}
+
+/** Returns the tag of what is saved now. Throws ChangedElsewhere, or an Error whose message is for the user. */
+export async function saveDocument(file: DocumentFile, text: string, options: SaveOptions): Promise<string | null> {
   const body = new TextEncoder().encode(text);
   if (body.byteLength > LARGEST_BYTES) {
     throw new Error(
@@ -26,11 +44,18 @@ export async function saveDocument(file: DocumentFile, text: string, keepalive =
   const type = file.endsWith(".geojson") ? "application/geo+json" : "application/json";
   const response = await request(`/data/${file}`, {
     method: "PUT",
-    headers: { "Content-Type": type },
+    headers: { "Content-Type": type, ...(options.ifMatch === null ? {} : { "If-Match": options.ifMatch }) },
     body,
-    keepalive,
+    keepalive: options.keepalive ?? false,
   });
+  if (response.status === 412) throw new ChangedElsewhere(await reason(response));
   if (!response.ok) throw new Error(await reason(response));
+  return tagOf(response);
+}
+
+/** A proxy that compresses makes the tag a weak one, which is none for If-Match. */
+function tagOf(response: Response): string | null {
+  return response.headers.get("ETag")?.replace(/^W\//, "") ?? null;
 }
 
 async function reason(response: Response): Promise<string> {

@@ -1,8 +1,8 @@
 // The connection to the engine, as scene, tools and panels see it.
 import type { Quat, Vec2, Vec3 } from "../base/vec.js";
-import type { EngineStatus, Enu, ErrorMap, PhotoSight, VolumeBase } from "../state/app_state.js";
+import type { EngineStatus, Enu, ErrorMap, PhotoSight, Survey, VolumeBase } from "../state/app_state.js";
 
-export type Which = "main" | "before";
+export type Which = Survey;
 
 export interface ViewParameters {
   readonly project: Which;

@@ -5,9 +5,9 @@ import type { AppState, CameraPose } from "../state/app_state.js";
 import type { Project } from "../state/project.js";
 import { clipLine } from "./overlay_clip.js";
 import { type OverlayItem, type OverlayStyle, overlayInputs, overlayItems } from "./overlay_items.js";
+import { svgElement } from "./svg.js";
 import { cameraFromEnu, pixelOf, projectPoint, type Size } from "./view_math.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 const COLOURS: Readonly<Record<OverlayStyle, string>> = {
   measure: "#ffd54a",
   selected: "#4ad8ff",
@@ -21,15 +21,6 @@ const HALO = "#10151b";
 /** Beyond this some browsers draw nothing at all. */
 const FARTHEST_PX = 30_000;
 
-function element<K extends keyof SVGElementTagNameMap>(
-  name: K,
-  attributes: Readonly<Record<string, string | number>>,
-): SVGElementTagNameMap[K] {
-  const made = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
-  return made;
-}
-
 interface Drawn {
   readonly item: OverlayItem;
   readonly node: SVGElement;
@@ -39,11 +30,11 @@ function draw(item: OverlayItem): SVGElement {
   const colour = COLOURS[item.style];
   switch (item.kind) {
     case "line": {
-      const group = element("g", { class: `overlay-line overlay-${item.style}` });
+      const group = svgElement("g", { class: `overlay-line overlay-${item.style}` });
       const common = { "stroke-linejoin": "round", "stroke-linecap": "round" };
       group.append(
-        element("path", { ...common, fill: "none", stroke: HALO, "stroke-width": 4, "stroke-opacity": 0.6 }),
-        element("path", {
+        svgElement("path", { ...common, fill: "none", stroke: HALO, "stroke-width": 4, "stroke-opacity": 0.6 }),
+        svgElement("path", {
           ...common,
           fill: item.closed ? colour : "none",
           "fill-opacity": 0.18,
@@ -54,7 +45,7 @@ function draw(item: OverlayItem): SVGElement {
       return group;
     }
     case "dot":
-      return element("circle", {
+      return svgElement("circle", {
         class: `overlay-dot overlay-${item.style}`,
         r: 4,
         fill: colour,
@@ -62,14 +53,14 @@ function draw(item: OverlayItem): SVGElement {
         "stroke-width": 1.5,
       });
     case "cross": {
-      const group = element("g", { class: `overlay-cross overlay-${item.style}` });
+      const group = svgElement("g", { class: `overlay-cross overlay-${item.style}` });
       const d = "M-8 0H-2M2 0H8M0 -8V-2M0 2V8";
-      group.append(element("path", { d, stroke: HALO, "stroke-width": 4, fill: "none", "stroke-opacity": 0.7 }));
-      group.append(element("path", { d, stroke: colour, "stroke-width": 2, fill: "none" }));
+      group.append(svgElement("path", { d, stroke: HALO, "stroke-width": 4, fill: "none", "stroke-opacity": 0.7 }));
+      group.append(svgElement("path", { d, stroke: colour, "stroke-width": 2, fill: "none" }));
       return group;
     }
     case "label": {
-      const text = element("text", {
+      const text = svgElement("text", {
         class: `overlay-label overlay-${item.style}`,
         fill: colour,
         stroke: HALO,
@@ -108,7 +99,7 @@ export class Overlay {
   constructor(container: HTMLElement, project: Project, sizeM: number) {
     this.project = project;
     this.sizeM = sizeM;
-    this.root = element("svg", { class: "scene-overlay", "aria-hidden": "true", width: "100%", height: "100%" });
+    this.root = svgElement("svg", { class: "scene-overlay", "aria-hidden": "true", width: "100%", height: "100%" });
     const { style } = this.root;
     style.position = "absolute";
     style.left = "0";

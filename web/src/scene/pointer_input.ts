@@ -79,6 +79,11 @@ export class PointerInput {
   private moved(event: PointerEvent): void {
     const pointer = this.pointers.get(event.pointerId);
     if (pointer === undefined) return;
+    // The button was released where it is not heard of, outside the window say.
+    if (event.pointerType === "mouse" && event.buttons === 0) {
+      this.up(event);
+      return;
+    }
     const px = this.place(event);
     if (this.pointers.size === 2) {
       this.pinch(event.pointerId, pointer, px);

@@ -9,12 +9,14 @@ import type { AppState, CameraPose, Enu, SurfacePoint } from "../state/app_state
 import { addNotice } from "../state/notices.js";
 import type { Project } from "../state/project.js";
 import type { Store } from "../state/store.js";
+import { boxWith, cornersOfBefore } from "./boxes.js";
 import { CameraMoves } from "./camera_moves.js";
 import { CameraRig } from "./camera_rig.js";
 import { watchContext } from "./context_loss.js";
 import { ErrorDrape } from "./error_drape.js";
 import { ExactControl } from "./exact_control.js";
 import { obliquePose, topPose } from "./framing.js";
+import { MiddleCross } from "./middle_cross.js";
 import { Navigation } from "./navigation.js";
 import { Overlay } from "./overlay.js";
 import { pickSurfaces } from "./picking.js";
@@ -58,6 +60,7 @@ class ViewerScene implements SceneApi {
   private readonly readout: ReadoutWriter;
   private readonly drape: ErrorDrape;
   private readonly photosBox: Box;
+  private readonly before: readonly Vec3[];
   private drawnVersion = -1;
   private drawnRatio = 0;
   private lastFrameMs = Number.NEGATIVE_INFINITY;
@@ -66,7 +69,9 @@ class ViewerScene implements SceneApi {
   constructor({ container, project, store, link }: SceneOptions) {
     this.store = store;
     this.world = makeWorld(project);
-    this.photosBox = boxOfPhotos(project, this.world);
+    const positions = project.photos.map(({ position }) => position);
+    this.photosBox = boxWith(this.world.boxEnu, positions);
+    this.before = cornersOfBefore(project);
     const d = this.disposer;
     const motion = window.matchMedia("(prefers-reduced-motion: reduce)");
     const reducedMotion = () => motion.matches;
@@ -92,6 +97,7 @@ class ViewerScene implements SceneApi {
     this.rig = new CameraRig(this.world, first);
     this.rig.resize(size);
     this.overlay = d.own(new Overlay(container, project, this.world.sizeM));
+    d.own(new MiddleCross(container, store));
     const { world, rig } = this;
     this.moves = d.own(new CameraMoves({ rig, world, store, reducedMotion, focus: () => this.focus(), invalidate }));
     this.navigation = d.own(
@@ -256,15 +262,12 @@ class ViewerScene implements SceneApi {
   /** All that near and far must hold. */
   private visibleBox(state: AppState): Box {
     const margin = 0.05 * this.world.sizeM;
-    let { min, max } = this.world.boxEnu;
-    const include = (low: Vec3, high: Vec3): void => {
-      min = [Math.min(min[0], low[0], high[0]), Math.min(min[1], low[1], high[1]), Math.min(min[2], low[2], high[2])];
-      max = [Math.max(max[0], low[0], high[0]), Math.max(max[1], low[1], high[1]), Math.max(max[2], low[2], high[2])];
-    };
-    if (state.layers.cameras) include(this.photosBox.min, this.photosBox.max);
-    if (this.stage.clipBox !== null) include(state.clip.min, state.clip.max);
+    let box = this.world.boxEnu;
+    if (state.layers.cameras) box = boxWith(box, [this.photosBox.min, this.photosBox.max]);
+    if (this.stage.clipBox !== null) box = boxWith(box, [state.clip.min, state.clip.max]);
+    if (this.exact.swiping) box = boxWith(box, this.before);
     const by: Vec3 = [margin, margin, margin];
-    return { min: add(min, scale(by, -1)), max: add(max, by) };
+    return { min: add(box.min, scale(by, -1)), max: add(box.max, by) };
   }
 
   // ---- places ----
@@ -354,16 +357,6 @@ class ViewerScene implements SceneApi {
     stage.setClip(state.clip);
     this.drape.show(state.layers.errorMap ? state.errorMap : null);
   }
-}
-
-function boxOfPhotos(project: Project, world: World): Box {
-  let [min, max] = [world.boxEnu.min, world.boxEnu.max];
-  for (const { position } of project.photos) {
-    if (!position.every(Number.isFinite)) continue;
-    min = [Math.min(min[0], position[0]), Math.min(min[1], position[1]), Math.min(min[2], position[2])];
-    max = [Math.max(max[0], position[0]), Math.max(max[1], position[1]), Math.max(max[2], position[2])];
-  }
-  return { min, max };
 }
 
 function placeCanvas(container: HTMLElement, canvas: HTMLCanvasElement, label: string): void {

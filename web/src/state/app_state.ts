@@ -32,6 +32,8 @@ export interface Estimate {
   readonly sigma: number | null;
 }
 
+/** The project that is open, or the earlier one that it is compared with. */
+export type Survey = "main" | "before";
 export type VolumeBase = "plane" | "lowest" | "height" | "before";
 
 interface MeasurementBase {
@@ -49,6 +51,7 @@ export interface DistanceMeasurement extends MeasurementBase {
 }
 export interface ProfileMeasurement extends MeasurementBase {
   readonly kind: "profile";
+  readonly survey: Survey;
   readonly lengthM: number;
   readonly heightsM: readonly (number | null)[];
   readonly spreadsM: readonly (number | null)[];
@@ -59,6 +62,8 @@ export interface AreaMeasurement extends MeasurementBase {
 }
 export interface VolumeMeasurement extends MeasurementBase {
   readonly kind: "volume";
+  /** On whose surface the outline was drawn. */
+  readonly survey: Survey;
   readonly base: VolumeBase;
   readonly baseHeightM: number | null;
   readonly result: {
@@ -82,6 +87,8 @@ export interface ControlMark {
   readonly photo: string;
   /** Pixels of the full photo from the outer corner of its upper left pixel. */
   readonly pixel: Vec2;
+  /** The survey has no such photo. */
+  readonly unknown?: true;
 }
 export interface ControlPoint {
   readonly name: string;

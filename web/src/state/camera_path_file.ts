@@ -49,6 +49,11 @@ function fileNames(keys: readonly KeyFrame[]): string[] {
   });
 }
 
+/** Without the noise of the last bits, which would make a level camera one with a roll of -9e-15. */
+function roundedDeg(deg: number): number {
+  return Math.round(deg * 1e9) / 1e9;
+}
+
 export function writeCameraPath(path: CameraPath): string {
   const names = fileNames(path.keys);
   const views = path.keys.map(({ pose }, i) => {
@@ -58,9 +63,9 @@ export function writeCameraPath(path: CameraPath): string {
     return {
       name: names[i],
       position_enu: pose.eyeEnu,
-      yaw: yawDeg,
-      pitch: pitchDeg,
-      roll: rollDeg,
+      yaw: roundedDeg(yawDeg),
+      pitch: roundedDeg(pitchDeg),
+      roll: roundedDeg(rollDeg),
       fov: fovAcrossDeg(pose.fovyDeg, VIDEO_ASPECT),
     };
   });

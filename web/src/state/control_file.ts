@@ -1,6 +1,15 @@
 // gcp.json: control points with their marks, in the survey's CRS or in local metres. The server writes gcp_list.txt from it.
-import { asList, asNumber, asObject, asString, asVec2, CheckError, optionalString } from "../base/check.js";
-import type { ControlPoint } from "./app_state.js";
+import {
+  asList,
+  asNumber,
+  asObject,
+  asString,
+  asVec2,
+  CheckError,
+  optionalBoolean,
+  optionalString,
+} from "../base/check.js";
+import type { ControlMark, ControlPoint } from "./app_state.js";
 import type { ProjectBase } from "./project.js";
 
 type MappedProject = Pick<ProjectBase, "crs">;
@@ -15,10 +24,21 @@ export function writeControlPoints(points: readonly ControlPoint[], project: Map
       if (![...xyz, ...marks.flatMap(({ pixel }) => pixel)].every(Number.isFinite)) {
         throw new CheckError(`points[${i}]`, "it has a number that is not finite");
       }
-      return { name, x: xyz[0], y: xyz[1], z: xyz[2], marks: marks.map(({ photo, pixel }) => ({ photo, pixel })) };
+      return { name, x: xyz[0], y: xyz[1], z: xyz[2], marks: marks.map(writeMark) };
     }),
   };
   return `${JSON.stringify(document)}\n`;
+}
+
+/** The server takes marks in photos that it does not know only when they say so. */
+function writeMark({ photo, pixel, unknown }: ControlMark): ControlMark {
+  return unknown === true ? { photo, pixel, unknown } : { photo, pixel };
+}
+
+/** Lines of a gcp_list.txt that the server could not read, when it made the points from one. */
+export function skippedLines(value: unknown): number {
+  const { skipped } = asObject(value, "");
+  return typeof skipped === "number" && skipped > 0 ? skipped : 0;
 }
 
 /** Throws CheckError. */
@@ -51,7 +71,10 @@ function readPoint(value: unknown, path: string): ControlPoint {
       `${path}.marks`,
       (entry, at) => {
         const mark = asObject(entry, at);
-        return { photo: asString(mark.photo, `${at}.photo`), pixel: asVec2(mark.pixel, `${at}.pixel`) };
+        const photo = asString(mark.photo, `${at}.photo`);
+        const pixel = asVec2(mark.pixel, `${at}.pixel`);
+        const unknown = optionalBoolean(mark.unknown, `${at}.unknown`) === true;
+        return unknown ? { photo, pixel, unknown } : { photo, pixel };
       },
       MOST_MARKS,
     ),

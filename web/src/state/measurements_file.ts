@@ -3,11 +3,11 @@
 import { CheckError } from "../base/check.js";
 import type { Vec2, Vec3 } from "../base/vec.js";
 import { geodeticFromEnu } from "../geo/earth.js";
+import { outlineOffsetM } from "../geo/heights.js";
 import { areaVector, pointSigma } from "../geo/measure.js";
 import { mapFromEnu } from "../geo/projection.js";
-import type { Estimate, Measurement, SurfacePoint } from "./app_state.js";
+import type { Estimate, Measurement, SurfacePoint, Survey } from "./app_state.js";
 import type { ProjectBase } from "./project.js";
-import { outlineOffsetM } from "./volumes.js";
 
 export type MeasuredProject = Pick<
   ProjectBase,
@@ -88,6 +88,11 @@ function estimate(name: string, unit: string, { value, sigma }: Estimate): Prope
   return { [`${name}_${unit}`]: value, [`${name}_sigma_${unit}`]: sigma };
 }
 
+/** Only what was drawn on the earlier survey says so. */
+function surveyOf(survey: Survey): Properties {
+  return survey === "before" ? { survey } : {};
+}
+
 /** Results, which the reader takes from here. Units are in the names; sigma is one standard deviation. */
 export function measuredProperties(measurement: Measurement): Properties {
   switch (measurement.kind) {
@@ -100,7 +105,7 @@ export function measuredProperties(measurement: Measurement): Properties {
         ...estimate("rise", "m", measurement.result.rise),
       };
     case "profile":
-      return { length_m: measurement.lengthM };
+      return { ...surveyOf(measurement.survey), length_m: measurement.lengthM };
     case "area":
       return {
         ...estimate("plan_area", "m2", measurement.result.plan),
@@ -109,6 +114,7 @@ export function measuredProperties(measurement: Measurement): Properties {
       };
     case "volume":
       return {
+        ...surveyOf(measurement.survey),
         base: measurement.base,
         base_z_enu_m: measurement.baseHeightM,
         cut_m3: measurement.result.cut,

@@ -23,6 +23,7 @@ const MOST_MEASUREMENTS = 100_000;
 const MOST_POINTS = 100_000;
 const KINDS = ["point", "distance", "profile", "area", "volume"] as const;
 const BASES = ["plane", "lowest", "height", "before"] as const;
+const SURVEYS = ["main", "before"] as const;
 const LEAST_POINTS = { point: 1, distance: 2, profile: 2, area: 3, volume: 3 } as const;
 
 /** From the ENU frame of the file into the project's. */
@@ -103,6 +104,8 @@ function readFeature(value: unknown, path: string, place: Place): Measurement {
       asNumber(given, where, 0),
     ),
   });
+  const survey = () =>
+    optional(properties.survey, `${at}.survey`, (given, where) => asChoice(given, where, SURVEYS)) ?? "main";
   switch (kind) {
     case "point":
       return { ...base, kind };
@@ -113,7 +116,13 @@ function readFeature(value: unknown, path: string, place: Place): Measurement {
         result: { slope: estimate("slope", "m"), plan: estimate("plan", "m"), rise: estimate("rise", "m") },
       };
     case "profile":
-      return { ...base, kind, lengthM: number("length_m", 0), ...readSamples(extra, extraPath, place) };
+      return {
+        ...base,
+        kind,
+        survey: survey(),
+        lengthM: number("length_m", 0),
+        ...readSamples(extra, extraPath, place),
+      };
     case "area":
       return {
         ...base,
@@ -128,6 +137,7 @@ function readFeature(value: unknown, path: string, place: Place): Measurement {
       return {
         ...base,
         kind,
+        survey: survey(),
         base: asChoice(properties.base, `${at}.base`, BASES),
         baseHeightM: movedLevel(
           optionalNumber(properties.base_z_enu_m, `${at}.base_z_enu_m`),

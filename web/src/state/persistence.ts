@@ -2,7 +2,7 @@
 import { parseJson } from "../base/check.js";
 import type { Documents } from "./app_state.js";
 import { readCameraPath, writeCameraPath } from "./camera_path_file.js";
-import { readControlPoints, writeControlPoints } from "./control_file.js";
+import { readControlPoints, skippedLines, writeControlPoints } from "./control_file.js";
 import { type MeasuredProject, writeMeasurements } from "./measurements_file.js";
 import { readMeasurements } from "./measurements_reader.js";
 
@@ -18,6 +18,27 @@ const PARTS = {
 /** The part of the documents that the file holds; another object when it has changed. */
 export function documentPart(documents: Documents, file: DocumentFile): object {
   return documents[PARTS[file]];
+}
+
+/** The documents with the part of this file that others have. */
+export function withDocumentPart(documents: Documents, file: DocumentFile, from: Documents): Documents {
+  switch (file) {
+    case "measurements.geojson":
+      return { ...documents, measurements: from.measurements };
+    case "gcp.json":
+      return { ...documents, controlPoints: from.controlPoints };
+    case "camera_path.json":
+      return { ...documents, cameraPath: from.cameraPath };
+    default:
+      return file satisfies never;
+  }
+}
+
+/** What the person should know about a file that could be read; empty: nothing. */
+export function documentRemark(file: DocumentFile, text: string): string {
+  const skipped = file === "gcp.json" ? skippedLines(parseJson(text, file)) : 0;
+  if (skipped === 0) return "";
+  return `gcp_list.txt: ${skipped === 1 ? "1 line" : `${skipped} lines`} could not be read and had to be left out.`;
 }
 
 /** Throws CheckError when something in it cannot be written. */

@@ -1,19 +1,28 @@
 // Keeps the documents in the project's files: loads them at the start, saves what has changed a second after the last change. A file that could
-// not be read is never overwritten.
+// not be read is never overwritten. What another window has saved meanwhile is joined with what was made here.
 import { errorText } from "../base/abort.js";
 import type { Clock } from "../base/clock.js";
 import { Disposer } from "../base/disposer.js";
+import { ChangedElsewhere, type LoadedDocument, type SaveOptions } from "../protocol/documents_client.js";
 import type { Documents } from "../state/app_state.js";
 import type { MeasuredProject } from "../state/measurements_file.js";
 import { addNotice } from "../state/notices.js";
-import { DOCUMENT_FILES, type DocumentFile, documentPart, readDocument, writeDocument } from "../state/persistence.js";
+import {
+  DOCUMENT_FILES,
+  type DocumentFile,
+  documentPart,
+  documentRemark,
+  readDocument,
+  withDocumentPart,
+  writeDocument,
+} from "../state/persistence.js";
 import type { Store } from "../state/store.js";
 import { joinDocuments } from "./join_documents.js";
 
 export interface DocumentFiles {
-  /** Null: there is none yet. */
-  load(file: DocumentFile): Promise<string | null>;
-  save(file: DocumentFile, text: string, keepalive?: boolean): Promise<void>;
+  load(file: DocumentFile): Promise<LoadedDocument>;
+  /** Returns the tag of what is saved now. Rejects with ChangedElsewhere when the file is not the one of `ifMatch`. */
+  save(file: DocumentFile, text: string, options: SaveOptions): Promise<string | null>;
 }
 
 export interface KeeperOptions {
@@ -25,12 +34,26 @@ export interface KeeperOptions {
 
 const SAVE_AFTER_MS = 1000;
 const TRY_AGAIN_MS = 10_000;
+/** Saving, joining and saving again, while other windows save as well. */
+const TRIES = 3;
+const MOST_SENT = 4;
+
+interface Sent {
+  readonly text: string;
+  readonly documents: Documents;
+}
 
 export class DocumentsKeeper {
   private readonly options: KeeperOptions;
   private readonly disposer = new Disposer();
-  /** The part of the documents that is in each file. */
-  private readonly saved = new Map<DocumentFile, object>();
+  /** Documents whose part is in each file. */
+  private readonly saved = new Map<DocumentFile, Documents>();
+  /** The content of each file that is known here. */
+  private readonly tags = new Map<DocumentFile, string | null>();
+  /** What was sent without hearing whether it was saved. */
+  private readonly sent = new Map<DocumentFile, readonly Sent[]>();
+  /** The file that is being saved. */
+  private underWay: DocumentFile | null = null;
   /** Files that could not be read. */
   private readonly blocked = new Set<DocumentFile>();
   private loaded = false;
@@ -54,15 +77,19 @@ export class DocumentsKeeper {
   async load(): Promise<void> {
     const { store, project } = this.options;
     const before = store.get().documents;
-    const texts = await Promise.allSettled(DOCUMENT_FILES.map((file) => this.options.files.load(file)));
+    const answers = await Promise.allSettled(DOCUMENT_FILES.map((file) => this.options.files.load(file)));
     if (this.disposer.disposed) return;
     let documents = before;
-    texts.forEach((text, i) => {
+    answers.forEach((answer, i) => {
       const file = DOCUMENT_FILES[i];
       if (file === undefined) return;
       try {
-        if (text.status === "rejected") throw text.reason;
-        if (text.value !== null) documents = readDocument(documents, file, text.value, project);
+        if (answer.status === "rejected") throw answer.reason;
+        const { text, tag } = answer.value;
+        if (text !== null) documents = readDocument(documents, file, text, project);
+        this.tags.set(file, tag);
+        const remark = text === null ? "" : documentRemark(file, text);
+        if (remark !== "") addNotice(store, "info", remark);
       } catch (error) {
         this.blocked.add(file);
         addNotice(
@@ -88,12 +115,10 @@ export class DocumentsKeeper {
   /** Saves now what is not saved, without waiting for the answer: the page may be gone the next moment. */
   flush(): void {
     for (const file of this.savableFiles()) {
-      const { store, project, files } = this.options;
-      try {
-        files.save(file, writeDocument(store.get().documents, file, project), true).catch(() => {});
-      } catch {
-        // Nobody is left to read what is wrong.
-      }
+      // What the file will be after the saving that is under way is not known; the newest must win.
+      const ifMatch = this.underWay === file ? null : (this.tags.get(file) ?? null);
+      // Nobody is left to read what is wrong.
+      this.send(file, ifMatch, true).catch(() => {});
     }
   }
 
@@ -109,12 +134,17 @@ export class DocumentsKeeper {
   }
 
   private remember(documents: Documents): void {
-    for (const file of DOCUMENT_FILES) this.saved.set(file, documentPart(documents, file));
+    for (const file of DOCUMENT_FILES) this.saved.set(file, documents);
   }
 
   private unsavedFiles(): DocumentFile[] {
     const { documents } = this.options.store.get();
-    return DOCUMENT_FILES.filter((file) => this.saved.get(file) !== documentPart(documents, file));
+    return DOCUMENT_FILES.filter((file) => !this.isSaved(file, documents));
+  }
+
+  private isSaved(file: DocumentFile, documents: Documents): boolean {
+    const saved = this.saved.get(file);
+    return saved !== undefined && documentPart(saved, file) === documentPart(documents, file);
   }
 
   private savableFiles(): DocumentFile[] {
@@ -135,7 +165,7 @@ export class DocumentsKeeper {
 
   private async save(): Promise<void> {
     if (this.saving) return;
-    const { store, project, files } = this.options;
+    const { store } = this.options;
     const wanted = this.savableFiles();
     let failure = "";
     if (wanted.length > 0) {
@@ -143,21 +173,90 @@ export class DocumentsKeeper {
       store.set({ save: "saving" });
     }
     for (const file of wanted) {
-      const { documents } = store.get();
+      this.underWay = file;
       try {
-        await files.save(file, writeDocument(documents, file, project));
-        this.saved.set(file, documentPart(documents, file));
+        await this.saveFile(file);
       } catch (error) {
-        failure = `${file} could not be saved: ${errorText(error)}. It is tried again every 10 seconds.`;
+        const next = this.blocked.has(file)
+          ? "Correct it or move it away, then reload the page"
+          : "It is tried again every 10 seconds";
+        failure = `${file} could not be saved: ${errorText(error)}. ${next}.`;
       }
     }
+    this.underWay = null;
     this.saving = false;
     if (this.disposer.disposed) return;
     if (failure === "" && this.unsavedFiles().some((file) => this.blocked.has(file))) {
-      failure = "These changes are not saved, because the file could not be read when the page was opened.";
+      failure = "These changes are not saved, because the file could not be read.";
     }
     if (failure !== "") this.failed(failure);
     else this.done();
+  }
+
+  private async saveFile(file: DocumentFile): Promise<void> {
+    for (let attempt = 1; !this.disposer.disposed; attempt += 1) {
+      try {
+        await this.send(file, this.tags.get(file) ?? null, false);
+        return;
+      } catch (error) {
+        if (!(error instanceof ChangedElsewhere) || attempt >= TRIES) throw error;
+      }
+      await this.joinWithFile(file);
+      if (this.isSaved(file, this.options.store.get().documents)) return;
+    }
+  }
+
+  private async send(file: DocumentFile, ifMatch: string | null, keepalive: boolean): Promise<void> {
+    const { store, project, files } = this.options;
+    const { documents } = store.get();
+    const text = writeDocument(documents, file, project);
+    const own: Sent = { text, documents };
+    this.sent.set(file, [...(this.sent.get(file) ?? []), own].slice(-MOST_SENT));
+    try {
+      const tag = await files.save(file, text, { ifMatch, keepalive });
+      const sent = this.sent.get(file) ?? [];
+      const place = sent.indexOf(own);
+      // Something newer has been saved, and was answered first.
+      if (place < 0) return;
+      this.tags.set(file, tag);
+      this.saved.set(file, documents);
+      this.sent.set(file, sent.slice(place + 1));
+    } catch (error) {
+      if (error instanceof ChangedElsewhere) {
+        const others = (this.sent.get(file) ?? []).filter((one) => one !== own);
+        this.sent.set(file, others);
+      }
+      throw error;
+    }
+  }
+
+  /** The file is another one than was known here: from now on both have what it holds. */
+  private async joinWithFile(file: DocumentFile): Promise<void> {
+    const { store, project, files } = this.options;
+    const { text, tag } = await files.load(file);
+    if (this.disposer.disposed) return;
+    // Saved here while this was asked.
+    if (tag !== null && tag === this.tags.get(file)) return;
+    const own = this.sent.get(file)?.find((one) => one.text === text);
+    if (text === null || own !== undefined) {
+      // Taken away by somebody, or saved by this page, which did not hear of it.
+      if (own !== undefined) this.saved.set(file, own.documents);
+      this.tags.set(file, tag);
+      return;
+    }
+    const made = store.get().documents;
+    let loaded: Documents;
+    try {
+      loaded = readDocument(made, file, text, project);
+    } catch (error) {
+      this.blocked.add(file);
+      throw new Error(`it was changed outside this page and cannot be read now: ${errorText(error)}`);
+    }
+    const before = withDocumentPart(made, file, this.saved.get(file) ?? made);
+    this.saved.set(file, loaded);
+    this.tags.set(file, tag);
+    store.loadDocuments(joinDocuments(loaded, before, made));
+    addNotice(store, "info", `${file} was changed in another window: both are kept.`);
   }
 
   private failed(failure: string): void {

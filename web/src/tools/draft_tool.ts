@@ -173,7 +173,7 @@ export class DraftTool implements Tool {
       else if (asking.points.includes(picked)) asking.points = swap(asking.points);
     }
     if (newDraft !== draft) store.set({ draft: newDraft });
-    store.amendDocuments((documents) => replacePoint(documents, picked, found, project.accuracy));
+    store.amendDocuments((documents) => replacePoint(documents, picked, found, project));
   }
 
   private isAsked(draft: readonly SurfacePoint[]): boolean {

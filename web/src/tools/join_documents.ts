@@ -1,4 +1,4 @@
-// Puts together what the files hold and what was made before they had been read.
+// Puts together what the files hold and what was made here without knowing of it: before they had been read, or while another window saved.
 import type { Documents, Measurement } from "../state/app_state.js";
 import { uniqueName } from "../state/names.js";
 
@@ -22,11 +22,15 @@ export function joinDocuments(loaded: Documents, before: Documents, made: Docume
     });
   }
   const keys = newOf(before.cameraPath.keys, made.cameraPath.keys);
+  const changed = made.cameraPath.speedMps !== before.cameraPath.speedMps;
+  const { speedMps } = changed ? made.cameraPath : loaded.cameraPath;
   return {
     measurements: measurements.length === loaded.measurements.length ? loaded.measurements : measurements,
     controlPoints: controlPoints.length === loaded.controlPoints.length ? loaded.controlPoints : controlPoints,
     cameraPath:
-      keys.length === 0 ? loaded.cameraPath : { ...loaded.cameraPath, keys: [...loaded.cameraPath.keys, ...keys] },
+      keys.length === 0 && speedMps === loaded.cameraPath.speedMps
+        ? loaded.cameraPath
+        : { keys: [...loaded.cameraPath.keys, ...keys], speedMps },
   };
 }
 

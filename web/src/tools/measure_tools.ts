@@ -1,7 +1,8 @@
 // The five measuring tools.
-
+import { levelAtOutlineM } from "../geo/heights.js";
+import type { SurfacePoint, Survey } from "../state/app_state.js";
 import { newArea, newDistance, newPoint, newProfile, newVolume } from "../state/measurements.js";
-import type { Accuracy } from "../state/project.js";
+import type { Accuracy, Project } from "../state/project.js";
 import { MOST_CORNERS, measureVolume, outlineProblem } from "../state/volumes.js";
 import { type DraftKind, DraftTool } from "./draft_tool.js";
 import type { SurfacePicker } from "./surface_picker.js";
@@ -12,10 +13,21 @@ const PROFILE_SAMPLES = 512;
 const NEVER = Number.POSITIVE_INFINITY;
 
 export function measureTools(context: ToolContext, picker: SurfacePicker): readonly Tool[] {
-  const { accuracy } = context.project;
-  return [pointKind(), distanceKind(accuracy), profileKind(context), areaKind(accuracy), volumeKind(context)].map(
-    (kind) => new DraftTool(kind, context, picker),
-  );
+  const { project } = context;
+  return [
+    pointKind(),
+    distanceKind(project),
+    profileKind(context, picker),
+    areaKind(project.accuracy),
+    volumeKind(context, picker),
+  ].map((kind) => new DraftTool(kind, context, picker));
+}
+
+/** Throws an Error for the user when there is no one answer. */
+function surveyOf(picker: SurfacePicker, points: readonly SurfacePoint[]): Survey {
+  const survey = picker.surveyOf(points);
+  if (survey === null) throw new Error("the points lie on both sides of the line between the two surveys");
+  return survey;
 }
 
 const noProblem = () => null;
@@ -33,7 +45,7 @@ function pointKind(): DraftKind {
   };
 }
 
-function distanceKind(accuracy: Accuracy): DraftKind {
+function distanceKind(project: Project): DraftKind {
   return {
     name: "distance",
     what: "distance",
@@ -42,7 +54,7 @@ function distanceKind(accuracy: Accuracy): DraftKind {
     most: 1000,
     closed: false,
     problem: noProblem,
-    how: { by: "itself", make: (documents, points) => newDistance(documents, points, accuracy) },
+    how: { by: "itself", make: (documents, points) => newDistance(documents, points, project) },
   };
 }
 
@@ -59,7 +71,7 @@ function areaKind(accuracy: Accuracy): DraftKind {
   };
 }
 
-function profileKind({ link }: ToolContext): DraftKind {
+function profileKind({ link, project }: ToolContext, picker: SurfacePicker): DraftKind {
   return {
     name: "profile",
     what: "profile",
@@ -76,14 +88,15 @@ function profileKind({ link }: ToolContext): DraftKind {
       measure: async (points) => {
         const [a, b] = points;
         if (a === undefined || b === undefined) throw new Error("a profile needs two points");
-        const samples = await link.profile([a.enu[0], a.enu[1]], [b.enu[0], b.enu[1]], PROFILE_SAMPLES);
-        return (documents) => newProfile(documents, points, samples);
+        const survey = surveyOf(picker, points);
+        const samples = await link.profile([a.enu[0], a.enu[1]], [b.enu[0], b.enu[1]], PROFILE_SAMPLES, survey);
+        return (documents) => newProfile(documents, points, samples, project, survey);
       },
     },
   };
 }
 
-function volumeKind({ store, link, project }: ToolContext): DraftKind {
+function volumeKind({ store, link, project }: ToolContext, picker: SurfacePicker): DraftKind {
   return {
     name: "volume",
     what: "volume",
@@ -103,9 +116,11 @@ function volumeKind({ store, link, project }: ToolContext): DraftKind {
       by: "engine",
       measure: async (points) => {
         const { volumeBase, volumeBaseHeightM } = store.get();
-        const result = await measureVolume(link, project.accuracy, points, volumeBase, volumeBaseHeightM);
-        const height = volumeBase === "height" ? volumeBaseHeightM : null;
-        return (documents) => newVolume(documents, points, volumeBase, height, result);
+        // Over the earlier survey it is always the present surface that is measured.
+        const survey = volumeBase === "before" ? (picker.surveyOf(points) ?? "main") : surveyOf(picker, points);
+        const height = volumeBase === "height" ? levelAtOutlineM(project, points, volumeBaseHeightM) : null;
+        const result = await measureVolume(link, project, points, volumeBase, height ?? 0, survey);
+        return (documents) => newVolume(documents, points, volumeBase, height, result, survey);
       },
     },
   };

@@ -22,6 +22,7 @@ const TRIES = 3;
 export class SurfacePicker {
   private readonly context: Pick<ToolContext, "scene" | "link" | "store">;
   private queue: Promise<unknown> = Promise.resolve();
+  private readonly surveys = new WeakMap<SurfacePoint, Which>();
 
   constructor(context: Pick<ToolContext, "scene" | "link" | "store">) {
     this.context = context;
@@ -30,15 +31,24 @@ export class SurfacePicker {
   pick(px: Vec2): Picking {
     const { scene, store } = this.context;
     const state = store.get();
+    const which = shownAt(state, px, scene.canvas.clientWidth);
     const mesh = scene.pickSurface(px);
+    if (mesh !== null) this.surveys.set(mesh, which);
     if (!state.engine.connected || !state.engine.ready) return { mesh, field: Promise.resolve(null) };
     // The camera may move before it is our turn.
     const ray = scene.rayAt(px);
-    const which = shownAt(state, px, scene.canvas.clientWidth);
     const clip = state.clip.on ? state.clip : null;
     const field = this.queue.then(() => this.ask(ray, clip, which));
     this.queue = field;
     return { mesh, field };
+  }
+
+  /** On which survey these points lie, as it was shown when they were clicked; null: on both. */
+  surveyOf(points: readonly SurfacePoint[]): Which | null {
+    const first = points[0];
+    const survey = (point: SurfacePoint) => this.surveys.get(point) ?? "main";
+    if (first === undefined) return "main";
+    return points.every((point) => survey(point) === survey(first)) ? survey(first) : null;
   }
 
   /** Resolves when nothing is being asked. */
@@ -54,12 +64,10 @@ export class SurfacePicker {
     if (part === null) return null;
     for (let attempt = 1; ; attempt += 1) {
       try {
-        return fieldPoint(
-          ray,
-          part.startM,
-          part.endM,
-          await this.context.link.pick(startingAt(ray, part.startM), which),
-        );
+        const picked = await this.context.link.pick(startingAt(ray, part.startM), which);
+        const point = fieldPoint(ray, part.startM, part.endM, picked);
+        if (point !== null) this.surveys.set(point, which);
+        return point;
       } catch (error) {
         if (isAbort(error) && attempt < TRIES) continue;
         addErrorNotice(this.context.store, "The exact point was not found, that of the surface is used", error);

@@ -46,6 +46,11 @@ export function addToolCommands(context: ToolContext, activeTool: () => Tool): (
   for (const [name, label, key] of WAYS) {
     add(`navigation.${name}`, label, [key], free, () => store.set({ navigation: name }));
   }
+  add("draft.place", "Place a point in the middle of the view", ["."], canPlace, () => {
+    // For those who work without a mouse; the scene shows a cross there.
+    const { clientWidth, clientHeight } = context.scene.canvas;
+    activeTool().click({ px: [clientWidth / 2, clientHeight / 2], shift: false, ctrl: false });
+  });
   const drawing = (state: AppState) => free(state) && state.draft.length > 0;
   add("draft.finish", "Finish the line or outline", ["Enter"], drawing, () => void activeTool().key("Enter"));
   add("draft.back", "Take the last point away", ["Backspace"], drawing, () => void activeTool().key("Backspace"));
@@ -82,6 +87,10 @@ export function addToolCommands(context: ToolContext, activeTool: () => Tool): (
 
 function canCancel(state: AppState): boolean {
   return free(state) && (state.tool !== "navigate" || state.selected !== null);
+}
+
+function canPlace(state: AppState): boolean {
+  return free(state) && state.tool !== "navigate";
 }
 
 function addKeyFrame({ store, scene }: Pick<ToolContext, "store" | "scene">): void {

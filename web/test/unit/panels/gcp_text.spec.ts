@@ -27,6 +27,10 @@ test("marks of one point are gathered; comments, tabs and line ends of Windows d
 test("points without a name are told apart by their coordinates and get free names", () => {
   const text =
     "EPSG:32632\n1 2 3 4 5 b/IMG_2.JPG\n1 2 3 6 7 a/IMG_1.jpg\n9 2 3 4 5 b/IMG_2.JPG\n8 8 8 4 5 b/IMG_2.JPG GCP_1\n";
+  assert.deepEqual(
+    readGcpList(text, project, ["GCP_2", "GCP_9"]).points.map(({ name }) => name),
+    ["GCP_3", "GCP_4", "GCP_1"],
+  );
   const { points } = readGcpList(text, project);
   assert.deepEqual(
     points.map((point) => [point.name, point.marks.length]),

@@ -44,12 +44,12 @@ test("the chart holds all heights, gaps stay gaps, and a flat profile stays flat
 test("results say ± and what it lacks", () => {
   const { documents } = initialState(sampleProject());
   const project = sampleProject();
-  const sure = newDistance(documents, [samplePoint([0, 0, 0]), samplePoint([3, 4, 0])], project.accuracy);
+  const sure = newDistance(documents, [samplePoint([0, 0, 0]), samplePoint([3, 4, 0])], project);
   assert.match(resultLines(sure, project)[0]?.text ?? "", /^5\.\d+ m ± 0\.\d+ m$/);
   assert.equal(deviationNote(sure, project), "");
   assert.match(measurementText(sure, project), /^Distance 1\nDistance: 5/);
   assert.match(deviationNote(sure, sampleProject({ accuracy: NO_ACCURACY })), /without the geo-reference's share/);
-  const mesh = newDistance(documents, [samplePoint([0, 0, 0], null), samplePoint([3, 4, 0])], project.accuracy);
+  const mesh = newDistance(documents, [samplePoint([0, 0, 0], null), samplePoint([3, 4, 0])], project);
   assert.equal(resultLines(mesh, project)[0]?.text, "5.00 m");
   assert.match(deviationNote(mesh, project), /not all points are confirmed/);
 });
@@ -77,4 +77,7 @@ test("points are given in the survey's coordinates, heights of bases too", () =>
     result,
   );
   assert.equal(resultLines(volume, project).find(({ label }) => label === "Base")?.text, "level at 418.25 m");
+  assert.equal(deviationNote(volume, project), "");
+  const accuracy = { ...project.accuracy, verticalM: null };
+  assert.match(deviationNote(volume, sampleProject({ accuracy })), /without the vertical accuracy/);
 });

@@ -50,7 +50,7 @@ test("one row per measurement with its shape as WKT", () => {
   let documents = initialState(project).documents;
   const corners = [samplePoint([0, 0, 0]), samplePoint([3, 4, 0]), samplePoint([-3, 4, 0])];
   documents = withMeasurement(documents, {
-    ...newDistance(documents, corners.slice(0, 2), NO_ACCURACY),
+    ...newDistance(documents, corners.slice(0, 2), sampleProject({ accuracy: NO_ACCURACY })),
     name: "-wall",
   });
   documents = withMeasurement(documents, newArea(documents, corners, NO_ACCURACY));
@@ -70,10 +70,12 @@ test("one row per measurement with its shape as WKT", () => {
   assert.match(placed[1]?.[head.indexOf("coordinates")] ?? "", /^LINESTRING Z \(4\d{5}\.\d+ 52\d{5}\.\d+ 408\.25, /);
 });
 
+const LOCAL = sampleProject({ georeferenced: false, crs: null });
+
 test("a profile as distance, height and deviation", () => {
   const documents = initialState(sampleProject()).documents;
   const samples = { lengthM: 10, heightsM: [1, null, 3.00004], spreadsM: [0.1, null, null] };
-  const profile = newProfile(documents, [samplePoint([0, 0, 0]), samplePoint([10, 0, 0])], samples);
+  const profile = newProfile(documents, [samplePoint([0, 0, 0]), samplePoint([10, 0, 0])], samples, LOCAL);
   assert.ok(profile.kind === "profile");
   assert.deepEqual(parse(profileCsv(profile, 400)), [
     ["distance_m", "height_m", "sigma_m"],

@@ -16,7 +16,13 @@ import {
   newVolume,
   withMeasurement,
 } from "../../../src/state/measurements.js";
-import { DOCUMENT_FILES, documentPart, readDocument, writeDocument } from "../../../src/state/persistence.js";
+import {
+  DOCUMENT_FILES,
+  documentPart,
+  documentRemark,
+  readDocument,
+  writeDocument,
+} from "../../../src/state/persistence.js";
 import { NO_ACCURACY, samplePoint, sampleProject, seededRandom } from "./samples.js";
 
 const EMPTY = initialState(sampleProject()).documents;
@@ -36,6 +42,7 @@ function randomDocuments(seed: number): Documents {
     ]);
   const points = (count: number) => Array.from({ length: count }, point);
   const samples = Array.from({ length: 40 }, () => (random() < 0.2 ? null : within(-5, 60)));
+  const survey = () => (random() < 0.5 ? "before" : "main");
   const base = (["plane", "lowest", "height", "before"] as const)[Math.floor(4 * random())] ?? "plane";
   const result = {
     cut: within(0, 100),
@@ -47,16 +54,22 @@ function randomDocuments(seed: number): Documents {
   };
   const makers: ((documents: Documents) => Measurement)[] = [
     (documents) => newPoint(documents, points(1)),
-    (documents) => newDistance(documents, points(2 + Math.floor(5 * random())), NO_ACCURACY),
+    (documents) => newDistance(documents, points(2 + Math.floor(5 * random())), LOCAL),
     (documents) =>
-      newProfile(documents, points(2), {
-        lengthM: within(1, 90),
-        heightsM: samples,
-        spreadsM: samples.map((z) => (z === null ? null : 0.1)),
-      }),
+      newProfile(
+        documents,
+        points(2),
+        {
+          lengthM: within(1, 90),
+          heightsM: samples,
+          spreadsM: samples.map((z) => (z === null ? null : 0.1)),
+        },
+        LOCAL,
+        survey(),
+      ),
     (documents) => newArea(documents, points(3 + Math.floor(5 * random())), NO_ACCURACY),
     (documents) =>
-      newVolume(documents, points(4), base as VolumeBase, base === "height" ? within(-5, 50) : null, result),
+      newVolume(documents, points(4), base as VolumeBase, base === "height" ? within(-5, 50) : null, result, survey()),
   ];
   let documents = EMPTY;
   for (const make of [...makers, ...makers]) {
@@ -71,6 +84,7 @@ function randomDocuments(seed: number): Documents {
       marks: [1, 2].map((photo) => ({
         photo: `dir/DJI_${photo}.JPG`,
         pixel: [within(0, 4000), within(0, 3000)] as const,
+        ...(random() < 0.3 ? { unknown: true as const } : {}),
       })),
     })),
     cameraPath: {
@@ -116,6 +130,20 @@ test("a camera path comes back with the same views, names and speed", () => {
       assert.equal(pose.orthoHeightM, key.pose.orthoHeightM);
     });
   }
+});
+
+test("angles of a camera path are written without the noise of their last bits", () => {
+  const rotation = rotationFromAngles({ yawDeg: 125, pitchDeg: -40, rollDeg: 0 });
+  const pose = { eyeEnu: [0, 0, 9] as const, rotation, fovyDeg: 50, orthoHeightM: null };
+  const [view] = JSON.parse(writeCameraPath({ keys: [{ name: "a", pose }], speedMps: 1 })).views;
+  assert.deepEqual([view.yaw, view.pitch, Math.abs(view.roll)], [125, -40, 0]);
+});
+
+test("lines of a gcp_list.txt that were left out are told", () => {
+  const text = (more: object) => JSON.stringify({ crs: null, points: [], ...more });
+  assert.match(documentRemark("gcp.json", text({ skipped: 3 })), /3 lines/);
+  assert.equal(documentRemark("gcp.json", text({})), "");
+  assert.equal(documentRemark("camera_path.json", "{}"), "");
 });
 
 test("empty documents come back", () => {
@@ -170,7 +198,7 @@ test("measurements stay where they are on Earth when the project's origin has mo
   const point = samplePoint([20, 30, 5]);
   let documents = withMeasurement(EMPTY, newPoint(EMPTY, [point]));
   const profile = { lengthM: 5, heightsM: [5, null], spreadsM: [0.1, null] };
-  documents = withMeasurement(documents, newProfile(documents, [point, samplePoint([25, 30, 5])], profile));
+  documents = withMeasurement(documents, newProfile(documents, [point, samplePoint([25, 30, 5])], profile, project));
   const text = writeDocument(documents, "measurements.geojson", project);
   const read = readDocument(EMPTY, "measurements.geojson", text, moved).measurements;
   const enu = read[0]?.points[0]?.enu;

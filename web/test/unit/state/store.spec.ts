@@ -12,13 +12,15 @@ import {
 import { Store } from "../../../src/state/store.js";
 import { NO_ACCURACY, samplePoint, sampleProject } from "./samples.js";
 
+const PROJECT = sampleProject({ accuracy: NO_ACCURACY });
+
 function newStore(): Store {
   return new Store(initialState(sampleProject()));
 }
 
 function addDistance(store: Store, points: readonly ReturnType<typeof samplePoint>[]): void {
   store.changeDocuments("add distance", (documents) =>
-    withMeasurement(documents, newDistance(documents, points, NO_ACCURACY)),
+    withMeasurement(documents, newDistance(documents, points, PROJECT)),
   );
 }
 
@@ -54,7 +56,7 @@ test("a better point takes no step and is there after undo and redo", () => {
   store.undo();
   // The field answers while the measurement is undone.
   const found = samplePoint([0, 4, 0], 0.02);
-  store.amendDocuments((documents) => replacePoint(documents, picked, found, NO_ACCURACY));
+  store.amendDocuments((documents) => replacePoint(documents, picked, found, PROJECT));
   assert.equal(store.get().documents.measurements.length, 0);
   store.redo();
   const [measurement] = store.get().documents.measurements;
@@ -73,9 +75,7 @@ test("an amendment of nothing leaves the documents as they are", () => {
   addDistance(store, [samplePoint([0, 0, 0]), samplePoint([1, 0, 0])]);
   store.set({ save: "saved" });
   const before = store.get().documents;
-  store.amendDocuments((documents) =>
-    replacePoint(documents, samplePoint([0, 0, 0]), samplePoint([9, 9, 9]), NO_ACCURACY),
-  );
+  store.amendDocuments((documents) => replacePoint(documents, samplePoint([0, 0, 0]), samplePoint([9, 9, 9]), PROJECT));
   assert.equal(store.get().documents, before);
   assert.equal(store.get().save, "saved");
 });

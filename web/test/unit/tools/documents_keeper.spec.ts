@@ -199,3 +199,70 @@ test("leaving: a question while something is unsaved, a last save, and one at on
   await pass(b, 5000);
   assert.equal(files.saves.length, 2);
 });
+
+test("two windows: what both have made is kept, and told once to the one that comes second", async () => {
+  const files = new FakeFiles();
+  const [one, two] = [bench(), bench()];
+  await keeper(one, files).load();
+  await keeper(two, files).load();
+  addPoint(one.store, 1);
+  await pass(one, 1000);
+  addPoint(two.store, 2);
+  await pass(two, 1000);
+  assert.deepEqual(saved(two, files), [1, 2]);
+  assert.equal(two.store.get().save, "saved");
+  const { documents, notices } = two.store.get();
+  assert.deepEqual(
+    documents.measurements.map(({ id, points }) => `${id} ${points[0]?.enu[0]}`),
+    ["m1 1", "m2 2"],
+  );
+  assert.deepEqual(
+    notices.map(({ kind, text }) => `${kind} ${text}`),
+    ["info measurements.geojson was changed in another window: both are kept."],
+  );
+  // And back; the second time nothing is doubled.
+  addPoint(one.store, 3);
+  await pass(one, 1000);
+  assert.deepEqual(saved(one, files), [1, 2, 3]);
+  addPoint(two.store, 4);
+  await pass(two, 1000);
+  assert.deepEqual(saved(two, files), [1, 2, 3, 4]);
+  const { length } = files.saves;
+  await pass(one, 60_000);
+  await pass(two, 60_000);
+  assert.equal(files.saves.length, length);
+});
+
+test("a save whose answer was lost is not taken for another window's", async () => {
+  const b = bench();
+  const files = new FakeFiles();
+  await keeper(b, files).load();
+  addPoint(b.store, 1);
+  files.loseAnswer = true;
+  await pass(b, 1000);
+  assert.equal(b.store.get().save, "failed");
+  files.loseAnswer = false;
+  addPoint(b.store, 2);
+  b.store.set({ notices: [] });
+  await pass(b, 1000);
+  assert.deepEqual(saved(b, files), [1, 2]);
+  assert.equal(b.store.get().save, "saved");
+  assert.deepEqual(b.store.get().notices, []);
+});
+
+test("a file that another program has spoilt is left alone from then on", async () => {
+  const b = bench();
+  const files = new FakeFiles();
+  await keeper(b, files).load();
+  files.texts.set("gcp.json", "{");
+  b.store.changeDocuments("add", (documents) => ({
+    ...documents,
+    controlPoints: [{ name: "P", xyz: [1, 2, 3], marks: [] }],
+  }));
+  await pass(b, 1000);
+  await pass(b, 60_000);
+  assert.equal(files.texts.get("gcp.json"), "{");
+  assert.equal(files.saves.length, 1);
+  assert.equal(b.store.get().save, "failed");
+  assert.match(b.store.get().notices[0]?.text ?? "", /gcp\.json could not be saved: .*cannot be read now/);
+});

@@ -1,6 +1,8 @@
 // A canvas, a scene, an engine and a page for tests of the tools. The scene looks straight down from 100 m, one pixel is one metre.
+import { createHash } from "node:crypto";
 import { ManualClock } from "../../../src/base/clock.js";
 import type { Vec2 } from "../../../src/base/vec.js";
+import { ChangedElsewhere, type LoadedDocument, type SaveOptions } from "../../../src/protocol/documents_client.js";
 import type { Link, Picked, ProfileReply, VolumeReply } from "../../../src/protocol/link_api.js";
 import type { Ray, SceneApi } from "../../../src/scene/scene_api.js";
 import type { CameraPose, PhotoSight, SurfacePoint } from "../../../src/state/app_state.js";
@@ -20,8 +22,11 @@ export interface Question<Asked, Answer> {
 
 export class FakeEngine {
   readonly picks: Question<{ ray: Ray; project: string }, Picked>[] = [];
-  readonly profiles: Question<{ from: Vec2; to: Vec2; samples: number }, ProfileReply>[] = [];
-  readonly volumes: Question<{ polygon: readonly Vec2[]; base: string; baseHeightM: number }, VolumeReply>[] = [];
+  readonly profiles: Question<{ from: Vec2; to: Vec2; samples: number; project: string }, ProfileReply>[] = [];
+  readonly volumes: Question<
+    { polygon: readonly Vec2[]; base: string; baseHeightM: number; project: string },
+    VolumeReply
+  >[] = [];
   readonly sights: Question<readonly number[], { checked: boolean; photos: readonly PhotoSight[] }>[] = [];
 
   link(): Link {
@@ -32,8 +37,9 @@ export class FakeEngine {
     };
     return {
       pick: (ray, project = "main") => ask(this.picks, { ray: { ...ray }, project }),
-      profile: (from, to, samples) => ask(this.profiles, { from, to, samples }),
-      volume: (polygon, base, baseHeightM) => ask(this.volumes, { polygon, base, baseHeightM }),
+      profile: (from, to, samples, project = "main") => ask(this.profiles, { from, to, samples, project }),
+      volume: (polygon, base, baseHeightM, project = "main") =>
+        ask(this.volumes, { polygon, base, baseHeightM, project }),
       photosAt: (point) => ask(this.sights, point),
       view: never,
       viewPhoto: never,
@@ -174,7 +180,7 @@ export async function settle(): Promise<void> {
   for (let i = 0; i < 30; i += 1) await Promise.resolve();
 }
 
-/** Files in memory; `fail` makes saving fail. */
+/** Files in memory, as the server keeps them; `fail` makes saving fail. */
 export class FakeFiles implements DocumentFiles {
   readonly texts = new Map<string, string>();
   readonly saves: string[] = [];
@@ -183,15 +189,27 @@ export class FakeFiles implements DocumentFiles {
   /** Saving waits until this is called. */
   hold: Promise<void> | null = null;
 
-  async load(file: string): Promise<string | null> {
+  /** Saved, but the answer does not come back. */
+  loseAnswer = false;
+
+  async load(file: string): Promise<LoadedDocument> {
     if (this.failLoad !== "") throw new Error(this.failLoad);
-    return this.texts.get(file) ?? null;
+    return { text: this.texts.get(file) ?? null, tag: this.tag(file) };
   }
 
-  async save(file: string, text: string, keepalive = false): Promise<void> {
-    this.saves.push(keepalive ? `${file} keepalive` : file);
+  async save(file: string, text: string, { ifMatch, keepalive }: SaveOptions): Promise<string | null> {
+    this.saves.push(keepalive === true ? `${file} keepalive` : file);
     if (this.hold !== null) await this.hold;
     if (this.fail !== "") throw new Error(this.fail);
+    if (ifMatch !== null && ifMatch !== this.tag(file)) throw new ChangedElsewhere("changed in another window");
     this.texts.set(file, text);
+    if (this.loseAnswer) throw new Error("the server does not answer");
+    return this.tag(file);
+  }
+
+  private tag(file: string): string {
+    return `"${createHash("sha1")
+      .update(this.texts.get(file) ?? "")
+      .digest("hex")}"`;
   }
 }

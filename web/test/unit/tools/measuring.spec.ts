@@ -2,8 +2,10 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import type { VolumeReply } from "../../../src/protocol/link_api.js";
+import { newVolume, withMeasurement } from "../../../src/state/measurements.js";
 import { remeasureVolume } from "../../../src/state/volumes.js";
 import { createTools } from "../../../src/tools/tools.js";
+import { samplePoint, sampleProject } from "../state/samples.js";
 import { type Bench, bench, FakeFiles, hitAt, NO_HIT, settle } from "./fakes.js";
 
 function start(b: Bench, files = new FakeFiles()): { dispose(): void } {
@@ -165,7 +167,7 @@ test("a profile is asked between the field's points; when it fails the draft sta
   assert.equal(b.engine.profiles.length, 0);
   await answerPicks(b);
   const [asked] = b.engine.profiles;
-  assert.deepEqual(asked?.asked, { from: [10, -10], to: [60, -10], samples: 512 });
+  assert.deepEqual(asked?.asked, { from: [10, -10], to: [60, -10], samples: 512, project: "main" });
   b.page.key("Enter");
   await settle();
   assert.equal(b.engine.profiles.length, 1);
@@ -223,6 +225,7 @@ test("what is cancelled while the engine measures does not come after all; a new
     ],
     base: "height",
     baseHeightM: 7,
+    project: "main",
   });
   assert.ok((volume.result.net.sigma ?? 0) >= 2);
   assert.equal(b.store.get().draft.length, 1);
@@ -245,8 +248,8 @@ test("a finished volume over another base is one step; answers of older requests
   await settle();
   const [volume] = measurements(b);
   assert.ok(volume !== undefined);
-  const first = remeasureVolume(b.store, b.link, b.project.accuracy, volume.id, "lowest", 0);
-  const second = remeasureVolume(b.store, b.link, b.project.accuracy, volume.id, "height", 3);
+  const first = remeasureVolume(b.store, b.link, b.project, volume.id, "lowest", 0);
+  const second = remeasureVolume(b.store, b.link, b.project, volume.id, "height", 3);
   b.engine.volumes[2]?.resolve({ ...VOLUME, netM3: 33 });
   b.engine.volumes[1]?.resolve({ ...VOLUME, netM3: 22 });
   await Promise.all([first, second]);
@@ -286,4 +289,73 @@ test("another tool ends the draft", async () => {
   await answerPicks(b);
   assert.equal(b.store.get().draft.length, 0);
   assert.equal(measurements(b).length, 0);
+});
+
+test("left of the swipe's line profiles and volumes ask the earlier survey; points on both sides have no answer", async () => {
+  const before = { ...sampleProject({ name: "last year" }), enuFromBefore: [] };
+  const b = bench({ before });
+  b.store.set({ swipe: { on: true, at: 0.5 } });
+  start(b);
+  await settle();
+  b.store.set({ tool: "profile" });
+  click(b, 10, 10);
+  click(b, 60, 10);
+  // The line moves on; what was clicked stays where it was seen.
+  b.store.set({ swipe: { on: true, at: 0 } });
+  await answerPicks(b);
+  assert.equal(b.engine.profiles[0]?.asked.project, "before");
+  b.engine.profiles[0]?.resolve({ lengthM: 50, heightsM: [1, 2], spreadsM: [0.1, 0.1] });
+  await settle();
+  const [profile] = measurements(b);
+  assert.ok(profile?.kind === "profile" && profile.survey === "before");
+  b.store.set({ swipe: { on: true, at: 0.5 }, tool: "volume" });
+  const corners = async (...places: readonly (readonly [number, number])[]) => {
+    for (const [x, y] of places) click(b, x, y);
+    b.page.key("Enter");
+    await answerPicks(b);
+  };
+  await corners([300, 100], [500, 100], [500, 200]);
+  assert.equal(b.engine.volumes.length, 0);
+  assert.match(texts(b).join(), /both sides of the line/);
+  b.store.set({ volumeBase: "before" });
+  b.page.key("Enter");
+  await settle();
+  assert.equal(b.engine.volumes[0]?.asked.project, "main");
+  b.engine.volumes[0]?.resolve(VOLUME);
+  await settle();
+  b.store.set({ volumeBase: "plane" });
+  await corners([100, 100], [200, 100], [200, 200]);
+  assert.equal(b.engine.volumes[1]?.asked.project, "before");
+});
+
+test("a volume measured again changes only the volume that was asked for", async () => {
+  const b = bench();
+  const points = [0, 10, 20].map((x) => samplePoint([x, x * x, 0]));
+  const result = { cut: 1, fill: 1, net: { value: 0, sigma: null }, surfaceArea: 1, filled: 1, cellM: 1 };
+  const add = () =>
+    b.store.changeDocuments("add", (documents) =>
+      withMeasurement(documents, newVolume(documents, [...points], "plane", null, result)),
+    );
+  add();
+  const asked = remeasureVolume(b.store, b.link, b.project, "m1", "lowest", 0);
+  b.store.undo();
+  add();
+  b.engine.volumes[0]?.resolve(VOLUME);
+  await asked;
+  const [volume] = measurements(b);
+  assert.ok(volume?.kind === "volume" && volume.id === "m1" && volume.base === "plane");
+});
+
+test('"." places points in the middle of the view, with a tool only', async () => {
+  const b = bench();
+  start(b);
+  await settle();
+  b.page.key(".");
+  assert.equal(b.store.get().draft.length, 0);
+  b.store.set({ tool: "distance" });
+  b.page.key(".");
+  assert.deepEqual(
+    b.store.get().draft.map(({ enu }) => enu),
+    [[400, -300, 0]],
+  );
 });

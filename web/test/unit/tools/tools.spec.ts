@@ -143,7 +143,7 @@ test("a click on a measurement selects it, Delete deletes it", async () => {
   b.store.changeDocuments("add", (documents) =>
     withMeasurement(
       documents,
-      newDistance(documents, [samplePoint([100, -100, 0]), samplePoint([200, -100, 0])], NO_ACCURACY),
+      newDistance(documents, [samplePoint([100, -100, 0]), samplePoint([200, -100, 0])], sampleProject()),
     ),
   );
   click(b, 150, 105);
@@ -176,7 +176,7 @@ test("the nearest measurement is taken, outlines are closed, what is behind the 
     ...newDistance(
       documents,
       corners.map((enu) => samplePoint([enu[0], enu[1] + 6, 0])),
-      NO_ACCURACY,
+      sampleProject(),
     ),
     id: "line",
   };

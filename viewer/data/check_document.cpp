@@ -115,7 +115,8 @@ void CheckMeasurements(const Json& json) {
     const Json& properties = MemberOf(features[i], "properties");
     if (!properties.is_object()) throw Refused(where + ".properties must be an object");
     const Json& name = MemberOf(properties, "name");
-    if (!name.is_null() && name != "") RequireLine(name, kMaxNameBytes, where + ".properties.name");
+    const bool nameless = name.is_null() || (name.is_string() && name.get_ref<const std::string&>().empty());
+    if (!nameless) RequireLine(name, kMaxNameBytes, where + ".properties.name");
     CheckGeometry(MemberOf(features[i], "geometry"), where + ".geometry");
   }
 }

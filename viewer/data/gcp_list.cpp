@@ -158,7 +158,7 @@ class ListReader {
     for (const Json& point : points_) taken.insert(point["name"]);
     size_t number = 1;
     for (Json& point : points_) {
-      if (point["name"] != "") continue;
+      if (!point["name"].get_ref<const std::string&>().empty()) continue;
       while (taken.contains("GCP_" + std::to_string(number))) ++number;
       point["name"] = "GCP_" + std::to_string(number++);
     }
@@ -223,12 +223,14 @@ std::string GcpListText(const Json& gcp, const MarkablePhotos& photos) {
     std::string name = plain;
     for (int number = 2; !names.insert(name).second; ++number) name = plain + "_" + std::to_string(number);
     std::string place;
-    for (const char* axis : {"x", "y", "z"}) place += Fixed(point[axis].get<double>(), 4) + " ";
-    if (point["marks"].empty()) text += "# no marks yet: " + place + name + "\n";
+    for (const char* axis : {"x", "y", "z"}) place.append(Fixed(point[axis].get<double>(), 4)).append(" ");
+    if (point["marks"].empty()) text.append("# no marks yet: ").append(place).append(name).append("\n");
     for (const Json& mark : point["marks"]) {
       const std::string photo = photos.ShortName(mark["photo"]);
       if (std::any_of(photo.begin(), photo.end(), IsBlank)) text += "# a photo with blanks in its name: ";
-      text += place + Fixed(mark["pixel"][0].get<double>(), 2) + " " + Fixed(mark["pixel"][1].get<double>(), 2) + " " + photo + " " + name + "\n";
+      text += place;
+      for (const Json& pixel : mark["pixel"]) text.append(Fixed(pixel.get<double>(), 2)).append(" ");
+      text.append(photo).append(" ").append(name).append("\n");
     }
   }
   return text;

@@ -65,7 +65,7 @@ DataReply FailureReply(const base::InputError& failure) {
   for (const Kind& kind : kKinds) {
     const std::string message = std::generic_category().message(kind.code);
     if (failure.finding().find(message) == std::string::npos) continue;
-    return TextReply(kind.status, file + " is not saved: " + message + ". " + kind.advice);
+    return TextReply(kind.status, std::string(file).append(" is not saved: ").append(message).append(". ").append(kind.advice));
   }
   return TextReply(500, file + " is not saved: " + failure.finding());
 }

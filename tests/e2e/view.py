@@ -312,7 +312,7 @@ def check_port(skyquilt, project):
 
 
 def test(skyquilt: Skyquilt, folder):
-    build = pathlib.Path(sys.argv[2])
+    build = pathlib.Path(sys.argv[2]).resolve()
     survey, project = folder / "hamlet", folder / "project"
     skyquilt.call("simulate", "hamlet", "-o", survey, "--set", f"simulate.image_width={WIDTH}")
     skyquilt.call("run", survey, "-o", project, *TRAIN)

@@ -104,7 +104,6 @@ void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
     const std::filesystem::path scene_h5 = setup.at("scene").get<std::string>();
     // Checked before Register, so that rank 0 hears of it before it sends rays.
     if (!std::filesystem::exists(scene_h5)) throw base::InputError(scene_h5, "no such file", "All ranks must see the same project folder");
-    scene::OpenScene(scene_h5);
     if (LookAt(scene_h5) != setup.at("file")) {
       throw base::InputError(scene_h5, "is not the file that rank 0 sees", "Wait until all hosts see the same file, then try again");
     }

@@ -1,7 +1,5 @@
 #include "viewer/data/open_project.h"
 
-#include <sys/stat.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -12,13 +10,13 @@
 
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
-#include "core/geo/ecef.h"
 #include "core/scene/field_store.h"
 #include "core/scene/scene_file.h"
 #include "partition/block.h"
 #include "surface/map_frame.h"
 #include "viewer/data/describe_files.h"
 #include "viewer/data/opening.h"
+#include "viewer/data/survey_place.h"
 
 namespace skyquilt::viewer {
 namespace {
@@ -35,14 +33,6 @@ struct SceneFacts {
   int64_t parameters = 0;
 };
 
-// Changes when the file is replaced or written; empty when it is missing.
-std::string StateOf(const std::filesystem::path& file) {
-  struct stat status = {};
-  if (stat(file.c_str(), &status) != 0) return "";
-  return std::to_string(status.st_dev) + " " + std::to_string(status.st_ino) + " " + std::to_string(status.st_size) + " " +
-         std::to_string(status.st_mtim.tv_sec) + "." + std::to_string(status.st_mtim.tv_nsec);
-}
-
 std::optional<partition::BlockSet> ReadBlocks(OpenedProject* opened) {
   if (!opening::Exists(opened->project.BlocksFile())) {
     opening::Miss(opened, "blocks", "the area is not divided into blocks yet", opening::Command(*opened, "partition"));
@@ -57,7 +47,7 @@ std::optional<partition::BlockSet> ReadBlocks(OpenedProject* opened) {
 }
 
 void ReadSurvey(OpenedProject* opened, const OpenedProject* earlier) {
-  opened->survey_state = StateOf(opened->project.SurveyFolder() / "survey.json");
+  opened->survey_state = LookAt(opened->project.SurveyFolder() / "survey.json");
   if (earlier != nullptr && earlier->survey != nullptr && earlier->survey_state == opened->survey_state) {
     opened->survey = earlier->survey;
   } else {
@@ -65,7 +55,7 @@ void ReadSurvey(OpenedProject* opened, const OpenedProject* earlier) {
       opened->survey = std::make_shared<const survey::Survey>(survey::LoadSurvey(opened->project.SurveyFolder()));
     } catch (const base::InputError& error) {
       opening::Miss(opened, "photos and sparse points", error.what(),
-                    opening::Command(*opened, "prepare PHOTOS -o") + (opened->survey_state.empty() ? "" : opening::kRestart));
+                    opening::Command(*opened, "prepare PHOTOS -o") + (opened->survey_state.exists ? opening::kRestart : ""));
       return;
     }
   }
@@ -225,13 +215,11 @@ std::filesystem::path PhotoFile(const survey::Survey& survey, const survey::Phot
 }
 
 nlohmann::json EnuFromOther(const OpenedProject& main, const OpenedProject& other) {
+  const std::optional<geo::Rigid3d> main_from_other = OtherFromMain({other.origin, other.georeferenced}, {main.origin, main.georeferenced});
   Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
-  if (main.georeferenced && other.georeferenced) {
-    const Eigen::Matrix4d ecef_from_main = geo::EcefFromEnu(main.origin), ecef_from_other = geo::EcefFromEnu(other.origin);
-    const Eigen::Matrix3d main_from_ecef = ecef_from_main.topLeftCorner<3, 3>().transpose();
-    transform.topLeftCorner<3, 3>() = main_from_ecef * ecef_from_other.topLeftCorner<3, 3>();
-    // The difference first: it is small, and loses no digits to the Earth's radius.
-    transform.topRightCorner<3, 1>() = main_from_ecef * (ecef_from_other.topRightCorner<3, 1>() - ecef_from_main.topRightCorner<3, 1>());
+  if (main_from_other) {
+    transform.topLeftCorner<3, 3>() = main_from_other->rotation.toRotationMatrix();
+    transform.topRightCorner<3, 1>() = main_from_other->translation;
   }
   Json list = Json::array();
   for (int row = 0; row < 4; ++row) {

@@ -11,6 +11,7 @@
 #include "coordinator/project/project.h"
 #include "core/geo/utm.h"
 #include "core/survey/survey.h"
+#include "viewer/data/file_look.h"
 #include "viewer/data/survey_frame.h"
 
 namespace skyquilt::viewer {
@@ -18,7 +19,7 @@ namespace skyquilt::viewer {
 struct OpenedProject {
   coordinator::Project project;
   std::shared_ptr<const survey::Survey> survey;  // null when it cannot be read
-  std::string survey_state;                      // of survey.json on disk when it was read
+  FileLook survey_state;                         // of survey.json on disk when it was read
   geo::Geodetic origin;
   bool georeferenced = false;
   geo::UtmZone zone;            // of the maps, when geo-referenced

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "coordinator/rendering/scene_session.h"
+#include "viewer/data/file_look.h"
 #include "viewer/data/project_data.h"
+#include "viewer/data/survey_place.h"
 #include "viewer/engine/batch_size.h"
 #include "viewer/engine/engine.h"
-#include "viewer/engine/file_look.h"
 #include "viewer/engine/one_process.h"
 #include "viewer/engine/renderer.h"
-#include "viewer/engine/survey_place.h"
 #include "viewer/protocol/replies.h"
 
 namespace skyquilt::viewer {

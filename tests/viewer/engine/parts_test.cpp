@@ -9,11 +9,11 @@
 #include "core/base/file.h"
 #include "core/geo/enu_frame.h"
 #include "tests/support/temporary_folder.h"
+#include "viewer/data/file_look.h"
+#include "viewer/data/survey_place.h"
 #include "viewer/engine/batch_size.h"
-#include "viewer/engine/file_look.h"
 #include "viewer/engine/frame_cache.h"
 #include "viewer/engine/frame_encoder.h"
-#include "viewer/engine/survey_place.h"
 #include "viewer/protocol/frame.h"
 
 namespace skyquilt::viewer {

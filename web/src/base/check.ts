@@ -108,24 +108,12 @@ export function optionalNumber(value: unknown, path: string): number | null {
   return optional(value, path, (given, at) => asNumber(given, at));
 }
 
-export function optionalInteger(value: unknown, path: string): number | null {
-  return optional(value, path, (given, at) => asInteger(given, at));
-}
-
 export function optionalString(value: unknown, path: string): string | null {
   return optional(value, path, (given, at) => asString(given, at));
 }
 
 export function optionalBoolean(value: unknown, path: string): boolean | null {
   return optional(value, path, asBoolean);
-}
-
-export function optionalObject(value: unknown, path: string): JsonObject | null {
-  return optional(value, path, asObject);
-}
-
-export function optionalArray(value: unknown, path: string): readonly unknown[] | null {
-  return optional(value, path, (given, at) => asArray(given, at));
 }
 
 /** Exactly `length` finite numbers; any number of them when `length` is left out. */

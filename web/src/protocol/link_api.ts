@@ -1,6 +1,7 @@
 // The connection to the engine, as scene, tools and panels see it.
 import type { Quat, Vec2, Vec3 } from "../base/vec.js";
 import type { EngineStatus, Enu, ErrorMap, PhotoSight, Survey, VolumeBase } from "../state/app_state.js";
+import type { PickedText as Picked, ProfileText as ProfileReply, VolumeText as VolumeReply } from "./replies.js";
 
 export type Which = Survey;
 
@@ -38,30 +39,7 @@ export interface ExactFrame {
   readonly farM: number;
 }
 
-export interface Picked {
-  readonly hit: boolean;
-  readonly point: Enu;
-  readonly depthM: number;
-  readonly spreadM: number | null;
-  readonly opacity: number;
-}
-export interface ProfileReply {
-  readonly lengthM: number;
-  readonly heightsM: readonly (number | null)[];
-  readonly spreadsM: readonly (number | null)[];
-}
-export interface VolumeReply {
-  readonly cellM: number;
-  readonly cells: number;
-  readonly filled: number;
-  readonly planAreaM2: number;
-  readonly surfaceAreaM2: number;
-  readonly cutM3: number;
-  readonly fillM3: number;
-  readonly netM3: number;
-  readonly sigmaM3: number | null;
-  readonly baseMeanM: number;
-}
+export type { Picked, ProfileReply, VolumeReply };
 
 /** Requests reject with an Error whose message is for the user. A newer pick replaces a waiting one, which then rejects with an AbortError. */
 export interface Link {

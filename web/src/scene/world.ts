@@ -1,7 +1,7 @@
 // The frame that the scene is drawn in: ENU of the main project minus an anchor near its middle, so that single precision on the graphics card is
 // enough. Axes are those of ENU, z up. Everything here is in doubles; matrices are homogeneous, 16 numbers row by row.
 import type { Vec3 } from "../base/vec.js";
-import { add, norm, sub } from "../base/vec_math.js";
+import { norm, sub } from "../base/vec_math.js";
 import { enuFromEcefMatrix } from "../geo/earth.js";
 import type { ProjectBase } from "../state/project.js";
 
@@ -44,10 +44,6 @@ export function makeWorld(project: ProjectBase): World {
 
 export function sceneFromEnu(world: World, enu: Vec3): Vec3 {
   return sub(enu, world.anchor);
-}
-
-export function enuFromScene(world: World, point: Vec3): Vec3 {
-  return add(point, world.anchor);
 }
 
 export const IDENTITY: readonly number[] = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];

@@ -1,5 +1,5 @@
 // The project as the server describes it (project.json, docs/viewer_protocol.md), after it was checked by protocol/project_reader.ts.
-import type { Quat, Vec2, Vec3 } from "../base/vec.js";
+import type { Quat, Vec3 } from "../base/vec.js";
 
 export interface Crs {
   readonly name: string;
@@ -82,5 +82,3 @@ export interface Project extends ProjectBase {
 export function photoUrl(photo: number, size: "thumbnail" | "photo" | "full"): string {
   return `/data/photos/${photo}/${size}.jpg`;
 }
-
-export type Rectangle = { readonly min: Vec2; readonly max: Vec2 };

@@ -1,4 +1,4 @@
-#include "viewer/engine/file_look.h"
+#include "viewer/data/file_look.h"
 
 #include <sys/stat.h>
 

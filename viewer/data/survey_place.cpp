@@ -1,4 +1,4 @@
-#include "viewer/engine/survey_place.h"
+#include "viewer/data/survey_place.h"
 
 #include "core/geo/ecef.h"
 

@@ -29,6 +29,8 @@ std::vector<RoofArea> ReadFlatRoofs(const std::filesystem::path& buildings_json)
     const nlohmann::json json = nlohmann::json::parse(base::ReadFile(buildings_json));
     for (const nlohmann::json& building : json.at("buildings")) {
       if (building.at("roof").get<std::string>() != "flat") continue;
+      // A deck under another part of its building: little of it is seen, and its points are not told from those of the deck above.
+      if (building.contains("carries") && !building["carries"].empty()) continue;
       const double yaw = building.at("yaw_deg").get<double>() * std::numbers::pi / 180.0;
       RoofArea roof;
       roof.centre = {building.at("east_m").get<double>(), building.at("north_m").get<double>()};

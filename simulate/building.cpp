@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "simulate/noise.h"
@@ -12,8 +13,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kRoofOverhang = 0.4F;
+constexpr auto kRoofOverhang = static_cast<float>(kRoofOverhang_m);
 constexpr float kParapetThickness = 0.25F;
+constexpr double kIntoDeck_m = 0.1;  // walls that stand on a deck begin this far below it, so that no light passes
 
 // Converts points from the building's own axes to ENU.
 class Placer {
@@ -33,23 +35,36 @@ class Placer {
   float yaw_;
 };
 
-void AddWalls(const Placer& place, float hl, float hw, float foundation, float eave, Tag tag, Mesh& mesh) {
+void AddWalls(const Placer& place, float hl, float hw, float bottom, float eave, Tag tag, Mesh& mesh) {
   const std::array<std::array<float, 2>, 4> corner = {{{-hl, -hw}, {hl, -hw}, {hl, hw}, {-hl, hw}}};
   for (size_t i = 0; i < 4; ++i) {
     const auto& a = corner[i];
     const auto& b = corner[(i + 1) % 4];
-    mesh.AddQuad(place(a[0], a[1], -foundation), place(b[0], b[1], -foundation), place(b[0], b[1], eave), place(a[0], a[1], eave), tag);
+    mesh.AddQuad(place(a[0], a[1], bottom), place(b[0], b[1], bottom), place(b[0], b[1], eave), place(a[0], a[1], eave), tag);
   }
 }
 
-void AddGableRoof(const Placer& place, float hl, float hw, float eave, float ridge, uint32_t index, Mesh& mesh) {
+// The two triangles of a gable's roof behind its -x end, up to where its ridge meets the slope of the other roof.
+void AddRunOn(const Building& b, const Placer& place, float hl, float hw, float eave, float ridge, Tag roof, Mesh& mesh) {
+  const auto onto_eave = static_cast<float>(b.onto_eave_height_m);
+  if (b.onto_rise <= 0.0 || ridge <= onto_eave) return;
+  const float reach = (ridge - onto_eave) / static_cast<float>(b.onto_rise);
+  // The roof meets the wall below the other eave farther out.
+  const float y = hw * std::min((ridge - onto_eave) / (ridge - eave), 1.0F);
+  const float z = std::max(onto_eave, eave);
+  mesh.AddTriangle(place(-hl, -y, z), place(-hl, 0, ridge), place(-hl - reach, 0, ridge), roof);
+  mesh.AddTriangle(place(-hl, y, z), place(-hl - reach, 0, ridge), place(-hl, 0, ridge), roof);
+}
+
+void AddGableRoof(const Building& b, const Placer& place, float hl, float hw, float eave, float ridge, uint32_t index, Mesh& mesh) {
   const float slope = (ridge - eave) / hw;
-  const float x = hl + kRoofOverhang;
-  const float y = hw + kRoofOverhang;
-  const float low = eave - slope * kRoofOverhang;
+  const auto Reach = [&](size_t side) { return (side % 2 == 0 ? hl : hw) + (b.shared[side] ? 0.0F : kRoofOverhang); };
+  const auto Low = [&](size_t side) { return b.shared[side] ? eave : eave - slope * kRoofOverhang; };
+  const float right = Reach(0), back = Reach(1), left = -Reach(2), front = -Reach(3);
   const Tag roof{Part::kPitchedRoof, index};
-  mesh.AddQuad(place(-x, -y, low), place(x, -y, low), place(x, 0, ridge), place(-x, 0, ridge), roof);
-  mesh.AddQuad(place(x, y, low), place(-x, y, low), place(-x, 0, ridge), place(x, 0, ridge), roof);
+  mesh.AddQuad(place(left, front, Low(3)), place(right, front, Low(3)), place(right, 0, ridge), place(left, 0, ridge), roof);
+  mesh.AddQuad(place(right, back, Low(1)), place(left, back, Low(1)), place(left, 0, ridge), place(right, 0, ridge), roof);
+  AddRunOn(b, place, hl, hw, eave, ridge, roof, mesh);
   const Tag wall{Part::kWall, index};
   mesh.AddTriangle(place(hl, -hw, eave), place(hl, hw, eave), place(hl, 0, ridge), wall);
   mesh.AddTriangle(place(-hl, hw, eave), place(-hl, -hw, eave), place(-hl, 0, ridge), wall);
@@ -76,11 +91,11 @@ void AddFlatRoof(const Building& b, const Placer& place, float hl, float hw, flo
     const Tag edge{Part::kParapet, index};
     const float t = 0.5F * kParapetThickness;
     for (const float side : {-1.0F, 1.0F}) {
-      mesh.AddBox(place(0, side * (hw - t), deck), {hl, t, 0}, parapet, place.yaw(), edge, edge);
-      mesh.AddBox(place(side * (hl - t), 0, deck), {t, hw - 2.0F * t, 0}, parapet, place.yaw(), edge, edge);
+      if (!b.shared[side > 0.0F ? 1 : 3]) mesh.AddBox(place(0, side * (hw - t), deck), {hl, t, 0}, parapet, place.yaw(), edge, edge);
+      if (!b.shared[side > 0.0F ? 0 : 2]) mesh.AddBox(place(side * (hl - t), 0, deck), {t, hw - 2.0F * t, 0}, parapet, place.yaw(), edge, edge);
     }
   }
-  if (b.kind == BuildingKind::kShed) return;
+  if (b.kind == BuildingKind::kShed || b.kind == BuildingKind::kGarage || b.bare_roof) return;
   const Tag box{Part::kRooftopBox, index};
   // Stair housing and machines are off the centre, so that the height of the deck can be measured there.
   mesh.AddBox(place(0.28F * hl + 1.6F, 0.3F * hw, deck), {1.7F, 1.5F, 0}, 2.4F, place.yaw(), box, box);
@@ -107,6 +122,8 @@ const char* KindName(BuildingKind kind) {
       return "tower";
     case BuildingKind::kHall:
       return "hall";
+    case BuildingKind::kGarage:
+      return "garage";
   }
   return "";
 }
@@ -119,6 +136,24 @@ const char* RoofName(RoofKind roof) {
       return "gable";
     case RoofKind::kHip:
       return "hip";
+  }
+  return "";
+}
+
+const char* ShapeName(BuildingShape shape) {
+  switch (shape) {
+    case BuildingShape::kRectangle:
+      return "rectangle";
+    case BuildingShape::kL:
+      return "l";
+    case BuildingShape::kT:
+      return "t";
+    case BuildingShape::kSetback:
+      return "setback";
+    case BuildingShape::kRow:
+      return "row";
+    case BuildingShape::kCourtyard:
+      return "courtyard";
   }
   return "";
 }
@@ -141,25 +176,43 @@ double Building::DistanceTo(const Eigen::Vector2d& point) const {
   return std::hypot(std::max(dx, 0.0), std::max(dy, 0.0)) + std::min(std::max(dx, dy), 0.0);
 }
 
+double Clearance(const Building& a, const Building& b) {
+  // The gap between the shadows of both on the axes of either; one of the axes separates them if they are apart.
+  double widest = -std::numeric_limits<double>::infinity();
+  for (const Building* one : {&a, &b}) {
+    const Eigen::Vector2d u = one->Axis();
+    for (const Eigen::Vector2d& axis : {u, Eigen::Vector2d(-u.y(), u.x())}) {
+      double gap = std::abs(axis.dot(b.centre - a.centre));
+      for (const Building* of : {&a, &b}) {
+        const Eigen::Vector2d v = of->Axis();
+        gap -= 0.5 * (of->length_m * std::abs(axis.dot(v)) + of->width_m * std::abs(axis.x() * v.y() - axis.y() * v.x()));
+      }
+      widest = std::max(widest, gap);
+    }
+  }
+  return widest;
+}
+
 void AddBuilding(const Building& b, uint32_t index, Mesh& mesh) {
   const Placer place(b);
   const auto hl = static_cast<float>(0.5 * b.length_m);
   const auto hw = static_cast<float>(0.5 * b.width_m);
   const auto eave = static_cast<float>(b.eave_height_m);
   const auto ridge = static_cast<float>(b.ridge_height_m);
-  AddWalls(place, hl, hw, static_cast<float>(b.foundation_m), eave, {Part::kWall, index}, mesh);
+  const auto bottom = static_cast<float>(b.base_height_m > 0.0 ? b.base_height_m - kIntoDeck_m : -b.foundation_m);
+  AddWalls(place, hl, hw, bottom, eave, {Part::kWall, index}, mesh);
   switch (b.roof) {
     case RoofKind::kFlat:
       AddFlatRoof(b, place, hl, hw, eave, index, mesh);
       break;
     case RoofKind::kGable:
-      AddGableRoof(place, hl, hw, eave, ridge, index, mesh);
+      AddGableRoof(b, place, hl, hw, eave, ridge, index, mesh);
       break;
     case RoofKind::kHip:
       AddHipRoof(place, hl, hw, eave, ridge, index, mesh);
       break;
   }
-  if (b.kind == BuildingKind::kHouse && b.roof != RoofKind::kFlat) {
+  if (b.kind == BuildingKind::kHouse && b.roof != RoofKind::kFlat && !b.bare_roof) {
     const Tag chimney{Part::kChimney, index};
     mesh.AddBox(place(0.45F * std::max(hl - hw, 1.5F) + 0.5F, 0.22F * hw, eave), {0.4F, 0.35F, 0}, ridge - eave + 0.5F, place.yaw(), chimney,
                 chimney);

@@ -57,7 +57,7 @@ void Wall(const Building& b, const Eigen::Vector2f& axis, const Hit& hit, const 
   float window = 0.0F;
   float frame = 0.0F;
   const float n_storeys = std::floor(eave / storey + 0.15F);
-  if (b.kind != BuildingKind::kShed && z < n_storeys * storey && z > 0.0F) {
+  if (b.kind != BuildingKind::kShed && b.kind != BuildingKind::kGarage && z < n_storeys * storey && z > 0.0F) {
     const float sill = 0.9F;
     const float head = high ? 2.4F : 2.2F;
     const float rows = PulseTrain((z - sill) / storey, (head - sill) / storey, w / storey);

@@ -4,39 +4,12 @@
 #include <numbers>
 
 #include "simulate/city_layout.h"
+#include "simulate/plot_furnish.h"
 
 namespace skyquilt::simulate {
 namespace {
 
 using Eigen::Vector2d;
-
-PavedArea MakePad(PadKind kind, const Vector2d& centre, const Vector2d& half, double yaw_deg = 0.0) {
-  const double yaw = yaw_deg * std::numbers::pi / 180.0;
-  PavedArea pad;
-  pad.kind = kind;
-  pad.centre = centre.cast<float>();
-  pad.half = half.cast<float>();
-  pad.cosine = static_cast<float>(std::cos(yaw));
-  pad.sine = static_cast<float>(std::sin(yaw));
-  return pad;
-}
-
-void AddGardenTree(const Vector2d& position, double low_m, double high_m, CityContents& contents, base::Random& random) {
-  Tree tree;
-  tree.position = position;
-  tree.height_m = random.Uniform(low_m, high_m);
-  tree.crown_radius_m = random.Uniform(0.28, 0.38) * tree.height_m;
-  tree.conifer = random.UniformDouble() < 0.2;
-  tree.seed = random.NextU32();
-  if (TreeFits(tree, contents, 0)) contents.trees.push_back(tree);
-}
-
-void FlatRoofed(Building& building, double height_m, double parapet_m) {
-  building.roof = RoofKind::kFlat;
-  building.eave_height_m = height_m;
-  building.ridge_height_m = height_m;
-  building.parapet_height_m = parapet_m;
-}
 
 // `front`: +1 when the street is on the +y side of the lot, otherwise -1.
 void AddHouseLot(Cell& cell, double lot_x, double lot_width, double front, CityContents& contents, base::Random& random) {
@@ -118,23 +91,6 @@ void FurnishHouses(const CityPlan& plan, Cell& cell, CityContents& contents, bas
   }
 }
 
-void AddParking(Cell& cell, const Vector2d& centre, const Vector2d& half, double fill, CityContents& contents, base::Random& random) {
-  cell.pads.push_back(MakePad(PadKind::kParking, centre, half));
-  for (double x = centre.x() - half.x() + 1.35; x < centre.x() + half.x() - 1.0; x += 2.7) {
-    for (const double side : {-1.0, 1.0}) {
-      const double pick = random.UniformDouble();
-      const double turn = random.Uniform(-2.0, 2.0);
-      const uint32_t seed = random.NextU32();
-      if (pick > fill) continue;
-      Car car;
-      car.position = {x, centre.y() + side * (half.y() - 2.5)};
-      car.yaw_deg = 90.0 + turn;
-      car.seed = seed;
-      contents.parked.push_back(car);
-    }
-  }
-}
-
 void FurnishFlats(Cell& cell, CityContents& contents, base::Random& random) {
   const Vector2d size = cell.max - cell.min;
   const Vector2d middle = 0.5 * (cell.min + cell.max);
@@ -207,17 +163,40 @@ void FurnishPark(Cell& cell, CityContents& contents, base::Random& random) {
   }
 }
 
+// One high tower on a plaza with trees along the streets.
+void FurnishLandmark(Cell& cell, CityContents& contents, base::Random& random) {
+  const Vector2d size = cell.max - cell.min;
+  const Vector2d middle = 0.5 * (cell.min + cell.max);
+  cell.pads.push_back(MakePad(PadKind::kPlaza, middle, {0.5 * size.x() - 2.5, 0.5 * size.y() - 2.5}));
+  Building tower;
+  tower.kind = BuildingKind::kTower;
+  tower.length_m = random.Uniform(22.0, 26.0);
+  tower.width_m = random.Uniform(18.0, 21.0);
+  tower.yaw_deg = random.Uniform(-3.0, 3.0);
+  FlatRoofed(tower, cell.landmark_m, 1.0);
+  tower.centre = middle;
+  tower.seed = random.NextU32();
+  contents.buildings.push_back(tower);
+  for (double x = cell.min.x() + 4.0; x < cell.max.x() - 3.0; x += 7.5) {
+    for (const double y : {cell.min.y() + 4.0, cell.max.y() - 4.0}) AddGardenTree({x, y}, 5.0, 7.0, contents, random);
+  }
+}
+
 // Along the axes of the city.
 void FurnishPlot(const CityPlan& plan, Cell& cell, CityContents& contents, base::Random& random) {
   switch (cell.kind) {
     case CellKind::kHouses:
-      FurnishHouses(plan, cell, contents, random);
+      plan.varied ? FurnishVariedHouses(plan, cell, contents, random) : FurnishHouses(plan, cell, contents, random);
       break;
     case CellKind::kFlats:
-      FurnishFlats(cell, contents, random);
+      plan.varied ? FurnishVariedFlats(cell, contents, random) : FurnishFlats(cell, contents, random);
       break;
     case CellKind::kTowers:
-      FurnishTowers(cell, contents, random);
+      if (cell.landmark_m > 0.0) {
+        FurnishLandmark(cell, contents, random);
+      } else {
+        plan.varied ? FurnishVariedTowers(cell, contents, random) : FurnishTowers(cell, contents, random);
+      }
       break;
     case CellKind::kPark:
       FurnishPark(cell, contents, random);

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "simulate/noise.h"
+#include "simulate/outline.h"
+#include "simulate/wall_trees.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -29,6 +31,7 @@ CityLayout::CityLayout(const CityPlan& plan, const Eigen::Vector2d& ground_min, 
   FurnishCells(plan, seed);
   AddStreetLife(plan, random);
   TurnContents(ground_min, ground_max);
+  AddWallTrees(plan, seed);
   AddFieldTrees(plan, ground_min, ground_max, random);
 }
 
@@ -69,6 +72,7 @@ void CityLayout::FurnishCells(const CityPlan& plan, uint32_t seed) {
     base::Random cell_random(seed, 100 + i);
     FurnishCell(plan, across.dot(in_city - city_middle) > 0.0 ? plan.district_turn_deg : 0.0, cell, contents_, cell_random);
   }
+  NumberOutlines(contents_.buildings);
 }
 
 void CityLayout::TurnContents(const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
@@ -80,6 +84,15 @@ void CityLayout::TurnContents(const Eigen::Vector2d& ground_min, const Eigen::Ve
   };
   std::erase_if(contents_.trees, beyond);
   std::erase_if(contents_.parked, beyond);
+}
+
+void CityLayout::AddWallTrees(const CityPlan& plan, uint32_t seed) {
+  if (!plan.varied) return;
+  base::Random random(seed, 6);
+  AddTreesAtWalls(
+      plan.tree_detail,
+      [this](const Eigen::Vector2d& at) { return Sample(static_cast<float>(at.x()), static_cast<float>(at.y())).kind == GroundKind::kCell; },
+      contents_, random);
 }
 
 void CityLayout::ChooseKinds(const CityPlan& plan, base::Random& random) {
@@ -100,16 +113,35 @@ void CityLayout::ChooseKinds(const CityPlan& plan, base::Random& random) {
       cell.kind = CellKind::kPark;
     }
   }
-  if (by_distance.size() < 9) return;
-  const std::array<std::pair<double, CellKind>, 3> wanted = {
-      {{plan.tower_share, CellKind::kTowers}, {plan.park_share, CellKind::kPark}, {plan.flats_share, CellKind::kFlats}}};
-  const size_t first = 1 + random.Below(2);
-  size_t place = first;
-  for (const auto& [share, kind] : wanted) {
-    if (share > 0.0) cells_[by_distance[place]].kind = kind;
-    place += 2;
+  ChooseSpecialCells(plan, by_distance, random);
+}
+
+void CityLayout::ChooseSpecialCells(const CityPlan& plan, const std::vector<size_t>& by_distance, base::Random& random) {
+  size_t houses = 0;
+  if (by_distance.size() >= 9) {
+    const std::array<std::pair<double, CellKind>, 3> wanted = {
+        {{plan.tower_share, CellKind::kTowers}, {plan.park_share, CellKind::kPark}, {plan.flats_share, CellKind::kFlats}}};
+    const size_t first = 1 + random.Below(2);
+    size_t place = first;
+    for (const auto& [share, kind] : wanted) {
+      Cell& cell = cells_[by_distance[place]];
+      if (share > 0.0) cell.kind = kind;
+      cell.showcase = true;
+      place += 2;
+    }
+    cells_[by_distance[0]].kind = CellKind::kHouses;
+    if (plan.tower_m > 0.0) houses = 3 - first;
+  } else if (plan.tower_m > 0.0) {
+    houses = std::min<size_t>(1, by_distance.size() - 1);
   }
-  cells_[by_distance[0]].kind = CellKind::kHouses;
+  if (plan.varied) {
+    cells_[by_distance[houses]].kind = CellKind::kHouses;
+    cells_[by_distance[houses]].showcase = true;
+  }
+  if (plan.tower_m > 0.0) {
+    cells_[by_distance[0]].kind = CellKind::kTowers;
+    cells_[by_distance[0]].landmark_m = plan.tower_m;
+  }
 }
 
 void CityLayout::AddStreetLife(const CityPlan& plan, base::Random& random) {

@@ -43,6 +43,8 @@ struct Cell {
   PlaneTurn turn;             // of the contents
   double lots_begin_m = 0.0;  // x of the first garden, before the turn
   float lot_pitch_m = 1e6F;   // width of a garden along x
+  double landmark_m = 0.0;    // height of the one tower of this cell; 0: it is like the others of its kind
+  bool showcase = false;      // of varied towns: this cell has all shapes that cells of its kind can have
   double to_street_m = 0.0;   // paths and drives are longer by this, because a turned plot does not reach the street everywhere
 };
 
@@ -103,10 +105,14 @@ class CityLayout {
 
   void AddCells(const CityPlan& plan);
   void ChooseKinds(const CityPlan& plan, base::Random& random);
+  // by_distance: indices of the cells, those nearest to the middle of the city first.
+  void ChooseSpecialCells(const CityPlan& plan, const std::vector<size_t>& by_distance, base::Random& random);
   void FurnishCells(const CityPlan& plan, uint32_t seed);
   void AddStreetLife(const CityPlan& plan, base::Random& random);
   // Turns the contents with the city, and removes what is beyond the ground.
   void TurnContents(const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  // Beside some houses of varied towns, on ground that is not paved.
+  void AddWallTrees(const CityPlan& plan, uint32_t seed);
   std::vector<Lane> LanesAcross(int axis, const Eigen::Vector2d& min, const Eigen::Vector2d& max) const;
   void AddFieldTrees(const CityPlan& plan, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max, base::Random& random);
 
@@ -119,9 +125,9 @@ class CityLayout {
   CityContents contents_;
 };
 
-// Fills one cell with buildings, trees, cars and pads, along the axes of the city. Buildings do not overlap each other, and trees do not overlap
-// buildings. Houses, flats and towers are turned by turn_deg about the middle of the cell; houses fill a smaller square then, so that they fit. Flats
-// and towers that would reach into the street are not turned.
+// Fills one cell with buildings, trees, cars and pads, along the axes of the city. Buildings do not overlap each other, except parts of one outline,
+// and trees do not overlap buildings. Houses, flats and towers are turned by turn_deg about the middle of the cell; houses fill a smaller square
+// then, so that they fit. Flats and towers that would reach into the street are not turned.
 void FurnishCell(const CityPlan& plan, double turn_deg, Cell& cell, CityContents& contents, base::Random& random);
 // Turns everything in `contents`.
 void TurnAll(const PlaneTurn& turn, CityContents& contents);

@@ -1,5 +1,6 @@
 #include "simulate/place_spec.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -223,6 +224,25 @@ void ApplyHillside(const SimulateOptions& options, PlaceSpec& place) {
   }
 }
 
+void ApplyBuildings(const SimulateOptions& options, PlaceSpec& place) {
+  place.city.varied = options.building_shapes == "varied";
+  place.city.tower_m = options.tower_m;
+  if (place.landscape == Landscape::kTidalFlat) {
+    if (place.city.varied) Refuse("building_shapes", options.building_shapes, "place 'tidalflat' has no buildings; set it to plain");
+    if (options.tower_m > 0.0) Refuse("tower_m", Text(options.tower_m), "place 'tidalflat' has no buildings; set it to 0");
+  }
+  if (options.tower_m == 0.0) return;
+  constexpr double kClearance_m = 10.0;
+  // The tower may stand on a hill or uphill from take-off, within a cell of the middle of the place.
+  const double ground = 2.0 * 1.7 * place.terrain_amplitude_m + HillsideRise(place.hillside_deg).norm() * place.city.pitch_m;
+  const double needed = std::ceil(options.tower_m + ground + kClearance_m);
+  const double lowest = *std::min_element(place.altitudes_agl_m.begin(), place.altitudes_agl_m.end());
+  if (needed <= lowest) return;
+  Refuse("tower_m", Text(options.tower_m),
+         "a flight at " + Text(lowest) + " m must clear the tower by " + Text(kClearance_m) + " m; choose a lower tower, or set altitudes to " +
+             Text(needed) + " or more");
+}
+
 // The buildings of a place must not stand along north and east, which would flatter whatever prefers these directions.
 void ApplyCityYaw(const SimulateOptions& options, PlaceSpec& place) {
   if (place.landscape != Landscape::kCity) return;
@@ -264,6 +284,7 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
   place.single_line = options.single_line;
   if (!options.oblique || options.single_line) place.oblique_lines = 0;
   ApplyHillside(options, place);
+  ApplyBuildings(options, place);
   Overlay(options.gps_noise_m, place.gps_noise_m);
   ApplyTagOptions(options, place);
   ApplyExposure(options, place);

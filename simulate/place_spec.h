@@ -30,6 +30,8 @@ struct CityPlan {
   double lot_use = 0.95;  // share of house lots with a house
   double trees = 1.0;     // density relative to the town
   int tree_detail = 2;    // subdivisions of each crown
+  bool varied = false;    // buildings of many shapes instead of rectangles
+  double tower_m = 0.0;   // height of a tower in the middle of the city; 0: none
 };
 
 struct PlaceSpec {

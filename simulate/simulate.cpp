@@ -9,6 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
+#include "simulate/building_truth.h"
 #include "simulate/flight.h"
 #include "simulate/model_frame.h"
 #include "simulate/photo_renderer.h"

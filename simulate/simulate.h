@@ -8,7 +8,7 @@
 //   truth/surface.ply                  the static surface as a mesh, ENU metres, with the class of each face (simulate/surface_mesh.h)
 //   truth/masks/<name>.jpg.png         0 on a moving car or its shadow; only for photos that show one
 //   truth/exposure.json                brightness of every photo
-//   truth/buildings.json               position and size of every building
+//   truth/buildings.json               position and size of every part of a building, and the outlines that parts have together
 //   simulate.json                      place, origin, options, suggested blocks, the true frame of a model without exact_frame; written last
 #pragma once
 

@@ -146,37 +146,6 @@ void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<P
   base::WriteFileAtomically(folder / "truth" / "exposure.json", json.dump(1) + "\n");
 }
 
-void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<Building>& buildings, const PlaceSpec& place,
-                        const geo::EnuFrame& frame) {
-  Json list = Json::array();
-  for (size_t i = 0; i < buildings.size(); ++i) {
-    const Building& b = buildings[i];
-    const geo::Geodetic at = frame.GeodeticFromEnu({b.centre.x(), b.centre.y(), b.ground_z_m});
-    const bool inside = (b.centre - place.area_min).minCoeff() >= 0.0 && (place.area_max - b.centre).minCoeff() >= 0.0;
-    list.push_back({{"id", i},
-                    {"kind", KindName(b.kind)},
-                    {"roof", RoofName(b.roof)},
-                    {"longitude_deg", at.longitude_deg},
-                    {"latitude_deg", at.latitude_deg},
-                    {"east_m", b.centre.x()},
-                    {"north_m", b.centre.y()},
-                    {"ground_z_m", b.ground_z_m},
-                    {"length_m", b.length_m},
-                    {"width_m", b.width_m},
-                    {"eave_height_m", b.eave_height_m},
-                    {"ridge_height_m", b.ridge_height_m},
-                    {"parapet_height_m", b.parapet_height_m},
-                    {"yaw_deg", b.yaw_deg},
-                    {"inside_area", inside}});
-  }
-  const Json json = {
-      {"about",
-       "ENU metres about the survey's origin; heights above ground_z_m (ground at the centre); yaw of the length axis counter-clockwise "
-       "from east; flat roofs: eave = ridge = roof deck, the parapet is above it"},
-      {"buildings", list}};
-  base::WriteFileAtomically(folder / "truth" / "buildings.json", json.dump(1) + "\n");
-}
-
 void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, const SimulateOptions& options, const geo::EnuFrame& frame,
                   size_t n_photos, const std::optional<geo::Similarity3d>& model_from_enu) {
   const geo::Geodetic& origin = frame.origin();

@@ -10,7 +10,6 @@
 #include "core/geo/enu_frame.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/exif.h"
-#include "simulate/building.h"
 #include "simulate/flight.h"
 #include "simulate/photo_renderer.h"
 #include "simulate/place_spec.h"
@@ -41,9 +40,6 @@ void WriteModel(const std::filesystem::path& folder, const survey::ColmapModel& 
 void WriteSurfaceTruth(const std::filesystem::path& folder, const PhotoPlan& photo, const SurfaceImages& surfaces);
 // truth/exposure.json
 void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const PlaceSpec& place);
-// truth/buildings.json
-void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<Building>& buildings, const PlaceSpec& place,
-                        const geo::EnuFrame& frame);
 // simulate.json: options, origin and suggested blocks. Written last, so it exists only when the survey is complete. model_from_enu: nothing if the
 // model is in the exact frame.
 void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, const SimulateOptions& options, const geo::EnuFrame& frame,

@@ -8,6 +8,7 @@
 #include "simulate/ground_material.h"
 #include "simulate/noise.h"
 #include "simulate/object_material.h"
+#include "simulate/outline.h"
 #include "simulate/tidal_material.h"
 
 namespace skyquilt::simulate {
@@ -69,10 +70,21 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
   const auto Ground = [&](const Eigen::Vector2d& p) {
     return static_cast<double>(terrain_->Height(static_cast<float>(p.x()), static_cast<float>(p.y())));
   };
+  for (const Outline& outline : FindOutlines(contents.buildings)) {
+    const double ground_z_m = Ground(outline.centre);
+    double below_m = 0.0;
+    if (outline.n_parts > 1) {
+      // Large compounds stand on ground that differs by metres.
+      for (const Eigen::Vector2d& corner : outline.walls) below_m = std::max(below_m, ground_z_m - Ground(corner));
+    }
+    for (size_t i = outline.first; i < outline.first + outline.n_parts; ++i) {
+      Building& building = contents.buildings[i];
+      building.ground_z_m = ground_z_m;
+      building.foundation_m += below_m + 0.5 * std::hypot(outline.length_m, outline.width_m) * hillside_rise_.norm();
+    }
+  }
   for (size_t i = 0; i < contents.buildings.size(); ++i) {
-    Building& building = contents.buildings[i];
-    building.ground_z_m = Ground(building.centre);
-    building.foundation_m += 0.5 * std::hypot(building.length_m, building.width_m) * hillside_rise_.norm();
+    const Building& building = contents.buildings[i];
     building_axis_.push_back(building.Axis().cast<float>());
     AddBuilding(building, static_cast<uint32_t>(i), mesh_);
   }

@@ -141,6 +141,18 @@ TEST(FlatRoofs, AreasAreTheFootprintsWithoutTheRim) {
   EXPECT_THROW(ReadFlatRoofs(file), base::InputError);
 }
 
+// The tower's deck is measured, not the podium's below it.
+TEST(FlatRoofs, DecksUnderOtherPartsAreLeftOut) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "buildings.json";
+  base::WriteFileAtomically(file, R"({"buildings": [
+    {"roof": "flat", "yaw_deg": 0, "east_m": 0, "north_m": 0, "length_m": 24, "width_m": 18, "carries": [1]},
+    {"roof": "flat", "yaw_deg": 0, "east_m": 1, "north_m": 0, "length_m": 16, "width_m": 12, "carries": []}]})");
+  const std::vector<RoofArea> areas = ReadFlatRoofs(file);
+  ASSERT_EQ(areas.size(), 1U);
+  EXPECT_EQ(areas[0].centre.x(), 1.0);
+}
+
 TEST(SpreadAboutPlane, NeedsThreePointsAndSurvivesThoseOnALine) {
   const std::vector<Vector3d> points = {{0, 0, 5}, {1, 1, 6}, {2, 2, 7}};
   EXPECT_TRUE(std::isnan(SpreadAboutPlane(std::span(points).first(2)).rms_m));

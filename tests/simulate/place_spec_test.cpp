@@ -181,5 +181,40 @@ TEST(Presets, AHillMustStayBelowTheFlight) {
   });
 }
 
+TEST(Presets, BuildingsArePlainUnlessAskedFor) {
+  SimulateOptions options;
+  EXPECT_FALSE(ResolvePlace(options).city.varied);
+  EXPECT_EQ(ResolvePlace(options).city.tower_m, 0.0);
+  options.building_shapes = "varied";
+  EXPECT_TRUE(ResolvePlace(options).city.varied);
+  ExpectRefused("building_shapes", [](SimulateOptions& o) { o.building_shapes = "round"; });
+  ExpectRefused("building_shapes", [](SimulateOptions& o) {
+    o.place = "tidalflat";
+    o.building_shapes = "varied";
+  });
+}
+
+TEST(Presets, ATowerMustStayBelowTheFlight) {
+  SimulateOptions options;
+  options.tower_m = 60.0;
+  EXPECT_EQ(ResolvePlace(options).city.tower_m, 60.0);
+  ExpectRefused("tower_m", [](SimulateOptions& o) { o.tower_m = 80.0; });
+  ExpectRefused("tower_m", [](SimulateOptions& o) { o.tower_m = 201.0; });
+  ExpectRefused("tower_m", [](SimulateOptions& o) {
+    o.place = "tidalflat";
+    o.tower_m = 30.0;
+  });
+  options.tower_m = 200.0;
+  options.altitudes = {230.0};
+  EXPECT_EQ(ResolvePlace(options).city.tower_m, 200.0);
+  // On a slope the tower may stand uphill from take-off.
+  options.hillside_deg = 20.0;
+  EXPECT_THROW(ResolvePlace(options), base::UsageError);
+  // Every block is checked, as flight lines cross the middle.
+  options.hillside_deg = 0.0;
+  options.altitudes = {230.0, 230.0, 230.0, 150.0};
+  EXPECT_THROW(ResolvePlace(options), base::UsageError);
+}
+
 }  // namespace
 }  // namespace skyquilt::simulate

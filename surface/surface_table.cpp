@@ -2,9 +2,30 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/errors.h"
 #include "core/base/file.h"
 
 namespace skyquilt::surface {
+namespace {
+
+template <typename Value>
+Value ReadNumber(const std::filesystem::path& file, const char* key) {
+  try {
+    return nlohmann::json::parse(base::ReadFile(file)).at(key).get<Value>();
+  } catch (const nlohmann::json::exception&) {
+    throw base::InputError(file, "is damaged", "Run 'skyquilt surface' again with --restart");
+  }
+}
+
+}  // namespace
+
+double ReadVoxel(const std::filesystem::path& file) {
+  return ReadNumber<double>(file, "voxel_m");
+}
+
+int64_t ReadTriangles(const std::filesystem::path& file) {
+  return ReadNumber<int64_t>(file, "triangles");
+}
 
 void WriteSurfaceTable(const SurfaceResult& result, const EdgeCounts& edges, const MapFrame& frame, const std::filesystem::path& file) {
   nlohmann::ordered_json table;

@@ -1,13 +1,11 @@
 #include "core/gis/boundary.h"
 
-#include <ogrsf_frmts.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "core/gis/gdal_support.h"
+#include "core/gis/polygon_file.h"
 
 namespace skyquilt::gis {
 namespace {
@@ -17,28 +15,11 @@ constexpr size_t kMostBands = 1024;
 
 using Ring = std::vector<Eigen::Vector2d>;
 
-struct DestroyTransformation {
-  void operator()(OGRCoordinateTransformation* transformation) const { OCTDestroyCoordinateTransformation(transformation); }
-};
-
 void AddRing(const OGRLinearRing& ring, std::vector<Ring>* rings) {
   Ring points;
   for (int i = 0; i < ring.getNumPoints(); ++i) points.emplace_back(ring.getX(i), ring.getY(i));
   while (points.size() > 1 && points.back() == points.front()) points.pop_back();
   if (points.size() >= 3) rings->push_back(std::move(points));
-}
-
-// The straight-edged polygons of a geometry of any type, on top of those already there.
-void AddPolygons(const OGRGeometry& geometry, OGRMultiPolygon* polygons) {
-  const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
-  if (type == wkbPolygon) {
-    polygons->addGeometry(&geometry);
-  } else if (type == wkbCurvePolygon || type == wkbMultiSurface) {
-    const std::unique_ptr<OGRGeometry> linear(geometry.getLinearGeometry());
-    if (linear && wkbFlatten(linear->getGeometryType()) != type) AddPolygons(*linear, polygons);
-  } else if (type == wkbMultiPolygon || type == wkbGeometryCollection) {
-    for (const OGRGeometry* part : *geometry.toGeometryCollection()) AddPolygons(*part, polygons);
-  }
 }
 
 std::vector<Ring> RingsOf(const OGRMultiPolygon& polygons) {
@@ -54,73 +35,12 @@ std::vector<Ring> UnionOf(const OGRMultiPolygon& polygons) {
   if (polygons.getNumGeometries() > 1) {
     const std::unique_ptr<OGRGeometry> merged(polygons.UnionCascaded());
     OGRMultiPolygon parts;
-    if (merged) AddPolygons(*merged, &parts);
+    if (merged) internal::AddPolygons(*merged, &parts);
     std::vector<Ring> rings = RingsOf(parts);
     if (!rings.empty()) return rings;
     // Polygons that cross themselves cannot be merged; they are taken ring by ring.
   }
   return RingsOf(polygons);
-}
-
-// Transforms the corners of rings to the survey's zone.
-class ToZone {
- public:
-  ToZone(const std::filesystem::path& file, const OGRSpatialReference* source, const geo::UtmZone& zone) : file_(file) {
-    // GeoPackage has two entries for "undefined", which GDAL gives as a CRS.
-    if (source == nullptr || source->IsEmpty() || source->IsLocal() ||
-        (source->GetName() != nullptr && std::string_view(source->GetName()).starts_with("Undefined"))) {
-      throw base::InputError(
-          file, "has polygons without a coordinate reference system, so their place on Earth is unknown",
-          "Set the layer's CRS, for instance to EPSG:" + std::to_string(zone.Epsg()) + ", or give GeoJSON in longitude and latitude");
-    }
-    OGRSpatialReference from(*source);
-    from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    geographic_ = from.IsGeographic() != 0;
-    to_degrees_ = geographic_ ? from.GetAngularUnits() * 180.0 / 3.14159265358979323846 : 1.0;
-    const OGRSpatialReference to = internal::ReferenceOf(zone, file);
-    transformation_.reset(OGRCreateCoordinateTransformation(&from, &to));
-    if (!transformation_) {
-      throw base::InputError(
-          file, std::string("has a coordinate reference system that cannot be transformed to ") + zone.Name() + ": " + CPLGetLastErrorMsg(),
-          "Give the polygons in EPSG:" + std::to_string(zone.Epsg()) + " or in longitude and latitude (EPSG:4326)");
-    }
-  }
-
-  void Transform(OGRLinearRing* ring) const {
-    for (int i = 0; i < ring->getNumPoints(); ++i) {
-      const double x = ring->getX(i), y = ring->getY(i);
-      if (geographic_ && !(std::abs(x * to_degrees_) <= 360.0 && std::abs(y * to_degrees_) <= 90.0)) {
-        throw base::InputError(file_, "has the point " + std::to_string(x) + ", " + std::to_string(y) + ", which is no longitude and latitude",
-                               "GeoJSON must be in degrees, longitude first, unless it names another CRS in 'crs'");
-      }
-      double east = x, north = y;
-      const bool ok = transformation_->Transform(1, &east, &north) != 0;
-      if (!ok || !std::isfinite(east) || !std::isfinite(north)) {
-        throw base::InputError(file_,
-                               "has the point " + std::to_string(x) + ", " + std::to_string(y) +
-                                   ", which cannot be transformed to the survey's zone: " + CPLGetLastErrorMsg(),
-                               "Check that the polygons are at the place of the survey, and that their CRS is right");
-      }
-      ring->setPoint(i, east, north);
-    }
-  }
-
- private:
-  std::filesystem::path file_;
-  bool geographic_ = false;
-  double to_degrees_ = 1.0;  // of the CRS's angles
-  std::unique_ptr<OGRCoordinateTransformation, DestroyTransformation> transformation_;
-};
-
-void RequireFinite(const OGRMultiPolygon& polygons, const std::filesystem::path& file) {
-  for (const OGRPolygon* polygon : polygons) {
-    for (const OGRLinearRing* ring : *polygon) {
-      for (int i = 0; i < ring->getNumPoints(); ++i) {
-        if (std::isfinite(ring->getX(i)) && std::isfinite(ring->getY(i))) continue;
-        throw base::InputError(file, "has a polygon with a coordinate that is not a finite number", "Draw the polygon again");
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -206,34 +126,11 @@ std::vector<uint8_t> Boundary::Mask(const MapGrid& grid) const {
 
 Boundary Boundary::Read(const std::filesystem::path& file, bool georeferenced, const geo::UtmZone& zone) {
   const internal::QuietErrors quiet;
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) throw base::InputError(file, "does not exist", kGiveBoundary);
-  RegisterOGRGeoJSON();
-  RegisterOGRGeoPackage();
-  const char* const drivers[] = {"GeoJSON", "GPKG", nullptr};
-  const internal::Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers));
-  if (!dataset) {
-    const std::string reason = CPLGetLastErrorMsg();
-    throw base::InputError(file, "cannot be read as GeoJSON or GeoPackage" + (reason.empty() ? "" : ": " + reason), kGiveBoundary);
-  }
+  const internal::PolygonFormats formats = {.drivers = {"GeoJSON", "GPKG"}, .names = "GeoJSON or GeoPackage", .fix = kGiveBoundary};
   OGRMultiPolygon all;
-  for (OGRLayer* layer : dataset->GetLayers()) {
-    OGRMultiPolygon polygons;
-    CPLErrorReset();
-    for (const auto& feature : *layer) {
-      if (const OGRGeometry* geometry = feature->GetGeometryRef()) AddPolygons(*geometry, &polygons);
-    }
-    if (CPLGetLastErrorType() >= CE_Failure) throw base::InputError(file, std::string("is damaged: ") + CPLGetLastErrorMsg(), kGiveBoundary);
-    if (polygons.IsEmpty()) continue;
-    RequireFinite(polygons, file);
-    if (georeferenced) {
-      const ToZone to_zone(file, layer->GetSpatialRef(), zone);
-      for (OGRPolygon* polygon : polygons) {
-        for (OGRLinearRing* ring : *polygon) to_zone.Transform(ring);
-      }
-    }
-    for (const OGRPolygon* polygon : polygons) all.addGeometry(polygon);
-  }
+  internal::ForEachPolygons(file, formats, georeferenced, zone, [&](const internal::FoundPolygons& found) {
+    for (const OGRPolygon* polygon : found.polygons) all.addGeometry(polygon);
+  });
   Boundary boundary(UnionOf(all));
   if (boundary.edges_.empty()) throw base::InputError(file, "has no polygon with an area", kGiveBoundary);
   return boundary;

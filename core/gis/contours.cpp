@@ -6,52 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "core/base/log.h"
 #include "core/gis/gdal_support.h"
+#include "core/gis/geopackage_file.h"
 
 namespace skyquilt::gis {
 namespace {
 
 constexpr double kMostLevels = 1000.0;
 constexpr int64_t kIndexEvery = 5;
-
-// GeoPackage stores the time of the last change, which would make every file different.
-class FixedTimeStamp {
- public:
-  FixedTimeStamp() {
-    if (const char* before = CPLGetThreadLocalConfigOption(kOption, nullptr)) before_ = before;
-    CPLSetThreadLocalConfigOption(kOption, "2000-01-01T00:00:00.000Z");
-  }
-  ~FixedTimeStamp() { CPLSetThreadLocalConfigOption(kOption, before_ ? before_->c_str() : nullptr); }
-  FixedTimeStamp(const FixedTimeStamp&) = delete;
-  FixedTimeStamp& operator=(const FixedTimeStamp&) = delete;
-
- private:
-  static constexpr const char* kOption = "OGR_CURRENT_DATE";
-  std::optional<std::string> before_;
-};
-
-// The file under its temporary name, and what SQLite may leave beside it; removed unless the file was renamed.
-class PartialPackage {
- public:
-  explicit PartialPackage(const std::filesystem::path& file) : path_(file.parent_path() / (file.stem().string() + ".partial.gpkg")) { Remove(); }
-  ~PartialPackage() { Remove(); }
-  PartialPackage(const PartialPackage&) = delete;
-  PartialPackage& operator=(const PartialPackage&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  void Remove() const {
-    for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
-      std::error_code ignored;
-      std::filesystem::remove(path_.string() + suffix, ignored);
-    }
-  }
-  std::filesystem::path path_;
-};
 
 internal::Dataset RasterInMemory(const MapGrid& grid, std::span<const float> height_m, const std::filesystem::path& file) {
   GDALRegister_MEM();
@@ -113,19 +78,8 @@ double HeightOf(int64_t level, double interval_m) {
 
 void WritePackage(const MapGrid& grid, const std::vector<Line>& lines, double interval_m, const std::string& vertical,
                   const std::filesystem::path& partial, const std::filesystem::path& file) {
-  RegisterOGRGeoPackage();
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-  SKYQUILT_CHECK(driver != nullptr, "GDAL without GeoPackage");
-  internal::Dataset dataset(driver->Create(partial.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-  if (!dataset) internal::FailWriting(file, "cannot be created");
-  // Without a CRS GDAL would write GeoPackage's "undefined geographic" one, whose coordinates are degrees.
-  OGRSpatialReference reference;
-  if (grid.georeferenced) {
-    reference = internal::ReferenceOf(grid.zone, file);
-  } else {
-    reference.SetLocalCS("Undefined Cartesian SRS");
-    reference.SetLinearUnits(SRS_UL_METER, 1.0);
-  }
+  internal::Dataset dataset = internal::CreatePackage(partial, file);
+  OGRSpatialReference reference = internal::LayerReference(grid.georeferenced, grid.zone, file);
   CPLStringList options;
   options.SetNameValue("DESCRIPTION", ("Contour lines of the ground. Heights in metres above: " + vertical).c_str());
   OGRLayer* layer = dataset->CreateLayer("contours", &reference, wkbLineString, options.List());
@@ -173,7 +127,7 @@ int64_t WriteContours(const MapGrid& grid, std::span<const float> height_m, doub
   SKYQUILT_CHECK(std::isfinite(interval_m) && interval_m > 0.0, std::to_string(interval_m));
   SKYQUILT_CHECK(height_m.size() == static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), std::to_string(height_m.size()));
   const internal::QuietErrors quiet;
-  const FixedTimeStamp time_stamp;
+  const internal::FixedTimeStamp time_stamp;
   std::vector<Line> lines;
   double interval = interval_m;
   if (!height_m.empty()) {
@@ -185,7 +139,7 @@ int64_t WriteContours(const MapGrid& grid, std::span<const float> height_m, doub
     const internal::Dataset raster = RasterInMemory(grid, height_m, gpkg);
     lines = LinesOf(raster.get(), interval, gpkg);
   }
-  const PartialPackage partial(gpkg);
+  const internal::PartialPackage partial(gpkg);
   WritePackage(grid, lines, interval, vertical, partial.path(), gpkg);
   internal::RenameComplete(partial.path(), gpkg);
   return static_cast<int64_t>(lines.size());

@@ -2,12 +2,14 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
+#include "evaluate/buildings_report.h"
 #include "evaluate/choose_photos.h"
 #include "evaluate/held_out_scorer.h"
 #include "evaluate/kept_points.h"
@@ -77,14 +79,16 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   HeldOutScorer scorer(input);
   ReportPictures pictures(input, held_out);
   const std::unique_ptr<SurfaceScorer> made = SurfaceOf(input);
+  std::optional<BuildingsReport> found = CollectBuildings(input);
   const Scores scores = ScorePhotos(input, held_out, scorer, made.get(), pictures, threads);
   if (made) metrics.surface = made->Result(input, scorer, threads);
+  if (found) metrics.buildings = ScoreBuildings(found->compared, threads);
   metrics.kept_points = MeasureKeptPoints(*input.scene, *input.survey, *input.pixels, scorer.area().boxes, threads);
   metrics.evaluate_seconds = std::chrono::duration<double>(Clock::now() - start).count();
 
   Summarise(input, scores, &metrics);
   for (const Warning& warning : metrics.warnings) spdlog::warn("{}. {}", warning.finding, warning.advice);
-  WriteReport(input, metrics, pictures);
+  WriteReport(input, metrics, pictures, found ? &*found : nullptr);
   return metrics;
 }
 

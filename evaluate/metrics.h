@@ -14,6 +14,7 @@
 
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
+#include "evaluate/buildings_scores.h"
 #include "evaluate/surface_scores.h"
 
 namespace skyquilt::evaluate {
@@ -124,7 +125,8 @@ struct Metrics {
   double flat_roof_nmad_m = kNotMeasured;                  // and of the NMAD
   bool has_truth = false;                                  // simulated survey with true depth
   KeptPointErrors kept_points;
-  std::optional<SurfaceScores> surface;  // nothing when no surface was made
+  std::optional<SurfaceScores> surface;     // nothing when no surface was made
+  std::optional<BuildingScores> buildings;  // nothing when no buildings were searched
 
   double train_seconds = kNotMeasured;
   double samples_per_second = kNotMeasured;

@@ -8,6 +8,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/survey/geo_fit_json.h"
+#include "evaluate/buildings_json.h"
 #include "evaluate/class_json.h"
 #include "evaluate/metrics.h"
 #include "evaluate/surface_json.h"
@@ -197,6 +198,7 @@ Metrics MetricsFrom(const Json& json) {
   metrics.has_truth = json.contains("depth_rmse_m");
   TakeKeptPoints(json, &metrics.kept_points);
   if (json.contains("surface") && json.at("surface").is_object()) metrics.surface = SurfaceScoresFromJson(json.at("surface"));
+  if (json.contains("buildings") && json.at("buildings").is_object()) metrics.buildings = BuildingScoresFromJson(json.at("buildings"));
   const Json profile = ValueAt<Json>(json, "floater_profile"), photos = ValueAt<Json>(json, "psnr_per_image");
   for (const Json& place : profile) {
     metrics.floater_profile.emplace_back(NumberAt(place, "clearance_m"), NumberAt(place, "opacity"));
@@ -255,6 +257,7 @@ std::string MetricsJson(const Metrics& metrics) {
   }
   json["kept_points"] = KeptPointsJson(metrics.kept_points);
   if (metrics.surface) json["surface"] = ToJson(*metrics.surface);
+  if (metrics.buildings) json["buildings"] = ToJson(*metrics.buildings);
   PutNumbers(kTraining, metrics, &json);
   json["peak_rss_bytes"] = BytesOrNull(metrics.peak_rss_bytes);
   json["parameters"] = metrics.parameters;

@@ -132,17 +132,18 @@ std::string BuildReportPage(const ReportInput& input) {
   SKYQUILT_CHECK(input.metrics != nullptr && input.survey != nullptr && input.blocks != nullptr && input.training != nullptr,
                  "all parts of the input");
   SKYQUILT_CHECK(input.images.empty() || input.images.size() == input.metrics->photos.size(), "one entry of images per scored photo");
-  const std::string brightness = BrightnessSection(input), made = SurfaceSection(input);
+  const std::string brightness = BrightnessSection(input), made = SurfaceSection(input), found = BuildingsSection(input);
   page::PageFrame frame{.title = input.title,
                         .window_title = "Skyquilt report",
                         .subtitle = fmt::format("Survey report \xC2\xB7 {} \xC2\xB7 {} photos, {} blocks", ShownDate(input.metrics->date),
                                                 page::FormatInteger(input.metrics->n_photos), input.blocks->blocks.size()),
                         .anchors = {{"summary", "Summary"}, {"map-section", "Map"}, {"photos", "Photos"}}};
   if (!made.empty()) frame.anchors.emplace_back("surface", "Surface");
+  if (!found.empty()) frame.anchors.emplace_back("buildings", "Buildings");
   frame.anchors.insert(frame.anchors.end(), {{"geo", "Geo-reference"}, {"details", "Details"}});
   if (!brightness.empty()) frame.anchors.emplace_back("brightness", "Brightness");
   frame.anchors.insert(frame.anchors.end(), {{"training", "Training"}, {"method", "Method"}});
-  return page::PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + made +
+  return page::PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + made + found +
          GeoSection(input) + DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + page::PageEnd();
 }
 

@@ -33,6 +33,8 @@ struct MapBackground {
   Eigen::Vector2d max_enu = Eigen::Vector2d::Zero();
 };
 
+struct BuildingsReport;  // buildings_report.h
+
 struct ReportInput {
   std::string title;  // name of the project
   const Metrics* metrics = nullptr;
@@ -41,6 +43,7 @@ struct ReportInput {
   const scene::TrainReport* training = nullptr;  // without fields when it is unknown
   Curves curves;                                 // of its fields
   const BrightnessReport* brightness = nullptr;  // nothing or empty: no such section
+  const BuildingsReport* buildings = nullptr;    // nothing: no such section
   std::vector<PhotoImages> images;               // entry i belongs to metrics->photos[i]
   std::optional<MapBackground> background;
   std::string color_ramp;    // picture of the colour map from low to high, relative to the page; empty: no legend
@@ -54,10 +57,11 @@ std::string SummarySection(const ReportInput& input);  // the key figures of the
 std::string WarningsBanner(const Metrics& metrics);
 std::string BlockMapSvg(const ReportInput& input);
 std::string PhotoSection(const ReportInput& input);
-std::string SurfaceSection(const ReportInput& input);  // what was made of the scene's surface, and its scores; empty without a surface
-std::string GeoSection(const ReportInput& input);      // how the survey was placed on Earth; see page_geo.h
-std::string DetailsSection(const ReportInput& input);  // every figure and its meaning
-std::string ClassTable(const Metrics& metrics);        // empty without true classes
+std::string SurfaceSection(const ReportInput& input);    // what was made of the scene's surface, and its scores; empty without a surface
+std::string BuildingsSection(const ReportInput& input);  // the found buildings, and their scores; empty when none were searched
+std::string GeoSection(const ReportInput& input);        // how the survey was placed on Earth; see page_geo.h
+std::string DetailsSection(const ReportInput& input);    // every figure and its meaning
+std::string ClassTable(const Metrics& metrics);          // empty without true classes
 std::string MethodSection(const ReportInput& input);
 std::string BrightnessSection(const ReportInput& input);  // empty without brightness
 std::string BlockTable(const ReportInput& input);

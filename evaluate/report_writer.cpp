@@ -25,14 +25,17 @@ std::string TitleOf(const std::filesystem::path& project_folder) {
 }
 
 // Removes images of an earlier evaluation that the page no longer shows.
-void RemoveStalePictures(const std::filesystem::path& report_folder, const std::vector<PhotoImages>& images) {
+void RemoveStalePictures(const std::filesystem::path& report_folder, const std::vector<PhotoImages>& images, const BuildingsReport* found) {
   std::set<std::string> kept;
   for (const PhotoImages& one : images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.mesh});
+  if (found != nullptr) {
+    for (const BuildingPicture& one : found->pictures) kept.insert(one.file);
+  }
   std::vector<std::filesystem::path> stale;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with("photo_") && !kept.contains("images/" + name)) stale.push_back(entry.path());
+    if ((name.starts_with("photo_") || name.starts_with("building_")) && !kept.contains("images/" + name)) stale.push_back(entry.path());
   }
   for (const std::filesystem::path& file : stale) std::filesystem::remove(file, ignored);
 }
@@ -81,7 +84,7 @@ void ReportPictures::WriteView(const ScoredPhoto& scored, size_t view) {
   shown.stops = ExposureStops(input_.scene->info().response, static_cast<size_t>(score.photo));
 }
 
-void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures) {
+void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures, BuildingsReport* found) {
   const std::filesystem::path report_folder = input.ReportFolder();
   const scene::TrainReport unknown;
   std::vector<std::string> names;
@@ -97,12 +100,17 @@ void WriteReport(const EvaluateInput& input, const Metrics& metrics, const Repor
   page.curves = ReadCurves(input.project_folder / "checkpoints", names);
   page.brightness = &pictures.brightness();
   page.images = pictures.images();
+  if (found != nullptr) {
+    const buildings::BuildingSet& set = found->compared.set;
+    found->pictures = WriteBuildingPictures(set, BuildingsWithCards(set), *input.survey, *input.pixels, report_folder);
+  }
+  page.buildings = found;
   page.background = CopyMapBackground(input.project_folder / "products", report_folder);
   page.color_ramp = WriteColorRamp(report_folder);
   page.error_high = static_cast<double>(kErrorHigh);
   base::WriteFileAtomically(report_folder / "index.html", BuildReportPage(page));
   if (!pictures.brightness().Empty()) base::WriteFileAtomically(report_folder / "brightness.json", BrightnessJson(pictures.brightness()));
-  RemoveStalePictures(report_folder, page.images);
+  RemoveStalePictures(report_folder, page.images, found);
   base::WriteFileAtomically(report_folder / "metrics.json", MetricsJson(metrics));
 }
 

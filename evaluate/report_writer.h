@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "evaluate/brightness_report.h"
+#include "evaluate/buildings_report.h"
 #include "evaluate/evaluate_input.h"
 #include "evaluate/held_out_scorer.h"
 #include "evaluate/metrics.h"
@@ -35,8 +36,8 @@ class ReportPictures {
   BrightnessReport brightness_;
 };
 
-// Writes all other files; metrics.json last, so that it exists only when the evaluation is complete. Throws base::InputError when a file cannot be
-// written.
-void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures);
+// Writes all other files, pictures of the buildings included (null: none were searched); metrics.json last, so that it exists only when the
+// evaluation is complete. Throws base::InputError when a file cannot be written.
+void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures, BuildingsReport* found);
 
 }  // namespace skyquilt::evaluate

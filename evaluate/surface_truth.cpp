@@ -67,11 +67,14 @@ std::optional<geo::Geodetic> TruthOrigin(const std::filesystem::path& simulate_j
   }
 }
 
-geo::Rigid3d SurveyFromTruth(const std::optional<geo::Geodetic>& truth_origin, const geo::Geodetic& origin) {
-  const bool same = !truth_origin || (truth_origin->latitude_deg == origin.latitude_deg && truth_origin->longitude_deg == origin.longitude_deg &&
-                                      truth_origin->height_m == origin.height_m);
-  if (same || !geo::IsValid(origin)) return {};
-  const geo::EnuFrame truth(*truth_origin), survey(origin);
+}  // namespace
+
+geo::Rigid3d SurveyFromTruth(const std::filesystem::path& simulate_json, const geo::Geodetic& survey_origin) {
+  const std::optional<geo::Geodetic> truth_origin = TruthOrigin(simulate_json);
+  const bool same = !truth_origin || (truth_origin->latitude_deg == survey_origin.latitude_deg &&
+                                      truth_origin->longitude_deg == survey_origin.longitude_deg && truth_origin->height_m == survey_origin.height_m);
+  if (same || !geo::IsValid(survey_origin)) return {};
+  const geo::EnuFrame truth(*truth_origin), survey(survey_origin);
   const auto moved = [&](const Eigen::Vector3d& x) { return survey.EnuFromGeodetic(truth.GeodeticFromEnu(x)); };
   constexpr double kReach_m = 1000.0;
   const Eigen::Vector3d shift = moved(Eigen::Vector3d::Zero());
@@ -79,8 +82,6 @@ geo::Rigid3d SurveyFromTruth(const std::optional<geo::Geodetic>& truth_origin, c
   for (Eigen::Index axis = 0; axis < 3; ++axis) rotation.col(axis) = (moved(kReach_m * Eigen::Vector3d::Unit(axis)) - shift) / kReach_m;
   return {Eigen::Quaterniond(rotation).normalized(), shift};
 }
-
-}  // namespace
 
 Eigen::Vector3d TrueSurface::Normal(uint32_t triangle_index) const {
   const Eigen::Vector3d a = Corner(triangle_index, 0), b = Corner(triangle_index, 1), c = Corner(triangle_index, 2);
@@ -97,7 +98,7 @@ TrueSurface ReadTrueSurface(const std::filesystem::path& surface_ply, const geo:
   if (!fits) throw base::InputError(surface_ply, "is damaged: its size does not agree with its header", kSimulateAgain);
 
   TrueSurface truth;
-  truth.survey_from_truth = SurveyFromTruth(TruthOrigin(surface_ply.parent_path().parent_path() / "simulate.json"), survey_origin);
+  truth.survey_from_truth = SurveyFromTruth(surface_ply.parent_path().parent_path() / "simulate.json", survey_origin);
   // Coordinates of the simulator are near its origin, so that is a middle that keeps their digits.
   truth.middle = truth.survey_from_truth.translation;
   truth.position.resize(header->vertices);

@@ -25,6 +25,10 @@ struct TrueSurface {
   Eigen::Vector3d Normal(uint32_t triangle_index) const;  // length 1, outwards; zero for a triangle without area
 };
 
+// The simulator's frame is about the origin in simulate.json; without that file, or without valid origins, both frames are the same. Throws
+// base::InputError for a damaged file.
+geo::Rigid3d SurveyFromTruth(const std::filesystem::path& simulate_json, const geo::Geodetic& survey_origin);
+
 // Reads a mesh as simulate/surface_mesh.h writes it. survey_origin: of the survey's frame. The origin of the simulator's frame is read from
 // simulate.json in the folder above; without that file both frames are the same. Throws base::InputError.
 TrueSurface ReadTrueSurface(const std::filesystem::path& surface_ply, const geo::Geodetic& survey_origin);

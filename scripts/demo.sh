@@ -42,11 +42,17 @@ line("PSNR, held-out views", "psnr", " dB", 2)
 line("SSIM, held-out views", "ssim", "", 3)
 line("FLIP, held-out views", "flip", "", 3)
 line("median depth error", "depth_median_abs_m", " m", 3)
+scored = metrics
 surface = metrics.get("surface")
 if surface:
     metrics = {"mesh": surface["psnr"], "agree": next((entry["f"] for entry in surface["f_scores"] if entry["tau"] == "2 GSD"), None)}
     line("PSNR of the textured mesh", "mesh", " dB", 2)
     line("F-score of the mesh, 2 GSD", "agree", "", 3)
+buildings = scored.get("buildings")
+if buildings:
+    metrics = {"found": buildings["found"], "complete": buildings.get("building_completeness")}
+    line("buildings found and measured", "found", "", 0)
+    line("of the true ones in the area", "complete", "", 2)
 PYTHON
 }
 
@@ -62,4 +68,5 @@ printf '%-28s %5d s\n' "all" "$SECONDS"
 scores
 echo "report: $out/report/index.html"
 echo "mesh, cloud, tiles, terrain: $out/surface"
+echo "buildings and their measures: $out/buildings/buildings.csv"
 echo "look at it in the browser: $skyquilt view $out"

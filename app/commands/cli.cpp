@@ -92,6 +92,7 @@ void AddCommands(CLI::App& app, CommandState& state) {
   AddMerge(app, state);
   AddRender(app, state);
   AddSurface(app, state);
+  AddBuildings(app, state);
   AddEvaluate(app, state);
   AddView(app, state);
   AddInfo(app, state);

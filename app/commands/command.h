@@ -62,6 +62,7 @@ void AddTrain(CLI::App& app, CommandState& state);
 void AddMerge(CLI::App& app, CommandState& state);
 void AddRender(CLI::App& app, CommandState& state);
 void AddSurface(CLI::App& app, CommandState& state);
+void AddBuildings(CLI::App& app, CommandState& state);
 void AddEvaluate(CLI::App& app, CommandState& state);
 void AddView(CLI::App& app, CommandState& state);
 void AddInfo(CLI::App& app, CommandState& state);

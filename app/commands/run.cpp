@@ -16,6 +16,11 @@ struct RunFlags {
   bool restart = false;
 };
 
+// Buildings are found in the cloud and above the terrain model of the surface.
+bool MakesBuildings(const coordinator::Settings& settings) {
+  return settings.buildings.enabled && settings.surface.enabled && settings.surface.cloud && settings.surface.maps;
+}
+
 void Run(const CommandState& state, const RunFlags& flags, const std::vector<config::Override>& overrides) {
   if (flags.photos.empty() == flags.place.empty()) {
     throw base::UsageError("skyquilt run needs either a folder with photos or --place NAME, not both");
@@ -48,6 +53,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   coordinator::MergeStage(pipeline);
   coordinator::ProductsStage(pipeline);
   if (pipeline.settings.surface.enabled) coordinator::SurfaceStage(pipeline);
+  if (MakesBuildings(pipeline.settings)) coordinator::BuildingsStage(pipeline);
   coordinator::EvaluateStage(pipeline);
   coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);
 }

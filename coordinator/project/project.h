@@ -24,6 +24,8 @@ struct Project {
   std::filesystem::path SurfaceFolder() const { return folder / "surface"; }
   std::filesystem::path SurfaceTable() const { return SurfaceFolder() / "surface.json"; }
   std::filesystem::path SurfaceWorkFolder() const { return folder / "cache" / "surface"; }
+  std::filesystem::path BuildingsFolder() const { return folder / "buildings"; }
+  std::filesystem::path BuildingsFile() const { return BuildingsFolder() / "buildings.json"; }
   std::filesystem::path ReportFolder() const { return folder / "report"; }
   std::filesystem::path MetricsFile() const { return ReportFolder() / "metrics.json"; }
   std::filesystem::path ConfigFile() const { return folder / "config.toml"; }

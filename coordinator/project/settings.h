@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "buildings/buildings_options.h"
 #include "coordinator/project/run_options.h"
 #include "coordinator/project/stamp.h"
 #include "core/brightness/options.h"
@@ -33,6 +34,7 @@ struct Settings {
   merge::MergeOptions merge;
   products::ProductOptions products;
   surface::SurfaceOptions surface;
+  buildings::BuildingsOptions buildings;
   evaluate::EvaluateOptions evaluate;
 
   // The result holds references to this object.

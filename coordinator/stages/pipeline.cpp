@@ -47,6 +47,10 @@ void SurfaceStage(Pipeline& pipeline) {
   RunStage(pipeline, "surface");
 }
 
+void BuildingsStage(Pipeline& pipeline) {
+  RunStage(pipeline, "buildings");
+}
+
 const evaluate::Metrics& EvaluateStage(Pipeline& pipeline) {
   RunStage(pipeline, "evaluate");
   return pipeline.metrics;

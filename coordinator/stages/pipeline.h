@@ -46,6 +46,11 @@ void MergeStage(Pipeline& pipeline);
 void ProductsStage(Pipeline& pipeline);
 // Makes mesh, point cloud, tiles and terrain, as chosen in [surface].
 void SurfaceStage(Pipeline& pipeline);
+// Finds and measures buildings in the surface, as chosen in [buildings].
+void BuildingsStage(Pipeline& pipeline);
+// Renders the facades of these buildings (ids, from 1; empty: all) into buildings/facades. The stage must be finished. Throws base::UsageError for an
+// id that there is none of.
+void WriteFacades(Pipeline& pipeline, const std::vector<int>& ids);
 const evaluate::Metrics& EvaluateStage(Pipeline& pipeline);
 
 // Throws base::BlockError with the names of the failed blocks, if there are any.

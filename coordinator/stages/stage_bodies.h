@@ -15,6 +15,7 @@ std::string TrainBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string MergeBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string ProductsBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp);
+std::string BuildingsBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp);
 
 }  // namespace skyquilt::coordinator

@@ -47,6 +47,12 @@ FlatOptions SurfaceInputs(const Pipeline& pipeline) {
           {"boundary", BoundaryIdentity(pipeline)}};
 }
 
+// Of the file with known outlines.
+std::string FootprintsIdentity(const Pipeline& pipeline) {
+  const std::string& file = pipeline.settings.buildings.footprints;
+  return file.empty() ? "" : FileIdentity(file);
+}
+
 // The checkpoints of the context and of every block that train.json lists as trained. When train.json is damaged, no blocks are required here;
 // reading the report fails later (RecallTraining), and the stage runs again.
 Paths TrainProof(const Project& project) {
@@ -174,6 +180,17 @@ std::vector<Stage> MakeTable() {
            },
        .completion_files = [](const Project& p) { return Paths{p.SurfaceTable()}; },
        .body = SurfaceBody},
+      {.name = "buildings",
+       .options = {"buildings."},
+       .ignored_options = {"buildings.enabled", "buildings.footprints", "buildings.facade_gsd"},
+       .required = {{SceneFile, "merge"}, {[](const Project& p) { return p.SurfaceTable(); }, "surface"}},
+       .inputs =
+           [](const Pipeline& pipeline) {
+             return FlatOptions{{"surface", FileIdentity(pipeline.project.StampFile("surface"))}, {"footprints", FootprintsIdentity(pipeline)}};
+           },
+       .outputs = [](const Project& p) { return Paths{p.BuildingsFolder()}; },
+       .completion_files = [](const Project& p) { return Paths{p.BuildingsFile()}; },
+       .body = BuildingsBody},
       {.name = "evaluate",
        .options = {"evaluate.", "run.image_width"},
        .required = {{SceneFile, "merge"}},
@@ -181,7 +198,8 @@ std::vector<Stage> MakeTable() {
            [](const Pipeline& pipeline) {
              return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))},
                                 {"products", FileIdentity(pipeline.project.StampFile("products"))},
-                                {"surface", FileIdentity(pipeline.project.StampFile("surface"))}};
+                                {"surface", FileIdentity(pipeline.project.StampFile("surface"))},
+                                {"buildings", FileIdentity(pipeline.project.StampFile("buildings"))}};
            },
        .outputs = [](const Project& p) { return Paths{p.ReportFolder()}; },
        .completion_files = [](const Project& p) { return Paths{p.MetricsFile()}; },

@@ -1,0 +1,51 @@
+#include "buildings/buildings_options.h"
+
+#include <algorithm>
+
+#include "core/base/errors.h"
+
+namespace skyquilt::buildings {
+
+std::vector<config::Field<BuildingsOptions>> BuildingsOptions::Fields() {
+  using config::Range;
+  using O = BuildingsOptions;
+  return {
+      {"enabled", &O::enabled, Range(), "find and measure buildings in 'skyquilt run'; 'skyquilt buildings' does it in any case"},
+      {"min_area_m2", &O::min_area_m2, Range{1, 1e6}, "smallest outline of a building seen from above, square metres"},
+      {"min_height_m", &O::min_height_m, Range{0.5, 100}, "lowest roof above the ground, metres"},
+      {"max_green", &O::max_green, Range{-1, 2},
+       "excess green, (2g - r - b) / (r + g + b), above which what stands on the ground is taken for vegetation; 2: colours do not count"},
+      {"min_part_m2", &O::min_part_m2, Range{1, 1e6}, "smaller boxes on a roof are no parts of the building, square metres"},
+      {"share_yaw_m", &O::share_yaw_m, Range{0, 1e5}, "buildings nearer than this to each other may share one direction, metres; 0: never"},
+      {"overhang_m", &O::overhang_m, Range{0, 5},
+       "how far pitched roofs reach over the walls, metres; used where neither the building nor its neighbours show walls"},
+      {"footprints", &O::footprints, Range(), "file with known outlines (GeoPackage, GeoJSON, Shapefile); empty: buildings are found"},
+      {"scale_bar", &O::scale_bar, Range{-1e9, 1e9},
+       "a distance measured on site, which gives all lengths their scale: x, y, z of one point, x, y, z of the other, their distance in metres; "
+       "empty: none"},
+      {"facade_gsd", &O::facade_gsd, Range{0.1, 1000}, "pixels of the pictures of facades, in ground sampling distances"},
+      {"cityjson", &O::cityjson, Range(), "write CityJSON 2.0"},
+      {"geopackage", &O::geopackage, Range(), "write a GeoPackage with footprints and solids"},
+      {"csv", &O::csv, Range(), "write a table of all measures"},
+      {"glb", &O::glb, Range(), "write a glTF 2.0 model"},
+      {"dxf", &O::dxf, Range(), "write the edges as DXF"},
+      {"classify_cloud", &O::classify_cloud, Range(), "write classes (roof, wall, edge, ground, vegetation) into the surface's point cloud"},
+  };
+}
+
+void BuildingsOptions::Check() const {
+  config::CheckRanges("buildings", *this);
+  if (scale_bar.empty()) return;
+  if (scale_bar.size() != 7) {
+    throw base::UsageError("buildings.scale_bar has " + std::to_string(scale_bar.size()) +
+                           " numbers: it must be empty or have 7, x, y, z of two points and their distance in metres");
+  }
+  if (!(scale_bar[6] > 0.0)) {
+    throw base::UsageError("buildings.scale_bar[6] = " + std::to_string(scale_bar[6]) + " is not allowed: the distance must be above 0");
+  }
+  if (std::equal(scale_bar.begin(), scale_bar.begin() + 3, scale_bar.begin() + 3)) {
+    throw base::UsageError("buildings.scale_bar: the two points are the same; give two points of the scene and their distance");
+  }
+}
+
+}  // namespace skyquilt::buildings

@@ -1,0 +1,72 @@
+#include "buildings/candidates/standing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace skyquilt::buildings {
+namespace {
+
+constexpr double kDropReach_m = 1.2;
+// Found on simulated towns: houses drop on 0.5 to 1 of their border (less at the edge of the survey), ghosts on up to 0.3.
+constexpr double kLeastDrop = 0.4;
+constexpr double kDropWithoutWalls = 0.9;
+constexpr double kLeastPlanar = 0.6;
+constexpr double kSmall_m2 = 40.0, kMostHighAround = 0.2, kMainPlane = 0.5;
+constexpr double kBandFrom_m = 0.4, kBandTo_m = 1.5;
+
+}  // namespace
+
+Standing MeasureStanding(const RoofArea& area, const TopRaster& top, const RoofLevels& levels, const GroundGrid& ground, double min_height_m) {
+  const CellMask& mask = area.mask;
+  const Eigen::Vector2d shift = (area.origin - top.origin) / area.cell_m;
+  const auto left = static_cast<int>(std::lround(shift.x())), low = static_cast<int>(std::lround(shift.y()));
+  const auto top_at = [&](int column, int row) { return static_cast<double>(top.top_z[top.Index(column + left, row + low)]); };
+  const auto reach = static_cast<int>(std::floor(kDropReach_m / area.cell_m));
+  double border = 0.0, dropping = 0.0, band = 0.0, high = 0.0, cells = 0.0, planar = 0.0;
+  const std::vector<int32_t> nearest = NearestCells(mask);
+  for (int row = 0; row < mask.rows; ++row) {
+    for (int column = 0; column < mask.columns; ++column) {
+      const size_t cell = mask.Index(column, row);
+      const Eigen::Vector2d at = area.origin + area.cell_m * Eigen::Vector2d(column + 0.5, row + 0.5);
+      if (mask.value[cell] == 0) {
+        const double distance_m = area.cell_m * CellDistance(mask, cell, nearest[cell]);
+        if (distance_m < kBandFrom_m || distance_m > kBandTo_m || std::isnan(top_at(column, row))) continue;
+        band += 1.0;
+        if (top_at(column, row) - ground.At(at) >= min_height_m) high += 1.0;
+        continue;
+      }
+      cells += 1.0;
+      if (levels.distance_m[top.Index(column + left, row + low)] <= 1.5F * static_cast<float>(area.cell_m)) planar += 1.0;
+      bool on_border = false;
+      for (const auto& [dx, dy] : {std::array{-1, 0}, std::array{1, 0}, std::array{0, -1}, std::array{0, 1}}) {
+        on_border = on_border || !mask.Inside(column + dx, row + dy) || mask.value[mask.Index(column + dx, row + dy)] == 0;
+      }
+      if (!on_border) continue;
+      const double roof = static_cast<double>(area.roof_z[cell]);
+      const double height = roof - ground.At(at);
+      double lowest = std::numeric_limits<double>::infinity();
+      for (int r = std::max(row - reach, 0); r <= std::min(row + reach, mask.rows - 1); ++r) {
+        for (int c = std::max(column - reach, 0); c <= std::min(column + reach, mask.columns - 1); ++c) {
+          if (mask.value[mask.Index(c, r)] == 0 && !std::isnan(top_at(c, r)) && std::hypot(c - column, r - row) <= reach)
+            lowest = std::min(lowest, top_at(c, r));
+        }
+      }
+      border += 1.0;
+      if (roof - lowest >= 0.5 * height) dropping += 1.0;
+    }
+  }
+  Standing standing;
+  standing.drop = border > 0.0 ? dropping / border : 0.0;
+  standing.high_around = band > 0.0 ? high / band : 0.0;
+  standing.planar = cells > 0.0 ? planar / cells : 0.0;
+  return standing;
+}
+
+bool LooksLikeBuilding(const Standing& standing, double area_m2, double largest_m2, size_t n_wall) {
+  if (standing.planar < kLeastPlanar || standing.drop < (n_wall == 0 ? kDropWithoutWalls : kLeastDrop)) return false;
+  return !(area_m2 < kSmall_m2 && standing.high_around > kMostHighAround && largest_m2 < kMainPlane * area_m2);
+}
+
+}  // namespace skyquilt::buildings

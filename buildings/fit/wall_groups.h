@@ -1,0 +1,32 @@
+// Points of walls, and of the rims of roofs above them.
+//
+// What the fused surface shows of a wall (seen on simulated towns, in sections across walls): just below its rim a roof's side is steep, sharp and
+// repeats to a quarter of a GSD, whether or not anything below was seen, since photos from above show the rim against the ground. An overhang hides
+// the wall below; there the surface goes back from the rim to the wall within about 9 GSD. Farther down it is the wall, but set back where few views
+// saw it: depths at grazing angles lie a little behind the true surface, and only many views from different sides correct that.
+#pragma once
+
+#include <vector>
+
+#include "buildings/building.h"
+#include "buildings/fit/fit_points.h"
+#include "buildings/fit/observations.h"
+
+namespace skyquilt::buildings {
+
+struct WallSelection {
+  double gsd_m = 0.1;
+  double overhang_m = 0.0;  // of pitched roofs: where rims are looked for
+  double window_m = 1.0;    // points farther from the line are not used
+};
+
+// How far the surface of a wall lies behind the wall, in GSD, by the number of views that saw it relative to that of the roof.
+double SetBack_gsd(double views, double roof_views);
+
+// One group per line and side with enough points of the wall.
+std::vector<Group> WallGroups(const FitPoints& points, const Shape& shape, const Parameters& parameters, const WallSelection& selection);
+
+// One group per line, side and part with enough points of the roof's rim; where there are none, of the rim as the end of the roof's points.
+std::vector<Group> EdgeGroups(const FitPoints& points, const Shape& shape, const Parameters& parameters, const WallSelection& selection);
+
+}  // namespace skyquilt::buildings

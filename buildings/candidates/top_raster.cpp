@@ -61,7 +61,9 @@ TopRaster RasteriseTop(const PointCloud& cloud, const PlanGrid& points, const Ei
     points.ForEachIn(box, [&](uint32_t i) {
       if (cloud.points[i].filled != 0) return;
       const Eigen::Vector3d at = cloud.At(i);
-      const int64_t cell = raster.CellAt(at.head<2>());
+      // A cell is as high as any point in it: walls, whose points stand on its border, would make it too large by half a cell.
+      const Eigen::Vector2d inwards = -0.5 * raster.cell_m * cloud.points[i].normal.head<2>().cast<double>();
+      const int64_t cell = raster.CellAt(at.head<2>() + inwards);
       if (cell >= 0) use(static_cast<size_t>(cell), static_cast<float>(at.z()), cloud.points[i]);
     });
   };

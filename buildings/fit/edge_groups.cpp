@@ -15,22 +15,12 @@ constexpr double kNear_gsd = 2.0;  // from the densest distance
 constexpr size_t kLeastPoints = 8;
 constexpr size_t kMostEdgePoints = 600;
 
-// Where the side of a rim is, in GSD below the roof's plane at the rim, and how far the surface is from the true rim there. The fused surface rounds
-// thin eaves away and pads solid corners.
-struct Rim {
-  double from_gsd, to_gsd, off_gsd;
-};
-Rim RimOf(const Strip& strip) {
-  if (!strip.pitched) return {-1.0, 5.5, 0.2};
-  return strip.sloped ? Rim{0.5, 5.0, -0.65} : Rim{1.5, 6.0, -0.3};
-}
-
 // The end of a roof by counting, where its side was not seen: along a stretch of wall, points beyond a line inside over points per metre farther in.
 constexpr double kStretch_m = 1.5;
 constexpr double kInside_m = 0.8;  // the line
 constexpr double kDeep_m = 1.5;    // of the strip in which points per metre are counted
 constexpr double kBeyond_m = 1.5;
-constexpr double kEndOff_gsd = 0.6;  // such ends lie outside the rim, because the surface goes over it
+constexpr double kEndOff_gsd = 0.2;  // the surface goes over the rim
 constexpr double kParapetHeight_m = 1.3;
 
 Observation EdgeObservation(const StripKey& key, const Parameters& parameters, bool pitched) {
@@ -48,7 +38,7 @@ Observation EdgeObservation(const StripKey& key, const Parameters& parameters, b
 Group RimGroup(const StripKey& key, const Strip& strip, const FitPoints& points, const Shape& shape, const Parameters& parameters,
                const WallSelection& selection) {
   const double gsd = selection.gsd_m;
-  const Rim rim = RimOf(strip);
+  const Rim rim = RimOf(strip.pitched, strip.sloped);
   const double expected = (strip.pitched ? selection.overhang_m : 0.0) + rim.off_gsd * gsd;
   std::vector<StripPoint> chosen;
   std::vector<double> distance;
@@ -116,6 +106,11 @@ Group EndGroup(const StripKey& key, const Strip& strip, const FitPoints& points,
 }
 
 }  // namespace
+
+Rim RimOf(bool pitched, bool sloped) {
+  if (!pitched) return {-1.0, 5.5, 0.2};
+  return sloped ? Rim{0.5, 5.0, -0.65} : Rim{1.5, 6.0, -0.3};
+}
 
 std::vector<Group> EdgeGroups(const FitPoints& points, const Shape& shape, const Parameters& parameters, const WallSelection& selection) {
   std::vector<Group> groups;

@@ -24,6 +24,9 @@ constexpr double kNarrowest_m = 0.3;  // between neighbouring lines
 constexpr size_t kLeastRoofPoints = 8;
 constexpr double kUsualOverhang_m = 0.3;  // where rims are looked for first
 
+// Where walls were seen, they tell the overhang; that of other buildings adds something, an assumed one nothing.
+constexpr double kOthersOverhang_m = 0.15, kFreeOverhang_m = 1.0;
+
 // What the first guess is worth; holds parameters that no points tell about.
 constexpr double kGuessedLine_m = 1.5, kGuessedHeight_m = 1.5, kGuessedYaw = 0.1;
 
@@ -133,19 +136,13 @@ class Fitter {
   std::vector<Group> Priors() const {
     std::vector<Group> priors;
     const Eigen::VectorXd guess = parameters_.Of(guess_);
-    for (int i = 0; i < parameters_.shape_size(); ++i) {
-      const bool line = i > 0 && i < parameters_.line(1, static_cast<int>(guess_.v.size()));
-      priors.push_back(Prior(i,
-                             i == parameters_.yaw() ? guess[i]
-                             : line                 ? guess[i]
-                                                    : values_[i],
-                             i == parameters_.yaw() ? kGuessedYaw
-                             : line                 ? kGuessedLine_m
-                                                    : kGuessedHeight_m));
-    }
-    // Walls that were seen tell the overhang; else it is assumed.
-    priors.push_back(Prior(parameters_.overhang(true), options_.default_overhang_m,
-                           walls_pitched_ ? (getenv("OVP") ? atof(getenv("OVP")) : 1.0) : options_.overhang_sigma_m));
+    const int first_height = parameters_.line(1, static_cast<int>(guess_.v.size()));
+    priors.push_back(Prior(parameters_.yaw(), guess[parameters_.yaw()], kGuessedYaw));
+    for (int i = 1; i < first_height; ++i) priors.push_back(Prior(i, guess[i], kGuessedLine_m));
+    for (int i = first_height; i < parameters_.shape_size(); ++i) priors.push_back(Prior(i, values_[i], kGuessedHeight_m));
+    double sigma = options_.overhang_sigma_m;
+    if (walls_pitched_) sigma = options_.overhang_from_others ? std::max(sigma, kOthersOverhang_m) : kFreeOverhang_m;
+    priors.push_back(Prior(parameters_.overhang(true), options_.default_overhang_m, sigma));
     priors.push_back(Prior(parameters_.overhang(false), 0.0, kFlatRim_gsd * options_.gsd_m));
     return priors;
   }

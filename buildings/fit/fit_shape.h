@@ -16,7 +16,9 @@ struct FitOptions {
   double gsd_m = 0.1;
   double default_overhang_m = 0.0;  // of pitched roofs without seen walls
   double overhang_sigma_m = 0.3;    // of that assumption
-  geo::PlaceAccuracy accuracy;      // of the survey; unknown parts do not count
+  // It was measured at other buildings of the survey: then it counts, as known to 0.15 m at best, also where walls are seen.
+  bool overhang_from_others = false;
+  geo::PlaceAccuracy accuracy;  // of the survey; unknown parts do not count
 };
 
 // Parameters in the order of the covariance: yaw, u lines, v lines, eave and ridge of each part (flat and other: ridge follows eave and has no row),
@@ -30,8 +32,9 @@ struct FittedShape {
   int64_t roof_points = 0, wall_points = 0;
   bool converged = true;
 };
-// Roof points: distance from the plane of the part that is highest there; wall points: distance from the nearest outer wall line of their normal's
-// side; edges of the roof where no wall was seen; ground: the plane through the ring's points at the middle of the footprint. Cauchy losses.
+// Roof points: distance from the plane of the part that is highest there; wall points: distance from the wall line of their normal's side; rims of
+// roofs: distance from that line and the overhang, which is a parameter common to the pitched parts; ground: the plane through the ring's points at
+// the middle of the footprint. Cauchy losses. Too few points: the guess, not converged. Same input, same result.
 FittedShape FitShape(const Shape& guess, const Candidate& candidate, const PointCloud& cloud, const FitOptions& options);
 
 // Measures of the shape with their standard deviations: propagated from the covariance by differences of each measure with respect to the parameters,

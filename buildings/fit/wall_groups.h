@@ -23,6 +23,13 @@ struct WallSelection {
 // How far the surface of a wall lies behind the wall, in GSD, by the number of views that saw it relative to that of the roof.
 double SetBack_gsd(double views, double roof_views);
 
+// Where the side of a rim is, in GSD below the roof's plane at the rim, and how far in front of the true rim the surface is there: it rounds thin
+// eaves away and pads solid corners. sloped: the roof falls towards the rim.
+struct Rim {
+  double from_gsd, to_gsd, off_gsd;
+};
+Rim RimOf(bool pitched, bool sloped);
+
 // One group per line and side with enough points of the wall.
 std::vector<Group> WallGroups(const FitPoints& points, const Shape& shape, const Parameters& parameters, const WallSelection& selection);
 

@@ -1,6 +1,6 @@
 #include "buildings/shape/joined_wings.h"
 
-#include <algorithm>
+#include <cstddef>
 
 namespace skyquilt::buildings {
 namespace {
@@ -17,20 +17,15 @@ bool Meets(const Part& wing, const Part& main) {
 
 }  // namespace
 
-void JoinWings(Shape* shape) {
-  for (size_t i = 0; i < shape->parts.size(); ++i) {
-    Part& wing = shape->parts[i];
-    wing.joins = -1;
-    if (wing.roof != RoofKind::kGable) continue;
-    for (size_t k = 0; k < shape->parts.size(); ++k) {
-      const Part& main = shape->parts[k];
-      if (k == i || !Meets(wing, main)) continue;
-      if (wing.ridge_z > main.ridge_z + kTooHigh_m || wing.ridge_z < main.eave_z + kLeastRise_m) continue;
-      if (wing.joins >= 0 && shape->parts[static_cast<size_t>(wing.joins)].ridge_z >= main.ridge_z) continue;
-      wing.joins = static_cast<int>(k);
-    }
-    if (wing.joins >= 0) wing.ridge_z = std::max(wing.eave_z, std::min(wing.ridge_z, shape->parts[static_cast<size_t>(wing.joins)].ridge_z));
+int MayJoin(const Shape& shape, const Part& wing) {
+  int best = -1;
+  if (wing.roof != RoofKind::kGable) return best;
+  for (size_t i = 0; i < shape.parts.size(); ++i) {
+    const Part& main = shape.parts[i];
+    if (!Meets(wing, main) || wing.ridge_z > main.ridge_z + kTooHigh_m || wing.ridge_z < main.eave_z + kLeastRise_m) continue;
+    if (best < 0 || main.ridge_z > shape.parts[static_cast<size_t>(best)].ridge_z) best = static_cast<int>(i);
   }
+  return best;
 }
 
 }  // namespace skyquilt::buildings

@@ -5,8 +5,8 @@
 
 namespace skyquilt::buildings {
 
-// Sets Part::joins of each gable that ends at a side of a pitched part whose roof falls towards it, lies between that side's ends, and has a ridge
-// above the eave and not above the ridge of that part (up to 0.3 m more are lowered to it).
-void JoinWings(Shape* shape);
+// The part into whose roof the ridge of a gable may run, or -1: one with a pitched roof that falls towards the gable's end, whose side reaches past
+// both of the gable's, and with an eave below the gable's ridge and a ridge not below it, but for 0.3 m of noise. Of several, the highest.
+int MayJoin(const Shape& shape, const Part& wing);
 
 }  // namespace skyquilt::buildings

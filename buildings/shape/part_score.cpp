@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "buildings/shape/cell_pieces.h"
 #include "buildings/shape/cell_rectangles.h"
@@ -21,6 +22,7 @@ constexpr double kRounded_gsd = 2.0;     // of roofs at their edges: small flat 
 constexpr double kLeastFlatShare = 0.3;  // of points that must remain without them
 constexpr size_t kMostRoofPoints = 800;
 constexpr double kCorrelation_gsd = 3.0;  // of the errors of neighbouring points
+constexpr double kLeastStorey_m = 1.0;    // that a part on the roof of another rises above it, on average
 constexpr double kOverhang_m = 0.7;       // roofs may reach this far over the walls
 constexpr double kOverhangCost = 0.2;     // of a covered cell there
 constexpr double kAboveCost = 0.5;        // of one that is higher than its roof: parapets and boxes, not walls that are missing
@@ -58,11 +60,24 @@ ScoredShape PartScorer::Score(const std::vector<CellRectangle>& rectangles) {
   scored.cost = std::numeric_limits<double>::infinity();
   if (!IsAllowed(rectangles)) return scored;
   scored.shape = ShapeOf(rectangles);
+  if (!StandOut(rectangles, scored.shape)) return scored;
+  double unexplained = Unexplained(scored.shape);
+  // Houses of a row may stand like wings without running into each other: the roofs tell.
+  for (size_t i = 0; i < scored.shape.parts.size(); ++i) {
+    const int main = MayJoin(scored.shape, scored.shape.parts[i]);
+    if (main < 0) continue;
+    Shape joined = scored.shape;
+    joined.parts[i].joins = main;
+    joined.parts[i].ridge_z = std::max(joined.parts[i].eave_z, std::min(joined.parts[i].ridge_z, joined.parts[static_cast<size_t>(main)].ridge_z));
+    const double with = Unexplained(joined);
+    if (!(with < unexplained)) continue;
+    unexplained = with;
+    scored.shape = std::move(joined);
+  }
   int heights = 0;
   for (const Part& part : scored.shape.parts) heights += part.roof == RoofKind::kFlat ? 1 : 2;
   const double lines = static_cast<double>(scored.shape.u.size() + scored.shape.v.size());
-  scored.cost = Unexplained(scored.shape) +
-                parsimony_ * (kLineCost_m2 * lines + kHeightCost_m2 * heights + kPartCost_m2 * static_cast<double>(rectangles.size()));
+  scored.cost = unexplained + parsimony_ * (kLineCost_m2 * lines + kHeightCost_m2 * heights + kPartCost_m2 * static_cast<double>(rectangles.size()));
   return scored;
 }
 
@@ -85,6 +100,27 @@ bool PartScorer::IsAllowed(const std::vector<CellRectangle>& rectangles) const {
     double beside = 0.0;
     each_cell(r, [&](int c, int row) { beside += count[cells_.Index(c, row)] == 1 ? cells_.AreaOf(c, row) : 0.0; });
     if (width < kNarrowest_m || (beside < kLeastWing_m2 && (beside > 0.0 || cells_.AreaOf(r) < kLeastPart_m2))) return false;
+  }
+  return true;
+}
+
+bool PartScorer::StandOut(const std::vector<CellRectangle>& rectangles, const Shape& shape) {
+  constexpr int kSteps = 6;
+  for (size_t i = 0; i < rectangles.size(); ++i) {
+    const Part& part = shape.parts[i];
+    const Eigen::Vector2d low = shape.MinOf(part, false), size = shape.MaxOf(part, false) - low;
+    double rise = 0.0, count = 0.0;
+    for (size_t k = 0; k < rectangles.size(); ++k) {
+      if (k == i || !IsWithin(rectangles[i], rectangles[k])) continue;
+      for (int row = 0; row < kSteps; ++row) {
+        for (int column = 0; column < kSteps; ++column) {
+          const Eigen::Vector2d uv = low + size.cwiseProduct(Eigen::Vector2d(column + 0.5, row + 0.5) / kSteps);
+          rise += std::max(0.0, RoofHeight(shape, part, uv) - RoofHeight(shape, shape.parts[k], uv));
+          count += 1.0;
+        }
+      }
+    }
+    if (count > 0.0 && rise < kLeastStorey_m * count) return false;
   }
   return true;
 }
@@ -166,7 +202,6 @@ Shape PartScorer::ShapeOf(const std::vector<CellRectangle>& rectangles) {
     part.ridge_z = fit.ridge_z;
     shape.parts.push_back(part);
   }
-  JoinWings(&shape);
   return shape;
 }
 

@@ -24,11 +24,12 @@ class PartScorer {
   PartScorer(const Shape& axes, const WallCells& cells, const RoofRaster& raster, double gsd_m);
 
   // At least one rectangle. Not allowed: footprints of several pieces or with cells that touch at corners only; parts that are too small or narrow
-  // beside others; the same rectangle twice.
+  // beside others, or hardly rise above the one that they stand on; the same rectangle twice.
   ScoredShape Score(const std::vector<CellRectangle>& rectangles);
 
  private:
   bool IsAllowed(const std::vector<CellRectangle>& rectangles) const;
+  static bool StandOut(const std::vector<CellRectangle>& rectangles, const Shape& shape);
   RoofFit RoofOf(const std::vector<CellRectangle>& rectangles, size_t own);
   Shape ShapeOf(const std::vector<CellRectangle>& rectangles);
   double Unexplained(const Shape& shape) const;

@@ -105,7 +105,8 @@ class EdgeFinder {
   }
 
   bool IsLargestAround(const std::vector<double>& jump, int border) const {
-    const int reach = skipped_ + 1;
+    // Beyond it no line of a side crosses the step: nearer ones would seem to jump as well.
+    const int reach = skipped_ + taken_;
     for (int other = std::max(0, border - reach); other <= std::min(cells_, border + reach); ++other) {
       const double here = jump[static_cast<size_t>(border)], there = jump[static_cast<size_t>(other)];
       if (there > here || (there == here && other < border)) return false;

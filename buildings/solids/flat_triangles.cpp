@@ -15,6 +15,9 @@ namespace {
 using FlatTriangle = std::array<uint32_t, 3>;
 using IndexRing = std::vector<uint32_t>;
 
+constexpr double kOnLine = 1e-9;    // metres within which a point is on a line
+constexpr double kOverlap = 0.001;  // metres that rounding may move edges
+
 class FlatTriangulator {
  public:
   explicit FlatTriangulator(std::span<const Eigen::Vector2d> place) : place_(place) {}
@@ -23,10 +26,26 @@ class FlatTriangulator {
     const std::optional<IndexRing> ring = BridgeHoles(rings);
     if (!ring || !CutEars(*ring)) return {};
     FlipEdges();
+    if (Overlap() > kOverlap * PerimeterOf(rings)) return {};
     return std::move(triangle_);
   }
 
  private:
+  // Twice the area of clockwise triangles: rounding leaves little, rings that cross themselves much.
+  double Overlap() const {
+    double overlap = 0.0;
+    for (const auto& [a, b, c] : triangle_) overlap += std::max(0.0, -TwiceArea(a, b, c));
+    return overlap;
+  }
+
+  double PerimeterOf(std::span<const IndexRing> rings) const {
+    double length = 0.0;
+    for (const IndexRing& ring : rings) {
+      for (size_t i = 0; i < ring.size(); ++i) length += (place_[ring[(i + 1) % ring.size()]] - place_[ring[i]]).norm();
+    }
+    return length;
+  }
+
   double TwiceArea(uint32_t a, uint32_t b, uint32_t c) const { return Cross2(place_[b] - place_[a], place_[c] - place_[a]); }
 
   // Whether a place lies in the angle inside the polygon at a point of its ring.
@@ -42,7 +61,7 @@ class FlatTriangulator {
   bool IsFree(const IndexRing& ring, uint32_t from, uint32_t to) const {
     for (size_t i = 0; i < ring.size(); ++i) {
       const uint32_t a = ring[i], b = ring[(i + 1) % ring.size()];
-      if (a != from && a != to && DistanceToSegment(place_[a], place_[from], place_[to]) == 0.0) return false;
+      if (a != from && a != to && DistanceToSegment(place_[a], place_[from], place_[to]) < kOnLine) return false;
       if (a == from || a == to || b == from || b == to) continue;
       const double of_a = TwiceArea(from, to, a), of_b = TwiceArea(from, to, b);
       const double of_from = TwiceArea(a, b, from), of_to = TwiceArea(a, b, to);
@@ -62,13 +81,16 @@ class FlatTriangulator {
     };
     for (IndexRing& hole : holes) std::rotate(hole.begin(), std::max_element(hole.begin(), hole.end(), before), hole.end());
     std::sort(holes.begin(), holes.end(), [&](const IndexRing& a, const IndexRing& b) { return before(b.front(), a.front()); });
-    for (size_t h = 0; h < holes.size(); ++h) {
-      if (!JoinTouching(holes[h], &ring) && !JoinByWay(std::span(holes).subspan(h), &ring)) return std::nullopt;
+    while (!holes.empty()) {
+      // Holes that touch what is joined come first: they may lead to others, to which a way would cut the inside in two.
+      const auto touching = std::find_if(holes.begin(), holes.end(), [&](const IndexRing& hole) { return JoinTouching(hole, &ring); });
+      if (touching == holes.end() && !JoinByWay(holes, &ring)) return std::nullopt;
+      holes.erase(touching == holes.end() ? holes.begin() : touching);
     }
     return ring;
   }
 
-  // A hole that touches the ring in a point is joined there: a way elsewhere would cut the inside in two.
+  // Joins a hole to the ring where both have a point in common.
   bool JoinTouching(IndexRing hole, IndexRing* ring) const {
     for (size_t k = 0; k < hole.size(); ++k, std::rotate(hole.begin(), hole.begin() + 1, hole.end())) {
       for (size_t i = 0; i < ring->size(); ++i) {
@@ -101,29 +123,16 @@ class FlatTriangulator {
     return true;
   }
 
-  // Ears are triangles of three points in a row without other points (Meisters 1975). When there is none, points lie on a line: then triangles
-  // without area will do, which FlipEdges turns into others.
+  // Ears are triangles of three points in a row without other points (Meisters 1975).
   bool CutEars(IndexRing ring) {
-    const auto is_ear = [&](size_t tip, bool strict) {
-      const size_t n = ring.size();
-      const uint32_t a = ring[(tip + n - 1) % n], b = ring[tip], c = ring[(tip + 1) % n];
-      if (a == c || a == b || b == c) return false;
-      const double area = TwiceArea(a, b, c);
-      if (strict ? !(area > 0.0) : !(area >= -1e-3 * (place_[c] - place_[a]).norm())) return false;
-      return std::none_of(ring.begin(), ring.end(), [&](uint32_t x) {
-        if (x == a || x == b || x == c) return false;
-        const double of_ab = TwiceArea(a, b, x), of_bc = TwiceArea(b, c, x), of_ca = TwiceArea(c, a, x);
-        return strict ? of_ab >= 0.0 && of_bc >= 0.0 && of_ca >= 0.0 : of_ab > 0.0 && of_bc > 0.0 && of_ca > 0.0;
-      });
-    };
     size_t start = 0;
     while (ring.size() > 3) {
       std::optional<size_t> ear;
-      for (const bool strict : {true, false}) {
-        for (size_t k = 0; k < ring.size() && !ear; ++k) {
-          if (is_ear((start + k) % ring.size(), strict)) ear = (start + k) % ring.size();
-        }
+      for (size_t k = 0; k < ring.size() && !ear; ++k) {
+        const size_t tip = (start + k) % ring.size();
+        if (HeightOfEar(ring, tip) > kOnLine && IsEmpty(ring, tip)) ear = tip;
       }
+      if (!ear) ear = FlatEar(ring);
       if (!ear) return false;
       const size_t n = ring.size();
       triangle_.push_back({ring[(*ear + n - 1) % n], ring[*ear], ring[(*ear + 1) % n]});
@@ -132,6 +141,43 @@ class FlatTriangulator {
     }
     triangle_.push_back({ring[0], ring[1], ring[2]});
     return true;
+  }
+
+  // Metres of a corner over the line from the point before it to the one after it; negative in notches.
+  double HeightOfEar(const IndexRing& ring, size_t tip) const {
+    const size_t n = ring.size();
+    const uint32_t a = ring[(tip + n - 1) % n], c = ring[(tip + 1) % n];
+    return a == c ? -1.0 : TwiceArea(a, ring[tip], c) / (place_[c] - place_[a]).norm();
+  }
+
+  // Whether no other point lies in the triangle at a corner or on its border.
+  bool IsEmpty(const IndexRing& ring, size_t tip) const {
+    const size_t n = ring.size();
+    const std::array<uint32_t, 3> ear = {ring[(tip + n - 1) % n], ring[tip], ring[(tip + 1) % n]};
+    return std::none_of(ring.begin(), ring.end(), [&](uint32_t x) {
+      if (x == ear[0] || x == ear[1] || x == ear[2]) return false;
+      for (size_t k = 0; k < 3; ++k) {
+        const uint32_t a = ear[k], b = ear[(k + 1) % 3];
+        if (TwiceArea(a, b, x) < -kOnLine * (place_[b] - place_[a]).norm()) return false;
+      }
+      return true;
+    });
+  }
+
+  // When there is no ear, points lie on a line: then a triangle without area will do, which FlipEdges turns into another. The middle point must lie
+  // between the others.
+  std::optional<size_t> FlatEar(const IndexRing& ring) const {
+    std::optional<size_t> best;
+    double highest = -kOverlap;
+    const size_t n = ring.size();
+    for (size_t tip = 0; tip < n; ++tip) {
+      const Eigen::Vector2d &a = place_[ring[(tip + n - 1) % n]], &b = place_[ring[tip]], &c = place_[ring[(tip + 1) % n]];
+      const double height = HeightOfEar(ring, tip);
+      if (height <= highest || height > kOverlap || (b - a).dot(c - b) <= 0.0) continue;
+      highest = height;
+      best = tip;
+    }
+    return best;
   }
 
   // Lawson 1977. Edges of the polygon have a triangle on one side only.

@@ -16,7 +16,7 @@ std::vector<Slope> SlopesOf(const Shape& shape, const Part& part) {
   };
   const int across = part.along_u ? 1 : 0;
   const bool hip = part.roof == RoofKind::kHip;
-  const bool pitched = (part.roof == RoofKind::kGable || hip) && rise > 0.0 && half.minCoeff() > 0.0;
+  const bool pitched = (part.roof == RoofKind::kGable || hip) && !(rise <= 0.0) && half.minCoeff() > 0.0;
   if (!pitched) return {{Eigen::Vector2d::Zero(), part.eave_z}};
   const double pitch = rise / (hip ? half.minCoeff() : half[across]);
   add_pair(across, pitch);

@@ -110,13 +110,14 @@ void WriteFacades(Pipeline& pipeline, const std::vector<int>& ids) {
       products::CasterOf(session.scene(), products::AppearanceOf(pipeline.settings.products.exposure, info), session.threads());
   const std::filesystem::path folder = project.BuildingsFolder() / "facades";
   std::filesystem::create_directories(folder);
-  size_t pictures = 0;
+  int64_t pictures = 0;
   for (const buildings::Building& building : set.buildings) {
     if (!ids.empty() && std::find(ids.begin(), ids.end(), building.id) == ids.end()) continue;
-    pictures +=
-        buildings::WriteFacades(building, caster, frame, pipeline.settings.buildings.facade_gsd * info.gsd_m, folder, session.threads()).size();
+    const auto files =
+        buildings::WriteFacades(building, caster, frame, pipeline.settings.buildings.facade_gsd * info.gsd_m, folder, session.threads());
+    pictures += std::count_if(files.begin(), files.end(), [](const std::filesystem::path& file) { return file.extension() == ".png"; });
   }
-  spdlog::info("{} facade file(s): {}", pictures, folder.string());
+  spdlog::info("{} facade picture(s): {}", pictures, folder.string());
 }
 
 }  // namespace skyquilt::coordinator

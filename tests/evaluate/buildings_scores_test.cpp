@@ -2,10 +2,14 @@
 
 #include <cmath>
 
+#include "buildings/files/building_files.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
 #include "core/base/random.h"
 #include "evaluate/buildings_detection.h"
 #include "evaluate/buildings_errors.h"
 #include "tests/evaluate/buildings_sample.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::evaluate {
 namespace {
@@ -249,6 +253,29 @@ TEST(BuildingScores, WithoutTruthThereAreCountsAndSums) {
   EXPECT_EQ(scores.blocks_rejected, 0);
   EXPECT_NEAR(scores.footprint_m2, footprint_m2, 1e-9);
   EXPECT_TRUE(std::isfinite(scores.volume_m3));
+}
+
+TEST(LoadBuildingsOf, ReadsWhatTheStageWroteAndTheTruthOfGeoReferencedSurveys) {
+  const TemporaryFolder folder;
+  survey::Survey survey;
+  EXPECT_FALSE(LoadBuildingsOf(folder.path(), survey).has_value());
+  std::filesystem::create_directories(folder / "buildings");
+  buildings::SaveBuildings(MadeTown(2), surface::MapFrame(scene::SceneInfo()), folder / "buildings/buildings.json");
+  const auto alone = LoadBuildingsOf(folder.path(), survey);
+  ASSERT_TRUE(alone.has_value());
+  EXPECT_EQ(alone->set.buildings.size(), 2U);
+  EXPECT_FALSE(alone->truth.has_value());
+
+  std::filesystem::create_directories(folder / "truth");
+  base::WriteFileAtomically(folder / "truth/buildings.json", R"({"outlines": []})");
+  survey.truth.emplace().buildings_json = folder / "truth/buildings.json";
+  EXPECT_FALSE(LoadBuildingsOf(folder.path(), survey)->truth.has_value()) << "a local frame cannot be compared";
+  survey.georeferenced = true;
+  const auto compared = LoadBuildingsOf(folder.path(), survey);
+  ASSERT_TRUE(compared->truth.has_value());
+  EXPECT_EQ(compared->matches.found, (std::vector<FoundFate>{FoundFate::kInvented, FoundFate::kInvented}));
+  base::WriteFileAtomically(folder / "buildings/buildings.json", "{");
+  EXPECT_THROW(LoadBuildingsOf(folder.path(), survey), base::InputError);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ RC_GTEST_PROP(CellMask, NearestCellsAreNearest, ()) {
   }
 }
 
-RC_GTEST_PROP(CellMask, ErosionAndDilationAreDual, ()) {
+RC_GTEST_PROP(CellMask, ErodedWithinOpenedWithinDilated, ()) {
   const CellMask mask = RandomMask(*rc::gen::inRange<uint64_t>(1, 1000000));
   const double radius = *rc::gen::inRange(0, 40) / 10.0;
   const CellMask dilated = Dilated(mask, radius), eroded = Eroded(mask, radius), opened = Opened(mask, radius);
@@ -63,7 +63,7 @@ TEST(CellMask, PartsAreConnectedByEdges) {
   // 1 1 0 0
   // 0 0 1 0
   // 1 0 1 0
-  for (const size_t cell : {0, 1, 6, 8, 10}) mask.value[cell] = 1;
+  for (const size_t cell : std::vector<size_t>{0, 1, 6, 8, 10}) mask.value[cell] = 1;
   const std::vector<std::vector<uint32_t>> parts = ConnectedParts(mask);
   ASSERT_EQ(parts.size(), 3U);
   EXPECT_EQ(parts[0], (std::vector<uint32_t>{0, 1}));

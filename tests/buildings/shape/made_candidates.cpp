@@ -212,8 +212,8 @@ double OverlapOf(const Shape& a, const Shape& b) {
     }
   }
   int64_t either = 0, both = 0;
-  for (double x = -reach; x <= reach; x += 0.1) {
-    for (double y = -reach; y <= reach; y += 0.1) {
+  for (double x = -reach; x <= reach; x += 0.2) {
+    for (double y = -reach; y <= reach; y += 0.2) {
       const Eigen::Vector2d enu = b.origin + Eigen::Vector2d(x, y);
       const bool in_a = TopAt(a, a.FromEnu(enu), 0.0).part >= 0, in_b = TopAt(b, b.FromEnu(enu), 0.0).part >= 0;
       either += in_a || in_b ? 1 : 0;

@@ -32,7 +32,7 @@ Shape AxesAt(double yaw_deg, std::vector<double> u, std::vector<double> v);
 Part FlatPart(int u0, int u1, int v0, int v1, double z);
 Part PitchedPart(RoofKind roof, int u0, int u1, int v0, int v1, bool along_u, double eave_z, double ridge_z, int joins = -1);
 
-// Intersection over union of the walls of two shapes, by counting places on a grid of 0.1 m.
+// Intersection over union of the walls of two shapes, by counting places on a grid of 0.2 m.
 double OverlapOf(const Shape& a, const Shape& b);
 
 }  // namespace skyquilt::buildings

@@ -63,6 +63,12 @@ void EstimateNoise(const Parameters& parameters, const Eigen::VectorXd& values, 
 }
 
 bool Solve(std::span<const Group> groups, const Parameters& parameters, Eigen::VectorXd* values) {
+  // Ceres would write to the log.
+  for (const Group& group : groups) {
+    for (const double r : ResidualsOf(group, parameters, *values)) {
+      if (!std::isfinite(r)) return false;
+    }
+  }
   Eigen::VectorXd solution = *values;
   ceres::Problem::Options problem_options;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

@@ -30,7 +30,8 @@ std::vector<Polygon> Footprints(const Shape& shape);
 // instance when two high parts touch at a corner only): ask CheckSolid. Facets: of one connected footprint. Without facets, or when
 // a height is no number: an empty solid.
 Solid ExtrudeFacets(const Shape& shape, std::span<const RoofFacet> facets);
-// A block: the footprint between two heights. Holes become courtyards.
+// A block: the footprint between two heights. Holes become courtyards, drawn back by 1 cm where they touch another ring in a vertex. An empty solid
+// as above.
 Solid ExtrudeBlock(const Polygon& footprint_enu, double ground_z, double top_z);
 
 // What is wrong with a solid, by the codes of val3dity (https://val3dity.readthedocs.io/errors) at its tolerances: 101 too few points, 102

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "buildings/geometry/rings.h"
 #include "buildings/solids/build_solids.h"
 #include "buildings/solids/roof_map.h"
 #include "buildings/solids/roof_walls.h"
@@ -18,6 +19,29 @@ bool IsKnown(const RoofFacet& facet) {
 
 double Rounded(double metres) {
   return std::round(1000.0 * metres) / 1000.0;
+}
+
+// Where a courtyard touches another ring in a vertex only, its walls would meet there in one upright edge of four faces: the vertex is drawn back
+// into the courtyard by a centimetre.
+Polygon WithoutTouchingHoles(const Polygon& polygon) {
+  constexpr double kTouch = 0.003, kBack = 0.01;  // metres
+  Polygon apart = polygon;
+  for (size_t h = 0; h < apart.holes.size(); ++h) {
+    const auto touches = [&](const Ring& ring, const Eigen::Vector2d& place) {
+      return std::any_of(ring.begin(), ring.end(), [&](const Eigen::Vector2d& p) { return (p - place).norm() <= kTouch; });
+    };
+    const Ring hole = apart.holes[h];
+    for (size_t i = 0; i < hole.size(); ++i) {
+      bool alone = !touches(apart.outer, hole[i]);
+      for (size_t g = 0; g < apart.holes.size() && alone; ++g) alone = g == h || !touches(apart.holes[g], hole[i]);
+      if (alone) continue;
+      const Eigen::Vector2d in = hole[i] - hole[(i + hole.size() - 1) % hole.size()], out = hole[(i + 1) % hole.size()] - hole[i];
+      const Eigen::Vector2d along = in.normalized() + out.normalized();
+      // Holes are clockwise: the courtyard is on the right.
+      apart.holes[h][i] += kBack * Eigen::Vector2d(along.y(), -along.x()).normalized();
+    }
+  }
+  return apart;
 }
 
 class SolidMaker {
@@ -86,10 +110,10 @@ Solid ExtrudeBlock(const Polygon& footprint_enu, double ground_z, double top_z) 
   shape.origin = footprint_enu.outer.front();
   shape.ground_z = ground_z;
   RoofFacet deck;
-  deck.outline = footprint_enu;
+  deck.outline = WithoutTouchingHoles(footprint_enu);
   deck.offset = top_z;
   for (Eigen::Vector2d& p : deck.outline.outer) p -= shape.origin;
-  for (std::vector<Eigen::Vector2d>& hole : deck.outline.holes) {
+  for (Ring& hole : deck.outline.holes) {
     for (Eigen::Vector2d& p : hole) p -= shape.origin;
   }
   return ExtrudeFacets(shape, std::span(&deck, 1));

@@ -182,6 +182,18 @@ TEST(ExtrudeBlock, SlopingOutlinesWithNearPoints) {
   ExpectSolid(solid, 60, 1, 4.0 * Area(round));
 }
 
+TEST(ExtrudeBlock, CourtyardsThatTouchTheOutlineOrEachOtherAreDrawnBack) {
+  // Cells of 4 m: a courtyard that touches the outside by a corner, and two that touch each other.
+  const std::vector<uint8_t> one = {1, 1, 1, 1, 0, 1, 1, 1, 0}, two = {1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1};
+  for (const auto& [mask, n] : {std::pair(one, 3), std::pair(two, 4)}) {
+    const Polygon outline = OutlinesOf(mask, n, n, {300.0, -200.0}, 4.0).at(0);
+    const Solid solid = ExtrudeBlock(outline, 10.0, 20.0);
+    EXPECT_EQ(TextOf(CheckSolid(solid)), "");
+    EXPECT_NEAR(Volume(solid), 10.0 * Area(outline), 2.0);
+    EXPECT_EQ(HolesOf(solid, FaceKind::kGround), outline.holes.size());
+  }
+}
+
 TEST(ExtrudeBlock, OfNothingOrWithoutHeight) {
   EXPECT_TRUE(ExtrudeBlock(Polygon{}, 0.0, 5.0).Empty());
   const Polygon box{{{0, 0}, {4, 0}, {4, 3}, {0, 3}}, {}};

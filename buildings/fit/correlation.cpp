@@ -9,7 +9,7 @@
 namespace skyquilt::buildings {
 namespace {
 
-constexpr size_t kMostPoints = 500;  // pairs grow with the square
+constexpr size_t kMostPairedPoints = 500;  // pairs grow with the square
 constexpr size_t kLags = 16;
 constexpr size_t kLeastPairs = 15;
 constexpr double kUncorrelated = 0.1;
@@ -20,7 +20,7 @@ double CorrelationArea(std::span<const Eigen::Vector2d> at, std::span<const doub
   const size_t n = at.size();
   if (n < 3 || !(area_m2 > 0.0)) return std::max(area_m2, 0.0);
   const double share_m2 = area_m2 / static_cast<double>(n);
-  const size_t step = (n + kMostPoints - 1) / kMostPoints;
+  const size_t step = (n + kMostPairedPoints - 1) / kMostPairedPoints;
   double variance = 0.0, mean = 0.0;
   for (const double r : residuals) mean += r / static_cast<double>(n);
   for (const double r : residuals) variance += (r - mean) * (r - mean) / static_cast<double>(n);

@@ -5,14 +5,15 @@
 #include "buildings/fit/height_mode.h"
 #include "buildings/fit/wall_groups.h"
 #include "buildings/fit/wall_strips.h"
+#include "core/base/order_statistics.h"
 
 namespace skyquilt::buildings {
 namespace {
 
-constexpr double kLeastStep_m = 1.0;
-constexpr double kCorner_gsd = 2.5;
-constexpr double kNear_gsd = 2.0;  // from the densest distance
-constexpr size_t kLeastPoints = 8;
+constexpr double kLeastRim_m = 1.0;
+constexpr double kRimCorner_gsd = 2.5;
+constexpr double kNearRim_gsd = 2.0;  // from the densest distance
+constexpr size_t kLeastRimPoints = 8;
 constexpr size_t kMostEdgePoints = 600;
 
 // The end of a roof by counting, where its side was not seen: along a stretch of wall, points beyond a line inside over points per metre farther in.
@@ -21,7 +22,8 @@ constexpr double kInside_m = 0.8;  // the line
 constexpr double kDeep_m = 1.5;    // of the strip in which points per metre are counted
 constexpr double kBeyond_m = 1.5;
 constexpr double kEndOff_gsd = 0.2;  // the surface goes over the rim
-constexpr double kParapetHeight_m = 1.3;
+constexpr double kEndParapet_m = 1.3;
+constexpr double kUnder_gsd = 1.0;  // the roof ends beyond its seeming rim by more than this
 
 Observation EdgeObservation(const StripKey& key, const Parameters& parameters, bool pitched) {
   Observation o;
@@ -42,16 +44,16 @@ Group RimGroup(const StripKey& key, const Strip& strip, const FitPoints& points,
   const double expected = (strip.pitched ? selection.overhang_m : 0.0) + rim.off_gsd * gsd;
   std::vector<StripPoint> chosen;
   std::vector<double> distance;
-  for (const StripPoint& one : PointsOf(strip, points, shape, selection.overhang_m, kCorner_gsd * gsd, selection.window_m + std::abs(expected))) {
+  for (const StripPoint& one : PointsOf(strip, points, shape, selection.overhang_m, kRimCorner_gsd * gsd, selection.window_m + std::abs(expected))) {
     if (one.below < rim.from_gsd * gsd || one.below > rim.to_gsd * gsd || std::abs(one.out - expected) > selection.window_m) continue;
     chosen.push_back(one);
     distance.push_back(one.out);
   }
   Group group;
-  if (chosen.size() < kLeastPoints) return group;
+  if (chosen.size() < kLeastRimPoints) return group;
   const double peak = Modes(distance, {}, gsd).front().at;
   for (size_t i = 0; i < chosen.size(); ++i) {
-    if (std::abs(distance[i] - peak) > kNear_gsd * gsd) continue;
+    if (std::abs(distance[i] - peak) > kNearRim_gsd * gsd) continue;
     Observation o = EdgeObservation(key, parameters, strip.pitched);
     o.place = chosen[i].point->place;
     o.value = rim.off_gsd * gsd;
@@ -60,7 +62,7 @@ Group RimGroup(const StripKey& key, const Strip& strip, const FitPoints& points,
   }
   group.area_m2 = static_cast<double>(group.observations.size()) * points.spacing_m * points.spacing_m;
   group.Thin(kMostEdgePoints);
-  if (group.observations.size() < kLeastPoints) group = Group();
+  if (group.observations.size() < kLeastRimPoints) group = Group();
   return group;
 }
 
@@ -71,7 +73,7 @@ Group EndGroup(const StripKey& key, const Strip& strip, const FitPoints& points,
   const double tilt = 1.0 / std::sqrt(1.0 + strip.rise * strip.rise);
   Group group;
   for (const WallPiece& piece : strip.pieces) {
-    const double margin = std::min(kCorner_gsd * gsd, 0.2 * (piece.to - piece.from));
+    const double margin = std::min(kRimCorner_gsd * gsd, 0.2 * (piece.to - piece.from));
     const double length = piece.to - piece.from - 2.0 * margin;
     const auto stretches = std::max(1, static_cast<int>(length / kStretch_m));
     std::vector<double> deep(static_cast<size_t>(stretches), 0.0), beyond(deep);
@@ -81,7 +83,7 @@ Group EndGroup(const StripKey& key, const Strip& strip, const FitPoints& points,
       const double out = InFront(shape, piece, uv);
       if (place < 0.0 || place >= stretches || out < -kInside_m - kDeep_m || out > kBeyond_m) continue;
       const double off = tilt * (point.z - RoofHeight(shape, part, uv));
-      if (off < -2.0 * gsd || off > (strip.pitched ? 2.0 * gsd : kParapetHeight_m)) continue;
+      if (off < -2.0 * gsd || off > (strip.pitched ? 2.0 * gsd : kEndParapet_m)) continue;
       (out < -kInside_m ? deep : beyond)[static_cast<size_t>(place)] += 1.0;
     }
     const double expected = kDeep_m * length / stretches * tilt / (points.spacing_m * points.spacing_m);
@@ -105,6 +107,16 @@ Group EndGroup(const StripKey& key, const Strip& strip, const FitPoints& points,
   return group;
 }
 
+// Of a group's observations in front of their line, without what is known of their systematic error.
+double MedianPlace(const Group& group, const Shape& shape) {
+  std::vector<double> places;
+  for (const Observation& o : group.observations) {
+    const double at = (o.axis == 0 ? shape.u : shape.v)[static_cast<size_t>(o.line)];
+    places.push_back(o.side * (InAxes(shape, o.place)[o.axis] - at) - o.value);
+  }
+  return base::Median(std::move(places));
+}
+
 }  // namespace
 
 Rim RimOf(bool pitched, bool sloped) {
@@ -114,9 +126,15 @@ Rim RimOf(bool pitched, bool sloped) {
 
 std::vector<Group> EdgeGroups(const FitPoints& points, const Shape& shape, const Parameters& parameters, const WallSelection& selection) {
   std::vector<Group> groups;
-  for (const auto& [key, strip] : StripsOf(shape, kLeastStep_m)) {
+  for (const auto& [key, strip] : StripsOf(shape, kLeastRim_m)) {
     Group group = RimGroup(key, strip, points, shape, parameters, selection);
-    if (group.observations.empty()) group = EndGroup(key, strip, points, shape, parameters, selection);
+    if (group.observations.empty() || strip.pitched) {
+      // Obliques may look under an overhang: then what is steep there is the wall, and the roof ends farther out.
+      Group end = EndGroup(key, strip, points, shape, parameters, selection);
+      if (group.observations.empty() ||
+          (!end.observations.empty() && MedianPlace(end, shape) > MedianPlace(group, shape) + kUnder_gsd * selection.gsd_m))
+        group = std::move(end);
+    }
     if (!group.observations.empty()) groups.push_back(std::move(group));
   }
   return groups;

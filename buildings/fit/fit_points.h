@@ -11,9 +11,9 @@
 namespace skyquilt::buildings {
 
 struct FitPoint {
-  Eigen::Vector2d place;  // ENU minus the shape's origin
-  double z = 0.0;         // ENU
-  Eigen::Vector3d normal;
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();  // ENU minus the shape's origin
+  double z = 0.0;                                   // ENU
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double views = 0.0;
 };
 

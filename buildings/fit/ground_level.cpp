@@ -11,9 +11,9 @@ namespace skyquilt::buildings {
 namespace {
 
 constexpr size_t kLeastGroundPoints = 10;
-constexpr double kSteepest = 0.3;     // of the ground; with fewer points than on all sides a plane is not believed beyond
-constexpr double kSlopeSigma = 0.1;   // of slopes before points are seen
-constexpr double kCommon_gsd = 0.35;  // error that all points have in common
+constexpr double kSteepest = 0.3;           // of the ground; with fewer points than on all sides a plane is not believed beyond
+constexpr double kSlopeSigma = 0.1;         // of slopes before points are seen
+constexpr double kGroundCommon_gsd = 0.35;  // error that all points have in common
 constexpr int kSteps = 15;
 
 }  // namespace
@@ -55,7 +55,7 @@ Measure GroundLevel(const std::vector<FitPoint>& points, const Eigen::Vector2d& 
   const double area = n * spacing_m * spacing_m;
   const double n_eff = std::clamp(area / std::max(CorrelationArea(at, residuals, area), 1e-9), 1.0, n);
   const double random = sigma * sigma * n / n_eff * information.inverse()(0, 0);
-  return {plane[0], std::sqrt(random + kCommon_gsd * kCommon_gsd * gsd_m * gsd_m)};
+  return {plane[0], std::sqrt(random + kGroundCommon_gsd * kGroundCommon_gsd * gsd_m * gsd_m)};
 }
 
 }  // namespace skyquilt::buildings

@@ -18,8 +18,9 @@ Histogram HistogramOf(std::span<const double> values, std::span<const double> we
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   Histogram histogram;
   histogram.step = std::max(bandwidth / kStepsPerBandwidth, (*high - *low) / static_cast<double>(kMostBins));
-  histogram.first = *low - 2.0 * bandwidth;
-  histogram.mass.resize(static_cast<size_t>(std::ceil((*high + 2.0 * bandwidth - histogram.first) / histogram.step)) + 1);
+  const double beyond = 2.0 * (bandwidth + histogram.step);
+  histogram.first = *low - beyond;
+  histogram.mass.resize(static_cast<size_t>(std::ceil((*high + beyond - histogram.first) / histogram.step)) + 1);
   for (size_t i = 0; i < values.size(); ++i) {
     // Shared between the two nearest bins, so that the peak moves smoothly with the values.
     const double place = (values[i] - histogram.first) / histogram.step;

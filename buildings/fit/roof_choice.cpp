@@ -15,7 +15,7 @@ namespace {
 constexpr double kLeastRise = 0.1;  // of a pitched roof, metres per metre: 5.7 degrees
 constexpr double kMostRise = 4.0;
 constexpr double kStrongMode = 0.4;  // of the heaviest mode: a deck under large boxes, but not a few stray points
-constexpr size_t kMostPoints = 2000;
+constexpr size_t kMostChoicePoints = 2000;
 constexpr int kBins = 12;
 
 // A point as a roof with two free numbers sees it: height = eave + rise * distance.
@@ -160,7 +160,7 @@ RoofFit ChooseRoof(std::span<const Eigen::Vector3d> points, const Eigen::Vector2
   const bool longer_u = size.x() >= size.y();
   if (points.empty()) return {RoofKind::kFlat, longer_u};
   std::vector<Eigen::Vector3d> chosen;
-  const double step = std::max(1.0, static_cast<double>(points.size()) / static_cast<double>(kMostPoints));
+  const double step = std::max(1.0, static_cast<double>(points.size()) / static_cast<double>(kMostChoicePoints));
   for (double i = 0.0; i < static_cast<double>(points.size()); i += step) chosen.push_back(points[static_cast<size_t>(i)]);
   n_eff = std::max(n_eff, 1.0);
 

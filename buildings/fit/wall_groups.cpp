@@ -11,19 +11,19 @@
 namespace skyquilt::buildings {
 namespace {
 
-constexpr double kLeastWall_m = 1.0;
-constexpr double kCorner_gsd = 2.5;       // left out at the ends of walls
+constexpr double kLowestWall_m = 1.0;
+constexpr double kWallCorner_gsd = 2.5;   // left out at the ends of walls
 constexpr double kFoot_gsd = 2.5;         // and at their feet
 constexpr double kHidden_gsd = 9.5;       // below the rim of an overhang
 constexpr double kRimEnds_gsd = 4.0;      // from there the surface goes back from the rim
 constexpr double kWallBegins_gsd = 15.0;  // to the wall, evenly
 constexpr double kRim_gsd = 5.5;          // below that of a flat roof: counted there
-constexpr double kNear_gsd = 3.0;         // from the densest distance
-constexpr size_t kLeastPoints = 12;
+constexpr double kNearWall_gsd = 3.0;     // from the densest distance
+constexpr size_t kLeastWallPoints = 12;
 constexpr double kLeastCover = 0.3;  // of the length of a wall with points
 constexpr double kBin_m = 0.5;
 constexpr double kFullTrust = 0.6;  // views relative to the roof's above which points count fully
-constexpr size_t kMostPoints = 1200;
+constexpr size_t kMostWallPoints = 1200;
 
 double TrustOf(double views, double roof_views) {
   if (!(roof_views > 0.0)) return 1.0;
@@ -48,13 +48,13 @@ double SetBack_gsd(double views, double roof_views) {
 std::vector<Group> WallGroups(const FitPoints& points, const Shape& shape, const Parameters& parameters, const WallSelection& selection) {
   const double gsd = selection.gsd_m;
   std::vector<Group> groups;
-  for (const auto& [key, strip] : StripsOf(shape, kLeastWall_m)) {
+  for (const auto& [key, strip] : StripsOf(shape, kLowestWall_m)) {
     const double top = (strip.pitched ? kHidden_gsd : kRim_gsd) * gsd;
     std::vector<StripPoint> chosen;
     std::vector<double> distance, trust, reach;
-    for (const StripPoint& one : PointsOf(strip, points, shape, selection.overhang_m, kCorner_gsd * gsd, 2.0 * selection.window_m)) {
+    for (const StripPoint& one : PointsOf(strip, points, shape, selection.overhang_m, kWallCorner_gsd * gsd, 2.0 * selection.window_m)) {
       if (one.below < top || one.above < kFoot_gsd * gsd) continue;
-      // Under an overhang a low wall is not seen at all: the surface goes down from the rim to the ground.
+      // Low walls are not seen under an overhang.
       if (strip.pitched && one.below + one.above < (kWallBegins_gsd + kFoot_gsd) * gsd) continue;
       const double in_front = strip.pitched ? std::clamp((kWallBegins_gsd - one.below / gsd) / (kWallBegins_gsd - kRimEnds_gsd), 0.0, 1.0) : 0.0;
       const double set_back = SetBack_gsd(one.point->views, points.roof_views) * gsd;
@@ -65,12 +65,12 @@ std::vector<Group> WallGroups(const FitPoints& points, const Shape& shape, const
       reach.push_back(in_front);
       trust.push_back(TrustOf(one.point->views, points.roof_views));
     }
-    if (chosen.size() < kLeastPoints) continue;
+    if (chosen.size() < kLeastWallPoints) continue;
     const std::vector<Mode> modes = Modes(distance, trust, gsd);
     Group group;
     std::vector<StripPoint> near;
     for (size_t i = 0; i < chosen.size(); ++i) {
-      if (std::abs(distance[i] - modes.front().at) > kNear_gsd * gsd) continue;
+      if (std::abs(distance[i] - modes.front().at) > kNearWall_gsd * gsd) continue;
       near.push_back(chosen[i]);
       Observation o;
       o.kind = ObservationKind::kLine;
@@ -86,9 +86,9 @@ std::vector<Group> WallGroups(const FitPoints& points, const Shape& shape, const
       group.observations.push_back(o);
       group.at.emplace_back(chosen[i].along, chosen[i].point->z);
     }
-    if (near.size() < kLeastPoints || CoveredShare(strip, near) < kLeastCover) continue;
+    if (near.size() < kLeastWallPoints || CoveredShare(strip, near) < kLeastCover) continue;
     group.area_m2 = static_cast<double>(near.size()) * points.spacing_m * points.spacing_m;
-    group.Thin(kMostPoints);
+    group.Thin(kMostWallPoints);
     groups.push_back(std::move(group));
   }
   return groups;

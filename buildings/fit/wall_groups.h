@@ -1,9 +1,10 @@
 // Points of walls, and of the rims of roofs above them.
 //
-// What the fused surface shows of a wall (seen on simulated towns, in sections across walls): just below its rim a roof's side is steep, sharp and
-// repeats to a quarter of a GSD, whether or not anything below was seen, since photos from above show the rim against the ground. An overhang hides
-// the wall below; there the surface goes back from the rim to the wall within about 9 GSD. Farther down it is the wall, but set back where few views
-// saw it: depths at grazing angles lie a little behind the true surface, and only many views from different sides correct that.
+// What the fused surface shows of a wall (seen on simulated towns, in sections across hundreds of walls): just below its rim a roof's side is steep,
+// sharp and repeats to a quarter of a GSD, whether or not anything below was seen, since photos from above show the rim against the ground. An
+// overhang hides the wall below it; there the surface goes back from the rim to the wall between 4 and 15 GSD below the rim. Farther down it is the
+// wall, but set back where few views saw it: depths at grazing angles lie a little behind the true surface, and only many views from different sides
+// correct that. A low wall under an overhang is not seen at all: the surface goes down from the rim to the ground.
 #pragma once
 
 #include <vector>

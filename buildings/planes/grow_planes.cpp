@@ -52,6 +52,11 @@ class Grower {
 
  private:
   const Eigen::Vector3f& Position(uint32_t p) const { return cloud_.points[chosen_[p]].position; }
+  // Cosine of the angle between a plane and a point. Beside a sharp edge the neighbours' normal is a mixture that may exclude the point's own plane;
+  // the point's own normal is noisy, but not mixed. Either may agree.
+  double Agreement(const FittedPlane& plane, size_t p) const {
+    return std::max(plane.normal.dot(around_[p].normal.cast<double>()), plane.normal.dot(cloud_.points[chosen_[p]].normal.cast<double>()));
+  }
   double AreaOf(double n_points) const { return n_points * cloud_.spacing_m * cloud_.spacing_m; }
   bool LargeEnough(double n_points) const { return n_points >= options_.min_points && AreaOf(n_points) >= options_.min_area_m2; }
 
@@ -176,7 +181,7 @@ class Grower {
         double least = options_.distance_m;
         uint32_t best = kNone;
         const auto consider = [&](uint32_t label) {
-          if (label == kNone || label == best || planes_[label].normal.dot(around_[p].normal.cast<double>()) < least_cosine) return;
+          if (label == kNone || label == best || Agreement(planes_[label], p) < least_cosine) return;
           const double distance = std::abs(planes_[label].Distance(Position(static_cast<uint32_t>(p))));
           if (distance < least) {
             least = distance;

@@ -73,6 +73,7 @@ TEST(FitShape, FindsMadeShapesAgain) {
     for (const uint64_t seed : {uint64_t{1}, uint64_t{2}}) {
       SurfacePlan plan;
       plan.seed = seed;
+      plan.spacing_m = 0.35;
       plan.parapet_m = 0.5;
       const MadeSurface made = SurfaceOf(one.shape, plan);
       const FittedShape fitted = FitShape(Disturbed(one.shape, 0.5, 0.4, 3.0 * kDegree, seed), made.candidate, made.cloud, Options());
@@ -165,6 +166,16 @@ TEST(FitShape, LowWallsUnderOverhangsAreNotBelieved) {
   const FittedShape fitted = FitShape(shape, made.candidate, made.cloud, Options(0.2));
   EXPECT_EQ(fitted.wall_points, 0);
   EXPECT_NEAR(fitted.shape.u[1] - fitted.shape.u[0], 10.0, 0.15);
+}
+
+TEST(FitShape, WallsSeenUnderTheOverhangAreNoRims) {
+  const Shape shape = OnePart(RoofKind::kGable, 12, 8, 10, 13, 0.3);
+  SurfacePlan plan;
+  plan.under = true;
+  const MadeSurface made = SurfaceOf(shape, plan);
+  const FittedShape fitted = FitShape(Disturbed(shape, 0.3, 0.3, 0.03, 5), made.candidate, made.cloud, Options());
+  EXPECT_NEAR(fitted.overhang_m, 0.4, 0.1);
+  EXPECT_LT(ErrorsOf(fitted.shape, shape).line, 0.08);
 }
 
 TEST(FitShape, TreesBeforeAWallDoNotMoveIt) {

@@ -125,8 +125,8 @@ class SurfaceMaker {
           const double top = heights.top - (strip.sloped ? strip.rise * plan_.overhang_m : 0.0);
           for (double below = strip.pitched ? 0.0 : -plan_.parapet_m; top - below > heights.bottom; below += plan_.spacing_m) {
             const double b = below / gsd;
-            const double reach = strip.pitched ? plan_.overhang_m * std::clamp((15.0 - b) / 11.0, 0.0, 1.0) : 0.0;
-            const bool is_rim = b >= rim.from_gsd && b <= rim.to_gsd;
+            const double reach = strip.pitched && !plan_.under ? plan_.overhang_m * std::clamp((15.0 - b) / 11.0, 0.0, 1.0) : 0.0;
+            const bool is_rim = !plan_.under && b >= rim.from_gsd && b <= rim.to_gsd;
             const double out = (is_rim ? (strip.pitched ? plan_.overhang_m : 0.0) + rim.off_gsd * gsd : reach - set_back) +
                                Noise({1 + key.axis, key.line, key.side, is_rim}, along, below);
             Eigen::Vector2d uv;

@@ -18,6 +18,7 @@ struct SurfacePlan {
   double wave_length_m = 1.0;  // standard deviation of the Gaussian whose square root the correlation is
   double parapet_m = 0.0;      // above flat roofs, 0.25 m thick
   bool walls = true;           // also rims
+  bool under = false;          // walls are seen up to the roof, by photos from below the eaves, which then show no rim
   int wall_views = 20;         // of 20 that see the roof
   uint64_t seed = 1;
 };

@@ -42,7 +42,9 @@ TEST(WallPieces, OfATowerStandOnTheLowerRoof) {
   EXPECT_NEAR(Length(pieces, true), 66.0, 1e-12);
   EXPECT_NEAR(Length(pieces, false), 9.0 + 11.0, 1e-12);
   for (const WallPiece& piece : pieces) {
-    if (!piece.outer) EXPECT_EQ(HeightsAt(shape, piece, 0.5 * (piece.from + piece.to)).bottom, 9.0);
+    if (!piece.outer) {
+      EXPECT_EQ(HeightsAt(shape, piece, 0.5 * (piece.from + piece.to)).bottom, 9.0);
+    }
   }
 }
 
@@ -77,7 +79,7 @@ TEST(ShareOfWallSeen, CountsPiecesWithPoints) {
   EXPECT_NEAR(ShareOfWallSeen(shape, some, made.cloud, 0.1), 24.0 / 40.0, 0.03);
   // Of those only the lower half.
   std::erase_if(some.wall, [&](uint32_t i) { return made.cloud.At(i).z() > 7.0; });
-  EXPECT_NEAR(ShareOfWallSeen(shape, some, made.cloud, 0.1), 12.0 / 40.0, 0.04);
+  EXPECT_NEAR(ShareOfWallSeen(shape, some, made.cloud, 0.1), 12.0 / 40.0, 0.06);
 }
 
 TEST(ShareOfWallSeen, TwoViewsAreNotEnoughAndFarPointsDoNotCount) {

@@ -201,7 +201,7 @@ TEST(FindShape, PointsThatAreNotFiniteDoNoHarm) {
 }
 
 // Any turn, size, noise and visibility: the walls, the number of parts and the roofs stay.
-RC_GTEST_PROP(FindShape, DISABLED_TurnsWithTheBuilding, ()) {
+RC_GTEST_PROP(FindShape, TurnsWithTheBuilding, ()) {
   const auto seed = static_cast<uint64_t>(*rc::gen::inRange(1, 1000000));
   const double yaw_deg = 0.1 * *rc::gen::inRange(0, 3600);
   const double length = 0.1 * *rc::gen::inRange(90, 160), width = 0.1 * *rc::gen::inRange(80, 100);

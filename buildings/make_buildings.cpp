@@ -145,7 +145,14 @@ class Maker {
       if (!std::isfinite(ground)) return;
       guess = FindShape(candidate, directions_[i], *input_.cloud, ground, input_.gsd_m);
     }
-    if (guess) fits_[i] = Fitted{FitShape(guess->shape, candidate, *input_.cloud, fit_options_), guess->manhattan};
+    if (!guess) return;
+    fits_[i] = Fitted{FitShape(guess->shape, candidate, *input_.cloud, fit_options_), guess->manhattan};
+    if (fits_[i]->fit.share_within >= kDescribed) return;
+    for (Part& part : guess->shape.parts) {
+      part.roof = RoofKind::kOther;
+      part.joins = -1;
+    }
+    fits_[i]->fit = FitShape(guess->shape, candidate, *input_.cloud, fit_options_);
   }
 
   // Whether there is enough of a roof, high and wide enough; outlines that were given are believed.
@@ -196,8 +203,7 @@ class Maker {
   // Solids and outlines, with a note on what could not be had. False when nothing is left of the building.
   bool Describe(const Candidate& candidate, const Fitted& fitted, Building* building) const {
     std::vector<Polygon> footprints = Footprints(building->shape);
-    if (footprints.empty() || Area(footprints.front()) < std::min(input_.options.min_area_m2, 1.0)) return false;
-    if (!candidate.given && Area(footprints.front()) < input_.options.min_area_m2) return false;
+    if (footprints.empty() || (!candidate.given && Area(footprints.front()) < input_.options.min_area_m2)) return false;
     building->footprint = footprints.front();
     building->roofprint = {candidate.outline};
     const std::vector<RoofFacet> facets = RoofFacets(building->shape);
@@ -210,9 +216,8 @@ class Maker {
       notes.push_back("no valid solid with its roof could be built, so LoD 2.2 is a block");
     }
     if (!fitted.manhattan) notes.push_back("the outline has no right angles; length and width are those of the smallest rectangle around it");
-    if (building->share_within < kDescribed) {
-      building->roof = RoofKind::kOther;
-      notes.push_back("neither a flat, gable nor hip roof describes it");
+    if (building->roof == RoofKind::kOther) {
+      notes.push_back("neither a flat, gable nor hip roof describes it, so it is a block up to the median height of its roof");
     } else if (!building->accepted) {
       notes.push_back("only " + std::to_string(static_cast<int>(std::lround(100.0 * building->share_within))) +
                       " % of the roof's points lie within two ground sampling distances of the model");
@@ -272,7 +277,6 @@ void ApplyScale(const BuildingsInput& input, BuildingSet* set) {
     return;
   }
   const double apart = (Eigen::Vector3d(bar[0], bar[1], bar[2]) - Eigen::Vector3d(bar[3], bar[4], bar[5])).norm();
-  if (!(apart > 0.0)) throw base::UsageError("buildings.scale_bar: the two points are the same; give two points of the scene and their distance");
   set->metric = true;
   set->scale = bar[6] / apart;
   set->scale_source = "scale bar";

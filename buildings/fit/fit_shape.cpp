@@ -24,8 +24,8 @@ constexpr double kNarrowest_m = 0.3;  // between neighbouring lines
 constexpr size_t kLeastRoofPoints = 8;
 constexpr double kUsualOverhang_m = 0.3;  // where rims are looked for first
 
-// Where walls were seen, they tell the overhang; that of other buildings adds something, an assumed one nothing.
-constexpr double kOthersOverhang_m = 0.15, kFreeOverhang_m = 1.0;
+// Where walls were seen, they tell the overhang, and an assumed one nothing.
+constexpr double kFreeOverhang_m = 1.0;
 
 // What the first guess is worth; holds parameters that no points tell about.
 constexpr double kGuessedLine_m = 1.5, kGuessedHeight_m = 1.5, kGuessedYaw = 0.1;
@@ -140,8 +140,7 @@ class Fitter {
     priors.push_back(Prior(parameters_.yaw(), guess[parameters_.yaw()], kGuessedYaw));
     for (int i = 1; i < first_height; ++i) priors.push_back(Prior(i, guess[i], kGuessedLine_m));
     for (int i = first_height; i < parameters_.shape_size(); ++i) priors.push_back(Prior(i, values_[i], kGuessedHeight_m));
-    double sigma = options_.overhang_sigma_m;
-    if (walls_pitched_) sigma = options_.overhang_from_others ? std::max(sigma, kOthersOverhang_m) : kFreeOverhang_m;
+    const double sigma = walls_pitched_ ? kFreeOverhang_m : options_.overhang_sigma_m;
     priors.push_back(Prior(parameters_.overhang(true), options_.default_overhang_m, sigma));
     priors.push_back(Prior(parameters_.overhang(false), 0.0, kFlatRim_gsd * options_.gsd_m));
     return priors;

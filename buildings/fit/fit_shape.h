@@ -16,9 +16,7 @@ struct FitOptions {
   double gsd_m = 0.1;
   double default_overhang_m = 0.0;  // of pitched roofs without seen walls
   double overhang_sigma_m = 0.3;    // of that assumption
-  // It was measured at other buildings of the survey: then it counts, as known to 0.15 m at best, also where walls are seen.
-  bool overhang_from_others = false;
-  geo::PlaceAccuracy accuracy;  // of the survey; unknown parts do not count
+  geo::PlaceAccuracy accuracy;      // of the survey; unknown parts do not count
 };
 
 // Parameters in the order of the covariance: yaw, u lines, v lines, eave and ridge of each part (flat and other: ridge follows eave and has no row),

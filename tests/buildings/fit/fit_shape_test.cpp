@@ -194,21 +194,6 @@ TEST(FitShape, TreesBeforeAWallDoNotMoveIt) {
   EXPECT_LT(ErrorsOf(fitted.shape, shape).line, 0.06);
 }
 
-TEST(FitShape, OthersOverhangCountsWhenSaid) {
-  const Shape shape = OnePart(RoofKind::kGable, 12, 8, 10, 13);
-  SurfacePlan plan;
-  plan.waves_m = 0.15;
-  const MadeSurface made = SurfaceOf(shape, plan);
-  FitOptions options = Options();
-  const FittedShape alone = FitShape(shape, made.candidate, made.cloud, options);
-  options.overhang_sigma_m = 0.1;
-  options.overhang_from_others = true;
-  const FittedShape helped = FitShape(shape, made.candidate, made.cloud, options);
-  EXPECT_LT(MeasureShape(helped, options).width_m.sigma, MeasureShape(alone, options).width_m.sigma);
-  options.default_overhang_m = 0.0;
-  EXPECT_LT(FitShape(shape, made.candidate, made.cloud, options).overhang_m, helped.overhang_m - 0.01);
-}
-
 TEST(FitShape, OtherRoofsAreBlocksUpToTheirMedian) {
   Shape shape = OnePart(RoofKind::kOther, 10, 8, 10, 10);
   MadeSurface made = SurfaceOf(shape);

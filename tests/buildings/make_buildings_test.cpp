@@ -1,0 +1,138 @@
+#include "buildings/make_buildings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "buildings/solids/build_solids.h"
+#include "tests/buildings/sample_buildings.h"
+#include "tests/buildings/sample_clouds.h"
+#include "tests/support/error_of.h"
+
+namespace skyquilt::buildings {
+namespace {
+
+// A gable house, a flat one, and two trees beside them; ground at 100 m.
+struct MadePlace {
+  std::vector<Building> truth;
+  MadeCloud made;
+  GroundGrid ground = LevelGround({45.0, 30.0}, 60.0, 100.0);
+};
+
+MadePlace TwoHouses() {
+  HousePlan gable;
+  gable.yaw_rad = 0.2;
+  HousePlan flat;
+  flat.roof = RoofKind::kFlat;
+  flat.eave_z = flat.ridge_z = 106.0;
+  flat.origin = {55.0, 28.0};
+  flat.length_m = 15.0;
+  flat.width_m = 10.0;
+  flat.yaw_rad = 0.2;
+  MadePlace place{.truth = {MadeHouse(gable, 1), MadeHouse(flat, 2)}, .made = {}};
+  place.made = MadeCloudOf(place.truth, {.noise_m = 0.05, .normal_noise = 0.05});
+  AddTree(&place.made, {45.0, 20.0, 104.0}, 3.0);
+  AddTree(&place.made, {48.0, 45.0, 103.0}, 2.0);
+  return place;
+}
+
+BuildingsInput InputOf(const MadePlace& place) {
+  BuildingsInput input;
+  input.cloud = &place.made.cloud;
+  input.ground = &place.ground;
+  input.georeferenced = true;
+  input.gsd_m = 0.19;
+  return input;
+}
+
+TEST(MakeBuildings, FindsTheHousesAndNoTrees) {
+  const MadePlace place = TwoHouses();
+  base::ThreadPool threads(2);
+  const BuildingSet set = MakeBuildings(InputOf(place), threads);
+  ASSERT_EQ(set.buildings.size(), 2U);
+  EXPECT_TRUE(set.metric);
+  EXPECT_EQ(set.scale_source, "geo-reference");
+  for (size_t i = 0; i < 2; ++i) {
+    const Building& found = set.buildings[i];
+    const Building& truth = place.truth[i];
+    EXPECT_EQ(found.id, truth.id);  // from west to east
+    EXPECT_EQ(found.roof, truth.roof);
+    EXPECT_TRUE(found.accepted) << found.note;
+    EXPECT_TRUE(CheckSolid(found.lod22).empty());
+    EXPECT_NEAR(found.measures.length_m.value, truth.measures.length_m.value, 0.3);
+    EXPECT_NEAR(found.measures.width_m.value, truth.measures.width_m.value, 0.3);
+    EXPECT_NEAR(found.measures.height_m.value, truth.measures.height_m.value, 0.15);
+    EXPECT_GT(found.measures.length_m.sigma, 0.0);
+    EXPECT_NEAR(Volume(found.lod22), found.measures.volume_m3.value, 0.01 * found.measures.volume_m3.value);
+  }
+}
+
+TEST(MakeBuildings, AreTheSameForAnyNumberOfThreads) {
+  const MadePlace place = TwoHouses();
+  base::ThreadPool one(1), three(3);
+  const BuildingSet a = MakeBuildings(InputOf(place), one), b = MakeBuildings(InputOf(place), three);
+  ASSERT_EQ(a.buildings.size(), b.buildings.size());
+  for (size_t i = 0; i < a.buildings.size(); ++i) {
+    EXPECT_EQ(a.buildings[i].shape.u, b.buildings[i].shape.u);
+    EXPECT_EQ(a.buildings[i].measures.length_m.sigma, b.buildings[i].measures.length_m.sigma);
+  }
+}
+
+TEST(MakeBuildings, WithoutScaleAreNotMetricAndAScaleBarGivesIt) {
+  const MadePlace place = TwoHouses();
+  base::ThreadPool threads(2);
+  BuildingsInput input = InputOf(place);
+  input.georeferenced = false;
+  const BuildingSet local = MakeBuildings(input, threads);
+  EXPECT_FALSE(local.metric);
+  input.options.scale_bar = {0, 0, 0, 3, 4, 0, 10};  // 5 units are 10 m
+  const BuildingSet scaled = MakeBuildings(input, threads);
+  EXPECT_TRUE(scaled.metric);
+  EXPECT_EQ(scaled.scale, 2.0);
+  ASSERT_EQ(scaled.buildings.size(), local.buildings.size());
+  const Measures &m = scaled.buildings[0].measures, &one = local.buildings[0].measures;
+  EXPECT_DOUBLE_EQ(m.length_m.value, 2.0 * one.length_m.value);
+  EXPECT_DOUBLE_EQ(m.footprint_m2.sigma, 4.0 * one.footprint_m2.sigma);
+  EXPECT_DOUBLE_EQ(m.volume_m3.value, 8.0 * one.volume_m3.value);
+  EXPECT_DOUBLE_EQ(m.yaw_deg.value, one.yaw_deg.value);
+  input.options.scale_bar = {1, 1, 1, 1, 1, 1, 2};
+  EXPECT_NE(UsageErrorOf([&] { MakeBuildings(input, threads); }).find("two points are the same"), std::string::npos);
+}
+
+TEST(MakeBuildings, MeasureGivenOutlinesAndNothingElse) {
+  const MadePlace place = TwoHouses();
+  base::ThreadPool threads(2);
+  BuildingsInput input = InputOf(place);
+  input.footprints = {{place.truth[1].footprint, "cadastre 7"}, {{.outer = {{0, 0}, {5, 0}, {5, 5}, {0, 5}}, .holes = {}}, "empty lot"}};
+  const BuildingSet set = MakeBuildings(input, threads);
+  ASSERT_EQ(set.buildings.size(), 1U);
+  EXPECT_TRUE(set.buildings[0].given);
+  EXPECT_EQ(set.buildings[0].given_id, "cadastre 7");
+  EXPECT_NEAR(set.buildings[0].measures.height_m.value, 6.0, 0.15);
+}
+
+// A roof of many small steps is neither flat nor gable nor hip.
+TEST(MakeBuildings, WhatNoRoofDescribesIsABlock) {
+  MadePlace place = TwoHouses();
+  for (size_t i = 0; i < place.made.surface.size(); ++i) {
+    if (place.made.surface[i] != MadeSurface::kRoof || place.made.building[i] != 2) continue;
+    SurfacePoint& point = place.made.cloud.points[i];
+    const auto step = static_cast<float>(static_cast<int>(std::floor((point.position.x() + point.position.y()) / 3.0F)) & 3);
+    point.position.z() += 0.9F * step;
+  }
+  base::ThreadPool threads(2);
+  const BuildingSet set = MakeBuildings(InputOf(place), threads);
+  int blocks = 0;
+  for (const Building& building : set.buildings) {
+    EXPECT_TRUE(CheckSolid(building.lod22).empty());
+    if (building.roof != RoofKind::kOther) continue;
+    EXPECT_FALSE(building.accepted);
+    ++blocks;
+    for (const Part& part : building.shape.parts) EXPECT_EQ(part.eave_z, part.ridge_z);
+    EXPECT_NE(building.note.find("block"), std::string::npos);
+  }
+  EXPECT_EQ(blocks, 1);
+}
+
+}  // namespace
+}  // namespace skyquilt::buildings

@@ -32,7 +32,7 @@ image::Image8 DrawModel(const Building& building, const image::Image8& picture, 
 // One picture per outer wall face of the lod22 solid at least 1 m wide, seen straight on: facade_<id>_<n>.png, with facade_<id>.json: for each its
 // size of a pixel in metres, the corner points of the picture in map coordinates, the azimuth of its normal and the wall's width and height.
 // caster: renders the scene. Rays begin up to 3 m in front of the wall (less where another wall of the building is nearer) and are shown where the
-// field is opaque within 0.7 m behind it; transparent elsewhere. Returns the files. Throws base::InputError, base::Interrupted.
+// field is opaque within 1.5 m behind it; transparent elsewhere. Returns the files. Throws base::InputError, base::Interrupted.
 std::vector<std::filesystem::path> WriteFacades(const Building& building, const surface::RayCaster& caster, const surface::MapFrame& frame,
                                                 double pixel_m, const std::filesystem::path& folder, base::ThreadPool& threads);
 

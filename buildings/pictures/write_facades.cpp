@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kFront_m = 3.0;      // where rays begin
-constexpr double kBehind_m = 0.7;     // where they end
+constexpr double kBehind_m = 1.5;     // where they end: windows and blurred walls lie deeper than the wall
 constexpr double kNarrowest_m = 1.0;  // of the walls with pictures
 constexpr double kLowest_m = 0.5;     // lower ones are steps between roofs
 constexpr double kLeastOpacity = 0.5;

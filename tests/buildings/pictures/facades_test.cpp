@@ -161,7 +161,7 @@ TEST(WriteFacades, MapCoordinatesAndGridNorth) {
 }
 
 TEST(WriteFacades, WhatIsNotOpaqueNearTheWallIsTransparent) {
-  PaintedHouse near{.plan = Flat(), .depth_m = 0.6}, deep{.plan = Flat(), .depth_m = 0.8}, thin{.plan = Flat(), .opacity = 0.4};
+  PaintedHouse near{.plan = Flat(), .depth_m = 1.4}, deep{.plan = Flat(), .depth_m = 1.6}, thin{.plan = Flat(), .opacity = 0.4};
   const Building house = MadeHouse(Flat());
   const Result shown(house, near.Caster()), behind(house, deep.Caster()), faint(house, thin.Caster());
   EXPECT_EQ(shown.Picture(shown.Facing(180.0)).at<cv::Vec4b>(25, 60)[3], 255);
@@ -195,7 +195,7 @@ TEST(WriteFacades, RaysBeginInFrontOfTheWallButNotBehindTheNextOne) {
   const Result box(MadeHouse(free.plan), free.Caster());
   ASSERT_FALSE(free.seen.empty());
   for (const render::Ray& ray : free.seen) {
-    EXPECT_NEAR(ray.t_far, 3.7, 1e-9);
+    EXPECT_NEAR(ray.t_far, 4.5, 1e-9);
     EXPECT_NEAR(ray.direction_enu.norm(), 1.0, 1e-9);
     EXPECT_NEAR(static_cast<double>(ray.pixel_width), 0.1, 1e-6);
   }
@@ -204,7 +204,7 @@ TEST(WriteFacades, RaysBeginInFrontOfTheWallButNotBehindTheNextOne) {
   const Result yard(MadeCourtyard(court.plan, 6.0), court.Caster());
   EXPECT_EQ(yard.description["facades"].size(), 8U);
   std::set<long> starts_cm;
-  for (const render::Ray& ray : court.seen) starts_cm.insert(std::lround(100.0 * (ray.t_far - 0.7)));
+  for (const render::Ray& ray : court.seen) starts_cm.insert(std::lround(100.0 * (ray.t_far - 1.5)));
   EXPECT_EQ(starts_cm, (std::set<long>{100, 200, 300}));
 }
 

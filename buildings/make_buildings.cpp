@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "buildings/fit/fit_shape.h"
+#include "buildings/outline_block.h"
 #include "buildings/shape/find_shape.h"
 #include "buildings/solids/build_solids.h"
 #include "core/base/cancel.h"
@@ -25,6 +26,7 @@ constexpr double kShortestWall_m = 1.5;
 struct Fitted {
   FittedShape fit;
   bool manhattan = true;
+  bool follows_outline = false;  // a rectangle would be too large
 };
 
 bool IsPitched(const Shape& shape) {
@@ -147,7 +149,8 @@ class Maker {
     }
     if (!guess) return;
     fits_[i] = Fitted{FitShape(guess->shape, candidate, *input_.cloud, fit_options_), guess->manhattan};
-    if (fits_[i]->fit.share_within >= kDescribed) return;
+    fits_[i]->follows_outline = !guess->manhattan && LeavesCorners(candidate, fits_[i]->fit.shape);
+    if (fits_[i]->fit.share_within >= kDescribed && !fits_[i]->follows_outline) return;
     for (Part& part : guess->shape.parts) {
       part.roof = RoofKind::kOther;
       part.joins = -1;
@@ -191,6 +194,7 @@ class Maker {
     building.measures = MeasureShape(fitted.fit, fit_options_);
     building.measures.wall_seen = ShareOfWallSeen(building.shape, candidate, *input_.cloud, input_.gsd_m);
     if (!Describe(candidate, fitted, &building)) return std::nullopt;
+    if (fitted.follows_outline) FollowOutline(candidate, input_.gsd_m, &building);
     return building;
   }
 
@@ -216,7 +220,9 @@ class Maker {
       notes.push_back("no valid solid with its roof could be built, so LoD 2.2 is a block");
     }
     if (!fitted.manhattan) notes.push_back("the outline has no right angles; length and width are those of the smallest rectangle around it");
-    if (building->roof == RoofKind::kOther) {
+    if (fitted.follows_outline) {
+      notes.push_back("it is a block that follows the roof's outline, up to the median height of its roof");
+    } else if (building->roof == RoofKind::kOther) {
       notes.push_back("neither a flat, gable nor hip roof describes it, so it is a block up to the median height of its roof");
     } else if (!building->accepted) {
       notes.push_back("only " + std::to_string(static_cast<int>(std::lround(100.0 * building->share_within))) +

@@ -13,7 +13,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr auto kRoofOverhang = static_cast<float>(kRoofOverhang_m);
 constexpr float kParapetThickness = 0.25F;
 constexpr double kIntoDeck_m = 0.1;  // walls that stand on a deck begin this far below it, so that no light passes
 
@@ -58,8 +57,9 @@ void AddRunOn(const Building& b, const Placer& place, float hl, float hw, float 
 
 void AddGableRoof(const Building& b, const Placer& place, float hl, float hw, float eave, float ridge, uint32_t index, Mesh& mesh) {
   const float slope = (ridge - eave) / hw;
-  const auto Reach = [&](size_t side) { return (side % 2 == 0 ? hl : hw) + (b.shared[side] ? 0.0F : kRoofOverhang); };
-  const auto Low = [&](size_t side) { return b.shared[side] ? eave : eave - slope * kRoofOverhang; };
+  const auto overhang = static_cast<float>(b.overhang_m);
+  const auto Reach = [&](size_t side) { return (side % 2 == 0 ? hl : hw) + (b.shared[side] ? 0.0F : overhang); };
+  const auto Low = [&](size_t side) { return b.shared[side] ? eave : eave - slope * overhang; };
   const float right = Reach(0), back = Reach(1), left = -Reach(2), front = -Reach(3);
   const Tag roof{Part::kPitchedRoof, index};
   mesh.AddQuad(place(left, front, Low(3)), place(right, front, Low(3)), place(right, 0, ridge), place(left, 0, ridge), roof);
@@ -70,11 +70,12 @@ void AddGableRoof(const Building& b, const Placer& place, float hl, float hw, fl
   mesh.AddTriangle(place(-hl, hw, eave), place(-hl, -hw, eave), place(-hl, 0, ridge), wall);
 }
 
-void AddHipRoof(const Placer& place, float hl, float hw, float eave, float ridge, uint32_t index, Mesh& mesh) {
+void AddHipRoof(const Building& b, const Placer& place, float hl, float hw, float eave, float ridge, uint32_t index, Mesh& mesh) {
   const float slope = (ridge - eave) / hw;
-  const float x = hl + kRoofOverhang;
-  const float y = hw + kRoofOverhang;
-  const float low = eave - slope * kRoofOverhang;
+  const auto overhang = static_cast<float>(b.overhang_m);
+  const float x = hl + overhang;
+  const float y = hw + overhang;
+  const float low = eave - slope * overhang;
   const float end = std::max(hl - hw, 0.0F);
   const Tag roof{Part::kPitchedRoof, index};
   mesh.AddQuad(place(-x, -y, low), place(x, -y, low), place(end, 0, ridge), place(-end, 0, ridge), roof);
@@ -209,7 +210,7 @@ void AddBuilding(const Building& b, uint32_t index, Mesh& mesh) {
       AddGableRoof(b, place, hl, hw, eave, ridge, index, mesh);
       break;
     case RoofKind::kHip:
-      AddHipRoof(place, hl, hw, eave, ridge, index, mesh);
+      AddHipRoof(b, place, hl, hw, eave, ridge, index, mesh);
       break;
   }
   if (b.kind == BuildingKind::kHouse && b.roof != RoofKind::kFlat && !b.bare_roof) {

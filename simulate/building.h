@@ -18,7 +18,7 @@ const char* KindName(BuildingKind kind);
 const char* RoofName(RoofKind roof);
 const char* ShapeName(BuildingShape shape);
 
-inline constexpr double kRoofOverhang_m = 0.4;  // of pitched roofs, beyond walls that stand free
+inline constexpr double kRoofOverhang_m = 0.4;  // of all pitched roofs of plain places
 
 // A rectangle of walls with a roof. Several that share walls or stand on each other are one outline (compound.h): nobody can tell their owners apart
 // from above.
@@ -32,6 +32,7 @@ struct Building {
   double eave_height_m = 5.0;                        // top of the long walls (flat roof: the roof deck), above ground_z_m
   double ridge_height_m = 8.0;                       // above ground_z_m; flat roof: the eave height
   double parapet_height_m = 0.0;                     // above a flat roof's deck
+  double overhang_m = kRoofOverhang_m;               // of a pitched roof beyond walls that stand free; not used by flat roofs
   double ground_z_m = 0.0;                           // ENU height of the ground at the centre
   double foundation_m = 1.5;                         // the walls begin this far below ground_z_m
   uint32_t seed = 0;
@@ -50,6 +51,10 @@ struct Building {
 
   // Rise of a pitched roof per metre; 0 for flat ones.
   double RoofRise() const { return (ridge_height_m - eave_height_m) / (0.5 * width_m); }
+  // How far the roof reaches beyond walls that stand free; 0 for flat ones.
+  double RoofOverhang() const { return roof == RoofKind::kFlat ? 0.0 : overhang_m; }
+  // Height of the roof's lowest edge, above ground_z_m.
+  double RoofEdgeHeight() const { return eave_height_m - RoofRise() * RoofOverhang(); }
   // Unit vector of the length axis, east and north.
   Eigen::Vector2d Axis() const;
   // A point in the building's own axes, metres: x along the length, y along the width, z above ground_z_m.

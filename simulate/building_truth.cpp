@@ -57,7 +57,7 @@ TruthJson PartJson(const std::vector<Building>& buildings, const Outline& outlin
           {"yaw_deg", b.yaw_deg},
           {"inside_area", IsInside(place, b.centre)},
           {"building", b.outline},
-          {"roof_overhang_m", b.roof == RoofKind::kFlat ? 0.0 : kRoofOverhang_m},
+          {"roof_overhang_m", b.RoofOverhang()},
           {"base_z_m", b.ground_z_m + b.base_height_m},
           {"carries", carries}};
 }

@@ -7,6 +7,7 @@
 
 #include "simulate/noise.h"
 #include "simulate/outline.h"
+#include "simulate/roof_overhangs.h"
 #include "simulate/wall_trees.h"
 
 namespace skyquilt::simulate {
@@ -31,7 +32,11 @@ CityLayout::CityLayout(const CityPlan& plan, const Eigen::Vector2d& ground_min, 
   FurnishCells(plan, seed);
   AddStreetLife(plan, random);
   TurnContents(ground_min, ground_max);
-  AddWallTrees(plan, seed);
+  if (plan.varied) {
+    DrawOverhangs(contents_.buildings);
+    RemoveTreesAtRoofs(plan.tree_detail, contents_);
+    AddWallTrees(plan, seed);
+  }
   AddFieldTrees(plan, ground_min, ground_max, random);
 }
 
@@ -87,7 +92,6 @@ void CityLayout::TurnContents(const Eigen::Vector2d& ground_min, const Eigen::Ve
 }
 
 void CityLayout::AddWallTrees(const CityPlan& plan, uint32_t seed) {
-  if (!plan.varied) return;
   base::Random random(seed, 6);
   AddTreesAtWalls(
       plan.tree_detail,

@@ -15,7 +15,7 @@ namespace {
 
 // How far the roof reaches beyond the wall at each side of the part's own axes.
 double OverhangAt(const Building& part, size_t side) {
-  return part.roof == RoofKind::kFlat || part.shared[side] ? 0.0 : kRoofOverhang_m;
+  return part.shared[side] ? 0.0 : part.RoofOverhang();
 }
 
 // The part along the axes of the outline, with its origin.

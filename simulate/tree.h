@@ -8,6 +8,8 @@
 
 namespace skyquilt::simulate {
 
+inline constexpr double kCrownReach = 1.35;  // crowns reach no farther than this many radii
+
 struct Tree {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  // ENU metres
   double ground_z_m = 0.0;

@@ -8,6 +8,7 @@
 
 #include "simulate/compound.h"
 #include "simulate/plot_furnish.h"
+#include "simulate/roof_overhangs.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -151,7 +152,7 @@ void AddShed(const HousePlot& plot, double middle_y, CityContents& contents, bas
   if (large && random.UniformDouble() < 0.35) PitchRoofed(shed, RoofKind::kGable, random.Uniform(2.1, 2.4), random.Uniform(20.0, 30.0));
   shed.seed = random.NextU32();
   // Not nearer to the neighbour's garden than its overhang.
-  const double half_depth = 0.5 * shed.width_m + 0.07 * shed.length_m + kRoofOverhang_m;
+  const double half_depth = 0.5 * shed.width_m + 0.07 * shed.length_m + kLargestShedOverhang_m;
   for (int attempt = 0; attempt < 6; ++attempt) {
     shed.centre = {plot.x + random.Uniform(3.2, plot.width_m - 3.2), middle_y + plot.front * (half_depth + random.Uniform(0.3, 1.2))};
     if (!IsClear(shed, kBesideOverhang_m, contents)) continue;

@@ -9,8 +9,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kShare = 0.4;         // of the outlines at which a tree is tried
-constexpr double kBelowEave_m = 0.45;  // crowns under overhangs end this far below them
-constexpr double kCrownReach = 1.35;   // crowns reach no farther than this many radii
+constexpr double kBelowEdge_m = 0.1;   // crowns under overhangs end this far below them
 constexpr double kFromOthers_m = 0.3;  // between a crown and walls or roofs that it does not touch
 constexpr double kLowestTree_m = 2.2;
 
@@ -57,7 +56,7 @@ void AddTreesAtWalls(int detail, const std::function<bool(const Vector2d&)>& is_
     if (!wanted || !MayHaveTree(part) || part.joined || part.shared[side]) continue;
     // Beside a flat roof a crown may be higher than the wall, as nothing hangs over.
     const bool flat = part.roof == RoofKind::kFlat;
-    const double highest = flat ? std::clamp(1.5 * part.eave_height_m, 4.0, 8.0) : part.eave_height_m - kBelowEave_m;
+    const double highest = flat ? std::clamp(1.5 * part.eave_height_m, 4.0, 8.0) : part.RoofEdgeHeight() - kBelowEdge_m;
     tree.height_m = (0.75 + 0.25 * size) * highest;
     if (tree.height_m < kLowestTree_m) continue;
     tree.crown_radius_m = 0.3 * tree.height_m;
@@ -68,7 +67,7 @@ void AddTreesAtWalls(int detail, const std::function<bool(const Vector2d&)>& is_
     if (!is_free(tree.position)) continue;
     const double to_others = kCrownReach * tree.crown_radius_m + kFromOthers_m;
     const bool clear = std::all_of(contents.buildings.begin(), contents.buildings.end(), [&](const Building& other) {
-      return &other == &part || other.DistanceTo(tree.position) > to_others + (other.roof == RoofKind::kFlat ? 0.0 : kRoofOverhang_m);
+      return &other == &part || other.DistanceTo(tree.position) > to_others + other.RoofOverhang();
     });
     const bool apart = std::all_of(contents.trees.begin(), contents.trees.end(), [&](const Tree& other) {
       return (other.position - tree.position).norm() > 0.8 * (other.crown_radius_m + tree.crown_radius_m);

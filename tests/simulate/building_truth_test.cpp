@@ -13,6 +13,7 @@
 
 #include "core/base/file.h"
 #include "simulate/outline.h"
+#include "simulate/roof_overhangs.h"
 #include "simulate/world.h"
 #include "tests/support/temporary_folder.h"
 
@@ -117,6 +118,20 @@ TEST_P(BuildingTruth, PartsAndOutlinesNameEachOther) {
   EXPECT_EQ(truth_["outlines"].size() < parts.size(), IsVaried());
 }
 
+TEST_P(BuildingTruth, RoofOutlinesReachBeyondWallsByTheOverhang) {
+  std::set<double> overhangs;
+  for (const Json& outline : truth_["outlines"]) {
+    const Json& part = truth_["buildings"][outline["parts"][0].get<size_t>()];
+    const double overhang_m = part["roof_overhang_m"];
+    EXPECT_EQ(part["roof"] == "flat", overhang_m == 0.0);
+    overhangs.insert(overhang_m);
+    if (outline["shape"] != "rectangle") continue;
+    const double length_m = part["length_m"].get<double>() + 2.0 * overhang_m, width_m = part["width_m"].get<double>() + 2.0 * overhang_m;
+    EXPECT_NEAR(SignedArea(RingOf(outline["roof_outline"])), length_m * width_m, 1e-6);
+  }
+  EXPECT_EQ(overhangs.size() > 2, IsVaried());
+}
+
 TEST_P(BuildingTruth, DecksUnderOtherPartsSayWhatTheyCarry) {
   int n_carrying = 0;
   for (const Json& part : truth_["buildings"]) {
@@ -151,7 +166,7 @@ TEST_P(BuildingTruth, RaysFromAboveMeetTheRoofs) {
           bool near_edge = false;
           for (const size_t other : outline["parts"]) {
             const double distance = buildings[other].DistanceTo(at);
-            near_edge = near_edge || std::abs(distance) < 0.45;
+            near_edge = near_edge || std::abs(distance) < kLargestOverhang_m + 0.05;
             if (distance > 0.0) continue;
             double height = 1e9;
             for (const RoofPlane3d& plane : planes[other]) height = std::min(height, plane.HeightAt(at));

@@ -1,15 +1,34 @@
 #include "buildings/outline_block.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "buildings/solids/build_solids.h"
 
 namespace skyquilt::buildings {
 namespace {
 
-constexpr double kFilled = 0.9;      // share of its rectangle that a rectangular outline fills, as its corners are rounded
-constexpr double kRim_gsd = 0.5;     // standard deviation of the rim of a roof
-constexpr double kStairs_gsd = 2.0;  // outlines follow cells of about this size
+constexpr double kFilled = 0.9;       // share of its rectangle that a rectangular outline fills, as its corners are rounded
+constexpr double kRim_gsd = 0.5;      // standard deviation of the rim of a roof
+constexpr double kRounded_gsd = 2.0;  // details of a roof's rim below this are noise
+constexpr double kStairs = 1.5;       // and so are the steps of the raster that found the outline, in its cells
+
+// Of outlines along raster cells no edge is shorter than a cell.
+double ShortestEdge(const std::vector<Eigen::Vector2d>& ring) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < ring.size(); ++i) shortest = std::min(shortest, (ring[(i + 1) % ring.size()] - ring[i]).norm());
+  return shortest;
+}
+
+// Outlines that were given stay as they are, and so do those of which nothing simpler has the same courtyards.
+Polygon WithoutStairs(const Candidate& candidate, double gsd_m) {
+  const Polygon& outline = candidate.outline;
+  if (candidate.given) return outline;
+  Polygon simple = Simplified(outline, std::max(kRounded_gsd * gsd_m, kStairs * ShortestEdge(outline.outer)));
+  return simple.outer.size() >= 3 && simple.holes.size() == outline.holes.size() ? simple : outline;
+}
 
 }  // namespace
 
@@ -19,9 +38,7 @@ bool LeavesCorners(const Candidate& candidate, const Shape& shape) {
 }
 
 void FollowOutline(const Candidate& candidate, double gsd_m, Building* building) {
-  // The outline as it is where nothing simpler has the same holes.
-  const Polygon simple = Simplified(candidate.outline, kStairs_gsd * gsd_m);
-  building->footprint = simple.outer.size() >= 3 && simple.holes.size() == candidate.outline.holes.size() ? simple : candidate.outline;
+  building->footprint = WithoutStairs(candidate, gsd_m);
   Measures& measures = building->measures;
   const double top = measures.ridge_m.value, ground = building->shape.ground_z;
   building->lod12 = ExtrudeBlock(building->footprint, ground, top);

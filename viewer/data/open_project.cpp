@@ -14,6 +14,7 @@
 #include "core/scene/scene_file.h"
 #include "partition/block.h"
 #include "surface/map_frame.h"
+#include "viewer/data/describe_buildings.h"
 #include "viewer/data/describe_files.h"
 #include "viewer/data/opening.h"
 #include "viewer/data/survey_place.h"
@@ -202,6 +203,7 @@ OpenedProject OpenProject(const coordinator::Project& project, const OpenedProje
   DescribeBox(&opened, scene, blocks);
   opening::DescribeSurface(&opened);
   opening::DescribeMaps(&opened);
+  opening::DescribeBuildings(&opened);
   opening::DescribeBlocks(&opened, blocks, metrics.json);
   opening::DescribePhotos(&opened, metrics.json);
   opening::DescribeMetrics(&opened, metrics);

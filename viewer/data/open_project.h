@@ -22,8 +22,9 @@ struct OpenedProject {
   FileLook survey_state;                         // of survey.json on disk when it was read
   geo::Geodetic origin;
   bool georeferenced = false;
-  geo::UtmZone zone;            // of the maps, when geo-referenced
-  std::set<std::string> tiles;  // names of files in surface/tiles; empty: there is no finished surface
+  geo::UtmZone zone;                // of the maps, when geo-referenced
+  std::set<std::string> tiles;      // names of files in surface/tiles; empty: there is no finished surface
+  std::set<std::string> buildings;  // names of files in buildings/; empty: there are none that can be shown
   bool terrain = false, orthophoto = false, contours = false;
   nlohmann::json description;  // project.json without "before" and "revision"
 };

@@ -10,6 +10,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "viewer/data/describe_buildings.h"
 #include "viewer/data/map_files.h"
 #include "viewer/data/open_project.h"
 #include "viewer/data/photo_pictures.h"
@@ -111,6 +112,10 @@ std::string Description(const Served& served) {
     for (const char* key : {"tiles", "terrain", "orthophoto", "points", "contours"}) {
       if (earlier[key].is_string()) earlier[key] = "before/" + earlier[key].get<std::string>();
     }
+    if (earlier["buildings"].is_object()) {
+      earlier["buildings"]["url"] = "before/" + earlier["buildings"]["url"].get<std::string>();
+      for (nlohmann::json& file : earlier["buildings"]["files"]) file = "before/" + file.get<std::string>();
+    }
     json["before"] = std::move(earlier);
   }
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -122,6 +127,11 @@ DataReply ProjectFile(MadeFiles* made, const OpenedProject& opened, const std::s
     const std::string name = path.substr(6);
     if (!opened.tiles.contains(name)) return DataReply::NotFound("there is no such tile");
     return File(name.ends_with(".json") ? "application/json" : "model/gltf-binary", opened.project.SurfaceFolder() / "tiles" / name);
+  }
+  if (path.starts_with("buildings/")) {
+    const std::string name = path.substr(10);
+    if (!opened.buildings.contains(name)) return DataReply::NotFound("there is no such file of buildings");
+    return File(opening::BuildingFileType(name), opened.project.BuildingsFolder() / name);
   }
   const fs::path products = opened.project.ProductsFolder();
   const auto frame = [&] { return SurveyFrame(opened.origin, opened.georeferenced); };

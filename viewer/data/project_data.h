@@ -4,6 +4,7 @@
 //   tiles/tileset.json, tiles/*.glb  surface/tiles
 //   terrain.bin, orthophoto.jpg      DSM as a grid and orthophoto, at most 512 points and 2048 pixels long: shown when there are no tiles
 //   points.bin, contours.json        sparse points; contours.gpkg as lines
+//   buildings/buildings.json, .csv, .city.json, .gpkg, .glb, .dxf   what 'skyquilt buildings' wrote
 //   photos/<i>/thumbnail.jpg, /photo.jpg, /full.jpg   256 and 2048 pixels wide; the photo itself
 //   measurements.geojson, gcp.json, camera_path.json  saved documents (GET, PUT)
 //   pictures/<n>.png                 made by queries

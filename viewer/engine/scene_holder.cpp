@@ -60,9 +60,10 @@ SceneHolder::~SceneHolder() = default;
 
 std::vector<FileLook> SceneHolder::LookAtData() const {
   std::vector<FileLook> looks;
-  // The stamp of the maps is written when they are begun and when they are done.
+  // The stamps of maps and buildings are written when they are begun and when they are done.
   const auto look_at = [&](const coordinator::Project& project) {
-    for (const std::filesystem::path& file : {project.SurfaceTable(), project.MetricsFile(), project.StampFile("products"), project.BlocksFile()}) {
+    for (const std::filesystem::path& file : {project.SurfaceTable(), project.MetricsFile(), project.StampFile("products"),
+                                              project.StampFile("buildings"), project.BuildingsFile(), project.BlocksFile()}) {
       looks.push_back(LookAt(file));
     }
   };

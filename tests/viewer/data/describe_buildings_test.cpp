@@ -1,0 +1,120 @@
+// Buildings as the viewer offers them: their number, their files, and the reason when there are none.
+#include <gtest/gtest.h>
+
+#include "coordinator/project/stamp.h"
+#include "tests/viewer/data/sample_project.h"
+
+namespace skyquilt::viewer {
+namespace {
+
+// As 'skyquilt buildings' writes it, with members that only look like the list of buildings.
+constexpr const char* kTwoBuildings = R"({"format": "skyquilt buildings", "version": 1, "metric": true, "other": [{"id": 9}], "buildings": [)"
+                                      R"({"id": 1, "shape": {"parts": [{"u0": 0}, {"u0": 1}]}, "buildings": [{}, {}]}, {"id": 2}]})";
+
+void Write(const SampleProject& sample, const std::string& name, const std::string& content) {
+  std::filesystem::create_directories(sample.project.BuildingsFolder());
+  base::WriteFileAtomically(sample.project.BuildingsFolder() / name, content);
+}
+
+nlohmann::json MissingOf(const nlohmann::json& description) {
+  for (const nlohmann::json& one : description["missing"]) {
+    if (one["what"] == "buildings") return one;
+  }
+  return nullptr;
+}
+
+TEST(DescribeBuildings, CountsThemAndListsTheirFiles) {
+  SampleProject sample;
+  Write(sample, "buildings.json", kTwoBuildings);
+  Write(sample, "buildings.csv", "id\n1\n2\n");
+  Write(sample, "buildings.gpkg", "GPKG");
+  Write(sample, "notes.txt", "private");
+  ProjectData data(sample.project);
+  const nlohmann::json description = DescriptionOf(data);
+  EXPECT_EQ(description["buildings"],
+            (nlohmann::json{{"count", 2}, {"url", "buildings/buildings.json"}, {"files", {"buildings/buildings.csv", "buildings/buildings.gpkg"}}}));
+  EXPECT_TRUE(MissingOf(description).is_null());
+  const DataReply table = data.Get("buildings/buildings.json", "r=0");
+  EXPECT_EQ(table.status, 200);
+  EXPECT_EQ(table.content_type, "application/json");
+  EXPECT_EQ(table.file, sample.project.BuildingsFile());
+  EXPECT_TRUE(table.cache);
+  EXPECT_EQ(data.Get("buildings/buildings.csv", "").content_type, "text/csv; charset=utf-8");
+  for (const char* path : {"buildings/notes.txt", "buildings/buildings.dxf", "buildings/", "buildings/../config.toml", "buildings"}) {
+    EXPECT_EQ(data.Get(path, "").status, 404) << path;
+  }
+}
+
+TEST(DescribeBuildings, ASurveyWithoutBuildingsHasNone) {
+  SampleProject sample;
+  Write(sample, "buildings.json", R"({"format": "skyquilt buildings", "version": 1, "buildings": []})");
+  ProjectData data(sample.project);
+  EXPECT_EQ(DescriptionOf(data)["buildings"]["count"], 0);
+}
+
+TEST(DescribeBuildings, SaysWhichCommandMakesThem) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const std::string command = "skyquilt buildings " + sample.project.folder.string();
+  EXPECT_TRUE(DescriptionOf(data)["buildings"].is_null());
+  EXPECT_EQ(MissingOf(DescriptionOf(data))["advice"], "skyquilt surface " + sample.project.folder.string() + "\n" + command)
+      << "without a surface none can be found";
+  sample.AddSurface();
+  data.Reload();
+  EXPECT_EQ(MissingOf(DescriptionOf(data))["advice"], command);
+  EXPECT_EQ(data.Get("buildings/buildings.json", "").status, 404);
+  coordinator::SaveStamp(sample.project, {.stage = "buildings", .state = coordinator::StageStamp::kRunning, .options = {}, .inputs = {}});
+  data.Reload();
+  EXPECT_NE(MissingOf(DescriptionOf(data))["reason"].get<std::string>().find("interrupted"), std::string::npos);
+}
+
+TEST(DescribeBuildings, WhatIsDamagedIsNotServed) {
+  SampleProject sample;
+  sample.AddSurface();
+  const std::string whole = kTwoBuildings;
+  for (const std::string& content : {std::string(), whole.substr(0, whole.size() - 1), std::string("[]"), std::string(R"({"buildings": []})"),
+                                     std::string(R"({"format": "skyquilt buildings", "version": 2, "buildings": []})"),
+                                     std::string(R"({"format": "skyquilt buildings", "version": 1, "buildings": {}})"), std::string("\xff\xfe{}")}) {
+    Write(sample, "buildings.json", content);
+    Write(sample, "buildings.csv", "id\n");
+    ProjectData data(sample.project);
+    EXPECT_TRUE(DescriptionOf(data)["buildings"].is_null()) << content;
+    EXPECT_EQ(MissingOf(DescriptionOf(data))["advice"], "skyquilt buildings " + sample.project.folder.string() + " --restart") << content;
+    EXPECT_EQ(data.Get("buildings/buildings.json", "").status, 404);
+    EXPECT_EQ(data.Get("buildings/buildings.csv", "").status, 404);
+  }
+}
+
+TEST(DescribeBuildings, TooManyForABrowserAreForAGis) {
+  SampleProject sample;
+  Write(sample, "buildings.json", kTwoBuildings);
+  std::filesystem::resize_file(sample.project.BuildingsFile(), (64U << 20U) + 1U);  // sparse, takes no room
+  ProjectData data(sample.project);
+  EXPECT_TRUE(DescriptionOf(data)["buildings"].is_null());
+  EXPECT_NE(MissingOf(DescriptionOf(data))["advice"].get<std::string>().find("buildings.gpkg"), std::string::npos);
+  EXPECT_EQ(data.Get("buildings/buildings.json", "").status, 404);
+}
+
+TEST(DescribeBuildings, LinksAreNotFollowed) {
+  SampleProject sample;
+  Write(sample, "buildings.json", kTwoBuildings);
+  base::WriteFileAtomically(sample.folder / "private", "private");
+  std::filesystem::create_symlink(sample.folder / "private", sample.project.BuildingsFolder() / "buildings.csv");
+  ProjectData data(sample.project);
+  EXPECT_TRUE(DescriptionOf(data)["buildings"]["files"].empty());
+  EXPECT_EQ(data.Get("buildings/buildings.csv", "").status, 404);
+}
+
+TEST(DescribeBuildings, ThoseOfTheEarlierProjectHaveTheirOwnUrls) {
+  SampleProject sample, earlier;
+  Write(earlier, "buildings.json", kTwoBuildings);
+  Write(earlier, "buildings.dxf", "0\nEOF\n");
+  ProjectData data(sample.project, earlier.project);
+  const nlohmann::json before = DescriptionOf(data)["before"]["buildings"];
+  EXPECT_EQ(before["url"], "before/buildings/buildings.json");
+  EXPECT_EQ(before["files"], nlohmann::json({"before/buildings/buildings.dxf"}));
+  EXPECT_EQ(data.Get("before/buildings/buildings.dxf", "").file, earlier.project.BuildingsFolder() / "buildings.dxf");
+}
+
+}  // namespace
+}  // namespace skyquilt::viewer

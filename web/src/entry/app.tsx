@@ -4,6 +4,7 @@ import { createRoot, type Root } from "react-dom/client";
 import { AppView } from "../panels/app_view.js";
 import type { AppContext } from "../panels/context.js";
 import { addViewCommands } from "../panels/view_commands.js";
+import { loadBuildings } from "../protocol/buildings_client.js";
 import { connect } from "../protocol/link.js";
 import { loadProject } from "../protocol/project_client.js";
 import { createScene } from "../scene/viewer_scene.js";
@@ -11,6 +12,7 @@ import { CommandTable } from "../state/commands.js";
 import { initialState } from "../state/initial.js";
 import { Store } from "../state/store.js";
 import { createTools } from "../tools/tools.js";
+import { keepBuildings } from "./buildings_loader.js";
 import { watchProject } from "./project_watch.js";
 import { requireWebGl2, StartErrorPage } from "./start_error.js";
 import { installTestHook } from "./test_hook.js";
@@ -37,6 +39,7 @@ async function start(root: Root, container: HTMLElement): Promise<void> {
   const context: AppContext = { project, store, scene, link, commands };
   createTools(context);
   addViewCommands(context);
+  keepBuildings(store, project, loadBuildings);
   const draw = (changed: boolean): void =>
     root.render(
       <StrictMode>

@@ -59,6 +59,12 @@ export function formatVolume(m3: number): string {
   return format("volume", m3);
 }
 
+/** One digit of sigma, two when it begins with 1: 0.05, 0.012. The exponent is that after rounding, so 0.0996 is 0.10. */
+function decimalsOf(sigma: number): number {
+  const [digits = "0", exponent = "0"] = sigma.toExponential(sigma.toExponential(1).startsWith("1") ? 1 : 0).split("e");
+  return Math.max(0, (digits.startsWith("1") ? 1 : 0) - Number(exponent));
+}
+
 /** "12.34 m ± 0.05 m": digits that fit sigma, one standard deviation; without sigma the value alone. */
 export function formatEstimate(
   estimate: { readonly value: number; readonly sigma: number | null },
@@ -73,13 +79,20 @@ export function formatEstimate(
   if (spread < 0.5 * 10 ** -finest) {
     return `${fixed(value / unit.size, finest)} ${unit.name} ± <${(10 ** -finest).toFixed(finest)} ${unit.name}`;
   }
-  // One digit of sigma, two when it begins with 1: 0.05, 0.012. The exponent is that after rounding, so 0.0996 is 0.10.
-  const [digits = "0", exponent = "0"] = spread
-    .toExponential(spread.toExponential(1).startsWith("1") ? 1 : 0)
-    .split("e");
-  const wanted = (digits.startsWith("1") ? 1 : 0) - Number(exponent);
-  const decimals = Math.min(finest, Math.max(0, wanted));
+  const decimals = Math.min(finest, decimalsOf(spread));
   return `${fixed(value / unit.size, decimals)} ${unit.name} ± ${fixed(spread, decimals)} ${unit.name}`;
+}
+
+/** "41.2° ± 0.5°", or "12.34 ± 0.05" of a length whose unit is unknown: as formatEstimate, with any suffix. */
+export function formatWithSuffix(
+  { value, sigma }: { readonly value: number; readonly sigma: number | null },
+  suffix = "",
+): string {
+  if (!Number.isFinite(value)) return NOTHING;
+  if (sigma === null || !Number.isFinite(sigma) || sigma < 0) return `${fixed(value, 2)}${suffix}`;
+  if (sigma < 0.0005) return `${fixed(value, 3)}${suffix} ± <0.001${suffix}`;
+  const decimals = Math.min(3, decimalsOf(sigma));
+  return `${fixed(value, decimals)}${suffix} ± ${fixed(sigma, decimals)}${suffix}`;
 }
 
 /** "47.3769000° N, 8.5417000° E": 7 decimals are a centimetre. */

@@ -27,6 +27,7 @@ export function LayersPanel(): ReactElement {
         <LayerRow name="exact" />
         <LayerRow name="points" />
         <LayerRow name="contours" />
+        <LayerRow name="buildings" />
         <LayerRow name="errorMap">
           <ErrorLegend />
         </LayerRow>
@@ -102,6 +103,8 @@ function layerText(name: LayerName, project: Project, state: AppState): LayerTex
         detail: project.contours === null ? "none" : "",
         available: project.contours !== null,
       };
+    case "buildings":
+      return buildingsText(project, state);
     case "errorMap":
       return errorMapText(project, state);
     case "measurements":
@@ -127,6 +130,14 @@ function surfaceText(project: Project): LayerText {
   }
   if (project.terrain !== null) return { label, detail: "orthophoto over heights", available: true };
   return { label, detail: "none", available: false };
+}
+
+function buildingsText(project: Project, state: AppState): LayerText {
+  const label = "Buildings";
+  const count = project.buildings?.count ?? 0;
+  const detail =
+    project.buildings === null ? "not looked for" : count === 0 ? "none found" : counted(count, "building");
+  return { label, detail: state.buildings.loading ? "being loaded …" : detail, available: count > 0 };
 }
 
 function errorMapText(project: Project, state: AppState): LayerText {

@@ -2,6 +2,7 @@
 import type { ReactElement } from "react";
 import type { PanelName } from "../state/app_state.js";
 import { AboutPanel } from "./about_panel.js";
+import { BuildingsPanel } from "./buildings_panel.js";
 import { keysOf } from "./command_keys.js";
 import { ControlPanel } from "./control_panel.js";
 import { IconButton } from "./icon_button.js";
@@ -67,6 +68,8 @@ function PanelContent({ panel }: { readonly panel: PanelName }): ReactElement {
       return <LayersPanel />;
     case "measure":
       return <MeasurePanel context={context} />;
+    case "buildings":
+      return <BuildingsPanel />;
     case "photos":
       return <PhotosPanel />;
     case "control":

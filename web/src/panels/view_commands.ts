@@ -12,6 +12,7 @@ const LAYERS: readonly { readonly name: keyof Layers; readonly label: string; re
   { name: "exact", label: "Exact frames", keys: ["x"] },
   { name: "cameras", label: "Cameras", keys: ["c"] },
   { name: "points", label: "Sparse points", keys: [] },
+  { name: "buildings", label: "Buildings", keys: ["h"] },
   { name: "blocks", label: "Blocks", keys: ["b"] },
   { name: "contours", label: "Contours", keys: [] },
   { name: "errorMap", label: "Held-out error", keys: [] },
@@ -74,7 +75,12 @@ export function addViewCommands(context: AppContext): void {
 }
 
 async function toggleLayer(context: AppContext, name: keyof Layers): Promise<void> {
-  const { store } = context;
+  const { store, project } = context;
+  // Its switch in the panel is off too.
+  if (name === "buildings" && (project.buildings?.count ?? 0) === 0) {
+    addNotice(store, "info", "There are no buildings to show.");
+    return;
+  }
   const on = !store.get().layers[name];
   if (name === "errorMap") await showErrorMap(context, on);
   else store.update((state) => ({ layers: { ...state.layers, [name]: on } }));

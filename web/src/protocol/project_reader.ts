@@ -87,6 +87,18 @@ function readPhoto(value: unknown, path: string, index: number, cameras: number)
   };
 }
 
+type FilesFolder = "/data/" | "/data/before/";
+
+function readBuildingFiles(value: unknown, path: string, folder: FilesFolder): ProjectBase["buildings"] {
+  const o = asObject(value, path);
+  const url = (given: unknown, at: string) => dataUrl(given, at, folder);
+  return {
+    count: asInteger(o.count, member(path, "count"), 0),
+    url: url(o.url, member(path, "url")),
+    files: asList(o.files, member(path, "files"), url, 100),
+  };
+}
+
 function readMissing(value: unknown, path: string): Missing {
   const o = asObject(value, path);
   return {
@@ -105,7 +117,7 @@ function readMetrics(value: unknown, path: string): Record<string, number | null
   return metrics;
 }
 
-function readBase(o: JsonObject, path: string, folder: "/data/" | "/data/before/"): ProjectBase {
+function readBase(o: JsonObject, path: string, folder: FilesFolder): ProjectBase {
   const at = (key: string) => member(path, key);
   const url = (key: string) => optional(o[key], at(key), (value, place) => dataUrl(value, place, folder));
   const min = asVec3(o.min_enu, at("min_enu"));
@@ -151,6 +163,7 @@ function readBase(o: JsonObject, path: string, folder: "/data/" | "/data/before/
         voxelM: asNumber(surface.voxel_m, member(place, "voxel_m"), 0),
       };
     }),
+    buildings: optional(o.buildings, at("buildings"), (value, place) => readBuildingFiles(value, place, folder)),
     blocks: asList(o.blocks, at("blocks"), readBlock, MAX_ENTRIES),
     cameras,
     photos: photos.map((value, i) => readPhoto(value, `${at("photos")}[${i}]`, i, cameras.length)),

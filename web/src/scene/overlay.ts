@@ -15,6 +15,7 @@ const COLOURS: Readonly<Record<OverlayStyle, string>> = {
   control: "#ff6b6b",
   path: "#7ee787",
   block: "#9bd0ff",
+  building: "#ffffff",
   photo: "#ff6bd6",
 };
 const HALO = "#10151b";

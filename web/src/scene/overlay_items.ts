@@ -2,12 +2,13 @@
 import type { Vec3 } from "../base/vec.js";
 import { add, scale } from "../base/vec_math.js";
 import { forward } from "../geo/camera.js";
-import { formatArea, formatEstimate, formatLength } from "../geo/format.js";
+import { formatArea, formatEstimate, formatLength, formatWithSuffix } from "../geo/format.js";
 import { enuFromMap } from "../geo/projection.js";
 import type { AppState, Enu, Measurement, SurfacePoint } from "../state/app_state.js";
+import { findBuilding, topOfBuilding } from "../state/buildings.js";
 import type { Project } from "../state/project.js";
 
-export type OverlayStyle = "measure" | "selected" | "draft" | "control" | "path" | "block" | "photo";
+export type OverlayStyle = "measure" | "selected" | "draft" | "control" | "path" | "block" | "building" | "photo";
 export type OverlayItem =
   | { readonly kind: "line"; readonly style: OverlayStyle; readonly points: readonly Enu[]; readonly closed: boolean }
   | { readonly kind: "dot" | "cross"; readonly style: OverlayStyle; readonly point: Enu }
@@ -131,6 +132,21 @@ function pathItems(state: AppState, viewM: number): OverlayItem[] {
   return items;
 }
 
+/** The height of the chosen building and of the one under the pointer. */
+function buildingItems({ buildings, selectedBuilding, hoverBuilding, clip }: AppState): OverlayItem[] {
+  const { set } = buildings;
+  if (set === null) return [];
+  return [...new Set([selectedBuilding, hoverBuilding])].flatMap((id) => {
+    const building = findBuilding(set, id);
+    if (building === null) return [];
+    const point = topOfBuilding(building);
+    if (clip.on && point.some((value, i) => value < (clip.min[i] ?? 0) || value > (clip.max[i] ?? 0))) return [];
+    const { height } = building.measures;
+    const text = height === null ? "" : `: ${set.metric ? formatEstimate(height) : formatWithSuffix(height)}`;
+    return [label(id === selectedBuilding ? "selected" : "building", point, `Building ${building.id}${text}`)];
+  });
+}
+
 export function overlayItems(project: Project, state: AppState, sizeM: number): OverlayItem[] {
   const { layers, documents } = state;
   const items: OverlayItem[] = [];
@@ -140,6 +156,7 @@ export function overlayItems(project: Project, state: AppState, sizeM: number): 
       items.push(label("block", [middle[0], middle[1], block.max[2]], block.name));
     }
   }
+  if (layers.buildings) items.push(...buildingItems(state));
   if (layers.cameraPath) items.push(...pathItems(state, sizeM / 40));
   if (layers.controlPoints) items.push(...controlItems(project, state));
   if (layers.measurements) {
@@ -154,5 +171,19 @@ export function overlayItems(project: Project, state: AppState, sizeM: number): 
 /** Members of the state on which the items depend: another array only when one of them is another one. */
 export function overlayInputs(state: AppState): readonly unknown[] {
   const { layers, documents, selected, selectedControl, draft, hover, tool, sights } = state;
-  return [layers, documents, selected, selectedControl, draft, hover, tool, sights];
+  const { buildings, selectedBuilding, hoverBuilding, clip } = state;
+  return [
+    layers,
+    documents,
+    selected,
+    selectedControl,
+    draft,
+    hover,
+    tool,
+    sights,
+    buildings,
+    selectedBuilding,
+    hoverBuilding,
+    clip,
+  ];
 }

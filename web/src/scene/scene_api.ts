@@ -21,6 +21,8 @@ export interface SceneApi {
   rayAt(px: Vec2): Ray;
   /** The surface (tiles or terrain, whatever is shown; the clip box counts) under this place; null: nothing. */
   pickSurface(px: Vec2): SurfacePoint | null;
+  /** Id of the building whose model is nearest under this place (the clip box counts, the surface does not); null: none. */
+  pickBuilding(px: Vec2): number | null;
   /** Canvas position of a point; null: behind the camera. */
   project(point: Enu): Vec2 | null;
   /** Asks for a new frame; the scene draws only on change. */

@@ -13,6 +13,7 @@ import type { Vec2 } from "../base/vec.js";
 import type { Which } from "../protocol/link_api.js";
 import type { ClipBox } from "../state/app_state.js";
 import type { Project, ProjectBase } from "../state/project.js";
+import { BuildingsLayer } from "./buildings_layer.js";
 import { clipInScene, halfSpacesOf, swipeColumns } from "./clip.js";
 import { ExactLayer } from "./exact_layer.js";
 import { ExtraLayers } from "./extra_layers.js";
@@ -66,6 +67,7 @@ function makeRenderer(software: boolean): WebGLRenderer {
 export class Stage {
   readonly renderer: WebGLRenderer;
   readonly extras: ExtraLayers;
+  readonly buildings: BuildingsLayer;
   /** The processor draws. */
   readonly software: boolean;
   private readonly world: World;
@@ -93,6 +95,7 @@ export class Stage {
     this.before = project.before === null ? null : side(project.before, project.before.enuFromBefore);
     this.extras = new ExtraLayers(project, world, events);
     this.over.add(this.extras.object);
+    this.buildings = new BuildingsLayer(world);
   }
 
   /** Device pixels per CSS pixel at rest. */
@@ -148,6 +151,7 @@ export class Stage {
         : halfSpacesOf(this.clip).map(({ normal, constant }) => new Plane(new Vector3(...normal), constant));
     this.style.setClip(planes);
     this.extras.setClip(clip, planes);
+    this.buildings.setClip(planes);
     this.eachExact((exact) => exact.setClip(this.clip));
   }
 
@@ -192,6 +196,17 @@ export class Stage {
       renderer.setScissorTest(false);
     }
     renderer.render(this.over, camera);
+    if (!this.buildings.visible) return;
+    // Models and surface are centimetres apart and would flicker into each other, so models hide only models.
+    if (swipeAt !== null) {
+      const { x, w } = swipeColumns(swipeAt, size[0]).main;
+      if (w <= 0) return;
+      renderer.setScissorTest(true);
+      renderer.setScissor(x, 0, w, size[1]);
+    }
+    renderer.clearDepth();
+    renderer.render(this.buildings.scene, camera);
+    renderer.setScissorTest(false);
   }
 
   dispose(): void {
@@ -200,6 +215,7 @@ export class Stage {
       side?.surface?.dispose();
     }
     this.extras.dispose();
+    this.buildings.dispose();
     this.renderer.dispose();
     // Browsers allow few contexts at a time, and garbage collection takes its time.
     this.renderer.forceContextLoss();

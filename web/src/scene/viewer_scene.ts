@@ -10,6 +10,7 @@ import { addNotice } from "../state/notices.js";
 import type { Project } from "../state/project.js";
 import type { Store } from "../state/store.js";
 import { boxWith, cornersOfBefore } from "./boxes.js";
+import { watchBuildings } from "./buildings_layer.js";
 import { CameraMoves } from "./camera_moves.js";
 import { CameraRig } from "./camera_rig.js";
 import { watchContext } from "./context_loss.js";
@@ -180,6 +181,14 @@ class ViewerScene implements SceneApi {
     };
   }
 
+  pickBuilding(px: Vec2): number | null {
+    const { originEnu, direction } = this.rig.rayAt(px);
+    const { swipe } = this.store.get();
+    // Left of the line is the earlier project, whose buildings are not shown.
+    if (this.exact.swiping && px[0] < swipe.at * this.rig.size[0]) return null;
+    return this.stage.buildings.pick(sceneFromEnu(this.world, originEnu), direction, this.stage.clipBox);
+  }
+
   project(point: Enu): Vec2 | null {
     return this.rig.project(point);
   }
@@ -337,6 +346,7 @@ class ViewerScene implements SceneApi {
         (map) => this.drape.show(map),
       ),
     );
+    d.add(watchBuildings(store, stage.buildings, invalidate));
     d.add(store.subscribe((state) => state.swipe, invalidate));
     d.add(
       store.subscribe(

@@ -1,6 +1,7 @@
 // The state of the application that panels, tools and scene share: one immutable value in one store. The camera is not in it: it moves 60 times a
 // second, and read-outs are told of it 10 times a second (`readout`).
 import type { Quat, Vec2, Vec3 } from "../base/vec.js";
+import type { BuildingsState } from "./buildings.js";
 
 /** ENU of the main project, metres, double. */
 export type Enu = Vec3;
@@ -117,6 +118,7 @@ export interface Documents {
 export interface Layers {
   readonly surface: boolean;
   readonly exact: boolean;
+  readonly buildings: boolean;
   readonly blocks: boolean;
   readonly cameras: boolean;
   readonly points: boolean;
@@ -142,7 +144,7 @@ export interface Swipe {
 
 export type ToolName = "navigate" | "point" | "distance" | "profile" | "area" | "volume" | "photos" | "control";
 export type Navigation = "map" | "fly" | "top";
-export type PanelName = "layers" | "measure" | "photos" | "control" | "path" | "about";
+export type PanelName = "layers" | "measure" | "buildings" | "photos" | "control" | "path" | "about";
 
 /** A photo that sees the chosen point. */
 export interface PhotoSight {
@@ -208,6 +210,10 @@ export interface AppState {
   readonly volumeBaseHeightM: number;
   readonly selected: string | null;
   readonly selectedControl: string | null;
+  readonly buildings: BuildingsState;
+  /** Ids of buildings: the chosen one, and the one under the pointer. */
+  readonly selectedBuilding: number | null;
+  readonly hoverBuilding: number | null;
   readonly navigation: Navigation;
   readonly panel: PanelName | null;
   readonly layers: Layers;

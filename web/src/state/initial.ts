@@ -1,5 +1,6 @@
 // The state that a project opens with.
 import type { AppState, Documents } from "./app_state.js";
+import { NO_BUILDINGS } from "./buildings.js";
 import type { Project } from "./project.js";
 
 export const NO_DOCUMENTS: Documents = {
@@ -20,11 +21,15 @@ export function initialState(project: Project): AppState {
     volumeBaseHeightM: Number.isFinite(project.groundM) ? project.groundM : 0,
     selected: null,
     selectedControl: null,
+    buildings: NO_BUILDINGS,
+    selectedBuilding: null,
+    hoverBuilding: null,
     navigation: "map",
     panel: "layers",
     layers: {
       surface: true,
       exact: true,
+      buildings: false,
       blocks: false,
       cameras: bare,
       points: bare,

@@ -68,6 +68,8 @@ export interface ProjectBase {
     readonly areaM2: number;
     readonly voxelM: number;
   } | null;
+  /** What `skyquilt buildings` has found: URLs of buildings.json and of the other files. */
+  readonly buildings: { readonly count: number; readonly url: string; readonly files: readonly string[] } | null;
   readonly blocks: readonly Block[];
   readonly cameras: readonly PhotoCamera[];
   readonly photos: readonly Photo[];

@@ -1,4 +1,4 @@
-// No tool: the mouse moves the camera. A click on a measurement selects it.
+// No tool: the mouse moves the camera. A click on a measurement or a building selects it.
 import type { Vec2 } from "../base/vec.js";
 import type { Enu, Measurement } from "../state/app_state.js";
 import type { Tool, ToolPointer } from "./tool.js";
@@ -15,8 +15,14 @@ export class NavigateTool implements Tool {
   }
 
   activate(): void {}
-  deactivate(): void {}
-  hover(): void {}
+
+  deactivate(): void {
+    this.showHovered(null);
+  }
+
+  hover({ px }: ToolPointer): void {
+    this.showHovered(this.buildingAt(px));
+  }
 
   click({ px }: ToolPointer): boolean {
     const { store, scene } = this.context;
@@ -25,7 +31,12 @@ export class NavigateTool implements Tool {
       ? measurementAt(documents.measurements, px, (point) => scene.project(point))
       : null;
     if (found !== selected) store.set({ selected: found });
-    return found !== null;
+    if (found !== null) return true;
+    const building = this.buildingAt(px);
+    // Its measures are in the panel.
+    if (building !== null) store.set({ selectedBuilding: building, panel: "buildings" });
+    else if (store.get().selectedBuilding !== null) store.set({ selectedBuilding: null });
+    return building !== null;
   }
 
   doubleClick(): boolean {
@@ -34,9 +45,20 @@ export class NavigateTool implements Tool {
 
   key(key: string): boolean {
     const { store } = this.context;
-    if (key !== "Escape" || store.get().selected === null) return false;
-    store.set({ selected: null });
+    const { selected, selectedBuilding } = store.get();
+    if (key !== "Escape" || (selected === null && selectedBuilding === null)) return false;
+    store.set(selected === null ? { selectedBuilding: null } : { selected: null });
     return true;
+  }
+
+  private buildingAt(px: Vec2): number | null {
+    const { store, scene } = this.context;
+    return store.get().layers.buildings ? scene.pickBuilding(px) : null;
+  }
+
+  private showHovered(id: number | null): void {
+    const { store } = this.context;
+    if (store.get().hoverBuilding !== id) store.set({ hoverBuilding: id });
   }
 }
 

@@ -86,7 +86,7 @@ export function addToolCommands(context: ToolContext, activeTool: () => Tool): (
 }
 
 function canCancel(state: AppState): boolean {
-  return free(state) && (state.tool !== "navigate" || state.selected !== null);
+  return free(state) && (state.tool !== "navigate" || state.selected !== null || state.selectedBuilding !== null);
 }
 
 function canPlace(state: AppState): boolean {

@@ -55,10 +55,10 @@ export function createTools(options: ToolsOptions): { dispose(): void } {
 
   const hover = (pointer: ToolPointer | null) => {
     const cursor = pointer === null ? null : scene.pickSurface(pointer.px);
-    const { readout, hover: shown } = store.get();
+    const { readout, hover: shown, hoverBuilding } = store.get();
     if (cursor !== readout.cursor) store.set({ readout: { ...readout, cursor } });
     if (pointer !== null) active.hover(pointer);
-    else if (shown !== null) store.set({ hover: null });
+    else if (shown !== null || hoverBuilding !== null) store.set({ hover: null, hoverBuilding: null });
   };
   const pointer = disposer.own(
     new CanvasPointer(

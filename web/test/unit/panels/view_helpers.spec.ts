@@ -109,6 +109,7 @@ test("the engine's state in words", () => {
   const layers = {
     surface: true,
     exact: true,
+    buildings: false,
     blocks: false,
     cameras: false,
     points: false,

@@ -24,6 +24,7 @@ export function sampleBase(patch: Partial<ProjectBase> = {}): ProjectBase {
     points: null,
     contours: null,
     surface: null,
+    buildings: null,
     blocks: [],
     cameras: [],
     photos: [],

@@ -32,6 +32,7 @@ export function sampleProject(change: Partial<Project> = {}): Project {
     points: null,
     contours: null,
     surface: null,
+    buildings: null,
     blocks: [],
     cameras: [],
     photos: [],

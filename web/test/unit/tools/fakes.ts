@@ -122,6 +122,8 @@ export interface Bench {
   readonly engine: FakeEngine;
   readonly scene: SceneApi;
   readonly link: Link;
+  /** Building at each place of the canvas, by "x,y". */
+  readonly buildings: Map<string, number>;
   /** Places of the canvas without a mesh. */
   readonly holes: Set<string>;
   picked: number;
@@ -135,6 +137,7 @@ export function bench(change: Partial<Project> = {}): Bench {
   const canvas = new FakeCanvas();
   const engine = new FakeEngine();
   const holes = new Set<string>();
+  const buildings = new Map<string, number>();
   const rayAt = (px: Vec2): Ray => ({
     originEnu: [px[0], -px[1], 100],
     direction: [0, 0, -1],
@@ -150,6 +153,7 @@ export function bench(change: Partial<Project> = {}): Bench {
     page: new FakePage(),
     engine,
     link: engine.link(),
+    buildings,
     holes,
     picked: 0,
     pose: { eyeEnu: [0, 0, 100], rotation: [0, 1, 0, 0], fovyDeg: 50, orthoHeightM: null },
@@ -165,6 +169,7 @@ export function bench(change: Partial<Project> = {}): Bench {
         if (holes.has(`${px}`)) return null;
         return { enu: [px[0], -px[1], 0], direction: [0, 0, -1], spreadM: null, pixelM: 0.1, source: "mesh" };
       },
+      pickBuilding: (px) => buildings.get(`${px}`) ?? null,
       project: (point) => [point[0], -point[1]],
       invalidate: () => {},
       whenIdle: () => Promise.resolve(),

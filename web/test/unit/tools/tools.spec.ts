@@ -136,6 +136,51 @@ test("the control tool places in map coordinates, corrects the selected point, a
   assert.equal(points().length, 0);
 });
 
+test("a click on a building selects it and opens its panel; undo has nothing to do with it", async () => {
+  const b = bench();
+  const tools = start(b);
+  addViewCommands(b);
+  await settle();
+  b.buildings.set("30,40", 7);
+  click(b, 30, 40);
+  assert.equal(b.store.get().selectedBuilding, null, "they are not shown");
+  b.store.update(({ layers }) => ({ layers: { ...layers, buildings: true } }));
+  b.canvas.fire("pointermove", [30, 40]);
+  b.clock.advance(200);
+  assert.equal(b.store.get().hoverBuilding, 7);
+  click(b, 30, 40);
+  assert.equal(b.store.get().selectedBuilding, 7);
+  assert.equal(b.store.get().panel, "buildings");
+  b.page.key("z", { ctrlKey: true });
+  assert.equal(b.store.get().selectedBuilding, 7);
+  assert.equal(b.store.get().save, "saved");
+  b.page.key("Escape");
+  assert.equal(b.store.get().selectedBuilding, null);
+  click(b, 30, 40);
+  click(b, 200, 200);
+  assert.equal(b.store.get().selectedBuilding, null, "a click beside it");
+  b.canvas.fire("pointermove", [30, 40]);
+  b.clock.advance(200);
+  b.canvas.fire("pointerleave", [0, 0]);
+  assert.equal(b.store.get().hoverBuilding, null);
+  b.canvas.fire("pointermove", [30, 40]);
+  b.clock.advance(200);
+  b.store.set({ tool: "distance" });
+  assert.equal(b.store.get().hoverBuilding, null, "other tools do not point at buildings");
+  b.store.set({ tool: "navigate" });
+  // A measurement that lies on the building is nearer to the person's mind.
+  b.store.changeDocuments("add", (documents) =>
+    withMeasurement(
+      documents,
+      newDistance(documents, [samplePoint([30, -40, 0]), samplePoint([60, -40, 0])], sampleProject()),
+    ),
+  );
+  click(b, 30, 40);
+  assert.equal(b.store.get().selectedBuilding, null);
+  assert.notEqual(b.store.get().selected, null);
+  tools.dispose();
+});
+
 test("a click on a measurement selects it, Delete deletes it", async () => {
   const b = bench();
   start(b);

@@ -1,5 +1,6 @@
 """`skyquilt view` as its users meet it: in a real browser, over several ranks, with unfinished projects, a full disk, and a process that is killed."""
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -27,6 +28,31 @@ def views(description):
     middle[2] = description["ground_m"]
     eye = [middle[0] + 20, middle[1] - 60, middle[2] + 60]
     return eye, looking(eye, middle), middle
+
+
+def write_buildings(project, survey):
+    """buildings/ as `skyquilt buildings` writes it, with a box for every house of the truth: so short a training shows no roofs that it could measure."""
+    names = ("ground_m", "eave_m", "ridge_m", "height_m", "length_m", "width_m", "yaw_deg", "footprint_m2", "roof_m2", "volume_m3", "pitch_deg")
+    buildings = []
+    for house in json.loads((survey / "truth" / "buildings.json").read_text())["buildings"]:
+        if not house["inside_area"]:
+            continue
+        ground, height, length, width = (house[key] for key in ("ground_z_m", "eave_height_m", "length_m", "width_m"))
+        yaw = math.radians(house["yaw_deg"])
+        corners = [(u * length / 2, v * width / 2) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        ring = [(house["east_m"] + u * math.cos(yaw) - v * math.sin(yaw), house["north_m"] + u * math.sin(yaw) + v * math.cos(yaw)) for u, v in corners]
+        walls = [{"kind": "wall", "outer": [i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i], "holes": []} for i in range(4)]
+        faces = [{"kind": "ground", "outer": [3, 2, 1, 0], "holes": []}, {"kind": "roof", "outer": [4, 5, 6, 7], "holes": []}, *walls]
+        values = (ground, ground + height, ground + height, height, length, width, house["yaw_deg"] % 180, length * width, length * width,
+                  length * width * height, 0.0)
+        buildings.append({"id": len(buildings) + 1, "roof": "flat", "accepted": len(buildings) > 0, "note": "", "given_id": "", "share_within": 0.9,
+                          "roof_points": 100, "measures": {name: [value, 0.1] for name, value in zip(names, values)} | {"wall_seen": 0.5},
+                          "lod22": {"vertex": [[*point, z] for z in (ground, ground + height) for point in ring], "face": faces}})
+    folder = project / "buildings"
+    folder.mkdir(exist_ok=True)
+    (folder / "buildings.json").write_text(json.dumps({"format": "skyquilt buildings", "version": 1, "metric": True, "scale_source": "geo-reference",
+                                                       "buildings": buildings}))
+    (folder / "buildings.csv").write_text("id\n")
 
 
 def check_page(skyquilt, project, survey, web, out):
@@ -71,6 +97,8 @@ def check_session(skyquilt, project):
         expect(viewer.request("PUT", "/data/measurements.geojson", body=b"{}", headers={"Origin": "http://evil.example"})[0] == 403, "a foreign page saves")
         expect(WebSocket(viewer.port, viewer.cookie, origin="http://evil.example").status == 403, "a foreign page opens the socket")
         expect(WebSocket(viewer.port, None).status == 403, "the socket opens without a session")
+        status, headers, body = viewer.request("GET", "/data/buildings/buildings.csv")
+        expect(status == 200 and headers["Content-Type"].startswith("text/csv") and body == b"id\n", f"buildings.csv: {status}")
         for path in ("/data/../config.toml", "/data/%2e%2e/config.toml", "/data/..%2fconfig.toml", "/data//etc/passwd", "/data/config.toml"):
             status, _, body = viewer.request("GET", path)
             expect(status in (400, 404) and b"image_width" not in body, f"{path}: {status}")
@@ -324,6 +352,7 @@ def test(skyquilt: Skyquilt, folder):
             raise
         skip("all: the program has no front end, because nodejs, npm or the network was missing when it was built")
         return
+    write_buildings(project, survey)
     check_session(skyquilt, project)
     check_page(skyquilt, project, survey, build / "web", build / "Testing" / "view")
     check_questions(skyquilt, project)

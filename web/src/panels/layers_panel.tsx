@@ -135,8 +135,7 @@ function surfaceText(project: Project): LayerText {
 function buildingsText(project: Project, state: AppState): LayerText {
   const label = "Buildings";
   const count = project.buildings?.count ?? 0;
-  const detail =
-    project.buildings === null ? "not looked for" : count === 0 ? "none found" : counted(count, "building");
+  const detail = project.buildings === null ? "none" : count === 0 ? "none found" : counted(count, "building");
   return { label, detail: state.buildings.loading ? "being loaded …" : detail, available: count > 0 };
 }
 

@@ -204,6 +204,45 @@ async function checkTools(page, description) {
   await page.keyboard.press("Escape");
 }
 
+/** The panel of buildings, a click on a model in the view, and its height in the system of the maps. */
+async function checkBuildings(page, description) {
+  const count = description.buildings?.count ?? 0;
+  expect(count > 0, `no buildings: ${JSON.stringify(description.missing)}`);
+  if (count === 0) return;
+  await page.evaluate(() => window.__skyquilt.run("panel.buildings"));
+  await page.waitForFunction(() => window.__skyquilt.state().buildings.set !== null);
+  const rows = page.locator(".buildings tbody tr");
+  await rows.first().waitFor();
+  expect((await rows.count()) === count, `${await rows.count()} rows for ${count} buildings`);
+  const building = await page.evaluate(() => {
+    const { buildings } = window.__skyquilt.state().buildings.set;
+    return [...buildings].sort((a, b) => b.measures.area.value - a.measures.area.value)[0];
+  });
+  const { vertices } = building.solid;
+  const middle = [0, 1, 2].map((axis) => vertices.reduce((sum, vertex) => sum + vertex[axis] / vertices.length, 0));
+  await lookAt(page, add(middle, [0, -30, 40]), middle, 45);
+  await page.evaluate(() => window.__skyquilt.idle());
+  const [x, y] = await page.evaluate((point) => window.__skyquilt.project(point), middle);
+  await page.locator("canvas").first().click({ position: { x, y } });
+  const chosen = await page.evaluate(() => window.__skyquilt.state().selectedBuilding);
+  expect(chosen === building.id, `a click on building ${building.id} chose ${chosen}`);
+  // On the ellipsoid, as the maps have it.
+  const roof = description.origin.height_m + building.measures.ridge.value;
+  const shown = await page
+    .locator(".building-card .fact", { hasText: /^Roof\d/ })
+    .locator("dd")
+    .textContent();
+  figures.roof = { expected_m: roof, shown };
+  expect(Math.abs(Number.parseFloat(shown) - roof) < 0.06, `the roof is at ${roof} m, the card says ${shown}`);
+  await screenshot(page, out, "buildings");
+  await page.keyboard.press("Escape");
+  expect(
+    (await page.evaluate(() => window.__skyquilt.state().selectedBuilding)) === null,
+    "Escape keeps the chosen building",
+  );
+  await page.evaluate(() => window.__skyquilt.setLayer("buildings", false));
+}
+
 async function checkPhoto(page, description) {
   const index = description.photos.findIndex((photo) => photo.available && !photo.is_test);
   await page.evaluate((photo) => window.__skyquilt.openPhoto(photo), index);
@@ -233,6 +272,7 @@ try {
   await checkHouse(page, description);
   await page.setViewportSize({ width: 1280, height: 800 });
   await checkTools(page, description);
+  await checkBuildings(page, description);
   await checkPhoto(page, description);
   await page.evaluate(() => window.__skyquilt.settle());
   await screenshot(page, out, "page");

@@ -51,6 +51,29 @@ function description(): Record<string, unknown> {
   };
 }
 
+test("buildings are files of this server", () => {
+  const files = ["buildings/buildings.csv", "buildings/buildings.gpkg"];
+  const buildings = { count: 60, url: "buildings/buildings.json", files };
+  const read = (value: unknown) => readProject({ ...description(), buildings: value }).buildings;
+  assert.deepEqual(read(buildings), {
+    count: 60,
+    url: "/data/buildings/buildings.json",
+    files: ["/data/buildings/buildings.csv", "/data/buildings/buildings.gpkg"],
+  });
+  assert.equal(read(null), null);
+  assert.equal(read(undefined), null, "an older program does not know them");
+  for (const wrong of [
+    { ...buildings, url: "https://evil.example/b.json" },
+    { ...buildings, url: "../config.toml" },
+    { ...buildings, count: -1 },
+    { ...buildings, files: ["javascript:alert(1)"] },
+    { ...buildings, files: null },
+    [],
+  ]) {
+    assert.throws(() => read(wrong), /^CheckError: buildings/, JSON.stringify(wrong));
+  }
+});
+
 test("a whole description", () => {
   const project = readProject(description());
   assert.equal(project.name, "t11");

@@ -9,6 +9,7 @@ import { overlayInputs, overlayItems } from "../../../src/scene/overlay_items.js
 import type { AppState, SurfacePoint } from "../../../src/state/app_state.js";
 import { initialState } from "../../../src/state/initial.js";
 import type { Photo, PhotoCamera } from "../../../src/state/project.js";
+import { sampleBuilding, sampleSet } from "../state/building_samples.js";
 import { lookingAt, sampleProject } from "./samples.js";
 
 const PROJECT = sampleProject({
@@ -204,4 +205,28 @@ test("a camera's pyramid looks where the photo looks, with its field of view", (
   );
   assert.deepEqual(frustumEdges({ ...photo, position: [Number.NaN, 0, 0] }, camera, 10, [0, 0, 0]), []);
   assert.ok(frustumDepthM([], 100) > 0);
+});
+
+test("the chosen building and the one under the pointer have their height above them", () => {
+  const high = sampleBuilding(7);
+  const measures = { ...high.measures, height: { value: 7.2957, sigma: 0.3479 } };
+  const set = sampleSet([sampleBuilding(3), { ...high, measures }]);
+  const on = { ...initialState(PROJECT).layers, buildings: true };
+  const buildings = { set, loading: false, error: "" };
+  const chosen: Partial<AppState> = { layers: on, buildings, selectedBuilding: 7 };
+  const items = (patch: Partial<AppState>) => overlayItems(PROJECT, state({ ...chosen, ...patch }), 100);
+  const point = [5, 3, 4];
+  const label = { kind: "label", style: "selected", point, text: "Building 7: 7.3 m ± 0.3 m" };
+  assert.deepEqual(items({}), [label]);
+  assert.deepEqual(items({ hoverBuilding: 7 }), [label], "once");
+  assert.deepEqual(items({ hoverBuilding: 3 }), [
+    label,
+    { kind: "label", style: "building", point, text: "Building 3" },
+  ]);
+  const bare = { ...buildings, set: { ...set, metric: false } };
+  assert.deepEqual(items({ buildings: bare }), [{ ...label, text: "Building 7: 7.3 ± 0.3" }]);
+  assert.deepEqual(items({ selectedBuilding: 99 }), []);
+  assert.deepEqual(items({ layers: { ...on, buildings: false } }), []);
+  const clip = { on: true, min: [20, 0, 0], max: [40, 40, 40] } as const;
+  assert.deepEqual(items({ clip }), [], "what is clipped away has no label");
 });

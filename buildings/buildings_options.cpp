@@ -1,10 +1,21 @@
 #include "buildings/buildings_options.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/errors.h"
 
 namespace skyquilt::buildings {
+namespace {
+
+// Metres per unit of a scene. Other values come from mistyped points.
+constexpr double kLeastScale = 1e-4, kMostScale = 1e4;
+
+}  // namespace
+
+double ScaleOf(const std::vector<double>& scale_bar) {
+  return scale_bar[6] / std::hypot(scale_bar[3] - scale_bar[0], scale_bar[4] - scale_bar[1], scale_bar[5] - scale_bar[2]);
+}
 
 std::vector<config::Field<BuildingsOptions>> BuildingsOptions::Fields() {
   using config::Range;
@@ -45,6 +56,10 @@ void BuildingsOptions::Check() const {
   }
   if (std::equal(scale_bar.begin(), scale_bar.begin() + 3, scale_bar.begin() + 3)) {
     throw base::UsageError("buildings.scale_bar: the two points are the same; give two points of the scene and their distance");
+  }
+  if (const double factor = ScaleOf(scale_bar); !(factor >= kLeastScale && factor <= kMostScale)) {
+    throw base::UsageError("buildings.scale_bar: a distance of " + std::to_string(scale_bar[6]) + " m for these two points makes lengths " +
+                           std::to_string(factor) + " times as long; give two points that lie well apart, as the viewer shows them");
   }
 }
 

@@ -27,4 +27,7 @@ struct BuildingsOptions {
   void Check() const;
 };
 
+// Metres per unit of length by the seven numbers of a scale bar.
+double ScaleOf(const std::vector<double>& scale_bar);
+
 }  // namespace skyquilt::buildings

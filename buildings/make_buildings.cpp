@@ -22,6 +22,7 @@ constexpr double kAccepted = 0.85;     // share of roof points within 2 GSD of a
 constexpr double kDescribed = 0.5;     // below it the shape is a block
 constexpr double kFewestPlanes = 0.4;  // share of an outline that planes must cover, or it is no building
 constexpr double kShortestWall_m = 1.5;
+constexpr std::ptrdiff_t kNamedOutlines = 5;  // in a warning
 
 struct Fitted {
   FittedShape fit;
@@ -96,8 +97,13 @@ class Maker {
     set.gsd_m = input_.gsd_m;
     for (size_t i = 0; i < candidates_.size(); ++i) {
       base::ThrowIfCancelled();
-      if (std::optional<Building> building = BuildingOf(i)) set.buildings.push_back(*std::move(building));
+      if (std::optional<Building> building = BuildingOf(i)) {
+        set.buildings.push_back(*std::move(building));
+      } else if (candidates_[i].given) {
+        empty_outlines_.push_back(candidates_[i].given_id.empty() ? std::to_string(i + 1) : candidates_[i].given_id);
+      }
     }
+    WarnOfEmptyOutlines();
     std::stable_sort(set.buildings.begin(), set.buildings.end(), [](const Building& a, const Building& b) {
       const Eigen::Vector2d at = Centroid(a.footprint), other = Centroid(b.footprint);
       return at.x() != other.x() ? at.x() < other.x() : at.y() < other.y();
@@ -170,12 +176,7 @@ class Maker {
 
   std::optional<Building> BuildingOf(size_t i) {
     const Candidate& candidate = candidates_[i];
-    if (!fits_[i]) {
-      if (candidate.given)
-        spdlog::warn("outline {} has no roof in the surface; it is left out",
-                     candidate.given_id.empty() ? std::to_string(i + 1) : candidate.given_id);
-      return std::nullopt;
-    }
+    if (!fits_[i]) return std::nullopt;
     const Fitted& fitted = *fits_[i];
     if (!IsBuilding(candidate, fitted)) return std::nullopt;
     Building building;
@@ -196,6 +197,17 @@ class Maker {
     if (!Describe(candidate, fitted, &building)) return std::nullopt;
     if (fitted.follows_outline) FollowOutline(candidate, input_.gsd_m, &building);
     return building;
+  }
+
+  // One line, for a cadastre may have thousands that the survey does not reach.
+  void WarnOfEmptyOutlines() const {
+    if (empty_outlines_.empty()) return;
+    std::vector<std::string> named(empty_outlines_.begin(),
+                                   empty_outlines_.begin() + std::min<std::ptrdiff_t>(kNamedOutlines, std::ssize(empty_outlines_)));
+    if (named.size() < empty_outlines_.size()) named.emplace_back("...");
+    const bool all = empty_outlines_.size() == candidates_.size();
+    spdlog::warn("{} of {} outlines have no roof in the surface and are left out: {}{}", empty_outlines_.size(), candidates_.size(),
+                 base::Join(named), all ? ". Do they lie in the survey, in the coordinate system that their file names?" : "");
   }
 
   void SetOverhang(const Fitted& fitted, Building* building) const {
@@ -256,6 +268,7 @@ class Maker {
   std::vector<Direction> directions_;
   std::vector<std::optional<ShapeGuess>> guesses_;
   std::vector<std::optional<Fitted>> fits_;
+  std::vector<std::string> empty_outlines_;  // names of given ones without a building
 };
 
 void Scale(double factor, BuildingSet* set) {
@@ -282,9 +295,8 @@ void ApplyScale(const BuildingsInput& input, BuildingSet* set) {
     set->scale_source = input.georeferenced ? "geo-reference" : "unknown";
     return;
   }
-  const double apart = (Eigen::Vector3d(bar[0], bar[1], bar[2]) - Eigen::Vector3d(bar[3], bar[4], bar[5])).norm();
   set->metric = true;
-  set->scale = bar[6] / apart;
+  set->scale = ScaleOf(bar);
   set->scale_source = "scale bar";
   Scale(set->scale, set);
 }

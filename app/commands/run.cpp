@@ -37,6 +37,10 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   if (const std::string& boundary = settings.products.boundary; !boundary.empty() && !std::filesystem::is_regular_file(boundary)) {
     throw base::InputError(boundary, "no such file", "Give a GeoJSON or GeoPackage file as products.boundary, or leave it empty");
   }
+  if (const std::string& footprints = settings.buildings.footprints;
+      MakesBuildings(settings) && !footprints.empty() && !std::filesystem::is_regular_file(footprints)) {
+    throw base::InputError(footprints, "no such file", "Give a file with outlines as buildings.footprints, or leave it empty to find buildings");
+  }
   if (const std::string& masks = settings.prepare.masks; !masks.empty() && !std::filesystem::is_directory(masks)) {
     throw base::InputError(masks, "no such folder", "Give the folder of the masks as prepare.masks, or leave it empty");
   }

@@ -25,7 +25,8 @@ BuildingSet LoadBuildings(const std::filesystem::path& file);
 // with transform, referenceSystem (compound of horizontal EPSG code when geo-referenced); attributes: every measure and its _sigma, roof kind.
 void WriteCityJson(const BuildingSet& set, const surface::MapFrame& frame, const std::filesystem::path& file);
 // One row per building: id, longitude, latitude, easting, northing, ground_m, eave_m, ridge_m, height_m, length_m, width_m, yaw_deg, area_m2,
-// volume_m3, roof_area_m2, pitch_deg, each of the measures followed by its _sigma (ground_m_sigma); then wall_seen, roof, accepted (1 or 0), note.
+// volume_m3, roof_area_m2, pitch_deg, each of the measures followed by its _sigma (ground_m_sigma); then wall_seen, roof, accepted (1 or 0), note;
+// with given outlines outline_id.
 // The place is the middle of the footprint. Unknown: empty.
 // Without a known scale the columns of lengths are named ground, eave, ... without unit, and longitude and latitude are empty.
 void WriteCsv(const BuildingSet& set, const surface::MapFrame& frame, const std::filesystem::path& file);

@@ -1,5 +1,6 @@
 #include "buildings/files/building_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -66,6 +67,8 @@ BuildingTable TableOf(const BuildingSet& set, const FileFrame& frame) {
   table.fields.push_back({"roof", gis::FieldType::kText});
   table.fields.push_back({"accepted", gis::FieldType::kInteger});
   table.fields.push_back({"note", gis::FieldType::kText});
+  const bool given = std::any_of(set.buildings.begin(), set.buildings.end(), [](const Building& building) { return building.given; });
+  if (given) table.fields.push_back({"outline_id", gis::FieldType::kText});
 
   for (const Building& building : set.buildings) {
     std::vector<gis::FieldValue>& row = table.rows.emplace_back();
@@ -90,6 +93,7 @@ BuildingTable TableOf(const BuildingSet& set, const FileFrame& frame) {
     row.emplace_back(std::string(NameOf(building.roof)));
     row.emplace_back(int64_t{building.accepted ? 1 : 0});
     row.emplace_back(building.note);
+    if (given) row.emplace_back(building.given_id);
   }
   return table;
 }

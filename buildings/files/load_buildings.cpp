@@ -14,7 +14,7 @@
 namespace skyquilt::buildings {
 namespace {
 
-constexpr const char* kRunAgain = "Run 'skyquilt buildings' again";
+constexpr const char* kRunAgain = "Run 'skyquilt buildings' with --restart";
 constexpr int64_t kLargestInt = std::numeric_limits<int>::max();
 constexpr int64_t kLargestCount = std::numeric_limits<int64_t>::max();
 
@@ -236,7 +236,7 @@ BuildingSet LoadBuildings(const std::filesystem::path& file) {
     const int64_t version = reader.At("version").Whole(0, kLargestCount);
     if (version != kBuildingsVersion) {
       throw base::InputError(file, "is of version " + std::to_string(version) + "; this program reads version " + std::to_string(kBuildingsVersion),
-                             std::string(kRunAgain) + " with this program");
+                             std::string(kRunAgain));
     }
     return ReadSet(reader);
   } catch (const DamagedJson& error) {

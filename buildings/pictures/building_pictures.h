@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "buildings/building.h"
+#include "buildings/files/file_frame.h"
 #include "core/base/thread_pool.h"
 #include "core/camera/camera.h"
 #include "core/image/image.h"
 #include "core/survey/survey.h"
-#include "surface/map_frame.h"
 #include "surface/surface_input.h"
 
 namespace skyquilt::buildings {
@@ -30,10 +30,11 @@ image::Image8 DrawModel(const Building& building, const image::Image8& picture, 
                         const PhotoPart& part);
 
 // One picture per outer wall face of the lod22 solid at least 1 m wide, seen straight on: facade_<id>_<n>.png, with facade_<id>.json: for each its
-// size of a pixel in metres, the corner points of the picture in map coordinates, the azimuth of its normal and the wall's width and height.
+// size of a pixel, the corner points of the picture in the coordinates of buildings.csv, the azimuth of its normal and the wall's width and height;
+// names of lengths end with _m when the scale is known. pixel_m: in the survey's frame.
 // caster: renders the scene. Rays begin up to 3 m in front of the wall (less where another wall of the building is nearer) and are shown where the
 // field is opaque within 1.5 m behind it; transparent elsewhere. Returns the files. Throws base::InputError, base::Interrupted.
-std::vector<std::filesystem::path> WriteFacades(const Building& building, const surface::RayCaster& caster, const surface::MapFrame& frame,
-                                                double pixel_m, const std::filesystem::path& folder, base::ThreadPool& threads);
+std::vector<std::filesystem::path> WriteFacades(const Building& building, const surface::RayCaster& caster, const FileFrame& frame, double pixel_m,
+                                                const std::filesystem::path& folder, base::ThreadPool& threads);
 
 }  // namespace skyquilt::buildings

@@ -25,6 +25,7 @@ constexpr double kLowest_m = 0.5;     // lower ones are steps between roofs
 constexpr double kLeastOpacity = 0.5;
 constexpr size_t kBatchRays = 1 << 16;
 constexpr int kPngLevel = 6;
+constexpr int kDigits = 4;  // of lengths
 
 struct PixelRay {
   render::Ray ray;
@@ -120,20 +121,22 @@ double ShareShown(const image::Image8& picture) {
   return static_cast<double>(shown) / (static_cast<double>(picture.data.size()) / 4.0);
 }
 
-Json Describe(const WallSide& side, const image::Image8& picture, const surface::MapFrame& frame, double pixel_m, const std::string& file) {
+Json Describe(const WallSide& side, const image::Image8& picture, const FileFrame& frame, double pixel_m, const std::string& file) {
   const auto corner = [&](int column, int row) {
-    const Eigen::Vector3d x = frame.MapFromEnu(side.At(pixel_m * Eigen::Vector2d(column, row)));
+    const Eigen::Vector3d x = frame.PositionOf(side.At(pixel_m * Eigen::Vector2d(column, row)));
     return Json::array({x.x(), x.y(), x.z()});
   };
-  const Eigen::Vector3f normal = frame.MapDirection(side.normal.cast<float>());
+  const Eigen::Vector3f normal = frame.map().MapDirection(side.normal.cast<float>());
   double azimuth = std::atan2(static_cast<double>(normal.x()), static_cast<double>(normal.y())) * 180.0 / std::numbers::pi;
   if (azimuth < 0.0) azimuth += 360.0;
   Json json;
   json["file"] = file;
   json["azimuth_deg"] = azimuth;
-  json["wall_width_m"] = side.width_m;
-  json["wall_height_m"] = side.height_m;
-  json["pixel_m"] = pixel_m;
+  const std::string unit = frame.metric() ? "_m" : "";
+  const double scale = frame.scale();
+  json["wall_width" + unit] = Rounded(scale * side.width_m, kDigits);
+  json["wall_height" + unit] = Rounded(scale * side.height_m, kDigits);
+  json["pixel" + unit] = scale * pixel_m;
   json["width_px"] = picture.width;
   json["height_px"] = picture.height;
   json["top_left"] = corner(0, 0);
@@ -146,8 +149,8 @@ Json Describe(const WallSide& side, const image::Image8& picture, const surface:
 
 }  // namespace
 
-std::vector<std::filesystem::path> WriteFacades(const Building& building, const surface::RayCaster& caster, const surface::MapFrame& frame,
-                                                double pixel_m, const std::filesystem::path& folder, base::ThreadPool& threads) {
+std::vector<std::filesystem::path> WriteFacades(const Building& building, const surface::RayCaster& caster, const FileFrame& frame, double pixel_m,
+                                                const std::filesystem::path& folder, base::ThreadPool& threads) {
   SKYQUILT_CHECK(pixel_m > 0.0 && std::isfinite(pixel_m), std::to_string(pixel_m) + " m for a pixel of a facade");
   base::RequireWritableFolder(folder);
   const Solid& solid = ModelOf(building);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kMakeAgain = "Make the surface again with 'skyquilt surface' and surface.cloud = true";
+constexpr const char* kMakeAgain = "Run 'skyquilt surface' with --restart and --set surface.cloud=true";
 
 // The points of one tile, relative to a place of their own, so that single precision is enough before the middle of all is known.
 struct TilePoints {
@@ -106,7 +106,8 @@ PointCloud LoadSurfacePoints(const fs::path& surface_work_folder, double spacing
       tiles.push_back(Convert(baked.points));
     } catch (const base::InputError& damaged) {
       // The store's own advice, to delete the file and go on, holds only while a surface is being made.
-      throw base::InputError(file, damaged.finding(), std::string("For buildings: ") + kMakeAgain + " and --restart");
+      const std::string& finding = damaged.finding();
+      throw base::InputError(file, finding.substr(0, finding.find(". ")), kMakeAgain);
     }
     n += tiles.back().points.size();
   }

@@ -12,6 +12,7 @@
 #include "core/gis/read_outlines.h"
 #include "products/ray_caster.h"
 #include "surface/files/las_classes.h"
+#include "surface/odm_names.h"
 #include "surface/surface_table.h"
 
 namespace skyquilt::coordinator {
@@ -50,11 +51,17 @@ void ClassifyCloud(const Pipeline& pipeline, const surface::MapFrame& frame, con
     codes[i] = buildings::LasCode(classes[i]);
   }
   surface::RewriteLasClasses(pipeline.project.SurfaceFolder(), frame, positions, codes);
+  // The cloud's other name must lead to the new file.
+  if (pipeline.settings.surface.odm_names) surface::ProvideOdmNames(pipeline.project.SurfaceFolder(), pipeline.project.ProductsFolder());
 }
 
-void LogBuildings(const BuildingSet& set, const std::filesystem::path& folder) {
+void LogBuildings(const BuildingSet& set, bool georeferenced, const std::filesystem::path& folder) {
   const auto accepted = std::count_if(set.buildings.begin(), set.buildings.end(), [](const buildings::Building& one) { return one.accepted; });
   spdlog::info("{} building(s), {} of them fit their roof well: {}", set.buildings.size(), accepted, folder.string());
+  if (georeferenced && set.scale != 1.0) {
+    spdlog::warn("the scale bar makes lengths {} times as long as the geo-reference. Measures are by the scale bar, coordinates by the geo-reference",
+                 set.scale);
+  }
   if (!set.metric && !set.buildings.empty()) {
     spdlog::warn("the survey has no scale, so lengths of buildings have no unit. Give --scale-bar A B LENGTH with two points and their distance");
   }
@@ -90,7 +97,7 @@ std::string BuildingsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
     if (settings.buildings.classify_cloud) ClassifyCloud(pipeline, frame, cloud, ground, set, session.threads());
   }
   buildings::WriteBuildings(set, frame, settings.buildings, project.BuildingsFolder());
-  LogBuildings(set, project.BuildingsFolder());
+  LogBuildings(set, info.georeferenced, project.BuildingsFolder());
   return StageStamp::kDone;
 }
 
@@ -105,7 +112,8 @@ void WriteFacades(Pipeline& pipeline, const std::vector<int>& ids) {
   }
   SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
   const scene::SceneInfo& info = session.scene().info();
-  const surface::MapFrame frame(info);
+  const surface::MapFrame map(info);
+  const buildings::FileFrame frame(set, map);
   const surface::RayCaster caster =
       products::CasterOf(session.scene(), products::AppearanceOf(pipeline.settings.products.exposure, info), session.threads());
   const std::filesystem::path folder = project.BuildingsFolder() / "facades";

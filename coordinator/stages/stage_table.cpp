@@ -50,7 +50,12 @@ FlatOptions SurfaceInputs(const Pipeline& pipeline) {
 // Of the file with known outlines.
 std::string FootprintsIdentity(const Pipeline& pipeline) {
   const std::string& file = pipeline.settings.buildings.footprints;
-  return file.empty() ? "" : FileIdentity(file);
+  if (file.empty()) return "";
+  // Before earlier results are removed.
+  if (!std::filesystem::is_regular_file(file)) {
+    throw base::InputError(file, "no such file", "Give a file with outlines as buildings.footprints, or leave it empty to find buildings");
+  }
+  return FileIdentity(file);
 }
 
 // The checkpoints of the context and of every block that train.json lists as trained. When train.json is damaged, no blocks are required here;

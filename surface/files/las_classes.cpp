@@ -15,7 +15,7 @@
 namespace skyquilt::surface {
 namespace {
 
-constexpr const char* kMakeAgain = "Run 'skyquilt surface' again with surface.cloud = true";
+constexpr const char* kMakeAgain = "Run 'skyquilt surface' with --restart and --set surface.cloud=true";
 constexpr double kSame_m = 0.002;
 constexpr size_t kBlockPoints = 1 << 16;
 

@@ -174,8 +174,13 @@ TEST(BuildingsOptions, ScaleBarIsTwoPlacesAndADistance) {
   BuildingsOptions options;
   options.scale_bar = {0, 0, 0, 1, 0, 0, 2.5};
   EXPECT_NO_THROW(options.Check());
-  for (const std::vector<double>& bad :
-       {std::vector<double>{0, 0, 0, 1, 0, 0}, {0, 0, 0, 1, 0, 0, 0}, {0, 0, 0, 1, 0, 0, -2}, {3, 4, 5, 3, 4, 5, 2}}) {
+  for (const std::vector<double>& bad : {std::vector<double>{0, 0, 0, 1, 0, 0},
+                                         {0, 0, 0, 1, 0, 0, 0},
+                                         {0, 0, 0, 1, 0, 0, -2},
+                                         {3, 4, 5, 3, 4, 5, 2},
+                                         {0, 0, 0, 1e-200, 0, 0, 1},
+                                         {0, 0, 0, 1e-9, 0, 0, 1},
+                                         {0, 0, 0, 1e9, 0, 0, 1}}) {
     options.scale_bar = bad;
     EXPECT_THROW(options.Check(), base::UsageError) << bad.size();
   }

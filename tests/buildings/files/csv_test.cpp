@@ -62,7 +62,7 @@ TEST(Csv, HasTheColumnsThatAreDocumented) {
       text,
       "id longitude latitude easting northing ground_m ground_m_sigma eave_m eave_m_sigma ridge_m ridge_m_sigma height_m height_m_sigma length_m "
       "length_m_sigma width_m width_m_sigma yaw_deg yaw_deg_sigma area_m2 area_m2_sigma volume_m3 volume_m3_sigma roof_area_m2 "
-      "roof_area_m2_sigma pitch_deg pitch_deg_sigma wall_seen roof accepted note");
+      "roof_area_m2_sigma pitch_deg pitch_deg_sigma wall_seen roof accepted note outline_id");
 }
 
 TEST(Csv, HeightsAndPlacesAreThoseOfTheMaps) {
@@ -91,8 +91,9 @@ TEST(Csv, HeightsAndPlacesAreThoseOfTheMaps) {
     EXPECT_EQ(table[i].at("roof"), NameOf(building.roof));
     EXPECT_EQ(table[i].at("accepted"), building.accepted ? "1" : "0");
     EXPECT_EQ(table[i].at("note"), building.note);
+    EXPECT_EQ(table[i].at("outline_id"), building.given_id);
     for (const auto& [name, cell] : table[i]) {
-      if (name == "roof" || name == "note") continue;
+      if (name == "roof" || name == "note" || name == "outline_id") continue;
       EXPECT_EQ(cell.find_first_not_of("-.0123456789"), std::string::npos) << name << " is " << cell;
     }
   }

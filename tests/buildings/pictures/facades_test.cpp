@@ -75,9 +75,9 @@ struct Result {
   json description;
 
   Result(const Building& building, const surface::RayCaster& caster, const surface::MapFrame& frame = surface::MapFrame(scene::SceneInfo{}),
-         double pixel_m = 0.1) {
+         double pixel_m = 0.1, const BuildingSet& set = {}) {
     base::ThreadPool threads(2);
-    files = WriteFacades(building, caster, frame, pixel_m, folder.path() / "facades", threads);
+    files = WriteFacades(building, caster, FileFrame(set, frame), pixel_m, folder.path() / "facades", threads);
     description = json::parse(std::ifstream(folder.path() / "facades" / ("facade_" + std::to_string(building.id) + ".json")));
   }
   // The facade that looks into this direction.
@@ -157,7 +157,25 @@ TEST(WriteFacades, MapCoordinatesAndGridNorth) {
   const double convergence_deg = (8.54 - 9.0) * std::sin(47.38 * std::numbers::pi / 180.0);
   EXPECT_NEAR(south["azimuth_deg"].get<double>(), 180.0 - convergence_deg, 0.005);
   const Eigen::Vector3d corner = frame.MapFromEnu({20.0, 30.0, 105.0});
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(south["top_left"][static_cast<size_t>(k)].get<double>(), corner[k], 1e-6);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(south["top_left"][static_cast<size_t>(k)].get<double>(), corner[k], 1e-4);
+}
+
+TEST(WriteFacades, LengthsAreThoseOfTheScaleBarAndHaveNoUnitWithoutScale) {
+  PaintedHouse house{.plan = Flat()};
+  BuildingSet scaled, unknown;
+  scaled.scale = 2.0;
+  unknown.metric = false;
+  const surface::MapFrame frame{scene::SceneInfo{}};
+  const json metres = Result(MadeHouse(house.plan), house.Caster(), frame, 0.1, scaled).Facing(180.0);
+  EXPECT_NEAR(metres["wall_width_m"].get<double>(), 24.0, 1e-9);
+  EXPECT_NEAR(metres["pixel_m"].get<double>(), 0.2, 1e-9);
+  EXPECT_EQ(metres["width_px"], 120);
+  EXPECT_NEAR(metres["top_left"][0].get<double>(), 40.0, 1e-9);
+  const Result without(MadeHouse(house.plan), house.Caster(), frame, 0.1, unknown);
+  EXPECT_EQ(without.description["crs"], "local frame, unknown scale");
+  const json& units = without.Facing(180.0);
+  EXPECT_NEAR(units["wall_width"].get<double>(), 12.0, 1e-9);
+  for (const auto& [name, value] : units.items()) EXPECT_FALSE(name.ends_with("_m")) << name;
 }
 
 TEST(WriteFacades, WhatIsNotOpaqueNearTheWallIsTransparent) {
@@ -219,7 +237,9 @@ TEST(WriteFacades, CancelledRunsAndBrokenFoldersAreReported) {
   PaintedHouse house{.plan = Flat()};
   TemporaryFolder folder;
   base::ThreadPool threads(1);
-  const surface::MapFrame frame{scene::SceneInfo{}};
+  const surface::MapFrame map{scene::SceneInfo{}};
+  const BuildingSet set;
+  const FileFrame frame(set, map);
   base::RequestCancel();
   EXPECT_THROW(WriteFacades(MadeHouse(house.plan), house.Caster(), frame, 0.1, folder.path(), threads), base::Interrupted);
   base::WithdrawRequest();

@@ -145,7 +145,7 @@ TEST(LasClasses, RefuseDamagedFiles) {
   std::filesystem::remove(las);
   const std::string missing = InputErrorOf([&] { cloud.Rewrite(); });
   EXPECT_NE(missing.find("cloud.las: does not exist"), std::string::npos) << missing;
-  EXPECT_NE(missing.find("surface.cloud = true"), std::string::npos) << missing;
+  EXPECT_NE(missing.find("surface.cloud=true"), std::string::npos) << missing;
 }
 
 TEST(LasClasses, StopWhenAsked) {

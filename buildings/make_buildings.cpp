@@ -23,6 +23,7 @@ constexpr double kDescribed = 0.5;     // below it the shape is a block
 constexpr double kFewestPlanes = 0.4;  // share of an outline that planes must cover, or it is no building
 constexpr double kShortestWall_m = 1.5;
 constexpr std::ptrdiff_t kNamedOutlines = 5;  // in a warning
+constexpr double kCutShare = 0.05;            // of an outline that is the edge of the survey
 
 struct Fitted {
   FittedShape fit;
@@ -187,7 +188,8 @@ class Maker {
     building.residual_m = fitted.fit.residual_m;
     building.roof_points = fitted.fit.roof_points;
     building.wall_points = fitted.fit.wall_points;
-    building.accepted = fitted.fit.converged && building.share_within >= kAccepted;
+    const bool cut = candidate.edge_share > kCutShare;
+    building.accepted = fitted.fit.converged && building.share_within >= kAccepted && (fitted.manhattan || fitted.follows_outline) && !cut;
     const auto seen = [](const std::vector<bool>& lines) { return std::any_of(lines.begin(), lines.end(), [](bool one) { return one; }); };
     building.walls_from_points = seen(fitted.fit.u_seen) || seen(fitted.fit.v_seen);
     SetOverhang(fitted, &building);
@@ -232,11 +234,12 @@ class Maker {
       notes.push_back("no valid solid with its roof could be built, so LoD 2.2 is a block");
     }
     if (!fitted.manhattan) notes.push_back("the outline has no right angles; length and width are those of the smallest rectangle around it");
+    if (candidate.edge_share > kCutShare) notes.push_back("the survey ends at its outline, so it may go on beyond what was measured");
     if (fitted.follows_outline) {
       notes.push_back("it is a block that follows the roof's outline, up to the median height of its roof");
     } else if (building->roof == RoofKind::kOther) {
       notes.push_back("neither a flat, gable nor hip roof describes it, so it is a block up to the median height of its roof");
-    } else if (!building->accepted) {
+    } else if (building->share_within < kAccepted) {
       notes.push_back("only " + std::to_string(static_cast<int>(std::lround(100.0 * building->share_within))) +
                       " % of the roof's points lie within two ground sampling distances of the model");
     }

@@ -6,11 +6,14 @@
 #include <numeric>
 #include <utility>
 
+#include "buildings/candidates/bridge.h"
 #include "buildings/candidates/gather_points.h"
 #include "buildings/candidates/piece_kind.h"
 #include "buildings/candidates/plan_grid.h"
+#include "buildings/candidates/plane_sizes.h"
 #include "buildings/candidates/roof_outlines.h"
 #include "buildings/candidates/standing.h"
+#include "buildings/candidates/survey_edge.h"
 #include "buildings/candidates/top_raster.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -19,10 +22,13 @@ namespace skyquilt::buildings {
 namespace {
 
 constexpr double kPlanCell_m = 2.0;
-constexpr double kLeastCell_m = 0.2;     // of outlines
+constexpr double kLeastCell_m = 0.2;  // of outlines
+constexpr double kCellSpacings = 0.6;
 constexpr double kLowestShare = 0.75;    // of min_height_m: roofs may begin lower at their eaves
 constexpr float kSteepestPoint = 0.35F;  // normal.z of points of roofs
 constexpr double kGroupCell_m = 1.0;
+constexpr double kLeastGreen = 0.01;  // share of green points from which colours tell vegetation
+constexpr double kCutReach_m = 1.5;
 
 PlaneOptions PlaneOptionsOf(double gsd_m, double spacing_m) {
   PlaneOptions planes;
@@ -110,12 +116,24 @@ Eigen::AlignedBox2d BoxAround(std::span<const PlanePiece> pieces, const PointClo
   return {box.min() - margin, box.max() + margin};
 }
 
-double CellOf(double gsd_m) {
-  return std::max(kLeastCell_m, gsd_m);
+// Not finer than the points, or the raster would be full of holes.
+double CellOf(const Surface& surface) {
+  return std::max({kLeastCell_m, surface.gsd_m, kCellSpacings * surface.cloud.spacing_m});
 }
 
-std::vector<Gathered> CandidatesOf(std::span<const PlanePiece> pieces, const Surface& surface) {
-  const TopRaster top = RasteriseTop(surface.cloud, surface.plan, BoxAround(pieces, surface.cloud, kAround_m + 1.0), CellOf(surface.gsd_m));
+bool ColoursTell(const PointCloud& cloud, double max_green) {
+  const auto green = std::count_if(cloud.points.begin(), cloud.points.end(), [&](const SurfacePoint& p) { return ExcessGreen(p) > max_green; });
+  return static_cast<double>(green) >= kLeastGreen * static_cast<double>(cloud.points.size());
+}
+
+// What the whole survey says about one candidate.
+struct SurveyFacts {
+  SurveyEdge edge;
+  bool colours_tell;
+};
+
+std::vector<Gathered> CandidatesOf(std::span<const PlanePiece> pieces, const Surface& surface, const SurveyFacts& facts) {
+  const TopRaster top = RasteriseTop(surface.cloud, surface.plan, BoxAround(pieces, surface.cloud, kAround_m + 1.0), CellOf(surface));
   const RoofLevels levels = FindRoofLevels(top, pieces, surface.cloud, surface.options.max_green);
   std::vector<Gathered> found;
   for (const RoofArea& area : FindRoofAreas(top, levels, pieces, surface.options, surface.gsd_m, surface.cloud.spacing_m)) {
@@ -124,8 +142,12 @@ std::vector<Gathered> CandidatesOf(std::span<const PlanePiece> pieces, const Sur
     if (outlines.empty() || gathered.candidate.planes.empty()) continue;
     gathered.candidate.outline = std::move(outlines.front());
     const Standing standing = MeasureStanding(area, top, levels, surface.ground, surface.options.min_height_m);
-    const Candidate& candidate = gathered.candidate;
-    if (!LooksLikeBuilding(standing, Area(candidate.outline), candidate.planes.front().area_m2, candidate.wall.size())) continue;
+    Candidate& candidate = gathered.candidate;
+    const double area_m2 = Area(candidate.outline);
+    if (!LooksLikeBuilding(standing, area_m2, candidate.planes.front().area_m2, candidate.wall.size())) continue;
+    if (LooksLikeCrown(SizesOf(candidate.planes, area_m2), area_m2, facts.colours_tell)) continue;
+    if (LooksLikeBridge(area, top, surface.ground, facts.edge, surface.options.min_height_m)) continue;
+    candidate.edge_share = facts.edge.ShareOf(candidate.outline, kCutReach_m);
     found.push_back(std::move(gathered));
   }
   return found;
@@ -166,7 +188,7 @@ Gathered GatherGiven(const GivenOutline& given, const Surface& surface, base::Th
       }
     }
     const Eigen::Vector2d margin = Eigen::Vector2d::Constant(kAround_m + 1.0);
-    const TopRaster top = RasteriseTop(surface.cloud, surface.plan, {box.min() - margin, box.max() + margin}, CellOf(surface.gsd_m));
+    const TopRaster top = RasteriseTop(surface.cloud, surface.plan, {box.min() - margin, box.max() + margin}, CellOf(surface));
     const RoofLevels levels = FindRoofLevels(top, pieces, surface.cloud, surface.options.max_green);
     const std::vector<uint32_t> cells = CellsIn(given.outline, top);
     if (!cells.empty()) gathered = GatherPoints(CutOut(top, levels, cells), pieces, surface);
@@ -184,11 +206,12 @@ std::vector<Candidate> FindCandidates(const PointCloud& cloud, const GroundGrid&
   SKYQUILT_CHECK(gsd_m > 0.0 && cloud.spacing_m > 0.0, "GSD and spacing must be known");
   const PlanGrid plan(cloud, kPlanCell_m);
   const Surface surface{cloud, ground, plan, options, gsd_m};
+  const SurveyFacts facts{SurveyEdge(cloud), ColoursTell(cloud, options.max_green)};
   const std::vector<std::vector<PlanePiece>> groups = GroupPieces(FindPieces(surface, HighPoints(surface, threads), threads), cloud);
   std::vector<std::vector<Gathered>> of_group(groups.size());
   threads.ParallelFor(static_cast<int64_t>(groups.size()), [&](int64_t g, int) {
     if (base::CancelRequested()) return;
-    of_group[static_cast<size_t>(g)] = CandidatesOf(groups[static_cast<size_t>(g)], surface);
+    of_group[static_cast<size_t>(g)] = CandidatesOf(groups[static_cast<size_t>(g)], surface, facts);
   });
   base::ThrowIfCancelled();
   std::vector<Gathered> all;
@@ -203,10 +226,12 @@ std::vector<Candidate> CandidatesIn(std::span<const GivenOutline> outlines, cons
   SKYQUILT_CHECK(gsd_m > 0.0 && cloud.spacing_m > 0.0, "GSD and spacing must be known");
   const PlanGrid plan(cloud, kPlanCell_m);
   const Surface surface{cloud, ground, plan, options, gsd_m};
+  const SurveyEdge edge(cloud);
   std::vector<Gathered> all;
   for (const GivenOutline& given : outlines) {
     base::ThrowIfCancelled();
     all.push_back(GatherGiven(given, surface, threads));
+    all.back().candidate.edge_share = edge.ShareOf(given.outline, kCutReach_m);
   }
   return WithSharedWalls(std::move(all));
 }

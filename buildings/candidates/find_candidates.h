@@ -23,6 +23,7 @@ struct Candidate {
   Polygon outline;                // of the roof seen from above, ENU, along raster cells (finding) or as given
   bool given = false;
   std::string given_id;
+  double edge_share = 0.0;  // of the outline's length that is where the survey ends; the building may go on there
 };
 
 struct GivenOutline {
@@ -33,9 +34,10 @@ struct GivenOutline {
 // Largest outline first. Points are candidates when they rise at least options.min_height_m above the ground and belong to a planar piece of at least
 // 4 m2 that is not vegetation (excess green of its colours at most options.max_green unless it is large, even and planar; normals that do not
 // scatter). Pieces that touch seen from above are one candidate. Outlines smaller than options.min_area_m2 are left out, and so is what hardly drops
-// to its surroundings (water, ghosts at the edge of the survey). The outline holds parapets and boxes on the roof; courtyards from 4 m2 are holes.
-// Limits: trucks and containers above min_height_m and min_area_m2 are candidates; so are bridges where the bare ground passes below them, and pruned
-// crowns that are neither green nor scattered. A house that is hidden by trees on most of its border may be missed.
+// to its surroundings (water, ghosts at the edge of the survey), what runs on at both ends (bridges), and what is made of small planes only (crowns
+// of trees; more strictly where hardly anything of the surface is green, so that colours cannot tell vegetation). The outline holds parapets and
+// boxes on the roof; courtyards from 4 m2 are holes. Limits: trucks and containers above min_height_m and min_area_m2 are candidates; so are bridges
+// that leave the survey at both ends, and hedges cut flat that are not green. A house that is hidden by trees on most of its border may be missed.
 std::vector<Candidate> FindCandidates(const PointCloud& cloud, const GroundGrid& ground, const BuildingsOptions& options, double gsd_m,
                                       base::ThreadPool& threads);
 // The same for known outlines: one candidate each, in their order, without points where the surface has none there.

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "buildings/candidates/cell_mask.h"
@@ -34,6 +35,11 @@ struct TopRaster {
     const Eigen::Vector2d at = ((enu - origin) / cell_m).array().floor();
     if (!(at.x() >= 0.0 && at.y() >= 0.0 && at.x() < columns && at.y() < rows)) return -1;
     return static_cast<int64_t>(at.y()) * columns + static_cast<int64_t>(at.x());
+  }
+  // NaN outside.
+  double TopAt(int column, int row) const {
+    if (column < 0 || row < 0 || column >= columns || row >= rows) return std::numeric_limits<double>::quiet_NaN();
+    return static_cast<double>(top_z[Index(column, row)]);
   }
   CellMask EmptyMask() const { return {columns, rows}; }
 };

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "buildings/geometry/polygon.h"
@@ -26,7 +27,10 @@ class MadeScene {
 
   explicit MadeScene(double half_m = 20.0, Color ground = kGreyGround) : half_m_(half_m), ground_color_(ground) {}
 
-  // Something that stands on the ground: height above it at a place, 0 beside it; walls below its border when it has an outline.
+  // Bare ground that is not level: height above kGround, not below 0.
+  void SetTerrain(std::function<double(const Eigen::Vector2d&)> terrain) { terrain_ = std::move(terrain); }
+
+  // Something that stands on the ground: its top above kGround at a place, 0 beside it; walls below its border when it has an outline.
   struct Thing {
     std::function<double(const Eigen::Vector2d&)> height;
     Color color;
@@ -70,7 +74,7 @@ class MadeScene {
 
   // Height of the surface above the ground.
   double HeightAt(const Eigen::Vector2d& at, const Thing** top = nullptr) const {
-    double highest = 0.0;
+    double highest = TerrainAt(at);
     for (const Thing& thing : things_) {
       double height = thing.height(at);
       if (height > 0.0 && thing.bumps_m > 0.0) height += thing.bumps_m * std::sin(4.1 * at.x() + std::sin(2.3 * at.y())) * std::sin(3.7 * at.y());
@@ -115,9 +119,14 @@ class MadeScene {
   }
   GroundGrid Ground() const {
     const int n = 1 + static_cast<int>(2.0 * half_m_);
-    return {Eigen::Vector2d::Constant(-half_m_), 1.0, n, n,
-            std::vector<float>(static_cast<size_t>(n) * static_cast<size_t>(n), static_cast<float>(kGround))};
+    std::vector<float> height_z;
+    for (int row = 0; row < n; ++row) {
+      for (int column = 0; column < n; ++column) height_z.push_back(static_cast<float>(kGround + TerrainAt({column - half_m_, row - half_m_})));
+    }
+    return {Eigen::Vector2d::Constant(-half_m_), 1.0, n, n, std::move(height_z)};
   }
+
+  double TerrainAt(const Eigen::Vector2d& at) const { return terrain_ ? terrain_(at) : 0.0; }
 
  private:
   // Outlines have the building on their left.
@@ -138,6 +147,7 @@ class MadeScene {
   }
 
   double half_m_;
+  std::function<double(const Eigen::Vector2d&)> terrain_;
   Color ground_color_;
   std::vector<Thing> things_;
 };

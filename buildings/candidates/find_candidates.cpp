@@ -145,7 +145,7 @@ std::vector<Gathered> CandidatesOf(std::span<const PlanePiece> pieces, const Sur
     Candidate& candidate = gathered.candidate;
     const double area_m2 = Area(candidate.outline);
     if (!LooksLikeBuilding(standing, area_m2, candidate.planes.front().area_m2, candidate.wall.size())) continue;
-    if (LooksLikeCrown(SizesOf(candidate.planes, area_m2), area_m2, facts.colours_tell)) continue;
+    if (LooksLikeCrown(SizesOf(candidate.planes, area_m2), surface.gsd_m, facts.colours_tell)) continue;
     if (LooksLikeBridge(area, top, surface.ground, facts.edge, surface.options.min_height_m)) continue;
     candidate.edge_share = facts.edge.ShareOf(candidate.outline, kCutReach_m);
     found.push_back(std::move(gathered));

@@ -7,12 +7,16 @@
 namespace skyquilt::buildings {
 namespace {
 
-// Found on two simulated towns whose colours were ignored. Crowns: mean 2.4 to 6 m2, two largest planes below 0.6 of small outlines, four below 0.78.
-// Houses with bent roofs at the edge of a survey: mean from 4.2 m2; others from 7 m2; sheds are one plane.
-constexpr double kLeastMean_m2 = 4.0;
-constexpr double kLeastMeanAlone_m2 = 5.5;  // when colours do not tell
-constexpr double kOneMainPlane = 0.5;       // a roof with such a plane may be small
-constexpr double kSmallOutline_m2 = 40.0, kLeastTwo = 0.6, kLeastFour = 0.78;
+// Found on two simulated towns at this GSD whose colours were ignored. Crowns: mean 2.4 to 6 m2, two largest planes below 0.6 of small outlines, four
+// below 0.78. Houses with bent roofs at the edge of a survey: mean from 4.2 m2; others from 7 m2; sheds are one or two planes.
+constexpr double kFoundAt_m = 0.185;
+constexpr double kLeastScale = 0.2, kMostScale = 1.5;
+struct CrownLimits {
+  double mean_m2, two, four;
+};
+constexpr CrownLimits kWithColours = {4.0, 0.5, 0.75}, kWithoutColours = {5.5, 0.6, 0.78};
+constexpr double kOneMainPlane = 0.5;  // a roof with such a plane may be small
+constexpr double kSmallOutline_m2 = 40.0;
 
 }  // namespace
 
@@ -22,6 +26,7 @@ PlaneSizes SizesOf(std::span<const RoofPlane> planes, double outline_m2) {
   std::sort(areas.begin(), areas.end(), std::greater<>());
   double sum = 0.0, squares = 0.0;
   PlaneSizes sizes;
+  sizes.outline_m2 = outline_m2;
   for (size_t i = 0; i < areas.size(); ++i) {
     sum += areas[i];
     squares += areas[i] * areas[i];
@@ -33,10 +38,12 @@ PlaneSizes SizesOf(std::span<const RoofPlane> planes, double outline_m2) {
   return sizes;
 }
 
-bool LooksLikeCrown(const PlaneSizes& sizes, double outline_m2, bool colours_tell) {
+bool LooksLikeCrown(const PlaneSizes& sizes, double gsd_m, bool colours_tell) {
   if (sizes.largest >= kOneMainPlane) return false;
-  if (outline_m2 < kSmallOutline_m2 && sizes.two < kLeastTwo && sizes.four < kLeastFour) return true;
-  return sizes.mean_m2 < (colours_tell ? kLeastMean_m2 : kLeastMeanAlone_m2);
+  const double scale = std::clamp(gsd_m / kFoundAt_m, kLeastScale, kMostScale);
+  const CrownLimits& limits = colours_tell ? kWithColours : kWithoutColours;
+  if (sizes.outline_m2 < scale * kSmallOutline_m2 && sizes.two < limits.two && sizes.four < limits.four) return true;
+  return sizes.mean_m2 < scale * limits.mean_m2;
 }
 
 }  // namespace skyquilt::buildings

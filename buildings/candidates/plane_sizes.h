@@ -8,13 +8,14 @@
 namespace skyquilt::buildings {
 
 struct PlaneSizes {
-  double mean_m2 = 0.0;  // of the plane that a random place of the roof lies on: sum a^2 / sum a, areas seen from above
-  double largest = 0.0;  // shares of the outline: of the largest plane, the two and the four largest
-  double two = 0.0, four = 0.0;
+  double outline_m2 = 0.0;
+  double mean_m2 = 0.0;                         // of the plane at a random place of the roof: sum a^2 / sum a, areas seen from above
+  double largest = 0.0, two = 0.0, four = 0.0;  // shares of the outline: of the largest plane, the two and the four largest
 };
 PlaneSizes SizesOf(std::span<const RoofPlane> planes, double outline_m2);
 
-// colours_tell: vegetation of this survey can be told by its colour too, so that a doubtful candidate is believed.
-bool LooksLikeCrown(const PlaneSizes& sizes, double outline_m2, bool colours_tell);
+// The patch of a round crown that is planar within the tolerance of planes, which follows the GSD, has an area in proportion to radius and tolerance;
+// so limits of areas follow the GSD too. colours_tell: vegetation of this survey can be told by its colour, so that a doubtful candidate is believed.
+bool LooksLikeCrown(const PlaneSizes& sizes, double gsd_m, bool colours_tell);
 
 }  // namespace skyquilt::buildings

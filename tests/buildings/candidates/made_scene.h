@@ -61,15 +61,15 @@ class MadeScene {
          color,
          {outline}});
   }
-  // A round crown, bumpy as leaves are.
-  void AddTree(const Eigen::Vector2d& middle, double radius, double height, Color color = kLeaves) {
+  // A round crown, bumpy as leaves are; fields of few photos make it smoother.
+  void AddTree(const Eigen::Vector2d& middle, double radius, double height, Color color = kLeaves, double bumps_m = 0.35) {
     Add({[=](const Eigen::Vector2d& at) {
            const double r = (at - middle).norm() / radius;
            return r < 1.0 ? std::max(0.0, height - radius + radius * std::sqrt(1.0 - r * r)) : 0.0;
          },
          color,
          {},
-         0.35});
+         bumps_m});
   }
 
   // Height of the surface above the ground.

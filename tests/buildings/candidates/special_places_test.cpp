@@ -70,16 +70,21 @@ TEST(SpecialPlaces, AHouseWhoseRoofMeetsTheSlopeIsFound) {
 }
 
 TEST(SpecialPlaces, WoodsWithoutLeavesAreNoBuildings) {
-  MadeScene scene(20.0);
-  for (int i = 0; i < 36; ++i) scene.AddTree({-16.0 + 6.4 * (i % 6), -16.0 + 6.4 * (i / 6)}, 2.4 + 0.35 * (i % 4), 6.0 + 0.9 * (i % 5), kBark);
-  for (const double noise_m : {0.02, 0.1}) EXPECT_TRUE(FoundIn(scene, scene.Cloud(noise_m)).empty()) << noise_m;
+  for (const double bumps_m : {0.05, 0.15, 0.35}) {
+    MadeScene scene(20.0);
+    for (int i = 0; i < 36; ++i)
+      scene.AddTree({-16.0 + 6.4 * (i % 6), -16.0 + 6.4 * (i / 6)}, 2.4 + 0.35 * (i % 4), 6.0 + 0.9 * (i % 5), kBark, bumps_m);
+    EXPECT_TRUE(FoundIn(scene).empty()) << bumps_m;
+  }
 }
 
 TEST(SpecialPlaces, SingleTreesWithoutLeavesAreNoBuildings) {
   for (const double radius : {2.2, 3.0, 4.0}) {
-    MadeScene scene(10.0);
-    scene.AddTree({0, 0}, radius, 7.0, kBark);
-    EXPECT_TRUE(FoundIn(scene).empty()) << radius;
+    for (const double bumps_m : {0.05, 0.15, 0.35}) {
+      MadeScene scene(8.0);
+      scene.AddTree({0, 0}, radius, 7.0, kBark, bumps_m);
+      EXPECT_TRUE(FoundIn(scene).empty()) << radius << " " << bumps_m;
+    }
   }
 }
 
@@ -91,6 +96,17 @@ TEST(SpecialPlaces, GreySurveysStillHaveTheirHouses) {
   scene.AddGable(MadeScene::At(10, -10, 12.0, 8.0, 60), 4.0, 45);
   scene.AddTree({14, 14}, 3.5, 8.0, kBark);
   EXPECT_EQ(FoundIn(scene).size(), 3U);
+}
+
+// Like the roof of a round pavilion: many planes, but not as many as a crown has at this GSD.
+TEST(SpecialPlaces, SmallRoofsOfManyPlanesAreFound) {
+  MadeScene scene(9.0, kLawn);
+  const Polygon outline = MadeScene::At(0, 0, 6.0, 6.0).Outline();
+  scene.Add(
+      {[=](const Eigen::Vector2d& at) { return Contains(outline, at) ? 2.5 + 0.8 * (3.0 - at.cwiseAbs().maxCoeff()) : 0.0; }, kRedTiles, {outline}});
+  const std::vector<Candidate> found = FoundIn(scene);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().planes.size(), 4U);
 }
 
 TEST(SpecialPlaces, ABuildingAtTheEdgeOfTheSurveyIsKnownToBeCut) {
@@ -117,13 +133,19 @@ TEST(SpecialPlaces, GapsInTheSurveyAreNoEdges) {
   EXPECT_EQ(found.front().edge_share, 0.0);
 }
 
-// Nothing is around it but the edge of the survey.
-TEST(SpecialPlaces, ABuildingThatFillsTheSurveyIsCutEverywhere) {
+// Nothing around it shows that it stands out.
+TEST(SpecialPlaces, ABuildingThatFillsTheSurveyNeedsAGivenOutline) {
   MadeScene scene(8.0);
   scene.AddBox(MadeScene::At(0, 0, 15.0, 15.0), 7.0);
   PointCloud cloud = scene.Cloud();
   std::erase_if(cloud.points, [](const SurfacePoint& point) { return point.position.z() < 6.0F; });
-  for (const Candidate& candidate : FoundIn(scene, cloud)) EXPECT_GT(candidate.edge_share, 0.9);
+  EXPECT_TRUE(FoundIn(scene, cloud).empty());
+  base::ThreadPool threads(2);
+  const std::vector<GivenOutline> outlines = {{MadeScene::At(0, 0, 15.0, 15.0).Outline(), "hall"}};
+  const std::vector<Candidate> given = CandidatesIn(outlines, cloud, scene.Ground(), {}, MadeScene::kGsd_m, threads);
+  ASSERT_EQ(given.size(), 1U);
+  EXPECT_GT(given.front().edge_share, 0.9);
+  EXPECT_GT(given.front().roof.size(), 1000U);
 }
 
 // By its shape nobody can tell a lorry from a shed, so its size decides.

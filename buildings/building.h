@@ -87,8 +87,7 @@ struct Building {
   Solid lod12;  // block: footprint up to the area-weighted roof height
   Solid lod22;  // with its roof; same as lod12 when lod22_valid is false
   bool lod22_valid = true;
-  bool accepted =
-      true;  // at least 85 % of the roof's points lie within 2 GSD of the shape, which has right angles and is not cut by the survey's edge
+  bool accepted = true;       // at least 85 % of the roof's points lie within 2 GSD of the model, which the survey's edge does not cut
   double share_within = 0.0;  // that share
   double residual_m = 0.0;    // robust standard deviation (1.48 MAD) of the roof's points from it
   int64_t roof_points = 0, wall_points = 0;

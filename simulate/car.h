@@ -1,4 +1,4 @@
-// Cars: parked ones are part of the static scene, moving ones have another position in every photo.
+// Cars, trucks and containers: parked ones are part of the static scene, moving ones have another position in every photo.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,13 @@
 
 namespace skyquilt::simulate {
 
+enum class CarKind { kCar, kTruck, kContainer };
+
+// Of trucks and containers.
+inline constexpr double kTruckLength_m = 8.0, kTruckWidth_m = 2.5, kTruckHeight_m = 3.5;
+
 struct Car {
+  CarKind kind = CarKind::kCar;
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  // ENU metres
   double yaw_deg = 0.0;                                // counter-clockwise from east
   double ground_z_m = 0.0;

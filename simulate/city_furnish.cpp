@@ -163,6 +163,15 @@ void FurnishPark(Cell& cell, CityContents& contents, base::Random& random) {
   }
 }
 
+void FurnishWood(const Cell& cell, CityContents& contents, base::Random& random) {
+  const Vector2d size = cell.max - cell.min;
+  const int n_trees = static_cast<int>(size.x() * size.y() / 75.0);
+  for (int i = 0; i < n_trees; ++i) {
+    const Vector2d at(random.Uniform(cell.min.x() + 1.0, cell.max.x() - 1.0), random.Uniform(cell.min.y() + 1.0, cell.max.y() - 1.0));
+    AddGardenTree(at, 6.0, kHighestInWood_m, contents, random);
+  }
+}
+
 // One high tower on a plaza with trees along the streets.
 void FurnishLandmark(Cell& cell, CityContents& contents, base::Random& random) {
   const Vector2d size = cell.max - cell.min;
@@ -200,6 +209,9 @@ void FurnishPlot(const CityPlan& plan, Cell& cell, CityContents& contents, base:
       break;
     case CellKind::kPark:
       FurnishPark(cell, contents, random);
+      break;
+    case CellKind::kWood:
+      FurnishWood(cell, contents, random);
       break;
     case CellKind::kField:
       break;

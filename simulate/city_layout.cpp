@@ -7,6 +7,7 @@
 
 #include "simulate/noise.h"
 #include "simulate/outline.h"
+#include "simulate/plot_furnish.h"
 #include "simulate/roof_overhangs.h"
 #include "simulate/wall_trees.h"
 
@@ -17,18 +18,12 @@ constexpr double kCurbToCentre = static_cast<double>(kRoadHalfWidth + kPavementW
 
 }  // namespace
 
-// A street's centre line inside a rectangle.
-struct CityLayout::Lane {
-  double line = 0.0;  // coordinate of the centre line across the street, in the city
-  double from = 0.0;  // coordinates along it, in the city
-  double to = 0.0;
-};
-
 CityLayout::CityLayout(const CityPlan& plan, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max, uint32_t seed)
     : turn_(0.5 * (ground_min + ground_max), plan.yaw_deg), pitch_(static_cast<float>(plan.pitch_m)), phase_(plan.phase.cast<float>()) {
   AddCells(plan);
   base::Random random(seed, 1);
   ChooseKinds(plan, random);
+  ChooseWoods(plan, seed);
   FurnishCells(plan, seed);
   AddStreetLife(plan, random);
   TurnContents(ground_min, ground_max);
@@ -38,6 +33,10 @@ CityLayout::CityLayout(const CityPlan& plan, const Eigen::Vector2d& ground_min, 
     AddWallTrees(plan, seed);
   }
   AddFieldTrees(plan, ground_min, ground_max, random);
+  if (plan.tree_density < 1.0) ThinTrees(plan.tree_density, contents_);
+  base::Random street_random(seed, 8);
+  if (plan.bridge) AddBridge(street_random);
+  if (plan.trucks > 0) AddTrucks(plan, street_random);
 }
 
 void CityLayout::AddCells(const CityPlan& plan) {
@@ -75,7 +74,9 @@ void CityLayout::FurnishCells(const CityPlan& plan, uint32_t seed) {
     const Eigen::Vector2d middle = turn_.Turned(in_city);
     if ((middle - plan.min).minCoeff() < -0.25 * plan.pitch_m || (plan.max - middle).minCoeff() < -0.25 * plan.pitch_m) cell.kind = CellKind::kField;
     base::Random cell_random(seed, 100 + i);
+    const size_t n_trees_before = contents_.trees.size();
     FurnishCell(plan, across.dot(in_city - city_middle) > 0.0 ? plan.district_turn_deg : 0.0, cell, contents_, cell_random);
+    if (plan.tree_density > 1.0) MultiplyTrees(plan.tree_density, n_trees_before, cell, contents_, cell_random);
   }
   NumberOutlines(contents_.buildings);
 }
@@ -148,6 +149,14 @@ void CityLayout::ChooseSpecialCells(const CityPlan& plan, const std::vector<size
   }
 }
 
+void CityLayout::ChooseWoods(const CityPlan& plan, uint32_t seed) {
+  for (size_t i = 0; i < cells_.size(); ++i) {
+    Cell& cell = cells_[i];
+    if (cell.kind == CellKind::kPark || cell.landmark_m > 0.0) continue;
+    if (static_cast<double>(HashUnit(static_cast<int>(i), 8, seed)) >= plan.building_share) cell.kind = CellKind::kWood;
+  }
+}
+
 void CityLayout::AddStreetLife(const CityPlan& plan, base::Random& random) {
   const double kerb = static_cast<double>(kRoadHalfWidth);
   const auto Along = [&](bool eastward, double line, double from, double to) {
@@ -158,7 +167,7 @@ void CityLayout::AddStreetLife(const CityPlan& plan, base::Random& random) {
         const auto Point = [&](double across) {
           return eastward ? Eigen::Vector2d(at + jitter, line + side * across) : Eigen::Vector2d(line + side * across, at + jitter);
         };
-        if (pick < 0.13 * plan.trees) {
+        if (pick < std::min(0.13 * plan.trees * std::max(plan.tree_density, 1.0), 0.5)) {
           Tree tree;
           tree.position = Point(kerb + 1.3);
           tree.height_m = random.Uniform(4.5, 7.5);
@@ -191,7 +200,7 @@ void CityLayout::AddStreetLife(const CityPlan& plan, base::Random& random) {
 
 void CityLayout::AddFieldTrees(const CityPlan& plan, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max, base::Random& random) {
   const Eigen::Vector2d size = ground_max - ground_min;
-  const int count = static_cast<int>(0.0012 * plan.trees * size.x() * size.y());
+  const int count = static_cast<int>(0.0012 * plan.trees * std::max(plan.tree_density, 1.0) * size.x() * size.y());
   for (int i = 0; i < count; ++i) {
     Tree tree;
     tree.position = ground_min + Eigen::Vector2d(random.UniformDouble() * size.x(), random.UniformDouble() * size.y());

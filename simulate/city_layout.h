@@ -7,9 +7,11 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/base/random.h"
+#include "simulate/bridge.h"
 #include "simulate/building.h"
 #include "simulate/car.h"
 #include "simulate/place_spec.h"
@@ -18,7 +20,7 @@
 
 namespace skyquilt::simulate {
 
-enum class CellKind { kHouses, kFlats, kTowers, kPark, kField };
+enum class CellKind { kHouses, kFlats, kTowers, kPark, kField, kWood };
 enum class PadKind { kDriveway, kPath, kParking, kTerrace, kPlaza };
 
 // A paved rectangle on the ground, along the axes of the city.
@@ -69,6 +71,7 @@ struct CityContents {
   std::vector<Tree> trees;
   std::vector<Car> parked;
   std::vector<Pond> ponds;
+  std::optional<Bridge> bridge;
 };
 
 constexpr float kRoadHalfWidth = 4.4F;
@@ -101,18 +104,29 @@ class CityLayout {
   std::vector<MovingCar> MakeMovingCars(int count, const Eigen::Vector2d& min, const Eigen::Vector2d& max, base::Random& random) const;
 
  private:
-  struct Lane;  // where a street crosses a rectangle
+  // A street's centre line inside a rectangle.
+  struct Lane {
+    double line = 0.0;  // coordinate of the centre line across the street, in the city
+    double from = 0.0;  // coordinates along it, in the city
+    double to = 0.0;
+  };
 
   void AddCells(const CityPlan& plan);
   void ChooseKinds(const CityPlan& plan, base::Random& random);
   // by_distance: indices of the cells, those nearest to the middle of the city first.
   void ChooseSpecialCells(const CityPlan& plan, const std::vector<size_t>& by_distance, base::Random& random);
+  // Cells without buildings, of those that would have some.
+  void ChooseWoods(const CityPlan& plan, uint32_t seed);
   void FurnishCells(const CityPlan& plan, uint32_t seed);
   void AddStreetLife(const CityPlan& plan, base::Random& random);
   // Turns the contents with the city, and removes what is beyond the ground.
   void TurnContents(const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
   // Beside some houses of varied towns, on ground that is not paved.
   void AddWallTrees(const CityPlan& plan, uint32_t seed);
+  // Over the crossing nearest to the middle; what is in its way is removed.
+  void AddBridge(base::Random& random);
+  // At kerbs, up to plan.trucks, where there is room. Parked cars in their way are removed.
+  void AddTrucks(const CityPlan& plan, base::Random& random);
   std::vector<Lane> LanesAcross(int axis, const Eigen::Vector2d& min, const Eigen::Vector2d& max) const;
   void AddFieldTrees(const CityPlan& plan, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max, base::Random& random);
 

@@ -35,6 +35,9 @@ SurfaceClass ClassOf(const Tag& tag, const Eigen::Vector3f& position, const City
     case Part::kCarGlass:
     case Part::kCarTyre:
       return SurfaceClass::kParkedCar;
+    case Part::kBridgeRoad:
+    case Part::kBridgeConcrete:
+      return SurfaceClass::kRoad;
   }
   return SurfaceClass::kNone;
 }

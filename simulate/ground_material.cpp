@@ -141,6 +141,8 @@ Vector3f Garden(const CityLayout& layout, const GroundSample& ground, const Hit&
       return Grass(at, 0.35F, 1.0F);
     case CellKind::kTowers:
       return Grass(at, 0.25F, 1.0F);
+    case CellKind::kWood:
+      return Mix(Grass(at, 0.3F, 0.75F), {0.085F, 0.065F, 0.042F}, std::clamp(0.45F + 0.8F * at.Noise(6.0F, 4, 14), 0.0F, 1.0F));
     case CellKind::kField:
       return Field(at);
   }
@@ -172,6 +174,27 @@ Surface CityGround(const CityLayout& layout, const Hit& hit, uint32_t seed) {
     case GroundKind::kField:
       surface.albedo = Field(at);
       break;
+  }
+  surface.albedo = surface.albedo.cwiseMax(0.01F);
+  return surface;
+}
+
+Surface BridgeSurface(const Bridge& bridge, const Hit& hit, uint32_t seed) {
+  const Eigen::Vector2f local = bridge.Local(hit.position.head<2>().cast<double>()).cast<float>();
+  Surface surface;
+  surface.normal = hit.normal;
+  const float w = SurfaceFootprint(hit);
+  if (hit.tag.part == Part::kBridgeRoad) {
+    GroundSample road;
+    road.kind = GroundKind::kRoad;
+    road.along = local.x();
+    road.across = local.y();
+    road.to_crossing = 1e6F;
+    road.street = bridge.street;
+    surface.albedo = Road(road, {local.x(), local.y(), w, seed});
+  } else {
+    // Height in both, so that upright faces have a pattern too.
+    surface.albedo = Concrete({local.x() + 0.6F * hit.position.z(), local.y() + 0.8F * hit.position.z(), w, seed}, {0.36F, 0.35F, 0.33F});
   }
   surface.albedo = surface.albedo.cwiseMax(0.01F);
   return surface;

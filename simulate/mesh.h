@@ -22,7 +22,9 @@ enum class Part : uint8_t {
   kLeaves,
   kCarBody,
   kCarGlass,
-  kCarTyre
+  kCarTyre,
+  kBridgeRoad,
+  kBridgeConcrete
 };
 
 struct Tag {

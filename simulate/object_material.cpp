@@ -1,6 +1,9 @@
 #include "simulate/object_material.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include "simulate/noise.h"
 
@@ -50,6 +53,15 @@ Surface CarSurface(const Car& car, const Hit& hit) {
   } else {
     const auto& paint = kPaint[HashCell(3, 3, car.seed) % kPaint.size()];
     surface.albedo = Vector3f(paint[0], paint[1], paint[2]);
+    if (car.kind != CarKind::kCar) {
+      // Ribs across the body, and dust.
+      const float w = SurfaceFootprint(hit);
+      const auto yaw = static_cast<float>(car.yaw_deg * std::numbers::pi / 180.0);
+      const float along = std::cos(yaw) * hit.position.x() + std::sin(yaw) * hit.position.y();
+      const float dust = 0.5F + FractalNoise(hit.position.x() + hit.position.z(), hit.position.y() - hit.position.z(), {2.5F, 3, 0.5F}, car.seed, w);
+      surface.albedo *= 1.0F - 0.25F * PulseTrain(along / 0.6F, 0.3F, w / 0.6F);
+      surface.albedo += 0.15F * std::clamp(dust, 0.0F, 1.0F) * (Vector3f(0.24F, 0.22F, 0.19F) - surface.albedo);
+    }
   }
   return surface;
 }

@@ -17,6 +17,7 @@ namespace {
 
 // Tags have shutter times in units of 1e-8 s. At 13 stops below normal exposure this is 15 units; less would be too coarse.
 constexpr double kMaxStops = 13.0;
+constexpr double kSteepestUnderBridge_deg = 2.0;
 
 camera::Camera MakeCamera(camera::CameraModel model, int width, int height, double horizontal_fov_deg, const std::vector<double>& distortion) {
   camera::Camera camera;
@@ -224,6 +225,30 @@ void ApplyHillside(const SimulateOptions& options, PlaceSpec& place) {
   }
 }
 
+// What a search for buildings must not take for one, and places without any.
+void ApplySpecialCases(const SimulateOptions& options, PlaceSpec& place) {
+  if (place.landscape == Landscape::kTidalFlat) {
+    if (options.building_share != 1.0) Refuse("building_share", Text(options.building_share), "place 'tidalflat' has no buildings; set it to 1");
+    if (options.tree_density != 1.0) Refuse("tree_density", Text(options.tree_density), "place 'tidalflat' has no trees; set it to 1");
+    if (options.bridge) Refuse("bridge", "true", "place 'tidalflat' has no streets; set it to false");
+    if (options.trucks > 0) Refuse("trucks", std::to_string(options.trucks), "place 'tidalflat' has no streets; set it to 0");
+  }
+  if (options.building_share == 0.0 && options.tower_m > 0.0) {
+    Refuse("building_share", Text(options.building_share),
+           "tower_m = " + Text(options.tower_m) + " asks for a building; set one of both to another value");
+  }
+  // The uphill foot of a ramp could be higher than the deck.
+  if (options.bridge && options.hillside_deg > kSteepestUnderBridge_deg) {
+    Refuse("bridge", "true", "it needs ground that is nearly level; set hillside_deg to " + Text(kSteepestUnderBridge_deg) + " or less");
+  }
+  place.city.building_share = options.building_share;
+  place.city.tree_density = options.tree_density;
+  place.city.bridge = options.bridge;
+  place.city.trucks = options.trucks;
+  place.city.trucks_min = place.area_min;
+  place.city.trucks_max = place.area_max;
+}
+
 void ApplyBuildings(const SimulateOptions& options, PlaceSpec& place) {
   place.city.varied = options.building_shapes == "varied";
   place.city.tower_m = options.tower_m;
@@ -231,6 +256,7 @@ void ApplyBuildings(const SimulateOptions& options, PlaceSpec& place) {
     if (place.city.varied) Refuse("building_shapes", options.building_shapes, "place 'tidalflat' has no buildings; set it to plain");
     if (options.tower_m > 0.0) Refuse("tower_m", Text(options.tower_m), "place 'tidalflat' has no buildings; set it to 0");
   }
+  ApplySpecialCases(options, place);
   if (options.tower_m == 0.0) return;
   constexpr double kClearance_m = 10.0;
   // The tower may stand on a hill or uphill from take-off, within a cell of the middle of the place.

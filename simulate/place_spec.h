@@ -27,11 +27,16 @@ struct CityPlan {
   double tower_share = 0.1;                         // of the cells between streets
   double flats_share = 0.2;
   double park_share = 0.1;
-  double lot_use = 0.95;  // share of house lots with a house
-  double trees = 1.0;     // density relative to the town
-  int tree_detail = 2;    // subdivisions of each crown
-  bool varied = false;    // buildings of many shapes instead of rectangles
-  double tower_m = 0.0;   // height of a tower in the middle of the city; 0: none
+  double lot_use = 0.95;        // share of house lots with a house
+  double trees = 1.0;           // density relative to the town
+  int tree_detail = 2;          // subdivisions of each crown
+  bool varied = false;          // buildings of many shapes instead of rectangles
+  double tower_m = 0.0;         // height of a tower in the middle of the city; 0: none
+  double building_share = 1.0;  // of the cells that would have buildings
+  double tree_density = 1.0;    // factor on the number of trees, `trees` included
+  bool bridge = false;          // over the crossing nearest to the middle
+  int trucks = 0;               // with containers, parked in streets in this rectangle, ENU metres
+  Eigen::Vector2d trucks_min = Eigen::Vector2d::Zero(), trucks_max = Eigen::Vector2d::Zero();
 };
 
 struct PlaceSpec {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -23,6 +24,7 @@ class PlaneTurn {
   Eigen::Vector2d TurnedDirection(const Eigen::Vector2d& d) const { return {cosine_ * d.x() - sine_ * d.y(), cosine_ * d.y() + sine_ * d.x()}; }
   // A yaw counter-clockwise from east, degrees; -180..180 after a turn.
   double TurnedYaw(double yaw_deg) const { return deg_ == 0.0 ? yaw_deg : std::remainder(yaw_deg + deg_, 360.0); }
+  const Eigen::Vector2d& about() const { return about_; }
   double cosine() const { return cosine_; }
   double sine() const { return sine_; }
 
@@ -32,5 +34,11 @@ class PlaneTurn {
   double sine_ = 0.0;
   double deg_ = 0.0;
 };
+
+// Of a point to a rectangle of these half sizes about the origin, along the axes; negative inside.
+inline double DistanceToRectangle(const Eigen::Vector2d& point, const Eigen::Vector2d& half) {
+  const Eigen::Vector2d out = point.cwiseAbs() - half;
+  return out.cwiseMax(0.0).norm() + std::min(out.maxCoeff(), 0.0);
+}
 
 }  // namespace skyquilt::simulate

@@ -1,7 +1,10 @@
 #include "simulate/plot_furnish.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "simulate/noise.h"
 
 namespace skyquilt::simulate {
 
@@ -26,6 +29,22 @@ void AddGardenTree(const Vector2d& position, double low_m, double high_m, CityCo
   tree.conifer = random.UniformDouble() < 0.2;
   tree.seed = random.NextU32();
   if (TreeFits(tree, contents, 0)) contents.trees.push_back(tree);
+}
+
+void MultiplyTrees(double density, size_t first_tree, const Cell& cell, CityContents& contents, base::Random& random) {
+  const auto n_more = static_cast<int>(std::lround((density - 1.0) * static_cast<double>(contents.trees.size() - first_tree)));
+  for (int i = 0; i < n_more; ++i) {
+    const Vector2d at(random.Uniform(cell.min.x() + 2.0, cell.max.x() - 2.0), random.Uniform(cell.min.y() + 2.0, cell.max.y() - 2.0));
+    const bool paved = std::any_of(cell.pads.begin(), cell.pads.end(), [&](const PavedArea& pad) {
+      const Eigen::Vector2f local = pad.Local(static_cast<float>(at.x()), static_cast<float>(at.y()));
+      return DistanceToRectangle(local.cast<double>(), pad.half.cast<double>()) < 0.5;
+    });
+    if (!paved) AddGardenTree(at, 4.0, cell.kind == CellKind::kWood ? kHighestInWood_m : 9.0, contents, random);
+  }
+}
+
+void ThinTrees(double share, CityContents& contents) {
+  std::erase_if(contents.trees, [share](const Tree& tree) { return static_cast<double>(HashUnit(8, 0, tree.seed)) >= share; });
 }
 
 void FlatRoofed(Building& building, double height_m, double parapet_m) {

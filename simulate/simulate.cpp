@@ -1,5 +1,6 @@
 #include "simulate/simulate.h"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -45,6 +46,13 @@ void PrepareFolder(const fs::path& folder) {
     fs::create_directories(folder / name);
 }
 
+void WarnAboutTrucks(const World& world, const PlaceSpec& place) {
+  if (world.city() == nullptr) return;
+  const std::vector<Car>& parked = world.city()->contents().parked;
+  const auto n = std::count_if(parked.begin(), parked.end(), [](const Car& car) { return car.kind != CarKind::kCar; });
+  if (n < place.city.trucks) spdlog::warn("simulate: the streets have room for {} of {} trucks (simulate.trucks)", n, place.city.trucks);
+}
+
 }  // namespace
 
 SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder, base::ThreadPool& threads) {
@@ -62,6 +70,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
   spdlog::info("simulate: building place {}", place.name);
   const World world(place, options.light_intensity, threads);
+  WarnAboutTrucks(world, place);
   std::vector<PhotoPlan> photos = plan(place, world);
   ApplyTagFaults(place.tag_faults, place.seed, photos);
   const PhotoRenderer renderer(world, place.camera, options.samples_per_pixel, options.soft_shadows);

@@ -42,6 +42,10 @@ struct SimulateOptions {
   double district_turn_deg = -1.0;        // 0..12, of the buildings in half of the city relative to the streets; negative: +-8 to 12, from the seed
   std::string building_shapes = "plain";  // plain: rectangles; varied: also wings, set-backs, rows and courtyards
   double tower_m = 0.0;                   // 0 or 20..200, height of a tower in the middle of the place
+  double building_share = 1.0;            // 0..1, of the cells between streets that would have buildings; the others are woods
+  double tree_density = 1.0;              // 0..10, factor on the number of trees
+  bool bridge = false;                    // over a crossing in the middle of the place
+  int trucks = 0;                         // 0..100, parked trucks and containers
   bool exact_frame = true;                // false: the COLMAP model is under a random similarity, as structure from motion makes it
   // Errors of the tags; none by default. See tag_faults.h.
   double tag_lag_s = 0.0;                // -5..10, the tagged position is where the drone was this long before

@@ -97,9 +97,24 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
     contents.parked[i].ground_rise = RiseUnderCar(contents.parked[i].position);
     AddCar(contents.parked[i], static_cast<uint32_t>(i), mesh_);
   }
+  if (contents.bridge) {
+    contents.bridge->StandOn(Ground);
+    AddBridge(*contents.bridge, mesh_);
+  }
   base::Random random(seed_, 3);
   const Eigen::Vector2d beyond = Eigen::Vector2d::Constant(40.0);
   moving_ = city_->MakeMovingCars(place.moving_cars, place.area_min - beyond, place.area_max + beyond, random);
+}
+
+void World::PutOnRoad(const Eigen::Vector2d& direction, Car& car) const {
+  const std::optional<Bridge>& bridge = city_->contents().bridge;
+  if (const auto road = bridge ? bridge->RoadFor(car.position, direction) : std::nullopt) {
+    car.ground_z_m = road->z_m;
+    car.ground_rise = road->rise;
+    return;
+  }
+  car.ground_z_m = static_cast<double>(terrain_->Height(static_cast<float>(car.position.x()), static_cast<float>(car.position.y())));
+  car.ground_rise = RiseUnderCar(car.position);
 }
 
 Eigen::Vector2d World::RiseUnderCar(const Eigen::Vector2d& at) const {
@@ -156,8 +171,7 @@ MovingScene World::MovingAt(double time_s) const {
   Mesh mesh;
   for (size_t i = 0; i < moving_.size(); ++i) {
     Car car = moving_[i].At(time_s);
-    car.ground_z_m = static_cast<double>(terrain_->Height(static_cast<float>(car.position.x()), static_cast<float>(car.position.y())));
-    car.ground_rise = RiseUnderCar(car.position);
+    PutOnRoad(moving_[i].direction, car);
     AddCar(car, static_cast<uint32_t>(i), mesh);
     cars.push_back(car);
   }
@@ -178,6 +192,9 @@ Surface World::SurfaceAt(const Hit& hit) const {
     case Part::kCarGlass:
     case Part::kCarTyre:
       return CarSurface(city_->contents().parked[hit.tag.object], hit);
+    case Part::kBridgeRoad:
+    case Part::kBridgeConcrete:
+      return BridgeSurface(*city_->contents().bridge, hit, seed_);
     default:
       return BuildingSurface(city_->contents().buildings[hit.tag.object], building_axis_[hit.tag.object], hit);
   }

@@ -46,6 +46,8 @@ class World {
   static Surface MovingSurfaceAt(const Hit& hit, const std::vector<Car>& cars);
 
  private:
+  // Sets a car on the ground, or on the bridge if it drives along it.
+  void PutOnRoad(const Eigen::Vector2d& direction, Car& car) const;
   // Of the ground under a car on a hillside, per metre to the east and to the north; otherwise 0, as cars stand level on rolling ground.
   Eigen::Vector2d RiseUnderCar(const Eigen::Vector2d& at) const;
   void BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);

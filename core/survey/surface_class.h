@@ -11,9 +11,9 @@ enum class SurfaceClass : uint8_t {
   kRoof = 1,       // decks and slopes, with what stands on them: parapets, stair housings, machines, chimneys; tops and sides
   kWall = 2,       // of buildings, gables included
   kGround = 3,     // everything else that one can walk on: gardens, fields, sand, pavements, paths, driveways, terraces, plazas
-  kRoad = 4,       // carriageways of streets, and car parks
+  kRoad = 4,       // carriageways of streets, car parks, and bridges with all their faces
   kTree = 5,       // crowns and trunks
-  kParkedCar = 6,  // part of the static scene
+  kParkedCar = 6,  // part of the static scene; trucks and containers too
   kMovingCar = 7,  // at another place in every photo
   kWater = 8
 };

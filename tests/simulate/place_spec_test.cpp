@@ -194,6 +194,32 @@ TEST(Presets, BuildingsArePlainUnlessAskedFor) {
   });
 }
 
+TEST(Presets, SpecialCasesAreRefusedWhereTheyCannotBe) {
+  const CityPlan usual = ResolvePlace({}).city;
+  EXPECT_EQ(usual.building_share, 1.0);
+  EXPECT_EQ(usual.tree_density, 1.0);
+  EXPECT_FALSE(usual.bridge);
+  EXPECT_EQ(usual.trucks, 0);
+  const auto at_sea = [](void (*change)(SimulateOptions&)) {
+    return [change](SimulateOptions& o) {
+      o.place = "tidalflat";
+      change(o);
+    };
+  };
+  ExpectRefused("building_share", at_sea([](SimulateOptions& o) { o.building_share = 0.5; }));
+  ExpectRefused("tree_density", at_sea([](SimulateOptions& o) { o.tree_density = 2.0; }));
+  ExpectRefused("bridge", at_sea([](SimulateOptions& o) { o.bridge = true; }));
+  ExpectRefused("trucks", at_sea([](SimulateOptions& o) { o.trucks = 1; }));
+  ExpectRefused("building_share", [](SimulateOptions& o) {
+    o.building_share = 0.0;
+    o.tower_m = 30.0;
+  });
+  ExpectRefused("bridge", [](SimulateOptions& o) {
+    o.bridge = true;
+    o.hillside_deg = 5.0;
+  });
+}
+
 TEST(Presets, ATowerMustStayBelowTheFlight) {
   SimulateOptions options;
   options.tower_m = 60.0;

@@ -139,6 +139,40 @@ std::vector<BuildingRoofScores> ScoreMeasures(const buildings::BuildingSet& foun
   return scores;
 }
 
+std::vector<BuildingOutcome> ListOutcomes(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches) {
+  std::vector<const BuildingPair*> pair_of_truth(truth.outlines.size());
+  for (const BuildingPair& pair : matches.pairs) pair_of_truth[pair.truth] = &pair;
+  std::vector<BuildingOutcome> outcomes;
+  for (size_t t = 0; t < truth.outlines.size(); ++t) {
+    if (matches.truth[t] == TrueFate::kNotCounted) continue;
+    const TrueBuilding& outline = truth.outlines[t];
+    BuildingOutcome& outcome = outcomes.emplace_back();
+    outcome.truth_id = outline.id;
+    outcome.roof = buildings::NameOf(outline.roof);
+    outcome.area_m2 = outline.area_m2;
+    if (pair_of_truth[t] == nullptr) continue;
+    const Building& building = found.buildings[pair_of_truth[t]->found];
+    outcome.fate = BuildingOutcome::Fate::kMatched;
+    outcome.found_id = building.id;
+    outcome.roof_found = buildings::NameOf(building.roof);
+    outcome.overlap = pair_of_truth[t]->overlap;
+    for (const ScoredMeasure& measure : kMeasures) {
+      const std::optional<MeasureError> error = measure.error(building, outline);
+      if (error && std::isfinite(error->error)) outcome.errors.push_back({measure.name, error->error, error->sigma});
+    }
+  }
+  for (size_t f = 0; f < found.buildings.size(); ++f) {
+    if (matches.found[f] != FoundFate::kInvented) continue;
+    const Building& building = found.buildings[f];
+    BuildingOutcome& outcome = outcomes.emplace_back();
+    outcome.fate = BuildingOutcome::Fate::kInvented;
+    outcome.found_id = building.id;
+    outcome.roof_found = buildings::NameOf(building.roof);
+    outcome.area_m2 = buildings::Area(building.footprint);
+  }
+  return outcomes;
+}
+
 void ScoreCorners(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches, BuildingTruthScores* scores) {
   int64_t n_found = 0;
   double squares = 0.0;

@@ -24,6 +24,9 @@ double YawError(double found_deg, double true_deg, bool nearly_square);
 // All, then by true kind of roof; kinds that no matched building has are left out. Eave and ridge: of pitched roofs, deck: of flat ones.
 std::vector<BuildingRoofScores> ScoreMeasures(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches);
 
+// One per outline that counts and per invented building, for figures over several surveys.
+std::vector<BuildingOutcome> ListOutcomes(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches);
+
 // The corners of true outlines, where walls meet at an angle, against the nearest corner that was found of the same building. Those farther than 3 m
 // from any do not count in the RMSE (as in Rottensteiner et al. 2014, the ISPRS benchmark).
 void ScoreCorners(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches, BuildingTruthScores* scores);

@@ -1,6 +1,8 @@
 #include "evaluate/buildings_json.h"
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -35,6 +37,8 @@ constexpr std::array<std::pair<const char*, double BuildingErrors::*>, 6> kError
                                                                                             {"p90_abs", &BuildingErrors::p90_abs},
                                                                                             {"within_sigma", &BuildingErrors::within_sigma}}};
 constexpr const char* kAllBuildings = "all";
+constexpr std::array<std::pair<const char*, BuildingOutcome::Fate>, 3> kFates = {
+    {{"matched", BuildingOutcome::Fate::kMatched}, {"missed", BuildingOutcome::Fate::kMissed}, {"invented", BuildingOutcome::Fate::kInvented}}};
 
 // Null where a key is missing, and for what is not an object.
 const BuildingsJson& MemberAt(const BuildingsJson& json, const char* key) {
@@ -89,6 +93,49 @@ BuildingRoofScores TakeRoof(const std::string& roof, const BuildingsJson& json) 
   return score;
 }
 
+BuildingsJson OutcomeJson(const BuildingOutcome& outcome) {
+  BuildingsJson json;
+  for (const auto& [name, fate] : kFates) {
+    if (fate == outcome.fate) json["fate"] = name;
+  }
+  if (outcome.truth_id >= 0) json["truth_id"] = outcome.truth_id;
+  if (outcome.found_id >= 0) json["found_id"] = outcome.found_id;
+  if (!outcome.roof.empty()) json["roof"] = outcome.roof;
+  if (!outcome.roof_found.empty()) json["roof_found"] = outcome.roof_found;
+  json["area_m2"] = survey::NumberOrNull(outcome.area_m2);
+  if (outcome.fate != BuildingOutcome::Fate::kMatched) return json;
+  json["overlap"] = survey::NumberOrNull(outcome.overlap);
+  BuildingsJson& errors = json["errors"] = BuildingsJson::object();
+  for (const BuildingOutcome::Error& one : outcome.errors) errors[one.measure] = {survey::NumberOrNull(one.error), survey::NumberOrNull(one.sigma)};
+  return json;
+}
+
+// Nothing for an unknown fate.
+std::optional<BuildingOutcome> TakeOutcome(const BuildingsJson& json) {
+  BuildingOutcome outcome;
+  const BuildingsJson& fate_json = MemberAt(json, "fate");
+  const auto fate = std::find_if(kFates.begin(), kFates.end(), [&](const auto& known) { return fate_json == known.first; });
+  if (fate == kFates.end()) return std::nullopt;
+  outcome.fate = fate->second;
+  TakeValue(json, "truth_id", &outcome.truth_id);
+  TakeValue(json, "found_id", &outcome.found_id);
+  for (const auto& [key, text] : {std::pair{"roof", &outcome.roof}, {"roof_found", &outcome.roof_found}}) {
+    if (MemberAt(json, key).is_string()) *text = MemberAt(json, key).get<std::string>();
+  }
+  TakeValue(json, "area_m2", &outcome.area_m2);
+  TakeValue(json, "overlap", &outcome.overlap);
+  const BuildingsJson& errors = MemberAt(json, "errors");
+  if (!errors.is_object()) return outcome;
+  for (const auto& [measure, pair] : errors.items()) {
+    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number()) continue;
+    BuildingOutcome::Error& one = outcome.errors.emplace_back();
+    one.measure = measure;
+    one.error = pair[0].get<double>();
+    if (pair[1].is_number()) one.sigma = pair[1].get<double>();
+  }
+  return outcome;
+}
+
 // Figures of all buildings stand beside the counts, those of sizes and kinds of roof in objects of their own.
 void PutTruth(const BuildingTruthScores& truth, BuildingsJson* json) {
   BuildingsJson sizes = BuildingsJson::object(), roofs = BuildingsJson::object();
@@ -105,6 +152,8 @@ void PutTruth(const BuildingTruthScores& truth, BuildingsJson* json) {
   (*json)["corner_rmse_m"] = survey::NumberOrNull(truth.corner_rmse_m);
   (*json)["by_size"] = std::move(sizes);
   (*json)["by_roof"] = std::move(roofs);
+  BuildingsJson& each = (*json)["each"] = BuildingsJson::array();
+  for (const BuildingOutcome& outcome : truth.each) each.push_back(OutcomeJson(outcome));
 }
 
 BuildingTruthScores TakeTruth(const BuildingsJson& json) {
@@ -123,6 +172,11 @@ BuildingTruthScores TakeTruth(const BuildingsJson& json) {
   if (roofs.is_object()) {
     for (const auto& [roof, score] : roofs.items()) truth.roofs.push_back(TakeRoof(roof, score));
   }
+  const BuildingsJson& each = MemberAt(json, "each");
+  if (!each.is_array()) return truth;
+  for (const BuildingsJson& one : each) {
+    if (std::optional<BuildingOutcome> outcome = TakeOutcome(one)) truth.each.push_back(std::move(*outcome));
+  }
   return truth;
 }
 
@@ -132,6 +186,7 @@ BuildingsJson ToJson(const BuildingScores& scores) {
   BuildingsJson json;
   for (const auto& [key, member] : kBuildingCounts) json[key] = scores.*member;
   json["metric"] = scores.metric;
+  json["gsd_m"] = survey::NumberOrNull(scores.gsd_m);
   json["footprint_m2"] = survey::NumberOrNull(scores.footprint_m2);
   json["volume_m3"] = survey::NumberOrNull(scores.volume_m3);
   if (scores.truth) PutTruth(*scores.truth, &json);
@@ -142,6 +197,7 @@ BuildingScores BuildingScoresFromJson(const BuildingsJson& json) {
   BuildingScores scores;
   for (const auto& [key, member] : kBuildingCounts) TakeValue(json, key, &(scores.*member));
   if (MemberAt(json, "metric").is_boolean()) scores.metric = MemberAt(json, "metric").get<bool>();
+  TakeValue(json, "gsd_m", &scores.gsd_m);
   TakeValue(json, "footprint_m2", &scores.footprint_m2);
   TakeValue(json, "volume_m3", &scores.volume_m3);
   if (!MemberAt(json, "outlines_not_counted").is_null()) scores.truth = TakeTruth(json);

@@ -41,6 +41,7 @@ BuildingTruthScores AgainstTruth(const ComparedBuildings& compared) {
   scores.detection = ScoreDetection(compared.set, *compared.truth, compared.matches);
   scores.roofs = ScoreMeasures(compared.set, *compared.truth, compared.matches);
   ScoreCorners(compared.set, *compared.truth, compared.matches, &scores);
+  scores.each = ListOutcomes(compared.set, *compared.truth, compared.matches);
   return scores;
 }
 
@@ -63,6 +64,7 @@ BuildingScores ScoreBuildings(const ComparedBuildings& compared, base::ThreadPoo
   BuildingScores scores;
   scores.found = static_cast<int64_t>(compared.set.buildings.size());
   scores.metric = compared.set.metric;
+  scores.gsd_m = compared.set.gsd_m;
   for (const buildings::Building& building : compared.set.buildings) {
     scores.accepted += building.accepted ? 1 : 0;
     scores.blocks_instead += building.lod22_valid ? 0 : 1;

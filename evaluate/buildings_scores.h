@@ -42,6 +42,24 @@ struct BuildingRoofScores {
   std::vector<BuildingErrors> errors;                            // one per measure that any has
 };
 
+// What became of one true outline that counts, or an invented building.
+struct BuildingOutcome {
+  enum class Fate : uint8_t { kMatched, kMissed, kInvented };
+  // Of one measure: found minus true, and the uncertainty that was claimed (NaN: not known).
+  struct Error {
+    std::string measure;
+    double error = 0.0;
+    double sigma = std::numeric_limits<double>::quiet_NaN();
+  };
+
+  Fate fate = Fate::kMissed;
+  int truth_id = -1, found_id = -1;                           // -1: there is none
+  std::string roof = {}, roof_found = {};                     // kinds; empty: there is none
+  double area_m2 = std::numeric_limits<double>::quiet_NaN();  // of the outline; of the footprint of an invented building
+  double overlap = std::numeric_limits<double>::quiet_NaN();  // intersection over union of a matched one
+  std::vector<Error> errors = {};                             // of a matched one, those that are finite
+};
+
 // What is only known with the truth.
 struct BuildingTruthScores {
   int64_t outlines_not_counted = 0, found_not_counted = 0;
@@ -50,13 +68,15 @@ struct BuildingTruthScores {
   int64_t corners = 0;                                              // of matched outlines
   double corners_found = std::numeric_limits<double>::quiet_NaN();  // share of them with a found corner within 3 m
   double corner_rmse_m = std::numeric_limits<double>::quiet_NaN();  // of the plan distances of those
+  std::vector<BuildingOutcome> each;                                // outlines that count, in their order, then invented buildings
 };
 
 struct BuildingScores {
   int64_t found = 0;
   int64_t accepted = 0;
-  bool metric = true;         // false: lengths are units of unknown size
-  double footprint_m2 = 0.0;  // sums over all found buildings
+  bool metric = true;                                       // false: lengths are units of unknown size
+  double gsd_m = std::numeric_limits<double>::quiet_NaN();  // ground sampling distance of the finest block
+  double footprint_m2 = 0.0;                                // sums over all found buildings
   double volume_m3 = 0.0;
   int64_t solids_rejected = 0;  // buildings whose solid with its roof is invalid
   int64_t blocks_rejected = 0;  // and whose block is

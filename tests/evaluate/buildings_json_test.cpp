@@ -29,6 +29,11 @@ BuildingScores SampleScores() {
   truth.corners = 40;
   truth.corners_found = 0.75;
   truth.corner_rmse_m = 0.375;
+  scores.gsd_m = 0.125;
+  using Fate = BuildingOutcome::Fate;
+  truth.each = {{Fate::kMatched, 3, 7, "gable", "hip", 80.0, 0.75, {{"length", -0.25, 0.125}, {"yaw", 0.5}}},
+                {.fate = Fate::kMissed, .truth_id = 4, .roof = "flat", .area_m2 = 12.5},
+                {.fate = Fate::kInvented, .found_id = 2, .roof_found = "other", .area_m2 = 11.0}};
   return scores;
 }
 
@@ -49,6 +54,12 @@ TEST(BuildingsJson, HasThePromisedKeys) {
   EXPECT_EQ(json.at("by_roof").at("flat").at("errors").at("deck").at("bias"), -0.5);
   EXPECT_EQ(json.at("corner_rmse_m"), 0.375);
   EXPECT_EQ(json.at("metric"), true);
+  EXPECT_EQ(json.at("gsd_m"), 0.125);
+  ASSERT_EQ(json.at("each").size(), 3U);
+  EXPECT_EQ(json.at("each")[0].at("errors").at("length"), (std::vector<double>{-0.25, 0.125}));
+  EXPECT_TRUE(json.at("each")[0].at("errors").at("yaw")[1].is_null());
+  EXPECT_EQ(json.at("each")[1].at("fate"), "missed");
+  EXPECT_EQ(json.at("each")[2].at("found_id"), 2);
 }
 
 TEST(BuildingsJson, IsReadBackAsItWasWritten) {
@@ -69,13 +80,19 @@ TEST(BuildingsJson, IsReadBackAsItWasWritten) {
 
 TEST(BuildingsJson, WrongTypesAreNotMeasured) {
   const BuildingScores scores = BuildingScoresFromJson(nlohmann::ordered_json::parse(
-      R"({"found": "many", "metric": 3, "outlines_not_counted": 1, "building_quality": [], "by_size": 7, "by_roof": {"flat": null}, "errors": "no"})"));
+      R"({"found": "many", "metric": 3, "outlines_not_counted": 1, "building_quality": [], "by_size": 7, "by_roof": {"flat": null}, "errors": "no",
+          "each": [7, {"fate": "lost"}, {"fate": "matched", "truth_id": "x", "errors": {"length": [null, 1], "width": [0.5, "?"]}}]})"));
   EXPECT_EQ(scores.found, 0);
   EXPECT_TRUE(scores.metric);
   ASSERT_TRUE(scores.truth.has_value());
   EXPECT_TRUE(std::isnan(scores.truth->detection.front().quality));
   EXPECT_EQ(scores.truth->detection.size(), 1U);
   EXPECT_TRUE(scores.truth->roofs.front().errors.empty());
+  ASSERT_EQ(scores.truth->each.size(), 1U);
+  EXPECT_EQ(scores.truth->each[0].truth_id, -1);
+  ASSERT_EQ(scores.truth->each[0].errors.size(), 1U);
+  EXPECT_EQ(scores.truth->each[0].errors[0].measure, "width");
+  EXPECT_TRUE(std::isnan(scores.truth->each[0].errors[0].sigma));
 }
 
 }  // namespace

@@ -215,6 +215,35 @@ TEST(ScoreMeasures, ErrorsAreFoundMinusTrueAndWrongRoofsAreSeen) {
   EXPECT_DOUBLE_EQ(roofs[2].roof_right, 0.5);
 }
 
+TEST(ListOutcomes, AgreesWithTheFiguresOfTheWholeSet) {
+  BuildingSet set = MadeTown(9);
+  const TrueBuildings truth = TruthOf(set);
+  set.buildings.erase(set.buildings.begin() + 2);
+  set.buildings[3].footprint = Square(2000, 0, 4);
+  for (size_t i = 0; i < set.buildings.size(); ++i) set.buildings[i].measures.length_m.value += 0.1 * static_cast<double>(i);
+  const BuildingTruthScores scores = *Scored(set, truth).truth;
+  int64_t matched = 0, missed = 0, invented = 0;
+  std::vector<MeasureError> lengths;
+  for (const BuildingOutcome& one : scores.each) {
+    matched += one.fate == BuildingOutcome::Fate::kMatched ? 1 : 0;
+    missed += one.fate == BuildingOutcome::Fate::kMissed ? 1 : 0;
+    invented += one.fate == BuildingOutcome::Fate::kInvented ? 1 : 0;
+    EXPECT_EQ(one.truth_id < 0, one.fate == BuildingOutcome::Fate::kInvented);
+    EXPECT_EQ(one.found_id < 0, one.fate == BuildingOutcome::Fate::kMissed);
+    EXPECT_EQ(one.errors.empty(), one.fate != BuildingOutcome::Fate::kMatched);
+    for (const BuildingOutcome::Error& error : one.errors) {
+      if (error.measure == "length") lengths.push_back({error.error, error.sigma});
+    }
+  }
+  EXPECT_EQ(matched, scores.detection.front().matched);
+  EXPECT_EQ(missed, scores.detection.front().missed);
+  EXPECT_EQ(invented, scores.detection.front().invented);
+  EXPECT_EQ(missed, 2);
+  EXPECT_EQ(invented, 1);
+  EXPECT_NEAR(scores.each.back().area_m2, 16.0, 1e-9);
+  EXPECT_NEAR(SummariseErrors("length", lengths).rmse, Find(scores.roofs.front(), "length")->rmse, 1e-12);
+}
+
 TEST(ScoreCorners, ShiftsAreMeasuredAndPointsOnWallsAreNoCorners) {
   BuildingSet set = MadeTown(1);
   TrueBuildings truth = TruthOf(set);

@@ -22,6 +22,7 @@ constexpr double kAccepted = 0.85;     // share of roof points within 2 GSD of a
 constexpr double kDescribed = 0.5;     // below it the shape is a block
 constexpr double kFewestPlanes = 0.4;  // share of an outline that planes must cover, or it is no building
 constexpr double kShortestWall_m = 1.5;
+constexpr double kLowestMean_m = 0.5;         // of a roof above the ground; what is lower is the ground itself
 constexpr std::ptrdiff_t kNamedOutlines = 5;  // in a warning
 constexpr double kCutShare = 0.05;            // of an outline that is the edge of the survey
 
@@ -34,6 +35,13 @@ struct Fitted {
 bool IsPitched(const Shape& shape) {
   return std::any_of(shape.parts.begin(), shape.parts.end(),
                      [](const Part& part) { return part.roof == RoofKind::kGable || part.roof == RoofKind::kHip; });
+}
+
+// A pitched roof whose ridge the fit has moved below its eaves, or its eaves into the ground: no gable and no hip.
+bool HasImpossibleRoof(const Shape& shape) {
+  return std::any_of(shape.parts.begin(), shape.parts.end(), [&](const Part& part) {
+    return (part.roof == RoofKind::kGable || part.roof == RoofKind::kHip) && (part.ridge_z < part.eave_z || part.eave_z < shape.ground_z);
+  });
 }
 
 double PlanArea(const Shape& shape, const Part& part) {
@@ -156,8 +164,9 @@ class Maker {
     }
     if (!guess) return;
     fits_[i] = Fitted{FitShape(guess->shape, candidate, *input_.cloud, fit_options_), guess->manhattan};
-    fits_[i]->follows_outline = !guess->manhattan && LeavesCorners(candidate, fits_[i]->fit.shape);
-    if (fits_[i]->fit.share_within >= kDescribed && !fits_[i]->follows_outline) return;
+    const Shape& fitted = fits_[i]->fit.shape;
+    fits_[i]->follows_outline = !guess->manhattan && LeavesCorners(candidate, fitted);
+    if (fits_[i]->fit.share_within >= kDescribed && !fits_[i]->follows_outline && !HasImpossibleRoof(fitted)) return;
     for (Part& part : guess->shape.parts) {
       part.roof = RoofKind::kOther;
       part.joins = -1;
@@ -225,7 +234,9 @@ class Maker {
     building->footprint = footprints.front();
     building->roofprint = {candidate.outline};
     const std::vector<RoofFacet> facets = RoofFacets(building->shape);
-    building->lod12 = ExtrudeBlock(building->footprint, building->shape.ground_z, MeanRoof(facets, building->shape));
+    const double top_z = MeanRoof(facets, building->shape);
+    if (!(top_z >= building->shape.ground_z + kLowestMean_m)) return false;
+    building->lod12 = ExtrudeBlock(building->footprint, building->shape.ground_z, top_z);
     std::vector<std::string> notes;
     if (footprints.size() == 1) building->lod22 = ExtrudeFacets(building->shape, facets);
     building->lod22_valid = !building->lod22.Empty() && CheckSolid(building->lod22).empty();

@@ -99,6 +99,30 @@ TEST(MakeBuildings, WithoutScaleAreNotMetricAndAScaleBarGivesIt) {
   EXPECT_NE(UsageErrorOf([&] { MakeBuildings(input, threads); }).find("two points are the same"), std::string::npos);
 }
 
+TEST(MakeBuildings, OutlinesThatFitNothingGiveSoundBuildingsOrNone) {
+  const MadePlace place = TwoHouses();
+  base::ThreadPool threads(2);
+  BuildingsInput input = InputOf(place);
+  // Outlines that fit nothing: across houses, trees and the ground between.
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Vector2d corner(12.0 + 4.7 * (i % 12), 22.0 + 4.3 * (i / 12));
+    Polygon box;
+    for (const Eigen::Vector2d& step : {Eigen::Vector2d(0, 0), Eigen::Vector2d(9, 0), Eigen::Vector2d(9, 7), Eigen::Vector2d(0, 7)}) {
+      box.outer.push_back(corner + step);
+    }
+    input.footprints.push_back({box, std::to_string(i)});
+  }
+  const BuildingSet set = MakeBuildings(input, threads);
+  EXPECT_GT(set.buildings.size(), 5U);
+  EXPECT_LT(set.buildings.size(), 40U);
+  for (const Building& building : set.buildings) {
+    EXPECT_GE(building.measures.ridge_m.value, building.measures.eave_m.value) << building.given_id << " " << NameOf(building.roof);
+    EXPECT_GE(building.measures.pitch_deg.value, 0.0) << building.given_id;
+    EXPECT_GE(building.measures.height_m.value, 0.5) << building.given_id;
+    EXPECT_TRUE(CheckSolid(building.lod22).empty()) << building.given_id;
+  }
+}
+
 TEST(MakeBuildings, MeasureGivenOutlinesAndNothingElse) {
   const MadePlace place = TwoHouses();
   base::ThreadPool threads(2);

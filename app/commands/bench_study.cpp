@@ -21,8 +21,9 @@ struct StudyFlags {
   std::vector<int> positions;            // empty: the study's own
   std::vector<std::string> parts = {"time", "steps"};
   int seeds = 1;
-  std::vector<std::string> priors;  // empty: all variants
-  std::vector<int> seed_list;       // empty: the settings' own
+  std::vector<std::string> variants;  // of --priors and --variants; empty: all
+  std::string shapes;                 // empty: the settings' own
+  std::vector<int> seed_list;         // empty: the settings' own
   bool quick = false, restart = false, keep = false, json = false;
 };
 
@@ -204,7 +205,7 @@ void AddScalesOptions(CLI::App* command, StudyFlags* flags) {
       ->type_name("N");
 }
 
-void CheckPriors(const StudyFlags& flags) {
+void CheckSeeds(const StudyFlags& flags) {
   std::vector<int> seeds = flags.seed_list;
   std::sort(seeds.begin(), seeds.end());
   if (std::adjacent_find(seeds.begin(), seeds.end()) != seeds.end()) throw base::UsageError("--seeds names a seed twice");
@@ -212,7 +213,7 @@ void CheckPriors(const StudyFlags& flags) {
 
 bench::StudyBench RunPriors(bench::Study& study, const StudyFlags& flags) {
   bench::PriorsOptions options;
-  options.variants = flags.priors;
+  options.variants = flags.variants;
   options.budget_s = BudgetOf(flags, options.budget_s, 4.0);
   options.seeds = flags.seed_list;
   return bench::PriorsBench(study, options);
@@ -224,20 +225,59 @@ std::vector<config::Override> FirstPlace(const StudyFlags& flags) {
   return {{"simulate.seed", std::to_string(flags.seed_list.front())}};
 }
 
-// The options that only `bench priors` has.
-void AddPriorsOptions(CLI::App* command, StudyFlags* flags) {
-  std::string names;
-  for (const bench::StudiedPrior& prior : bench::StudiedPriors()) names += ", " + prior.name;
-  command->add_option("--priors", flags->priors, "variants to train: none (always)" + names + ", all, default; default: all of these")
-      ->delimiter(',')
-      ->check(CLI::IsMember(bench::PriorVariantNames()))
-      ->type_name("NAME,...");
+bench::StudyBench RunBuildings(bench::Study& study, const StudyFlags& flags) {
+  bench::BuildingsBenchOptions options;
+  options.variants = flags.variants;
+  options.budget_s = BudgetOf(flags, options.budget_s, 4.0);
+  options.seeds = flags.seed_list;
+  return bench::BuildingsBench(study, options);
+}
+
+void CheckBuildings(const StudyFlags& flags) {
+  CheckSeeds(flags);
+  if (!flags.shapes.empty() && !flags.survey.empty()) {
+    throw base::UsageError("--shapes is for a simulated place, so it needs --place NAME instead of --survey");
+  }
+}
+
+std::vector<config::Override> TownsOf(const StudyFlags& flags) {
+  std::vector<config::Override> overrides = FirstPlace(flags);
+  if (!flags.shapes.empty()) overrides.push_back({"simulate.building_shapes", flags.shapes});
+  return overrides;
+}
+
+void AddSeedsOption(CLI::App* command, StudyFlags* flags) {
   command
       ->add_option("--seeds", flags->seed_list,
                    "seeds of training and of the simulated place: every variant is trained once with each; default: those of the settings, 1")
       ->delimiter(',')
       ->check(CLI::NonNegativeNumber)
       ->type_name("N,...");
+}
+
+// The options that only `bench buildings` has.
+void AddBuildingsOptions(CLI::App* command, StudyFlags* flags) {
+  std::string names;
+  for (const std::string& name : bench::BuildingsVariantNames()) names += (names.empty() ? "" : ", ") + name;
+  command->add_option("--variants", flags->variants, "sources of the surface to compare: " + names + "; default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(bench::BuildingsVariantNames()))
+      ->type_name("NAME,...");
+  AddSeedsOption(command, flags);
+  command->add_option("--shapes", flags->shapes, "shapes of the simulated buildings: plain or varied; default: that of the settings, plain")
+      ->check(CLI::IsMember({"plain", "varied"}))
+      ->type_name("NAME");
+}
+
+// The options that only `bench priors` has.
+void AddPriorsOptions(CLI::App* command, StudyFlags* flags) {
+  std::string names;
+  for (const bench::StudiedPrior& prior : bench::StudiedPriors()) names += ", " + prior.name;
+  command->add_option("--priors", flags->variants, "variants to train: none (always)" + names + ", all, default; default: all of these")
+      ->delimiter(',')
+      ->check(CLI::IsMember(bench::PriorVariantNames()))
+      ->type_name("NAME,...");
+  AddSeedsOption(command, flags);
 }
 
 }  // namespace
@@ -339,8 +379,21 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                              "behind the first.",
                    .options = AddPriorsOptions,
                    .overrides = FirstPlace,
-                   .check = CheckPriors,
+                   .check = CheckSeeds,
                    .run = RunPriors});
+  AddStudyCommand(bench, state,
+                  {.name = "buildings",
+                   .help = "compare how well buildings are found and measured: from true depth, sparse points and fields",
+                   .place = "town",
+                   .budget = "90s",
+                   .footer = "Examples:\n"
+                             "  skyquilt bench buildings -o out/bench\n"
+                             "  skyquilt bench buildings --seeds 11,12,13 --shapes varied -o out/bench\n"
+                             "The survey must be simulated. After an interruption, the same command continues; seeds may be added behind the first.",
+                   .options = AddBuildingsOptions,
+                   .overrides = TownsOf,
+                   .check = CheckBuildings,
+                   .run = RunBuildings});
 }
 
 }  // namespace skyquilt::app

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/study/scene_views.h"
+#include "bench/study/thin_survey.h"
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/stages/pipeline.h"
@@ -84,26 +85,6 @@ void MoveFolder(const std::filesystem::path& from, const std::filesystem::path& 
   std::filesystem::rename(from, to);
 }
 
-// The survey with the variant's training photos, in name order, and all held-out photos.
-survey::Survey Thinned(survey::Survey survey, const Variant& variant) {
-  const auto chosen = [&variant](const std::string& name) {
-    return variant.photo_prefixes.empty() || std::any_of(variant.photo_prefixes.begin(), variant.photo_prefixes.end(),
-                                                         [&name](const std::string& prefix) { return name.starts_with(prefix); });
-  };
-  std::vector<survey::Photo> kept;
-  std::vector<int32_t> new_index;
-  int number = 0;
-  for (survey::Photo& photo : survey.photos) {
-    const bool keep = photo.is_test || (chosen(photo.name) && number++ % variant.every_nth_photo == 0);
-    new_index.push_back(keep ? static_cast<int32_t>(kept.size()) : -1);
-    if (keep) kept.push_back(std::move(photo));
-  }
-  survey.photos = std::move(kept);
-  survey.tracks = survey.tracks.Renumbered(new_index);
-  survey.kept_tracks = survey.kept_tracks.Renumbered(new_index);
-  return survey;
-}
-
 }  // namespace
 
 Study::Study(comm::Communicator& comm, Options options) : comm_(comm), options_(std::move(options)) {
@@ -149,6 +130,8 @@ std::string Study::Identity(const Variant& variant, const coordinator::Settings&
   for (const std::string& prefix : variant.photo_prefixes) identity.append(" ").append(prefix);
   if (scales_) identity.append(" ").append(scales_->Identity());
   if (views_ > 0) identity.append(" views ").append(std::to_string(views_));
+  if (variant.max_tilt_deg < 180.0) identity.append(" tilt ").append(std::to_string(variant.max_tilt_deg));
+  if (buildings_) identity.append(" buildings");
   return identity;
 }
 
@@ -229,7 +212,7 @@ VariantResult Study::Measure(const Variant& variant, const coordinator::Settings
 
 void Study::RemoveLargeFiles(const Variant& variant) const {
   std::error_code ignored;
-  for (const char* part : {"checkpoints", "cache", "scene.h5", "scene.h5.prev", "survey"})
+  for (const char* part : {"checkpoints", "cache", "scene.h5", "scene.h5.prev", "surface", "survey"})
     std::filesystem::remove_all(RunFolder(variant) / part, ignored);
 }
 
@@ -245,15 +228,21 @@ void Study::LinkPixels(const std::filesystem::path& run_folder, int image_width,
   std::filesystem::create_hard_link(from, to, ignored);
 }
 
-evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training) {
+coordinator::Pipeline Study::BeginRun(const Variant& variant, const coordinator::Settings& settings, bool merge_anew) const {
   const coordinator::Project project = coordinator::Project::Create(RunFolder(variant));
   if (!std::filesystem::exists(project.SurveyFolder() / "survey.json")) {
-    survey::SaveSurvey(variant.AllPhotos() ? survey_ : Thinned(survey_, variant), project.SurveyFolder());
+    survey::SaveSurvey(variant.AllPhotos() ? survey_ : ThinSurvey(survey_, variant), project.SurveyFolder());
   }
   coordinator::Pipeline pipeline{.comm = comm_, .project = project, .settings = settings, .quiet = options_.quiet, .verbose = options_.verbose};
   if (!merge_anew) coordinator::RequireSameConfiguration(pipeline, "partition");
   coordinator::PartitionStage(pipeline);
   if (variant.AllPhotos()) LinkPixels(project.folder, settings.run.image_width, false);
+  return pipeline;
+}
+
+evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training) {
+  coordinator::Pipeline pipeline = BeginRun(variant, settings, merge_anew);
+  const coordinator::Project& project = pipeline.project;
   base::ResetPeakRss();
   try {
     *training = coordinator::TrainStage(pipeline);
@@ -264,6 +253,10 @@ evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settin
   if (variant.AllPhotos()) LinkPixels(project.folder, settings.run.image_width, true);
   pipeline.restart = merge_anew;
   coordinator::MergeStage(pipeline);
+  if (buildings_) {
+    coordinator::SurfaceStage(pipeline);
+    coordinator::BuildingsStage(pipeline);
+  }
   return coordinator::EvaluateStage(pipeline);
 }
 
@@ -286,6 +279,7 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   r.kept_median_gsd = known(metrics.kept_points.median_gsd);
   r.kept_nmad_gsd = known(metrics.kept_points.nmad_gsd);
   r.classes = metrics.classes;
+  r.buildings = metrics.buildings;
   r.flat_roof_rms_m = known(metrics.flat_roof_rms_m);
   r.flat_roof_nmad_m = known(metrics.flat_roof_nmad_m);
   r.train_seconds = known(metrics.train_seconds);

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 
 #include "bench/study/scale_scores.h"
 #include "coordinator/project/settings.h"
+#include "coordinator/stages/pipeline.h"
 #include "core/comm/communicator.h"
 #include "core/scene/train_report.h"
 #include "core/survey/survey.h"
@@ -30,14 +32,16 @@ struct StudySurvey {
 };
 
 struct Variant {
-  std::string name;                         // of its folder: lower-case letters, digits, '-' and '_'
-  std::string label;                        // as shown in tables and plots
-  std::vector<config::Override> overrides;  // changes to the study's settings
-  int every_nth_photo = 1;                  // train with every n-th training photo in name order; 1: all
+  std::string name = {};                         // of its folder: lower-case letters, digits, '-' and '_'
+  std::string label = {};                        // as shown in tables and plots
+  std::vector<config::Override> overrides = {};  // changes to the study's settings
+  int every_nth_photo = 1;                       // train with every n-th training photo in name order; 1: all
   // Train only with photos whose names begin with one of these; empty: with all. Applied before every_nth_photo. Held-out photos always stay.
   std::vector<std::string> photo_prefixes = {};
+  // Train only with photos that look straight down to within this angle. Applied before every_nth_photo; held-out photos always stay.
+  double max_tilt_deg = 180.0;
 
-  bool AllPhotos() const { return every_nth_photo == 1 && photo_prefixes.empty(); }
+  bool AllPhotos() const { return every_nth_photo == 1 && photo_prefixes.empty() && max_tilt_deg >= 180.0; }
 };
 
 struct VariantField {
@@ -74,6 +78,7 @@ struct VariantResult {
   std::vector<evaluate::ClassScore> classes;                 // simulated surveys with true classes
   double flat_roof_rms_m = kNone, flat_roof_nmad_m = kNone;  // the same; evaluate::FlatRoofScore
   std::string views;                                         // folder of the pictures that WriteViews makes, relative to FOLDER; may be empty
+  std::optional<evaluate::BuildingScores> buildings;         // when the study measures them
 };
 
 class Study {
@@ -97,6 +102,8 @@ class Study {
   void MeasureScales(ScaleOptions options) { scales_ = std::move(options); }
   // Every variant that is run from now on leaves pictures of so many held-out photos, as its scene may be removed (scene_views.h).
   void KeepViews(int photos) { views_ = photos; }
+  // Every variant that is trained from now on also gets surface and buildings.
+  void MeasureBuildings() { buildings_ = true; }
   // A study of another survey with the same settings and `overrides`, in FOLDER/name.
   Study Beside(const std::string& name, const StudySurvey& survey, const std::vector<config::Override>& overrides) const;
   // Trains and scores a variant, or reads its saved result. When it cannot be trained, `failure` of the result has the reason.
@@ -105,6 +112,10 @@ class Study {
   // The same, and then merges and scores its checkpoints again with the settings of each variant in `merged`. Returns the variant's result first.
   // Trains again when the checkpoints were removed before all results were saved.
   std::vector<VariantResult> RunMerged(const Variant& variant, const std::vector<Variant>& merged);
+  // A variant that is not trained: `work` fills in its result, or a saved one is read. The project of the pipeline has survey and blocks. Throws what
+  // `work` throws; then the same call does it again.
+  using UntrainedWork = std::function<void(coordinator::Pipeline& pipeline, VariantResult* result)>;
+  VariantResult RunUntrained(const Variant& variant, const UntrainedWork& work);
 
  private:
   coordinator::Settings SettingsOf(const Variant& variant) const;
@@ -114,6 +125,8 @@ class Study {
   void RemoveLargeFiles(const Variant& variant) const;
   std::filesystem::path RunFolder(const Variant& variant) const { return options_.folder / "runs" / variant.name; }
   std::string Identity(const Variant& variant, const coordinator::Settings& settings) const;
+  // The variant's project with survey and blocks.
+  coordinator::Pipeline BeginRun(const Variant& variant, const coordinator::Settings& settings, bool merge_anew) const;
   evaluate::Metrics Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training);
   void LinkPixels(const std::filesystem::path& run_folder, int image_width, bool share) const;
   // Puts together the result of `scored` from the training of `trained` (the same variant or not), the metrics, and the files of both.
@@ -128,6 +141,7 @@ class Study {
   survey::Survey survey_;
   std::optional<ScaleOptions> scales_;
   int views_ = 0;
+  bool buildings_ = false;
 };
 
 // Writes and reads the text of FOLDER/runs/<variant>.json. identity: of settings and survey. ParseResult throws nlohmann::json::exception.

@@ -99,4 +99,16 @@ struct PriorsOptions {
 // a place of its own, simulated into FOLDER/seed_N. Writes priors.png into the study's folder.
 StudyBench PriorsBench(Study& study, const PriorsOptions& options);
 
+// truth, points, field, no_priors, priors, nadir.
+std::vector<std::string> BuildingsVariantNames();
+
+struct BuildingsBenchOptions {
+  std::vector<std::string> variants;  // among BuildingsVariantNames(); empty: all of them
+  double budget_s = 90.0;             // training time of every variant that is trained
+  std::vector<int> seeds;             // of training, each once; empty: that of the settings
+};
+// Compares how well buildings are found and measured in surfaces from true depth, from sparse points alone, and from fields: trained by default,
+// without priors, with all, without oblique photos. Seeds and simulated places as in PriorsBench. Throws base::UsageError for surveys without truth.
+StudyBench BuildingsBench(Study& study, const BuildingsBenchOptions& options);
+
 }  // namespace skyquilt::bench

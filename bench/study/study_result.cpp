@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/study/study.h"
+#include "evaluate/buildings_json.h"
 #include "evaluate/class_json.h"
 
 namespace skyquilt::bench {
@@ -81,6 +82,7 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
   json["scale_pictures"] = result.scale_pictures;
   json["classes"] = evaluate::ToJson(std::span<const evaluate::ClassScore>(result.classes));
   json["views"] = result.views;
+  if (result.buildings) json["buildings"] = evaluate::ToJson(*result.buildings);
   json["curve"] = result.curve;
   json["floater_profile"] = result.floater_profile;
   for (const auto& [key, value] :
@@ -125,6 +127,7 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
   result.scale_pictures = json.value("scale_pictures", "");
   result.classes = evaluate::ClassScoresFromJson(json.value("classes", Json()));
   result.views = json.value("views", "");
+  if (json.contains("buildings")) result.buildings = evaluate::BuildingScoresFromJson(json.at("buildings"));
   json.at("curve").get_to(result.curve);
   json.at("floater_profile").get_to(result.floater_profile);
   for (const auto& [key, value] :

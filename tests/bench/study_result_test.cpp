@@ -37,6 +37,10 @@ VariantResult Example() {
   r.flat_roof_rms_m = 0.0625;
   r.flat_roof_nmad_m = 0.03125;
   r.views = "runs/guided/views";
+  r.buildings.emplace().found = 3;
+  r.buildings->truth.emplace().detection = {{.size = "all", .outlines = 1, .missed = 1}};
+  r.buildings->truth->roofs = {{.roof = "all", .errors = {}}};
+  r.buildings->truth->each = {{.fate = evaluate::BuildingOutcome::Fate::kMissed, .truth_id = 4, .roof = "hip", .area_m2 = 60.0}};
   return r;
 }
 
@@ -103,6 +107,9 @@ TEST(ResultJson, ReadsBackUnchanged) {
   EXPECT_EQ(back.flat_roof_rms_m, 0.0625);
   EXPECT_EQ(back.flat_roof_nmad_m, 0.03125);
   EXPECT_EQ(back.views, "runs/guided/views");
+  ASSERT_TRUE(back.buildings.has_value());
+  ASSERT_EQ(back.buildings->truth->each.size(), 1U);
+  EXPECT_EQ(back.buildings->truth->each[0].truth_id, 4);
   EXPECT_EQ(ResultJson(back, identity), ResultJson(r, "abc 1"));
 }
 
@@ -117,6 +124,7 @@ TEST(ResultJson, OfAnOlderProgramHasFewerScores) {
   json.erase("flat_roof_rms_m");
   json.erase("flat_roof_nmad_m");
   json.erase("views");
+  json.erase("buildings");
   for (nlohmann::json& field : json["fields"]) field.erase("steps");
   std::string identity;
   const VariantResult back = ParseResult(json.dump(), &identity);
@@ -125,6 +133,7 @@ TEST(ResultJson, OfAnOlderProgramHasFewerScores) {
   EXPECT_TRUE(back.classes.empty());
   EXPECT_TRUE(std::isnan(back.flat_roof_rms_m));
   EXPECT_EQ(back.views, "");
+  EXPECT_FALSE(back.buildings.has_value());
   EXPECT_EQ(back.fields[1].steps, 0);
   EXPECT_TRUE(std::isnan(back.flip));
   EXPECT_EQ(back.psnr_db, Example().psnr_db);

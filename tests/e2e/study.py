@@ -9,12 +9,12 @@ SMALL = ["--quick", "--time-budget", "1s", "--set", "run.image_width=160", "--se
          "--set", "evaluate.max_photos=2"]
 
 
-def check_page(folder, name):
+def check_page(folder, name, pictures=True):
     html = (folder / f"{name}.html").read_text()
     expect("http" not in re.sub(r'xmlns="[^"]*"', "", html), "the page loads something from the internet")
     for link in re.findall(r'<img src="([^"]+)"', html):
         expect((folder / link).is_file(), f"{name}.html shows {link}, which is not there")
-    expect("<img" in html and "<svg" in html, f"{name}.html has no picture or no plot")
+    expect(("<img" in html or not pictures) and "<svg" in html, f"{name}.html has no picture or no plot")
     expect(list(folder.glob(f"{name}*.csv")), "no CSV")
     return json.loads((folder / f"{name}.json").read_text())
 
@@ -117,6 +117,26 @@ def test(skyquilt, folder):
     before = digest(out / "runs"), digest(out / "seed_6" / "runs")
     skyquilt.call(*words)
     expect((digest(out / "runs"), digest(out / "seed_6" / "runs")) == before, "a finished variant was run again")
+
+    # Buildings: sources without training, and a field that is added later.
+    out = folder / "buildings"
+    words = ["bench", "buildings", "-o", out, "--seeds", "5", *SMALL, "--set", "simulate.image_width=160", "--variants"]
+    skyquilt.call("bench", "buildings", "--survey", survey, "-o", out, "--shapes", "varied", *SMALL, status=2)
+    skyquilt.call(*words, "truth,points")
+    before = digest(out / "runs" / "truth_s5"), (out / "runs" / "truth_s5.json").read_bytes()
+    skyquilt.call(*words, "truth,points,field")
+    expect((digest(out / "runs" / "truth_s5"), (out / "runs" / "truth_s5.json").read_bytes()) == before, "a finished variant was run again")
+    result = check_page(out, "buildings", pictures=False)
+    expect([variant["name"] for variant in result["results"]] == ["truth_s5", "points_s5", "field_s5"], result["results"])
+    for variant in result["results"]:
+        scores = variant["buildings"]
+        expect(scores["outlines"] == sum(one["fate"] != "invented" for one in scores["each"]) > 0, scores)
+        expect((variant["train_seconds"] is None) == (variant["name"] != "field_s5"), variant)
+    truth = result["results"][0]["buildings"]
+    expect(truth["matched"] == truth["outlines"], truth)
+    for table in ("", "_sizes", "_measures", "_towns"):
+        expect((out / f"buildings{table}.csv").is_file(), table)
+    expect("building-map" in (out / "buildings.html").read_text(), "no plan")
 
     # A survey of its own is trained with several seeds.
     out = folder / "priors_of_survey"

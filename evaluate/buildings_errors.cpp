@@ -28,6 +28,15 @@ bool IsFlat(const TrueBuilding& building) {
   return building.roof == RoofKind::kFlat;
 }
 
+// Of two parts of nearly the same size either may be the larger one.
+MeasureError EaveError(const Measure& found, const TrueBuilding& truth) {
+  double nearest = truth.eave_z_m;
+  for (const double eave : truth.other_eaves_z_m) {
+    if (std::abs(found.value - eave) < std::abs(found.value - nearest)) nearest = eave;
+  }
+  return ErrorOf(found, nearest);
+}
+
 struct ScoredMeasure {
   const char* name;
   std::optional<MeasureError> (*error)(const Building& found, const TrueBuilding& truth);  // nothing: the building has no such measure
@@ -35,8 +44,7 @@ struct ScoredMeasure {
 
 constexpr std::array<ScoredMeasure, 9> kMeasures = {{
     {"ground", [](const Building& f, const TrueBuilding& t) -> std::optional<MeasureError> { return ErrorOf(f.measures.ground_m, t.ground_z_m); }},
-    {"eave",
-     [](const Building& f, const TrueBuilding& t) { return IsFlat(t) ? std::nullopt : std::optional(ErrorOf(f.measures.eave_m, t.eave_z_m)); }},
+    {"eave", [](const Building& f, const TrueBuilding& t) { return IsFlat(t) ? std::nullopt : std::optional(EaveError(f.measures.eave_m, t)); }},
     {"ridge",
      [](const Building& f, const TrueBuilding& t) { return IsFlat(t) ? std::nullopt : std::optional(ErrorOf(f.measures.ridge_m, t.ridge_z_m)); }},
     {"deck",

@@ -20,6 +20,7 @@ using TruthJson = nlohmann::json;
 
 constexpr const char* kSimulateBuildingsAgain = "Run 'skyquilt simulate' again";
 constexpr double kDegreesToRadians = std::numbers::pi / 180.0;
+constexpr double kNearlyLargest = 0.9;  // share of the area of the largest part
 
 buildings::RoofKind TrueRoof(const std::string& name) {
   for (const buildings::RoofKind roof : {buildings::RoofKind::kFlat, buildings::RoofKind::kGable, buildings::RoofKind::kHip}) {
@@ -77,6 +78,22 @@ TrueBuilding OutlineFrom(const TruthJson& outline) {
   return building;
 }
 
+// rows: all parts of the place, of which the outline names its own.
+void AddOtherEaves(const TruthJson& outline, const TruthJson& rows, TrueBuilding* building) {
+  if (!outline.contains("parts")) return;
+  const auto area = [&](const TruthJson& part) {
+    const TruthJson& row = rows.at(part.get<size_t>());
+    return row.at("length_m").get<double>() * row.at("width_m").get<double>();
+  };
+  double largest = 0.0;
+  for (const TruthJson& part : outline.at("parts")) largest = std::max(largest, area(part));
+  for (const TruthJson& part : outline.at("parts")) {
+    const TrueBuilding own = CommonOf(rows.at(part.get<size_t>()));
+    const bool pitched = own.roof == buildings::RoofKind::kGable || own.roof == buildings::RoofKind::kHip;
+    if (pitched && area(part) >= kNearlyLargest * largest) building->other_eaves_z_m.push_back(own.eave_z_m);
+  }
+}
+
 // Rows say only whether the centre is inside the surveyed area; the whole rectangle must be, as in outlines.
 TrueBuilding RectangleFrom(const TruthJson& row, const std::optional<Polygon>& area) {
   TrueBuilding building = CommonOf(row);
@@ -108,6 +125,7 @@ void MoveBuilding(const geo::Rigid3d& survey_from_truth, TrueBuilding* building)
   const double rise = (survey_from_truth * Eigen::Vector3d(middle.x(), middle.y(), building->ground_z_m)).z() - building->ground_z_m;
   MovePolygon(survey_from_truth, building->ground_z_m, &building->walls);
   for (double* z : {&building->ground_z_m, &building->eave_z_m, &building->ridge_z_m}) *z += rise;
+  for (double& z : building->other_eaves_z_m) z += rise;
   const double yaw = building->yaw_deg * kDegreesToRadians;
   const Eigen::Vector3d axis = survey_from_truth.rotation * Eigen::Vector3d(std::cos(yaw), std::sin(yaw), 0.0);
   building->yaw_deg = std::atan2(axis.y(), axis.x()) / kDegreesToRadians;
@@ -145,7 +163,10 @@ TrueBuildings ReadTrueBuildings(const std::filesystem::path& buildings_json, con
     truth.area = SurveyedArea(simulate_json);
     const TruthJson content = TruthJson::parse(base::ReadFile(buildings_json));
     if (content.contains("outlines")) {
-      for (const TruthJson& outline : content.at("outlines")) truth.outlines.push_back(OutlineFrom(outline));
+      for (const TruthJson& outline : content.at("outlines")) {
+        truth.outlines.push_back(OutlineFrom(outline));
+        AddOtherEaves(outline, content.at("buildings"), &truth.outlines.back());
+      }
     } else {
       for (const TruthJson& row : content.at("buildings")) truth.outlines.push_back(RectangleFrom(row, truth.area));
     }

@@ -18,9 +18,10 @@ struct TrueBuilding {
   buildings::RoofKind roof = buildings::RoofKind::kOther;  // of the largest part
   buildings::Polygon walls;                                // survey ENU, metres, as all that follows
   double ground_z_m = 0.0;
-  double eave_z_m = 0.0;   // of the largest part
-  double ridge_z_m = 0.0;  // highest of all parts; flat roofs: the deck
-  double length_m = 0.0;   // of the rectangle around the walls along the building's axes; the longer side
+  double eave_z_m = 0.0;                // of the largest part
+  std::vector<double> other_eaves_z_m;  // of pitched parts hardly smaller than that, any of which may be measured as the largest
+  double ridge_z_m = 0.0;               // highest of all parts; flat roofs: the deck
+  double length_m = 0.0;                // of the rectangle around the walls along the building's axes; the longer side
   double width_m = 0.0;
   double yaw_deg = 0.0;  // of the length axis, counter-clockwise from east
   double area_m2 = 0.0;  // of the walls

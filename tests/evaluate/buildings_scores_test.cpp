@@ -55,6 +55,17 @@ TEST(BuildingScores, APerfectSetHasNoErrors) {
   EXPECT_NEAR(scores.truth->corner_rmse_m, 0.0, 1e-9);
 }
 
+// Which of two houses that share a wall is larger may be a matter of centimetres.
+TEST(BuildingScores, AnyOfNearlyEqualPartsMayBeTheLargest) {
+  const BuildingSet set = MadeTown(9);
+  TrueBuildings truth = TruthOf(set);
+  const auto eaves = [&] { return Find(Scored(set, truth).truth->roofs.front(), "eave")->rmse; };
+  for (TrueBuilding& building : truth.outlines) building.eave_z_m += 4.0;
+  EXPECT_NEAR(eaves(), 4.0, 1e-6);
+  for (TrueBuilding& building : truth.outlines) building.other_eaves_z_m = {building.eave_z_m, building.eave_z_m - 3.9, building.eave_z_m + 1.0};
+  EXPECT_NEAR(eaves(), 0.1, 1e-6);
+}
+
 TEST(BuildingScores, PitchedRoofsHaveEavesAndRidgesAndFlatOnesDecks) {
   const BuildingSet set = MadeTown(9);
   const std::vector<BuildingRoofScores> roofs = Scored(set, TruthOf(set)).truth->roofs;

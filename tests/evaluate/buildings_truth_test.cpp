@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -14,7 +15,10 @@ namespace {
 
 constexpr const char* kOutline = R"({"outlines": [{"id": 7, "shape": "courtyard", "kind": "apartment", "roof": "hip", "parts": [0, 1],
   "walls": [[0, 0], [20, 0], [20, 12], [0, 12]], "holes": [[[5, 4], [15, 4], [15, 8], [5, 8]]], "centre": [10, 6], "length_m": 20, "width_m": 12,
-  "yaw_deg": 0, "ground_z_m": 3, "eave_height_m": 6, "ridge_height_m": 9.5, "area_m2": 200, "inside_area": false}], "buildings": []})";
+  "yaw_deg": 0, "ground_z_m": 3, "eave_height_m": 6, "ridge_height_m": 9.5, "area_m2": 200, "inside_area": false}], "buildings": [
+  {"id": 0, "roof": "hip", "length_m": 10, "width_m": 10, "eave_height_m": 6, "ridge_height_m": 9, "ground_z_m": 3, "yaw_deg": 0, "inside_area": false},
+  {"id": 1, "roof": "gable", "length_m": 10, "width_m": 9.5, "eave_height_m": 4, "ridge_height_m": 9.5, "ground_z_m": 3, "yaw_deg": 0,
+   "inside_area": false}]})";
 
 class TrueBuildingsFile : public testing::Test {
  protected:
@@ -50,6 +54,7 @@ TEST_F(TrueBuildingsFile, OutlinesAreReadWithTheirHoles) {
   EXPECT_FALSE(buildings::Contains(one.walls, {10, 6}));
   EXPECT_DOUBLE_EQ(one.ground_z_m, 3.0);
   EXPECT_DOUBLE_EQ(one.eave_z_m, 9.0);
+  EXPECT_EQ(one.other_eaves_z_m, (std::vector<double>{9.0, 7.0})) << "parts of nearly the same size";
   EXPECT_DOUBLE_EQ(one.ridge_z_m, 12.5);
   EXPECT_FALSE(one.inside);
   EXPECT_FALSE(truth.area.has_value());

@@ -19,7 +19,7 @@ void Save(const fs::path& folder, const PriorResults& of, int view, const std::s
   image::SavePng(image::Image8(kWidth, kHeight, channels, value), views / ViewPicture(view, kind));
 }
 
-PriorResults Variant(const fs::path& folder, const std::string& name, uint8_t render, int n_views) {
+PriorResults VariantWith(const fs::path& folder, const std::string& name, uint8_t render, int n_views) {
   PriorResults results{.name = name, .label = name, .seeds = {{}}};
   results.seeds.front().views = "runs/" + name + "_s1/views";
   for (int view = 0; view < n_views; ++view) {
@@ -48,8 +48,8 @@ std::vector<std::string> Captions(const std::vector<CaptionedImage>& row) {
 
 TEST(CropsOfPriors, ShowEachClassInThePhotoThatHasMostOfIt) {
   const TemporaryFolder folder;
-  std::vector<PriorResults> results = {Variant(folder.path(), "none", 10, 3), Variant(folder.path(), "planar", 20, 3),
-                                       Variant(folder.path(), "all", 30, 3)};
+  std::vector<PriorResults> results = {VariantWith(folder.path(), "none", 10, 3), VariantWith(folder.path(), "planar", 20, 3),
+                                       VariantWith(folder.path(), "all", 30, 3)};
   SaveClasses(folder.path(), results[0], 0, survey::SurfaceClass::kRoof, 10);
   SaveClasses(folder.path(), results[0], 1, survey::SurfaceClass::kTree, 40);
   SaveClasses(folder.path(), results[0], 2, survey::SurfaceClass::kRoof, 60);
@@ -71,7 +71,7 @@ TEST(CropsOfPriors, ShowEachClassInThePhotoThatHasMostOfIt) {
 
 TEST(CropsOfPriors, ShowTheMiddleOfARealSurvey) {
   const TemporaryFolder folder;
-  std::vector<PriorResults> results = {Variant(folder.path(), "none", 10, 6), Variant(folder.path(), "planar", 20, 6)};
+  std::vector<PriorResults> results = {VariantWith(folder.path(), "none", 10, 6), VariantWith(folder.path(), "planar", 20, 6)};
   const std::vector<PriorCrops> crops = CropsOfPriors(results, folder.path());
   ASSERT_EQ(crops.size(), 3U);
   EXPECT_EQ(*crops[0].colors[0].image.At(0, 0), 101);
@@ -92,7 +92,7 @@ TEST(CropsOfPriors, AreNoneWithoutPictures) {
 
 TEST(WritePriorPictures, WritesTheSheetAndEveryPictureOfThePage) {
   const TemporaryFolder folder;
-  std::vector<PriorResults> results = {Variant(folder.path(), "none", 10, 3), Variant(folder.path(), "default", 20, 3)};
+  std::vector<PriorResults> results = {VariantWith(folder.path(), "none", 10, 3), VariantWith(folder.path(), "default", 20, 3)};
   const std::vector<BenchSection> sections = WritePriorPictures(CropsOfPriors(results, folder.path()), folder.path());
   ASSERT_EQ(sections.size(), 3U);
   for (const BenchSection& section : sections) {

@@ -16,7 +16,7 @@
 namespace skyquilt::evaluate {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 48;
+constexpr int kPhotoWidth = 64, kPhotoHeight = 48;
 
 // Photos of a grey gradient, brighter to the right. Photo i recorded 2^stops[i] of its light, and the scene has these gains. All but the first two
 // are held out.
@@ -29,9 +29,9 @@ struct SlopeSurvey {
   explicit SlopeSurvey(const std::vector<double>& stops, const image::Image8& mask = {}) {
     base::Progress::SetQuiet(true);
     camera::Camera camera;
-    camera.width = kWidth;
-    camera.height = kHeight;
-    camera.params = {50.0, 50.0, kWidth / 2.0, kHeight / 2.0};
+    camera.width = kPhotoWidth;
+    camera.height = kPhotoHeight;
+    camera.params = {50.0, 50.0, kPhotoWidth / 2.0, kPhotoHeight / 2.0};
     survey.cameras = {camera};
     info.response = brightness::Response::Neutral(stops.size(), 1);
     if (!mask.Empty()) image::SavePng(mask, folder / "mask.png");
@@ -41,10 +41,10 @@ struct SlopeSurvey {
       photo.name = "p" + std::to_string(i) + ".png";
       photo.is_test = i >= 2;
       survey.photos.push_back(photo);
-      image::Image8 picture(kWidth, kHeight, 3);
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-          const float at_reference = 0.25F + 0.5F * static_cast<float>(x) / static_cast<float>(kWidth);
+      image::Image8 picture(kPhotoWidth, kPhotoHeight, 3);
+      for (int y = 0; y < kPhotoHeight; ++y) {
+        for (int x = 0; x < kPhotoWidth; ++x) {
+          const float at_reference = 0.25F + 0.5F * static_cast<float>(x) / static_cast<float>(kPhotoWidth);
           const float light = image::LinearFromSrgb(at_reference) * static_cast<float>(std::exp2(stops[i]));
           for (int c = 0; c < 3; ++c) picture.At(x, y)[c] = static_cast<uint8_t>(std::lround(255.0F * image::SrgbFromLinear(light)));
         }
@@ -110,8 +110,8 @@ TEST(CollectBrightness, PhotosComeInOrderOfCapture) {
 }
 
 TEST(CollectBrightness, MaskedPixelsDoNotCount) {
-  image::Image8 mask(kWidth, kHeight, 1, 255);
-  for (int y = 0; y < kHeight; ++y) std::fill_n(mask.At(0, y), kWidth / 2, uint8_t{0});
+  image::Image8 mask(kPhotoWidth, kPhotoHeight, 1, 255);
+  for (int y = 0; y < kPhotoHeight; ++y) std::fill_n(mask.At(0, y), kPhotoWidth / 2, uint8_t{0});
   const BrightnessReport report = SlopeSurvey({0.0, 0.0}, mask).Collect();
   EXPECT_NEAR(Sum(report.histogram_before), 1.0, 1e-9);
   const auto dark_end = static_cast<std::ptrdiff_t>(kBrightnessBins / 2 - 1);

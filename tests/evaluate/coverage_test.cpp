@@ -3,15 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "tests/evaluate/nadir_view.h"
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::evaluate {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(SurfacePoint, KeepsADepthInsideTheHeights) {
   const auto point = SurfacePoint({1, 2, 100}, {0, 0, -1}, 95.0, {0.0, 20.0});

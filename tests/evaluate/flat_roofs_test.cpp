@@ -19,7 +19,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using survey::SurfaceClass;
 
-constexpr int kWidth = 100, kHeight = 80;
+constexpr int kViewWidth = 100, kViewHeight = 80;
 
 // From 100 m above a deck of 30 m x 20 m at height 0, where a pixel is a metre; ground 10 m below around it. Rendered exactly.
 struct Deck {
@@ -31,12 +31,12 @@ struct Deck {
     const TrainingView view = NadirView(0, 0, 100);
     task.camera = view.camera;
     task.cam_from_enu = view.cam_from_enu;
-    findings.scored = image::Image8(kWidth, kHeight, 1, 1);
-    findings.true_depth = image::ImageF(kWidth, kHeight, 1, 110.0F);
-    findings.true_class = image::Image8(kWidth, kHeight, 1, static_cast<uint8_t>(SurfaceClass::kGround));
-    findings.true_normals = image::ImageF(kWidth, kHeight, 3, 0.0F);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
+    findings.scored = image::Image8(kViewWidth, kViewHeight, 1, 1);
+    findings.true_depth = image::ImageF(kViewWidth, kViewHeight, 1, 110.0F);
+    findings.true_class = image::Image8(kViewWidth, kViewHeight, 1, static_cast<uint8_t>(SurfaceClass::kGround));
+    findings.true_normals = image::ImageF(kViewWidth, kViewHeight, 3, 0.0F);
+    for (int y = 0; y < kViewHeight; ++y) {
+      for (int x = 0; x < kViewWidth; ++x) {
         findings.true_normals.At(x, y)[2] = 1.0F;
         if (std::abs(x + 0.5 - 50) > 15 || std::abs(y + 0.5 - 40) > 10) continue;
         *findings.true_depth.At(x, y) = 100.0F;
@@ -62,8 +62,8 @@ TEST(FlatRoofs, RoughnessIsMeasuredOnTheDeckOnly) {
   Deck deck;
   base::Random random(5);
   for (float& z : deck.findings.z_depth.data) z += static_cast<float>(0.25 * random.Normal());
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kViewHeight; ++y) {
+    for (int x = 0; x < kViewWidth; ++x) {
       const bool rim = std::abs(x + 0.5 - 50) > 14 || std::abs(y + 0.5 - 40) > 9;
       if (rim) *deck.findings.z_depth.At(x, y) += 30.0F;  // parapets, walls and ground
       const bool box = x >= 40 && x < 44 && y >= 36 && y < 40;
@@ -74,7 +74,7 @@ TEST(FlatRoofs, RoughnessIsMeasuredOnTheDeckOnly) {
       if (slope) *deck.findings.z_depth.At(x, y) += 5.0F;
     }
   }
-  for (int x = 0; x < kWidth; ++x) {
+  for (int x = 0; x < kViewWidth; ++x) {
     *deck.findings.true_class.At(x, 45) = static_cast<uint8_t>(SurfaceClass::kTree);
     *deck.findings.z_depth.At(x, 45) -= 9.0F;
     *deck.findings.scored.At(x, 46) = 0;
@@ -88,8 +88,8 @@ TEST(FlatRoofs, RoughnessIsMeasuredOnTheDeckOnly) {
 
 TEST(FlatRoofs, ATiltedPlaneIsFlatToo) {
   Deck deck;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kViewHeight; ++y) {
+    for (int x = 0; x < kViewWidth; ++x) {
       // On the plane z = 0.1 east: from 100 m up, the ray at x metres per 100 m of z-depth meets it where 100 - z_depth = 0.1 x z_depth / 100.
       *deck.findings.z_depth.At(x, y) = static_cast<float>(100.0 / (1.0 + 0.1 * (x + 0.5 - 50) / 100.0));
     }

@@ -8,6 +8,7 @@
 #include "evaluate/page_geo.h"
 #include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
+#include "tests/evaluate/count_of.h"
 #include "tests/evaluate/sample_report.h"
 
 namespace skyquilt::evaluate {
@@ -45,12 +46,6 @@ class GeoPage : public testing::Test {
   static inline std::filesystem::path folder_;
   static inline std::unique_ptr<SampleReport> sample_, poor_;
 };
-
-size_t CountOf(const std::string& text, const std::string& part) {
-  size_t n = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
-  return n;
-}
 
 // The value beside a name in a table of figures.
 std::string ValueOf(const std::string& html, const std::string& name) {

@@ -4,17 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
 #include "tests/support/nadir_photo.h"
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::evaluate {
 namespace {
 
 constexpr int kFullWidth = 200;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 class KeptPointsTest : public ::testing::Test {
  protected:
@@ -99,7 +98,7 @@ TEST_F(KeptPointsTest, ErrorsArePositiveBehindThePoint) {
   for (size_t i = 0; i < rays.size(); ++i) {
     rendered[i].depth_median = static_cast<float>(rays[i].true_m + static_cast<double>(i) * rays[i].gsd_m);
   }
-  rendered[9].depth_median = kNan;
+  rendered[9].depth_median = kNanFloat;
   const KeptPointErrors errors = CompareKeptRays(rays, rendered, true);
   EXPECT_EQ(errors.points, 5);
   EXPECT_EQ(errors.rays, 10);
@@ -122,7 +121,7 @@ TEST_F(KeptPointsTest, NothingIsMeasuredWithoutRaysAndNoMedianIsInfinite) {
   Add({3.0, 0.0, 0.0}, {1, 3});
   const std::vector<KeptRay> rays = Rays();
   std::vector<render::RayColor> rendered(rays.size());
-  for (render::RayColor& ray : rendered) ray.depth_median = kNan;
+  for (render::RayColor& ray : rendered) ray.depth_median = kNanFloat;
   const KeptPointErrors errors = CompareKeptRays(rays, rendered, true);
   EXPECT_EQ(errors.rays, 2);
   EXPECT_TRUE(std::isnan(errors.median_gsd));

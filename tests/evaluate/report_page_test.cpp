@@ -10,6 +10,7 @@
 
 #include "core/base/file.h"
 #include "evaluate/report_images.h"
+#include "tests/evaluate/count_of.h"
 #include "tests/evaluate/sample_report.h"
 
 namespace skyquilt::evaluate {
@@ -55,12 +56,6 @@ class ReportPage : public testing::Test {
   static inline std::unique_ptr<SampleReport> sample_, poor_;
   static inline std::string html_;
 };
-
-size_t CountOf(const std::string& text, const std::string& part) {
-  size_t n = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
-  return n;
-}
 
 TEST_F(ReportPage, TellsWhereTrainingTimeWent) {
   const size_t at = html_.find("Where training time goes");

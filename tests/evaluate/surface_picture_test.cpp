@@ -11,7 +11,7 @@
 namespace skyquilt::evaluate {
 namespace {
 
-constexpr int kWidth = 100, kHeight = 80;
+constexpr int kPictureWidth = 100, kPictureHeight = 80;
 
 // Four colours: red and green in the north, blue and white in the south.
 std::vector<uint8_t> FourColors() {
@@ -39,7 +39,7 @@ surface::TexturedTile PaintedTile(const Plate& plate, std::vector<uint8_t> jpeg)
 constexpr Plate kFrame{-20, -16, 20, 16, 0.0}, kWest{-20, -16, 0, 16, 0.0}, kEast{0, -16, 20, 16, 0.0};
 
 void ExpectColor(const SurfacePicture& picture, int x, int y, const Eigen::Vector3f& color) {
-  const size_t i = static_cast<size_t>(y) * kWidth + static_cast<size_t>(x);
+  const size_t i = static_cast<size_t>(y) * kPictureWidth + static_cast<size_t>(x);
   EXPECT_EQ(picture.has_mesh[i], 1);
   EXPECT_EQ(picture.colors[i].opacity, 1.0F);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.colors[i].rgb_srgb[c], color[c], 0.05F) << x << " " << y << " " << c;
@@ -50,7 +50,7 @@ TEST(SurfacePainter, ShowsTheTextureWhereItIs) {
   const SurfaceMesh mesh({PaintedTile(kFrame, FourColors())});
   const TrainingView view = NadirView(0, 0, 40);
   const SurfacePicture picture = SurfacePainter(mesh).Paint(view.camera, view.cam_from_enu, threads);
-  ASSERT_EQ(picture.colors.size(), static_cast<size_t>(kWidth) * kHeight);
+  ASSERT_EQ(picture.colors.size(), static_cast<size_t>(kPictureWidth) * kPictureHeight);
   for (const int x : {3, 40}) {
     ExpectColor(picture, x, 30, {1, 0, 0});
     ExpectColor(picture, x + 56, 30, {0, 1, 0});
@@ -67,7 +67,7 @@ TEST(SurfacePainter, ColorsBetweenTwoPixelsAreInterpolated) {
   const TrainingView view = NadirView(0, 0, 40);
   const SurfacePicture picture = SurfacePainter(mesh).Paint(view.camera, view.cam_from_enu, threads);
   for (const int x : {0, 20, 40, 50, 60, 80, 99}) {
-    const double share = std::clamp(2.0 * (x + 0.5) / kWidth - 0.5, 0.0, 1.0);
+    const double share = std::clamp(2.0 * (x + 0.5) / kPictureWidth - 0.5, 0.0, 1.0);
     EXPECT_NEAR(picture.colors[static_cast<size_t>(x)].rgb_srgb[1], share * 200.0 / 255.0, 0.01) << x;
   }
 }
@@ -87,13 +87,13 @@ TEST(SurfacePainter, NothingIsSeenBesideTheMesh) {
   const TrainingView view = NadirView(0, 0, 40);
   const SurfaceMesh mesh({PaintedTile(kWest, FourColors()), PlateTile(kEast)});  // the eastern tile has no texture
   const SurfacePicture picture = SurfacePainter(mesh).Paint(view.camera, view.cam_from_enu, threads);
-  for (int x = 0; x < kWidth; ++x) {
-    const size_t i = static_cast<size_t>(10 * kWidth + x);
+  for (int x = 0; x < kPictureWidth; ++x) {
+    const size_t i = static_cast<size_t>(10 * kPictureWidth + x);
     EXPECT_EQ(picture.has_mesh[i], x < 50 ? 1 : 0);
     EXPECT_EQ(picture.colors[i].opacity, x < 50 ? 1.0F : 0.0F);
   }
   const SurfaceMesh none;
-  EXPECT_EQ(SurfacePainter(none).Paint(view.camera, view.cam_from_enu, threads).has_mesh, std::vector<uint8_t>(kWidth * kHeight, 0));
+  EXPECT_EQ(SurfacePainter(none).Paint(view.camera, view.cam_from_enu, threads).has_mesh, std::vector<uint8_t>(kPictureWidth * kPictureHeight, 0));
 }
 
 TEST(SurfacePainter, DoesNotDependOnTheCacheOrTheThreads) {
@@ -117,14 +117,14 @@ struct ComparedPhoto {
   SurfacePicture picture;
 
   ComparedPhoto() {
-    task.photo = image::Image8(kWidth, kHeight, 3, 100);
-    findings.scored = image::Image8(kWidth, kHeight, 1, 1);
-    findings.render = image::Image8(kWidth, kHeight, 3, 120);
+    task.photo = image::Image8(kPictureWidth, kPictureHeight, 3, 100);
+    findings.scored = image::Image8(kPictureWidth, kPictureHeight, 1, 1);
+    findings.render = image::Image8(kPictureWidth, kPictureHeight, 3, 120);
     findings.score.psnr_db = 22.0;
-    picture.colors.resize(static_cast<size_t>(kWidth) * kHeight);
+    picture.colors.resize(static_cast<size_t>(kPictureWidth) * kPictureHeight);
     picture.has_mesh.assign(picture.colors.size(), 0);
     for (size_t i = 0; i < picture.colors.size(); ++i) {
-      if (i % kWidth >= kWidth / 2) continue;
+      if (i % kPictureWidth >= kPictureWidth / 2) continue;
       picture.has_mesh[i] = 1;
       for (float& c : picture.colors[i].rgb_srgb) c = 90.0F / 255.0F;
     }
@@ -140,10 +140,10 @@ TEST(SurfacePhotoErrors, MissingMeshIsBlackAndCounted) {
   SurfacePhotoErrors errors;
   const image::Image8 shown = errors.Add(photo.task, photo.findings, photo.picture);
   EXPECT_EQ(*shown.At(0, 0), 90);
-  EXPECT_EQ(*shown.At(kWidth - 1, 0), 0);
+  EXPECT_EQ(*shown.At(kPictureWidth - 1, 0), 0);
   SurfaceScores scores;
   errors.Fill(&scores);
-  EXPECT_EQ(scores.pixels, kWidth * kHeight);
+  EXPECT_EQ(scores.pixels, kPictureWidth * kPictureHeight);
   EXPECT_DOUBLE_EQ(scores.missing_share, 0.5);
   EXPECT_NEAR(scores.psnr, PsnrOfDifference(std::sqrt(0.5 * 100 + 0.5 * 10000)), 1e-3);
   EXPECT_NEAR(scores.psnr_where_mesh, PsnrOfDifference(10), 1e-3);
@@ -154,9 +154,9 @@ TEST(SurfacePhotoErrors, MissingMeshIsBlackAndCounted) {
 
 TEST(SurfacePhotoErrors, OnlyScoredPixelsCountAndClassesArePooled) {
   ComparedPhoto photo;
-  photo.findings.true_class = image::Image8(kWidth, kHeight, 1, static_cast<uint8_t>(survey::SurfaceClass::kRoad));
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
+  photo.findings.true_class = image::Image8(kPictureWidth, kPictureHeight, 1, static_cast<uint8_t>(survey::SurfaceClass::kRoad));
+  for (int y = 0; y < kPictureHeight; ++y) {
+    for (int x = 0; x < kPictureWidth; ++x) {
       if (x >= 75) *photo.findings.scored.At(x, y) = 0;
       if (x < 25) *photo.findings.true_class.At(x, y) = static_cast<uint8_t>(survey::SurfaceClass::kRoof);
     }
@@ -170,12 +170,12 @@ TEST(SurfacePhotoErrors, OnlyScoredPixelsCountAndClassesArePooled) {
   ASSERT_EQ(scores.classes.size(), 5U);
   const SurfaceClassScore &roof = scores.classes[0], &ground = scores.classes[2], &road = scores.classes[3], &tree = scores.classes[4];
   EXPECT_EQ(roof.name, "roof");
-  EXPECT_EQ(roof.pixels, 2 * 25 * kHeight);
+  EXPECT_EQ(roof.pixels, 2 * 25 * kPictureHeight);
   EXPECT_EQ(roof.missing_pixels, 0);
   EXPECT_NEAR(roof.psnr_db, PsnrOfDifference(10), 1e-3);
   EXPECT_EQ(ground.name, "ground");
-  EXPECT_EQ(ground.pixels, 2 * 50 * kHeight);
-  EXPECT_EQ(ground.missing_pixels, 2 * 25 * kHeight);
+  EXPECT_EQ(ground.pixels, 2 * 50 * kPictureHeight);
+  EXPECT_EQ(ground.missing_pixels, 2 * 25 * kPictureHeight);
   EXPECT_NEAR(road.psnr_field_db, PsnrOfDifference(20), 1e-3);
   EXPECT_TRUE(std::isnan(tree.psnr_db));
 }

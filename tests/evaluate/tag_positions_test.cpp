@@ -3,17 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "core/geo/enu_frame.h"
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::evaluate {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 // One photo at (10, 20, 30) m whose tag is 3 m west and 4 m up of it, and corrected by 1 m eastwards.
-survey::Survey OnePhoto() {
+survey::Survey SurveyOfOnePhoto() {
   survey::Survey survey;
   survey.georeferenced = true;
   survey.origin = {47.0, 8.0, 400.0};
@@ -27,7 +25,7 @@ survey::Survey OnePhoto() {
 }
 
 TEST(TagPositions, ResidualIsTheCameraMinusTheCorrectedTag) {
-  const auto tags = TagPositions(OnePhoto());
+  const auto tags = TagPositions(SurveyOfOnePhoto());
   ASSERT_EQ(tags.size(), 1U);
   ASSERT_TRUE(tags[0]);
   EXPECT_TRUE(tags[0]->recorded.isApprox(Eigen::Vector3d(7.0, 20.0, 34.0), 1e-6));
@@ -36,7 +34,7 @@ TEST(TagPositions, ResidualIsTheCameraMinusTheCorrectedTag) {
 }
 
 TEST(TagPositions, ATagWithoutHeightHasAPlaceOnTheMap) {
-  survey::Survey survey = OnePhoto();
+  survey::Survey survey = SurveyOfOnePhoto();
   survey.photos[0].gps->height_m = kNan;
   const auto tags = TagPositions(survey);
   ASSERT_TRUE(tags[0]);
@@ -48,7 +46,7 @@ TEST(TagPositions, ATagWithoutHeightHasAPlaceOnTheMap) {
 }
 
 TEST(TagPositions, AreEmptyWhereThereIsNothingToCompare) {
-  survey::Survey survey = OnePhoto();
+  survey::Survey survey = SurveyOfOnePhoto();
   survey.photos.resize(3, survey.photos[0]);
   survey.photos[1].gps.reset();
   survey.photos[2].gps->latitude_deg = kNan;

@@ -7,11 +7,10 @@
 #include <functional>
 
 #include "core/base/random.h"
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::prepare {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Lines of `columns` photos, flown to and fro, 20 m apart in both directions.
 std::vector<HeightDifference> Lines(int rows, int columns, const std::function<double(const Eigen::Vector2d&)>& up_m) {

@@ -8,11 +8,10 @@
 #include "core/base/random.h"
 #include "core/geo/enu_frame.h"
 #include "prepare/flight_speed.h"
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::prepare {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Nadir photos on lines of 120 m length, 20 m apart, flown to and fro at 5 m/s and 50 m above ground. Times are as exact as wanted.
 struct Flight {

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int kTags = 100;
+constexpr int kHeightTags = 100;
 constexpr double kNoise_m = 2.0;
 constexpr double kTiltSigma_deg = 0.1;
 constexpr double kRadians = std::numbers::pi / 180.0;
@@ -64,7 +64,7 @@ double MedianError(const Case& made, const BiasChoice& choice, const std::vector
 
 TEST(ChooseBias, GoodHeightsKeepTheBaseHypothesis) {
   for (uint64_t seed = 1; seed <= 10; ++seed) {
-    const Case made = MakeCase(kTags, seed);
+    const Case made = MakeCase(kHeightTags, seed);
     const BiasChoice choice = ChooseBias(made.heights, made.Bias());
     EXPECT_EQ(choice.sigmas.drift_m, choice.sigmas.offset_m) << seed;
     EXPECT_EQ(choice.sigmas.wander_m, 0.0) << seed;
@@ -77,13 +77,13 @@ TEST(ChooseBias, GoodHeightsKeepTheBaseHypothesis) {
 
 TEST(ChooseBias, ADriftIsFoundAndDoesNotTilt) {
   for (const double drift_m : {100.0, -100.0, 15.0}) {
-    Case made = MakeCase(kTags, 21);
-    for (int i = 0; i < kTags; ++i) made.heights.height_m[i] += drift_m * made.phase[static_cast<size_t>(i)];
+    Case made = MakeCase(kHeightTags, 21);
+    for (int i = 0; i < kHeightTags; ++i) made.heights.height_m[i] += drift_m * made.phase[static_cast<size_t>(i)];
     const BiasChoice choice = ChooseBias(made.heights, made.Bias());
     const Eigen::VectorXd bias = made.BiasOf(choice);
     // The drift's own accuracy, and the tilt that it can be mistaken for: the lines advance by 135 m.
-    const double sigma_m = std::hypot(kNoise_m * std::sqrt(12.0 / kTags), 135.0 * kTiltSigma_deg * kRadians);
-    EXPECT_NEAR(bias[kTags - 1] - bias[0], drift_m, 3.0 * sigma_m);
+    const double sigma_m = std::hypot(kNoise_m * std::sqrt(12.0 / kHeightTags), 135.0 * kTiltSigma_deg * kRadians);
+    EXPECT_NEAR(bias[kHeightTags - 1] - bias[0], drift_m, 3.0 * sigma_m);
     EXPECT_NEAR(choice.solution[0], 3.0, 1.0);
     EXPECT_LT(TiltDeg(choice), 0.2);
     EXPECT_GT(choice.sigmas.drift_m, 3.0 * choice.sigmas.offset_m);
@@ -91,9 +91,9 @@ TEST(ChooseBias, ADriftIsFoundAndDoesNotTilt) {
 }
 
 TEST(ChooseBias, AJumpIsFollowed) {
-  Case made = MakeCase(kTags, 22);
-  std::vector<double> truth(kTags, 3.0);
-  for (int i = 60; i < kTags; ++i) {
+  Case made = MakeCase(kHeightTags, 22);
+  std::vector<double> truth(kHeightTags, 3.0);
+  for (int i = 60; i < kHeightTags; ++i) {
     made.heights.height_m[i] += 30.0;
     truth[static_cast<size_t>(i)] += 30.0;
   }
@@ -104,9 +104,9 @@ TEST(ChooseBias, AJumpIsFollowed) {
 }
 
 TEST(ChooseBias, FlightsGetTheirOffsets) {
-  Case made = MakeCase(kTags, 23);
-  std::vector<double> truth(kTags, 3.0);
-  for (int i = 0; i < kTags; ++i) {
+  Case made = MakeCase(kHeightTags, 23);
+  std::vector<double> truth(kHeightTags, 3.0);
+  for (int i = 0; i < kHeightTags; ++i) {
     const auto k = static_cast<size_t>(i);
     made.flight[k] = i < 60 ? 0 : 1;
     made.phase[k] = i < 60 ? i / 59.0 - 0.5 : (i - 60) / 39.0 - 0.5;
@@ -124,10 +124,10 @@ TEST(ChooseBias, FlightsGetTheirOffsets) {
 
 TEST(ChooseBias, OutliersDoNotPull) {
   for (const double drift_m : {0.0, 60.0}) {
-    Case made = MakeCase(kTags, 24);
+    Case made = MakeCase(kHeightTags, 24);
     base::Random random(25);
     std::vector<double> truth;
-    for (int i = 0; i < kTags; ++i) {
+    for (int i = 0; i < kHeightTags; ++i) {
       truth.push_back(3.0 + drift_m * made.phase[static_cast<size_t>(i)]);
       made.heights.height_m[i] += truth.back() - 3.0;
       if (random.Uniform() < 0.15F) made.heights.height_m[i] += random.Uniform(30.0, 80.0);
@@ -140,7 +140,7 @@ TEST(ChooseBias, OutliersDoNotPull) {
 }
 
 TEST(ChooseBias, WithoutHeightsEverythingIsZero) {
-  Case made = MakeCase(kTags, 26);
+  Case made = MakeCase(kHeightTags, 26);
   made.heights.sigma.setConstant(std::numeric_limits<double>::infinity());
   made.heights.height_m.setZero();
   const BiasChoice choice = ChooseBias(made.heights, made.Bias());
@@ -163,7 +163,7 @@ TEST(ChooseBias, FewTagsGiveFiniteNumbers) {
 }
 
 TEST(ChooseBias, EqualHeightsAreNotTakenForExact) {
-  Case made = MakeCase(kTags, 29);
+  Case made = MakeCase(kHeightTags, 29);
   made.heights.height_m.setConstant(7.0);
   const BiasChoice choice = ChooseBias(made.heights, made.Bias());
   EXPECT_TRUE(choice.solution.allFinite());

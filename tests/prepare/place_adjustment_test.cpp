@@ -19,7 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kPhotos = 60;
-constexpr double kRadians = std::numbers::pi / 180.0;
+constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr double kGravitySigma_deg = 0.2;  // per axis
 constexpr double kHorizontalNoise_m = 2.0, kVerticalNoise_m = 3.0;
 
@@ -36,7 +36,7 @@ struct Problem {
 
   explicit Problem(double lag_s = 0.0) {
     gravity.up = model_from_enu.rotation * Vector3d::UnitZ();
-    gravity.information = (Matrix3d::Identity() - gravity.up * gravity.up.transpose()) / std::pow(kGravitySigma_deg * kRadians, 2);
+    gravity.information = (Matrix3d::Identity() - gravity.up * gravity.up.transpose()) / std::pow(kGravitySigma_deg * kRadiansPerDegree, 2);
     for (size_t i = 0; i < stations.size(); ++i) tags.push_back({.station = i, .x_in_enu = EnuFromModel() * track.Before(i, lag_s).position});
   }
   geo::Similarity3d EnuFromModel() const {
@@ -54,13 +54,13 @@ struct Problem {
       tag.x_in_enu += Vector3d(horizontal_m * random.Normal(), horizontal_m * random.Normal(), vertical_m * random.Normal());
     }
     const Vector3d turn(random.Normal(), random.Normal(), random.Normal());
-    gravity.up = (gravity.up + kGravitySigma_deg * kRadians * turn.cross(gravity.up)).normalized();
+    gravity.up = (gravity.up + kGravitySigma_deg * kRadiansPerDegree * turn.cross(gravity.up)).normalized();
   }
   // From a start that is off by a degree, 2 % and a few metres.
   Adjustment Solve() const {
     geo::Similarity3d start = EnuFromModel();
     start.scale *= 1.02;
-    start.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(1.0 * kRadians, Vector3d(0.5, -0.5, 0.7).normalized())) * start.rotation;
+    start.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(1.0 * kRadiansPerDegree, Vector3d(0.5, -0.5, 0.7).normalized())) * start.rotation;
     start.translation = EnuFromModel() * Middle() + Vector3d(2.0, -1.0, 3.0) - start.scale * (start.rotation * Middle());
     return Adjust({.track = track,
                    .gravity = gravity,
@@ -168,7 +168,7 @@ TEST(Adjust, ADriftOfHeightsGoesIntoTheBias) {
   problem.bias = HeightBias(std::vector<int>(kPhotos, 0), phase, 0);
   problem.bias_sigmas = {.offset_m = 1.0, .drift_m = 100.0, .wander_m = 0.0};
   const Adjustment result = problem.Solve();
-  EXPECT_LT(problem.ErrorOf(result).head<2>().norm(), 0.05 * kRadians);
+  EXPECT_LT(problem.ErrorOf(result).head<2>().norm(), 0.05 * kRadiansPerDegree);
   for (size_t k = 0; k < kPhotos; ++k) EXPECT_NEAR(result.bias_m[k], 40.0 * phase[k], 0.3);
 }
 
@@ -177,12 +177,12 @@ TEST(Adjust, TellsWhatTheTagsAloneSayOfTheTilt) {
   base::Random random(4);
   for (Tag& tag : problem.tags) tag.x_in_enu += 0.5 * Vector3d(random.Normal(), random.Normal(), random.Normal());
   // Gravity is off by a degree: the result stays with it in part, the tags alone do not.
-  const Vector3d off_in_enu = Eigen::AngleAxisd(1.0 * kRadians, Vector3d::UnitY()) * Vector3d::UnitZ();
+  const Vector3d off_in_enu = Eigen::AngleAxisd(1.0 * kRadiansPerDegree, Vector3d::UnitY()) * Vector3d::UnitZ();
   problem.gravity.up = problem.model_from_enu.rotation * off_in_enu;
   problem.gravity.information *= 4.0;
   const Adjustment result = problem.Solve();
   const Eigen::Vector2d missing = problem.ErrorOf(result).head<2>();
-  EXPECT_GT(missing.norm(), 0.2 * kRadians);
+  EXPECT_GT(missing.norm(), 0.2 * kRadiansPerDegree);
   const Eigen::Vector2d rest = result.tags_rotation - missing;
   EXPECT_LT(rest.dot(result.tags_covariance.inverse() * rest), 9.0);
   EXPECT_LT(rest.norm(), 0.25 * missing.norm());

@@ -3,20 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
 #include "core/geo/enu_frame.h"
 #include "prepare/georeference.h"
 #include "tests/prepare/made_stations.h"
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::prepare {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Station> WithHeights(const std::vector<double>& height_m, std::optional<double> relative_altitude_m = {}) {
   std::vector<Station> stations(height_m.size());

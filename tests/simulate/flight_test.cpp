@@ -14,7 +14,7 @@
 namespace skyquilt::simulate {
 namespace {
 
-PlaceSpec Resolve(const std::string& name, double forward, double side) {
+PlaceSpec PlaceWithOverlaps(const std::string& name, double forward, double side) {
   SimulateOptions options;
   options.place = name;
   options.forward_overlap = forward;
@@ -34,7 +34,7 @@ std::map<int, std::vector<Eigen::Vector3d>> NadirLines(const std::vector<PhotoPl
 TEST(Flight, OverlapsAreAsRequested) {
   for (const double forward : {0.6, 0.8}) {
     for (const double side : {0.5, 0.7}) {
-      const PlaceSpec place = Resolve("town", forward, side);
+      const PlaceSpec place = PlaceWithOverlaps("town", forward, side);
       const auto lines = NadirLines(PlanFlight(place, 3.0));
       ASSERT_GE(lines.size(), 2U);
       const double altitude = place.altitudes_agl_m.front();
@@ -134,7 +134,7 @@ TEST(Flight, ASingleLineGoesNorthThroughTheMiddle) {
 }
 
 TEST(Flight, GainsAreRelativeToTheMedianAndMatchTheTags) {
-  const PlaceSpec place = Resolve("tidalflat", -1.0, -1.0);
+  const PlaceSpec place = PlaceWithOverlaps("tidalflat", -1.0, -1.0);
   const std::vector<PhotoPlan> photos = PlanFlight(place, 0.0);
   std::vector<double> gains;
   double largest_step = 0.0;
@@ -175,7 +175,7 @@ void ExpectSameTags(const std::vector<PhotoPlan>& a, const std::vector<PhotoPlan
 
 TEST(Flight, LightIsTheGainUnlessAskedFor) {
   for (const char* name : {"town", "tidalflat"}) {
-    for (const PhotoPlan& photo : PlanFlight(Resolve(name, -1.0, -1.0), 0.0)) {
+    for (const PhotoPlan& photo : PlanFlight(PlaceWithOverlaps(name, -1.0, -1.0), 0.0)) {
       EXPECT_EQ(photo.development_gain, photo.gain);
       EXPECT_EQ(LightRgb(photo), (std::array<double, 3>{photo.gain, photo.gain, photo.gain}));
       EXPECT_TRUE(photo.exposure_tagged);
@@ -276,7 +276,7 @@ TEST(Flight, GpsNoiseHasTheStatedSize) {
 }
 
 TEST(Flight, BlocksAreFlownAtTheirOwnAltitudes) {
-  const PlaceSpec place = Resolve("smallcity", -1.0, -1.0);
+  const PlaceSpec place = PlaceWithOverlaps("smallcity", -1.0, -1.0);
   const std::vector<PhotoPlan> photos = PlanFlight(place, 0.0);
   const Eigen::Vector2d block = (place.area_max - place.area_min).cwiseQuotient(Eigen::Vector2d(place.columns, place.rows));
   std::vector<int> seen(place.altitudes_agl_m.size(), 0);

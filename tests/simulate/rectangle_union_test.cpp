@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/base/random.h"
+#include "tests/simulate/is_inside.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -32,15 +33,6 @@ std::vector<Rectangle2d> RandomRectangles(base::Random& random) {
 bool Covers(const std::vector<Rectangle2d>& rectangles, const Vector2d& at) {
   return std::any_of(rectangles.begin(), rectangles.end(),
                      [&](const Rectangle2d& one) { return (at - one.min).minCoeff() > 0.0 && (one.max - at).minCoeff() > 0.0; });
-}
-
-bool IsInside(const Ring& ring, const Vector2d& at) {
-  bool inside = false;
-  for (size_t i = 0; i < ring.size(); ++i) {
-    const Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    if ((a.y() > at.y()) != (b.y() > at.y()) && at.x() < a.x() + (at.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
-  }
-  return inside;
 }
 
 TEST(RectangleUnion, IsInsideWhereARectangleIs) {

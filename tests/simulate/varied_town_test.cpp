@@ -9,6 +9,7 @@
 
 #include "simulate/city_layout.h"
 #include "simulate/outline.h"
+#include "tests/simulate/is_inside.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -24,12 +25,12 @@ PlaceSpec Varied(const std::string& name, int seed, double tower_m = 0.0) {
   return ResolvePlace(options);
 }
 
-CityLayout Layout(const PlaceSpec& place) {
+CityLayout VariedLayout(const PlaceSpec& place) {
   const Vector2d surround = Vector2d::Constant(place.surround_m);
   return {place.city, place.area_min - surround, place.area_max + surround, place.seed};
 }
 
-std::string Name(const PlaceSpec& place) {
+std::string VariedName(const PlaceSpec& place) {
   return place.name + " " + std::to_string(place.seed);
 }
 
@@ -39,14 +40,14 @@ struct Place {
 };
 
 // Made once, as a small city takes a while.
-const std::vector<Place>& Places() {
+const std::vector<Place>& VariedPlaces() {
   static const std::vector<Place> places = [] {
     std::vector<PlaceSpec> specs;
     for (int seed = 1; seed <= 8; ++seed) specs.push_back(Varied("town", seed, seed % 3 == 0 ? 60.0 : 0.0));
     for (int seed = 1; seed <= 4; ++seed) specs.push_back(Varied("hamlet", seed));
     specs.push_back(Varied("smallcity", 2));
     std::vector<Place> made;
-    for (const PlaceSpec& spec : specs) made.push_back({spec, Layout(spec)});
+    for (const PlaceSpec& spec : specs) made.push_back({spec, VariedLayout(spec)});
     return made;
   }();
   return places;
@@ -57,18 +58,9 @@ std::vector<Vector2d> CornersOf(const Building& b) {
   return {b.centre + u + v, b.centre - u + v, b.centre - u - v, b.centre + u - v};
 }
 
-bool IsInside(const Ring& ring, const Vector2d& at) {
-  bool inside = false;
-  for (size_t i = 0; i < ring.size(); ++i) {
-    const Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    if ((a.y() > at.y()) != (b.y() > at.y()) && at.x() < a.x() + (at.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
-  }
-  return inside;
-}
-
 TEST(VariedTown, EveryShapeAndKindOccurs) {
   for (int seed = 1; seed <= 40; ++seed) {
-    const CityLayout layout = Layout(Varied("town", seed));
+    const CityLayout layout = VariedLayout(Varied("town", seed));
     std::map<BuildingShape, int> shapes;
     std::map<BuildingKind, int> kinds;
     std::map<RoofKind, int> roofs;
@@ -105,7 +97,7 @@ TEST(VariedTown, EveryShapeAndKindOccurs) {
 }
 
 TEST(VariedTown, OutlinesAreCounterClockwiseAndAsLargeAsTheirParts) {
-  for (const auto& [place, layout] : Places()) {
+  for (const auto& [place, layout] : VariedPlaces()) {
     const std::vector<Building>& buildings = layout.contents().buildings;
     size_t next = 0;
     for (const Outline& outline : FindOutlines(buildings)) {
@@ -119,13 +111,13 @@ TEST(VariedTown, OutlinesAreCounterClockwiseAndAsLargeAsTheirParts) {
         if (part.base_height_m == 0.0) sum_m2 += part.length_m * part.width_m;
         for (const Vector2d& corner : CornersOf(part)) {
           // A little towards the middle of the part, as corners are on the border.
-          EXPECT_TRUE(IsInside(outline.walls, corner + 1e-3 * (part.centre - corner).normalized())) << Name(place) << " " << i;
+          EXPECT_TRUE(IsInside(outline.walls, corner + 1e-3 * (part.centre - corner).normalized())) << VariedName(place) << " " << i;
         }
       }
       for (const Ring& hole : outline.holes) holes_m2 -= SignedArea(hole);
       EXPECT_GT(SignedArea(outline.walls), 0.0);
       EXPECT_GT(SignedArea(outline.roof), SignedArea(outline.walls) - 1e-6);
-      EXPECT_NEAR(outline.area_m2, sum_m2, 1e-6) << Name(place) << " " << outline.first;
+      EXPECT_NEAR(outline.area_m2, sum_m2, 1e-6) << VariedName(place) << " " << outline.first;
       EXPECT_NEAR(SignedArea(outline.walls) - holes_m2, sum_m2, 1e-6);
       EXPECT_GE(outline.length_m, outline.width_m);
     }
@@ -134,7 +126,7 @@ TEST(VariedTown, OutlinesAreCounterClockwiseAndAsLargeAsTheirParts) {
 }
 
 TEST(VariedTown, OutlinesKeepClearOfEachOtherAndOfStreets) {
-  for (const auto& [place, layout] : Places()) {
+  for (const auto& [place, layout] : VariedPlaces()) {
     const std::vector<Building>& buildings = layout.contents().buildings;
     double nearest = std::numeric_limits<double>::infinity();
     int n_in_street = 0;
@@ -148,13 +140,13 @@ TEST(VariedTown, OutlinesKeepClearOfEachOtherAndOfStreets) {
         n_in_street += kind == GroundKind::kRoad || kind == GroundKind::kPavement || kind == GroundKind::kField ? 1 : 0;
       }
     }
-    EXPECT_GT(nearest, 0.5) << Name(place);
-    EXPECT_EQ(n_in_street, 0) << Name(place);
+    EXPECT_GT(nearest, 0.5) << VariedName(place);
+    EXPECT_EQ(n_in_street, 0) << VariedName(place);
   }
 }
 
 TEST(VariedTown, UpperPartsStandOnDecks) {
-  for (const auto& [place, layout] : Places()) {
+  for (const auto& [place, layout] : VariedPlaces()) {
     const std::vector<Building>& buildings = layout.contents().buildings;
     for (size_t i = 0; i < buildings.size(); ++i) {
       const Building& upper = buildings[i];
@@ -172,7 +164,7 @@ TEST(VariedTown, UpperPartsStandOnDecks) {
 // Crowns and trunks are outside of all walls, and some crowns touch one.
 TEST(VariedTown, TreesTouchWallsAndDoNotEnterThem) {
   for (const PlaceSpec& place : {Varied("town", 1), Varied("town", 4), Varied("hamlet", 2)}) {
-    const CityLayout layout = Layout(place);
+    const CityLayout layout = VariedLayout(place);
     const CityContents& contents = layout.contents();
     int n_touching = 0;
     for (const Tree& tree : contents.trees) {
@@ -183,26 +175,26 @@ TEST(VariedTown, TreesTouchWallsAndDoNotEnterThem) {
         if (b.DistanceTo(tree.position) > 8.0) continue;
         for (const Eigen::Vector3f& vertex : mesh.position) nearest = std::min(nearest, b.DistanceTo(vertex.head<2>().cast<double>()));
       }
-      EXPECT_GT(nearest, 0.0) << Name(place) << " tree at " << tree.position.transpose();
+      EXPECT_GT(nearest, 0.0) << VariedName(place) << " tree at " << tree.position.transpose();
       n_touching += nearest < 0.05 ? 1 : 0;
     }
-    EXPECT_GT(n_touching, place.name == "town" ? 10 : 0) << Name(place);
+    EXPECT_GT(n_touching, place.name == "town" ? 10 : 0) << VariedName(place);
   }
 }
 
 TEST(VariedTown, CarsStandBesideBuildings) {
-  for (const auto& [place, layout] : Places()) {
+  for (const auto& [place, layout] : VariedPlaces()) {
     int n_in_building = 0;
     for (const Car& car : layout.contents().parked) {
       for (const Building& b : layout.contents().buildings) n_in_building += b.DistanceTo(car.position) < 0.9 ? 1 : 0;
     }
     EXPECT_GT(layout.contents().parked.size(), 3U);
-    EXPECT_EQ(n_in_building, 0) << Name(place);
+    EXPECT_EQ(n_in_building, 0) << VariedName(place);
   }
 }
 
 TEST(VariedTown, SameSeedSameTown) {
-  const CityLayout one = Layout(Varied("town", 5)), same = Layout(Varied("town", 5)), other = Layout(Varied("town", 6));
+  const CityLayout one = VariedLayout(Varied("town", 5)), same = VariedLayout(Varied("town", 5)), other = VariedLayout(Varied("town", 6));
   ASSERT_EQ(one.contents().buildings.size(), same.contents().buildings.size());
   for (size_t i = 0; i < one.contents().buildings.size(); ++i) EXPECT_EQ(one.contents().buildings[i].centre, same.contents().buildings[i].centre);
   ASSERT_EQ(one.contents().trees.size(), same.contents().trees.size());
@@ -218,7 +210,7 @@ TEST(Landmark, IsOneTowerInTheMiddle) {
       options.tower_m = 200.0;
       options.altitudes = {300.0};
       const PlaceSpec place = ResolvePlace(options);
-      const CityLayout layout = Layout(place);
+      const CityLayout layout = VariedLayout(place);
       int n_high = 0;
       for (const Building& b : layout.contents().buildings) {
         if (b.eave_height_m < 100.0) continue;

@@ -11,7 +11,7 @@
 namespace skyquilt::simulate {
 namespace {
 
-PlaceSpec Resolve(const std::string& name) {
+PlaceSpec PlaceNamed(const std::string& name) {
   SimulateOptions options;
   options.place = name;
   return ResolvePlace(options);
@@ -21,7 +21,7 @@ class TownWorld : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     threads_ = new base::ThreadPool(2);
-    PlaceSpec place = Resolve("town");
+    PlaceSpec place = PlaceNamed("town");
     // Coarse trees and coarse ambient light are enough for these tests.
     place.city.tree_detail = 0;
     place.ambient_voxel_m = 12.0;

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kWidth = 96, kHeight = 72;
+constexpr int kPhotoWidth = 96, kPhotoHeight = 72;
 constexpr double kFocal_px = 48.0;  // at full size: shows 100 x 75 m of ground
 constexpr double kHeight_m = 50.0;
 
@@ -26,16 +26,16 @@ class DepthPointsTest : public ::testing::Test {
  protected:
   // Cameras at x = 0, 20 and 40 m.
   DepthPointsTest() {
-    survey_.cameras = {{camera::CameraModel::kPinhole, kWidth, kHeight, {kFocal_px, kFocal_px, kWidth / 2.0, kHeight / 2.0}}};
+    survey_.cameras = {{camera::CameraModel::kPinhole, kPhotoWidth, kPhotoHeight, {kFocal_px, kFocal_px, kPhotoWidth / 2.0, kPhotoHeight / 2.0}}};
     std::vector<image::PixelSource> sources;
     for (int i = 0; i < 3; ++i) {
       const survey::Photo photo = NadirPhoto({20.0 * i, 0.0, kHeight_m}, "p" + std::to_string(i) + ".png");
-      image::SavePng(image::Image8(kWidth, kHeight, 3, 100), folder_ / photo.name);
+      image::SavePng(image::Image8(kPhotoWidth, kPhotoHeight, 3, 100), folder_ / photo.name);
       sources.push_back({folder_ / photo.name, {}});
       survey_.photos.push_back(photo);
     }
     base::ThreadPool threads(1);
-    pixels_ = image::PixelCache::Open(folder_ / "pixels.bin", sources, kWidth / 2, threads);
+    pixels_ = image::PixelCache::Open(folder_ / "pixels.bin", sources, kPhotoWidth / 2, threads);
     source_ = std::make_unique<RaySource>(survey_, pixels_, response_);
   }
   void Add(const Vector3d& x_in_enu, float error_px, std::vector<int32_t> photos) {
@@ -63,7 +63,7 @@ TEST_F(DepthPointsTest, TheirRaysEndAtThePoints) {
     source_->RayThrough(d.photo, {static_cast<double>(d.pixel_x), static_cast<double>(d.pixel_y)}, &origin, &direction);
     const Vector3d end = origin + static_cast<double>(d.distance_m) * direction;
     EXPECT_LT((end - survey_.points[i < 3 ? 0 : 1].x_in_enu).norm(), 1e-4) << i;
-    EXPECT_LT(d.pixel_x, static_cast<float>(kWidth) / 2.0F);
+    EXPECT_LT(d.pixel_x, static_cast<float>(kPhotoWidth) / 2.0F);
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json Written(const BuildingSet& set, const surface::MapFrame& frame) {
+Json WrittenCityJson(const BuildingSet& set, const surface::MapFrame& frame) {
   const TemporaryFolder folder;
   WriteCityJson(set, frame, folder / "buildings.city.json");
   return Json::parse(base::ReadFile(folder / "buildings.city.json"));
@@ -89,7 +89,7 @@ void ExpectSolid(const Json& document, const Json& geometry, double volume_m3) {
 TEST(CityJson, IsAsVersion2Wants) {
   const BuildingSet set = SampleSet();
   const surface::MapFrame frame = SampleFrame();
-  const Json document = Written(set, frame);
+  const Json document = WrittenCityJson(set, frame);
   EXPECT_EQ(document["type"], "CityJSON");
   EXPECT_EQ(document["version"], "2.0");
   EXPECT_EQ(document["metadata"]["referenceSystem"], "https://www.opengis.net/def/crs/EPSG/0/32632");
@@ -138,7 +138,7 @@ TEST(CityJson, IsAsVersion2Wants) {
 TEST(CityJson, VerticesAreThoseOfTheMaps) {
   const BuildingSet set = SampleSet();
   const surface::MapFrame frame = SampleFrame();
-  const Json document = Written(set, frame);
+  const Json document = WrittenCityJson(set, frame);
   const Json& shell = document["CityObjects"]["building_1"]["geometry"][1]["boundaries"][0];
   const Solid& solid = set.buildings[0].lod22;
   ASSERT_EQ(shell.size(), solid.face.size());
@@ -152,7 +152,7 @@ TEST(CityJson, VerticesAreThoseOfTheMaps) {
 
 TEST(CityJson, AttributesAreMeasuresWithTheirSigma) {
   const BuildingSet set = SampleSet();
-  const Json document = Written(set, SampleFrame());
+  const Json document = WrittenCityJson(set, SampleFrame());
   const Json& house = document["CityObjects"]["building_2"]["attributes"];
   const Measures& known = set.buildings[1].measures;
   EXPECT_EQ(house["roof"], "hip");
@@ -176,19 +176,19 @@ TEST(CityJson, AttributesAreMeasuresWithTheirSigma) {
 TEST(CityJson, WithoutGeoreferenceThereIsNoCrs) {
   BuildingSet set = SampleSet();
   set.scale = 2.0;
-  const Json scaled = Written(set, SampleFrame(false));
+  const Json scaled = WrittenCityJson(set, SampleFrame(false));
   EXPECT_FALSE(scaled["metadata"].contains("referenceSystem"));
   ExpectSolid(scaled, scaled["CityObjects"]["building_1"]["geometry"][1], 8.0 * Volume(set.buildings[0].lod22));
   set.scale = 1.0;
   set.metric = false;
-  const Json unknown = Written(set, SampleFrame(false));
+  const Json unknown = WrittenCityJson(set, SampleFrame(false));
   EXPECT_TRUE(unknown["CityObjects"]["building_1"]["attributes"].contains("length"));
   EXPECT_FALSE(unknown["CityObjects"]["building_1"]["attributes"].contains("measuredHeight"));
   EXPECT_EQ(unknown.dump().find("_m\""), std::string::npos);
 }
 
 TEST(CityJson, OfNoBuildingsIsComplete) {
-  const Json document = Written({}, SampleFrame());
+  const Json document = WrittenCityJson({}, SampleFrame());
   EXPECT_TRUE(document["vertices"].is_array());
   EXPECT_TRUE(document["vertices"].empty());
   EXPECT_TRUE(document["CityObjects"].is_object());

@@ -72,7 +72,7 @@ struct Dxf {
   }
 };
 
-Dxf Written(const BuildingSet& set, const surface::MapFrame& frame) {
+Dxf WrittenDxf(const BuildingSet& set, const surface::MapFrame& frame) {
   const TemporaryFolder folder;
   WriteDxf(set, frame, folder / "buildings.dxf");
   return Dxf(base::ReadFile(folder / "buildings.dxf"));
@@ -81,7 +81,7 @@ Dxf Written(const BuildingSet& set, const surface::MapFrame& frame) {
 TEST(Dxf, HasEveryEdgeOnceOnItsLayer) {
   const BuildingSet set = SampleSet();
   const surface::MapFrame frame = SampleFrame();
-  Dxf dxf = Written(set, frame);
+  Dxf dxf = WrittenDxf(set, frame);
   EXPECT_EQ(dxf.header["$ACADVER"], (Groups{{1, "AC1009"}}));
   EXPECT_EQ(dxf.layers, (std::set<std::string>{"FOOTPRINTS", "GROUND", "ROOFS", "WALLS"}));
   Eigen::Vector3d min = Eigen::Vector3d::Constant(HUGE_VAL), max = -min;
@@ -128,7 +128,7 @@ TEST(Dxf, HasEveryEdgeOnceOnItsLayer) {
 
 TEST(Dxf, FootprintsAreClosedPolylines) {
   const BuildingSet set = SampleSet();
-  Dxf dxf = Written(set, SampleFrame());
+  Dxf dxf = WrittenDxf(set, SampleFrame());
   std::vector<double> areas;
   const std::vector<Entity>& entities = dxf.section["ENTITIES"];
   for (size_t i = 0; i < entities.size(); ++i) {
@@ -155,7 +155,7 @@ TEST(Dxf, FootprintsAreClosedPolylines) {
 }
 
 TEST(Dxf, OfNoBuildingsIsComplete) {
-  Dxf dxf = Written({}, SampleFrame());
+  Dxf dxf = WrittenDxf({}, SampleFrame());
   EXPECT_TRUE(dxf.section.contains("ENTITIES"));
   EXPECT_TRUE(dxf.section["ENTITIES"].empty());
   EXPECT_FALSE(dxf.header.contains("$EXTMIN"));

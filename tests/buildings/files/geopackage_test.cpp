@@ -16,7 +16,7 @@ struct Close {
 };
 using Opened = std::unique_ptr<GDALDataset, Close>;
 
-Opened Written(const BuildingSet& set, const surface::MapFrame& frame, const std::filesystem::path& file) {
+Opened WrittenPackage(const BuildingSet& set, const surface::MapFrame& frame, const std::filesystem::path& file) {
   WriteGeoPackage(set, frame, file);
   GDALAllRegister();
   return Opened(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
@@ -26,7 +26,7 @@ TEST(BuildingsPackage, HoldsFootprintsWithTheirHoles) {
   const TemporaryFolder folder;
   const BuildingSet set = SampleSet();
   const surface::MapFrame frame = SampleFrame();
-  const Opened file = Written(set, frame, folder / "buildings.gpkg");
+  const Opened file = WrittenPackage(set, frame, folder / "buildings.gpkg");
   ASSERT_NE(file, nullptr);
   EXPECT_EQ(file->GetLayerCount(), 2);
   OGRLayer* layer = file->GetLayerByName("footprints");
@@ -57,7 +57,7 @@ TEST(BuildingsPackage, HoldsSolidsInSpace) {
   const TemporaryFolder folder;
   const BuildingSet set = SampleSet();
   const surface::MapFrame frame = SampleFrame();
-  const Opened file = Written(set, frame, folder / "buildings.gpkg");
+  const Opened file = WrittenPackage(set, frame, folder / "buildings.gpkg");
   OGRLayer* layer = file->GetLayerByName("solids");
   ASSERT_NE(layer, nullptr);
   EXPECT_EQ(layer->GetGeomType(), wkbMultiPolygon25D);
@@ -85,12 +85,12 @@ TEST(BuildingsPackage, WithoutGeoreferenceIsLocal) {
   const TemporaryFolder folder;
   BuildingSet set = SampleSet();
   set.metric = false;
-  const Opened file = Written(set, SampleFrame(false), folder / "buildings.gpkg");
+  const Opened file = WrittenPackage(set, SampleFrame(false), folder / "buildings.gpkg");
   OGRLayer* layer = file->GetLayerByName("footprints");
   EXPECT_TRUE(layer->GetSpatialRef() == nullptr || layer->GetSpatialRef()->IsLocal());
   EXPECT_GE(layer->GetLayerDefn()->GetFieldIndex("length"), 0);
   EXPECT_LT(layer->GetLayerDefn()->GetFieldIndex("length_m"), 0);
-  const Opened empty = Written({}, SampleFrame(), folder / "none.gpkg");
+  const Opened empty = WrittenPackage({}, SampleFrame(), folder / "none.gpkg");
   EXPECT_EQ(empty->GetLayerByName("solids")->GetFeatureCount(), 0);
 }
 

@@ -60,7 +60,7 @@ struct Glb {
   }
 };
 
-Glb Written(const BuildingSet& set, const surface::MapFrame& frame) {
+Glb WrittenGlb(const BuildingSet& set, const surface::MapFrame& frame) {
   const TemporaryFolder folder;
   WriteGlb(set, frame, folder / "buildings.glb");
   return Glb(base::ReadFile(folder / "buildings.glb"));
@@ -68,7 +68,7 @@ Glb Written(const BuildingSet& set, const surface::MapFrame& frame) {
 
 TEST(BuildingsGlb, HasANodePerBuildingWithItsMeasures) {
   const BuildingSet set = SampleSet();
-  const Glb glb = Written(set, SampleFrame());
+  const Glb glb = WrittenGlb(set, SampleFrame());
   ASSERT_EQ(glb.json["nodes"].size(), set.buildings.size());
   EXPECT_EQ(glb.json["scenes"][0]["nodes"].size(), set.buildings.size());
   for (size_t i = 0; i < set.buildings.size(); ++i) {
@@ -85,7 +85,7 @@ TEST(BuildingsGlb, HasANodePerBuildingWithItsMeasures) {
 TEST(BuildingsGlb, MeshesAreTheSolids) {
   const BuildingSet set = SampleSet();
   const surface::MapFrame frame = SampleFrame();
-  const Glb glb = Written(set, frame);
+  const Glb glb = WrittenGlb(set, frame);
   for (size_t i = 0; i < set.buildings.size(); ++i) {
     double six_volumes = 0.0, roof_m2 = 0.0;
     Eigen::Vector3d min = Eigen::Vector3d::Constant(HUGE_VAL), max = -min;
@@ -135,7 +135,7 @@ TEST(BuildingsGlb, MeshesAreTheSolids) {
 TEST(BuildingsGlb, KeepsTheCoordinatesOfALocalSurface) {
   BuildingSet set = SampleSet();
   set.scale = 3.0;
-  const Glb glb = Written(set, SampleFrame(false));
+  const Glb glb = WrittenGlb(set, SampleFrame(false));
   EXPECT_EQ(glb.json["asset"]["extras"]["metresPerUnit"], 3.0);
   double lowest = HUGE_VAL;
   for (const Eigen::Vector3d& x : glb.Vectors(glb.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"])) lowest = std::min(lowest, x.y());
@@ -143,7 +143,7 @@ TEST(BuildingsGlb, KeepsTheCoordinatesOfALocalSurface) {
 }
 
 TEST(BuildingsGlb, OfNoBuildingsHasNoEmptyLists) {
-  const Glb glb = Written({}, SampleFrame());
+  const Glb glb = WrittenGlb({}, SampleFrame());
   EXPECT_EQ(glb.json["asset"]["version"], "2.0");
   for (const char* key : {"nodes", "meshes", "accessors", "bufferViews", "buffers", "materials"}) EXPECT_FALSE(glb.json.contains(key)) << key;
   EXPECT_FALSE(glb.json["scenes"][0].contains("nodes"));

@@ -8,7 +8,7 @@
 namespace skyquilt::buildings {
 namespace {
 
-const Eigen::Vector3d kMiddle(26.0, 34.0, 103.0);
+const Eigen::Vector3d kTarget(26.0, 34.0, 103.0);
 
 survey::Survey SurveyOf(const std::vector<geo::Rigid3d>& poses) {
   survey::Survey survey;
@@ -31,9 +31,9 @@ TEST(BestPhoto, PrefersThePhotoThatShowsTheWholeBuilding) {
 
 TEST(BestPhoto, PrefersObliqueLargeAndCentralViews) {
   const Building house = MadeHouse({});
-  const geo::Rigid3d good = LookingAt({26.0, -6.0, 143.0}, kMiddle);
+  const geo::Rigid3d good = LookingAt({26.0, -6.0, 143.0}, kTarget);
   const geo::Rigid3d nadir = LookingDownFrom({26.0, 34.0, 160.0});
-  const geo::Rigid3d far = LookingAt({26.0, -106.0, 243.0}, kMiddle);
+  const geo::Rigid3d far = LookingAt({26.0, -106.0, 243.0}, kTarget);
   const geo::Rigid3d aside = LookingAt({26.0, -6.0, 143.0}, {46.0, 44.0, 103.0});
   const geo::Rigid3d away = LookingAt({26.0, -6.0, 143.0}, {26.0, -60.0, 103.0});
   EXPECT_EQ(BestPhoto(house, SurveyOf({nadir, far, aside, away, good})), 4);
@@ -47,7 +47,7 @@ TEST(BestPhoto, NoneShowsHalfOfTheBuilding) {
   // 48 m of ground in the image: its east border cuts off more than half of the house, then less.
   EXPECT_EQ(BestPhoto(house, SurveyOf({LookingDownFrom({-1.0, 34.0, 140.0})})), std::nullopt);
   EXPECT_EQ(BestPhoto(house, SurveyOf({LookingDownFrom({7.0, 34.0, 140.0})})), 0);
-  EXPECT_EQ(BestPhoto(Building{}, SurveyOf({LookingAt({26.0, -6.0, 143.0}, kMiddle)})), std::nullopt);
+  EXPECT_EQ(BestPhoto(Building{}, SurveyOf({LookingAt({26.0, -6.0, 143.0}, kTarget)})), std::nullopt);
 }
 
 TEST(PartAround, HoldsTheBuildingWithAMarginAndStaysInTheImage) {
@@ -55,7 +55,7 @@ TEST(PartAround, HoldsTheBuildingWithAMarginAndStaysInTheImage) {
   base::Random random(3);
   int parts = 0, cut = 0;
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector3d at = kMiddle + Eigen::Vector3d(random.Uniform(-20, 20), random.Uniform(-20, 20), 0.0);
+    const Eigen::Vector3d at = kTarget + Eigen::Vector3d(random.Uniform(-20, 20), random.Uniform(-20, 20), 0.0);
     const geo::Rigid3d pose = LookingAt(at + Eigen::Vector3d(random.Uniform(-40, 40), -30.0, random.Uniform(20, 60)), at);
     const camera::Camera camera = i % 2 == 0 ? Pinhole() : Barrel();
     const PhotoPart part = PartAround(house, camera, pose);

@@ -14,7 +14,7 @@
 namespace skyquilt::buildings {
 namespace {
 
-constexpr double kGsd_m = 0.19;
+constexpr double kLinesGsd_m = 0.19;
 
 struct Seen {
   AxisPoints points;
@@ -25,7 +25,7 @@ Seen SeenOf(const Shape& truth, const MadePlan& plan = {}) {
   const MadeCandidate made = MakeCandidate(truth, plan);
   Seen seen;
   seen.points = InAxes(made.candidate, made.cloud, truth);
-  seen.raster = MakeRoofRaster(seen.points, kGsd_m);
+  seen.raster = MakeRoofRaster(seen.points, kLinesGsd_m);
   seen.edges = FindRoofEdges(seen.raster);
   return seen;
 }
@@ -51,10 +51,10 @@ TEST(RoofRaster, CoversTheOutlineWithoutGaps) {
 }
 
 TEST(RoofRaster, EmptyWithoutAnOutline) {
-  EXPECT_TRUE(MakeRoofRaster({}, kGsd_m).height.empty());
+  EXPECT_TRUE(MakeRoofRaster({}, kLinesGsd_m).height.empty());
   AxisPoints line;
   line.outline.outer = {{0, 0}, {5, 0}, {9, 0}};
-  EXPECT_TRUE(MakeRoofRaster(line, kGsd_m).height.empty());
+  EXPECT_TRUE(MakeRoofRaster(line, kLinesGsd_m).height.empty());
 }
 
 TEST(RoofEdges, RidgesAndSteepRoofsAreNoSteps) {

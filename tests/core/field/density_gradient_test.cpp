@@ -17,8 +17,8 @@
 namespace skyquilt::field {
 namespace {
 
-constexpr size_t kSamples = 6;
-constexpr size_t kPlane = kSamples + 1;
+constexpr size_t kPositions = 6;
+constexpr size_t kPlane = kPositions + 1;
 
 struct Shape {
   int multisample = 0;
@@ -55,7 +55,7 @@ class DensityGradient : public ::testing::TestWithParam<Shape> {
       y_[i] = random.Uniform();
       z_[i] = 0.4F * random.Uniform();
     }
-    for (size_t s = 0; s < kSamples; ++s) sharpness_.push_back(3.0F + 12.0F * random.Uniform());
+    for (size_t s = 0; s < kPositions; ++s) sharpness_.push_back(3.0F + 12.0F * random.Uniform());
     for (double& value : u_) value = random.Uniform(-1.0, 1.0);
   }
 
@@ -99,22 +99,22 @@ class DensityGradient : public ::testing::TestWithParam<Shape> {
     const auto at = [&](double t) { return LogDensity(grid, networks, s, {t * u[0], t * u[1], t * u[2]}); };
     return (at(kStep) - at(-kStep)) / (2.0 * kStep);
   }
-  std::array<double, 3> Along(size_t s) const { return {u_[s], u_[kSamples + s], u_[2 * kSamples + s]}; }
+  std::array<double, 3> Along(size_t s) const { return {u_[s], u_[kPositions + s], u_[2 * kPositions + s]}; }
 
   HashField field_{ConfigOf(GetParam())};
   Parameters parameters_;
   int points_ = 1;
   std::vector<float> x_, y_, z_, sharpness_;
-  std::array<double, 3 * kSamples> u_ = {};
+  std::array<double, 3 * kPositions> u_ = {};
 };
 
 TEST_P(DensityGradient, MatchesDifferencesInDouble) {
   DensitySlope slope;
-  field_.DensityGradient(field_.Prepare(parameters_.networks), parameters_.grid, At(), kSamples, slope);
+  field_.DensityGradient(field_.Prepare(parameters_.networks), parameters_.grid, At(), kPositions, slope);
   const std::vector<double> grid(parameters_.grid.begin(), parameters_.grid.end());
   const std::vector<double> networks(parameters_.networks.begin(), parameters_.networks.end());
   double size = 0.0;
-  for (size_t s = 0; s < kSamples; ++s) {
+  for (size_t s = 0; s < kPositions; ++s) {
     for (size_t axis = 0; axis < 3; ++axis) {
       std::array<double, 3> unit = {0, 0, 0};
       unit[axis] = 1.0;
@@ -131,13 +131,13 @@ TEST_P(DensityGradient, MatchesDifferencesInDouble) {
 TEST_P(DensityGradient, BackwardMatchesDifferencesInDouble) {
   const NetworkWeights weights = field_.Prepare(parameters_.networks);
   DensitySlope slope;
-  field_.DensityGradient(weights, parameters_.grid, At(), kSamples, slope);
+  field_.DensityGradient(weights, parameters_.grid, At(), kPositions, slope);
   std::vector<float> along(3 * slope.stride, 0.0F);
-  for (size_t s = 0; s < kSamples; ++s) {
-    for (size_t axis = 0; axis < 3; ++axis) along[axis * slope.stride + s] = static_cast<float>(u_[axis * kSamples + s]);
+  for (size_t s = 0; s < kPositions; ++s) {
+    for (size_t axis = 0; axis < 3; ++axis) along[axis * slope.stride + s] = static_cast<float>(u_[axis * kPositions + s]);
   }
   std::vector<float> network_gradient(parameters_.networks.size(), 0.0F), grid_gradient(parameters_.grid.size(), 0.0F);
-  field_.DensityGradientBackward(weights, parameters_.grid, At(), kSamples, along.data(), slope, network_gradient.data());
+  field_.DensityGradientBackward(weights, parameters_.grid, At(), kPositions, along.data(), slope, network_gradient.data());
   // The second segment has positions of its own.
   const kernel::Positions own = At().From(2);
   const kernel::Positions nowhere;
@@ -150,13 +150,13 @@ TEST_P(DensityGradient, BackwardMatchesDifferencesInDouble) {
     };
     add(At(), {.begin = 0, .count = 2, .gradient = slope.feature_gradient, .stride = slope.stride, .along = along.data()});
     add(nowhere,
-        {.begin = 0, .count = kSamples - 2, .gradient = slope.feature_gradient + 2, .stride = slope.stride, .along = along.data() + 2, .at = &own});
+        {.begin = 0, .count = kPositions - 2, .gradient = slope.feature_gradient + 2, .stride = slope.stride, .along = along.data() + 2, .at = &own});
   }
 
   std::vector<double> grid(parameters_.grid.begin(), parameters_.grid.end()), networks(parameters_.networks.begin(), parameters_.networks.end());
   const auto loss = [&] {
     double sum = 0.0;
-    for (size_t s = 0; s < kSamples; ++s) sum += Growth(grid, networks, s, Along(s));
+    for (size_t s = 0; s < kPositions; ++s) sum += Growth(grid, networks, s, Along(s));
     return sum;
   };
   const auto check = [&](std::vector<double>& values, const std::vector<float>& gradient, size_t end, const char* name) {

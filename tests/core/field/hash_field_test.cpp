@@ -52,12 +52,12 @@ struct Reference {
   }
 };
 
-struct Shape {
+struct FieldShape {
   encoding::Kind encoding;
   int density_hidden_layers, color_hidden_layers;
 };
 
-class HashFieldGradient : public ::testing::TestWithParam<Shape> {};
+class HashFieldGradient : public ::testing::TestWithParam<FieldShape> {};
 
 TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   FieldConfig config = SmallConfig(GetParam().color_hidden_layers);
@@ -155,9 +155,10 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, HashFieldGradient,
-                         ::testing::Values(Shape{encoding::Kind::kHash, 1, 1}, Shape{encoding::Kind::kHash, 1, 2}, Shape{encoding::Kind::kHash, 2, 3},
-                                           Shape{encoding::Kind::kHash, 3, 1}, Shape{encoding::Kind::kVoxels, 1, 1},
-                                           Shape{encoding::Kind::kPlanes, 2, 1}, Shape{encoding::Kind::kFrequency, 4, 2}),
+                         ::testing::Values(FieldShape{encoding::Kind::kHash, 1, 1}, FieldShape{encoding::Kind::kHash, 1, 2},
+                                           FieldShape{encoding::Kind::kHash, 2, 3}, FieldShape{encoding::Kind::kHash, 3, 1},
+                                           FieldShape{encoding::Kind::kVoxels, 1, 1}, FieldShape{encoding::Kind::kPlanes, 2, 1},
+                                           FieldShape{encoding::Kind::kFrequency, 4, 2}),
                          [](const auto& of) {
                            return encoding::Name(of.param.encoding) + std::to_string(of.param.density_hidden_layers) +
                                   std::to_string(of.param.color_hidden_layers);

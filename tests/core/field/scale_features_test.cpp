@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr int64_t kSamples = 6;
+constexpr int64_t kFootprints = 6;
 constexpr size_t kStride = 16;
 
 FieldConfig Config(int levels, int multisample, bool scale_features, encoding::Kind encoding = encoding::Kind::kHash) {
@@ -38,23 +38,23 @@ struct Samples {
   explicit Samples(int n_points) : points(n_points) {
     base::Random random(5);
     for (auto* v : {&x, &y, &z}) {
-      v->resize(static_cast<size_t>(kSamples) * static_cast<size_t>(points));
+      v->resize(static_cast<size_t>(kFootprints) * static_cast<size_t>(points));
       for (float& value : *v) value = random.Uniform();
     }
   }
   kernel::Positions At(bool cones) const {
-    return {x.data(), y.data(), z.data(), cones ? sharpness : nullptr, points, static_cast<size_t>(kSamples)};
+    return {x.data(), y.data(), z.data(), cones ? sharpness : nullptr, points, static_cast<size_t>(kFootprints)};
   }
   int points;
   std::vector<float> x, y, z;
-  float sharpness[kSamples] = {0.0F, 0.3F, 3.0F, 30.0F, kInfinity, kNan};
+  float sharpness[kFootprints] = {0.0F, 0.3F, 3.0F, 30.0F, kInfinity, kNan};
 };
 
 std::vector<float> Encoded(const HashField& field, const kernel::Positions& at) {
   base::Random random(7);
   std::vector<float> grid(static_cast<size_t>(field.GridParameters())), features(static_cast<size_t>(field.FeatureRows()) * kStride, -9.0F);
   for (float& value : grid) value = random.Uniform() - 0.5F;
-  field.EncodeSerial(grid, at, kSamples, features.data(), kStride);
+  field.EncodeSerial(grid, at, kFootprints, features.data(), kStride);
   return features;
 }
 
@@ -92,7 +92,7 @@ TEST(ScaleFeatures, AreWhatTheFootprintHidesOfEverySecondLevel) {
     const Samples samples(points);
     const std::vector<float> features = Encoded(field, samples.At(true));
     const auto scale = [&](int row, size_t s) { return features[static_cast<size_t>(field.encoding().OutputRows() + row) * kStride + s]; };
-    for (size_t s = 0; s < static_cast<size_t>(kSamples); ++s) {
+    for (size_t s = 0; s < static_cast<size_t>(kFootprints); ++s) {
       for (int row = 0; row < (levels + 1) / 2; ++row) {
         const int level = levels % 2 == 1 ? 2 * row : 2 * row + 1;
         const double cells = 2.0 * std::pow(20.0, level / (levels - 1.0));
@@ -116,7 +116,7 @@ TEST(ScaleFeatures, OfPointsAreZero) {
   for (int row = 0; row < field.FeatureRows(); ++row) {
     for (size_t s = 0; s < kStride; ++s) {
       const float value = features[static_cast<size_t>(row) * kStride + s];
-      if (s >= static_cast<size_t>(kSamples)) {
+      if (s >= static_cast<size_t>(kFootprints)) {
         EXPECT_EQ(value, -9.0F) << "not a sample";
       } else if (row >= field.encoding().OutputRows()) {
         EXPECT_EQ(value, 0.0F);

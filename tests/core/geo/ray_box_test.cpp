@@ -17,11 +17,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Eigen::Vector3d kMin(-1.0, -2.0, 0.0), kMax(3.0, 2.0, 5.0);
 const Eigen::Vector3d kLow(-1, -2, -3), kHigh(4, 5, 6);
 
-double Between(double low, double high) {
+double Drawn(double low, double high) {
   return low + (high - low) * *rc::gen::inRange(0, 1000001) / 1e6;
 }
 Eigen::Vector3d Anywhere(double reach) {
-  return {Between(-reach, reach), Between(-reach, reach), Between(-reach, reach)};
+  return {Drawn(-reach, reach), Drawn(-reach, reach), Drawn(-reach, reach)};
 }
 
 TEST(RayBox, IntervalEndsAreOnTheBox) {
@@ -59,7 +59,7 @@ TEST(RayBox, EdgesAreLegal) {
 
 RC_GTEST_PROP(RayHitsBox, TowardsAPointInside, ()) {
   const Eigen::Vector3d origin = Anywhere(50.0);
-  const Eigen::Vector3d target(Between(-0.99, 3.99), Between(-1.99, 4.99), Between(-2.99, 5.99));
+  const Eigen::Vector3d target(Drawn(-0.99, 3.99), Drawn(-1.99, 4.99), Drawn(-2.99, 5.99));
   RC_PRE((target - origin).norm() > 1e-3);
   RC_ASSERT(RayHitsBox(origin, (target - origin).normalized(), kLow, kHigh));
   // In the opposite direction only when it starts inside.

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "tests/core/gis/limited_file_size.h"
+#include "tests/core/gis/open_dataset.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -38,16 +38,6 @@ std::vector<float> Heights(const MapGrid& grid, const std::function<double(doubl
   return heights;
 }
 
-struct Close {
-  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Opened = std::unique_ptr<GDALDataset, Close>;
-
-Opened Open(const std::filesystem::path& file) {
-  GDALAllRegister();
-  return Opened(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
-}
-
 TEST(Contours, LieAtMultiplesOfTheInterval) {
   const TemporaryFolder folder;
   const MapGrid grid = Grid();
@@ -55,7 +45,7 @@ TEST(Contours, LieAtMultiplesOfTheInterval) {
   const auto plane = [](double x, double y) { return y < -40.0 ? std::nan("") : 97.03 + 0.25 * x; };
   const int64_t n = WriteContours(grid, Heights(grid, plane), 0.1, "WGS84 ellipsoid", folder / "contours.gpkg");
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) EXPECT_EQ(entry.path().filename(), "contours.gpkg");
-  const Opened file = Open(folder / "contours.gpkg");
+  const OpenedDataset file = OpenDataset(folder / "contours.gpkg", GDAL_OF_VECTOR);
   ASSERT_NE(file, nullptr);
   OGRLayer* layer = file->GetLayerByName("contours");
   ASSERT_NE(layer, nullptr);
@@ -91,7 +81,7 @@ TEST(Contours, OfAConeAreClosedCircles) {
   const MapGrid grid = Grid(false);
   const auto cone = [](double x, double y) { return 10.0 - 0.5 * std::hypot(x - 30.0, y + 22.5); };
   EXPECT_GT(WriteContours(grid, Heights(grid, cone), 2.0, "local frame", folder / "contours.gpkg"), 3);
-  const Opened file = Open(folder / "contours.gpkg");
+  const OpenedDataset file = OpenDataset(folder / "contours.gpkg", GDAL_OF_VECTOR);
   OGRLayer* layer = file->GetLayerByName("contours");
   EXPECT_TRUE(layer->GetSpatialRef() == nullptr || layer->GetSpatialRef()->IsLocal());
   for (const auto& feature : *layer) {
@@ -118,7 +108,7 @@ TEST(Contours, NothingToDrawGivesAnEmptyLayer) {
   infinite[5000] = std::numeric_limits<float>::infinity();
   WriteContours(grid, infinite, 10.0, "", folder / "infinite.gpkg");
   for (const char* name : {"flat.gpkg", "none.gpkg", "one.gpkg", "zero.gpkg", "infinite.gpkg"}) {
-    const Opened file = Open(folder / name);
+    const OpenedDataset file = OpenDataset(folder / name, GDAL_OF_VECTOR);
     ASSERT_NE(file, nullptr) << name;
     ASSERT_NE(file->GetLayerByName("contours"), nullptr);
     EXPECT_EQ(file->GetLayerByName("contours")->GetFeatureCount(), 0) << name;
@@ -132,7 +122,7 @@ TEST(Contours, TooManyLevelsAreThinned) {
   const int64_t n = WriteContours(grid, Heights(grid, steep), 0.1, "", folder / "contours.gpkg");
   EXPECT_LE(n, 1000);
   EXPECT_GE(n, 500);
-  const Opened file = Open(folder / "contours.gpkg");
+  const OpenedDataset file = OpenDataset(folder / "contours.gpkg", GDAL_OF_VECTOR);
   for (const auto& feature : *file->GetLayerByName("contours")) {
     const double height = feature->GetFieldAsDouble("height_m");
     EXPECT_NEAR(height / 5.0, std::round(height / 5.0), 1e-9);

@@ -5,13 +5,13 @@
 #include <ogr_spatialref.h>
 
 #include <cmath>
-#include <memory>
 #include <string>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "tests/core/gis/limited_file_size.h"
+#include "tests/core/gis/open_dataset.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -51,16 +51,6 @@ void WriteHeights(GeoTiffWriter* writer, int width, int height) {
   }
 }
 
-struct Close {
-  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Opened = std::unique_ptr<GDALDataset, Close>;
-
-Opened Open(const std::filesystem::path& file) {
-  GDALAllRegister();
-  return Opened(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER));
-}
-
 std::string Item(GDALDataset* dataset, const char* key, const char* domain = nullptr) {
   const char* value = dataset->GetMetadataItem(key, domain);
   return value == nullptr ? "" : value;
@@ -76,7 +66,7 @@ TEST(GeoTiff, IsCloudOptimisedAndComplete) {
     writer.Close();
   }
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) EXPECT_EQ(entry.path(), file);
-  const Opened map = Open(file);
+  const OpenedDataset map = OpenDataset(file, GDAL_OF_RASTER);
   ASSERT_NE(map, nullptr);
   EXPECT_EQ(Item(map.get(), "LAYOUT", "IMAGE_STRUCTURE"), "COG");
   EXPECT_EQ(Item(map.get(), "COMPRESSION", "IMAGE_STRUCTURE"), "DEFLATE");
@@ -134,7 +124,7 @@ TEST(GeoTiff, OneCellAndFourBands) {
   const std::vector<uint8_t> rgba = {10, 20, 30, 255};
   writer.WriteRows(0, 1, std::span<const uint8_t>(rgba));
   writer.Close();
-  const Opened map = Open(folder / "one.tif");
+  const OpenedDataset map = OpenDataset(folder / "one.tif", GDAL_OF_RASTER);
   ASSERT_NE(map, nullptr);
   EXPECT_EQ(map->GetRasterBand(1)->GetColorInterpretation(), GCI_RedBand);
   EXPECT_EQ(map->GetRasterBand(4)->GetColorInterpretation(), GCI_AlphaBand);

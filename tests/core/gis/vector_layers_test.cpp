@@ -19,7 +19,7 @@
 namespace skyquilt::gis {
 namespace {
 
-const geo::UtmZone kZone = {32, true};
+const geo::UtmZone kMapZone = {32, true};
 
 struct CloseDataset {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
@@ -54,7 +54,7 @@ std::vector<VectorLayer> TwoLayers() {
 
 TEST(VectorLayers, ComeBackThroughGdal) {
   const TemporaryFolder folder;
-  WriteVectorLayers(TwoLayers(), true, kZone, folder / "two.gpkg");
+  WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "two.gpkg");
   const OpenDataset file = OpenVectors(folder / "two.gpkg");
   ASSERT_NE(file, nullptr);
   ASSERT_EQ(file->GetLayerCount(), 2);
@@ -98,27 +98,27 @@ TEST(VectorLayers, WithoutGeoreferenceHaveNoPlaceOnEarth) {
 
 TEST(VectorLayers, TheSameLayersGiveTheSameBytes) {
   const TemporaryFolder folder;
-  WriteVectorLayers(TwoLayers(), true, kZone, folder / "a.gpkg");
+  WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "a.gpkg");
   // Longer than the resolution of the time stamps.
   timespec wait = {.tv_sec = 0, .tv_nsec = 20'000'000};
   nanosleep(&wait, nullptr);
-  WriteVectorLayers(TwoLayers(), true, kZone, folder / "b.gpkg");
-  WriteVectorLayers(TwoLayers(), true, kZone, folder / "b.gpkg");
+  WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "b.gpkg");
+  WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "b.gpkg");
   EXPECT_TRUE(base::ReadFile(folder / "a.gpkg") == base::ReadFile(folder / "b.gpkg"));
 }
 
 TEST(VectorLayers, FailuresLeaveTheEarlierFile) {
   const TemporaryFolder folder;
   base::WriteFileAtomically(folder / "two.gpkg", "earlier");
-  const std::string missing = InputErrorOf([&] { WriteVectorLayers(TwoLayers(), true, kZone, folder / "no_such_folder/two.gpkg"); });
+  const std::string missing = InputErrorOf([&] { WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "no_such_folder/two.gpkg"); });
   EXPECT_NE(missing.find("two.gpkg: cannot be created"), std::string::npos) << missing;
   {
     const LimitedFileSize full(60'000);
-    const std::string error = InputErrorOf([&] { WriteVectorLayers(TwoLayers(), true, kZone, folder / "two.gpkg"); });
+    const std::string error = InputErrorOf([&] { WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "two.gpkg"); });
     EXPECT_NE(error.find("Check the free space"), std::string::npos) << error;
   }
   base::RequestCancel();
-  EXPECT_THROW(WriteVectorLayers(TwoLayers(), true, kZone, folder / "two.gpkg"), base::Interrupted);
+  EXPECT_THROW(WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "two.gpkg"), base::Interrupted);
   base::ClearCancel();
   EXPECT_EQ(base::ReadFile(folder / "two.gpkg"), "earlier");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
@@ -130,7 +130,7 @@ TEST(VectorLayers, RefuseWhatDoesNotFit) {
     std::vector<VectorLayer> layers = TwoLayers();
     change(&layers);
     try {
-      WriteVectorLayers(layers, true, kZone, folder / "bad.gpkg");
+      WriteVectorLayers(layers, true, kMapZone, folder / "bad.gpkg");
     } catch (const std::logic_error&) {
       return true;
     }

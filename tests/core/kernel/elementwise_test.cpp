@@ -2,21 +2,19 @@
 
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <thread>
 
 #include "core/base/random.h"
 #include "core/kernel/kernels.h"
 #include "tests/support/each_instruction_set.h"
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::kernel {
 namespace {
 
 using ElementwiseKernels = testing::EachInstructionSet;
 SKYQUILT_EACH_INSTRUCTION_SET(ElementwiseKernels);
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 TEST_P(ElementwiseKernels, CompactKeepsOrderInPlaceAndElsewhere) {
   base::Random random(5);
@@ -43,7 +41,7 @@ TEST_P(ElementwiseKernels, AllFiniteFindsOneBadValueAnywhere) {
   std::vector<float> values(77, 3e38F);
   EXPECT_TRUE(AllFinite(values.data(), 77));
   EXPECT_TRUE(AllFinite(values.data(), 0));
-  for (const float bad : {kInfinity, -kInfinity, std::nanf("")}) {
+  for (const float bad : {kInfinityFloat, -kInfinityFloat, std::nanf("")}) {
     for (const size_t at : {0U, 31U, 63U, 64U, 76U}) {
       std::vector<float> copy = values;
       copy[at] = bad;

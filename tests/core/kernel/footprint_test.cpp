@@ -3,33 +3,21 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/base/random.h"
 #include "core/kernel/kernels.h"
 #include "core/kernel/reference.h"
+#include "tests/core/kernel/small_level.h"
 #include "tests/support/each_instruction_set.h"
 #include "tests/support/gradient_check.h"
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::kernel {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
 using FootprintKernels = testing::EachInstructionSet;
 SKYQUILT_EACH_INSTRUCTION_SET(FootprintKernels);
-
-GridLevel LevelOf(bool dense) {
-  GridLevel level;
-  level.cells_per_unit = 9.0F;
-  level.size[0] = level.size[1] = 10;
-  level.size[2] = 5;
-  level.dense = dense;
-  level.entries = dense ? 500 : 128;
-  return level;
-}
 
 // Samples of 1, 4 or 6 positions with footprints from none to infinite.
 struct Samples {
@@ -42,7 +30,7 @@ struct Samples {
     }
     for (size_t s = 0; s < n; ++s) sharpness.push_back(9.0F * std::exp2(6.0F * random.Uniform() - 3.0F));
     sharpness[1] = 0.0F;
-    sharpness[2] = kInfinity;
+    sharpness[2] = kInfinityFloat;
   }
   Positions At() const { return {x.data(), y.data(), z.data(), sharpness.data(), points, plane}; }
   std::vector<std::array<double, 3>> Of(size_t s) const {
@@ -66,7 +54,7 @@ TEST(FootprintWeight, IsOneLessTheHiddenShareOfAnyNumberOfSamples) {
   for (const int64_t n : {0, 1, 7, 16, 37}) {
     std::vector<float> sharpness(static_cast<size_t>(n)), hidden(static_cast<size_t>(n) + 1, -1.0F);
     for (float& value : sharpness) value = 60.0F * random.Uniform();
-    if (n > 2) sharpness[1] = kInfinity;
+    if (n > 2) sharpness[1] = kInfinityFloat;
     FootprintHidden(sharpness.data(), n, 20.0F, hidden.data());
     for (size_t s = 0; s < sharpness.size(); ++s) EXPECT_NEAR(hidden[s], 1.0F - FootprintWeight(sharpness[s], 20.0F), 1e-6F) << n << " " << s;
     EXPECT_EQ(hidden.back(), -1.0F);
@@ -74,8 +62,8 @@ TEST(FootprintWeight, IsOneLessTheHiddenShareOfAnyNumberOfSamples) {
 }
 
 TEST(FootprintWeight, KnowsPointsAndInfiniteFootprints) {
-  EXPECT_EQ(FootprintWeight(kInfinity, 16.0F), 1.0F);
-  EXPECT_EQ(FootprintWeight(kNan, 16.0F), 1.0F);
+  EXPECT_EQ(FootprintWeight(kInfinityFloat, 16.0F), 1.0F);
+  EXPECT_EQ(FootprintWeight(kNanFloat, 16.0F), 1.0F);
   EXPECT_EQ(FootprintWeight(0.0F, 16.0F), 0.0F);
   EXPECT_EQ(FootprintWeight(1e30F, 16.0F), 1.0F);
 }
@@ -136,7 +124,7 @@ TEST_P(FootprintKernels, FootprintsOfZeroGiveTheBitsOfPoints) {
   base::Random random(7);
   constexpr size_t kSamples = 37;
   Samples samples(1, kSamples, random);
-  samples.sharpness.assign(kSamples, kInfinity);
+  samples.sharpness.assign(kSamples, kInfinityFloat);
   const GridLevel level = LevelOf(false);
   std::vector<float> table(level.entries * 4), cones(4 * kSamples), points(4 * kSamples);
   for (float& value : table) value = random.Uniform() - 0.5F;

@@ -11,7 +11,9 @@
 #include "core/base/random.h"
 #include "core/kernel/kernels.h"
 #include "core/kernel/reference.h"
+#include "tests/core/kernel/small_level.h"
 #include "tests/support/each_instruction_set.h"
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::kernel {
 namespace {
@@ -19,23 +21,12 @@ namespace {
 using HashSlopeKernels = testing::EachInstructionSet;
 SKYQUILT_EACH_INSTRUCTION_SET(HashSlopeKernels);
 
-constexpr size_t kSamples = 300;  // more than one block, and no whole number of vectors
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-GridLevel LevelOf(bool dense) {
-  GridLevel level;
-  level.cells_per_unit = 9.0F;
-  level.size[0] = level.size[1] = 10;
-  level.size[2] = 5;
-  level.dense = dense;
-  level.entries = dense ? 500 : 128;
-  return level;
-}
+constexpr size_t kBatchSamples = 300;  // more than one block, and no whole number of vectors
 
 // Samples with gradients of their features and directions to move in.
 struct Batch {
   Batch(int n_points, int n_features, bool dense, uint64_t seed)
-      : level(LevelOf(dense)), features(n_features), points(n_points), plane(kSamples + 3) {
+      : level(LevelOf(dense)), features(n_features), points(n_points), plane(kBatchSamples + 3) {
     base::Random random(seed);
     const auto fill = [&](std::vector<float>* v, size_t n, float low, float high) {
       v->resize(n);
@@ -45,15 +36,15 @@ struct Batch {
     fill(&x, positions, 0.0F, 1.0F);
     fill(&y, positions, 0.0F, 1.0F);
     fill(&z, positions, 0.0F, 4.0F / 9.0F);
-    fill(&sharpness, kSamples, 2.0F, 40.0F);
+    fill(&sharpness, kBatchSamples, 2.0F, 40.0F);
     sharpness[1] = 0.0F;
-    sharpness[2] = kInfinity;
+    sharpness[2] = kInfinityFloat;
     // Clamped on one axis.
     x[3] = -0.01F;
     z[4] = 0.47F;
     fill(&table, level.entries * static_cast<size_t>(features), -0.5F, 0.5F);
-    fill(&out_gradient, kSamples * static_cast<size_t>(features), -0.5F, 0.5F);
-    fill(&along, 3 * kSamples, -1.0F, 1.0F);
+    fill(&out_gradient, kBatchSamples * static_cast<size_t>(features), -0.5F, 0.5F);
+    fill(&along, 3 * kBatchSamples, -1.0F, 1.0F);
   }
   Positions At() const { return {x.data(), y.data(), z.data(), sharpness.data(), points, plane}; }
 
@@ -80,9 +71,9 @@ struct Batch {
     return growth;
   }
   std::array<double, 3> Along(size_t s) const {
-    return {static_cast<double>(along[s]), static_cast<double>(along[kSamples + s]), static_cast<double>(along[2 * kSamples + s])};
+    return {static_cast<double>(along[s]), static_cast<double>(along[kBatchSamples + s]), static_cast<double>(along[2 * kBatchSamples + s])};
   }
-  double OutGradient(size_t f, size_t s) const { return static_cast<double>(out_gradient[f * kSamples + s]); }
+  double OutGradient(size_t f, size_t s) const { return static_cast<double>(out_gradient[f * kBatchSamples + s]); }
   std::vector<double> Table() const { return {table.begin(), table.end()}; }
 
   GridLevel level;
@@ -103,11 +94,12 @@ void ForEveryShape(const Body& body) {
 
 TEST_P(HashSlopeKernels, SlopeMatchesDifferencesOfTheFeatures) {
   ForEveryShape([](const Batch& batch) {
-    std::vector<float> slope(3 * kSamples + 1, 0.25F);  // results are added
-    HashSlope(batch.level, batch.features, batch.table.data(), batch.At(), kSamples, batch.out_gradient.data(), kSamples, slope.data(), kSamples);
+    std::vector<float> slope(3 * kBatchSamples + 1, 0.25F);  // results are added
+    HashSlope(batch.level, batch.features, batch.table.data(), batch.At(), kBatchSamples, batch.out_gradient.data(), kBatchSamples, slope.data(),
+              kBatchSamples);
     const std::vector<double> table = batch.Table();
     size_t compared = 0;
-    for (size_t s = 0; s < kSamples; ++s) {
+    for (size_t s = 0; s < kBatchSamples; ++s) {
       for (size_t axis = 0; axis < 3; ++axis) {
         std::array<double, 3> unit = {0, 0, 0};
         unit[axis] = 1.0;
@@ -115,15 +107,15 @@ TEST_P(HashSlopeKernels, SlopeMatchesDifferencesOfTheFeatures) {
         double expected = 0.25;
         for (size_t f = 0; f < growth.size(); ++f) expected += batch.OutGradient(f, s) * growth[f];
         if (std::isnan(expected)) continue;
-        EXPECT_NEAR(static_cast<double>(slope[axis * kSamples + s]), expected, 5e-5) << s << " axis " << axis;
+        EXPECT_NEAR(static_cast<double>(slope[axis * kBatchSamples + s]), expected, 5e-5) << s << " axis " << axis;
         ++compared;
       }
     }
-    EXPECT_GT(compared, 3 * kSamples - 10);
+    EXPECT_GT(compared, 3 * kBatchSamples - 10);
     if (batch.points == 1) {
       EXPECT_EQ(slope[3], 0.25F) << "clamped along x";
-      EXPECT_NE(slope[kSamples + 3], 0.25F) << "free along y";
-      EXPECT_EQ(slope[2 * kSamples + 4], 0.25F) << "clamped along z";
+      EXPECT_NE(slope[kBatchSamples + 3], 0.25F) << "free along y";
+      EXPECT_EQ(slope[2 * kBatchSamples + 4], 0.25F) << "clamped along z";
     }
     EXPECT_EQ(slope.back(), 0.25F) << "nothing after the last row";
   });
@@ -131,19 +123,20 @@ TEST_P(HashSlopeKernels, SlopeMatchesDifferencesOfTheFeatures) {
 
 TEST_P(HashSlopeKernels, TangentMatchesDifferencesOfTheFeatures) {
   ForEveryShape([](const Batch& batch) {
-    std::vector<float> out(static_cast<size_t>(batch.features) * kSamples + 1, 9.0F);
-    HashTangent(batch.level, batch.features, batch.table.data(), batch.At(), kSamples, batch.along.data(), kSamples, out.data(), kSamples);
+    std::vector<float> out(static_cast<size_t>(batch.features) * kBatchSamples + 1, 9.0F);
+    HashTangent(batch.level, batch.features, batch.table.data(), batch.At(), kBatchSamples, batch.along.data(), kBatchSamples, out.data(),
+                kBatchSamples);
     const std::vector<double> table = batch.Table();
     size_t compared = 0;
-    for (size_t s = 0; s < kSamples; ++s) {
+    for (size_t s = 0; s < kBatchSamples; ++s) {
       const std::vector<double> growth = batch.Growth(s, batch.Along(s), table);
       for (size_t f = 0; f < growth.size(); ++f) {
         if (std::isnan(growth[f])) continue;
-        EXPECT_NEAR(static_cast<double>(out[f * kSamples + s]), growth[f], 5e-5) << s;
+        EXPECT_NEAR(static_cast<double>(out[f * kBatchSamples + s]), growth[f], 5e-5) << s;
         ++compared;
       }
     }
-    EXPECT_GT(compared, static_cast<size_t>(batch.features) * (kSamples - 10));
+    EXPECT_GT(compared, static_cast<size_t>(batch.features) * (kBatchSamples - 10));
     EXPECT_EQ(out.back(), 9.0F);
   });
 }
@@ -153,16 +146,16 @@ TEST_P(HashSlopeKernels, TangentBackwardMatchesTheTangentOfUnitTables) {
   ForEveryShape([](const Batch& batch) {
     std::vector<float> gradient(batch.table.size(), 0.0F);
     std::vector<uint8_t> touched(gradient.size() / kLineFloats + 1, 0);
-    HashTangentBackward(batch.level, batch.features, batch.At(), kSamples, batch.along.data(), kSamples, batch.out_gradient.data(), kSamples,
-                        gradient.data(), touched.data());
+    HashTangentBackward(batch.level, batch.features, batch.At(), kBatchSamples, batch.along.data(), kBatchSamples, batch.out_gradient.data(),
+                        kBatchSamples, gradient.data(), touched.data());
     for (size_t entry = 0; entry < batch.level.entries; entry += 17) {
-      std::vector<float> unit(batch.table.size(), 0.0F), out(static_cast<size_t>(batch.features) * kSamples);
+      std::vector<float> unit(batch.table.size(), 0.0F), out(static_cast<size_t>(batch.features) * kBatchSamples);
       const auto features = static_cast<size_t>(batch.features);
       for (size_t f = 0; f < features; ++f) unit[entry * features + f] = 1.0F;
-      HashTangent(batch.level, batch.features, unit.data(), batch.At(), kSamples, batch.along.data(), kSamples, out.data(), kSamples);
+      HashTangent(batch.level, batch.features, unit.data(), batch.At(), kBatchSamples, batch.along.data(), kBatchSamples, out.data(), kBatchSamples);
       for (size_t f = 0; f < features; ++f) {
         double expected = 0.0;
-        for (size_t s = 0; s < kSamples; ++s) expected += batch.OutGradient(f, s) * static_cast<double>(out[f * kSamples + s]);
+        for (size_t s = 0; s < kBatchSamples; ++s) expected += batch.OutGradient(f, s) * static_cast<double>(out[f * kBatchSamples + s]);
         EXPECT_NEAR(static_cast<double>(gradient[entry * features + f]), expected, 2e-4 * std::max(1.0, std::abs(expected)));
       }
     }
@@ -175,10 +168,10 @@ TEST_P(HashSlopeKernels, TangentBackwardMarksExactlyTheLinesItWroteAndSkipsSampl
   std::vector<float> gradient(size_t{1 << 14} * 4, 0.0F);
   std::vector<uint8_t> touched(gradient.size() / kLineFloats, 0);
   constexpr int64_t kFew = 20;
-  for (size_t axis = 0; axis < 3; ++axis) std::fill_n(batch.along.begin() + static_cast<ptrdiff_t>(axis * kSamples), kFew / 2, 0.0F);
+  for (size_t axis = 0; axis < 3; ++axis) std::fill_n(batch.along.begin() + static_cast<ptrdiff_t>(axis * kBatchSamples), kFew / 2, 0.0F);
   const auto lines = [&] { return std::accumulate(touched.begin(), touched.end(), 0); };
   const auto backward = [&](int64_t n) {
-    HashTangentBackward(batch.level, 4, batch.At(), n, batch.along.data(), kSamples, batch.out_gradient.data(), kSamples, gradient.data(),
+    HashTangentBackward(batch.level, 4, batch.At(), n, batch.along.data(), kBatchSamples, batch.out_gradient.data(), kBatchSamples, gradient.data(),
                         touched.data());
   };
   backward(kFew / 2);

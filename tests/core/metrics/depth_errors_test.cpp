@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/not_finite.h"
+
 namespace skyquilt::metrics {
 namespace {
 
 using image::Image8;
 using image::ImageF;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 ImageF Row(const std::vector<float>& values) {
   ImageF image(static_cast<int>(values.size()), 1, 1);
@@ -30,15 +30,15 @@ TEST(DepthErrors, AreRootMeanSquareAndMedian) {
 TEST(DepthErrors, SkipGapsAndMaskedPixels) {
   Image8 mask(5, 1, 1, 255);
   *mask.At(4, 0) = 0;
-  const DepthErrors errors =
-      CompareDepth(Row({kNan, 12.0F, 10.5F, std::numeric_limits<float>::infinity(), 99.0F}), Row({10.0F, kNan, 10.0F, 10.0F, 10.0F}), &mask);
+  const DepthErrors errors = CompareDepth(Row({kNanFloat, 12.0F, 10.5F, std::numeric_limits<float>::infinity(), 99.0F}),
+                                          Row({10.0F, kNanFloat, 10.0F, 10.0F, 10.0F}), &mask);
   EXPECT_EQ(errors.n, 1);
   EXPECT_EQ(errors.n_missing, 2);
   EXPECT_NEAR(errors.rmse_m, 0.5, 1e-12);
 }
 
 TEST(DepthErrors, OfNothingAreNotANumber) {
-  const DepthErrors errors = CompareDepth(Row({kNan}), Row({5.0F}), nullptr);
+  const DepthErrors errors = CompareDepth(Row({kNanFloat}), Row({5.0F}), nullptr);
   EXPECT_EQ(errors.n, 0);
   EXPECT_EQ(errors.n_missing, 1);
   EXPECT_TRUE(std::isnan(errors.rmse_m));

@@ -5,18 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "core/base/random.h"
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::metrics {
 namespace {
 
 using image::Image8;
 using image::ImageF;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // The paper's formulas, one pixel at a time in double precision: two-dimensional filters and sums over their whole windows.
 class NaiveFlip {
@@ -181,7 +179,7 @@ TEST_F(FlipTest, IgnoredPixelsAreGreyInBothImages) {
   EXPECT_NEAR(mean, sum / n, 1e-12);
   // They have no influence, not even NaN.
   for (size_t i = 0; i < mask.data.size(); ++i) {
-    if (mask.data[i] == 0) b.data[3 * i + 1] = kNan;
+    if (mask.data[i] == 0) b.data[3 * i + 1] = kNanFloat;
   }
   EXPECT_EQ(Of(a, b, &mask), mean);
   EXPECT_TRUE(std::isnan(Of(a, b)));

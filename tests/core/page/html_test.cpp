@@ -4,10 +4,10 @@
 
 #include <limits>
 
+#include "tests/support/not_finite.h"
+
 namespace skyquilt::page {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(EscapeHtml, FileNamesCannotBecomeMarkup) {
   EXPECT_EQ(EscapeHtml("<b>.jpg"), "&lt;b&gt;.jpg");

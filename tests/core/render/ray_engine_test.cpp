@@ -8,6 +8,7 @@
 
 #include "core/base/random.h"
 #include "core/render/march.h"
+#include "tests/core/render/rays_from_above.h"
 #include "tests/support/random_field.h"
 
 namespace skyquilt::render {
@@ -60,18 +61,6 @@ Plain WalkPlainly(const FieldSet& set, const Ray& ray) {
     result.transmittance = after;
   }
   return result;
-}
-
-std::vector<Ray> RaysFromAbove(int n) {
-  base::Random random(3);
-  std::vector<Ray> rays;
-  for (int i = 0; i < n; ++i) {
-    Ray ray;
-    ray.origin_enu = {random.Uniform(-3.0, 13.0), random.Uniform(-3.0, 7.0), 12.0};
-    ray.direction_enu = Eigen::Vector3d(random.Uniform(-0.6, 0.6), random.Uniform(-0.6, 0.6), -1.0).normalized();
-    rays.push_back(ray);
-  }
-  return rays;
 }
 
 struct Matter {

@@ -10,24 +10,13 @@
 #include "core/render/density_normal.h"
 #include "core/render/march.h"
 #include "core/render/ray_engine.h"
+#include "tests/core/render/rays_from_above.h"
 #include "tests/support/random_field.h"
 
 namespace skyquilt::render {
 namespace {
 
 using Eigen::Vector3d;
-
-std::vector<Ray> RaysFromAbove(int n) {
-  base::Random random(3);
-  std::vector<Ray> rays;
-  for (int i = 0; i < n; ++i) {
-    Ray ray;
-    ray.origin_enu = {random.Uniform(-3.0, 13.0), random.Uniform(-3.0, 7.0), 12.0};
-    ray.direction_enu = Vector3d(random.Uniform(-0.6, 0.6), random.Uniform(-0.6, 0.6), -1.0).normalized();
-    rays.push_back(ray);
-  }
-  return rays;
-}
 
 // Two blocks that are blended, and a context about them. The blocks have heads.
 struct Town {

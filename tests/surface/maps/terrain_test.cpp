@@ -17,7 +17,7 @@ namespace {
 using Height = std::function<double(double, double)>;
 
 // A raster whose place (x, y) is east and north of its south-western corner.
-HeightRaster Raster(int width, int height, double resolution_m, const Height& z) {
+HeightRaster RasterFromCorner(int width, int height, double resolution_m, const Height& z) {
   HeightRaster raster;
   raster.grid = {
       .georeferenced = false, .zone = {}, .left = 0.0, .top = height * resolution_m, .resolution_m = resolution_m, .width = width, .height = height};
@@ -70,7 +70,7 @@ TEST(Terrain, OfATownOnASlope) {
   base::Random random(7);
   std::vector<Eigen::Vector3d> trees;  // place, radius
   for (int i = 0; i < 40; ++i) trees.emplace_back(random.Uniform(100, 180), random.Uniform(85, 155), random.Uniform(1.5, 4.0));
-  const HeightRaster surface = Raster(720, 640, 0.25, [&](double x, double y) {
+  const HeightRaster surface = RasterFromCorner(720, 640, 0.25, [&](double x, double y) {
     // Nothing was seen in the strip north of the tall buildings.
     if (y >= 60 && y < 63 && x > 20 && x < 60) return std::nan("");
     if (std::hypot(x - 150, y - 20) < 6) return std::nan("");
@@ -109,7 +109,7 @@ TEST(Terrain, HillsAndBanksSurvive) {
   const Height hill = [](double x, double y) {
     return 50.0 + std::max(0.0, 12.0 - 0.2 * std::hypot(x - 80.0, y - 80.0)) + std::clamp(0.3 * (x - 160.0), 0.0, 6.0);
   };
-  const HeightRaster surface = Raster(400, 320, 0.5, hill);
+  const HeightRaster surface = RasterFromCorner(400, 320, 0.5, hill);
   const Terrain terrain = FindTerrain(surface, {});
   EXPECT_LT(ErrorsOf(terrain.height, hill).largest, 0.1);
   EXPECT_EQ(std::count(terrain.is_ground.begin(), terrain.is_ground.end(), uint8_t{1}), 400 * 320);
@@ -119,7 +119,7 @@ TEST(Terrain, AlleysBetweenHousesAreGround) {
   // Rows of houses 10 m deep, alleys of 3 m between them that end in a street.
   const Height ground = [](double x, double) { return 10.0 + 0.03 * x; };
   const auto house = [](double x, double y) { return y > 10.0 && std::fmod(y - 10.0, 13.0) < 10.0 && x > 8.0; };
-  const HeightRaster surface = Raster(400, 400, 0.2, [&](double x, double y) { return ground(x, y) + (house(x, y) ? 7.0 : 0.0); });
+  const HeightRaster surface = RasterFromCorner(400, 400, 0.2, [&](double x, double y) { return ground(x, y) + (house(x, y) ? 7.0 : 0.0); });
   const Terrain terrain = FindTerrain(surface, {});
   EXPECT_LT(ErrorsOf(terrain.height, ground).largest, 0.3);
   size_t alley = 0, found = 0;
@@ -136,7 +136,7 @@ TEST(Terrain, AlleysBetweenHousesAreGround) {
 
 TEST(Terrain, PitsAreRemoved) {
   const std::vector<Box> pits = {{20, 20, 23, 23, -4}, {60, 40, 61, 44, -2}, {40, 70, 40.5, 70.5, -30}};
-  const HeightRaster surface = Raster(400, 400, 0.25, [&](double x, double y) {
+  const HeightRaster surface = RasterFromCorner(400, 400, 0.25, [&](double x, double y) {
     double depth = 0.0;
     for (const Box& pit : pits) {
       if (pit.Contains(x, y)) depth = pit.height;
@@ -151,7 +151,7 @@ TEST(Terrain, PitsAreRemoved) {
 TEST(Terrain, GroundUnderTreesIsKept) {
   // A closed forest of rough crowns, with the ground seen through holes of 1.5 m.
   base::Random random(5);
-  const HeightRaster surface = Raster(400, 400, 0.25, [&](double x, double y) {
+  const HeightRaster surface = RasterFromCorner(400, 400, 0.25, [&](double x, double y) {
     const bool hole = std::fmod(x, 10.0) < 1.5 && std::fmod(y, 10.0) < 1.5;
     return kTilted(x, y) + (hole ? 0.0 : 12.0 + random.Uniform(-3.0, 3.0));
   });
@@ -162,7 +162,7 @@ TEST(Terrain, GroundUnderTreesIsKept) {
 
 TEST(Terrain, OnlyInsideTheOutline) {
   // A disc of data with a lake of 20 m in it, which is filled; the corners stay empty.
-  const HeightRaster surface = Raster(300, 300, 0.5, [](double x, double y) {
+  const HeightRaster surface = RasterFromCorner(300, 300, 0.5, [](double x, double y) {
     const double r = std::hypot(x - 75.0, y - 75.0);
     return r > 60.0 || r < 10.0 ? std::nan("") : kTilted(x, y);
   });
@@ -187,7 +187,7 @@ TEST(Terrain, OnlyInsideTheOutline) {
 TEST(Terrain, FinestDetailOfTheGroundIsKept) {
   // A kerb of 15 cm stays a kerb, instead of a ramp over several working cells.
   const Height kerb = [](double x, double) { return x < 25.0 ? 3.0 : 3.15; };
-  const HeightRaster surface = Raster(500, 100, 0.1, kerb);
+  const HeightRaster surface = RasterFromCorner(500, 100, 0.1, kerb);
   const Terrain terrain = FindTerrain(surface, {});
   EXPECT_NEAR(terrain.height.height_m[50 * 500 + 246], 3.0F, 0.01F);
   EXPECT_NEAR(terrain.height.height_m[50 * 500 + 253], 3.15F, 0.01F);
@@ -195,22 +195,22 @@ TEST(Terrain, FinestDetailOfTheGroundIsKept) {
 
 TEST(Terrain, EmptySmallAndBroken) {
   EXPECT_TRUE(FindTerrain({}, {}).height.height_m.empty());
-  const HeightRaster none = Raster(30, 20, 0.5, [](double, double) { return std::nan(""); });
+  const HeightRaster none = RasterFromCorner(30, 20, 0.5, [](double, double) { return std::nan(""); });
   const Terrain nothing = FindTerrain(none, {});
   EXPECT_TRUE(std::all_of(nothing.height.height_m.begin(), nothing.height.height_m.end(), [](float height) { return std::isnan(height); }));
   EXPECT_EQ(std::count(nothing.is_ground.begin(), nothing.is_ground.end(), uint8_t{1}), 0);
-  const Terrain one = FindTerrain(Raster(1, 1, 0.5, [](double, double) { return 7.0; }), {});
+  const Terrain one = FindTerrain(RasterFromCorner(1, 1, 0.5, [](double, double) { return 7.0; }), {});
   EXPECT_EQ(one.height.height_m, std::vector<float>{7.0F});
   EXPECT_EQ(one.is_ground, std::vector<uint8_t>{1});
   // A line of cells, coarser than the working cells, with an infinite height.
-  HeightRaster line = Raster(40, 1, 2.0, kTilted);
+  HeightRaster line = RasterFromCorner(40, 1, 2.0, kTilted);
   line.height_m[20] = std::numeric_limits<float>::infinity();
   const Terrain of_line = FindTerrain(line, {});
   EXPECT_LT(ErrorsOf(of_line.height, kTilted).largest, 0.1);
   EXPECT_EQ(of_line.is_ground[20], 0);
   EXPECT_EQ(of_line.is_ground[21], 1);
   // Working cells that do not divide the raster.
-  EXPECT_LT(ErrorsOf(FindTerrain(Raster(103, 57, 0.3, kTilted), {.cell_m = 1.3}).height, kTilted).largest, 0.15);
+  EXPECT_LT(ErrorsOf(FindTerrain(RasterFromCorner(103, 57, 0.3, kTilted), {.cell_m = 1.3}).height, kTilted).largest, 0.15);
 }
 
 TEST(LowOutliers, AlleysAndLightUnderTreesAreNoPits) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "buildings/fit/fit_shape.h"
+#include "buildings/fit/parameters.h"
 #include "buildings/outline_block.h"
 #include "buildings/shape/find_shape.h"
 #include "buildings/solids/build_solids.h"
@@ -33,15 +34,13 @@ struct Fitted {
 };
 
 bool IsPitched(const Shape& shape) {
-  return std::any_of(shape.parts.begin(), shape.parts.end(),
-                     [](const Part& part) { return part.roof == RoofKind::kGable || part.roof == RoofKind::kHip; });
+  return std::any_of(shape.parts.begin(), shape.parts.end(), [](const Part& part) { return buildings::IsPitched(part); });
 }
 
 // A pitched roof whose ridge the fit has moved below its eaves, or its eaves into the ground: no gable and no hip.
 bool HasImpossibleRoof(const Shape& shape) {
-  return std::any_of(shape.parts.begin(), shape.parts.end(), [&](const Part& part) {
-    return (part.roof == RoofKind::kGable || part.roof == RoofKind::kHip) && (part.ridge_z < part.eave_z || part.eave_z < shape.ground_z);
-  });
+  return std::any_of(shape.parts.begin(), shape.parts.end(),
+                     [&](const Part& part) { return buildings::IsPitched(part) && (part.ridge_z < part.eave_z || part.eave_z < shape.ground_z); });
 }
 
 double PlanArea(const Shape& shape, const Part& part) {
@@ -206,7 +205,7 @@ class Maker {
     building.measures = MeasureShape(fitted.fit, fit_options_);
     building.measures.wall_seen = ShareOfWallSeen(building.shape, candidate, *input_.cloud, input_.gsd_m);
     if (!Describe(candidate, fitted, &building)) return std::nullopt;
-    if (fitted.follows_outline) FollowOutline(candidate, input_.gsd_m, &building);
+    if (fitted.follows_outline) FollowOutline(candidate, input_.gsd_m, input_.accuracy, &building);
     return building;
   }
 

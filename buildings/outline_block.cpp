@@ -37,7 +37,7 @@ bool LeavesCorners(const Candidate& candidate, const Shape& shape) {
   return Area(candidate.outline) < kFilled * rectangle_m2;
 }
 
-void FollowOutline(const Candidate& candidate, double gsd_m, Building* building) {
+void FollowOutline(const Candidate& candidate, double gsd_m, const geo::PlaceAccuracy& accuracy, Building* building) {
   building->footprint = WithoutStairs(candidate, gsd_m);
   Measures& measures = building->measures;
   const double top = measures.ridge_m.value, ground = building->shape.ground_z;
@@ -45,7 +45,8 @@ void FollowOutline(const Candidate& candidate, double gsd_m, Building* building)
   building->lod22 = building->lod12;
   building->lod22_valid = !building->lod12.Empty() && CheckSolid(building->lod12).empty();
   const double area = Area(building->footprint), height = top - ground;
-  const double area_sigma = kRim_gsd * gsd_m * Perimeter(building->footprint);
+  const double scale = std::isfinite(accuracy.scale_percent) ? 0.01 * accuracy.scale_percent : 0.0;
+  const double area_sigma = std::hypot(kRim_gsd * gsd_m * Perimeter(building->footprint), 2.0 * scale * area);
   measures.footprint_m2 = {area, area_sigma};
   measures.roof_m2 = {area, area_sigma};
   measures.volume_m3 = {area * height, std::hypot(area_sigma * height, area * measures.height_m.sigma)};

@@ -3,6 +3,7 @@
 
 #include "buildings/building.h"
 #include "buildings/candidates/find_candidates.h"
+#include "core/geo/place_accuracy.h"
 
 namespace skyquilt::buildings {
 
@@ -11,7 +12,7 @@ bool LeavesCorners(const Candidate& candidate, const Shape& shape);
 
 // Replaces footprint, solids, areas and volume of a building by those of a block between the ground and the level roof of its largest part, whose
 // outline is the candidate's, simplified. Length and width stay those of the rectangle. Areas get a standard deviation of half a GSD along the whole
-// outline, since all of its rim errs to the same side.
-void FollowOutline(const Candidate& candidate, double gsd_m, Building* building);
+// outline, since all of its rim errs to the same side, and that of the survey's scale (accuracy; unknown parts do not count).
+void FollowOutline(const Candidate& candidate, double gsd_m, const geo::PlaceAccuracy& accuracy, Building* building);
 
 }  // namespace skyquilt::buildings

@@ -30,7 +30,7 @@ TEST(OutlineBlock, RoundBuildingsHaveTheAreaOfTheirOutline) {
   building.measures.height_m.sigma = 0.1;
   const Candidate candidate = Round(5.0, plan.origin);
   ASSERT_TRUE(LeavesCorners(candidate, building.shape));
-  FollowOutline(candidate, 0.1, &building);
+  FollowOutline(candidate, 0.1, {}, &building);
   const double area = std::numbers::pi * 25.0, height = building.measures.height_m.value;
   // The simplified outline is at most 0.2 m inside the circle.
   EXPECT_NEAR(building.measures.footprint_m2.value, area, 0.05 * area);
@@ -41,6 +41,10 @@ TEST(OutlineBlock, RoundBuildingsHaveTheAreaOfTheirOutline) {
   EXPECT_TRUE(CheckSolid(building.lod22).empty());
   EXPECT_GT(building.measures.footprint_m2.sigma, 0.5);  // half a GSD on 31 m of rim
   EXPECT_GE(building.measures.volume_m3.sigma, 0.1 * building.measures.footprint_m2.value);
+  geo::PlaceAccuracy accuracy;
+  accuracy.scale_percent = 5.0;
+  FollowOutline(candidate, 0.1, accuracy, &building);
+  EXPECT_GE(building.measures.footprint_m2.sigma, 0.1 * building.measures.footprint_m2.value);
 }
 
 // Outlines of rasters have stairs; walls that are none of the cells' directions have not.
@@ -61,12 +65,12 @@ TEST(OutlineBlock, StairsBecomeStraightWalls) {
   candidate.outline = OutlinesOf(mask, kCells, kCells, Eigen::Vector2d::Zero(), kCell_m).at(0);
   ASSERT_GT(candidate.outline.outer.size(), 50U);
   Building building = MadeHouse({}, 1);
-  FollowOutline(candidate, 0.06, &building);
+  FollowOutline(candidate, 0.06, {}, &building);
   EXPECT_LE(building.footprint.outer.size(), 6U);
   EXPECT_NEAR(Area(building.footprint), 44.0, 0.05 * 44.0);
   // Given outlines stay as they are.
   candidate.given = true;
-  FollowOutline(candidate, 0.06, &building);
+  FollowOutline(candidate, 0.06, {}, &building);
   EXPECT_EQ(building.footprint.outer.size(), candidate.outline.outer.size());
 }
 

@@ -10,6 +10,7 @@
 #include "core/base/random.h"
 #include "core/render/footprint.h"
 #include "core/render/ray_engine.h"
+#include "tests/core/render/rays_from_above.h"
 #include "tests/support/random_field.h"
 
 namespace skyquilt::render {
@@ -49,15 +50,10 @@ class Cones : public ::testing::Test {
     return out;
   }
   static std::vector<Ray> Rays(int n, float pitch, float width) {
-    base::Random random(3);
-    std::vector<Ray> rays;
-    for (int i = 0; i < n; ++i) {
-      Ray ray;
-      ray.origin_enu = {random.Uniform(-3.0, 13.0), random.Uniform(-3.0, 7.0), 12.0};
-      ray.direction_enu = Eigen::Vector3d(random.Uniform(-0.6, 0.6), random.Uniform(-0.6, 0.6), -1.0).normalized();
+    std::vector<Ray> rays = RaysFromAbove(n);
+    for (Ray& ray : rays) {
       ray.pixel_pitch = pitch;
       ray.pixel_width = width;
-      rays.push_back(ray);
     }
     return rays;
   }

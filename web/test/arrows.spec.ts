@@ -9,12 +9,13 @@ const root = process.cwd();
 const MAY_USE: Readonly<Record<string, readonly string[]>> = {
   base: [],
   geo: ["base"],
-  state: ["base", "geo"],
-  protocol: ["base", "geo", "state"],
-  scene: ["base", "geo", "state", "protocol"],
-  tools: ["base", "geo", "state", "protocol"],
-  panels: ["base", "geo", "state"],
-  entry: ["base", "geo", "state", "protocol", "scene", "tools", "panels"],
+  tour: ["base", "geo"],
+  state: ["base", "geo", "tour"],
+  protocol: ["base", "geo", "tour", "state"],
+  scene: ["base", "geo", "tour", "state", "protocol"],
+  tools: ["base", "geo", "tour", "state", "protocol"],
+  panels: ["base", "geo", "tour", "state"],
+  entry: ["base", "geo", "tour", "state", "protocol", "scene", "tools", "panels"],
 };
 /** Packages and the rooms that may use them. */
 const PACKAGES: Readonly<Record<string, readonly string[]>> = {

@@ -1,21 +1,20 @@
 #include "viewer/protocol/frame.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "core/base/errors.h"
+#include "core/image/depth_code.h"
 #include "core/image/encode.h"
-#include "viewer/protocol/deflate.h"
 
 namespace skyquilt::viewer {
 namespace {
 
 constexpr int kMaxSide = 4096;  // pixels of a pass
 constexpr int kJpegQuality = 85;
-constexpr double kSteps = 65534.0;
 constexpr uint16_t kVersion = 1;
 enum Flag : unsigned { kBeforeFlag = 1, kOrthographicFlag = 2, kPhotoFlag = 4 };
 
@@ -41,52 +40,8 @@ float GetFloat(std::string_view bytes, size_t at) {
   return std::bit_cast<float>(Get<uint32_t>(bytes, at));
 }
 
-int HalfOf(int size) {
-  return (size + 1) / 2;
-}
-
-// z of every second pixel of every second row; NaN where it is not a depth.
-std::vector<float> EverySecond(const FrameHeader& header, std::span<const float> z_m) {
-  std::vector<float> reduced;
-  reduced.reserve(static_cast<size_t>(HalfOf(header.w)) * static_cast<size_t>(HalfOf(header.h)));
-  for (int row = 0; row < header.h; row += 2) {
-    for (int column = 0; column < header.w; column += 2) {
-      const float z = z_m[static_cast<size_t>(row) * static_cast<size_t>(header.w) + static_cast<size_t>(column)];
-      const bool good = std::isfinite(z) && (header.orthographic || z > 0.0F);
-      reduced.push_back(good ? z : std::numeric_limits<float>::quiet_NaN());
-    }
-  }
-  return reduced;
-}
-
-struct DepthBytes {
-  float near_m = 0.0F, far_m = 0.0F;
-  std::string bytes;
-};
-
-DepthBytes EncodeDepth(const FrameHeader& header, std::span<const float> z_m) {
-  const std::vector<float> depths = EverySecond(header, z_m);
-  DepthBytes encoded;
-  bool any = false;
-  for (const float z : depths) {
-    if (std::isnan(z)) continue;
-    encoded.near_m = any ? std::min(encoded.near_m, z) : z;
-    encoded.far_m = any ? std::max(encoded.far_m, z) : z;
-    any = true;
-  }
-  if (!any) return encoded;
-  const auto near_m = static_cast<double>(encoded.near_m), far_m = static_cast<double>(encoded.far_m);
-  const double first = header.orthographic ? near_m : 1.0 / far_m;
-  const double range = header.orthographic ? far_m - near_m : 1.0 / near_m - 1.0 / far_m;
-  std::string raw(2 * depths.size(), '\0');
-  for (size_t i = 0; i < depths.size(); ++i) {
-    if (std::isnan(depths[i])) continue;
-    const auto z = static_cast<double>(depths[i]);
-    const double share = range > 0.0 ? ((header.orthographic ? z : 1.0 / z) - first) / range : 0.0;
-    Put(static_cast<uint16_t>(1 + std::lround(std::clamp(share, 0.0, 1.0) * kSteps)), 2 * i, &raw);
-  }
-  encoded.bytes = Deflate(raw);
-  return encoded;
+image::DepthScale ScaleOf(const FrameHeader& header) {
+  return header.orthographic ? image::DepthScale::kLinear : image::DepthScale::kInverse;
 }
 
 std::string EncodeColor(const FrameHeader& header, std::span<const uint8_t> rgb) {
@@ -117,7 +72,9 @@ std::string EncodeFrame(const FrameHeader& header, std::span<const uint8_t> rgb,
   const size_t n_pixels = static_cast<size_t>(header.w) * static_cast<size_t>(header.h);
   SKYQUILT_CHECK(rgb.size() == 3 * n_pixels && z_m.size() == n_pixels, "colours and depths do not match the rectangle");
   const std::string color = EncodeColor(header, rgb);
-  const DepthBytes depth = EncodeDepth(header, z_m);
+  const std::vector<float> depths = image::HalfDepths(z_m, header.w, header.h, ScaleOf(header));
+  const std::optional<image::DepthRange> range = image::RangeOfDepths(depths);
+  const std::string depth = range ? image::PackDepths(depths, *range, ScaleOf(header)) : "";
   std::string bytes(kFrameHeaderBytes, '\0');
   bytes.replace(0, 4, "SKYF");
   Put(kVersion, 4, &bytes);
@@ -135,13 +92,13 @@ std::string EncodeFrame(const FrameHeader& header, std::span<const uint8_t> rgb,
   const Eigen::Quaterniond& q = header.cam_from_enu;
   const double numbers[] = {eye.x(), eye.y(), eye.z(), q.w(), q.x(), q.y(), q.z(), header.fovy_deg_or_height_m};
   for (size_t i = 0; i < 8; ++i) Put(std::bit_cast<uint64_t>(numbers[i]), 32 + 8 * i, &bytes);
-  Put(std::bit_cast<uint32_t>(depth.near_m), 96, &bytes);
-  Put(std::bit_cast<uint32_t>(depth.far_m), 100, &bytes);
-  Put(static_cast<uint16_t>(HalfOf(header.w)), 104, &bytes);
-  Put(static_cast<uint16_t>(HalfOf(header.h)), 106, &bytes);
+  Put(std::bit_cast<uint32_t>(range ? range->near_m : 0.0F), 96, &bytes);
+  Put(std::bit_cast<uint32_t>(range ? range->far_m : 0.0F), 100, &bytes);
+  Put(static_cast<uint16_t>(image::HalfOf(header.w)), 104, &bytes);
+  Put(static_cast<uint16_t>(image::HalfOf(header.h)), 106, &bytes);
   Put(static_cast<uint32_t>(color.size()), 108, &bytes);
-  Put(static_cast<uint32_t>(depth.bytes.size()), 112, &bytes);
-  return bytes + color + depth.bytes;
+  Put(static_cast<uint32_t>(depth.size()), 112, &bytes);
+  return bytes + color + depth;
 }
 
 DecodedFrame DecodeFrame(std::string_view bytes) {
@@ -173,22 +130,15 @@ DecodedFrame DecodeFrame(std::string_view bytes) {
   const size_t color_bytes = Get<uint32_t>(bytes, 108), depth_bytes = Get<uint32_t>(bytes, 112);
   if (bytes.size() != kFrameHeaderBytes + color_bytes + depth_bytes) refuse("its length is not the one in its header");
   frame.color = bytes.substr(kFrameHeaderBytes, color_bytes);
-  if (frame.depth_width != HalfOf(header.w) || frame.depth_height != HalfOf(header.h)) refuse("the depth does not match the rectangle");
+  if (frame.depth_width != image::HalfOf(header.w) || frame.depth_height != image::HalfOf(header.h)) refuse("the depth does not match the rectangle");
   const size_t n = static_cast<size_t>(frame.depth_width) * static_cast<size_t>(frame.depth_height);
   frame.depth_m.assign(n, std::numeric_limits<float>::quiet_NaN());
   if (depth_bytes == 0) return frame;
-  const auto near_m = static_cast<double>(frame.near_m), far_m = static_cast<double>(frame.far_m);
-  if (!std::isfinite(near_m) || !std::isfinite(far_m) || far_m < near_m || (!header.orthographic && !(near_m > 0.0))) {
-    refuse("near and far are no range");
-  }
-  const std::string raw = Inflate(bytes.substr(kFrameHeaderBytes + color_bytes), 2 * n);
-  const double first = header.orthographic ? near_m : 1.0 / far_m;
-  const double range = header.orthographic ? far_m - near_m : 1.0 / near_m - 1.0 / far_m;
-  for (size_t i = 0; i < n; ++i) {
-    const auto q = Get<uint16_t>(raw, 2 * i);
-    if (q == 0) continue;
-    const double value = first + (q - 1) / kSteps * range;
-    frame.depth_m[i] = static_cast<float>(header.orthographic ? value : 1.0 / value);
+  const image::DepthRange range{frame.near_m, frame.far_m};
+  try {
+    frame.depth_m = image::UnpackDepths(bytes.substr(kFrameHeaderBytes + color_bytes), n, range, ScaleOf(header));
+  } catch (const std::runtime_error& error) {
+    refuse(error.what());
   }
   return frame;
 }

@@ -76,6 +76,7 @@ const std::vector<Library>& Libraries() {
       {"GDAL", std::regex("(gdal/)?(gdal|ogr_|ogrsf|cpl_|vrt)[^/]*\\.h"), {"core/gis"}},
       {"Boost", std::regex("boost/.*"), {"viewer", "buildings"}},
       {"Ceres", std::regex("ceres/.*"), {"prepare", "buildings"}},
+      {"zlib", std::regex("zlib\\.h"), {"core/base"}},
       {"toml++", std::regex("toml\\+\\+/.*|toml\\.hpp"), {"core/config"}},
   };
   return libraries;

@@ -1,4 +1,4 @@
-#include "viewer/protocol/deflate.h"
+#include "core/base/deflate.h"
 
 #include <zlib.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/base/errors.h"
 
-namespace skyquilt::viewer {
+namespace skyquilt::base {
 namespace {
 
 constexpr int kRaw = -15;  // window bits: 2^15 bytes, negative for no zlib header
@@ -56,4 +56,4 @@ std::string Inflate(std::string_view packed, size_t size) {
   return bytes;
 }
 
-}  // namespace skyquilt::viewer
+}  // namespace skyquilt::base

@@ -84,6 +84,11 @@ camera::Camera PinholeCamera(int width, int height, double fov_deg) {
   return camera;
 }
 
+double FovAcrossWidth(double fovy_deg, int width, int height) {
+  constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+  return 2.0 * std::atan(std::tan(0.5 * fovy_deg / kDegPerRad) * width / height) * kDegPerRad;
+}
+
 std::vector<View> ViewsOfPhotos(const survey::Survey& survey, const std::vector<std::string>& names, int width) {
   if (width < 0) throw base::UsageError("width = " + std::to_string(width) + " is not allowed: it must be positive, or 0 for the size of the photo");
   std::vector<const survey::Photo*> photos;

@@ -18,6 +18,8 @@ geo::Rigid3d PoseFromAngles(const Eigen::Vector3d& eye_enu, double yaw_deg, doub
 geo::Rigid3d PoseLookingAt(const Eigen::Vector3d& eye_enu, const Eigen::Vector3d& target_enu);
 // Pinhole camera without distortion. fov_deg: field of view across the width, in (0, 180).
 camera::Camera PinholeCamera(int width, int height, double fov_deg);
+// The field of view across the width of a picture with square pixels that has this field of view across its height.
+double FovAcrossWidth(double fovy_deg, int width, int height);
 
 // Views of the named photos (names with or without folder); of all held-out photos when `names` is empty. Distortion and aspect ratio are those of
 // the photo; width 0 keeps its size. Throws base::UsageError for an unknown name (suggesting the nearest) or when no photo is held out.

@@ -37,6 +37,12 @@ RayCaster CasterOf(const scene::Scene& scene, const scene::Appearance& appearanc
   };
 }
 
+RayCaster BackgroundCasterOf(const scene::Scene& scene, const scene::Appearance& appearance, base::ThreadPool& threads) {
+  return [&scene, &threads, appearance](std::span<const render::Ray> rays, std::span<render::RayColor> out) {
+    scene.RenderRaysOverBackground(rays, out, appearance, threads);
+  };
+}
+
 ViewRenderer RendererOf(const scene::Scene& scene, const scene::Appearance& appearance, base::ThreadPool& threads) {
   return [&scene, &threads, appearance](const View& view) { return scene.RenderCamera(view.camera, view.cam_from_enu, appearance, threads); };
 }

@@ -29,8 +29,10 @@ using ViewRenderer = std::function<std::vector<render::RayColor>(const View&)>;
 // Reads an exposure like products.exposure: "normal", stops above normal (linear light times 2^stops), or the name of a photo whose brightness and
 // white balance to use. Throws base::UsageError for anything else.
 scene::Appearance AppearanceOf(const std::string& exposure, const scene::SceneInfo& info);
-// Renderers of a scene. Both keep references to scene and threads.
+// Renderers of a scene. All keep references to scene and threads.
 RayCaster CasterOf(const scene::Scene& scene, const scene::Appearance& appearance, base::ThreadPool& threads);
+// With the scene's background where opacity is below 1: the colours that RendererOf(scene) gives these rays.
+RayCaster BackgroundCasterOf(const scene::Scene& scene, const scene::Appearance& appearance, base::ThreadPool& threads);
 ViewRenderer RendererOf(const scene::Scene& scene, const scene::Appearance& appearance, base::ThreadPool& threads);
 // Renders one ray through each pixel centre, in batches.
 ViewRenderer RendererOf(RayCaster caster);

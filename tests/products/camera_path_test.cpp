@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include "core/base/errors.h"
 #include "core/geo/enu_frame.h"
@@ -21,6 +23,13 @@ Eigen::Vector3d Right(const geo::Rigid3d& pose) {
 }
 Eigen::Vector3d Down(const geo::Rigid3d& pose) {
   return pose.rotation.conjugate() * Eigen::Vector3d(0, 1, 0);
+}
+
+TEST(PinholeCamera, FieldOfViewAcrossTheHeightFollowsFromThatAcrossTheWidth) {
+  for (const auto& [width, height] : {std::pair{640, 360}, {300, 300}, {90, 160}}) {
+    const camera::Camera camera = PinholeCamera(width, height, FovAcrossWidth(50.0, width, height));
+    EXPECT_NEAR(2.0 * std::atan(0.5 * height / camera.FocalY()), 50.0 * std::numbers::pi / 180.0, 1e-12);
+  }
 }
 
 TEST(PoseFromAngles, FollowsTheCompass) {

@@ -15,11 +15,6 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kMargin = 0.05;  // of the scene's diagonal: orthographic rays start this far before its box
 
-// Field of view across the width.
-double FovDeg(double fovy_deg, PassSize size) {
-  return 2.0 * std::atan(std::tan(0.5 * fovy_deg / kDegPerRad) * size.width / size.height) * kDegPerRad;
-}
-
 // How far behind the eye the scene's box begins, along the optical axis.
 double BeginsBehind(const SceneFrame& scene, const Eigen::Vector3d& eye, const Eigen::Vector3d& ahead) {
   double nearest = std::numeric_limits<double>::infinity();
@@ -53,7 +48,8 @@ PassRays::PassRays(const ViewRequest& view, PassSize size, const SceneFrame& sce
     pixel_m_ = view.view_height_m / size.height;
     back_m_ = BeginsBehind(scene, cam_from_scene_.OriginInSource(), ahead_);
   } else {
-    camera_.emplace(products::PinholeCamera(size.width, size.height, FovDeg(view.fovy_deg, size)), cam_from_scene_, scene.cones);
+    const double fov_deg = products::FovAcrossWidth(view.fovy_deg, size.width, size.height);
+    camera_.emplace(products::PinholeCamera(size.width, size.height, fov_deg), cam_from_scene_, scene.cones);
   }
 }
 

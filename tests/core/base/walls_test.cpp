@@ -34,6 +34,7 @@ const std::map<std::string, std::set<std::string>>& AllowedIncludes() {
       {"products", {"core"}},
       {"surface", {"core"}},
       {"buildings", {"surface", "core"}},
+      {"tour", {"products", "surface", "core"}},
       {"evaluate", {"partition", "surface", "buildings", "core"}},
       {"core/base", {}},
       {"core/config", {"core/base"}},

@@ -1,0 +1,149 @@
+#include "tour/pictures/make_pictures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "tests/tour/pictures/fields.h"
+#include "tour/pictures/estimate_seconds.h"
+#include "tour/pictures/picture_file.h"
+
+namespace skyquilt::tour {
+namespace {
+
+std::vector<PictureRequest> ThreeRequests() {
+  return {PanoramaAt({0.0, 0.0, 30.0}, 64, "normal"), PanoramaAt({-20.0, 5.0, 12.0}, 64, "normal"),
+          StillAt({0.0, 0.0, 30.0}, Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), 60.0, 40, 30, "-1")};
+}
+
+std::set<std::string> FilesIn(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+TEST(MakePictures, ASecondRunRendersNothing) {
+  CountedField counted;
+  const TemporaryFolder work;
+  const std::vector<PictureRequest> requests = ThreeRequests();
+  const MadePictures first = MakePictures(requests, counted.field, work.path());
+  EXPECT_EQ(first.rendered, 3);
+  EXPECT_EQ(counted.n_rays, 2 * 64 * 32 + 40 * 30);
+  EXPECT_EQ(first.rays, counted.n_rays);
+  ASSERT_EQ(first.files.size(), 3U);
+  const std::string bytes = base::ReadFile(first.files[1]);
+  const MadePictures second = MakePictures(requests, counted.field, work.path());
+  EXPECT_EQ(second.rendered, 0);
+  EXPECT_EQ(counted.n_rays, first.rays);
+  EXPECT_EQ(second.files, first.files);
+  EXPECT_EQ(base::ReadFile(first.files[1]), bytes);
+}
+
+// Any byte: those of the header, of the colours, of the depths, of the checksum; and a file that is cut off.
+TEST(MakePictures, ADamagedPictureIsRenderedAnew) {
+  CountedField counted;
+  const TemporaryFolder work;
+  const std::vector<PictureRequest> requests = ThreeRequests();
+  const std::filesystem::path file = MakePictures(requests, counted.field, work.path()).files[0];
+  const std::string good = base::ReadFile(file);
+  const auto expect_repaired = [&](const std::string& bad) {
+    base::WriteFileAtomically(file, bad);
+    EXPECT_THROW(OpenPicture(file), base::InputError);
+    EXPECT_EQ(MissingPictures(requests, counted.field, work.path()).size(), 1U);
+    counted.n_rays = 0;
+    EXPECT_EQ(MakePictures(requests, counted.field, work.path()).rendered, 1);
+    EXPECT_EQ(counted.n_rays, 64 * 32);
+    EXPECT_EQ(base::ReadFile(file), good);
+  };
+  for (const size_t at : {size_t{0}, size_t{9}, size_t{30}, size_t{50}, good.size() / 2, good.size() - 20, good.size() - 1}) {
+    std::string bad = good;
+    bad[at] = static_cast<char>(bad[at] ^ 0x10);
+    expect_repaired(bad);
+  }
+  expect_repaired(good.substr(0, good.size() - 1));
+  expect_repaired(good.substr(0, 20));
+  expect_repaired("");
+}
+
+TEST(MakePictures, ContinuesAfterAnInterruption) {
+  CountedField counted;
+  const TemporaryFolder work;
+  const std::vector<PictureRequest> requests = ThreeRequests();
+  // In the middle of the second picture, which has three batches as the first one.
+  int batches = 0;
+  counted.after_batch = [&batches] {
+    if (++batches == 4) base::RequestCancel();
+  };
+  EXPECT_THROW(MakePictures(requests, counted.field, work.path()), base::Interrupted);
+  base::ClearCancel();
+  EXPECT_EQ(FilesIn(work.path()).size(), 1U) << "whole or absent";
+  EXPECT_EQ(MissingPictures(requests, counted.field, work.path()).size(), 2U);
+  counted.n_rays = 0;
+  EXPECT_EQ(MakePictures(requests, counted.field, work.path()).rendered, 2);
+  EXPECT_EQ(counted.n_rays, 64 * 32 + 40 * 30);
+}
+
+TEST(MakePictures, RendersWhatHasChangedAndRemovesTheRest) {
+  CountedField counted;
+  const TemporaryFolder work;
+  std::vector<PictureRequest> requests = ThreeRequests();
+  const MadePictures before = MakePictures(requests, counted.field, work.path());
+  base::WriteFileAtomically(work / "notes.txt", "not ours");
+  // As a killed process leaves it.
+  base::WriteFileAtomically(work / ("." + before.files[0].filename().string() + ".tmp.123.0"), "half");
+  const auto expect_rendered = [&](int64_t rendered, const char* why) {
+    const MadePictures made = MakePictures(requests, counted.field, work.path());
+    EXPECT_EQ(made.rendered, rendered) << why;
+    std::set<std::string> expected = {"notes.txt"};
+    for (const auto& file : made.files) expected.insert(file.filename().string());
+    EXPECT_EQ(FilesIn(work.path()), expected) << why;
+  };
+  requests[0].cam_from_enu = Eigen::Quaterniond(0.6, 0.0, 0.8, 0.0);
+  expect_rendered(0, "a panorama looks everywhere");
+  requests[2].cam_from_enu = Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0);
+  expect_rendered(1, "a still does not");
+  requests[1].eye_enu.x() += 1e-6;
+  expect_rendered(1, "another eye");
+  requests[1].exposure = "0.5";
+  expect_rendered(1, "another exposure");
+  std::swap(requests[0], requests[2]);
+  expect_rendered(0, "another order");
+  requests.push_back(requests[0]);
+  expect_rendered(0, "the same picture twice");
+  counted.field.identity = "another scene";
+  expect_rendered(3, "another scene");
+}
+
+TEST(MakePictures, ExposuresAreThoseOfTheRequests) {
+  CountedField counted;
+  const TemporaryFolder work;
+  const std::vector<PictureRequest> requests = {PanoramaAt({0.0, 0.0, 30.0}, 32, "normal"), PanoramaAt({0.0, 0.0, 30.0}, 32, "-1")};
+  const MadePictures made = MakePictures(requests, counted.field, work.path());
+  const image::Image8 normal = ColorsOf(OpenPicture(made.files[0])), darker = ColorsOf(OpenPicture(made.files[1]));
+  // Ground east of the eye is red.
+  EXPECT_EQ(normal.At(24, 15)[0], 255);
+  EXPECT_EQ(darker.At(24, 15)[0], 128);
+}
+
+TEST(PanoramaAt, RefusesSizesThatAreNone) {
+  for (const int width : {0, -2, 33, kMaxPanoramaWidth + 2}) EXPECT_THROW(PanoramaAt(Eigen::Vector3d::Zero(), width, "normal"), base::UsageError);
+}
+
+TEST(EstimateSeconds, LooksAtAFewRaysOfAllPictures) {
+  CountedField counted;
+  EXPECT_EQ(EstimateSeconds({}, counted.field), 0.0);
+  std::vector<PictureRequest> requests = ThreeRequests();
+  requests.push_back(PanoramaAt({5.0, 5.0, 50.0}, 2048, "normal"));
+  const double seconds = EstimateSeconds(requests, counted.field);
+  EXPECT_GT(seconds, 0.0);
+  EXPECT_TRUE(std::isfinite(seconds));
+  EXPECT_GT(counted.n_rays, 10'000);
+  EXPECT_LE(counted.n_rays, 32 * 1024);
+}
+
+}  // namespace
+}  // namespace skyquilt::tour

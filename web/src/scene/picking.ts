@@ -2,7 +2,7 @@
 import { Box3, type BufferAttribute, type BufferGeometry, InterleavedBufferAttribute, Matrix4, Vector3 } from "three";
 import type { Vec3 } from "../base/vec.js";
 import { boxHolds } from "./clip.js";
-import { meetsBox, nearestHit, type Triangles } from "./ray_mesh.js";
+import { meetsBox, nearestHit, type Sides, type Triangles } from "./ray_mesh.js";
 import type { Surface } from "./surface.js";
 import type { Box } from "./world.js";
 
@@ -44,21 +44,31 @@ function boxOf(geometry: BufferGeometry): Box3 {
   return geometry.boundingBox ?? new Box3();
 }
 
-/** Distance along the ray (scene coordinates, unit direction) to the first surface; null: none. With a clip box only what is inside counts. */
-export function pickSurfaces(
-  surfaces: readonly Surface[],
+export interface PickOptions {
+  /** Only what is inside counts; null: all. */
+  readonly clip: Box | null;
+  /** Farther away nothing counts. */
+  readonly limit?: number;
+  /** Which sides of triangles count. */
+  readonly sides?: Sides;
+}
+
+/** Distance along the ray (scene coordinates, unit direction) to the first mesh; null: none. */
+export function pickMeshes(
+  sources: readonly Pick<Surface, "eachMesh">[],
   origin: Vec3,
   direction: Vec3,
-  clip: Box | null,
+  { clip, limit = Number.POSITIVE_INFINITY, sides = "front" }: PickOptions,
 ): number | null {
-  let nearest = Number.POSITIVE_INFINITY;
+  let nearest = limit;
+  let found = false;
   const accept =
     clip === null
       ? undefined
       : (t: number) =>
           boxHolds(clip, [origin[0] + t * direction[0], origin[1] + t * direction[1], origin[2] + t * direction[2]]);
-  for (const surface of surfaces) {
-    surface.eachMesh((mesh, geometry) => {
+  for (const source of sources) {
+    source.eachMesh((mesh, geometry) => {
       // The direction keeps its length in metres of the scene, so t is the same in both frames.
       inverse.copy(mesh.matrixWorld).invert();
       const e = inverse.elements;
@@ -74,9 +84,23 @@ export function pickSurfaces(
       const high: Vec3 = [max.x + grown, max.y + grown, max.z + grown];
       if (!meetsBox(low, high, localOrigin, localDirection, nearest)) return;
       const triangles = trianglesOf(geometry);
-      if (triangles !== null)
-        nearest = Math.min(nearest, nearestHit(triangles, localOrigin, localDirection, nearest, accept));
+      if (triangles === null) return;
+      const t = nearestHit(triangles, localOrigin, localDirection, nearest, accept, sides);
+      if (!Number.isFinite(t)) return;
+      nearest = t;
+      found = true;
     });
   }
-  return Number.isFinite(nearest) ? nearest : null;
+  return found ? nearest : null;
+}
+
+/** The same for surfaces, of which only the front counts. */
+export function pickSurfaces(
+  surfaces: readonly Surface[],
+  origin: Vec3,
+  direction: Vec3,
+  clip: Box | null,
+  limit = Number.POSITIVE_INFINITY,
+): number | null {
+  return pickMeshes(surfaces, origin, direction, { clip, limit });
 }

@@ -8,9 +8,12 @@ export interface Triangles {
   readonly indices: Uint16Array | Uint32Array | null;
 }
 
+/** Front: only triangles that turn their front (counter-clockwise) to the ray, as they are the ones of surfaces that are drawn. */
+export type Sides = "front" | "both";
+
 /**
- * Distance to the nearest hit in units of `direction`, less than `limit`; infinity: none. Only triangles that turn their front (counter-clockwise) to
- * the ray count, as they are the ones that are drawn. `accept` may refuse a hit, and what is behind it is looked for.
+ * Distance to the nearest hit in units of `direction`, less than `limit`; infinity: none. `accept` may refuse a hit, and what is behind it is looked
+ * for.
  */
 export function nearestHit(
   mesh: Triangles,
@@ -18,6 +21,7 @@ export function nearestHit(
   direction: Vec3,
   limit = Number.POSITIVE_INFINITY,
   accept: (t: number) => boolean = () => true,
+  sides: Sides = "front",
 ): number {
   const { positions: p, indices } = mesh;
   const [ox, oy, oz] = origin;
@@ -42,11 +46,13 @@ export function nearestHit(
     const px = dy * e2z - dz * e2y;
     const py = dz * e2x - dx * e2z;
     const pz = dx * e2y - dy * e2x;
-    const det = e1x * px + e1y * py + e1z * pz;
+    const signed = e1x * px + e1y * py + e1z * pz;
+    const sign = signed < 0 && sides === "both" ? -1 : 1;
+    const det = sign * signed;
     if (!(det > 0)) continue;
-    const tx = ox - ax;
-    const ty = oy - ay;
-    const tz = oz - az;
+    const tx = sign * (ox - ax);
+    const ty = sign * (oy - ay);
+    const tz = sign * (oz - az);
     // A little outside counts, so that no ray slips through between two triangles.
     const slack = 1e-7 * det;
     const u = tx * px + ty * py + tz * pz;

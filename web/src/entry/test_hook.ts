@@ -1,9 +1,12 @@
 // window.__skyquilt: what tests ask instead of reading pixels. Only in builds for tests (SKYQUILT_TEST_HOOK).
 import type { Vec2 } from "../base/vec.js";
+import { norm, sub } from "../base/vec_math.js";
 import { poseLookingAt } from "../geo/camera.js";
 import type { AppContext } from "../panels/context.js";
 import { openCompare } from "../panels/open_compare.js";
 import type { Link } from "../protocol/link_api.js";
+import type { Ray } from "../scene/scene_api.js";
+import type { SceneThing } from "../scene/thing.js";
 import type { AppState, CameraPose, Enu, Layers, SurfacePoint } from "../state/app_state.js";
 import { type SettledFrame, samePose, type ViewLog } from "./view_log.js";
 
@@ -22,6 +25,20 @@ export interface TestHook {
   capturePixels(): Promise<{ readonly w: number; readonly h: number; readonly rgba: string }>;
   pickAt(px: Vec2): Promise<{ readonly mesh: SurfacePoint | null; readonly field: SurfacePoint | null }>;
   project(enu: Enu): Vec2 | null;
+  rayAt(px: Vec2): Ray;
+  /** What a tour would place. */
+  setThings(list: readonly SceneThing[]): void;
+  highlightThings(selected: string | null, hovered: string | null): void;
+  /** Id of what is seen there. */
+  thingAt(px: Vec2): string | null;
+  /** The surface or a model. */
+  placeAt(px: Vec2): SurfacePoint | null;
+  /** Distances of the mesh from the eye, NaN: none. */
+  meshDistances(places: readonly Vec2[]): number[];
+  /** Labels and markers that nothing hides. */
+  visibleTexts(): readonly string[];
+  /** Markers that were chosen, in order. */
+  chosenThings(): readonly string[];
   setLayer(name: keyof Layers, on: boolean): void;
   /** A command by its id. */
   run(id: string): Promise<void>;
@@ -75,6 +92,8 @@ export function installTestHook(context: AppContext, log: ViewLog): void {
     const pixelM = ray.pixelWidthM > 0 ? ray.pixelWidthM : ray.pixelPitch * picked.depthM;
     return { enu: picked.point, direction: ray.direction, spreadM: picked.spreadM, pixelM, source: "field" };
   };
+  const chosen: string[] = [];
+  scene.onThingChosen((id) => chosen.push(id));
   let drawn = false;
   void scene.whenIdle().then(() => {
     drawn = true;
@@ -94,6 +113,18 @@ export function installTestHook(context: AppContext, log: ViewLog): void {
     capturePixels: async () => pixelsOf(await scene.capture()),
     pickAt: async (px) => ({ mesh: scene.pickSurface(px), field: await fieldAt(px) }),
     project: (enu) => scene.project(enu),
+    rayAt: (px) => scene.rayAt(px),
+    setThings: (list) => scene.setThings(list),
+    highlightThings: (selected, hovered) => scene.highlightThings(selected, hovered),
+    thingAt: (px) => scene.pickThing(px),
+    placeAt: (px) => scene.pickPlace(px),
+    meshDistances: (places) =>
+      places.map((px) => {
+        const point = scene.pickSurface(px);
+        return point === null ? Number.NaN : norm(sub(point.enu, scene.rayAt(px).originEnu));
+      }),
+    visibleTexts: () => scene.visibleTexts(),
+    chosenThings: () => chosen,
     setLayer: (name, on) => store.update((state) => ({ layers: { ...state.layers, [name]: on } })),
     run: (id) => commands.run(id),
     openPhoto: async (index) => {

@@ -17,9 +17,12 @@ import {
 import type { Vec2 } from "../base/vec.js";
 import { matrixFromQuat } from "../base/vec_math.js";
 import type { ExactFrame } from "../protocol/link_api.js";
+import { boxHolds } from "./clip.js";
 import { makeDepthGrid } from "./depth_grid.js";
 import { type ExactUniforms, makeExactMaterial, makeExactUniforms, setDefines } from "./exact_material.js";
 import { Fade } from "./fade.js";
+import { FrameDepthMaterial } from "./frame_depth.js";
+import { depthInFrame, pointOfFrame } from "./frame_sight.js";
 import { type Drape, matrixOf, textureOf } from "./surface_style.js";
 import { type Box, sceneFromEnu, type World } from "./world.js";
 
@@ -51,6 +54,8 @@ export class ExactLayer {
   private readonly scene = new Scene();
   private readonly quad: Mesh<BufferGeometry, ReturnType<typeof makeExactMaterial>>;
   private readonly grid: Mesh<BufferGeometry, ReturnType<typeof makeExactMaterial>>;
+  private readonly depthScene = new Scene();
+  private readonly depthQuad: Mesh<BufferGeometry, FrameDepthMaterial>;
   private readonly fade = new Fade();
   private shown: Shown | null = null;
   /** The camera is where the frame was rendered. */
@@ -64,12 +69,13 @@ export class ExactLayer {
     this.reducedMotion = reducedMotion;
     this.quad = new Mesh(canvasTriangle(), makeExactMaterial("quad", this.uniforms));
     this.grid = new Mesh(new BufferGeometry(), makeExactMaterial("grid", this.uniforms));
-    for (const mesh of [this.quad, this.grid]) {
+    this.depthQuad = new Mesh(this.quad.geometry, new FrameDepthMaterial(this.uniforms));
+    for (const mesh of [this.quad, this.grid, this.depthQuad]) {
       mesh.frustumCulled = false;
       mesh.matrixAutoUpdate = false;
-      mesh.visible = false;
-      this.scene.add(mesh);
     }
+    this.scene.add(this.quad, this.grid);
+    this.depthScene.add(this.depthQuad);
   }
 
   /** It still changes by itself. */
@@ -84,6 +90,39 @@ export class ExactLayer {
   /** At the frame's own pose and fully there: what is below it cannot be seen, apart from holes that the clip box makes. */
   get settled(): boolean {
     return this.atPose && this.fade.opacity === 1;
+  }
+
+  /**
+   * The frame, no longer the mesh, says what hides things: it is at its own pose and more there than the mesh. Until its last pass its depth is coarser
+   * than the mesh; `coarse` takes it all the same.
+   */
+  hides(coarse: boolean): boolean {
+    if (this.shown === null || !this.atPose || this.fade.opacity < 0.5) return false;
+    const { pass, passes, depthWidth, depthHeight, depthM } = this.shown.frame;
+    return (coarse || pass >= passes - 1) && depthWidth > 0 && depthM.length >= depthWidth * depthHeight;
+  }
+
+  /** Which frame is shown. */
+  get frameKey(): string {
+    return this.shown === null ? "" : `${this.shown.frame.seq}/${this.shown.frame.pass}`;
+  }
+
+  /** z along the optical axis at a place of the canvas, 0 to 1; infinity: no surface; null: there is no frame there, so that the mesh is seen. */
+  depthAt(place: Vec2): number | null {
+    if (this.shown === null) return null;
+    const { frame } = this.shown;
+    const z = depthInFrame(frame, place);
+    if (this.clip === null) return z;
+    const inside = Number.isFinite(z) && boxHolds(this.clip, sceneFromEnu(this.world, pointOfFrame(frame, place, z)));
+    return inside ? z : null;
+  }
+
+  /** Writes the frame's depth for what is drawn next. The scissor of the caller holds. */
+  drawDepth(renderer: WebGLRenderer, camera: Camera): void {
+    if (this.shown === null) return;
+    this.uploadDepth(this.shown);
+    this.depthQuad.material.prepare(camera, this.clip !== null);
+    renderer.render(this.depthScene, camera);
   }
 
   /** A frame of the pose at which the camera is; takes its bitmap over. `canvasPx`: device pixels of the canvas. */
@@ -166,7 +205,7 @@ export class ExactLayer {
 
   dispose(): void {
     this.clear();
-    for (const mesh of [this.quad, this.grid]) {
+    for (const mesh of [this.quad, this.grid, this.depthQuad]) {
       mesh.geometry.dispose();
       mesh.material.dispose();
     }

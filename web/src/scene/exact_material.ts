@@ -37,6 +37,15 @@ vec3 finish(vec3 rgb, vec3 point) {
   return rgb;
 }`;
 
+/** The point in the scene that a place of the frame shows, z ahead of its camera. */
+export const FRAME_POINT = `uniform mat4 sceneFromCamera;
+uniform vec2 halfSize;
+uniform float perspective;
+vec3 framePoint(vec2 uv, float z) {
+  vec2 aside = (2.0 * uv - 1.0) * halfSize * mix(1.0, z, perspective);
+  return (sceneFromCamera * vec4(aside, z, 1.0)).xyz;
+}`;
+
 /** The whole canvas, seen from the frame's own pose. */
 const QUAD_VERTEX = `varying vec2 vUv;
 void main() {
@@ -48,9 +57,7 @@ uniform float opacity;
 varying vec2 vUv;
 #if defined(CLIP) || defined(DRAPE)
 uniform sampler2D depth;
-uniform mat4 sceneFromCamera;
-uniform vec2 halfSize;
-uniform float perspective;
+${FRAME_POINT}
 ${POINT_FUNCTIONS}
 #endif
 void main() {
@@ -59,10 +66,7 @@ void main() {
   ivec2 size = textureSize(depth, 0);
   ivec2 pixel = ivec2(vUv * vec2(textureSize(colour, 0)));
   float z = texelFetch(depth, min(pixel / 2, size - 1), 0).r;
-  if (z > 0.0) {
-    vec2 aside = (2.0 * vUv - 1.0) * halfSize * mix(1.0, z, perspective);
-    rgb = finish(rgb, (sceneFromCamera * vec4(aside, z, 1.0)).xyz);
-  }
+  if (z > 0.0) rgb = finish(rgb, framePoint(vUv, z));
 #ifdef CLIP
   else discard;
 #endif

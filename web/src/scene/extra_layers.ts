@@ -42,6 +42,9 @@ function lines(positions: ArrayLike<number>, color: number): LineSegments {
 }
 
 export class ExtraLayers {
+  /** Points and contours: they lie in the surface, whose own depth hides them. */
+  readonly onSurface = new Group();
+  /** What stands in space. */
   readonly object = new Group();
   private readonly project: Project;
   private readonly world: World;
@@ -89,7 +92,7 @@ export class ExtraLayers {
 
   dispose(): void {
     this.abort.abort();
-    for (const child of [...this.object.children]) disposeObject(child);
+    for (const child of [...this.object.children, ...this.onSurface.children]) disposeObject(child);
     this.made.clear();
     this.clipEdges = null;
   }
@@ -97,7 +100,7 @@ export class ExtraLayers {
   private make(name: LayerName): void {
     const group = new Group();
     this.made.set(name, group);
-    this.object.add(group);
+    (name === "points" || name === "contours" ? this.onSurface : this.object).add(group);
     switch (name) {
       case "blocks":
         this.addBlocks(group);

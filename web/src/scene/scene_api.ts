@@ -1,6 +1,8 @@
 // What panels and tools may ask of the 3-D scene. Coordinates: ENU metres in doubles; positions on the canvas in CSS pixels from its upper left corner.
 import type { Vec2, Vec3 } from "../base/vec.js";
 import type { CameraPose, Enu, SurfacePoint } from "../state/app_state.js";
+import type { SceneThing } from "./thing.js";
+import type { Box } from "./world.js";
 
 export interface Ray {
   readonly originEnu: Enu;
@@ -23,6 +25,20 @@ export interface SceneApi {
   pickSurface(px: Vec2): SurfacePoint | null;
   /** Id of the building whose model is nearest under this place (the clip box counts, the surface does not); null: none. */
   pickBuilding(px: Vec2): number | null;
+  /** What a tour places in the scene. Things that are the same objects as in the list before are left as they are. */
+  setThings(list: readonly SceneThing[]): void;
+  /** Ids; null: none. */
+  highlightThings(selected: string | null, hovered: string | null): void;
+  /** A marker was clicked or chosen by the keyboard. Returns the function that ends it. */
+  onThingChosen(listener: (id: string) => void): () => void;
+  /** Id of the label, marker or model that is seen under this place; null: none. */
+  pickThing(px: Vec2): string | null;
+  /** As pickSurface, but a model in front of the surface counts too: where a click places a thing. */
+  pickPlace(px: Vec2): SurfacePoint | null;
+  /** Around a thing, ENU; a label or marker is a point. Null: unknown, or a model that is not loaded. */
+  boxOfThing(id: string): Box | null;
+  /** Ids of the labels and markers that nothing hides. */
+  visibleTexts(): readonly string[];
   /** Canvas position of a point; null: behind the camera. */
   project(point: Enu): Vec2 | null;
   /** Asks for a new frame; the scene draws only on change. */

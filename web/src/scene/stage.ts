@@ -3,6 +3,7 @@ import {
   type Camera,
   ColorManagement,
   LinearSRGBColorSpace,
+  MeshBasicMaterial,
   NoToneMapping,
   Plane,
   Scene,
@@ -11,16 +12,20 @@ import {
 } from "three";
 import type { Vec2 } from "../base/vec.js";
 import type { Which } from "../protocol/link_api.js";
-import type { ClipBox } from "../state/app_state.js";
+import type { ClipBox, Layers } from "../state/app_state.js";
 import type { Project, ProjectBase } from "../state/project.js";
 import { BuildingsLayer } from "./buildings_layer.js";
 import { clipInScene, halfSpacesOf, swipeColumns } from "./clip.js";
 import { ExactLayer } from "./exact_layer.js";
 import { ExtraLayers } from "./extra_layers.js";
+import { readModel } from "./model_file.js";
+import { ModelStore } from "./model_store.js";
 import type { Quality } from "./quality.js";
 import type { Surface, SurfaceEvents } from "./surface.js";
 import { type Drape, SurfaceStyle } from "./surface_style.js";
 import { TerrainLayer } from "./terrain_layer.js";
+import type { LoadBytes } from "./thing.js";
+import { ThingsLayer } from "./things_layer.js";
 import { TilesLayer } from "./tiles_layer.js";
 import type { Size } from "./view_math.js";
 import { NO_WEBGL2, webglSupport } from "./webgl_support.js";
@@ -39,6 +44,7 @@ interface Side {
 export interface StageOptions {
   readonly project: Project;
   readonly world: World;
+  readonly loadBytes: LoadBytes;
   reducedMotion(): boolean;
   events: SurfaceEvents;
 }
@@ -68,13 +74,22 @@ export class Stage {
   readonly renderer: WebGLRenderer;
   readonly extras: ExtraLayers;
   readonly buildings: BuildingsLayer;
+  readonly things: ThingsLayer;
   /** The processor draws. */
   readonly software: boolean;
   private readonly world: World;
   private readonly style = new SurfaceStyle();
   private readonly main: Side;
   private readonly before: Side | null;
+  private readonly onSurface = new Scene();
   private readonly over = new Scene();
+  /** The mesh is not shown, but hides. */
+  private readonly unseen = new MeshBasicMaterial({
+    colorWrite: false,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+  });
   private clip: Box | null = null;
 
   /** Throws an Error for the user when the browser has no WebGL 2. */
@@ -94,8 +109,11 @@ export class Stage {
     this.main = side(project, IDENTITY);
     this.before = project.before === null ? null : side(project.before, project.before.enuFromBefore);
     this.extras = new ExtraLayers(project, world, events);
+    this.onSurface.add(this.extras.onSurface);
     this.over.add(this.extras.object);
     this.buildings = new BuildingsLayer(world);
+    const models = new ModelStore({ loadBytes: options.loadBytes, read: (bytes) => readModel(bytes, software) });
+    this.things = new ThingsLayer(world, models, events);
   }
 
   /** Device pixels per CSS pixel at rest. */
@@ -114,7 +132,7 @@ export class Stage {
   }
 
   get busy(): boolean {
-    return this.main.surface?.busy === true || this.extras.busy;
+    return this.main.surface?.busy === true || this.extras.busy || this.things.busy;
   }
 
   get beforeBusy(): boolean {
@@ -150,6 +168,8 @@ export class Stage {
         ? []
         : halfSpacesOf(this.clip).map(({ normal, constant }) => new Plane(new Vector3(...normal), constant));
     this.style.setClip(planes);
+    this.unseen.clippingPlanes = planes;
+    this.things.setClip(planes);
     this.extras.setClip(clip, planes);
     this.buildings.setClip(planes);
     this.eachExact((exact) => exact.setClip(this.clip));
@@ -172,41 +192,41 @@ export class Stage {
     return true;
   }
 
+  /** The frame of the main project, not its mesh, says what is hidden. Earlier passes only where there is no mesh. */
+  get frameHides(): boolean {
+    return this.main.exact.hides(this.main.surface === null);
+  }
+
   /** `swipeAt`: null, or where the earlier project ends, 0 to 1 of the width. */
-  draw(camera: Camera, size: Size, quality: Quality, showSurface: boolean, swipeAt: number | null): void {
+  draw(
+    camera: Camera,
+    size: Size,
+    quality: Quality,
+    layers: Pick<Layers, "surface" | "exact">,
+    swipeAt: number | null,
+  ): void {
     const { renderer, main, before } = this;
     main.surface?.update(camera, size, quality);
     // Also where the line hides it: who moves the line wants to see it at once.
     if (swipeAt !== null) before?.surface?.update(camera, size, quality);
     renderer.setScissorTest(false);
     renderer.clear();
-    if (swipeAt === null || before === null) {
-      this.drawSide(main, camera, showSurface);
-    } else {
-      const columns = swipeColumns(swipeAt, size[0]);
-      renderer.setScissorTest(true);
-      for (const [side, { x, w }] of [
-        [before, columns.before],
-        [main, columns.main],
-      ] as const) {
-        if (w <= 0) continue;
-        renderer.setScissor(x, 0, w, size[1]);
-        this.drawSide(side, camera, showSurface);
-      }
-      renderer.setScissorTest(false);
+    if (swipeAt !== null && before !== null) {
+      const { x, w } = swipeColumns(swipeAt, size[0]).before;
+      this.inColumns(x, w, size, () => this.drawSide(before, camera, layers.surface));
     }
+    // Right of the line, or everywhere.
+    const { x, w } = before === null ? { x: 0, w: size[0] } : swipeColumns(swipeAt ?? 0, size[0]).main;
+    this.inColumns(x, w, size, () => this.drawSide(main, camera, layers.surface));
+    renderer.render(this.onSurface, camera);
+    if (this.things.visible) this.inColumns(x, w, size, () => this.drawThings(camera, layers));
     renderer.render(this.over, camera);
     if (!this.buildings.visible) return;
-    // Models and surface are centimetres apart and would flicker into each other, so models hide only models.
-    if (swipeAt !== null) {
-      const { x, w } = swipeColumns(swipeAt, size[0]).main;
-      if (w <= 0) return;
-      renderer.setScissorTest(true);
-      renderer.setScissor(x, 0, w, size[1]);
-    }
-    renderer.clearDepth();
-    renderer.render(this.buildings.scene, camera);
-    renderer.setScissorTest(false);
+    // Models of buildings and the surface are centimetres apart and would flicker into each other, so they hide only each other.
+    this.inColumns(x, w, size, () => {
+      renderer.clearDepth();
+      renderer.render(this.buildings.scene, camera);
+    });
   }
 
   dispose(): void {
@@ -216,9 +236,37 @@ export class Stage {
     }
     this.extras.dispose();
     this.buildings.dispose();
+    this.things.dispose();
+    this.unseen.dispose();
     this.renderer.dispose();
     // Browsers allow few contexts at a time, and garbage collection takes its time.
     this.renderer.forceContextLoss();
+  }
+
+  private inColumns(x: number, w: number, size: Size, draw: () => void): void {
+    if (w <= 0) return;
+    if (w >= size[0]) {
+      draw();
+      return;
+    }
+    this.renderer.setScissor(x, 0, w, size[1]);
+    this.renderer.setScissorTest(true);
+    draw();
+    this.renderer.setScissorTest(false);
+  }
+
+  /** Hidden by what the picture shows there: the frame, or the mesh. */
+  private drawThings(camera: Camera, layers: Pick<Layers, "surface" | "exact">): void {
+    const { renderer, main } = this;
+    if (this.frameHides) {
+      main.exact.drawDepth(renderer, camera);
+    } else if (layers.exact && !layers.surface) {
+      // Until the frame comes back: otherwise things would come out of houses whenever the camera moves.
+      main.scene.overrideMaterial = this.unseen;
+      renderer.render(main.scene, camera);
+      main.scene.overrideMaterial = null;
+    }
+    renderer.render(this.things.scene, camera);
   }
 
   private drawSide(side: Side, camera: Camera, showSurface: boolean): void {

@@ -2,9 +2,8 @@
 import { systemClock } from "../base/clock.js";
 import { Disposer } from "../base/disposer.js";
 import type { Vec2, Vec3 } from "../base/vec.js";
-import { add, dot, scale } from "../base/vec_math.js";
-import { anglesOfPose, forward } from "../geo/camera.js";
-import type { Link, Which } from "../protocol/link_api.js";
+import { add, scale } from "../base/vec_math.js";
+import type { Link } from "../protocol/link_api.js";
 import type { AppState, CameraPose, Enu, SurfacePoint } from "../state/app_state.js";
 import { addNotice } from "../state/notices.js";
 import type { Project } from "../state/project.js";
@@ -20,20 +19,24 @@ import { obliquePose, topPose } from "./framing.js";
 import { MiddleCross } from "./middle_cross.js";
 import { Navigation } from "./navigation.js";
 import { Overlay } from "./overlay.js";
-import { pickSurfaces } from "./picking.js";
+import { Places } from "./places.js";
 import { FrameMeter } from "./quality.js";
-import { ReadoutWriter, type ViewReadout } from "./readout.js";
+import { ReadoutWriter } from "./readout.js";
 import { RenderLoop } from "./render_loop.js";
 import type { Ray, SceneApi } from "./scene_api.js";
+import { SceneThings } from "./scene_things.js";
 import { Stage } from "./stage.js";
-import { pixelSizeM, type Size } from "./view_math.js";
-import { type Box, makeWorld, sceneFromEnu, type World } from "./world.js";
+import { fetchBytes, type LoadBytes, type SceneThing } from "./thing.js";
+import type { Size } from "./view_math.js";
+import { type Box, makeWorld, type World } from "./world.js";
 
 export interface SceneOptions {
   readonly container: HTMLElement;
   readonly project: Project;
   readonly store: Store;
   readonly link: Link;
+  /** Where models come from; without it from the server. */
+  readonly loadBytes?: LoadBytes;
 }
 
 /** Throws an Error for the user when the browser has no WebGL 2. */
@@ -60,6 +63,8 @@ class ViewerScene implements SceneApi {
   private readonly overlay: Overlay;
   private readonly readout: ReadoutWriter;
   private readonly drape: ErrorDrape;
+  private readonly places: Places;
+  private readonly things: SceneThings;
   private readonly photosBox: Box;
   private readonly before: readonly Vec3[];
   private drawnVersion = -1;
@@ -67,7 +72,7 @@ class ViewerScene implements SceneApi {
   private lastFrameMs = Number.NEGATIVE_INFINITY;
   private waiters: { readonly after: number; readonly done: () => void }[] = [];
 
-  constructor({ container, project, store, link }: SceneOptions) {
+  constructor({ container, project, store, link, loadBytes = fetchBytes }: SceneOptions) {
     this.store = store;
     this.world = makeWorld(project);
     const positions = project.photos.map(({ position }) => position);
@@ -77,12 +82,13 @@ class ViewerScene implements SceneApi {
     const motion = window.matchMedia("(prefers-reduced-motion: reduce)");
     const reducedMotion = () => motion.matches;
     const invalidate = () => this.loop.invalidate();
+    const changed = () => this.things.changed();
     const failed = (text: string) => {
       addNotice(store, "error", text);
     };
     this.loop = d.own(new RenderLoop((nowMs) => this.frame(nowMs)));
     this.stage = d.own(
-      new Stage({ project, world: this.world, reducedMotion, events: { changed: invalidate, failed } }),
+      new Stage({ project, world: this.world, loadBytes, reducedMotion, events: { changed, failed } }),
     );
     this.canvas = this.stage.renderer.domElement;
     this.meter = new FrameMeter(this.stage.software);
@@ -99,8 +105,11 @@ class ViewerScene implements SceneApi {
     this.rig.resize(size);
     this.overlay = d.own(new Overlay(container, project, this.world.sizeM));
     d.own(new MiddleCross(container, store));
-    const { world, rig } = this;
-    this.moves = d.own(new CameraMoves({ rig, world, store, reducedMotion, focus: () => this.focus(), invalidate }));
+    const { world, rig, stage, canvas } = this;
+    this.places = new Places({ rig, stage, world, swipeAt: () => this.swipeAt() });
+    this.things = d.own(new SceneThings({ container, canvas, stage, rig, world, invalidate }));
+    const focus = () => this.places.focus();
+    this.moves = d.own(new CameraMoves({ rig, world, store, reducedMotion, focus, invalidate }));
     this.navigation = d.own(
       new Navigation({
         canvas: this.canvas,
@@ -109,7 +118,7 @@ class ViewerScene implements SceneApi {
         mode: () => store.get().navigation,
         reducedMotion,
         pick: (px) => this.pickSurface(px)?.enu ?? null,
-        groundAt: (x, y) => this.groundAt(x, y),
+        groundAt: (x, y) => this.places.groundAt(x, y),
         onInput: () => this.moves.interrupt(),
         invalidate,
       }),
@@ -127,7 +136,7 @@ class ViewerScene implements SceneApi {
         invalidate,
       }),
     );
-    this.readout = d.own(new ReadoutWriter(store, systemClock, () => this.measure()));
+    this.readout = d.own(new ReadoutWriter(store, systemClock, () => this.places.readout(this.meter.fps)));
     this.drape = d.own(
       new ErrorDrape(world, {
         changed: (drape) => {
@@ -162,31 +171,39 @@ class ViewerScene implements SceneApi {
   }
 
   pickSurface(px: Vec2): SurfacePoint | null {
-    const ray = this.rig.rayAt(px);
-    const { swipe } = this.store.get();
-    const side: Which = this.exact.swiping && px[0] < swipe.at * this.rig.size[0] ? "before" : "main";
-    const t = pickSurfaces(
-      this.stage.surfaces(side),
-      sceneFromEnu(this.world, ray.originEnu),
-      ray.direction,
-      this.stage.clipBox,
-    );
-    if (t === null) return null;
-    return {
-      enu: add(ray.originEnu, scale(ray.direction, t)),
-      direction: ray.direction,
-      spreadM: null,
-      pixelM: ray.pixelWidthM + ray.pixelPitch * t,
-      source: "mesh",
-    };
+    return this.places.surface(px);
   }
 
   pickBuilding(px: Vec2): number | null {
-    const { originEnu, direction } = this.rig.rayAt(px);
-    const { swipe } = this.store.get();
-    // Left of the line is the earlier project, whose buildings are not shown.
-    if (this.exact.swiping && px[0] < swipe.at * this.rig.size[0]) return null;
-    return this.stage.buildings.pick(sceneFromEnu(this.world, originEnu), direction, this.stage.clipBox);
+    return this.places.building(px);
+  }
+
+  setThings(list: readonly SceneThing[]): void {
+    this.things.set(list);
+  }
+
+  highlightThings(selected: string | null, hovered: string | null): void {
+    this.things.highlight(selected, hovered);
+  }
+
+  onThingChosen(listener: (id: string) => void): () => void {
+    return this.things.onChosen(listener);
+  }
+
+  pickThing(px: Vec2): string | null {
+    return this.things.pick(px);
+  }
+
+  pickPlace(px: Vec2): SurfacePoint | null {
+    return this.places.surfaceOr(px, this.things.modelAt(px, this.rig.rayAt(px))?.t ?? null);
+  }
+
+  boxOfThing(id: string): Box | null {
+    return this.things.boxOf(id);
+  }
+
+  visibleTexts(): readonly string[] {
+    return this.things.visibleTexts();
   }
 
   project(point: Enu): Vec2 | null {
@@ -244,15 +261,12 @@ class ViewerScene implements SceneApi {
     const state = store.get();
     const quality = meter.quality(!this.exact.resting);
     stage.resize(rig.size, Math.min(fullRatio, quality.pixelRatio));
-    stage.draw(
-      rig.update(this.visibleBox(state)),
-      rig.size,
-      quality,
-      state.layers.surface,
-      this.exact.swiping ? state.swipe.at : null,
-    );
+    const swipeAt = this.swipeAt();
+    stage.draw(rig.update(this.visibleBox(state)), rig.size, quality, state.layers, swipeAt);
     this.overlay.update(state, rig.pose, rig.size);
-    const again = this.moves.active || this.navigation.active || stage.fading;
+    const { surface: showsSurface, exact: showsExact } = state.layers;
+    const looking = this.things.update(rig.pose, { showsSurface, showsExact, swipeAt, moving: moved });
+    const again = this.moves.active || this.navigation.active || stage.fading || looking;
     if (!again) this.tellIdle();
     return again;
   }
@@ -275,33 +289,14 @@ class ViewerScene implements SceneApi {
     if (state.layers.cameras) box = boxWith(box, [this.photosBox.min, this.photosBox.max]);
     if (this.stage.clipBox !== null) box = boxWith(box, [state.clip.min, state.clip.max]);
     if (this.exact.swiping) box = boxWith(box, this.before);
+    box = boxWith(box, this.things.corners());
     const by: Vec3 = [margin, margin, margin];
     return { min: add(box.min, scale(by, -1)), max: add(box.max, by) };
   }
 
-  // ---- places ----
-
-  private focus(): Vec3 {
-    const { rig, world } = this;
-    const middle: Vec2 = [rig.size[0] / 2, rig.size[1] / 2];
-    return this.pickSurface(middle)?.enu ?? add(rig.pose.eyeEnu, scale(forward(rig.pose.rotation), world.sizeM / 2));
-  }
-
-  private groundAt(x: number, y: number): number | null {
-    const topM = this.world.boxEnu.max[2] + this.world.sizeM;
-    const t = pickSurfaces(this.stage.surfaces("main"), sceneFromEnu(this.world, [x, y, topM]), [0, 0, -1], null);
-    return t === null ? null : topM - t;
-  }
-
-  private measure(): ViewReadout {
-    const { rig } = this;
-    const { yawDeg, pitchDeg } = anglesOfPose(rig.pose.rotation);
-    const ray = rig.rayAt([rig.size[0] / 2, rig.size[1] / 2]);
-    const t = pickSurfaces(this.stage.surfaces("main"), sceneFromEnu(this.world, ray.originEnu), ray.direction, null);
-    const depthM = t === null ? null : t * dot(ray.direction, forward(rig.pose.rotation));
-    const metresPerPx =
-      rig.pose.orthoHeightM === null && depthM === null ? null : pixelSizeM(rig.pose, rig.size, depthM ?? 0);
-    return { headingDeg: yawDeg, pitchDeg, metresPerPx, fps: this.meter.fps };
+  /** Null, or where the earlier project ends, 0 to 1 of the width. */
+  private swipeAt(): number | null {
+    return this.exact.swiping ? this.store.get().swipe.at : null;
   }
 
   // ---- store and window ----

@@ -170,6 +170,13 @@ export function bench(change: Partial<Project> = {}): Bench {
         return { enu: [px[0], -px[1], 0], direction: [0, 0, -1], spreadM: null, pixelM: 0.1, source: "mesh" };
       },
       pickBuilding: (px) => buildings.get(`${px}`) ?? null,
+      setThings: () => {},
+      highlightThings: () => {},
+      onThingChosen: () => () => {},
+      pickThing: () => null,
+      pickPlace: () => null,
+      boxOfThing: () => null,
+      visibleTexts: () => [],
       project: (point) => [point[0], -point[1]],
       invalidate: () => {},
       whenIdle: () => Promise.resolve(),

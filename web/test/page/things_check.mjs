@@ -1,0 +1,234 @@
+// Things that a tour places: a box behind a house is hidden by it, in the view of the mesh and in a settled exact frame, to two pixels; texts are hidden
+// too, and markers are chosen by the keyboard. What must be seen is computed here from depths: of the mesh by its own picks, of the frame from the depth
+// image of `skyquilt render`.
+import { execFileSync } from "node:child_process";
+import path from "node:path";
+import { canvasPicture, save } from "./browser.mjs";
+
+const FOV_DEG = 45;
+/** Of 255. Magenta is far from everything in the scene. */
+const DIFFERENT = 24;
+const MOST_PX = 2;
+const BOX = { size: [7, 11, 4], yawDeg: 30, scale: 1.25 };
+
+/** A GLB of a box that stands on its origin; `size` along x, y (up) and z. */
+export function boxGlb([x, y, z], color) {
+  const corners = [];
+  for (const side of [0, 1, 2]) {
+    for (const sign of [-1, 1]) {
+      const [u, v] = [(side + 1) % 3, (side + 2) % 3];
+      const quad = [
+        [-1, -1],
+        [1, -1],
+        [1, 1],
+        [-1, 1],
+      ].map(([a, b]) => {
+        const corner = [0, 0, 0];
+        corner[side] = sign;
+        corner[u] = a * sign;
+        corner[v] = b;
+        return [(corner[0] * x) / 2, ((corner[1] + 1) * y) / 2, (corner[2] * z) / 2];
+      });
+      for (const k of [0, 1, 2, 0, 2, 3]) corners.push(...quad[k]);
+    }
+  }
+  const binary = Buffer.from(Float32Array.from(corners).buffer);
+  const document = {
+    asset: { version: "2.0" },
+    scene: 0,
+    scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0 }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, material: 0 }] }],
+    materials: [{ pbrMetallicRoughness: { baseColorFactor: [...color, 1] } }],
+    accessors: [
+      {
+        bufferView: 0,
+        componentType: 5126,
+        count: corners.length / 3,
+        type: "VEC3",
+        min: [-x / 2, 0, -z / 2],
+        max: [x / 2, y, z / 2],
+      },
+    ],
+    bufferViews: [{ buffer: 0, byteLength: binary.length }],
+    buffers: [{ byteLength: binary.length }],
+  };
+  const text = JSON.stringify(document);
+  const json = Buffer.from(text.padEnd(Math.ceil(text.length / 4) * 4));
+  const chunk = (type, bytes) => {
+    const head = Buffer.alloc(8);
+    head.writeUInt32LE(bytes.length, 0);
+    head.write(type, 4, "latin1");
+    return Buffer.concat([head, bytes]);
+  };
+  const chunks = Buffer.concat([chunk("JSON", json), chunk("BIN\0", binary)]);
+  const head = Buffer.alloc(12);
+  head.write("glTF", 0, "latin1");
+  head.writeUInt32LE(2, 4);
+  head.writeUInt32LE(12 + chunks.length, 8);
+  return Buffer.concat([head, chunks]);
+}
+
+/** Distance along the ray to the box that stands at `at`; NaN: it misses. */
+function boxDistance(at, origin, direction) {
+  const yaw = (BOX.yawDeg * Math.PI) / 180;
+  // Into the box's own axes: ahead is where the yaw points, clockwise from north.
+  const ahead = [Math.sin(yaw), Math.cos(yaw)];
+  const right = [Math.cos(yaw), -Math.sin(yaw)];
+  const own = (v) => [v[0] * right[0] + v[1] * right[1], v[0] * ahead[0] + v[1] * ahead[1], v[2]];
+  const o = own(origin.map((value, i) => value - at[i]));
+  const d = own(direction);
+  const [x, y, z] = BOX.size.map((value) => value * BOX.scale);
+  const low = [-x / 2, -z / 2, 0];
+  const high = [x / 2, z / 2, y];
+  let [near, far] = [0, Number.POSITIVE_INFINITY];
+  for (const i of [0, 1, 2]) {
+    const [a, b] = [(low[i] - o[i]) / d[i], (high[i] - o[i]) / d[i]];
+    near = Math.max(near, Math.min(a, b));
+    far = Math.min(far, Math.max(a, b));
+  }
+  return near < far ? near : Number.NaN;
+}
+
+/** Values of a picture of depth at these pixels. */
+function depthsAt(file, pixels) {
+  const input = pixels.map((px) => px.join(" ")).join("\n");
+  const text = execFileSync("gdallocationinfo", ["-valonly", file], { input }).toString();
+  const lines = text.split("\n").slice(0, pixels.length);
+  return lines.map((line) => (line.trim() === "" ? Number.NaN : Number(line)));
+}
+
+/** Pixels where the pictures differ. */
+function changedPixels(a, b) {
+  const changed = new Uint8Array(a.width * a.height);
+  for (let i = 0; i < changed.length; i += 1) {
+    for (let c = 0; c < 3; c += 1) {
+      if (Math.abs(a.data[4 * i + c] - b.data[4 * i + c]) > DIFFERENT) changed[i] = 1;
+    }
+  }
+  return changed;
+}
+
+/** How many pixels differ from the truth, and how many of them are farther than two pixels from its edge. */
+function against(truth, drawn, width, height) {
+  let wrong = 0;
+  let far = 0;
+  for (let y = 0; y < height; y += 1) {
+    for (let x = 0; x < width; x += 1) {
+      const here = truth[y * width + x];
+      if (drawn[y * width + x] === here) continue;
+      wrong += 1;
+      let edge = false;
+      for (let j = Math.max(0, y - MOST_PX); j <= Math.min(height - 1, y + MOST_PX); j += 1) {
+        for (let i = Math.max(0, x - MOST_PX); i <= Math.min(width - 1, x + MOST_PX); i += 1) {
+          if (truth[j * width + i] !== here) edge = true;
+        }
+      }
+      if (!edge) far += 1;
+    }
+  }
+  return { seen: truth.reduce((sum, value) => sum + value, 0), wrong, far };
+}
+
+/** Pixels of a rectangle that holds the box. */
+async function pixelsAround(page, { at, scale }, width, height) {
+  const reach = (Math.hypot(BOX.size[0], BOX.size[2]) / 2) * scale;
+  const corners = [-reach, reach].flatMap((x) =>
+    [-reach, reach].flatMap((y) => [0, BOX.size[1] * scale].map((z) => [at[0] + x, at[1] + y, at[2] + z])),
+  );
+  const places = await page.evaluate((points) => points.map((point) => window.__skyquilt.project(point)), corners);
+  const range = (i, size) => {
+    const values = places.map((px) => px[i]);
+    const low = Math.max(0, Math.floor(Math.min(...values)));
+    const high = Math.min(size, Math.ceil(Math.max(...values)));
+    return Array.from({ length: high - low }, (_, k) => low + k);
+  };
+  return range(1, height).flatMap((y) => range(0, width).map((x) => [x, y]));
+}
+
+/** `house`: of the truth; `tools`: what view_page.mjs has. */
+export async function checkThings(page, house, tools) {
+  const { width, height, out, expect, figures, lookAt, settled, rendered } = tools;
+  const yaw = (house.yaw_deg * Math.PI) / 180;
+  const across = [-Math.sin(yaw), Math.cos(yaw)];
+  const ground = house.ground_z_m;
+  const from = (metres, up) => [house.east_m + across[0] * metres, house.north_m + across[1] * metres, ground + up];
+  const at = from(-(house.width_m / 2 + 6), -0.5);
+  await lookAt(page, from(38, 24), from(0, 0.6 * house.ridge_height_m), FOV_DEG);
+  const url = await page.evaluate(
+    (base64) => {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+      return URL.createObjectURL(new Blob([bytes]));
+    },
+    boxGlb(BOX.size, [1, 0, 1]).toString("base64"),
+  );
+  const box = { kind: "model", id: "box", at, yawDeg: BOX.yawDeg, scale: BOX.scale, name: "box", url };
+  const texts = [
+    { kind: "label", id: "hidden", at: from(-(house.width_m / 2 + 1), 0.5), text: "behind <b>the house</b>" },
+    { kind: "marker", id: "roof", at: from(0, house.ridge_height_m + 0.3), text: "屋根 🏠" },
+  ];
+  const show = (list) => page.evaluate((things) => window.__skyquilt.setThings(things), list);
+  const pictureWith = async (list, wait) => {
+    await show(list);
+    await wait();
+    return canvasPicture(page);
+  };
+  const idle = () => page.evaluate(() => window.__skyquilt.idle());
+  const pose = await page.evaluate(() => window.__skyquilt.pose());
+  // Each pixel's own ray, where the box may be.
+  const pixels = await pixelsAround(page, box, width, height);
+  const rays = await page.evaluate(
+    (places) => places.map(([x, y]) => window.__skyquilt.rayAt([x + 0.5, y + 0.5]).direction),
+    pixels,
+  );
+  const inBox = pixels
+    .map((px, k) => ({ px, t: boxDistance(at, pose.eyeEnu, rays[k]) }))
+    .filter(({ t }) => Number.isFinite(t));
+  expect(inBox.length > 500, `the box has ${inBox.length} pixels`);
+  /** Where it must be seen before a surface at these distances. */
+  const seenBefore = (distances) => {
+    const seen = new Uint8Array(width * height);
+    for (const [k, { px, t }] of inBox.entries()) if (!(distances[k] <= t)) seen[px[1] * width + px[0]] = 1;
+    return seen;
+  };
+
+  await page.evaluate(() => window.__skyquilt.setLayer("exact", false));
+  const meshWith = await pictureWith([box], idle);
+  save(meshWith, path.join(out, "things_mesh.png"));
+  const top = await page.evaluate((point) => window.__skyquilt.project(point), [at[0], at[1], at[2] + 12]);
+  const picks = await page.evaluate((px) => [window.__skyquilt.thingAt(px), window.__skyquilt.placeAt(px)], top);
+  const picked = picks[1] === null ? Number.NaN : Math.hypot(...picks[1].enu.map((value, i) => value - at[i]));
+  expect(picks[0] === "box" && picked < 15, `under the box's upper part are ${JSON.stringify(picks)}`);
+  const meshWithout = await pictureWith([], idle);
+  const distances = await page.evaluate(
+    (places) => window.__skyquilt.meshDistances(places),
+    inBox.map(({ px }) => [px[0] + 0.5, px[1] + 0.5]),
+  );
+  figures.things_mesh = against(seenBefore(distances), changedPixels(meshWith, meshWithout), width, height);
+
+  // Without the surface, so that nothing but the frame can hide the box.
+  await page.evaluate(() => window.__skyquilt.setLayer("surface", false));
+  await page.evaluate(() => window.__skyquilt.setLayer("exact", true));
+  const frameWith = await pictureWith([box, ...texts], () => settled(page));
+  save(frameWith, path.join(out, "things_exact.png"));
+  const visible = await page.evaluate(() => window.__skyquilt.visibleTexts());
+  expect(visible.join() === "roof", `seen are the texts ${visible}`);
+  const marker = page.getByRole("button", { name: texts[1].text });
+  await marker.focus();
+  await page.keyboard.press("Enter");
+  const chosen = await page.evaluate(() => window.__skyquilt.chosenThings());
+  expect(chosen.at(-1) === "roof", `chosen is ${chosen}`);
+  const frameWithout = await pictureWith([], () => settled(page));
+  await page.evaluate(() => window.__skyquilt.setLayer("surface", true));
+  const reference = rendered(pose, "things");
+  const depths = depthsAt(
+    reference.depth,
+    inBox.map(({ px }) => px),
+  );
+  figures.things_exact = against(seenBefore(depths), changedPixels(frameWith, frameWithout), width, height);
+
+  for (const [name, { seen, far }] of Object.entries({ mesh: figures.things_mesh, exact: figures.things_exact })) {
+    expect(seen > 200 && seen < inBox.length - 200, `${name}: ${seen} of ${inBox.length} pixels of the box are seen`);
+    expect(far === 0, `${name}: ${far} pixels of the box are wrong, farther than ${MOST_PX} pixels from its edge`);
+  }
+}

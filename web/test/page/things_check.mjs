@@ -4,70 +4,13 @@
 import { execFileSync } from "node:child_process";
 import path from "node:path";
 import { canvasPicture, save } from "./browser.mjs";
+import { boxGlb, signGlb } from "./glb_files.mjs";
 
 const FOV_DEG = 45;
 /** Of 255. Magenta is far from everything in the scene. */
 const DIFFERENT = 24;
 const MOST_PX = 2;
 const BOX = { size: [7, 11, 4], yawDeg: 30, scale: 1.25 };
-
-/** A GLB of a box that stands on its origin; `size` along x, y (up) and z. */
-export function boxGlb([x, y, z], color) {
-  const corners = [];
-  for (const side of [0, 1, 2]) {
-    for (const sign of [-1, 1]) {
-      const [u, v] = [(side + 1) % 3, (side + 2) % 3];
-      const quad = [
-        [-1, -1],
-        [1, -1],
-        [1, 1],
-        [-1, 1],
-      ].map(([a, b]) => {
-        const corner = [0, 0, 0];
-        corner[side] = sign;
-        corner[u] = a * sign;
-        corner[v] = b;
-        return [(corner[0] * x) / 2, ((corner[1] + 1) * y) / 2, (corner[2] * z) / 2];
-      });
-      for (const k of [0, 1, 2, 0, 2, 3]) corners.push(...quad[k]);
-    }
-  }
-  const binary = Buffer.from(Float32Array.from(corners).buffer);
-  const document = {
-    asset: { version: "2.0" },
-    scene: 0,
-    scenes: [{ nodes: [0] }],
-    nodes: [{ mesh: 0 }],
-    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, material: 0 }] }],
-    materials: [{ pbrMetallicRoughness: { baseColorFactor: [...color, 1] } }],
-    accessors: [
-      {
-        bufferView: 0,
-        componentType: 5126,
-        count: corners.length / 3,
-        type: "VEC3",
-        min: [-x / 2, 0, -z / 2],
-        max: [x / 2, y, z / 2],
-      },
-    ],
-    bufferViews: [{ buffer: 0, byteLength: binary.length }],
-    buffers: [{ byteLength: binary.length }],
-  };
-  const text = JSON.stringify(document);
-  const json = Buffer.from(text.padEnd(Math.ceil(text.length / 4) * 4));
-  const chunk = (type, bytes) => {
-    const head = Buffer.alloc(8);
-    head.writeUInt32LE(bytes.length, 0);
-    head.write(type, 4, "latin1");
-    return Buffer.concat([head, bytes]);
-  };
-  const chunks = Buffer.concat([chunk("JSON", json), chunk("BIN\0", binary)]);
-  const head = Buffer.alloc(12);
-  head.write("glTF", 0, "latin1");
-  head.writeUInt32LE(2, 4);
-  head.writeUInt32LE(12 + chunks.length, 8);
-  return Buffer.concat([head, chunks]);
-}
 
 /** Distance along the ray to the box that stands at `at`; NaN: it misses. */
 function boxDistance(at, origin, direction) {
@@ -130,6 +73,30 @@ function against(truth, drawn, width, height) {
   return { seen: truth.reduce((sum, value) => sum + value, 0), wrong, far };
 }
 
+async function urlOf(page, bytes) {
+  return page.evaluate((base64) => {
+    const own = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    return URL.createObjectURL(new Blob([own]));
+  }, bytes.toString("base64"));
+}
+
+/** A textured sign before the house shows its picture's values as they are. */
+async function checkSign(page, at, yawDeg, { expect }) {
+  const color = [10, 200, 30];
+  const url = await urlOf(page, signGlb(color));
+  const sign = { kind: "model", id: "sign", at, yawDeg, scale: 4, name: "sign", url };
+  await page.evaluate((list) => window.__skyquilt.setThings(list), [sign]);
+  await page.evaluate(() => window.__skyquilt.idle());
+  const picture = await canvasPicture(page);
+  const px = await page.evaluate((point) => window.__skyquilt.project(point), [at[0], at[1], at[2] + 2]);
+  const first = 4 * (Math.floor(px[1]) * picture.width + Math.floor(px[0]));
+  const shown = [...picture.data.subarray(first, first + 3)];
+  expect(
+    shown.every((value, i) => Math.abs(value - color[i]) <= 1),
+    `the sign is ${shown}, not ${color}`,
+  );
+}
+
 /** Pixels of a rectangle that holds the box. */
 async function pixelsAround(page, { at, scale }, width, height) {
   const reach = (Math.hypot(BOX.size[0], BOX.size[2]) / 2) * scale;
@@ -155,17 +122,11 @@ export async function checkThings(page, house, tools) {
   const from = (metres, up) => [house.east_m + across[0] * metres, house.north_m + across[1] * metres, ground + up];
   const at = from(-(house.width_m / 2 + 6), -0.5);
   await lookAt(page, from(38, 24), from(0, 0.6 * house.ridge_height_m), FOV_DEG);
-  const url = await page.evaluate(
-    (base64) => {
-      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-      return URL.createObjectURL(new Blob([bytes]));
-    },
-    boxGlb(BOX.size, [1, 0, 1]).toString("base64"),
-  );
+  const url = await urlOf(page, boxGlb(BOX.size, [1, 0, 1]));
   const box = { kind: "model", id: "box", at, yawDeg: BOX.yawDeg, scale: BOX.scale, name: "box", url };
   const texts = [
     { kind: "label", id: "hidden", at: from(-(house.width_m / 2 + 1), 0.5), text: "behind <b>the house</b>" },
-    { kind: "marker", id: "roof", at: from(0, house.ridge_height_m + 0.3), text: "屋根 🏠" },
+    { kind: "marker", id: "above", at: from(0, house.ridge_height_m + 4), text: "屋根 🏠" },
   ];
   const show = (list) => page.evaluate((things) => window.__skyquilt.setThings(things), list);
   const pictureWith = async (list, wait) => {
@@ -193,6 +154,7 @@ export async function checkThings(page, house, tools) {
   };
 
   await page.evaluate(() => window.__skyquilt.setLayer("exact", false));
+  await checkSign(page, from(12, 8), (Math.atan2(across[0], across[1]) * 180) / Math.PI, tools);
   const meshWith = await pictureWith([box], idle);
   save(meshWith, path.join(out, "things_mesh.png"));
   const top = await page.evaluate((point) => window.__skyquilt.project(point), [at[0], at[1], at[2] + 12]);
@@ -212,12 +174,12 @@ export async function checkThings(page, house, tools) {
   const frameWith = await pictureWith([box, ...texts], () => settled(page));
   save(frameWith, path.join(out, "things_exact.png"));
   const visible = await page.evaluate(() => window.__skyquilt.visibleTexts());
-  expect(visible.join() === "roof", `seen are the texts ${visible}`);
+  expect(visible.join() === "above", `seen are the texts ${visible}`);
   const marker = page.getByRole("button", { name: texts[1].text });
   await marker.focus();
   await page.keyboard.press("Enter");
   const chosen = await page.evaluate(() => window.__skyquilt.chosenThings());
-  expect(chosen.at(-1) === "roof", `chosen is ${chosen}`);
+  expect(chosen.at(-1) === "above", `chosen is ${chosen}`);
   const frameWithout = await pictureWith([], () => settled(page));
   await page.evaluate(() => window.__skyquilt.setLayer("surface", true));
   const reference = rendered(pose, "things");

@@ -1,10 +1,9 @@
 #include "viewer/data/check_document.h"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
+#include "core/base/checked_json.h"
 #include "core/base/errors.h"
 #include "products/camera_path.h"
 
@@ -13,30 +12,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kMaxDepth = 32;
 constexpr size_t kMaxFeatures = 5000;
 constexpr size_t kMaxNameBytes = 800;  // 200 characters of any script
 constexpr int64_t kMaxFrames = 200'000;
-
-// How deep lists and objects are nested, without following them.
-int NestingOf(std::string_view text) {
-  int depth = 0, deepest = 0;
-  bool in_string = false;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      in_string = c != '"';
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '[' || c == '{') {
-      deepest = std::max(deepest, ++depth);
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-  return deepest;
-}
 
 const Json& MemberOf(const Json& object, const char* key) {
   static const Json missing;
@@ -46,12 +24,12 @@ const Json& MemberOf(const Json& object, const char* key) {
 }
 
 void CheckPosition(const Json& position, const std::string& where) {
-  if (!position.is_array() || position.size() < 2 || position.size() > 4) throw Refused(where + " must have a position of 2 or 3 numbers");
-  for (const Json& number : position) RequireNumber(number, where);
+  if (!position.is_array() || position.size() < 2 || position.size() > 4) throw base::Refused(where + " must have a position of 2 or 3 numbers");
+  for (const Json& number : position) base::RequireNumber(number, where);
 }
 
 void CheckPositions(const Json& positions, size_t least, const std::string& where) {
-  if (!positions.is_array() || positions.size() < least) throw Refused(where + " must have at least " + std::to_string(least) + " positions");
+  if (!positions.is_array() || positions.size() < least) throw base::Refused(where + " must have at least " + std::to_string(least) + " positions");
   for (const Json& position : positions) CheckPosition(position, where);
 }
 
@@ -63,10 +41,10 @@ void CheckGeometry(const Json& geometry, const std::string& where) {
   } else if (type == "LineString") {
     CheckPositions(coordinates, 2, where);
   } else if (type == "Polygon") {
-    if (!coordinates.is_array() || coordinates.empty()) throw Refused(where + " must have a ring");
+    if (!coordinates.is_array() || coordinates.empty()) throw base::Refused(where + " must have a ring");
     for (const Json& ring : coordinates) CheckPositions(ring, 4, where);
   } else {
-    throw Refused(where + " must be a Point, LineString or Polygon");
+    throw base::Refused(where + " must be a Point, LineString or Polygon");
   }
 }
 
@@ -80,43 +58,24 @@ void CheckFrameCount(const Json& json) {
   const Json& between = MemberOf(json, "frames_between");
   const double each = between.is_number() ? std::abs(between.get<double>()) : 0.0;
   if (!(static_cast<double>(views) * (each + 1.0) <= static_cast<double>(kMaxFrames))) {
-    throw Refused("it has more than " + std::to_string(kMaxFrames) + " frames: leave out key frames, or fly faster");
+    throw base::Refused("it has more than " + std::to_string(kMaxFrames) + " frames: leave out key frames, or fly faster");
   }
 }
 
 }  // namespace
 
-Json ParseDocument(const std::string& text) {
-  if (NestingOf(text) > kMaxDepth) throw Refused("its lists and objects are nested too deeply");
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) throw Refused("it is not JSON");
-  return json;
-}
-
-void RequireNumber(const Json& value, const std::string& where) {
-  if (!value.is_number() || !(std::abs(value.get<double>()) <= 1e9)) throw Refused(where + " must be a number from -1e9 to 1e9");
-}
-
-void RequireLine(const Json& value, size_t max_bytes, const std::string& where) {
-  const bool good = value.is_string() && !value.get_ref<const std::string&>().empty() && value.get_ref<const std::string&>().size() <= max_bytes;
-  if (!good) throw Refused(where + " must be a text of 1 to " + std::to_string(max_bytes) + " bytes");
-  const auto& text = value.get_ref<const std::string&>();
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; };
-  if (std::any_of(text.begin(), text.end(), is_control)) throw Refused(where + " must be one line");
-}
-
 void CheckMeasurements(const Json& json) {
   const Json& features = MemberOf(json, "features");
-  if (MemberOf(json, "type") != "FeatureCollection" || !features.is_array()) throw Refused("it is not a GeoJSON FeatureCollection");
-  if (features.size() > kMaxFeatures) throw Refused("it has more than " + std::to_string(kMaxFeatures) + " features: delete some");
+  if (MemberOf(json, "type") != "FeatureCollection" || !features.is_array()) throw base::Refused("it is not a GeoJSON FeatureCollection");
+  if (features.size() > kMaxFeatures) throw base::Refused("it has more than " + std::to_string(kMaxFeatures) + " features: delete some");
   for (size_t i = 0; i < features.size(); ++i) {
     const std::string where = "features[" + std::to_string(i) + "]";
-    if (MemberOf(features[i], "type") != "Feature") throw Refused(where + " is not a Feature");
+    if (MemberOf(features[i], "type") != "Feature") throw base::Refused(where + " is not a Feature");
     const Json& properties = MemberOf(features[i], "properties");
-    if (!properties.is_object()) throw Refused(where + ".properties must be an object");
+    if (!properties.is_object()) throw base::Refused(where + ".properties must be an object");
     const Json& name = MemberOf(properties, "name");
     const bool nameless = name.is_null() || (name.is_string() && name.get_ref<const std::string&>().empty());
-    if (!nameless) RequireLine(name, kMaxNameBytes, where + ".properties.name");
+    if (!nameless) base::RequireLine(name, kMaxNameBytes, where + ".properties.name");
     CheckGeometry(MemberOf(features[i], "geometry"), where + ".geometry");
   }
 }
@@ -126,7 +85,7 @@ void CheckCameraPath(const Json& json, const std::string& text, const geo::Geode
   const Json& views = ViewsOf(json);
   for (size_t i = 0; i < views.size() && views.is_array(); ++i) {
     const Json& position = MemberOf(views[i], "position_enu");
-    for (const Json& number : position) RequireNumber(number, "views[" + std::to_string(i) + "].position_enu");
+    for (const Json& number : position) base::RequireNumber(number, "views[" + std::to_string(i) + "].position_enu");
   }
   scene::SceneInfo info;
   info.origin = origin;
@@ -134,7 +93,7 @@ void CheckCameraPath(const Json& json, const std::string& text, const geo::Geode
   try {
     products::ParseCameraPath(text, "camera_path.json", info, 16, 9);
   } catch (const base::InputError& error) {
-    throw Refused(error.finding());
+    throw base::Refused(error.finding());
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
-#include "viewer/data/check_document.h"
+#include "core/base/checked_json.h"
 
 namespace skyquilt::viewer {
 namespace {
@@ -26,17 +26,17 @@ std::string LowerShortName(const std::string& name) {
 }
 
 void CheckMark(const Json& mark, const MarkablePhotos& photos, const std::set<std::string>& allowed, const std::string& where) {
-  if (!mark.is_object() || !mark.contains("photo") || !mark.contains("pixel")) throw Refused(where + " must have photo and pixel");
-  RequireLine(mark["photo"], kMaxPhotoName, where + ".photo");
+  if (!mark.is_object() || !mark.contains("photo") || !mark.contains("pixel")) throw base::Refused(where + " must have photo and pixel");
+  base::RequireLine(mark["photo"], kMaxPhotoName, where + ".photo");
   const Json& pixel = mark["pixel"];
-  if (!pixel.is_array() || pixel.size() != 2) throw Refused(where + ".pixel must have 2 numbers");
-  for (const Json& number : pixel) RequireNumber(number, where + ".pixel");
+  if (!pixel.is_array() || pixel.size() != 2) throw base::Refused(where + ".pixel must have 2 numbers");
+  for (const Json& number : pixel) base::RequireNumber(number, where + ".pixel");
   const std::string name = mark["photo"];
   if (!photos.Has(name)) {
     const bool said = mark.contains("unknown") && mark["unknown"].is_boolean() && mark["unknown"].get<bool>();
-    if (!said && !allowed.contains(name)) throw Refused(where + ": the survey has no photo \"" + name + "\"");
+    if (!said && !allowed.contains(name)) throw base::Refused(where + ": the survey has no photo \"" + name + "\"");
   } else if (!photos.Contains(name, pixel[0], pixel[1])) {
-    throw Refused(where + ".pixel is outside the photo \"" + name + "\"");
+    throw base::Refused(where + ".pixel is outside the photo \"" + name + "\"");
   }
 }
 
@@ -90,28 +90,28 @@ std::set<std::string> UnknownMarks(const Json& gcp, const MarkablePhotos& photos
 
 void CheckControlPoints(const Json& gcp, const std::optional<std::string>& crs, const MarkablePhotos& photos, const std::set<std::string>& allowed) {
   if (!gcp.is_object() || !gcp.contains("points") || !gcp["points"].is_array() || !gcp.contains("crs")) {
-    throw Refused("it is not a list of control points with its crs");
+    throw base::Refused("it is not a list of control points with its crs");
   }
   if (gcp["crs"] != (crs ? Json(*crs) : Json(nullptr))) {
-    throw Refused("crs must be " + (crs ? *crs + ", the CRS of this project" : "null, because this project has no geo-reference"));
+    throw base::Refused("crs must be " + (crs ? *crs + ", the CRS of this project" : "null, because this project has no geo-reference"));
   }
   const Json& points = gcp["points"];
-  if (points.size() > kMaxControlPoints) throw Refused("it has more than " + std::to_string(kMaxControlPoints) + " control points");
+  if (points.size() > kMaxControlPoints) throw base::Refused("it has more than " + std::to_string(kMaxControlPoints) + " control points");
   std::set<std::string> names;
   for (size_t i = 0; i < points.size(); ++i) {
     const Json& point = points[i];
     const std::string where = "points[" + std::to_string(i) + "]";
-    if (!point.is_object() || !point.contains("name")) throw Refused(where + " must have a name");
-    RequireLine(point["name"], kMaxPointName, where + ".name");
-    if (!names.insert(point["name"]).second) throw Refused(where + ".name is the name of another point too");
-    for (const char* axis : {"x", "y", "z"}) RequireNumber(point.contains(axis) ? point[axis] : Json(), where + "." + axis);
-    if (!point.contains("marks") || !point["marks"].is_array()) throw Refused(where + ".marks must be a list");
+    if (!point.is_object() || !point.contains("name")) throw base::Refused(where + " must have a name");
+    base::RequireLine(point["name"], kMaxPointName, where + ".name");
+    if (!names.insert(point["name"]).second) throw base::Refused(where + ".name is the name of another point too");
+    for (const char* axis : {"x", "y", "z"}) base::RequireNumber(point.contains(axis) ? point[axis] : Json(), where + "." + axis);
+    if (!point.contains("marks") || !point["marks"].is_array()) throw base::Refused(where + ".marks must be a list");
     std::set<std::string> marked;
     for (size_t k = 0; k < point["marks"].size(); ++k) {
       const Json& mark = point["marks"][k];
       const std::string mark_where = where + ".marks[" + std::to_string(k) + "]";
       CheckMark(mark, photos, allowed, mark_where);
-      if (!marked.insert(mark["photo"]).second) throw Refused(mark_where + ": the point is marked in this photo already");
+      if (!marked.insert(mark["photo"]).second) throw base::Refused(mark_where + ": the point is marked in this photo already");
     }
   }
 }

@@ -37,7 +37,7 @@ std::optional<std::string> CrsNameOf(bool georeferenced, const geo::UtmZone& zon
 // Names of photos that are marked in gcp.json but are not markable: marks of photos that have left the survey may stay.
 std::set<std::string> UnknownMarks(const nlohmann::json& gcp, const MarkablePhotos& photos);
 
-// Throws Refused (check_document.h). crs: as CrsNameOf. allowed: unknown photos that may be marked, beside marks with "unknown": true, which the
+// Throws base::Refused. crs: as CrsNameOf. allowed: unknown photos that may be marked, beside marks with "unknown": true, which the
 // page may bring back after they were deleted.
 void CheckControlPoints(const nlohmann::json& gcp, const std::optional<std::string>& crs, const MarkablePhotos& photos,
                         const std::set<std::string>& allowed);

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/base/checked_json.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
@@ -99,8 +100,8 @@ GcpList ListFromElsewhere(const OpenedProject& opened, const MarkablePhotos& pho
 Json CurrentControlPoints(const OpenedProject& opened, const MarkablePhotos& photos, const std::string& text) {
   if (text.empty()) return ListFromElsewhere(opened, photos).gcp;
   try {
-    return ParseDocument(text);
-  } catch (const Refused&) {
+    return base::ParseDocument(text);
+  } catch (const base::Refused&) {
     return nullptr;
   }
 }
@@ -147,7 +148,7 @@ std::string SaveControlPoints(const OpenedProject& opened, const Json& gcp) {
     try {
       CheckControlPoints(current, crs, photos, unknown);
       ours = !before.empty() && GcpListText(current, photos) == present;
-    } catch (const Refused&) {
+    } catch (const base::Refused&) {
     }
     if (!ours) KeepOriginal(list, present);
   }
@@ -203,14 +204,14 @@ DataReply PutDocument(const OpenedProject& opened, const std::string& name, cons
     if (!if_match.empty() && base::HashHex(ContentOf(file)) != if_match) {
       return TextReply(412, name + " was changed in another window. Reload the page to see it");
     }
-    const Json json = ParseDocument(body);
+    const Json json = base::ParseDocument(body);
     if (name == kControlPoints) return NoContent(SaveControlPoints(opened, json));
     if (name == kCameraPath) return NoContent(SaveCameraPath(opened, json, body));
     CheckMeasurements(json);
     const std::string content = Indented(json);
     WriteIfChanged(file, content);
     return NoContent(content);
-  } catch (const Refused& refused) {
+  } catch (const base::Refused& refused) {
     return TextReply(400, name + " is not saved: " + refused.what());
   } catch (const base::InputError& failure) {
     return FailureReply(failure);

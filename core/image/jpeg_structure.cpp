@@ -50,6 +50,7 @@ JpegStructure ParseJpeg(std::span<const uint8_t> bytes, bool headers_only) {
     const size_t length = static_cast<size_t>(bytes[at]) << 8U | bytes[at + 1];
     if (length < 2 || at + length > bytes.size()) return found;
     if (IsFrameHeader(marker) && length >= 8) {
+      found.frame_marker = marker;
       found.height = bytes[at + 3] << 8 | bytes[at + 4];
       found.width = bytes[at + 5] << 8 | bytes[at + 6];
       if (headers_only) return found;

@@ -11,7 +11,8 @@ struct JpegStructure {
   bool is_jpeg = false;  // starts with the SOI marker
   int width = 0;         // 0 if there is no frame header
   int height = 0;
-  bool complete = false;  // the first image has a scan and an end marker; data after it (previews, maker data) is not read
+  uint8_t frame_marker = 0;  // of the frame header: 0xC0 to 0xC2 are the kinds that all programs read; 0 if there is none
+  bool complete = false;     // the first image has a scan and an end marker; data after it (previews, maker data) is not read
 };
 
 // Accepts any bytes, even none. With headers_only it stops at the frame header and `complete` stays false.

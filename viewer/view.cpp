@@ -35,6 +35,25 @@ void PrintLink(const std::string& text, const std::string& link) {
   std::cout << text << "\n\n    " << link << "\n\n" << std::flush;
 }
 
+struct LinkText {
+  const char* first;
+  const char* next;  // after it was opened
+};
+
+LinkText TextOf(Right right) {
+  switch (right) {
+    case Right::kEdit:
+      return {"Open this link in a browser on this machine to edit the tour (it works once; Ctrl-C ends the viewer):",
+              "The link for editing was opened. For another browser:"};
+    case Right::kPlay:
+      return {"This link is for looking and playing only, nothing can be changed with it (it works once):",
+              "The link for playing was opened. For another browser:"};
+    case Right::kView:
+      break;
+  }
+  return {"Open this link in a browser on this machine (it works once; Ctrl-C ends the viewer):", "The link was opened. For another browser:"};
+}
+
 }  // namespace
 
 void View(comm::Communicator& comm, const ViewOptions& options) {
@@ -43,14 +62,15 @@ void View(comm::Communicator& comm, const ViewOptions& options) {
   ServerOptions server_options;
   server_options.assets = Assets(options);
   server_options.port = options.port;
+  if (options.edit) server_options.rights = {Right::kEdit, Right::kPlay};
   if (!options.listen.empty()) server_options.address = options.listen == "localhost" ? "127.0.0.1" : options.listen;
   if (!IsLoopback(options.listen)) {
     server_options.extra_hosts = OwnHosts();
     spdlog::warn(
         "--listen {}: other machines can reach this viewer, and the connection is not encrypted. Whoever has the link can see the project and change "
-        "its measurements. Better: keep the default and forward the port, for instance with ssh -t -L 8000:127.0.0.1:8000 host skyquilt view out "
+        "its measurements{}. Better: keep the default and forward the port, for instance with ssh -t -L 8000:127.0.0.1:8000 host skyquilt view out "
         "--port 8000",
-        options.listen);
+        options.listen, options.edit ? ", and with the link for editing its tour" : "");
   }
   ProjectData data(options.project, options.before);
   Engine engine({.comm = comm,
@@ -62,8 +82,8 @@ void View(comm::Communicator& comm, const ViewOptions& options) {
                  .quiet = options.quiet},
                 data);
   Server server(server_options, engine, data);
-  server.OnLinkUsed([](const std::string& next) { PrintLink("The link was opened. For another browser:", next); });
-  PrintLink("Open this link in a browser on this machine (it works once; Ctrl-C ends the viewer):", server.LaunchLink());
+  server.OnLinkUsed([](Right right, const std::string& next) { PrintLink(TextOf(right).next, next); });
+  for (const Right right : server_options.rights) PrintLink(TextOf(right).first, server.LaunchLink(right));
   try {
     engine.Run({.send = [&server](ClientId client, OutMessage message) { server.Send(client, std::move(message)); },
                 .queued = [&server](ClientId client) { return server.QueuedBytes(client); }});

@@ -18,10 +18,12 @@ struct ViewOptions {
   std::string exposure = "normal";
   std::string front_end;  // folder with the files of the front end; empty: those in the program
   coordinator::RunOptions run;
+  bool edit = false;  // the tour may be changed, by whoever opens the link for that
   bool verbose = false, quiet = false;
 };
 
-// Prints the link and serves until it is interrupted, which is its normal end. Throws base::UsageError, base::InputError.
+// Prints the link, or the two links to edit and to play, and serves until it is interrupted, which is its normal end. Throws base::UsageError,
+// base::InputError.
 void View(comm::Communicator& comm, const ViewOptions& options);
 
 }  // namespace skyquilt::viewer

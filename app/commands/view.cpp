@@ -15,6 +15,7 @@ struct ViewFlags {
   std::string listen;
   std::string front_end;
   int port = 0;
+  bool edit = false;
 };
 
 void RunView(const CommandState& state, const ViewFlags& flags, const std::vector<config::Override>& overrides) {
@@ -25,6 +26,7 @@ void RunView(const CommandState& state, const ViewFlags& flags, const std::vecto
   const coordinator::Settings settings = state.Load(ProjectConfig(options.project), overrides);
   options.listen = flags.listen;
   options.port = flags.port;
+  options.edit = flags.edit;
   options.front_end = flags.front_end;
   options.exposure = settings.products.exposure;
   options.run = settings.run;
@@ -42,6 +44,7 @@ void AddView(CLI::App& app, CommandState& state) {
   command->add_option("project", flags->project, "project folder, finished or not")->required()->type_name("FOLDER");
   command->add_option("--compare", flags->compare, "project folder of an earlier survey of the same place, for before and after")
       ->type_name("FOLDER");
+  command->add_flag("--edit", flags->edit, "the tour may be changed: prints a link for that, and one for looking and playing only");
   command->add_option("--port", flags->port, "port; 0: a free one")->type_name("N")->check(CLI::Range(0, 65535));
   command->add_option("--listen", flags->listen, "address to listen on instead of 127.0.0.1; others can then reach the viewer, without encryption")
       ->type_name("ADDRESS");
@@ -53,6 +56,7 @@ void AddView(CLI::App& app, CommandState& state) {
   command->footer(
       "Examples:\n"
       "  skyquilt view out\n"
+      "  skyquilt view out --edit                       make a tour; saved in out/tour.json\n"
       "  skyquilt view out/november --compare out/june\n"
       "  mpirun -n 4 skyquilt view out                  the other ranks render\n"
       "Prints a link, and opens nothing by itself. On another machine: ssh -t -L 8000:127.0.0.1:8000 host skyquilt view out --port 8000");

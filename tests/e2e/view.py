@@ -1,13 +1,16 @@
 """`skyquilt view` as its users meet it: in a real browser, over several ranks, with unfinished projects, a full disk, and a process that is killed."""
+import hashlib
 import json
 import math
 import os
 import pathlib
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import time
+import zlib
 
 from harness import Failure, Skyquilt, expect, main
 from web_client import Viewer, WebSocket, looking
@@ -238,6 +241,66 @@ def check_killed_while_saving(skyquilt, project):
     file.unlink()
 
 
+def png(pixels):
+    """A square PNG of noise, which does not get smaller."""
+    def chunk(name, content):
+        return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+    rows = b"".join(b"\0" + os.urandom(3 * pixels) for _ in range(pixels))
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", pixels, pixels, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+def asset_path(content):
+    return f"/data/tour/assets/{hashlib.sha256(content).hexdigest()}.png"
+
+
+def tour(title):
+    stop = {"id": "gate", "title": "The gate", "text": "", "picture": None, "link": None, "exposure_stops": None, "layers": None, "measurements": [],
+            "pose": {"eye_enu": [0, 0, 50], "rotation": [0, 1, 0, 0], "fovy_deg": 60}, "pause_s": 5, "next": None, "branches": []}
+    return json.dumps({"version": 1, "title": title, "start": None, "stops": [stop], "things": [], "assets": {}})
+
+
+def check_edit(skyquilt, project):
+    """The two links of --edit, their rights, and two editors."""
+    viewer = Viewer(skyquilt, project, "--edit")
+    try:
+        play = viewer.next_link()
+        viewer.log_in()
+        edit_cookie = viewer.cookie
+        expect("edit" in viewer.printed and "playing only" in viewer.printed, viewer.printed)
+        expect(viewer.next_link() not in (viewer.link, play), "the link for editing is renewed")
+        status, headers, _ = viewer.request("GET", play[play.index("/?"):], cookie=False)
+        expect(status == 303, f"the link to play: {status}")
+        play_cookie = headers["Set-Cookie"].split(";")[0]
+        picture = png(40)
+        for cookie, saved, rights in ((play_cookie, 403, False), (edit_cookie, 204, True)):
+            viewer.cookie = cookie
+            status, _, body = viewer.request("GET", "/data/rights.json")
+            expect(status == 200 and json.loads(body) == {"documents": rights, "tour": rights}, f"rights: {body}")
+            for path, body in (("/data/tour.json", tour("<script>alert(1)</script>")), (asset_path(picture), picture),
+                               ("/data/measurements.geojson", collection(1))):
+                expect(viewer.request("PUT", path, body=body)[0] == saved, f"{path} with the rights {rights}")
+        status, headers, body = viewer.request("GET", asset_path(picture))
+        expect(status == 200 and body == picture and headers["Content-Type"] == "image/png", f"the picture: {status} {headers}")
+        _, headers, _ = viewer.request("GET", "/data/tour.json")
+        known = {"If-Match": headers["ETag"]}
+        expect(viewer.request("PUT", "/data/tour.json", body=tour("mine"), headers=known)[0] == 204, "the first editor")
+        expect(viewer.request("PUT", "/data/tour.json", body=tour("yours"), headers=known)[0] == 412, "the second editor")
+        expect(json.loads((project / "tour.json").read_text())["title"] == "mine", "the second editor overwrites")
+        viewer.cookie = play_cookie
+        expect(viewer.socket().status == 101, "whoever plays may look")
+    finally:
+        viewer.close()
+    viewer = Viewer(skyquilt, project).log_in()
+    try:
+        status, _, body = viewer.request("PUT", "/data/tour.json", body=tour("no"))
+        expect(status == 403 and b"--edit" in body, f"without --edit: {status} {body}")
+    finally:
+        viewer.close()
+    for name in ("tour.json", "measurements.geojson"):
+        (project / name).unlink()
+    shutil.rmtree(project / "tour")
+
+
 def check_full_disk(skyquilt, project, folder):
     """Saving fails with a reason, and the old file stays."""
     disk = folder / "disk"
@@ -249,7 +312,7 @@ def check_full_disk(skyquilt, project, folder):
         small = disk / "small"
         small.mkdir()
         shutil.copytree(project / "survey", small / "survey", ignore=shutil.ignore_patterns("*.ply", "*.bin"))
-        viewer = Viewer(skyquilt, small).log_in()
+        viewer = Viewer(skyquilt, small, "--edit").log_in()
         try:
             expect(viewer.request("PUT", "/data/measurements.geojson", body=collection(2))[0] in (200, 204), "saving on a disk with space")
             filler = os.open(disk / "filler", os.O_WRONLY | os.O_CREAT)
@@ -263,6 +326,10 @@ def check_full_disk(skyquilt, project, folder):
             status, _, body = viewer.request("PUT", "/data/measurements.geojson", body=collection(900))
             expect(status == 507 and b"space" in body.lower(), f"full disk: {status} {body[:200]}")
             expect(len(json.loads((small / "measurements.geojson").read_text())["features"]) == 2, "the old file is gone")
+            picture = png(200)
+            status, _, body = viewer.request("PUT", asset_path(picture), body=picture)
+            expect(status == 507 and b"space" in body.lower(), f"a picture on a full disk: {status} {body[:200]}")
+            expect(not list(small.glob("tour/assets/*")), "half a picture is left")
         finally:
             viewer.close()
     finally:
@@ -358,6 +425,7 @@ def test(skyquilt: Skyquilt, folder):
     check_questions(skyquilt, project)
     check_ranks(skyquilt, project)
     check_killed_while_saving(skyquilt, project)
+    check_edit(skyquilt, project)
     check_full_disk(skyquilt, project, folder)
     check_unfinished(skyquilt, project, survey, folder)
     check_port(skyquilt, project)

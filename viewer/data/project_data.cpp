@@ -10,11 +10,13 @@
 
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "viewer/data/data_replies.h"
 #include "viewer/data/describe_buildings.h"
 #include "viewer/data/map_files.h"
 #include "viewer/data/open_project.h"
 #include "viewer/data/photo_pictures.h"
 #include "viewer/data/saved_documents.h"
+#include "viewer/data/tour_assets.h"
 
 namespace skyquilt::viewer {
 namespace {
@@ -168,6 +170,7 @@ DataReply Photo(Served* served, size_t index, std::string_view size) {
 DataReply Answer(Served* served, const std::string& path) {
   if (path == "project.json") return Bytes("application/json", Description(*served));
   if (IsDocument(path)) return GetDocument(served->main, path);
+  if (IsAssetPath(path)) return GetAsset(served->main.project.folder, path);
   if (const auto photo = PhotoPath(path)) return Photo(served, photo->first, photo->second);
   if (!path.starts_with("before/")) return ProjectFile(&served->made, served->main, path, "");
   if (!served->before) return DataReply::NotFound("there is no earlier project");
@@ -208,8 +211,9 @@ DataReply ProjectData::Get(const std::string& path, const std::string& query) {
   const std::shared_ptr<Served> served = impl_->Current();
   try {
     DataReply reply = Answer(served.get(), path);
-    // A URL with a query names one revision of a file; what can be saved, and the description, are always asked for.
-    reply.cache = reply.status == 200 && !query.empty() && path != "project.json" && !IsDocument(path);
+    // A URL with a query names one revision of a file, as the digest in the name of an asset does; what can be saved, and the description, are always
+    // asked for.
+    reply.cache = reply.cache || (reply.status == 200 && !query.empty() && path != "project.json" && !IsDocument(path));
     return reply;
   } catch (const base::InputError& error) {
     spdlog::warn("{}", error.what());
@@ -218,9 +222,11 @@ DataReply ProjectData::Get(const std::string& path, const std::string& query) {
 }
 
 DataReply ProjectData::Put(const std::string& path, const std::string& body, const std::string& if_match) {
-  if (!IsDocument(path)) return {.status = 405, .content_type = "text/plain; charset=utf-8", .body = "only documents can be saved", .file = {}};
+  if (!IsDocument(path) && !IsAssetPath(path)) return TextReply(405, "only documents and the files of a tour can be saved");
   const std::lock_guard lock(impl_->answering);
-  return PutDocument(impl_->Current()->main, path, body, if_match);
+  const std::shared_ptr<Served> served = impl_->Current();
+  const OpenedProject& opened = served->main;
+  return IsDocument(path) ? PutDocument(opened, path, body, if_match) : PutAsset(opened.project.folder, path, body);
 }
 
 std::shared_ptr<const survey::Survey> ProjectData::survey() const {

@@ -1,8 +1,6 @@
 #include "viewer/data/saved_documents.h"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <system_error>
 #include <vector>
 
@@ -10,8 +8,11 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "tour/format/read_tour.h"
+#include "tour/format/write_tour.h"
 #include "viewer/data/check_document.h"
 #include "viewer/data/control_points.h"
+#include "viewer/data/data_replies.h"
 #include "viewer/data/gcp_list.h"
 
 namespace skyquilt::viewer {
@@ -23,10 +24,7 @@ using Json = nlohmann::json;
 constexpr const char* kMeasurements = "measurements.geojson";
 constexpr const char* kControlPoints = "gcp.json";
 constexpr const char* kCameraPath = "camera_path.json";
-
-DataReply TextReply(int status, const std::string& text) {
-  return {.status = status, .content_type = "text/plain; charset=utf-8", .body = text, .file = {}};
-}
+constexpr const char* kTour = "tour.json";
 
 // content: of the document's file.
 DataReply NoContent(const std::string& content) {
@@ -49,26 +47,6 @@ std::string Indented(const Json& json) {
 
 std::optional<geo::UtmZone> ZoneOf(const OpenedProject& opened) {
   return opened.georeferenced ? std::optional(opened.zone) : std::nullopt;
-}
-
-// What a failed reading or writing of a file of the project means for the user.
-DataReply FailureReply(const base::InputError& failure) {
-  struct Kind {
-    int code, status;
-    const char* advice;
-  };
-  static constexpr const char* kFree = "Free some space on this disk, then save again";
-  static constexpr const char* kAllow = "Allow this user to read and write in the project folder, then save again";
-  static constexpr std::array<Kind, 5> kKinds = {
-      {{ENOSPC, 507, kFree}, {EDQUOT, 507, kFree}, {EACCES, 409, kAllow}, {EPERM, 409, kAllow}, {EROFS, 409, kAllow}}};
-  spdlog::warn("{}", failure.what());
-  const std::string file = failure.file().filename().string();
-  for (const Kind& kind : kKinds) {
-    const std::string message = std::generic_category().message(kind.code);
-    if (failure.finding().find(message) == std::string::npos) continue;
-    return TextReply(kind.status, std::string(file).append(" is not saved: ").append(message).append(". ").append(kind.advice));
-  }
-  return TextReply(500, file + " is not saved: " + failure.finding());
 }
 
 // gcp_list.txt of the project; else beside the photos, or where OpenDroneMap wants it: beside their folder "images".
@@ -175,7 +153,7 @@ std::string SaveCameraPath(const OpenedProject& opened, const Json& json, const 
 }  // namespace
 
 bool IsDocument(const std::string& name) {
-  return name == kMeasurements || name == kControlPoints || name == kCameraPath;
+  return name == kMeasurements || name == kControlPoints || name == kCameraPath || name == kTour;
 }
 
 DataReply GetDocument(const OpenedProject& opened, const std::string& name) {
@@ -204,6 +182,12 @@ DataReply PutDocument(const OpenedProject& opened, const std::string& name, cons
     if (!if_match.empty() && base::HashHex(ContentOf(file)) != if_match) {
       return TextReply(412, name + " was changed in another window. Reload the page to see it");
     }
+    if (name == kTour) {
+      const std::string content = tour::FormatTour(tour::ParseTour(body));
+      if (content.size() > tour::kMaxTourBytes) throw base::Refused("it is longer than 1 MiB: shorten its texts or delete stops");
+      WriteIfChanged(file, content);
+      return NoContent(content);
+    }
     const Json json = base::ParseDocument(body);
     if (name == kControlPoints) return NoContent(SaveControlPoints(opened, json));
     if (name == kCameraPath) return NoContent(SaveCameraPath(opened, json, body));
@@ -214,7 +198,7 @@ DataReply PutDocument(const OpenedProject& opened, const std::string& name, cons
   } catch (const base::Refused& refused) {
     return TextReply(400, name + " is not saved: " + refused.what());
   } catch (const base::InputError& failure) {
-    return FailureReply(failure);
+    return FailureReply(failure, failure.file().filename().string());
   }
 }
 

@@ -1,4 +1,5 @@
-// What people make in the viewer and keep in the project folder: measurements.geojson, gcp.json with gcp_list.txt, camera_path.json.
+// What people make in the viewer and keep in the project folder: measurements.geojson, gcp.json with gcp_list.txt, camera_path.json,
+// tour.json.
 #pragma once
 
 #include <string>
@@ -8,7 +9,7 @@
 
 namespace skyquilt::viewer {
 
-// "measurements.geojson", "gcp.json" or "camera_path.json".
+// "measurements.geojson", "gcp.json", "camera_path.json" or "tour.json".
 bool IsDocument(const std::string& name);
 
 // 204 while there is none. Without gcp.json a gcp_list.txt of the project or beside its photos is converted. 500 with the reason as text when there

@@ -15,21 +15,24 @@ std::string_view WithoutSpaces(std::string_view text) {
 
 }  // namespace
 
-Access::Access(std::string cookie_name) : cookie_name_(std::move(cookie_name)), token_(NewSecret()) {}
-
-std::string Access::token() const {
-  const std::lock_guard lock(mutex_);
-  return token_;
+Access::Access(std::string cookie_name, const std::vector<Right>& rights) : cookie_name_(std::move(cookie_name)) {
+  for (const Right right : rights) tokens_[right] = NewSecret();
 }
 
-Access::Exchange Access::TryToken(std::string_view token, bool trusted, Clock::time_point now, std::string& set_cookie) {
+std::string Access::token(Right right) const {
+  const std::lock_guard lock(mutex_);
+  return tokens_.at(right);
+}
+
+Access::Exchange Access::TryToken(std::string_view token, bool trusted, Clock::time_point now, Grant& grant) {
   const std::lock_guard lock(mutex_);
   // First of all: strangers' guesses must not lock out whoever has the link. A token is too long to be guessed meanwhile.
-  if (EqualInConstantTime(token, token_)) {
-    token_ = NewSecret();
-    sessions_.push_back(NewSecret());
+  for (auto& [right, secret] : tokens_) {
+    if (!EqualInConstantTime(token, secret)) continue;
+    secret = NewSecret();
+    sessions_.push_back({.secret = NewSecret(), .right = right});
     if (sessions_.size() > kMaxSessions) sessions_.pop_front();
-    set_cookie = cookie_name_ + "=" + sessions_.back() + "; HttpOnly; SameSite=Strict; Path=/";
+    grant = {.set_cookie = cookie_name_ + "=" + sessions_.back().secret + "; HttpOnly; SameSite=Strict; Path=/", .right = right};
     return Exchange::kGranted;
   }
   if (trusted) return Exchange::kWrong;
@@ -43,13 +46,15 @@ Access::Exchange Access::TryToken(std::string_view token, bool trusted, Clock::t
   return Exchange::kWrong;
 }
 
-bool Access::IsSession(std::string_view value) const {
-  bool found = false;
-  for (const std::string& session : sessions_) found |= EqualInConstantTime(value, session);
-  return found;
+std::optional<Right> Access::RightOf(std::string_view secret) const {
+  std::optional<Right> right;
+  for (const Session& session : sessions_) {
+    if (EqualInConstantTime(secret, session.secret)) right = session.right;
+  }
+  return right;
 }
 
-bool Access::HasSession(const std::vector<std::string>& cookie_headers) const {
+std::optional<Right> Access::SessionRight(const std::vector<std::string>& cookie_headers) const {
   const std::lock_guard lock(mutex_);
   for (const std::string& header : cookie_headers) {
     std::string_view rest = header;
@@ -57,13 +62,11 @@ bool Access::HasSession(const std::vector<std::string>& cookie_headers) const {
       const size_t end = rest.find(';');
       const std::string_view pair = WithoutSpaces(rest.substr(0, end));
       rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-      if (pair.size() > cookie_name_.size() && pair.starts_with(cookie_name_) && pair[cookie_name_.size()] == '=' &&
-          IsSession(pair.substr(cookie_name_.size() + 1))) {
-        return true;
-      }
+      if (pair.size() <= cookie_name_.size() || !pair.starts_with(cookie_name_) || pair[cookie_name_.size()] != '=') continue;
+      if (const auto right = RightOf(pair.substr(cookie_name_.size() + 1))) return right;
     }
   }
-  return false;
+  return {};
 }
 
 }  // namespace skyquilt::viewer::server

@@ -67,6 +67,7 @@ void DataThread::Run() {
       jobs_.pop_front();
     }
     auto reply = std::make_shared<DataReply>(Answer(job));
+    job.text = {};  // an upload's bytes, before the next one may come
     post_([done = std::move(job.done), reply] { done(std::move(*reply)); });
   }
 }

@@ -23,7 +23,6 @@ namespace {
 namespace http = beast::http;
 
 constexpr uint32_t kMaxHeaderBytes = 8U << 10U;
-constexpr uint64_t kMaxBodyBytes = 1U << 20U;
 constexpr size_t kReadBufferBytes = 16U << 10U;
 constexpr std::chrono::seconds kLinger{2};
 
@@ -34,6 +33,18 @@ std::string TagOf(std::string_view header) {
   if (header.size() >= 2 && header.front() == '"' && header.back() == '"') header = header.substr(1, header.size() - 2);
   return std::string(header);
 }
+
+// One of the uploads that may be under way.
+class UploadSlot {
+ public:
+  explicit UploadSlot(ServerState& server) : server_(server) { ++server_.uploads; }
+  ~UploadSlot() { --server_.uploads; }
+  UploadSlot(const UploadSlot&) = delete;
+  UploadSlot& operator=(const UploadSlot&) = delete;
+
+ private:
+  ServerState& server_;
+};
 
 // A request is read, routed and answered; then the next one of the same connection.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
@@ -56,7 +67,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void BeginRequest() {
     parser_.emplace();
     parser_->header_limit(kMaxHeaderBytes);
-    parser_->body_limit(kMaxBodyBytes);
+    // Only bodies that are welcome are read, and their limit depends on the path (Receive). Beast 1.74 takes "no limit" for 0 here.
+    parser_->body_limit(UINT64_MAX);
   }
 
   // Waits for the first byte of the next request.
@@ -106,7 +118,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
           const auto header = parser_->get()[http::field::if_match];
           if_match_ = TagOf({header.data(), header.size()});
         }
-        ContinueThenReadBody();
+        upload_ = decision.upload;
+        Receive();
         break;
       case Action::kOpenWebsocket:
         OpenWebsocket();
@@ -136,6 +149,33 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     return head;
   }
 
+  // Refuses a body that is too long before it comes.
+  void Receive() {
+    const uint64_t limit = upload_ ? kMaxUploadBytes : kMaxDocumentBytes;
+    const auto length = parser_->content_length();
+    parser_->body_limit(limit);
+    if (length && *length > limit) {
+      Refuse(413, "the body is too long: at most " + std::to_string(limit >> 20U) + " MiB are taken");
+    } else if (upload_ && !length) {
+      // Memory is reserved by this length; without it twice as much could be needed while the body grows.
+      Refuse(411, "an upload must say its length in the header Content-Length");
+    } else if (upload_ && server_.uploads >= server_.options.max_uploads) {
+      Answer answer = PlainAnswer(503, "other files are being uploaded: try again in a moment");
+      answer.headers.emplace_back("Retry-After", "2");
+      Refuse(std::move(answer));
+    } else {
+      if (upload_) upload_slot_.emplace(server_);
+      ContinueThenReadBody();
+    }
+  }
+
+  // Answers without reading the body.
+  void Refuse(Answer answer) {
+    if (!parser_->is_done()) keep_alive_ = false;
+    Send(std::move(answer));
+  }
+  void Refuse(int status, const std::string& reason) { Refuse(PlainAnswer(status, reason)); }
+
   // Clients with a large body may wait to be told that it is welcome.
   void ContinueThenReadBody() {
     if (parser_->is_done() || !beast::iequals(parser_->get()[http::field::expect], "100-continue")) {
@@ -149,10 +189,40 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void ReadBody() {
+    if (upload_) {
+      received_before_ = stream_.rate_policy().received();
+      receive_began_ = std::chrono::steady_clock::now();
+      ReadUpload();
+      return;
+    }
     http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](const beast::error_code& error, size_t) {
       if (self->AnsweredParseError(error) || self->Failed(error)) return;
-      self->server_.data.Put(std::move(self->path_), std::move(self->parser_->get().body()), std::move(self->if_match_),
-                             [self](DataReply reply) { self->Send(DataAnswer(std::move(reply))); });
+      self->Put();
+    });
+  }
+
+  // Piece by piece: a large file may take its time, as long as it comes.
+  void ReadUpload() {
+    if (parser_->is_done()) {
+      Put();
+      return;
+    }
+    stream_.expires_after(Seconds(server_.options.handshake_s));
+    http::async_read_some(stream_, buffer_, *parser_, [self = shared_from_this()](const beast::error_code& error, size_t) {
+      if (self->AnsweredParseError(error) || self->Failed(error)) return;
+      if (self->IsTooSlow(self->receive_began_, self->stream_.rate_policy().received() - self->received_before_)) {
+        spdlog::debug("viewer: a client that uploads too slowly is disconnected");
+        self->Abort();
+        return;
+      }
+      self->ReadUpload();
+    });
+  }
+
+  void Put() {
+    server_.data.Put(std::move(path_), std::move(parser_->get().body()), std::move(if_match_), [self = shared_from_this()](DataReply reply) {
+      self->upload_slot_.reset();
+      self->Send(DataAnswer(std::move(reply)));
     });
   }
 
@@ -215,11 +285,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     SendSome();
   }
 
-  // A client that takes in a large answer byte by byte would hold its memory or file for hours.
-  bool IsTooSlow() {
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - send_began_).count();
-    const auto sent = static_cast<double>(stream_.rate_policy().sent() - sent_before_);
-    return seconds > server_.options.slow_answer_s && sent < server_.options.min_answer_bytes_per_s * seconds;
+  // A client that takes in a large answer, or sends a large file, byte by byte would hold its memory for hours.
+  bool IsTooSlow(std::chrono::steady_clock::time_point began, uint64_t bytes) const {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    return seconds > server_.options.slow_answer_s && static_cast<double>(bytes) < server_.options.min_answer_bytes_per_s * seconds;
   }
 
   void SendSome() {
@@ -243,7 +312,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       self->head_left_.remove_prefix(of_head);
       self->body_left_.remove_prefix(bytes - of_head);
       const bool more = !self->body_left_.empty() || (self->file_ && self->file_->left() > 0);
-      if (more && self->IsTooSlow()) {
+      if (more && self->IsTooSlow(self->send_began_, self->stream_.rate_policy().sent() - self->sent_before_)) {
         spdlog::debug("viewer: a client that reads its answer too slowly is disconnected");
         self->Abort();
         return;
@@ -283,14 +352,15 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::optional<ConnectionSlot> slot_;
   bool aborted_ = false;
   // Of the current request:
-  bool trusted_ = false, keep_alive_ = false, without_body_ = false;
+  bool trusted_ = false, keep_alive_ = false, without_body_ = false, upload_ = false;
   std::string host_, path_, if_match_;
   Answer answer_;
   std::string head_, piece_;
   std::string_view head_left_, body_left_;
   std::optional<FileReader> file_;
-  uint64_t sent_before_ = 0;  // by this connection, before this answer
-  std::chrono::steady_clock::time_point send_began_{};
+  uint64_t sent_before_ = 0, received_before_ = 0;  // by this connection, before this answer or body
+  std::chrono::steady_clock::time_point send_began_{}, receive_began_{};
+  std::optional<UploadSlot> upload_slot_;
 };
 
 }  // namespace

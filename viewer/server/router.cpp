@@ -1,5 +1,6 @@
 #include "viewer/server/router.h"
 
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -9,6 +10,7 @@ namespace skyquilt::viewer::server {
 namespace {
 
 constexpr std::string_view kDataPrefix = "/data/";
+constexpr std::string_view kRights = "rights.json", kTour = "tour.json", kTourFolder = "tour/", kUploads = "tour/assets/";
 constexpr size_t kMaxDataPath = 200, kMaxDataQuery = 100;
 
 Answer WrongHost() {
@@ -48,6 +50,29 @@ Answer WrongMethod(const std::string& allowed) {
   return answer;
 }
 
+// For the page, so that it offers only what this session may do.
+Answer RightsAnswer(Right right) {
+  const bool tour = right == Right::kEdit, documents = tour || right == Right::kView;
+  Answer answer =
+      PlainAnswer(200, std::string(R"({"documents": )") + (documents ? "true" : "false") + R"(, "tour": )" + (tour ? "true" : "false") + "}");
+  answer.content_type = "application/json";
+  return answer;
+}
+
+// Why this session may not change this; null when it may.
+const char* WhyNotChange(Right right, const std::string& path) {
+  const bool of_tour = path == kTour || path.starts_with(kTourFolder);
+  switch (right) {
+    case Right::kEdit:
+      return nullptr;
+    case Right::kView:
+      return of_tour ? "start the viewer with --edit to change the tour" : nullptr;
+    case Right::kPlay:
+      break;
+  }
+  return "this link is for looking and playing only: open the link for editing to change something";
+}
+
 // Browsers send with the Origin header which page makes a request; other pages' requests must not change anything or read the WebSocket.
 bool IsOwnOrigin(const std::vector<std::string>& origins, const std::string& host) {
   return origins.size() == 1 && LowerCase(origins.front()) == "http://" + LowerCase(host);
@@ -55,7 +80,7 @@ bool IsOwnOrigin(const std::vector<std::string>& origins, const std::string& hos
 
 }  // namespace
 
-Router::Router(const std::vector<Asset>& assets, HostList hosts, Access& access, std::function<void()> link_used)
+Router::Router(const std::vector<Asset>& assets, HostList hosts, Access& access, std::function<void(Right)> link_used)
     : hosts_(std::move(hosts)), access_(access), link_used_(std::move(link_used)) {
   for (const Asset& asset : assets) {
     assets_[asset.path] = {.status = 200, .content_type = asset.content_type, .body = std::make_shared<const std::string>(asset.body), .file = {}};
@@ -78,25 +103,26 @@ Decision Router::Decide(const RequestHead& head, Access::Clock::time_point now) 
     decision.answer = PlainAnswer(400, "this address is not allowed");
     return decision;
   }
-  decision.trusted = access_.HasSession(head.cookies);
+  const std::optional<Right> right = access_.SessionRight(head.cookies);
+  decision.trusted = right.has_value();
   const auto token = QueryValue(target->query, "token");
   if (token && head.method == Method::kGet && target->path == "/") {
     decision.answer = AnswerToken(*token, decision.trusted, now);
-  } else if (!decision.trusted) {
+  } else if (!right) {
     decision.answer = NeedsLink();
   } else {
-    DecideTrusted(head, target->path, target->query, decision);
+    DecideTrusted(head, *right, target->path, target->query, decision);
   }
   return decision;
 }
 
 Answer Router::AnswerToken(const std::string& token, bool trusted, Access::Clock::time_point now) const {
-  std::string set_cookie;
-  switch (access_.TryToken(token, trusted, now, set_cookie)) {
+  Access::Grant grant;
+  switch (access_.TryToken(token, trusted, now, grant)) {
     case Access::Exchange::kGranted: {
       Answer answer = ToStart();
-      answer.headers.emplace_back("Set-Cookie", set_cookie);
-      link_used_();
+      answer.headers.emplace_back("Set-Cookie", grant.set_cookie);
+      link_used_(grant.right);
       return answer;
     }
     case Access::Exchange::kTooManyGuesses:
@@ -107,7 +133,29 @@ Answer Router::AnswerToken(const std::string& token, bool trusted, Access::Clock
   return trusted ? ToStart() : UsedLink();
 }
 
-void Router::DecideTrusted(const RequestHead& head, const std::string& path, const std::string& query, Decision& decision) const {
+void Router::DecideData(const RequestHead& head, Right right, const std::string& query, Decision& decision) const {
+  const std::string& path = decision.path;
+  if (path.empty() || path.size() > kMaxDataPath) {
+    decision.answer = PlainAnswer(404, "there is no such file");
+  } else if (query.size() > kMaxDataQuery) {
+    decision.answer = PlainAnswer(414, "the address is too long");
+  } else if (head.method != Method::kPut) {
+    if (path == kRights) {
+      decision.answer = RightsAnswer(right);
+    } else {
+      decision.action = Action::kGetData;
+    }
+  } else if (!IsOwnOrigin(head.origins, decision.host)) {
+    decision.answer = PlainAnswer(403, "only the viewer's own page may change documents");
+  } else if (const char* reason = WhyNotChange(right, path)) {
+    decision.answer = PlainAnswer(403, reason);
+  } else {
+    decision.action = Action::kPutData;
+    decision.upload = path.starts_with(kUploads);
+  }
+}
+
+void Router::DecideTrusted(const RequestHead& head, Right right, const std::string& path, const std::string& query, Decision& decision) const {
   const bool reads = head.method == Method::kGet || head.method == Method::kHead;
   const bool is_data = path.starts_with(kDataPrefix);
   if (!reads && !(head.method == Method::kPut && is_data)) {
@@ -117,17 +165,7 @@ void Router::DecideTrusted(const RequestHead& head, const std::string& path, con
   } else if (is_data) {
     decision.path = path.substr(kDataPrefix.size());
     decision.query = query;
-    if (decision.path.empty() || decision.path.size() > kMaxDataPath) {
-      decision.answer = PlainAnswer(404, "there is no such file");
-    } else if (query.size() > kMaxDataQuery) {
-      decision.answer = PlainAnswer(414, "the address is too long");
-    } else if (reads) {
-      decision.action = Action::kGetData;
-    } else if (!IsOwnOrigin(head.origins, decision.host)) {
-      decision.answer = PlainAnswer(403, "only the viewer's own page may change documents");
-    } else {
-      decision.action = Action::kPutData;
-    }
+    DecideData(head, right, query, decision);
   } else if (path == "/ws") {
     if (!IsOwnOrigin(head.origins, decision.host)) {
       decision.answer = PlainAnswer(403, "only the viewer's own page may connect");

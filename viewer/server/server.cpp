@@ -20,11 +20,11 @@ struct Server::Impl {
         listener(std::make_unique<server::Listener>(*io, options.address, options.port)),
         address(listener->address()),
         port(listener->port()),
-        access("skyquilt_" + std::to_string(port)),
+        access("skyquilt_" + std::to_string(port), options.rights),
         state{.options = options,
               .handler = handler,
               .access = access,
-              .router = {options.assets, {address, port, options.extra_hosts}, access, [this] { LinkUsed(); }},
+              .router = {options.assets, {address, port, options.extra_hosts}, access, [this](Right right) { LinkUsed(right); }},
               .connections = server::Connections(options.max_connections),
               .clients = {},
               .data = {data, [this](std::function<void()> run) { boost::asio::post(*io, std::move(run)); }}} {
@@ -57,18 +57,18 @@ struct Server::Impl {
     }
   }
 
-  std::string Link() const {
-    return "http://" + server::LinkHost(address, options.extra_hosts) + ":" + std::to_string(port) + "/?token=" + access.token();
+  std::string Link(Right right) const {
+    return "http://" + server::LinkHost(address, options.extra_hosts) + ":" + std::to_string(port) + "/?token=" + access.token(right);
   }
 
-  void LinkUsed() {
-    std::function<void(const std::string&)> call;
+  void LinkUsed(Right right) {
+    std::function<void(Right, const std::string&)> call;
     {
       const std::lock_guard lock(mutex);
       call = on_link_used;
     }
     try {
-      if (call) call(Link());
+      if (call) call(right, Link(right));
     } catch (const std::exception& error) {
       spdlog::error("viewer: {}", error.what());
     }
@@ -81,7 +81,7 @@ struct Server::Impl {
   const int port;
   server::Access access;
   std::mutex mutex;
-  std::function<void(const std::string&)> on_link_used;
+  std::function<void(Right, const std::string&)> on_link_used;
   server::ServerState state;
   std::thread thread;
 };
@@ -94,11 +94,11 @@ int Server::port() const {
   return impl_->port;
 }
 
-std::string Server::LaunchLink() const {
-  return impl_->Link();
+std::string Server::LaunchLink(Right right) const {
+  return impl_->Link(right);
 }
 
-void Server::OnLinkUsed(std::function<void(const std::string& next_link)> on_link_used) {
+void Server::OnLinkUsed(std::function<void(Right right, const std::string& next_link)> on_link_used) {
   const std::lock_guard lock(impl_->mutex);
   impl_->on_link_used = std::move(on_link_used);
 }

@@ -1,10 +1,12 @@
 // The viewer's web server: HTTP and one WebSocket on one port, for browsers on this machine. It knows nothing of scenes.
 // Security: bound to 127.0.0.1 unless asked otherwise; Host must be in the allow-list (against DNS rebinding), Origin must be the server's own on
 // the WebSocket's upgrade and on PUT; a one-time token in the launch link is exchanged for an HttpOnly, SameSite=Strict cookie; tokens and cookies
-// are compared in constant time; every answer carries CSP, nosniff, no-referrer, no CORS; sizes, rates, clients and times are limited.
+// are compared in constant time; every answer carries CSP, nosniff, no-referrer, no CORS; sizes, rates, clients and times are limited. Each link
+// gives one right (Right), which its session keeps.
 //   GET  /?token=T      303 to / with the cookie; the token is used up, and a new link is printed
 //   GET  /              index.html;  other assets by their fixed names
-//   GET  /data/<path>   DataSource::Get;  PUT /data/<path>: DataSource::Put (body up to 1 MiB)
+//   GET  /data/<path>   DataSource::Get;  PUT /data/<path>: DataSource::Put (body up to 1 MiB, below tour/assets/ 50 MiB)
+//   GET  /data/rights.json   what this session may change
 //   GET  /ws            WebSocket (text from the client, up to kMaxMessageBytes)
 // Without a valid cookie everything but /?token= is answered with 403 and a page that says how to get a link.
 #pragma once
@@ -21,6 +23,13 @@
 namespace skyquilt::viewer {
 
 using ClientId = uint64_t;
+
+// What a session may do. Each includes those before it.
+enum class Right {
+  kPlay,  // look and play: nothing that writes
+  kView,  // and save measurements, control points and camera paths
+  kEdit,  // and change the tour and upload its models and pictures
+};
 
 struct OutMessage {
   bool binary = false;
@@ -54,6 +63,9 @@ struct DataReply {
   }
 };
 
+// Files that are uploaded are kept in memory until they are checked: this, times max_uploads.
+constexpr size_t kMaxUploadBytes = 50U << 20U;
+
 // What a browser asks by HTTP below /data/. Called on a thread of its own, one call at a time.
 class DataSource {
  public:
@@ -77,13 +89,15 @@ struct ServerOptions {
   std::vector<Asset> assets = {};
   // Names that the Host header may have beside the address, localhost and 127.0.0.1, all with the port.
   std::vector<std::string> extra_hosts = {};
-  int max_clients = 16;                  // WebSockets
-  int max_connections = 128;             // sockets
-  size_t max_queued_bytes = 32U << 20U;  // unsent messages of one client, above which it is disconnected
-  double handshake_s = 10.0;             // until a request is complete and for its answer to make progress
-  double idle_s = 300.0;                 // without a message or a pong
-  double keep_alive_s = 30.0;            // between two requests of one connection
-  double slow_answer_s = 30.0;           // after which an HTTP answer must have gone out at this rate since it began:
+  std::vector<Right> rights = {Right::kView};  // one launch link for each
+  int max_uploads = 2;                         // at a time; others are answered with 503
+  int max_clients = 16;                        // WebSockets
+  int max_connections = 128;                   // sockets
+  size_t max_queued_bytes = 32U << 20U;        // unsent messages of one client, above which it is disconnected
+  double handshake_s = 10.0;                   // until a request is complete and for its answer to make progress
+  double idle_s = 300.0;                       // without a message or a pong
+  double keep_alive_s = 30.0;                  // between two requests of one connection
+  double slow_answer_s = 30.0;                 // after which an HTTP answer must have gone out at this rate since it began:
   double min_answer_bytes_per_s = 16384.0;
   double write_stall_s = 30.0;   // for a client that does not read what is sent to it
   int max_messages_per_s = 200;  // per client; above it is disconnected
@@ -100,9 +114,10 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   int port() const;
-  // "http://127.0.0.1:PORT/?token=...": works once. `on_link_used` is called on the server's thread with the next one.
-  std::string LaunchLink() const;
-  void OnLinkUsed(std::function<void(const std::string& next_link)> on_link_used);
+  // "http://127.0.0.1:PORT/?token=...": works once and gives this right, one of ServerOptions::rights. `on_link_used` is called on the server's
+  // thread with the next one of the same right.
+  std::string LaunchLink(Right right) const;
+  void OnLinkUsed(std::function<void(Right right, const std::string& next_link)> on_link_used);
 
   // Thread-safe. Unknown clients are ignored.
   void Send(ClientId client, OutMessage message);

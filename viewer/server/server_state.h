@@ -19,6 +19,7 @@ struct ServerState {
   ClientTable clients;
   DataThread data;
   int websockets = 0;  // open or opening
+  int uploads = 0;     // whose bodies are read or being checked
   ClientId next_client = 1;
 };
 

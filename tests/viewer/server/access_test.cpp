@@ -17,8 +17,8 @@ namespace {
 using Exchange = Access::Exchange;
 
 // The cookie that a browser would send after Set-Cookie.
-std::string CookieOf(const std::string& set_cookie) {
-  return set_cookie.substr(0, set_cookie.find(';'));
+std::string CookieOf(const Access::Grant& grant) {
+  return grant.set_cookie.substr(0, grant.set_cookie.find(';'));
 }
 
 TEST(SecretsTest, AreLongAndDiffer) {
@@ -37,74 +37,93 @@ RC_GTEST_PROP(SecretsTest, ComparisonIsEquality, (const std::string& a, const st
 
 TEST(AccessTest, TokenWorksOnce) {
   Access access("name");
-  const std::string token = access.token();
-  std::string set_cookie;
-  EXPECT_EQ(access.TryToken(token, false, {}, set_cookie), Exchange::kGranted);
-  EXPECT_NE(access.token(), token);
-  EXPECT_TRUE(access.HasSession({CookieOf(set_cookie)}));
-  for (const char* part : {"; HttpOnly", "; SameSite=Strict", "; Path=/"}) EXPECT_NE(set_cookie.find(part), std::string::npos);
-  std::string second;
+  const std::string token = access.token(Right::kView);
+  Access::Grant grant;
+  EXPECT_EQ(access.TryToken(token, false, {}, grant), Exchange::kGranted);
+  EXPECT_NE(access.token(Right::kView), token);
+  EXPECT_TRUE(access.SessionRight({CookieOf(grant)}));
+  for (const char* part : {"; HttpOnly", "; SameSite=Strict", "; Path=/"}) EXPECT_NE(grant.set_cookie.find(part), std::string::npos);
+  Access::Grant second;
   EXPECT_EQ(access.TryToken(token, false, {}, second), Exchange::kWrong);
-  EXPECT_TRUE(second.empty());
+  EXPECT_TRUE(second.set_cookie.empty());
+}
+
+TEST(AccessTest, EachTokenGivesItsRightAndIsRenewedAlone) {
+  Access access("name", {Right::kEdit, Right::kPlay});
+  const std::string edit = access.token(Right::kEdit), play = access.token(Right::kPlay);
+  EXPECT_NE(edit, play);
+  EXPECT_THROW(access.token(Right::kView), std::out_of_range);
+  Access::Grant player, editor, again;
+  ASSERT_EQ(access.TryToken(play, false, {}, player), Exchange::kGranted);
+  EXPECT_EQ(player.right, Right::kPlay);
+  EXPECT_EQ(access.token(Right::kEdit), edit);
+  EXPECT_NE(access.token(Right::kPlay), play);
+  ASSERT_EQ(access.TryToken(edit, false, {}, editor), Exchange::kGranted);
+  EXPECT_EQ(editor.right, Right::kEdit);
+  EXPECT_EQ(access.TryToken(edit, false, {}, again), Exchange::kWrong);
+  EXPECT_EQ(access.SessionRight({CookieOf(player)}), Right::kPlay);
+  EXPECT_EQ(access.SessionRight({CookieOf(editor)}), Right::kEdit);
+  EXPECT_EQ(access.SessionRight({"name=x; " + CookieOf(player) + "; " + CookieOf(editor)}), Right::kPlay) << "the first that is one";
+  EXPECT_FALSE(access.SessionRight({"name=" + edit})) << "a token is no session";
 }
 
 TEST(AccessTest, FindsItsCookieAmongOthers) {
   Access access("name");
-  std::string set_cookie;
-  access.TryToken(access.token(), false, {}, set_cookie);
-  const std::string cookie = CookieOf(set_cookie);
-  EXPECT_TRUE(access.HasSession({"a=b; " + cookie + "; c=d"}));
-  EXPECT_TRUE(access.HasSession({"name=old; " + cookie}));
-  EXPECT_TRUE(access.HasSession({"x=y", cookie}));
-  EXPECT_FALSE(access.HasSession({}));
-  EXPECT_FALSE(access.HasSession({""}));
-  EXPECT_FALSE(access.HasSession({"name="}));
-  EXPECT_FALSE(access.HasSession({"name"}));
-  EXPECT_FALSE(access.HasSession({"other" + cookie}));
-  EXPECT_FALSE(access.HasSession({cookie + "0"}));
-  EXPECT_FALSE(access.HasSession({cookie.substr(0, cookie.size() - 1)}));
-  EXPECT_FALSE(Access("name").HasSession({cookie}));
+  Access::Grant grant;
+  access.TryToken(access.token(Right::kView), false, {}, grant);
+  const std::string cookie = CookieOf(grant);
+  EXPECT_TRUE(access.SessionRight({"a=b; " + cookie + "; c=d"}));
+  EXPECT_TRUE(access.SessionRight({"name=old; " + cookie}));
+  EXPECT_TRUE(access.SessionRight({"x=y", cookie}));
+  EXPECT_FALSE(access.SessionRight({}));
+  EXPECT_FALSE(access.SessionRight({""}));
+  EXPECT_FALSE(access.SessionRight({"name="}));
+  EXPECT_FALSE(access.SessionRight({"name"}));
+  EXPECT_FALSE(access.SessionRight({"other" + cookie}));
+  EXPECT_FALSE(access.SessionRight({cookie + "0"}));
+  EXPECT_FALSE(access.SessionRight({cookie.substr(0, cookie.size() - 1)}));
+  EXPECT_FALSE(Access("name").SessionRight({cookie}));
 }
 
 TEST(AccessTest, GuessingIsPausedForAMinute) {
   Access access("name");
   const Access::Clock::time_point start{std::chrono::hours(1)};
-  std::string set_cookie;
-  for (size_t i = 0; i < kMaxWrongTokens; ++i) EXPECT_EQ(access.TryToken("wrong", false, start, set_cookie), Exchange::kWrong);
-  EXPECT_EQ(access.TryToken("wrong", false, start + std::chrono::seconds(59), set_cookie), Exchange::kTooManyGuesses);
-  EXPECT_EQ(access.TryToken("wrong", true, start + std::chrono::seconds(59), set_cookie), Exchange::kWrong);
-  EXPECT_EQ(access.TryToken("wrong", false, start + std::chrono::seconds(60), set_cookie), Exchange::kWrong);
+  Access::Grant grant;
+  for (size_t i = 0; i < kMaxWrongTokens; ++i) EXPECT_EQ(access.TryToken("wrong", false, start, grant), Exchange::kWrong);
+  EXPECT_EQ(access.TryToken("wrong", false, start + std::chrono::seconds(59), grant), Exchange::kTooManyGuesses);
+  EXPECT_EQ(access.TryToken("wrong", true, start + std::chrono::seconds(59), grant), Exchange::kWrong);
+  EXPECT_EQ(access.TryToken("wrong", false, start + std::chrono::seconds(60), grant), Exchange::kWrong);
 }
 
 TEST(AccessTest, GuessesOfOthersDoNotLockOutTheRightToken) {
   Access access("name");
   const Access::Clock::time_point start{std::chrono::hours(1)};
-  std::string set_cookie;
-  for (size_t i = 0; i < 2 * kMaxWrongTokens; ++i) access.TryToken("wrong", false, start, set_cookie);
-  EXPECT_EQ(access.TryToken(access.token(), false, start, set_cookie), Exchange::kGranted);
-  EXPECT_TRUE(access.HasSession({CookieOf(set_cookie)}));
+  Access::Grant grant;
+  for (size_t i = 0; i < 2 * kMaxWrongTokens; ++i) access.TryToken("wrong", false, start, grant);
+  EXPECT_EQ(access.TryToken(access.token(Right::kView), false, start, grant), Exchange::kGranted);
+  EXPECT_TRUE(access.SessionRight({CookieOf(grant)}));
 }
 
 TEST(AccessTest, RareAndTrustedMistakesAreNoGuesses) {
   Access access("name");
-  std::string set_cookie;
+  Access::Grant grant;
   Access::Clock::time_point now{std::chrono::hours(1)};
   for (int i = 0; i < 100; ++i) {
-    EXPECT_EQ(access.TryToken("wrong", true, now, set_cookie), Exchange::kWrong);
-    EXPECT_EQ(access.TryToken("wrong", false, now, set_cookie), Exchange::kWrong);
+    EXPECT_EQ(access.TryToken("wrong", true, now, grant), Exchange::kWrong);
+    EXPECT_EQ(access.TryToken("wrong", false, now, grant), Exchange::kWrong);
     now += std::chrono::seconds(4);
   }
 }
 
 TEST(AccessTest, OldestSessionIsDropped) {
   Access access("name");
-  std::string first, second, last;
-  access.TryToken(access.token(), false, {}, first);
-  access.TryToken(access.token(), false, {}, second);
-  for (size_t i = 2; i <= kMaxSessions; ++i) access.TryToken(access.token(), false, {}, last);
-  EXPECT_FALSE(access.HasSession({CookieOf(first)}));
-  EXPECT_TRUE(access.HasSession({CookieOf(second)}));
-  EXPECT_TRUE(access.HasSession({CookieOf(last)}));
+  Access::Grant first, second, last;
+  access.TryToken(access.token(Right::kView), false, {}, first);
+  access.TryToken(access.token(Right::kView), false, {}, second);
+  for (size_t i = 2; i <= kMaxSessions; ++i) access.TryToken(access.token(Right::kView), false, {}, last);
+  EXPECT_FALSE(access.SessionRight({CookieOf(first)}));
+  EXPECT_TRUE(access.SessionRight({CookieOf(second)}));
+  EXPECT_TRUE(access.SessionRight({CookieOf(last)}));
 }
 
 TEST(HostListTest, AllowsOwnNamesWithThePortOnly) {

@@ -15,11 +15,12 @@ TEST_F(HttpTest, LinkIsExchangedForACookieOnce) {
   Start();
   std::mutex mutex;
   std::string next;
-  server_->OnLinkUsed([&](const std::string& link) {
+  server_->OnLinkUsed([&](Right right, const std::string& link) {
     const std::lock_guard lock(mutex);
+    EXPECT_EQ(right, Right::kView);
     next = link;
   });
-  const std::string link = server_->LaunchLink(), target = LinkTarget();
+  const std::string link = server_->LaunchLink(Right::kView), target = LinkTarget();
   EXPECT_TRUE(link.starts_with(origin_ + "/?token="));
   const auto reply = Ask("GET " + target, "");
   ASSERT_EQ(Status(reply), 303);
@@ -30,7 +31,7 @@ TEST_F(HttpTest, LinkIsExchangedForACookieOnce) {
   EXPECT_NE(set.find("SameSite=Strict"), std::string::npos);
   {
     const std::lock_guard lock(mutex);
-    EXPECT_EQ(next, server_->LaunchLink());
+    EXPECT_EQ(next, server_->LaunchLink(Right::kView));
     EXPECT_NE(next, link);
   }
   const std::string cookie = set.substr(0, set.find(';'));

@@ -100,13 +100,13 @@ class ServerTest : public ::testing::Test {
   }
   void TearDown() override { server_.reset(); }
 
-  std::string LinkTarget() const {
-    const std::string link = server_->LaunchLink();
+  std::string LinkTarget(Right right = Right::kView) const {
+    const std::string link = server_->LaunchLink(right);
     return link.substr(link.find("/?token="));
   }
   // Uses up the launch link; the value of the Cookie header.
-  std::string Login() {
-    const auto reply = Ask("GET " + LinkTarget(), "");
+  std::string Login(Right right = Right::kView) {
+    const auto reply = Ask("GET " + LinkTarget(right), "");
     if (!reply || reply->status != 303) return "";
     const std::string& set = reply->headers.at("set-cookie");
     return set.substr(0, set.find(';'));

@@ -1,0 +1,238 @@
+// Saving a tour and the files of its models and pictures.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+
+#include "core/base/sha256.h"
+#include "tests/tour/format/sample_assets.h"
+#include "tests/tour/format/sample_tour.h"
+#include "tests/viewer/data/sample_project.h"
+#include "viewer/data/tour_assets.h"
+
+namespace skyquilt::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path AssetFolderOf(const SampleProject& sample) {
+  return sample.project.folder / "tour" / "assets";
+}
+
+// Files in tour/assets, those that are half written included.
+size_t FilesIn(const SampleProject& sample) {
+  std::error_code error;
+  return static_cast<size_t>(std::distance(fs::directory_iterator(AssetFolderOf(sample), error), fs::directory_iterator()));
+}
+
+std::string PathOf(const std::string& bytes, const std::string& extension) {
+  return "tour/assets/" + tour::AssetNameOf(bytes, extension);
+}
+
+// A model of about so many bytes.
+std::string LargeGlb(size_t bytes, char fill) {
+  tour::SampleModel model;
+  model.binary += std::string(bytes, fill);
+  model.json["buffers"][0]["byteLength"] = model.binary.size();
+  return model.Glb();
+}
+
+TEST(TourDocument, IsSavedWholeAndTextStaysText) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  EXPECT_EQ(data.Get("tour.json", "").status, 204);
+  ASSERT_EQ(data.Put("tour.json", tour::SampleTour().dump(), "").status, 204);
+  const DataReply reply = data.Get("tour.json", "v=1");
+  EXPECT_EQ(reply.content_type, "application/json");
+  EXPECT_FALSE(reply.cache);
+  EXPECT_EQ(nlohmann::json::parse(reply.body), tour::SampleTour());
+  EXPECT_NE(reply.body.find("<script>alert(1)</script>"), std::string::npos);
+}
+
+TEST(TourDocument, RefusalsNameThePathAndLeaveTheOldFile) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  ASSERT_EQ(data.Put("tour.json", tour::SampleTour().dump(), "").status, 204);
+  const std::string before = base::ReadFile(sample.project.folder / "tour.json");
+  const DataReply reply = data.Put("tour.json", tour::SampleTourWith([](nlohmann::json& json) { json["stops"][1]["pose"]["fovy_deg"] = 500; }), "");
+  EXPECT_EQ(reply.status, 400);
+  EXPECT_EQ(reply.body, "tour.json is not saved: stops[1].pose.fovy_deg must be a number from 10 to 120");
+  for (const std::string& wrong : {std::string("{"), std::string("[]"), std::string(), std::string(500'000, '[')}) {
+    EXPECT_EQ(data.Put("tour.json", wrong, "").status, 400);
+  }
+  EXPECT_EQ(base::ReadFile(sample.project.folder / "tour.json"), before);
+}
+
+TEST(TourDocument, TheSecondEditorIsToldAndOverwritesNothing) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const std::string none = data.Get("tour.json", "").etag;
+  const DataReply first = data.Put("tour.json", tour::SampleTour().dump(), none);
+  ASSERT_EQ(first.status, 204);
+  EXPECT_EQ(first.etag, data.Get("tour.json", "").etag);
+  const std::string other = tour::SampleTourWith([](nlohmann::json& json) { json["title"] = "mine"; });
+  const DataReply second = data.Put("tour.json", other, none);
+  EXPECT_EQ(second.status, 412);
+  EXPECT_NE(second.body.find("another window"), std::string::npos);
+  EXPECT_EQ(data.Get("tour.json", "").etag, first.etag);
+  EXPECT_EQ(data.Put("tour.json", other, first.etag).status, 204);
+}
+
+TEST(TourDocument, WhatCannotBeReadIsNoAbsence) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  fs::create_directories(sample.project.folder / "tour.json" / "inside");
+  EXPECT_EQ(data.Get("tour.json", "").status, 500);
+  EXPECT_EQ(data.Put("tour.json", tour::SampleTour().dump(), "").status, 500);
+}
+
+TEST(TourAssets, AreStoredUnderTheirDigestAndServed) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const std::tuple<std::string, const char*, const char*> files[] = {
+      {tour::SampleGlb(), "glb", "model/gltf-binary"}, {tour::SamplePng(), "png", "image/png"}, {tour::SampleJpg(), "jpg", "image/jpeg"}};
+  for (const auto& [bytes, extension, type] : files) {
+    const std::string path = PathOf(bytes, extension);
+    EXPECT_EQ(data.Get(path, "").status, 404);
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(data.Put(path, bytes, "").status, 204) << "again changes nothing";
+    const DataReply reply = data.Get(path, "");
+    ASSERT_EQ(reply.status, 200);
+    EXPECT_EQ(reply.content_type, type);
+    EXPECT_TRUE(reply.cache) << "its name stands for its content";
+    EXPECT_EQ(base::ReadFile(reply.file), bytes);
+    EXPECT_EQ(reply.file, sample.project.folder / path);
+  }
+  EXPECT_EQ(FilesIn(sample), 3U);
+}
+
+TEST(TourAssets, HostileUploadsAreRefusedAndLeaveNothing) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const std::string glb = tour::SampleGlb(), png = tour::SamplePng(), page = "<html><script>alert(1)</script></html>";
+  const auto refused = [&](const std::string& bytes, const std::string& extension) {
+    const DataReply reply = data.Put(PathOf(bytes, extension), bytes, "");
+    EXPECT_TRUE(reply.status != 415 || reply.body.starts_with("the file is not saved: ")) << reply.body;
+    return reply.status == 415;
+  };
+  EXPECT_TRUE(refused(glb, "png")) << "another type";
+  EXPECT_TRUE(refused(png, "jpg"));
+  EXPECT_TRUE(refused(png, "glb"));
+  EXPECT_TRUE(refused(page, "png")) << "a page";
+  EXPECT_TRUE(refused("", "glb"));
+  EXPECT_TRUE(refused(glb.substr(0, glb.size() / 2), "glb")) << "cut off";
+  EXPECT_TRUE(refused(png + page, "png")) << "two things at once";
+  EXPECT_TRUE(refused(glb + page, "glb"));
+  EXPECT_TRUE(refused(tour::SampleGlb([](nlohmann::json& json) { json["buffers"][0]["uri"] = "http://example.org/x"; }), "glb"))
+      << "reads from elsewhere";
+  EXPECT_EQ(data.Put(PathOf(glb, "glb"), png, "").status, 415) << "another digest";
+  EXPECT_EQ(data.Put(PathOf(glb, "glb"), glb + " ", "").status, 415) << "changed on its way";
+  EXPECT_FALSE(fs::exists(sample.project.folder / "tour"));
+}
+
+TEST(TourAssets, NamesLeadNowhereElse) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const std::string png = tour::SamplePng(), name = tour::AssetNameOf(png, "png");
+  for (const std::string& path :
+       {std::string("tour/assets/"), "tour/assets/x/" + name, "tour/assets/" + name + "/", "tour/assets/." + name, "tour/assets/" + name + ".html",
+        std::string("tour/assets/photo.png"), "tour/assets/" + std::string(64, 'A') + ".png"}) {
+    EXPECT_EQ(data.Put(path, png, "").status, 400) << path;
+    EXPECT_EQ(data.Get(path, "").status, 404) << path;
+  }
+  for (const std::string& path : {"tour/" + name, name, std::string("tour"), "before/tour/assets/" + name, "./tour/assets/" + name}) {
+    EXPECT_EQ(data.Put(path, png, "").status, 405) << path;
+    EXPECT_EQ(data.Get(path, "").status, 404) << path;
+  }
+  fs::create_directories(AssetFolderOf(sample));
+  base::WriteFileAtomically(sample.folder / "secret", "secret");
+  fs::create_symlink(sample.folder / "secret", AssetFolderOf(sample) / name);
+  EXPECT_EQ(data.Get("tour/assets/" + name, "").status, 404) << "links are not followed";
+  fs::create_directories(AssetFolderOf(sample) / (std::string(64, 'c') + ".png"));
+  EXPECT_EQ(data.Get("tour/assets/" + std::string(64, 'c') + ".png", "").status, 404);
+  EXPECT_EQ(data.Put("tour/assets/" + name, png, "").status, 204) << "the link is replaced";
+  EXPECT_EQ(base::ReadFile(sample.folder / "secret"), "secret");
+  EXPECT_EQ(base::ReadFile(AssetFolderOf(sample) / name), png);
+}
+
+TEST(TourAssets, DamagedFilesAreStoredAgain) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const std::string png = tour::SamplePng(), path = PathOf(png, "png");
+  ASSERT_EQ(data.Put(path, png, "").status, 204);
+  std::string damaged = png;
+  damaged[20] = 'x';
+  base::WriteFileAtomically(sample.project.folder / path, damaged);
+  EXPECT_EQ(data.Put(path, png, "").status, 204);
+  EXPECT_EQ(base::ReadFile(sample.project.folder / path), png);
+}
+
+TEST(TourAssets, FolderIsLimitedAndTidied) {
+  SampleProject sample;
+  const fs::path& project = sample.project.folder;
+  const std::string first = LargeGlb(700'000, 'a'), second = LargeGlb(700'000, 'b');
+  constexpr uint64_t kLimit = 1U << 20U;
+  EXPECT_EQ(PutAsset(project, PathOf(first, "glb"), first, kLimit).status, 204);
+  const DataReply full = PutAsset(project, PathOf(second, "glb"), second, kLimit);
+  EXPECT_EQ(full.status, 413);
+  EXPECT_NE(full.body.find("tour/assets"), std::string::npos);
+  EXPECT_EQ(PutAsset(project, PathOf(first, "glb"), first, kLimit).status, 204) << "it is there already";
+  // A half file that a killed viewer left long ago makes room; one that is being written does not.
+  fs::remove(project / PathOf(first, "glb"));
+  const fs::path half = AssetFolderOf(sample) / ".x.glb.tmp.7.0";
+  base::WriteFileAtomically(half, first);
+  EXPECT_EQ(PutAsset(project, PathOf(second, "glb"), second, kLimit).status, 413);
+  fs::last_write_time(half, fs::file_time_type::clock::now() - std::chrono::hours(2));
+  EXPECT_EQ(PutAsset(project, PathOf(second, "glb"), second, kLimit).status, 204);
+  EXPECT_FALSE(fs::exists(half));
+}
+
+TEST(TourAssets, AFullDiskLeavesNothingHalf) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const std::string small = tour::SamplePng(), large = LargeGlb(300'000, 'a');
+  ASSERT_EQ(data.Put("tour.json", tour::SampleTour().dump(), "").status, 204);
+  const std::string tour_before = base::ReadFile(sample.project.folder / "tour.json");
+  ASSERT_EQ(data.Put(PathOf(small, "png"), small, "").status, 204);
+  // A limit on the file size makes writes fail like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit low = before;
+  low.rlim_cur = 1000;
+  setrlimit(RLIMIT_FSIZE, &low);
+  const DataReply asset = data.Put(PathOf(large, "glb"), large, "");
+  const DataReply document = data.Put("tour.json", tour::SampleTourWith([](nlohmann::json& json) { json["title"] = "new"; }), "");
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(asset.status, 507) << asset.body;
+  EXPECT_NE(asset.body.find("Free some space"), std::string::npos);
+  EXPECT_EQ(document.status, 507) << document.body;
+  EXPECT_EQ(FilesIn(sample), 1U);
+  EXPECT_EQ(base::ReadFile(sample.project.folder / "tour.json"), tour_before);
+  EXPECT_EQ(data.Put(PathOf(large, "glb"), large, "").status, 204) << "once there is space";
+}
+
+TEST(TourAssets, AreWholeOrAbsentWhenTheProcessIsKilled) {
+  SampleProject sample;
+  const std::string large = LargeGlb(4'000'000, 'a'), path = PathOf(large, "glb");
+  for (int attempt = 0; attempt < 8; ++attempt) {
+    const pid_t child = fork();
+    if (child == 0) {
+      for (;;) {
+        PutAsset(sample.project.folder, path, large);
+        fs::remove(sample.project.folder / path);
+      }
+    }
+    usleep(static_cast<useconds_t>(20'000 + 17'000 * attempt));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    const DataReply reply = GetAsset(sample.project.folder, path);
+    EXPECT_TRUE(reply.status == 404 || (reply.status == 200 && base::ReadFile(reply.file) == large));
+  }
+  EXPECT_EQ(PutAsset(sample.project.folder, path, large).status, 204);
+}
+
+}  // namespace
+}  // namespace skyquilt::viewer

@@ -23,7 +23,8 @@ const MODIFIERS = ["ctrl", "shift", "alt"] as const;
 
 /** One spelling per key. Shift counts for letters and named keys only: where "?" and digits are differs between keyboards. */
 export function canonicalKey({ key, ctrl, shift, alt }: KeyPress): string {
-  const plain = key.length === 1 ? key.toLowerCase() : key;
+  // A space could not be seen in the help.
+  const plain = key === " " ? "Space" : key.length === 1 ? key.toLowerCase() : key;
   const shifted = shift && (key.length !== 1 || plain !== key.toUpperCase());
   return `${ctrl ? "ctrl+" : ""}${shifted ? "shift+" : ""}${alt ? "alt+" : ""}${plain}`;
 }

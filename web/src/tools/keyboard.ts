@@ -47,10 +47,10 @@ export function keepsKey(element: FocusedElement | null, key: string): boolean {
   }
 }
 
-/** Returns what ends it. */
-export function listenToCommandKeys(page: Window, commands: CommandTable): Disposer {
+/** While `first` holds, commands come before what else in the page uses the key, such as the camera. Returns what ends it. */
+export function listenToCommandKeys(page: Window, commands: CommandTable, first = () => false): Disposer {
   const disposer = new Disposer();
-  disposer.listen(page, "keydown", (event: KeyboardEvent) => {
+  const handle = (event: KeyboardEvent): void => {
     // Composing: the keys write one character together, as in Chinese.
     if (event.defaultPrevented || event.isComposing || keepsKey(focusOf(event), event.key)) return;
     // A key that is held repeats only what is harmless.
@@ -63,8 +63,19 @@ export function listenToCommandKeys(page: Window, commands: CommandTable): Dispo
       shift: event.shiftKey,
       alt: !altGraph && event.altKey,
     };
-    if (commands.handleKey(press)) event.preventDefault();
-  });
+    if (!commands.handleKey(press)) return;
+    event.preventDefault();
+    if (first()) event.stopPropagation();
+  };
+  disposer.listen(
+    page,
+    "keydown",
+    (event: KeyboardEvent) => {
+      if (first()) handle(event);
+    },
+    { capture: true },
+  );
+  disposer.listen(page, "keydown", handle);
   return disposer;
 }
 

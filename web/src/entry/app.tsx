@@ -3,16 +3,20 @@ import { StrictMode } from "react";
 import { createRoot, type Root } from "react-dom/client";
 import { AppView } from "../panels/app_view.js";
 import type { AppContext } from "../panels/context.js";
+import { showErrorMap } from "../panels/error_map.js";
 import { addViewCommands } from "../panels/view_commands.js";
+import { assetUrl, uploadAsset } from "../protocol/assets_client.js";
 import { loadBuildings } from "../protocol/buildings_client.js";
 import { connect } from "../protocol/link.js";
 import { loadProject } from "../protocol/project_client.js";
+import { loadRights } from "../protocol/rights_client.js";
 import { createScene } from "../scene/viewer_scene.js";
 import { CommandTable } from "../state/commands.js";
 import { initialState } from "../state/initial.js";
 import { Store } from "../state/store.js";
 import { createTools } from "../tools/tools.js";
 import { keepBuildings } from "./buildings_loader.js";
+import { groundLoader } from "./ground_loader.js";
 import { watchProject } from "./project_watch.js";
 import { requireWebGl2, StartErrorPage } from "./start_error.js";
 import { installTestHook } from "./test_hook.js";
@@ -26,8 +30,8 @@ const withTestHook = typeof SKYQUILT_TEST_HOOK !== "undefined" && SKYQUILT_TEST_
 async function start(root: Root, container: HTMLElement): Promise<void> {
   requireWebGl2();
   dropToken();
-  const project = await loadProject();
-  const store = new Store(initialState(project));
+  const [project, rights] = await Promise.all([loadProject(), loadRights()]);
+  const store = new Store(initialState(project, rights));
   // On a phone the panel would hide half of the first picture.
   if (window.matchMedia("(max-width: 640px)").matches) store.set({ panel: null });
   const commands = new CommandTable();
@@ -36,9 +40,17 @@ async function start(root: Root, container: HTMLElement): Promise<void> {
   const link = views === null ? connected : views.watch(connected);
   wireLink(link, store);
   const scene = createScene({ container, project, store, link });
-  const context: AppContext = { project, store, scene, link, commands };
-  createTools(context);
+  const base = { project, store, scene, link, commands };
+  const { playback } = createTools({ ...base, ground: groundLoader(project) });
+  const context: AppContext = { ...base, assets: { url: assetUrl, upload: uploadAsset }, controls: playback };
   addViewCommands(context);
+  // A stop of the tour may switch the layer on before the map has been made.
+  store.subscribe(
+    ({ play, layers, errorMap }) => play !== null && layers.errorMap && errorMap === null,
+    (wanted) => {
+      if (wanted) void showErrorMap(context, true);
+    },
+  );
   keepBuildings(store, project, loadBuildings);
   const draw = (changed: boolean): void =>
     root.render(

@@ -1,7 +1,9 @@
 // Everything around the 3-D view: tools, panels, status, dialogs, messages.
 import { type ReactElement, useEffect } from "react";
+import { AppProvider } from "./app_provider.js";
 import { BusyList } from "./busy_list.js";
 import type { AppContext } from "./context.js";
+import { ExposureFilter } from "./exposure_filter.js";
 import { HelpDialog } from "./help_dialog.js";
 import { Notices } from "./notices.js";
 import { PhotoCompareView } from "./photo_compare.js";
@@ -9,7 +11,8 @@ import { PanelTabs, SidePanel } from "./side_panel.js";
 import { StatusBar } from "./status_bar.js";
 import { SwipeHandle } from "./swipe_handle.js";
 import { Toolbar } from "./toolbar.js";
-import { AppProvider } from "./use_store.js";
+import { TourPlayer } from "./tour_player.js";
+import { useStore } from "./use_store.js";
 import { ViewControls } from "./view_controls.js";
 
 interface AppViewProps {
@@ -29,6 +32,19 @@ export function AppView({ context, changed = false }: AppViewProps): ReactElemen
   }, [canvas, name]);
   return (
     <AppProvider value={context}>
+      <ExposureFilter />
+      <ViewOrTour name={name} changed={changed} />
+      <PhotoCompareView />
+      <HelpDialog />
+    </AppProvider>
+  );
+}
+
+function ViewOrTour({ name, changed }: { readonly name: string; readonly changed: boolean }): ReactElement {
+  const playing = useStore((state) => state.play !== null);
+  if (playing) return <TourPlayer />;
+  return (
+    <>
       <h1 className="sr-only">{name}</h1>
       <SwipeHandle />
       <div className="frame">
@@ -45,9 +61,7 @@ export function AppView({ context, changed = false }: AppViewProps): ReactElemen
         <PanelTabs />
         <StatusBar />
       </div>
-      <PhotoCompareView />
-      <HelpDialog />
-    </AppProvider>
+    </>
   );
 }
 

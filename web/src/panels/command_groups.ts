@@ -16,6 +16,8 @@ const TITLES: readonly (readonly [prefix: string, title: string])[] = [
   ["panel", "Panels"],
   ["layer", "Layers"],
   ["path", "Camera path"],
+  ["tour", "Tour"],
+  ["play", "Playing the tour"],
 ];
 const OTHERS = "More";
 

@@ -10,7 +10,7 @@ interface IconButtonProps {
   /** Given for buttons that stay pressed. */
   readonly pressed?: boolean;
   readonly disabled?: boolean;
-  readonly side?: "right" | "left" | "below";
+  readonly side?: "right" | "left" | "below" | "above";
   readonly className?: string;
   readonly onClick: () => void;
 }

@@ -40,6 +40,7 @@ export function LayersPanel(): ReactElement {
         <LayerRow name="measurements" />
         <LayerRow name="controlPoints" />
         <LayerRow name="cameraPath" />
+        <LayerRow name="things" />
       </section>
       <SwipeControls />
       <ClipControls />
@@ -117,6 +118,8 @@ function layerText(name: LayerName, project: Project, state: AppState): LayerTex
         detail: counted(state.documents.cameraPath.keys.length, "key frame"),
         available: true,
       };
+    case "things":
+      return { label: "Things of the tour", detail: String(state.documents.tour.things.length), available: true };
     default:
       return name satisfies never;
   }

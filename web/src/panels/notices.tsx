@@ -4,7 +4,7 @@ import type { Notice } from "../state/app_state.js";
 import type { Store } from "../state/store.js";
 import { IconButton } from "./icon_button.js";
 import { Icon } from "./icons.js";
-import { useApp, useStore } from "./use_store.js";
+import { usePlay, useStore } from "./use_store.js";
 
 const SHORTEST_MS = 4000;
 const PER_LETTER_MS = 60;
@@ -25,7 +25,7 @@ export function Notices(): ReactElement {
 }
 
 function NoticeCard({ notice }: { readonly notice: Notice }): ReactElement {
-  const { store } = useApp();
+  const { store, commands } = usePlay();
   useEffect(() => {
     if (notice.kind === "error") return;
     const timer = setTimeout(
@@ -37,7 +37,18 @@ function NoticeCard({ notice }: { readonly notice: Notice }): ReactElement {
   return (
     <div className={`notice notice-${notice.kind} card`}>
       {notice.kind === "error" ? <Icon name="warning" size={18} /> : null}
-      <p>{notice.text}</p>
+      <div>
+        <p>{notice.text}</p>
+        {notice.actions.length === 0 ? null : (
+          <div className="buttons">
+            {notice.actions.map(({ label, command }) => (
+              <button key={command} type="button" onClick={() => void commands.run(command)}>
+                {label}
+              </button>
+            ))}
+          </div>
+        )}
+      </div>
       <IconButton icon="close" label="Close this message" side="left" onClick={() => dismiss(store, notice.id)} />
     </div>
   );

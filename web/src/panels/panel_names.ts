@@ -8,5 +8,6 @@ export const PANELS: readonly { readonly name: PanelName; readonly label: string
   { name: "photos", label: "Photos" },
   { name: "control", label: "Control points" },
   { name: "path", label: "Camera path" },
+  { name: "tour", label: "Tour" },
   { name: "about", label: "About this project" },
 ];

@@ -11,6 +11,7 @@ import { MeasurePanel } from "./measure_panel.js";
 import { PANELS } from "./panel_names.js";
 import { PathPanel } from "./path_panel.js";
 import { PhotosPanel } from "./photos_panel.js";
+import { TourPanel } from "./tour_panel.js";
 import { useApp, useStore } from "./use_store.js";
 
 export function PanelTabs(): ReactElement {
@@ -76,6 +77,8 @@ function PanelContent({ panel }: { readonly panel: PanelName }): ReactElement {
       return <ControlPanel />;
     case "path":
       return <PathPanel context={context} />;
+    case "tour":
+      return <TourPanel />;
     case "about":
       return <AboutPanel />;
     default:

@@ -39,6 +39,14 @@ function CursorReadout(): ReactElement {
 
 function SaveState(): ReactElement | null {
   const save = useStore((state) => state.save);
+  const rights = useStore((state) => state.rights);
+  if (!rights.documents && !rights.tour) {
+    return (
+      <span className="save" title="This link is for looking: what is drawn or measured stays in this page.">
+        Nothing is saved
+      </span>
+    );
+  }
   if (save === "saved") return null;
   const text = save === "failed" ? "Not saved" : save === "saving" ? "Saving …" : "Unsaved";
   return (

@@ -15,11 +15,13 @@ const TOOLS: readonly { readonly name: ToolName; readonly label: string }[] = [
   { name: "volume", label: "Volume" },
   { name: "photos", label: "Photos that see a point" },
   { name: "control", label: "Control point" },
+  { name: "thing", label: "Label or marker of the tour" },
 ];
 
 export function Toolbar(): ReactElement {
   const { store, commands } = useApp();
   const tool = useStore((state) => state.tool);
+  const locked = useStore((state) => state.tour.locked !== null);
   // History is no part of the state, but changes only together with the documents.
   useStore((state) => state.documents);
   const { undoLabel, redoLabel } = store.history;
@@ -27,7 +29,7 @@ export function Toolbar(): ReactElement {
   const drawing = useStore((state) => state.draft.length > 0);
   return (
     <div className="toolbar card" role="toolbar" aria-label="Tools" aria-orientation="vertical">
-      {TOOLS.map(({ name, label }) => (
+      {TOOLS.filter(({ name }) => name !== "thing" || !locked).map(({ name, label }) => (
         <IconButton
           key={name}
           icon={name}

@@ -1,11 +1,13 @@
 // Commands of the view and the panels.
 
-import type { AppState, Layers } from "../state/app_state.js";
+import type { AppState, Layers, PanelName } from "../state/app_state.js";
 import { addErrorNotice, addNotice } from "../state/notices.js";
 import type { AppContext } from "./context.js";
 import { showErrorMap } from "./error_map.js";
 import { PANELS } from "./panel_names.js";
 import { turnNorthUp } from "./turn_north.js";
+
+type ViewContext = Omit<AppContext, "assets" | "controls">;
 
 const LAYERS: readonly { readonly name: keyof Layers; readonly label: string; readonly keys: string[] }[] = [
   { name: "surface", label: "Surface", keys: [] },
@@ -18,11 +20,12 @@ const LAYERS: readonly { readonly name: keyof Layers; readonly label: string; re
   { name: "errorMap", label: "Held-out error", keys: [] },
   { name: "measurements", label: "Measurements", keys: [] },
 ];
+const PANEL_KEYS: Readonly<Partial<Record<PanelName, readonly string[]>>> = { tour: ["u"] };
 const always = (): boolean => true;
-/** A dialog over the view has its own keys. */
-const free = (state: AppState): boolean => !state.help && state.compare === null;
+/** A dialog over the view has its own keys, and so has a tour that is played. */
+const free = (state: AppState): boolean => !state.help && state.compare === null && state.play === null;
 
-export function addViewCommands(context: AppContext): void {
+export function addViewCommands(context: ViewContext): void {
   const { store, scene, project, commands } = context;
   commands.add({ id: "view.north", label: "North up", keys: ["n"], when: free, run: () => turnNorthUp(context) });
   commands.add({
@@ -64,7 +67,7 @@ export function addViewCommands(context: AppContext): void {
     commands.add({
       id: `panel.${name}`,
       label,
-      keys: [],
+      keys: PANEL_KEYS[name] ?? [],
       when: free,
       run: () => store.update((state) => ({ panel: state.panel === name ? null : name })),
     });
@@ -74,7 +77,7 @@ export function addViewCommands(context: AppContext): void {
   }
 }
 
-async function toggleLayer(context: AppContext, name: keyof Layers): Promise<void> {
+async function toggleLayer(context: ViewContext, name: keyof Layers): Promise<void> {
   const { store, project } = context;
   // Its switch in the panel is off too.
   if (name === "buildings" && (project.buildings?.count ?? 0) === 0) {
@@ -86,7 +89,7 @@ async function toggleLayer(context: AppContext, name: keyof Layers): Promise<voi
   else store.update((state) => ({ layers: { ...state.layers, [name]: on } }));
 }
 
-async function savePicture({ scene, store, project }: AppContext): Promise<void> {
+async function savePicture({ scene, store, project }: ViewContext): Promise<void> {
   try {
     const blob = await scene.capture();
     const url = URL.createObjectURL(blob);
@@ -109,7 +112,7 @@ function timeName(time: Date): string {
   return `${date} ${two(time.getHours())}-${two(time.getMinutes())}-${two(time.getSeconds())}`;
 }
 
-async function toggleFullScreen({ store }: AppContext): Promise<void> {
+async function toggleFullScreen({ store }: ViewContext): Promise<void> {
   try {
     if (document.fullscreenElement === null) await document.documentElement.requestFullscreen();
     else await document.exitFullscreen();

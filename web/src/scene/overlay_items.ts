@@ -148,7 +148,7 @@ function buildingItems({ buildings, selectedBuilding, hoverBuilding, clip }: App
 }
 
 export function overlayItems(project: Project, state: AppState, sizeM: number): OverlayItem[] {
-  const { layers, documents } = state;
+  const { layers, documents, shownMeasurements } = state;
   const items: OverlayItem[] = [];
   if (layers.blocks) {
     for (const block of project.blocks) {
@@ -160,8 +160,10 @@ export function overlayItems(project: Project, state: AppState, sizeM: number): 
   if (layers.cameraPath) items.push(...pathItems(state, sizeM / 40));
   if (layers.controlPoints) items.push(...controlItems(project, state));
   if (layers.measurements) {
-    for (const measurement of documents.measurements)
+    for (const measurement of documents.measurements) {
+      if (shownMeasurements !== null && !shownMeasurements.includes(measurement.id)) continue;
       items.push(...measurementItems(measurement, measurement.id === state.selected));
+    }
   }
   if (state.sights !== null) items.push({ kind: "cross", style: "photo", point: state.sights.point.enu });
   items.push(...draftItems(state));
@@ -171,7 +173,7 @@ export function overlayItems(project: Project, state: AppState, sizeM: number): 
 /** Members of the state on which the items depend: another array only when one of them is another one. */
 export function overlayInputs(state: AppState): readonly unknown[] {
   const { layers, documents, selected, selectedControl, draft, hover, tool, sights } = state;
-  const { buildings, selectedBuilding, hoverBuilding, clip } = state;
+  const { buildings, selectedBuilding, hoverBuilding, clip, shownMeasurements } = state;
   return [
     layers,
     documents,
@@ -185,5 +187,6 @@ export function overlayInputs(state: AppState): readonly unknown[] {
     selectedBuilding,
     hoverBuilding,
     clip,
+    shownMeasurements,
   ];
 }

@@ -1,7 +1,9 @@
 // The state of the application that panels, tools and scene share: one immutable value in one store. The camera is not in it: it moves 60 times a
 // second, and read-outs are told of it 10 times a second (`readout`).
 import type { Quat, Vec2, Vec3 } from "../base/vec.js";
+import type { Tour } from "../tour/types.js";
 import type { BuildingsState } from "./buildings.js";
+import type { GroundMap, Rights, TourPlay, TourView } from "./tour_state.js";
 
 /** ENU of the main project, metres, double. */
 export type Enu = Vec3;
@@ -113,6 +115,7 @@ export interface Documents {
   readonly measurements: readonly Measurement[];
   readonly controlPoints: readonly ControlPoint[];
   readonly cameraPath: CameraPath;
+  readonly tour: Tour;
 }
 
 export interface Layers {
@@ -127,6 +130,8 @@ export interface Layers {
   readonly measurements: boolean;
   readonly controlPoints: boolean;
   readonly cameraPath: boolean;
+  /** Labels, markers and models of the tour. */
+  readonly things: boolean;
 }
 
 /** A box in ENU; only what is inside is shown. */
@@ -142,9 +147,18 @@ export interface Swipe {
   readonly at: number;
 }
 
-export type ToolName = "navigate" | "point" | "distance" | "profile" | "area" | "volume" | "photos" | "control";
+export type ToolName =
+  | "navigate"
+  | "point"
+  | "distance"
+  | "profile"
+  | "area"
+  | "volume"
+  | "photos"
+  | "control"
+  | "thing";
 export type Navigation = "map" | "fly" | "top";
-export type PanelName = "layers" | "measure" | "buildings" | "photos" | "control" | "path" | "about";
+export type PanelName = "layers" | "measure" | "buildings" | "photos" | "control" | "path" | "tour" | "about";
 
 /** A photo that sees the chosen point. */
 export interface PhotoSight {
@@ -198,6 +212,13 @@ export interface Notice {
   readonly id: number;
   readonly kind: "info" | "error";
   readonly text: string;
+  /** Buttons, which run commands. */
+  readonly actions: readonly NoticeAction[];
+}
+
+export interface NoticeAction {
+  readonly label: string;
+  readonly command: string;
 }
 
 export interface AppState {
@@ -214,6 +235,16 @@ export interface AppState {
   /** Ids of buildings: the chosen one, and the one under the pointer. */
   readonly selectedBuilding: number | null;
   readonly hoverBuilding: number | null;
+  readonly rights: Rights;
+  readonly tour: TourView;
+  /** Null: no tour is played. */
+  readonly play: TourPlay | null;
+  /** The picture of the ground, once it is needed. */
+  readonly map: GroundMap | null;
+  /** Brightness of the whole view, in stops. */
+  readonly exposureStops: number;
+  /** Ids of the measurements that are shown; null: all. */
+  readonly shownMeasurements: readonly string[] | null;
   readonly navigation: Navigation;
   readonly panel: PanelName | null;
   readonly layers: Layers;

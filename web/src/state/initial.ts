@@ -1,15 +1,21 @@
 // The state that a project opens with.
+import { EMPTY_TOUR } from "../tour/types.js";
 import type { AppState, Documents } from "./app_state.js";
 import { NO_BUILDINGS } from "./buildings.js";
 import type { Project } from "./project.js";
+import { CLOSED_TOUR, type Rights } from "./tour_state.js";
 
 export const NO_DOCUMENTS: Documents = {
   measurements: [],
   controlPoints: [],
   cameraPath: { keys: [], speedMps: 5 },
+  tour: EMPTY_TOUR,
 };
 
-export function initialState(project: Project): AppState {
+/** Of a server that does not know of rights. */
+export const USUAL_RIGHTS: Rights = { documents: true, tour: false };
+
+export function initialState(project: Project, rights: Rights = USUAL_RIGHTS): AppState {
   // A young project has neither mesh nor maps: then its points and cameras are what there is to see.
   const bare = project.tiles === null && project.terrain === null;
   return {
@@ -24,6 +30,12 @@ export function initialState(project: Project): AppState {
     buildings: NO_BUILDINGS,
     selectedBuilding: null,
     hoverBuilding: null,
+    rights,
+    tour: CLOSED_TOUR,
+    play: null,
+    map: null,
+    exposureStops: 0,
+    shownMeasurements: null,
     navigation: "map",
     panel: "layers",
     layers: {
@@ -38,6 +50,7 @@ export function initialState(project: Project): AppState {
       measurements: true,
       controlPoints: true,
       cameraPath: true,
+      things: true,
     },
     clip: { on: false, min: project.min, max: project.max },
     swipe: { on: false, at: 0.5 },

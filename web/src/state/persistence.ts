@@ -1,18 +1,21 @@
 // The saved documents of a project: which file holds which part, how it is written and read. Pure; protocol/documents_client.ts moves the texts.
 import { parseJson } from "../base/check.js";
+import { readTour } from "../tour/read.js";
+import { writeTour } from "../tour/write.js";
 import type { Documents } from "./app_state.js";
 import { readCameraPath, writeCameraPath } from "./camera_path_file.js";
 import { readControlPoints, skippedLines, writeControlPoints } from "./control_file.js";
 import { type MeasuredProject, writeMeasurements } from "./measurements_file.js";
 import { readMeasurements } from "./measurements_reader.js";
 
-export const DOCUMENT_FILES = ["measurements.geojson", "gcp.json", "camera_path.json"] as const;
+export const DOCUMENT_FILES = ["measurements.geojson", "gcp.json", "camera_path.json", "tour.json"] as const;
 export type DocumentFile = (typeof DOCUMENT_FILES)[number];
 
 const PARTS = {
   "measurements.geojson": "measurements",
   "gcp.json": "controlPoints",
   "camera_path.json": "cameraPath",
+  "tour.json": "tour",
 } as const;
 
 /** The part of the documents that the file holds; another object when it has changed. */
@@ -29,6 +32,8 @@ export function withDocumentPart(documents: Documents, file: DocumentFile, from:
       return { ...documents, controlPoints: from.controlPoints };
     case "camera_path.json":
       return { ...documents, cameraPath: from.cameraPath };
+    case "tour.json":
+      return { ...documents, tour: from.tour };
     default:
       return file satisfies never;
   }
@@ -50,6 +55,8 @@ export function writeDocument(documents: Documents, file: DocumentFile, project:
       return writeControlPoints(documents.controlPoints, project);
     case "camera_path.json":
       return writeCameraPath(documents.cameraPath);
+    case "tour.json":
+      return writeTour(documents.tour);
     default:
       return file satisfies never;
   }
@@ -70,6 +77,8 @@ export function readDocument(
       return { ...documents, controlPoints: readControlPoints(value, project) };
     case "camera_path.json":
       return { ...documents, cameraPath: readCameraPath(value, project) };
+    case "tour.json":
+      return { ...documents, tour: readTour(value) };
     default:
       return file satisfies never;
   }

@@ -1,5 +1,6 @@
 // Keeps the documents in the project's files: loads them at the start, saves what has changed a second after the last change. A file that could
-// not be read is never overwritten. What another window has saved meanwhile is joined with what was made here.
+// not be read is never overwritten. What another window has saved meanwhile is joined with what was made here, but for the tour: there a person decides.
+// Documents that this session may not save stay in the page.
 import { errorText } from "../base/abort.js";
 import type { Clock } from "../base/clock.js";
 import { Disposer } from "../base/disposer.js";
@@ -17,7 +18,10 @@ import {
   writeDocument,
 } from "../state/persistence.js";
 import type { Store } from "../state/store.js";
+import { readSavedTour } from "../state/tour_document.js";
+import { setTourView } from "../state/tour_state.js";
 import { joinDocuments } from "./join_documents.js";
+import { TourConflict } from "./tour_conflict.js";
 
 export interface DocumentFiles {
   load(file: DocumentFile): Promise<LoadedDocument>;
@@ -37,6 +41,7 @@ const TRY_AGAIN_MS = 10_000;
 /** Saving, joining and saving again, while other windows save as well. */
 const TRIES = 3;
 const MOST_SENT = 4;
+const TOUR: DocumentFile = "tour.json";
 
 interface Sent {
   readonly text: string;
@@ -56,6 +61,7 @@ export class DocumentsKeeper {
   private underWay: DocumentFile | null = null;
   /** Files that could not be read. */
   private readonly blocked = new Set<DocumentFile>();
+  readonly conflict: TourConflict;
   private loaded = false;
   private saving = false;
   private cancelTimer: (() => void) | null = null;
@@ -65,6 +71,14 @@ export class DocumentsKeeper {
     this.options = options;
     const { store } = options;
     this.remember(store.get().documents);
+    this.conflict = new TourConflict(store, {
+      load: () => options.files.load(TOUR),
+      settled: (tag, documents) => {
+        this.tags.set(TOUR, tag);
+        if (documents !== null) this.saved.set(TOUR, documents);
+        this.saveAfter(0);
+      },
+    });
     this.disposer.add(
       store.subscribe(
         (state) => state.documents,
@@ -86,17 +100,16 @@ export class DocumentsKeeper {
       try {
         if (answer.status === "rejected") throw answer.reason;
         const { text, tag } = answer.value;
-        if (text !== null) documents = readDocument(documents, file, text, project);
+        if (file === TOUR) documents = this.loadTour(documents, text);
+        else if (text !== null) documents = readDocument(documents, file, text, project);
         this.tags.set(file, tag);
         const remark = text === null ? "" : documentRemark(file, text);
         if (remark !== "") addNotice(store, "info", remark);
       } catch (error) {
         this.blocked.add(file);
-        addNotice(
-          store,
-          "error",
-          `${file} was not loaded: ${errorText(error)}. It will not be overwritten: correct it or move it away, then reload the page.`,
-        );
+        const failure = `${file} was not loaded: ${errorText(error)}. It will not be overwritten: correct it or move it away, then reload the page.`;
+        if (file === TOUR) setTourView(store, { locked: failure });
+        addNotice(store, "error", failure);
       }
     });
     this.remember(documents);
@@ -112,11 +125,23 @@ export class DocumentsKeeper {
     return this.saving || this.unsavedFiles().length > 0;
   }
 
+  private loadTour(documents: Documents, text: string | null): Documents {
+    const { store } = this.options;
+    const { tour, locked, missing, unsafe } = readSavedTour(text, store.get().rights);
+    setTourView(store, { locked, missing });
+    if (unsafe) {
+      this.blocked.add(TOUR);
+      addNotice(store, "error", locked ?? "");
+    }
+    return { ...documents, tour };
+  }
+
   /** Saves now what is not saved, without waiting for the answer: the page may be gone the next moment. */
   flush(): void {
     for (const file of this.savableFiles()) {
       // What the file will be after the saving that is under way is not known; the newest must win.
-      const ifMatch = this.underWay === file ? null : (this.tags.get(file) ?? null);
+      // Not so the tour: rather the last second is lost than what another window has saved.
+      const ifMatch = this.underWay === file && file !== TOUR ? null : (this.tags.get(file) ?? null);
       // Nobody is left to read what is wrong.
       this.send(file, ifMatch, true).catch(() => {});
     }
@@ -139,7 +164,12 @@ export class DocumentsKeeper {
 
   private unsavedFiles(): DocumentFile[] {
     const { documents } = this.options.store.get();
-    return DOCUMENT_FILES.filter((file) => !this.isSaved(file, documents));
+    return DOCUMENT_FILES.filter((file) => this.maySave(file) && !this.isSaved(file, documents));
+  }
+
+  private maySave(file: DocumentFile): boolean {
+    const { rights } = this.options.store.get();
+    return file === TOUR ? rights.tour : rights.documents;
   }
 
   private isSaved(file: DocumentFile, documents: Documents): boolean {
@@ -148,7 +178,8 @@ export class DocumentsKeeper {
   }
 
   private savableFiles(): DocumentFile[] {
-    return this.loaded ? this.unsavedFiles().filter((file) => !this.blocked.has(file)) : [];
+    if (!this.loaded) return [];
+    return this.unsavedFiles().filter((file) => !this.blocked.has(file) && !(file === TOUR && this.conflict.open));
   }
 
   private changed(): void {
@@ -201,7 +232,8 @@ export class DocumentsKeeper {
       } catch (error) {
         if (!(error instanceof ChangedElsewhere) || attempt >= TRIES) throw error;
       }
-      await this.joinWithFile(file);
+      await (file === TOUR ? this.compareTour() : this.joinWithFile(file));
+      if (file === TOUR && this.conflict.open) return;
       if (this.isSaved(file, this.options.store.get().documents)) return;
     }
   }
@@ -234,16 +266,7 @@ export class DocumentsKeeper {
   private async joinWithFile(file: DocumentFile): Promise<void> {
     const { store, project, files } = this.options;
     const { text, tag } = await files.load(file);
-    if (this.disposer.disposed) return;
-    // Saved here while this was asked.
-    if (tag !== null && tag === this.tags.get(file)) return;
-    const own = this.sent.get(file)?.find((one) => one.text === text);
-    if (text === null || own !== undefined) {
-      // Taken away by somebody, or saved by this page, which did not hear of it.
-      if (own !== undefined) this.saved.set(file, own.documents);
-      this.tags.set(file, tag);
-      return;
-    }
+    if (this.disposer.disposed || this.isOwn(file, { text, tag }) || text === null) return;
     const made = store.get().documents;
     let loaded: Documents;
     try {
@@ -257,6 +280,24 @@ export class DocumentsKeeper {
     this.tags.set(file, tag);
     store.loadDocuments(joinDocuments(loaded, before, made));
     addNotice(store, "info", `${file} was changed in another window: both are kept.`);
+  }
+
+  /** The tour's file is another one: whoever looks at this page decides. */
+  private async compareTour(): Promise<void> {
+    const found = await this.options.files.load(TOUR);
+    if (!this.disposer.disposed && !this.isOwn(TOUR, found)) this.conflict.begin(found.tag);
+  }
+
+  /** Nobody else has written what the file is now; then that is known from now on. */
+  private isOwn(file: DocumentFile, { text, tag }: LoadedDocument): boolean {
+    // Saved here while this was asked.
+    if (tag !== null && tag === this.tags.get(file)) return true;
+    const own = this.sent.get(file)?.find((one) => one.text === text);
+    if (text !== null && own === undefined) return false;
+    // Taken away by somebody, or saved by this page, which did not hear of it.
+    if (own !== undefined) this.saved.set(file, own.documents);
+    this.tags.set(file, tag);
+    return true;
   }
 
   private failed(failure: string): void {
@@ -274,6 +315,8 @@ export class DocumentsKeeper {
     if (this.savableFiles().length > 0) {
       store.set({ save: "unsaved" });
       this.saveAfter(SAVE_AFTER_MS);
+    } else if (this.conflict.open && this.unsavedFiles().includes(TOUR)) {
+      store.set({ save: "failed" });
     } else {
       store.set({ save: "saved" });
     }

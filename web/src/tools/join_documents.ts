@@ -31,6 +31,8 @@ export function joinDocuments(loaded: Documents, before: Documents, made: Docume
       keys.length === 0 && speedMps === loaded.cameraPath.speedMps
         ? loaded.cameraPath
         : { keys: [...loaded.cameraPath.keys, ...keys], speedMps },
+    // A tour is one whole: two of them are never joined (tools/tour_conflict.ts).
+    tour: loaded.tour,
   };
 }
 

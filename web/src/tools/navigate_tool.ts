@@ -1,6 +1,7 @@
-// No tool: the mouse moves the camera. A click on a measurement or a building selects it.
+// No tool: the mouse moves the camera. A click on a measurement, a thing of the tour or a building selects it.
 import type { Vec2 } from "../base/vec.js";
 import type { Enu, Measurement } from "../state/app_state.js";
+import { setTourView } from "../state/tour_state.js";
 import type { Tool, ToolPointer } from "./tool.js";
 import type { ToolContext } from "./tool_context.js";
 
@@ -21,17 +22,25 @@ export class NavigateTool implements Tool {
   }
 
   hover({ px }: ToolPointer): void {
-    this.showHovered(this.buildingAt(px));
+    if (this.context.store.get().play === null) this.showHovered(this.buildingAt(px));
   }
 
   click({ px }: ToolPointer): boolean {
     const { store, scene } = this.context;
-    const { documents, layers, selected } = store.get();
+    const { documents, layers, selected, play, tour } = store.get();
+    // Visitors look around; what they can choose are the markers.
+    if (play !== null) return false;
     const found = layers.measurements
       ? measurementAt(documents.measurements, px, (point) => scene.project(point))
       : null;
     if (found !== selected) store.set({ selected: found });
     if (found !== null) return true;
+    const thing = tour.locked === null && layers.things ? scene.pickThing(px) : null;
+    if (thing !== tour.thing) setTourView(store, { thing });
+    if (thing !== null) {
+      store.set({ panel: "tour" });
+      return true;
+    }
     const building = this.buildingAt(px);
     // Its measures are in the panel.
     if (building !== null) store.set({ selectedBuilding: building, panel: "buildings" });
@@ -45,9 +54,12 @@ export class NavigateTool implements Tool {
 
   key(key: string): boolean {
     const { store } = this.context;
-    const { selected, selectedBuilding } = store.get();
-    if (key !== "Escape" || (selected === null && selectedBuilding === null)) return false;
-    store.set(selected === null ? { selectedBuilding: null } : { selected: null });
+    const { selected, selectedBuilding, tour } = store.get();
+    if (key !== "Escape") return false;
+    if (selected !== null) store.set({ selected: null });
+    else if (tour.thing !== null) setTourView(store, { thing: null });
+    else if (selectedBuilding !== null) store.set({ selectedBuilding: null });
+    else return false;
     return true;
   }
 

@@ -17,6 +17,7 @@ const TOOLS: readonly (readonly [ToolName, string])[] = [
   ["volume", "Measure a volume"],
   ["photos", "Photos that see a point"],
   ["control", "Place a control point"],
+  ["thing", "Place a label or marker of the tour"],
 ];
 const WAYS: readonly (readonly [Navigation, string, string])[] = [
   ["map", "Move like a map", "m"],
@@ -24,8 +25,9 @@ const WAYS: readonly (readonly [Navigation, string, string])[] = [
   ["top", "From straight above", "t"],
 ];
 
-/** A dialog over the view has its own keys. */
-const free = (state: AppState): boolean => !state.help && state.compare === null;
+/** A dialog over the view has its own keys, and so has a tour that is played. */
+const free = (state: AppState): boolean => !state.help && state.compare === null && state.play === null;
+const offered = (name: ToolName, state: AppState): boolean => name !== "thing" || state.tour.locked === null;
 
 /** Returns the function that takes them out again. */
 export function addToolCommands(context: ToolContext, activeTool: () => Tool): () => void {
@@ -41,7 +43,8 @@ export function addToolCommands(context: ToolContext, activeTool: () => Tool): (
     ends.push(commands.add({ id, label, keys, when, run }));
   };
   TOOLS.forEach(([name, label], i) => {
-    add(`tool.${name}`, label, [String(i + 1)], free, () => store.set({ tool: name }));
+    const when = (state: AppState) => free(state) && offered(name, state);
+    add(`tool.${name}`, label, [String(i + 1)], when, () => store.set({ tool: name }));
   });
   for (const [name, label, key] of WAYS) {
     add(`navigation.${name}`, label, [key], free, () => store.set({ navigation: name }));
@@ -55,8 +58,9 @@ export function addToolCommands(context: ToolContext, activeTool: () => Tool): (
   add("draft.finish", "Finish the line or outline", ["Enter"], drawing, () => void activeTool().key("Enter"));
   add("draft.back", "Take the last point away", ["Backspace"], drawing, () => void activeTool().key("Backspace"));
   add("draft.cancel", "Cancel", ["Escape"], canCancel, () => {
-    // First what is being drawn or is selected, then the tool.
-    if (!activeTool().key("Escape")) store.set({ tool: "navigate" });
+    // First what is being drawn or is selected, then the tool; of a tour that is played its end.
+    if (store.get().play !== null) void commands.run("play.leave");
+    else if (!activeTool().key("Escape")) store.set({ tool: "navigate" });
   });
   add("edit.undo", "Undo", ["Ctrl+Z"], free, () => {
     if (store.get().draft.length > 0 && activeTool().key("Backspace")) return;
@@ -86,7 +90,14 @@ export function addToolCommands(context: ToolContext, activeTool: () => Tool): (
 }
 
 function canCancel(state: AppState): boolean {
-  return free(state) && (state.tool !== "navigate" || state.selected !== null || state.selectedBuilding !== null);
+  if (state.play !== null) return !state.help && state.compare === null;
+  return (
+    free(state) &&
+    (state.tool !== "navigate" ||
+      state.selected !== null ||
+      state.selectedBuilding !== null ||
+      state.tour.thing !== null)
+  );
 }
 
 function canPlace(state: AppState): boolean {

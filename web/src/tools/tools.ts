@@ -1,9 +1,11 @@
-// Makes the tools and joins them to the canvas, the keyboard, the commands and the saved documents.
+// Makes the tools and joins them to the canvas, the keyboard, the commands, the saved documents and the tour.
 import { type Clock, systemClock } from "../base/clock.js";
 import { Disposer } from "../base/disposer.js";
+import { assetUrl } from "../protocol/assets_client.js";
 import { loadDocument, saveDocument } from "../protocol/documents_client.js";
 import type { ToolName } from "../state/app_state.js";
 import { addErrorNotice } from "../state/notices.js";
+import type { Store } from "../state/store.js";
 import { CanvasPointer } from "./canvas_pointer.js";
 import { ControlTool } from "./control_tool.js";
 import { type DocumentFiles, DocumentsKeeper } from "./documents_keeper.js";
@@ -12,18 +14,29 @@ import { measureTools } from "./measure_tools.js";
 import { NavigateTool } from "./navigate_tool.js";
 import { PhotosTool } from "./photos_tool.js";
 import { SurfacePicker } from "./surface_picker.js";
+import { ThingTool } from "./thing_tool.js";
 import type { Tool, ToolPointer } from "./tool.js";
 import { addToolCommands } from "./tool_commands.js";
 import type { ToolContext } from "./tool_context.js";
+import { addTourCommands } from "./tour_commands.js";
+import { listenToMarkers } from "./tour_markers.js";
+import { type Ground, TourPlayback } from "./tour_playback.js";
+import { showTourThings } from "./tour_things.js";
 
 /** What tests replace. */
 export interface ToolsOptions extends ToolContext {
   readonly clock?: Clock;
   readonly files?: DocumentFiles;
   readonly page?: Window;
+  readonly ground?: () => Promise<Ground>;
 }
 
-export function createTools(options: ToolsOptions): { dispose(): void } {
+export interface Tools {
+  readonly playback: TourPlayback;
+  dispose(): void;
+}
+
+export function createTools(options: ToolsOptions): Tools {
   const { store, scene } = options;
   const clock = options.clock ?? systemClock;
   const page = options.page ?? window;
@@ -37,6 +50,7 @@ export function createTools(options: ToolsOptions): { dispose(): void } {
     ...measureTools(options, picker),
     new PhotosTool(options, picker),
     new ControlTool(options, picker),
+    new ThingTool(options, picker),
   ]) {
     tools.set(tool.name, tool);
   }
@@ -80,19 +94,51 @@ export function createTools(options: ToolsOptions): { dispose(): void } {
   );
 
   disposer.add(addToolCommands(options, () => active));
-  disposer.own(listenToCommandKeys(page, options.commands));
-  disposer.add(keepDocuments(options, clock, page));
-  return { dispose: () => disposer.dispose() };
+  disposer.own(listenToCommandKeys(page, options.commands, () => store.get().play !== null));
+  const playback = disposer.own(makePlayback(options, clock, page));
+  disposer.add(listenToMarkers(store, scene, playback));
+  disposer.add(showTourThings(store, scene, assetUrl));
+  const keeper = keepDocuments(options, clock, page, disposer);
+  disposer.add(addTourCommands(options, playback, keeper.conflict));
+  keeper
+    .load()
+    .then(() => openTour(store, playback))
+    .catch((error: unknown) => addErrorNotice(store, "Saved measurements were not loaded", error));
+  return { playback, dispose: () => disposer.dispose() };
 }
 
-function keepDocuments({ project, store, files }: ToolsOptions, clock: Clock, page: Window): () => void {
+/** Who may only look came for the tour. */
+function openTour(store: Store, playback: TourPlayback): void {
+  const { rights, documents } = store.get();
+  if (!rights.documents && !rights.tour && documents.tour.stops.length > 0) playback.play();
+}
+
+function makePlayback({ store, scene, ground }: ToolsOptions, clock: Clock, page: Window): TourPlayback {
+  return new TourPlayback({
+    store,
+    scene,
+    clock,
+    ground: ground ?? (() => Promise.resolve({ heights: null, map: null })),
+    nextFrame: (draw) => {
+      const frame = page.requestAnimationFrame(draw);
+      return () => page.cancelAnimationFrame(frame);
+    },
+    reducedMotion: () => page.matchMedia("(prefers-reduced-motion: reduce)").matches,
+  });
+}
+
+function keepDocuments(
+  { project, store, files }: ToolsOptions,
+  clock: Clock,
+  page: Window,
+  disposer: Disposer,
+): DocumentsKeeper {
   const keeper = new DocumentsKeeper({
     project,
     store,
     clock,
     files: files ?? { load: loadDocument, save: saveDocument },
   });
-  const disposer = new Disposer();
   disposer.own(keeper);
   disposer.listen(page, "beforeunload", (event: BeforeUnloadEvent) => {
     if (!keeper.unsaved) return;
@@ -105,6 +151,5 @@ function keepDocuments({ project, store, files }: ToolsOptions, clock: Clock, pa
   disposer.listen(page, "visibilitychange", () => {
     if (page.document.visibilityState === "hidden") keeper.hurry();
   });
-  keeper.load().catch((error: unknown) => addErrorNotice(store, "Saved measurements were not loaded", error));
-  return () => disposer.dispose();
+  return keeper;
 }

@@ -118,6 +118,7 @@ test("the engine's state in words", () => {
     measurements: true,
     controlPoints: true,
     cameraPath: true,
+    things: true,
   };
   const kind = (change: Partial<EngineStatus>) => engineText({ ...engine, ...change }, layers).kind;
   assert.equal(kind({ connected: false }), "lost");

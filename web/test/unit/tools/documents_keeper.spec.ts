@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
+import { NO_DOCUMENTS } from "../../../src/state/initial.js";
 import { newPoint, withMeasurement } from "../../../src/state/measurements.js";
 import { readDocument } from "../../../src/state/persistence.js";
 import type { Store } from "../../../src/state/store.js";
@@ -25,7 +26,7 @@ async function pass(b: Bench, ms: number): Promise<void> {
 
 function saved(b: Bench, files: FakeFiles): number[] {
   const text = files.texts.get("measurements.geojson");
-  const empty = { measurements: [], controlPoints: [], cameraPath: { keys: [], speedMps: 1 } };
+  const empty = NO_DOCUMENTS;
   const { measurements } = text === undefined ? empty : readDocument(empty, "measurements.geojson", text, b.project);
   return measurements.map(({ points }) => points[0]?.enu[0] ?? Number.NaN);
 }

@@ -7,9 +7,10 @@ import type { Link, Picked, ProfileReply, VolumeReply } from "../../../src/proto
 import type { Ray, SceneApi } from "../../../src/scene/scene_api.js";
 import type { CameraPose, PhotoSight, SurfacePoint } from "../../../src/state/app_state.js";
 import { CommandTable } from "../../../src/state/commands.js";
-import { initialState } from "../../../src/state/initial.js";
+import { initialState, USUAL_RIGHTS } from "../../../src/state/initial.js";
 import type { Project } from "../../../src/state/project.js";
 import { Store } from "../../../src/state/store.js";
+import type { Rights } from "../../../src/state/tour_state.js";
 import type { DocumentFiles } from "../../../src/tools/documents_keeper.js";
 import { sampleProject } from "../state/samples.js";
 
@@ -130,9 +131,9 @@ export interface Bench {
   pose: CameraPose;
 }
 
-export function bench(change: Partial<Project> = {}): Bench {
+export function bench(change: Partial<Project> = {}, rights: Rights = USUAL_RIGHTS): Bench {
   const project = sampleProject({ georeferenced: false, crs: null, ...change });
-  const store = new Store(initialState(project));
+  const store = new Store(initialState(project, rights));
   store.update(({ engine }) => ({ engine: { ...engine, connected: true, ready: true } }));
   const canvas = new FakeCanvas();
   const engine = new FakeEngine();

@@ -32,7 +32,7 @@ test("no two commands of tools and panels share a key, and each has an id of a k
   addViewCommands(b);
   assert.deepEqual(b.commands.conflicts(), []);
   for (const { id } of b.commands.all())
-    assert.match(id, /^(tool|navigation|draft|edit|path|view|panel|layer)\.[a-zA-Z]+$/);
+    assert.match(id, /^(tool|navigation|draft|edit|path|view|panel|layer|tour|play)\.[a-zA-Z]+$/);
   for (const id of [
     "tool.navigate",
     "tool.control",

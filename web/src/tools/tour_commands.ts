@@ -1,0 +1,72 @@
+// Commands of the tour: making it, playing it, and what to do when another window has saved it.
+import type { AppState } from "../state/app_state.js";
+import type { CommandTable } from "../state/commands.js";
+import { freeName } from "../state/names.js";
+import { addNotice } from "../state/notices.js";
+import { tourPose } from "../state/tour_pose.js";
+import { changeTour, setTourView } from "../state/tour_state.js";
+import { addStop, newStop } from "../tour/edit_stops.js";
+import type { ToolContext } from "./tool_context.js";
+import type { TourConflict } from "./tour_conflict.js";
+import type { TourPlayback } from "./tour_playback.js";
+
+const free = (state: AppState): boolean => !state.help && state.compare === null && state.play === null;
+const playing = (state: AppState): boolean => !state.help && state.compare === null && state.play !== null;
+
+/** Returns the function that takes them out again. */
+export function addTourCommands(context: ToolContext, playback: TourPlayback, conflict: TourConflict): () => void {
+  const { store } = context;
+  const ends: (() => void)[] = [];
+  const add = adder(context.commands, ends);
+  const editing = (state: AppState) => free(state) && state.tour.locked === null;
+  add("tour.addStop", "Add the view to the tour as a stop", ["Shift+K"], editing, () => addViewAsStop(context));
+  add(
+    "tour.play",
+    "Play the tour",
+    ["Shift+U"],
+    (state) => free(state) && state.documents.tour.stops.length > 0,
+    () => playback.play(),
+  );
+  const undecided = (state: AppState) => free(state) && state.tour.conflict;
+  add("tour.takeOther", "Take the tour of the other window", [], undecided, () => conflict.takeOther());
+  add("tour.keepMine", "Keep the tour of this window", [], undecided, () => conflict.keepMine());
+  add("play.next", "Next stop", ["ArrowRight", "PageDown"], playing, () => playback.next());
+  add("play.previous", "Previous stop", ["ArrowLeft", "PageUp"], playing, () => playback.previous());
+  add("play.auto", "Go on by itself, or stop that", ["Space"], playing, () =>
+    store.get().play?.can.pause === true ? playback.pause() : playback.resume(),
+  );
+  add("play.back", "Back to the view of the stop", ["r"], playing, () => playback.back());
+  add("play.leave", "Leave the tour (Esc)", [], playing, () => playback.leave());
+  return () => {
+    for (const end of ends) end();
+  };
+}
+
+function adder(commands: CommandTable, ends: (() => void)[]) {
+  return (
+    id: string,
+    label: string,
+    keys: readonly string[],
+    when: (state: AppState) => boolean,
+    run: () => void | Promise<void>,
+  ): void => {
+    ends.push(commands.add({ id, label, keys, when, run }));
+  };
+}
+
+function addViewAsStop({ store, scene }: Pick<ToolContext, "store" | "scene">): void {
+  let id: string | null = null;
+  const done = changeTour(store, "add stop", (tour) => {
+    const title = freeName(
+      "Stop",
+      tour.stops.map((stop) => stop.title),
+    );
+    const stop = newStop(tour, title, tourPose(scene));
+    id = stop.id;
+    return addStop(tour, stop);
+  });
+  if (!done) return;
+  // In its panel it is seen, and opened.
+  if (store.get().panel === "tour") setTourView(store, { stop: id, thing: null });
+  else addNotice(store, "info", `Stop ${store.get().documents.tour.stops.length} was added to the tour.`);
+}

@@ -1,23 +1,21 @@
-// Commands of the tour: making it, playing it, and what to do when another window has saved it.
+// Commands of the tour: making it, beginning to play it, and what to do when another window has saved it.
 import type { AppState } from "../state/app_state.js";
-import type { CommandTable } from "../state/commands.js";
 import { freeName } from "../state/names.js";
 import { addNotice } from "../state/notices.js";
 import { tourPose } from "../state/tour_pose.js";
 import { changeTour, setTourView } from "../state/tour_state.js";
 import { addStop, newStop } from "../tour/edit_stops.js";
+import { addPlayCommands, commandAdder } from "./play_commands.js";
 import type { ToolContext } from "./tool_context.js";
 import type { TourConflict } from "./tour_conflict.js";
 import type { TourPlayback } from "./tour_playback.js";
 
 const free = (state: AppState): boolean => !state.help && state.compare === null && state.play === null;
-const playing = (state: AppState): boolean => !state.help && state.compare === null && state.play !== null;
 
 /** Returns the function that takes them out again. */
 export function addTourCommands(context: ToolContext, playback: TourPlayback, conflict: TourConflict): () => void {
-  const { store } = context;
   const ends: (() => void)[] = [];
-  const add = adder(context.commands, ends);
+  const add = commandAdder(context.commands, ends);
   const editing = (state: AppState) => free(state) && state.tour.locked === null;
   add("tour.addStop", "Add the view to the tour as a stop", ["Shift+K"], editing, () => addViewAsStop(context));
   add(
@@ -30,27 +28,9 @@ export function addTourCommands(context: ToolContext, playback: TourPlayback, co
   const undecided = (state: AppState) => free(state) && state.tour.conflict;
   add("tour.takeOther", "Take the tour of the other window", [], undecided, () => conflict.takeOther());
   add("tour.keepMine", "Keep the tour of this window", [], undecided, () => conflict.keepMine());
-  add("play.next", "Next stop", ["ArrowRight", "PageDown"], playing, () => playback.next());
-  add("play.previous", "Previous stop", ["ArrowLeft", "PageUp"], playing, () => playback.previous());
-  add("play.auto", "Go on by itself, or stop that", ["Space"], playing, () =>
-    store.get().play?.can.pause === true ? playback.pause() : playback.resume(),
-  );
-  add("play.back", "Back to the view of the stop", ["r"], playing, () => playback.back());
-  add("play.leave", "Leave the tour (Esc)", [], playing, () => playback.leave());
+  ends.push(addPlayCommands(context, playback));
   return () => {
     for (const end of ends) end();
-  };
-}
-
-function adder(commands: CommandTable, ends: (() => void)[]) {
-  return (
-    id: string,
-    label: string,
-    keys: readonly string[],
-    when: (state: AppState) => boolean,
-    run: () => void | Promise<void>,
-  ): void => {
-    ends.push(commands.add({ id, label, keys, when, run }));
   };
 }
 

@@ -1,27 +1,21 @@
 """`skyquilt view` as its users meet it: in a real browser, over several ranks, with unfinished projects, a full disk, and a process that is killed."""
-import hashlib
 import json
 import math
 import os
 import pathlib
 import shutil
 import signal
-import struct
 import subprocess
 import sys
 import time
-import zlib
 
 from harness import Failure, Skyquilt, expect, main
-from web_client import Viewer, WebSocket, looking
+from web_client import Viewer, WebSocket, looking, skip
+from web_documents import asset_path, collection, png
 
 # Good enough that a house can be measured.
 WIDTH = 480
 TRAIN = ["--blocks", "1x1", "--image-width", str(WIDTH), "--time-budget", "25s", "--set", "products.video_seconds=0"]
-
-
-def skip(text):
-    print(f"skipped: {text}", flush=True)
 
 
 def views(description):
@@ -198,15 +192,6 @@ def check_new_merge(skyquilt, project, ranks):
         viewer.close()
 
 
-def feature(index):
-    return {"type": "Feature", "properties": {"kind": "point", "name": f"point {index}", "filler": "x" * 200},
-            "geometry": {"type": "Point", "coordinates": [8.5417, 47.3769, 408.0 + index]}}
-
-
-def collection(size):
-    return json.dumps({"type": "FeatureCollection", "features": [feature(index) for index in range(size)]})
-
-
 def check_killed_while_saving(skyquilt, project):
     """The old or the new file, never half."""
     file = project / "measurements.geojson"
@@ -239,66 +224,6 @@ def check_killed_while_saving(skyquilt, project):
     expect(status == 200 and len(json.loads(body)["features"]) in sizes, f"after the kills: {status}")
     viewer.close()
     file.unlink()
-
-
-def png(pixels):
-    """A square PNG of noise, which does not get smaller."""
-    def chunk(name, content):
-        return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
-    rows = b"".join(b"\0" + os.urandom(3 * pixels) for _ in range(pixels))
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", pixels, pixels, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-
-
-def asset_path(content):
-    return f"/data/tour/assets/{hashlib.sha256(content).hexdigest()}.png"
-
-
-def tour(title):
-    stop = {"id": "gate", "title": "The gate", "text": "", "picture": None, "link": None, "exposure_stops": None, "layers": None, "measurements": [],
-            "pose": {"eye_enu": [0, 0, 50], "rotation": [0, 1, 0, 0], "fovy_deg": 60}, "pause_s": 5, "next": None, "branches": []}
-    return json.dumps({"version": 1, "title": title, "start": None, "stops": [stop], "things": [], "assets": {}})
-
-
-def check_edit(skyquilt, project):
-    """The two links of --edit, their rights, and two editors."""
-    viewer = Viewer(skyquilt, project, "--edit")
-    try:
-        play = viewer.next_link()
-        viewer.log_in()
-        edit_cookie = viewer.cookie
-        expect("edit" in viewer.printed and "playing only" in viewer.printed, viewer.printed)
-        expect(viewer.next_link() not in (viewer.link, play), "the link for editing is renewed")
-        status, headers, _ = viewer.request("GET", play[play.index("/?"):], cookie=False)
-        expect(status == 303, f"the link to play: {status}")
-        play_cookie = headers["Set-Cookie"].split(";")[0]
-        picture = png(40)
-        for cookie, saved, rights in ((play_cookie, 403, False), (edit_cookie, 204, True)):
-            viewer.cookie = cookie
-            status, _, body = viewer.request("GET", "/data/rights.json")
-            expect(status == 200 and json.loads(body) == {"documents": rights, "tour": rights}, f"rights: {body}")
-            for path, body in (("/data/tour.json", tour("<script>alert(1)</script>")), (asset_path(picture), picture),
-                               ("/data/measurements.geojson", collection(1))):
-                expect(viewer.request("PUT", path, body=body)[0] == saved, f"{path} with the rights {rights}")
-        status, headers, body = viewer.request("GET", asset_path(picture))
-        expect(status == 200 and body == picture and headers["Content-Type"] == "image/png", f"the picture: {status} {headers}")
-        _, headers, _ = viewer.request("GET", "/data/tour.json")
-        known = {"If-Match": headers["ETag"]}
-        expect(viewer.request("PUT", "/data/tour.json", body=tour("mine"), headers=known)[0] == 204, "the first editor")
-        expect(viewer.request("PUT", "/data/tour.json", body=tour("yours"), headers=known)[0] == 412, "the second editor")
-        expect(json.loads((project / "tour.json").read_text())["title"] == "mine", "the second editor overwrites")
-        viewer.cookie = play_cookie
-        expect(viewer.socket().status == 101, "whoever plays may look")
-    finally:
-        viewer.close()
-    viewer = Viewer(skyquilt, project).log_in()
-    try:
-        status, _, body = viewer.request("PUT", "/data/tour.json", body=tour("no"))
-        expect(status == 403 and b"--edit" in body, f"without --edit: {status} {body}")
-    finally:
-        viewer.close()
-    for name in ("tour.json", "measurements.geojson"):
-        (project / name).unlink()
-    shutil.rmtree(project / "tour")
 
 
 def check_full_disk(skyquilt, project, folder):
@@ -425,7 +350,6 @@ def test(skyquilt: Skyquilt, folder):
     check_questions(skyquilt, project)
     check_ranks(skyquilt, project)
     check_killed_while_saving(skyquilt, project)
-    check_edit(skyquilt, project)
     check_full_disk(skyquilt, project, folder)
     check_unfinished(skyquilt, project, survey, folder)
     check_port(skyquilt, project)

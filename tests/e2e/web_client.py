@@ -226,6 +226,10 @@ class Frame:
         self.complete = self.number == self.passes - 1
 
 
+def skip(text):
+    print(f"skipped: {text}", flush=True)
+
+
 def looking(eye, target):
     """cam_from_enu as w, x, y, z of a level camera at `eye` that looks at `target` (not straight up or down)."""
     ahead = [t - e for t, e in zip(target, eye)]

@@ -1,11 +1,10 @@
 #include "tour/format/asset_check.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <string>
 
+#include "core/base/crc32.h"
 #include "core/image/jpeg_structure.h"
 #include "tour/format/glb_check.h"
 
@@ -65,7 +64,7 @@ void CheckPng(Bytes bytes) {
     const size_t length = BigEndian(rest, 0);
     const Bytes named = rest.subspan(4, 4 + length);
     const std::string_view name(reinterpret_cast<const char*>(named.data()), 4);
-    if (crc32(0, named.data(), static_cast<uInt>(named.size())) != BigEndian(rest, 8 + length)) {
+    if (base::Crc32({reinterpret_cast<const char*>(named.data()), named.size()}) != BigEndian(rest, 8 + length)) {
       throw base::Refused("it is a damaged PNG picture: a checksum is wrong");
     }
     if (first != (name == "IHDR")) throw base::Refused("it is a damaged PNG picture: its header is not at its beginning");

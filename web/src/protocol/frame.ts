@@ -120,21 +120,36 @@ export function parseFrame(bytes: ArrayBuffer): FrameBytes {
 }
 
 /** Metres along the optical axis, row by row; NaN: no surface. Empty when the frame has no depth. */
-export async function inflateDepth(frame: FrameBytes, inflate: Inflate): Promise<Float32Array<ArrayBuffer>> {
-  const { depthWidth, depthHeight, nearM, farM, fovyDeg } = frame.header;
-  const count = depthWidth * depthHeight;
+export function inflateDepth({ header, depth }: FrameBytes, inflate: Inflate): Promise<Float32Array<ArrayBuffer>> {
+  const { depthWidth, depthHeight, nearM, farM, fovyDeg } = header;
+  return unpackDepths(depth, { count: depthWidth * depthHeight, nearM, farM, inverse: fovyDeg !== null }, inflate);
+}
+
+export interface DepthCode {
+  readonly count: number;
+  readonly nearM: number;
+  readonly farM: number;
+  /** Steps of the inverse; else of the depth itself. */
+  readonly inverse: boolean;
+}
+
+/** Depths as core/image/depth_code.h packs them; NaN: no surface. */
+export async function unpackDepths(
+  packed: Uint8Array<ArrayBuffer>,
+  { count, nearM, farM, inverse }: DepthCode,
+  inflate: Inflate,
+): Promise<Float32Array<ArrayBuffer>> {
   const depth = new Float32Array(count);
   if (count === 0) return depth;
-  const bytes = await inflate(frame.depth, 2 * count);
+  const bytes = await inflate(packed, 2 * count);
   if (bytes.byteLength !== 2 * count) refuse("depth", `${bytes.byteLength} bytes instead of ${2 * count}`);
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  const perspective = fovyDeg !== null;
-  const first = perspective ? 1 / farM : nearM;
-  const step = (perspective ? 1 / nearM - 1 / farM : farM - nearM) / 65534;
+  const first = inverse ? 1 / farM : nearM;
+  const step = (inverse ? 1 / nearM - 1 / farM : farM - nearM) / 65534;
   for (let i = 0; i < count; ++i) {
     const q = view.getUint16(2 * i, true);
     const value = first + (q - 1) * step;
-    depth[i] = q === 0 ? Number.NaN : perspective ? 1 / value : value;
+    depth[i] = q === 0 ? Number.NaN : inverse ? 1 / value : value;
   }
   return depth;
 }

@@ -1,5 +1,6 @@
 // The connection to the engine in the browser: WebSocket, picture decoder and inflater for link_core.ts.
 import { systemClock } from "../base/clock.js";
+import { decodePicture, inflate } from "./browser_decode.js";
 import type { FrameBytes } from "./frame.js";
 import type { Link } from "./link_api.js";
 import { LinkCore } from "./link_core.js";
@@ -30,36 +31,13 @@ function openSocket(url: string, events: SocketEvents): Socket {
   };
 }
 
-function decode(frame: FrameBytes): Promise<ImageBitmap> {
-  const type = frame.header.format === "png" ? "image/png" : "image/jpeg";
-  // Without these options the browser may change the values, and the lossless pass must arrive bit by bit.
-  return createImageBitmap(new Blob([frame.color], { type }), {
-    colorSpaceConversion: "none",
-    premultiplyAlpha: "none",
-  }).then((bitmap) => {
-    if (bitmap.width === frame.header.width && bitmap.height === frame.header.height) return bitmap;
+function decode({ header, color }: FrameBytes): Promise<ImageBitmap> {
+  return decodePicture(color, header.format === "png" ? "image/png" : "image/jpeg").then((bitmap) => {
+    if (bitmap.width === header.width && bitmap.height === header.height) return bitmap;
     const found = `${bitmap.width} x ${bitmap.height}`;
     bitmap.close();
-    throw new Error(`the picture is ${found}, its header says ${frame.header.width} x ${frame.header.height}`);
+    throw new Error(`the picture is ${found}, its header says ${header.width} x ${header.height}`);
   });
-}
-
-/** Stops at one byte more than expected, so that a damaged frame cannot fill the memory. */
-async function inflate(packed: Uint8Array<ArrayBuffer>, bytes: number): Promise<Uint8Array<ArrayBuffer>> {
-  const out = new Uint8Array(bytes);
-  const reader = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw")).getReader();
-  let filled = 0;
-  for (;;) {
-    const { done, value } = await reader.read();
-    if (done) break;
-    if (filled + value.byteLength > bytes) {
-      await reader.cancel();
-      throw new Error(`the depth is longer than ${bytes} bytes`);
-    }
-    out.set(value, filled);
-    filled += value.byteLength;
-  }
-  return out.subarray(0, filled);
 }
 
 /** Connects, and again whenever the connection is lost, until close(). */

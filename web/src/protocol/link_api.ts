@@ -43,6 +43,8 @@ export type { Picked, ProfileReply, VolumeReply };
 
 /** Requests reject with an Error whose message is for the user. A newer pick replaces a waiting one, which then rejects with an AbortError. */
 export interface Link {
+  /** Frames of up to this size come at once. Without it they are rendered, which takes seconds when they are large. */
+  readonly instantPx?: { readonly side: number; readonly all: number };
   /** The camera rests here. Returns the seq of the frames that will come. */
   view(parameters: ViewParameters): number;
   viewPhoto(photo: number, w: number): number;

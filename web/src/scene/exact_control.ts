@@ -129,9 +129,10 @@ export class ExactControl {
 
   private ask(side: Which): number {
     const { pose } = this.options.rig;
-    const [w, h] = exactSize(...this.options.canvasPx());
+    const { link } = this.options;
+    const [w, h] = exactSize(...this.options.canvasPx(), link.instantPx);
     const ortho = pose.orthoHeightM;
-    return this.options.link.view({
+    return link.view({
       project: side,
       eyeEnu: pose.eyeEnu,
       rotation: pose.rotation,

@@ -1,7 +1,7 @@
 // Models by their URL: each file is loaded once, a few at a time and within a limit of memory. Those that nothing shows any more are kept for a while, as
 // the next stop of a tour may show them again, and freed when there are too many or their memory is needed.
+import type { LoadBytes } from "./load_bytes.js";
 import type { Model, ReadModel } from "./model.js";
-import type { LoadBytes } from "./thing.js";
 
 const MOST_BYTES = 256 * 2 ** 20;
 const KEPT_BYTES = 96 * 2 ** 20;

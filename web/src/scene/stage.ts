@@ -18,13 +18,13 @@ import { BuildingsLayer } from "./buildings_layer.js";
 import { clipInScene, halfSpacesOf, swipeColumns } from "./clip.js";
 import { ExactLayer } from "./exact_layer.js";
 import { ExtraLayers } from "./extra_layers.js";
+import type { LoadBytes } from "./load_bytes.js";
 import { readModel } from "./model_file.js";
 import { ModelStore } from "./model_store.js";
 import type { Quality } from "./quality.js";
 import type { Surface, SurfaceEvents } from "./surface.js";
 import { type Drape, SurfaceStyle } from "./surface_style.js";
 import { TerrainLayer } from "./terrain_layer.js";
-import type { LoadBytes } from "./thing.js";
 import { ThingsLayer } from "./things_layer.js";
 import { TilesLayer } from "./tiles_layer.js";
 import type { Size } from "./view_math.js";
@@ -101,7 +101,7 @@ export class Stage {
     this.renderer = makeRenderer(software);
     this.prepare();
     const side = (of: ProjectBase, enuFromOwn: readonly number[]): Side => {
-      const surface = this.makeSurface(of, enuFromOwn, software, events);
+      const surface = this.makeSurface(of, enuFromOwn, options);
       const scene = new Scene();
       if (surface !== null) scene.add(surface.object);
       return { surface, scene, exact: new ExactLayer(world, options.reducedMotion) };
@@ -277,19 +277,20 @@ export class Stage {
   private makeSurface(
     project: ProjectBase,
     enuFromOwn: readonly number[],
-    software: boolean,
-    events: SurfaceEvents,
+    { loadBytes, events }: StageOptions,
   ): Surface | null {
-    const { style, world } = this;
-    if (project.tiles !== null) {
-      return new TilesLayer(project.tiles, sceneFromTiles(world, project, enuFromOwn), style, software, events);
+    const { style, world, software } = this;
+    const { tiles, terrain } = project;
+    if (tiles !== null) {
+      const fromTiles = sceneFromTiles(world, project, enuFromOwn);
+      return new TilesLayer({ url: tiles, sceneFromTiles: fromTiles, style, software, loadBytes }, events);
     }
-    if (project.terrain === null) return null;
+    if (terrain === null) return null;
     const sceneFromOwn = sceneFromOwnEnu(world, enuFromOwn);
     const maxTexturePx = this.renderer.capabilities.maxTextureSize;
     return new TerrainLayer(
-      { ...project, terrain: project.terrain },
-      { style, software, maxTexturePx, sceneFromOwn },
+      { ...project, terrain },
+      { style, software, maxTexturePx, sceneFromOwn, loadBytes },
       events,
     );
   }

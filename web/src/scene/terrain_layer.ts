@@ -10,6 +10,7 @@ import {
   type Texture,
 } from "three";
 import type { ProjectBase } from "../state/project.js";
+import type { LoadBytes } from "./load_bytes.js";
 import type { Quality } from "./quality.js";
 import type { Surface, SurfaceEvents } from "./surface.js";
 import { matrixOf, type SurfaceStyle, textureOf } from "./surface_style.js";
@@ -26,12 +27,7 @@ export interface TerrainOptions {
   readonly maxTexturePx: number;
   /** From the project's own ENU, 16 numbers row by row. */
   readonly sceneFromOwn: readonly number[];
-}
-
-async function load(url: string, signal: AbortSignal): Promise<Response> {
-  const response = await fetch(url, { signal, credentials: "same-origin" });
-  if (!response.ok) throw new Error(`the server answers ${response.status} for ${url}`);
-  return response;
+  readonly loadBytes: LoadBytes;
 }
 
 export class TerrainLayer implements Surface {
@@ -82,8 +78,7 @@ export class TerrainLayer implements Surface {
     try {
       // Shapes and picture at the same time; a missing picture leaves shades of grey.
       const picture = orthophoto === null ? Promise.resolve(null) : this.loadPicture(orthophoto);
-      const bytes = await (await load(terrain, signal)).arrayBuffer();
-      const grid = parseTerrain(bytes);
+      const grid = parseTerrain(await this.options.loadBytes(terrain, signal));
       this.texture = await picture;
       if (signal.aborted) this.dropTexture();
       else this.build(grid);
@@ -100,7 +95,8 @@ export class TerrainLayer implements Surface {
 
   private async loadPicture(url: string): Promise<Texture | null> {
     try {
-      const blob = await (await load(url, this.abort.signal)).blob();
+      const bytes = await this.options.loadBytes(url, this.abort.signal);
+      const blob = new Blob([bytes], { type: "image/jpeg" });
       const options: ImageBitmapOptions = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
       let bitmap = await createImageBitmap(blob, options);
       const most = this.options.maxTexturePx;

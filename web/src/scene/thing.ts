@@ -25,13 +25,3 @@ export interface TextThing {
 }
 
 export type SceneThing = ModelThing | TextThing;
-
-/** The bytes of a file; rejects with an Error for the user. */
-export type LoadBytes = (url: string, signal: AbortSignal) => Promise<ArrayBuffer>;
-
-/** From the server that the page comes from. */
-export async function fetchBytes(url: string, signal: AbortSignal): Promise<ArrayBuffer> {
-  const response = await fetch(url, { credentials: "same-origin", signal });
-  if (!response.ok) throw new Error(`the server answers ${response.status}`);
-  return response.arrayBuffer();
-}

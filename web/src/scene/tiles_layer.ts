@@ -13,8 +13,9 @@ import {
   type Object3D,
   type Texture,
 } from "three";
-import { asObject } from "../base/check.js";
+import { asObject, parseJson } from "../base/check.js";
 import { makeCoarse } from "./coarse_mesh.js";
+import type { LoadBytes } from "./load_bytes.js";
 import type { Quality } from "./quality.js";
 import type { Surface, SurfaceEvents } from "./surface.js";
 import { matrixOf, type SurfaceStyle } from "./surface_style.js";
@@ -36,8 +37,18 @@ function isTexture(value: unknown): value is Texture {
   return typeof value === "object" && value !== null && "isTexture" in value;
 }
 
+export interface TilesOptions {
+  readonly url: string;
+  /** 16 numbers row by row, from the frame that the tileset's root transform leads to. */
+  readonly sceneFromTiles: readonly number[];
+  readonly style: SurfaceStyle;
+  readonly software: boolean;
+  readonly loadBytes: LoadBytes;
+}
+
 export class TilesLayer implements Surface {
   private readonly tiles: TilesRenderer;
+  private readonly abort = new AbortController();
   private readonly style: SurfaceStyle;
   private readonly events: SurfaceEvents;
   private readonly software: boolean;
@@ -53,14 +64,7 @@ export class TilesLayer implements Surface {
   >();
   private over = false;
 
-  /** `sceneFromTiles`: 16 numbers row by row, from the frame that the tileset's root transform leads to. */
-  constructor(
-    url: string,
-    sceneFromTiles: readonly number[],
-    style: SurfaceStyle,
-    software: boolean,
-    events: SurfaceEvents,
-  ) {
+  constructor({ url, sceneFromTiles, style, software, loadBytes }: TilesOptions, events: SurfaceEvents) {
     this.style = style;
     this.software = software;
     this.events = events;
@@ -71,10 +75,13 @@ export class TilesLayer implements Surface {
     tiles.lruCache.unloadPriorityCallback = DEFAULT_LRU_CACHE.unloadPriorityCallback;
     tiles.lruCache.maxBytesSize = MOST_BYTES;
     tiles.lruCache.minBytesSize = KEPT_BYTES;
-    tiles.fetchOptions = { credentials: "same-origin" };
+    tiles.fetchOptions = { signal: this.abort.signal };
     tiles.registerPlugin({
       name: "skyquilt",
-      fetchData: (wanted: unknown) => (wanted === url ? fetchTileset(url) : null),
+      fetchData: (wanted: string, { signal }: { readonly signal: AbortSignal }) => {
+        const bytes = loadBytes(wanted, signal);
+        return wanted === url ? bytes.then(readTileset) : bytes;
+      },
       processTileModel: (scene: Object3D, tile: Tile) => this.dress(scene, tile),
     });
     tiles.group.matrixAutoUpdate = false;
@@ -140,6 +147,7 @@ export class TilesLayer implements Surface {
 
   dispose(): void {
     this.over = true;
+    this.abort.abort();
     this.tiles.dispose();
   }
 
@@ -214,10 +222,8 @@ export class TilesLayer implements Surface {
 }
 
 /** The library warns of version 1.1 on the console. What is new in it, our tilesets do not use. */
-async function fetchTileset(url: string): Promise<unknown> {
-  const response = await fetch(url, { credentials: "same-origin" });
-  if (!response.ok) throw new Error(`the server answers ${response.status} for ${url}`);
-  const tileset = asObject(await response.json(), "tileset.json");
+function readTileset(bytes: ArrayBuffer): unknown {
+  const tileset = asObject(parseJson(new TextDecoder().decode(bytes), "tileset.json"), "tileset.json");
   return { ...tileset, asset: { ...asObject(tileset.asset, "tileset.json.asset"), version: "1.0" } };
 }
 

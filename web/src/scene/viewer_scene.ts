@@ -16,6 +16,7 @@ import { watchContext } from "./context_loss.js";
 import { ErrorDrape } from "./error_drape.js";
 import { ExactControl } from "./exact_control.js";
 import { obliquePose, topPose } from "./framing.js";
+import { fetchBytes, type LoadBytes } from "./load_bytes.js";
 import { MiddleCross } from "./middle_cross.js";
 import { Navigation } from "./navigation.js";
 import { Overlay } from "./overlay.js";
@@ -26,7 +27,7 @@ import { RenderLoop } from "./render_loop.js";
 import type { Ray, SceneApi } from "./scene_api.js";
 import { SceneThings } from "./scene_things.js";
 import { Stage } from "./stage.js";
-import { fetchBytes, type LoadBytes, type SceneThing } from "./thing.js";
+import type { SceneThing } from "./thing.js";
 import type { Size } from "./view_math.js";
 import { type Box, makeWorld, type World } from "./world.js";
 
@@ -35,7 +36,7 @@ export interface SceneOptions {
   readonly project: Project;
   readonly store: Store;
   readonly link: Link;
-  /** Where models come from; without it from the server. */
+  /** Where surface and models come from; without it from the server. */
   readonly loadBytes?: LoadBytes;
 }
 

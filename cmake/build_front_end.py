@@ -3,7 +3,7 @@
 
   build_front_end.py --source web --work build/release/web [--tests]
 
-Writes <work>/dist/{index.html,app.js,app.css,licences.txt}; with --tests also <work>/dist_test, which has the hook of the page tests, and the tools
+Writes <work>/dist/{index.html,app.js,app.css,tour.html,tour.js,tour.css,licences.txt}; with --tests also <work>/dist_test, which has the hook of the page tests, and the tools
 that check the source. Without Node.js or npm, or when npm cannot fetch the packages, the files are empty: the program is built all the same, and
 `skyquilt view` says what is missing. The next build then tries again.
 """
@@ -15,7 +15,7 @@ import shutil
 import subprocess
 import sys
 
-FILES = ("index.html", "app.js", "app.css", "licences.txt")
+FILES = ("index.html", "app.js", "app.css", "tour.html", "tour.js", "tour.css", "licences.txt")
 HASTE = ["--fetch-retries=1", "--fetch-timeout=60000"]
 
 

@@ -1,10 +1,16 @@
 // Bundles the front end: node build.mjs --out DIR [--test-hook]
-// Writes app.js, app.css, index.html, licences.txt and manifest.json (sizes). The same source gives the same bytes.
+// Writes the page of `skyquilt view` (index.html, app.js, app.css), that of exported tours (tour.html, tour.js, tour.css), licences.txt and
+// manifest.json (sizes). The same source gives the same bytes.
 import { mkdir, readdir, readFile, writeFile } from "node:fs/promises";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
 
 const root = path.dirname(fileURLToPath(import.meta.url));
+/** Names of bundles and their pages: what `skyquilt view` serves, and what exported tours have as index.html. */
+const PAGES = [
+  ["app", "index.html"],
+  ["tour", "tour.html"],
+];
 const ALLOWED = ["MIT", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "ISC"];
 
 /** An error of the kind that needs no stack trace. */
@@ -55,7 +61,7 @@ async function bundle(esbuild, options) {
     if (result.outputFiles.length !== 1) {
       const names = result.outputFiles.map((file) => path.basename(file.path)).join(", ");
       throw new BuildError(
-        `${options.entryPoints[0]} became several files (${names}): styles belong into src/entry/app.css`,
+        `${options.entryPoints[0]} became several files (${names}): styles belong into the style sheet beside it`,
       );
     }
     return { bytes: result.outputFiles[0].contents, metafile: result.metafile };
@@ -67,7 +73,7 @@ async function bundle(esbuild, options) {
 }
 
 /** The content security policy would block these silently, one by one, in the user's browser. */
-function checkPage(html) {
+function checkPage(name, html) {
   const forbidden = [
     [/<script(?![^>]*\ssrc=)[^>]*>/i, "a script without src"],
     [/<style/i, "a style element"],
@@ -77,14 +83,14 @@ function checkPage(html) {
   ];
   for (const [pattern, what] of forbidden) {
     if (pattern.test(html))
-      throw new BuildError(`src/entry/index.html has ${what}, which the content security policy forbids`);
+      throw new BuildError(`src/entry/${name} has ${what}, which the content security policy forbids`);
   }
 }
 
-/** Folders of the packages of which something is in the bundle. */
-function packageFolders(metafile) {
+/** Folders of the packages of which something is in one of the bundles. */
+function packageFolders(metafiles) {
   const folders = new Set();
-  for (const output of Object.values(metafile.outputs)) {
+  for (const output of metafiles.flatMap(({ outputs }) => Object.values(outputs))) {
     for (const [input, { bytesInOutput }] of Object.entries(output.inputs)) {
       const at = input.lastIndexOf("node_modules/");
       if (at < 0 || bytesInOutput === 0) continue;
@@ -116,7 +122,7 @@ async function readPackage(folder) {
 }
 
 function licenceText(packages) {
-  const intro = "The page of `skyquilt view` contains code of these packages:\n\n";
+  const intro = "The pages of `skyquilt view` and of exported tours contain code of these packages:\n\n";
   const list = packages.map(({ name, version, license }) => `  ${name} ${version} (${license})\n`).join("");
   const texts = packages.map(
     ({ name, version, license, text }) => `\n${"-".repeat(80)}\n${name} ${version} (${license})\n\n${text}\n`,
@@ -127,23 +133,26 @@ function licenceText(packages) {
 async function main() {
   const { out, hook } = readArguments(process.argv.slice(2));
   const esbuild = await loadEsbuild();
-  const script = await bundle(esbuild, {
-    entryPoints: ["src/entry/app.tsx"],
-    outfile: "app.js",
-    format: "iife",
-    jsx: "automatic",
-    define: { "process.env.NODE_ENV": '"production"', SKYQUILT_TEST_HOOK: hook ? "true" : "false" },
-  });
-  const style = await bundle(esbuild, { entryPoints: ["src/entry/app.css"], outfile: "app.css" });
-  const page = await readFile(path.join(root, "src/entry/index.html"), "utf8");
-  checkPage(page);
-  const packages = await Promise.all(packageFolders(script.metafile).map(readPackage));
-  const files = {
-    "app.css": Buffer.from(style.bytes),
-    "app.js": Buffer.from(script.bytes),
-    "index.html": Buffer.from(page),
-    "licences.txt": Buffer.from(licenceText(packages)),
-  };
+  const files = {};
+  const metafiles = [];
+  for (const [name, html] of PAGES) {
+    const script = await bundle(esbuild, {
+      entryPoints: [`src/entry/${name}.tsx`],
+      outfile: `${name}.js`,
+      format: "iife",
+      jsx: "automatic",
+      define: { "process.env.NODE_ENV": '"production"', SKYQUILT_TEST_HOOK: hook ? "true" : "false" },
+    });
+    const style = await bundle(esbuild, { entryPoints: [`src/entry/${name}.css`], outfile: `${name}.css` });
+    const page = await readFile(path.join(root, "src/entry", html), "utf8");
+    checkPage(html, page);
+    metafiles.push(script.metafile);
+    files[`${name}.css`] = Buffer.from(style.bytes);
+    files[`${name}.js`] = Buffer.from(script.bytes);
+    files[html] = Buffer.from(page);
+  }
+  const packages = await Promise.all(packageFolders(metafiles).map(readPackage));
+  files["licences.txt"] = Buffer.from(licenceText(packages));
   const manifest = {
     test_hook: hook,
     bytes: Object.fromEntries(Object.entries(files).map(([name, bytes]) => [name, bytes.length])),
@@ -152,7 +161,8 @@ async function main() {
   files["manifest.json"] = Buffer.from(`${JSON.stringify(manifest, null, 1)}\n`);
   await mkdir(out, { recursive: true });
   for (const [name, bytes] of Object.entries(files)) await writeFile(path.join(out, name), bytes);
-  console.log(`front end: ${Math.round(files["app.js"].length / 1000)} kB of script in ${out}`);
+  const sizes = PAGES.map(([name]) => `${name}.js ${Math.round(files[`${name}.js`].length / 1000)} kB`);
+  console.log(`front end: ${sizes.join(", ")} in ${out}`);
 }
 
 try {

@@ -25,11 +25,16 @@ export function requireWebGl2(): void {
   context.getExtension("WEBGL_lose_context")?.loseContext();
 }
 
-export function StartErrorPage({ error }: { readonly error: unknown }): ReactElement {
+interface StartErrorPageProps {
+  readonly error: unknown;
+  readonly title?: string;
+}
+
+export function StartErrorPage({ error, title = "The viewer could not start" }: StartErrorPageProps): ReactElement {
   const advice = error instanceof StartError ? error.advice : "";
   return (
     <main className="start-page" role="alert">
-      <h1>The viewer could not start</h1>
+      <h1>{title}</h1>
       <p>{sentence(errorText(error))}</p>
       {advice === "" ? null : <p>{advice}</p>}
       <button type="button" className="primary" onClick={() => window.location.reload()}>

@@ -3,6 +3,7 @@ import {
   asArray,
   asChoice,
   asInteger,
+  asList,
   asNumber,
   asObject,
   asString,
@@ -40,12 +41,15 @@ export interface TourManifest {
   readonly stops: ReadonlyMap<string, StopPictures>;
   /** Sentences for the user. */
   readonly missing: readonly string[];
+  /** Names of all files in data/; null: not known. */
+  readonly files: ReadonlySet<string> | null;
   readonly madeBy: string | null;
   readonly date: string | null;
 }
 
 const MOST_SIDE_PX = 16384;
 const MOST_SENTENCES = 1000;
+const MOST_FILES = 1_000_000;
 
 /** Throws a CheckError when it is no manifest. Stops whose pictures are described in a way that is not understood have none, and a sentence says so. */
 export function readTourManifest(value: unknown): TourManifest {
@@ -64,7 +68,9 @@ export function readTourManifest(value: unknown): TourManifest {
       missing.push(`The pictures of the stop "${id}" are left out, because they are not understood: ${error.message}.`);
     }
   }
-  return { stops, missing, madeBy: optionalString(o.made_by, "made_by"), date: optionalString(o.date, "date") };
+  const files = optional(o.files, "files", (given, path) => new Set(asList(given, path, asString, MOST_FILES)));
+  const madeBy = optionalString(o.made_by, "made_by");
+  return { stops, missing, files, madeBy, date: optionalString(o.date, "date") };
 }
 
 function readStop(value: unknown, path: string): StopPictures {

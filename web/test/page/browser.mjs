@@ -38,7 +38,8 @@ export async function open(
   });
   const page = await context.newPage();
   const problems = [];
-  const origin = new URL(link).origin;
+  // Files have no origin of their own.
+  const origin = link.startsWith("file:") ? "file://" : new URL(link).origin;
   page.on("console", (message) => {
     if (message.type() === "error" || /Content Security Policy/i.test(message.text()))
       problems.push(`console: ${message.text()}`);

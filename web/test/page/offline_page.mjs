@@ -1,0 +1,171 @@
+// The page of an exported tour in a real browser, from file:// and from a plain web server:
+//   node offline_page.mjs DIST OUT
+// DIST has the bundles with the hook of tests, OUT gets the folder of the tour and screenshots. Exits with 1 and the list of failures.
+import { createReadStream, existsSync, renameSync, rmSync, statSync } from "node:fs";
+import { createServer } from "node:http";
+import path from "node:path";
+import { pathToFileURL } from "node:url";
+import { canvasPicture, differing, open, save, screenshot, start } from "./browser.mjs";
+import { colourOf, GROUND, rayOf, rotationOf, STILL, stillOf, writeSample } from "./export_sample.mjs";
+
+const [dist, out] = process.argv.slice(2);
+const SIZE = { width: STILL.width, height: STILL.height };
+const failures = [];
+const figures = {};
+
+function expect(condition, text) {
+  if (!condition) failures.push(text);
+}
+
+/** A JPEG of a picture of pngjs, made by the browser. */
+function jpegEncoder(page) {
+  return async ({ width, height, data }) => {
+    const encoded = await page.evaluate(
+      async ([w, h, base64]) => {
+        const text = atob(base64);
+        const rgba = Uint8ClampedArray.from({ length: text.length }, (_, i) => text.charCodeAt(i));
+        const canvas = new OffscreenCanvas(w, h);
+        canvas.getContext("2d").putImageData(new ImageData(rgba, w, h), 0, 0);
+        const blob = await canvas.convertToBlob({ type: "image/jpeg", quality: 0.95 });
+        const bytes = new Uint8Array(await blob.arrayBuffer());
+        let letters = "";
+        for (let at = 0; at < bytes.length; at += 8192)
+          letters += String.fromCharCode(...bytes.subarray(at, at + 8192));
+        return btoa(letters);
+      },
+      [width, height, data.toString("base64")],
+    );
+    return Buffer.from(encoded, "base64");
+  };
+}
+
+/** Share of pixels in rows `from` to `to` whose colour is farther than `most` from the expected one. */
+function unlike(picture, from, to, most, expected) {
+  let count = 0;
+  for (let row = from; row < to; row += 1) {
+    for (let column = 0; column < picture.width; column += 1) {
+      const at = 4 * (row * picture.width + column);
+      const colour = expected(column, row);
+      if (colour.some((value, k) => Math.abs(value - picture.data[at + k]) > most)) count += 1;
+    }
+  }
+  return count / ((to - from) * picture.width);
+}
+
+function fly(page, pose) {
+  return page.evaluate((at) => window.__skyquilt.flyTo(at), pose);
+}
+
+function poseOf({ pose }, rotation = pose.rotation) {
+  return { eyeEnu: pose.eye_enu, rotation, fovyDeg: pose.fovy_deg, orthoHeightM: null };
+}
+
+async function checkStop(page, stop, name) {
+  await fly(page, poseOf(stop));
+  await page.evaluate(() => window.__skyquilt.settle());
+  const picture = await canvasPicture(page);
+  save(picture, path.join(out, `${name}.png`));
+  const share = differing(picture, stillOf(stop), 8);
+  figures[name] = share;
+  expect(share <= 0.01, `${name}: ${share} of the picture are not the still`);
+}
+
+async function checkTurning(page, stop) {
+  figures.turned = [];
+  for (const [yawDeg, pitchDeg] of [
+    [180, -10],
+    [75, -89],
+    [300, 60],
+  ]) {
+    const rotation = rotationOf(yawDeg, pitchDeg);
+    await fly(page, poseOf(stop, rotation));
+    await page.evaluate(() => window.__skyquilt.settle());
+    const picture = await canvasPicture(page);
+    save(picture, path.join(out, `turned_${yawDeg}.png`));
+    // The panorama's pixels are 0.35 degrees wide, and it is a JPEG.
+    const share = unlike(picture, 0, SIZE.height, 6, (column, row) =>
+      colourOf(rayOf(rotation, stop.pose.fovy_deg, SIZE, [column + 0.5, row + 0.5])),
+    );
+    figures.turned.push(share);
+    expect(share <= 0.01, `turned to ${yawDeg}, ${pitchDeg}: ${share} of the picture show another direction`);
+  }
+}
+
+async function checkBetween(page, [from, to]) {
+  const before = await page.evaluate(() => window.__skyquilt.statistics().frames);
+  const eyeEnu = from.pose.eye_enu.map((value, i) => (value + to.pose.eye_enu[i]) / 2);
+  await fly(page, { ...poseOf(from, rotationOf(0, -60)), eyeEnu });
+  await page.evaluate(() => window.__skyquilt.idle());
+  await page.waitForTimeout(400);
+  const picture = await canvasPicture(page);
+  save(picture, path.join(out, "between.png"));
+  figures.between = unlike(picture, 0, SIZE.height, 4, () => GROUND);
+  // A label may lie over it.
+  expect(figures.between <= 0.01, `between the stops ${figures.between} of the picture are not the ground`);
+  const after = await page.evaluate(() => window.__skyquilt.statistics().frames);
+  expect(after === before, `${after - before} pictures came where there is none`);
+}
+
+/** A server as anybody may have it. */
+async function serve(folder) {
+  const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".jpg": "image/jpeg" };
+  const server = createServer((request, response) => {
+    const file = path.join(
+      folder,
+      decodeURIComponent(new URL(request.url, "http://localhost").pathname).slice("/t".length),
+    );
+    if (!file.startsWith(folder) || !existsSync(file) || !statSync(file).isFile()) {
+      response.writeHead(404).end();
+      return;
+    }
+    response.writeHead(200, { "Content-Type": types[path.extname(file)] ?? "application/octet-stream" });
+    createReadStream(file).pipe(response);
+  });
+  await new Promise((done) => server.listen(0, "127.0.0.1", done));
+  return { server, link: `http://127.0.0.1:${server.address().port}/t/index.html` };
+}
+
+const browser = await start();
+try {
+  const folder = path.join(path.resolve(out), "tour");
+  rmSync(folder, { recursive: true, force: true });
+  const painter = await browser.newPage();
+  const stops = await writeSample(folder, dist, jpegEncoder(painter));
+  await painter.close();
+  const link = pathToFileURL(path.join(folder, "index.html")).href;
+
+  const local = await open(browser, link, SIZE);
+  figures.open_s = local.seconds;
+  await checkStop(local.page, stops[0], "first_stop");
+  await checkTurning(local.page, stops[0]);
+  await checkBetween(local.page, stops);
+  await checkStop(local.page, stops[1], "second_stop");
+  await screenshot(local.page, out, "page");
+  failures.push(...local.problems);
+  await local.context.close();
+
+  const { server, link: served } = await serve(folder);
+  const remote = await open(browser, served, SIZE);
+  await checkStop(remote.page, stops[0], "served");
+  failures.push(...remote.problems.map((text) => `served: ${text}`));
+  await remote.context.close();
+  server.close();
+
+  // A folder that was not copied whole.
+  renameSync(path.join(folder, "data", "tour.json.js"), path.join(folder, "tour.json.js"));
+  const broken = await open(browser, link, { ...SIZE, ready: false });
+  const alert = broken.page.getByRole("alert");
+  await alert.waitFor();
+  const said = await alert.textContent();
+  expect(/data\/tour\.json\.js could not be loaded/.test(said), `without tour.json the page says: ${said}`);
+  await screenshot(broken.page, out, "broken");
+} catch (error) {
+  failures.push(`${error.stack}`);
+} finally {
+  await browser.close();
+}
+console.log(JSON.stringify(figures, null, 1));
+if (failures.length > 0) {
+  console.log(failures.map((text) => `FAILED: ${text}`).join("\n"));
+  process.exitCode = 1;
+}

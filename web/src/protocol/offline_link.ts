@@ -155,7 +155,7 @@ export class OfflineLink<Bitmap extends { readonly width: number; readonly heigh
     still: Still & { readonly fovyDeg: number },
     turned: string | null,
   ): Promise<void> {
-    const shown = withinDetail(view, focalPx(still));
+    const shown = withinDetail(view, focalPx(still), still);
     const borrows = still.depth === null && turned !== null;
     const depth = still.depth === null ? null : reframedDepth(still, still.depth, shown);
     if (!this.isWanted(view)) return;
@@ -174,7 +174,8 @@ export class OfflineLink<Bitmap extends { readonly width: number; readonly heigh
     still: (Still & { readonly fovyDeg: number }) | null,
   ): Promise<void> {
     const { image, depth: all } = panorama;
-    const shown = withinDetail(view, still === null ? (FINER * image.width) / (2 * Math.PI) : focalPx(still));
+    const detailPx = still === null ? (FINER * image.width) / (2 * Math.PI) : focalPx(still);
+    const shown = withinDetail(view, detailPx, still);
     const rgba = new Uint8ClampedArray(4 * shown.width * shown.height);
     const { clock } = this.platform;
     let beganMs = clock.nowMs();
@@ -258,13 +259,21 @@ export class OfflineLink<Bitmap extends { readonly width: number; readonly heigh
   }
 }
 
-/** The view in no more pixels than the picture plane of a source at this distance has; the graphics card enlarges it as well. */
-function withinDetail(view: PerspectiveView, sourceFocalPx: number): PerspectiveView {
+/**
+ * The view in no more pixels than the picture plane of a source at this distance has; the graphics card enlarges it as well. `still`: what is cut out
+ * of it lies on whole pixels then, else all of it would be blurred.
+ */
+function withinDetail(
+  view: PerspectiveView,
+  sourceFocalPx: number,
+  still: Pick<Still, "width" | "height"> | null,
+): PerspectiveView {
   const factor = sourceFocalPx / focalPx(view);
-  const { rotation, fovyDeg } = view;
-  if (!(factor < 0.999)) return { rotation, fovyDeg, width: view.width, height: view.height };
-  const side = (px: number) => Math.max(2, Math.round(px * factor));
-  return { rotation, fovyDeg, width: side(view.width), height: side(view.height) };
+  const { rotation, fovyDeg, width, height } = view;
+  if (!(factor < 0.999)) return { rotation, fovyDeg, width, height };
+  const side = (px: number, odd: number) => Math.max(2, odd + 2 * Math.round((px * factor - odd) / 2));
+  const [oddWidth, oddHeight] = still === null ? [0, 0] : [still.width % 2, still.height % 2];
+  return { rotation, fovyDeg, width: side(width, oddWidth), height: side(height, oddHeight) };
 }
 
 /** The depths of `upper` where it has any. */

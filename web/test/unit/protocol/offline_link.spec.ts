@@ -4,7 +4,7 @@ import { deflateRawSync, inflateRawSync } from "node:zlib";
 import { ManualClock } from "../../../src/base/clock.js";
 import { rotationFromAngles } from "../../../src/geo/camera.js";
 import type { DecodedFrame } from "../../../src/protocol/link_platform.js";
-import { OfflineLink, type OfflinePlatform } from "../../../src/protocol/offline_link.js";
+import { OfflineLink, type OfflinePlatform, type PicturePlace } from "../../../src/protocol/offline_link.js";
 import { StopPictureStore } from "../../../src/protocol/stop_pictures.js";
 import { readTourManifest } from "../../../src/protocol/tour_manifest.js";
 
@@ -67,6 +67,7 @@ function setup({ stillDepth = true, panorama = true, lost = [] }: Setup = {}) {
   const loads: string[] = [];
   const failed: string[] = [];
   const made: Picture[] = [];
+  const places: PicturePlace[] = [];
   const make = (what: string, width: number, height: number) => {
     const picture = new Picture(what, width, height);
     made.push(picture);
@@ -86,7 +87,10 @@ function setup({ stillDepth = true, panorama = true, lost = [] }: Setup = {}) {
     clock: new ManualClock(),
     decode: async () => make("still", 160, 90),
     compose: async (width, height, under, over) => {
-      if (over !== null) assert.ok(!over.bitmap.closed);
+      if (over !== null) {
+        assert.ok(!over.bitmap.closed);
+        places.push(over.place);
+      }
       return make([under && "panorama", over && "over"].filter(Boolean).join(" "), width, height);
     },
     pause: async () => {},
@@ -102,7 +106,7 @@ function setup({ stillDepth = true, panorama = true, lost = [] }: Setup = {}) {
   const link = new OfflineLink<Picture>(STOPS, pictures, platform);
   const frames: DecodedFrame<Picture>[] = [];
   link.onFrame((frame) => frames.push(frame));
-  return { link, frames, failed, loads, made };
+  return { link, frames, failed, loads, made, places };
 }
 
 const VIEW = {
@@ -153,6 +157,30 @@ test("another canvas gets the still scaled and cut, but no more pixels than it h
     made.map(({ closed }) => closed),
     [true, false, false],
   );
+});
+
+test("where the still is only cut, its pixels stay on whole pixels", async () => {
+  const { link, frames, places } = setup();
+  for (const [w, h] of [
+    [311, 180],
+    [640, 410],
+    [201, 270],
+  ] as const) {
+    link.view({ ...VIEW, w, h });
+    await quiet();
+  }
+  assert.deepEqual(
+    frames.map(({ width, height }) => [width, height]),
+    [
+      [156, 90],
+      [140, 90],
+      [68, 90],
+    ],
+  );
+  for (const { left, top, width, height } of places) {
+    assert.ok(Math.abs(left - Math.round(left)) < 1e-9 && Math.abs(top) < 1e-9, `${left} ${top}`);
+    assert.ok(Math.abs(width - 160) < 1e-9 && Math.abs(height - 90) < 1e-9, `${width} ${height}`);
+  }
 });
 
 test("a wider canvas has the panorama beside the still, and both depths", async () => {

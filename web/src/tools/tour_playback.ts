@@ -73,7 +73,8 @@ export class TourPlayback {
     );
     this.before = { panel, navigation, swipe, selected };
     this.look = new StopLook(store);
-    store.set({ tool: "navigate", navigation: "map", swipe: { ...swipe, on: false }, selected: null });
+    // Dragging turns the view where one stands.
+    store.set({ tool: "navigate", navigation: "fly", swipe: { ...swipe, on: false }, selected: null });
     for (const type of ["pointerdown", "wheel"] as const) {
       this.hands.listen(scene.canvas, type, () => this.takeOver(true), { passive: true });
     }
@@ -178,7 +179,9 @@ export class TourPlayback {
 
   private show(view: PlayerView): void {
     const { scene } = this.options;
-    if (view.pose !== null && view.phase !== "look" && (this.put === null || !samePose(view.pose, this.put))) {
+    // After a look around the camera is not where it was put.
+    const put = this.told?.phase === "look" ? null : this.put;
+    if (view.pose !== null && view.phase !== "look" && (put === null || !samePose(view.pose, put))) {
       this.put = view.pose;
       void scene.flyTo(view.pose, 0);
     }

@@ -178,6 +178,19 @@ test("at a stop a touch alone changes nothing; who has moved the view can go bac
   assert.deepEqual(s.poses.at(-1)?.eyeEnu, [0, 0, 5]);
 });
 
+test("from a look around one comes back also where every way is a cut", async () => {
+  const s = stage(rowOfStops(), true);
+  s.playback.play();
+  assert.equal(s.store.get().navigation, "fly");
+  s.move([0, 1, 5]);
+  tellMoved(s);
+  assert.equal(at(s), "stop-1 look");
+  s.playback.back();
+  await s.frames();
+  assert.equal(at(s), "stop-1 stop");
+  assert.deepEqual(s.pose.eyeEnu, [0, 0, 5]);
+});
+
 test("a stop's layers, brightness and measurements hold there, and all is as before at the end", async () => {
   const tour = changeStop(rowOfStops(), "stop-2", {
     layers: { points: true, surface: false },

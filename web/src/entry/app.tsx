@@ -10,6 +10,7 @@ import { loadBuildings } from "../protocol/buildings_client.js";
 import { connect } from "../protocol/link.js";
 import { loadProject } from "../protocol/project_client.js";
 import { loadRights } from "../protocol/rights_client.js";
+import { fetchBytes } from "../scene/load_bytes.js";
 import { createScene } from "../scene/viewer_scene.js";
 import { CommandTable } from "../state/commands.js";
 import { initialState } from "../state/initial.js";
@@ -23,9 +24,8 @@ import { installTestHook } from "./test_hook.js";
 import { ViewLog } from "./view_log.js";
 import { wireLink } from "./wire_link.js";
 
-declare const SKYQUILT_TEST_HOOK: boolean | undefined;
-
-const withTestHook = typeof SKYQUILT_TEST_HOOK !== "undefined" && SKYQUILT_TEST_HOOK;
+/** Set by build.mjs. Asked directly wherever it counts, so that other builds leave the hook out. */
+declare const SKYQUILT_TEST_HOOK: boolean;
 
 async function start(root: Root, container: HTMLElement): Promise<void> {
   requireWebGl2();
@@ -35,13 +35,16 @@ async function start(root: Root, container: HTMLElement): Promise<void> {
   // On a phone the panel would hide half of the first picture.
   if (window.matchMedia("(max-width: 640px)").matches) store.set({ panel: null });
   const commands = new CommandTable();
-  const views = withTestHook ? new ViewLog() : null;
+  const views = SKYQUILT_TEST_HOOK ? new ViewLog() : null;
   const connected = connect();
   const link = views === null ? connected : views.watch(connected);
   wireLink(link, store);
   const scene = createScene({ container, project, store, link });
   const base = { project, store, scene, link, commands };
-  const { playback } = createTools({ ...base, ground: groundLoader(project) });
+  const { playback } = createTools({
+    ...base,
+    ground: groundLoader(project, fetchBytes, (url) => Promise.resolve(url)),
+  });
   const context: AppContext = { ...base, assets: { url: assetUrl, upload: uploadAsset }, controls: playback };
   addViewCommands(context);
   // A stop of the tour may switch the layer on before the map has been made.
@@ -60,7 +63,7 @@ async function start(root: Root, container: HTMLElement): Promise<void> {
     );
   draw(false);
   watchProject(store, project, loadProject, () => draw(true));
-  if (views !== null) installTestHook(context, views);
+  if (SKYQUILT_TEST_HOOK && views !== null) installTestHook(context, views);
 }
 
 /** The link's token has done its work and must not stay in the address, from where it would be copied or bookmarked. */

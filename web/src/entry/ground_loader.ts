@@ -1,17 +1,21 @@
 // What playing a tour needs of the ground: its heights and where its picture lies, from the surface model of the project.
-import { request } from "../protocol/project_client.js";
+import type { LoadBytes } from "../scene/load_bytes.js";
 import { parseTerrain } from "../scene/terrain_grid.js";
 import type { Project } from "../state/project.js";
 import type { Ground } from "../tools/tour_playback.js";
 import { heightsFromTerrain } from "../tour/terrain_heights.js";
 import { groundMap } from "./ground_map.js";
 
-export function groundLoader(project: Pick<Project, "terrain" | "orthophoto">): () => Promise<Ground> {
+/** `pictureUrl`: what the page shows for the address of a picture; null: it is not there. */
+export function groundLoader(
+  { terrain, orthophoto }: Pick<Project, "terrain" | "orthophoto">,
+  loadBytes: LoadBytes,
+  pictureUrl: (url: string) => Promise<string | null>,
+): () => Promise<Ground> {
   return async () => {
-    if (project.terrain === null) return { heights: null, map: null };
-    const response = await request(project.terrain);
-    if (!response.ok) throw new Error(`the surface model was not loaded (${response.status})`);
-    const terrain = parseTerrain(await response.arrayBuffer());
-    return { heights: heightsFromTerrain(terrain), map: groundMap(terrain, project.orthophoto) };
+    if (terrain === null) return { heights: null, map: null };
+    const picture = orthophoto === null ? Promise.resolve(null) : pictureUrl(orthophoto);
+    const grid = parseTerrain(await loadBytes(terrain, new AbortController().signal));
+    return { heights: heightsFromTerrain(grid), map: groundMap(grid, await picture) };
   };
 }

@@ -58,7 +58,9 @@ const LOOK_AGAIN_MS = 50;
 /** Longer than the cross-fade from surface to exact frame. */
 const FADE_MS = 300;
 
-export function installTestHook(context: AppContext, log: ViewLog): void {
+type HookContext = Pick<AppContext, "project" | "store" | "scene" | "link" | "commands">;
+
+export function installTestHook(context: HookContext, log: ViewLog): void {
   const { project, store, scene, link, commands } = context;
   const settled = (): SettledFrame | null => {
     const { view, frame } = log;

@@ -39,7 +39,8 @@ export interface PlayContext {
   readonly store: Store;
   readonly scene: SceneApi;
   readonly commands: CommandTable;
-  readonly assets: Pick<TourAssets, "url">;
+  /** The address of a picture; a promise where it is made of bytes first, which rejects when they are not there. */
+  readonly assets: { url(asset: string): string | Promise<string> };
   readonly controls: TourControls;
 }
 

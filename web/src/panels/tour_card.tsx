@@ -1,7 +1,8 @@
 // What a stop says: its title at once, the rest when it is reached. Texts are text.
-import { type ReactElement, useState } from "react";
+import { type ReactElement, useCallback, useState } from "react";
 import type { Stop } from "../tour/types.js";
 import { Icon } from "./icons.js";
+import { useAssetUrl } from "./use_asset_url.js";
 import { usePlay, useStore } from "./use_store.js";
 
 interface TourCardProps {
@@ -44,10 +45,12 @@ export function TourCard({ stop, arrived }: TourCardProps): ReactElement {
 }
 
 function StopPicture({ stop: { picture } }: { readonly stop: Stop }): ReactElement | null {
-  const { assets } = usePlay();
   const name = useStore(({ documents }) => (picture === null ? "" : (documents.tour.assets.get(picture)?.name ?? "")));
   const [lost, setLost] = useState(false);
+  const onLost = useCallback(() => setLost(true), []);
+  const url = useAssetUrl(picture, onLost);
   if (picture === null) return null;
   if (lost) return <p className="hint">The picture “{name}” is missing.</p>;
-  return <img className="player-picture" src={assets.url(picture)} alt={name} onError={() => setLost(true)} />;
+  if (url === null) return null;
+  return <img className="player-picture" src={url} alt={name} onError={onLost} />;
 }

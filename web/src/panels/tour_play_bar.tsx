@@ -51,7 +51,7 @@ export function TourPlayBar({ list, map, onList, onMap }: TourPlayBarProps): Rea
       <IconButton icon="list" label="All stops" side="above" pressed={list} onClick={onList} />
       <IconButton icon="map" label="Map" side="above" pressed={map} onClick={onMap} />
       {button("view.screen", "screen", "Full screen")}
-      {button("play.leave", "close", "Leave the tour", { keys: ["Esc"] })}
+      {commands.get("play.leave") === null ? null : button("play.leave", "close", "Leave the tour", { keys: ["Esc"] })}
     </div>
   );
 }

@@ -5,6 +5,7 @@ import { addErrorNotice, addNotice } from "../state/notices.js";
 import type { AppContext } from "./context.js";
 import { showErrorMap } from "./error_map.js";
 import { PANELS } from "./panel_names.js";
+import { addScreenCommand } from "./screen_command.js";
 import { turnNorthUp } from "./turn_north.js";
 
 type ViewContext = Omit<AppContext, "assets" | "controls">;
@@ -42,13 +43,7 @@ export function addViewCommands(context: ViewContext): void {
     when: free,
     run: () => savePicture(context),
   });
-  commands.add({
-    id: "view.screen",
-    label: "Full screen",
-    keys: ["f"],
-    when: always,
-    run: () => toggleFullScreen(context),
-  });
+  addScreenCommand(context);
   commands.add({
     id: "view.help",
     label: "Keys and commands",
@@ -110,13 +105,4 @@ function timeName(time: Date): string {
   const two = (value: number): string => String(value).padStart(2, "0");
   const date = `${time.getFullYear()}-${two(time.getMonth() + 1)}-${two(time.getDate())}`;
   return `${date} ${two(time.getHours())}-${two(time.getMinutes())}-${two(time.getSeconds())}`;
-}
-
-async function toggleFullScreen({ store }: ViewContext): Promise<void> {
-  try {
-    if (document.fullscreenElement === null) await document.documentElement.requestFullscreen();
-    else await document.exitFullscreen();
-  } catch {
-    addNotice(store, "info", "The browser did not allow full screen.");
-  }
 }

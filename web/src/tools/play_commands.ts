@@ -9,7 +9,7 @@ interface PlayCommandsContext {
   readonly commands: CommandTable;
 }
 
-const playing = (state: AppState): boolean => !state.help && state.compare === null && state.play !== null;
+export const playing = (state: AppState): boolean => !state.help && state.compare === null && state.play !== null;
 
 /** Returns the function that takes them out again. */
 export function addPlayCommands({ store, commands }: PlayCommandsContext, playback: TourPlayback): () => void {
@@ -21,7 +21,6 @@ export function addPlayCommands({ store, commands }: PlayCommandsContext, playba
     store.get().play?.can.pause === true ? playback.pause() : playback.resume(),
   );
   add("play.back", "Back to the view of the stop", ["r"], playing, () => playback.back());
-  add("play.leave", "Leave the tour (Esc)", [], playing, () => playback.leave());
   return () => {
     for (const end of ends) end();
   };

@@ -9,19 +9,17 @@ import type { Store } from "../state/store.js";
 import { CanvasPointer } from "./canvas_pointer.js";
 import { ControlTool } from "./control_tool.js";
 import { type DocumentFiles, DocumentsKeeper } from "./documents_keeper.js";
-import { listenToCommandKeys } from "./keyboard.js";
 import { measureTools } from "./measure_tools.js";
 import { NavigateTool } from "./navigate_tool.js";
 import { PhotosTool } from "./photos_tool.js";
+import { createPlayTools } from "./play_tools.js";
 import { SurfacePicker } from "./surface_picker.js";
 import { ThingTool } from "./thing_tool.js";
 import type { Tool, ToolPointer } from "./tool.js";
 import { addToolCommands } from "./tool_commands.js";
 import type { ToolContext } from "./tool_context.js";
 import { addTourCommands } from "./tour_commands.js";
-import { listenToMarkers } from "./tour_markers.js";
-import { type Ground, TourPlayback } from "./tour_playback.js";
-import { showTourThings } from "./tour_things.js";
+import type { Ground, TourPlayback } from "./tour_playback.js";
 
 /** What tests replace. */
 export interface ToolsOptions extends ToolContext {
@@ -94,10 +92,8 @@ export function createTools(options: ToolsOptions): Tools {
   );
 
   disposer.add(addToolCommands(options, () => active));
-  disposer.own(listenToCommandKeys(page, options.commands, () => store.get().play !== null));
-  const playback = disposer.own(makePlayback(options, clock, page));
-  disposer.add(listenToMarkers(store, scene, playback));
-  disposer.add(showTourThings(store, scene, assetUrl));
+  const ground = options.ground ?? (() => Promise.resolve({ heights: null, map: null }));
+  const { playback } = disposer.own(createPlayTools({ ...options, clock, page, ground, urlOf: assetUrl }));
   const keeper = keepDocuments(options, clock, page, disposer);
   disposer.add(addTourCommands(options, playback, keeper.conflict));
   keeper
@@ -111,20 +107,6 @@ export function createTools(options: ToolsOptions): Tools {
 function openTour(store: Store, playback: TourPlayback): void {
   const { rights, documents } = store.get();
   if (!rights.documents && !rights.tour && documents.tour.stops.length > 0) playback.play();
-}
-
-function makePlayback({ store, scene, ground }: ToolsOptions, clock: Clock, page: Window): TourPlayback {
-  return new TourPlayback({
-    store,
-    scene,
-    clock,
-    ground: ground ?? (() => Promise.resolve({ heights: null, map: null })),
-    nextFrame: (draw) => {
-      const frame = page.requestAnimationFrame(draw);
-      return () => page.cancelAnimationFrame(frame);
-    },
-    reducedMotion: () => page.matchMedia("(prefers-reduced-motion: reduce)").matches,
-  });
 }
 
 function keepDocuments(

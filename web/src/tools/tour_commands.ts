@@ -1,11 +1,11 @@
-// Commands of the tour: making it, beginning to play it, and what to do when another window has saved it.
+// Commands of the tour: making it, beginning to play it and leaving it, and what to do when another window has saved it.
 import type { AppState } from "../state/app_state.js";
 import { freeName } from "../state/names.js";
 import { addNotice } from "../state/notices.js";
 import { tourPose } from "../state/tour_pose.js";
 import { changeTour, setTourView } from "../state/tour_state.js";
 import { addStop, newStop } from "../tour/edit_stops.js";
-import { addPlayCommands, commandAdder } from "./play_commands.js";
+import { commandAdder, playing } from "./play_commands.js";
 import type { ToolContext } from "./tool_context.js";
 import type { TourConflict } from "./tour_conflict.js";
 import type { TourPlayback } from "./tour_playback.js";
@@ -28,7 +28,7 @@ export function addTourCommands(context: ToolContext, playback: TourPlayback, co
   const undecided = (state: AppState) => free(state) && state.tour.conflict;
   add("tour.takeOther", "Take the tour of the other window", [], undecided, () => conflict.takeOther());
   add("tour.keepMine", "Keep the tour of this window", [], undecided, () => conflict.keepMine());
-  ends.push(addPlayCommands(context, playback));
+  add("play.leave", "Leave the tour (Esc)", [], playing, () => playback.leave());
   return () => {
     for (const end of ends) end();
   };

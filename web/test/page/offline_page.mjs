@@ -106,6 +106,54 @@ async function checkBetween(page, [from, to]) {
   expect(after === before, `${after - before} pictures came where there is none`);
 }
 
+/** Title, text, picture and map of a stop; keys and a drag. */
+async function checkPlaying(page, stops) {
+  await page.setViewportSize({ width: 1000, height: 640 });
+  // Where the checks before have left the view.
+  await page.keyboard.press("r");
+  await page.keyboard.press("ArrowLeft");
+  await page.waitForFunction((id) => window.__skyquilt.state().play.stop.id === id, stops[0].id);
+  await page.waitForFunction(() => window.__skyquilt.state().play.phase === "stop");
+  const card = page.locator(".player-card");
+  const title = await card.getByRole("heading").textContent();
+  expect(title === stops[0].title, `the title is ${title}`);
+  expect((await page.title()) === "A <i>small</i> tour", `the page's title is ${await page.title()}`);
+  const words = await card.locator(".player-words").textContent();
+  expect(words === stops[0].text, `the text is ${words}`);
+  await page.waitForFunction(() => document.querySelector(".player-picture")?.naturalWidth === 40);
+  const [link] = await card
+    .locator("a")
+    .evaluateAll((all) => all.map(({ href, rel, target }) => ({ href, rel, target })));
+  expect(link.href === stops[0].link.url && link.target === "_blank", `the link is ${JSON.stringify(link)}`);
+  await page.waitForFunction(() => window.__skyquilt.state().map !== null);
+  await page.waitForFunction(() => window.__skyquilt.visibleTexts().includes("l1"));
+  await screenshot(page, out, "player");
+  expect((await page.getByLabel("Leave the tour").count()) === 0, "there is nowhere to leave the tour to");
+  await page.keyboard.press("Escape");
+
+  const eye = () => page.evaluate(() => window.__skyquilt.pose().eyeEnu);
+  await page.mouse.move(700, 300);
+  await page.mouse.down();
+  await page.mouse.move(500, 330, { steps: 4 });
+  await page.mouse.up();
+  await page.evaluate(() => window.__skyquilt.settle());
+  const looking = await page.evaluate(() => window.__skyquilt.state().play.phase);
+  expect(looking === "look", `after a drag the phase is ${looking}`);
+  const moved = (await eye()).map((value, i) => value - stops[0].pose.eye_enu[i]);
+  expect(Math.hypot(...moved) < 1e-6, `a drag moves the eye by ${moved}`);
+
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction((id) => window.__skyquilt.state().play.stop.id === id, stops[1].id);
+  await page.waitForFunction(() => window.__skyquilt.state().play.phase === "stop");
+  const there = (await eye()).map((value, i) => value - stops[1].pose.eye_enu[i]);
+  expect(Math.hypot(...there) < 1e-6, `the next stop is ${there} off`);
+  await page.getByLabel("All stops").click();
+  const missing = await page.locator(".player-list details").textContent();
+  expect(/The model "tree" is left out/.test(missing), `what is missing: ${missing}`);
+  const errors = await page.evaluate(() => window.__skyquilt.state().notices.map(({ text }) => text));
+  expect(errors.length === 0, `messages: ${errors}`);
+}
+
 /** A server as anybody may have it. */
 async function serve(folder) {
   const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".jpg": "image/jpeg" };
@@ -140,7 +188,7 @@ try {
   await checkTurning(local.page, stops[0]);
   await checkBetween(local.page, stops);
   await checkStop(local.page, stops[1], "second_stop");
-  await screenshot(local.page, out, "page");
+  await checkPlaying(local.page, stops);
   failures.push(...local.problems);
   await local.context.close();
 

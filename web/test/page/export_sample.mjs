@@ -12,6 +12,8 @@ const FOVY_DEG = 50;
 const HALF_SIDE_M = 150;
 /** Of the ground's texture. */
 export const GROUND = [200, 60, 20];
+/** Of a plate of 3 m at the second stop. */
+export const MODEL_AT = [10, 10, 3];
 const RANGE = { near: 20, far: 2000 };
 const DEG = Math.PI / 180;
 
@@ -218,7 +220,10 @@ function stop(id, title, eye, yawDeg, picture) {
 /** `encodeJpeg` makes a JPEG of a PNG of pngjs. Returns the stops. */
 export async function writeSample(folder, dist, encodeJpeg) {
   const card = PNG.sync.write(paint({ width: 40, height: 30 }, (column) => [column * 6, 90, 200]));
-  const asset = `${createHash("sha256").update(card).digest("hex")}.png`;
+  const model = groundTile();
+  const digest = (bytes) => createHash("sha256").update(bytes).digest("hex");
+  const asset = `${digest(card)}.png`;
+  const modelAsset = `${digest(model)}.glb`;
   const stops = [
     stop("south", "<script>document.title = 'run'</script>", [0, -60, 40], 0, asset),
     stop("east", "Østen 東", [60, 20, 40], 250, null),
@@ -228,8 +233,23 @@ export async function writeSample(folder, dist, encodeJpeg) {
     title: "A <i>small</i> tour",
     start: null,
     stops,
-    things: [{ id: "l1", kind: "label", at: [0, 0, 1], text: "Middle", stops: null }],
-    assets: { [asset]: { name: "card.png", bytes: card.length } },
+    things: [
+      { id: "l1", kind: "label", at: [0, 0, 1], text: "Middle", stops: null },
+      {
+        id: "m1",
+        kind: "model",
+        at: MODEL_AT,
+        yaw_deg: 0,
+        scale: 0.01,
+        name: "plate",
+        asset: modelAsset,
+        stops: ["east"],
+      },
+    ],
+    assets: {
+      [asset]: { name: "card.png", bytes: card.length },
+      [modelAsset]: { name: "plate.glb", bytes: model.length },
+    },
   };
   const size = ({ width, height }) => ({
     width,
@@ -256,6 +276,7 @@ export async function writeSample(folder, dist, encodeJpeg) {
     "terrain.bin": terrain(),
     "orthophoto.jpg": await encodeJpeg(paint({ width: 60, height: 60 }, () => GROUND)),
     [`assets/${asset}`]: card,
+    [`assets/${modelAsset}`]: model,
   };
   for (const { id, pose } of stops) {
     const eye = pose.eye_enu;

@@ -6,7 +6,7 @@ import { createServer } from "node:http";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
 import { canvasPicture, differing, open, save, screenshot, start } from "./browser.mjs";
-import { colourOf, GROUND, rayOf, rotationOf, STILL, stillOf, writeSample } from "./export_sample.mjs";
+import { colourOf, GROUND, MODEL_AT, rayOf, rotationOf, STILL, stillOf, writeSample } from "./export_sample.mjs";
 
 const [dist, out] = process.argv.slice(2);
 const SIZE = { width: STILL.width, height: STILL.height };
@@ -60,8 +60,8 @@ function poseOf({ pose }, rotation = pose.rotation) {
   return { eyeEnu: pose.eye_enu, rotation, fovyDeg: pose.fovy_deg, orthoHeightM: null };
 }
 
-async function checkStop(page, stop, name) {
-  await fly(page, poseOf(stop));
+async function checkStop(page, stop, name, { there = false } = {}) {
+  if (!there) await fly(page, poseOf(stop));
   await page.evaluate(() => window.__skyquilt.settle());
   const picture = await canvasPicture(page);
   save(picture, path.join(out, `${name}.png`));
@@ -89,6 +89,24 @@ async function checkTurning(page, stop) {
     figures.turned.push(share);
     expect(share <= 0.01, `turned to ${yawDeg}, ${pitchDeg}: ${share} of the picture show another direction`);
   }
+}
+
+/** The panorama is seen beside the still where the window is wider than it. */
+async function checkWide(page, stop) {
+  await page.setViewportSize({ width: 600, height: SIZE.height });
+  await fly(page, poseOf(stop));
+  await page.evaluate(() => window.__skyquilt.settle());
+  const picture = await canvasPicture(page);
+  save(picture, path.join(out, "wide.png"));
+  const still = stillOf(stop);
+  const { rotation, fovy_deg } = stop.pose;
+  figures.wide = unlike(picture, 0, SIZE.height, 8, (column, row) => {
+    const at = 4 * (row * SIZE.width + column - 100);
+    if (column >= 100 && column < 500) return [...still.data.subarray(at, at + 3)];
+    return colourOf(rayOf(rotation, fovy_deg, picture, [column + 0.5, row + 0.5]));
+  });
+  expect(figures.wide <= 0.01, `${figures.wide} of the wide picture are neither still nor panorama`);
+  await page.setViewportSize(SIZE);
 }
 
 async function checkBetween(page, [from, to]) {
@@ -147,6 +165,8 @@ async function checkPlaying(page, stops) {
   await page.waitForFunction(() => window.__skyquilt.state().play.phase === "stop");
   const there = (await eye()).map((value, i) => value - stops[1].pose.eye_enu[i]);
   expect(Math.hypot(...there) < 1e-6, `the next stop is ${there} off`);
+  const [x, y] = await page.evaluate((at) => window.__skyquilt.project(at), MODEL_AT);
+  await page.waitForFunction((px) => window.__skyquilt.thingAt(px) === "m1", [x, y]);
   await page.getByLabel("All stops").click();
   const missing = await page.locator(".player-list details").textContent();
   expect(/The model "tree" is left out/.test(missing), `what is missing: ${missing}`);
@@ -186,6 +206,7 @@ try {
   figures.open_s = local.seconds;
   await checkStop(local.page, stops[0], "first_stop");
   await checkTurning(local.page, stops[0]);
+  await checkWide(local.page, stops[0]);
   await checkBetween(local.page, stops);
   await checkStop(local.page, stops[1], "second_stop");
   await checkPlaying(local.page, stops);
@@ -193,8 +214,12 @@ try {
   await local.context.close();
 
   const { server, link: served } = await serve(folder);
-  const remote = await open(browser, served, SIZE);
-  await checkStop(remote.page, stops[0], "served");
+  const remote = await open(browser, served, { ...SIZE, reduced: false });
+  await checkStop(remote.page, stops[0], "served", { there: true });
+  await remote.page.keyboard.press("ArrowRight");
+  await remote.page.waitForFunction(() => window.__skyquilt.state().play.phase === "moving");
+  await remote.page.waitForFunction(() => window.__skyquilt.state().play.phase === "stop");
+  await checkStop(remote.page, stops[1], "walked", { there: true });
   failures.push(...remote.problems.map((text) => `served: ${text}`));
   await remote.context.close();
   server.close();

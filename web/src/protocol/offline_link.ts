@@ -116,10 +116,9 @@ export class OfflineLink<Bitmap extends { readonly width: number; readonly heigh
     };
   }
 
-  /** Loads the pictures of a stop before one arrives there. */
+  /** Loads the still of a stop before one arrives there; its panorama comes after the still is shown. */
   prepare(stop: string): void {
     void this.pictures.still(stop);
-    void this.pictures.panorama(stop);
   }
 
   statistics(): { readonly badMessages: number; readonly droppedFrames: number; readonly reconnects: number } {

@@ -17,7 +17,7 @@ export interface OfflineTourOptions {
 }
 
 export interface OfflineTour extends Link {
-  /** Loads the pictures of this stop before one arrives there. */
+  /** Loads the still of this stop before one arrives there. */
   prepare(stop: string): void;
 }
 

@@ -4,8 +4,8 @@
   build_front_end.py --source web --work build/release/web [--tests]
 
 Writes <work>/dist/{index.html,app.js,app.css,tour.html,tour.js,tour.css,licences.txt}; with --tests also <work>/dist_test, which has the hook of
-the page tests, and the tools that check the source. Without Node.js or npm, or when npm cannot fetch the packages, the files are empty: the program is built all the same, and
-`skyquilt view` says what is missing. The next build then tries again.
+the page tests, and the tools that check the source. Without Node.js or npm, or when npm cannot fetch the packages, the files are empty: the program is
+built all the same, and `skyquilt view` says what is missing. The next build then tries again.
 """
 import argparse
 import hashlib

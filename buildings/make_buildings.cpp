@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "buildings/candidates/matched_points.h"
 #include "buildings/fit/fit_shape.h"
 #include "buildings/fit/parameters.h"
 #include "buildings/outline_block.h"
@@ -21,6 +22,7 @@ namespace {
 
 constexpr double kAccepted = 0.85;     // share of roof points within 2 GSD of an accepted shape (structure.md, section 6)
 constexpr double kDescribed = 0.5;     // below it the shape is a block
+constexpr double kShapeless = 0.35;    // below it a block along an outline is no roof
 constexpr double kFewestPlanes = 0.4;  // share of an outline that planes must cover, or it is no building
 constexpr double kShortestWall_m = 1.5;
 constexpr double kLowestMean_m = 0.5;         // of a roof above the ground; what is lower is the ground itself
@@ -99,6 +101,7 @@ class Maker {
     const bool given = !input_.footprints.empty();
     candidates_ = given ? CandidatesIn(input_.footprints, *input_.cloud, *input_.ground, input_.options, input_.gsd_m, threads_)
                         : FindCandidates(*input_.cloud, *input_.ground, input_.options, input_.gsd_m, threads_);
+    matched_ = CountMatched(candidates_, input_.matched, *input_.cloud, *input_.ground, threads_);
     FindDirections();
     FitAll();
     BuildingSet set;
@@ -174,8 +177,12 @@ class Maker {
   }
 
   // Whether there is enough of a roof, high and wide enough; outlines that were given are believed.
-  bool IsBuilding(const Candidate& candidate, const Fitted& fitted) const {
+  bool IsBuilding(size_t i, const Fitted& fitted) const {
+    const Candidate& candidate = candidates_[i];
     if (candidate.given) return true;
+    if (matched_[i].DenyRoof()) return false;
+    // Neither shape nor level: crowns of trees, unless photos show that there is a roof.
+    if (fitted.follows_outline && fitted.fit.share_within < kShapeless && matched_[i].high == 0) return false;
     double planes_m2 = 0.0;
     for (const RoofPlane& plane : candidate.planes) planes_m2 += plane.area_m2 * std::max(plane.normal.z(), 0.0);
     const Shape& shape = fitted.fit.shape;
@@ -187,7 +194,7 @@ class Maker {
     const Candidate& candidate = candidates_[i];
     if (!fits_[i]) return std::nullopt;
     const Fitted& fitted = *fits_[i];
-    if (!IsBuilding(candidate, fitted)) return std::nullopt;
+    if (!IsBuilding(i, fitted)) return std::nullopt;
     Building building;
     building.shape = fitted.fit.shape;
     building.given = candidate.given;
@@ -278,6 +285,7 @@ class Maker {
   FitOptions fit_options_;
   bool overhang_measured_ = false;
   std::vector<Candidate> candidates_;
+  std::vector<MatchedPoints> matched_;  // of each candidate
   std::vector<Direction> directions_;
   std::vector<std::optional<ShapeGuess>> guesses_;
   std::vector<std::optional<Fitted>> fits_;

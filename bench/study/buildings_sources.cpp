@@ -59,13 +59,15 @@ struct OpenProject {
 void FindAndScore(OpenProject& open, const buildings::PointCloud* cloud, const buildings::GroundGrid* ground, double gsd_m, VariantResult* result) {
   buildings::BuildingSet set;
   if (cloud != nullptr) {
-    const buildings::BuildingsInput input{.options = open.settings.buildings,
-                                          .cloud = cloud,
-                                          .ground = ground,
-                                          .footprints = {},
-                                          .georeferenced = open.info.georeferenced,
-                                          .accuracy = open.info.accuracy,
-                                          .gsd_m = gsd_m};
+    buildings::BuildingsInput input{.options = open.settings.buildings,
+                                    .cloud = cloud,
+                                    .ground = ground,
+                                    .footprints = {},
+                                    .matched = {},
+                                    .georeferenced = open.info.georeferenced,
+                                    .accuracy = open.info.accuracy,
+                                    .gsd_m = gsd_m};
+    for (const survey::SparsePoint& point : open.survey.points) input.matched.push_back(point.x_in_enu);
     set = buildings::MakeBuildings(input, open.threads);
     set.gsd_m = open.info.gsd_m;  // scores are in those of the photos
   }

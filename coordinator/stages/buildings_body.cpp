@@ -10,6 +10,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/gis/read_outlines.h"
+#include "core/survey/survey.h"
 #include "products/ray_caster.h"
 #include "surface/files/las_classes.h"
 #include "surface/odm_names.h"
@@ -93,6 +94,7 @@ std::string BuildingsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
     const buildings::GroundGrid ground = buildings::GroundGrid::Read(terrain, frame);
     input.cloud = &cloud;
     input.ground = &ground;
+    for (const survey::SparsePoint& point : survey::LoadSurvey(project.SurveyFolder()).points) input.matched.push_back(point.x_in_enu);
     set = buildings::MakeBuildings(input, session.threads());
     if (settings.buildings.classify_cloud) ClassifyCloud(pipeline, frame, cloud, ground, set, session.threads());
   }

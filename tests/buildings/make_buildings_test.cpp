@@ -135,6 +135,25 @@ TEST(MakeBuildings, MeasureGivenOutlinesAndNothingElse) {
   EXPECT_NEAR(set.buildings[0].measures.height_m.value, 6.0, 0.15);
 }
 
+// Points that were matched in photos: on the ground where the field has a house, on the roof of the other.
+TEST(MakeBuildings, MatchedPointsDenyRoofsThatOnlyTheFieldHas) {
+  const MadePlace place = TwoHouses();
+  base::ThreadPool threads(2);
+  BuildingsInput input = InputOf(place);
+  const Eigen::Vector2d flat = Centroid(place.truth[1].footprint);
+  for (int i = 0; i < 2; ++i) input.matched.emplace_back(flat.x() + i, flat.y(), 100.0);
+  EXPECT_EQ(MakeBuildings(input, threads).buildings.size(), 2U) << "two wrong matches";
+  for (int i = 0; i < 3; ++i) input.matched.emplace_back(flat.x() - i, flat.y() + 1.0, 100.2);
+  const Eigen::Vector2d gable = Centroid(place.truth[0].footprint);
+  for (int i = 0; i < 5; ++i) input.matched.emplace_back(gable.x() + i, gable.y(), 107.0);
+  const BuildingSet set = MakeBuildings(input, threads);
+  ASSERT_EQ(set.buildings.size(), 1U);
+  EXPECT_EQ(set.buildings[0].roof, RoofKind::kGable);
+  // Whoever gives an outline knows of the house.
+  input.footprints = {{place.truth[1].footprint, "given"}};
+  EXPECT_EQ(MakeBuildings(input, threads).buildings.size(), 1U);
+}
+
 // A roof of many small steps is neither flat nor gable nor hip.
 TEST(MakeBuildings, WhatNoRoofDescribesIsABlock) {
   MadePlace place = TwoHouses();

@@ -9,6 +9,7 @@
 
 #include "buildings/make_buildings.h"
 #include "buildings/solids/build_solids.h"
+#include "tests/buildings/candidates/made_scene.h"
 #include "tests/buildings/sample_buildings.h"
 #include "tests/buildings/sample_clouds.h"
 
@@ -173,6 +174,24 @@ TEST(SpecialBuildings, ARoofThatTwoPhotosSawClaimsNoPrecision) {
     EXPECT_LT(std::abs(m.width_m.value - truth.width_m.value), 4.0 * m.width_m.sigma);
     EXPECT_TRUE(CheckSolid(found.lod22).empty());
   }
+}
+
+// A cone of 12 m: no shape, and not level. The same form is a crown or the roof of a tower; photos tell.
+TEST(SpecialBuildings, WhatHasNoShapeNeedsPhotosThatShowIt) {
+  MadeScene scene;
+  constexpr double kRadius_m = 6.0;
+  scene.Add({[](const Eigen::Vector2d& at) { return at.norm() < kRadius_m ? 3.0 + 1.5 * (kRadius_m - at.norm()) : 0.0; }, kConcrete, {}});
+  const PointCloud cloud = scene.Cloud();
+  const GroundGrid ground = scene.Ground();
+  base::ThreadPool threads(2);
+  BuildingsInput input;
+  input.cloud = &cloud;
+  input.ground = &ground;
+  input.georeferenced = true;
+  input.gsd_m = MadeScene::kGsd_m;
+  EXPECT_TRUE(MakeBuildings(input, threads).buildings.empty());
+  input.matched = {{1.0, 2.0, MadeScene::kGround + 8.0}};
+  EXPECT_EQ(MakeBuildings(input, threads).buildings.size(), 1U);
 }
 
 }  // namespace

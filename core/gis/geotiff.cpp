@@ -148,7 +148,50 @@ void GeoTiffWriter::Close() {
   std::filesystem::remove(impl_->partial, ignored);
 }
 
-ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width) {
+namespace {
+
+void ForgetNoDataOf(GDALDataset* dataset, image::ImageF* image) {
+  int has_nodata = FALSE;
+  const double nodata = dataset->GetRasterBand(1)->GetNoDataValue(&has_nodata);
+  if (!has_nodata) return;
+  for (float& value : image->data) {
+    if (value == static_cast<float>(nodata)) value = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+// GDAL's RasterIO has means and medians, but no maximum. Reads row by row. False: see CPLGetLastErrorMsg.
+bool ReadMaximum(GDALDataset* dataset, image::ImageF* image) {
+  const int cells = dataset->GetRasterXSize(), rows = dataset->GetRasterYSize(), bands = image->channels;
+  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
+  image::ImageF row(cells, 1, bands);
+  // The first and the last of n pixels that a cell touches.
+  const auto first = [](int cell, int of_cells, int n) { return static_cast<int>(static_cast<int64_t>(cell) * n / of_cells); };
+  const auto last = [](int cell, int of_cells, int n) { return static_cast<int>(((cell + int64_t{1}) * n - 1) / of_cells); };
+  std::fill(image->data.begin(), image->data.end(), std::numeric_limits<float>::quiet_NaN());
+  for (int y = 0; y < rows; ++y) {
+    if (dataset->RasterIO(GF_Read, 0, y, cells, 1, row.data.data(), cells, 1, GDT_Float32, bands, nullptr, pixel, pixel * cells, sizeof(float),
+                          nullptr) != CE_None) {
+      return false;
+    }
+    ForgetNoDataOf(dataset, &row);
+    for (int x = 0; x < cells; ++x) {
+      for (int v = first(y, rows, image->height); v <= last(y, rows, image->height); ++v) {
+        for (int u = first(x, cells, image->width); u <= last(x, cells, image->width); ++u) {
+          for (int band = 0; band < bands; ++band) {
+            float& most = image->At(u, v)[band];
+            const float value = row.At(x, 0)[band];
+            if (!(most >= value)) most = std::isnan(value) ? most : value;
+          }
+        }
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width, Reduction reduction) {
   const QuietErrors quiet;
   GDALRegister_GTiff();
   const Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
@@ -166,18 +209,15 @@ ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width) {
   INIT_RASTERIO_EXTRA_ARG(extra);
   extra.eResampleAlg = GRIORA_Average;
   const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
-  if (dataset->RasterIO(GF_Read, 0, 0, dataset->GetRasterXSize(), dataset->GetRasterYSize(), reduced.image.data.data(), width, height, GDT_Float32,
-                        bands, nullptr, pixel, pixel * width, sizeof(float), &extra) != CE_None) {
+  const bool read = reduction == Reduction::kMaximum
+                        ? ReadMaximum(dataset.get(), &reduced.image)
+                        : dataset->RasterIO(GF_Read, 0, 0, dataset->GetRasterXSize(), dataset->GetRasterYSize(), reduced.image.data.data(), width,
+                                            height, GDT_Float32, bands, nullptr, pixel, pixel * width, sizeof(float), &extra) == CE_None;
+  if (!read) {
     throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(),
                            "Give a GeoTIFF that 'skyquilt render' or 'skyquilt surface' wrote, or make it again");
   }
-  int has_nodata = FALSE;
-  const double nodata = dataset->GetRasterBand(1)->GetNoDataValue(&has_nodata);
-  if (has_nodata) {
-    for (float& value : reduced.image.data) {
-      if (value == static_cast<float>(nodata)) value = std::numeric_limits<float>::quiet_NaN();
-    }
-  }
+  ForgetNoDataOf(dataset.get(), &reduced.image);
   return reduced;
 }
 

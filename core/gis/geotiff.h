@@ -56,7 +56,9 @@ struct ReducedRaster {
   double scale = 1.0;       // cells of the file per pixel of the image, horizontally
   double scale_down = 1.0;  // the same, vertically
 };
-// The whole file averaged down to at most max_width columns. Throws base::InputError when it cannot be read.
-ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width);
+enum class Reduction { kMean, kMaximum };
+// The whole file reduced to at most max_width columns: each pixel is the mean, or the maximum, of the known cells that it covers, whole or in part.
+// Throws base::InputError when it cannot be read.
+ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width, Reduction reduction = Reduction::kMean);
 
 }  // namespace skyquilt::gis

@@ -66,7 +66,8 @@ uint8_t Byte(float value) {
 std::string TerrainFile(const std::filesystem::path& dsm, const SurveyFrame& frame) {
   const PointGrid grid(dsm);
   frame.RequireFits(grid.map.georeferenced, dsm);
-  const gis::ReducedRaster heights = gis::ReadReduced(dsm, grid.columns);
+  // The highest of each cell: ways of tours keep away from what these points and the surface between them show.
+  const gis::ReducedRaster heights = gis::ReadReduced(dsm, grid.columns, gis::Reduction::kMaximum);
   SKYQUILT_CHECK(heights.image.width == grid.columns && heights.image.height == grid.rows, dsm.string());
   std::string bytes = "SKYTERR1";
   Append(&bytes, static_cast<uint32_t>(grid.columns));

@@ -10,7 +10,7 @@
 
 namespace skyquilt::viewer {
 
-// terrain.bin from dsm.tif: at most 512 cells along the longer side.
+// terrain.bin from dsm.tif: at most 512 cells along the longer side, each with the highest of the DSM's.
 std::string TerrainFile(const std::filesystem::path& dsm, const SurveyFrame& frame);
 // orthophoto.jpg from orthophoto.tif: from the first to the last column and row of points of that grid, at most 2048 pixels along the longer side;
 // grey where it has no data.

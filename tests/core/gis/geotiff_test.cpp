@@ -56,6 +56,34 @@ std::string Item(GDALDataset* dataset, const char* key, const char* domain = nul
   return value == nullptr ? "" : value;
 }
 
+// Also where cells do not divide evenly among pixels, and beside cells without data.
+TEST(ReadReduced, KeepsTheHighestOfEachPixel) {
+  const TemporaryFolder folder;
+  constexpr int kWidth = 310, kHeight = 205;
+  GeoTiffWriter writer(folder / "dsm.tif", HeightSpec(kWidth, kHeight));
+  WriteHeights(&writer, kWidth, kHeight);
+  writer.Close();
+  for (const int width : {1, 64, 155, 309, kWidth, 1000}) {
+    const ReducedRaster reduced = ReadReduced(folder / "dsm.tif", width, Reduction::kMaximum);
+    const image::ImageF& image = reduced.image;
+    ASSERT_EQ(image.width, std::min(width, kWidth));
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        float highest = std::nanf("");
+        for (int row = 0; row < kHeight; ++row) {
+          if (row + 1 <= y * reduced.scale_down + 1e-9 || row >= (y + 1) * reduced.scale_down - 1e-9) continue;
+          const int first = static_cast<int>(x * reduced.scale + 1e-9), end = static_cast<int>(std::ceil((x + 1) * reduced.scale - 1e-9));
+          for (int column = first; column < end; ++column) {
+            if (const float height = HeightAt(column, row); height != kNoData) highest = std::fmax(highest, height);
+          }
+        }
+        const float found = *image.At(x, y);
+        ASSERT_TRUE(std::isnan(highest) ? std::isnan(found) : found == highest) << width << ": " << x << ", " << y;
+      }
+    }
+  }
+}
+
 TEST(GeoTiff, IsCloudOptimisedAndComplete) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "map.tif";

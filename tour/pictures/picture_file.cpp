@@ -50,7 +50,6 @@ StoredPicture Encode(const RenderedPicture& picture) {
   stored.width = picture.color.width;
   stored.height = picture.color.height;
   stored.png = image::EncodePng(picture.color, kPngLevel);
-  if (picture.depth_m.empty()) return stored;
   stored.depth_width = image::HalfOf(stored.width);
   stored.depth_height = image::HalfOf(stored.height);
   const std::vector<float> depths = image::HalfDepths(picture.depth_m, stored.width, stored.height, image::DepthScale::kInverse);

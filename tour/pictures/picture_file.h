@@ -16,8 +16,8 @@ namespace skyquilt::tour {
 struct StoredPicture {
   int width = 0, height = 0;
   std::string png;  // as `skyquilt render` writes it
-  // Depth along the ray, inverse scale of core/image/depth_code.h. Value (i, j) belongs to pixel (2i, 2j). Size 0 for stills; no bytes, and a range
-  // of 0 to 0, when no ray of a panorama meets a surface.
+  // Depth as in RenderedPicture, inverse scale of core/image/depth_code.h. Value (i, j) belongs to pixel (2i, 2j). No bytes, and a range of 0 to 0,
+  // when no ray meets a surface.
   int depth_width = 0, depth_height = 0;
   image::DepthRange range;
   std::string depth;

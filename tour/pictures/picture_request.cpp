@@ -12,7 +12,7 @@ namespace skyquilt::tour {
 namespace {
 
 // Grows when the same request gives another picture or another file.
-constexpr int kPictureVersion = 1;
+constexpr int kPictureVersion = 2;
 
 template <typename T>
 void AppendValue(const T& value, std::string* text) {

@@ -13,7 +13,7 @@ namespace skyquilt::tour {
 
 enum class PictureKind : uint8_t {
   kPanorama,  // colour and depth in all directions, see panorama_rays.h
-  kStill,     // colour of what the stop itself looks at, as `skyquilt render` draws it
+  kStill,     // colour, as `skyquilt render` draws it, and depth of what the stop itself looks at
 };
 
 struct PictureRequest {

@@ -13,7 +13,8 @@ namespace skyquilt::tour {
 
 struct RenderedPicture {
   image::Image8 color;  // display values
-  // Panoramas only: metres along the ray from the eye to where half of the light is left, of all pixels, NaN where there is no surface.
+  // To where half of the light is left, of all pixels, NaN where there is no surface: of a panorama metres along the ray from the eye, of a still
+  // along the optical axis, as frames of the viewer have it.
   std::vector<float> depth_m;
 };
 

@@ -32,8 +32,6 @@ void ExpectWhatRenderWrites(const SceneField& scene, const std::string& exposure
   const MadePictures made = MakePictures({&still, 1}, scene.field, work.path());
   const StoredPicture picture = OpenPicture(made.files.at(0));
   EXPECT_EQ(picture.png, base::ReadFile(renders / "stop.png"));
-  EXPECT_EQ(picture.depth_width, 0);
-  EXPECT_TRUE(picture.depth.empty());
 }
 
 TEST(Still, IsWhatRenderWrites) {
@@ -41,6 +39,17 @@ TEST(Still, IsWhatRenderWrites) {
   ExpectWhatRenderWrites(points, "normal");
   ExpectWhatRenderWrites(points, ExposureText(-0.7, "normal"));
   ExpectWhatRenderWrites(SceneField({.density_bias = 1.0, .cones = true}), "normal");
+}
+
+// A level camera 25 m above the ground, looking straight down: all of the ground is as deep, however slanted the ray.
+TEST(Still, DepthIsAlongTheOpticalAxis) {
+  CountedField counted;
+  const TemporaryFolder work;
+  const PictureRequest still = StillAt({-40.0, 30.0, 30.0}, Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), 60.0, 40, 30, "normal");
+  const StoredPicture picture = OpenPicture(MakePictures({&still, 1}, counted.field, work.path()).files.at(0));
+  ASSERT_EQ(picture.depth_width, 20);
+  ASSERT_EQ(picture.depth_height, 15);
+  for (const float depth : image::UnpackDepths(picture.depth, 300, picture.range, image::DepthScale::kInverse)) EXPECT_NEAR(depth, 25.0F, 1e-3F);
 }
 
 TEST(Still, ExposureOfAStopCountsBeforeThatOfTheTour) {

@@ -1,13 +1,5 @@
 #include "tour/pictures/jpeg_quality.h"
 
-#include <numeric>
-#include <set>
-#include <vector>
-
-#include "core/base/cancel.h"
-#include "core/image/image.h"
-#include "tour/pictures/picture_file.h"
-
 namespace skyquilt::tour {
 
 JpegFit FitQuality(const std::function<int64_t(int quality)>& bytes_at, int64_t limit_bytes) {
@@ -27,21 +19,6 @@ JpegFit FitQuality(const std::function<int64_t(int quality)>& bytes_at, int64_t 
     }
   }
   return fit;
-}
-
-JpegFit FitPictures(std::span<const std::filesystem::path> files, int64_t limit_bytes, base::ThreadPool& threads) {
-  const std::set<std::filesystem::path> once(files.begin(), files.end());
-  const std::vector<std::filesystem::path> pictures(once.begin(), once.end());
-  const auto bytes_at = [&](int quality) {
-    std::vector<int64_t> bytes(pictures.size());
-    threads.ParallelFor(static_cast<int64_t>(pictures.size()), [&](int64_t i, int) {
-      base::ThrowIfCancelled();
-      const auto index = static_cast<size_t>(i);
-      bytes[index] = static_cast<int64_t>(image::EncodeJpeg(ColorsOf(OpenPicture(pictures[index])), quality).size());
-    });
-    return std::accumulate(bytes.begin(), bytes.end(), int64_t{0});
-  };
-  return FitQuality(bytes_at, limit_bytes);
 }
 
 }  // namespace skyquilt::tour

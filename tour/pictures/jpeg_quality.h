@@ -2,11 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
-#include <span>
-
-#include "core/base/thread_pool.h"
 
 namespace skyquilt::tour {
 
@@ -22,9 +18,5 @@ struct JpegFit {
 // Finds by bisection the highest quality from kLeastQuality to kMostQuality whose bytes are at most the limit. Bytes are taken to grow with quality;
 // where they do not quite, the result still keeps to the limit.
 JpegFit FitQuality(const std::function<int64_t(int quality)>& bytes_at, int64_t limit_bytes);
-
-// One quality for all pictures (files of MakePictures), so that none of them looks worse than its neighbours, with which they keep to the limit
-// together. A file that is named twice counts once. Throws base::InputError, base::Interrupted.
-JpegFit FitPictures(std::span<const std::filesystem::path> files, int64_t limit_bytes, base::ThreadPool& threads);
 
 }  // namespace skyquilt::tour

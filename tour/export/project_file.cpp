@@ -1,0 +1,26 @@
+#include "tour/export/project_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/errors.h"
+
+namespace skyquilt::tour {
+
+std::string ExportedProjectJson(const std::string& project_json, const ExportedFiles& files) {
+  using Json = nlohmann::json;
+  Json json = Json::parse(project_json, nullptr, false);
+  SKYQUILT_CHECK(json.is_object(), "project.json is no object");
+  json["revision"] = 0;
+  for (const char* absent : {"scene", "before", "points", "contours", "metrics"}) json[absent] = nullptr;
+  json["missing"] = Json::array();
+  json["tiles"] = files.tiles ? Json("tiles/tileset.json") : Json(nullptr);
+  json["terrain"] = files.terrain ? Json("terrain.bin") : Json(nullptr);
+  json["orthophoto"] = files.orthophoto ? Json("orthophoto.jpg") : Json(nullptr);
+  if (!files.buildings || !json["buildings"].is_object()) json["buildings"] = nullptr;
+  if (json["buildings"].is_object()) json["buildings"]["files"] = Json::array();
+  if (!json["photos"].is_array()) json["photos"] = Json::array();
+  for (Json& photo : json["photos"]) photo["available"] = false;
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace skyquilt::tour

@@ -9,6 +9,9 @@ extern const char kSkyquiltIndexHtmlBegin[], kSkyquiltIndexHtmlEnd[];
 extern const char kSkyquiltAppJsBegin[], kSkyquiltAppJsEnd[];
 extern const char kSkyquiltAppCssBegin[], kSkyquiltAppCssEnd[];
 extern const char kSkyquiltLicencesTxtBegin[], kSkyquiltLicencesTxtEnd[];
+extern const char kSkyquiltTourHtmlBegin[], kSkyquiltTourHtmlEnd[];
+extern const char kSkyquiltTourJsBegin[], kSkyquiltTourJsEnd[];
+extern const char kSkyquiltTourCssBegin[], kSkyquiltTourCssEnd[];
 }
 
 namespace skyquilt::viewer {
@@ -42,6 +45,25 @@ std::vector<Asset> FrontEndFrom(const std::filesystem::path& folder) {
   std::vector<Asset> assets;
   for (const AssetName& name : kAssetNames) assets.push_back({name.path, name.content_type, base::ReadFile(folder / name.file)});
   return assets;
+}
+
+std::vector<tour::PageFile> TourPage(const std::filesystem::path& folder) {
+  if (!folder.empty()) {
+    return {{"index.html", base::ReadFile(folder / "tour.html")},
+            {"tour.js", base::ReadFile(folder / "tour.js")},
+            {"tour.css", base::ReadFile(folder / "tour.css")},
+            {"licences.txt", base::ReadFile(folder / "licences.txt")}};
+  }
+  std::vector<tour::PageFile> page = {{"index.html", {kSkyquiltTourHtmlBegin, kSkyquiltTourHtmlEnd}},
+                                      {"tour.js", {kSkyquiltTourJsBegin, kSkyquiltTourJsEnd}},
+                                      {"tour.css", {kSkyquiltTourCssBegin, kSkyquiltTourCssEnd}},
+                                      {"licences.txt", {kSkyquiltLicencesTxtBegin, kSkyquiltLicencesTxtEnd}}};
+  if (page[0].content.empty() || page[1].content.empty()) {
+    throw base::UsageError(
+        "this program was built without the page of tours, because Node.js or npm's packages were missing. "
+        "Install the Debian packages nodejs and npm and build again while the network is up");
+  }
+  return page;
 }
 
 }  // namespace skyquilt::viewer

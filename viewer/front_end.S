@@ -13,5 +13,8 @@
     embed kSkyquiltAppJs, "app.js"
     embed kSkyquiltAppCss, "app.css"
     embed kSkyquiltLicencesTxt, "licences.txt"
+    embed kSkyquiltTourHtml, "tour.html"
+    embed kSkyquiltTourJs, "tour.js"
+    embed kSkyquiltTourCss, "tour.css"
 
     .section .note.GNU-stack,"",%progbits

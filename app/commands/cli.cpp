@@ -93,6 +93,7 @@ void AddCommands(CLI::App& app, CommandState& state) {
   AddRender(app, state);
   AddSurface(app, state);
   AddBuildings(app, state);
+  AddTour(app, state);
   AddEvaluate(app, state);
   AddView(app, state);
   AddInfo(app, state);

@@ -12,6 +12,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
+#include "viewer/tour_parts.h"
 
 namespace skyquilt::app {
 
@@ -67,7 +68,13 @@ coordinator::Settings CommandState::LoadOver(coordinator::Settings settings) con
 coordinator::Pipeline CommandState::Begin(const coordinator::Project& project, coordinator::Settings settings, bool restart) const {
   base::AddLogFile(project.LogFile());
   return coordinator::Pipeline{
-      .comm = *comm, .project = project, .settings = std::move(settings), .restart = restart, .quiet = quiet, .verbose = verbose};
+      .comm = *comm,
+      .project = project,
+      .settings = std::move(settings),
+      .restart = restart,
+      .quiet = quiet,
+      .verbose = verbose,
+      .tour_parts = [folder = front_end](const coordinator::Project& of) { return viewer::TourParts(of, folder, "skyquilt " SKYQUILT_VERSION); }};
 }
 
 coordinator::Pipeline CommandState::BeginIn(const std::string& folder, const std::vector<config::Override>& flags, bool restart) const {

@@ -24,6 +24,7 @@ struct CommandState {
   std::vector<std::string> set;  // --set
   std::string threads;           // --threads
   std::string command_line;      // as it was typed, for reports
+  std::string front_end;         // --front-end: folder with the page of viewer and tours; empty: those in the program
   bool quiet = false;
   bool verbose = false;
   std::function<void()> run_command;  // runs the command that was given; set while parsing
@@ -63,6 +64,7 @@ void AddMerge(CLI::App& app, CommandState& state);
 void AddRender(CLI::App& app, CommandState& state);
 void AddSurface(CLI::App& app, CommandState& state);
 void AddBuildings(CLI::App& app, CommandState& state);
+void AddTour(CLI::App& app, CommandState& state);
 void AddEvaluate(CLI::App& app, CommandState& state);
 void AddView(CLI::App& app, CommandState& state);
 void AddInfo(CLI::App& app, CommandState& state);

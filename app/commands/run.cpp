@@ -4,6 +4,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
+#include "viewer/assets.h"
 
 namespace skyquilt::app {
 namespace {
@@ -33,6 +34,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   if (!flags.model.empty() && !std::filesystem::is_directory(flags.model)) {
     throw base::InputError(flags.model, "no such folder", "Give the folder that holds the COLMAP model, or leave --model out to run COLMAP");
   }
+  if (settings.tour.auto_stops > 0) viewer::TourPage(state.front_end);
   settings.evaluate.RequireFiles();
   if (const std::string& boundary = settings.products.boundary; !boundary.empty() && !std::filesystem::is_regular_file(boundary)) {
     throw base::InputError(boundary, "no such file", "Give a GeoJSON or GeoPackage file as products.boundary, or leave it empty");
@@ -58,6 +60,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   coordinator::ProductsStage(pipeline);
   if (pipeline.settings.surface.enabled) coordinator::SurfaceStage(pipeline);
   if (MakesBuildings(pipeline.settings)) coordinator::BuildingsStage(pipeline);
+  if (pipeline.settings.tour.auto_stops > 0) coordinator::TourStage(pipeline);
   coordinator::EvaluateStage(pipeline);
   coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);
 }

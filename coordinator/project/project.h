@@ -26,12 +26,16 @@ struct Project {
   std::filesystem::path SurfaceWorkFolder() const { return folder / "cache" / "surface"; }
   std::filesystem::path BuildingsFolder() const { return folder / "buildings"; }
   std::filesystem::path BuildingsFile() const { return BuildingsFolder() / "buildings.json"; }
+  std::filesystem::path TourFile() const { return folder / "tour.json"; }
+  std::filesystem::path TourFolder() const { return folder / "tour"; }
+  std::filesystem::path TourWorkFolder() const { return TourFolder() / "work"; }
   std::filesystem::path ReportFolder() const { return folder / "report"; }
   std::filesystem::path MetricsFile() const { return ReportFolder() / "metrics.json"; }
   std::filesystem::path ConfigFile() const { return folder / "config.toml"; }
   std::filesystem::path LogFile() const { return folder / "log.txt"; }
   std::filesystem::path StateFolder() const { return folder / ".state"; }
   std::filesystem::path TrainLedgerFile() const { return StateFolder() / "training.json"; }
+  std::filesystem::path TourProposal() const { return StateFolder() / "tour_proposal.txt"; }
   std::filesystem::path StampFile(const std::string& stage) const { return StateFolder() / (stage + ".json"); }
 
   // Creates the folder and proves it writable. Throws base::InputError.

@@ -18,6 +18,7 @@ config::Sections Settings::AllSections() {
   sections.Add("products", products, "orthophoto, surface model, images, video");
   sections.Add("surface", surface, "mesh, point cloud, 3D tiles and terrain of the scene");
   sections.Add("buildings", buildings, "buildings of the surface with their measures");
+  sections.Add("tour", tour, "tours that are given away as a folder");
   sections.Add("evaluate", evaluate, "scores and report");
   sections.Rename("simulate.preset", "simulate.place");
   sections.Retire("run.context_ranks", "rank 0 trains the context alone");

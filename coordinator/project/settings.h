@@ -17,6 +17,7 @@
 #include "products/product_options.h"
 #include "simulate/simulate_options.h"
 #include "surface/surface_options.h"
+#include "tour/export/tour_options.h"
 #include "worker/prior_options.h"
 #include "worker/train_options.h"
 
@@ -35,6 +36,7 @@ struct Settings {
   products::ProductOptions products;
   surface::SurfaceOptions surface;
   buildings::BuildingsOptions buildings;
+  tour::TourOptions tour;
   evaluate::EvaluateOptions evaluate;
 
   // The result holds references to this object.

@@ -51,6 +51,10 @@ void BuildingsStage(Pipeline& pipeline) {
   RunStage(pipeline, "buildings");
 }
 
+void TourStage(Pipeline& pipeline) {
+  RunStage(pipeline, "tour");
+}
+
 const evaluate::Metrics& EvaluateStage(Pipeline& pipeline) {
   RunStage(pipeline, "evaluate");
   return pipeline.metrics;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "core/comm/communicator.h"
 #include "core/scene/train_report.h"
 #include "evaluate/metrics.h"
+#include "tour/export/export_parts.h"
 
 namespace skyquilt::coordinator {
 
@@ -26,6 +28,8 @@ struct Pipeline {
   // Inputs of "prepare". model may be empty: COLMAP is run, or the photos are a simulated survey.
   std::filesystem::path photos = {};
   std::filesystem::path model = {};
+  // Page and files of an exported tour, which the viewer has too: stage "tour" needs it.
+  std::function<tour::ExportParts(const Project& project)> tour_parts = {};
   // Results of "train" and "evaluate"; read from their files when the stage had nothing to do.
   scene::TrainReport training = {};
   evaluate::Metrics metrics = {};
@@ -51,6 +55,15 @@ void BuildingsStage(Pipeline& pipeline);
 // Renders the facades of these buildings (ids, from 1; empty: all) into buildings/facades. The stage must be finished. Throws base::UsageError for an
 // id that there is none of.
 void WriteFacades(Pipeline& pipeline, const std::vector<int>& ids);
+// Exports the project's tour to tour/index.html; proposes one first where there is none that a person made, as chosen in [tour].
+void TourStage(Pipeline& pipeline);
+struct TourRequest {
+  std::filesystem::path out;
+  int auto_stops = 0;  // propose a tour with so many stops; 0: there must be one
+  bool video = false;  // also write tour.mp4
+};
+// The same for any folder. Throws base::UsageError when a tour should be proposed and there is one that a person made.
+void ExportProjectTour(Pipeline& pipeline, const TourRequest& request);
 const evaluate::Metrics& EvaluateStage(Pipeline& pipeline);
 
 // Throws base::BlockError with the names of the failed blocks, if there are any.

@@ -16,6 +16,10 @@ std::string MergeBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string ProductsBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string BuildingsBody(Pipeline& pipeline, const StageStamp& stamp);
+std::string TourBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp);
+
+// Identity of a tour that a person made or changed; "" when there is none, so that a proposed one can be proposed again.
+std::string EditedTourIdentity(const Project& project);
 
 }  // namespace skyquilt::coordinator

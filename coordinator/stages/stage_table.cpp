@@ -7,6 +7,7 @@
 #include "core/base/log.h"
 #include "core/checkpoint/archive.h"
 #include "core/scene/field_file.h"
+#include "tour/export/staged_folder.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -196,6 +197,29 @@ std::vector<Stage> MakeTable() {
        .outputs = [](const Project& p) { return Paths{p.BuildingsFolder()}; },
        .completion_files = [](const Project& p) { return Paths{p.BuildingsFile()}; },
        .body = BuildingsBody},
+      // Its options are inputs: another size exports the tour again.
+      {.name = "tour",
+       .options = {},
+       .required = {{SceneFile, "merge"}},
+       .inputs =
+           [](const Pipeline& pipeline) {
+             FlatOptions inputs = Select(pipeline.settings.Flat(), {"tour.", "products.exposure"});
+             inputs["scene"] = FileIdentity(pipeline.project.StampFile("merge"));
+             inputs["products"] = FileIdentity(pipeline.project.StampFile("products"));
+             inputs["surface"] = FileIdentity(pipeline.project.StampFile("surface"));
+             inputs["buildings"] = FileIdentity(pipeline.project.StampFile("buildings"));
+             inputs["tour"] = EditedTourIdentity(pipeline.project);
+             return inputs;
+           },
+       // Not tour/assets, which people uploaded.
+       .outputs =
+           [](const Project& p) {
+             Paths outputs = {p.TourWorkFolder()};
+             for (const std::string& name : tour::ExportedNames()) outputs.push_back(p.TourFolder() / name);
+             return outputs;
+           },
+       .completion_files = [](const Project& p) { return Paths{p.TourFolder() / "index.html"}; },
+       .body = TourBody},
       {.name = "evaluate",
        .options = {"evaluate.", "run.image_width"},
        .required = {{SceneFile, "merge"}},

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <set>
 
+#include "coordinator/stages/stage_bodies.h"
 #include "core/base/errors.h"
+#include "core/base/file.h"
 #include "tests/support/connect_alone.h"
 #include "tests/support/project_fixture.h"
 
@@ -74,6 +76,32 @@ TEST_F(StageFiles, ProofOfAStageIsRemovedWithIt) {
       EXPECT_TRUE(removed) << stage.name << " leaves " << proof;
     }
   }
+}
+
+TEST_F(StageFiles, RestartLeavesToursAndWhatPeopleUploaded) {
+  const std::filesystem::path uploaded = project_.TourFolder() / "assets" / "a.glb";
+  for (const std::filesystem::path& file :
+       {project_.TourFile(), uploaded, project_.TourFolder() / "index.html", project_.TourFolder() / "data" / "x.js"}) {
+    Touch(file);
+  }
+  RemoveStagesFrom(project_, "prepare");
+  EXPECT_TRUE(std::filesystem::exists(project_.TourFile()) && std::filesystem::exists(uploaded));
+  EXPECT_FALSE(std::filesystem::exists(project_.TourFolder() / "index.html") || std::filesystem::exists(project_.TourFolder() / "data"));
+}
+
+// So that a proposed tour is proposed again with a new scene, and one that a person touched never is.
+TEST_F(StageFiles, ATourIsEditedUnlessItIsAsProposed) {
+  EXPECT_EQ(EditedTourIdentity(project_), "");
+  Touch(project_.TourFile(), "a tour");
+  EXPECT_NE(EditedTourIdentity(project_), "");
+  Touch(project_.TourProposal(), base::HashHex("a tour"));
+  EXPECT_EQ(EditedTourIdentity(project_), "");
+  Touch(project_.TourFile(), "a tour of mine");
+  EXPECT_NE(EditedTourIdentity(project_), "");
+  const auto comm = comm::ConnectAlone();
+  Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
+  EXPECT_THROW(ExportProjectTour(pipeline, {.out = folder_ / "out", .auto_stops = 3, .video = false}), base::UsageError);
+  EXPECT_EQ(base::ReadFile(project_.TourFile()), "a tour of mine");
 }
 
 TEST_F(StageFiles, AStageWithUnreadableResultsRunsAgain) {

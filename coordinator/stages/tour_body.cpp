@@ -43,6 +43,7 @@ std::vector<tour::BuildingMark> MarksOf(const std::filesystem::path& file) {
     mark.scale = set.scale;
     mark.metric = set.metric;
     mark.accepted = building.accepted;
+    mark.seen = building.measures.wall_seen;
     marks.push_back(std::move(mark));
   }
   return marks;

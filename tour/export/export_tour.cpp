@@ -101,11 +101,19 @@ void LogPlan(const ExportPlan& plan, const TileTree* tree, const TourOptions& op
                all.tiles, MegabytesText(all.bytes - plan.tiles->bytes));
 }
 
-// Everything but the picture of the video, into the folder.
+int64_t BytesIn(const fs::path& folder) {
+  int64_t bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) bytes += static_cast<int64_t>(entry.file_size());
+  }
+  return bytes;
+}
+
+// All data, into the folder.
 void WriteFiles(const ExportParts& parts, const FixedFiles& fixed, const ExportPlan& plan, const TileTree* tree,
                 const std::vector<StopPictures>& pictures, const std::vector<std::string>& missing, const fs::path& folder) {
   const fs::path data = folder / "data";
-  base::Progress progress("tour", static_cast<double>(plan.bytes), "B");
+  base::Progress progress("tour", static_cast<double>(plan.bytes - BytesIn(folder)), "B");
   const auto done = [&progress](int64_t bytes) { progress.Advance(static_cast<double>(bytes)); };
   for (const auto& [name, content] : fixed.contents) done(WriteScript(data, name, content));
   for (const auto& [name, file] : fixed.files) done(WriteScriptOf(data, name, file));
@@ -119,14 +127,6 @@ void WriteFiles(const ExportParts& parts, const FixedFiles& fixed, const ExportP
     }
   }
   progress.Finish();
-}
-
-int64_t BytesIn(const fs::path& folder) {
-  int64_t bytes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) bytes += static_cast<int64_t>(entry.file_size());
-  }
-  return bytes;
 }
 
 }  // namespace

@@ -20,7 +20,11 @@ constexpr double kBestPitch_deg = 35.0;
 constexpr double kPitches_deg[] = {35.0, 30.0, 42.0, 50.0, 60.0, 70.0};
 constexpr double kDistances[] = {1.0, 1.3, 1.7};
 constexpr double kOverviewPitch_deg = 40.0;
-constexpr double kOverviewDistance = 2.2;  // half diagonals: the near edge is then in the picture, too
+constexpr double kOverviewOfPicture = 0.9;  // of its width and height
+constexpr double kWidePicture = 16.0 / 9.0;
+constexpr double kMostDistance = 4.0;  // half diagonals
+// Above what no photo saw the picture is poor: as bad as half a radian from the best bearing.
+constexpr double kNothingBelow = 0.5;
 
 double Radians(double deg) {
   return deg * std::numbers::pi / 180.0;
@@ -58,11 +62,12 @@ Pose ViewOf(const Subject& subject, const Eigen::Vector2d& middle_of_survey, con
     for (const double distance : kDistances) {
       for (int k = 0; k < kBearings; ++k) {
         const double turn = 2.0 * std::numbers::pi * (k <= kBearings / 2 ? k : k - kBearings) / kBearings;
-        const double cost = std::abs(pitch_deg - kBestPitch_deg) / 10.0 + 2.0 * (distance - 1.0) + std::abs(turn);
-        if (!(cost < best_cost)) continue;
+        double cost = std::abs(pitch_deg - kBestPitch_deg) / 10.0 + 2.0 * (distance - 1.0) + std::abs(turn);
         const double pitch = Radians(pitch_deg), bearing = out + turn;
         const Eigen::Vector3d eye =
             target + near_m * distance * Eigen::Vector3d(std::cos(pitch) * std::cos(bearing), std::cos(pitch) * std::sin(bearing), std::sin(pitch));
+        if (heights != nullptr && !heights->At(eye.x(), eye.y())) cost += kNothingBelow;
+        if (!(cost < best_cost)) continue;
         const bool good =
             heights == nullptr || (heights->Dilated(eye.x(), eye.y(), kClearance_m) <= eye.z() && IsInSight(eye, target, subject, *heights));
         if (!good) continue;
@@ -78,12 +83,31 @@ Pose ViewOf(const Subject& subject, const Eigen::Vector2d& middle_of_survey, con
 
 Pose Overview(const Eigen::AlignedBox3d& box_enu, double ground_m) {
   const Eigen::Vector2d middle = box_enu.center().head<2>();
-  const double radius = 0.5 * box_enu.sizes().head<2>().norm();
-  const double pitch = Radians(kOverviewPitch_deg);
+  const double radius = std::max(1.0, 0.5 * box_enu.sizes().head<2>().norm());
+  const double pitch = Radians(kOverviewPitch_deg), half_height = kOverviewOfPicture * std::tan(Radians(0.5 * kFovy_deg));
   const Eigen::Vector3d target(middle.x(), middle.y(), ground_m);
-  Eigen::Vector3d eye = target + kOverviewDistance * radius * Eigen::Vector3d(0.0, -std::cos(pitch), std::sin(pitch));
-  eye.z() = std::max(eye.z(), box_enu.max().z() + kClearance_m);
-  return LookingAt(eye, target);
+  const auto from = [&](double distance) {
+    Eigen::Vector3d eye = target + distance * radius * Eigen::Vector3d(0.0, -std::cos(pitch), std::sin(pitch));
+    eye.z() = std::max(eye.z(), box_enu.max().z() + kClearance_m);
+    return LookingAt(eye, target);
+  };
+  const auto shows_all = [&](const Pose& pose) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d x = box_enu.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+      const Eigen::Vector3d in_cam = pose.cam_from_enu * (x - pose.eye_enu);
+      if (!(in_cam.z() > 0.0 && std::abs(in_cam.y()) <= half_height * in_cam.z() &&
+            std::abs(in_cam.x()) <= kWidePicture * half_height * in_cam.z())) {
+        return false;
+      }
+    }
+    return true;
+  };
+  double near = 0.0, far = kMostDistance;
+  for (int halving = 0; halving < 20; ++halving) {
+    const double distance = 0.5 * (near + far);
+    (shows_all(from(distance)) ? far : near) = distance;
+  }
+  return from(far);
 }
 
 }  // namespace skyquilt::tour

@@ -15,6 +15,7 @@ namespace skyquilt::tour {
 namespace {
 
 constexpr double kPause_s = 4.0;
+constexpr double kLeastSeen = 0.1;
 
 // A stop that is not the overview, before its place in the round is known.
 struct Sight {
@@ -57,14 +58,16 @@ Sight SightOf(const ReliefPlace& place, int number, bool metric) {
   return sight;
 }
 
-// Well modelled ones first, of these the largest.
+// Well modelled ones first, of these the largest whose walls were seen.
 std::vector<BuildingMark> BestBuildings(std::vector<BuildingMark> buildings, int most) {
   std::erase_if(buildings, [](const BuildingMark& b) {
     return !(b.middle_enu.allFinite() && b.length_m > 0.0 && b.width_m > 0.0 && b.height_m > 0.0 &&
              std::isfinite(b.length_m * b.width_m * b.height_m));
   });
   std::sort(buildings.begin(), buildings.end(), [](const BuildingMark& a, const BuildingMark& b) {
-    const auto rank = [](const BuildingMark& one) { return std::tuple(!one.accepted, -one.length_m * one.width_m * one.height_m, one.id); };
+    const auto rank = [](const BuildingMark& one) {
+      return std::tuple(!one.accepted, -one.length_m * one.width_m * one.height_m * std::max(kLeastSeen, one.seen), one.id);
+    };
     return rank(a) < rank(b);
   });
   if (buildings.size() > static_cast<size_t>(most)) buildings.resize(static_cast<size_t>(most));

@@ -20,6 +20,7 @@ struct BuildingMark {
   double scale = 1.0;                                    // measures in metres per length of the scene
   bool metric = true;                                    // false: no text has a measure
   bool accepted = true;                                  // its model fits well
+  double seen = 1.0;                                     // share of its walls that several photos saw
 };
 
 struct ProposeInput {

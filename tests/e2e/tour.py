@@ -1,9 +1,12 @@
-"""Tours as their makers and players meet them: made in a real browser, saved with rights, changed by two editors."""
+"""Tours as their makers and players meet them: exported as a folder, made in a real browser, saved with rights, changed by two editors."""
 import json
+import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
+import time
 
 from harness import Failure, Skyquilt, expect, main
 from web_client import Viewer, skip
@@ -11,6 +14,8 @@ from web_documents import asset_path, collection, png, tour
 
 # A field that shows houses; nothing is measured on it.
 TRAIN = ["--blocks", "1x1", "--image-width", "320", "--time-budget", "12s", "--set", "products.video_seconds=0", "--set", "buildings.enabled=false"]
+# Pictures of the size in which the page is looked at.
+EXPORT = ["--size", "40MB", "--set", "tour.still_width=400", "--set", "tour.still_height=250", "--set", "tour.panorama_width=512"]
 
 
 def check_edit(skyquilt, project):
@@ -74,6 +79,59 @@ def check_page(skyquilt, project, web, out):
         viewer.close()
 
 
+def contents(folder):
+    return {str(file.relative_to(folder)): file.read_bytes() for file in sorted(folder.rglob("*")) if file.is_file()}
+
+
+def check_export(skyquilt, project, folder):
+    """A proposed tour as a folder: within its size, whole after a kill, and never over somebody else's files. Returns the folder."""
+    target = folder / "exported"
+    export = ["tour", project, "-o", target, *EXPORT]
+    text = skyquilt.call(*export, "--auto", "3")
+    expect(len(json.loads((project / "tour.json").read_text())["stops"]) == 3, text)
+    first = contents(target)
+    for name in ("index.html", "tour.js", "tour.css", "licences.txt", "poster.jpg", "embed.html", "data/project.json.js", "data/tour.json.js"):
+        expect(len(first.get(name, b"")) > 50, f"{name} is missing: {list(first)[:40]}")
+    expect(sum(map(len, first.values())) <= 40e6, "the folder is larger than --size")
+    whole = b"".join(first.values())
+    expect(str(project).encode() not in whole and str(skyquilt.program).encode() not in whole, "the folder names places of this machine")
+
+    tour_file = project / "tour.json"
+    edited = json.loads(tour_file.read_text())
+    edited["stops"][0]["title"] = "<img src=x onerror=alert(1)>"
+    tour_file.write_text(json.dumps(edited))
+    process = skyquilt.start(*export)
+    time.sleep(0.3)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    expect(contents(target) == first, "a killed export changed the folder")
+    skyquilt.call(*export)
+    expect(json.loads(tour_file.read_text()) == edited, "an export changed the tour")
+    expect(contents(target) != first and not [one for one in folder.iterdir() if one.name.startswith(".exported")], f"{list(folder.iterdir())}")
+
+    foreign = folder / "foreign"
+    foreign.mkdir()
+    (foreign / "letter.txt").write_text("dear")
+    text = skyquilt.call("tour", project, "-o", foreign, *EXPORT, status=3)
+    expect("foreign" in text and (foreign / "letter.txt").read_text() == "dear", text)
+    text = skyquilt.call("tour", project, "-o", target, "--size", "1MB", *EXPORT[2:], status=3)
+    expect("MB" in text or "size" in text, text)
+    return target
+
+
+def check_exported_page(skyquilt, project, exported, web, out):
+    """The exported folder from file://, beside `skyquilt render`."""
+    if not (web / "dist_test" / "tour.js").exists() or not shutil.which("chromium"):
+        skip("the exported page: its front end or chromium is missing")
+        return
+    # The script with the hook of tests.
+    shutil.copy(web / "dist_test" / "tour.js", exported / "tour.js")
+    done = subprocess.run(["node", "test/page/exported_page.mjs", str(exported), str(project), skyquilt.program, str(out)], cwd=web, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, errors="replace", timeout=300)
+    print(done.stdout, flush=True)
+    expect(done.returncode == 0, f"the exported page, see {out}:\n{done.stdout}")
+
+
 def test(skyquilt: Skyquilt, folder):
     build = pathlib.Path(sys.argv[2]).resolve()
     survey, project = folder / "hamlet", folder / "project"
@@ -86,6 +144,10 @@ def test(skyquilt: Skyquilt, folder):
             raise
         skip("all: the program has no front end, because nodejs, npm or the network was missing when it was built")
         return
+    exported = check_export(skyquilt, project, folder)
+    check_exported_page(skyquilt, project, exported, build / "web", build / "Testing" / "exported")
+    (project / "tour.json").unlink()
+    shutil.rmtree(project / "tour")
     check_edit(skyquilt, project)
     check_page(skyquilt, project, build / "web", build / "Testing" / "tour")
 

@@ -2,10 +2,11 @@
 //   node view_page.mjs LINK PROJECT TRUTH PROGRAM OUT
 // Exits with 1 and the list of failures; screenshots are left in OUT.
 import { execFileSync } from "node:child_process";
-import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import path from "node:path";
 import { PNG } from "pngjs";
 import { canvasPicture, differing, open, save, screenshot, start } from "./browser.mjs";
+import { renderPose, rotateBack } from "./render_pose.mjs";
 import { checkThings } from "./things_check.mjs";
 
 const [link, project, truth, program, out] = process.argv.slice(2);
@@ -34,35 +35,6 @@ async function lookAt(page, eye, target, fovyDeg) {
 
 async function settled(page) {
   return page.evaluate(() => window.__skyquilt.settle());
-}
-
-/** The picture and depth that `skyquilt render` makes of this pose. */
-function rendered(pose, name) {
-  const forward = rotateBack(pose.rotation, [0, 0, 1]);
-  const yaw = (Math.atan2(forward[0], forward[1]) * 180) / Math.PI;
-  const pitch = (Math.asin(Math.max(-1, Math.min(1, forward[2]))) * 180) / Math.PI;
-  const half = Math.tan((pose.fovyDeg * Math.PI) / 360);
-  const fov = (2 * Math.atan((half * WIDTH) / HEIGHT) * 180) / Math.PI;
-  const file = path.join(out, `${name}.json`);
-  writeFileSync(file, JSON.stringify([{ position_enu: pose.eyeEnu, yaw, pitch, roll: 0, fov, name }]));
-  const size = ["--set", `products.video_width=${WIDTH}`, "--set", `products.video_height=${HEIGHT}`];
-  execFileSync(
-    program,
-    ["render", path.join(project, "scene.h5"), "--path", file, "--width", String(WIDTH), "-o", out, ...size],
-    { stdio: "pipe" },
-  );
-  return { png: path.join(out, name, `${name}.png`), depth: path.join(out, name, `${name}_depth.tiff`) };
-}
-
-/** v turned by the inverse of q. */
-function rotateBack([w, x, y, z], v) {
-  const q = [w, -x, -y, -z];
-  const t = [2 * (q[2] * v[2] - q[3] * v[1]), 2 * (q[3] * v[0] - q[1] * v[2]), 2 * (q[1] * v[1] - q[2] * v[0])];
-  return [
-    v[0] + q[0] * t[0] + (q[2] * t[2] - q[3] * t[1]),
-    v[1] + q[0] * t[1] + (q[3] * t[0] - q[1] * t[2]),
-    v[2] + q[0] * t[2] + (q[1] * t[1] - q[2] * t[0]),
-  ];
 }
 
 function depthAt(file, x, y) {
@@ -97,7 +69,7 @@ async function checkPictures(page, description) {
   expect(figures.rested > 0.05, `resting changes ${figures.rested} of the picture`);
 
   const pose = await page.evaluate(() => window.__skyquilt.pose());
-  const reference = rendered(pose, "reference");
+  const reference = renderPose({ program, project, out, width: WIDTH, height: HEIGHT }, pose, "reference");
   figures.different = differing(exact, PNG.sync.read(readFileSync(reference.png)), 2);
   expect(figures.different <= 0.01, `${figures.different} of the settled picture differ from 'skyquilt render'`);
 

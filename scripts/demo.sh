@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs everything on a simulated town: set-up, build, simulate, train, merge, maps, report.
+# Runs everything on a simulated town: set-up, build, simulate, train, merge, maps, tour, report.
 #   scripts/demo.sh [FOLDER]             default folder: out/demo in the repository
 #   SKYQUILT_DEMO_BUDGET=10min scripts/demo.sh    training time (default 5min)
 # If it was stopped, the same command resumes and repeats nothing.
@@ -60,7 +60,8 @@ skyquilt=build/release/skyquilt
 step "set-up" scripts/setup.sh --run
 step "build" build
 step "simulate" "$skyquilt" simulate town -o "$out/simulated"
-step "run ($budget of training)" "$skyquilt" run --place town -o "$out" --blocks 2x2 --time-budget "$budget"
+step "run ($budget of training)" "$skyquilt" run --place town -o "$out" --blocks 2x2 --time-budget "$budget" \
+  --set tour.auto=3 --set tour.still_width=1280 --set tour.still_height=720 --set tour.panorama_width=2048
 
 echo "== done"
 printf '%s\n' "${times[@]}"
@@ -69,4 +70,5 @@ scores
 echo "report: $out/report/index.html"
 echo "mesh, cloud, tiles, terrain: $out/surface"
 echo "buildings and their measures: $out/buildings/buildings.csv"
+echo "a tour that plays in any browser: $out/tour/index.html"
 echo "look at it in the browser: $skyquilt view $out"

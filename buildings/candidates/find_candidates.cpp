@@ -103,6 +103,7 @@ std::vector<std::vector<PlanePiece>> GroupPieces(std::vector<PlanePiece> pieces,
   std::map<size_t, std::vector<PlanePiece>> groups;
   for (size_t p = 0; p < pieces.size(); ++p) groups[root(p)].push_back(std::move(pieces[p]));
   std::vector<std::vector<PlanePiece>> result;
+  result.reserve(groups.size());
   for (auto& [first, members] : groups) result.push_back(std::move(members));
   return result;
 }
@@ -156,6 +157,7 @@ std::vector<Gathered> CandidatesOf(std::span<const PlanePiece> pieces, const Sur
 std::vector<Candidate> WithSharedWalls(std::vector<Gathered> all) {
   ShareWalls(&all);
   std::vector<Candidate> candidates;
+  candidates.reserve(all.size());
   for (Gathered& gathered : all) candidates.push_back(std::move(gathered.candidate));
   return candidates;
 }

@@ -98,6 +98,7 @@ void AddSolid(const Solid& solid, const FileFrame& frame, DxfText* dxf) {
 void AddOutline(const std::vector<Eigen::Vector2d>& ring, double ground_z, const FileFrame& frame, DxfText* dxf) {
   if (ring.empty()) return;
   std::vector<Eigen::Vector3d> points;
+  points.reserve(ring.size());
   for (const Eigen::Vector2d& point : ring) points.push_back(frame.PositionOf({point.x(), point.y(), ground_z}));
   // A flat polyline: its height is that of the entity.
   const double height = points.front().z();

@@ -21,6 +21,7 @@ constexpr int kSteps = 15;
 Measure GroundLevel(const std::vector<FitPoint>& points, const Eigen::Vector2d& middle, double gsd_m, double spacing_m) {
   if (points.size() < kLeastGroundPoints) return {};
   std::vector<double> heights;
+  heights.reserve(points.size());
   for (const FitPoint& point : points) heights.push_back(point.z);
   const double scale = std::max(gsd_m, base::Nmad(heights));
   // z = level + slope . (place - middle), Cauchy loss, slopes held towards 0 where points lie on one side only.

@@ -130,6 +130,7 @@ void Score(const std::vector<double>& residuals, double tolerance_m, double n_ef
 
 RoofFit FlatFit(const std::vector<Eigen::Vector3d>& points, double tolerance_m, double n_eff) {
   std::vector<double> heights;
+  heights.reserve(points.size());
   for (const Eigen::Vector3d& point : points) heights.push_back(point.z());
   RoofFit fit;
   fit.eave_z = fit.ridge_z = FitLevel(heights, 0.5 * tolerance_m);
@@ -143,10 +144,12 @@ RoofFit PitchedFit(const std::vector<Eigen::Vector3d>& points, const Eigen::Vect
   const Eigen::Vector2d half = 0.5 * (high - low);
   const double reach = std::max(roof == RoofKind::kHip ? half.minCoeff() : half[along_u ? 1 : 0], 1e-3);
   std::vector<Sample> samples;
+  samples.reserve(points.size());
   for (const Eigen::Vector3d& point : points) samples.push_back({DistanceInside(point, low, high, roof, along_u), point.z()});
   const Line line = FitLine(samples, reach, 0.5 * tolerance_m);
   RoofFit fit{roof, along_u, line.eave, line.eave + line.rise * reach};
   std::vector<double> residuals;
+  residuals.reserve(samples.size());
   for (const Sample& sample : samples) residuals.push_back(line.Residual(sample));
   Score(residuals, tolerance_m, n_eff, 2, &fit);
   return fit;

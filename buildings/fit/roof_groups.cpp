@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <tuple>
 
 #include "buildings/fit/height_mode.h"
 #include "core/base/order_statistics.h"
@@ -23,7 +24,8 @@ constexpr size_t kMostRoofPoints = 1200;  // of a plane
 // A plane of the roof of a part: the wall line it rises from (axis -1: level).
 struct PlaneKey {
   int part = -1, axis = -1, side = 0;
-  auto operator<=>(const PlaneKey&) const = default;
+  bool operator==(const PlaneKey&) const = default;
+  friend bool operator<(const PlaneKey& a, const PlaneKey& b) { return std::tie(a.part, a.axis, a.side) < std::tie(b.part, b.axis, b.side); }
 };
 
 // Parts with rectangles and planes, for many questions about one shape.
@@ -133,6 +135,7 @@ std::vector<Group> RoofGroups(const FitPoints& points, const Shape& shape, const
   const RoofMap map(shape, selection.overhang_m);
   std::map<PlaneKey, Group> groups;
   std::vector<double> margin;
+  margin.reserve(shape.parts.size());
   for (int p = 0; p < static_cast<int>(shape.parts.size()); ++p) margin.push_back(map.MarginOf(p, kRounded_gsd * selection.gsd_m));
   for (const FitPoint& point : points.roof) {
     const Eigen::Vector2d uv = InAxes(shape, point.place);

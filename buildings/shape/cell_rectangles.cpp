@@ -18,10 +18,12 @@ constexpr double kJumpShare = 0.4;     // of a border with steps, so that it sep
 // Number of set cells in rectangles of a mask.
 class Counts {
  public:
-  Counts(const std::vector<uint8_t>& mask, int columns, int rows) : columns_(columns), sum_(static_cast<size_t>((columns + 1) * (rows + 1)), 0) {
+  Counts(const std::vector<uint8_t>& mask, int columns, int rows)
+      : columns_(columns), sum_((static_cast<size_t>(columns) + 1) * (static_cast<size_t>(rows) + 1), 0) {
     for (int r = 0; r < rows; ++r) {
       for (int c = 0; c < columns; ++c) {
-        Sum(c + 1, r + 1) = Sum(c, r + 1) + Sum(c + 1, r) - Sum(c, r) + (mask[static_cast<size_t>(r * columns + c)] != 0 ? 1 : 0);
+        Sum(c + 1, r + 1) = Sum(c, r + 1) + Sum(c + 1, r) - Sum(c, r) +
+                            (mask[static_cast<size_t>(r) * static_cast<size_t>(columns) + static_cast<size_t>(c)] != 0 ? 1 : 0);
       }
     }
   }
@@ -30,7 +32,7 @@ class Counts {
   }
 
  private:
-  int& Sum(int c, int r) { return sum_[static_cast<size_t>(r * (columns_ + 1) + c)]; }
+  int& Sum(int c, int r) { return sum_[static_cast<size_t>(r) * (static_cast<size_t>(columns_) + 1) + static_cast<size_t>(c)]; }
   int columns_;
   std::vector<int> sum_;
 };

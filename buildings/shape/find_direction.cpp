@@ -52,12 +52,12 @@ void AddWalls(const Candidate& candidate, const PointCloud& cloud, std::vector<D
 
 // The direction of a stretch of a ring by the moments of its edges about their middle, each edge as a straight piece.
 double DirectionOf(const std::vector<Eigen::Vector2d>& ring, size_t first, size_t last, double trimmed_m) {
-  const Eigen::Vector2d a = ring[first], b = ring[last % ring.size()];
+  const Eigen::Vector2d &a = ring[first], &b = ring[last % ring.size()];
   const Eigen::Vector2d along = (b - a).normalized();
   const double length = (b - a).norm(), from = trimmed_m, to = length - trimmed_m;
   double weight = 0.0, t_sum = 0.0, d_sum = 0.0, tt_sum = 0.0, td_sum = 0.0;
   for (size_t i = first; i < last; ++i) {
-    const Eigen::Vector2d p = ring[i % ring.size()], q = ring[(i + 1) % ring.size()];
+    const Eigen::Vector2d &p = ring[i % ring.size()], &q = ring[(i + 1) % ring.size()];
     const int pieces = std::max(1, static_cast<int>((q - p).norm() / 0.1));
     for (int k = 0; k < pieces; ++k) {
       const Eigen::Vector2d x = p + (k + 0.5) / pieces * (q - p) - a;

@@ -41,7 +41,7 @@ class Search {
   }
 
  private:
-  void Offer(Rectangles rectangles) {
+  void Offer(const Rectangles& rectangles) {
     if (rectangles.empty() || rectangles.size() > kMostParts) return;
     ScoredShape scored = scorer_->Score(rectangles);
     if (scored.cost < best_.cost - (best_.rectangles.empty() ? 0.0 : 1e-9)) best_ = std::move(scored);

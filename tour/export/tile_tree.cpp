@@ -17,7 +17,7 @@
 namespace skyquilt::tour {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr int kDeepest = 64;
 constexpr double kNearestPlace_m = 1.0;
@@ -29,7 +29,7 @@ bool IsTileFile(const std::string& name) {
   return std::all_of(name.begin(), name.end() - 4, [](unsigned char c) { return std::isdigit(c) != 0 || c == '_' || c == '-'; });
 }
 
-Eigen::AlignedBox3d BoxFrom(const Json& volume) {
+Eigen::AlignedBox3d BoxFrom(const OrderedJson& volume) {
   const auto& box = volume.at("box");
   std::array<double, 12> v{};
   for (size_t i = 0; i < v.size(); ++i) v[i] = box.at(i).get<double>();
@@ -40,15 +40,15 @@ Eigen::AlignedBox3d BoxFrom(const Json& volume) {
 }
 
 // Without the tiles that are not kept; `next` counts the tiles in the order in which they were read.
-Json Trimmed(const Json& tile, const std::vector<bool>& kept, size_t* next) {
+OrderedJson Trimmed(const OrderedJson& tile, const std::vector<bool>& kept, size_t* next) {
   ++*next;
-  Json trimmed = tile;
+  OrderedJson trimmed = tile;
   trimmed.erase("children");
-  Json children = Json::array();
+  OrderedJson children = OrderedJson::array();
   if (tile.contains("children")) {
-    for (const Json& child : tile["children"]) {
+    for (const OrderedJson& child : tile["children"]) {
       const bool keep = kept[*next];
-      Json below = Trimmed(child, kept, next);
+      OrderedJson below = Trimmed(child, kept, next);
       if (keep) children.push_back(std::move(below));
     }
   }
@@ -64,14 +64,14 @@ Json Trimmed(const Json& tile, const std::vector<bool>& kept, size_t* next) {
 
 TileTree::TileTree(const std::filesystem::path& folder) : file_(folder / kTilesetName) {
   try {
-    tileset_ = Json::parse(base::ReadFile(file_));
+    tileset_ = OrderedJson::parse(base::ReadFile(file_));
     Add(tileset_.at("root"), folder, 0);
-  } catch (const Json::exception& damage) {
+  } catch (const OrderedJson::exception& damage) {
     throw base::InputError(file_, std::string("is damaged: ") + damage.what(), kMakeSurfaceAgain);
   }
 }
 
-size_t TileTree::Add(const Json& tile, const std::filesystem::path& folder, int depth) {
+size_t TileTree::Add(const OrderedJson& tile, const std::filesystem::path& folder, int depth) {
   if (depth > kDeepest) throw base::InputError(file_, "has too many levels", kMakeSurfaceAgain);
   const size_t index = nodes_.size();
   nodes_.emplace_back();
@@ -87,7 +87,7 @@ size_t TileTree::Add(const Json& tile, const std::filesystem::path& folder, int 
     nodes_[index].bytes = ScriptBytes(DataName(name), static_cast<int64_t>(bytes));
   }
   if (tile.contains("children")) {
-    for (const Json& child : tile["children"]) {
+    for (const OrderedJson& child : tile["children"]) {
       const size_t below = Add(child, folder, depth + 1);
       nodes_[index].children.push_back(below);
     }
@@ -162,7 +162,7 @@ TileTree::Choice TileTree::Choose(int64_t limit_bytes, std::span<const Eigen::Ve
 }
 
 std::string TileTree::Text(const Choice& choice) const {
-  Json trimmed = tileset_;
+  OrderedJson trimmed = tileset_;
   size_t next = 0;
   trimmed["root"] = Trimmed(tileset_["root"], choice.kept, &next);
   return trimmed.dump();

@@ -11,7 +11,7 @@ export interface Reframing {
   readonly scale: number;
 }
 
-/** Half a pixel at the rim is nothing to mend. */
+/** Half a pixel at the rim need not be filled. */
 const RIM_PX = 0.5;
 
 export function reframing(still: Frame, view: Frame): Reframing {

@@ -37,6 +37,8 @@ async function settled(page) {
   return page.evaluate(() => window.__skyquilt.settle());
 }
 
+const rendered = (pose, name) => renderPose({ program, project, out, width: WIDTH, height: HEIGHT }, pose, name);
+
 function depthAt(file, x, y) {
   return Number(execFileSync("gdallocationinfo", ["-valonly", file, String(x), String(y)]).toString());
 }
@@ -69,7 +71,7 @@ async function checkPictures(page, description) {
   expect(figures.rested > 0.05, `resting changes ${figures.rested} of the picture`);
 
   const pose = await page.evaluate(() => window.__skyquilt.pose());
-  const reference = renderPose({ program, project, out, width: WIDTH, height: HEIGHT }, pose, "reference");
+  const reference = rendered(pose, "reference");
   figures.different = differing(exact, PNG.sync.read(readFileSync(reference.png)), 2);
   expect(figures.different <= 0.01, `${figures.different} of the settled picture differ from 'skyquilt render'`);
 

@@ -9,7 +9,7 @@ import sys
 import time
 
 from harness import Failure, Skyquilt, expect, main
-from web_client import Viewer, skip
+from web_client import Viewer, page_can_be_checked, skip
 from web_documents import asset_path, collection, png, tour
 
 # A field that shows houses; nothing is measured on it.
@@ -62,11 +62,7 @@ def check_edit(skyquilt, project):
 
 def check_page(skyquilt, project, web, out):
     """A tour made by clicks and keys, saved, read again, changed, undone, fought over by two windows, and played."""
-    if not (web / "dist_test" / "app.js").exists():
-        skip("the page: its front end was not built (nodejs, npm or the network was missing)")
-        return
-    if not shutil.which("chromium"):
-        skip("the page: chromium is not installed")
+    if not page_can_be_checked(web, "app.js"):
         return
     shutil.rmtree(out, ignore_errors=True)
     viewer = Viewer(skyquilt, project, "--edit", "--front-end", web / "dist_test")
@@ -121,8 +117,7 @@ def check_export(skyquilt, project, folder):
 
 def check_exported_page(skyquilt, project, exported, web, out):
     """The exported folder from file://, beside `skyquilt render`."""
-    if not (web / "dist_test" / "tour.js").exists() or not shutil.which("chromium"):
-        skip("the exported page: its front end or chromium is missing")
+    if not page_can_be_checked(web, "tour.js"):
         return
     # The script with the hook of tests.
     shutil.copy(web / "dist_test" / "tour.js", exported / "tour.js")

@@ -10,7 +10,7 @@ import sys
 import time
 
 from harness import Failure, Skyquilt, expect, main
-from web_client import Viewer, WebSocket, looking, skip
+from web_client import Viewer, WebSocket, looking, page_can_be_checked, skip
 from web_documents import asset_path, collection, png
 
 # Good enough that a house can be measured.
@@ -54,16 +54,11 @@ def write_buildings(project, survey):
 
 def check_page(skyquilt, project, survey, web, out):
     """The front end in Chromium."""
-    front_end = web / "dist_test"
-    if not (front_end / "app.js").exists():
-        skip("the page: its front end was not built (nodejs, npm or the network was missing)")
-        return
-    if not shutil.which("chromium"):
-        skip("the page: chromium is not installed")
+    if not page_can_be_checked(web, "app.js"):
         return
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
-    viewer = Viewer(skyquilt, project, "--front-end", front_end)
+    viewer = Viewer(skyquilt, project, "--front-end", web / "dist_test")
     try:
         done = subprocess.run(["node", "test/page/view_page.mjs", viewer.link, str(project), str(survey / "truth" / "buildings.json"), skyquilt.program, str(out)],
                               cwd=web, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=400)

@@ -5,6 +5,7 @@ import json
 import os
 import queue
 import re
+import shutil
 import socket
 import struct
 import subprocess
@@ -228,6 +229,17 @@ class Frame:
 
 def skip(text):
     print(f"skipped: {text}", flush=True)
+
+
+def page_can_be_checked(web, script):
+    """Whether the front end and Chromium are there; says what is missing."""
+    if not (web / "dist_test" / script).exists():
+        skip("the page: its front end was not built (nodejs, npm or the network was missing)")
+        return False
+    if not shutil.which("chromium"):
+        skip("the page: chromium is not installed")
+        return False
+    return True
 
 
 def looking(eye, target):

@@ -1,6 +1,7 @@
 // A field for one line of text of the tour, taken when it is left or Enter is pressed.
-import { type ReactElement, useLayoutEffect, useRef, useState } from "react";
+import { type ReactElement, useLayoutEffect, useRef } from "react";
 import { usableLine } from "../tour/text_rules.js";
+import { useFieldDraft } from "./use_field_draft.js";
 
 interface LineFieldProps {
   readonly label: string;
@@ -19,23 +20,20 @@ const LONGEST = 2000;
 
 export function LineField(props: LineFieldProps): ReactElement {
   const { label, value, empty = false, fresh = false, placeholder, problem = () => null, onChange } = props;
-  const [text, setText] = useState<string | null>(null);
   const input = useRef<HTMLInputElement>(null);
   useLayoutEffect(() => {
     if (!fresh) return;
     input.current?.focus({ preventScroll: true });
     input.current?.select();
   }, [fresh]);
-  const why = text === null || text.trim() === "" ? null : problem(text.trim());
-  const commit = (): void => {
-    if (text === null) return;
-    setText(null);
+  const { text, handlers } = useFieldDraft((typed) => {
     // Longer texts have rules of their own, which `problem` knows.
-    const next = props.problem === undefined ? usableLine(text) : text.trim();
+    const next = props.problem === undefined ? usableLine(typed) : typed.trim();
     if (next === null || next === "") {
       if (empty && value !== "") onChange("");
     } else if (next !== value && problem(next) === null) onChange(next);
-  };
+  });
+  const why = text === null || text.trim() === "" ? null : problem(text.trim());
   return (
     <>
       <label className="field">
@@ -49,15 +47,7 @@ export function LineField(props: LineFieldProps): ReactElement {
             placeholder={placeholder}
             aria-invalid={why !== null}
             value={text ?? value}
-            onChange={(event) => setText(event.currentTarget.value)}
-            onBlur={commit}
-            onKeyDown={(event) => {
-              if (event.key === "Enter") commit();
-              if (event.key === "Escape" && text !== null) {
-                event.stopPropagation();
-                setText(null);
-              }
-            }}
+            {...handlers}
           />
         </span>
       </label>

@@ -1,6 +1,7 @@
 // A field for a number that takes any finite number when it is left or Enter is pressed, and goes back to the old one otherwise.
-import { type ReactElement, useState } from "react";
+import type { ReactElement } from "react";
 import { readNumber } from "./read_number.js";
+import { useFieldDraft } from "./use_field_draft.js";
 
 interface NumberFieldProps {
   readonly label: string;
@@ -19,13 +20,10 @@ export function NumberField({
   hideLabel = false,
   onChange,
 }: NumberFieldProps): ReactElement {
-  const [text, setText] = useState<string | null>(null);
-  const commit = (): void => {
-    if (text === null) return;
-    const next = readNumber(text);
-    setText(null);
+  const { text, handlers } = useFieldDraft((typed) => {
+    const next = readNumber(typed);
     if (next !== null && next !== value) onChange(next);
-  };
+  });
   return (
     <label className="field">
       <span className={hideLabel ? "sr-only" : "field-label"}>{label}</span>
@@ -37,15 +35,7 @@ export function NumberField({
           spellCheck={false}
           aria-invalid={text !== null && readNumber(text) === null}
           value={text ?? value.toFixed(digits)}
-          onChange={(event) => setText(event.currentTarget.value)}
-          onBlur={commit}
-          onKeyDown={(event) => {
-            if (event.key === "Enter") commit();
-            if (event.key === "Escape" && text !== null) {
-              event.stopPropagation();
-              setText(null);
-            }
-          }}
+          {...handlers}
         />
         {unit === "" ? null : <span className="unit">{unit}</span>}
       </span>

@@ -1,6 +1,7 @@
 // A field for a name that is taken when it is left or Enter is pressed.
-import { type ReactElement, useState } from "react";
+import type { ReactElement } from "react";
 import { LONGEST_NAME, usableName } from "../state/names.js";
+import { useFieldDraft } from "./use_field_draft.js";
 
 interface TextFieldProps {
   readonly label: string;
@@ -10,13 +11,10 @@ interface TextFieldProps {
 }
 
 export function TextField({ label, value, onChange }: TextFieldProps): ReactElement {
-  const [text, setText] = useState<string | null>(null);
-  const commit = (): void => {
-    if (text === null) return;
-    setText(null);
-    const name = usableName(text);
+  const { text, handlers } = useFieldDraft((typed) => {
+    const name = usableName(typed);
     if (name !== null && name !== value) onChange(name);
-  };
+  });
   return (
     <label className="field">
       <span className="field-label">{label}</span>
@@ -26,15 +24,7 @@ export function TextField({ label, value, onChange }: TextFieldProps): ReactElem
           maxLength={LONGEST_NAME}
           autoComplete="off"
           value={text ?? value}
-          onChange={(event) => setText(event.currentTarget.value)}
-          onBlur={commit}
-          onKeyDown={(event) => {
-            if (event.key === "Enter") commit();
-            if (event.key === "Escape" && text !== null) {
-              event.stopPropagation();
-              setText(null);
-            }
-          }}
+          {...handlers}
         />
       </span>
     </label>

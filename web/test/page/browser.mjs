@@ -94,3 +94,11 @@ export function differing(a, b, most) {
 export async function screenshot(page, folder, name) {
   await page.screenshot({ path: path.join(folder, `${name}.png`) });
 }
+
+/** Prints the failures and figures of a check; with failures the program ends with 1. */
+export function report(failures, figures = null) {
+  if (figures !== null) console.log(JSON.stringify(figures, null, 1));
+  if (failures.length === 0) return;
+  console.log(failures.map((text) => `FAILED: ${text}`).join("\n"));
+  process.exitCode = 1;
+}

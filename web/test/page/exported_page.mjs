@@ -5,7 +5,7 @@ import { mkdirSync, readFileSync } from "node:fs";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
 import { PNG } from "pngjs";
-import { canvasPicture, differing, open, save, screenshot, start } from "./browser.mjs";
+import { canvasPicture, differing, open, report, save, screenshot, start } from "./browser.mjs";
 import { renderPose } from "./render_pose.mjs";
 
 const [folder, project, program, out] = process.argv.slice(2);
@@ -50,8 +50,4 @@ try {
 } finally {
   await browser.close();
 }
-console.log(JSON.stringify(figures, null, 1));
-if (failures.length > 0) {
-  console.log(failures.map((text) => `FAILED: ${text}`).join("\n"));
-  process.exitCode = 1;
-}
+report(failures, figures);

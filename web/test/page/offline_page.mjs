@@ -5,7 +5,7 @@ import { createReadStream, existsSync, renameSync, rmSync, statSync } from "node
 import { createServer } from "node:http";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
-import { canvasPicture, differing, open, save, screenshot, start } from "./browser.mjs";
+import { canvasPicture, differing, open, report, save, screenshot, start } from "./browser.mjs";
 import { colourOf, GROUND, MODEL_AT, rayOf, rotationOf, STILL, stillOf, writeSample } from "./export_sample.mjs";
 
 const [dist, out] = process.argv.slice(2);
@@ -237,8 +237,4 @@ try {
 } finally {
   await browser.close();
 }
-console.log(JSON.stringify(figures, null, 1));
-if (failures.length > 0) {
-  console.log(failures.map((text) => `FAILED: ${text}`).join("\n"));
-  process.exitCode = 1;
-}
+report(failures, figures);

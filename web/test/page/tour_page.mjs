@@ -6,7 +6,7 @@ import { createHash } from "node:crypto";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { PNG } from "pngjs";
-import { open, screenshot, start } from "./browser.mjs";
+import { open, report, screenshot, start } from "./browser.mjs";
 
 const [link, playLink, project, out] = process.argv.slice(2);
 mkdirSync(out, { recursive: true });
@@ -282,7 +282,4 @@ try {
 } finally {
   await browser.close();
 }
-if (failures.length > 0) {
-  console.log(failures.map((text) => `FAILED: ${text}`).join("\n"));
-  process.exitCode = 1;
-}
+report(failures);

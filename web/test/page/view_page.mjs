@@ -5,7 +5,7 @@ import { execFileSync } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
 import path from "node:path";
 import { PNG } from "pngjs";
-import { canvasPicture, differing, open, save, screenshot, start } from "./browser.mjs";
+import { canvasPicture, differing, open, report, save, screenshot, start } from "./browser.mjs";
 import { renderPose, rotateBack } from "./render_pose.mjs";
 import { checkThings } from "./things_check.mjs";
 
@@ -264,8 +264,4 @@ try {
 } finally {
   await browser.close();
 }
-console.log(JSON.stringify(figures, null, 1));
-if (failures.length > 0) {
-  console.log(failures.map((text) => `FAILED: ${text}`).join("\n"));
-  process.exitCode = 1;
-}
+report(failures, figures);

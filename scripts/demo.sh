@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Runs everything on a simulated town: set-up, build, simulate, train, merge, maps, tour, report.
 #   scripts/demo.sh [FOLDER]             default folder: out/demo in the repository
-#   SKYQUILT_DEMO_BUDGET=10min scripts/demo.sh    training time (default 3min)
+#   SKYQUILT_DEMO_BUDGET=10min scripts/demo.sh    training time (default 2min)
 # If it was stopped, the same command resumes and repeats nothing.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 out=$(realpath -m "${1:-$root/out/demo}")
-budget=${SKYQUILT_DEMO_BUDGET:-3min}
+budget=${SKYQUILT_DEMO_BUDGET:-2min}
 cd "$root"
 
 times=()

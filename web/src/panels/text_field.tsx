@@ -19,13 +19,7 @@ export function TextField({ label, value, onChange }: TextFieldProps): ReactElem
     <label className="field">
       <span className="field-label">{label}</span>
       <span className="field-input">
-        <input
-          type="text"
-          maxLength={LONGEST_NAME}
-          autoComplete="off"
-          value={text ?? value}
-          {...handlers}
-        />
+        <input type="text" maxLength={LONGEST_NAME} autoComplete="off" value={text ?? value} {...handlers} />
       </span>
     </label>
   );

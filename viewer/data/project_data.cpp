@@ -181,6 +181,7 @@ DataReply Answer(Served* served, const std::string& path) {
 
 struct ProjectData::Impl {
   std::mutex answering;  // while a file is made, for which the engine must not wait
+  SentBodies sent;       // guarded by answering
   mutable std::mutex mutex;
   std::shared_ptr<Served> served;
   std::deque<std::pair<std::string, std::shared_ptr<const std::string>>> pictures;
@@ -226,7 +227,10 @@ DataReply ProjectData::Put(const std::string& path, const std::string& body, con
   const std::lock_guard lock(impl_->answering);
   const std::shared_ptr<Served> served = impl_->Current();
   const OpenedProject& opened = served->main;
-  return IsDocument(path) ? PutDocument(opened, path, body, if_match) : PutAsset(opened.project.folder, path, body);
+  if (!IsDocument(path)) return PutAsset(opened.project.folder, path, body);
+  DataReply reply = PutDocument(opened, path, body, impl_->sent.Resolved(path, if_match));
+  if (reply.status == 204) impl_->sent.Remember(path, body, reply.etag);
+  return reply;
 }
 
 std::shared_ptr<const survey::Survey> ProjectData::survey() const {

@@ -31,6 +31,11 @@ DataReply NoContent(const std::string& content) {
   return {.status = 204, .content_type = "", .body = "", .file = {}, .etag = base::HashHex(content)};
 }
 
+// tags: separated by spaces.
+bool IsAmong(const std::string& tag, const std::string& tags) {
+  return (" " + tags + " ").find(" " + tag + " ") != std::string::npos;
+}
+
 // Empty when there is no such file. Throws base::InputError when there is something of this name that cannot be read.
 std::string ContentOf(const fs::path& file) {
   std::error_code error;
@@ -179,7 +184,7 @@ DataReply GetDocument(const OpenedProject& opened, const std::string& name) {
 DataReply PutDocument(const OpenedProject& opened, const std::string& name, const std::string& body, const std::string& if_match) {
   const fs::path file = opened.project.folder / name;
   try {
-    if (!if_match.empty() && base::HashHex(ContentOf(file)) != if_match) {
+    if (!if_match.empty() && !IsAmong(base::HashHex(ContentOf(file)), if_match)) {
       return TextReply(412, name + " was changed in another window. Reload the page to see it");
     }
     if (name == kTour) {
@@ -200,6 +205,12 @@ DataReply PutDocument(const OpenedProject& opened, const std::string& name, cons
   } catch (const base::InputError& failure) {
     return FailureReply(failure, failure.file().filename().string());
   }
+}
+
+std::string SentBodies::Resolved(const std::string& name, const std::string& if_match) const {
+  const auto sent = last_.find(name);
+  if (sent == last_.end() || !IsAmong(sent->second.body, if_match)) return if_match;
+  return if_match + " " + sent->second.etag;
 }
 
 }  // namespace skyquilt::viewer

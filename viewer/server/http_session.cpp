@@ -26,12 +26,23 @@ constexpr uint32_t kMaxHeaderBytes = 8U << 10U;
 constexpr size_t kReadBufferBytes = 16U << 10U;
 constexpr std::chrono::seconds kLinger{2};
 
-// The tag in a header If-Match; empty: none, or any.
-std::string TagOf(std::string_view header) {
+// The tags in a header If-Match, separated by spaces; empty: none, or any. Ours have neither commas nor spaces.
+std::string TagsOf(std::string_view header) {
   if (header == "*") return {};
-  if (header.starts_with("W/")) header.remove_prefix(2);
-  if (header.size() >= 2 && header.front() == '"' && header.back() == '"') header = header.substr(1, header.size() - 2);
-  return std::string(header);
+  std::string tags;
+  while (!header.empty()) {
+    const size_t comma = std::min(header.find(','), header.size());
+    std::string_view tag = header.substr(0, comma);
+    header.remove_prefix(std::min(comma + 1, header.size()));
+    while (tag.starts_with(' ')) tag.remove_prefix(1);
+    while (tag.ends_with(' ')) tag.remove_suffix(1);
+    if (tag.starts_with("W/")) tag.remove_prefix(2);
+    if (tag.size() >= 2 && tag.front() == '"' && tag.back() == '"') tag = tag.substr(1, tag.size() - 2);
+    if (tag.empty()) continue;
+    if (!tags.empty()) tags += ' ';
+    tags += tag;
+  }
+  return tags;
 }
 
 // One of the uploads that may be under way.
@@ -116,7 +127,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         path_ = std::move(decision.path);
         {
           const auto header = parser_->get()[http::field::if_match];
-          if_match_ = TagOf({header.data(), header.size()});
+          if_match_ = TagsOf({header.data(), header.size()});
         }
         upload_ = decision.upload;
         Receive();

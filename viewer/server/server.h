@@ -73,7 +73,8 @@ class DataSource {
   // path: without the leading "/data/", 1 to 200 characters of [A-Za-z0-9_./-] without ".." or "//"; query: the URL's part after '?', unparsed, up to
   // 100 characters. Must look the path up in a table and never use it to open a file. Exceptions become status 500 and are logged.
   virtual DataReply Get(const std::string& path, const std::string& query) = 0;
-  // if_match: the header If-Match without quotes, empty when there is none or it is "*": what the client knows as the present file's etag.
+  // if_match: the tags in the header If-Match without quotes, separated by spaces; empty when there is none or it is "*". One of them must be the
+  // present file's etag.
   virtual DataReply Put(const std::string& path, const std::string& body, const std::string& if_match) = 0;
 };
 

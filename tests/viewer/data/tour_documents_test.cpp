@@ -81,6 +81,24 @@ TEST(TourDocument, TheSecondEditorIsToldAndOverwritesNothing) {
   EXPECT_EQ(data.Put("tour.json", other, first.etag).status, 204);
 }
 
+// A page that is left while it saves knows what it has sent, but not what the server has made of it.
+TEST(TourDocument, WhatFollowsASaveWithoutAnAnswerNamesItsBody) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const std::string none = data.Get("tour.json", "").etag;
+  const auto with_title = [](const char* title) { return tour::SampleTourWith([&](nlohmann::json& json) { json["title"] = title; }); };
+  const std::string first = with_title("first"), second = with_title("second"), third = with_title("third");
+  const std::string known = none + " " + base::HashHex(first);
+  ASSERT_EQ(data.Put("tour.json", second, known).status, 204) << "the first save never came";
+  EXPECT_EQ(data.Put("tour.json", first, none).status, 412) << "the first save comes late";
+  ASSERT_EQ(data.Put("tour.json", first, data.Get("tour.json", "").etag).status, 204);
+  EXPECT_EQ(data.Put("tour.json", second, known).status, 204) << "the first save came";
+  EXPECT_EQ(data.Put("tour.json", third, known).status, 412) << "what was sent first is in the file no longer";
+  const std::string sent_second = none + " " + base::HashHex(second);
+  base::WriteFileAtomically(sample.project.folder / "tour.json", first);
+  EXPECT_EQ(data.Put("tour.json", third, sent_second).status, 412) << "somebody else has written the file since";
+}
+
 TEST(TourDocument, WhatCannotBeReadIsNoAbsence) {
   SampleProject sample;
   ProjectData data(sample.project);

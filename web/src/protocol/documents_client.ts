@@ -4,6 +4,8 @@ import { request } from "./project_client.js";
 
 /** The server takes no more. */
 const LARGEST_BYTES = 1024 * 1024;
+/** Browsers refuse requests that are to outlive the page and are longer than 64 KiB, all of them together: longer ones are sent as usual. */
+const MOST_KEPT_ALIVE_BYTES = 60 * 1024;
 const MOST_TEXT = 300;
 
 /** A file as it is in the project now. */
@@ -15,9 +17,9 @@ export interface LoadedDocument {
 }
 
 export interface SaveOptions {
-  /** What the file must still be; null: anything. */
+  /** What the file must still be: tags, separated by commas; null: anything. */
   readonly ifMatch: string | null;
-  /** For a page that is being left; browsers then send at most 64 KiB. */
+  /** For a page that is being left: the request outlives it, unless it is too long. */
   readonly keepalive?: boolean;
 }
 
@@ -46,7 +48,7 @@ export async function saveDocument(file: DocumentFile, text: string, options: Sa
     method: "PUT",
     headers: { "Content-Type": type, ...(options.ifMatch === null ? {} : { "If-Match": options.ifMatch }) },
     body,
-    keepalive: options.keepalive ?? false,
+    keepalive: options.keepalive === true && body.byteLength <= MOST_KEPT_ALIVE_BYTES,
   });
   if (response.status === 412) throw new ChangedElsewhere(await reason(response));
   if (!response.ok) throw new Error(await reason(response));

@@ -4,6 +4,7 @@
 import { errorText } from "../base/abort.js";
 import type { Clock } from "../base/clock.js";
 import { Disposer } from "../base/disposer.js";
+import { hashHex } from "../base/hash.js";
 import { ChangedElsewhere, type LoadedDocument, type SaveOptions } from "../protocol/documents_client.js";
 import type { Documents } from "../state/app_state.js";
 import type { MeasuredProject } from "../state/measurements_file.js";
@@ -20,6 +21,8 @@ import {
 import type { Store } from "../state/store.js";
 import { readSavedTour } from "../state/tour_document.js";
 import { setTourView } from "../state/tour_state.js";
+import { readTour } from "../tour/read.js";
+import { writeTour } from "../tour/write.js";
 import { joinDocuments } from "./join_documents.js";
 import { TourConflict } from "./tour_conflict.js";
 
@@ -46,6 +49,18 @@ const TOUR: DocumentFile = "tour.json";
 interface Sent {
   readonly text: string;
   readonly documents: Documents;
+  /** In a way that outlives the page. */
+  readonly flushed: boolean;
+}
+
+/** The server writes a tour with other spaces than were sent. */
+function isSameTour(file: DocumentFile, a: string, b: string): boolean {
+  if (file !== TOUR) return false;
+  try {
+    return writeTour(readTour(JSON.parse(a))) === writeTour(readTour(JSON.parse(b)));
+  } catch {
+    return false;
+  }
 }
 
 export class DocumentsKeeper {
@@ -57,8 +72,6 @@ export class DocumentsKeeper {
   private readonly tags = new Map<DocumentFile, string | null>();
   /** What was sent without hearing whether it was saved. */
   private readonly sent = new Map<DocumentFile, readonly Sent[]>();
-  /** The file that is being saved. */
-  private underWay: DocumentFile | null = null;
   /** Files that could not be read. */
   private readonly blocked = new Set<DocumentFile>();
   readonly conflict: TourConflict;
@@ -139,17 +152,24 @@ export class DocumentsKeeper {
   /** Saves now what is not saved, without waiting for the answer: the page may be gone the next moment. */
   flush(): void {
     for (const file of this.savableFiles()) {
-      // What the file will be after the saving that is under way is not known; the newest must win.
-      // Not so the tour: rather the last second is lost than what another window has saved.
-      const ifMatch = this.underWay === file && file !== TOUR ? null : (this.tags.get(file) ?? null);
+      const newest = this.sent.get(file)?.at(-1);
+      // Sent already, and nothing has changed since.
+      if (newest?.flushed === true && this.hasPartOf(file, newest.documents)) continue;
       // Nobody is left to read what is wrong.
-      this.send(file, ifMatch, true).catch(() => {});
+      this.send(file, this.mayBe(file), true).catch(() => {});
     }
   }
 
-  /** Saves as soon as possible. */
-  hurry(): void {
-    if (this.savableFiles().length > 0) this.saveAfter(0);
+  /** Tags of what the file may be now without another window having changed it: as it was known, or as what was sent has made it. */
+  private mayBe(file: DocumentFile): string | null {
+    const tag = this.tags.get(file) ?? null;
+    if (tag === null) return null;
+    const hashes = (this.sent.get(file) ?? []).map(({ text }) => `"${hashHex(new TextEncoder().encode(text))}"`);
+    return [tag, ...hashes].join(", ");
+  }
+
+  private hasPartOf(file: DocumentFile, documents: Documents): boolean {
+    return documentPart(documents, file) === documentPart(this.options.store.get().documents, file);
   }
 
   dispose(): void {
@@ -204,7 +224,6 @@ export class DocumentsKeeper {
       store.set({ save: "saving" });
     }
     for (const file of wanted) {
-      this.underWay = file;
       try {
         await this.saveFile(file);
       } catch (error) {
@@ -214,7 +233,6 @@ export class DocumentsKeeper {
         failure = `${file} could not be saved: ${errorText(error)}. ${next}.`;
       }
     }
-    this.underWay = null;
     this.saving = false;
     if (this.disposer.disposed) return;
     if (failure === "" && this.unsavedFiles().some((file) => this.blocked.has(file))) {
@@ -242,7 +260,7 @@ export class DocumentsKeeper {
     const { store, project, files } = this.options;
     const { documents } = store.get();
     const text = writeDocument(documents, file, project);
-    const own: Sent = { text, documents };
+    const own: Sent = { text, documents, flushed: keepalive };
     this.sent.set(file, [...(this.sent.get(file) ?? []), own].slice(-MOST_SENT));
     try {
       const tag = await files.save(file, text, { ifMatch, keepalive });
@@ -292,7 +310,7 @@ export class DocumentsKeeper {
   private isOwn(file: DocumentFile, { text, tag }: LoadedDocument): boolean {
     // Saved here while this was asked.
     if (tag !== null && tag === this.tags.get(file)) return true;
-    const own = this.sent.get(file)?.find((one) => one.text === text);
+    const own = this.sent.get(file)?.find((one) => one.text === text || (text !== null && isSameTour(file, one.text, text)));
     if (text !== null && own === undefined) return false;
     // Taken away by somebody, or saved by this page, which did not hear of it.
     if (own !== undefined) this.saved.set(file, own.documents);

@@ -131,7 +131,7 @@ function keepDocuments(
   disposer.listen(page, "pagehide", () => keeper.flush());
   // On phones a page in the background may be ended without another word.
   disposer.listen(page, "visibilitychange", () => {
-    if (page.document.visibilityState === "hidden") keeper.hurry();
+    if (page.document.visibilityState === "hidden") keeper.flush();
   });
   return keeper;
 }

@@ -193,7 +193,12 @@ test("leaving: a question while something is unsaved, a last save, and one at on
   b.page.document.visibilityState = "hidden";
   b.page.dispatchEvent(new Event("visibilitychange"));
   await pass(b, 0);
-  assert.deepEqual(files.saves.slice(1), ["measurements.geojson"]);
+  // Sent already.
+  assert.deepEqual(files.saves.slice(1), []);
+  addPoint(b.store, 3);
+  b.page.dispatchEvent(new Event("visibilitychange"));
+  assert.deepEqual(files.saves.slice(1), ["measurements.geojson keepalive"]);
+  await pass(b, 1000);
   assert.equal(leave(), false);
   tools.dispose();
   addPoint(b.store, 2);

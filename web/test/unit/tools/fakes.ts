@@ -1,6 +1,6 @@
 // A canvas, a scene, an engine and a page for tests of the tools. The scene looks straight down from 100 m, one pixel is one metre.
-import { createHash } from "node:crypto";
 import { ManualClock } from "../../../src/base/clock.js";
+import { hashHex } from "../../../src/base/hash.js";
 import type { Vec2 } from "../../../src/base/vec.js";
 import { ChangedElsewhere, type LoadedDocument, type SaveOptions } from "../../../src/protocol/documents_client.js";
 import type { Link, Picked, ProfileReply, VolumeReply } from "../../../src/protocol/link_api.js";
@@ -214,15 +214,14 @@ export class FakeFiles implements DocumentFiles {
     this.saves.push(keepalive === true ? `${file} keepalive` : file);
     if (this.hold !== null) await this.hold;
     if (this.fail !== "") throw new Error(this.fail);
-    if (ifMatch !== null && ifMatch !== this.tag(file)) throw new ChangedElsewhere("changed in another window");
+    if (ifMatch !== null && !ifMatch.split(", ").includes(this.tag(file))) throw new ChangedElsewhere("changed in another window");
     this.texts.set(file, text);
     if (this.loseAnswer) throw new Error("the server does not answer");
     return this.tag(file);
   }
 
   private tag(file: string): string {
-    return `"${createHash("sha1")
-      .update(this.texts.get(file) ?? "")
-      .digest("hex")}"`;
+    // Of the body as of the file: nothing is written otherwise than it was sent.
+    return `"${hashHex(new TextEncoder().encode(this.texts.get(file) ?? ""))}"`;
   }
 }

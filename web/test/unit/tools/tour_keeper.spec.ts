@@ -121,7 +121,6 @@ test("the second window is told, overwrites nothing and keeps its changes until 
   );
   name(two.store, "two again");
   await pass(two, 60_000);
-  two.keeper.hurry();
   two.keeper.flush();
   await pass(two, 1000);
   assert.equal(titleIn(files), "one");
@@ -188,6 +187,34 @@ test("a save whose answer was lost is no other window", async () => {
   assert.equal(b.store.get().tour.conflict, false);
 });
 
+test("a page that is left while a save is under way saves what was changed last, whichever comes first", async () => {
+  for (const late of [false, true]) {
+    const files = new FakeFiles();
+    const b = await window(files);
+    name(b.store, "one");
+    let go = () => {};
+    files.hold = new Promise((resolve) => {
+      go = resolve;
+    });
+    await pass(b, 1000);
+    name(b.store, "two");
+    if (late) files.hold = null;
+    b.keeper.flush();
+    // Chromium tells of a hidden page after it was left.
+    b.keeper.flush();
+    assert.deepEqual(files.saves, [FILE, `${FILE} keepalive`]);
+    if (late) await settle();
+    go();
+    await settle();
+    assert.equal(titleIn(files), "two");
+    // Where it stays, nobody is asked anything.
+    await pass(b, 2000);
+    assert.equal(b.store.get().tour.conflict, false);
+    assert.equal(b.store.get().save, "saved");
+    assert.equal(files.saves.length, 2);
+  }
+});
+
 test("a page that is left while a save is under way does not overwrite what another window saves", async () => {
   const files = new FakeFiles();
   const b = await window(files);
@@ -203,6 +230,20 @@ test("a page that is left while a save is under way does not overwrite what anot
   go();
   await settle();
   assert.equal(titleIn(files), "of another window");
+});
+
+test("a save whose answer was lost is recognised in the server's own spacing", async () => {
+  const files = new FakeFiles();
+  const b = await window(files);
+  name(b.store, "one");
+  files.loseAnswer = true;
+  await pass(b, 1000);
+  files.loseAnswer = false;
+  files.texts.set(FILE, `${JSON.stringify(JSON.parse(files.texts.get(FILE) ?? ""), null, 1)}\n`);
+  name(b.store, "two");
+  await pass(b, 1000);
+  assert.equal(titleIn(files), "two");
+  assert.equal(b.store.get().tour.conflict, false);
 });
 
 test("the buttons of the message run the commands, and play mode opens by itself for visitors", async () => {

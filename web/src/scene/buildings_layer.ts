@@ -1,5 +1,5 @@
-// The models of buildings: translucent roofs and walls with their edges, the chosen one and the one under the pointer brighter. They hide each other,
-// but are drawn over the surface, from which they differ by centimetres.
+// The models of buildings: translucent roofs and walls with their edges, the chosen one and the one under the pointer brighter. They hide each other
+// and are hidden by placed things, but are drawn over the surface, from which they differ by centimetres.
 import {
   BufferAttribute,
   BufferGeometry,

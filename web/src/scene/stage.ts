@@ -2,6 +2,7 @@
 import {
   type Camera,
   ColorManagement,
+  DoubleSide,
   LinearSRGBColorSpace,
   MeshBasicMaterial,
   NoToneMapping,
@@ -90,6 +91,7 @@ export class Stage {
     polygonOffsetFactor: 1,
     polygonOffsetUnits: 1,
   });
+  private readonly depthOnly = new MeshBasicMaterial({ colorWrite: false, side: DoubleSide });
   private clip: Box | null = null;
 
   /** Throws an Error for the user when the browser has no WebGL 2. */
@@ -169,6 +171,7 @@ export class Stage {
         : halfSpacesOf(this.clip).map(({ normal, constant }) => new Plane(new Vector3(...normal), constant));
     this.style.setClip(planes);
     this.unseen.clippingPlanes = planes;
+    this.depthOnly.clippingPlanes = planes;
     this.things.setClip(planes);
     this.extras.setClip(clip, planes);
     this.buildings.setClip(planes);
@@ -222,9 +225,10 @@ export class Stage {
     if (this.things.visible) this.inColumns(x, w, size, () => this.drawThings(camera, layers));
     renderer.render(this.over, camera);
     if (!this.buildings.visible) return;
-    // Models of buildings and the surface are centimetres apart and would flicker into each other, so they hide only each other.
+    // Models of buildings and the surface are centimetres apart and would flicker into each other, so only they and what a tour has placed hide them.
     this.inColumns(x, w, size, () => {
       renderer.clearDepth();
+      this.drawDepthOfThings(camera);
       renderer.render(this.buildings.scene, camera);
     });
   }
@@ -238,6 +242,7 @@ export class Stage {
     this.buildings.dispose();
     this.things.dispose();
     this.unseen.dispose();
+    this.depthOnly.dispose();
     this.renderer.dispose();
     // Browsers allow few contexts at a time, and garbage collection takes its time.
     this.renderer.forceContextLoss();
@@ -267,6 +272,14 @@ export class Stage {
       main.scene.overrideMaterial = null;
     }
     renderer.render(this.things.scene, camera);
+  }
+
+  private drawDepthOfThings(camera: Camera): void {
+    if (!this.things.visible) return;
+    const { scene } = this.things;
+    scene.overrideMaterial = this.depthOnly;
+    this.renderer.render(scene, camera);
+    scene.overrideMaterial = null;
   }
 
   private drawSide(side: Side, camera: Camera, showSurface: boolean): void {

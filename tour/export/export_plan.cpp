@@ -11,6 +11,7 @@
 #include "tour/export/disk_space.h"
 #include "tour/export/project_file.h"
 #include "tour/export/script_data.h"
+#include "tour/format/asset_check.h"
 #include "tour/format/asset_name.h"
 #include "tour/format/tour_file.h"
 
@@ -25,6 +26,27 @@ constexpr int kPlacesPerWay = 16;
 bool IsPlainFile(const fs::path& file) {
   std::error_code error;
   return fs::is_regular_file(fs::symlink_status(file, error));
+}
+
+// Files that CheckAsset refuses, with the reason.
+using Refusals = std::map<std::string, std::string>;
+
+// Whether the project has this asset as it was when it was uploaded.
+bool IsGoodAsset(const fs::path& project, const std::string& name, uint64_t bytes, Refusals* refusals) {
+  const std::optional<AssetName> asset = ParseAssetName(name);
+  if (!asset || bytes > kMaxAssetBytes) return false;
+  const fs::path file = AssetFolder(project) / asset->File();
+  std::error_code error;
+  if (!IsPlainFile(file) || fs::file_size(file, error) != bytes || error) return false;
+  const std::string content = base::ReadFile(file);
+  if (base::Sha256Hex(content) != asset->digest) return false;
+  try {
+    CheckAsset(asset->type, {reinterpret_cast<const uint8_t*>(content.data()), content.size()});
+    return true;
+  } catch (const base::Refused& refused) {
+    refusals->emplace(name, refused.what());
+    return false;
+  }
 }
 
 // Eyes of the stops, and places on straight lines between each and the next.
@@ -58,16 +80,16 @@ TourContent ReadContent(const fs::path& project) {
   LoadTourToPlay(project);  // says best what is wrong with the file
   content.tour_json = base::ReadFile(TourFile(project));
   std::map<std::string, bool> good;
+  Refusals refusals;
   content.playable = ReadTourToPlay(content.tour_json, [&](const std::string& name, uint64_t bytes) {
     const auto known = good.find(name);
     if (known != good.end()) return known->second;
-    const std::optional<AssetName> asset = ParseAssetName(name);
-    std::error_code error;
-    const fs::path file = asset ? AssetFolder(project) / asset->File() : fs::path();
-    const bool is_there = asset && IsPlainFile(file) && fs::file_size(file, error) == bytes && base::Sha256Hex(base::ReadFile(file)) == asset->digest;
-    good[name] = is_there;
-    return is_there;
+    return good[name] = IsGoodAsset(project, name, bytes, &refusals);
   });
+  // Beside the sentences that say which stop or thing goes without it.
+  for (const auto& [name, reason] : refusals) {
+    content.playable.missing.push_back("The file tour/assets/" + name + " is left out: " + reason + ". Upload another in 'skyquilt view --edit'.");
+  }
   if (content.playable.tour.stops.empty()) {
     throw base::InputError(TourFile(project), "has no stops", "Add some with 'skyquilt view --edit'");
   }

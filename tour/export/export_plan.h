@@ -16,7 +16,7 @@
 
 namespace skyquilt::tour {
 
-// The tour with what it refers to. Assets count as there when their digest is right.
+// The tour with what it refers to. Assets count as there when their digest is right and CheckAsset accepts them, as it would an upload.
 struct TourContent {
   std::string tour_json;  // as it is saved
   PlayableTour playable;

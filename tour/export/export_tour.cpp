@@ -1,6 +1,8 @@
 #include "tour/export/export_tour.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -11,6 +13,7 @@
 #include "core/base/progress.h"
 #include "core/base/system.h"
 #include "core/image/image.h"
+#include "core/image/srgb.h"
 #include "tour/export/disk_space.h"
 #include "tour/export/embed_page.h"
 #include "tour/export/export_plan.h"
@@ -36,7 +39,8 @@ std::vector<PictureRequest> RequestsOf(const Tour& tour, const ExportInput& inpu
   const TourOptions& options = input.options;
   std::vector<PictureRequest> requests;
   for (const Stop& stop : tour.stops) {
-    const std::string exposure = ExposureText(stop.exposure_stops, input.exposure);
+    // The page brightens what it shows at the stop, the surface as well as its pictures.
+    const std::string exposure = stop.exposure_stops ? "normal" : input.exposure;
     const Pose& pose = stop.pose;
     requests.push_back(StillAt(pose.eye_enu, pose.cam_from_enu, pose.fovy_deg, options.still_width, options.still_height, exposure));
     requests.push_back(PanoramaAt(pose.eye_enu, options.panorama_width, exposure));
@@ -67,19 +71,41 @@ const Stop& FirstStop(const Tour& tour) {
   return start != tour.stops.end() ? *start : tour.stops.front();
 }
 
+// tour.json is as it was saved, so that the page has to be told which of its assets are there.
+std::vector<std::string> FileNames(const FixedFiles& fixed) {
+  std::vector<std::string> names;
+  for (const auto& [name, content] : fixed.contents) names.push_back(name);
+  for (const auto& [name, file] : fixed.files) names.push_back(name);
+  return names;
+}
+
+// In linear light, as the page does it and `render --exposure`.
+void Brighten(double stops, image::Image8* picture) {
+  if (stops == 0.0) return;
+  const float gain = std::exp2(static_cast<float>(stops));
+  std::array<uint8_t, 256> shown{};
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const float value = image::SrgbFromLinear(gain * image::LinearFromSrgb(static_cast<float>(i) / 255.0F));
+    shown[i] = static_cast<uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+  }
+  for (uint8_t& value : picture->data) value = shown[value];
+}
+
 std::string PosterOf(const Tour& tour, const std::vector<StopPictures>& pictures) {
   const std::string& id = FirstStop(tour).id;
   const auto first = std::find_if(pictures.begin(), pictures.end(), [&](const StopPictures& one) { return one.stop == id; });
   const image::Image8 still = ColorsOf(OpenPicture(first->still));
   const int width = std::min(kPosterWidth, still.width);
-  const image::Image8 poster = image::Resize(still, width, image::ScaledHeight(still.width, still.height, width));
+  image::Image8 poster = image::Resize(still, width, image::ScaledHeight(still.width, still.height, width));
+  Brighten(FirstStop(tour).exposure_stops.value_or(0.0), &poster);
   const std::vector<uint8_t> jpeg = image::EncodeJpeg(poster, kPosterQuality);
   return {jpeg.begin(), jpeg.end()};
 }
 
-std::string ManifestText(const ExportParts& parts, const std::vector<std::string>& missing, nlohmann::json stops) {
-  const nlohmann::json manifest = {
+std::string ManifestText(const ExportParts& parts, const FixedFiles& fixed, const std::vector<std::string>& missing, nlohmann::json stops) {
+  nlohmann::json manifest = {
       {"version", 1}, {"missing", missing}, {"stops", std::move(stops)}, {"made_by", parts.made_by}, {"date", base::UtcTimestamp()}};
+  manifest["files"] = FileNames(fixed);
   return manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -118,7 +144,7 @@ void WriteFiles(const ExportParts& parts, const FixedFiles& fixed, const ExportP
   for (const auto& [name, content] : fixed.contents) done(WriteScript(data, name, content));
   for (const auto& [name, file] : fixed.files) done(WriteScriptOf(data, name, file));
   nlohmann::json stops = WritePicturesOfStops(pictures, plan.pictures, data, done);
-  done(WriteScript(data, "manifest.json", ManifestText(parts, missing, std::move(stops))));
+  done(WriteScript(data, "manifest.json", ManifestText(parts, fixed, missing, std::move(stops))));
   if (tree != nullptr) {
     done(WriteScript(data, TileTree::DataName("tileset.json"), tree->Text(*plan.tiles)));
     for (size_t i = 0; i < tree->nodes().size(); ++i) {
@@ -155,6 +181,7 @@ Exported ExportTour(const ExportInput& input, const ExportParts& parts, const Pi
 
   int64_t sentences = kManifestBytes + kManifestBytesPerStop * static_cast<int64_t>(tour.stops.size());
   for (const std::string& sentence : missing) sentences += 2 * SizeOf(sentence);
+  for (const std::string& name : FileNames(fixed)) sentences += 2 * SizeOf(name);
   const int64_t other = BytesIn(staged.partial()) + fixed.Bytes() + ScriptBytes("manifest.json", sentences);
   const ExportPlan plan = PlanExport(input.out, input.options.SizeBytes(), other, pictures, tree ? &*tree : nullptr, tour, threads);
   LogPlan(plan, tree ? &*tree : nullptr, input.options);

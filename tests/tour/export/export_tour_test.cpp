@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/image/image.h"
+#include "core/image/srgb.h"
 #include "tests/core/gis/limited_file_size.h"
 #include "tests/support/error_of.h"
 #include "tests/tour/export/sample_project.h"
@@ -167,6 +170,64 @@ TEST(ExportTour, AChangedAssetCountsAsMissing) {
   base::WriteFileAtomically(AssetFolder(sample.project) / sample.picture_name, std::string(sample.picture.size(), 'x'));
   EXPECT_EQ(sample.Export().missing.size(), 2U);
   EXPECT_FALSE(fs::exists(sample.out / "data" / "assets"));
+}
+
+// A file put there by hand under the right digest, which no upload would have let in.
+TEST(ExportTour, AnAssetOfAWrongTypeIsLeftOutByNameAndTheRestPlays) {
+  SampleTourProject sample;
+  const std::string page = "<html><script>alert(1)</script></html>", program = "MZ\x90" + std::string(200, '\0');
+  const std::string picture_name = AssetNameOf(page, "png"), model_name = AssetNameOf(program, "glb");
+  base::WriteFileAtomically(AssetFolder(sample.project) / picture_name, page);
+  base::WriteFileAtomically(AssetFolder(sample.project) / model_name, program);
+  Tour tour = sample.TourWith("A farm");
+  tour.stops[1].picture = picture_name;
+  Thing model;
+  model.kind = ThingKind::kModel;
+  model.id = "thing";
+  model.text = "The shed";
+  model.asset = model_name;
+  tour.things.push_back(model);
+  tour.assets[picture_name] = {"page.png", page.size()};
+  tour.assets[model_name] = {"shed.glb", program.size()};
+  SaveTour(tour, sample.project);
+  const Exported exported = sample.Export();
+  EXPECT_EQ(exported.stops, 2U);
+  ASSERT_EQ(exported.missing.size(), 4U);
+  const auto says = [&](const std::string& one, const std::string& two) {
+    return std::ranges::any_of(exported.missing, [&](const std::string& text) {
+      return text.find(one) != std::string::npos && text.find(two) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(says("農場", "page.png") && says("The shed", "shed.glb"));
+  EXPECT_TRUE(says(picture_name, "it is not a PNG picture") && says(model_name, "left out"));
+  EXPECT_FALSE(fs::exists(sample.out / "data" / "assets" / (picture_name + ".js")) || fs::exists(sample.out / "data" / "assets" / (model_name + ".js")));
+  EXPECT_EQ(ContentOf(sample.out, "assets/" + sample.picture_name), sample.picture);
+  const nlohmann::json files = JsonOf(sample.out, "manifest.json")["files"];
+  EXPECT_EQ(std::ranges::count(files, "assets/" + sample.picture_name), 1) << files;
+  EXPECT_EQ(std::ranges::count(files, "assets/" + picture_name), 0) << files;
+}
+
+// The page brightens the surface and the pictures of the stop alike, so these are not bright themselves; the poster is shown without it.
+TEST(ExportTour, TheExposureOfAStopIsLeftToThePage) {
+  SampleTourProject sample;
+  sample.Export();
+  const image::Image8 plain = image::LoadRgb8(sample.out / "poster.jpg");
+  const std::string still = ContentOf(sample.out, "stops/first/still.png");
+  Tour tour = sample.TourWith("Brighter");
+  tour.stops[0].exposure_stops = 1.0;
+  SaveTour(tour, sample.project);
+  sample.counted.n_rays = 0;
+  sample.Export();
+  EXPECT_EQ(sample.counted.n_rays, 0) << "the same pictures";
+  EXPECT_EQ(ContentOf(sample.out, "stops/first/still.png"), still);
+  const image::Image8 bright = image::LoadRgb8(sample.out / "poster.jpg");
+  ASSERT_EQ(bright.data.size(), plain.data.size());
+  double off = 0.0;
+  for (size_t i = 0; i < plain.data.size(); ++i) {
+    const float linear = 2.0F * image::LinearFromSrgb(static_cast<float>(plain.data[i]) / 255.0F);
+    off += std::abs(std::min(255.0F, 255.0F * image::SrgbFromLinear(linear)) - static_cast<float>(bright.data[i]));
+  }
+  EXPECT_LT(off / static_cast<double>(plain.data.size()), 3.0) << "both are JPEGs";
 }
 
 TEST(ExportTour, GoesIntoTheProjectWithoutTouchingUploads) {

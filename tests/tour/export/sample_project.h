@@ -8,6 +8,7 @@
 #include "core/base/file.h"
 #include "core/base/sha256.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/tour/format/sample_assets.h"
 #include "tests/tour/pictures/fields.h"
 #include "tour/export/export_tour.h"
 #include "tour/format/tour_file.h"
@@ -49,7 +50,7 @@ inline void WriteSampleTiles(const std::filesystem::path& folder) {
 struct SampleTourProject {
   TemporaryFolder folder;
   std::filesystem::path project = folder / "project", out = folder / "given away";
-  std::string picture = "not really a picture", picture_name = base::Sha256Hex(picture) + ".jpg", lost = std::string(64, 'a') + ".png";
+  std::string picture = SampleJpg(), picture_name = base::Sha256Hex(picture) + ".jpg", lost = std::string(64, 'a') + ".png";
   CountedField counted;
   base::ThreadPool threads{2};
   ExportParts parts;

@@ -40,7 +40,8 @@ export async function readExportedTour(files: Files): Promise<ExportedTour> {
   const { tour, missing } = within("tour.json", () =>
     readTourForPlaying(playable, (asset) => there(`assets/${asset}`)),
   );
-  const sentences = [...manifest.missing, ...missing];
+  // An export that names its files has said what is missing, too.
+  const sentences = names === null ? [...manifest.missing, ...missing] : [...manifest.missing];
   let measurements: readonly Measurement[] = [];
   const name = "measurements.geojson";
   if (showsMeasurements(tour) && there(name)) {

@@ -41,7 +41,7 @@ export interface TourManifest {
   readonly stops: ReadonlyMap<string, StopPictures>;
   /** Sentences for the user. */
   readonly missing: readonly string[];
-  /** Names of all files in data/; null: not known. */
+  /** Names of the files in data/, without tiles and pictures of stops; null: not known. */
   readonly files: ReadonlySet<string> | null;
   readonly madeBy: string | null;
   readonly date: string | null;

@@ -1,4 +1,5 @@
-// Checks the source: node check.mjs. Types, lint and format, unit tests; each step prints its result, and all run even when one fails.
+// Checks the source: node check.mjs. Types, lint and format, unit tests, sizes of what was built into dist. Each step prints its
+// result, and all run even when one fails.
 // The packages must be installed with those for development: npm ci --ignore-scripts
 import { spawnSync } from "node:child_process";
 import { existsSync } from "node:fs";
@@ -14,6 +15,7 @@ const STEPS = [
   ["types of the tests", TSC, "-p", "tsconfig.test.json"],
   ["lint and format", BIOME, "check", "--error-on-warnings", "--max-diagnostics=50"],
   ["unit tests", "test/run_unit.mjs"],
+  ["sizes of the bundles", "test/check_sizes.mjs", "dist"],
 ];
 
 let failed = 0;

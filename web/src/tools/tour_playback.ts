@@ -221,6 +221,9 @@ export class TourPlayback {
       (found) => {
         this.ground = found;
         store.set({ map: found.map });
+        if (found.heights === null || this.player === null) return;
+        this.player.replan(this.passTime());
+        this.tick();
       },
       // The tour plays without: ways are straight then, and the map is empty.
       () => {},

@@ -122,6 +122,12 @@ export class TourPlayer {
     else this.leaveFor(to, DIRECT, nowS);
   }
 
+  /** The heights have come: a way that was planned without them is planned anew from where one is. */
+  replan(nowS: number): void {
+    this.advance(nowS);
+    if (this.state.kind === "moving") this.move(this.state.stop, DIRECT, nowS);
+  }
+
   // ---- autoplay ----
 
   /** Starts autoplay, goes on with a halted way, or begins again after the end. */

@@ -2,9 +2,10 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Vec3 } from "../../../src/base/vec.js";
 import type { CameraPose } from "../../../src/state/app_state.js";
-import { TourPlayback } from "../../../src/tools/tour_playback.js";
+import { type Ground, TourPlayback } from "../../../src/tools/tour_playback.js";
 import { changeStop } from "../../../src/tour/edit_stops.js";
 import type { Tour } from "../../../src/tour/types.js";
+import { terrainOf } from "../tour/terrains.js";
 import { type Bench, bench, settle } from "./fakes.js";
 import { openTour, rowOfStops } from "./tour_samples.js";
 
@@ -262,4 +263,37 @@ test("the ground is asked for once, and a tour plays without it", async () => {
   await settle();
   assert.equal(asked, 1);
   assert.equal(s.store.get().play?.stop?.id, "stop-1");
+});
+
+test("a way that began before the ground was known is planned anew when it is", async () => {
+  const s = stage(rowOfStops());
+  let come = (_: Ground): void => {};
+  let waiting = (): void => {};
+  const playback = new TourPlayback({
+    store: s.store,
+    scene: { ...s.scene, flyTo: (pose) => Promise.resolve(void s.poses.push(pose)) },
+    clock: s.clock,
+    nextFrame: (draw) => {
+      waiting = draw;
+      return () => {
+        waiting = () => {};
+      };
+    },
+    ground: () =>
+      new Promise((resolve) => {
+        come = resolve;
+      }),
+    reducedMotion: () => false,
+  });
+  playback.play();
+  playback.next();
+  const wall = terrainOf(30, 20, (column) => (column === 15 ? 20 : 0), [1, 1], [-10, -10]);
+  come({ heights: wall.heights, map: null });
+  await settle();
+  for (let frame = 0; frame < 2000; frame += 1) {
+    s.clock.advance(16);
+    waiting();
+  }
+  assert.equal(at(s), "stop-2 stop");
+  assert.ok(Math.max(...s.poses.map(({ eyeEnu }) => eyeEnu[2])) > 20.9);
 });

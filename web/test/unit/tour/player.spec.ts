@@ -409,3 +409,26 @@ test("ways keep clear of what is known when they begin", () => {
   player.next(40);
   assert.ok(highest(player, 40) > 30.9);
 });
+
+test("heights that come on the way lift the rest of it; at a stop nothing changes", () => {
+  const house = terrainOf(40, 20, (column) => (column >= 18 && column < 24 ? 30 : 0), [1, 1], [-10, -10]);
+  let heights: typeof house.heights | null = null;
+  const options = { tour: sampleTour(), heights: () => heights, reducedMotion: () => false, at: "a" };
+  const player = new TourPlayer(options, 0);
+  player.replan(0);
+  assert.equal(player.view(0).phase, "stop");
+  player.next(0);
+  const before = player.view(0.3);
+  heights = house.heights;
+  player.replan(0.3);
+  const after = player.view(0.3);
+  assert.ok(distance(before, after) < 1e-9);
+  assert.deepEqual([after.phase, after.stop?.id], ["moving", before.stop?.id]);
+  let nearest = Number.POSITIVE_INFINITY;
+  for (let t = 0.3; t < 20; t += 0.02) {
+    const [x, y, z] = player.view(t).pose?.eyeEnu ?? [0, 0, 0];
+    if (house.heights.at(x, y) === 30) nearest = Math.min(nearest, z - 30);
+  }
+  assert.ok(nearest > 0.9 && nearest < 3, `${nearest} m above the roof`);
+  assert.equal(player.view(20).phase, "stop");
+});

@@ -19,6 +19,7 @@ import { keepBuildings } from "./buildings_loader.js";
 import { buildingsOf, bytesOf, type ExportedTour, readExportedTour } from "./exported_tour.js";
 import { groundLoader } from "./ground_loader.js";
 import { PictureUrls } from "./picture_urls.js";
+import { dropPoster } from "./poster.js";
 import { requireWebGl2, StartErrorPage } from "./start_error.js";
 import { installTestHook } from "./test_hook.js";
 import { ViewLog } from "./view_log.js";
@@ -30,8 +31,11 @@ declare const SKYQUILT_TEST_HOOK: boolean;
 async function start(root: Root, container: HTMLElement): Promise<void> {
   // The scripts of files call what this installs.
   const files = openPackedFiles();
+  // Asked for before the graphics card is, which takes its time as well.
+  const reading = readExportedTour(files);
+  reading.catch(() => {});
   requireWebGl2();
-  const exported = await readExportedTour(files);
+  const exported = await reading;
   const { project, tour, pictures } = exported;
   const store = openStore(exported);
   const stops = tour.stops.map(({ id, pose }) => ({ id, ...pose }));
@@ -62,6 +66,7 @@ async function start(root: Root, container: HTMLElement): Promise<void> {
     },
   );
   playback.play();
+  dropPoster(store, link, scene.whenIdle());
   const assets = { url: (asset: string) => urls.get(assetUrl(asset)) };
   const context: PlayContext = { project, store, scene, commands, assets, controls: playback };
   root.render(
@@ -91,6 +96,7 @@ if (ui !== null && stage !== null) {
   const root = createRoot(ui);
   start(root, stage).catch((error: unknown) => {
     console.warn(error);
+    document.getElementById("poster")?.remove();
     root.render(<StartErrorPage error={error} title="The tour cannot be shown" />);
   });
 }

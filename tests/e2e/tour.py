@@ -1,4 +1,5 @@
-"""Tours as their makers and players meet them: exported as a folder, made in a real browser, saved with rights, changed by two editors."""
+"""Tours as their makers and players meet them: saved with rights, made in a real browser, changed by two editors, exported as a folder, played from it."""
+import hashlib
 import json
 import os
 import pathlib
@@ -14,8 +15,11 @@ from web_documents import asset_path, collection, png, tour
 
 # A field that shows houses; nothing is measured on it.
 TRAIN = ["--blocks", "1x1", "--image-width", "320", "--time-budget", "12s", "--set", "products.video_seconds=0", "--set", "buildings.enabled=false"]
-# Pictures of the size in which the page is looked at.
+# Pictures of the size in which the page is looked at, and small ones where nobody looks.
 EXPORT = ["--size", "40MB", "--set", "tour.still_width=400", "--set", "tour.still_height=250", "--set", "tour.panorama_width=512"]
+SMALL_EXPORT = ["--size", "40MB", "--set", "tour.still_width=160", "--set", "tour.still_height=100", "--set", "tour.panorama_width=256"]
+# Neither a model nor a picture.
+PAGE = b"glTF<html><script>window.hacked = 1</script></html>"
 
 
 def check_edit(skyquilt, project):
@@ -38,6 +42,11 @@ def check_edit(skyquilt, project):
             for path, body in (("/data/tour.json", tour("<script>alert(1)</script>")), (asset_path(picture), picture),
                                ("/data/measurements.geojson", collection(1))):
                 expect(viewer.request("PUT", path, body=body)[0] == saved, f"{path} with the rights {rights}")
+        for name, content in (("png", PAGE), ("glb", PAGE), ("glb", picture), ("png", b"MZ" + bytes(100))):
+            path = f"/data/tour/assets/{hashlib.sha256(content).hexdigest()}.{name}"
+            status, _, body = viewer.request("PUT", path, body=content)
+            expect(status == 415 and b"not saved" in body, f"{content[:10]} as {name}: {status} {body}")
+            expect(viewer.request("GET", path)[0] == 404, f"{content[:10]} as {name} was saved")
         status, headers, body = viewer.request("GET", asset_path(picture))
         expect(status == 200 and body == picture and headers["Content-Type"] == "image/png", f"the picture: {status} {headers}")
         _, headers, _ = viewer.request("GET", "/data/tour.json")
@@ -60,15 +69,13 @@ def check_edit(skyquilt, project):
     shutil.rmtree(project / "tour")
 
 
-def check_page(skyquilt, project, web, out):
-    """A tour made by clicks and keys, saved, read again, changed, undone, fought over by two windows, and played."""
-    if not page_can_be_checked(web, "app.js"):
-        return
+def check_page(skyquilt, project, truth, web, out):
+    """A tour made by clicks and keys, saved, read again, changed, undone, fought over by two windows, played, and left while it is saved."""
     shutil.rmtree(out, ignore_errors=True)
     viewer = Viewer(skyquilt, project, "--edit", "--front-end", web / "dist_test")
     try:
-        done = subprocess.run(["node", "test/page/tour_page.mjs", viewer.link, viewer.next_link(), str(project), str(out)], cwd=web, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, text=True, errors="replace", timeout=400)
+        done = subprocess.run(["node", "test/page/tour_page.mjs", viewer.link, viewer.next_link(), str(project), str(truth), str(out)], cwd=web,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=400)
         print(done.stdout, flush=True)
         expect(done.returncode == 0, f"the page, see {out}:\n{done.stdout}")
     finally:
@@ -80,9 +87,9 @@ def contents(folder):
 
 
 def check_export(skyquilt, project, folder):
-    """A proposed tour as a folder: within its size, whole after a kill, and never over somebody else's files. Returns the folder."""
+    """A proposed tour as a folder: within its size, whole after a kill, and never over somebody else's files."""
     target = folder / "exported"
-    export = ["tour", project, "-o", target, *EXPORT]
+    export = ["tour", project, "-o", target, *SMALL_EXPORT]
     text = skyquilt.call(*export, "--auto", "3")
     expect(len(json.loads((project / "tour.json").read_text())["stops"]) == 3, text)
     first = contents(target)
@@ -108,17 +115,25 @@ def check_export(skyquilt, project, folder):
     foreign = folder / "foreign"
     foreign.mkdir()
     (foreign / "letter.txt").write_text("dear")
-    text = skyquilt.call("tour", project, "-o", foreign, *EXPORT, status=3)
+    text = skyquilt.call("tour", project, "-o", foreign, *SMALL_EXPORT, status=3)
     expect("foreign" in text and (foreign / "letter.txt").read_text() == "dear", text)
-    text = skyquilt.call("tour", project, "-o", target, "--size", "1MB", *EXPORT[2:], status=3)
+    text = skyquilt.call("tour", project, "-o", target, "--size", "1MB", *SMALL_EXPORT[2:], status=3)
     expect("MB" in text or "size" in text, text)
-    return target
 
 
 def check_exported_page(skyquilt, project, exported, web, out):
-    """The exported folder from file://, beside `skyquilt render`."""
-    if not page_can_be_checked(web, "tour.js"):
-        return
+    """The tour that was made in the page, exported, and played without the program; beside `skyquilt render`."""
+    # A model that no upload would have let in.
+    name = hashlib.sha256(PAGE).hexdigest() + ".glb"
+    (project / "tour" / "assets" / name).write_bytes(PAGE)
+    tour_file = project / "tour.json"
+    made = json.loads(tour_file.read_text())
+    made["things"].append({"id": "shed", "kind": "model", "at": [0, 0, 0], "yaw_deg": 0, "scale": 1, "name": "Shed", "asset": name, "stops": None})
+    made["assets"][name] = {"name": "shed.glb", "bytes": len(PAGE)}
+    tour_file.write_text(json.dumps(made))
+    text = skyquilt.call("tour", project, "-o", exported, *EXPORT)
+    expect("Shed" in text and f"{name} is left out" in text, text)
+    expect(not (exported / "data" / "assets" / f"{name}.js").exists(), "a file that is no model was exported")
     # The script with the hook of tests.
     shutil.copy(web / "dist_test" / "tour.js", exported / "tour.js")
     done = subprocess.run(["node", "test/page/exported_page.mjs", str(exported), str(project), skyquilt.program, str(out)], cwd=web, stdout=subprocess.PIPE,
@@ -139,12 +154,14 @@ def test(skyquilt: Skyquilt, folder):
             raise
         skip("all: the program has no front end, because nodejs, npm or the network was missing when it was built")
         return
-    exported = check_export(skyquilt, project, folder)
-    check_exported_page(skyquilt, project, exported, build / "web", build / "Testing" / "exported")
+    check_export(skyquilt, project, folder)
     (project / "tour.json").unlink()
     shutil.rmtree(project / "tour")
     check_edit(skyquilt, project)
-    check_page(skyquilt, project, build / "web", build / "Testing" / "tour")
+    if not page_can_be_checked(build / "web", "app.js"):
+        return
+    check_page(skyquilt, project, survey / "truth" / "buildings.json", build / "web", build / "Testing" / "tour")
+    check_exported_page(skyquilt, project, folder / "clicked", build / "web", build / "Testing" / "exported")
 
 
 if __name__ == "__main__":

@@ -1,12 +1,12 @@
 // The page of an exported tour in a real browser, from file:// and from a plain web server:
 //   node offline_page.mjs DIST OUT
 // DIST has the bundles with the hook of tests, OUT gets the folder of the tour and screenshots. Exits with 1 and the list of failures.
-import { createReadStream, existsSync, renameSync, rmSync, statSync } from "node:fs";
-import { createServer } from "node:http";
+import { renameSync, rmSync } from "node:fs";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
 import { canvasPicture, differing, open, report, save, screenshot, start } from "./browser.mjs";
 import { colourOf, GROUND, MODEL_AT, rayOf, rotationOf, STILL, stillOf, writeSample } from "./export_sample.mjs";
+import { serve } from "./static_server.mjs";
 
 const [dist, out] = process.argv.slice(2);
 const SIZE = { width: STILL.width, height: STILL.height };
@@ -172,25 +172,6 @@ async function checkPlaying(page, stops) {
   expect(/The model "tree" is left out/.test(missing), `what is missing: ${missing}`);
   const errors = await page.evaluate(() => window.__skyquilt.state().notices.map(({ text }) => text));
   expect(errors.length === 0, `messages: ${errors}`);
-}
-
-/** A server as anybody may have it. */
-async function serve(folder) {
-  const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".jpg": "image/jpeg" };
-  const server = createServer((request, response) => {
-    const file = path.join(
-      folder,
-      decodeURIComponent(new URL(request.url, "http://localhost").pathname).slice("/t".length),
-    );
-    if (!file.startsWith(folder) || !existsSync(file) || !statSync(file).isFile()) {
-      response.writeHead(404).end();
-      return;
-    }
-    response.writeHead(200, { "Content-Type": types[path.extname(file)] ?? "application/octet-stream" });
-    createReadStream(file).pipe(response);
-  });
-  await new Promise((done) => server.listen(0, "127.0.0.1", done));
-  return { server, link: `http://127.0.0.1:${server.address().port}/t/index.html` };
 }
 
 const browser = await start();

@@ -2,6 +2,7 @@
 // too, and markers are chosen by the keyboard. What must be seen is computed here from depths: of the mesh by its own picks, of the frame from the depth
 // image of `skyquilt render`.
 import { execFileSync } from "node:child_process";
+import { readFileSync } from "node:fs";
 import path from "node:path";
 import { canvasPicture, save } from "./browser.mjs";
 import { boxGlb, signGlb } from "./glb_files.mjs";
@@ -10,7 +11,7 @@ const FOV_DEG = 45;
 /** Of 255. Magenta is far from everything in the scene. */
 const DIFFERENT = 24;
 const MOST_PX = 2;
-const BOX = { size: [7, 11, 4], yawDeg: 30, scale: 1.25 };
+export const BOX = { size: [7, 11, 4], yawDeg: 30, scale: 1.25 };
 
 /** Distance along the ray to the box that stands at `at`; NaN: it misses. */
 function boxDistance(at, origin, direction) {
@@ -52,6 +53,27 @@ function changedPixels(a, b) {
   return changed;
 }
 
+/** The houses of the truth that can be measured, from the middle outwards. */
+export function truthHouses(file) {
+  // The ridge of a gable roof is as long as the house; that of a hip roof is not.
+  const houses = JSON.parse(readFileSync(file, "utf8")).buildings.filter(
+    (one) => one.inside_area && one.length_m > 6 && (one.roof === "gable" || one.roof === "flat"),
+  );
+  const at = (one) => Math.hypot(one.east_m, one.north_m);
+  return houses.sort((a, b) => at(a) - at(b));
+}
+
+/** Where a house of the truth is: metres across its ridge, and up from its ground. */
+export function placeAbout(house) {
+  const yaw = (house.yaw_deg * Math.PI) / 180;
+  const across = [-Math.sin(yaw), Math.cos(yaw)];
+  return (metres, up) => [
+    house.east_m + across[0] * metres,
+    house.north_m + across[1] * metres,
+    house.ground_z_m + up,
+  ];
+}
+
 /** How many pixels differ from the truth, and how many of them are farther than two pixels from its edge. */
 function against(truth, drawn, width, height) {
   let wrong = 0;
@@ -81,7 +103,7 @@ async function urlOf(page, bytes) {
 }
 
 /** A textured sign before the house shows its picture's values as they are. */
-async function checkSign(page, at, yawDeg, { expect }) {
+async function checkSign(page, at, yawDeg, { expect, out }) {
   const color = [10, 200, 30];
   const url = await urlOf(page, signGlb(color));
   const sign = { kind: "model", id: "sign", at, yawDeg, scale: 4, name: "sign", url };
@@ -95,6 +117,17 @@ async function checkSign(page, at, yawDeg, { expect }) {
     shown.every((value, i) => Math.abs(value - color[i]) <= 1),
     `the sign is ${shown}, not ${color}`,
   );
+  // The models of buildings are translucent: they must not shine over what stands before them.
+  await page.evaluate(() => window.__skyquilt.setLayer("buildings", true));
+  await page.waitForFunction(() => window.__skyquilt.state().buildings.set !== null);
+  await page.evaluate(() => window.__skyquilt.idle());
+  const models = await canvasPicture(page);
+  save(models, path.join(out, "things_models.png"));
+  await page.evaluate(() => window.__skyquilt.setLayer("buildings", false));
+  const changed = changedPixels(picture, models);
+  const count = changed.reduce((sum, value) => sum + value, 0);
+  expect(count > 500, `the models of buildings change ${count} pixels`);
+  expect(changed[first / 4] === 0, "a model of a building is drawn over the sign before it");
 }
 
 /** Pixels of a rectangle that holds the box. */
@@ -113,13 +146,48 @@ async function pixelsAround(page, { at, scale }, width, height) {
   return range(1, height).flatMap((y) => range(0, width).map((x) => [x, y]));
 }
 
+/** Pixels of the box that stands at `at`, whatever is before it, with its distance along their rays. */
+export async function pixelsInBox(page, at, width, height) {
+  const pixels = await pixelsAround(page, { at, scale: BOX.scale }, width, height);
+  const { eyeEnu, rays } = await page.evaluate(
+    (places) => ({
+      eyeEnu: window.__skyquilt.pose().eyeEnu,
+      rays: places.map(([x, y]) => window.__skyquilt.rayAt([x + 0.5, y + 0.5]).direction),
+    }),
+    pixels,
+  );
+  return pixels
+    .map((px, k) => ({ px, t: boxDistance(at, eyeEnu, rays[k]) }))
+    .filter(({ t }) => Number.isFinite(t));
+}
+
+/** Where it must be seen before a surface at these distances. */
+function seenOf(inBox, distances, width, height) {
+  const seen = new Uint8Array(width * height);
+  for (const [k, { px, t }] of inBox.entries()) if (!(distances[k] <= t)) seen[px[1] * width + px[0]] = 1;
+  return seen;
+}
+
+/** The box in a picture, beside the depth image of `skyquilt render`. */
+export function boxAgainstDepth(inBox, depthFile, picture, without) {
+  const { width, height } = picture;
+  const depths = depthsAt(
+    depthFile,
+    inBox.map(({ px }) => px),
+  );
+  return against(seenOf(inBox, depths, width, height), changedPixels(picture, without), width, height);
+}
+
+export function expectHalfHidden(name, { seen, far }, inBox, expect) {
+  expect(seen > 200 && seen < inBox.length - 200, `${name}: ${seen} of ${inBox.length} pixels of the box are seen`);
+  expect(far === 0, `${name}: ${far} pixels of the box are wrong, farther than ${MOST_PX} pixels from its edge`);
+}
+
 /** `house`: of the truth; `tools`: what view_page.mjs has. */
 export async function checkThings(page, house, tools) {
   const { width, height, out, expect, figures, lookAt, settled, rendered } = tools;
-  const yaw = (house.yaw_deg * Math.PI) / 180;
-  const across = [-Math.sin(yaw), Math.cos(yaw)];
-  const ground = house.ground_z_m;
-  const from = (metres, up) => [house.east_m + across[0] * metres, house.north_m + across[1] * metres, ground + up];
+  const from = placeAbout(house);
+  const across = [0, 1].map((i) => from(1, 0)[i] - from(0, 0)[i]);
   const at = from(-(house.width_m / 2 + 6), -0.5);
   await lookAt(page, from(38, 24), from(0, 0.6 * house.ridge_height_m), FOV_DEG);
   const url = await urlOf(page, boxGlb(BOX.size, [1, 0, 1]));
@@ -136,22 +204,9 @@ export async function checkThings(page, house, tools) {
   };
   const idle = () => page.evaluate(() => window.__skyquilt.idle());
   const pose = await page.evaluate(() => window.__skyquilt.pose());
-  // Each pixel's own ray, where the box may be.
-  const pixels = await pixelsAround(page, box, width, height);
-  const rays = await page.evaluate(
-    (places) => places.map(([x, y]) => window.__skyquilt.rayAt([x + 0.5, y + 0.5]).direction),
-    pixels,
-  );
-  const inBox = pixels
-    .map((px, k) => ({ px, t: boxDistance(at, pose.eyeEnu, rays[k]) }))
-    .filter(({ t }) => Number.isFinite(t));
+  const inBox = await pixelsInBox(page, at, width, height);
   expect(inBox.length > 500, `the box has ${inBox.length} pixels`);
-  /** Where it must be seen before a surface at these distances. */
-  const seenBefore = (distances) => {
-    const seen = new Uint8Array(width * height);
-    for (const [k, { px, t }] of inBox.entries()) if (!(distances[k] <= t)) seen[px[1] * width + px[0]] = 1;
-    return seen;
-  };
+  const seenBefore = (distances) => seenOf(inBox, distances, width, height);
 
   await page.evaluate(() => window.__skyquilt.setLayer("exact", false));
   await checkSign(page, from(12, 8), (Math.atan2(across[0], across[1]) * 180) / Math.PI, tools);
@@ -183,14 +238,7 @@ export async function checkThings(page, house, tools) {
   const frameWithout = await pictureWith([], () => settled(page));
   await page.evaluate(() => window.__skyquilt.setLayer("surface", true));
   const reference = rendered(pose, "things");
-  const depths = depthsAt(
-    reference.depth,
-    inBox.map(({ px }) => px),
-  );
-  figures.things_exact = against(seenBefore(depths), changedPixels(frameWith, frameWithout), width, height);
-
-  for (const [name, { seen, far }] of Object.entries({ mesh: figures.things_mesh, exact: figures.things_exact })) {
-    expect(seen > 200 && seen < inBox.length - 200, `${name}: ${seen} of ${inBox.length} pixels of the box are seen`);
-    expect(far === 0, `${name}: ${far} pixels of the box are wrong, farther than ${MOST_PX} pixels from its edge`);
-  }
+  figures.things_exact = boxAgainstDepth(inBox, reference.depth, frameWith, frameWithout);
+  expectHalfHidden("mesh", figures.things_mesh, inBox, expect);
+  expectHalfHidden("exact", figures.things_exact, inBox, expect);
 }

@@ -7,7 +7,7 @@ import path from "node:path";
 import { PNG } from "pngjs";
 import { canvasPicture, differing, open, report, save, screenshot, start } from "./browser.mjs";
 import { renderPose, rotateBack } from "./render_pose.mjs";
-import { checkThings } from "./things_check.mjs";
+import { checkThings, truthHouses } from "./things_check.mjs";
 
 const [link, project, truth, program, out] = process.argv.slice(2);
 const WIDTH = 400;
@@ -108,19 +108,9 @@ async function checkPictures(page, description) {
   );
 }
 
-/** The houses of the truth that can be measured, from the middle outwards. */
-function truthHouses() {
-  // The ridge of a gable roof is as long as the house; that of a hip roof is not.
-  const houses = JSON.parse(readFileSync(truth, "utf8")).buildings.filter(
-    (one) => one.inside_area && one.length_m > 6 && (one.roof === "gable" || one.roof === "flat"),
-  );
-  const at = (one) => Math.hypot(one.east_m, one.north_m);
-  return houses.sort((a, b) => at(a) - at(b));
-}
-
 /** The eaves along a house's length, measured between two clicks from obliquely above. */
 async function checkHouse(page, description) {
-  const houses = truthHouses();
+  const houses = truthHouses(truth);
   expect(houses.length > 0, "no house in the truth");
   figures.houses = [];
   for (const house of houses.slice(0, 3)) {
@@ -251,7 +241,7 @@ try {
   await checkPictures(page, description);
   await checkHouse(page, description);
   const tools = { width: WIDTH, height: HEIGHT, out, expect, figures, lookAt, settled, rendered };
-  await checkThings(page, truthHouses()[0], tools);
+  await checkThings(page, truthHouses(truth)[0], tools);
   await page.setViewportSize({ width: 1280, height: 800 });
   await checkTools(page, description);
   await checkBuildings(page, description);

@@ -310,7 +310,9 @@ export class DocumentsKeeper {
   private isOwn(file: DocumentFile, { text, tag }: LoadedDocument): boolean {
     // Saved here while this was asked.
     if (tag !== null && tag === this.tags.get(file)) return true;
-    const own = this.sent.get(file)?.find((one) => one.text === text || (text !== null && isSameTour(file, one.text, text)));
+    const own = this.sent
+      .get(file)
+      ?.find((one) => one.text === text || (text !== null && isSameTour(file, one.text, text)));
     if (text !== null && own === undefined) return false;
     // Taken away by somebody, or saved by this page, which did not hear of it.
     if (own !== undefined) this.saved.set(file, own.documents);

@@ -36,7 +36,8 @@ function renderStops() {
         name: id,
         pose: { eyeEnu: pose.eye_enu, rotation: pose.rotation, fovyDeg: pose.fovy_deg },
       }));
-    const made = renderPoses({ program, project, out, ...SIZE }, views, `rendered_${brightness}`, String(brightness ?? "normal"));
+    const context = { program, project, out, ...SIZE };
+    const made = renderPoses(context, views, `rendered_${brightness}`, String(brightness ?? "normal"));
     for (const [id, files] of made) rendered.set(id, files);
   }
   return rendered;
@@ -55,7 +56,7 @@ async function arrived(page, index) {
 async function seen(page) {
   const hide = (how) =>
     page.evaluate((visibility) => {
-      document.getElementById("ui").style.visibility = visibility;
+      for (const one of document.querySelectorAll("#ui, #stage :not(canvas)")) one.style.visibility = visibility;
     }, how);
   await hide("hidden");
   const picture = PNG.sync.read(await page.screenshot());
@@ -82,8 +83,6 @@ async function checkStops(page, rendered) {
     if (i > 0) await page.keyboard.press("ArrowRight");
     await arrived(page, i);
     if (i === LAST) await checkBox(page, rendered.get(id).depth);
-    await page.evaluate(() => window.__skyquilt.setThings([]));
-    await page.evaluate(() => window.__skyquilt.idle());
     const picture = exposure_stops === null ? await canvasPicture(page) : await seen(page);
     save(picture, path.join(out, `stop_${i + 1}.png`));
     const share = differing(picture, PNG.sync.read(readFileSync(rendered.get(id).png)), 8);

@@ -3,7 +3,12 @@ import { readFileSync } from "node:fs";
 import path from "node:path";
 
 const CELL_M = 2;
-const READERS = { 5121: [1, "readUInt8"], 5123: [2, "readUInt16LE"], 5125: [4, "readUInt32LE"], 5126: [4, "readFloatLE"] };
+const READERS = {
+  5121: [1, "readUInt8"],
+  5123: [2, "readUInt16LE"],
+  5125: [4, "readUInt32LE"],
+  5126: [4, "readFloatLE"],
+};
 const WIDTHS = { SCALAR: 1, VEC3: 3 };
 
 /** The bytes of a file of an exported tour, by its name below data/. */
@@ -44,7 +49,10 @@ function addGlb(bytes, triangles) {
     if (matrix || rotation || scale || children) throw new Error("this check knows plain nodes only");
     for (const { attributes, indices } of json.meshes[mesh].primitives) {
       const p = values(attributes.POSITION);
-      const corner = (i) => [p[3 * i] + translation[0], -(p[3 * i + 2] + translation[2]), p[3 * i + 1] + translation[1]];
+      const corner = (i) => {
+        const [x, y, z] = [0, 1, 2].map((axis) => p[3 * i + axis] + translation[axis]);
+        return [x, -z, y];
+      };
       const list = indices === undefined ? p.slice(0, p.length / 3).map((_, i) => i) : values(indices);
       for (let k = 0; k + 2 < list.length; k += 3) triangles.push([0, 1, 2].map((j) => corner(list[k + j])));
     }

@@ -67,11 +67,8 @@ export function truthHouses(file) {
 export function placeAbout(house) {
   const yaw = (house.yaw_deg * Math.PI) / 180;
   const across = [-Math.sin(yaw), Math.cos(yaw)];
-  return (metres, up) => [
-    house.east_m + across[0] * metres,
-    house.north_m + across[1] * metres,
-    house.ground_z_m + up,
-  ];
+  const { east_m, north_m, ground_z_m } = house;
+  return (metres, up) => [east_m + across[0] * metres, north_m + across[1] * metres, ground_z_m + up];
 }
 
 /** How many pixels differ from the truth, and how many of them are farther than two pixels from its edge. */

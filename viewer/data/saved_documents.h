@@ -21,7 +21,8 @@ DataReply GetDocument(const OpenedProject& opened, const std::string& name);
 // Checks the document and replaces the file: at any moment it has its old or its new content. A camera path without views removes it. gcp.json is
 // written before gcp_list.txt, which is made from it; lists that were not are kept as gcp_list.txt.orig, gcp_list.txt.orig.2, ... if_match: etags
 // separated by spaces, one of which the file must have; empty: no check. 204 with the new etag, or with the reason as text: 400 (what is wrong), 412
-// (the file has another etag), 409 (no permission to read or write), 507 (disk full), 500; then the file has its old content, unless only gcp_list.txt cannot be written.
+// (the file has another etag), 409 (no permission to read or write), 507 (disk full), 500; then the file has its old content, unless only
+// gcp_list.txt cannot be written.
 DataReply PutDocument(const OpenedProject& opened, const std::string& name, const std::string& body, const std::string& if_match);
 
 // What a document was saved as last. A page that is left while it saves does not know the etag of what it has sent; it names the hash of that body.

@@ -194,13 +194,13 @@ TEST(ExportTour, AnAssetOfAWrongTypeIsLeftOutByNameAndTheRestPlays) {
   EXPECT_EQ(exported.stops, 2U);
   ASSERT_EQ(exported.missing.size(), 4U);
   const auto says = [&](const std::string& one, const std::string& two) {
-    return std::ranges::any_of(exported.missing, [&](const std::string& text) {
-      return text.find(one) != std::string::npos && text.find(two) != std::string::npos;
-    });
+    return std::ranges::any_of(exported.missing,
+                               [&](const std::string& text) { return text.find(one) != std::string::npos && text.find(two) != std::string::npos; });
   };
   EXPECT_TRUE(says("農場", "page.png") && says("The shed", "shed.glb"));
   EXPECT_TRUE(says(picture_name, "it is not a PNG picture") && says(model_name, "left out"));
-  EXPECT_FALSE(fs::exists(sample.out / "data" / "assets" / (picture_name + ".js")) || fs::exists(sample.out / "data" / "assets" / (model_name + ".js")));
+  EXPECT_FALSE(fs::exists(sample.out / "data" / "assets" / (picture_name + ".js")) ||
+               fs::exists(sample.out / "data" / "assets" / (model_name + ".js")));
   EXPECT_EQ(ContentOf(sample.out, "assets/" + sample.picture_name), sample.picture);
   const auto files = JsonOf(sample.out, "manifest.json")["files"].get<std::set<std::string>>();
   EXPECT_TRUE(files.contains("assets/" + sample.picture_name));

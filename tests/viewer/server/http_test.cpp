@@ -215,8 +215,8 @@ TEST_F(HttpTest, TagsOfDocumentsPass) {
   EXPECT_EQ(kept->body, "shared");
   EXPECT_EQ(kept->headers.at("etag"), "\"a1\"");
   EXPECT_EQ(Ask("GET /data/text", cookie)->headers.count("etag"), 0U);
-  for (const std::string line : {"", "If-Match: \"a1\"\r\n", "If-Match: W/\"a2\"\r\n", "If-Match: *\r\n", "if-match: a3\r\n",
-                                 "If-Match: \"a4\", W/\"a5\" ,a6\r\n"}) {
+  for (const std::string line :
+       {"", "If-Match: \"a1\"\r\n", "If-Match: W/\"a2\"\r\n", "If-Match: *\r\n", "if-match: a3\r\n", "If-Match: \"a4\", W/\"a5\" ,a6\r\n"}) {
     const auto put = Ask("PUT /data/gcp.json", cookie, origin + line, "{}");
     ASSERT_EQ(Status(put), 204);
     EXPECT_EQ(put->headers.at("etag"), "\"new\"");

@@ -153,9 +153,7 @@ export async function pixelsInBox(page, at, width, height) {
     }),
     pixels,
   );
-  return pixels
-    .map((px, k) => ({ px, t: boxDistance(at, eyeEnu, rays[k]) }))
-    .filter(({ t }) => Number.isFinite(t));
+  return pixels.map((px, k) => ({ px, t: boxDistance(at, eyeEnu, rays[k]) })).filter(({ t }) => Number.isFinite(t));
 }
 
 /** Where it must be seen before a surface at these distances. */

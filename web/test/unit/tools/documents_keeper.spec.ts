@@ -198,6 +198,7 @@ test("leaving: a question while something is unsaved, a last save, and one at on
   addPoint(b.store, 3);
   b.page.dispatchEvent(new Event("visibilitychange"));
   assert.deepEqual(files.saves.slice(1), ["measurements.geojson keepalive"]);
+  await settle();
   await pass(b, 1000);
   assert.equal(leave(), false);
   tools.dispose();

@@ -214,7 +214,8 @@ export class FakeFiles implements DocumentFiles {
     this.saves.push(keepalive === true ? `${file} keepalive` : file);
     if (this.hold !== null) await this.hold;
     if (this.fail !== "") throw new Error(this.fail);
-    if (ifMatch !== null && !ifMatch.split(", ").includes(this.tag(file))) throw new ChangedElsewhere("changed in another window");
+    if (ifMatch !== null && !ifMatch.split(", ").includes(this.tag(file)))
+      throw new ChangedElsewhere("changed in another window");
     this.texts.set(file, text);
     if (this.loseAnswer) throw new Error("the server does not answer");
     return this.tag(file);

@@ -99,13 +99,13 @@ async function checkTexts(page) {
   expect((await page.locator(".player b, .player script, .player img[src=x]").count()) === 0, "text became elements");
   expect((await page.title()) === tour.title, `the page's title is ${await page.title()}`);
   await page.waitForFunction(() => document.querySelector(".player-picture")?.naturalWidth === 60);
-  await page.getByLabel("All stops").click();
+  await page.getByRole("button", { name: "All stops" }).click();
   const list = page.locator(".player-list");
   expect((await list.getByRole("heading").textContent()) === tour.title, "the list has another title");
   const missing = await list.locator("details li").allTextContents();
   expect(missing.length === 2 && /"Shed" is left out/.test(missing.join()), `what is missing: ${missing.join(" ")}`);
   await screenshot(page, out, "list");
-  await page.getByLabel("All stops").click();
+  await page.getByRole("button", { name: "All stops" }).click();
   expect((await page.evaluate(() => window.hacked)) === undefined, "a script in a text was run");
 }
 

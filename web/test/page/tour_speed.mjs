@@ -26,15 +26,14 @@ function hookedCopy() {
 }
 
 /** Milliseconds since the navigation when this becomes true, looked at with every picture of the screen. */
-async function when(page, condition) {
-  const handle = await page.waitForFunction(`(${condition}) ? performance.now() : 0`, null, { timeout: 120_000 });
-  return handle.jsonValue();
+async function when(page, condition, argument = null) {
+  await page.waitForFunction(condition, argument, { timeout: 120_000 });
+  return page.evaluate(() => performance.now());
 }
 
 async function measureOpening(page) {
-  const hook = "window.__skyquilt";
-  const still = await when(page, `${hook}?.statistics().frames > 0`);
-  const all = await when(page, `${hook}.ready()`);
+  const still = await when(page, () => window.__skyquilt?.statistics().frames > 0);
+  const all = await when(page, () => window.__skyquilt.ready());
   const poster = await page.evaluate(
     () => performance.getEntriesByName("first-contentful-paint")[0]?.startTime ?? Number.NaN,
   );
@@ -43,7 +42,7 @@ async function measureOpening(page) {
 
 /** Milliseconds between pictures of the screen on the ways to all stops. */
 async function measureWays(page) {
-  await when(page, "window.__skyquilt.state().map !== null");
+  await when(page, () => window.__skyquilt.state().map !== null);
   const count = await page.evaluate(() => window.__skyquilt.state().documents.tour.stops.length);
   await page.evaluate(() => {
     window.gaps = [];
@@ -58,8 +57,8 @@ async function measureWays(page) {
   });
   for (let i = 1; i < count; i += 1) {
     await page.keyboard.press("ArrowRight");
-    await when(page, `window.__skyquilt.state().play.progress.index === ${i}`);
-    await when(page, 'window.__skyquilt.state().play.phase === "stop"');
+    await when(page, (index) => window.__skyquilt.state().play.progress.index === index, i);
+    await when(page, () => window.__skyquilt.state().play.phase === "stop");
   }
   return page.evaluate(() => window.gaps);
 }

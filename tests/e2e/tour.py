@@ -119,6 +119,33 @@ def check_export(skyquilt, project, folder):
     expect("foreign" in text and (foreign / "letter.txt").read_text() == "dear", text)
     text = skyquilt.call("tour", project, "-o", target, "--size", "1MB", *SMALL_EXPORT[2:], status=3)
     expect("MB" in text or "size" in text, text)
+    check_full_disk_and_ranks(skyquilt, project, folder, sum(map(len, contents(target).values())))
+
+
+def check_full_disk_and_ranks(skyquilt, project, folder, size):
+    """An export that does not fit beside the one before it leaves that one as it was; three ranks export the same files as one."""
+    disk = folder / "disk"
+    disk.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size + 1_500_000}", "tmpfs", str(disk)], stderr=subprocess.PIPE, text=True)
+    if mounted.returncode != 0:
+        skip(f"an export on a full disk: no right to mount ({mounted.stderr.strip()})")
+        return
+    try:
+        export = ["tour", project, "-o", disk / "exported", *SMALL_EXPORT]
+        skyquilt.call(*export)
+        first = contents(disk)
+        text = skyquilt.call(*export, status=3)
+        expect("space" in text.lower() and str(disk) in text, f"a full disk is not named:\n{text}")
+        expect(contents(disk) == first, "on a full disk the export changed, or something is left over")
+        subprocess.run(["mount", "-o", "remount,size=200m", str(disk)], check=True)
+        shutil.rmtree(project / "tour")
+        text = skyquilt.call(*export, ranks=3)
+        second = contents(disk)
+        # The manifest has the time of the export.
+        other = [name for name in first if second.get(name) != first[name] and "manifest" not in name]
+        expect(second.keys() == first.keys() and not other, f"after a full disk, by three ranks, other files are exported: {other}\n{text}")
+    finally:
+        subprocess.run(["umount", "-l", str(disk)], check=True)
 
 
 def check_exported_page(skyquilt, project, exported, web, out):

@@ -14,7 +14,7 @@ from web_client import Viewer, page_can_be_checked, skip
 from web_documents import asset_path, collection, png, tour
 
 # A field that shows houses; nothing is measured on it.
-TRAIN = ["--blocks", "1x1", "--image-width", "320", "--time-budget", "12s", "--set", "products.video_seconds=0", "--set", "buildings.enabled=false"]
+TRAIN = ["--blocks", "1x1", "--image-width", "320", "--steps", "400", "--set", "products.video_seconds=0", "--set", "buildings.enabled=false"]
 # Pictures of the size in which the page is looked at, and small ones where nobody looks.
 EXPORT = ["--size", "40MB", "--set", "tour.still_width=400", "--set", "tour.still_height=250", "--set", "tour.panorama_width=512"]
 SMALL_EXPORT = ["--size", "40MB", "--set", "tour.still_width=160", "--set", "tour.still_height=100", "--set", "tour.panorama_width=256"]

@@ -6,6 +6,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "prepare/models/read_model.h"
 #include "prepare/photo_files.h"
 
 namespace skyquilt::prepare {
@@ -59,7 +60,7 @@ InputFolder FindInputs(const fs::path& photos, const fs::path& model, const fs::
   if (fs::is_directory(folder / "images") && (simulated || !HoldsPhotosDirectly(folder))) found.photo_root = folder / "images";
 
   if (!model.empty()) {
-    RequireFolder(model, "Give the folder with cameras, images and points3D, usually sparse/0");
+    FindModel(model);  // before hours of work
     found.model = fs::canonical(model);
   } else if (simulated) {
     found.model = folder / "sparse" / "0";

@@ -11,15 +11,15 @@ namespace skyquilt::prepare {
 
 struct InputFolder {
   std::filesystem::path photo_root;           // absolute
-  std::filesystem::path model;                // folder of a COLMAP model; empty: COLMAP must be run
+  std::filesystem::path model;                // folder or file of a camera model (models/read_model.h); empty: COLMAP must be run
   std::filesystem::path masks;                // empty: none
   std::optional<geo::Geodetic> exact_origin;  // the model already is in ENU about this origin (simulated survey)
   std::optional<survey::Truth> truth;         // of a simulated survey
 };
 
-// `photos` may be a folder of photos, a folder with the photos in images/, or a folder made by `simulate` (it has a simulate.json). `model` and
-// `masks` are folders that the user gave; if empty, the usual places are searched: PHOTOS/masks, and only for simulated surveys PHOTOS/sparse/0.
-// Throws base::InputError for a missing folder or a damaged simulate.json.
+// `photos` may be a folder of photos, a folder with the photos in images/, or a folder made by `simulate` (it has a simulate.json). `model`
+// (a folder or a file) and `masks` are what the user gave; if empty, the usual places are searched: PHOTOS/masks, and only for simulated surveys PHOTOS/sparse/0.
+// Throws base::InputError for a missing folder, a model of an unknown format or a damaged simulate.json.
 InputFolder FindInputs(const std::filesystem::path& photos, const std::filesystem::path& model, const std::filesystem::path& masks);
 
 }  // namespace skyquilt::prepare

@@ -22,7 +22,10 @@
 #include "prepare/horizontal_lines.h"
 #include "prepare/input_folder.h"
 #include "prepare/intrinsics_sigma.h"
+#include "prepare/model_use.h"
+#include "prepare/models/read_model.h"
 #include "prepare/photo_files.h"
+#include "prepare/photo_positions.h"
 #include "prepare/prepare_report.h"
 #include "prepare/sparse_cloud.h"
 #include "prepare/survey_points.h"
@@ -186,7 +189,8 @@ double MeasureK1Sigma(const survey::ColmapModel& model, const fs::path& model_fo
   }
 }
 
-// Needs the survey's photos, place and heights above ground. `has_observations`: of features in photos, not a simulation's projections.
+// Needs the survey's photos, place and heights above ground. `has_observations`: in COLMAP's files, of features in photos, not a simulation's
+// projections.
 void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folder, const std::vector<Registered>& registered,
                    const std::vector<PhotoFile>& files, bool has_observations, survey::Survey& survey) {
   std::vector<const survey::PhotoTags*> tags;
@@ -223,17 +227,25 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   const std::vector<std::string> names =
       ListPhotos(folders.photo_root, {folders.masks, input.out_folder, fs::absolute(input.out_folder).parent_path()});
   PhotoSet photos = ReadPhotos(folders.photo_root, names, threads);
-  const std::vector<std::string> masks = FindMasks(folders.masks, photos.usable);
+  UsePositionFiles(folders.photo_root, options.geo_file, photos.usable);
+  std::vector<std::string> masks = FindMasks(folders.masks, photos.usable);
   base::ThrowIfCancelled();
 
+  InputModel input_model;
   if (folders.model.empty()) {
     const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap", threads.size()};
     folders.model = RunColmap(job, photos.usable, options);
+    input_model.sfm = survey::ReadColmapModel(folders.model);
+  } else {
+    input_model = ReadModel(folders.model, ModelPhotos(folders.photo_root, names));
+    RequirePoints(input_model, folders.model);
+    UseAlphaAsMasks(input_model, folders.photo_root, photos.usable, fs::absolute(input.out_folder) / "alpha_masks", masks, threads);
   }
-  const survey::ColmapModel model = survey::ReadColmapModel(folders.model);
+  const survey::ColmapModel& model = input_model.sfm;
   const std::vector<Registered> registered = MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
 
-  const std::vector<Station> stations = MakeStations(registered, photos.usable);
+  std::vector<Station> stations = MakeStations(registered, photos.usable);
+  if (input_model.place) PlaceByModel(*input_model.place, stations);
   std::vector<Eigen::Vector3d> points;
   points.reserve(model.points.size());
   for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
@@ -255,8 +267,10 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   }
   FillPoints(model, georeference.enu_from_model, PhotoOfImage(registered), options.keep_points, survey);
   MeasureAgl(survey, threads);
-  CheckFlightOf(model, folders.model, registered, photos.usable, !folders.exact_origin, survey);
+  const bool has_observations = !folders.exact_origin && input_model.format == ModelFormat::kColmap;
+  CheckFlightOf(model, folders.model, registered, photos.usable, has_observations, survey);
   MarkHoldout(holdout, survey);
+  if (options.holdout == PrepareOptions().holdout) HoldOutByModel(input_model, folders.model, survey);
   base::ThrowIfCancelled();
   const FoundLines lines = FindHorizontalLines(survey, threads);
   survey.directions = FindDirections(lines.lines, lines.photos);

@@ -1,8 +1,9 @@
-// Turns photos into a prepared survey: camera poses and sparse points in one local ENU frame, the input of all later stages. A COLMAP model of the
-// photos is used if given, otherwise COLMAP is run. Written to `out_folder`:
+// Turns photos into a prepared survey: camera poses and sparse points in one local ENU frame, the input of all later stages. A camera model of the
+// photos is used if given (models/read_model.h), otherwise COLMAP is run. Written to `out_folder`:
 //   survey.json, points.ply, kept_points.ply, tracks.bin     the survey (core/survey/survey.h)
 //   geo_residuals.csv           per photo: camera position, GPS tag, residual, height above ground
 //   cameras.geojson             camera positions, when geo-referenced (opens in QGIS)
+//   alpha_masks/                masks from the photos' alpha, with a transforms.json
 //   colmap/                     database, models and log, when COLMAP was run; a second call resumes where the first stopped
 // A folder with simulate.json is a simulated survey: its own model is used, and the survey keeps the paths of its truth.
 #pragma once
@@ -17,7 +18,7 @@ namespace skyquilt::prepare {
 
 struct PrepareInput {
   std::filesystem::path photos;      // folder, searched recursively; see FindInputs in input_folder.h
-  std::filesystem::path model;       // folder with cameras, images and points3D; empty: COLMAP is run (simulated survey: its own model)
+  std::filesystem::path model;       // folder or file of a model (models/read_model.h); empty: COLMAP is run (simulated survey: its own model)
   std::filesystem::path out_folder;  // created if needed
 };
 

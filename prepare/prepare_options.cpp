@@ -20,6 +20,8 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"max_features", &O::max_features, Range::AtLeast(100), "most features per photo"},
       {"use_gpu", &O::use_gpu, Range(), "let COLMAP use a GPU for features and matching (needs a COLMAP built for it)"},
       {"masks", &O::masks, Range(), "folder of masks named PHOTO.jpg.png, 0 = ignore; empty: masks/ inside the photo folder if there is one"},
+      {"geo_file", &O::geo_file, Range(),
+       "OpenDroneMap's table of photo positions in any coordinate system; empty: geo.txt in the photo folder or above it if there is one"},
       {"flight_gap_s", &O::flight_gap_s, Range{1e-3, 1e9}, "a longer pause between photos, in seconds, starts a new flight"},
       {"flight_offsets", &O::flight_offsets, Range::OneOf({"auto", "off"}),
        "auto: tagged heights get an offset and a drift in time per flight where they need it; off: never"},

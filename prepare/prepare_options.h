@@ -17,6 +17,7 @@ struct PrepareOptions {
   int max_features = 8192;
   bool use_gpu = false;
   std::string masks;
+  std::string geo_file;
   double flight_gap_s = 900.0;
   std::string flight_offsets = "auto";
   std::string tag_lag = "auto";

@@ -47,6 +47,8 @@ void FillPoints(const survey::ColmapModel& model, const geo::Similarity3d& enu_f
     (kept ? survey.kept_points : survey.points).push_back(points[i]);
     (kept ? survey.kept_tracks : survey.tracks).Add(TrackOf(of_model, photo_of_image));
   }
+  // Formats without tracks: none is known, rather than points that nobody saw.
+  if (survey.tracks.observations() + survey.kept_tracks.observations() == 0) survey.tracks = survey.kept_tracks = {};
   if (keep_every > 0) spdlog::info("{} sparse points are kept from training, to measure depth errors with", survey.kept_points.size());
 }
 

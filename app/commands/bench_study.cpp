@@ -93,7 +93,7 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   AddPlaceFlag(
       *command, "--place", [flags](const std::string& place) { flags->place = place; },
       "simulated place to use instead of photos; default: " + study_command.place);
-  command->add_option("--model", flags->model, "folder with the COLMAP model of the photos; without it COLMAP is run")->type_name("FOLDER");
+  command->add_option("--model", flags->model, "camera model of the photos, as for prepare; without it COLMAP is run")->type_name("PATH");
   command->add_option("--time-budget", flags->budget, "training time of every variant, such as 90s or 10min; default: " + study_command.budget)
       ->type_name("TIME");
   command->add_flag("--quick", flags->quick, "test with a hamlet and small photos: seconds instead of minutes, figures without meaning");

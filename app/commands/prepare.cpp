@@ -13,11 +13,14 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   };
   const auto flags = std::make_shared<PrepareFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  CLI::App* command = app.add_subcommand("prepare", "make a geo-referenced survey from photos and their COLMAP model");
+  CLI::App* command = app.add_subcommand("prepare", "make a geo-referenced survey from photos and their camera model");
   command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->required()->type_name("FOLDER");
   command->add_option("-o,--out", flags->out, "project folder; created if it does not exist")->required()->type_name("FOLDER");
-  command->add_option("--model", flags->model, "folder with the COLMAP model of the photos (text or binary); without it COLMAP is run")
-      ->type_name("FOLDER");
+  command
+      ->add_option("--model", flags->model,
+                   "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape) or .opf (Pix4D); "
+                   "without it COLMAP is run")
+      ->type_name("PATH");
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddOptionFlag(*command, overrides, "--masks", "prepare.masks", "folder of masks named PHOTO.jpg.png; pixels with value 0 are ignored");
@@ -26,6 +29,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
       "Examples:\n"
       "  skyquilt prepare photos/ -o out\n"
       "  skyquilt prepare photos/ --model sparse/0 -o out\n"
+      "  skyquilt prepare photos/ --model odm/opensfm/reconstruction.json -o out\n"
       "  skyquilt prepare photos/ -o out --holdout every:10\n"
       "Writes out/survey/. Exit status: 0 done, 2 wrong usage, 3 bad input, 130 interrupted.");
   command->callback([&state, flags, overrides] {

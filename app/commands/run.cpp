@@ -31,8 +31,8 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   if (!flags.photos.empty() && !std::filesystem::is_directory(flags.photos)) {
     throw base::InputError(flags.photos, "no such folder", "Give the folder that holds the photos");
   }
-  if (!flags.model.empty() && !std::filesystem::is_directory(flags.model)) {
-    throw base::InputError(flags.model, "no such folder", "Give the folder that holds the COLMAP model, or leave --model out to run COLMAP");
+  if (!flags.model.empty() && !std::filesystem::exists(flags.model)) {
+    throw base::InputError(flags.model, "no such folder or file", "Give the camera model of the photos, or leave --model out to run COLMAP");
   }
   if (settings.tour.auto_stops > 0) viewer::TourPage(state.front_end);
   settings.evaluate.RequireFiles();
@@ -80,8 +80,11 @@ void AddRun(CLI::App& app, CommandState& state) {
         overrides->push_back({"simulate.place", name});
       },
       "simulated place to use instead of photos" + AllowedText("simulate.place") + " [simulate.place]");
-  command->add_option("--model", flags->model, "folder with the COLMAP model of the photos (text or binary); without it COLMAP is run")
-      ->type_name("FOLDER");
+  command
+      ->add_option("--model", flags->model,
+                   "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape) or .opf (Pix4D); "
+                   "without it COLMAP is run")
+      ->type_name("PATH");
   AddOptionFlag(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
   AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",
                 "altitude above ground in metres of each block, row by row from the south-west, separated by commas");

@@ -18,8 +18,8 @@ void SimulateStage(Pipeline& pipeline, const std::filesystem::path& folder) {
 void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model) {
   const auto absolute = [](const std::filesystem::path& path) { return path.empty() ? path : std::filesystem::absolute(path).lexically_normal(); };
   if (!std::filesystem::is_directory(photos)) throw base::InputError(photos, "no such folder", "Give the folder that holds the photos");
-  if (!model.empty() && !std::filesystem::is_directory(model)) {
-    throw base::InputError(model, "no such folder", "Give the folder that holds cameras, images and points3D (.bin or .txt)");
+  if (!model.empty() && !std::filesystem::exists(model)) {
+    throw base::InputError(model, "no such folder or file", "Give the camera model of the photos: a folder or file that docs/input_models.md lists");
   }
   pipeline.photos = absolute(photos);
   pipeline.model = absolute(model);

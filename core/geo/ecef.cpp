@@ -20,6 +20,15 @@ Eigen::Vector3d EcefFromGeodetic(const Geodetic& position) {
   return x;
 }
 
+Geodetic GeodeticFromEcef(const Eigen::Vector3d& x_in_ecef) {
+  if (!x_in_ecef.allFinite()) throw std::invalid_argument("earth-centred coordinates must be finite");
+  Geodetic position;
+  GeographicLib::Geocentric::WGS84().Reverse(x_in_ecef.x(), x_in_ecef.y(), x_in_ecef.z(), position.latitude_deg, position.longitude_deg,
+                                             position.height_m);
+  position.longitude_deg = WrapLongitudeDeg(position.longitude_deg);
+  return position;
+}
+
 Eigen::Matrix4d EcefFromEnu(const Geodetic& origin) {
   RequireValid(origin);
   std::vector<double> rotation(9);  // row-major

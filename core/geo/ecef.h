@@ -8,8 +8,10 @@
 
 namespace skyquilt::geo {
 
-// Throws std::invalid_argument if the position is not valid, as does EcefFromEnu.
+// Throws std::invalid_argument if the position is not valid, as do the functions below.
 Eigen::Vector3d EcefFromGeodetic(const Geodetic& position);
+// The inverse, for any finite position; the centre of the Earth becomes the north pole.
+Geodetic GeodeticFromEcef(const Eigen::Vector3d& x_in_ecef);
 // The rigid transform (homogeneous, acts on columns) from the frame that EnuFrame has at this origin.
 Eigen::Matrix4d EcefFromEnu(const Geodetic& origin);
 

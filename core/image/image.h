@@ -44,6 +44,9 @@ void ReadImageSize(const std::filesystem::path& file, int* width, int* height);
 // Loads a mask as one channel, 0 = ignore and 255 = use. A pixel is used when any of its colour channels is not 0 (alpha does not count).
 // Throws base::InputError.
 Image8 LoadMask(const std::filesystem::path& file);
+// The alpha of a photo as a mask: 255 where it is at least half opaque, else 0. Empty when it has no alpha or is opaque everywhere. Throws
+// base::InputError.
+Image8 LoadAlphaMask(const std::filesystem::path& file);
 // One channel of 8 bits as stored, for images of class numbers. Throws base::InputError for other pixel types and unreadable files.
 Image8 LoadLabels(const std::filesystem::path& file);
 // Float TIFF with one channel, for depth images. NaN and infinity are kept bit by bit.

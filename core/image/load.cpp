@@ -163,6 +163,18 @@ Image8 LoadMask(const std::filesystem::path& file) {
   return mask;
 }
 
+Image8 LoadAlphaMask(const std::filesystem::path& file) {
+  const cv::Mat pixels = Decode(base::ReadFile(file), file);
+  if (pixels.channels() != 4 || (pixels.depth() != CV_8U && pixels.depth() != CV_16U)) return {};
+  cv::Mat alpha;
+  cv::extractChannel(pixels, alpha, 3);
+  const double half = pixels.depth() == CV_8U ? 127.5 : 32767.5;
+  Image8 mask(alpha.cols, alpha.rows, 1);
+  cv::Mat target(mask.height, mask.width, CV_8UC1, mask.data.data());
+  cv::compare(alpha, half, target, cv::CMP_GT);
+  return cv::countNonZero(target) == alpha.rows * alpha.cols ? Image8() : mask;
+}
+
 Image8 LoadLabels(const std::filesystem::path& file) {
   const cv::Mat pixels = Decode(base::ReadFile(file), file);
   if (pixels.type() != CV_8UC1) throw InputError(file, "is not an image of one channel with 8 bits", "Images of classes hold one number per pixel");

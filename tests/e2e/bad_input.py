@@ -77,6 +77,16 @@ def test(skyquilt, folder):
     text = skyquilt.call("prepare", broken, "-o", folder / "out_broken", status=3)
     expect(words[-1] in text, f"the photo with the NaN pose is not named:\n{text}")
 
+    # Camera models of other programs: what is wrong and where, before anything is made.
+    for name, content, found in (("transforms.json", '{"fl_x": 500,\n "frames": [\n  {"file_path": 7}]}', "line 3: frames[0].file_path"),
+                                 ("reconstruction.json", '[{"shots": {}}]', "line 1"), ("cameras.xml", "<document>\n<chunk>\n</document>", "line 3"),
+                                 ("project.opf", "{}\n", 'has no "format"'), ("model.dat", "x", "Give a COLMAP folder")):
+        model = folder / "models" / name
+        model.parent.mkdir(exist_ok=True)
+        model.write_text(content)
+        text = skyquilt.call("prepare", survey, "--model", model, "-o", folder / "out_model", status=3)
+        expect(name in text and found in text, f"the fault of {name} is not named:\n{text}")
+
     # Tags that allow no place on Earth: a warning, or an error if asked for.
     unplaced = folder / "unplaced"
     skyquilt.call("simulate", "hamlet", "-o", unplaced, "--image-width", "64", "--set", "simulate.exact_frame=false", "--set", "simulate.tags_equal=true")

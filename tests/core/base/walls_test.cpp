@@ -70,6 +70,8 @@ const std::vector<Library>& Libraries() {
       {"MPI", std::regex("(.*/)?mpi\\.h"), {"core/comm"}},
       {"HDF5", std::regex("(.*/)?(hdf5(_hl)?\\.h|H5[^/]*\\.h|highfive/.*)"), {"core/checkpoint"}},
       {"GeographicLib", std::regex("GeographicLib/.*"), {"core/geo"}},
+      {"PROJ", std::regex("proj(_[^/]*)?\\.h"), {"core/geo"}},
+      {"pugixml", std::regex("pugixml\\.hpp"), {"prepare"}},
       {"Highway", std::regex("hwy/.*"), {"core/kernel"}},
       {"OpenCV image I/O", std::regex("opencv2/(imgcodecs|highgui)(\\.hpp|/.*)|opencv2/opencv\\.hpp"), {"core/image"}},
       {"Exiv2", std::regex("exiv2/.*"), {"core/survey"}},

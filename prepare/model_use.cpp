@@ -1,0 +1,77 @@
+#include "prepare/model_use.h"
+
+#include <algorithm>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/geo/enu_frame.h"
+#include "core/image/image.h"
+#include "prepare/georeference.h"
+
+namespace skyquilt::prepare {
+
+void RequirePoints(const InputModel& model, const std::filesystem::path& path) {
+  if (model.format == ModelFormat::kColmap || !model.sfm.points.empty()) return;
+  std::string fix = "Give a model with points, for instance in COLMAP's format, or leave out --model to let COLMAP find the poses";
+  if (model.format == ModelFormat::kTransforms) fix = "Name a PLY with points of the same frame as ply_file_path, or leave out --model to run COLMAP";
+  if (model.format == ModelFormat::kMetashape) fix = "Export the cameras with tie points in COLMAP's format, or leave out --model to run COLMAP";
+  throw base::InputError(path, "has poses but no sparse points, which give the heights above ground", fix);
+}
+
+void PlaceByModel(const ModelPlace& place, std::vector<Station>& stations) {
+  const auto tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
+  if (tagged >= kMinAgreeing) return;
+  spdlog::info("{} of {} photos have GPS tags, so the positions of the model are used ({}); their accuracy is not known", tagged, stations.size(),
+               place.source);
+  const geo::EnuFrame frame(place.origin);
+  const Station untagged;
+  for (Station& station : stations) {
+    station.gps = frame.GeodeticFromEnu(place.enu_from_model * station.cam_from_model.OriginInSource());
+    station.rtk = false;
+    station.horizontal_sigma_m = untagged.horizontal_sigma_m;
+    station.vertical_sigma_m = untagged.vertical_sigma_m;
+  }
+}
+
+void UseAlphaAsMasks(const InputModel& model, const std::filesystem::path& photo_root, const std::vector<PhotoFile>& photos,
+                     const std::filesystem::path& folder, std::vector<std::string>& masks, base::ThreadPool& threads) {
+  if (model.format != ModelFormat::kTransforms) return;
+  std::vector<size_t> without_mask;
+  for (size_t i = 0; i < photos.size(); ++i) {
+    // JPEGs have no alpha.
+    if (masks[i].empty() && std::filesystem::path(photos[i].name).extension() == ".png") without_mask.push_back(i);
+  }
+  if (without_mask.empty()) return;
+  base::Progress progress("read alpha of photos", static_cast<double>(without_mask.size()), "photos");
+  threads.ParallelFor(static_cast<int64_t>(without_mask.size()), [&](int64_t task, int /*thread*/) {
+    base::ThrowIfCancelled();
+    const size_t i = without_mask[static_cast<size_t>(task)];
+    const image::Image8 mask = image::LoadAlphaMask(photo_root / photos[i].name);
+    if (!mask.Empty()) {
+      const std::filesystem::path file = folder / (photos[i].name + ".png");
+      std::filesystem::create_directories(file.parent_path());
+      image::SavePng(mask, file);
+      masks[i] = file.string();
+    }
+    progress.Advance();
+  });
+  progress.Finish();
+  const auto n_masks = std::count_if(without_mask.begin(), without_mask.end(), [&](size_t i) { return !masks[i].empty(); });
+  if (n_masks > 0) spdlog::info("masks: {} photos have transparent pixels, which are ignored ({})", n_masks, folder.string());
+}
+
+void HoldOutByModel(const InputModel& model, const std::filesystem::path& path, survey::Survey& survey) {
+  if (model.test_photos.empty()) return;
+  size_t n_test = 0;
+  for (survey::Photo& photo : survey.photos) {
+    photo.is_test = model.test_photos.contains(photo.name);
+    n_test += photo.is_test ? 1 : 0;
+  }
+  if (n_test == survey.photos.size())
+    throw base::InputError(path, "holds out every photo, so none is left to train on", "Choose the held-out photos with --holdout");
+  spdlog::info("{} photos are held out, as the model says (choose others with prepare.holdout)", n_test);
+}
+
+}  // namespace skyquilt::prepare

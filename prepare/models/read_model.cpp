@@ -1,0 +1,133 @@
+#include "prepare/models/read_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/text.h"
+#include "prepare/models/json_document.h"
+#include "prepare/models/metashape_xml.h"
+#include "prepare/models/opensfm_json.h"
+#include "prepare/models/opf_json.h"
+#include "prepare/models/transforms_json.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFormats =
+    "Give a COLMAP folder (cameras, images and points3D, usually sparse/0), a transforms.json, an OpenSfM or OpenDroneMap reconstruction.json, a "
+    "Metashape cameras.xml or a Pix4D .opf";
+
+std::string ExtensionOf(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool IsColmapFolder(const fs::path& folder) {
+  return fs::exists(folder / "cameras.bin") || fs::exists(folder / "cameras.txt");
+}
+
+// JSON is told apart by what it holds: names are changed by users.
+ModelFormat FormatOfJson(const fs::path& file) {
+  {
+    // Reconstructions are large, and the only lists.
+    const std::string text = base::ReadFile(file);
+    const size_t first = text.find_first_not_of(" \t\r\n");
+    if (first != std::string::npos && text[first] == '[') return ModelFormat::kOpensfm;
+  }
+  const JsonDocument document(file, kFormats);
+  const JsonValue root = document.Root();
+  if (!root.IsObject()) root.Fail("holds no cameras");
+  if (root.Find("frames")) return ModelFormat::kTransforms;
+  const std::optional<JsonValue> format = root.Find("format");
+  if (format && format->Text() == "application/opf-project+json") return ModelFormat::kOpf;
+  if (format && format->Text().starts_with("application/opf-")) format->Fail("is a part of an OPF project", "Give the project file, which ends in .opf");
+  root.Fail("holds no cameras in a format that is known");
+}
+
+ModelFiles FindModelFile(const fs::path& file) {
+  const std::string extension = ExtensionOf(file);
+  if (extension == ".opf") return {ModelFormat::kOpf, file};
+  if (extension == ".json") return {FormatOfJson(file), file};
+  if (extension == ".xml") {
+    if (!LooksLikeMetashape(file)) throw base::InputError(file, "line 1: is not an XML file of Metashape's cameras", kFormats);
+    return {ModelFormat::kMetashape, file};
+  }
+  const std::string stem = file.stem().string();
+  if ((extension == ".bin" || extension == ".txt") && (stem == "cameras" || stem == "images" || stem == "points3D")) {
+    return {ModelFormat::kColmap, file.parent_path()};
+  }
+  throw base::InputError(file, "is not a camera model that is known", kFormats);
+}
+
+std::vector<TransformsFile> SplitFiles(const fs::path& folder) {
+  std::vector<TransformsFile> files;
+  for (const auto& [name, is_test] : std::array<std::pair<const char*, bool>, 3>{
+           {{"transforms_train.json", false}, {"transforms_val.json", true}, {"transforms_test.json", true}}}) {
+    if (fs::exists(folder / name)) files.push_back({folder / name, is_test});
+  }
+  return files;
+}
+
+// Files with this extension, in name order.
+std::vector<fs::path> FilesWith(const fs::path& folder, const std::string& extension) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.is_regular_file() && ExtensionOf(entry.path()) == extension) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+fs::path OnlyOne(const fs::path& folder, const std::vector<fs::path>& files) {
+  if (files.size() == 1) return files.front();
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  throw base::InputError(folder, "has several camera models: " + base::Join(names), "Give one of these files");
+}
+
+}  // namespace
+
+ModelFiles FindModel(const fs::path& path) {
+  if (!fs::exists(path)) throw base::InputError(path, "no such folder or file", kFormats);
+  if (!fs::is_directory(path)) return FindModelFile(path);
+  if (IsColmapFolder(path)) return {ModelFormat::kColmap, path};
+  if (fs::exists(path / "transforms.json")) return {ModelFormat::kTransforms, path / "transforms.json"};
+  if (fs::exists(path / "transforms_train.json")) return {ModelFormat::kTransforms, path};
+  for (const fs::path& file : {path / "reconstruction.json", path / "opensfm" / "reconstruction.json"}) {
+    if (fs::exists(file)) return {ModelFormat::kOpensfm, file};
+  }
+  if (const std::vector<fs::path> projects = FilesWith(path, ".opf"); !projects.empty()) return {ModelFormat::kOpf, OnlyOne(path, projects)};
+  std::vector<fs::path> documents = FilesWith(path, ".xml");
+  std::erase_if(documents, [](const fs::path& file) { return !LooksLikeMetashape(file); });
+  if (!documents.empty()) return {ModelFormat::kMetashape, OnlyOne(path, documents)};
+  throw base::InputError(path, "has no camera model that is known", kFormats);
+}
+
+InputModel ReadModel(const fs::path& path, const ModelPhotos& photos) {
+  const ModelFiles files = FindModel(path);
+  spdlog::info("the model is {}: {}", FormatName(files.format), files.path.string());
+  switch (files.format) {
+    case ModelFormat::kTransforms:
+      return ReadTransforms(fs::is_directory(files.path) ? SplitFiles(files.path) : std::vector<TransformsFile>{{files.path, false}}, photos);
+    case ModelFormat::kOpensfm:
+      return ReadOpensfm(files.path, photos);
+    case ModelFormat::kMetashape:
+      return ReadMetashape(files.path, photos);
+    case ModelFormat::kOpf:
+      return ReadOpf(files.path, photos);
+    case ModelFormat::kColmap:
+      break;
+  }
+  InputModel model;
+  model.sfm = survey::ReadColmapModel(files.path);
+  return model;
+}
+
+}  // namespace skyquilt::prepare

@@ -1,0 +1,257 @@
+#include "prepare/photo_positions.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/geo/crs.h"
+#include "core/geo/ecef.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kGeoFix = "Write per line: photo, x (east or longitude), y (north or latitude), height; the first line is the coordinate system";
+constexpr const char* kMrkFix = "Copy the file from the drone again, or remove it to use the photos' tags";
+// More accurate than this, a position was measured at the moment of exposure.
+constexpr double kMeasured_m = 0.1;
+// Tags of the same photo differ less.
+constexpr double kFarOff_m = 100.0;
+
+std::string LowerName(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::optional<double> ParseNumber(const std::string& text) {
+  double value = 0.0;
+  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const auto result = std::from_chars(begin, text.data() + text.size(), value);
+  if (result.ec != std::errc() || result.ptr != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::vector<std::string> WordsOf(const std::string& line) {
+  std::istringstream in(line);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+[[noreturn]] void FailLine(const fs::path& file, size_t line, const std::string& found, const std::string& fix) {
+  throw base::InputError(file, "line " + std::to_string(line) + ": " + found, fix);
+}
+
+// One row of geo.txt after its name; `words` has at least 3.
+GeoRow ParseGeoRow(const fs::path& file, size_t line, const std::vector<std::string>& words, const geo::Crs& crs) {
+  const auto number = [&](size_t i) {
+    const std::optional<double> value = ParseNumber(words[i]);
+    if (!value) FailLine(file, line, "'" + words[i] + "' is not a number", kGeoFix);
+    return *value;
+  };
+  const bool has_height = words.size() > 3;
+  GeoRow row{.photo = words[0], .position = {}, .horizontal_accuracy_m = {}, .vertical_accuracy_m = {}};
+  try {
+    row.position = crs.ToGeodetic({number(1), number(2), has_height ? number(3) : 0.0});
+  } catch (const std::invalid_argument& error) {
+    FailLine(file, line, error.what(), "Check that x is east or longitude and y north or latitude, and that the first line is their coordinate system");
+  }
+  if (!has_height) row.position.height_m = std::numeric_limits<double>::quiet_NaN();
+  // Zero and less mean that it is not known.
+  if (words.size() > 7 && number(7) > 0.0) row.horizontal_accuracy_m = number(7);
+  if (words.size() > 8 && number(8) > 0.0) row.vertical_accuracy_m = number(8);
+  return row;
+}
+
+struct Numbered {
+  MrkRow row;
+  fs::path file;
+};
+
+// The number of a photo in its folder by its name.
+std::optional<int> NumberOf(const std::string& name) {
+  static const std::regex kNumber("(?:^|.*_)(\\d{4})(?:_[A-Za-z]+)*");
+  const std::string stem = fs::path(name).stem().string();
+  std::smatch match;
+  if (stem.size() > 200 || !std::regex_match(stem, match, kNumber)) return std::nullopt;
+  return std::stoi(match[1]);
+}
+
+void UseGeoFile(const fs::path& file, std::vector<PhotoFile>& photos) {
+  std::map<std::string, std::vector<PhotoFile*>> by_name;
+  for (PhotoFile& photo : photos) {
+    by_name[photo.name].push_back(&photo);
+    const std::string base_name = LowerName(fs::path(photo.name).filename().string());
+    if (base_name != photo.name) by_name[base_name].push_back(&photo);
+  }
+  size_t n_used = 0;
+  const std::vector<GeoRow> rows = ReadGeoFile(file);
+  for (const GeoRow& row : rows) {
+    auto found = by_name.find(row.photo);
+    if (found == by_name.end()) found = by_name.find(LowerName(fs::path(row.photo).filename().string()));
+    if (found == by_name.end() || found->second.size() != 1) continue;
+    survey::PhotoTags& tags = found->second.front()->tags;
+    tags.gps = row.position;
+    tags.horizontal_accuracy_m = row.horizontal_accuracy_m;
+    tags.vertical_accuracy_m = row.vertical_accuracy_m;
+    tags.rtk = row.horizontal_accuracy_m && *row.horizontal_accuracy_m <= kMeasured_m;
+    tags.dop.reset();
+    ++n_used;
+  }
+  if (n_used == 0) throw base::InputError(file, "names none of the photos", "Write the photos' file names in its first column");
+  spdlog::info("positions of {} of {} photos come from {} instead of their tags", n_used, photos.size(), file.string());
+  if (n_used < rows.size()) spdlog::warn("{}: {} of {} rows name no photo, or more than one", file.string(), rows.size() - n_used, rows.size());
+}
+
+// By number; without numbers that several files have.
+std::map<int, Numbered> RowsOfFolder(const fs::path& folder) {
+  std::map<int, Numbered> rows;
+  std::set<int> ambiguous;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (LowerName(entry->path().extension().string()) != ".mrk") continue;
+    try {
+      for (const MrkRow& row : ReadMrkFile(entry->path())) {
+        if (row.status > 0 && !rows.emplace(row.number, Numbered{row, entry->path()}).second) ambiguous.insert(row.number);
+      }
+    } catch (const base::InputError& problem) {
+      spdlog::warn("not used: {}", problem.what());
+    }
+  }
+  if (!ambiguous.empty())
+    spdlog::warn("{}: the .MRK files number {} photos twice, which keep their tags; keep the photos of a flight in a folder of their own with its .MRK",
+                 folder.string(), ambiguous.size());
+  for (const int number : ambiguous) rows.erase(number);
+  return rows;
+}
+
+bool IsFarFromTag(const MrkRow& row, const survey::PhotoTags& tags) {
+  if (!tags.gps) return false;
+  const geo::Geodetic tag{tags.gps->latitude_deg, tags.gps->longitude_deg, row.position.height_m};
+  return (geo::EcefFromGeodetic(tag) - geo::EcefFromGeodetic(row.position)).norm() > kFarOff_m;
+}
+
+void UseMrkFiles(const fs::path& photo_root, std::vector<PhotoFile>& photos) {
+  std::map<fs::path, std::vector<PhotoFile*>> by_folder;
+  for (PhotoFile& photo : photos) by_folder[(photo_root / photo.name).parent_path()].push_back(&photo);
+  for (const auto& [folder, in_folder] : by_folder) {
+    const std::map<int, Numbered> rows = RowsOfFolder(folder);
+    std::vector<std::pair<PhotoFile*, const Numbered*>> pairs;
+    size_t n_far = 0;
+    for (PhotoFile* photo : in_folder) {
+      const std::optional<int> number = NumberOf(photo->name);
+      const auto row = number ? rows.find(*number) : rows.end();
+      if (row == rows.end()) continue;
+      pairs.emplace_back(photo, &row->second);
+      n_far += IsFarFromTag(row->second.row, photo->tags) ? 1 : 0;
+    }
+    if (pairs.empty()) continue;
+    if (2 * n_far > pairs.size()) {
+      spdlog::warn("{}: the .MRK is not used, because it is more than {} m from the tags of {} of {} photos", folder.string(), kFarOff_m, n_far,
+                   pairs.size());
+      continue;
+    }
+    for (const auto& [photo, numbered] : pairs) {
+      const MrkRow& row = numbered->row;
+      constexpr int kRtkFixed = 50;
+      photo->tags.gps = row.position;
+      photo->tags.rtk = row.status == kRtkFixed;
+      if (row.horizontal_accuracy_m > 0.0) photo->tags.horizontal_accuracy_m = row.horizontal_accuracy_m;
+      if (row.vertical_accuracy_m > 0.0) photo->tags.vertical_accuracy_m = row.vertical_accuracy_m;
+    }
+    spdlog::info("positions of {} of {} photos come from {} instead of their tags", pairs.size(), in_folder.size(), pairs.front().second->file.string());
+  }
+}
+
+}  // namespace
+
+std::vector<GeoRow> ReadGeoFile(const fs::path& file) {
+  std::istringstream lines(base::ReadFile(file));
+  std::optional<geo::Crs> crs;
+  std::vector<GeoRow> rows;
+  std::set<std::string> seen;
+  size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (line.ends_with('\r')) line.pop_back();
+    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+    const std::vector<std::string> words = WordsOf(line);
+    if (words.empty() || words.front().starts_with('#')) continue;
+    if (!crs) {
+      try {
+        crs.emplace(line);
+      } catch (const std::invalid_argument& error) {
+        FailLine(file, number, "'" + line.substr(0, 60) + "' is not a coordinate system (" + error.what() + ")",
+                 "Begin the file with EPSG:4326 for longitude and latitude, or with the coordinate system of x and y");
+      }
+      continue;
+    }
+    if (words.size() < 3) FailLine(file, number, "has no x and y", kGeoFix);
+    rows.push_back(ParseGeoRow(file, number, words, *crs));
+    if (!seen.insert(words.front()).second) FailLine(file, number, "names " + words.front() + " a second time", "Keep one line per photo");
+  }
+  if (rows.empty()) throw base::InputError(file, "has no positions", kGeoFix);
+  return rows;
+}
+
+std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
+  std::istringstream lines(base::ReadFile(file));
+  std::vector<MrkRow> rows;
+  size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::replace(line.begin(), line.end(), ',', ' ');
+    const std::vector<std::string> words = WordsOf(line);
+    if (words.empty()) continue;
+    const auto before = [&](const char* label) {
+      const auto found = std::find(words.begin() + 1, words.end(), label);
+      const std::optional<double> value = found == words.end() ? std::nullopt : ParseNumber(*(found - 1));
+      if (!value) FailLine(file, number, std::string("has no number before ") + label, kMrkFix);
+      return *value;
+    };
+    MrkRow row;
+    const std::optional<double> index = ParseNumber(words.front());
+    if (!index || *index < 0.0 || *index > 1e6 || *index != std::floor(*index)) FailLine(file, number, "does not begin with the photo's number", kMrkFix);
+    row.number = static_cast<int>(*index);
+    row.position = {before("Lat"), before("Lon"), before("Ellh")};
+    if (!geo::IsValid(row.position)) FailLine(file, number, "has a position that is not on Earth", kMrkFix);
+    row.position.longitude_deg = geo::WrapLongitudeDeg(row.position.longitude_deg);
+    const double status = before("Q");
+    row.status = status > 0.0 && status < 1000.0 ? static_cast<int>(status) : 0;
+    // North, east and up follow the height.
+    const auto height = std::find(words.begin(), words.end(), "Ellh");
+    std::vector<double> sigmas;
+    for (auto word = height + 1; word != words.end() && sigmas.size() < 3; ++word) {
+      const std::optional<double> sigma = ParseNumber(*word);
+      if (!sigma) break;
+      sigmas.push_back(*sigma);
+    }
+    if (sigmas.size() == 3) {
+      row.horizontal_accuracy_m = std::max(sigmas[0], sigmas[1]);
+      row.vertical_accuracy_m = sigmas[2];
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+void UsePositionFiles(const fs::path& photo_root, const std::string& geo_file, std::vector<PhotoFile>& photos) {
+  if (!geo_file.empty()) return UseGeoFile(geo_file, photos);
+  if (fs::exists(photo_root / "geo.txt")) return UseGeoFile(photo_root / "geo.txt", photos);
+  const fs::path beside = photo_root.parent_path() / "geo.txt";
+  if (photo_root.filename() == "images" && fs::exists(beside)) return UseGeoFile(beside, photos);
+  UseMrkFiles(photo_root, photos);
+}
+
+}  // namespace skyquilt::prepare

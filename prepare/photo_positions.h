@@ -1,0 +1,43 @@
+// Positions of photos from files beside them, which are better than the photos' own tags: OpenDroneMap's geo.txt and DJI's image logs (.MRK).
+//   geo.txt  docs.opendronemap.org/geo: first line the coordinate system (EPSG:n, a PROJ string or WGS84 UTM 32N), then per photo
+//            name x y [z] [omega phi kappa] [horizontal and vertical accuracy, m] [anything]; x is east or longitude. The angles are not used.
+//   .MRK     user manuals of Zenmuse P1, Mavic 3M, Matrice 4: number of the photo in its folder, time, antenna offsets, then with the offset
+//            applied latitude, longitude, ellipsoidal height, standard deviations north, east, up in metres, and the status (50: RTK fixed). The
+//            manuals name longitude before latitude; the labels in the files (Lat, Lon, Ellh, Q) decide.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geo/geodetic.h"
+#include "prepare/photo_files.h"
+
+namespace skyquilt::prepare {
+
+struct GeoRow {
+  std::string photo;
+  geo::Geodetic position;  // the height is NaN when the row has none
+  std::optional<double> horizontal_accuracy_m, vertical_accuracy_m;
+};
+
+struct MrkRow {
+  int number = 0;  // of the photo in its folder: DJI_0012.JPG, DJI_20230101120000_0012_V.JPG
+  geo::Geodetic position;
+  double horizontal_accuracy_m = 0.0, vertical_accuracy_m = 0.0;  // the larger of north and east; 0: not stated
+  int status = 0;                                                 // 0 no position, 16 single, 32..49 float, 50 RTK fixed
+};
+
+// Throw base::InputError with the line and how to fix it.
+std::vector<GeoRow> ReadGeoFile(const std::filesystem::path& file);
+std::vector<MrkRow> ReadMrkFile(const std::filesystem::path& file);
+
+// Replaces position and accuracy in the tags of the photos that the files name, and logs it. `geo_file`: given by the user; empty: geo.txt in the
+// photo folder, or beside it when that is called images. Without either, every .MRK serves the photos of its folder, unless it contradicts their tags
+// or other .MRK files there number the same photos. Throws base::InputError for a file that the user gave or called geo.txt; a bad .MRK is left out
+// with a warning.
+void UsePositionFiles(const std::filesystem::path& photo_root, const std::string& geo_file, std::vector<PhotoFile>& photos);
+
+}  // namespace skyquilt::prepare

@@ -1,0 +1,22 @@
+// cameras.xml of Metashape.
+#include "tests/fuzz/model_files.h"
+
+namespace skyquilt::fuzz {
+namespace {
+
+const ModelFileSet& Whole() {
+  static const ModelFileSet whole(test::MetashapeFiles(test::MakeSurvey()), "cameras.xml");
+  return whole;
+}
+
+}  // namespace
+
+std::vector<std::string> Seeds() {
+  return Whole().Seeds();
+}
+
+void Feed(const std::string& bytes) {
+  Whole().Feed(bytes);
+}
+
+}  // namespace skyquilt::fuzz

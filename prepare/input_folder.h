@@ -17,9 +17,9 @@ struct InputFolder {
   std::optional<survey::Truth> truth;         // of a simulated survey
 };
 
-// `photos` may be a folder of photos, a folder with the photos in images/, or a folder made by `simulate` (it has a simulate.json). `model`
-// (a folder or a file) and `masks` are what the user gave; if empty, the usual places are searched: PHOTOS/masks, and only for simulated surveys PHOTOS/sparse/0.
-// Throws base::InputError for a missing folder, a model of an unknown format or a damaged simulate.json.
+// `photos` may be a folder of photos, a folder with the photos in images/, or a folder made by `simulate` (it has a simulate.json). `model` (a folder
+// or a file) and `masks` are what the user gave; if empty, the usual places are searched: PHOTOS/masks, and only for simulated surveys
+// PHOTOS/sparse/0. Throws base::InputError for a missing folder, a model of an unknown format or a damaged simulate.json.
 InputFolder FindInputs(const std::filesystem::path& photos, const std::filesystem::path& model, const std::filesystem::path& masks);
 
 }  // namespace skyquilt::prepare

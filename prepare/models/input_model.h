@@ -39,8 +39,8 @@ class ModelPhotos {
   // names: relative to root, '/' separated.
   ModelPhotos(std::filesystem::path root, const std::vector<std::string>& names);
 
-  // The name among the photos that a model means by `label`: the same path; a file below the model's folder; the only photo with this file name, or with
-  // this name less its extension (upper and lower case are the same). Otherwise the label itself, cleaned: a photo that is not there.
+  // The name among the photos that a model means by `label`: the same path; a file below the model's folder; the only photo with this file name, or
+  // with this name less its extension (upper and lower case are the same). Otherwise the label itself, cleaned: a photo that is not there.
   std::string Resolve(const std::string& label, const std::filesystem::path& model_folder) const;
   // Width and height as stored; nothing when there is no such photo or it cannot be read.
   std::optional<Eigen::Vector2i> SizeOf(const std::string& name) const;

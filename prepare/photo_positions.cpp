@@ -22,7 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kGeoFix = "Write per line: photo, x (east or longitude), y (north or latitude), height; the first line is the coordinate system";
+constexpr const char* kGeoFix =
+    "Write per line: photo, x (east or longitude), y (north or latitude), height; the first line is the coordinate system";
 constexpr const char* kMrkFix = "Copy the file from the drone again, or remove it to use the photos' tags";
 // More accurate than this, a position was measured at the moment of exposure.
 constexpr double kMeasured_m = 0.1;
@@ -65,7 +66,8 @@ GeoRow ParseGeoRow(const fs::path& file, size_t line, const std::vector<std::str
   try {
     row.position = crs.ToGeodetic({number(1), number(2), has_height ? number(3) : 0.0});
   } catch (const std::invalid_argument& error) {
-    FailLine(file, line, error.what(), "Check that x is east or longitude and y north or latitude, and that the first line is their coordinate system");
+    FailLine(file, line, error.what(),
+             "Check that x is east or longitude and y north or latitude, and that the first line is their coordinate system");
   }
   if (!has_height) row.position.height_m = std::numeric_limits<double>::quiet_NaN();
   // Zero and less mean that it is not known.
@@ -130,8 +132,9 @@ std::map<int, Numbered> RowsOfFolder(const fs::path& folder) {
     }
   }
   if (!ambiguous.empty())
-    spdlog::warn("{}: the .MRK files number {} photos twice, which keep their tags; keep the photos of a flight in a folder of their own with its .MRK",
-                 folder.string(), ambiguous.size());
+    spdlog::warn(
+        "{}: the .MRK files number {} photos twice, which keep their tags; keep the photos of a flight in a folder of their own with its .MRK",
+        folder.string(), ambiguous.size());
   for (const int number : ambiguous) rows.erase(number);
   return rows;
 }
@@ -170,7 +173,8 @@ void UseMrkFiles(const fs::path& photo_root, std::vector<PhotoFile>& photos) {
       if (row.horizontal_accuracy_m > 0.0) photo->tags.horizontal_accuracy_m = row.horizontal_accuracy_m;
       if (row.vertical_accuracy_m > 0.0) photo->tags.vertical_accuracy_m = row.vertical_accuracy_m;
     }
-    spdlog::info("positions of {} of {} photos come from {} instead of their tags", pairs.size(), in_folder.size(), pairs.front().second->file.string());
+    spdlog::info("positions of {} of {} photos come from {} instead of their tags", pairs.size(), in_folder.size(),
+                 pairs.front().second->file.string());
   }
 }
 
@@ -222,7 +226,8 @@ std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
     };
     MrkRow row;
     const std::optional<double> index = ParseNumber(words.front());
-    if (!index || *index < 0.0 || *index > 1e6 || *index != std::floor(*index)) FailLine(file, number, "does not begin with the photo's number", kMrkFix);
+    if (!index || *index < 0.0 || *index > 1e6 || *index != std::floor(*index))
+      FailLine(file, number, "does not begin with the photo's number", kMrkFix);
     row.number = static_cast<int>(*index);
     row.position = {before("Lat"), before("Lon"), before("Ellh")};
     if (!geo::IsValid(row.position)) FailLine(file, number, "has a position that is not on Earth", kMrkFix);

@@ -17,9 +17,10 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->required()->type_name("FOLDER");
   command->add_option("-o,--out", flags->out, "project folder; created if it does not exist")->required()->type_name("FOLDER");
   command
-      ->add_option("--model", flags->model,
-                   "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape) or .opf (Pix4D); "
-                   "without it COLMAP is run")
+      ->add_option(
+          "--model", flags->model,
+          "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape) or .opf (Pix4D); "
+          "without it COLMAP is run")
       ->type_name("PATH");
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");

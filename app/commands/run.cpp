@@ -81,9 +81,10 @@ void AddRun(CLI::App& app, CommandState& state) {
       },
       "simulated place to use instead of photos" + AllowedText("simulate.place") + " [simulate.place]");
   command
-      ->add_option("--model", flags->model,
-                   "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape) or .opf (Pix4D); "
-                   "without it COLMAP is run")
+      ->add_option(
+          "--model", flags->model,
+          "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape) or .opf (Pix4D); "
+          "without it COLMAP is run")
       ->type_name("PATH");
   AddOptionFlag(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
   AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",

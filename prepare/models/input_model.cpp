@@ -111,8 +111,7 @@ geo::Rigid3d PoseFromCentre(const Eigen::Matrix3d& world_from_cam, const Eigen::
 camera::Camera PerspectiveCamera(int width, int height, const Eigen::Vector2d& focal, const Eigen::Vector2d& centre, double k1, double k2, double k3,
                                  double p1, double p2) {
   using camera::CameraModel;
-  if (k3 != 0.0)
-    return {CameraModel::kFullOpencv, width, height, {focal.x(), focal.y(), centre.x(), centre.y(), k1, k2, p1, p2, k3, 0.0, 0.0, 0.0}};
+  if (k3 != 0.0) return {CameraModel::kFullOpencv, width, height, {focal.x(), focal.y(), centre.x(), centre.y(), k1, k2, p1, p2, k3, 0.0, 0.0, 0.0}};
   if (k1 == 0.0 && k2 == 0.0 && p1 == 0.0 && p2 == 0.0) return {CameraModel::kPinhole, width, height, {focal.x(), focal.y(), centre.x(), centre.y()}};
   return {CameraModel::kOpencv, width, height, {focal.x(), focal.y(), centre.x(), centre.y(), k1, k2, p1, p2}};
 }

@@ -21,8 +21,8 @@ std::string FormatName(ModelFormat format);
 
 // Where the model's frame is on Earth, if the format says so. How accurate that is, no format says.
 struct ModelPlace {
-  std::string source;               // the file or element that says it, for messages
-  geo::Geodetic origin;             // of an ENU frame; ellipsoidal height
+  std::string source;                // the file or element that says it, for messages
+  geo::Geodetic origin;              // of an ENU frame; ellipsoidal height
   geo::Similarity3d enu_from_model;  // metres
 };
 

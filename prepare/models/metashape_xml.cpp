@@ -33,7 +33,8 @@ class MetashapeFile {
 
   InputModel Read() {
     const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
-    if (!result) FailAt(static_cast<size_t>(std::max<std::ptrdiff_t>(result.offset, 0)), std::string("is not XML (") + result.description() + ")", kXmlFix);
+    if (!result)
+      FailAt(static_cast<size_t>(std::max<std::ptrdiff_t>(result.offset, 0)), std::string("is not XML (") + result.description() + ")", kXmlFix);
     const pugi::xml_node root = document_.child("document");
     if (!root) throw base::InputError(file_, "line 1: has no <document>, as Metashape's XML has", kXmlFix);
     InputModel model;
@@ -125,7 +126,8 @@ class MetashapeFile {
         chosen = chunk;
       }
     }
-    if (!chosen) Fail(root, "has no chunk with an aligned camera (no <camera> has a <transform>)", "Align the photos in Metashape, then export again");
+    if (!chosen)
+      Fail(root, "has no chunk with an aligned camera (no <camera> has a <transform>)", "Align the photos in Metashape, then export again");
     if (others > 0) spdlog::warn("{}: {} more chunks have aligned cameras; only the first is used", file_.string(), others);
     return chosen;
   }
@@ -159,7 +161,8 @@ class MetashapeFile {
     if (!(focal.minCoeff() > 0.0)) Fail(calibration, "has a focal length that is not more than 0");
     const Eigen::Vector2d centre(0.5 * width + NumberOr0(calibration, "cx"), 0.5 * height + NumberOr0(calibration, "cy"));
     const auto refuse = [&](const char* name, const char* meaning) {
-      if (NumberOr0(calibration, name) != 0.0) Fail(calibration, std::string("has ") + name + ", " + meaning + ", which cannot be used here", undistort);
+      if (NumberOr0(calibration, name) != 0.0)
+        Fail(calibration, std::string("has ") + name + ", " + meaning + ", which cannot be used here", undistort);
     };
     refuse("b2", "the skew of the axes");
     refuse("p3", "a higher tangential distortion");
@@ -187,7 +190,8 @@ class MetashapeFile {
     if (!seen.emplace(name, true).second) Fail(camera, "is the second one for the photo " + name, "Give every photo one camera, then export again");
     const pugi::xml_node transform = camera.child("transform");
     const std::vector<double> numbers = Numbers(transform, 16);
-    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> chunk_from_cam = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
+    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> chunk_from_cam =
+        Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
     const std::optional<Eigen::Matrix3d> rotation = RotationOf(chunk_from_cam.topLeftCorner<3, 3>());
     if (!rotation || !chunk_from_cam.row(3).isApprox(Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0))) Fail(transform, "is not a rotation with a position");
     builder.AddImage(name, camera_ids_[sensor_id], PoseFromCentre(*rotation, chunk_from_cam.col(3).head<3>()));
@@ -214,7 +218,8 @@ class MetashapeFile {
     // A chunk that was never placed has no place near the surface.
     if (middle.norm() < 6.3e6 || middle.norm() > 6.5e6) return std::nullopt;
     if (reference.find("WGS") == std::string::npos)
-      spdlog::warn("{}: its coordinates are read as WGS84, though the chunk's reference has another datum; they may be off by metres", file_.string());
+      spdlog::warn("{}: its coordinates are read as WGS84, though the chunk's reference has another datum; they may be off by metres",
+                   file_.string());
     ModelPlace place{file_.string(), geo::GeodeticFromEcef(middle), {}};
     const Eigen::Matrix4d ecef_from_enu = geo::EcefFromEnu(place.origin);
     const Eigen::Matrix3d enu_from_ecef = ecef_from_enu.topLeftCorner<3, 3>().transpose();

@@ -48,8 +48,7 @@ class OpfProject {
   fs::path At(const std::string& item, const std::string& format) const {
     const std::optional<fs::path> file = Find(item, format);
     if (!file) {
-      document_.Root().At("items").Fail("have no " + item + " with the format " + format,
-                                        "Export the project as OPF again, after the calibration");
+      document_.Root().At("items").Fail("have no " + item + " with the format " + format, "Export the project as OPF again, after the calibration");
     }
     return *file;
   }
@@ -96,7 +95,8 @@ camera::Camera LensOfSensor(const JsonValue& sensor, const Eigen::Vector2i& size
   const JsonValue internals = sensor.At("internals");
   const JsonValue type = internals.At("type");
   if (type.Text() != "perspective")
-    type.Fail("is " + type.Text() + ", whose lens cannot be used here", "Export undistorted photos with their cameras, for instance in COLMAP's format");
+    type.Fail("is " + type.Text() + ", whose lens cannot be used here",
+              "Export undistorted photos with their cameras, for instance in COLMAP's format");
   const double focal = internals.At("focal_length_px").Positive();
   const std::vector<double> centre = internals.At("principal_point_px").Numbers(2);
   const std::vector<double> radial = internals.At("radial_distortion").Numbers(3);
@@ -108,9 +108,9 @@ geo::Rigid3d PoseOfCamera(const JsonValue& camera) {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
   const Vector3d angles = camera.At("orientation_deg").Vector3() * (std::numbers::pi / 180.0);
-  const Eigen::Matrix3d frame_from_image = (AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
-                                            AngleAxisd(angles.z(), Vector3d::UnitZ()))
-                                               .toRotationMatrix();
+  const Eigen::Matrix3d frame_from_image =
+      (AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(angles.y(), Vector3d::UnitY()) * AngleAxisd(angles.z(), Vector3d::UnitZ()))
+          .toRotationMatrix();
   // From right, top, back to right, down, forward.
   return PoseFromCentre(frame_from_image * Vector3d(1.0, -1.0, -1.0).asDiagonal(), camera.At("position").Vector3());
 }

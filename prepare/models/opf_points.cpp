@@ -41,7 +41,8 @@ class OpfGltf {
     const std::optional<JsonValue> offset_value = view.Find("byteOffset");
     const uint64_t offset = offset_value ? offset_value->Id() : 0;
     const uint64_t length = view.At("byteLength").Id();
-    if (offset > bytes.size() || length > bytes.size() - offset) view.Fail("is longer than its buffer, which has " + std::to_string(bytes.size()) + " bytes");
+    if (offset > bytes.size() || length > bytes.size() - offset)
+      view.Fail("is longer than its buffer, which has " + std::to_string(bytes.size()) + " bytes");
     if (count > length / width) accessor.Fail("has more entries than its buffer view");
     return {bytes.data() + offset, static_cast<size_t>(count)};
   }
@@ -91,7 +92,8 @@ std::vector<std::vector<uint32_t>> TracksOf(OpfGltf& gltf, const JsonValue& matc
   }
   const OpfGltf::Packed cameras = gltf.At(matches.At("cameraIds"), "SCALAR", kUnsignedInt, 4);
   const OpfGltf::Packed ranges = gltf.At(matches.At("pointIndexRanges"), "VEC2", kUnsignedInt, 8);
-  if (ranges.count != n_points) matches.At("pointIndexRanges").Fail("has " + std::to_string(ranges.count) + " entries for " + std::to_string(n_points) + " points");
+  if (ranges.count != n_points)
+    matches.At("pointIndexRanges").Fail("has " + std::to_string(ranges.count) + " entries for " + std::to_string(n_points) + " points");
   std::vector<std::vector<uint32_t>> tracks(n_points);
   uint64_t n_matches = 0;
   for (size_t i = 0; i < n_points; ++i) {
@@ -127,7 +129,8 @@ void AddPrimitive(OpfGltf& gltf, const JsonValue& primitive, const Eigen::Matrix
   }
   for (size_t i = 0; i < positions.count; ++i) {
     if (i % 65536 == 0) base::ThrowIfCancelled();
-    const Eigen::Vector3d x_in_mesh(static_cast<double>(EntryAt<float>(positions.data, 3 * i)), static_cast<double>(EntryAt<float>(positions.data, 3 * i + 1)),
+    const Eigen::Vector3d x_in_mesh(static_cast<double>(EntryAt<float>(positions.data, 3 * i)),
+                                    static_cast<double>(EntryAt<float>(positions.data, 3 * i + 1)),
                                     static_cast<double>(EntryAt<float>(positions.data, 3 * i + 2)));
     const Eigen::Vector3d x_in_scene = (scene_from_mesh * x_in_mesh.homogeneous()).head<3>();
     if (!x_in_scene.allFinite()) attributes.At("POSITION").Fail("has a point that is not finite");

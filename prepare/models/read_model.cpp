@@ -47,7 +47,8 @@ ModelFormat FormatOfJson(const fs::path& file) {
   if (root.Find("frames")) return ModelFormat::kTransforms;
   const std::optional<JsonValue> format = root.Find("format");
   if (format && format->Text() == "application/opf-project+json") return ModelFormat::kOpf;
-  if (format && format->Text().starts_with("application/opf-")) format->Fail("is a part of an OPF project", "Give the project file, which ends in .opf");
+  if (format && format->Text().starts_with("application/opf-"))
+    format->Fail("is a part of an OPF project", "Give the project file, which ends in .opf");
   root.Fail("holds no cameras in a format that is known");
 }
 

@@ -29,7 +29,8 @@ std::optional<double> FocalLength(const JsonValue& frame, const JsonValue& root,
   if (const std::optional<JsonValue> focal = FrameOrFile(frame, root, "fl_" + axis)) return focal->Positive();
   const std::optional<JsonValue> angle = FrameOrFile(frame, root, "camera_angle_" + axis);
   if (!angle) return std::nullopt;
-  if (!(angle->Number() > 0.0 && angle->Number() < std::numbers::pi)) angle->Fail("must be an angle of view in radians, more than 0 and less than pi");
+  if (!(angle->Number() > 0.0 && angle->Number() < std::numbers::pi))
+    angle->Fail("must be an angle of view in radians, more than 0 and less than pi");
   return 0.5 * size / std::tan(0.5 * angle->Number());
 }
 

@@ -75,7 +75,8 @@ TEST_F(OtherModel, ItsSplitIsKeptUnlessAnotherIsAskedFor) {
   file["test_filenames"] = {"images/photo_05.jpg", "images/photo_06.jpg"};
   files["transforms.json"] = file.dump();
   survey::Survey survey = Run(files, "transforms.json");
-  for (const survey::Photo& photo : survey.photos) EXPECT_EQ(photo.is_test, photo.name == "photo_05.jpg" || photo.name == "photo_06.jpg") << photo.name;
+  for (const survey::Photo& photo : survey.photos)
+    EXPECT_EQ(photo.is_test, photo.name == "photo_05.jpg" || photo.name == "photo_06.jpg") << photo.name;
   options_.holdout = "none";
   survey = Run(files, "transforms.json");
   for (const survey::Photo& photo : survey.photos) EXPECT_FALSE(photo.is_test) << photo.name;

@@ -47,8 +47,7 @@ class Conventions : public ::testing::Test {
       const Vector3d view = survey_from_model.rotation * (image.cam_from_world.rotation.conjugate() * Vector3d::UnitZ());
       EXPECT_LT((view - photo->axes.col(2)).norm(), 1e-9) << image.name;
       for (const Vector3d& x : survey_.points) {
-        const Vector3d x_in_model =
-            survey_from_model.rotation.conjugate() * (x - survey_from_model.translation) / survey_from_model.scale;
+        const Vector3d x_in_model = survey_from_model.rotation.conjugate() * (x - survey_from_model.translation) / survey_from_model.scale;
         const auto pixel = model.sfm.cameras.at(image.camera_id).ImgFromCam(image.cam_from_world * x_in_model);
         ASSERT_TRUE(pixel.has_value());
         const Eigen::Vector2d expected = project(survey_.lens, *photo, x);
@@ -105,7 +104,8 @@ TEST_F(Conventions, Opensfm) {
   Expect(model, test::ProjectOpensfm);
   ExpectPoints(model, survey_.photos.size());
   const geo::EnuFrame frame(test::kMadeOrigin);
-  ExpectPlace(model, [&](const Vector3d& x) { return frame.GeodeticFromEnu(x); }, 1e-6);
+  ExpectPlace(
+      model, [&](const Vector3d& x) { return frame.GeodeticFromEnu(x); }, 1e-6);
 }
 
 TEST_F(Conventions, OpensfmOfReducedPhotosFitsTheWholeOnes) {
@@ -122,7 +122,8 @@ TEST_F(Conventions, Metashape) {
   EXPECT_EQ(model.format, ModelFormat::kMetashape);
   Expect(model, test::ProjectMetashape, {10.0, Eigen::Quaterniond(test::MetashapeTurn()), Vector3d::Zero()});
   const geo::EnuFrame frame(test::kMadeOrigin);
-  ExpectPlace(model, [&](const Vector3d& x) { return frame.GeodeticFromEnu(x); }, 1e-6);
+  ExpectPlace(
+      model, [&](const Vector3d& x) { return frame.GeodeticFromEnu(x); }, 1e-6);
 }
 
 TEST_F(Conventions, Opf) {

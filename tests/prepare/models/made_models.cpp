@@ -86,14 +86,25 @@ void WriteFiles(const Files& files, const std::filesystem::path& folder) {
 
 Files TransformsFiles(const MadeSurvey& survey) {
   const MadeLens& lens = survey.lens;
-  json file = {{"camera_model", "OPENCV"}, {"fl_x", lens.fx}, {"fl_y", lens.fy}, {"cx", lens.cx}, {"cy", lens.cy}, {"w", lens.width},
-               {"h", lens.height},         {"k1", lens.k1},   {"k2", lens.k2},   {"k3", lens.k3}, {"p1", lens.p1}, {"p2", lens.p2},
+  json file = {{"camera_model", "OPENCV"},
+               {"fl_x", lens.fx},
+               {"fl_y", lens.fy},
+               {"cx", lens.cx},
+               {"cy", lens.cy},
+               {"w", lens.width},
+               {"h", lens.height},
+               {"k1", lens.k1},
+               {"k2", lens.k2},
+               {"k3", lens.k3},
+               {"p1", lens.p1},
+               {"p2", lens.p2},
                {"ply_file_path", "points.ply"}};
   for (const MadePhoto& photo : survey.photos) {
     file["frames"].push_back({{"file_path", "images/" + photo.name}, {"transform_matrix", Rows(RightUpBack(photo.axes), photo.centre)}});
   }
-  std::string ply = "ply\nformat ascii 1.0\ncomment made\nelement vertex " + std::to_string(survey.points.size()) +
-                    "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  std::string ply =
+      "ply\nformat ascii 1.0\ncomment made\nelement vertex " + std::to_string(survey.points.size()) +
+      "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
   for (const Vector3d& x : survey.points) ply += Text(x.x()) + " " + Text(x.y()) + " " + Text(x.z()) + " 10 20 30\n";
   return {{"transforms.json", file.dump(1)}, {"points.ply", ply}};
 }
@@ -146,7 +157,8 @@ Files OpensfmFiles(const MadeSurvey& survey) {
 Files MetashapeFiles(const MadeSurvey& survey) {
   const MadeLens& lens = survey.lens;
   const auto element = [](const std::string& name, double value) { return "<" + name + ">" + Text(value) + "</" + name + ">\n"; };
-  std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<document version=\"2.0.0\">\n<chunk label=\"Chunk 1\" enabled=\"true\">\n<sensors>\n";
+  std::string xml =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<document version=\"2.0.0\">\n<chunk label=\"Chunk 1\" enabled=\"true\">\n<sensors>\n";
   xml += "<sensor id=\"0\" label=\"made\" type=\"frame\">\n<resolution width=\"640\" height=\"480\"/>\n";
   xml += "<calibration type=\"frame\" class=\"initial\">\n<resolution width=\"640\" height=\"480\"/>\n<f>400</f>\n</calibration>\n";
   xml += "<calibration type=\"frame\" class=\"adjusted\">\n<resolution width=\"" + std::to_string(lens.width) + "\" height=\"" +
@@ -210,10 +222,10 @@ Files OpfFiles(const MadeSurvey& survey) {
         {{"id", kFirstId + i},
          {"sensor_id", 77},
          {"position", List(photo.centre)},
-         {"orientation_deg",
-          {std::atan2(-r(1, 2), r(2, 2)) / kDegree, std::asin(r(0, 2)) / kDegree, std::atan2(-r(0, 1), r(0, 0)) / kDegree}}});
+         {"orientation_deg", {std::atan2(-r(1, 2), r(2, 2)) / kDegree, std::asin(r(0, 2)) / kDegree, std::atan2(-r(0, 1), r(0, 0)) / kDegree}}});
   }
-  const json frame = {{"crs", {{"definition", "EPSG:32632"}}}, {"base_to_canonical", {{"shift", List(kOpfShift)}, {"scale", {1.0, 1.0, 1.0}}, {"swap_xy", false}}}};
+  const json frame = {{"crs", {{"definition", "EPSG:32632"}}},
+                      {"base_to_canonical", {{"shift", List(kOpfShift)}, {"scale", {1.0, 1.0, 1.0}}, {"swap_xy", false}}}};
   // Positions with z up; the node turns them to glTF's y up. Every point is seen by all photos.
   std::string positions, colors, camera_ids, ranges;
   const size_t n = survey.photos.size();
@@ -231,22 +243,22 @@ Files OpfFiles(const MadeSurvey& survey) {
   const auto view = [](int buffer, size_t offset, size_t length) { return json{{"buffer", buffer}, {"byteOffset", offset}, {"byteLength", length}}; };
   json primitive = {{"attributes", {{"POSITION", 0}, {"COLOR_0", 1}}}, {"mode", 0}};
   primitive["extensions"]["OPF_mesh_primitive_matches"] = {{"cameraIds", 2}, {"pointIndexRanges", 3}, {"cameraUids", uids}};
-  const json gltf = {
-      {"asset", {{"version", "2.0"}}},
-      {"scene", 0},
-      {"scenes", json::array({{{"nodes", json::array({0})}}})},
-      {"nodes", json::array({{{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}}}})},
-      {"meshes", json::array({{{"primitives", json::array({primitive})}}})},
-      {"accessors",
-       {accessor(0, 5126, survey.points.size(), "VEC3"), accessor(1, 5121, survey.points.size(), "VEC4"),
-        accessor(2, 5125, n * survey.points.size(), "SCALAR"), accessor(3, 5125, survey.points.size(), "VEC2")}},
-      {"bufferViews",
-       {view(0, 0, positions.size()), view(0, positions.size(), colors.size()), view(1, 0, camera_ids.size()), view(1, camera_ids.size(), ranges.size())}},
-      {"buffers",
-       json::array({{{"uri", "points.bin"}, {"byteLength", positions.size() + colors.size()}},
-                    {{"uri", "matches.bin"}, {"byteLength", camera_ids.size() + ranges.size()}}})}};
-  return {{"project.opf", project.dump(1)}, {"cameras.json", list.dump(1)},  {"input.json", input.dump(1)},           {"frame.json", frame.dump(1)},
-          {"calibrated.json", calibrated.dump(1)}, {"tracks.gltf", gltf.dump(1)}, {"points.bin", positions + colors}, {"matches.bin", camera_ids + ranges}};
+  const json gltf = {{"asset", {{"version", "2.0"}}},
+                     {"scene", 0},
+                     {"scenes", json::array({{{"nodes", json::array({0})}}})},
+                     {"nodes", json::array({{{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}}}})},
+                     {"meshes", json::array({{{"primitives", json::array({primitive})}}})},
+                     {"accessors",
+                      {accessor(0, 5126, survey.points.size(), "VEC3"), accessor(1, 5121, survey.points.size(), "VEC4"),
+                       accessor(2, 5125, n * survey.points.size(), "SCALAR"), accessor(3, 5125, survey.points.size(), "VEC2")}},
+                     {"bufferViews",
+                      {view(0, 0, positions.size()), view(0, positions.size(), colors.size()), view(1, 0, camera_ids.size()),
+                       view(1, camera_ids.size(), ranges.size())}},
+                     {"buffers", json::array({{{"uri", "points.bin"}, {"byteLength", positions.size() + colors.size()}},
+                                              {{"uri", "matches.bin"}, {"byteLength", camera_ids.size() + ranges.size()}}})}};
+  return {{"project.opf", project.dump(1)},   {"cameras.json", list.dump(1)},          {"input.json", input.dump(1)},
+          {"frame.json", frame.dump(1)},      {"calibrated.json", calibrated.dump(1)}, {"tracks.gltf", gltf.dump(1)},
+          {"points.bin", positions + colors}, {"matches.bin", camera_ids + ranges}};
 }
 
 // Camera x right, y up, z backward; the image's v grows downwards.

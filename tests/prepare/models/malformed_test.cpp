@@ -12,11 +12,11 @@ namespace skyquilt::prepare {
 namespace {
 
 struct Fault {
-  const char* file;    // of the model, which is changed
-  const char* from;    // its first occurrence is replaced; empty: the whole content
+  const char* file;  // of the model, which is changed
+  const char* from;  // its first occurrence is replaced; empty: the whole content
   const char* to;
-  const char* found;   // in the message
-  const char* fix;     // in the message
+  const char* found;  // in the message
+  const char* fix;    // in the message
 };
 
 // Changes one file of a good model and returns the message.
@@ -99,16 +99,17 @@ TEST(MalformedModel, MetashapeWithoutAlignedCameras) {
 }
 
 TEST(MalformedModel, Opf) {
-  ExpectMessages(test::OpfFiles(test::MakeSurvey()), "project.opf",
-                 {{"project.opf", "application/opf-project+json", "application/other", "is not application/opf-project+json", "OPF again"},
-                  {"project.opf", "application/opf-calibrated-cameras+json", "application/opf-gps-bias+json", "have no calibration", "after the calibration"},
-                  {"calibrated.json", "\"perspective\"", "\"fisheye\"", "is fisheye", "undistorted photos"},
-                  {"calibrated.json", "\"sensor_id\": 77", "\"sensor_id\": 78", "has a sensor_id that is not among", "OPF again"},
-                  {"calibrated.json", "\"id\": 9843086184167632639", "\"id\": 5", "not in the camera list", "OPF again"},
-                  {"calibrated.json", "\"id\": 77", "\"id\": 76", "not among the sensors of the input", "OPF again"},
-                  {"frame.json", "\"swap_xy\": false", "\"swap_xy\": 0", "swap_xy must be true or false", "OPF again"},
-                  {"tracks.gltf", "\"VEC3\"", "\"VEC2\"", "must be VEC3", "OPF again"},
-                  {"tracks.gltf", "\"count\": 6", "\"count\": 60000", "has more entries than its buffer view", "OPF again"}});
+  ExpectMessages(
+      test::OpfFiles(test::MakeSurvey()), "project.opf",
+      {{"project.opf", "application/opf-project+json", "application/other", "is not application/opf-project+json", "OPF again"},
+       {"project.opf", "application/opf-calibrated-cameras+json", "application/opf-gps-bias+json", "have no calibration", "after the calibration"},
+       {"calibrated.json", "\"perspective\"", "\"fisheye\"", "is fisheye", "undistorted photos"},
+       {"calibrated.json", "\"sensor_id\": 77", "\"sensor_id\": 78", "has a sensor_id that is not among", "OPF again"},
+       {"calibrated.json", "\"id\": 9843086184167632639", "\"id\": 5", "not in the camera list", "OPF again"},
+       {"calibrated.json", "\"id\": 77", "\"id\": 76", "not among the sensors of the input", "OPF again"},
+       {"frame.json", "\"swap_xy\": false", "\"swap_xy\": 0", "swap_xy must be true or false", "OPF again"},
+       {"tracks.gltf", "\"VEC3\"", "\"VEC2\"", "must be VEC3", "OPF again"},
+       {"tracks.gltf", "\"count\": 6", "\"count\": 60000", "has more entries than its buffer view", "OPF again"}});
 }
 
 TEST(MalformedModel, PathsThatHoldNoModel) {
@@ -116,8 +117,9 @@ TEST(MalformedModel, PathsThatHoldNoModel) {
   const auto message_of = [&](const std::string& name) { return InputErrorOf([&] { FindModel(folder / name); }); };
   EXPECT_NE(message_of("missing").find("no such folder or file"), std::string::npos);
   EXPECT_NE(message_of("").find("has no camera model that is known"), std::string::npos);
-  test::WriteFiles({{"a.json", "{\"version\": 1}"}, {"b.json", "{\"format\": \"application/opf-camera-list+json\"}"}, {"c.xml", "<html/>"}, {"d.dat", "x"}},
-                   folder.path());
+  test::WriteFiles(
+      {{"a.json", "{\"version\": 1}"}, {"b.json", "{\"format\": \"application/opf-camera-list+json\"}"}, {"c.xml", "<html/>"}, {"d.dat", "x"}},
+      folder.path());
   EXPECT_NE(message_of("a.json").find("holds no cameras"), std::string::npos);
   EXPECT_NE(message_of("b.json").find("Give the project file, which ends in .opf"), std::string::npos);
   EXPECT_NE(message_of("c.xml").find("is not an XML file of Metashape"), std::string::npos);

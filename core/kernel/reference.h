@@ -8,8 +8,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <vector>
 
+#include "core/kernel/descriptors.h"
 #include "core/kernel/kernels.h"
 
 namespace skyquilt::kernel::reference {
@@ -138,6 +140,22 @@ void Adam(const AdamStep& step, T gradient, T* parameter, T* moment1, T* moment2
   *moment2 = (T(1) - beta2) * gradient * gradient + beta2 * *moment2;
   const T denominator = std::sqrt(*moment2 / static_cast<T>(step.correction2)) + static_cast<T>(step.epsilon);
   *parameter -= static_cast<T>(step.learning_rate) / static_cast<T>(step.correction1) * *moment1 / denominator;
+}
+
+// One way of FindBestDots: for each descriptor of `of`, among those of `among`.
+inline BestDots FindBestDots(std::span<const uint8_t> of, std::span<const uint8_t> among) {
+  BestDots best;
+  for (size_t i = 0; i < of.size(); i += kDescriptorBytes) {
+    std::vector<int32_t> dots(among.size() / kDescriptorBytes, 0);
+    for (size_t k = 0; k < among.size(); ++k) dots[k / kDescriptorBytes] += int32_t{of[i + k % kDescriptorBytes]} * int32_t{among[k]};
+    const auto most = std::max_element(dots.begin(), dots.end());  // the first of equals
+    const bool none = most == dots.end() || *most == 0;
+    best.index.push_back(none ? -1 : static_cast<int32_t>(most - dots.begin()));
+    best.dot.push_back(none ? 0 : *most);
+    if (!none) *most = 0;
+    best.second.push_back(none ? 0 : *std::max_element(dots.begin(), dots.end()));
+  }
+  return best;
 }
 
 }  // namespace skyquilt::kernel::reference

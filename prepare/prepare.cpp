@@ -15,7 +15,6 @@
 #include "core/base/log.h"
 #include "core/base/text.h"
 #include "core/survey/colmap_model.h"
-#include "prepare/colmap_run.h"
 #include "prepare/flight_checks.h"
 #include "prepare/georeference.h"
 #include "prepare/holdout.h"
@@ -26,6 +25,7 @@
 #include "prepare/models/read_model.h"
 #include "prepare/photo_files.h"
 #include "prepare/photo_positions.h"
+#include "prepare/poses/colmap_run.h"
 #include "prepare/prepare_report.h"
 #include "prepare/sparse_cloud.h"
 #include "prepare/survey_points.h"
@@ -216,6 +216,16 @@ void LogDirections(const survey::DominantDirections& directions) {
                text.empty() ? "none" : text);
 }
 
+PoseOptions PosesOf(const PrepareOptions& options) {
+  return {.fast = options.poses == "fast",
+          .colmap = options.colmap,
+          .camera_model = options.camera_model,
+          .max_image_size = options.max_image_size,
+          .max_features = options.max_features,
+          .use_gpu = options.use_gpu,
+          .seed = options.seed};
+}
+
 }  // namespace
 
 survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads) {
@@ -233,8 +243,8 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
 
   InputModel input_model;
   if (folders.model.empty()) {
-    const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap", threads.size()};
-    folders.model = RunColmap(job, photos.usable, options);
+    const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap"};
+    folders.model = RunColmap(job, photos.usable, PosesOf(options), threads);
     input_model.sfm = survey::ReadColmapModel(folders.model);
   } else {
     input_model = ReadModel(folders.model, ModelPhotos(folders.photo_root, names));

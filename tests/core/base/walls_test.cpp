@@ -79,6 +79,7 @@ const std::vector<Library>& Libraries() {
       {"GDAL", std::regex("(gdal/)?(gdal|ogr_|ogrsf|cpl_|vrt)[^/]*\\.h"), {"core/gis"}},
       {"Boost", std::regex("boost/.*"), {"viewer", "buildings"}},
       {"Ceres", std::regex("ceres/.*"), {"prepare", "buildings"}},
+      {"SQLite", std::regex("sqlite3(ext)?\\.h"), {"core/survey"}},
       {"zlib", std::regex("zlib\\.h"), {"core/base"}},
       {"toml++", std::regex("toml\\+\\+/.*|toml\\.hpp"), {"core/config"}},
   };
@@ -238,6 +239,7 @@ TEST(Rooms, ForbiddenIncludesAreFound) {
       {"core/metrics/ssim.cpp", "#include <opencv2/imgcodecs.hpp>"},
       {"products/video.cpp", "#include <opencv2/opencv.hpp>"},
       {"prepare/a.cpp", "#include <exiv2/exiv2.hpp>"},
+      {"prepare/poses/a.cpp", "#include <sqlite3.h>"},
       {"core/render/ray.cpp", "#include <embree3/rtcore.h>"},
       {"simulate/world.cpp", "#include <embree3/rtcore.h>"},
       {"evaluate/a.cpp", "#include <gdal_priv.h>"},
@@ -282,6 +284,7 @@ TEST(Rooms, AllowedIncludesAreAccepted) {
       {"core/image/decode.cpp", "#include <opencv2/imgcodecs.hpp>"},
       {"core/metrics/ssim.cpp", "#include <opencv2/imgproc.hpp>"},
       {"core/survey/exif.cpp", "#include <exiv2/exiv2.hpp>"},
+      {"core/survey/colmap_database.cpp", "#include <sqlite3.h>"},
       {"core/raytrace/trace.cpp", "#include <embree3/rtcore.h>"},
       {"core/gis/geotiff.cpp", "#include <gdal_priv.h>"},
       {"core/config/toml_reader.cpp", "#include <toml++/toml.h>"},

@@ -1,0 +1,328 @@
+#include "core/survey/colmap_database.h"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "core/base/errors.h"
+
+namespace skyquilt::survey {
+namespace {
+
+constexpr int kBusyTimeout_ms = 10000;
+
+const char* FixOf(int code) {
+  switch (code & 0xFF) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return "End the other program that uses it, then run the same command again";
+    case SQLITE_FULL:
+      return "Make room on the disk, then run the same command again";
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+    case SQLITE_CANTOPEN:
+    case SQLITE_IOERR:
+      return "Check permissions of the file and of its folder, and the disk";
+    default:
+      return "Remove the file, then run the same command again: it is made from the photos";
+  }
+}
+
+}  // namespace
+
+struct ColmapDatabase::Connection {
+  std::filesystem::path file;
+  sqlite3* handle = nullptr;
+
+  explicit Connection(const std::filesystem::path& path) : file(path) {}
+  ~Connection() { sqlite3_close(handle); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  [[noreturn]] void Fail(const std::string& found, int code = SQLITE_CORRUPT) const { throw base::InputError(file, found, FixOf(code)); }
+  void Require(int code, const std::string& action) const {
+    if (code != SQLITE_OK) Fail("cannot " + action + " the COLMAP database (" + sqlite3_errmsg(handle) + ")", code);
+  }
+  void Execute(const char* sql, const std::string& action) const { Require(sqlite3_exec(handle, sql, nullptr, nullptr, nullptr), action); }
+};
+
+namespace {
+
+// One SQL statement with its parameters; rows are read one after another.
+template <typename Connection>
+class Statement {
+ public:
+  Statement(const Connection& connection, const char* sql, const char* action) : connection_(connection), action_(action) {
+    connection_.Require(sqlite3_prepare_v2(connection_.handle, sql, -1, &statement_, nullptr), action_);
+  }
+  ~Statement() { sqlite3_finalize(statement_); }
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  Statement& Bind(int index, int64_t value) {
+    connection_.Require(sqlite3_bind_int64(statement_, index, value), action_);
+    return *this;
+  }
+  // The bytes must stay until the statement has run.
+  Statement& BindBlob(int index, const void* bytes, size_t size) {
+    connection_.Require(sqlite3_bind_blob64(statement_, index, bytes, size, SQLITE_STATIC), action_);
+    return *this;
+  }
+  // False after the last row.
+  bool Next() {
+    const int code = sqlite3_step(statement_);
+    if (code != SQLITE_ROW && code != SQLITE_DONE) connection_.Require(code, action_);
+    return code == SQLITE_ROW;
+  }
+
+  int64_t Int(int column) const { return sqlite3_column_int64(statement_, column); }
+  uint32_t Id(int column, const char* what) const {
+    const int64_t value = Int(column);
+    if (value < 0 || static_cast<uint64_t>(value) >= kMaxDatabaseId) {
+      connection_.Fail(std::string("has the impossible ") + what + " " + std::to_string(value));
+    }
+    return static_cast<uint32_t>(value);
+  }
+  std::string Text(int column) const {
+    const unsigned char* text = sqlite3_column_text(statement_, column);
+    return text == nullptr ? "" : reinterpret_cast<const char*>(text);
+  }
+  std::span<const uint8_t> Blob(int column) const {
+    const void* bytes = sqlite3_column_blob(statement_, column);
+    const auto size = static_cast<size_t>(sqlite3_column_bytes(statement_, column));
+    return {static_cast<const uint8_t*>(bytes), bytes == nullptr ? 0 : size};
+  }
+  // A matrix in columns rows, cols, data. Any number of columns is right for one without rows.
+  template <typename T>
+  std::vector<T> Matrix(int first_column, const std::string& what, size_t* cols) const {
+    const int64_t rows = Int(first_column), n_cols = Int(first_column + 1);
+    const std::span<const uint8_t> bytes = Blob(first_column + 2);
+    const auto fits = [&] {
+      if (rows < 0 || n_cols < 0) return false;
+      if (rows == 0 || n_cols == 0) return bytes.empty();
+      const uint64_t n_values = bytes.size() / sizeof(T);
+      return bytes.size() % sizeof(T) == 0 && n_values % static_cast<uint64_t>(n_cols) == 0 &&
+             n_values / static_cast<uint64_t>(n_cols) == static_cast<uint64_t>(rows);
+    };
+    if (!fits()) {
+      connection_.Fail("has " + what + " of " + std::to_string(rows) + " x " + std::to_string(n_cols) + " in " + std::to_string(bytes.size()) + " bytes");
+    }
+    *cols = rows == 0 ? 0 : static_cast<size_t>(n_cols);
+    std::vector<T> values(bytes.size() / sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+  }
+  std::vector<FeaturePair> Matches(int first_column, const std::string& what) const {
+    size_t cols = 0;
+    const std::vector<uint32_t> values = Matrix<uint32_t>(first_column, what, &cols);
+    if (!values.empty() && cols != 2) connection_.Fail("has " + what + " with " + std::to_string(cols) + " columns");
+    std::vector<FeaturePair> pairs(values.size() / 2);
+    for (size_t i = 0; i < pairs.size(); ++i) pairs[i] = {values[2 * i], values[2 * i + 1]};
+    return pairs;
+  }
+  ImagePair Pair(int column) const {
+    const int64_t id = Int(column);
+    const ImagePair pair = id < 0 ? ImagePair{0, 0} : ImagesOfPair(static_cast<uint64_t>(id));
+    if (pair.first >= pair.second) connection_.Fail("has the impossible number of a pair " + std::to_string(id));
+    return pair;
+  }
+
+ private:
+  const Connection& connection_;
+  const char* action_;
+  sqlite3_stmt* statement_ = nullptr;
+};
+
+std::string OfImage(const char* what, uint32_t image_id) {
+  return std::string(what) + " of image " + std::to_string(image_id);
+}
+
+std::string OfPair(const char* what, const ImagePair& images) {
+  return std::string(what) + " of images " + std::to_string(images.first) + " and " + std::to_string(images.second);
+}
+
+}  // namespace
+
+uint64_t PairId(uint32_t image_a, uint32_t image_b) {
+  SKYQUILT_CHECK(image_a != image_b && image_a < kMaxDatabaseId && image_b < kMaxDatabaseId, "not a pair of images");
+  const auto [small, large] = std::minmax(image_a, image_b);
+  return kMaxDatabaseId * small + large;
+}
+
+ImagePair ImagesOfPair(uint64_t pair_id) {
+  return {static_cast<uint32_t>(pair_id / kMaxDatabaseId), static_cast<uint32_t>(pair_id % kMaxDatabaseId)};
+}
+
+ColmapDatabase::ColmapDatabase(const std::filesystem::path& file) : connection_(std::make_unique<Connection>(file)) {
+  if (!std::filesystem::exists(file)) throw base::InputError(file, "no such file", "It is made by COLMAP's feature_extractor");
+  // Threads have a connection each or take turns, so SQLite need not lock.
+  connection_->Require(sqlite3_open_v2(file.c_str(), &connection_->handle, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, nullptr), "open");
+  sqlite3_busy_timeout(connection_->handle, kBusyTimeout_ms);
+  // Reads the head of the file, so that a foreign file is refused here.
+  connection_->Execute("SELECT COUNT(*) FROM sqlite_master", "open");
+  RestoreNames();
+}
+
+ColmapDatabase::~ColmapDatabase() = default;
+ColmapDatabase::ColmapDatabase(ColmapDatabase&&) noexcept = default;
+ColmapDatabase& ColmapDatabase::operator=(ColmapDatabase&&) noexcept = default;
+
+std::vector<DatabaseImage> ColmapDatabase::ReadImages() const {
+  Statement statement(*connection_, "SELECT image_id, name, camera_id FROM images ORDER BY image_id", "read the images of");
+  std::vector<DatabaseImage> images;
+  while (statement.Next()) {
+    images.push_back({.id = statement.Id(0, "image id"), .camera_id = statement.Id(2, "camera id"), .name = statement.Text(1)});
+  }
+  return images;
+}
+
+std::map<uint32_t, camera::Camera> ColmapDatabase::ReadCameras() const {
+  Statement statement(*connection_, "SELECT camera_id, model, width, height, params FROM cameras ORDER BY camera_id", "read the cameras of");
+  std::map<uint32_t, camera::Camera> cameras;
+  while (statement.Next()) {
+    const uint32_t id = statement.Id(0, "camera id");
+    const std::string name = "camera " + std::to_string(id);
+    const int64_t model_id = statement.Int(1), width = statement.Int(2), height = statement.Int(3);
+    const auto model = model_id < 0 || model_id > 100 ? std::nullopt : camera::ModelFromId(static_cast<int>(model_id));
+    if (!model) connection_->Fail("has " + name + " with COLMAP's camera model number " + std::to_string(model_id) + ", which is not supported");
+    constexpr int64_t kMaxSidePx = 1 << 20;
+    if (width <= 0 || height <= 0 || width > kMaxSidePx || height > kMaxSidePx) {
+      connection_->Fail("has " + name + " of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+    }
+    const std::span<const uint8_t> bytes = statement.Blob(4);
+    camera::Camera camera{*model, static_cast<int>(width), static_cast<int>(height), {}};
+    camera.params.resize(static_cast<size_t>(camera::ModelParamCount(*model)));
+    if (bytes.size() != camera.params.size() * sizeof(double)) connection_->Fail("has " + name + " with " + std::to_string(bytes.size()) + " bytes of parameters");
+    std::memcpy(camera.params.data(), bytes.data(), bytes.size());
+    cameras.emplace(id, std::move(camera));
+  }
+  return cameras;
+}
+
+std::vector<DatabaseKeypoint> ColmapDatabase::ReadKeypoints(uint32_t image_id) const {
+  Statement statement(*connection_, "SELECT rows, cols, data FROM keypoints WHERE image_id = ?", "read the features of");
+  std::vector<DatabaseKeypoint> keypoints;
+  if (!statement.Bind(1, image_id).Next()) return keypoints;
+  size_t cols = 0;
+  const std::vector<float> values = statement.template Matrix<float>(0, OfImage("keypoints", image_id), &cols);
+  if (values.empty()) return keypoints;
+  if (cols != 2 && cols != 4 && cols != 6) connection_->Fail("has " + OfImage("keypoints", image_id) + " with " + std::to_string(cols) + " columns");
+  keypoints.resize(values.size() / cols);
+  for (size_t i = 0; i < keypoints.size(); ++i) {
+    const float* row = values.data() + i * cols;
+    keypoints[i] = {.x = row[0], .y = row[1]};
+    if (cols == 4) {
+      keypoints[i].scale = row[2];
+      keypoints[i].orientation = row[3];
+    } else if (cols == 6) {
+      // Rows of the shape's matrix: a11 a12 a21 a22.
+      keypoints[i].scale = 0.5F * (std::hypot(row[2], row[4]) + std::hypot(row[3], row[5]));
+      keypoints[i].orientation = std::atan2(row[4], row[2]);
+    }
+    if (!std::isfinite(keypoints[i].x + keypoints[i].y + keypoints[i].scale + keypoints[i].orientation)) {
+      connection_->Fail("has " + OfImage("keypoints", image_id) + " that are not numbers");
+    }
+  }
+  return keypoints;
+}
+
+std::vector<uint8_t> ColmapDatabase::ReadDescriptors(uint32_t image_id) const {
+  Statement statement(*connection_, "SELECT rows, cols, data FROM descriptors WHERE image_id = ?", "read the descriptors of");
+  if (!statement.Bind(1, image_id).Next()) return {};
+  size_t cols = 0;
+  std::vector<uint8_t> rows = statement.template Matrix<uint8_t>(0, OfImage("descriptors", image_id), &cols);
+  if (!rows.empty() && cols != kDatabaseDescriptorBytes) {
+    connection_->Fail("has " + OfImage("descriptors", image_id) + " with " + std::to_string(cols) + " columns");
+  }
+  return rows;
+}
+
+size_t ColmapDatabase::CountDescriptors(uint32_t image_id) const {
+  Statement statement(*connection_, "SELECT rows FROM descriptors WHERE image_id = ?", "read the descriptors of");
+  if (!statement.Bind(1, image_id).Next()) return 0;
+  const int64_t rows = statement.Int(0);
+  if (rows < 0) connection_->Fail("has " + std::to_string(rows) + " " + OfImage("descriptors", image_id));
+  return static_cast<size_t>(rows);
+}
+
+std::vector<FeaturePair> ColmapDatabase::ReadMatches(uint32_t image_a, uint32_t image_b) const {
+  Statement statement(*connection_, "SELECT rows, cols, data FROM matches WHERE pair_id = ?", "read the matches of");
+  if (!statement.Bind(1, static_cast<int64_t>(PairId(image_a, image_b))).Next()) return {};
+  return statement.Matches(0, OfPair("matches", ImagesOfPair(PairId(image_a, image_b))));
+}
+
+std::vector<ImagePair> ColmapDatabase::ReadMatchedPairs(size_t min_rows) const {
+  Statement statement(*connection_, "SELECT pair_id FROM matches WHERE rows >= ? ORDER BY pair_id", "read the matches of");
+  statement.Bind(1, static_cast<int64_t>(min_rows));
+  std::vector<ImagePair> pairs;
+  while (statement.Next()) pairs.push_back(statement.Pair(0));
+  return pairs;
+}
+
+std::vector<DatabaseMatches> ColmapDatabase::ReadTwoViewMatches() const {
+  Statement statement(*connection_, "SELECT pair_id, rows, cols, data FROM two_view_geometries ORDER BY pair_id", "read the verified matches of");
+  std::vector<DatabaseMatches> all;
+  while (statement.Next()) {
+    const ImagePair images = statement.Pair(0);
+    all.push_back({images, statement.Matches(1, OfPair("verified matches", images))});
+  }
+  return all;
+}
+
+size_t ColmapDatabase::CountTwoViewGeometries() const {
+  Statement statement(*connection_, "SELECT COUNT(*) FROM two_view_geometries", "read the verified matches of");
+  return statement.Next() ? static_cast<size_t>(statement.Int(0)) : 0;
+}
+
+void ColmapDatabase::UsePlainNames() {
+  RestoreNames();
+  Transaction transaction(*this);
+  connection_->Execute(
+      "CREATE TABLE skyquilt_names AS SELECT image_id, name FROM images; UPDATE images SET name = 'image_' || image_id", "name the images of");
+  transaction.Commit();
+}
+
+void ColmapDatabase::RestoreNames() {
+  {
+    Statement statement(*connection_, "SELECT 1 FROM sqlite_master WHERE name = 'skyquilt_names'", "name the images of");
+    if (!statement.Next()) return;
+  }
+  Transaction transaction(*this);
+  connection_->Execute(
+      "UPDATE images SET name = (SELECT name FROM skyquilt_names AS kept WHERE kept.image_id = images.image_id); DROP TABLE skyquilt_names",
+      "name the images of");
+  transaction.Commit();
+}
+
+void ColmapDatabase::ClearMatches() {
+  connection_->Execute("DELETE FROM two_view_geometries; DELETE FROM matches", "write the matches of");
+}
+
+void ColmapDatabase::WriteMatches(const DatabaseMatches& matches) {
+  static_assert(sizeof(FeaturePair) == 2 * sizeof(uint32_t));
+  SKYQUILT_CHECK(matches.images.first < matches.images.second, "the smaller image id comes first");
+  Statement statement(*connection_, "INSERT OR REPLACE INTO matches(pair_id, rows, cols, data) VALUES(?, ?, 2, ?)", "write the matches of");
+  statement.Bind(1, static_cast<int64_t>(PairId(matches.images.first, matches.images.second)))
+      .Bind(2, static_cast<int64_t>(matches.features.size()))
+      .BindBlob(3, matches.features.data(), matches.features.size() * sizeof(FeaturePair));
+  statement.Next();
+}
+
+ColmapDatabase::Transaction::Transaction(ColmapDatabase& database) : database_(database) {
+  database_.connection_->Execute("BEGIN IMMEDIATE", "write");
+}
+
+ColmapDatabase::Transaction::~Transaction() {
+  // A failure to undo leaves a journal, which the next one who opens the file undoes.
+  if (open_) sqlite3_exec(database_.connection_->handle, "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+void ColmapDatabase::Transaction::Commit() {
+  database_.connection_->Execute("COMMIT", "write");
+  open_ = false;
+}
+
+}  // namespace skyquilt::survey

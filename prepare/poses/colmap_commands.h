@@ -1,0 +1,44 @@
+// COLMAP's part of finding poses: features, its own matching, the verification of matches, and the model.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "prepare/photo_files.h"
+#include "prepare/poses/colmap_step.h"
+#include "prepare/poses/pose_options.h"
+
+namespace skyquilt::prepare {
+
+// What all commands need. `fast`: FastColmapFlags instead of COLMAP's defaults.
+struct ColmapSettings {
+  std::filesystem::path program;
+  int n_threads = 1;
+  bool fast = false;
+};
+
+// All throw base::InputError that names the log when COLMAP fails, base::Interrupted when asked to stop.
+
+// Makes a new database with the features of all photos. Photos of the same size, maker, model and focal length have one camera together.
+void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options);
+
+// COLMAP's own matching and verification: GPS neighbours when there are at least kMinSpatialPhotos photos and at least nine tenths of them have a GPS
+// tag, otherwise all pairs.
+void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options);
+constexpr size_t kMinSpatialPhotos = 60;
+
+// Which of the matches in the database agree with one geometry of the two views, for every pair that has enough of them. A later call goes on where
+// one was stopped. Throws base::InputError when COLMAP left pairs out.
+void VerifyMatches(const ColmapJob& job, const ColmapSettings& settings, const PoseOptions& options);
+
+// Removes earlier models and makes new ones.
+void MakeModels(const ColmapJob& job, const ColmapSettings& settings, size_t n_photos, const PoseOptions& options);
+
+struct FoundModel {
+  std::filesystem::path folder;
+  size_t n_photos = 0;
+};
+// The model with the most photos; others are mentioned in a warning. Throws base::InputError when there is none.
+FoundModel LargestModel(const ColmapJob& job);
+
+}  // namespace skyquilt::prepare

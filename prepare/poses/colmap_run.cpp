@@ -1,0 +1,166 @@
+#include "prepare/poses/colmap_run.h"
+
+#include <functional>
+#include <optional>
+
+#include "core/base/child_process.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "prepare/poses/choose_pairs.h"
+#include "prepare/poses/colmap_commands.h"
+#include "prepare/poses/feature_store.h"
+#include "prepare/poses/match_pairs.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of packed descriptors; about a thousand photos.
+constexpr size_t kFeatureMemory_bytes = size_t{1} << 30U;
+
+// One way from photos to a model.
+struct Attempt {
+  ColmapJob job;
+  ColmapSettings settings;
+  std::optional<PairRules> pairs;  // of our own matching; none: COLMAP matches
+};
+
+// Hashes of what the results of the steps depend on: when one changes, that step and the later ones must be repeated.
+struct StepHashes {
+  std::string features, matches, model;
+};
+
+std::string FeatureInputs(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
+  std::string text = job.photo_root.string() + "\n" + options.camera_model + "\n" + std::to_string(options.max_image_size) + "\n" +
+                     std::to_string(options.max_features) + "\n" + std::to_string(options.seed) + "\n" + std::to_string(options.use_gpu) + "\n";
+  const auto add_file = [&text](const fs::path& file) {
+    std::error_code error;
+    const auto time = fs::last_write_time(file, error);
+    text += file.string() + " " + std::to_string(fs::file_size(file, error)) + " " + std::to_string(time.time_since_epoch().count()) + "\n";
+  };
+  for (const PhotoFile& photo : photos) {
+    add_file(job.photo_root / photo.name);
+    const fs::path mask = job.masks / (photo.name + ".png");
+    if (!job.masks.empty() && fs::exists(mask)) add_file(mask);
+  }
+  return text;
+}
+
+// Tags that pairs depend on; positions may come from another file than the photo.
+std::string PairInputs(const std::vector<PhotoFile>& photos, const PairRules& rules) {
+  std::string text = fmt::format("pairs {} {} {} {} {} {} {} {}\n", rules.all_below, rules.neighbors, rules.sectors, rules.sector_reach,
+                                 rules.position_neighbors, rules.similar, rules.name_neighbors, rules.links);
+  const auto number = [](const std::optional<double>& value) { return value ? fmt::format("{:.9g}", *value) : std::string("-"); };
+  for (const PhotoFile& photo : photos) {
+    const survey::PhotoTags& tags = photo.tags;
+    text += tags.gps ? fmt::format("{:.9f} {:.9f}", tags.gps->latitude_deg, tags.gps->longitude_deg) : "-";
+    text += " " + number(tags.gimbal_pitch_deg) + " " + number(tags.gimbal_yaw_deg) + " " + number(tags.relative_altitude_m) + "\n";
+  }
+  return text;
+}
+
+StepHashes HashSteps(const Attempt& attempt, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
+  std::string text = FeatureInputs(attempt.job, photos, options);
+  StepHashes hashes;
+  const FastColmapFlags flags;
+  if (attempt.settings.fast) text += fmt::format("fast {} {}\n", flags.first_octave, flags.max_features);
+  hashes.features = base::HashHex(text);
+  if (attempt.pairs) text += PairInputs(photos, *attempt.pairs);
+  hashes.matches = base::HashHex(text);
+  if (attempt.settings.fast) {
+    text += fmt::format("fast {} {} {} {}\n", flags.ba_global_function_tolerance, flags.ba_global_images_ratio, flags.ba_global_points_ratio,
+                        flags.ba_global_max_refinements);
+  }
+  hashes.model = base::HashHex(text);
+  return hashes;
+}
+
+// Does the step unless it is done. `later`: the steps that must follow again.
+void RunStep(const ColmapJob& job, const ColmapStep& step, const std::vector<std::string>& later, const std::function<void()>& run) {
+  if (IsDone(job, step)) {
+    spdlog::info("COLMAP {}: already done", step.name);
+    return;
+  }
+  ForgetStep(job, step.name);
+  for (const std::string& name : later) ForgetStep(job, name);
+  run();
+  MarkDone(job, step);
+}
+
+void MatchOurselves(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+                    base::ThreadPool& threads) {
+  std::vector<std::string> names;
+  names.reserve(photos.size());
+  for (const PhotoFile& photo : photos) names.push_back(photo.name);
+  FeatureStore features(attempt.job.Database(), names, kFeatureMemory_bytes);
+  const PhotoPairs pairs = ChoosePairs(photos, *attempt.pairs, static_cast<uint64_t>(options.seed), features, threads);
+  const MatchJob match_job{.folder = attempt.job.folder / "matches", .input = hashes.features};
+  MatchPairs(match_job, features, pairs, threads);
+  RemoveChunks(match_job);
+}
+
+// Everything but the model.
+void FillDatabase(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+                  base::ThreadPool& threads) {
+  const ColmapJob& job = attempt.job;
+  base::RequireWritableFolder(job.folder);
+  spdlog::info("running COLMAP on {} photos; its log is {}", photos.size(), job.Log().string());
+  RunStep(job, {"features", hashes.features}, {"own_matches", "matches", kModelStep},
+          [&] { ExtractFeatures(job, attempt.settings, photos, options); });
+  if (!attempt.pairs) {
+    RunStep(job, {"matches", hashes.matches}, {kModelStep}, [&] { MatchByColmap(job, attempt.settings, photos, options); });
+    return;
+  }
+  RunStep(job, {"own_matches", hashes.matches}, {"matches", kModelStep}, [&] { MatchOurselves(attempt, hashes, photos, options, threads); });
+  RunStep(job, {"matches", hashes.matches}, {kModelStep}, [&] { VerifyMatches(job, attempt.settings, options); });
+}
+
+FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, size_t n_photos, const PoseOptions& options) {
+  RunStep(attempt.job, {kModelStep, hashes.model}, {}, [&] { MakeModels(attempt.job, attempt.settings, n_photos, options); });
+  return LargestModel(attempt.job);
+}
+
+}  // namespace
+
+fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads) {
+  const fs::path program = base::FindProgram(options.colmap);
+  if (program.empty()) {
+    throw base::InputError(options.colmap, "there is no such program",
+                           "Install COLMAP (Debian: apt install colmap), set prepare.colmap to its path, or give a model with --model");
+  }
+  const ColmapSettings settings{.program = program, .n_threads = threads.size(), .fast = options.fast};
+  const Attempt first{job, settings, options.fast ? std::optional(PairRules{}) : std::nullopt};
+  const StepHashes hashes = HashSteps(first, photos, options);
+  FillDatabase(first, hashes, photos, options, threads);
+  if (!options.fast) return FindModel(first, hashes, photos.size(), options).folder;
+
+  std::optional<FoundModel> found;
+  std::string reason;
+  try {
+    found = FindModel(first, hashes, photos.size(), options);
+    if (static_cast<double>(found->n_photos) >= kEnoughRegistered * static_cast<double>(photos.size())) return found->folder;
+    reason = fmt::format("it found the poses of {} of {} photos only", found->n_photos, photos.size());
+  } catch (const base::InputError& error) {
+    reason = error.what();
+  }
+  spdlog::warn("the fast way is not enough: {}. Once more with COLMAP's own settings and more pairs", reason);
+  Attempt second{job, settings, kMorePairs};
+  second.job.folder = job.folder / "more_pairs";
+  second.settings.fast = false;
+  const StepHashes second_hashes = HashSteps(second, photos, options);
+  FillDatabase(second, second_hashes, photos, options, threads);
+  FoundModel again;
+  try {
+    again = FindModel(second, second_hashes, photos.size(), options);
+  } catch (const base::InputError& error) {
+    if (!found) throw;
+    spdlog::warn("more pairs give no model: {}", error.what());
+    return found->folder;
+  }
+  spdlog::info("poses: {} photos in the fast way, {} with more pairs", found ? found->n_photos : 0, again.n_photos);
+  return found && found->n_photos >= again.n_photos ? found->folder : again.folder;
+}
+
+}  // namespace skyquilt::prepare

@@ -1,0 +1,47 @@
+// Runs commands of the COLMAP program, and remembers which steps are finished.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace skyquilt::prepare {
+
+struct ColmapJob {
+  std::filesystem::path photo_root;  // names of photos are relative to it
+  std::filesystem::path masks;       // empty: none
+  std::filesystem::path folder;      // for COLMAP's database, models and log, and for our stamps of finished steps
+
+  std::filesystem::path Database() const { return folder / "database.db"; }
+  std::filesystem::path Models() const { return folder / "sparse"; }
+  std::filesystem::path Log() const { return folder / "colmap.log"; }
+};
+
+struct ColmapCommand {
+  std::filesystem::path program;
+  std::string name;  // of the command
+  std::vector<std::string> arguments;
+};
+
+// Appends the output to the job's log and passes each line on. Throws base::InputError that names the log when the command fails, base::Interrupted
+// when asked to stop.
+void RunColmapCommand(const ColmapJob& job, const ColmapCommand& command, const std::function<void(const std::string& line)>& on_line);
+// With a line of progress in photos, as far as the output tells it.
+void RunWithProgress(const ColmapJob& job, const ColmapCommand& command, const std::string& label, size_t n_photos);
+
+// Share of a step that is done after this line of COLMAP's output, in [0, 1]; negative when the line does not tell.
+double ColmapLineProgress(const std::string& line, size_t n_photos);
+
+// A step of the job that is finished has a file with the hash of what its result depends on.
+struct ColmapStep {
+  std::string name;  // of its file
+  std::string hash;
+};
+bool IsDone(const ColmapJob& job, const ColmapStep& step);
+void MarkDone(const ColmapJob& job, const ColmapStep& step);
+void ForgetStep(const ColmapJob& job, const std::string& name);
+
+constexpr const char* kModelStep = "model";  // makes the models; the other steps fill the database
+
+}  // namespace skyquilt::prepare

@@ -1,0 +1,81 @@
+#include "prepare/poses/match_pairs.h"
+
+#include <algorithm>
+#include <span>
+
+#include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Chunk {
+  fs::path file;
+  std::string key;
+  std::span<const PhotoPair> pairs;
+};
+
+std::vector<Chunk> SplitIntoChunks(const MatchJob& job, const PhotoPairs& pairs) {
+  std::vector<Chunk> chunks;
+  for (size_t first = 0; first < pairs.size(); first += job.pairs_per_chunk) {
+    const std::span some = std::span(pairs).subspan(first, std::min(job.pairs_per_chunk, pairs.size() - first));
+    chunks.push_back({job.folder / fmt::format("chunk_{:05}.bin", chunks.size()), ChunkKey(job.input, some, job.rules), some});
+  }
+  return chunks;
+}
+
+}  // namespace
+
+void MatchPairs(const MatchJob& job, FeatureStore& features, const PhotoPairs& pairs, base::ThreadPool& threads) {
+  base::RequireWritableFolder(job.folder);
+  const std::vector<Chunk> chunks = SplitIntoChunks(job, pairs);
+  size_t n_done = 0;
+  std::vector<const Chunk*> missing;
+  for (const Chunk& chunk : chunks) {
+    if (LoadChunk(chunk.file, chunk.key)) {
+      n_done += chunk.pairs.size();
+    } else {
+      missing.push_back(&chunk);
+    }
+  }
+  if (n_done > 0) spdlog::info("{} of {} pairs are already matched", n_done, pairs.size());
+  base::Progress progress("match features", static_cast<double>(pairs.size() - n_done), "pairs");
+  for (const Chunk* chunk : missing) {
+    const auto matches = MatchChunk(features, chunk->pairs, job.rules, job.min_matches, [&] { progress.Advance(); }, threads);
+    SaveChunk(chunk->file, chunk->key, matches);
+  }
+  progress.Finish();
+
+  // One chunk at a time: the matches of a large survey need not fit in memory.
+  auto chunk = chunks.begin();
+  std::vector<survey::DatabaseMatches> loaded;
+  size_t next = 0, n_matches = 0, n_matched = 0;
+  features.database().ReplaceMatches([&](survey::DatabaseMatches& matches) {
+    while (next == loaded.size()) {
+      if (chunk == chunks.end()) return false;
+      base::ThrowIfCancelled();
+      auto read = LoadChunk(chunk->file, chunk->key);
+      if (!read) throw base::InputError(chunk->file, "was changed while it was in use", "Run the same command again");
+      loaded = std::move(*read);
+      next = 0;
+      ++chunk;
+    }
+    matches = std::move(loaded[next++]);
+    n_matches += matches.features.size();
+    n_matched += matches.features.empty() ? 0 : 1;
+    return true;
+  });
+  spdlog::info("matches: {} of {} pairs of photos have some, {} on average", n_matched, pairs.size(), n_matched == 0 ? 0 : n_matches / n_matched);
+}
+
+void RemoveChunks(const MatchJob& job) {
+  std::error_code ignored;
+  fs::remove_all(job.folder, ignored);
+}
+
+}  // namespace skyquilt::prepare

@@ -1,0 +1,29 @@
+// Matches the features of all pairs in chunks and writes the matches into COLMAP's database.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/base/thread_pool.h"
+#include "prepare/poses/feature_store.h"
+#include "prepare/poses/match_chunk.h"
+
+namespace skyquilt::prepare {
+
+struct MatchJob {
+  std::filesystem::path folder;  // for the files of chunks; made if needed
+  std::string input;             // identifies the features: chunks made from others are not used
+  MatchRules rules = {};
+  size_t min_matches = 15;       // COLMAP's SiftMatching.min_num_inliers
+  size_t pairs_per_chunk = 256;  // half a minute or less on two cores
+};
+
+// `pairs` are sorted, so that a chunk meets the same photos again and again. Finished chunks of an earlier call are not repeated. Afterwards the
+// database has the matches of these pairs and no others, and no geometries. Shows progress in pairs. Throws base::Interrupted (a later call goes on),
+// base::InputError for a damaged database and for files that cannot be written.
+void MatchPairs(const MatchJob& job, FeatureStore& features, const PhotoPairs& pairs, base::ThreadPool& threads);
+
+// Removes the files of chunks: once the matches are in the database nobody needs them.
+void RemoveChunks(const MatchJob& job);
+
+}  // namespace skyquilt::prepare

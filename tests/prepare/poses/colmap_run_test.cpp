@@ -1,0 +1,235 @@
+#include "prepare/poses/colmap_run.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/survey/colmap_database.h"
+#include "tests/prepare/poses/made_photos.h"
+#include "tests/support/error_of.h"
+#include "tests/support/made_database.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+TEST(ColmapProgress, IsReadFromItsOutput) {
+  EXPECT_DOUBLE_EQ(ColmapLineProgress("Processed file [3/18]", 18), 3.0 / 18.0);
+  EXPECT_DOUBLE_EQ(ColmapLineProgress("Matching block [1/2, 1/2] in 4.4s", 18), 0.0);
+  EXPECT_DOUBLE_EQ(ColmapLineProgress("Matching block [2/2, 2/2]", 18), 0.75);
+  EXPECT_DOUBLE_EQ(ColmapLineProgress("Matching image [84/167] in 0.2s", 167), 83.0 / 167.0);
+  EXPECT_DOUBLE_EQ(ColmapLineProgress("Registering image #12 (7)", 18), 6.0 / 18.0);
+  EXPECT_LT(ColmapLineProgress("  Name:            DJI_0018.JPG", 18), 0.0);
+  EXPECT_LT(ColmapLineProgress("Registering image #", 18), 0.0);
+}
+
+// A fake COLMAP that records its calls.
+class FakeColmap : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_ / "images");
+    photos_ = test::GridPhotos(4, 5, 20.0, 25.0, {47.0, 8.0, 400.0});
+    for (const PhotoFile& photo : photos_) base::WriteFileAtomically(folder_ / ("images/" + photo.name), "pixels");
+    options_.colmap = (folder_ / "colmap").string();
+  }
+  void WriteProgram(const std::string& text) {
+    base::WriteFileAtomically(options_.colmap, text);
+    std::filesystem::permissions(options_.colmap, std::filesystem::perms::owner_all);
+  }
+  std::filesystem::path Run() { return RunColmap(job_, photos_, options_, threads_); }
+  // And forgets them.
+  std::string Calls() {
+    const std::filesystem::path file = folder_ / "calls";
+    const std::string calls = std::filesystem::exists(file) ? base::ReadFile(file) : "";
+    std::filesystem::remove(file);
+    return calls;
+  }
+
+  TemporaryFolder folder_;
+  std::vector<PhotoFile> photos_;
+  PoseOptions options_;
+  ColmapJob job_{folder_ / "images", {}, folder_ / "work"};
+  base::ThreadPool threads_{1};
+};
+
+class ColmapAlone : public FakeColmap {
+ protected:
+  void SetUp() override {
+    FakeColmap::SetUp();
+    options_.fast = false;
+  }
+  void WriteFake(const std::string& mapper) {
+    WriteProgram("#!/bin/sh\necho $1 >> " + (folder_ / "calls").string() + "\necho \"$@\" >> " + (folder_ / "arguments").string() +
+                 "\nwhile [ $# -gt 0 ]; do case $1 in --output_path) out=$2;; --database_path) : >> \"$2\";; mapper) m=1;; esac; shift; done\n"
+                 "if [ -n \"$m\" ]; then " +
+                 mapper + "; fi\n");
+  }
+};
+
+TEST_F(ColmapAlone, FinishedStepsAreSkippedAndFailuresNameTheLog) {
+  WriteFake("echo no good initial pair; exit 1");
+  const std::string error = InputErrorOf([&] { Run(); });
+  EXPECT_NE(error.find("colmap.log"), std::string::npos) << error;
+  EXPECT_NE(error.find("no good initial pair"), std::string::npos) << error;
+  WriteFake("exit 0");
+  EXPECT_THROW(Run(), base::InputError);  // succeeded, but wrote no model
+  EXPECT_EQ(Calls(), "feature_extractor\nexhaustive_matcher\nmapper\nmapper\n");
+
+  options_.max_features = 500;
+  EXPECT_THROW(Run(), base::InputError);
+  EXPECT_EQ(Calls(), "feature_extractor\nexhaustive_matcher\nmapper\n");
+
+  options_.colmap = "no-such-colmap";
+  EXPECT_THROW(Run(), base::InputError);
+}
+
+// COLMAP's own settings stay as they are.
+TEST_F(ColmapAlone, HasItsOwnSettings) {
+  photos_ = test::GridPhotos(8, 8, 20.0, 25.0, {47.0, 8.0, 400.0});
+  WriteFake("exit 0");
+  EXPECT_THROW(Run(), base::InputError);
+  EXPECT_EQ(Calls(), "feature_extractor\nspatial_matcher\nmapper\n");
+  const std::string arguments = base::ReadFile(folder_ / "arguments");
+  EXPECT_EQ(arguments.find("first_octave"), std::string::npos) << arguments;
+  EXPECT_EQ(arguments.find("ba_global"), std::string::npos) << arguments;
+  EXPECT_NE(arguments.find("--SiftExtraction.max_num_features 8192"), std::string::npos) << arguments;
+  EXPECT_NE(arguments.find("--SpatialMatching.max_num_neighbors 24"), std::string::npos) << arguments;
+}
+
+// It takes a made database for features, verifies all matches of the listed pairs, and makes models of so many photos.
+constexpr const char* kFastProgram = R"(#!/usr/bin/env python3
+import os, shutil, sqlite3, struct, sys
+folder = os.path.dirname(os.path.abspath(__file__))
+call = sys.argv[1]
+options = dict(zip(sys.argv[2::2], sys.argv[3::2]))
+again = "more_pairs" in options["--database_path"]
+with open(folder + "/calls", "a") as calls:
+    calls.write(call + (" again" if again else "") + "\n")
+with open(folder + "/arguments", "a") as arguments:
+    arguments.write(" ".join(sys.argv) + "\n")
+setting = lambda name: int(open(folder + "/" + name).read()) if os.path.exists(folder + "/" + name) else 0
+if call == "feature_extractor":
+    shutil.copy(folder + "/made.db", options["--database_path"])
+    sys.exit(0)
+database = sqlite3.connect(options["--database_path"])
+ids = dict(database.execute("SELECT name, image_id FROM images"))
+if call == "matches_importer":
+    if setting("fail_verifying"):
+        sys.exit("killed")
+    for line in open(options["--match_list_path"]):
+        a, b = sorted(ids[name] for name in line.split())
+        key = a * 2147483647 + b
+        rows, data = database.execute("SELECT rows, data FROM matches WHERE pair_id = ?", (key,)).fetchone()
+        database.execute("INSERT INTO two_view_geometries VALUES(?, ?, 2, ?, 2, NULL, NULL, NULL, NULL, NULL)", (key, rows, data))
+    database.commit()
+elif call == "mapper":
+    n = setting("again" if again else "first")
+    if n == 0:
+        sys.exit("no good initial pair")
+    model = options["--output_path"] + "/0"
+    os.makedirs(model)
+    names = sorted(ids)[:n]
+    camera = struct.pack("<QIiQQ4d", 1, 1, 1, 64, 48, 60.0, 60.0, 32.0, 24.0)
+    images = struct.pack("<Q", n)
+    for name in names:
+        images += struct.pack("<I7dI", ids[name], 1, 0, 0, 0, 0, 0, 0, 1) + name.encode() + b"\0" + struct.pack("<Q", 0)
+    for file, data in (("cameras", camera), ("images", images), ("points3D", struct.pack("<Q", 0))):
+        open(model + "/" + file + ".bin", "wb").write(data)
+)";
+
+class FastWay : public FakeColmap {
+ protected:
+  void SetUp() override {
+    FakeColmap::SetUp();
+    WriteProgram(kFastProgram);
+    base::Random random(2);
+    std::vector<std::array<uint8_t, 128>> features;
+    for (int i = 0; i < 30; ++i) features.push_back(test::RandomDescriptor(random));
+    for (PhotoFile& photo : photos_) photo.name = "flight 1/" + photo.name;
+    test::MadeDatabase made(folder_ / "made.db");
+    made.Run("PRAGMA journal_mode = DELETE");  // one file, to copy
+    for (uint32_t i = 0; i < photos_.size(); ++i) {
+      std::vector<uint8_t> rows;
+      for (const auto& feature : features) test::AddRow(rows, test::SeenAgain(feature, 5, random));
+      made.AddImage(i + 1, photos_[i].name);
+      made.AddDescriptors(i + 1, rows);
+    }
+  }
+  void SetNumber(const std::string& name, size_t number) { base::WriteFileAtomically(folder_ / name, std::to_string(number)); }
+};
+
+constexpr const char* kFastCalls = "feature_extractor\nmatches_importer\nmapper\n";
+constexpr const char* kSecondCalls = "feature_extractor again\nmatches_importer again\nmapper again\n";
+
+TEST_F(FastWay, MatchesAllPairsOfASmallSurveyAndSkipsFinishedSteps) {
+  SetNumber("first", 18);
+  EXPECT_EQ(Run(), job_.folder / "sparse" / "0");
+  EXPECT_EQ(Calls(), kFastCalls);
+  EXPECT_EQ(Run(), job_.folder / "sparse" / "0");
+  EXPECT_EQ(Calls(), "");
+  const survey::ColmapDatabase database(job_.Database());
+  EXPECT_EQ(database.ReadTwoViewMatches().size(), 190U);
+  EXPECT_EQ(database.ReadImages()[0].name, photos_[0].name);
+  EXPECT_FALSE(std::filesystem::exists(job_.folder / "matches"));
+  const std::string arguments = base::ReadFile(folder_ / "arguments");
+  for (const char* wanted : {"--SiftExtraction.first_octave 0", "--SiftExtraction.max_num_features 4096", "--match_type pairs",
+                             "--Mapper.ba_global_function_tolerance 1e-06", "--Mapper.ba_global_images_ratio 1.3"}) {
+    EXPECT_NE(arguments.find(wanted), std::string::npos) << wanted << " in " << arguments;
+  }
+}
+
+TEST_F(FastWay, OnlyWhatDependsOnAChangeIsRepeated) {
+  SetNumber("first", 20);
+  Run();
+  Calls();
+  // Another position changes the choice of pairs, not the features.
+  photos_[3].tags.gps->latitude_deg += 1e-4;
+  Run();
+  EXPECT_EQ(Calls(), "matches_importer\nmapper\n");
+  options_.max_features = 300;
+  Run();
+  EXPECT_EQ(Calls(), kFastCalls);
+}
+
+// The names are plain while pairs are verified; a kill there leaves them so until the next run.
+TEST_F(FastWay, GoesOnAfterAKillWhileVerifying) {
+  SetNumber("first", 20);
+  SetNumber("fail_verifying", 1);
+  EXPECT_NE(InputErrorOf([&] { Run(); }).find("matches_importer failed"), std::string::npos);
+  SetNumber("fail_verifying", 0);
+  Calls();
+  Run();
+  EXPECT_EQ(Calls(), "matches_importer\nmapper\n");
+  EXPECT_EQ(survey::ColmapDatabase(job_.Database()).ReadImages()[4].name, photos_[4].name);
+}
+
+TEST_F(FastWay, TriesMorePairsWhenPhotosAreMissing) {
+  SetNumber("first", 17);
+  SetNumber("again", 19);
+  EXPECT_EQ(Run(), job_.folder / "more_pairs" / "sparse" / "0");
+  EXPECT_EQ(Calls(), std::string(kFastCalls) + kSecondCalls);
+  EXPECT_EQ(Run(), job_.folder / "more_pairs" / "sparse" / "0");
+  EXPECT_EQ(Calls(), "");
+  const std::string arguments = base::ReadFile(folder_ / "arguments");
+  EXPECT_NE(arguments.find("--SiftExtraction.max_num_features 8192"), std::string::npos) << arguments;
+}
+
+TEST_F(FastWay, KeepsItsModelWhenMorePairsAreNoBetter) {
+  SetNumber("first", 17);
+  SetNumber("again", 17);
+  EXPECT_EQ(Run(), job_.folder / "sparse" / "0");
+  SetNumber("again", 0);
+  std::filesystem::remove(job_.folder / "more_pairs" / "model.done");
+  EXPECT_EQ(Run(), job_.folder / "sparse" / "0");
+}
+
+TEST_F(FastWay, TriesMorePairsWhenItFindsNoModel) {
+  SetNumber("again", 5);
+  EXPECT_EQ(Run(), job_.folder / "more_pairs" / "sparse" / "0");
+  SetNumber("again", 0);
+  std::filesystem::remove(job_.folder / "more_pairs" / "model.done");
+  EXPECT_NE(InputErrorOf([&] { Run(); }).find("more_pairs"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace skyquilt::prepare

@@ -66,9 +66,9 @@ class Statement {
     connection_.Require(sqlite3_bind_int64(statement_, index, value), action_);
     return *this;
   }
-  // The bytes must stay until the statement has run.
+  // Not copied (null destructor, SQLITE_STATIC): the bytes must stay until the statement has run.
   Statement& BindBlob(int index, const void* bytes, size_t size) {
-    connection_.Require(sqlite3_bind_blob64(statement_, index, bytes, size, SQLITE_STATIC), action_);
+    connection_.Require(sqlite3_bind_blob64(statement_, index, bytes, size, nullptr), action_);
     return *this;
   }
   // False after the last row.
@@ -108,7 +108,8 @@ class Statement {
              n_values / static_cast<uint64_t>(n_cols) == static_cast<uint64_t>(rows);
     };
     if (!fits()) {
-      connection_.Fail("has " + what + " of " + std::to_string(rows) + " x " + std::to_string(n_cols) + " in " + std::to_string(bytes.size()) + " bytes");
+      connection_.Fail("has " + what + " of " + std::to_string(rows) + " x " + std::to_string(n_cols) + " in " + std::to_string(bytes.size()) +
+                       " bytes");
     }
     *cols = rows == 0 ? 0 : static_cast<size_t>(n_cols);
     std::vector<T> values(bytes.size() / sizeof(T));
@@ -125,7 +126,8 @@ class Statement {
   }
   ImagePair Pair(int column) const {
     const int64_t id = Int(column);
-    const ImagePair pair = id < 0 ? ImagePair{0, 0} : ImagesOfPair(static_cast<uint64_t>(id));
+    const bool in_range = id >= 0 && static_cast<uint64_t>(id) < kMaxDatabaseId * kMaxDatabaseId;
+    const ImagePair pair = in_range ? ImagesOfPair(static_cast<uint64_t>(id)) : ImagePair{0, 0};
     if (pair.first >= pair.second) connection_.Fail("has the impossible number of a pair " + std::to_string(id));
     return pair;
   }
@@ -195,7 +197,8 @@ std::map<uint32_t, camera::Camera> ColmapDatabase::ReadCameras() const {
     const std::span<const uint8_t> bytes = statement.Blob(4);
     camera::Camera camera{*model, static_cast<int>(width), static_cast<int>(height), {}};
     camera.params.resize(static_cast<size_t>(camera::ModelParamCount(*model)));
-    if (bytes.size() != camera.params.size() * sizeof(double)) connection_->Fail("has " + name + " with " + std::to_string(bytes.size()) + " bytes of parameters");
+    if (bytes.size() != camera.params.size() * sizeof(double))
+      connection_->Fail("has " + name + " with " + std::to_string(bytes.size()) + " bytes of parameters");
     std::memcpy(camera.params.data(), bytes.data(), bytes.size());
     cameras.emplace(id, std::move(camera));
   }
@@ -280,8 +283,8 @@ size_t ColmapDatabase::CountTwoViewGeometries() const {
 void ColmapDatabase::UsePlainNames() {
   RestoreNames();
   Transaction transaction(*this);
-  connection_->Execute(
-      "CREATE TABLE skyquilt_names AS SELECT image_id, name FROM images; UPDATE images SET name = 'image_' || image_id", "name the images of");
+  connection_->Execute("CREATE TABLE skyquilt_names AS SELECT image_id, name FROM images; UPDATE images SET name = 'image_' || image_id || '/'",
+                       "name the images of");
   transaction.Commit();
 }
 

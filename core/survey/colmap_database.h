@@ -73,10 +73,10 @@ class ColmapDatabase {
   size_t CountTwoViewGeometries() const;
 
   // COLMAP's lists of pairs cannot hold names with spaces. UsePlainNames gives every image the name PlainName(id), until RestoreNames or the next
-  // opening of the file by this class.
+  // opening of the file by this class. No photo can have such a name, as it ends in a slash.
   void UsePlainNames();
   void RestoreNames();
-  static std::string PlainName(uint32_t image_id) { return "image_" + std::to_string(image_id); }
+  static std::string PlainName(uint32_t image_id) { return "image_" + std::to_string(image_id) + "/"; }
 
   // Replaces all matches of the database by those that `next` gives, one after another until it returns false; geometries are removed, so that
   // COLMAP's matches_importer makes them anew. In one transaction: everything or nothing is written, also when `next` throws.

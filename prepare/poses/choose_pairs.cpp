@@ -14,7 +14,8 @@ constexpr double kCostOfLooks = 1e15;
 
 }  // namespace
 
-PhotoPairs ChoosePairs(const std::vector<PhotoFile>& photos, const PairRules& rules, uint64_t seed, FeatureStore& features, base::ThreadPool& threads) {
+PhotoPairs ChoosePairs(const std::vector<PhotoFile>& photos, const PairRules& rules, uint64_t seed, FeatureStore& features,
+                       base::ThreadPool& threads) {
   const size_t n = photos.size();
   if (n < rules.all_below) {
     spdlog::info("pairs: all {} of {} photos", n * (n - std::min<size_t>(n, 1)) / 2, n);
@@ -33,7 +34,8 @@ PhotoPairs ChoosePairs(const std::vector<PhotoFile>& photos, const PairRules& ru
     spdlog::info("{} of {} photos have no usable GPS tag: they are matched with the photos that look most like them", without.size(), n);
     RetrievalOptions options;
     options.seed = seed;
-    index.emplace(n, [&](size_t photo) { return features.LargestFirst(static_cast<uint32_t>(photo)); }, options, threads);
+    index.emplace(
+        n, [&](size_t photo) { return features.LargestFirst(static_cast<uint32_t>(photo)); }, options, threads);
     std::vector<std::vector<uint32_t>> similar(without.size());
     threads.ParallelFor(static_cast<int64_t>(without.size()), [&](int64_t task, int /*thread*/) {
       const auto i = static_cast<size_t>(task);

@@ -11,9 +11,10 @@
 
 namespace skyquilt::prepare {
 
-// All pairs of a small survey. Otherwise photos with a place are paired in space (PairsInSpace), those without with the photos that look most like them
-// and with their neighbours in name order; pairs between groups make the whole survey one. The same photos and seed give the same pairs. Throws
+// All pairs of a small survey. Otherwise photos with a place are paired in space (PairsInSpace), those without with the photos that look most like
+// them and with their neighbours in name order; pairs between groups make the whole survey one. The same photos and seed give the same pairs. Throws
 // base::Interrupted, and base::InputError for a damaged database.
-PhotoPairs ChoosePairs(const std::vector<PhotoFile>& photos, const PairRules& rules, uint64_t seed, FeatureStore& features, base::ThreadPool& threads);
+PhotoPairs ChoosePairs(const std::vector<PhotoFile>& photos, const PairRules& rules, uint64_t seed, FeatureStore& features,
+                       base::ThreadPool& threads);
 
 }  // namespace skyquilt::prepare

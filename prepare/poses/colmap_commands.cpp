@@ -41,14 +41,9 @@ std::map<std::string, std::vector<const PhotoFile*>> GroupByCamera(const std::ve
 }
 
 Arguments MatchingArguments(const ColmapJob& job, const ColmapSettings& settings, const PoseOptions& options, bool use_gpu) {
-  return {"--database_path",
-          job.Database().string(),
-          "--SiftMatching.use_gpu",
-          use_gpu ? "1" : "0",
-          "--SiftMatching.num_threads",
-          std::to_string(settings.n_threads),
-          "--random_seed",
-          std::to_string(options.seed)};
+  return {"--database_path",   job.Database().string(),      "--SiftMatching.use_gpu",
+          use_gpu ? "1" : "0", "--SiftMatching.num_threads", std::to_string(settings.n_threads),
+          "--random_seed",     std::to_string(options.seed)};
 }
 
 // Whether COLMAP can read the name in a list of pairs, where spaces separate.
@@ -136,6 +131,10 @@ void VerifyMatches(const ColmapJob& job, const ColmapSettings& settings, const P
       for (auto& [id, name] : names) name = survey::ColmapDatabase::PlainName(id);
     }
   }
+  if (pairs.empty()) {
+    spdlog::warn("no pair of photos has {} matches", kMinVerified);
+    return;
+  }
   const fs::path list = job.folder / "pairs.txt";
   ColmapCommand command{settings.program, "matches_importer", MatchingArguments(job, settings, options, false)};
   Append(command.arguments, {"--match_list_path", list.string(), "--match_type", "pairs"});
@@ -164,17 +163,15 @@ void MakeModels(const ColmapJob& job, const ColmapSettings& settings, size_t n_p
   fs::remove_all(job.Models());
   base::RequireWritableFolder(job.Models());
   ColmapCommand command{settings.program, "mapper", {}};
-  command.arguments = {"--database_path",      job.Database().string(),
-                       "--image_path",         job.photo_root.string(),
-                       "--output_path",        job.Models().string(),
-                       "--Mapper.num_threads", std::to_string(settings.n_threads),
-                       "--random_seed",        std::to_string(options.seed)};
+  command.arguments = {"--database_path", job.Database().string(),     "--image_path",         job.photo_root.string(),
+                       "--output_path",   job.Models().string(),       "--Mapper.num_threads", std::to_string(settings.n_threads),
+                       "--random_seed",   std::to_string(options.seed)};
   if (settings.fast) {
     const FastColmapFlags flags;
-    Append(command.arguments, {"--Mapper.ba_global_function_tolerance", fmt::format("{:g}", flags.ba_global_function_tolerance),
-                               "--Mapper.ba_global_images_ratio", fmt::format("{:g}", flags.ba_global_images_ratio),
-                               "--Mapper.ba_global_points_ratio", fmt::format("{:g}", flags.ba_global_points_ratio),
-                               "--Mapper.ba_global_max_refinements", std::to_string(flags.ba_global_max_refinements)});
+    Append(command.arguments,
+           {"--Mapper.ba_global_function_tolerance", fmt::format("{:g}", flags.ba_global_function_tolerance), "--Mapper.ba_global_images_ratio",
+            fmt::format("{:g}", flags.ba_global_images_ratio), "--Mapper.ba_global_points_ratio", fmt::format("{:g}", flags.ba_global_points_ratio),
+            "--Mapper.ba_global_max_refinements", std::to_string(flags.ba_global_max_refinements)});
   }
   RunWithProgress(job, command, "find poses", n_photos);
 }

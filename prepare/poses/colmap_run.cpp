@@ -89,16 +89,14 @@ void RunStep(const ColmapJob& job, const ColmapStep& step, const std::vector<std
   MarkDone(job, step);
 }
 
-void MatchOurselves(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+void MatchOurselves(const Attempt& attempt, const MatchJob& match_job, const std::vector<PhotoFile>& photos, const PoseOptions& options,
                     base::ThreadPool& threads) {
   std::vector<std::string> names;
   names.reserve(photos.size());
   for (const PhotoFile& photo : photos) names.push_back(photo.name);
   FeatureStore features(attempt.job.Database(), names, kFeatureMemory_bytes);
   const PhotoPairs pairs = ChoosePairs(photos, *attempt.pairs, static_cast<uint64_t>(options.seed), features, threads);
-  const MatchJob match_job{.folder = attempt.job.folder / "matches", .input = hashes.features};
   MatchPairs(match_job, features, pairs, threads);
-  RemoveChunks(match_job);
 }
 
 // Everything but the model.
@@ -113,7 +111,10 @@ void FillDatabase(const Attempt& attempt, const StepHashes& hashes, const std::v
     RunStep(job, {"matches", hashes.matches}, {kModelStep}, [&] { MatchByColmap(job, attempt.settings, photos, options); });
     return;
   }
-  RunStep(job, {"own_matches", hashes.matches}, {"matches", kModelStep}, [&] { MatchOurselves(attempt, hashes, photos, options, threads); });
+  const MatchJob match_job{.folder = job.folder / "matches", .input = hashes.features};
+  RunStep(job, {"own_matches", hashes.matches}, {"matches", kModelStep}, [&] { MatchOurselves(attempt, match_job, photos, options, threads); });
+  // Only now: a kill before the step is marked as done would have to match everything again.
+  RemoveChunks(match_job);
   RunStep(job, {"matches", hashes.matches}, {kModelStep}, [&] { VerifyMatches(job, attempt.settings, options); });
 }
 

@@ -16,7 +16,8 @@ FeatureStore::FeatureStore(const std::filesystem::path& database, const std::vec
   for (const std::string& name : names) {
     const auto found = id_of_name.find(name);
     if (found == id_of_name.end()) {
-      throw base::InputError(database, "has no photo " + name, "Remove the folder " + database.parent_path().string() + ", then run the same command again");
+      throw base::InputError(database, "has no photo " + name,
+                             "Remove the folder " + database.parent_path().string() + ", then run the same command again");
     }
     image_ids_.push_back(found->second);
   }
@@ -46,14 +47,15 @@ std::vector<uint8_t> FeatureStore::LargestFirst(uint32_t photo) {
   const std::lock_guard lock(mutex_);
   const std::vector<survey::DatabaseKeypoint> keypoints = database_.ReadKeypoints(image_ids_[photo]);
   const std::vector<uint8_t> descriptors = database_.ReadDescriptors(image_ids_[photo]);
-  constexpr size_t kBytes = survey::kDatabaseDescriptorBytes;
-  if (keypoints.size() * kBytes != descriptors.size()) return descriptors;
+  constexpr size_t kRowBytes = survey::kDatabaseDescriptorBytes;
+  if (keypoints.size() * kRowBytes != descriptors.size()) return descriptors;
   std::vector<size_t> order(keypoints.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return keypoints[a].scale > keypoints[b].scale; });
   std::vector<uint8_t> sorted(descriptors.size());
   for (size_t i = 0; i < order.size(); ++i) {
-    std::copy_n(descriptors.begin() + static_cast<std::ptrdiff_t>(order[i] * kBytes), kBytes, sorted.begin() + static_cast<std::ptrdiff_t>(i * kBytes));
+    std::copy_n(descriptors.begin() + static_cast<std::ptrdiff_t>(order[i] * kRowBytes), kRowBytes,
+                sorted.begin() + static_cast<std::ptrdiff_t>(i * kRowBytes));
   }
   return sorted;
 }

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The file: kMagic, length of the key and the key, number of pairs; for each pair both image ids, the number of matches and the matches; the CRC-32 of
-// all before. Numbers are 32-bit and little-endian.
+// The file: kMagic, length of the key and the key, number of pairs; for each pair both image ids, the number of matches and the matches; the CRC-32
+// of all before. Numbers are 32-bit and little-endian.
 constexpr std::string_view kMagic = "skyquilt matches 1\n";
 
 void AddNumber(std::string& bytes, uint32_t number) {

@@ -44,12 +44,15 @@ void MatchPairs(const MatchJob& job, FeatureStore& features, const PhotoPairs& p
     }
   }
   if (n_done > 0) spdlog::info("{} of {} pairs are already matched", n_done, pairs.size());
-  base::Progress progress("match features", static_cast<double>(pairs.size() - n_done), "pairs");
-  for (const Chunk* chunk : missing) {
-    const auto matches = MatchChunk(features, chunk->pairs, job.rules, job.min_matches, [&] { progress.Advance(); }, threads);
-    SaveChunk(chunk->file, chunk->key, matches);
+  if (!missing.empty()) {
+    base::Progress progress("match features", static_cast<double>(pairs.size() - n_done), "pairs");
+    for (const Chunk* some : missing) {
+      SaveChunk(some->file, some->key,
+                MatchChunk(
+                    features, some->pairs, job.rules, job.min_matches, [&] { progress.Advance(); }, threads));
+    }
+    progress.Finish();
   }
-  progress.Finish();
 
   // One chunk at a time: the matches of a large survey need not fit in memory.
   auto chunk = chunks.begin();

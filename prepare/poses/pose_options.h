@@ -30,14 +30,14 @@ struct FastColmapFlags {
 
 // Which photos are matched in the fast way.
 struct PairRules {
-  size_t all_below = 30;           // with fewer photos: every pair
-  size_t neighbors = 14;           // nearest photos by what they look at
-  size_t sectors = 8;              // of azimuth; the nearest photo in each comes first
-  double sector_reach = 2.5;       // a sector's nearest counts up to so many times the distance of the last of the nearest photos
-  size_t position_neighbors = 4;   // nearest by position of the camera, where gimbal angles move what is looked at: the tags may be wrong
-  size_t similar = 24;             // most similar photos, for photos without a usable position
-  size_t name_neighbors = 2;       // photos before and after in name order, for the same
-  size_t links = 4;                // pairs that connect groups which have none in common
+  size_t all_below = 30;          // with fewer photos: every pair
+  size_t neighbors = 14;          // nearest photos by what they look at
+  size_t sectors = 8;             // of azimuth; the nearest photo in each comes first
+  double sector_reach = 2.5;      // a sector's nearest counts up to so many times the distance of the last of the nearest photos
+  size_t position_neighbors = 4;  // nearest by position of the camera, where gimbal angles move what is looked at: the tags may be wrong
+  size_t similar = 24;            // most similar photos, for photos without a usable position
+  size_t name_neighbors = 2;      // photos before and after in name order, for the same
+  size_t links = 4;               // pairs that connect groups which have none in common
 };
 
 // After the fast way has found too few poses.

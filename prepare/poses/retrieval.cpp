@@ -179,9 +179,8 @@ std::vector<uint32_t> PhotoIndex::MostSimilar(size_t photo, size_t n) const {
     if (similarities[other] > 0.0F) others.push_back(other);
   }
   n = std::min(n, others.size());
-  std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(n), others.end(), [&](uint32_t a, uint32_t b) {
-    return similarities[a] != similarities[b] ? similarities[a] > similarities[b] : a < b;
-  });
+  std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(n), others.end(),
+                    [&](uint32_t a, uint32_t b) { return similarities[a] != similarities[b] ? similarities[a] > similarities[b] : a < b; });
   others.resize(n);
   return others;
 }

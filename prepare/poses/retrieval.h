@@ -1,6 +1,6 @@
-// Which photos look alike, without knowing where they were taken: each feature becomes the nearest of a few thousand visual words that are learned from
-// the survey itself, and photos are compared by the words that they have (Sivic and Zisserman 2003, "Video Google"): square roots of their numbers,
-// so that repeated patterns count less (Jegou et al. 2009), times the logarithm of how rare they are.
+// Which photos look alike, without knowing where they were taken: each feature becomes the nearest of a few thousand visual words that are learned
+// from the survey itself, and photos are compared by the words that they have (Sivic and Zisserman 2003, "Video Google"): square roots of their
+// numbers, so that repeated patterns count less (Jegou et al. 2009), times the logarithm of how rare they are.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 namespace skyquilt::prepare {
 
 struct RetrievalOptions {
-  size_t words = 4096;              // fewer where there are fewer than kSamplesPerWord sampled descriptors for each
-  size_t sample = 65536;            // descriptors that words are learned from, in equal parts of all photos
-  int rounds = 8;                   // of k-means
-  size_t features_per_photo = 2048; // the first that `load` gives
+  size_t words = 4096;               // fewer where there are fewer than kSamplesPerWord sampled descriptors for each
+  size_t sample = 65536;             // descriptors that words are learned from, in equal parts of all photos
+  int rounds = 8;                    // of k-means
+  size_t features_per_photo = 2048;  // the first that `load` gives
   uint64_t seed = 1;
 };
 constexpr size_t kSamplesPerWord = 8;

@@ -49,7 +49,7 @@ class MadeDatabase {
     sqlite3_bind_int64(statement, 1, static_cast<int64_t>(key));
     sqlite3_bind_int64(statement, 2, rows);
     sqlite3_bind_int64(statement, 3, cols);
-    sqlite3_bind_blob(statement, 4, values.data(), static_cast<int>(values.size_bytes()), SQLITE_TRANSIENT);
+    sqlite3_bind_blob(statement, 4, values.data(), static_cast<int>(values.size_bytes()), nullptr);
     EXPECT_EQ(sqlite3_step(statement), SQLITE_DONE) << sqlite3_errmsg(handle_);
     sqlite3_finalize(statement);
   }

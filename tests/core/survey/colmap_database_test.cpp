@@ -47,7 +47,8 @@ TEST_F(Database, ImagesCamerasAndFeaturesAreRead) {
   made_.AddImage(2, "b with space.jpg");
   made_.AddImage(1, "a.jpg");
   EXPECT_NE(InputErrorOf([&] { ColmapDatabase(file_).ReadCameras(); }).find("1 bytes of parameters"), std::string::npos);
-  made_.Run("DELETE FROM cameras; INSERT INTO cameras VALUES(1, 1, 640, 480, x'0000000000407f400000000000407f4000000000000074400000000000006e40', 0)");
+  made_.Run(
+      "DELETE FROM cameras; INSERT INTO cameras VALUES(1, 1, 640, 480, x'0000000000407f400000000000407f4000000000000074400000000000006e40', 0)");
   const std::vector<float> similar = {10.5F, 20.5F, 0.0F, -3.0F, 3.0F, 0.0F};
   made_.AddMatrix<float>("keypoints", 1, 1, 6, similar);
   const std::vector<float> four = {1.0F, 2.0F, 5.0F, 0.5F, 3.0F, 4.0F, 6.0F, -0.5F};
@@ -120,7 +121,7 @@ TEST_F(Database, AFailureWhileWritingLeavesTheOldMatches) {
 
 TEST_F(Database, PlainNamesLastUntilTheNextOpening) {
   made_.AddImage(1, "flight 1/a b.jpg");
-  made_.AddImage(2, "image_1");  // what would become the name of the first
+  made_.AddImage(2, "image_1");
   ColmapDatabase database(file_);
   database.UsePlainNames();
   EXPECT_EQ(database.ReadImages()[0].name, ColmapDatabase::PlainName(1));
@@ -158,8 +159,8 @@ TEST_F(Database, BlobsOfAWrongSizeAreRefused) {
   refused("not numbers", [](const ColmapDatabase& database) { database.ReadKeypoints(1); });
   made_.AddMatrix<uint32_t>("matches", PairId(1, 2), 2, 3, numbers);
   refused("matches of images 1 and 2", [](const ColmapDatabase& database) { database.ReadMatches(1, 2); });
-  made_.AddMatrix<uint32_t>("two_view_geometries", 5, 3, 2, numbers);
-  refused("pair 5", [](const ColmapDatabase& database) { database.ReadTwoViewMatches(); });
+  made_.AddMatrix<uint32_t>("two_view_geometries", 5 * kMaxDatabaseId + 3, 3, 2, numbers);
+  refused("pair 10737418238", [](const ColmapDatabase& database) { database.ReadTwoViewMatches(); });
 }
 
 TEST_F(Database, FilesThatAreNoDatabaseAreRefused) {

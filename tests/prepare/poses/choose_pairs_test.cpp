@@ -11,7 +11,8 @@
 namespace skyquilt::prepare {
 namespace {
 
-// Photos in lines whose features are those of the ground below: each line of cells is `kCellStep_m` to the east, and a photo sees the cells around it.
+// Photos in lines whose features are those of the ground below: each line of cells is `kCellStep_m` to the east, and a photo sees the cells around
+// it.
 class ChoosePairsTest : public testing::Test {
  protected:
   void MakeSurvey(size_t lines, size_t per_line) {

@@ -36,7 +36,9 @@ class FakeColmap : public testing::Test {
     base::WriteFileAtomically(options_.colmap, text);
     std::filesystem::permissions(options_.colmap, std::filesystem::perms::owner_all);
   }
-  std::filesystem::path Run() { return RunColmap(job_, photos_, options_, threads_); }
+  std::string Find() { return RunColmap(job_, photos_, options_, threads_).string(); }
+  std::string FirstModel() const { return (job_.folder / "sparse" / "0").string(); }
+  std::string SecondModel() const { return (job_.folder / "more_pairs" / "sparse" / "0").string(); }
   // And forgets them.
   std::string Calls() {
     const std::filesystem::path file = folder_ / "calls";
@@ -68,26 +70,26 @@ class ColmapAlone : public FakeColmap {
 
 TEST_F(ColmapAlone, FinishedStepsAreSkippedAndFailuresNameTheLog) {
   WriteFake("echo no good initial pair; exit 1");
-  const std::string error = InputErrorOf([&] { Run(); });
+  const std::string error = InputErrorOf([&] { Find(); });
   EXPECT_NE(error.find("colmap.log"), std::string::npos) << error;
   EXPECT_NE(error.find("no good initial pair"), std::string::npos) << error;
   WriteFake("exit 0");
-  EXPECT_THROW(Run(), base::InputError);  // succeeded, but wrote no model
+  EXPECT_THROW(Find(), base::InputError);  // succeeded, but wrote no model
   EXPECT_EQ(Calls(), "feature_extractor\nexhaustive_matcher\nmapper\nmapper\n");
 
   options_.max_features = 500;
-  EXPECT_THROW(Run(), base::InputError);
+  EXPECT_THROW(Find(), base::InputError);
   EXPECT_EQ(Calls(), "feature_extractor\nexhaustive_matcher\nmapper\n");
 
   options_.colmap = "no-such-colmap";
-  EXPECT_THROW(Run(), base::InputError);
+  EXPECT_THROW(Find(), base::InputError);
 }
 
 // COLMAP's own settings stay as they are.
 TEST_F(ColmapAlone, HasItsOwnSettings) {
   photos_ = test::GridPhotos(8, 8, 20.0, 25.0, {47.0, 8.0, 400.0});
   WriteFake("exit 0");
-  EXPECT_THROW(Run(), base::InputError);
+  EXPECT_THROW(Find(), base::InputError);
   EXPECT_EQ(Calls(), "feature_extractor\nspatial_matcher\nmapper\n");
   const std::string arguments = base::ReadFile(folder_ / "arguments");
   EXPECT_EQ(arguments.find("first_octave"), std::string::npos) << arguments;
@@ -163,9 +165,9 @@ constexpr const char* kSecondCalls = "feature_extractor again\nmatches_importer 
 
 TEST_F(FastWay, MatchesAllPairsOfASmallSurveyAndSkipsFinishedSteps) {
   SetNumber("first", 18);
-  EXPECT_EQ(Run(), job_.folder / "sparse" / "0");
+  EXPECT_EQ(Find(), FirstModel());
   EXPECT_EQ(Calls(), kFastCalls);
-  EXPECT_EQ(Run(), job_.folder / "sparse" / "0");
+  EXPECT_EQ(Find(), FirstModel());
   EXPECT_EQ(Calls(), "");
   const survey::ColmapDatabase database(job_.Database());
   EXPECT_EQ(database.ReadTwoViewMatches().size(), 190U);
@@ -180,14 +182,14 @@ TEST_F(FastWay, MatchesAllPairsOfASmallSurveyAndSkipsFinishedSteps) {
 
 TEST_F(FastWay, OnlyWhatDependsOnAChangeIsRepeated) {
   SetNumber("first", 20);
-  Run();
+  Find();
   Calls();
   // Another position changes the choice of pairs, not the features.
   photos_[3].tags.gps->latitude_deg += 1e-4;
-  Run();
+  Find();
   EXPECT_EQ(Calls(), "matches_importer\nmapper\n");
   options_.max_features = 300;
-  Run();
+  Find();
   EXPECT_EQ(Calls(), kFastCalls);
 }
 
@@ -195,10 +197,10 @@ TEST_F(FastWay, OnlyWhatDependsOnAChangeIsRepeated) {
 TEST_F(FastWay, GoesOnAfterAKillWhileVerifying) {
   SetNumber("first", 20);
   SetNumber("fail_verifying", 1);
-  EXPECT_NE(InputErrorOf([&] { Run(); }).find("matches_importer failed"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { Find(); }).find("matches_importer failed"), std::string::npos);
   SetNumber("fail_verifying", 0);
   Calls();
-  Run();
+  Find();
   EXPECT_EQ(Calls(), "matches_importer\nmapper\n");
   EXPECT_EQ(survey::ColmapDatabase(job_.Database()).ReadImages()[4].name, photos_[4].name);
 }
@@ -206,9 +208,9 @@ TEST_F(FastWay, GoesOnAfterAKillWhileVerifying) {
 TEST_F(FastWay, TriesMorePairsWhenPhotosAreMissing) {
   SetNumber("first", 17);
   SetNumber("again", 19);
-  EXPECT_EQ(Run(), job_.folder / "more_pairs" / "sparse" / "0");
+  EXPECT_EQ(Find(), SecondModel());
   EXPECT_EQ(Calls(), std::string(kFastCalls) + kSecondCalls);
-  EXPECT_EQ(Run(), job_.folder / "more_pairs" / "sparse" / "0");
+  EXPECT_EQ(Find(), SecondModel());
   EXPECT_EQ(Calls(), "");
   const std::string arguments = base::ReadFile(folder_ / "arguments");
   EXPECT_NE(arguments.find("--SiftExtraction.max_num_features 8192"), std::string::npos) << arguments;
@@ -217,18 +219,18 @@ TEST_F(FastWay, TriesMorePairsWhenPhotosAreMissing) {
 TEST_F(FastWay, KeepsItsModelWhenMorePairsAreNoBetter) {
   SetNumber("first", 17);
   SetNumber("again", 17);
-  EXPECT_EQ(Run(), job_.folder / "sparse" / "0");
+  EXPECT_EQ(Find(), FirstModel());
   SetNumber("again", 0);
   std::filesystem::remove(job_.folder / "more_pairs" / "model.done");
-  EXPECT_EQ(Run(), job_.folder / "sparse" / "0");
+  EXPECT_EQ(Find(), FirstModel());
 }
 
 TEST_F(FastWay, TriesMorePairsWhenItFindsNoModel) {
   SetNumber("again", 5);
-  EXPECT_EQ(Run(), job_.folder / "more_pairs" / "sparse" / "0");
+  EXPECT_EQ(Find(), SecondModel());
   SetNumber("again", 0);
   std::filesystem::remove(job_.folder / "more_pairs" / "model.done");
-  EXPECT_NE(InputErrorOf([&] { Run(); }).find("more_pairs"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { Find(); }).find("more_pairs"), std::string::npos);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -138,9 +140,9 @@ TEST_F(MatchPairsTest, DamagedChunksAreMatchedAgain) {
   for (size_t i = 0; i < bytes.size(); ++i) {
     std::string changed = bytes;
     changed[i] = static_cast<char>(changed[i] ^ 0x10);
-    base::WriteFileAtomically(file, changed);
+    std::ofstream(file, std::ios::binary) << changed;
     EXPECT_FALSE(LoadChunk(file, "key")) << "byte " << i;
-    base::WriteFileAtomically(file, bytes.substr(0, i));
+    std::ofstream(file, std::ios::binary) << bytes.substr(0, i);
     EXPECT_FALSE(LoadChunk(file, "key")) << "cut at " << i;
   }
 }

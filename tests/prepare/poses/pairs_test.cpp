@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -51,7 +52,7 @@ RC_GTEST_PROP(PairsInSpace, AreOrderedBoundedAndEnough, ()) {
   const auto n = *rc::gen::inRange<size_t>(0, 80);
   PairRules rules;
   rules.neighbors = *rc::gen::inRange<size_t>(1, 20);
-  rules.sectors = *rc::gen::element<size_t>(1, 6, 8, 16);
+  rules.sectors = *rc::gen::element(1UL, 6UL, 8UL, 16UL);
   const Places places = RandomPlaces(n, random);
   const auto n_with = static_cast<size_t>(std::count_if(places.begin(), places.end(), [](const auto& place) { return place.has_value(); }));
   const PhotoPairs pairs = PairsInSpace(places, rules);
@@ -62,7 +63,8 @@ RC_GTEST_PROP(PairsInSpace, AreOrderedBoundedAndEnough, ()) {
   for (size_t i = 0; i < n; ++i) RC_ASSERT(places[i] ? degrees[i] >= std::min(rules.neighbors, n_with - 1) : degrees[i] == 0);
 
   PhotoPairs connected = pairs;
-  ConnectGroups(n, rules.links, [&](uint32_t photo) { return PlaceCosts(places, photo); }, connected);
+  ConnectGroups(
+      n, rules.links, [&](uint32_t photo) { return PlaceCosts(places, photo); }, connected);
   RC_ASSERT(CountGroups(n, connected) == std::min<size_t>(n, 1));
   RC_ASSERT(std::includes(connected.begin(), connected.end(), pairs.begin(), pairs.end()));
 }
@@ -84,7 +86,8 @@ RC_GTEST_PROP(PairsInSpace, DoNotDependOnTheOrderOfPhotos, ()) {
 TEST(PairsInSpaceOfLines, LeadToBothNeighboringLines) {
   constexpr size_t kPerLine = 30;
   Places places;
-  for (size_t i = 0; i < 4 * kPerLine; ++i) places.emplace_back(Down(10.0 * static_cast<double>(i % kPerLine), 90.0 * static_cast<double>(i / kPerLine)));
+  for (size_t i = 0; i < 4 * kPerLine; ++i)
+    places.emplace_back(Down(10.0 * static_cast<double>(i % kPerLine), 90.0 * static_cast<double>(i / kPerLine)));
   const auto photos_without = [&](const PairRules& rules) {
     std::set<std::pair<size_t, size_t>> has;  // photo, line
     for (const PhotoPair& pair : PairsInSpace(places, rules)) {
@@ -139,7 +142,8 @@ TEST(ConnectGroups, LinksWithTheShortestPairs) {
   PhotoPairs pairs = PairsInSpace(places, PairRules{});
   EXPECT_EQ(CountGroups(50, pairs), 2U);
   const size_t before = pairs.size();
-  ConnectGroups(50, 3, [&](uint32_t photo) { return PlaceCosts(places, photo); }, pairs);
+  ConnectGroups(
+      50, 3, [&](uint32_t photo) { return PlaceCosts(places, photo); }, pairs);
   EXPECT_EQ(CountGroups(50, pairs), 1U);
   EXPECT_EQ(pairs.size(), before + 3);
   for (const PhotoPair& pair : {PhotoPair{29, 30}, PhotoPair{29, 31}, PhotoPair{29, 32}}) {
@@ -149,7 +153,8 @@ TEST(ConnectGroups, LinksWithTheShortestPairs) {
 
 TEST(ConnectGroups, ConnectsEvenWithoutAnyKnowledge) {
   PhotoPairs pairs;
-  ConnectGroups(9, 1, [](uint32_t) { return std::vector<double>(9, std::numeric_limits<double>::infinity()); }, pairs);
+  ConnectGroups(
+      9, 1, [](uint32_t) { return std::vector<double>(9, std::numeric_limits<double>::infinity()); }, pairs);
   EXPECT_EQ(CountGroups(9, pairs), 1U);
 }
 

@@ -33,7 +33,8 @@ PhotoIndex IndexOf(const std::vector<std::vector<uint8_t>>& photos, int n_thread
   base::ThreadPool threads(n_threads);
   RetrievalOptions options;
   options.words = 512;
-  return PhotoIndex(photos.size(), [&](size_t photo) { return photos[photo]; }, options, threads);
+  return PhotoIndex(
+      photos.size(), [&](size_t photo) { return photos[photo]; }, options, threads);
 }
 
 TEST(PhotoIndex, FindsThePhotosOfTheSamePlace) {

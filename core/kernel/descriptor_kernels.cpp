@@ -163,8 +163,8 @@ void Columns(const int32_t* rows, size_t first, size_t n_rows, const PackedDescr
   HWY_ALIGN int32_t dots[kTileRows * kStride];
   for (size_t row = 0; row < n_rows; row += kTileRows) {
     const size_t i = first + row;
-    const uint32_t better = Tile<Dot, kVectors>(rows + row * Dot::kSteps, columns, b.offset.data() + j, best.of_a.second.data() + i,
-                                                best.of_b.second.data() + j, dots);
+    const uint32_t better =
+        Tile<Dot, kVectors>(rows + row * Dot::kSteps, columns, b.offset.data() + j, best.of_a.second.data() + i, best.of_b.second.data() + j, dots);
     if (better == 0) continue;
     for (size_t r = 0; r < kTileRows; ++r) {
       if ((better >> r & 1U) == 0) continue;

@@ -58,7 +58,7 @@ TEST(MatchDescriptors, RefusesAPartnerThatIsHardlyBetterThanTheNext) {
   Add(a, {{0, 16}});
   for (Bytes* b : {&clear, &unclear}) Add(*b, {{2, 16}});
   Add(clear, {{0, 12}, {1, 4}});
-  Add(clear, {{0, 14}, {1, 2}});    // 0.505 / 0.723 = 0.70
+  Add(clear, {{0, 14}, {1, 2}});  // 0.505 / 0.723 = 0.70
   Add(unclear, {{0, 13}, {1, 3}});
   Add(unclear, {{0, 14}, {1, 2}});  // 0.505 / 0.622 = 0.81
   EXPECT_EQ(Match(a, clear), (Matches{{0, 2}}));
@@ -79,7 +79,7 @@ TEST(MatchDescriptors, IsMutualByTheSameRules) {
   Bytes a, unclear, b;
   Add(b, {{0, 16}});
   Add(a, {{0, 13}, {1, 3}});
-  Add(a, {{0, 15}, {1, 1}});        // 0.355 / 0.622 = 0.57
+  Add(a, {{0, 15}, {1, 1}});  // 0.355 / 0.622 = 0.57
   Add(unclear, {{0, 13}, {1, 3}});
   Add(unclear, {{0, 14}, {1, 2}});  // 0.81
   EXPECT_EQ(Match(a, b), (Matches{{1, 0}}));

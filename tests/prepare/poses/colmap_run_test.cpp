@@ -99,7 +99,7 @@ TEST_F(ColmapAlone, HasItsOwnSettings) {
 }
 
 // It takes a made database for features, verifies all matches of the listed pairs, and makes models of so many photos.
-constexpr const char* kFastProgram = R"(#!/usr/bin/env python3
+constexpr const char* kFastProgram = R"py(#!/usr/bin/env python3
 import os, shutil, sqlite3, struct, sys
 folder = os.path.dirname(os.path.abspath(__file__))
 call = sys.argv[1]
@@ -137,7 +137,7 @@ elif call == "mapper":
         images += struct.pack("<I7dI", ids[name], 1, 0, 0, 0, 0, 0, 0, 1) + name.encode() + b"\0" + struct.pack("<Q", 0)
     for file, data in (("cameras", camera), ("images", images), ("points3D", struct.pack("<Q", 0))):
         open(model + "/" + file + ".bin", "wb").write(data)
-)";
+)py";
 
 class FastWay : public FakeColmap {
  protected:

@@ -57,10 +57,10 @@ RC_GTEST_PROP(PairsInSpace, AreOrderedBoundedAndEnough, ()) {
   const auto n_with = static_cast<size_t>(std::count_if(places.begin(), places.end(), [](const auto& place) { return place.has_value(); }));
   const PhotoPairs pairs = PairsInSpace(places, rules);
   RC_ASSERT(std::adjacent_find(pairs.begin(), pairs.end(), std::greater_equal<>()) == pairs.end());
-  for (const PhotoPair& pair : pairs) RC_ASSERT(pair.a < pair.b && pair.b < n && places[pair.a] && places[pair.b]);
+  for (const PhotoPair& pair : pairs) RC_ASSERT(pair.a < pair.b && pair.b < n && places[pair.a].has_value() && places[pair.b].has_value());
   RC_ASSERT(pairs.size() <= n_with * rules.neighbors);
   const std::vector<size_t> degrees = Degrees(n, pairs);
-  for (size_t i = 0; i < n; ++i) RC_ASSERT(places[i] ? degrees[i] >= std::min(rules.neighbors, n_with - 1) : degrees[i] == 0);
+  for (size_t i = 0; i < n; ++i) RC_ASSERT((places[i] ? degrees[i] >= std::min(rules.neighbors, n_with - 1) : degrees[i] == 0));
 
   PhotoPairs connected = pairs;
   ConnectGroups(

@@ -11,7 +11,7 @@
 namespace skyquilt::prepare {
 namespace {
 
-constexpr size_t kPlaces = 2, kPhotosPerPlace = 15, kPhotos = kPlaces * kPhotosPerPlace;
+constexpr size_t kPlaces = 2, kPhotosPerPlace = 15, kIndexedPhotos = kPlaces * kPhotosPerPlace;
 
 // Photo i shows place i % 2: half of that place's features, and as many that no other photo has.
 std::vector<std::vector<uint8_t>> TwoPlaces(uint64_t seed) {
@@ -20,8 +20,8 @@ std::vector<std::vector<uint8_t>> TwoPlaces(uint64_t seed) {
   for (auto& features : place) {
     for (int i = 0; i < 300; ++i) features.push_back(test::RandomDescriptor(random));
   }
-  std::vector<std::vector<uint8_t>> photos(kPhotos);
-  for (size_t photo = 0; photo < kPhotos; ++photo) {
+  std::vector<std::vector<uint8_t>> photos(kIndexedPhotos);
+  for (size_t photo = 0; photo < kIndexedPhotos; ++photo) {
     for (const auto& feature : place[photo % kPlaces]) {
       test::AddRow(photos[photo], random.Below(2) == 0 ? test::SeenAgain(feature, 8, random) : test::RandomDescriptor(random));
     }
@@ -41,7 +41,7 @@ TEST(PhotoIndex, FindsThePhotosOfTheSamePlace) {
   for (const uint64_t seed : {1U, 2U, 3U}) {
     const PhotoIndex index = IndexOf(TwoPlaces(seed), 2);
     size_t n_right = 0, n_found = 0;
-    for (size_t photo = 0; photo < kPhotos; ++photo) {
+    for (size_t photo = 0; photo < kIndexedPhotos; ++photo) {
       const std::vector<uint32_t> similar = index.MostSimilar(photo, 8);
       ASSERT_EQ(similar.size(), 8U);
       for (const uint32_t other : similar) {
@@ -58,15 +58,15 @@ TEST(PhotoIndex, IsTheSameForAnyNumberOfThreads) {
   const auto photos = TwoPlaces(4);
   const PhotoIndex one = IndexOf(photos, 1), three = IndexOf(photos, 3);
   EXPECT_GT(one.n_words(), 100U);
-  for (size_t photo = 0; photo < kPhotos; ++photo) EXPECT_EQ(one.Similarities(photo), three.Similarities(photo));
+  for (size_t photo = 0; photo < kIndexedPhotos; ++photo) EXPECT_EQ(one.Similarities(photo), three.Similarities(photo));
 }
 
 TEST(PhotoIndex, SimilaritiesAreCosinesAndSymmetric) {
   const PhotoIndex index = IndexOf(TwoPlaces(5), 2);
-  for (size_t a = 0; a < kPhotos; ++a) {
+  for (size_t a = 0; a < kIndexedPhotos; ++a) {
     const std::vector<float> similarities = index.Similarities(a);
     EXPECT_EQ(similarities[a], 0.0F);
-    for (size_t b = 0; b < kPhotos; ++b) {
+    for (size_t b = 0; b < kIndexedPhotos; ++b) {
       EXPECT_GE(similarities[b], 0.0F);
       EXPECT_LE(similarities[b], 1.0F);
       EXPECT_NEAR(similarities[b], index.Similarities(b)[a], 1e-5F);
@@ -81,7 +81,7 @@ TEST(PhotoIndex, KnowsNothingOfPhotosWithoutFeatures) {
   const PhotoIndex index = IndexOf(photos, 2);
   EXPECT_TRUE(index.MostSimilar(3, 5).empty());
   EXPECT_TRUE(index.MostSimilar(4, 5).empty());
-  for (const uint32_t other : index.MostSimilar(0, kPhotos)) EXPECT_TRUE(other != 3 && other != 4);
+  for (const uint32_t other : index.MostSimilar(0, kIndexedPhotos)) EXPECT_TRUE(other != 3 && other != 4);
   const PhotoIndex nothing = IndexOf(std::vector<std::vector<uint8_t>>(4), 1);
   EXPECT_EQ(nothing.n_words(), 0U);
   EXPECT_TRUE(nothing.MostSimilar(1, 3).empty());

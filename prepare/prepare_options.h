@@ -11,7 +11,7 @@ namespace skyquilt::prepare {
 struct PrepareOptions {
   std::string holdout = "every:8";
   double ransac_threshold_m = 10.0;
-  std::string poses = "fast";
+  std::string poses = "colmap";
   std::string camera_model = "OPENCV";
   std::string colmap = "colmap";
   int max_image_size = 1600;

@@ -251,6 +251,16 @@ size_t ColmapDatabase::CountDescriptors(uint32_t image_id) const {
   return static_cast<size_t>(rows);
 }
 
+void ColmapDatabase::RemoveFeatures(std::span<const uint32_t> image_ids) {
+  Transaction transaction(*this);
+  for (const uint32_t id : image_ids) {
+    for (const char* sql : {"DELETE FROM keypoints WHERE image_id = ?", "DELETE FROM descriptors WHERE image_id = ?"}) {
+      Statement(*connection_, sql, "remove features from").Bind(1, id).Next();
+    }
+  }
+  transaction.Commit();
+}
+
 std::vector<FeaturePair> ColmapDatabase::ReadMatches(uint32_t image_a, uint32_t image_b) const {
   Statement statement(*connection_, "SELECT rows, cols, data FROM matches WHERE pair_id = ?", "read the matches of");
   if (!statement.Bind(1, static_cast<int64_t>(PairId(image_a, image_b))).Next()) return {};

@@ -64,6 +64,9 @@ class ColmapDatabase {
   std::vector<uint8_t> ReadDescriptors(uint32_t image_id) const;  // rows of kDatabaseDescriptorBytes
   size_t CountDescriptors(uint32_t image_id) const;
 
+  // The images stay, and their matches: for features that are found anew before anything is matched. Everything or nothing.
+  void RemoveFeatures(std::span<const uint32_t> image_ids);
+
   // Empty when there are none; `features` are in the order of the smaller id first, whatever the order of the arguments.
   std::vector<FeaturePair> ReadMatches(uint32_t image_a, uint32_t image_b) const;
   // Pairs of images with a row of matches that has at least `min_rows` rows.

@@ -51,6 +51,61 @@ bool IsPlain(const std::string& name) {
   return !name.starts_with('#') && std::none_of(name.begin(), name.end(), [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); });
 }
 
+// Without what says which camera the photos get. `list`: number of the file with their names.
+ColmapCommand FeatureCommand(const ColmapJob& job, const ColmapSettings& settings, const PoseOptions& options, bool fast,
+                             const std::vector<std::string>& names, size_t list) {
+  const FastColmapFlags flags;
+  const fs::path file = job.folder / ("photos_" + std::to_string(list) + ".txt");
+  std::string lines;
+  for (const std::string& name : names) lines += name + "\n";
+  base::WriteFileAtomically(file, lines);
+  ColmapCommand command{settings.program, "feature_extractor", {}};
+  command.arguments = {"--database_path",
+                       job.Database().string(),
+                       "--image_path",
+                       job.photo_root.string(),
+                       "--image_list_path",
+                       file.string(),
+                       "--SiftExtraction.use_gpu",
+                       options.use_gpu ? "1" : "0",
+                       "--SiftExtraction.num_threads",
+                       std::to_string(settings.n_threads),
+                       "--SiftExtraction.max_image_size",
+                       std::to_string(options.max_image_size),
+                       "--SiftExtraction.max_num_features",
+                       std::to_string(fast ? std::min(options.max_features, flags.max_features) : options.max_features),
+                       "--random_seed",
+                       std::to_string(options.seed)};
+  if (fast) Append(command.arguments, {"--SiftExtraction.first_octave", std::to_string(flags.first_octave)});
+  if (!job.masks.empty()) Append(command.arguments, {"--ImageReader.mask_path", job.masks.string()});
+  return command;
+}
+
+// Searches the photos with few features once more, by COLMAP's own settings; they keep their cameras.
+void ExtractMoreFeatures(const ColmapJob& job, const ColmapSettings& settings, const PoseOptions& options, size_t first_list) {
+  std::map<uint32_t, std::vector<std::string>> names_by_camera;
+  std::vector<uint32_t> poor;
+  size_t n_photos = 0;
+  {
+    survey::ColmapDatabase database(job.Database());
+    for (const survey::DatabaseImage& image : database.ReadImages()) {
+      ++n_photos;
+      if (database.CountDescriptors(image.id) >= FastColmapFlags().few_features) continue;
+      poor.push_back(image.id);
+      names_by_camera[image.camera_id].push_back(image.name);
+    }
+    database.RemoveFeatures(poor);
+  }
+  if (poor.empty()) return;
+  spdlog::info("{} of {} photos have fewer than {} features: they are searched once more, at twice their size", poor.size(), n_photos,
+               FastColmapFlags().few_features);
+  for (const auto& [camera_id, names] : names_by_camera) {
+    ColmapCommand command = FeatureCommand(job, settings, options, false, names, first_list++);
+    Append(command.arguments, {"--ImageReader.existing_camera_id", std::to_string(camera_id)});
+    RunWithProgress(job, command, "find more features", names.size());
+  }
+}
+
 }  // namespace
 
 void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
@@ -58,40 +113,17 @@ void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const
   for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(job.Database().string() + suffix);
   const auto groups = GroupByCamera(photos);
   if (groups.size() > 1) spdlog::info("{} kinds of photos (by size, camera, focal length): each gets its own camera model", groups.size());
-  const FastColmapFlags flags;
-  const int max_features = settings.fast ? std::min(options.max_features, flags.max_features) : options.max_features;
   size_t index = 0;
   for (const auto& [key, group] : groups) {
-    const fs::path list = job.folder / ("photos_" + std::to_string(index) + ".txt");
-    std::string names;
-    for (const PhotoFile* photo : group) names += photo->name + "\n";
-    base::WriteFileAtomically(list, names);
-    ColmapCommand command{settings.program, "feature_extractor", {}};
-    command.arguments = {"--database_path",
-                         job.Database().string(),
-                         "--image_path",
-                         job.photo_root.string(),
-                         "--image_list_path",
-                         list.string(),
-                         "--ImageReader.camera_model",
-                         options.camera_model,
-                         "--ImageReader.single_camera",
-                         "1",
-                         "--SiftExtraction.use_gpu",
-                         options.use_gpu ? "1" : "0",
-                         "--SiftExtraction.num_threads",
-                         std::to_string(settings.n_threads),
-                         "--SiftExtraction.max_image_size",
-                         std::to_string(options.max_image_size),
-                         "--SiftExtraction.max_num_features",
-                         std::to_string(max_features),
-                         "--random_seed",
-                         std::to_string(options.seed)};
-    if (settings.fast) Append(command.arguments, {"--SiftExtraction.first_octave", std::to_string(flags.first_octave)});
-    if (!job.masks.empty()) Append(command.arguments, {"--ImageReader.mask_path", job.masks.string()});
+    std::vector<std::string> names;
+    names.reserve(group.size());
+    for (const PhotoFile* photo : group) names.push_back(photo->name);
+    ColmapCommand command = FeatureCommand(job, settings, options, settings.fast, names, index);
+    Append(command.arguments, {"--ImageReader.camera_model", options.camera_model, "--ImageReader.single_camera", "1"});
     RunWithProgress(job, command, "find features", group.size());
     ++index;
   }
+  if (settings.fast) ExtractMoreFeatures(job, settings, options, index);
 }
 
 void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options) {

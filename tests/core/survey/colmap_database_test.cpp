@@ -81,6 +81,22 @@ TEST_F(Database, ImagesCamerasAndFeaturesAreRead) {
   EXPECT_TRUE(database.ReadKeypoints(7).empty());
 }
 
+TEST_F(Database, FeaturesOfTheGivenImagesAreRemoved) {
+  const std::vector<float> place = {1.0F, 2.0F};
+  for (const uint32_t id : {1, 2, 3}) {
+    made_.AddImage(id, std::to_string(id) + ".jpg");
+    made_.AddMatrix<float>("keypoints", id, 1, 2, place);
+    made_.AddDescriptors(id, std::vector<uint8_t>(128, static_cast<uint8_t>(id)));
+  }
+  ColmapDatabase database(file_);
+  database.RemoveFeatures(std::vector<uint32_t>{1, 3, 8});
+  EXPECT_EQ(database.ReadImages().size(), 3U);
+  EXPECT_EQ(database.CountDescriptors(1) + database.CountDescriptors(3), 0U);
+  EXPECT_TRUE(database.ReadKeypoints(1).empty());
+  EXPECT_EQ(database.ReadKeypoints(2).size(), 1U);
+  EXPECT_EQ(database.ReadDescriptors(2), std::vector<uint8_t>(128, 2));
+}
+
 TEST_F(Database, MatchesComeBackAsWritten) {
   ColmapDatabase database(file_);
   const std::vector<FeaturePair> features = {{0, 7}, {4294967295U, 1}};

@@ -84,7 +84,7 @@ def test(skyquilt, folder):
         model = folder / "models" / name
         model.parent.mkdir(exist_ok=True)
         model.write_text(content)
-        text = skyquilt.call("prepare", survey, "--model", model, "-o", folder / "out_model", status=3)
+        text = skyquilt.call("prepare", survey, "--model", model, "-o", folder / f"out_{name}", status=3)
         expect(name in text and found in text, f"the fault of {name} is not named:\n{text}")
 
     # Tags that allow no place on Earth: a warning, or an error if asked for.

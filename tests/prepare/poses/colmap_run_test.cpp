@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/survey/colmap_database.h"
@@ -160,7 +162,8 @@ class FastWay : public FakeColmap {
   void SetNumber(const std::string& name, size_t number) { base::WriteFileAtomically(folder_ / name, std::to_string(number)); }
 };
 
-constexpr const char* kFastCalls = "feature_extractor\nmatches_importer\nmapper\n";
+// All photos have few features, so they are searched twice.
+constexpr const char* kFastCalls = "feature_extractor\nfeature_extractor\nmatches_importer\nmapper\n";
 constexpr const char* kSecondCalls = "feature_extractor again\nmatches_importer again\nmapper again\n";
 
 TEST_F(FastWay, MatchesAllPairsOfASmallSurveyAndSkipsFinishedSteps) {
@@ -191,6 +194,23 @@ TEST_F(FastWay, OnlyWhatDependsOnAChangeIsRepeated) {
   options_.max_features = 300;
   Find();
   EXPECT_EQ(Calls(), kFastCalls);
+}
+
+TEST_F(FastWay, OnlyPhotosWithFewFeaturesAreSearchedAgain) {
+  const size_t enough = FastColmapFlags().few_features;
+  {
+    test::MadeDatabase made(folder_ / "made.db");
+    made.Run("PRAGMA journal_mode = DELETE; DELETE FROM descriptors WHERE image_id = 3");
+    std::vector<uint8_t> rows(128 * enough, 11);
+    made.AddDescriptors(3, rows);
+  }
+  SetNumber("first", 20);
+  Find();
+  const std::string names = base::ReadFile(job_.folder / "photos_1.txt");
+  EXPECT_EQ(std::count(names.begin(), names.end(), '\n'), 19);
+  EXPECT_EQ(names.find(photos_[2].name), std::string::npos) << names;
+  const std::string arguments = base::ReadFile(folder_ / "arguments");
+  EXPECT_NE(arguments.find("--ImageReader.existing_camera_id 1"), std::string::npos) << arguments;
 }
 
 // The names are plain while pairs are verified; a kill there leaves them so until the next run.

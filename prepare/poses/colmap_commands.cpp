@@ -52,8 +52,8 @@ bool IsPlain(const std::string& name) {
 }
 
 // Without what says which camera the photos get. `list`: number of the file with their names.
-ColmapCommand FeatureCommand(const ColmapJob& job, const ColmapSettings& settings, const PoseOptions& options, bool fast,
-                             const std::vector<std::string>& names, size_t list) {
+ColmapCommand FeatureCommand(const ColmapJob& job, const ColmapSettings& settings, const PoseOptions& options, const std::vector<std::string>& names,
+                             size_t list) {
   const FastColmapFlags flags;
   const fs::path file = job.folder / ("photos_" + std::to_string(list) + ".txt");
   std::string lines;
@@ -73,16 +73,17 @@ ColmapCommand FeatureCommand(const ColmapJob& job, const ColmapSettings& setting
                        "--SiftExtraction.max_image_size",
                        std::to_string(options.max_image_size),
                        "--SiftExtraction.max_num_features",
-                       std::to_string(fast ? std::min(options.max_features, flags.max_features) : options.max_features),
+                       std::to_string(settings.fast ? std::min(options.max_features, flags.max_features) : options.max_features),
                        "--random_seed",
                        std::to_string(options.seed)};
-  if (fast) Append(command.arguments, {"--SiftExtraction.first_octave", std::to_string(flags.first_octave)});
+  if (settings.fast) Append(command.arguments, {"--SiftExtraction.first_octave", std::to_string(flags.first_octave)});
   if (!job.masks.empty()) Append(command.arguments, {"--ImageReader.mask_path", job.masks.string()});
   return command;
 }
 
-// Searches the photos with few features once more, by COLMAP's own settings; they keep their cameras.
+// Searches the photos with few features once more, for features of lower contrast; they keep their cameras.
 void ExtractMoreFeatures(const ColmapJob& job, const ColmapSettings& settings, const PoseOptions& options, size_t first_list) {
+  const FastColmapFlags flags;
   std::map<uint32_t, std::vector<std::string>> names_by_camera;
   std::vector<uint32_t> poor;
   size_t n_photos = 0;
@@ -90,18 +91,19 @@ void ExtractMoreFeatures(const ColmapJob& job, const ColmapSettings& settings, c
     survey::ColmapDatabase database(job.Database());
     for (const survey::DatabaseImage& image : database.ReadImages()) {
       ++n_photos;
-      if (database.CountDescriptors(image.id) >= FastColmapFlags().few_features) continue;
+      if (database.CountDescriptors(image.id) >= flags.few_features) continue;
       poor.push_back(image.id);
       names_by_camera[image.camera_id].push_back(image.name);
     }
     database.RemoveFeatures(poor);
   }
   if (poor.empty()) return;
-  spdlog::info("{} of {} photos have fewer than {} features: they are searched once more, at twice their size", poor.size(), n_photos,
-               FastColmapFlags().few_features);
+  spdlog::info("{} of {} photos have fewer than {} features: they are searched once more, for lower contrast", poor.size(), n_photos,
+               flags.few_features);
   for (const auto& [camera_id, names] : names_by_camera) {
-    ColmapCommand command = FeatureCommand(job, settings, options, false, names, first_list++);
-    Append(command.arguments, {"--ImageReader.existing_camera_id", std::to_string(camera_id)});
+    ColmapCommand command = FeatureCommand(job, settings, options, names, first_list++);
+    Append(command.arguments, {"--ImageReader.existing_camera_id", std::to_string(camera_id), "--SiftExtraction.peak_threshold",
+                               fmt::format("{:g}", flags.low_peak_threshold)});
     RunWithProgress(job, command, "find more features", names.size());
   }
 }
@@ -118,7 +120,7 @@ void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const
     std::vector<std::string> names;
     names.reserve(group.size());
     for (const PhotoFile* photo : group) names.push_back(photo->name);
-    ColmapCommand command = FeatureCommand(job, settings, options, settings.fast, names, index);
+    ColmapCommand command = FeatureCommand(job, settings, options, names, index);
     Append(command.arguments, {"--ImageReader.camera_model", options.camera_model, "--ImageReader.single_camera", "1"});
     RunWithProgress(job, command, "find features", group.size());
     ++index;

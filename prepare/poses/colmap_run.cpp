@@ -65,7 +65,8 @@ StepHashes HashSteps(const Attempt& attempt, const std::vector<PhotoFile>& photo
   std::string text = FeatureInputs(attempt.job, photos, options);
   StepHashes hashes;
   const FastColmapFlags flags;
-  if (attempt.settings.fast) text += fmt::format("fast {} {} {}\n", flags.first_octave, flags.max_features, flags.few_features);
+  if (attempt.settings.fast)
+    text += fmt::format("fast {} {} {} {}\n", flags.first_octave, flags.max_features, flags.few_features, flags.low_peak_threshold);
   hashes.features = base::HashHex(text);
   if (attempt.pairs) text += PairInputs(photos, *attempt.pairs);
   hashes.matches = base::HashHex(text);

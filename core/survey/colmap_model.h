@@ -54,5 +54,8 @@ ColmapModel ReadColmapModel(const std::filesystem::path& folder);
 ColmapObservations ReadColmapObservations(const std::filesystem::path& folder);
 // Throws base::InputError when the folder cannot be written.
 void WriteColmapText(const ColmapModel& model, const std::filesystem::path& folder);
+// The same in the binary format, with measured observations: every track entry of a point must be among its image's. Throws base::InputError when the
+// folder cannot be written; std::logic_error for a track without its observation.
+void WriteColmapBinary(const ColmapModel& model, const ColmapObservations& observations, const std::filesystem::path& folder);
 
 }  // namespace skyquilt::survey

@@ -1,0 +1,90 @@
+#include "prepare/seeded/resect.h"
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/core/eigen.hpp>
+
+#include "core/base/cancel.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+bool Resect(Block& block, uint32_t index, const std::vector<uint32_t>& entries, const std::vector<uint32_t>& track_of, double threshold) {
+  BlockPhoto& photo = block.photos[index];
+  const BlockLens& lens = block.lenses[static_cast<size_t>(photo.lens)];
+  const camera::Camera camera = CameraOf(lens.numbers, lens.camera);
+  std::vector<cv::Point3d> points;
+  std::vector<cv::Point2d> places;
+  for (const uint32_t e : entries) {
+    const uint32_t t = track_of[e];
+    if (block.has_point[t] == 0) continue;
+    const Eigen::Vector3d ray = camera.RayFromImg(block.pixel[e]);
+    constexpr double kLeastDepth = 0.1;
+    if (ray.z() < kLeastDepth) continue;
+    points.emplace_back(block.point[t].x(), block.point[t].y(), block.point[t].z());
+    places.emplace_back(ray.x() / ray.z(), ray.y() / ray.z());
+  }
+  if (points.size() < kLeastObservations) return false;
+  cv::Mat turn, shift, inliers;
+  const double focal_units = lens.numbers[0] / lens.unit_px;
+  // OpenCV's RANSAC starts from the same random state at every call.
+  constexpr int kTries = 500;
+  constexpr double kConfidence = 0.999;
+  try {
+    if (!cv::solvePnPRansac(points, places, cv::Mat::eye(3, 3, CV_64F), cv::noArray(), turn, shift, false, kTries,
+                            static_cast<float>(threshold / focal_units), kConfidence, inliers, cv::SOLVEPNP_AP3P)) {
+      return false;
+    }
+    if (inliers.rows < static_cast<int>(kLeastObservations)) return false;
+    std::vector<cv::Point3d> good_points;
+    std::vector<cv::Point2d> good_places;
+    for (int k = 0; k < inliers.rows; ++k) {
+      good_points.push_back(points[static_cast<size_t>(inliers.at<int>(k))]);
+      good_places.push_back(places[static_cast<size_t>(inliers.at<int>(k))]);
+    }
+    cv::solvePnPRefineLM(good_points, good_places, cv::Mat::eye(3, 3, CV_64F), cv::noArray(), turn, shift);
+  } catch (const cv::Exception&) {
+    return false;  // points that determine no pose
+  }
+  cv::Mat rotation_cv;
+  cv::Rodrigues(turn, rotation_cv);
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+  cv::cv2eigen(rotation_cv, rotation);
+  cv::cv2eigen(shift, translation);
+  if (!rotation.allFinite() || !translation.allFinite()) return false;
+  photo.cam_from_enu = Eigen::Quaterniond(rotation).normalized();
+  photo.centre = -(photo.cam_from_enu.conjugate() * translation);
+  photo.placed = true;
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::vector<uint32_t>> EntriesOfPhotos(const Block& block) {
+  std::vector<std::vector<uint32_t>> entries(block.photos.size());
+  for (uint32_t e = 0; e < block.tracks.entries.size(); ++e) entries[block.tracks.entries[e].photo].push_back(e);
+  return entries;
+}
+
+std::vector<uint32_t> TrackOfEntries(const FeatureTracks& tracks) {
+  std::vector<uint32_t> track_of(tracks.entries.size());
+  for (uint32_t t = 0; t < tracks.size(); ++t) {
+    for (uint32_t e = tracks.first[t]; e < tracks.first[t + 1]; ++e) track_of[e] = t;
+  }
+  return track_of;
+}
+
+size_t ResectPhotos(Block& block, double threshold) {
+  const std::vector<std::vector<uint32_t>> entries = EntriesOfPhotos(block);
+  const std::vector<uint32_t> track_of = TrackOfEntries(block.tracks);
+  size_t n = 0;
+  for (uint32_t i = 0; i < block.photos.size(); ++i) {
+    if (block.photos[i].placed) continue;
+    base::ThrowIfCancelled();
+    n += Resect(block, i, entries[i], track_of, threshold) ? 1 : 0;
+  }
+  return n;
+}
+
+}  // namespace skyquilt::prepare

@@ -218,6 +218,7 @@ void LogDirections(const survey::DominantDirections& directions) {
 
 PoseOptions PosesOf(const PrepareOptions& options) {
   return {.fast = options.poses == "fast",
+          .seed_poses = options.seed_poses,
           .colmap = options.colmap,
           .camera_model = options.camera_model,
           .max_image_size = options.max_image_size,

@@ -12,6 +12,7 @@ struct PrepareOptions {
   std::string holdout = "every:8";
   double ransac_threshold_m = 10.0;
   std::string poses = "colmap";
+  bool seed_poses = true;
   std::string camera_model = "OPENCV";
   std::string colmap = "colmap";
   int max_image_size = 1600;

@@ -4,18 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "prepare/tag_accuracy.h"
+
 namespace skyquilt::prepare {
-namespace {
-
-// Receivers without a stated accuracy (OpenDroneMap's default), and their heights, which are about half as accurate again.
-constexpr double kDefaultSigma_m = 3.0;
-constexpr double kVerticalFactor = 1.5;
-constexpr double kSigmaPerDop_m = 1.5;
-constexpr double kRtkSigma_m = 0.03;
-// The reconstruction itself is not more accurate than this, whatever a tag states.
-constexpr double kLeastSigma_m = 0.02;
-
-}  // namespace
 
 Station MakeStation(const std::string& name, const geo::Rigid3d& cam_from_model, const survey::PhotoTags& tags) {
   Station station{.name = name,
@@ -24,12 +15,9 @@ Station MakeStation(const std::string& name, const geo::Rigid3d& cam_from_model,
                   .time_s = tags.capture_time_s,
                   .relative_altitude_m = tags.relative_altitude_m,
                   .rtk = tags.rtk};
-  double horizontal_m = tags.rtk ? kRtkSigma_m : tags.dop && *tags.dop > 0.0 ? kSigmaPerDop_m * *tags.dop : kDefaultSigma_m;
-  if (tags.horizontal_accuracy_m && *tags.horizontal_accuracy_m > 0.0) horizontal_m = *tags.horizontal_accuracy_m;
-  double vertical_m = kVerticalFactor * horizontal_m;
-  if (tags.vertical_accuracy_m && *tags.vertical_accuracy_m > 0.0) vertical_m = *tags.vertical_accuracy_m;
-  station.horizontal_sigma_m = std::max(horizontal_m, kLeastSigma_m);
-  station.vertical_sigma_m = std::max(vertical_m, kLeastSigma_m);
+  const TagAccuracy accuracy = AccuracyOf(tags);
+  station.horizontal_sigma_m = accuracy.horizontal_m;
+  station.vertical_sigma_m = accuracy.vertical_m;
   if (tags.gimbal_pitch_deg) station.up_in_cam = UpInCamera(*tags.gimbal_pitch_deg, tags.gimbal_roll_deg.value_or(0.0));
   return station;
 }

@@ -11,6 +11,7 @@
 #include "prepare/poses/colmap_commands.h"
 #include "prepare/poses/feature_store.h"
 #include "prepare/poses/match_pairs.h"
+#include "prepare/poses/seed_model.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -25,11 +26,12 @@ struct Attempt {
   ColmapJob job;
   ColmapSettings settings;
   std::optional<PairRules> pairs;  // of our own matching; none: COLMAP matches
+  bool seed = false;               // by tags and matches before the mapper is asked
 };
 
 // Hashes of what the results of the steps depend on: when one changes, that step and the later ones must be repeated.
 struct StepHashes {
-  std::string features, matches, model;
+  std::string features, matches, model, seeded;
 };
 
 std::string FeatureInputs(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
@@ -70,6 +72,7 @@ StepHashes HashSteps(const Attempt& attempt, const std::vector<PhotoFile>& photo
   hashes.features = base::HashHex(text);
   if (attempt.pairs) text += PairInputs(photos, *attempt.pairs);
   hashes.matches = base::HashHex(text);
+  hashes.seeded = base::HashHex(text + SeedInputs(photos));
   if (attempt.settings.fast) {
     text += fmt::format("fast {} {} {} {}\n", flags.ba_global_function_tolerance, flags.ba_global_images_ratio, flags.ba_global_points_ratio,
                         flags.ba_global_max_refinements);
@@ -106,22 +109,30 @@ void FillDatabase(const Attempt& attempt, const StepHashes& hashes, const std::v
   const ColmapJob& job = attempt.job;
   base::RequireWritableFolder(job.folder);
   spdlog::info("running COLMAP on {} photos; its log is {}", photos.size(), job.Log().string());
-  RunStep(job, {"features", hashes.features}, {"own_matches", "matches", kModelStep},
+  RunStep(job, {"features", hashes.features}, {"own_matches", "matches", kSeededStep, kModelStep},
           [&] { ExtractFeatures(job, attempt.settings, photos, options); });
   if (!attempt.pairs) {
     RunStep(job, {"matches", hashes.matches}, {kModelStep}, [&] { MatchByColmap(job, attempt.settings, photos, options); });
     return;
   }
   const MatchJob match_job{.folder = job.folder / "matches", .input = hashes.features};
-  RunStep(job, {"own_matches", hashes.matches}, {"matches", kModelStep}, [&] { MatchOurselves(attempt, match_job, photos, options, threads); });
+  RunStep(job, {"own_matches", hashes.matches}, {"matches", kSeededStep, kModelStep}, [&] { MatchOurselves(attempt, match_job, photos, options, threads); });
   // Only now: a kill before the step is marked as done would have to match everything again.
   RemoveChunks(match_job);
-  RunStep(job, {"matches", hashes.matches}, {kModelStep}, [&] { VerifyMatches(job, attempt.settings, options); });
+  RunStep(job, {"matches", hashes.matches}, {kSeededStep, kModelStep}, [&] { VerifyMatches(job, attempt.settings, options); });
 }
 
-FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, size_t n_photos, const PoseOptions& options) {
-  RunStep(attempt.job, {kModelStep, hashes.model}, {}, [&] { MakeModels(attempt.job, attempt.settings, n_photos, options); });
-  return LargestModel(attempt.job);
+FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+                     base::ThreadPool& threads) {
+  const ColmapJob& job = attempt.job;
+  const ColmapStep mapper{kModelStep, hashes.model};
+  // What the mapper has finished stays: the seeding had failed, or was not wanted.
+  if (attempt.seed && !IsDone(job, mapper)) {
+    RunStep(job, {kSeededStep, hashes.seeded}, {}, [&] { SeedModel(job, photos, threads); });
+    if (const std::optional<FoundModel> seeded = SeededModelOf(job)) return *seeded;
+  }
+  RunStep(job, mapper, {}, [&] { MakeModels(job, attempt.settings, photos.size(), options); });
+  return LargestModel(job);
 }
 
 }  // namespace
@@ -133,15 +144,15 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, c
                            "Install COLMAP (Debian: apt install colmap), set prepare.colmap to its path, or give a model with --model");
   }
   const ColmapSettings settings{.program = program, .n_threads = threads.size(), .fast = options.fast};
-  const Attempt first{job, settings, options.fast ? std::optional(PairRules{}) : std::nullopt};
+  const Attempt first{job, settings, options.fast ? std::optional(PairRules{}) : std::nullopt, options.fast && options.seed_poses};
   const StepHashes hashes = HashSteps(first, photos, options);
   FillDatabase(first, hashes, photos, options, threads);
-  if (!options.fast) return FindModel(first, hashes, photos.size(), options).folder;
+  if (!options.fast) return FindModel(first, hashes, photos, options, threads).folder;
 
   std::optional<FoundModel> found;
   std::string reason;
   try {
-    found = FindModel(first, hashes, photos.size(), options);
+    found = FindModel(first, hashes, photos, options, threads);
     if (static_cast<double>(found->n_photos) >= kEnoughRegistered * static_cast<double>(photos.size())) return found->folder;
     reason = fmt::format("it found the poses of {} of {} photos only", found->n_photos, photos.size());
   } catch (const base::InputError& error) {
@@ -155,7 +166,7 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, c
   FillDatabase(second, second_hashes, photos, options, threads);
   FoundModel again;
   try {
-    again = FindModel(second, second_hashes, photos.size(), options);
+    again = FindModel(second, second_hashes, photos, options, threads);
   } catch (const base::InputError& error) {
     if (!found) throw;
     spdlog::warn("more pairs give no model: {}", error.what());

@@ -7,7 +7,8 @@
 namespace skyquilt::prepare {
 
 struct PoseOptions {
-  bool fast = true;  // own pairs and own matching; false: COLMAP does everything, with its own settings
+  bool fast = true;        // own pairs and own matching; false: COLMAP does everything, with its own settings
+  bool seed_poses = true;  // in the fast way, poses by tags and matches where that works; false: always by COLMAP's mapper
   std::string colmap = "colmap";
   std::string camera_model = "OPENCV";
   int max_image_size = 1600;  // pixels

@@ -60,9 +60,11 @@ bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleSt
   problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   std::vector<std::unique_ptr<ceres::SubsetManifold>> lens_manifolds;
   ceres::Problem problem(problem_options);
-  auto* ordering = new ceres::ParameterBlockOrdering;
+  // Points are eliminated first. Poses and lenses have groups of their own, as blocks of one group are ordered by their addresses.
+  constexpr int kPointGroup = 0, kPoseGroup = 1, kLensGroup = 2;
+  const auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   ceres::Solver::Options options;
-  options.linear_solver_ordering.reset(ordering);
+  options.linear_solver_ordering = ordering;
 
   std::vector<char> sees(block.photos.size(), 0), used(block.lenses.size(), 0);
   for (const uint32_t t : tracks) {
@@ -78,13 +80,13 @@ bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleSt
       sees[photo] = 1;
       used[lens] = 1;
     }
-    if (problem.HasParameterBlock(point)) ordering->AddElementToGroup(point, 0);
+    if (problem.HasParameterBlock(point)) ordering->AddElementToGroup(point, kPointGroup);
   }
   for (size_t i = 0; i < poses.size(); ++i) {
     if (sees[i] == 0) continue;
     const BlockPhoto& photo = block.photos[i];
     problem.SetManifold(poses[i].data(), &pose_manifold);
-    ordering->AddElementToGroup(poses[i].data(), 1);
+    ordering->AddElementToGroup(poses[i].data(), kPoseGroup);
     if (photo.gps) problem.AddResidualBlock(new PlaceCost(*photo.gps, stage.gps_factor * photo.gps_sigma), &tag_loss, poses[i].data());
     if (photo.tagged_rotation) {
       const double sigma_rad = stage.angle_sigma_deg * std::numbers::pi / 180.0;
@@ -93,7 +95,7 @@ bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleSt
   }
   for (size_t i = 0; i < lenses.size(); ++i) {
     if (used[i] == 0) continue;
-    ordering->AddElementToGroup(lenses[i].data(), 1);
+    ordering->AddElementToGroup(lenses[i].data(), kLensGroup);
     if (!stage.free_lens) {
       problem.SetParameterBlockConstant(lenses[i].data());
       continue;

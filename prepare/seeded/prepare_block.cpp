@@ -103,7 +103,6 @@ struct Tried {
 Tried Try(const SeedSurvey& survey, std::vector<SeedView> views, bool by_gimbal) {
   Tried tried;
   tried.check = CheckGround(survey.rays, views);
-  // Once more with the turn applied, so that what remains is small.
   for (SeedView& view : views) {
     if (view.known) view.cam_from_enu = Turned(view.cam_from_enu, tried.check.turn_rad);
     tried.n_known += view.known ? 1 : 0;
@@ -139,7 +138,8 @@ bool MakeSeedSurvey(const SeedInput& input, SeedSurvey* survey, std::string* rea
   survey->photos.resize(n);
   for (uint32_t i = 0; i < n; ++i) {
     const SeedPhoto& photo = input.photos[i];
-    SKYQUILT_CHECK(index.emplace(photo.image_id, i).second, "image " + std::to_string(photo.image_id) + " twice");
+    const bool is_new = index.emplace(photo.image_id, i).second;
+    SKYQUILT_CHECK(is_new, "image " + std::to_string(photo.image_id) + " twice");
     const auto lens = lens_of.find(photo.camera_id);
     SKYQUILT_CHECK(lens != lens_of.end(), "no camera " + std::to_string(photo.camera_id));
     survey->photos[i].lens = lens->second;

@@ -4,6 +4,7 @@
 // the number of photos. Wrong tags must not garble a survey: tags are compared with the matches first, and the result is judged by the matches alone.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 

@@ -67,7 +67,7 @@ Support SupportOf(const Block& block, const std::vector<Sight>& sights, const Ei
   return support;
 }
 
-// Two steps towards the least squares of the entries within the threshold.
+// Three steps towards the least squares of the entries within the threshold.
 Eigen::Vector3d Refined(const Block& block, const std::vector<Sight>& sights, Eigen::Vector3d x, double threshold) {
   for (int step = 0; step < 3; ++step) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();

@@ -12,7 +12,8 @@ namespace skyquilt::prepare {
 namespace {
 
 constexpr double kMaxError = 1.5;
-constexpr double kMinPlaced = 0.9;
+// Nearly all: the mapper places those that are left out here more often than not.
+constexpr double kMinPlaced = 0.97;
 constexpr double kMinAgreeing = 0.5;
 
 // Per photo, entries that agree, and entries whose track has at least two placed photos.

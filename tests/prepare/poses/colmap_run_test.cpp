@@ -7,6 +7,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/survey/colmap_database.h"
+#include "tests/prepare/poses/fake_colmap.h"
 #include "tests/prepare/poses/made_photos.h"
 #include "tests/support/error_of.h"
 #include "tests/support/made_database.h"
@@ -25,36 +26,7 @@ TEST(ColmapProgress, IsReadFromItsOutput) {
   EXPECT_LT(ColmapLineProgress("Registering image #", 18), 0.0);
 }
 
-// A fake COLMAP that records its calls.
-class FakeColmap : public testing::Test {
- protected:
-  void SetUp() override {
-    std::filesystem::create_directories(folder_ / "images");
-    photos_ = test::GridPhotos(4, 5, 20.0, 25.0, {47.0, 8.0, 400.0});
-    for (const PhotoFile& photo : photos_) base::WriteFileAtomically(folder_ / ("images/" + photo.name), "pixels");
-    options_.colmap = (folder_ / "colmap").string();
-  }
-  void WriteProgram(const std::string& text) {
-    base::WriteFileAtomically(options_.colmap, text);
-    std::filesystem::permissions(options_.colmap, std::filesystem::perms::owner_all);
-  }
-  std::string Find() { return RunColmap(job_, photos_, options_, threads_).string(); }
-  std::string FirstModel() const { return (job_.folder / "sparse" / "0").string(); }
-  std::string SecondModel() const { return (job_.folder / "more_pairs" / "sparse" / "0").string(); }
-  // And forgets them.
-  std::string Calls() {
-    const std::filesystem::path file = folder_ / "calls";
-    const std::string calls = std::filesystem::exists(file) ? base::ReadFile(file) : "";
-    std::filesystem::remove(file);
-    return calls;
-  }
-
-  TemporaryFolder folder_;
-  std::vector<PhotoFile> photos_;
-  PoseOptions options_;
-  ColmapJob job_{folder_ / "images", {}, folder_ / "work"};
-  base::ThreadPool threads_{1};
-};
+using test::FakeColmap;
 
 class ColmapAlone : public FakeColmap {
  protected:
@@ -100,52 +72,11 @@ TEST_F(ColmapAlone, HasItsOwnSettings) {
   EXPECT_NE(arguments.find("--SpatialMatching.max_num_neighbors 24"), std::string::npos) << arguments;
 }
 
-// It takes a made database for features, verifies all matches of the listed pairs, and makes models of so many photos.
-constexpr const char* kFastProgram = R"py(#!/usr/bin/env python3
-import os, shutil, sqlite3, struct, sys
-folder = os.path.dirname(os.path.abspath(__file__))
-call = sys.argv[1]
-options = dict(zip(sys.argv[2::2], sys.argv[3::2]))
-again = "more_pairs" in options["--database_path"]
-with open(folder + "/calls", "a") as calls:
-    calls.write(call + (" again" if again else "") + "\n")
-with open(folder + "/arguments", "a") as arguments:
-    arguments.write(" ".join(sys.argv) + "\n")
-setting = lambda name: int(open(folder + "/" + name).read()) if os.path.exists(folder + "/" + name) else 0
-if call == "feature_extractor":
-    shutil.copy(folder + "/made.db", options["--database_path"])
-    sys.exit(0)
-database = sqlite3.connect(options["--database_path"])
-ids = dict(database.execute("SELECT name, image_id FROM images"))
-if call == "matches_importer":
-    if setting("fail_verifying"):
-        sys.exit("killed")
-    for line in open(options["--match_list_path"]):
-        a, b = sorted(ids[name] for name in line.split())
-        key = a * 2147483647 + b
-        rows, data = database.execute("SELECT rows, data FROM matches WHERE pair_id = ?", (key,)).fetchone()
-        database.execute("INSERT INTO two_view_geometries VALUES(?, ?, 2, ?, 2, NULL, NULL, NULL, NULL, NULL)", (key, rows, data))
-    database.commit()
-elif call == "mapper":
-    n = setting("again" if again else "first")
-    if n == 0:
-        sys.exit("no good initial pair")
-    model = options["--output_path"] + "/0"
-    os.makedirs(model)
-    names = sorted(ids)[:n]
-    camera = struct.pack("<QIiQQ4d", 1, 1, 1, 64, 48, 60.0, 60.0, 32.0, 24.0)
-    images = struct.pack("<Q", n)
-    for name in names:
-        images += struct.pack("<I7dI", ids[name], 1, 0, 0, 0, 0, 0, 0, 1) + name.encode() + b"\0" + struct.pack("<Q", 0)
-    for file, data in (("cameras", camera), ("images", images), ("points3D", struct.pack("<Q", 0))):
-        open(model + "/" + file + ".bin", "wb").write(data)
-)py";
-
 class FastWay : public FakeColmap {
  protected:
   void SetUp() override {
     FakeColmap::SetUp();
-    WriteProgram(kFastProgram);
+    WriteProgram(test::kFastProgram);
     base::Random random(2);
     std::vector<std::array<uint8_t, 128>> features;
     for (int i = 0; i < 30; ++i) features.push_back(test::RandomDescriptor(random));
@@ -159,7 +90,6 @@ class FastWay : public FakeColmap {
       made.AddDescriptors(i + 1, rows);
     }
   }
-  void SetNumber(const std::string& name, size_t number) { base::WriteFileAtomically(folder_ / name, std::to_string(number)); }
 };
 
 // All photos have few features, so they are searched twice.

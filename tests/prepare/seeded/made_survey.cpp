@@ -61,6 +61,7 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
   const double size_x = plan.along_m * (plan.per_strip - 1) + 2.0 * margin_m, size_y = plan.across_m * (plan.strips - 1) + 2.0 * margin_m;
   const auto n_points = static_cast<int>(plan.points_per_photo * size_x * size_y / (0.75 * width_m * width_m));
   std::vector<std::map<int, uint32_t>> feature_of(static_cast<size_t>(n));
+  made.points.resize(feature_of.size());
   for (int p = 0; p < n_points; ++p) {
     const double x = random.Uniform(-margin_m, size_x - margin_m), y = random.Uniform(-margin_m, size_y - margin_m);
     const Eigen::Vector3d point(x, y, Ground(x, y, plan.relief_m));
@@ -70,6 +71,7 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
       const auto pixel = camera.ImgFromCam(made.cam_from_enu[i] * point);
       if (!pixel || pixel->x() < 0.0 || pixel->y() < 0.0 || pixel->x() > camera.width || pixel->y() > camera.height) continue;
       feature_of[i][p] = static_cast<uint32_t>(photo.features.size());
+      made.points[i].push_back(p);
       const Eigen::Vector2d noise(plan.pixel_noise_px * random.Normal(), plan.pixel_noise_px * random.Normal());
       photo.features.push_back((*pixel + noise).cast<float>());
     }

@@ -33,6 +33,7 @@ struct MadeSurvey {
   std::vector<geo::Rigid3d> cam_from_enu;          // truth
   std::vector<camera::Camera> cameras;             // truth, id from 1
   std::vector<Eigen::Vector3d> angles_deg;         // truth: yaw, pitch, roll
+  std::vector<std::vector<int>> points;            // which point each feature of each photo shows
 };
 
 MadeSurvey MakeSurvey(const SurveyPlan& plan);

@@ -1,0 +1,123 @@
+#include "prepare/poses/seed_model.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <unordered_map>
+
+#include "core/base/log.h"
+#include "core/survey/colmap_database.h"
+#include "core/survey/colmap_model.h"
+#include "prepare/seeded/point_colors.h"
+#include "prepare/seeded/seed_poses.h"
+#include "prepare/tag_accuracy.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSeedVersion = 1;  // a new number makes finished models anew
+
+fs::path SeededFolder(const ColmapJob& job) {
+  return job.folder / "seeded";
+}
+
+// COLMAP's focal length for photos without one in their tags is 1.2 times the longer side.
+bool IsGuess(const camera::Camera& camera) {
+  constexpr double kGuessFactor = 1.2;
+  const double guess = kGuessFactor * std::max(camera.width, camera.height);
+  return std::abs(camera.FocalX() - guess) < 1e-6 * guess;
+}
+
+SeedPhoto SeedPhotoOf(const survey::DatabaseImage& image, const survey::PhotoTags& tags, const std::vector<survey::DatabaseKeypoint>& keypoints) {
+  const TagAccuracy accuracy = AccuracyOf(tags);
+  SeedPhoto photo{.image_id = image.id,
+                  .camera_id = image.camera_id,
+                  .name = image.name,
+                  .gps = tags.gps,
+                  .horizontal_sigma_m = accuracy.horizontal_m,
+                  .vertical_sigma_m = accuracy.vertical_m,
+                  .yaw_deg = tags.gimbal_yaw_deg,
+                  .pitch_deg = tags.gimbal_pitch_deg,
+                  .roll_deg = tags.gimbal_roll_deg,
+                  .features = {}};
+  photo.features.reserve(keypoints.size());
+  for (const survey::DatabaseKeypoint& keypoint : keypoints) photo.features.emplace_back(keypoint.x, keypoint.y);
+  return photo;
+}
+
+}  // namespace
+
+std::string SeedInputs(const std::vector<PhotoFile>& photos) {
+  std::string text = fmt::format("seeded {}\n", kSeedVersion);
+  const auto number = [](const std::optional<double>& value) { return value ? fmt::format("{:.9g}", *value) : std::string("-"); };
+  for (const PhotoFile& photo : photos) {
+    const survey::PhotoTags& tags = photo.tags;
+    const TagAccuracy accuracy = AccuracyOf(tags);
+    text += tags.gps ? fmt::format("{:.9f} {:.9f} {:.9g}", tags.gps->latitude_deg, tags.gps->longitude_deg, tags.gps->height_m) : "-";
+    text += fmt::format(" {:.9g} {:.9g} ", accuracy.horizontal_m, accuracy.vertical_m);
+    text += number(tags.gimbal_yaw_deg) + " " + number(tags.gimbal_pitch_deg) + " " + number(tags.gimbal_roll_deg) + "\n";
+  }
+  return text;
+}
+
+std::optional<SeedInput> ReadSeedInput(const fs::path& file, const std::vector<PhotoFile>& photos, std::string* reason) {
+  const survey::ColmapDatabase database(file);
+  std::unordered_map<std::string, survey::DatabaseImage> image_of_name;
+  for (survey::DatabaseImage& image : database.ReadImages()) image_of_name.emplace(image.name, image);
+  const std::map<uint32_t, camera::Camera> cameras = database.ReadCameras();
+  SeedInput input;
+  std::unordered_map<uint32_t, size_t> n_features;
+  for (const PhotoFile& photo : photos) {
+    const auto image = image_of_name.find(photo.name);
+    if (image == image_of_name.end()) continue;  // COLMAP could not read it
+    const auto camera = cameras.find(image->second.camera_id);
+    if (camera == cameras.end()) {
+      *reason = "COLMAP's database has no camera for " + photo.name;
+      return std::nullopt;
+    }
+    input.cameras.try_emplace(camera->first, SeedLens{camera->second, !IsGuess(camera->second)});
+    input.photos.push_back(SeedPhotoOf(image->second, photo.tags, database.ReadKeypoints(image->second.id)));
+    n_features.emplace(image->second.id, input.photos.back().features.size());
+  }
+  for (survey::DatabaseMatches& matches : database.ReadTwoViewMatches()) {
+    const auto a = n_features.find(matches.images.first), b = n_features.find(matches.images.second);
+    if (a == n_features.end() || b == n_features.end() || matches.features.empty()) continue;
+    const bool have_places = std::all_of(matches.features.begin(), matches.features.end(), [&](const survey::FeaturePair& pair) {
+      return pair[0] < a->second && pair[1] < b->second;
+    });
+    if (!have_places) {
+      *reason = fmt::format("COLMAP's database has no places for the matched features of images {} and {}", a->first, b->first);
+      return std::nullopt;
+    }
+    input.pairs.push_back({matches.images.first, matches.images.second, std::move(matches.features)});
+  }
+  return input;
+}
+
+void SeedModel(const ColmapJob& job, const std::vector<PhotoFile>& photos, base::ThreadPool& threads) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const fs::path folder = SeededFolder(job);
+  fs::remove_all(folder);
+  std::string reason;
+  const std::optional<SeedInput> input = ReadSeedInput(job.Database(), photos, &reason);
+  std::optional<SeededModel> seeded;
+  if (input) seeded = SeedPoses(*input, threads, &reason);
+  if (!seeded) {
+    spdlog::info("poses are left to COLMAP's mapper ({:.1f} s): {}", seconds(), reason);
+    return;
+  }
+  ColorPoints(seeded->model, seeded->observations, job.photo_root, threads);
+  WriteSeededModel(*seeded, folder);
+  spdlog::info("poses by tags and matches, without COLMAP's mapper ({:.1f} s): {}", seconds(), seeded->summary);
+}
+
+std::optional<FoundModel> SeededModelOf(const ColmapJob& job) {
+  const fs::path folder = SeededFolder(job);
+  if (!fs::exists(folder / "images.bin")) return std::nullopt;
+  return FoundModel{folder, survey::ReadColmapModel(folder).images.size()};
+}
+
+}  // namespace skyquilt::prepare

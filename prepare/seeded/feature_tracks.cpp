@@ -115,17 +115,24 @@ std::vector<uint32_t> ChooseTracks(const Block& block, const std::vector<char>& 
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return length[a] > length[b]; });
   const size_t per_cell = std::max<size_t>(1, per_photo / (kGrid * kGrid));
   std::vector<uint32_t> filled(block.photos.size() * kGrid * kGrid, 0);
+  std::vector<size_t> in_photo(block.photos.size(), 0);
+  const auto least = static_cast<size_t>(kLeastFilled * static_cast<double>(per_photo));
   std::vector<uint32_t> chosen, cells;
   for (const uint32_t t : order) {
     cells.clear();
     size_t wanting = 0;
+    bool needed = false;
     for (uint32_t e = tracks.first[t]; e < tracks.first[t + 1]; ++e) {
       if (counts[e] == 0) continue;
       cells.push_back(tracks.entries[e].photo * kGrid * kGrid + static_cast<uint32_t>(CellOf(block, e)));
       wanting += filled[cells.back()] < per_cell ? 1 : 0;
+      needed = needed || in_photo[tracks.entries[e].photo] < least;
     }
-    if (2 * wanting < cells.size()) continue;
-    for (const uint32_t cell : cells) ++filled[cell];
+    if (!needed && 2 * wanting < cells.size()) continue;
+    for (const uint32_t cell : cells) {
+      ++filled[cell];
+      ++in_photo[cell / (kGrid * kGrid)];
+    }
     chosen.push_back(t);
   }
   std::sort(chosen.begin(), chosen.end());

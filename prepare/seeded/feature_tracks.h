@@ -20,8 +20,10 @@ struct IndexedPair {
 FeatureTracks JoinMatches(const std::vector<IndexedPair>& pairs, const std::vector<size_t>& n_features);
 
 // Tracks for the adjustment: long ones first, as long as at least half of a track's photos want more tracks in the cell of an 8 x 8 grid where they
-// show it. A photo wants `per_photo` in all. Bounds the adjustment to a number of observations that grows linearly with the photos. Only tracks with
+// show it, or one photo has fewer than kLeastFilled of what it wants: those at the edge see little that others do not have enough of. A photo wants
+// `per_photo` in all. Bounds the adjustment to a number of observations that grows linearly with the photos. Only tracks with
 // `usable` != 0 and entries with `counts` != 0; indices ascend.
+constexpr double kLeastFilled = 0.75;
 std::vector<uint32_t> ChooseTracks(const Block& block, const std::vector<char>& usable, const std::vector<char>& counts, size_t per_photo);
 
 }  // namespace skyquilt::prepare

@@ -114,6 +114,37 @@ class Seeding {
   StageProgress progress_;
 };
 
+// Observations of each photo that agree with points that at least three photos see.
+std::vector<size_t> CountFirmObservations(const Block& block, const std::vector<uint32_t>& n_agreeing) {
+  std::vector<size_t> n(block.photos.size(), 0);
+  for (uint32_t t = 0; t < block.tracks.size(); ++t) {
+    if (n_agreeing[t] < 3) continue;
+    for (uint32_t e = block.tracks.first[t]; e < block.tracks.first[t + 1]; ++e) n[block.tracks.entries[e].photo] += block.agrees[e] != 0 ? 1 : 0;
+  }
+  return n;
+}
+
+// Points of the model. An error along the line that joins two photos shows in none of them, so points that only two photos see are left out (COLMAP's
+// default too), except where a photo has few others.
+std::vector<uint32_t> TracksOfModel(const Block& block) {
+  constexpr size_t kEnough = 200;
+  std::vector<uint32_t> n_agreeing(block.tracks.size(), 0), tracks;
+  for (uint32_t t = 0; t < block.tracks.size(); ++t) {
+    if (block.has_point[t] == 0) continue;
+    for (uint32_t e = block.tracks.first[t]; e < block.tracks.first[t + 1]; ++e) n_agreeing[t] += block.agrees[e] != 0 ? 1 : 0;
+  }
+  const std::vector<size_t> n_firm = CountFirmObservations(block, n_agreeing);
+  for (uint32_t t = 0; t < block.tracks.size(); ++t) {
+    if (block.has_point[t] == 0) continue;
+    bool wanted = n_agreeing[t] >= 3;
+    for (uint32_t e = block.tracks.first[t]; e < block.tracks.first[t + 1]; ++e) {
+      wanted = wanted || (block.agrees[e] != 0 && n_firm[block.tracks.entries[e].photo] < kEnough);
+    }
+    if (wanted) tracks.push_back(t);
+  }
+  return tracks;
+}
+
 SeededModel ModelOf(const SeedInput& input, const Block& block) {
   SeededModel seeded;
   size_t i = 0;
@@ -129,8 +160,7 @@ SeededModel ModelOf(const SeedInput& input, const Block& block) {
     seeded.model.images.push_back(std::move(image));
     seeded.observations[input.photos[i].image_id];
   }
-  for (uint32_t t = 0; t < block.tracks.size(); ++t) {
-    if (block.has_point[t] == 0) continue;
+  for (const uint32_t t : TracksOfModel(block)) {
     survey::ColmapPoint point;
     point.id = seeded.model.points.size() + 1;
     point.x_in_world = block.point[t];

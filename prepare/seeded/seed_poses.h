@@ -16,7 +16,7 @@ namespace skyquilt::prepare {
 
 struct SeededModel {
   survey::ColmapModel model;                // ENU metres about the median of the tags, as good as the tags; points are black
-  survey::ColmapObservations observations;  // of all its points; pixels of the stored photos
+  survey::ColmapObservations observations;  // of its points; pixels of the stored photos
   double median_error = 0.0;                // reprojection, pixels of a photo of 1600 pixels width
   double median_gps_m = 0.0;                // horizontal distance between cameras and tags
   bool by_gimbal = false;                   // directions from gimbal angles, not from matches

@@ -52,9 +52,9 @@ PlaneFit FitPlane(const PairRays& pair) {
     p.emplace_back(a.x() / a.z(), -a.y() / a.z());
     q.emplace_back(b.x() / b.z(), -b.y() / b.z());
   }
-  constexpr size_t kLeastMatches = 8;
+  constexpr size_t kLeastPlaces = 8;
   PlaneFit fit;
-  if (p.size() < kLeastMatches) return fit;
+  if (p.size() < kLeastPlaces) return fit;
   std::vector<double> weight(p.size(), 1.0), residual(p.size());
   for (int round = 0; round < 8; ++round) {
     double total = 0.0, square = 0.0;

@@ -27,13 +27,14 @@ void AddCamera(test::MadeDatabase& database, int id, const camera::Camera& camer
 class SeededWay : public test::FakeColmap {
  protected:
   void SetUp() override {
+    FakeColmap::SetUp();
+    photos_.clear();
     made_ = test::MakeSurvey({.strips = 3, .per_strip = 4, .points_per_photo = 200, .seed = 5});
     WriteProgram(test::kFastProgram);
     SetNumber("first", 12);
     test::MadeDatabase database(folder_ / "made.db");
     database.Run("PRAGMA journal_mode = DELETE");
     AddCamera(database, 1, made_.input.cameras.at(1).camera);
-    std::filesystem::create_directories(folder_ / "images");
     base::Random random(3);
     std::map<int, std::array<uint8_t, 128>> look;
     for (size_t i = 0; i < made_.input.photos.size(); ++i) {

@@ -72,7 +72,7 @@ TEST(ChooseTracks, BoundsTheObservationsOfEachPhoto) {
     for (uint32_t e = block.tracks.first[t]; e < block.tracks.first[t + 1]; ++e) ++n[block.tracks.entries[e].photo];
   }
   for (const size_t count : n) {
-    EXPECT_GE(count, 300U);
+    EXPECT_GE(count, 240U);  // kLeastFilled, at the ends of the strip
     EXPECT_LE(count, 900U);
   }
   EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));

@@ -56,7 +56,8 @@ class SeedPosesTest : public testing::Test {
     // The GSD is 6 cm; the height of a camera is the least certain.
     EXPECT_LT(accuracy.centre_m, 0.12);
     EXPECT_LT(accuracy.worst_m, 0.4);
-    EXPECT_LT(accuracy.worst_deg, 0.15);
+    // In the corners; a level block hardly resists being bent.
+    EXPECT_LT(accuracy.worst_deg, 0.3);
     EXPECT_LT(seeded->median_error, 0.8);
     for (const auto& [id, camera] : seeded->model.cameras) EXPECT_NEAR(camera.FocalX() / made.cameras[id - 1].FocalX(), 1.0, 0.015) << "camera " << id;
   }

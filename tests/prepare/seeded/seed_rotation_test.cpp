@@ -36,8 +36,9 @@ TEST(RotationsLookingDown, FindsTheTurnOfEveryPhoto) {
   const auto rotations = RotationsLookingDown(survey.rays, views);
   for (size_t i = 0; i < rotations.size(); ++i) {
     ASSERT_TRUE(rotations[i]);
+    // A tilt of 3 degrees looks like a motion of 5 m from this height, and photos in the corners have few neighbours.
     const Eigen::Quaterniond truth = RotationFromAngles(made.angles_deg[i].x(), -90.0, 0.0);
-    EXPECT_LT(rotations[i]->angularDistance(truth) * 180.0 / M_PI, 6.0) << made.input.photos[i].name;
+    EXPECT_LT(rotations[i]->angularDistance(truth) * 180.0 / M_PI, 8.0) << made.input.photos[i].name;
   }
 }
 

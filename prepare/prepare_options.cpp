@@ -16,7 +16,8 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
        "fast: own choice and matching of pairs, fewer features, shorter adjustments, and COLMAP's settings where that is not enough; colmap: COLMAP "
        "alone, with its own settings"},
       {"seed_poses", &O::seed_poses, Range(),
-       "with poses = fast: place photos by GPS, gimbal angles and matches where the result agrees with the matches, and by COLMAP's mapper otherwise; "
+       "with poses = fast: place photos by GPS, gimbal angles and matches where the result agrees with the matches, and by COLMAP's mapper "
+       "otherwise; "
        "false: always by the mapper"},
       {"camera_model", &O::camera_model,
        Range::OneOf({"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV", "OPENCV_FISHEYE"}),

@@ -116,7 +116,8 @@ void FillDatabase(const Attempt& attempt, const StepHashes& hashes, const std::v
     return;
   }
   const MatchJob match_job{.folder = job.folder / "matches", .input = hashes.features};
-  RunStep(job, {"own_matches", hashes.matches}, {"matches", kSeededStep, kModelStep}, [&] { MatchOurselves(attempt, match_job, photos, options, threads); });
+  RunStep(job, {"own_matches", hashes.matches}, {"matches", kSeededStep, kModelStep},
+          [&] { MatchOurselves(attempt, match_job, photos, options, threads); });
   // Only now: a kill before the step is marked as done would have to match everything again.
   RemoveChunks(match_job);
   RunStep(job, {"matches", hashes.matches}, {kSeededStep, kModelStep}, [&] { VerifyMatches(job, attempt.settings, options); });

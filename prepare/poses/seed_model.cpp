@@ -84,9 +84,8 @@ std::optional<SeedInput> ReadSeedInput(const fs::path& file, const std::vector<P
   for (survey::DatabaseMatches& matches : database.ReadTwoViewMatches()) {
     const auto a = n_features.find(matches.images.first), b = n_features.find(matches.images.second);
     if (a == n_features.end() || b == n_features.end() || matches.features.empty()) continue;
-    const bool have_places = std::all_of(matches.features.begin(), matches.features.end(), [&](const survey::FeaturePair& pair) {
-      return pair[0] < a->second && pair[1] < b->second;
-    });
+    const bool have_places = std::all_of(matches.features.begin(), matches.features.end(),
+                                         [&](const survey::FeaturePair& pair) { return pair[0] < a->second && pair[1] < b->second; });
     if (!have_places) {
       *reason = fmt::format("COLMAP's database has no places for the matched features of images {} and {}", a->first, b->first);
       return std::nullopt;

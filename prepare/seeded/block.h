@@ -41,7 +41,7 @@ struct BlockPhoto {
 struct BlockLens {
   Lens numbers{};
   Lens initial{};
-  camera::Camera camera;       // to begin with
+  camera::Camera camera;  // to begin with
   bool focal_is_known = true;
   double unit_px = 1.0;  // errors are counted in pixels of a photo of 1600 pixels width, so that thresholds suit every camera
 };

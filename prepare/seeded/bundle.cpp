@@ -109,7 +109,9 @@ bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleSt
 
   // As COLMAP: direct solutions while the cameras' normal equations are small enough to be factored.
   constexpr size_t kMaxDense = 50, kMaxDirect = 4000;
-  options.linear_solver_type = poses.size() <= kMaxDense ? ceres::DENSE_SCHUR : poses.size() <= kMaxDirect ? ceres::SPARSE_SCHUR : ceres::ITERATIVE_SCHUR;
+  options.linear_solver_type = poses.size() <= kMaxDense    ? ceres::DENSE_SCHUR
+                               : poses.size() <= kMaxDirect ? ceres::SPARSE_SCHUR
+                                                            : ceres::ITERATIVE_SCHUR;
   options.preconditioner_type = ceres::SCHUR_JACOBI;
   options.num_threads = 1;
   options.max_num_iterations = stage.max_iterations;

@@ -14,14 +14,14 @@ struct BundleStage {
   double loss = 1.0;
   bool gentle = false;
   bool free_lens = true;
-  double gps_factor = 1.0;        // on the accuracy of the positions
-  double angle_sigma_deg = 3.0;   // of the tagged directions
+  double gps_factor = 1.0;       // on the accuracy of the positions
+  double angle_sigma_deg = 3.0;  // of the tagged directions
   int max_iterations = 20;
-  double tolerance = 1e-4;        // stops when the cost falls by less than this share
+  double tolerance = 1e-4;  // stops when the cost falls by less than this share
 };
 
-// Adjusts all placed photos and the points of `tracks` to the entries that agree. Uses one thread: sums in the order of another number of threads would
-// give other bits. Throws base::Interrupted. False when no solution is found; then nothing has changed. `on_iteration` is called after each.
+// Adjusts all placed photos and the points of `tracks` to the entries that agree. Uses one thread: sums in the order of another number of threads
+// would give other bits. Throws base::Interrupted. False when no solution is found; then nothing has changed. `on_iteration` is called after each.
 bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration);
 
 }  // namespace skyquilt::prepare

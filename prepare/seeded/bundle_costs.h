@@ -1,7 +1,7 @@
 // Terms of the bundle adjustment with their derivatives. A pose is seven numbers: the quaternion x y z w of cam_from_enu and the camera's centre. Its
 // changes are six: a rotation vector in the camera's frame (applied after cam_from_enu) and the centre's displacement. The costs write derivatives by
-// these six in place of derivatives by the seven, with a zero in the seventh column, and PoseManifold passes them on; this saves a product of matrices
-// and the derivatives of a quaternion. Such costs work with PoseManifold only.
+// these six in place of derivatives by the seven, with a zero in the seventh column, and PoseManifold passes them on; this saves a product of
+// matrices and the derivatives of a quaternion. Such costs work with PoseManifold only.
 #pragma once
 
 #include <ceres/ceres.h>

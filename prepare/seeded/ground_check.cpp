@@ -43,10 +43,10 @@ Complex MedianOf(const std::vector<Complex>& values) {
 }
 
 struct PairMotion {
-  Complex shift;          // median difference of the rays of a and b
-  double spread = 0.0;    // median distance from it, foreshortened as the camera sees it
+  Complex shift;        // median difference of the rays of a and b
+  double spread = 0.0;  // median distance from it, foreshortened as the camera sees it
   double steep = 0.0;
-  Complex baseline;       // from a to b, metres
+  Complex baseline;  // from a to b, metres
 };
 
 double WeightedMedian(std::vector<std::pair<double, double>> values) {

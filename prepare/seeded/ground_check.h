@@ -1,6 +1,6 @@
-// Do positions and directions of the photos agree with their matches? Over roughly level ground, two photos see a matched point at the same place: for
-// rays scaled to descend by 1, the horizontal difference of the two is that of the camera centres over the height above ground. Gives that height, a
-// turn of all directions about the vertical (declination, a camera mounted across), and the share of pairs that agree.
+// Do positions and directions of the photos agree with their matches? Over roughly level ground, two photos see a matched point at the same place:
+// for rays scaled to descend by 1, the horizontal difference of the two is that of the camera centres over the height above ground. Gives that
+// height, a turn of all directions about the vertical (declination, a camera mounted across), and the share of pairs that agree.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,10 +23,10 @@ struct SeedView {
 };
 
 struct GroundCheck {
-  size_t n_pairs = 0;            // that could be compared: both photos known and looking at the ground
-  double share_agreeing = 0.0;   // of them
-  double height_m = 0.0;         // of the cameras above the ground; 0 when unknown
-  double turn_rad = 0.0;         // to be added to all directions, counter-clockwise seen from above
+  size_t n_pairs = 0;           // that could be compared: both photos known and looking at the ground
+  double share_agreeing = 0.0;  // of them
+  double height_m = 0.0;        // of the cameras above the ground; 0 when unknown
+  double turn_rad = 0.0;        // to be added to all directions, counter-clockwise seen from above
 };
 
 GroundCheck CheckGround(const std::vector<PairRays>& pairs, const std::vector<SeedView>& views);

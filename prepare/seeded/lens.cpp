@@ -9,13 +9,19 @@ using camera::CameraModel;
 std::optional<Lens> LensOf(const camera::Camera& camera) {
   const std::vector<double>& p = camera.params;
   switch (camera.model) {
-    case CameraModel::kSimplePinhole: return Lens{p[0], 1.0, p[1], p[2], 0.0, 0.0, 0.0, 0.0};
-    case CameraModel::kPinhole: return Lens{p[0], p[1] / p[0], p[2], p[3], 0.0, 0.0, 0.0, 0.0};
-    case CameraModel::kSimpleRadial: return Lens{p[0], 1.0, p[1], p[2], p[3], 0.0, 0.0, 0.0};
-    case CameraModel::kRadial: return Lens{p[0], 1.0, p[1], p[2], p[3], p[4], 0.0, 0.0};
-    case CameraModel::kOpencv: return Lens{p[0], p[1] / p[0], p[2], p[3], p[4], p[5], p[6], p[7]};
+    case CameraModel::kSimplePinhole:
+      return Lens{p[0], 1.0, p[1], p[2], 0.0, 0.0, 0.0, 0.0};
+    case CameraModel::kPinhole:
+      return Lens{p[0], p[1] / p[0], p[2], p[3], 0.0, 0.0, 0.0, 0.0};
+    case CameraModel::kSimpleRadial:
+      return Lens{p[0], 1.0, p[1], p[2], p[3], 0.0, 0.0, 0.0};
+    case CameraModel::kRadial:
+      return Lens{p[0], 1.0, p[1], p[2], p[3], p[4], 0.0, 0.0};
+    case CameraModel::kOpencv:
+      return Lens{p[0], p[1] / p[0], p[2], p[3], p[4], p[5], p[6], p[7]};
     case CameraModel::kOpencvFisheye:
-    case CameraModel::kFullOpencv: break;
+    case CameraModel::kFullOpencv:
+      break;
   }
   return std::nullopt;
 }
@@ -24,24 +30,40 @@ camera::Camera CameraOf(const Lens& lens, const camera::Camera& model) {
   camera::Camera camera = model;
   const auto [f, ratio, cx, cy, k1, k2, p1, p2] = lens;
   switch (model.model) {
-    case CameraModel::kSimplePinhole: camera.params = {f, cx, cy}; break;
-    case CameraModel::kPinhole: camera.params = {f, f * ratio, cx, cy}; break;
-    case CameraModel::kSimpleRadial: camera.params = {f, cx, cy, k1}; break;
-    case CameraModel::kRadial: camera.params = {f, cx, cy, k1, k2}; break;
-    case CameraModel::kOpencv: camera.params = {f, f * ratio, cx, cy, k1, k2, p1, p2}; break;
+    case CameraModel::kSimplePinhole:
+      camera.params = {f, cx, cy};
+      break;
+    case CameraModel::kPinhole:
+      camera.params = {f, f * ratio, cx, cy};
+      break;
+    case CameraModel::kSimpleRadial:
+      camera.params = {f, cx, cy, k1};
+      break;
+    case CameraModel::kRadial:
+      camera.params = {f, cx, cy, k1, k2};
+      break;
+    case CameraModel::kOpencv:
+      camera.params = {f, f * ratio, cx, cy, k1, k2, p1, p2};
+      break;
     case CameraModel::kOpencvFisheye:
-    case CameraModel::kFullOpencv: break;
+    case CameraModel::kFullOpencv:
+      break;
   }
   return camera;
 }
 
 std::vector<int> HeldNumbers(CameraModel model) {
   switch (model) {
-    case CameraModel::kSimplePinhole: return {1, 2, 3, 4, 5, 6, 7};
-    case CameraModel::kPinhole: return {2, 3, 4, 5, 6, 7};
-    case CameraModel::kSimpleRadial: return {1, 2, 3, 5, 6, 7};
-    case CameraModel::kRadial: return {1, 2, 3, 6, 7};
-    default: return {2, 3};
+    case CameraModel::kSimplePinhole:
+      return {1, 2, 3, 4, 5, 6, 7};
+    case CameraModel::kPinhole:
+      return {2, 3, 4, 5, 6, 7};
+    case CameraModel::kSimpleRadial:
+      return {1, 2, 3, 5, 6, 7};
+    case CameraModel::kRadial:
+      return {1, 2, 3, 6, 7};
+    default:
+      return {2, 3};
   }
 }
 

@@ -26,7 +26,8 @@ struct LensJacobian {
   Eigen::Matrix<double, 2, 8> by_lens;
 };
 
-// Pixel of a point in the camera frame, z away from 0; for points behind the camera the formula's value, which has no meaning. `jacobian` may be null.
+// Pixel of a point in the camera frame, z away from 0; for points behind the camera the formula's value, which has no meaning. `jacobian` may be
+// null.
 Eigen::Vector2d Project(const Lens& lens, const Eigen::Vector3d& x_in_cam, LensJacobian* jacobian);
 
 }  // namespace skyquilt::prepare

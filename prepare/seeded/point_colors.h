@@ -8,8 +8,8 @@
 
 namespace skyquilt::prepare {
 
-// Gives every point the mean colour (sRGB) at its observations; photos are read at about a quarter of their size. Photos that cannot be read count not.
-// Throws base::Interrupted.
+// Gives every point the mean colour (sRGB) at its observations; photos are read at about a quarter of their size. Photos that cannot be read count
+// not. Throws base::Interrupted.
 void ColorPoints(survey::ColmapModel& model, const survey::ColmapObservations& observations, const std::filesystem::path& photo_root,
                  base::ThreadPool& threads);
 

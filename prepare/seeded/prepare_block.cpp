@@ -240,7 +240,8 @@ Block MakeBlock(const SeedSurvey& survey, const SeedStart& start, base::ThreadPo
   for (const SeedPhoto& photo : survey.input->photos) n_features.push_back(photo.features.size());
   block.tracks = JoinMatches(pairs, n_features);
   block.pixel.reserve(block.tracks.entries.size());
-  for (const TrackEntry& entry : block.tracks.entries) block.pixel.push_back(survey.input->photos[entry.photo].features[entry.feature].cast<double>());
+  for (const TrackEntry& entry : block.tracks.entries)
+    block.pixel.push_back(survey.input->photos[entry.photo].features[entry.feature].cast<double>());
   block.point.assign(block.tracks.size(), Eigen::Vector3d::Zero());
   block.has_point.assign(block.tracks.size(), 0);
   block.agrees.assign(block.tracks.entries.size(), 0);

@@ -36,7 +36,8 @@ struct SeedStart {
   double height_m = 0.0;  // above ground
 };
 
-// Those that agree with the matches, the better first: by gimbal angles, by matches for cameras that look straight down. When none, `reason` says why.
+// Those that agree with the matches, the better first: by gimbal angles, by matches for cameras that look straight down. When none, `reason` says
+// why.
 std::vector<SeedStart> FindStarts(const SeedSurvey& survey, std::string* reason);
 
 // The block with these poses, and the tracks of the matches that move like the others of their pair.

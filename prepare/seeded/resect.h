@@ -13,8 +13,8 @@ std::vector<std::vector<uint32_t>> EntriesOfPhotos(const Block& block);
 // The track of each entry.
 std::vector<uint32_t> TrackOfEntries(const FeatureTracks& tracks);
 
-// Gives a pose to photos that are not placed and see enough points: three of them give poses (RANSAC over P3P, Gao et al. 2003), the one with the most
-// points within `threshold` units is taken and refined. Returns their number; points do not change.
+// Gives a pose to photos that are not placed and see enough points: three of them give poses (RANSAC over P3P, Gao et al. 2003), the one with the
+// most points within `threshold` units is taken and refined. Returns their number; points do not change.
 size_t ResectPhotos(Block& block, double threshold);
 
 // Fewer agreeing observations do not make a pose (COLMAP registers photos from this number on).

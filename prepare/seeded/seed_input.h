@@ -18,15 +18,15 @@ struct SeedPhoto {
   uint32_t image_id = 0;  // in COLMAP's database; unique
   uint32_t camera_id = 0;
   std::string name;
-  std::optional<geo::Geodetic> gps;                       // tagged position of the camera; the height is NaN when the tag has none
-  double horizontal_sigma_m = 3.0;                        // accuracy of the tag, one standard deviation per axis
-  double vertical_sigma_m = 4.5;                          // likewise
-  std::optional<double> yaw_deg, pitch_deg, roll_deg;     // of the gimbal: clockwise from north; -90 looks straight down; right side down
-  std::vector<Eigen::Vector2f> features;                  // pixels of the stored photo (core/camera/camera.h)
+  std::optional<geo::Geodetic> gps;                    // tagged position of the camera; the height is NaN when the tag has none
+  double horizontal_sigma_m = 3.0;                     // accuracy of the tag, one standard deviation per axis
+  double vertical_sigma_m = 4.5;                       // likewise
+  std::optional<double> yaw_deg, pitch_deg, roll_deg;  // of the gimbal: clockwise from north; -90 looks straight down; right side down
+  std::vector<Eigen::Vector2f> features;               // pixels of the stored photo (core/camera/camera.h)
 };
 
 struct SeedLens {
-  camera::Camera camera;      // to begin with
+  camera::Camera camera;       // to begin with
   bool focal_is_known = true;  // from the photo's tags; false: a guess from the width of the photo
 };
 

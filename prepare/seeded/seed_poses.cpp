@@ -18,8 +18,8 @@ namespace {
 
 // Observations of each photo in the adjustment: enough for poses and lens; all others only become points.
 constexpr size_t kPerPhoto = 640;
-constexpr double kAngleSigma_deg = 3.0;      // of gimbals
-constexpr double kLookDownSigma_deg = 6.0;   // of a camera that is fixed to an aircraft
+constexpr double kAngleSigma_deg = 3.0;     // of gimbals
+constexpr double kLookDownSigma_deg = 6.0;  // of a camera that is fixed to an aircraft
 
 // One line of progress over all stages; a stage that ends early jumps to its end.
 class StageProgress {
@@ -59,13 +59,15 @@ class Seeding {
     chosen_ = ChooseTracks(block_, std::vector<char>(block_.tracks.size(), 1), counts, kPerPhoto);
     PlaceOnGround(block_, chosen_, start_.height_m);
     // While everything is off by tens of pixels, no observation is given up.
-    if (!Adjust("rough poses", {.loss = 16.0, .gentle = true, .free_lens = false, .angle_sigma_deg = angle_deg, .max_iterations = 15, .tolerance = 1e-3})) {
+    if (!Adjust("rough poses",
+                {.loss = 16.0, .gentle = true, .free_lens = false, .angle_sigma_deg = angle_deg, .max_iterations = 15, .tolerance = 1e-3})) {
       return kNoSolution;
     }
     Triangulate(block_, chosen_, 50.0, threads_);
     if (!Adjust("lens", {.loss = 10.0, .gps_factor = 1.5, .angle_sigma_deg = angle_deg, .max_iterations = 15, .tolerance = 1e-3})) return kNoSolution;
     Triangulate(block_, chosen_, 16.0, threads_);
-    if (!Adjust("poses", {.loss = 3.0, .gps_factor = 3.0, .angle_sigma_deg = 3.0 * angle_deg, .max_iterations = 15, .tolerance = 1e-4})) return kNoSolution;
+    if (!Adjust("poses", {.loss = 3.0, .gps_factor = 3.0, .angle_sigma_deg = 3.0 * angle_deg, .max_iterations = 15, .tolerance = 1e-4}))
+      return kNoSolution;
     // From here the tags only hold the frame. All tracks become points: they show which photos fail, and place those without tags.
     Complete(10.0);
     if (!Adjust("all photos", Last(1e-4))) return kNoSolution;
@@ -190,7 +192,8 @@ std::optional<SeededModel> SeedPoses(const SeedInput& input, base::ThreadPool& t
     const std::string failure = seeding.Run();
     const Verdict verdict = Judge(seeding.block(), start.height_m);
     if (!failure.empty() || !verdict.good) {
-      *reason = std::string("seeded by ") + (start.by_gimbal ? "gimbal angles, " : "GPS and matches, ") + (failure.empty() ? verdict.reason : failure);
+      *reason =
+          std::string("seeded by ") + (start.by_gimbal ? "gimbal angles, " : "GPS and matches, ") + (failure.empty() ? verdict.reason : failure);
       continue;
     }
     SeededModel seeded = ModelOf(input, seeding.block());
@@ -198,7 +201,8 @@ std::optional<SeededModel> SeedPoses(const SeedInput& input, base::ThreadPool& t
     seeded.median_gps_m = verdict.median_gps_m;
     seeded.by_gimbal = start.by_gimbal;
     char text[240];
-    std::snprintf(text, sizeof(text), "%zu of %zu photos placed by %s, %zu points, median reprojection error %.2f px at 1600 px, %.0f %% of matches agree, "
+    std::snprintf(text, sizeof(text),
+                  "%zu of %zu photos placed by %s, %zu points, median reprojection error %.2f px at 1600 px, %.0f %% of matches agree, "
                   "median distance to tags %.1f m",
                   verdict.n_placed, input.photos.size(), start.by_gimbal ? "GPS and gimbal" : "GPS and matches", seeded.model.points.size(),
                   verdict.median_error, 100.0 * verdict.share_agreeing, verdict.median_gps_m);

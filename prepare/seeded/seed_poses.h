@@ -23,8 +23,8 @@ struct SeededModel {
   std::string summary;                      // for the log
 };
 
-// Empty when the tags cannot be used or the result cannot be trusted: `reason` then says why, in words for the user, and the mapper must do it. Photos
-// whose matches contradict the others are left out of the model. The same input gives the same bits, whatever the number of threads. Throws
+// Empty when the tags cannot be used or the result cannot be trusted: `reason` then says why, in words for the user, and the mapper must do it.
+// Photos whose matches contradict the others are left out of the model. The same input gives the same bits, whatever the number of threads. Throws
 // base::Interrupted when asked to stop; std::logic_error for photos or pairs with unknown ids.
 std::optional<SeededModel> SeedPoses(const SeedInput& input, base::ThreadPool& threads, std::string* reason);
 

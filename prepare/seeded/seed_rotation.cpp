@@ -159,15 +159,14 @@ std::vector<double> StartAlongTrees(const std::vector<PairTurn>& pairs, const st
 }
 
 // Gauss-Newton on all measurements with Cauchy weights.
-void Average(const std::vector<PairTurn>& pairs, const std::vector<AbsoluteTurn>& absolute, const std::vector<char>& known, std::vector<double>* turn) {
+void Average(const std::vector<PairTurn>& pairs, const std::vector<AbsoluteTurn>& absolute, const std::vector<char>& known,
+             std::vector<double>* turn) {
   const auto n = static_cast<Eigen::Index>(turn->size());
   for (int round = 0; round < 10; ++round) {
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) entries.emplace_back(i, i, 1e-6);
-    const auto weight_of = [](double residual, double sigma) {
-      return 1.0 / (sigma * sigma * (1.0 + std::pow(residual / (3.0 * sigma), 2)));
-    };
+    const auto weight_of = [](double residual, double sigma) { return 1.0 / (sigma * sigma * (1.0 + std::pow(residual / (3.0 * sigma), 2))); };
     for (const PairTurn& pair : pairs) {
       if (known[pair.a] == 0 || known[pair.b] == 0) continue;
       const double residual = Wrapped((*turn)[pair.b] - (*turn)[pair.a] - pair.difference);

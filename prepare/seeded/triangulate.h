@@ -10,8 +10,8 @@
 namespace skyquilt::prepare {
 
 // Places the point of one track and marks the entries that agree with it. Tries the point it has, and the meetings of pairs of rays; the one with the
-// most entries within `threshold` (units, see BlockLens) is refined by Gauss-Newton. No point, when fewer than two entries agree or their rays meet at
-// less than kLeastAngle_deg.
+// most entries within `threshold` (units, see BlockLens) is refined by Gauss-Newton. No point, when fewer than two entries agree or their rays meet
+// at less than kLeastAngle_deg.
 void TriangulateTrack(Block& block, uint32_t track, double threshold);
 // The same for several tracks, in parallel.
 void Triangulate(Block& block, std::span<const uint32_t> tracks, double threshold, base::ThreadPool& threads);

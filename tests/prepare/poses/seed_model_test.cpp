@@ -20,7 +20,8 @@ void AddCamera(test::MadeDatabase& database, int id, const camera::Camera& camer
     const auto* bytes = reinterpret_cast<const unsigned char*>(&parameter);
     for (size_t k = 0; k < sizeof(parameter); ++k) hex += fmt::format("{:02x}", bytes[k]);
   }
-  database.Run(fmt::format("INSERT INTO cameras VALUES({}, {}, {}, {}, x'{}', 1)", id, static_cast<int>(camera.model), camera.width, camera.height, hex));
+  database.Run(
+      fmt::format("INSERT INTO cameras VALUES({}, {}, {}, {}, x'{}', 1)", id, static_cast<int>(camera.model), camera.width, camera.height, hex));
 }
 
 // COLMAP finds the features of a made flight, and the mapper would find all poses.

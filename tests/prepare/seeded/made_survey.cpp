@@ -35,8 +35,8 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
     const bool back = strip % 2 == 1;
     const double x = plan.along_m * (back ? plan.per_strip - 1 - k : k);
     const Eigen::Vector3d centre(x + random.Normal(), plan.across_m * strip + random.Normal(), plan.height_m + random.Normal());
-    const Eigen::Vector3d angles((back ? 270.0 : 90.0) + plan.tilt_noise_deg * random.Normal(), plan.pitch_deg + plan.tilt_noise_deg * random.Normal(),
-                                 plan.tilt_noise_deg * random.Normal());
+    const Eigen::Vector3d angles((back ? 270.0 : 90.0) + plan.tilt_noise_deg * random.Normal(),
+                                 plan.pitch_deg + plan.tilt_noise_deg * random.Normal(), plan.tilt_noise_deg * random.Normal());
     geo::Rigid3d pose;
     pose.rotation = prepare::RotationFromAngles(angles.x(), angles.y(), angles.z());
     pose.translation = -(pose.rotation * centre);

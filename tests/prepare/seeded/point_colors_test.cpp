@@ -32,9 +32,8 @@ TEST(ColorPoints, GivesTheMeanOfThePhotosThatCanBeRead) {
   for (const auto& [id, name] : {std::pair<uint32_t, std::string>{1, "a.png"}, {2, "b.png"}, {3, "c.png"}}) model.images.push_back({id, 1, name, {}});
   model.points = {{.id = 7, .image_ids = {1, 2, 3}}, {.id = 9, .image_ids = {1, 2}}, {.id = 11, .rgb = {1, 2, 3}, .image_ids = {3}}};
   // The last pixel of the first is on the photo's edge, where half a pixel more would be outside.
-  const survey::ColmapObservations observations = {{1, {{7, {5.0, 5.0}}, {9, {64.0, 48.0}}}},
-                                                   {2, {{7, {8.0, 40.0}}, {9, {60.0, 3.0}}}},
-                                                   {3, {{7, {5.0, 5.0}}, {11, {5.0, 5.0}}}}};
+  const survey::ColmapObservations observations = {
+      {1, {{7, {5.0, 5.0}}, {9, {64.0, 48.0}}}}, {2, {{7, {8.0, 40.0}}, {9, {60.0, 3.0}}}}, {3, {{7, {5.0, 5.0}}, {11, {5.0, 5.0}}}}};
   base::ThreadPool threads(2);
   prepare::ColorPoints(model, observations, folder.path(), threads);
   EXPECT_EQ(model.points[0].rgb, (std::array<uint8_t, 3>{150, 75, 10}));

@@ -19,9 +19,9 @@ using prepare::SeededModel;
 using prepare::SeedPoses;
 
 struct Accuracy {
-  double centre_m = 0.0;      // root mean square after a similarity
+  double centre_m = 0.0;  // root mean square after a similarity
   double worst_m = 0.0;
-  double worst_deg = 0.0;     // of rotations, after the same
+  double worst_deg = 0.0;  // of rotations, after the same
 };
 
 Accuracy Compare(const MadeSurvey& made, const survey::ColmapModel& model) {
@@ -59,7 +59,8 @@ class SeedPosesTest : public testing::Test {
     // In the corners; a level block hardly resists being bent.
     EXPECT_LT(accuracy.worst_deg, 0.3);
     EXPECT_LT(seeded->median_error, 0.8);
-    for (const auto& [id, camera] : seeded->model.cameras) EXPECT_NEAR(camera.FocalX() / made.cameras[id - 1].FocalX(), 1.0, 0.015) << "camera " << id;
+    for (const auto& [id, camera] : seeded->model.cameras)
+      EXPECT_NEAR(camera.FocalX() / made.cameras[id - 1].FocalX(), 1.0, 0.015) << "camera " << id;
   }
 
   base::ThreadPool threads_{2};
@@ -213,6 +214,32 @@ TEST_F(SeedPosesTest, SameBitsWithAnyNumberOfThreads) {
     EXPECT_EQ(a->model.images[k].cam_from_world.translation, b->model.images[k].cam_from_world.translation);
     EXPECT_EQ(a->model.images[k].cam_from_world.rotation.coeffs(), b->model.images[k].cam_from_world.rotation.coeffs());
   }
+}
+
+// Points of two photos only where a photo has few others.
+TEST_F(SeedPosesTest, PointsOfTwoPhotosFillGapsOnly) {
+  const auto count = [](const SeededModel& seeded, size_t* n_two, size_t* n_wrong) {
+    std::map<uint32_t, size_t> firm;
+    for (const survey::ColmapPoint& point : seeded.model.points) {
+      for (const uint32_t id : point.image_ids) firm[id] += point.image_ids.size() >= 3 ? 1 : 0;
+    }
+    for (const survey::ColmapPoint& point : seeded.model.points) {
+      if (point.image_ids.size() != 2) continue;
+      ++*n_two;
+      *n_wrong += firm[point.image_ids[0]] >= 200 && firm[point.image_ids[1]] >= 200 ? 1 : 0;
+    }
+  };
+  size_t n_two = 0, n_wrong = 0;
+  const auto dense = SeedPoses(MakeSurvey({.strips = 3, .per_strip = 4, .points_per_photo = 600, .seed = 20}).input, threads_, &reason_);
+  ASSERT_TRUE(dense) << reason_;
+  count(*dense, &n_two, &n_wrong);
+  EXPECT_EQ(n_wrong, 0U);
+  EXPECT_LT(10 * n_two, dense->model.points.size());
+  n_two = 0;
+  const auto sparse = SeedPoses(MakeSurvey({.strips = 2, .per_strip = 2, .points_per_photo = 200, .seed = 21}).input, threads_, &reason_);
+  ASSERT_TRUE(sparse) << reason_;
+  count(*sparse, &n_two, &n_wrong);
+  EXPECT_GT(n_two, 0U);
 }
 
 TEST_F(SeedPosesTest, StopsWhenAsked) {

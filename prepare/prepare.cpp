@@ -229,7 +229,7 @@ PoseOptions PosesOf(const PrepareOptions& options) {
 
 }  // namespace
 
-survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads) {
+survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks) {
   options.Check();
   const Holdout holdout = ParseHoldout(options.holdout);
   InputFolder folders = FindInputs(input.photos, input.model, options.masks);
@@ -245,7 +245,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   InputModel input_model;
   if (folders.model.empty()) {
     const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap"};
-    folders.model = RunColmap(job, photos.usable, PosesOf(options), threads);
+    folders.model = RunColmap(job, photos.usable, PosesOf(options), threads, ranks);
     input_model.sfm = survey::ReadColmapModel(folders.model);
   } else {
     input_model = ReadModel(folders.model, ModelPhotos(folders.photo_root, names));

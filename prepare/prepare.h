@@ -16,6 +16,8 @@
 
 namespace skyquilt::prepare {
 
+class RemoteTasks;  // poses/pose_task.h
+
 struct PrepareInput {
   std::filesystem::path photos;      // folder, searched recursively; see FindInputs in input_folder.h
   std::filesystem::path model;       // folder or file of a model (models/read_model.h); empty: COLMAP is run (simulated survey: its own model)
@@ -23,7 +25,8 @@ struct PrepareInput {
 };
 
 // Photos that cannot be used are left out with a warning that names them. Throws base::UsageError for invalid options, base::InputError when fewer
-// than 3 usable photos remain or a file cannot be read or written, base::Interrupted when asked to stop.
-survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads);
+// than 3 usable photos remain or a file cannot be read or written, base::Interrupted when asked to stop. `ranks`: processes that share the
+// search for poses; null: this one does it alone, with the same result.
+survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks = nullptr);
 
 }  // namespace skyquilt::prepare

@@ -1,7 +1,7 @@
 // The stages from photos to report, one function each. A stage does nothing when its results are up to date, continues when it was interrupted,
 // and refuses (base::UsageError) to mix a changed configuration with old files.
-// All stages run on rank 0; training and rendering use the other ranks too. Every stage reads its inputs from files, so running stage by stage
-// gives the same results as `run`.
+// All stages run on rank 0; the search for poses, training and rendering use the other ranks too. Every stage reads its inputs from files, so running
+// stage by stage gives the same results as `run`.
 #pragma once
 
 #include <filesystem>

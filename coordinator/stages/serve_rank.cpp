@@ -1,5 +1,6 @@
 #include "coordinator/stages/serve_rank.h"
 
+#include "coordinator/poses/rank_tasks.h"
 #include "coordinator/ranks/messages.h"
 #include "coordinator/rendering/serve_rays.h"
 #include "coordinator/scheduler/coordinate.h"
@@ -13,6 +14,7 @@ void ServeRank(comm::Communicator& comm) {
     if (message.tag == kTagQuit) return;
     if (message.tag == kTagSetup) ServeTraining(comm, message.bytes);
     if (message.tag == kTagScene) ServeRays(comm, message.bytes);
+    if (message.tag == kTagPoses) ServeTasks(comm, message.bytes);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "coordinator/poses/rank_tasks.h"
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/train_all.h"
@@ -46,7 +47,8 @@ std::string SimulateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
 std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const prepare::PrepareInput input{.photos = pipeline.photos, .model = pipeline.model, .out_folder = pipeline.project.SurveyFolder()};
   base::ThreadPool threads(pipeline.settings.run.threads);
-  prepare::Prepare(input, pipeline.settings.prepare, threads);
+  RankTasks ranks(pipeline.comm, pipeline.settings.run, pipeline.verbose, pipeline.quiet);
+  prepare::Prepare(input, pipeline.settings.prepare, threads, pipeline.comm.size() > 1 ? &ranks : nullptr);
   return StageStamp::kDone;
 }
 

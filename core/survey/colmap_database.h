@@ -47,6 +47,8 @@ constexpr uint64_t kMaxDatabaseId = 2147483647;
 uint64_t PairId(uint32_t image_a, uint32_t image_b);
 ImagePair ImagesOfPair(uint64_t pair_id);
 
+struct DatabaseConnection;  // database_connection.h
+
 // One connection, for one thread at a time. All functions throw base::InputError that names the file: it is not a database or damaged, a table is
 // missing, a blob has a size that does not fit its numbers of rows and columns, the disk is full, another program has locked it.
 class ColmapDatabase {
@@ -81,6 +83,10 @@ class ColmapDatabase {
   void RestoreNames();
   static std::string PlainName(uint32_t image_id) { return "image_" + std::to_string(image_id) + "/"; }
 
+  // Puts everything into the file itself, with nothing in files beside it (COLMAP's write-ahead log), so that it can be moved, and read on other
+  // hosts.
+  void UseOneFile();
+
   // Replaces all matches of the database by those that `next` gives, one after another until it returns false; geometries are removed, so that
   // COLMAP's matches_importer makes them anew. In one transaction: everything or nothing is written, also when `next` throws.
   template <typename Next>
@@ -110,8 +116,7 @@ class ColmapDatabase {
   void ClearMatches();
   void WriteMatches(const DatabaseMatches& matches);
 
-  struct Connection;
-  std::unique_ptr<Connection> connection_;
+  std::unique_ptr<DatabaseConnection> connection_;
 };
 
 }  // namespace skyquilt::survey

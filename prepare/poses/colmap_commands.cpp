@@ -28,18 +28,6 @@ void Append(Arguments& to, const Arguments& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
-std::string CameraKey(const PhotoFile& photo) {
-  const survey::PhotoTags& tags = photo.tags;
-  return std::to_string(photo.width) + "x" + std::to_string(photo.height) + "|" + tags.make + "|" + tags.model + "|" +
-         (tags.focal_length_mm ? std::to_string(*tags.focal_length_mm) : "");
-}
-
-std::map<std::string, std::vector<const PhotoFile*>> GroupByCamera(const std::vector<PhotoFile>& photos) {
-  std::map<std::string, std::vector<const PhotoFile*>> groups;
-  for (const PhotoFile& photo : photos) groups[CameraKey(photo)].push_back(&photo);
-  return groups;
-}
-
 Arguments MatchingArguments(const ColmapJob& job, const ColmapSettings& settings, const PoseOptions& options, bool use_gpu) {
   return {"--database_path",   job.Database().string(),      "--SiftMatching.use_gpu",
           use_gpu ? "1" : "0", "--SiftMatching.num_threads", std::to_string(settings.n_threads),
@@ -51,82 +39,7 @@ bool IsPlain(const std::string& name) {
   return !name.starts_with('#') && std::none_of(name.begin(), name.end(), [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); });
 }
 
-// Without what says which camera the photos get. `list`: number of the file with their names.
-ColmapCommand FeatureCommand(const ColmapJob& job, const ColmapSettings& settings, const PoseOptions& options, const std::vector<std::string>& names,
-                             size_t list) {
-  const FastColmapFlags flags;
-  const fs::path file = job.folder / ("photos_" + std::to_string(list) + ".txt");
-  std::string lines;
-  for (const std::string& name : names) lines += name + "\n";
-  base::WriteFileAtomically(file, lines);
-  ColmapCommand command{settings.program, "feature_extractor", {}};
-  command.arguments = {"--database_path",
-                       job.Database().string(),
-                       "--image_path",
-                       job.photo_root.string(),
-                       "--image_list_path",
-                       file.string(),
-                       "--SiftExtraction.use_gpu",
-                       options.use_gpu ? "1" : "0",
-                       "--SiftExtraction.num_threads",
-                       std::to_string(settings.n_threads),
-                       "--SiftExtraction.max_image_size",
-                       std::to_string(options.max_image_size),
-                       "--SiftExtraction.max_num_features",
-                       std::to_string(settings.fast ? std::min(options.max_features, flags.max_features) : options.max_features),
-                       "--random_seed",
-                       std::to_string(options.seed)};
-  if (settings.fast) Append(command.arguments, {"--SiftExtraction.first_octave", std::to_string(flags.first_octave)});
-  if (!job.masks.empty()) Append(command.arguments, {"--ImageReader.mask_path", job.masks.string()});
-  return command;
-}
-
-// Searches the photos with few features once more, for features of lower contrast; they keep their cameras.
-void ExtractMoreFeatures(const ColmapJob& job, const ColmapSettings& settings, const PoseOptions& options, size_t first_list) {
-  const FastColmapFlags flags;
-  std::map<uint32_t, std::vector<std::string>> names_by_camera;
-  std::vector<uint32_t> poor;
-  size_t n_photos = 0;
-  {
-    survey::ColmapDatabase database(job.Database());
-    for (const survey::DatabaseImage& image : database.ReadImages()) {
-      ++n_photos;
-      if (database.CountDescriptors(image.id) >= flags.few_features) continue;
-      poor.push_back(image.id);
-      names_by_camera[image.camera_id].push_back(image.name);
-    }
-    database.RemoveFeatures(poor);
-  }
-  if (poor.empty()) return;
-  spdlog::info("{} of {} photos have fewer than {} features: they are searched once more, for lower contrast", poor.size(), n_photos,
-               flags.few_features);
-  for (const auto& [camera_id, names] : names_by_camera) {
-    ColmapCommand command = FeatureCommand(job, settings, options, names, first_list++);
-    Append(command.arguments, {"--ImageReader.existing_camera_id", std::to_string(camera_id), "--SiftExtraction.peak_threshold",
-                               fmt::format("{:g}", flags.low_peak_threshold)});
-    RunWithProgress(job, command, "find more features", names.size());
-  }
-}
-
 }  // namespace
-
-void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
-  // Start with a new database: in a half-filled one the remaining photos would get another camera.
-  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(job.Database().string() + suffix);
-  const auto groups = GroupByCamera(photos);
-  if (groups.size() > 1) spdlog::info("{} kinds of photos (by size, camera, focal length): each gets its own camera model", groups.size());
-  size_t index = 0;
-  for (const auto& [key, group] : groups) {
-    std::vector<std::string> names;
-    names.reserve(group.size());
-    for (const PhotoFile* photo : group) names.push_back(photo->name);
-    ColmapCommand command = FeatureCommand(job, settings, options, names, index);
-    Append(command.arguments, {"--ImageReader.camera_model", options.camera_model, "--ImageReader.single_camera", "1"});
-    RunWithProgress(job, command, "find features", group.size());
-    ++index;
-  }
-  if (settings.fast) ExtractMoreFeatures(job, settings, options, index);
-}
 
 void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
   const auto n_tagged =

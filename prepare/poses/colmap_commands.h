@@ -1,4 +1,4 @@
-// COLMAP's part of finding poses: features, its own matching, the verification of matches, and the model.
+// COLMAP's part of finding poses after the features: its own matching, the verification of matches, and the model.
 #pragma once
 
 #include <filesystem>
@@ -18,9 +18,6 @@ struct ColmapSettings {
 };
 
 // All throw base::InputError that names the log when COLMAP fails, base::Interrupted when asked to stop.
-
-// Makes a new database with the features of all photos. Photos of the same size, maker, model and focal length have one camera together.
-void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options);
 
 // COLMAP's own matching and verification: GPS neighbours when there are at least kMinSpatialPhotos photos and at least nine tenths of them have a GPS
 // tag, otherwise all pairs.

@@ -9,6 +9,7 @@
 #include "core/base/log.h"
 #include "prepare/poses/choose_pairs.h"
 #include "prepare/poses/colmap_commands.h"
+#include "prepare/poses/extract_features.h"
 #include "prepare/poses/feature_store.h"
 #include "prepare/poses/match_pairs.h"
 #include "prepare/poses/seed_model.h"
@@ -17,9 +18,6 @@ namespace skyquilt::prepare {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Of packed descriptors; about a thousand photos.
-constexpr size_t kFeatureMemory_bytes = size_t{1} << 30U;
 
 // One way from photos to a model.
 struct Attempt {
@@ -94,30 +92,31 @@ void RunStep(const ColmapJob& job, const ColmapStep& step, const std::vector<std
 }
 
 void MatchOurselves(const Attempt& attempt, const MatchJob& match_job, const std::vector<PhotoFile>& photos, const PoseOptions& options,
-                    base::ThreadPool& threads) {
+                    base::ThreadPool& threads, RemoteTasks* ranks) {
   std::vector<std::string> names;
   names.reserve(photos.size());
   for (const PhotoFile& photo : photos) names.push_back(photo.name);
   FeatureStore features(attempt.job.Database(), names, kFeatureMemory_bytes);
   const PhotoPairs pairs = ChoosePairs(photos, *attempt.pairs, static_cast<uint64_t>(options.seed), features, threads);
-  MatchPairs(match_job, features, pairs, threads);
+  MatchPairs(match_job, features, pairs, threads, ranks);
 }
 
 // Everything but the model.
 void FillDatabase(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
-                  base::ThreadPool& threads) {
+                  base::ThreadPool& threads, RemoteTasks* ranks) {
   const ColmapJob& job = attempt.job;
   base::RequireWritableFolder(job.folder);
   spdlog::info("running COLMAP on {} photos; its log is {}", photos.size(), job.Log().string());
   RunStep(job, {"features", hashes.features}, {"own_matches", "matches", kSeededStep, kModelStep},
-          [&] { ExtractFeatures(job, attempt.settings, photos, options); });
+          [&] { ExtractFeatures(job, attempt.settings, photos, options, hashes.features, ranks); });
+  RemoveFeatureParts(job);
   if (!attempt.pairs) {
     RunStep(job, {"matches", hashes.matches}, {kModelStep}, [&] { MatchByColmap(job, attempt.settings, photos, options); });
     return;
   }
   const MatchJob match_job{.folder = job.folder / "matches", .input = hashes.features};
   RunStep(job, {"own_matches", hashes.matches}, {"matches", kSeededStep, kModelStep},
-          [&] { MatchOurselves(attempt, match_job, photos, options, threads); });
+          [&] { MatchOurselves(attempt, match_job, photos, options, threads, ranks); });
   // Only now: a kill before the step is marked as done would have to match everything again.
   RemoveChunks(match_job);
   RunStep(job, {"matches", hashes.matches}, {kSeededStep, kModelStep}, [&] { VerifyMatches(job, attempt.settings, options); });
@@ -138,7 +137,8 @@ FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std
 
 }  // namespace
 
-fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads) {
+fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads,
+                   RemoteTasks* ranks) {
   const fs::path program = base::FindProgram(options.colmap);
   if (program.empty()) {
     throw base::InputError(options.colmap, "there is no such program",
@@ -147,7 +147,7 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, c
   const ColmapSettings settings{.program = program, .n_threads = threads.size(), .fast = options.fast};
   const Attempt first{job, settings, options.fast ? std::optional(PairRules{}) : std::nullopt, options.fast && options.seed_poses};
   const StepHashes hashes = HashSteps(first, photos, options);
-  FillDatabase(first, hashes, photos, options, threads);
+  FillDatabase(first, hashes, photos, options, threads, ranks);
   if (!options.fast) return FindModel(first, hashes, photos, options, threads).folder;
 
   std::optional<FoundModel> found;
@@ -164,7 +164,7 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, c
   second.job.folder = job.folder / "more_pairs";
   second.settings.fast = false;
   const StepHashes second_hashes = HashSteps(second, photos, options);
-  FillDatabase(second, second_hashes, photos, options, threads);
+  FillDatabase(second, second_hashes, photos, options, threads, ranks);
   FoundModel again;
   try {
     again = FindModel(second, second_hashes, photos, options, threads);

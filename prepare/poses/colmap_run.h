@@ -9,13 +9,16 @@
 #include "prepare/photo_files.h"
 #include "prepare/poses/colmap_step.h"
 #include "prepare/poses/pose_options.h"
+#include "prepare/poses/pose_task.h"
 
 namespace skyquilt::prepare {
 
 // The fast way: features by FastColmapFlags, pairs by ChoosePairs, matches by MatchPairs, verified by COLMAP, poses by SeedModel or else by COLMAP's
 // mapper. When that has poses of fewer than kEnoughRegistered of the photos, all is done once more with COLMAP's own settings and kMorePairs in the
 // folder "more_pairs" of the job, and the model with more photos is taken. Otherwise COLMAP does everything. Returns the folder of the model with the
-// most photos. Throws base::InputError that names the log when a step fails, base::Interrupted when asked to stop (a later call continues).
-std::filesystem::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads);
+// most photos. Throws base::InputError that names the log when a step fails, base::Interrupted when asked to stop (a later call continues). `ranks`:
+// processes that find features and matches; null: this one does, with the same result.
+std::filesystem::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads,
+                                RemoteTasks* ranks = nullptr);
 
 }  // namespace skyquilt::prepare

@@ -26,6 +26,7 @@ void RunColmapCommand(const ColmapJob& job, const ColmapCommand& command, const 
   run.arguments.insert(run.arguments.end(), command.arguments.begin(), command.arguments.end());
   // COLMAP links against Qt even for commands without a window; this lets it run without a display.
   run.environment = {"QT_QPA_PLATFORM=offscreen"};
+  run.environment.insert(run.environment.end(), command.environment.begin(), command.environment.end());
   const int status = base::RunLogged(run, job.Log(), [&](const std::string& line) {
     last_lines.push_back(line);
     if (last_lines.size() > 3) last_lines.pop_front();

@@ -12,16 +12,18 @@ struct ColmapJob {
   std::filesystem::path photo_root;  // names of photos are relative to it
   std::filesystem::path masks;       // empty: none
   std::filesystem::path folder;      // for COLMAP's database, models and log, and for our stamps of finished steps
+  std::string log = "colmap.log";    // its name in the folder
 
   std::filesystem::path Database() const { return folder / "database.db"; }
   std::filesystem::path Models() const { return folder / "sparse"; }
-  std::filesystem::path Log() const { return folder / "colmap.log"; }
+  std::filesystem::path Log() const { return folder / log; }
 };
 
 struct ColmapCommand {
   std::filesystem::path program;
   std::string name;  // of the command
   std::vector<std::string> arguments;
+  std::vector<std::string> environment = {};  // "NAME=value"
 };
 
 // Appends the output to the job's log and passes each line on. Throws base::InputError that names the log when the command fails, base::Interrupted

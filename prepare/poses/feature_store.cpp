@@ -9,7 +9,7 @@
 namespace skyquilt::prepare {
 
 FeatureStore::FeatureStore(const std::filesystem::path& database, const std::vector<std::string>& names, size_t max_bytes)
-    : database_(database), max_bytes_(max_bytes) {
+    : file_(std::filesystem::absolute(database)), database_(database), max_bytes_(max_bytes) {
   std::unordered_map<std::string, uint32_t> id_of_name;
   for (const survey::DatabaseImage& image : database_.ReadImages()) id_of_name.emplace(image.name, image.id);
   image_ids_.reserve(names.size());

@@ -15,6 +15,9 @@
 
 namespace skyquilt::prepare {
 
+// For packed descriptors; about a thousand photos.
+constexpr size_t kFeatureMemory_bytes = size_t{1} << 30U;
+
 class FeatureStore {
  public:
   // names: of the photos, which the database must have; their numbers below are places in it. max_bytes: of packed descriptors that are kept; those
@@ -28,6 +31,7 @@ class FeatureStore {
 
   uint32_t ImageId(uint32_t photo) const { return image_ids_[photo]; }
   survey::ColmapDatabase& database() { return database_; }
+  const std::filesystem::path& file() const { return file_; }  // of the database
   size_t n_loads() const { return n_loads_; }
 
  private:
@@ -36,6 +40,7 @@ class FeatureStore {
     size_t bytes;
     std::shared_ptr<const kernel::PackedDescriptors> packed;
   };
+  std::filesystem::path file_;
   std::mutex mutex_;  // guards all below but image_ids_
   survey::ColmapDatabase database_;
   std::vector<uint32_t> image_ids_;

@@ -20,20 +20,40 @@ struct Chunk {
   std::span<const PhotoPair> pairs;
 };
 
-std::vector<Chunk> SplitIntoChunks(const MatchJob& job, const PhotoPairs& pairs) {
+// Chunks for each of several processes, so that all end at about the same time.
+constexpr size_t kChunksPerProcess = 4, kSmallestChunk = 8;
+
+size_t PairsPerChunk(const MatchJob& job, size_t n_pairs, RemoteTasks* ranks) {
+  if (ranks == nullptr) return job.pairs_per_chunk;
+  const size_t n_chunks = kChunksPerProcess * static_cast<size_t>(ranks->size());
+  return std::min(job.pairs_per_chunk, std::max(kSmallestChunk, (n_pairs + n_chunks - 1) / n_chunks));
+}
+
+std::vector<Chunk> SplitIntoChunks(const MatchJob& job, const PhotoPairs& pairs, size_t pairs_per_chunk) {
   std::vector<Chunk> chunks;
-  for (size_t first = 0; first < pairs.size(); first += job.pairs_per_chunk) {
-    const std::span some = std::span(pairs).subspan(first, std::min(job.pairs_per_chunk, pairs.size() - first));
+  for (size_t first = 0; first < pairs.size(); first += pairs_per_chunk) {
+    const std::span some = std::span(pairs).subspan(first, std::min(pairs_per_chunk, pairs.size() - first));
     chunks.push_back({job.folder / fmt::format("chunk_{:05}.bin", chunks.size()), ChunkKey(job.input, some, job.rules), some});
   }
   return chunks;
 }
 
+MatchTask TaskOf(const Chunk& chunk, const MatchJob& job, const FeatureStore& features) {
+  MatchTask task{.database = features.file(),
+                 .pairs = {},
+                 .rules = job.rules,
+                 .min_matches = job.min_matches,
+                 .file = fs::absolute(chunk.file),
+                 .key = chunk.key};
+  for (const PhotoPair& pair : chunk.pairs) task.pairs.emplace_back(features.ImageId(pair.a), features.ImageId(pair.b));
+  return task;
+}
+
 }  // namespace
 
-void MatchPairs(const MatchJob& job, FeatureStore& features, const PhotoPairs& pairs, base::ThreadPool& threads) {
+void MatchPairs(const MatchJob& job, FeatureStore& features, const PhotoPairs& pairs, base::ThreadPool& threads, RemoteTasks* ranks) {
   base::RequireWritableFolder(job.folder);
-  const std::vector<Chunk> chunks = SplitIntoChunks(job, pairs);
+  const std::vector<Chunk> chunks = SplitIntoChunks(job, pairs, PairsPerChunk(job, pairs.size(), ranks));
   size_t n_done = 0;
   std::vector<const Chunk*> missing;
   for (const Chunk& chunk : chunks) {
@@ -46,10 +66,19 @@ void MatchPairs(const MatchJob& job, FeatureStore& features, const PhotoPairs& p
   if (n_done > 0) spdlog::info("{} of {} pairs are already matched", n_done, pairs.size());
   if (!missing.empty()) {
     base::Progress progress("match features", static_cast<double>(pairs.size() - n_done), "pairs");
+    std::vector<PoseTask> tasks;
     for (const Chunk* some : missing) {
+      if (ranks != nullptr) {
+        tasks.emplace_back(TaskOf(*some, job, features));
+        continue;
+      }
       SaveChunk(some->file, some->key,
                 MatchChunk(
                     features, some->pairs, job.rules, job.min_matches, [&] { progress.Advance(); }, threads));
+    }
+    if (ranks != nullptr) {
+      features.database().UseOneFile();
+      ranks->Run(tasks, [&progress](double more) { progress.Advance(more); });
     }
     progress.Finish();
   }

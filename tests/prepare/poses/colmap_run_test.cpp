@@ -33,10 +33,13 @@ class ColmapAlone : public FakeColmap {
   void SetUp() override {
     FakeColmap::SetUp();
     options_.fast = false;
+    test::MadeDatabase(folder_ / "made.db").Run("PRAGMA journal_mode = DELETE");  // one file, to copy
   }
   void WriteFake(const std::string& mapper) {
     WriteProgram("#!/bin/sh\necho $1 >> " + (folder_ / "calls").string() + "\necho \"$@\" >> " + (folder_ / "arguments").string() +
-                 "\nwhile [ $# -gt 0 ]; do case $1 in --output_path) out=$2;; --database_path) : >> \"$2\";; mapper) m=1;; esac; shift; done\n"
+                 "\nwhile [ $# -gt 0 ]; do case $1 in --output_path) out=$2;; --database_path) [ -e \"$2\" ] || cp " +
+                 (folder_ / "made.db").string() +
+                 " \"$2\";; mapper) m=1;; esac; shift; done\n"
                  "if [ -n \"$m\" ]; then " +
                  mapper + "; fi\n");
   }
@@ -64,7 +67,7 @@ TEST_F(ColmapAlone, HasItsOwnSettings) {
   photos_ = test::GridPhotos(8, 8, 20.0, 25.0, {47.0, 8.0, 400.0});
   WriteFake("exit 0");
   EXPECT_THROW(Find(), base::InputError);
-  EXPECT_EQ(Calls(), "feature_extractor\nspatial_matcher\nmapper\n");
+  EXPECT_EQ(Calls(), "feature_extractor\nfeature_extractor\nspatial_matcher\nmapper\n");
   const std::string arguments = base::ReadFile(folder_ / "arguments");
   EXPECT_EQ(arguments.find("first_octave"), std::string::npos) << arguments;
   EXPECT_EQ(arguments.find("ba_global"), std::string::npos) << arguments;

@@ -1,0 +1,73 @@
+#include "coordinator/poses/rank_tasks.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "coordinator/poses/task_message.h"
+#include "coordinator/ranks/failure.h"
+#include "coordinator/ranks/messages.h"
+#include "core/base/log.h"
+
+namespace skyquilt::coordinator {
+
+using nlohmann::json;
+
+RankTasks::RankTasks(comm::Communicator& comm, const RunOptions& options, bool verbose, bool quiet)
+    : comm_(comm), setup_(json{{"threads", options.threads}, {"verbose", verbose}, {"quiet", quiet}}.dump()) {}
+
+const std::vector<GroupMember>& RankTasks::Members() {
+  if (group_ == nullptr) {
+    group_ = std::make_unique<RankGroup>(comm_, kTagPoses, setup_);
+    members_ = group_->WaitForRanks();
+    for (const GroupMember& member : members_) comm_.Send(member.rank, kTagThreads, std::to_string(member.threads));
+    spdlog::info("features and matches are found by {} ranks with {} threads at most", members_.size(), threads());
+  }
+  return members_;
+}
+
+int RankTasks::size() {
+  return static_cast<int>(Members().size());
+}
+
+int RankTasks::threads() {
+  int most = 1;
+  for (const GroupMember& member : Members()) most = std::max(most, member.threads);
+  return most;
+}
+
+std::string RankTasks::NameOf(int rank) {
+  const auto member = std::find_if(members_.begin(), members_.end(), [rank](const GroupMember& one) { return one.rank == rank; });
+  return "rank " + std::to_string(rank) + (member == members_.end() ? "" : " on " + member->host);
+}
+
+void RankTasks::Run(std::span<const prepare::PoseTask> tasks, const prepare::TaskProgress& on_progress) {
+  size_t next = 0, n_done = 0;
+  std::map<size_t, int> rank_of;  // by number of a task that a rank has
+  const auto hand_out = [&](int rank) {
+    if (next == tasks.size()) return;
+    rank_of.emplace(next_number_, rank);
+    comm_.Send(rank, kTagTask, TaskMessage(next_number_++, prepare::ToText(tasks[next++])));
+  };
+  for (const GroupMember& member : Members()) hand_out(member.rank);
+  while (n_done < tasks.size()) {
+    const comm::Message message = comm_.Receive();
+    if (message.tag == kTagReady) {
+      const json hello = json::parse(message.bytes);
+      if (hello.contains("failure")) Throw(FailureFromJson(hello.at("failure")), NameOf(message.source));
+    }
+    if (message.tag != kTagTaskPart && message.tag != kTagTaskEnd) continue;
+    const auto [number, rest] = SplitTaskMessage(message.bytes);
+    if (!rank_of.contains(number)) continue;
+    if (message.tag == kTagTaskPart) {
+      on_progress(std::stod(rest));
+      continue;
+    }
+    if (!rest.empty()) Throw(FailureFromJson(json::parse(rest)), NameOf(message.source));
+    rank_of.erase(number);
+    ++n_done;
+    hand_out(message.source);
+  }
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,92 @@
+#include <atomic>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "coordinator/poses/rank_tasks.h"
+#include "coordinator/poses/task_message.h"
+#include "coordinator/ranks/failure.h"
+#include "coordinator/ranks/messages.h"
+#include "core/base/cancel.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+using nlohmann::json;
+
+// While a task runs: tells rank 0 about twice a second how much more of it is done, and stops it when rank 0 ends the search.
+class TaskReporter {
+ public:
+  TaskReporter(comm::Communicator& comm, size_t number) : comm_(comm), number_(number) {}
+
+  // Of any thread; only this one's creator speaks with rank 0.
+  void operator()(double more) {
+    more_.fetch_add(more);
+    if (std::this_thread::get_id() != creator_ || Clock::now() - last_ < std::chrono::milliseconds(400)) return;
+    last_ = Clock::now();
+    while (const std::optional<comm::Message> message = comm_.TryReceive()) {
+      if (message->tag == kTagDone) over_ = true;
+    }
+    if (over_) base::RequestCancel();
+    Flush();
+  }
+  void Flush() {
+    const double more = more_.exchange(0.0);
+    if (more > 0.0) comm_.Send(0, kTagTaskPart, TaskMessage(number_, std::to_string(more)));
+  }
+  bool over() const { return over_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  comm::Communicator& comm_;
+  size_t number_;
+  std::thread::id creator_ = std::this_thread::get_id();
+  std::atomic<double> more_{0.0};
+  Clock::time_point last_ = Clock::now();
+  bool over_ = false;
+};
+
+// False when rank 0 has ended the search in the meantime.
+bool RunTask(comm::Communicator& comm, const std::string& bytes, prepare::TaskRunner& runner) {
+  const auto [number, text] = SplitTaskMessage(bytes);
+  TaskReporter reporter(comm, number);
+  std::string failure;
+  try {
+    runner.Run(prepare::TaskFromText(text), [&reporter](double more) { reporter(more); });
+  } catch (...) {
+    failure = ToJson(CurrentFailure()).dump(-1, ' ', false, json::error_handler_t::replace);
+  }
+  if (reporter.over()) {
+    base::WithdrawRequest();
+    return false;
+  }
+  reporter.Flush();
+  comm.Send(0, kTagTaskEnd, TaskMessage(number, failure));
+  return true;
+}
+
+}  // namespace
+
+void ServeTasks(comm::Communicator& comm, const std::string& setup_text) {
+  ServeRankGroup(comm, [&](json& hello) {
+    const json setup = json::parse(setup_text);
+    const std::string name = "rank " + std::to_string(comm.rank());
+    base::InitLog(setup.at("verbose").get<bool>(), name);
+    if (setup.at("quiet").get<bool>()) spdlog::set_level(spdlog::level::warn);
+    base::Progress::SetQuiet(true);
+    RunOptions options;
+    options.threads = setup.at("threads").get<int>();
+    hello["threads"] = options.UsableThreads();
+    const int threads = std::stoi(Register(comm, hello, kTagThreads));
+    prepare::TaskRunner runner(threads, "colmap_rank_" + std::to_string(comm.rank()) + ".log");
+    while (true) {
+      const comm::Message message = WaitForMessage(comm);
+      if (message.tag == kTagDone) return;
+      if (message.tag == kTagTask && !RunTask(comm, message.bytes, runner)) return;
+    }
+  });
+}
+
+}  // namespace skyquilt::coordinator

@@ -1,0 +1,115 @@
+#include "prepare/poses/extract_features.h"
+
+#include <algorithm>
+#include <map>
+
+#include "core/base/cancel.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/survey/colmap_merge.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kFewestPerThread = 4, kMostPerThread = 32;
+
+fs::path PartsFolder(const ColmapJob& job) {
+  return job.folder / "features";
+}
+
+std::string CameraKey(const PhotoFile& photo) {
+  const survey::PhotoTags& tags = photo.tags;
+  return std::to_string(photo.width) + "x" + std::to_string(photo.height) + "|" + tags.make + "|" + tags.model + "|" +
+         (tags.focal_length_mm ? std::to_string(*tags.focal_length_mm) : "");
+}
+
+std::vector<std::string> ExtractorArguments(const ColmapSettings& settings, const PoseOptions& options) {
+  const FastColmapFlags flags;
+  const int max_features = settings.fast ? std::min(options.max_features, flags.max_features) : options.max_features;
+  std::vector<std::string> arguments = {"--ImageReader.camera_model",
+                                        options.camera_model,
+                                        "--ImageReader.single_camera",
+                                        "1",
+                                        "--SiftExtraction.use_gpu",
+                                        options.use_gpu ? "1" : "0",
+                                        "--SiftExtraction.max_image_size",
+                                        std::to_string(options.max_image_size),
+                                        "--SiftExtraction.max_num_features",
+                                        std::to_string(max_features),
+                                        "--random_seed",
+                                        std::to_string(options.seed)};
+  if (settings.fast) arguments.insert(arguments.end(), {"--SiftExtraction.first_octave", std::to_string(flags.first_octave)});
+  return arguments;
+}
+
+// The photos of each camera in parts of about the same size.
+std::vector<survey::DatabasePart> SplitPhotos(const ColmapJob& job, const std::vector<PhotoFile>& photos, const std::string& input,
+                                              size_t photos_per_part) {
+  std::map<std::string, std::vector<std::string>> groups;
+  for (const PhotoFile& photo : photos) groups[CameraKey(photo)].push_back(photo.name);
+  if (groups.size() > 1) spdlog::info("{} kinds of photos (by size, camera, focal length): each gets its own camera model", groups.size());
+  std::vector<survey::DatabasePart> parts;
+  uint32_t camera_id = 1;
+  for (const auto& [key, names] : groups) {
+    const size_t n_parts = (names.size() + photos_per_part - 1) / photos_per_part;
+    for (size_t i = 0; i < n_parts; ++i) {
+      survey::DatabasePart part{.file = {}, .camera_id = camera_id, .names = {}};
+      std::string identity = input;
+      for (size_t k = i * names.size() / n_parts; k < (i + 1) * names.size() / n_parts; ++k) {
+        part.names.push_back(names[k]);
+        identity += "\n" + names[k];
+      }
+      part.file = PartsFolder(job) / ("part_" + base::HashHex(identity) + ".db");
+      parts.push_back(std::move(part));
+    }
+    ++camera_id;
+  }
+  return parts;
+}
+
+}  // namespace
+
+size_t PhotosPerPart(size_t n_photos, int n_processes, int n_threads) {
+  const auto threads = static_cast<size_t>(std::max(n_threads, 1)), processes = static_cast<size_t>(std::max(n_processes, 0));
+  const size_t most = kMostPerThread * threads;
+  if (processes == 0) return most;
+  return std::clamp((n_photos + 2 * processes - 1) / (2 * processes), kFewestPerThread * threads, most);
+}
+
+void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+                     const std::string& input, RemoteTasks* ranks) {
+  base::RequireWritableFolder(PartsFolder(job));
+  const size_t per_part =
+      ranks == nullptr ? PhotosPerPart(photos.size(), 0, settings.n_threads) : PhotosPerPart(photos.size(), ranks->size(), ranks->threads());
+  const std::vector<survey::DatabasePart> parts = SplitPhotos(job, photos, input, per_part);
+  std::vector<PoseTask> missing;
+  size_t n_missing = 0;
+  for (const survey::DatabasePart& part : parts) {
+    if (fs::exists(part.file)) continue;
+    missing.emplace_back(FeatureTask{
+        .job = job, .program = settings.program, .arguments = ExtractorArguments(settings, options), .names = part.names, .file = part.file});
+    n_missing += part.names.size();
+  }
+  if (n_missing < photos.size()) spdlog::info("features of {} of {} photos are already found", photos.size() - n_missing, photos.size());
+  if (!missing.empty()) {
+    base::Progress progress("find features", static_cast<double>(n_missing), "photos");
+    const auto advance = [&progress](double more) { progress.Advance(more); };
+    if (ranks != nullptr) {
+      ranks->Run(missing, advance);
+    } else {
+      for (const PoseTask& task : missing) RunFeatureTask(std::get<FeatureTask>(task), settings.n_threads, advance);
+    }
+    progress.Finish();
+  }
+  survey::MergeFeatures(parts, job.Database());
+}
+
+void RemoveFeatureParts(const ColmapJob& job) {
+  std::error_code ignored;
+  fs::remove_all(PartsFolder(job), ignored);
+}
+
+}  // namespace skyquilt::prepare

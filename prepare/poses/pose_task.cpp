@@ -1,0 +1,145 @@
+#include "prepare/poses/pose_task.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/base/system.h"
+#include "prepare/poses/match_chunk.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+json JsonOf(const FeatureTask& task) {
+  return {{"photo_root", task.job.photo_root.string()},
+          {"masks", task.job.masks.string()},
+          {"folder", task.job.folder.string()},
+          {"program", task.program.string()},
+          {"arguments", task.arguments},
+          {"names", task.names},
+          {"file", task.file.string()}};
+}
+
+json JsonOf(const MatchTask& task) {
+  return {{"database", task.database.string()}, {"pairs", task.pairs},
+          {"max_ratio", task.rules.max_ratio},  {"max_distance", task.rules.max_distance},
+          {"mutual", task.rules.mutual},        {"min_matches", task.min_matches},
+          {"file", task.file.string()},         {"key", task.key}};
+}
+
+// COLMAP 3.8 stores whatever memory held as the descriptor of a feature that lies beyond the last row or column of its octave, where VLFeat computes
+// none: one in about 7000 features of Brighton Beach. The GNU C library can fill new memory, so that the same photo gives the same bytes each time.
+const std::vector<std::string> kFilledMemory = {"MALLOC_PERTURB_=170", "GLIBC_TUNABLES=glibc.malloc.tcache_count=0"};
+
+fs::path PathIn(const json& text, const char* key) {
+  return text.at(key).get<std::string>();
+}
+
+}  // namespace
+
+std::string ToText(const PoseTask& task) {
+  json text = std::visit([](const auto& one) { return JsonOf(one); }, task);
+  text["features"] = std::holds_alternative<FeatureTask>(task);
+  // Names of files are bytes of any encoding: as CBOR they pass unchanged where JSON demands UTF-8.
+  const std::vector<uint8_t> bytes = json::to_cbor(text);
+  return {bytes.begin(), bytes.end()};
+}
+
+PoseTask TaskFromText(const std::string& bytes) {
+  const json text = json::from_cbor(bytes);
+  if (text.at("features").get<bool>()) {
+    return FeatureTask{.job = {.photo_root = PathIn(text, "photo_root"), .masks = PathIn(text, "masks"), .folder = PathIn(text, "folder")},
+                       .program = PathIn(text, "program"),
+                       .arguments = text.at("arguments").get<std::vector<std::string>>(),
+                       .names = text.at("names").get<std::vector<std::string>>(),
+                       .file = PathIn(text, "file")};
+  }
+  MatchTask task;
+  task.database = PathIn(text, "database");
+  task.file = PathIn(text, "file");
+  text.at("key").get_to(task.key);
+  text.at("pairs").get_to(task.pairs);
+  text.at("max_ratio").get_to(task.rules.max_ratio);
+  text.at("max_distance").get_to(task.rules.max_distance);
+  text.at("mutual").get_to(task.rules.mutual);
+  text.at("min_matches").get_to(task.min_matches);
+  return task;
+}
+
+void RunFeatureTask(const FeatureTask& task, int n_threads, const TaskProgress& on_progress) {
+  // A rank that was given up for lost may still write: every process has files of its own.
+  const std::string own = task.file.string() + "." + base::HostName() + "." + std::to_string(getpid());
+  const fs::path database = own + ".db", list = own + ".txt";
+  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(database.string() + suffix);
+  std::string names;
+  for (const std::string& name : task.names) names += name + "\n";
+  base::WriteFileAtomically(list, names);
+  ColmapCommand command{task.program, "feature_extractor", task.arguments, kFilledMemory};
+  const std::vector<std::string> files = {"--database_path",
+                                          database.string(),
+                                          "--image_path",
+                                          task.job.photo_root.string(),
+                                          "--image_list_path",
+                                          list.string(),
+                                          "--SiftExtraction.num_threads",
+                                          std::to_string(n_threads)};
+  command.arguments.insert(command.arguments.end(), files.begin(), files.end());
+  if (!task.job.masks.empty()) command.arguments.insert(command.arguments.end(), {"--ImageReader.mask_path", task.job.masks.string()});
+  const auto total = static_cast<double>(task.names.size());
+  double done = 0.0;
+  const auto advance = [&](double to) {
+    if (to > done) on_progress(to - done);
+    done = std::max(done, to);
+  };
+  RunColmapCommand(task.job, command, [&](const std::string& line) { advance(ColmapLineProgress(line, task.names.size()) * total); });
+  survey::ColmapDatabase(database).UseOneFile();
+  base::SyncPath(database);
+  fs::rename(database, task.file);
+  base::SyncPath(task.file.parent_path());
+  fs::remove(list);
+  advance(total);
+}
+
+void TaskRunner::Run(const PoseTask& task, const TaskProgress& on_progress) {
+  if (const auto* features = std::get_if<FeatureTask>(&task)) {
+    FeatureTask logged = *features;
+    logged.job.log = log_;
+    RunFeatureTask(logged, threads_.size(), on_progress);
+  } else {
+    Match(std::get<MatchTask>(task), on_progress);
+  }
+}
+
+void TaskRunner::Match(const MatchTask& task, const TaskProgress& on_progress) {
+  if (features_ == nullptr || database_ != task.database) {
+    features_.reset();
+    photo_of_image_.clear();
+    std::vector<std::string> names;
+    for (const survey::DatabaseImage& image : survey::ColmapDatabase(task.database).ReadImages()) {
+      photo_of_image_.emplace(image.id, static_cast<uint32_t>(names.size()));
+      names.push_back(image.name);
+    }
+    features_ = std::make_unique<FeatureStore>(task.database, names, kFeatureMemory_bytes);
+    database_ = task.database;
+  }
+  PhotoPairs pairs;
+  for (const auto& [first, second] : task.pairs) {
+    const auto a = photo_of_image_.find(first), b = photo_of_image_.find(second);
+    if (a == photo_of_image_.end() || b == photo_of_image_.end()) {
+      throw base::InputError(task.database, fmt::format("has no images {} and {}", first, second), "All ranks must see the same project folder");
+    }
+    pairs.push_back({a->second, b->second});
+  }
+  SaveChunk(task.file, task.key,
+            MatchChunk(
+                *features_, pairs, task.rules, task.min_matches, [&] { on_progress(1.0); }, threads_));
+}
+
+}  // namespace skyquilt::prepare

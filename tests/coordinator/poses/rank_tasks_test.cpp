@@ -1,0 +1,86 @@
+#include "coordinator/poses/rank_tasks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <thread>
+#include <vector>
+
+#include "coordinator/ranks/messages.h"
+#include "core/base/cancel.h"
+#include "core/base/file.h"
+#include "tests/coordinator/scheduler/fake_ranks.h"
+#include "tests/prepare/poses/fake_extractor.h"
+#include "tests/support/error_of.h"
+#include "tests/support/made_database.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skyquilt::coordinator {
+namespace {
+
+// Rank 0 in this thread, two other ranks in threads of their own.
+class RankTasksTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    base::ClearCancel();
+    test::MadeDatabase(folder_ / "made.db").Run("PRAGMA journal_mode = DELETE");
+    program_ = test::WriteFakeExtractor(folder_.path());
+    for (int rank = 1; rank < 3; ++rank) {
+      ranks_.emplace_back([this, rank] {
+        FakeRank comm(network_, rank);
+        const comm::Message message = WaitForMessage(comm);
+        if (message.tag == kTagPoses) ServeTasks(comm, message.bytes);
+      });
+    }
+  }
+  void TearDown() override {
+    for (std::thread& thread : ranks_) thread.join();
+    base::ClearCancel();
+  }
+  prepare::FeatureTask Part(int number) {
+    const std::string name = std::to_string(number);
+    return {.job = {.photo_root = folder_ / "images", .masks = {}, .folder = folder_ / ""},
+            .program = program_,
+            .arguments = {},
+            .names = {"photo " + name + ".jpg", "photo " + name + "b.jpg"},
+            .file = folder_ / ("part_" + name + ".db")};
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path program_;
+  FakeNetwork network_{3};
+  FakeRank root_{network_, 0};
+  std::vector<std::thread> ranks_;
+};
+
+TEST_F(RankTasksTest, EveryTaskIsDoneOnce) {
+  std::vector<prepare::PoseTask> tasks;
+  for (int i = 0; i < 5; ++i) tasks.emplace_back(Part(i));
+  RankTasks ranks(root_, {.threads = 4}, false, true);
+  EXPECT_EQ(ranks.size(), 2);
+  EXPECT_EQ(ranks.threads(), 2);  // of one machine's four
+  double done = 0.0;
+  ranks.Run(tasks, [&done](double more) { done += more; });
+  EXPECT_DOUBLE_EQ(done, 10.0);
+  const std::string calls = base::ReadFile(folder_ / "calls");
+  EXPECT_EQ(std::count(calls.begin(), calls.end(), '\n'), 5);
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(std::filesystem::exists(folder_ / ("part_" + std::to_string(i) + ".db"))) << i;
+  ranks.Run({}, [](double) {});
+}
+
+TEST_F(RankTasksTest, AFailureNamesTheRankAndItsLog) {
+  base::WriteFileAtomically(folder_ / "fail", "photo 0.jpg");
+  RankTasks ranks(root_, {.threads = 2}, false, true);
+  const std::vector<prepare::PoseTask> tasks = {Part(0)};
+  const std::string error = InputErrorOf([&] { ranks.Run(tasks, [](double) {}); });
+  EXPECT_NE(error.find("rank 1 on "), std::string::npos) << error;
+  EXPECT_NE(error.find("colmap_rank_1.log"), std::string::npos) << error;
+  EXPECT_NE(error.find("cannot read photo 0.jpg"), std::string::npos) << error;
+  // The ranks can go on.
+  const std::vector<prepare::PoseTask> others = {Part(1), Part(2)};
+  ranks.Run(others, [](double) {});
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "part_2.db"));
+}
+
+}  // namespace
+}  // namespace skyquilt::coordinator

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/cancel.h"
+#include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
@@ -12,11 +13,18 @@
 
 namespace skyquilt::prepare {
 
-void RequirePoints(const InputModel& model, const std::filesystem::path& path) {
-  if (model.format == ModelFormat::kColmap || !model.sfm.points.empty()) return;
-  std::string fix = "Give a model with points, for instance in COLMAP's format, or leave out --model to let COLMAP find the poses";
-  if (model.format == ModelFormat::kTransforms) fix = "Name a PLY with points of the same frame as ply_file_path, or leave out --model to run COLMAP";
-  if (model.format == ModelFormat::kMetashape) fix = "Export the cameras with tie points in COLMAP's format, or leave out --model to run COLMAP";
+bool LacksPoints(const InputModel& model) {
+  return model.format != ModelFormat::kColmap && model.sfm.points.empty();
+}
+
+void RequireColmap(const InputModel& model, const std::filesystem::path& path, const std::string& colmap) {
+  if (!base::FindProgram(colmap).empty()) return;
+  std::string fix = "Install COLMAP (Debian: apt install colmap) or set prepare.colmap to its path: it triangulates points from the poses. Or ";
+  if (model.format == ModelFormat::kTransforms) {
+    fix += "name a PLY with points of the same frame as ply_file_path";
+  } else {
+    fix += "give a model with points, for instance in COLMAP's format";
+  }
   throw base::InputError(path, "has poses but no sparse points, which give the heights above ground", fix);
 }
 

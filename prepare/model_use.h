@@ -12,9 +12,10 @@
 
 namespace skyquilt::prepare {
 
-// Throws base::InputError for a model of another program than COLMAP without sparse points: they give the heights above ground and the start of the
-// scene.
-void RequirePoints(const InputModel& model, const std::filesystem::path& path);
+// Whether a model of another program than COLMAP has no sparse points, which give the heights above ground and the start of the scene.
+bool LacksPoints(const InputModel& model);
+// Throws base::InputError where there is no such COLMAP to triangulate points for the model, naming the model and what else would give it points.
+void RequireColmap(const InputModel& model, const std::filesystem::path& path, const std::string& colmap);
 // Gives all stations the positions that the model states, when too few have a tag of their own for a fit (kMinAgreeing). The accuracy of these
 // positions is unknown; they count as those of a receiver without stated accuracy.
 void PlaceByModel(const ModelPlace& place, std::vector<Station>& stations);

@@ -26,6 +26,7 @@
 #include "prepare/photo_files.h"
 #include "prepare/photo_positions.h"
 #include "prepare/poses/colmap_run.h"
+#include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
 #include "prepare/sparse_cloud.h"
 #include "prepare/survey_points.h"
@@ -227,6 +228,21 @@ PoseOptions PosesOf(const PrepareOptions& options) {
           .seed = options.seed};
 }
 
+// For a model without any.
+std::vector<survey::ColmapPoint> PointsFromPoses(const ColmapJob& job, const survey::ColmapModel& model, const std::vector<Registered>& registered,
+                                                 const std::vector<PhotoFile>& files, const PoseOptions& options, base::ThreadPool& threads,
+                                                 RemoteTasks* ranks) {
+  survey::ColmapModel poses;
+  std::vector<PhotoFile> photos;
+  for (const Registered& entry : registered) {
+    photos.push_back(files[entry.file]);
+    poses.images.push_back(*entry.image);
+    poses.images.back().name = photos.back().name;
+    poses.cameras.emplace(entry.image->camera_id, model.cameras.at(entry.image->camera_id));
+  }
+  return TriangulatePoints(job, photos, poses, options, threads, ranks);
+}
+
 }  // namespace
 
 survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks) {
@@ -249,11 +265,15 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
     input_model.sfm = survey::ReadColmapModel(folders.model);
   } else {
     input_model = ReadModel(folders.model, ModelPhotos(folders.photo_root, names));
-    RequirePoints(input_model, folders.model);
     UseAlphaAsMasks(input_model, folders.photo_root, photos.usable, fs::absolute(input.out_folder) / "alpha_masks", masks, threads);
   }
   const survey::ColmapModel& model = input_model.sfm;
   const std::vector<Registered> registered = MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
+  if (LacksPoints(input_model)) {
+    RequireColmap(input_model, folders.model, options.colmap);
+    const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap"};
+    input_model.sfm.points = PointsFromPoses(job, model, registered, photos.usable, PosesOf(options), threads, ranks);
+  }
 
   std::vector<Station> stations = MakeStations(registered, photos.usable);
   if (input_model.place) PlaceByModel(*input_model.place, stations);

@@ -4,7 +4,8 @@
 //   geo_residuals.csv           per photo: camera position, GPS tag, residual, height above ground
 //   cameras.geojson             camera positions, when geo-referenced (opens in QGIS)
 //   alpha_masks/                masks from the photos' alpha, with a transforms.json
-//   colmap/                     database, models and log, when COLMAP was run; a second call resumes where the first stopped
+//   colmap/                     database, models and log, when COLMAP was run, also for points of a model without; a second call resumes where the
+//                               first stopped
 // A folder with simulate.json is a simulated survey: its own model is used, and the survey keeps the paths of its truth.
 #pragma once
 

@@ -1,6 +1,5 @@
 #include "prepare/poses/colmap_run.h"
 
-#include <functional>
 #include <optional>
 
 #include "core/base/child_process.h"
@@ -32,22 +31,6 @@ struct StepHashes {
   std::string features, matches, model, seeded;
 };
 
-std::string FeatureInputs(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
-  std::string text = job.photo_root.string() + "\n" + options.camera_model + "\n" + std::to_string(options.max_image_size) + "\n" +
-                     std::to_string(options.max_features) + "\n" + std::to_string(options.seed) + "\n" + std::to_string(options.use_gpu) + "\n";
-  const auto add_file = [&text](const fs::path& file) {
-    std::error_code error;
-    const auto time = fs::last_write_time(file, error);
-    text += file.string() + " " + std::to_string(fs::file_size(file, error)) + " " + std::to_string(time.time_since_epoch().count()) + "\n";
-  };
-  for (const PhotoFile& photo : photos) {
-    add_file(job.photo_root / photo.name);
-    const fs::path mask = job.masks / (photo.name + ".png");
-    if (!job.masks.empty() && fs::exists(mask)) add_file(mask);
-  }
-  return text;
-}
-
 // Tags that pairs depend on; positions may come from another file than the photo.
 std::string PairInputs(const std::vector<PhotoFile>& photos, const PairRules& rules) {
   std::string text = fmt::format("pairs {} {} {} {} {} {} {} {}\n", rules.all_below, rules.neighbors, rules.sectors, rules.sector_reach,
@@ -62,11 +45,9 @@ std::string PairInputs(const std::vector<PhotoFile>& photos, const PairRules& ru
 }
 
 StepHashes HashSteps(const Attempt& attempt, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
-  std::string text = FeatureInputs(attempt.job, photos, options);
+  std::string text = FeatureInputs(attempt.job, attempt.settings, photos, options);
   StepHashes hashes;
   const FastColmapFlags flags;
-  if (attempt.settings.fast)
-    text += fmt::format("fast {} {} {} {}\n", flags.first_octave, flags.max_features, flags.few_features, flags.low_peak_threshold);
   hashes.features = base::HashHex(text);
   if (attempt.pairs) text += PairInputs(photos, *attempt.pairs);
   hashes.matches = base::HashHex(text);
@@ -77,18 +58,6 @@ StepHashes HashSteps(const Attempt& attempt, const std::vector<PhotoFile>& photo
   }
   hashes.model = base::HashHex(text);
   return hashes;
-}
-
-// Does the step unless it is done. `later`: the steps that must follow again.
-void RunStep(const ColmapJob& job, const ColmapStep& step, const std::vector<std::string>& later, const std::function<void()>& run) {
-  if (IsDone(job, step)) {
-    spdlog::info("COLMAP {}: already done", step.name);
-    return;
-  }
-  ForgetStep(job, step.name);
-  for (const std::string& name : later) ForgetStep(job, name);
-  run();
-  MarkDone(job, step);
 }
 
 void MatchOurselves(const Attempt& attempt, const MatchJob& match_job, const std::vector<PhotoFile>& photos, const PoseOptions& options,

@@ -7,6 +7,7 @@
 #include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/log.h"
 #include "core/base/progress.h"
 
 namespace skyquilt::prepare {
@@ -87,6 +88,17 @@ void MarkDone(const ColmapJob& job, const ColmapStep& step) {
 
 void ForgetStep(const ColmapJob& job, const std::string& name) {
   fs::remove(StampFile(job, name));
+}
+
+void RunStep(const ColmapJob& job, const ColmapStep& step, const std::vector<std::string>& later, const std::function<void()>& run) {
+  if (IsDone(job, step)) {
+    spdlog::info("COLMAP {}: already done", step.name);
+    return;
+  }
+  ForgetStep(job, step.name);
+  for (const std::string& name : later) ForgetStep(job, name);
+  run();
+  MarkDone(job, step);
 }
 
 }  // namespace skyquilt::prepare

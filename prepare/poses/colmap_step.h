@@ -43,6 +43,8 @@ struct ColmapStep {
 bool IsDone(const ColmapJob& job, const ColmapStep& step);
 void MarkDone(const ColmapJob& job, const ColmapStep& step);
 void ForgetStep(const ColmapJob& job, const std::string& name);
+// Does the step unless it is done. `later`: the steps that must follow again.
+void RunStep(const ColmapJob& job, const ColmapStep& step, const std::vector<std::string>& later, const std::function<void()>& run);
 
 constexpr const char* kModelStep = "model";  // makes the models; the other steps fill the database
 

@@ -72,6 +72,24 @@ std::vector<survey::DatabasePart> SplitPhotos(const ColmapJob& job, const std::v
 
 }  // namespace
 
+std::string FeatureInputs(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
+  std::string text = job.photo_root.string() + "\n" + options.camera_model + "\n" + std::to_string(options.max_image_size) + "\n" +
+                     std::to_string(options.max_features) + "\n" + std::to_string(options.seed) + "\n" + std::to_string(options.use_gpu) + "\n";
+  const auto add_file = [&text](const fs::path& file) {
+    std::error_code error;
+    const auto time = fs::last_write_time(file, error);
+    text += file.string() + " " + std::to_string(fs::file_size(file, error)) + " " + std::to_string(time.time_since_epoch().count()) + "\n";
+  };
+  for (const PhotoFile& photo : photos) {
+    add_file(job.photo_root / photo.name);
+    const fs::path mask = job.masks / (photo.name + ".png");
+    if (!job.masks.empty() && fs::exists(mask)) add_file(mask);
+  }
+  const FastColmapFlags flags;
+  if (settings.fast) text += fmt::format("fast {} {}\n", flags.first_octave, flags.max_features);
+  return text;
+}
+
 size_t PhotosPerPart(size_t n_photos, int n_processes, int n_threads) {
   const auto threads = static_cast<size_t>(std::max(n_threads, 1)), processes = static_cast<size_t>(std::max(n_processes, 0));
   const size_t most = kMostPerThread * threads;

@@ -11,6 +11,9 @@
 
 namespace skyquilt::prepare {
 
+// What the features depend on, as a text to make a hash of.
+std::string FeatureInputs(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options);
+
 // Makes a new database with the features of all photos. Photos of the same size, maker, model and focal length have one camera together. `input`
 // identifies photos and options: finished parts of an earlier call with the same are used. `ranks`: processes that make the parts; null: this one
 // does. The database does not depend on who made which part. Throws base::InputError that names the log when COLMAP fails, base::Interrupted.

@@ -1,4 +1,4 @@
-"""`prepare` on 1 and 3 ranks fills COLMAP's database with the same features and matches. A rank that is killed, or a COLMAP that fails on one, ends the
+"""`prepare` on 1 and 3 ranks fills the database with the same features and matches. A rank that is killed, or a COLMAP that fails on one, ends the
 command, and the next one uses what was finished. On eight real photos (Brighton Beach); skipped where they or COLMAP are missing."""
 import os
 import pathlib
@@ -14,7 +14,7 @@ SKIPPED = 77
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATA = pathlib.Path(os.environ.get("SKYQUILT_DATA", ROOT.parent / "shared" / "data")) / "brighton_beach"
 OPTIONS = ["--threads", "2", "--set", "prepare.poses=fast", "--set", "prepare.max_image_size=900"]
-# COLMAP, but where there is a file `hold` or `fail`, finding the features of the photo named in it waits for that file to go, or fails. The mapper is left
+# COLMAP, but with a file `hold` or `fail`, finding the features of the photo named in it waits for that file to go, or fails. The mapper is left
 # out: its model of all photos is there already, and it runs on rank 0 as ever.
 WRAPPER = """#!/bin/sh
 here=$(dirname "$0")

@@ -83,8 +83,10 @@ TEST_F(OtherModel, ItsSplitIsKeptUnlessAnotherIsAskedFor) {
 }
 
 TEST_F(OtherModel, WithoutPointsOrOfOtherPhotosHasItsOwnMessage) {
+  options_.colmap = "no-such-colmap";
   const std::string no_points = InputErrorOf([&] { Run(test::MetashapeFiles(Made()), "cameras.xml"); });
   EXPECT_NE(no_points.find("has poses but no sparse points"), std::string::npos) << no_points;
+  EXPECT_NE(no_points.find("Install COLMAP"), std::string::npos) << no_points;
   test::MadeSurvey other_size = Made();
   other_size.lens.width = 128;
   const std::string size = InputErrorOf([&] { Run(test::TransformsFiles(other_size), "transforms.json"); });

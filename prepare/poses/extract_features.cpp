@@ -29,11 +29,7 @@ std::string CameraKey(const PhotoFile& photo) {
 std::vector<std::string> ExtractorArguments(const ColmapSettings& settings, const PoseOptions& options) {
   const FastColmapFlags flags;
   const int max_features = settings.fast ? std::min(options.max_features, flags.max_features) : options.max_features;
-  std::vector<std::string> arguments = {"--ImageReader.camera_model",
-                                        options.camera_model,
-                                        "--ImageReader.single_camera",
-                                        "1",
-                                        "--SiftExtraction.use_gpu",
+  std::vector<std::string> arguments = {"--SiftExtraction.use_gpu",
                                         options.use_gpu ? "1" : "0",
                                         "--SiftExtraction.max_image_size",
                                         std::to_string(options.max_image_size),
@@ -86,7 +82,7 @@ std::string FeatureInputs(const ColmapJob& job, const ColmapSettings& settings, 
     if (!job.masks.empty() && fs::exists(mask)) add_file(mask);
   }
   const FastColmapFlags flags;
-  if (settings.fast) text += fmt::format("fast {} {}\n", flags.first_octave, flags.max_features);
+  if (settings.fast) text += fmt::format("fast {} {} {} {}\n", flags.first_octave, flags.max_features, flags.few_features, flags.low_peak_threshold);
   return text;
 }
 
@@ -103,12 +99,19 @@ void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const
   const size_t per_part =
       ranks == nullptr ? PhotosPerPart(photos.size(), 0, settings.n_threads) : PhotosPerPart(photos.size(), ranks->size(), ranks->threads());
   const std::vector<survey::DatabasePart> parts = SplitPhotos(job, photos, input, per_part);
+  const FastColmapFlags flags;
   std::vector<PoseTask> missing;
   size_t n_missing = 0;
   for (const survey::DatabasePart& part : parts) {
     if (fs::exists(part.file)) continue;
-    missing.emplace_back(FeatureTask{
-        .job = job, .program = settings.program, .arguments = ExtractorArguments(settings, options), .names = part.names, .file = part.file});
+    missing.emplace_back(FeatureTask{.job = job,
+                                     .program = settings.program,
+                                     .arguments = ExtractorArguments(settings, options),
+                                     .camera_model = options.camera_model,
+                                     .few_features = settings.fast ? flags.few_features : 0,
+                                     .low_peak_threshold = flags.low_peak_threshold,
+                                     .names = part.names,
+                                     .file = part.file});
     n_missing += part.names.size();
   }
   if (n_missing < photos.size()) spdlog::info("features of {} of {} photos are already found", photos.size() - n_missing, photos.size());

@@ -23,6 +23,9 @@ json JsonOf(const FeatureTask& task) {
           {"folder", task.job.folder.string()},
           {"program", task.program.string()},
           {"arguments", task.arguments},
+          {"camera_model", task.camera_model},
+          {"few_features", task.few_features},
+          {"low_peak_threshold", task.low_peak_threshold},
           {"names", task.names},
           {"file", task.file.string()}};
 }
@@ -37,6 +40,29 @@ json JsonOf(const MatchTask& task) {
 // COLMAP 3.8 stores whatever memory held as the descriptor of a feature that lies beyond the last row or column of its octave, where VLFeat computes
 // none: one in about 7000 features of Brighton Beach. The GNU C library can fill new memory, so that the same photo gives the same bytes each time.
 const std::vector<std::string> kFilledMemory = {"MALLOC_PERTURB_=170", "GLIBC_TUNABLES=glibc.malloc.tcache_count=0"};
+
+// About the time that the first of two searches takes, where half of the photos are searched twice.
+constexpr double kFirstSearchShare = 0.7;
+
+struct PoorPhotos {
+  std::vector<std::string> names;
+  uint32_t camera_id = 0;
+};
+
+// The photos with fewer features than that, all of one camera; they lose those they have.
+PoorPhotos RemovePoorFeatures(const fs::path& file, size_t few_features) {
+  survey::ColmapDatabase database(file);
+  PoorPhotos poor;
+  std::vector<uint32_t> ids;
+  for (const survey::DatabaseImage& image : database.ReadImages()) {
+    if (database.CountDescriptors(image.id) >= few_features) continue;
+    ids.push_back(image.id);
+    poor.names.push_back(image.name);
+    poor.camera_id = image.camera_id;
+  }
+  database.RemoveFeatures(ids);
+  return poor;
+}
 
 fs::path PathIn(const json& text, const char* key) {
   return text.at(key).get<std::string>();
@@ -58,6 +84,9 @@ PoseTask TaskFromText(const std::string& bytes) {
     return FeatureTask{.job = {.photo_root = PathIn(text, "photo_root"), .masks = PathIn(text, "masks"), .folder = PathIn(text, "folder")},
                        .program = PathIn(text, "program"),
                        .arguments = text.at("arguments").get<std::vector<std::string>>(),
+                       .camera_model = text.at("camera_model").get<std::string>(),
+                       .few_features = text.at("few_features").get<size_t>(),
+                       .low_peak_threshold = text.at("low_peak_threshold").get<double>(),
                        .names = text.at("names").get<std::vector<std::string>>(),
                        .file = PathIn(text, "file")};
   }
@@ -78,27 +107,44 @@ void RunFeatureTask(const FeatureTask& task, int n_threads, const TaskProgress& 
   const std::string own = task.file.string() + "." + base::HostName() + "." + std::to_string(getpid());
   const fs::path database = own + ".db", list = own + ".txt";
   for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(database.string() + suffix);
-  std::string names;
-  for (const std::string& name : task.names) names += name + "\n";
-  base::WriteFileAtomically(list, names);
-  ColmapCommand command{task.program, "feature_extractor", task.arguments, kFilledMemory};
-  const std::vector<std::string> files = {"--database_path",
-                                          database.string(),
-                                          "--image_path",
-                                          task.job.photo_root.string(),
-                                          "--image_list_path",
-                                          list.string(),
-                                          "--SiftExtraction.num_threads",
-                                          std::to_string(n_threads)};
-  command.arguments.insert(command.arguments.end(), files.begin(), files.end());
-  if (!task.job.masks.empty()) command.arguments.insert(command.arguments.end(), {"--ImageReader.mask_path", task.job.masks.string()});
   const auto total = static_cast<double>(task.names.size());
   double done = 0.0;
   const auto advance = [&](double to) {
     if (to > done) on_progress(to - done);
     done = std::max(done, to);
   };
-  RunColmapCommand(task.job, command, [&](const std::string& line) { advance(ColmapLineProgress(line, task.names.size()) * total); });
+  // The progress of a search goes from `from` to `to`, in photos.
+  const auto search = [&](const std::vector<std::string>& names, const std::vector<std::string>& more, double from, double to) {
+    std::string lines;
+    for (const std::string& name : names) lines += name + "\n";
+    base::WriteFileAtomically(list, lines);
+    ColmapCommand command{task.program, "feature_extractor", task.arguments, kFilledMemory};
+    const std::vector<std::string> files = {"--database_path",
+                                            database.string(),
+                                            "--image_path",
+                                            task.job.photo_root.string(),
+                                            "--image_list_path",
+                                            list.string(),
+                                            "--SiftExtraction.num_threads",
+                                            std::to_string(n_threads)};
+    command.arguments.insert(command.arguments.end(), files.begin(), files.end());
+    command.arguments.insert(command.arguments.end(), more.begin(), more.end());
+    if (!task.job.masks.empty()) command.arguments.insert(command.arguments.end(), {"--ImageReader.mask_path", task.job.masks.string()});
+    RunColmapCommand(task.job, command,
+                     [&](const std::string& line) { advance(from + (to - from) * std::max(0.0, ColmapLineProgress(line, names.size()))); });
+    advance(to);
+  };
+  const double first_end = task.few_features > 0 ? kFirstSearchShare * total : total;
+  search(task.names, {"--ImageReader.camera_model", task.camera_model, "--ImageReader.single_camera", "1"}, 0.0, first_end);
+  if (task.few_features > 0) {
+    const PoorPhotos poor = RemovePoorFeatures(database, task.few_features);
+    if (!poor.names.empty()) {
+      search(poor.names,
+             {"--ImageReader.existing_camera_id", std::to_string(poor.camera_id), "--SiftExtraction.peak_threshold",
+              fmt::format("{:g}", task.low_peak_threshold)},
+             first_end, total);
+    }
+  }
   survey::ColmapDatabase(database).UseOneFile();
   base::SyncPath(database);
   fs::rename(database, task.file);

@@ -139,7 +139,7 @@ TEST_F(FastWay, OnlyPhotosWithFewFeaturesAreSearchedAgain) {
   }
   SetNumber("first", 20);
   Find();
-  const std::string names = base::ReadFile(job_.folder / "photos_1.txt");
+  const std::string names = base::ReadFile(folder_ / "searched_again");
   EXPECT_EQ(std::count(names.begin(), names.end(), '\n'), 19);
   EXPECT_EQ(names.find(photos_[2].name), std::string::npos) << names;
   const std::string arguments = base::ReadFile(folder_ / "arguments");

@@ -32,11 +32,17 @@ TEST(PoseTaskText, IsReadBack) {
   const FeatureTask features{.job = {.photo_root = "/photos", .masks = "/masks", .folder = "/work"},
                              .program = "/bin/colmap",
                              .arguments = {"--a", "1"},
+                             .camera_model = "OPENCV",
+                             .few_features = 70,
+                             .low_peak_threshold = 0.002,
                              .names = {"with space.jpg", "latin1 \xe4.jpg"},
                              .file = "/work/part.db"};
   const auto again = std::get<FeatureTask>(TaskFromText(ToText(features)));
   EXPECT_EQ(again.names, features.names);
   EXPECT_EQ(again.arguments, features.arguments);
+  EXPECT_EQ(again.camera_model, "OPENCV");
+  EXPECT_EQ(again.few_features, 70U);
+  EXPECT_EQ(again.low_peak_threshold, 0.002);
   EXPECT_EQ(again.job.photo_root, "/photos");
   EXPECT_EQ(again.job.masks, "/masks");
   EXPECT_EQ(again.job.folder, "/work");

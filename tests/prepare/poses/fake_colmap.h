@@ -61,6 +61,8 @@ with open(folder + "/arguments", "a") as arguments:
 setting = lambda name: int(open(folder + "/" + name).read()) if os.path.exists(folder + "/" + name) else 0
 if call == "feature_extractor":
     shutil.copy(folder + "/made.db", options["--database_path"])
+    if "--ImageReader.existing_camera_id" in options:
+        shutil.copy(options["--image_list_path"], folder + "/searched_again")
     sys.exit(0)
 database = sqlite3.connect(options["--database_path"])
 ids = dict(database.execute("SELECT name, image_id FROM images"))

@@ -65,8 +65,9 @@ class SeededWay : public test::FakeColmap {
   test::MadeSurvey made_;
 };
 
-constexpr const char* kWithoutMapper = "feature_extractor\nmatches_importer\n";
-constexpr const char* kWithMapper = "feature_extractor\nmatches_importer\nmapper\n";
+// All photos have few features, so they are searched twice.
+constexpr const char* kWithoutMapper = "feature_extractor\nfeature_extractor\nmatches_importer\n";
+constexpr const char* kWithMapper = "feature_extractor\nfeature_extractor\nmatches_importer\nmapper\n";
 
 TEST_F(SeededWay, NeedsNoMapper) {
   EXPECT_EQ(Find(), Seeded());

@@ -127,9 +127,11 @@ std::string WriteColorRamp(const std::filesystem::path& report_folder) {
 }
 
 std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& products_folder, const std::filesystem::path& report_folder) {
-  const std::filesystem::path png = products_folder / "orthophoto.png";
-  const std::filesystem::path bounds = products_folder / "orthophoto.json";
   std::error_code ignored;
+  const bool made = std::filesystem::is_regular_file(products_folder / "orthophoto.png", ignored);
+  const std::string name = made ? "orthophoto" : "preview_ortho";
+  const std::filesystem::path png = products_folder / (name + ".png");
+  const std::filesystem::path bounds = products_folder / (name + ".json");
   if (!std::filesystem::is_regular_file(png, ignored) || !std::filesystem::is_regular_file(bounds, ignored)) return std::nullopt;
   const auto json = nlohmann::json::parse(base::ReadFile(bounds), nullptr, false);
   const auto corner = [&](const char* key) -> std::optional<Eigen::Vector2d> {
@@ -145,12 +147,13 @@ std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& prod
   try {
     int width = 0, height = 0;
     image::ReadImageSize(png, &width, &height);
-    MapBackground background{"images/orthophoto.png", *low, *high};
+    MapBackground background{"images/" + name + ".png", *low, *high};
+    if (!made) background.preview = json.contains("preview") && json["preview"].is_string() ? json["preview"].get<std::string>() : "photos";
     if (width <= kLargestMapWidth) {
       // Small enough to be used as it is.
       std::filesystem::copy_file(png, report_folder / background.image, std::filesystem::copy_options::overwrite_existing);
     } else {
-      background.image = "images/orthophoto.jpg";
+      background.image = "images/" + name + ".jpg";
       image::SaveJpeg(Fit(image::LoadRgb8(png), kLargestMapWidth), report_folder / background.image, kJpegQuality);
     }
     return background;

@@ -16,7 +16,7 @@ namespace skyquilt::evaluate {
 
 namespace {
 
-std::string Toggle(const char* layer, const char* label, const char* mark) {
+std::string Toggle(const char* layer, const std::string& label, const char* mark) {
   return fmt::format("<label><input type=\"checkbox\" data-layer=\"layer-{}\" checked><i class=\"{}\"></i>{}</label>", layer, mark, label);
 }
 
@@ -67,6 +67,10 @@ std::string BlockFacts(const ReportInput& input) {
   return html + "</dl>";
 }
 
+std::string OrthophotoLabel(const MapBackground& background) {
+  return background.preview.empty() ? "Orthophoto" : "Orthophoto (preview: from the " + page::EscapeHtml(background.preview) + ")";
+}
+
 std::string MapSection(const ReportInput& input) {
   std::string html =
       "<section id=\"map-section\"><div class=\"heading\"><h2>Map and blocks</h2></div><p class=\"lead\">The ground is cut into blocks, and each "
@@ -74,7 +78,7 @@ std::string MapSection(const ReportInput& input) {
       "map-card\">" +
       BlockMapSvg(input);
   html += "<div class=\"toggles\">";
-  if (input.background) html += Toggle("ortho", "Orthophoto", "k-ortho");
+  if (input.background) html += Toggle("ortho", OrthophotoLabel(*input.background), "k-ortho");
   html += Toggle("blocks", "Blocks and margins", "k-block") + Toggle("cameras", "Training photos", "k-camera") +
           Toggle("tests", "Held-out photos", "k-test");
   if (input.survey->georeferenced) html += Toggle("gps", "GPS tracks", "k-gps");

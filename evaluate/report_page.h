@@ -31,6 +31,7 @@ struct MapBackground {
   std::string image;                                  // relative to the page
   Eigen::Vector2d min_enu = Eigen::Vector2d::Zero();  // metres
   Eigen::Vector2d max_enu = Eigen::Vector2d::Zero();
+  std::string preview = {};  // what a preview of the orthophoto was made from; empty for the orthophoto
 };
 
 struct BuildingsReport;  // buildings_report.h

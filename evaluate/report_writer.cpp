@@ -25,9 +25,10 @@ std::string TitleOf(const std::filesystem::path& project_folder) {
 }
 
 // Removes images of an earlier evaluation that the page no longer shows.
-void RemoveStalePictures(const std::filesystem::path& report_folder, const std::vector<PhotoImages>& images, const BuildingsReport* found) {
+void RemoveStalePictures(const std::filesystem::path& report_folder, const ReportInput& page, const BuildingsReport* found) {
   std::set<std::string> kept;
-  for (const PhotoImages& one : images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.mesh});
+  if (page.background) kept.insert(page.background->image);
+  for (const PhotoImages& one : page.images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.mesh});
   if (found != nullptr) {
     for (const BuildingPicture& one : found->pictures) kept.insert(one.file);
   }
@@ -35,7 +36,8 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const std::
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
     const std::string name = entry.path().filename().string();
-    if ((name.starts_with("photo_") || name.starts_with("building_")) && !kept.contains("images/" + name)) stale.push_back(entry.path());
+    const bool ours = name.starts_with("photo_") || name.starts_with("building_") || name.starts_with("preview_ortho");
+    if (ours && !kept.contains("images/" + name)) stale.push_back(entry.path());
   }
   for (const std::filesystem::path& file : stale) std::filesystem::remove(file, ignored);
 }
@@ -110,7 +112,7 @@ void WriteReport(const EvaluateInput& input, const Metrics& metrics, const Repor
   page.error_high = static_cast<double>(kErrorHigh);
   base::WriteFileAtomically(report_folder / "index.html", BuildReportPage(page));
   if (!pictures.brightness().Empty()) base::WriteFileAtomically(report_folder / "brightness.json", BrightnessJson(pictures.brightness()));
-  RemoveStalePictures(report_folder, page.images, found);
+  RemoveStalePictures(report_folder, page, found);
   base::WriteFileAtomically(report_folder / "metrics.json", MetricsJson(metrics));
 }
 

@@ -245,7 +245,8 @@ std::vector<survey::ColmapPoint> PointsFromPoses(const ColmapJob& job, const sur
 
 }  // namespace
 
-survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks) {
+survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks,
+                       const OnPlaced& on_placed) {
   options.Check();
   const Holdout holdout = ParseHoldout(options.holdout);
   InputFolder folders = FindInputs(input.photos, input.model, options.masks);
@@ -274,6 +275,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
     const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap"};
     input_model.sfm.points = PointsFromPoses(job, model, registered, photos.usable, PosesOf(options), threads, ranks);
   }
+  const auto poses_known = std::chrono::steady_clock::now();
 
   std::vector<Station> stations = MakeStations(registered, photos.usable);
   if (input_model.place) PlaceByModel(*input_model.place, stations);
@@ -298,6 +300,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   }
   FillPoints(model, georeference.enu_from_model, PhotoOfImage(registered), options.keep_points, survey);
   MeasureAgl(survey, threads);
+  if (on_placed) on_placed(survey, poses_known);
   const bool has_observations = !folders.exact_origin && input_model.format == ModelFormat::kColmap;
   CheckFlightOf(model, folders.model, registered, photos.usable, has_observations, survey);
   MarkHoldout(holdout, survey);

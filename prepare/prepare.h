@@ -9,7 +9,9 @@
 // A folder with simulate.json is a simulated survey: its own model is used, and the survey keeps the paths of its truth.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <functional>
 
 #include "core/base/thread_pool.h"
 #include "core/survey/survey.h"
@@ -25,9 +27,14 @@ struct PrepareInput {
   std::filesystem::path out_folder;  // created if needed
 };
 
+// Called once photos, poses, place and sparse points of the survey are known, while its checks and directions are not: a first look at the survey
+// need not wait for these. poses_known: when poses and points were there, from COLMAP or a given model.
+using OnPlaced = std::function<void(const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known)>;
+
 // Photos that cannot be used are left out with a warning that names them. Throws base::UsageError for invalid options, base::InputError when fewer
 // than 3 usable photos remain or a file cannot be read or written, base::Interrupted when asked to stop. `ranks`: processes that share the
 // search for poses; null: this one does it alone, with the same result.
-survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks = nullptr);
+survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks = nullptr,
+                       const OnPlaced& on_placed = {});
 
 }  // namespace skyquilt::prepare

@@ -4,17 +4,20 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "core/base/file.h"
 #include "core/base/order_statistics.h"
 #include "core/gis/geotiff.h"
+#include "core/image/encode.h"
 #include "core/survey/geo_fit_json.h"
 #include "products/place_metadata.h"
 
 namespace skyquilt::products {
 namespace {
 
+constexpr int kPngLevel = 3;  // of compression
 constexpr int kLattice = 32;  // exactly projected points per side, less one; linear in between
 
 // Cell coordinates in the map for each pixel of a preview over the scene's box.
@@ -56,12 +59,16 @@ const float* Sample(const gis::ReducedRaster& raster, const Eigen::Vector2d& cel
   return raster.image.At(static_cast<int>(x), static_cast<int>(y));
 }
 
-image::Image8 OrthophotoPreview(const gis::ReducedRaster& raster, const CellLookup& lookup, int width, int height) {
-  image::Image8 preview(width, height, 3, 255);
+// channels: 4 with alpha, 3 without.
+image::Image8 OrthophotoPreview(const gis::ReducedRaster& raster, const CellLookup& lookup, int width, int height, int channels) {
+  image::Image8 preview(width, height, channels, 255);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const float* rgba = Sample(raster, lookup.At(x, y));
-      if (rgba == nullptr || rgba[3] < 128.0F) continue;
+      if (rgba == nullptr || rgba[3] < 128.0F) {
+        if (channels == 4) preview.At(x, y)[3] = 0;
+        continue;
+      }
       for (int c = 0; c < 3; ++c) preview.At(x, y)[c] = static_cast<uint8_t>(std::lround(std::clamp(rgba[c], 0.0F, 255.0F)));
     }
   }
@@ -91,6 +98,14 @@ image::ImageF HeightPreview(const gis::ReducedRaster& raster, const CellLookup& 
     for (int x = 0; x < width; ++x) *preview.At(x, y) = SmoothSample(raster, lookup.At(x, y));
   }
   return preview;
+}
+
+// Width and height, in pixels, of a picture of the scene's box.
+std::pair<int, int> PictureSize(const scene::SceneInfo& info, const gis::MapGrid& grid, int max_width) {
+  const Eigen::Vector2d extent = (info.max_enu - info.min_enu).head<2>();
+  const int full_width = std::max(1, static_cast<int>(std::ceil(extent.x() / grid.resolution_m)));
+  const int width = std::min(max_width, full_width);
+  return {width, std::clamp(static_cast<int>(std::lround(width * extent.y() / extent.x())), 1, 8 * max_width)};
 }
 
 // Central difference; one-sided at the edge of the data, 0 for a pixel without neighbours.
@@ -137,26 +152,39 @@ image::Image8 ShadedRelief(const image::ImageF& height_m, double cell_m) {
   return relief;
 }
 
+void WriteOrthophotoPicture(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& orthophoto,
+                            const std::filesystem::path& png, int max_width, bool transparent) {
+  const auto [width, height] = PictureSize(info, grid, max_width);
+  const CellLookup lookup(info, grid, width, height);
+  const image::Image8 picture = OrthophotoPreview(gis::ReadReduced(orthophoto, max_width), lookup, width, height, transparent ? 4 : 3);
+  if (transparent) {
+    base::WriteFileAtomically(png, image::EncodePng(picture, kPngLevel));
+  } else {
+    image::SavePng(picture, png);
+  }
+}
+
+void WriteMapBounds(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& file, const std::string& preview) {
+  nlohmann::ordered_json bounds = {{"min_enu", {info.min_enu.x(), info.min_enu.y()}},
+                                   {"max_enu", {info.max_enu.x(), info.max_enu.y()}},
+                                   {"resolution_m", grid.resolution_m},
+                                   {"crs", grid.georeferenced ? "EPSG:" + std::to_string(grid.zone.Epsg()) : "local"},
+                                   {"georeference", NameOfGeoreference(info)},
+                                   {"accuracy", survey::ToJson(info.accuracy)}};
+  if (!preview.empty()) bounds["preview"] = preview;
+  base::WriteFileAtomically(file, bounds.dump(1) + "\n");
+}
+
 void WriteMapPreviews(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& orthophoto,
                       const std::filesystem::path& dsm, const std::filesystem::path& folder, int preview_width) {
-  const Eigen::Vector2d extent = (info.max_enu - info.min_enu).head<2>();
-  const int full_width = std::max(1, static_cast<int>(std::ceil(extent.x() / grid.resolution_m)));
-  const int width = std::min(preview_width, full_width);
-  const int height = std::clamp(static_cast<int>(std::lround(width * extent.y() / extent.x())), 1, 8 * preview_width);
-  const CellLookup lookup(info, grid, width, height);
-  if (!orthophoto.empty()) {
-    image::SavePng(OrthophotoPreview(gis::ReadReduced(orthophoto, preview_width), lookup, width, height), folder / "orthophoto.png");
-  }
+  if (!orthophoto.empty()) WriteOrthophotoPicture(info, grid, orthophoto, folder / "orthophoto.png", preview_width, false);
   if (!dsm.empty()) {
-    image::SavePng(ShadedRelief(HeightPreview(gis::ReadReduced(dsm, preview_width), lookup, width, height), extent.x() / width), folder / "dsm.png");
+    const auto [width, height] = PictureSize(info, grid, preview_width);
+    const CellLookup lookup(info, grid, width, height);
+    const double pixel_m = (info.max_enu.x() - info.min_enu.x()) / width;
+    image::SavePng(ShadedRelief(HeightPreview(gis::ReadReduced(dsm, preview_width), lookup, width, height), pixel_m), folder / "dsm.png");
   }
-  const nlohmann::ordered_json bounds = {{"min_enu", {info.min_enu.x(), info.min_enu.y()}},
-                                         {"max_enu", {info.max_enu.x(), info.max_enu.y()}},
-                                         {"resolution_m", grid.resolution_m},
-                                         {"crs", grid.georeferenced ? "EPSG:" + std::to_string(grid.zone.Epsg()) : "local"},
-                                         {"georeference", NameOfGeoreference(info)},
-                                         {"accuracy", survey::ToJson(info.accuracy)}};
-  base::WriteFileAtomically(folder / "orthophoto.json", bounds.dump(1) + "\n");
+  WriteMapBounds(info, grid, folder / "orthophoto.json");
 }
 
 }  // namespace skyquilt::products

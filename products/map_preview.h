@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "core/image/image.h"
 #include "core/scene/scene.h"
@@ -12,6 +13,13 @@ namespace skyquilt::products {
 // Heights as colours from the 2nd to the 98th percentile, shaded by a light in the north-west, 45 degrees up; white where NaN.
 // cell_m: size of a pixel on the ground. Row 0 is the northern edge.
 image::Image8 ShadedRelief(const image::ImageF& height_m, double cell_m);
+
+// Reads an orthophoto and writes it as PNG, at most max_width pixels wide: axes east and north, over the scene's box. Where it has no data the PNG is
+// transparent, or white. Throws base::InputError.
+void WriteOrthophotoPicture(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& orthophoto,
+                            const std::filesystem::path& png, int max_width, bool transparent);
+// Writes orthophoto.json (products/map_products.h); preview: what a preview was made from, empty for the orthophoto itself. Throws base::InputError.
+void WriteMapBounds(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& file, const std::string& preview = "");
 
 // Reads the maps from their files (an empty path skips one) and writes orthophoto.png, dsm.png and orthophoto.json into `folder`, at most
 // preview_width pixels wide. Image axes are east and north of the survey's ENU frame, not those of the map projection. Throws base::InputError.

@@ -12,6 +12,7 @@
 #include "products/map_area.h"
 #include "products/map_preview.h"
 #include "products/place_metadata.h"
+#include "products/preview_files.h"
 
 namespace skyquilt::products {
 namespace {
@@ -65,16 +66,6 @@ int64_t RenderPending(const RayCaster& caster, double min_opacity, Pending* pend
   return filled;
 }
 
-gis::GeoTiffSpec OrthophotoSpec(const scene::SceneInfo& info, const gis::MapGrid& grid) {
-  gis::GeoTiffSpec spec;
-  spec.grid = grid;
-  spec.bands = 4;
-  spec.band_names = {"red", "green", "blue", "alpha"};
-  spec.metadata = PlaceMetadata(info, "Orthophoto");
-  spec.metadata["TIFFTAG_SOFTWARE"] = "skyquilt";
-  return spec;
-}
-
 // A place is known, but its height is not, where the GPS tags had no usable heights.
 bool HeightsAreTagged(const scene::SceneInfo& info) {
   return std::isfinite(info.accuracy.vertical_m) || !std::isfinite(info.accuracy.horizontal_m);
@@ -114,7 +105,7 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
     spdlog::warn("the survey has no geo-reference, so orthophoto and surface model are in local coordinates without CRS; use photos with GPS tags");
   std::optional<gis::GeoTiffWriter> ortho;
   std::optional<gis::GeoTiffWriter> dsm;
-  if (options.ortho) ortho.emplace(products.orthophoto = folder / "orthophoto.tif", OrthophotoSpec(info, grid));
+  if (options.ortho) ortho.emplace(products.orthophoto = folder / "orthophoto.tif", OrthophotoSpec(info, grid, "Orthophoto"));
   if (options.dsm) dsm.emplace(products.dsm = folder / "dsm.tif", DsmSpec(info, grid));
 
   const MapRayGenerator maker(info, grid);
@@ -151,6 +142,7 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   progress.Finish();
   products.filled = products.rays > 0 ? static_cast<double>(filled) / static_cast<double>(products.rays) : 0.0;
   WriteMapPreviews(info, grid, products.orthophoto, products.dsm, folder, options.preview_width);
+  if (options.ortho) RemovePreview(folder);
   products.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return products;
 }

@@ -4,6 +4,7 @@
 //   orthophoto.png, dsm.png   previews, north of the local frame up, white where there is no data; dsm.png is a shaded relief
 //   orthophoto.json           ENU bounds of both previews (min_enu, max_enu: x, y in metres), resolution, CRS and accuracy of the maps
 // The GeoTIFFs say in their metadata how well their place is known (products/place_metadata.h).
+// A preview of the orthophoto (products/preview_files.h) in the same folder is removed when the orthophoto is complete.
 // products.boundary limits both to the cells whose centre is inside.
 // The surface is where the transmittance along the vertical ray falls below one half.
 #pragma once

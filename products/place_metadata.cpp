@@ -63,4 +63,14 @@ std::map<std::string, std::string> PlaceMetadata(const scene::SceneInfo& info, c
   return items;
 }
 
+gis::GeoTiffSpec OrthophotoSpec(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::string& title) {
+  gis::GeoTiffSpec spec;
+  spec.grid = grid;
+  spec.bands = 4;
+  spec.band_names = {"red", "green", "blue", "alpha"};
+  spec.metadata = PlaceMetadata(info, title);
+  spec.metadata["TIFFTAG_SOFTWARE"] = "skyquilt";
+  return spec;
+}
+
 }  // namespace skyquilt::products

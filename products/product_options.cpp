@@ -11,6 +11,8 @@ std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
   return {
       {"ortho", &O::ortho, Range(), "make the orthophoto"},
       {"dsm", &O::dsm, Range(), "make the digital surface model"},
+      {"preview", &O::preview, Range(),
+       "make previews of the orthophoto until it is there: from the sparse points after prepare, and from the context after its training"},
       {"resolution_m", &O::resolution_m, Range{0, 1e5}, "metres per cell of orthophoto and surface model; 0: the ground sampling distance, rounded"},
       {"max_pixels", &O::max_pixels, Range{1, 1e11},
        "most cells of a map; with resolution_m = 0 larger maps are made coarser, otherwise they are refused"},

@@ -12,6 +12,7 @@ namespace skyquilt::products {
 struct ProductOptions {
   bool ortho = true;
   bool dsm = true;
+  bool preview = true;               // make previews of the orthophoto before the scene is trained (products/preview_files.h)
   double resolution_m = 0.0;         // metres per cell of the maps; 0: ground sampling distance rounded to 1, 2 or 5 times a power of ten
   double max_pixels = 25e6;          // most cells of a map; larger maps are made coarser if resolution_m = 0 and otherwise refused
   double min_opacity = 0.5;          // map cells with a lower opacity have no data, in (0, 1)

@@ -13,6 +13,7 @@
 #include "core/scene/scene_file.h"
 #include "core/survey/survey.h"
 #include "partition/block.h"
+#include "products/preview_files.h"
 
 namespace skyquilt::app {
 namespace {
@@ -56,6 +57,8 @@ Json DescribeProject(const std::filesystem::path& folder) {
     const coordinator::Paths proof = stage.completion_files(home);
     const bool complete = std::all_of(proof.begin(), proof.end(), [](const auto& path) { return std::filesystem::exists(path); });
     std::string state = stamp ? stamp->state : complete ? "done" : "not started";
+    // A preview may lie in the folder of the products before they are made.
+    if (!stamp && stage.name == "products" && !products::HasOrthophoto(project.ProductsFolder())) state = "not started";
     if (state == "done" && !complete) state = "files missing";
     if (state == "running") state = "unfinished";
     stages.push_back({{"stage", stage.name},
@@ -78,6 +81,11 @@ Json DescribeProject(const std::filesystem::path& folder) {
     } catch (const base::InputError& error) {
       json["scales"] = {{"unreadable", error.what()}};
     }
+  }
+  if (products::HasOrthophoto(project.ProductsFolder())) {
+    json["orthophoto"] = (project.ProductsFolder() / "orthophoto.tif").string();
+  } else if (const std::optional<products::FoundPreview> preview = products::FindPreview(project.ProductsFolder())) {
+    json["preview"] = {{"picture", preview->picture.string()}, {"made_from", preview->made_from}};
   }
   const std::filesystem::path metrics = project.ReportFolder() / "metrics.json";
   if (std::filesystem::exists(metrics)) {

@@ -42,9 +42,9 @@ Json DescribeRaster(const std::filesystem::path& file) {
                {"width", std::lround(image.width * raster.scale)},
                {"height", std::lround(image.height * raster.scale_down)},
                {"bands", bands}};
-  const std::filesystem::path beside = file.parent_path() / "orthophoto.json";
   const std::string stem = file.stem().string();
-  if ((stem == "orthophoto" || stem == "dsm") && std::filesystem::exists(beside)) {
+  const std::filesystem::path beside = file.parent_path() / (stem == "preview_ortho" ? "preview_ortho.json" : "orthophoto.json");
+  if ((stem == "orthophoto" || stem == "dsm" || stem == "preview_ortho") && std::filesystem::exists(beside)) {
     const Json map = Json::parse(base::ReadFile(beside), nullptr, false);
     if (!map.is_discarded()) json["map"] = map;
   }

@@ -7,6 +7,7 @@
 #include "coordinator/ranks/messages.h"
 #include "coordinator/ranks/rank_group.h"
 #include "coordinator/scheduler/block_queue.h"
+#include "coordinator/scheduler/context_preview.h"
 #include "coordinator/scheduler/coordinate.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/plan_brightness.h"
@@ -72,6 +73,7 @@ class Training {
     }
     RequireMemory(*input_.blocks, settings_, threads, per_host);
     TrainContext(trainer, all_threads);
+    ShowContext(pool);
     TrainBlocks(trainer, threads);
     ledger_.SetSpent(Now(), true);
     scene::TrainReport report = ledger_.Report(comm_.size(), threads);
@@ -125,6 +127,14 @@ class Training {
     if (outcome.failure.kind != Failure::kNone)
       throw base::BlockError("the context failed " + std::to_string(kMaxTries) + " times: " + outcome.failure.reason);
     LogField(outcome);
+    context_s_ = outcome.result.seconds;
+  }
+
+  // The time that this takes is not taken from the blocks' budget.
+  void ShowContext(base::ThreadPool& pool) {
+    const auto begin = std::chrono::steady_clock::now();
+    ProvideContextPreview(*input_.survey, *input_.blocks, settings_, project_, context_s_, pool);
+    start_ += std::chrono::steady_clock::now() - begin;
   }
 
   void TrainBlocks(const FieldTrainer& trainer, int threads) {
@@ -210,6 +220,7 @@ class Training {
   const Project& project_;
   TrainLedger ledger_;
   double spent_before_s_;
+  double context_s_ = 0.0;  // training time of the context
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

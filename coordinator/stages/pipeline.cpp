@@ -1,5 +1,6 @@
 #include "coordinator/stages/pipeline.h"
 
+#include "coordinator/stages/first_picture.h"
 #include "coordinator/stages/stage.h"
 #include "core/base/errors.h"
 #include "core/base/text.h"
@@ -24,6 +25,7 @@ void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const
   pipeline.photos = absolute(photos);
   pipeline.model = absolute(model);
   RunStage(pipeline, "prepare");
+  ProvideFirstPicture(pipeline);
 }
 
 void PartitionStage(Pipeline& pipeline) {

@@ -41,6 +41,7 @@ void RequireSameConfiguration(Pipeline& pipeline, const std::string& first);
 
 // Makes a simulated survey in its own folder.
 void SimulateStage(Pipeline& pipeline, const std::filesystem::path& folder);
+// Also makes the first picture (first_picture.h) as soon as it can, unless there is one.
 void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model);
 void PartitionStage(Pipeline& pipeline);
 // Blocks that failed after all their tries have ok = false in the report; the others are finished and saved.

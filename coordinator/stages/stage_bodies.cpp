@@ -6,6 +6,7 @@
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/train_all.h"
+#include "coordinator/stages/first_picture.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
@@ -48,7 +49,10 @@ std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const prepare::PrepareInput input{.photos = pipeline.photos, .model = pipeline.model, .out_folder = pipeline.project.SurveyFolder()};
   base::ThreadPool threads(pipeline.settings.run.threads);
   RankTasks ranks(pipeline.comm, pipeline.settings.run, pipeline.verbose, pipeline.quiet);
-  prepare::Prepare(input, pipeline.settings.prepare, threads, pipeline.comm.size() > 1 ? &ranks : nullptr);
+  const auto show = [&](const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known) {
+    MakeFirstPicture(pipeline, survey, poses_known, threads);
+  };
+  prepare::Prepare(input, pipeline.settings.prepare, threads, pipeline.comm.size() > 1 ? &ranks : nullptr, show);
   return StageStamp::kDone;
 }
 

@@ -162,8 +162,8 @@ std::vector<Stage> MakeTable() {
        .body = MergeBody},
       {.name = "products",
        .options = {"products."},
-       // Its content is an input, so that another boundary makes the products again.
-       .ignored_options = {"products.boundary"},
+       // The boundary's content is an input, so that another boundary makes the products again. Previews are made before, by other stages.
+       .ignored_options = {"products.boundary", "products.preview"},
        .required = {{SceneFile, "merge"}},
        .inputs =
            [](const Pipeline& pipeline) {

@@ -87,6 +87,31 @@ TEST(DescribeProject, ShowsItsStagesWhenTheSurveyCannotBeRead) {
   EXPECT_NE(json.at("survey").at("unreadable").get<std::string>().find("skyquilt prepare"), std::string::npos) << json;
 }
 
+// State of the stage "products".
+std::string StateOfProducts(const nlohmann::ordered_json& project) {
+  for (const auto& stage : project.at("stages")) {
+    if (stage.at("stage") == "products") return stage.at("state").get<std::string>();
+  }
+  return "";
+}
+
+TEST(DescribeProject, ShowsThePreviewUntilThereIsTheOrthophoto) {
+  const TemporaryFolder folder;
+  survey::SaveSurvey(LaggingSurvey(), folder / "survey");
+  EXPECT_FALSE(Describe(folder.path()).contains("preview"));
+  std::filesystem::create_directories(folder / "products");
+  for (const char* name : {"preview_ortho.tif", "preview_ortho.png"}) base::WriteFileAtomically(folder / "products" / name, "x");
+  base::WriteFileAtomically(folder / "products/preview_ortho.json", R"({"preview": "sparse points"})");
+  nlohmann::ordered_json json = Describe(folder.path());
+  EXPECT_EQ(json.at("preview").at("made_from"), "sparse points");
+  EXPECT_NE(json.at("preview").at("picture").get<std::string>().find("products/preview_ortho.png"), std::string::npos);
+  EXPECT_EQ(StateOfProducts(json), "not started");
+  base::WriteFileAtomically(folder / "products/orthophoto.tif", "x");
+  json = Describe(folder.path());
+  EXPECT_FALSE(json.contains("preview"));
+  EXPECT_NE(json.at("orthophoto").get<std::string>().find("products/orthophoto.tif"), std::string::npos);
+}
+
 TEST(DescribeBlocks, ShowsTheAccuracy) {
   const TemporaryFolder folder;
   partition::BlockSet set;

@@ -298,6 +298,26 @@ TEST_F(ReportPage, BackgroundNeedsPictureAndBounds) {
   EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / background->image));
 }
 
+TEST_F(ReportPage, AnOrthophotoTakesThePlaceOfItsPreview) {
+  const std::filesystem::path products = folder_ / "previewed";
+  std::filesystem::create_directories(products);
+  image::SavePng(image::Image8(8, 4, 3, 90), products / "preview_ortho.png");
+  std::ofstream(products / "preview_ortho.json") << "{\"min_enu\": [-5, -2.5], \"max_enu\": [5, 2.5], \"preview\": \"sparse points\"}";
+  const auto preview = CopyMapBackground(products, folder_);
+  ASSERT_TRUE(preview.has_value());
+  EXPECT_EQ(preview->preview, "sparse points");
+  ReportInput page = sample_->input;
+  page.background = preview;
+  EXPECT_EQ(CountOf(BuildReportPage(page), "Orthophoto (preview: from the sparse points)"), 1U);
+  EXPECT_EQ(CountOf(html_, "(preview:"), 0U);
+  image::SavePng(image::Image8(8, 4, 3, 90), products / "orthophoto.png");
+  std::ofstream(products / "orthophoto.json") << "{\"min_enu\": [-5, -2.5], \"max_enu\": [5, 2.5]}";
+  const auto orthophoto = CopyMapBackground(products, folder_);
+  ASSERT_TRUE(orthophoto.has_value());
+  EXPECT_EQ(orthophoto->preview, "");
+  EXPECT_EQ(orthophoto->image, "images/orthophoto.png");
+}
+
 TEST(ErrorPicture, PixelsThatDoNotCountAreGrey) {
   const image::Image8 photo(2, 1, 3, 200), render(2, 1, 3, 100);
   const image::ImageF error = AbsoluteError(photo, render);

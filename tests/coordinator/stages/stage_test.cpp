@@ -43,6 +43,7 @@ TEST(Stages, StagesDependOnTheirOwnOptionsOnly) {
   after = before;
   after.run.threads = 3;
   after.train.checkpoint_every_s = 1.0;
+  after.products.preview = !before.products.preview;
   for (const Stage& stage : Stages()) EXPECT_EQ(StageOptions(stage, before), StageOptions(stage, after)) << stage.name;
   after.run.image_width = 640;
   EXPECT_NE(StageOptions(StageNamed("partition"), before), StageOptions(StageNamed("partition"), after));

@@ -28,6 +28,7 @@ double RoundUpToTwoDigits(double value) {
 }  // namespace
 
 gis::MapGrid PlanPreviewGrid(const scene::SceneInfo& info, double finest_m, double max_cells) {
+  SKYQUILT_CHECK(max_cells >= 16.0, "edges at multiples of the resolution can need four cells");
   const Eigen::Vector2d size = (info.max_enu - info.min_enu).head<2>();
   ProductOptions options;
   options.max_pixels = 1e11;  // the limit is kept here, without a message

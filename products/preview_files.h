@@ -20,7 +20,8 @@ namespace skyquilt::products {
 inline constexpr const char* kFromSparsePoints = "sparse points";
 inline constexpr const char* kFromContext = "context";
 
-// A map grid over the scene's box: cells of `finest_m` metres, or larger ones, so that there are at most max_cells; rounded up to two digits.
+// A map grid over the scene's box: cells of `finest_m` metres, or larger ones, so that there are at most max_cells (at least 16); rounded up to two
+// digits.
 gis::MapGrid PlanPreviewGrid(const scene::SceneInfo& info, double finest_m, double max_cells);
 
 struct PreviewMap {

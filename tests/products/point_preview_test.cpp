@@ -37,7 +37,7 @@ class PointPreviewTest : public testing::Test {
     if (survey.georeferenced) {
       place = geo::UtmFromGeodetic(geo::EnuFrame(survey.origin).GeodeticFromEnu({x, y, World::SurfaceZ(x, y)}), grid.zone);
     }
-    const Eigen::Vector2d cell = grid.CellOf(place).array().round();
+    const Eigen::Vector2d cell = grid.CellOf(place).array().round().matrix();
     if (!(cell.minCoeff() >= 0.0 && cell.x() < map_.width && cell.y() < map_.height)) return nullptr;
     return map_.At(static_cast<int>(cell.x()), static_cast<int>(cell.y()));
   }

@@ -49,8 +49,8 @@ double PreviewMap::Filled() const {
   return rgba.empty() ? 0.0 : static_cast<double>(4 * filled) / static_cast<double>(rgba.size());
 }
 
-void WritePreview(const scene::SceneInfo& info, const PreviewMap& map, const std::string& made_from, const std::filesystem::path& folder,
-                  int png_width) {
+std::filesystem::path WritePreview(const scene::SceneInfo& info, const PreviewMap& map, const std::string& made_from,
+                                   const std::filesystem::path& folder, int png_width) {
   base::RequireWritableFolder(folder);
   gis::GeoTiffSpec spec = OrthophotoSpec(info, map.grid, "Preview of the orthophoto, made from the " + made_from);
   spec.metadata["PREVIEW"] = made_from;
@@ -59,6 +59,7 @@ void WritePreview(const scene::SceneInfo& info, const PreviewMap& map, const std
   tif.Close();
   WriteOrthophotoPicture(info, map.grid, folder / kPreviewTif, folder / kPreviewPng, png_width, true);
   WriteMapBounds(info, map.grid, folder / kPreviewJson, made_from);
+  return folder / kPreviewPng;
 }
 
 std::optional<FoundPreview> FindPreview(const std::filesystem::path& folder) {

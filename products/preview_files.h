@@ -30,9 +30,10 @@ struct PreviewMap {
   double Filled() const;      // share of the cells with data
 };
 
-// Writes the three files, the .json last; each is complete or as it was. The .png has at most png_width columns. Throws base::InputError.
-void WritePreview(const scene::SceneInfo& info, const PreviewMap& map, const std::string& made_from, const std::filesystem::path& folder,
-                  int png_width);
+// Writes the three files, the .json last; each is complete or as it was. The .png has at most png_width columns. Returns its path. Throws
+// base::InputError.
+std::filesystem::path WritePreview(const scene::SceneInfo& info, const PreviewMap& map, const std::string& made_from,
+                                   const std::filesystem::path& folder, int png_width);
 
 struct FoundPreview {
   std::filesystem::path picture;  // the .png

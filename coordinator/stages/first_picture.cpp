@@ -8,9 +8,12 @@ namespace skyquilt::coordinator {
 
 void MakeFirstPicture(const Pipeline& pipeline, const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known,
                       base::ThreadPool& threads) {
-  if (!pipeline.settings.products.preview) return;
+  const std::filesystem::path folder = pipeline.project.ProductsFolder();
+  if (!pipeline.settings.products.preview || products::HasOrthophoto(folder)) return;
   try {
-    const products::PointPreview made = products::MakePointPreview(survey, pipeline.settings.products, pipeline.project.ProductsFolder(), threads);
+    // Of a lost survey that is prepared again; other photos or options need --restart, which removes it.
+    if (const auto found = products::FindPreview(folder); found && found->made_from == products::kFromContext) return;
+    const products::PointPreview made = products::MakePointPreview(survey, pipeline.settings.products, folder, threads);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - poses_known).count();
     spdlog::info("first picture: {}, {:.0f} s after the poses ({} photos on the sparse points, {} x {} cells of {:.3g} m)", made.picture.string(),
                  seconds, made.photos, made.grid.width, made.grid.height, made.grid.resolution_m);

@@ -9,7 +9,8 @@
 
 namespace skyquilt::coordinator {
 
-// Makes it, in place of any other, and logs how long after the poses it was there. What goes wrong is a warning. Throws base::Interrupted only.
+// Makes it, in place of an earlier one, and logs how long after the poses it was there; nothing when there is an orthophoto or a preview from the
+// context. What goes wrong is a warning. Throws base::Interrupted only.
 void MakeFirstPicture(const Pipeline& pipeline, const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known,
                       base::ThreadPool& threads);
 // Makes it for a prepared survey that has neither preview nor orthophoto, for instance of an older program. Throws base::Interrupted only.

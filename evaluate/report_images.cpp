@@ -128,8 +128,11 @@ std::string WriteColorRamp(const std::filesystem::path& report_folder) {
 
 std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& products_folder, const std::filesystem::path& report_folder) {
   std::error_code ignored;
-  const bool made = std::filesystem::is_regular_file(products_folder / "orthophoto.png", ignored);
-  const std::string name = made ? "orthophoto" : "preview_ortho";
+  std::string name = "orthophoto";
+  const auto is_missing = [&] { return !std::filesystem::is_regular_file(products_folder / (name + ".png"), ignored); };
+  const bool made = !is_missing();
+  if (!made) name = "preview_ortho";
+  if (is_missing()) name = "preview_context";
   const std::filesystem::path png = products_folder / (name + ".png");
   const std::filesystem::path bounds = products_folder / (name + ".json");
   if (!std::filesystem::is_regular_file(png, ignored) || !std::filesystem::is_regular_file(bounds, ignored)) return std::nullopt;

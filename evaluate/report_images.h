@@ -39,8 +39,8 @@ BrightnessView WriteBrightnessView(const image::Image8& photo, const image::Imag
                                    const std::filesystem::path& report_folder, const std::string& prefix, int max_width);
 // Writes images/ramp.png and returns its relative path.
 std::string WriteColorRamp(const std::filesystem::path& report_folder);
-// Copies products/orthophoto.png beside the page and reads its bounds from products/orthophoto.json; without an orthophoto its preview,
-// products/preview_ortho.png with its .json. Nothing when either is missing or damaged.
+// Copies products/orthophoto.png beside the page and reads its bounds from products/orthophoto.json; without an orthophoto the
+// preview with most detail, products/preview_ortho.png or preview_context.png with its .json. Nothing when either file is missing or damaged.
 std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& products_folder, const std::filesystem::path& report_folder);
 
 }  // namespace skyquilt::evaluate

@@ -36,7 +36,7 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const Repor
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
     const std::string name = entry.path().filename().string();
-    const bool ours = name.starts_with("photo_") || name.starts_with("building_") || name.starts_with("preview_ortho");
+    const bool ours = name.starts_with("photo_") || name.starts_with("building_") || name.starts_with("preview_");
     if (ours && !kept.contains("images/" + name)) stale.push_back(entry.path());
   }
   for (const std::filesystem::path& file : stale) std::filesystem::remove(file, ignored);

@@ -142,7 +142,7 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   progress.Finish();
   products.filled = products.rays > 0 ? static_cast<double>(filled) / static_cast<double>(products.rays) : 0.0;
   WriteMapPreviews(info, grid, products.orthophoto, products.dsm, folder, options.preview_width);
-  if (options.ortho) RemovePreview(folder);
+  if (options.ortho) RemovePreviews(folder);
   products.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return products;
 }

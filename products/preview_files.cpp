@@ -15,9 +15,15 @@
 namespace skyquilt::products {
 namespace {
 
-constexpr const char* kPreviewTif = "preview_ortho.tif";
-constexpr const char* kPreviewPng = "preview_ortho.png";
-constexpr const char* kPreviewJson = "preview_ortho.json";
+struct PreviewFiles {
+  std::filesystem::path tif, png, json;
+};
+
+PreviewFiles FilesOf(const std::filesystem::path& folder, const std::string& made_from) {
+  SKYQUILT_CHECK(made_from == kFromSparsePoints || made_from == kFromContext, made_from);
+  const std::string stem = made_from == kFromContext ? "preview_context" : "preview_ortho";
+  return {folder / (stem + ".tif"), folder / (stem + ".png"), folder / (stem + ".json")};
+}
 
 // 0.123 to 0.13.
 double RoundUpToTwoDigits(double value) {
@@ -52,32 +58,44 @@ double PreviewMap::Filled() const {
 std::filesystem::path WritePreview(const scene::SceneInfo& info, const PreviewMap& map, const std::string& made_from,
                                    const std::filesystem::path& folder, int png_width) {
   base::RequireWritableFolder(folder);
+  const PreviewFiles files = FilesOf(folder, made_from);
   gis::GeoTiffSpec spec = OrthophotoSpec(info, map.grid, "Preview of the orthophoto, made from the " + made_from);
   spec.metadata["PREVIEW"] = made_from;
-  gis::GeoTiffWriter tif(folder / kPreviewTif, spec);
+  gis::GeoTiffWriter tif(files.tif, spec);
   tif.WriteRows(0, map.grid.height, std::span<const uint8_t>(map.rgba));
   tif.Close();
-  WriteOrthophotoPicture(info, map.grid, folder / kPreviewTif, folder / kPreviewPng, png_width, true);
-  WriteMapBounds(info, map.grid, folder / kPreviewJson, made_from);
-  return folder / kPreviewPng;
+  WriteOrthophotoPicture(info, map.grid, files.tif, files.png, png_width, true);
+  WriteMapBounds(info, map.grid, files.json, made_from);
+  return files.png;
 }
 
-std::optional<FoundPreview> FindPreview(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(folder / kPreviewPng, ignored) || !std::filesystem::is_regular_file(folder / kPreviewTif, ignored) ||
-      !std::filesystem::is_regular_file(folder / kPreviewJson, ignored)) {
-    return std::nullopt;
+std::optional<FoundPreview> FindPreview(const std::filesystem::path& folder, const std::string& made_from) {
+  const PreviewFiles files = FilesOf(folder, made_from);
+  for (const std::filesystem::path& file : {files.tif, files.png, files.json}) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
   }
-  const auto json = nlohmann::json::parse(base::ReadFile(folder / kPreviewJson), nullptr, false);
-  if (!json.is_object() || !json.contains("preview") || !json["preview"].is_string()) return std::nullopt;
-  return FoundPreview{folder / kPreviewPng, json["preview"].get<std::string>()};
+  const auto json = nlohmann::json::parse(base::ReadFile(files.json), nullptr, false);
+  if (!json.is_object() || !json.contains("preview") || json["preview"] != made_from) return std::nullopt;
+  return FoundPreview{files.png, made_from};
 }
 
-void RemovePreview(const std::filesystem::path& folder) {
-  for (const char* name : {kPreviewJson, kPreviewPng, kPreviewTif}) {
-    std::error_code error;
-    std::filesystem::remove(folder / name, error);
-    if (error) throw base::InputError(folder / name, "cannot be removed: " + error.message(), "Check the permissions of the folder");
+std::vector<FoundPreview> FindPreviews(const std::filesystem::path& folder) {
+  std::vector<FoundPreview> previews;
+  for (const char* made_from : {kFromSparsePoints, kFromContext}) {
+    if (std::optional<FoundPreview> preview = FindPreview(folder, made_from)) previews.push_back(*std::move(preview));
+  }
+  return previews;
+}
+
+void RemovePreviews(const std::filesystem::path& folder) {
+  for (const char* made_from : {kFromSparsePoints, kFromContext}) {
+    const PreviewFiles files = FilesOf(folder, made_from);
+    for (const std::filesystem::path& file : {files.json, files.png, files.tif}) {
+      std::error_code error;
+      std::filesystem::remove(file, error);
+      if (error) throw base::InputError(file, "cannot be removed: " + error.message(), "Check the permissions of the folder");
+    }
   }
 }
 

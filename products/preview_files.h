@@ -1,8 +1,8 @@
-// The preview of the orthophoto: a first picture of the survey, made long before its scene is trained, and replaced as better ones come. Files:
-//   preview_ortho.tif   GeoTIFF like orthophoto.tif (products/map_products.h); item PREVIEW of its metadata says what it was made from
-//   preview_ortho.png   north of the local frame up, transparent where there is no data
-//   preview_ortho.json  like orthophoto.json, and "preview": what it was made from
-// They are removed when the orthophoto is made in the same folder.
+// Previews of the orthophoto: pictures of the survey, made long before its scene is trained. There are two, in files named preview_ortho (photos on
+// the sparse points) and preview_context (the context). The second has no detail, so it does not replace the first; the orthophoto replaces both.
+//   .tif   GeoTIFF like orthophoto.tif (products/map_products.h); item PREVIEW of its metadata says what it was made from
+//   .png   north of the local frame up, transparent where there is no data
+//   .json  like orthophoto.json, and "preview": what it was made from
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct PreviewMap {
   double Filled() const;      // share of the cells with data
 };
 
-// Writes the three files, the .json last; each is complete or as it was. The .png has at most png_width columns. Returns its path. Throws
+// made_from: one of the two above. Writes its three files, the .json last; each is complete or as it was. The .png has at most png_width columns. Returns its path. Throws
 // base::InputError.
 std::filesystem::path WritePreview(const scene::SceneInfo& info, const PreviewMap& map, const std::string& made_from,
                                    const std::filesystem::path& folder, int png_width);
@@ -40,9 +40,11 @@ struct FoundPreview {
   std::string made_from;
 };
 // Nothing when a file is missing or damaged.
-std::optional<FoundPreview> FindPreview(const std::filesystem::path& folder);
+std::optional<FoundPreview> FindPreview(const std::filesystem::path& folder, const std::string& made_from);
+// All of them, the most detailed first.
+std::vector<FoundPreview> FindPreviews(const std::filesystem::path& folder);
 // Where nothing is to be removed, nothing is done. Throws base::InputError.
-void RemovePreview(const std::filesystem::path& folder);
+void RemovePreviews(const std::filesystem::path& folder);
 // Whether the folder has an orthophoto, which previews must not stand beside.
 bool HasOrthophoto(const std::filesystem::path& folder);
 

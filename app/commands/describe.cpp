@@ -84,8 +84,10 @@ Json DescribeProject(const std::filesystem::path& folder) {
   }
   if (products::HasOrthophoto(project.ProductsFolder())) {
     json["orthophoto"] = (project.ProductsFolder() / "orthophoto.tif").string();
-  } else if (const std::optional<products::FoundPreview> preview = products::FindPreview(project.ProductsFolder())) {
-    json["preview"] = {{"picture", preview->picture.string()}, {"made_from", preview->made_from}};
+  } else {
+    for (const products::FoundPreview& preview : products::FindPreviews(project.ProductsFolder())) {
+      json["previews"].push_back({{"picture", preview.picture.string()}, {"made_from", preview.made_from}});
+    }
   }
   const std::filesystem::path metrics = project.ReportFolder() / "metrics.json";
   if (std::filesystem::exists(metrics)) {

@@ -43,8 +43,9 @@ Json DescribeRaster(const std::filesystem::path& file) {
                {"height", std::lround(image.height * raster.scale_down)},
                {"bands", bands}};
   const std::string stem = file.stem().string();
-  const std::filesystem::path beside = file.parent_path() / (stem == "preview_ortho" ? "preview_ortho.json" : "orthophoto.json");
-  if ((stem == "orthophoto" || stem == "dsm" || stem == "preview_ortho") && std::filesystem::exists(beside)) {
+  const bool is_preview = stem == "preview_ortho" || stem == "preview_context";
+  const std::filesystem::path beside = file.parent_path() / (is_preview ? stem + ".json" : "orthophoto.json");
+  if ((stem == "orthophoto" || stem == "dsm" || is_preview) && std::filesystem::exists(beside)) {
     const Json map = Json::parse(base::ReadFile(beside), nullptr, false);
     if (!map.is_discarded()) json["map"] = map;
   }

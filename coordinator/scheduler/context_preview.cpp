@@ -65,8 +65,7 @@ void ProvideContextPreview(const survey::Survey& survey, const partition::BlockS
   const std::filesystem::path folder = project.ProductsFolder();
   if (!settings.products.preview || products::HasOrthophoto(folder)) return;
   try {
-    const std::optional<products::FoundPreview> found = products::FindPreview(folder);
-    if (found && found->made_from == products::kFromContext) return;
+    if (products::FindPreview(folder, products::kFromContext)) return;
     Make(survey, blocks, settings, project, seconds, threads);
   } catch (const base::Interrupted&) {
     throw;

@@ -11,8 +11,6 @@ void MakeFirstPicture(const Pipeline& pipeline, const survey::Survey& survey, st
   const std::filesystem::path folder = pipeline.project.ProductsFolder();
   if (!pipeline.settings.products.preview || products::HasOrthophoto(folder)) return;
   try {
-    // Of a lost survey that is prepared again; other photos or options need --restart, which removes it.
-    if (const auto found = products::FindPreview(folder); found && found->made_from == products::kFromContext) return;
     const products::PointPreview made = products::MakePointPreview(survey, pipeline.settings.products, folder, threads);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - poses_known).count();
     spdlog::info("first picture: {}, {:.0f} s after the poses ({} photos on the sparse points, {} x {} cells of {:.3g} m)", made.picture.string(),
@@ -28,7 +26,7 @@ void ProvideFirstPicture(const Pipeline& pipeline) {
   const std::filesystem::path folder = pipeline.project.ProductsFolder();
   if (!pipeline.settings.products.preview || products::HasOrthophoto(folder)) return;
   try {
-    if (products::FindPreview(folder)) return;
+    if (products::FindPreview(folder, products::kFromSparsePoints)) return;
     const auto begin = std::chrono::steady_clock::now();
     base::ThreadPool threads(pipeline.settings.run.threads);
     MakeFirstPicture(pipeline, survey::LoadSurvey(pipeline.project.SurveyFolder()), begin, threads);

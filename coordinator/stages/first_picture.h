@@ -1,4 +1,4 @@
-// The first picture of a project: a preview of the orthophoto from the sparse points. One from the context replaces it (scheduler/context_preview.h).
+// The first picture of a project: a preview of the orthophoto from the sparse points. One from the context follows (scheduler/context_preview.h).
 #pragma once
 
 #include <chrono>
@@ -9,11 +9,11 @@
 
 namespace skyquilt::coordinator {
 
-// Makes it, in place of an earlier one, and logs how long after the poses it was there; nothing when there is an orthophoto or a preview from the
-// context. What goes wrong is a warning. Throws base::Interrupted only.
+// Makes it, in place of an earlier one, and logs how long after the poses it was there; nothing when there is an orthophoto.
+// What goes wrong is a warning. Throws base::Interrupted only.
 void MakeFirstPicture(const Pipeline& pipeline, const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known,
                       base::ThreadPool& threads);
-// Makes it for a prepared survey that has neither preview nor orthophoto, for instance of an older program. Throws base::Interrupted only.
+// Makes it for a prepared survey that has neither this preview nor an orthophoto, for instance of an older program. Throws base::Interrupted only.
 void ProvideFirstPicture(const Pipeline& pipeline);
 
 }  // namespace skyquilt::coordinator

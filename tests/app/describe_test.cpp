@@ -98,17 +98,20 @@ std::string StateOfProducts(const nlohmann::ordered_json& project) {
 TEST(DescribeProject, ShowsThePreviewUntilThereIsTheOrthophoto) {
   const TemporaryFolder folder;
   survey::SaveSurvey(LaggingSurvey(), folder / "survey");
-  EXPECT_FALSE(Describe(folder.path()).contains("preview"));
+  EXPECT_FALSE(Describe(folder.path()).contains("previews"));
   std::filesystem::create_directories(folder / "products");
   for (const char* name : {"preview_ortho.tif", "preview_ortho.png"}) base::WriteFileAtomically(folder / "products" / name, "x");
   base::WriteFileAtomically(folder / "products/preview_ortho.json", R"({"preview": "sparse points"})");
+  for (const char* name : {"preview_context.tif", "preview_context.png"}) base::WriteFileAtomically(folder / "products" / name, "x");
+  base::WriteFileAtomically(folder / "products/preview_context.json", R"({"preview": "context"})");
   nlohmann::ordered_json json = Describe(folder.path());
-  EXPECT_EQ(json.at("preview").at("made_from"), "sparse points");
-  EXPECT_NE(json.at("preview").at("picture").get<std::string>().find("products/preview_ortho.png"), std::string::npos);
+  EXPECT_EQ(json.at("previews").at(0).at("made_from"), "sparse points");
+  EXPECT_NE(json.at("previews").at(0).at("picture").get<std::string>().find("products/preview_ortho.png"), std::string::npos);
+  EXPECT_EQ(json.at("previews").at(1).at("made_from"), "context");
   EXPECT_EQ(StateOfProducts(json), "not started");
   base::WriteFileAtomically(folder / "products/orthophoto.tif", "x");
   json = Describe(folder.path());
-  EXPECT_FALSE(json.contains("preview"));
+  EXPECT_FALSE(json.contains("previews"));
   EXPECT_NE(json.at("orthophoto").get<std::string>().find("products/orthophoto.tif"), std::string::npos);
 }
 

@@ -1,4 +1,4 @@
-"""The first picture of a project: a preview from the sparse points, then one from the context, then the orthophoto in place of both."""
+"""The first pictures of a project: a preview from the sparse points, then one from the context, then the orthophoto in place of both."""
 import json
 import re
 import shutil
@@ -6,6 +6,7 @@ import shutil
 from harness import QUICK_TRAIN, expect, main, small_survey
 
 NAMES = ("preview_ortho.json", "preview_ortho.png", "preview_ortho.tif")
+BOTH = ("preview_context.json", "preview_context.png", "preview_context.tif", *NAMES)
 QUICK = ["--steps", "60", *QUICK_TRAIN[2:]]
 
 
@@ -14,8 +15,8 @@ def previews(project):
 
 
 def made_from(skyquilt, project):
-    """As `info` has it; None without a preview."""
-    return json.loads(skyquilt.call("info", project, "--json")).get("preview", {}).get("made_from")
+    """Of each preview, as `info` has it."""
+    return [preview["made_from"] for preview in json.loads(skyquilt.call("info", project, "--json")).get("previews", [])]
 
 
 def state_of_products(skyquilt, project):
@@ -29,7 +30,7 @@ def test(skyquilt, folder):
     text = skyquilt.call("prepare", survey, "-o", project)
     expect(re.search(r"first picture: .*products/preview_ortho.png, \d+ s after the poses", text), f"the picture is not named:\n{text}")
     expect(previews(project) == NAMES, f"prepare wrote {previews(project)}")
-    expect(made_from(skyquilt, project) == "sparse points", "info does not say what the preview was made from")
+    expect(made_from(skyquilt, project) == ["sparse points"], "info does not say what the preview was made from")
     expect(state_of_products(skyquilt, project) == "not started", "a preview counts as the products")
     picture = (project / "products" / "preview_ortho.png").read_bytes()
 
@@ -61,17 +62,17 @@ def test(skyquilt, folder):
         else:
             shutil.copytree(project, folder / "partitioned")
         skyquilt.call("train", at, *QUICK, ranks=ranks)
-        expect(previews(at) == NAMES and made_from(skyquilt, at) == "context", f"{ranks} ranks made no preview from the context")
-    expect((project / "products" / "preview_ortho.png").read_bytes() != picture, "the context's preview is the one from the sparse points")
+        expect(previews(at) == BOTH and made_from(skyquilt, at) == ["sparse points", "context"], f"{ranks} ranks made {previews(at)}")
+        expect((at / "products" / "preview_ortho.png").read_bytes() == picture, "training changed the preview from the sparse points")
 
     skyquilt.call("merge", project)
     # Without an orthophoto the report shows the preview.
     skyquilt.call("render", project, "--set", "products.ortho=false", "--set", "products.video_seconds=0")
     skyquilt.call("evaluate", project)
     page = (project / "report" / "index.html").read_text()
-    expect("preview: from the context" in page and (project / "report" / "images" / "preview_ortho.png").exists(), "the report shows no preview")
+    expect("preview: from the sparse points" in page and (project / "report" / "images" / "preview_ortho.png").exists(), "the report shows no preview")
     skyquilt.call("render", project, "--ortho")
-    expect(not previews(project) and made_from(skyquilt, project) is None, f"beside the orthophoto there are {previews(project)}")
+    expect(not previews(project) and not made_from(skyquilt, project), f"beside the orthophoto there are {previews(project)}")
     text = skyquilt.call("prepare", survey, "-o", project)
     expect("first picture" not in text and not previews(project), f"a preview beside the orthophoto:\n{text}")
 

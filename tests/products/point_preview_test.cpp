@@ -185,7 +185,7 @@ TEST_F(PointPreviewTest, CanBeInterrupted) {
   base::RequestCancel();
   EXPECT_THROW(MakePointPreview(survey, {}, folder_ / "products", threads_), base::Interrupted);
   base::ClearCancel();
-  EXPECT_FALSE(FindPreview(folder_ / "products"));
+  EXPECT_FALSE(FindPreview(folder_ / "products", kFromSparsePoints));
 }
 
 }  // namespace

@@ -158,10 +158,12 @@ TEST(FieldPreview, ShowsTheFieldAndMakesWayForTheOrthophoto) {
   const scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
   const FieldPreview made = MakeFieldPreview(info, scene.Caster(), 10.0, {}, folder.path());
   EXPECT_NEAR(made.filled, 0.75, 0.03);
-  const std::optional<FoundPreview> found = FindPreview(folder.path());
+  EXPECT_FALSE(FindPreview(folder.path(), kFromSparsePoints));
+  const std::optional<FoundPreview> found = FindPreview(folder.path(), kFromContext);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->made_from, kFromContext);
-  const image::ImageF map = gis::ReadReduced(folder / "preview_ortho.tif", 1 << 20).image;
+  EXPECT_EQ(found->picture, made.picture);
+  const image::ImageF map = gis::ReadReduced(folder / "preview_context.tif", 1 << 20).image;
   const auto at = [&](double x, double y) {
     const geo::EnuFrame frame(info.origin);
     const Eigen::Vector2d cell =
@@ -178,12 +180,15 @@ TEST(FieldPreview, ShowsTheFieldAndMakesWayForTheOrthophoto) {
   ProductOptions options;
   options.ortho = false;
   MakeMapProducts(info, scene.Caster(), options, folder.path());
-  EXPECT_TRUE(FindPreview(folder.path()));
+  WritePreview(info, PreviewMap{made.grid, std::vector<uint8_t>(4 * static_cast<size_t>(made.grid.width) * static_cast<size_t>(made.grid.height))},
+               kFromSparsePoints, folder.path(), 100);
+  ASSERT_EQ(FindPreviews(folder.path()).size(), 2U);
+  EXPECT_EQ(FindPreviews(folder.path())[0].made_from, kFromSparsePoints);
   EXPECT_FALSE(HasOrthophoto(folder.path()));
   options.ortho = true;
   MakeMapProducts(info, scene.Caster(), options, folder.path());
   EXPECT_TRUE(HasOrthophoto(folder.path()));
-  EXPECT_FALSE(FindPreview(folder.path()));
+  EXPECT_TRUE(FindPreviews(folder.path()).empty());
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
     EXPECT_FALSE(entry.path().filename().string().starts_with("preview_")) << entry.path();
   }
@@ -192,13 +197,13 @@ TEST(FieldPreview, ShowsTheFieldAndMakesWayForTheOrthophoto) {
 TEST(FindPreview, DamagedFilesAreNone) {
   const TemporaryFolder folder;
   const AnalyticScene scene;
-  EXPECT_FALSE(FindPreview(folder.path()));
+  EXPECT_FALSE(FindPreview(folder.path(), kFromContext));
   MakeFieldPreview(scene.Info({}, false), scene.Caster(), 1.0, {}, folder.path());
-  EXPECT_TRUE(FindPreview(folder.path()));
-  base::WriteFileAtomically(folder / "preview_ortho.json", "{\"preview\": 3}");
-  EXPECT_FALSE(FindPreview(folder.path()));
-  RemovePreview(folder.path());
-  RemovePreview(folder.path());
+  EXPECT_TRUE(FindPreview(folder.path(), kFromContext));
+  base::WriteFileAtomically(folder / "preview_context.json", "{\"preview\": 3}");
+  EXPECT_FALSE(FindPreview(folder.path(), kFromContext));
+  RemovePreviews(folder.path());
+  RemovePreviews(folder.path());
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

@@ -30,8 +30,8 @@ struct PreviewMap {
   double Filled() const;      // share of the cells with data
 };
 
-// made_from: one of the two above. Writes its three files, the .json last; each is complete or as it was. The .png has at most png_width columns. Returns its path. Throws
-// base::InputError.
+// made_from: one of the two above. Writes its three files, the .json last; each is complete or as it was. The .png has at most png_width columns.
+// Returns its path. Throws base::InputError.
 std::filesystem::path WritePreview(const scene::SceneInfo& info, const PreviewMap& map, const std::string& made_from,
                                    const std::filesystem::path& folder, int png_width);
 

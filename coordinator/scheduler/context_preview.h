@@ -1,5 +1,5 @@
-// The second picture of a project: a preview of the orthophoto from the finished context. It has less detail than the one from the sparse points, but is
-// what training starts from.
+// The second picture of a project: a preview of the orthophoto from the finished context. It has less detail than the one from the sparse points, but
+// is what training starts from.
 #pragma once
 
 #include "coordinator/project/project.h"

@@ -42,6 +42,7 @@ class RankTasksTest : public testing::Test {
     return {.job = {.photo_root = folder_ / "images", .masks = {}, .folder = folder_ / ""},
             .program = program_,
             .arguments = {},
+            .camera_model = "PINHOLE",
             .names = {"photo " + name + ".jpg", "photo " + name + "b.jpg"},
             .file = folder_ / ("part_" + name + ".db")};
   }

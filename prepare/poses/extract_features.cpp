@@ -26,19 +26,13 @@ std::string CameraKey(const PhotoFile& photo) {
          (tags.focal_length_mm ? std::to_string(*tags.focal_length_mm) : "");
 }
 
-std::vector<std::string> ExtractorArguments(const ColmapSettings& settings, const PoseOptions& options) {
-  const FastColmapFlags flags;
-  const int max_features = settings.fast ? std::min(options.max_features, flags.max_features) : options.max_features;
-  std::vector<std::string> arguments = {"--SiftExtraction.use_gpu",
-                                        options.use_gpu ? "1" : "0",
-                                        "--SiftExtraction.max_image_size",
-                                        std::to_string(options.max_image_size),
-                                        "--SiftExtraction.max_num_features",
-                                        std::to_string(max_features),
-                                        "--random_seed",
-                                        std::to_string(options.seed)};
-  if (settings.fast) arguments.insert(arguments.end(), {"--SiftExtraction.first_octave", std::to_string(flags.first_octave)});
-  return arguments;
+std::vector<std::string> ExtractorArguments(const PoseOptions& options) {
+  return {"--SiftExtraction.use_gpu",
+          options.use_gpu ? "1" : "0",
+          "--SiftExtraction.max_image_size",
+          std::to_string(options.max_image_size),
+          "--random_seed",
+          std::to_string(options.seed)};
 }
 
 // The photos of each camera in parts of about the same size.
@@ -82,7 +76,7 @@ std::string FeatureInputs(const ColmapJob& job, const ColmapSettings& settings, 
     if (!job.masks.empty() && fs::exists(mask)) add_file(mask);
   }
   const FastColmapFlags flags;
-  if (settings.fast) text += fmt::format("fast {} {} {} {}\n", flags.first_octave, flags.max_features, flags.few_features, flags.low_peak_threshold);
+  if (settings.fast) text += fmt::format("fast {} {} {}\n", flags.first_octave, flags.max_features, flags.few_features);
   return text;
 }
 
@@ -100,16 +94,20 @@ void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const
       ranks == nullptr ? PhotosPerPart(photos.size(), 0, settings.n_threads) : PhotosPerPart(photos.size(), ranks->size(), ranks->threads());
   const std::vector<survey::DatabasePart> parts = SplitPhotos(job, photos, input, per_part);
   const FastColmapFlags flags;
+  const std::vector<std::string> thorough = {"--SiftExtraction.max_num_features", std::to_string(options.max_features)};
+  const std::vector<std::string> fast = {"--SiftExtraction.max_num_features", std::to_string(std::min(options.max_features, flags.max_features)),
+                                         "--SiftExtraction.first_octave", std::to_string(flags.first_octave)};
   std::vector<PoseTask> missing;
   size_t n_missing = 0;
   for (const survey::DatabasePart& part : parts) {
     if (fs::exists(part.file)) continue;
     missing.emplace_back(FeatureTask{.job = job,
                                      .program = settings.program,
-                                     .arguments = ExtractorArguments(settings, options),
+                                     .arguments = ExtractorArguments(options),
                                      .camera_model = options.camera_model,
+                                     .search = settings.fast ? fast : thorough,
                                      .few_features = settings.fast ? flags.few_features : 0,
-                                     .low_peak_threshold = flags.low_peak_threshold,
+                                     .search_again = thorough,
                                      .names = part.names,
                                      .file = part.file});
     n_missing += part.names.size();

@@ -24,8 +24,9 @@ json JsonOf(const FeatureTask& task) {
           {"program", task.program.string()},
           {"arguments", task.arguments},
           {"camera_model", task.camera_model},
+          {"search", task.search},
           {"few_features", task.few_features},
-          {"low_peak_threshold", task.low_peak_threshold},
+          {"search_again", task.search_again},
           {"names", task.names},
           {"file", task.file.string()}};
 }
@@ -41,8 +42,8 @@ json JsonOf(const MatchTask& task) {
 // none: one in about 7000 features of Brighton Beach. The GNU C library can fill new memory, so that the same photo gives the same bytes each time.
 const std::vector<std::string> kFilledMemory = {"MALLOC_PERTURB_=170", "GLIBC_TUNABLES=glibc.malloc.tcache_count=0"};
 
-// About the time that the first of two searches takes, where half of the photos are searched twice.
-constexpr double kFirstSearchShare = 0.7;
+// About the time that the first of two searches takes, where most photos are searched twice.
+constexpr double kFirstSearchShare = 0.4;
 
 struct PoorPhotos {
   std::vector<std::string> names;
@@ -85,8 +86,9 @@ PoseTask TaskFromText(const std::string& bytes) {
                        .program = PathIn(text, "program"),
                        .arguments = text.at("arguments").get<std::vector<std::string>>(),
                        .camera_model = text.at("camera_model").get<std::string>(),
+                       .search = text.at("search").get<std::vector<std::string>>(),
                        .few_features = text.at("few_features").get<size_t>(),
-                       .low_peak_threshold = text.at("low_peak_threshold").get<double>(),
+                       .search_again = text.at("search_again").get<std::vector<std::string>>(),
                        .names = text.at("names").get<std::vector<std::string>>(),
                        .file = PathIn(text, "file")};
   }
@@ -114,7 +116,8 @@ void RunFeatureTask(const FeatureTask& task, int n_threads, const TaskProgress& 
     done = std::max(done, to);
   };
   // The progress of a search goes from `from` to `to`, in photos.
-  const auto search = [&](const std::vector<std::string>& names, const std::vector<std::string>& more, double from, double to) {
+  const auto search = [&](const std::vector<std::string>& names, const std::vector<std::string>& how, const std::vector<std::string>& camera,
+                          double from, double to) {
     std::string lines;
     for (const std::string& name : names) lines += name + "\n";
     base::WriteFileAtomically(list, lines);
@@ -128,21 +131,19 @@ void RunFeatureTask(const FeatureTask& task, int n_threads, const TaskProgress& 
                                             "--SiftExtraction.num_threads",
                                             std::to_string(n_threads)};
     command.arguments.insert(command.arguments.end(), files.begin(), files.end());
-    command.arguments.insert(command.arguments.end(), more.begin(), more.end());
+    command.arguments.insert(command.arguments.end(), how.begin(), how.end());
+    command.arguments.insert(command.arguments.end(), camera.begin(), camera.end());
     if (!task.job.masks.empty()) command.arguments.insert(command.arguments.end(), {"--ImageReader.mask_path", task.job.masks.string()});
     RunColmapCommand(task.job, command,
                      [&](const std::string& line) { advance(from + (to - from) * std::max(0.0, ColmapLineProgress(line, names.size()))); });
     advance(to);
   };
   const double first_end = task.few_features > 0 ? kFirstSearchShare * total : total;
-  search(task.names, {"--ImageReader.camera_model", task.camera_model, "--ImageReader.single_camera", "1"}, 0.0, first_end);
+  search(task.names, task.search, {"--ImageReader.camera_model", task.camera_model, "--ImageReader.single_camera", "1"}, 0.0, first_end);
   if (task.few_features > 0) {
     const PoorPhotos poor = RemovePoorFeatures(database, task.few_features);
     if (!poor.names.empty()) {
-      search(poor.names,
-             {"--ImageReader.existing_camera_id", std::to_string(poor.camera_id), "--SiftExtraction.peak_threshold",
-              fmt::format("{:g}", task.low_peak_threshold)},
-             first_end, total);
+      search(poor.names, task.search_again, {"--ImageReader.existing_camera_id", std::to_string(poor.camera_id)}, first_end, total);
     }
   }
   survey::ColmapDatabase(database).UseOneFile();

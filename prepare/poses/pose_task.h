@@ -24,13 +24,14 @@ namespace skyquilt::prepare {
 struct FeatureTask {
   ColmapJob job;
   std::filesystem::path program;
-  std::vector<std::string> arguments;  // of feature_extractor, without those for files, threads, camera and the threshold below
+  std::vector<std::string> arguments;  // of feature_extractor, without those for files, threads, camera and those below
   std::string camera_model;            // COLMAP's name
-  // Photos with fewer features than this are searched once more, with the lower threshold of contrast. 0: none.
+  std::vector<std::string> search;     // arguments that say how hard to search
+  // Photos with fewer features than this are searched once more, with these arguments instead. 0: none.
   size_t few_features = 0;
-  double low_peak_threshold = 0.0;  // SiftExtraction.peak_threshold
-  std::vector<std::string> names;   // of photos
-  std::filesystem::path file;       // the database to make
+  std::vector<std::string> search_again;
+  std::vector<std::string> names;  // of photos
+  std::filesystem::path file;      // the database to make
 };
 
 // Matches of pairs of photos: a chunk (match_chunk.h).

@@ -43,6 +43,9 @@ class RankTasksTest : public testing::Test {
             .program = program_,
             .arguments = {},
             .camera_model = "PINHOLE",
+            .search = {},
+            .few_features = 0,
+            .search_again = {},
             .names = {"photo " + name + ".jpg", "photo " + name + "b.jpg"},
             .file = folder_ / ("part_" + name + ".db")};
   }

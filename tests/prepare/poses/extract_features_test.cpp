@@ -33,8 +33,9 @@ TEST(PoseTaskText, IsReadBack) {
                              .program = "/bin/colmap",
                              .arguments = {"--a", "1"},
                              .camera_model = "OPENCV",
+                             .search = {"--fast"},
                              .few_features = 70,
-                             .low_peak_threshold = 0.002,
+                             .search_again = {"--slow", "2"},
                              .names = {"with space.jpg", "latin1 \xe4.jpg"},
                              .file = "/work/part.db"};
   const auto again = std::get<FeatureTask>(TaskFromText(ToText(features)));
@@ -42,7 +43,8 @@ TEST(PoseTaskText, IsReadBack) {
   EXPECT_EQ(again.arguments, features.arguments);
   EXPECT_EQ(again.camera_model, "OPENCV");
   EXPECT_EQ(again.few_features, 70U);
-  EXPECT_EQ(again.low_peak_threshold, 0.002);
+  EXPECT_EQ(again.search, features.search);
+  EXPECT_EQ(again.search_again, features.search_again);
   EXPECT_EQ(again.job.photo_root, "/photos");
   EXPECT_EQ(again.job.masks, "/masks");
   EXPECT_EQ(again.job.folder, "/work");

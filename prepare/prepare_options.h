@@ -11,7 +11,7 @@ namespace skyquilt::prepare {
 struct PrepareOptions {
   std::string holdout = "every:8";
   double ransac_threshold_m = 10.0;
-  std::string poses = "colmap";
+  std::string poses = "fast";
   bool seed_poses = true;
   std::string camera_model = "OPENCV";
   std::string colmap = "colmap";

@@ -20,13 +20,15 @@ WRAPPER = """#!/bin/sh
 here=$(dirname "$0")
 list=
 output=
+again=
 previous=
 for word in "$@"; do
   [ "$previous" = --output_path ] && output=$word
   [ "$previous" = --image_list_path ] && list=$word
+  [ "$previous" = --ImageReader.existing_camera_id ] && again=yes
   previous=$word
 done
-if [ "$1" = feature_extractor ]; then
+if [ "$1" = feature_extractor ] && [ -z "$again" ]; then
   echo "$(wc -l < "$list")" >> "$here/calls"
   if [ -e "$here/fail" ] && grep -q "$(cat "$here/fail")" "$list"; then echo "no memory left"; exit 1; fi
   if [ -e "$here/hold" ] && grep -q "$(cat "$here/hold")" "$list"; then while [ -e "$here/hold" ]; do sleep 0.1; done; fi

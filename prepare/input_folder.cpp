@@ -60,8 +60,7 @@ InputFolder FindInputs(const fs::path& photos, const fs::path& model, const fs::
   if (fs::is_directory(folder / "images") && (simulated || !HoldsPhotosDirectly(folder))) found.photo_root = folder / "images";
 
   if (!model.empty()) {
-    FindModel(model);  // before hours of work
-    found.model = fs::canonical(model);
+    found.model = fs::canonical(FindModel(model).path);  // before hours of work
   } else if (simulated) {
     found.model = folder / "sparse" / "0";
   } else if (fs::is_directory(folder / "sparse" / "0")) {

@@ -1,6 +1,7 @@
 #include "prepare/model_use.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/base/cancel.h"
 #include "core/base/child_process.h"
@@ -49,7 +50,9 @@ void UseAlphaAsMasks(const InputModel& model, const std::filesystem::path& photo
   std::vector<size_t> without_mask;
   for (size_t i = 0; i < photos.size(); ++i) {
     // JPEGs have no alpha.
-    if (masks[i].empty() && std::filesystem::path(photos[i].name).extension() == ".png") without_mask.push_back(i);
+    std::string extension = std::filesystem::path(photos[i].name).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (masks[i].empty() && extension == ".png") without_mask.push_back(i);
   }
   if (without_mask.empty()) return;
   base::Progress progress("read alpha of photos", static_cast<double>(without_mask.size()), "photos");
@@ -72,13 +75,16 @@ void UseAlphaAsMasks(const InputModel& model, const std::filesystem::path& photo
 
 void HoldOutByModel(const InputModel& model, const std::filesystem::path& path, survey::Survey& survey) {
   if (model.test_photos.empty()) return;
-  size_t n_test = 0;
-  for (survey::Photo& photo : survey.photos) {
-    photo.is_test = model.test_photos.contains(photo.name);
-    n_test += photo.is_test ? 1 : 0;
+  const auto is_test = [&model](const survey::Photo& photo) { return model.test_photos.contains(photo.name); };
+  const auto n_test = static_cast<size_t>(std::count_if(survey.photos.begin(), survey.photos.end(), is_test));
+  if (n_test == 0) {
+    spdlog::warn("{}: none of the {} photos that the model holds out has a pose, so photos are held out by prepare.holdout", path.string(),
+                 model.test_photos.size());
+    return;
   }
   if (n_test == survey.photos.size())
     throw base::InputError(path, "holds out every photo, so none is left to train on", "Choose the held-out photos with --holdout");
+  for (survey::Photo& photo : survey.photos) photo.is_test = is_test(photo);
   spdlog::info("{} photos are held out, as the model says (choose others with prepare.holdout)", n_test);
 }
 

@@ -23,7 +23,8 @@ void PlaceByModel(const ModelPlace& place, std::vector<Station>& stations);
 // none, whose paths it puts into `masks`. Photos of other formats are left as they are. Throws base::InputError.
 void UseAlphaAsMasks(const InputModel& model, const std::filesystem::path& photo_root, const std::vector<PhotoFile>& photos,
                      const std::filesystem::path& folder, std::vector<std::string>& masks, base::ThreadPool& threads);
-// Marks the photos that the model holds out as test photos, instead of every N-th; nothing when the model has no split. Throws base::InputError when
+// Marks the photos that the model holds out as test photos, instead of every N-th; nothing when the model has no split; a warning when no
+// photo of its split has a pose. Throws base::InputError when
 // none is left to train on.
 void HoldOutByModel(const InputModel& model, const std::filesystem::path& path, survey::Survey& survey);
 

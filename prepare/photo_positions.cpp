@@ -90,20 +90,28 @@ std::optional<int> NumberOf(const std::string& name) {
   return std::stoi(match[1]);
 }
 
+// Empty: there is none.
+fs::path GeoFileOf(const fs::path& photo_root, const std::string& geo_file) {
+  if (!geo_file.empty()) return geo_file;
+  if (fs::exists(photo_root / "geo.txt")) return photo_root / "geo.txt";
+  const fs::path beside = photo_root.parent_path() / "geo.txt";
+  return photo_root.filename() == "images" && fs::exists(beside) ? beside : fs::path();
+}
+
 void UseGeoFile(const fs::path& file, std::vector<PhotoFile>& photos) {
-  std::map<std::string, std::vector<PhotoFile*>> by_name;
+  std::map<std::string, PhotoFile*> by_name;
+  std::map<std::string, std::vector<PhotoFile*>> by_base_name;
   for (PhotoFile& photo : photos) {
-    by_name[photo.name].push_back(&photo);
-    const std::string base_name = LowerName(fs::path(photo.name).filename().string());
-    if (base_name != photo.name) by_name[base_name].push_back(&photo);
+    by_name[photo.name] = &photo;
+    by_base_name[LowerName(fs::path(photo.name).filename().string())].push_back(&photo);
   }
   size_t n_used = 0;
   const std::vector<GeoRow> rows = ReadGeoFile(file);
   for (const GeoRow& row : rows) {
-    auto found = by_name.find(row.photo);
-    if (found == by_name.end()) found = by_name.find(LowerName(fs::path(row.photo).filename().string()));
-    if (found == by_name.end() || found->second.size() != 1) continue;
-    survey::PhotoTags& tags = found->second.front()->tags;
+    const auto exact = by_name.find(row.photo);
+    const auto same = by_base_name.find(LowerName(fs::path(row.photo).filename().string()));
+    if (exact == by_name.end() && (same == by_base_name.end() || same->second.size() != 1)) continue;
+    survey::PhotoTags& tags = (exact != by_name.end() ? exact->second : same->second.front())->tags;
     tags.gps = row.position;
     tags.horizontal_accuracy_m = row.horizontal_accuracy_m;
     tags.vertical_accuracy_m = row.vertical_accuracy_m;
@@ -251,11 +259,22 @@ std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
   return rows;
 }
 
+std::vector<fs::path> PositionFiles(const fs::path& photo_root, const std::string& geo_file) {
+  const fs::path table = GeoFileOf(photo_root, geo_file);
+  if (!table.empty()) return {table};
+  std::vector<fs::path> logs;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(photo_root, fs::directory_options::skip_permission_denied, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (LowerName(entry->path().extension().string()) == ".mrk") logs.push_back(entry->path());
+  }
+  std::sort(logs.begin(), logs.end());
+  return logs;
+}
+
 void UsePositionFiles(const fs::path& photo_root, const std::string& geo_file, std::vector<PhotoFile>& photos) {
-  if (!geo_file.empty()) return UseGeoFile(geo_file, photos);
-  if (fs::exists(photo_root / "geo.txt")) return UseGeoFile(photo_root / "geo.txt", photos);
-  const fs::path beside = photo_root.parent_path() / "geo.txt";
-  if (photo_root.filename() == "images" && fs::exists(beside)) return UseGeoFile(beside, photos);
+  const fs::path table = GeoFileOf(photo_root, geo_file);
+  if (!table.empty()) return UseGeoFile(table, photos);
   UseMrkFiles(photo_root, photos);
 }
 

@@ -6,7 +6,6 @@
 //            manuals name longitude before latitude; the labels in the files (Lat, Lon, Ellh, Q) decide.
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -33,6 +32,9 @@ struct MrkRow {
 // Throw base::InputError with the line and how to fix it.
 std::vector<GeoRow> ReadGeoFile(const std::filesystem::path& file);
 std::vector<MrkRow> ReadMrkFile(const std::filesystem::path& file);
+
+// The files that UsePositionFiles reads positions from: the table, or else the .MRK files below the photo folder in name order.
+std::vector<std::filesystem::path> PositionFiles(const std::filesystem::path& photo_root, const std::string& geo_file);
 
 // Replaces position and accuracy in the tags of the photos that the files name, and logs it. `geo_file`: given by the user; empty: geo.txt in the
 // photo folder, or beside it when that is called images. Without either, every .MRK serves the photos of its folder, unless it contradicts their tags

@@ -81,13 +81,18 @@ class PhotoFinder {
 std::vector<Registered> MatchPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files, const fs::path& model_folder,
                                     const fs::path& photo_root) {
   const PhotoFinder finder(files, model);
+  // Names of other programs may lack the folder, so that several images seem to be one photo.
+  std::map<size_t, int> claims;
+  for (const survey::ColmapImage& image : model.images) {
+    if (const std::optional<size_t> file = finder.Find(image.name)) ++claims[*file];
+  }
   std::vector<Registered> registered;
   std::vector<std::string> missing;
   std::vector<std::string> other_size;
   std::string size_example;
   for (const survey::ColmapImage& image : model.images) {
     const std::optional<size_t> file = finder.Find(image.name);
-    if (!file) {
+    if (!file || claims[*file] > 1) {
       missing.push_back(image.name);
       continue;
     }
@@ -102,8 +107,8 @@ std::vector<Registered> MatchPhotos(const survey::ColmapModel& model, const std:
     registered.push_back({&image, *file});
   }
   if (!missing.empty()) {
-    spdlog::warn("{}: {} of {} photos of the model are left out, because they are not in {} or cannot be read: {}", model_folder.string(),
-                 missing.size(), model.images.size(), photo_root.string(), Joined(missing));
+    spdlog::warn("{}: {} of {} photos of the model are left out, because they are not in {}, cannot be read or have a name that several share: {}",
+                 model_folder.string(), missing.size(), model.images.size(), photo_root.string(), Joined(missing));
   }
   if (!other_size.empty()) {
     spdlog::warn("{} photos are left out, because their size is not that of their camera in the model: {} ({})", other_size.size(),

@@ -29,7 +29,8 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"use_gpu", &O::use_gpu, Range(), "let COLMAP use a GPU for features, and for its own matching (needs a COLMAP built for it)"},
       {"masks", &O::masks, Range(), "folder of masks named PHOTO.jpg.png, 0 = ignore; empty: masks/ inside the photo folder if there is one"},
       {"geo_file", &O::geo_file, Range(),
-       "OpenDroneMap's table of photo positions in any coordinate system; empty: geo.txt in the photo folder or above it if there is one"},
+       "OpenDroneMap's table of photo positions in any coordinate system; empty: geo.txt in the photo folder, or beside it when that is called "
+       "images"},
       {"flight_gap_s", &O::flight_gap_s, Range{1e-3, 1e9}, "a longer pause between photos, in seconds, starts a new flight"},
       {"flight_offsets", &O::flight_offsets, Range::OneOf({"auto", "off"}),
        "auto: tagged heights get an offset and a drift in time per flight where they need it; off: never"},

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Searches for inputs that break the file readers: libFuzzer with address and undefined-behaviour sanitizers, and limits on memory and time per input.
-#   scripts/fuzz.sh [SECONDS] [TARGET...]      default: 60 seconds for each of colmap config blocks archive exif viewer tour
+#   scripts/fuzz.sh [SECONDS] [TARGET...]      default: 60 seconds for each of those below
 # Findings are kept as build/fuzz/findings/TARGET-*. After a fix, copy the input to tests/fuzz/corpus/TARGET: the unit tests read all files there.
 set -euo pipefail
 
@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 seconds=${1:-60}
 [[ "$seconds" =~ ^[1-9][0-9]*$ ]] || { echo "usage: scripts/fuzz.sh [SECONDS] [TARGET...]" >&2; exit 2; }
 targets=("${@:2}")
-(( ${#targets[@]} > 0 )) || targets=(colmap config blocks archive exif viewer tour)
+(( ${#targets[@]} > 0 )) || targets=(colmap config blocks archive exif viewer tour transforms opensfm metashape opf positions)
 scripts/setup.sh --fuzz
 cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DSKYQUILT_FUZZ=ON \
   -DSKYQUILT_SANITIZE=address,undefined,fuzzer-no-link >/dev/null

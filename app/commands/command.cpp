@@ -132,6 +132,15 @@ void AddDurationFlag(CLI::App& command, const Overrides& overrides, const std::s
 
 }  // namespace
 
+void AddModelFlag(CLI::App& command, std::string& model) {
+  command
+      .add_option(
+          "--model", model,
+          "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape) or .opf (Pix4D); "
+          "without it COLMAP is run")
+      ->type_name("PATH");
+}
+
 void AddBoundaryFlag(CLI::App& command, const Overrides& overrides) {
   command
       .add_option_function<std::string>(

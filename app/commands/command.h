@@ -47,6 +47,8 @@ std::string AllowedText(const std::string& key);
 void AddOptionFlag(CLI::App& command, const Overrides& overrides, const std::string& flag, const std::string& key, const std::string& help);
 // Adds the flag for the simulated place: `take` receives its name. The old flag --preset still works, with a warning.
 void AddPlaceFlag(CLI::App& command, const std::string& names, const std::function<void(const std::string&)>& take, const std::string& help);
+// --model: a path.
+void AddModelFlag(CLI::App& command, std::string& model);
 // --boundary: a file; stored as an absolute path, as later commands may run elsewhere.
 void AddBoundaryFlag(CLI::App& command, const Overrides& overrides);
 // --memory.

@@ -16,12 +16,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   CLI::App* command = app.add_subcommand("prepare", "make a geo-referenced survey from photos and their camera model");
   command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->required()->type_name("FOLDER");
   command->add_option("-o,--out", flags->out, "project folder; created if it does not exist")->required()->type_name("FOLDER");
-  command
-      ->add_option(
-          "--model", flags->model,
-          "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape) or .opf (Pix4D); "
-          "without it COLMAP is run")
-      ->type_name("PATH");
+  AddModelFlag(*command, flags->model);
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddOptionFlag(*command, overrides, "--masks", "prepare.masks", "folder of masks named PHOTO.jpg.png; pixels with value 0 are ignored");

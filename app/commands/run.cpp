@@ -80,12 +80,7 @@ void AddRun(CLI::App& app, CommandState& state) {
         overrides->push_back({"simulate.place", name});
       },
       "simulated place to use instead of photos" + AllowedText("simulate.place") + " [simulate.place]");
-  command
-      ->add_option(
-          "--model", flags->model,
-          "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape) or .opf (Pix4D); "
-          "without it COLMAP is run")
-      ->type_name("PATH");
+  AddModelFlag(*command, flags->model);
   AddOptionFlag(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
   AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",
                 "altitude above ground in metres of each block, row by row from the south-west, separated by commas");

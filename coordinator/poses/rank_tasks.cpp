@@ -18,8 +18,9 @@ RankTasks::RankTasks(comm::Communicator& comm, const RunOptions& options, bool v
 
 const std::vector<GroupMember>& RankTasks::Members() {
   if (group_ == nullptr) {
-    group_ = std::make_unique<RankGroup>(comm_, kTagPoses, setup_);
-    members_ = group_->WaitForRanks();
+    auto group = std::make_unique<RankGroup>(comm_, kTagPoses, setup_);
+    members_ = group->WaitForRanks();
+    group_ = std::move(group);
     for (const GroupMember& member : members_) comm_.Send(member.rank, kTagThreads, std::to_string(member.threads));
     spdlog::info("features and matches are found by {} ranks with {} threads at most", members_.size(), threads());
   }

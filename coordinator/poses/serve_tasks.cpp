@@ -26,8 +26,11 @@ class TaskReporter {
     more_.fetch_add(more);
     if (std::this_thread::get_id() != creator_ || Clock::now() - last_ < std::chrono::milliseconds(400)) return;
     last_ = Clock::now();
-    while (const std::optional<comm::Message> message = comm_.TryReceive()) {
-      if (message->tag == kTagDone) over_ = true;
+    // What follows the end is for the next piece of work, or ends the program.
+    while (!over_) {
+      const std::optional<comm::Message> message = comm_.TryReceive();
+      if (!message) break;
+      over_ = message->tag == kTagDone;
     }
     if (over_) base::RequestCancel();
     Flush();

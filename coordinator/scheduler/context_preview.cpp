@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "coordinator/scheduler/field_context.h"
-#include "core/base/errors.h"
+#include "coordinator/scheduler/preview_guard.h"
 #include "core/base/log.h"
 #include "core/brightness/luminance.h"
 #include "core/checkpoint/archive.h"
@@ -62,16 +62,9 @@ void Make(const survey::Survey& survey, const partition::BlockSet& blocks, const
 
 void ProvideContextPreview(const survey::Survey& survey, const partition::BlockSet& blocks, const Settings& settings, const Project& project,
                            double seconds, base::ThreadPool& threads) {
-  const std::filesystem::path folder = project.ProductsFolder();
-  if (!settings.products.preview || products::HasOrthophoto(folder)) return;
-  try {
-    if (products::FindPreview(folder, products::kFromContext)) return;
-    Make(survey, blocks, settings, project, seconds, threads);
-  } catch (const base::Interrupted&) {
-    throw;
-  } catch (const std::exception& error) {
-    spdlog::warn("there is no preview of the orthophoto from the context: {}", error.what());
-  }
+  AsPreview(settings, project, "preview of the orthophoto from the context", [&](const std::filesystem::path& folder) {
+    if (!products::FindPreview(folder, products::kFromContext)) Make(survey, blocks, settings, project, seconds, threads);
+  });
 }
 
 }  // namespace skyquilt::coordinator

@@ -13,7 +13,8 @@ namespace skyquilt::coordinator {
 // What goes wrong is a warning. Throws base::Interrupted only.
 void MakeFirstPicture(const Pipeline& pipeline, const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known,
                       base::ThreadPool& threads);
-// Makes it for a prepared survey that has neither this preview nor an orthophoto, for instance of an older program. Throws base::Interrupted only.
+// Makes it for a prepared survey that has neither this preview nor products, for instance of an older program. Throws base::Interrupted only, and
+// base::InputError for a damaged record of the stages.
 void ProvideFirstPicture(const Pipeline& pipeline);
 
 }  // namespace skyquilt::coordinator

@@ -4,9 +4,11 @@
 #include "coordinator/stages/stage.h"
 #include "coordinator/stages/stage_bodies.h"
 #include "core/base/errors.h"
+#include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/checkpoint/archive.h"
 #include "core/scene/field_file.h"
+#include "prepare/photo_positions.h"
 #include "tour/export/staged_folder.h"
 
 namespace skyquilt::coordinator {
@@ -34,6 +36,21 @@ std::string SurveyIdentity(const Project& project) {
   // Surveys of older programs have none, and keep their identity.
   if (std::filesystem::exists(tracks)) identity.append(" ").append(FileIdentity(tracks));
   return identity;
+}
+
+// Files that only some surveys have count where they are, so that records of older programs stay valid.
+FlatOptions PrepareInputs(const Pipeline& pipeline) {
+  FlatOptions inputs{
+      {"photos", pipeline.photos.string()}, {"model", pipeline.model.string()}, {"images", PhotosIdentity(pipeline.photos, pipeline.project.folder)}};
+  if (std::filesystem::is_regular_file(pipeline.model)) inputs["model file"] = FileIdentity(pipeline.model);
+  const std::filesystem::path images = pipeline.photos / "images";
+  std::string positions;
+  for (const std::filesystem::path& file :
+       prepare::PositionFiles(std::filesystem::is_directory(images) ? images : pipeline.photos, pipeline.settings.prepare.geo_file)) {
+    positions += FileIdentity(file);
+  }
+  if (!positions.empty()) inputs["positions"] = base::HashHex(positions);
+  return inputs;
 }
 
 // Of the file that limits the products.
@@ -108,12 +125,7 @@ std::vector<Stage> MakeTable() {
        .dated = false},
       {.name = "prepare",
        .options = {"prepare."},
-       .inputs =
-           [](const Pipeline& pipeline) {
-             return FlatOptions{{"photos", pipeline.photos.string()},
-                                {"model", pipeline.model.string()},
-                                {"images", PhotosIdentity(pipeline.photos, pipeline.project.folder)}};
-           },
+       .inputs = PrepareInputs,
        .outputs = [](const Project& p) { return Paths{p.SurveyFolder()}; },
        .completion_files = [](const Project& p) { return Paths{SurveyFile(p)}; },
        .body = PrepareBody,

@@ -107,9 +107,11 @@ std::vector<ColmapObservation> ReadObservations(Cursor& in, size_t n_features) {
 }
 
 // Skips the observations when `observations` is null.
+constexpr size_t kLeastImage_bytes = 4 + 56 + 4 + 1 + 8;
+
 void ReadImages(const std::filesystem::path& file, ColmapModel& model, ColmapObservations* observations) {
   Cursor in(file);
-  const size_t n_images = in.ReadCount(4 + 56 + 4 + 1 + 8, "images");
+  const size_t n_images = in.ReadCount(kLeastImage_bytes, "images");
   model.images.reserve(n_images);
   for (size_t i = 0; i < n_images; ++i) {
     ColmapImage image;
@@ -167,6 +169,10 @@ ColmapObservations ReadObservationsBinary(const std::filesystem::path& folder) {
   ColmapObservations observations;
   ReadImages(folder / "images.bin", model, &observations);
   return observations;
+}
+
+size_t CountColmapImages(const std::filesystem::path& folder) {
+  return Cursor(folder / "images.bin").ReadCount(kLeastImage_bytes, "images");
 }
 
 }  // namespace skyquilt::survey

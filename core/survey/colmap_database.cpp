@@ -58,6 +58,12 @@ std::vector<DatabaseImage> ColmapDatabase::ReadImages() const {
   return images;
 }
 
+size_t ColmapDatabase::CountPlaced() const {
+  // Latitude and longitude of GPS tags; COLMAP stores nothing, or zeros, where there are none.
+  Statement statement(*connection_, "SELECT COUNT(*) FROM images WHERE prior_tx != 0 OR prior_ty != 0", "read the images of");
+  return statement.Next() ? static_cast<size_t>(statement.Int(0)) : 0;
+}
+
 std::map<uint32_t, camera::Camera> ColmapDatabase::ReadCameras() const {
   Statement statement(*connection_, "SELECT camera_id, model, width, height, params FROM cameras ORDER BY camera_id", "read the cameras of");
   std::map<uint32_t, camera::Camera> cameras;
@@ -96,13 +102,11 @@ std::vector<DatabaseKeypoint> ColmapDatabase::ReadKeypoints(uint32_t image_id) c
     keypoints[i] = {.x = row[0], .y = row[1]};
     if (cols == 4) {
       keypoints[i].scale = row[2];
-      keypoints[i].orientation = row[3];
     } else if (cols == 6) {
       // Rows of the shape's matrix: a11 a12 a21 a22.
       keypoints[i].scale = 0.5F * (std::hypot(row[2], row[4]) + std::hypot(row[3], row[5]));
-      keypoints[i].orientation = std::atan2(row[4], row[2]);
     }
-    if (!std::isfinite(keypoints[i].x + keypoints[i].y + keypoints[i].scale + keypoints[i].orientation)) {
+    if (!std::isfinite(keypoints[i].x + keypoints[i].y + keypoints[i].scale)) {
       connection_->Fail("has " + OfImage("keypoints", image_id) + " that are not numbers");
     }
   }
@@ -162,8 +166,9 @@ std::vector<DatabaseMatches> ColmapDatabase::ReadTwoViewMatches() const {
   return all;
 }
 
-size_t ColmapDatabase::CountTwoViewGeometries() const {
-  Statement statement(*connection_, "SELECT COUNT(*) FROM two_view_geometries", "read the verified matches of");
+size_t ColmapDatabase::CountTwoViewGeometries(size_t min_rows) const {
+  Statement statement(*connection_, "SELECT COUNT(*) FROM two_view_geometries WHERE rows >= ?", "read the verified matches of");
+  statement.Bind(1, static_cast<int64_t>(min_rows));
   return statement.Next() ? static_cast<size_t>(statement.Int(0)) : 0;
 }
 

@@ -22,11 +22,10 @@ struct DatabaseImage {
   std::string name;  // relative to the folder of the photos
 };
 
-// A feature: place in pixels (core/camera/camera.h), radius in pixels, direction in radians (COLMAP's affine shape in the form of a similarity).
+// A feature: place in pixels (core/camera/camera.h), radius in pixels (of COLMAP's affine shape in the form of a similarity).
 struct DatabaseKeypoint {
   float x = 0.0F, y = 0.0F;
-  float scale = 1.0F;        // 1 where the database has places only
-  float orientation = 0.0F;  // from the x axis towards the y axis
+  float scale = 1.0F;  // 1 where the database has places only
 };
 
 constexpr size_t kDatabaseDescriptorBytes = 128;
@@ -60,6 +59,7 @@ class ColmapDatabase {
   ColmapDatabase& operator=(ColmapDatabase&&) noexcept;
 
   std::vector<DatabaseImage> ReadImages() const;  // in the order of their ids
+  size_t CountPlaced() const;                     // images with a position from their EXIF tags
   std::map<uint32_t, camera::Camera> ReadCameras() const;
   // Empty for an image without features and for an unknown id.
   std::vector<DatabaseKeypoint> ReadKeypoints(uint32_t image_id) const;
@@ -75,7 +75,8 @@ class ColmapDatabase {
   std::vector<ImagePair> ReadMatchedPairs(size_t min_rows) const;
   // The matches that agree with one geometry of the two views, for every pair that COLMAP has verified; those without one have none.
   std::vector<DatabaseMatches> ReadTwoViewMatches() const;
-  size_t CountTwoViewGeometries() const;
+  // Pairs that COLMAP has verified and found at least `min_rows` matches of one geometry in.
+  size_t CountTwoViewGeometries(size_t min_rows) const;
 
   // COLMAP's lists of pairs cannot hold names with spaces. UsePlainNames gives every image the name PlainName(id), until RestoreNames or the next
   // opening of the file by this class. No photo can have such a name, as it ends in a slash.

@@ -13,10 +13,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kMerge = "join the parts of";
 
-void RemoveDatabase(const fs::path& file) {
-  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(file.string() + suffix);
-}
-
 // Makes part visible as database "part" while it exists.
 class Attached {
  public:
@@ -83,6 +79,10 @@ void CopyPart(const DatabaseConnection& connection, const DatabasePart& part, bo
 }
 
 }  // namespace
+
+void RemoveDatabase(const fs::path& file) {
+  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(file.string() + suffix);
+}
 
 void MergeFeatures(std::span<const DatabasePart> parts, const fs::path& file) {
   SKYQUILT_CHECK(!parts.empty(), "no parts to join");

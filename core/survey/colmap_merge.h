@@ -20,4 +20,7 @@ struct DatabasePart {
 // Names that a part does not have are left out. The parts are not changed. There must be one at least. Throws base::InputError, base::Interrupted.
 void MergeFeatures(std::span<const DatabasePart> parts, const std::filesystem::path& file);
 
+// With the journals that SQLite may have left beside it.
+void RemoveDatabase(const std::filesystem::path& file);
+
 }  // namespace skyquilt::survey

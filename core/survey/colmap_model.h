@@ -49,6 +49,8 @@ using ColmapObservations = std::map<uint32_t, std::vector<ColmapObservation>>;
 // warning. Throws base::InputError: missing files, truncation, unsupported camera model, impossible sizes, NaN in a pose (names the image),
 // contradictions.
 ColmapModel ReadColmapModel(const std::filesystem::path& folder);
+// Number of images with a pose in a binary model, without reading the rest. Throws base::InputError: missing files, truncation.
+size_t CountColmapImages(const std::filesystem::path& folder);
 // Reads the 2-D observations of the same model; an image without any has an empty list. They may name points that ReadColmapModel dropped. Throws
 // base::InputError: missing files, truncation, an image twice, a pixel that is not finite.
 ColmapObservations ReadColmapObservations(const std::filesystem::path& folder);

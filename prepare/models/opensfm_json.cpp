@@ -138,15 +138,21 @@ InputModel ReadOpensfm(const fs::path& file, const ModelPhotos& photos) {
   model.format = ModelFormat::kOpensfm;
   SfmBuilder builder(model.sfm);
   const JsonValue cameras = reconstruction.At("cameras");
+  const auto shots = reconstruction.At("shots").Members();
+  // The size of a camera's photos is that of the first one that is there.
+  std::map<std::string, std::optional<Eigen::Vector2i>> sizes;
+  for (const auto& [shot_name, shot] : shots) {
+    std::optional<Eigen::Vector2i>& size = sizes[shot.At("camera").Text()];
+    if (!size) size = photos.SizeOf(photos.Resolve(shot_name, file.parent_path()));
+  }
   std::map<std::string, uint32_t> camera_ids, image_of_shot;
-  for (const auto& [shot_name, shot] : reconstruction.At("shots").Members()) {
-    const std::string camera_name = shot.At("camera").Text();
+  for (const auto& [camera_name, size] : sizes) {
+    const JsonValue camera = cameras.At(camera_name);
+    camera_ids[camera_name] = builder.AddCamera(ToCamera(camera, SizeInPixels(camera, size)));
+  }
+  for (const auto& [shot_name, shot] : shots) {
     const std::string name = photos.Resolve(shot_name, file.parent_path());
-    if (!camera_ids.contains(camera_name)) {
-      const JsonValue camera = cameras.At(camera_name);
-      camera_ids[camera_name] = builder.AddCamera(ToCamera(camera, SizeInPixels(camera, photos.SizeOf(name))));
-    }
-    image_of_shot[shot_name] = builder.AddImage(name, camera_ids[camera_name], PoseOfShot(shot));
+    image_of_shot[shot_name] = builder.AddImage(name, camera_ids[shot.At("camera").Text()], PoseOfShot(shot));
   }
   if (const std::optional<JsonValue> points = reconstruction.Find("points")) {
     AddPoints(*points, file.parent_path() / "tracks.csv", image_of_shot, builder);

@@ -57,7 +57,9 @@ camera::Camera LensOf(const JsonValue& frame, const JsonValue& root, const Eigen
   const double p1 = LensNumber(frame, root, "p1");
   const double p2 = LensNumber(frame, root, "p2");
   const std::optional<JsonValue> model = FrameOrFile(frame, root, "camera_model");
-  const std::string name = model ? model->Text() : "OPENCV";
+  // instant-ngp's scripts name a fisheye so, and no model.
+  const std::optional<JsonValue> fisheye = FrameOrFile(frame, root, "is_fisheye");
+  const std::string name = model ? model->Text() : fisheye && fisheye->Boolean() ? "OPENCV_FISHEYE" : "OPENCV";
   const std::string undistort = "Undistort the photos, or export with camera model OPENCV or OPENCV_FISHEYE";
   if (name == "OPENCV_FISHEYE") {
     if (p1 != 0.0 || p2 != 0.0) frame.Fail("has p1 or p2 with OPENCV_FISHEYE, which has no tangential distortion", undistort);

@@ -20,7 +20,7 @@ constexpr size_t kMaxNeighbors = 24;
 constexpr size_t kBlockSize = 10;  // photos per side of a block of pairs; small blocks report progress more often
 // Pairs that one call of COLMAP verifies: starting it takes about 0.2 s, and a kill loses the pairs of one call.
 constexpr size_t kPairsPerCall = 400;
-constexpr size_t kMinVerified = 15;  // COLMAP's SiftMatching.min_num_inliers
+constexpr size_t kMinSpatialPhotos = 60;
 
 using Arguments = std::vector<std::string>;
 
@@ -42,8 +42,8 @@ bool IsPlain(const std::string& name) {
 }  // namespace
 
 void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
-  const auto n_tagged =
-      static_cast<size_t>(std::count_if(photos.begin(), photos.end(), [](const PhotoFile& photo) { return photo.tags.gps.has_value(); }));
+  // COLMAP knows the positions in EXIF tags only, not those of our position files.
+  const size_t n_tagged = survey::ColmapDatabase(job.Database()).CountPlaced();
   const bool spatial = photos.size() >= kMinSpatialPhotos && 10 * n_tagged >= 9 * photos.size();
   ColmapCommand command{settings.program, spatial ? "spatial_matcher" : "exhaustive_matcher",
                         MatchingArguments(job, settings, options, options.use_gpu)};
@@ -54,8 +54,10 @@ void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const s
   } else {
     Append(command.arguments, {"--ExhaustiveMatching.block_size", std::to_string(photos.size() < 100 ? kBlockSize : 50)});
     if (photos.size() > 300) {
-      spdlog::warn("{} photos without GPS tags: matching all {} pairs takes long; use photos with GPS tags, or give a model with --model",
-                   photos.size(), photos.size() * (photos.size() - 1) / 2);
+      spdlog::warn(
+          "most of {} photos without GPS in their EXIF tags: matching all {} pairs takes long; use photos with GPS tags, or give a model with "
+          "--model",
+          photos.size(), photos.size() * (photos.size() - 1) / 2);
     }
   }
   RunWithProgress(job, command, "match features", photos.size());
@@ -97,13 +99,12 @@ void VerifyMatches(const ColmapJob& job, const ColmapSettings& settings, const P
   }
   progress.Finish();
   survey::ColmapDatabase database(job.Database());
-  const std::vector<survey::DatabaseMatches> verified = database.ReadTwoViewMatches();
-  if (verified.size() < pairs.size()) {
-    throw base::InputError(job.Log(), fmt::format("COLMAP verified {} of {} pairs only", verified.size(), pairs.size()),
+  const size_t n_verified = database.CountTwoViewGeometries(0);
+  if (n_verified < pairs.size()) {
+    throw base::InputError(job.Log(), fmt::format("COLMAP verified {} of {} pairs only", n_verified, pairs.size()),
                            "Read the log; to let COLMAP do the matching, set prepare.poses = \"colmap\" and add --restart");
   }
-  const auto n_good = std::count_if(verified.begin(), verified.end(), [](const auto& pair) { return pair.features.size() >= kMinVerified; });
-  spdlog::info("{} of {} pairs with matches see the same things", n_good, pairs.size());
+  spdlog::info("{} of {} pairs with matches see the same things", database.CountTwoViewGeometries(kMinVerified), pairs.size());
 }
 
 void MakeModels(const ColmapJob& job, const ColmapSettings& settings, size_t n_photos, const PoseOptions& options) {
@@ -132,13 +133,11 @@ FoundModel LargestModel(const ColmapJob& job) {
   }
   std::sort(folders.begin(), folders.end());
   for (const fs::path& folder : folders) {
-    const size_t n_photos = survey::ReadColmapModel(folder).images.size();
+    const size_t n_photos = survey::CountColmapImages(folder);
     ++n_models;
     if (n_photos > best.n_photos) best = {folder, n_photos};
   }
-  if (best.folder.empty())
-    throw base::InputError(job.Log(), "COLMAP found no model",
-                           "The photos may overlap too little or be blurred: read the log, add photos, or give a model with --model");
+  if (best.folder.empty()) throw NoModelError(job.Log(), "COLMAP found no model", kNoModelFix);
   if (n_models > 1)
     spdlog::warn("COLMAP found {} models that do not connect; only the largest is used, with {} photos ({}). Photos between them would connect them",
                  n_models, best.n_photos, best.folder.string());

@@ -19,10 +19,12 @@ struct ColmapSettings {
 
 // All throw base::InputError that names the log when COLMAP fails, base::Interrupted when asked to stop.
 
-// COLMAP's own matching and verification: GPS neighbours when there are at least kMinSpatialPhotos photos and at least nine tenths of them have a GPS
-// tag, otherwise all pairs.
+// COLMAP's own matching and verification: GPS neighbours when there are at least 60 photos and at least nine tenths of them have GPS in their EXIF
+// tags, otherwise all pairs.
 void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options);
-constexpr size_t kMinSpatialPhotos = 60;
+
+// COLMAP's SiftMatching.min_num_inliers: it keeps no geometry of fewer matches.
+constexpr size_t kMinVerified = 15;
 
 // Which of the matches in the database agree with one geometry of the two views, for every pair that has enough of them. A later call goes on where
 // one was stopped. Throws base::InputError when COLMAP left pairs out.

@@ -9,8 +9,7 @@
 #include "prepare/poses/choose_pairs.h"
 #include "prepare/poses/colmap_commands.h"
 #include "prepare/poses/extract_features.h"
-#include "prepare/poses/feature_store.h"
-#include "prepare/poses/match_pairs.h"
+#include "prepare/poses/fill_database.h"
 #include "prepare/poses/seed_model.h"
 
 namespace skyquilt::prepare {
@@ -35,11 +34,10 @@ struct StepHashes {
 std::string PairInputs(const std::vector<PhotoFile>& photos, const PairRules& rules) {
   std::string text = fmt::format("pairs {} {} {} {} {} {} {} {}\n", rules.all_below, rules.neighbors, rules.sectors, rules.sector_reach,
                                  rules.position_neighbors, rules.similar, rules.name_neighbors, rules.links);
-  const auto number = [](const std::optional<double>& value) { return value ? fmt::format("{:.9g}", *value) : std::string("-"); };
   for (const PhotoFile& photo : photos) {
     const survey::PhotoTags& tags = photo.tags;
     text += tags.gps ? fmt::format("{:.9f} {:.9f}", tags.gps->latitude_deg, tags.gps->longitude_deg) : "-";
-    text += " " + number(tags.gimbal_pitch_deg) + " " + number(tags.gimbal_yaw_deg) + " " + number(tags.relative_altitude_m) + "\n";
+    text += " " + TagText(tags.gimbal_pitch_deg) + " " + TagText(tags.gimbal_yaw_deg) + " " + TagText(tags.relative_altitude_m) + "\n";
   }
   return text;
 }
@@ -60,35 +58,20 @@ StepHashes HashSteps(const Attempt& attempt, const std::vector<PhotoFile>& photo
   return hashes;
 }
 
-void MatchOurselves(const Attempt& attempt, const MatchJob& match_job, const std::vector<PhotoFile>& photos, const PoseOptions& options,
-                    base::ThreadPool& threads, RemoteTasks* ranks) {
-  std::vector<std::string> names;
-  names.reserve(photos.size());
-  for (const PhotoFile& photo : photos) names.push_back(photo.name);
-  FeatureStore features(attempt.job.Database(), names, kFeatureMemory_bytes);
-  const PhotoPairs pairs = ChoosePairs(photos, *attempt.pairs, static_cast<uint64_t>(options.seed), features, threads);
-  MatchPairs(match_job, features, pairs, threads, ranks);
-}
-
 // Everything but the model.
-void FillDatabase(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
-                  base::ThreadPool& threads, RemoteTasks* ranks) {
+void FillDatabaseOf(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+                    base::ThreadPool& threads, RemoteTasks* ranks) {
   const ColmapJob& job = attempt.job;
-  base::RequireWritableFolder(job.folder);
   spdlog::info("running COLMAP on {} photos; its log is {}", photos.size(), job.Log().string());
-  RunStep(job, {"features", hashes.features}, {"own_matches", "matches", kSeededStep, kModelStep},
-          [&] { ExtractFeatures(job, attempt.settings, photos, options, hashes.features, ranks); });
-  RemoveFeatureParts(job);
   if (!attempt.pairs) {
+    FillFeatures(job, attempt.settings, photos, options, hashes.features, ranks);
     RunStep(job, {"matches", hashes.matches}, {kModelStep}, [&] { MatchByColmap(job, attempt.settings, photos, options); });
     return;
   }
-  const MatchJob match_job{.folder = job.folder / "matches", .input = hashes.features};
-  RunStep(job, {"own_matches", hashes.matches}, {"matches", kSeededStep, kModelStep},
-          [&] { MatchOurselves(attempt, match_job, photos, options, threads, ranks); });
-  // Only now: a kill before the step is marked as done would have to match everything again.
-  RemoveChunks(match_job);
-  RunStep(job, {"matches", hashes.matches}, {kSeededStep, kModelStep}, [&] { VerifyMatches(job, attempt.settings, options); });
+  const auto choose = [&](const std::vector<PhotoFile>& found, FeatureStore& features) {
+    return ChoosePairs(found, *attempt.pairs, static_cast<uint64_t>(options.seed), features, threads);
+  };
+  FillDatabase(job, attempt.settings, photos, options, {hashes.features, hashes.matches}, choose, threads, ranks);
 }
 
 FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
@@ -116,7 +99,7 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, c
   const ColmapSettings settings{.program = program, .n_threads = threads.size(), .fast = options.fast};
   const Attempt first{job, settings, options.fast ? std::optional(PairRules{}) : std::nullopt, options.fast && options.seed_poses};
   const StepHashes hashes = HashSteps(first, photos, options);
-  FillDatabase(first, hashes, photos, options, threads, ranks);
+  FillDatabaseOf(first, hashes, photos, options, threads, ranks);
   if (!options.fast) return FindModel(first, hashes, photos, options, threads).folder;
 
   std::optional<FoundModel> found;
@@ -125,7 +108,7 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, c
     found = FindModel(first, hashes, photos, options, threads);
     if (static_cast<double>(found->n_photos) >= kEnoughRegistered * static_cast<double>(photos.size())) return found->folder;
     reason = fmt::format("it found the poses of {} of {} photos only", found->n_photos, photos.size());
-  } catch (const base::InputError& error) {
+  } catch (const NoModelError& error) {
     reason = error.what();
   }
   spdlog::warn("the fast way is not enough: {}. Once more with COLMAP's own settings and more pairs", reason);
@@ -133,11 +116,11 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, c
   second.job.folder = job.folder / "more_pairs";
   second.settings.fast = false;
   const StepHashes second_hashes = HashSteps(second, photos, options);
-  FillDatabase(second, second_hashes, photos, options, threads, ranks);
+  FillDatabaseOf(second, second_hashes, photos, options, threads, ranks);
   FoundModel again;
   try {
     again = FindModel(second, second_hashes, photos, options, threads);
-  } catch (const base::InputError& error) {
+  } catch (const NoModelError& error) {
     if (!found) throw;
     spdlog::warn("more pairs give no model: {}", error.what());
     return found->folder;

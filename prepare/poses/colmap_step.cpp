@@ -36,10 +36,8 @@ void RunColmapCommand(const ColmapJob& job, const ColmapCommand& command, const 
   if (status == 0) return;
   std::string found = "COLMAP's " + command.name + " failed with status " + std::to_string(status);
   if (!last_lines.empty()) found += "; its last line: " + last_lines.back();
-  throw base::InputError(job.Log(), found,
-                         command.name == "mapper"
-                             ? "The photos may overlap too little or be blurred: read the log, add photos, or give a model with --model"
-                             : "Read the log; if memory ran out, lower prepare.max_image_size");
+  if (command.name == "mapper" && status == 1) throw NoModelError(job.Log(), found, kNoModelFix);
+  throw base::InputError(job.Log(), found, "Read the log; if memory ran out, lower prepare.max_image_size");
 }
 
 void RunWithProgress(const ColmapJob& job, const ColmapCommand& command, const std::string& label, size_t n_photos) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/errors.h"
+
 namespace skyquilt::prepare {
 
 struct ColmapJob {
@@ -26,8 +28,14 @@ struct ColmapCommand {
   std::vector<std::string> environment = {};  // "NAME=value"
 };
 
-// Appends the output to the job's log and passes each line on. Throws base::InputError that names the log when the command fails, base::Interrupted
-// when asked to stop.
+// The photos and matches give no model: other matches may.
+class NoModelError : public base::InputError {
+ public:
+  using base::InputError::InputError;
+};
+
+// Appends the output to the job's log and passes each line on. Throws base::InputError that names the log when the command fails (NoModelError when
+// the mapper ends by itself without a model), base::Interrupted when asked to stop.
 void RunColmapCommand(const ColmapJob& job, const ColmapCommand& command, const std::function<void(const std::string& line)>& on_line);
 // With a line of progress in photos, as far as the output tells it.
 void RunWithProgress(const ColmapJob& job, const ColmapCommand& command, const std::string& label, size_t n_photos);
@@ -45,6 +53,8 @@ void MarkDone(const ColmapJob& job, const ColmapStep& step);
 void ForgetStep(const ColmapJob& job, const std::string& name);
 // Does the step unless it is done. `later`: the steps that must follow again.
 void RunStep(const ColmapJob& job, const ColmapStep& step, const std::vector<std::string>& later, const std::function<void()>& run);
+
+constexpr const char* kNoModelFix = "The photos may overlap too little or be blurred: read the log, add photos, or give a model with --model";
 
 constexpr const char* kModelStep = "model";  // makes the models; the other steps fill the database
 

@@ -35,6 +35,11 @@ std::vector<std::string> ExtractorArguments(const PoseOptions& options) {
           std::to_string(options.seed)};
 }
 
+// A photo that has as many as it may keep is not searched again.
+size_t FewFeatures(const PoseOptions& options) {
+  return static_cast<size_t>(std::min(FastColmapFlags().few_features, options.max_features));
+}
+
 // The photos of each camera in parts of about the same size.
 std::vector<survey::DatabasePart> SplitPhotos(const ColmapJob& job, const std::vector<PhotoFile>& photos, const std::string& input,
                                               size_t photos_per_part) {
@@ -76,7 +81,7 @@ std::string FeatureInputs(const ColmapJob& job, const ColmapSettings& settings, 
     if (!job.masks.empty() && fs::exists(mask)) add_file(mask);
   }
   const FastColmapFlags flags;
-  if (settings.fast) text += fmt::format("fast {} {} {}\n", flags.first_octave, flags.max_features, flags.few_features);
+  if (settings.fast) text += fmt::format("fast {} {} {}\n", flags.first_octave, flags.max_features, FewFeatures(options));
   return text;
 }
 
@@ -106,7 +111,7 @@ void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const
                                      .arguments = ExtractorArguments(options),
                                      .camera_model = options.camera_model,
                                      .search = settings.fast ? fast : thorough,
-                                     .few_features = settings.fast ? flags.few_features : 0,
+                                     .few_features = settings.fast ? FewFeatures(options) : 0,
                                      .search_again = thorough,
                                      .names = part.names,
                                      .file = part.file});

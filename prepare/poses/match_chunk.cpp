@@ -50,8 +50,9 @@ bool TakePair(std::string_view& bytes, survey::DatabaseMatches* matches) {
 
 }  // namespace
 
-std::string ChunkKey(const std::string& input, std::span<const PhotoPair> pairs, const MatchRules& rules) {
-  std::string text = input + " " + std::to_string(rules.max_ratio) + " " + std::to_string(rules.max_distance) + " " + std::to_string(rules.mutual);
+std::string ChunkKey(const std::string& input, std::span<const PhotoPair> pairs, const MatchRules& rules, size_t min_matches) {
+  std::string text = input + " " + std::to_string(rules.max_ratio) + " " + std::to_string(rules.max_distance) + " " + std::to_string(rules.mutual) +
+                     " " + std::to_string(min_matches);
   for (const PhotoPair& pair : pairs) text += "\n" + std::to_string(pair.a) + " " + std::to_string(pair.b);
   return base::HashHex(text);
 }

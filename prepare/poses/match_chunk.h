@@ -19,7 +19,7 @@
 namespace skyquilt::prepare {
 
 // Identity of what a chunk's matches are made from; `input` identifies the features.
-std::string ChunkKey(const std::string& input, std::span<const PhotoPair> pairs, const MatchRules& rules);
+std::string ChunkKey(const std::string& input, std::span<const PhotoPair> pairs, const MatchRules& rules, size_t min_matches);
 
 // Matches in the order of the pairs. Pairs with fewer than `min_matches` get none, as COLMAP would verify none of them. on_pair is called after each
 // pair by any of the threads. Throws base::Interrupted, and base::InputError for a damaged database.

@@ -33,7 +33,7 @@ std::vector<Chunk> SplitIntoChunks(const MatchJob& job, const PhotoPairs& pairs,
   std::vector<Chunk> chunks;
   for (size_t first = 0; first < pairs.size(); first += pairs_per_chunk) {
     const std::span some = std::span(pairs).subspan(first, std::min(pairs_per_chunk, pairs.size() - first));
-    chunks.push_back({job.folder / fmt::format("chunk_{:05}.bin", chunks.size()), ChunkKey(job.input, some, job.rules), some});
+    chunks.push_back({job.folder / fmt::format("chunk_{:05}.bin", chunks.size()), ChunkKey(job.input, some, job.rules, job.min_matches), some});
   }
   return chunks;
 }

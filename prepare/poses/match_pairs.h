@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/thread_pool.h"
+#include "prepare/poses/colmap_commands.h"
 #include "prepare/poses/feature_store.h"
 #include "prepare/poses/match_chunk.h"
 #include "prepare/poses/pose_task.h"
@@ -15,7 +16,7 @@ struct MatchJob {
   std::filesystem::path folder;  // for the files of chunks; made if needed
   std::string input;             // identifies the features: chunks made from others are not used
   MatchRules rules = {};
-  size_t min_matches = 15;       // COLMAP's SiftMatching.min_num_inliers
+  size_t min_matches = kMinVerified;
   size_t pairs_per_chunk = 256;  // half a minute or less on two cores
 };
 

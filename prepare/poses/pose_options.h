@@ -22,7 +22,7 @@ struct FastColmapFlags {
   int first_octave = 0;     // -1: the photo is doubled in size first, which takes most of the time and gives the smallest features
   int max_features = 4096;  // 8192; prepare.max_features holds when it is smaller
   // Smooth photos (fields, snow) give few features so; with fewer than this, a photo is searched once more by COLMAP's own settings.
-  size_t few_features = 4096;
+  int few_features = 4096;
   // Global bundle adjustments end when they change the cost by less than this share (0: never), happen when photos or points have grown by these
   // ratios (1.1), and are repeated so many times after outliers are removed (5).
   double ba_global_function_tolerance = 1e-6;

@@ -9,6 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/system.h"
+#include "core/survey/colmap_merge.h"
 #include "prepare/poses/match_chunk.h"
 
 namespace skyquilt::prepare {
@@ -105,10 +106,10 @@ PoseTask TaskFromText(const std::string& bytes) {
 }
 
 void RunFeatureTask(const FeatureTask& task, int n_threads, const TaskProgress& on_progress) {
-  // A rank that was given up for lost may still write: every process has files of its own.
+  // A process of a run that was killed may still write: every process has files of its own.
   const std::string own = task.file.string() + "." + base::HostName() + "." + std::to_string(getpid());
   const fs::path database = own + ".db", list = own + ".txt";
-  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(database.string() + suffix);
+  survey::RemoveDatabase(database);
   const auto total = static_cast<double>(task.names.size());
   double done = 0.0;
   const auto advance = [&](double to) {

@@ -15,6 +15,8 @@
 namespace skyquilt::prepare {
 namespace {
 
+constexpr size_t kSamplesPerWord = 8;
+
 constexpr size_t kBytes = kernel::kDescriptorBytes;
 constexpr size_t kRowsPerTask = 1024;
 constexpr float kDescriptorLength = 512.0F;

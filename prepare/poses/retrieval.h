@@ -13,13 +13,12 @@
 namespace skyquilt::prepare {
 
 struct RetrievalOptions {
-  size_t words = 4096;               // fewer where there are fewer than kSamplesPerWord sampled descriptors for each
+  size_t words = 4096;               // fewer where there are fewer than 8 sampled descriptors for each
   size_t sample = 65536;             // descriptors that words are learned from, in equal parts of all photos
   int rounds = 8;                    // of k-means
   size_t features_per_photo = 2048;  // the first that `load` gives
   uint64_t seed = 1;
 };
-constexpr size_t kSamplesPerWord = 8;
 
 class PhotoIndex {
  public:

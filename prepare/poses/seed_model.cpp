@@ -49,15 +49,17 @@ SeedPhoto SeedPhotoOf(const survey::DatabaseImage& image, const survey::PhotoTag
 
 }  // namespace
 
+std::string TagText(const std::optional<double>& value) {
+  return value ? fmt::format("{:.9g}", *value) : "-";
+}
+
 std::string SeedInputs(const std::vector<PhotoFile>& photos) {
   std::string text = fmt::format("seeded {}\n", kSeedVersion);
-  const auto number = [](const std::optional<double>& value) { return value ? fmt::format("{:.9g}", *value) : std::string("-"); };
   for (const PhotoFile& photo : photos) {
     const survey::PhotoTags& tags = photo.tags;
     const TagAccuracy accuracy = AccuracyOf(tags);
-    text += tags.gps ? fmt::format("{:.9f} {:.9f} {:.9g}", tags.gps->latitude_deg, tags.gps->longitude_deg, tags.gps->height_m) : "-";
-    text += fmt::format(" {:.9g} {:.9g} ", accuracy.horizontal_m, accuracy.vertical_m);
-    text += number(tags.gimbal_yaw_deg) + " " + number(tags.gimbal_pitch_deg) + " " + number(tags.gimbal_roll_deg) + "\n";
+    text += tags.gps ? fmt::format("{:.9g}", tags.gps->height_m) : "-";
+    text += fmt::format(" {:.9g} {:.9g} {}\n", accuracy.horizontal_m, accuracy.vertical_m, TagText(tags.gimbal_roll_deg));
   }
   return text;
 }
@@ -116,7 +118,7 @@ void SeedModel(const ColmapJob& job, const std::vector<PhotoFile>& photos, base:
 std::optional<FoundModel> SeededModelOf(const ColmapJob& job) {
   const fs::path folder = SeededFolder(job);
   if (!fs::exists(folder / "images.bin")) return std::nullopt;
-  return FoundModel{folder, survey::ReadColmapModel(folder).images.size()};
+  return FoundModel{folder, survey::CountColmapImages(folder)};
 }
 
 }  // namespace skyquilt::prepare

@@ -16,7 +16,10 @@ namespace skyquilt::prepare {
 
 constexpr const char* kSeededStep = "seeded";
 
-// Everything of the tags that the model depends on, and the version of the way it is made.
+// A number of the tags for a text of inputs; "-" where there is none.
+std::string TagText(const std::optional<double>& value);
+
+// What the model depends on besides the matches and the tags that pairs depend on, and the version of the way it is made.
 std::string SeedInputs(const std::vector<PhotoFile>& photos);
 
 // The photos with their tags, features and verified matches from COLMAP's database. Nothing when the database has no features for them; `reason` then

@@ -7,16 +7,16 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/survey/colmap_database.h"
-#include "prepare/poses/colmap_commands.h"
 #include "prepare/poses/extract_features.h"
-#include "prepare/poses/feature_store.h"
-#include "prepare/poses/match_pairs.h"
+#include "prepare/poses/fill_database.h"
 #include "prepare/poses/pose_pairs.h"
 
 namespace skyquilt::prepare {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr size_t kFewestPoints = 10;  // fewer are no model
 
 using ImageOfName = std::unordered_map<std::string, const survey::ColmapImage*>;
 
@@ -72,34 +72,20 @@ void RunTriangulator(const ColmapJob& job, const ColmapSettings& settings, const
 
 std::vector<survey::ColmapPoint> TriangulatePoints(const ColmapJob& job, const std::vector<PhotoFile>& photos, const survey::ColmapModel& poses,
                                                    const PoseOptions& options, base::ThreadPool& threads, RemoteTasks* ranks) {
-  base::RequireWritableFolder(job.folder);
   const ColmapSettings settings{.program = base::FindProgram(options.colmap), .n_threads = threads.size(), .fast = true};
   spdlog::info("the model has no points: COLMAP triangulates some from its poses; the log is {}", job.Log().string());
   const ImageOfName images = ImagesByName(poses);
-  std::vector<std::string> names;
-  std::vector<geo::Rigid3d> cam_from_world;
-  for (const PhotoFile& photo : photos) {
-    names.push_back(photo.name);
-    cam_from_world.push_back(images.at(photo.name)->cam_from_world);
-  }
-  const PhotoPairs pairs = PairsByPose(cam_from_world, PairRules{});
-  std::string inputs = FeatureInputs(job, settings, photos, options);
-  const std::string features_hash = base::HashHex(inputs);
-  for (const PhotoPair& pair : pairs) inputs += fmt::format("{} {}\n", pair.a, pair.b);
-  const std::string matches_hash = base::HashHex(inputs), model_hash = base::HashHex(inputs + PosesText(poses));
-
-  RunStep(job, {"features", features_hash}, {"own_matches", "matches", kModelStep},
-          [&] { ExtractFeatures(job, settings, photos, options, features_hash, ranks); });
-  RemoveFeatureParts(job);
-  const MatchJob match_job{.folder = job.folder / "matches", .input = features_hash};
-  RunStep(job, {"own_matches", matches_hash}, {"matches", kModelStep}, [&] {
-    FeatureStore features(job.Database(), names, kFeatureMemory_bytes);
-    spdlog::info("pairs: {} of {} photos, by their poses", pairs.size(), photos.size());
-    MatchPairs(match_job, features, pairs, threads, ranks);
-  });
-  RemoveChunks(match_job);
-  RunStep(job, {"matches", matches_hash}, {kModelStep}, [&] { VerifyMatches(job, settings, options); });
-  RunStep(job, {kModelStep, model_hash}, {}, [&] { RunTriangulator(job, settings, poses, options); });
+  const std::string inputs = FeatureInputs(job, settings, photos, options);
+  const auto choose = [&](const std::vector<PhotoFile>& found, FeatureStore& /*features*/) {
+    std::vector<geo::Rigid3d> cam_from_world;
+    for (const PhotoFile& photo : found) cam_from_world.push_back(images.at(photo.name)->cam_from_world);
+    PhotoPairs pairs = PairsByPose(cam_from_world, PairRules{});
+    spdlog::info("pairs: {} of {} photos, by their poses", pairs.size(), found.size());
+    return pairs;
+  };
+  const std::string poses_hash = base::HashHex(inputs + PosesText(poses));
+  FillDatabase(job, settings, photos, options, {base::HashHex(inputs), poses_hash}, choose, threads, ranks);
+  RunStep(job, {kModelStep, poses_hash}, {}, [&] { RunTriangulator(job, settings, poses, options); });
 
   const survey::ColmapModel found = survey::ReadColmapModel(job.Models() / "0");
   std::unordered_map<uint32_t, uint32_t> id_of_found;
@@ -108,7 +94,7 @@ std::vector<survey::ColmapPoint> TriangulatePoints(const ColmapJob& job, const s
   for (survey::ColmapPoint& point : points) {
     for (uint32_t& id : point.image_ids) id = id_of_found.at(id);
   }
-  if (points.size() < kMinTriangulated) {
+  if (points.size() < kFewestPoints) {
     throw base::InputError(job.Log(), fmt::format("COLMAP triangulated {} points only from the poses of the model", points.size()),
                            "Check that the model was made from these photos; leave out --model to let COLMAP find the poses too");
   }

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/base/file.h"
 #include "core/geo/enu_frame.h"
+#include "prepare/photo_positions.h"
 #include "prepare/prepare.h"
 #include "tests/prepare/models/made_models.h"
 #include "tests/prepare/synthetic_flight.h"
@@ -104,9 +107,35 @@ TEST_F(OtherModel, GeoFileReplacesTheTags) {
     table += line.str();
     photo.tags.gps->latitude_deg += 0.01;  // a kilometre off
   }
-  const survey::Survey survey = Run({{"geo.txt", table}, {"positions.txt", table}}, "sparse/0");
+  const survey::Survey survey = Run({{"geo.txt", table}}, "sparse/0");
   EXPECT_TRUE(survey.georeferenced);
   EXPECT_NEAR(survey.origin.latitude_deg, 47.0, 1e-3);
+}
+
+TEST_F(OtherModel, ThePositionFileOfTheOptionCountsInPlaceOfTheTags) {
+  const geo::EnuFrame frame(flight_.origin);
+  std::ostringstream table;
+  table.precision(12);
+  table << "EPSG:4326\n";
+  for (const test::FlightPhoto& photo : flight_.photos) {
+    const geo::Geodetic p = frame.GeodeticFromEnu(photo.centre_in_enu);
+    table << photo.name << " " << p.longitude_deg << " " << p.latitude_deg + 0.01 << " " << p.height_m << " 0 0 0 0.03 0.05\n";
+  }
+  options_.geo_file = (folder_ / "positions.txt").string();
+  base::WriteFileAtomically(options_.geo_file, table.str());
+  EXPECT_EQ(PositionFiles(folder_.path(), options_.geo_file), (std::vector<std::filesystem::path>{options_.geo_file}));
+  const survey::Survey survey = Run({}, "sparse/0");
+  EXPECT_NEAR(survey.origin.latitude_deg, 47.01, 1e-3);
+}
+
+TEST_F(OtherModel, ASplitOfPhotosWithoutPosesLeavesTheUsualOne) {
+  test::Files files = test::TransformsFiles(Made());
+  nlohmann::json file = nlohmann::json::parse(files["transforms.json"]);
+  file["test_filenames"] = {"images/elsewhere.jpg"};
+  files["transforms.json"] = file.dump();
+  const survey::Survey survey = Run(files, "transforms.json");
+  const auto n_test = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.is_test; });
+  EXPECT_EQ(n_test, 3);  // every eighth of 20
 }
 
 }  // namespace

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 #include <thread>
 #include <vector>
 
+#include "coordinator/poses/task_message.h"
 #include "coordinator/ranks/messages.h"
 #include "core/base/cancel.h"
 #include "core/base/file.h"
@@ -17,6 +20,14 @@
 
 namespace skyquilt::coordinator {
 namespace {
+
+comm::Message MessageFrom(FakeRank& comm, int tag) {
+  while (true) {
+    const std::optional<comm::Message> message = comm.TryReceive();
+    if (message && message->tag == tag) return *message;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
 
 // Rank 0 in this thread, two other ranks in threads of their own.
 class RankTasksTest : public testing::Test {
@@ -84,6 +95,38 @@ TEST_F(RankTasksTest, AFailureNamesTheRankAndItsLog) {
   const std::vector<prepare::PoseTask> others = {Part(1), Part(2)};
   ranks.Run(others, [](double) {});
   EXPECT_TRUE(std::filesystem::exists(folder_ / "part_2.db"));
+}
+
+// Rank 0 ends the search and the program at once, while a task runs.
+TEST(ServeTasksTest, TheEndOfTheProgramIsNotLost) {
+  const TemporaryFolder folder;
+  FakeNetwork network(2);
+  FakeRank root(network, 0), comm(network, 1);
+  int last_tag = 0;
+  std::thread rank([&] {
+    ServeTasks(comm, R"({"threads": 1, "verbose": false, "quiet": true})");
+    last_tag = WaitForMessage(comm).tag;
+  });
+  MessageFrom(root, kTagReady);
+  root.Send(1, kTagThreads, "1");
+  test::MadeDatabase(folder / "made.db").Run("PRAGMA journal_mode = DELETE");
+  base::WriteFileAtomically(folder / "slow", "");
+  const prepare::FeatureTask task{.job = {.photo_root = folder.path(), .masks = {}, .folder = folder.path()},
+                                  .program = test::WriteFakeExtractor(folder.path()),
+                                  .arguments = {},
+                                  .camera_model = "PINHOLE",
+                                  .search = {},
+                                  .few_features = 0,
+                                  .search_again = {},
+                                  .names = {"photo.jpg"},
+                                  .file = folder / "part.db"};
+  root.Send(1, kTagTask, TaskMessage(0, prepare::ToText(task)));
+  MessageFrom(root, kTagTaskPart);
+  root.Send(1, kTagDone, "");
+  root.Send(1, kTagQuit, "");
+  rank.join();
+  EXPECT_EQ(last_tag, kTagQuit);
+  EXPECT_FALSE(std::filesystem::exists(folder / "part.db"));
 }
 
 }  // namespace

@@ -152,6 +152,11 @@ TEST_F(Conventions, FisheyesOfTransformsAndMetashapeAreOpencvs) {
   const camera::Camera camera = Read(files, "transforms.json").sfm.cameras.at(1);
   EXPECT_EQ(camera.model, camera::CameraModel::kOpencvFisheye);
   EXPECT_EQ(camera.params, (std::vector<double>{510.0, 500.0, 322.0, 237.0, -0.1, 0.02, -0.003, 0.001}));
+  // As instant-ngp's scripts say it.
+  file.erase("camera_model");
+  file["is_fisheye"] = true;
+  files["transforms.json"] = file.dump();
+  EXPECT_EQ(Read(files, "transforms.json").sfm.cameras.at(1).params, camera.params);
   std::string xml = test::MetashapeFiles(survey_).at("cameras.xml");
   const auto replace = [&](const std::string& from, const std::string& to) {
     const size_t at = xml.find(from);

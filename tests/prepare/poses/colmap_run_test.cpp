@@ -65,6 +65,10 @@ TEST_F(ColmapAlone, FinishedStepsAreSkippedAndFailuresNameTheLog) {
 // COLMAP's own settings stay as they are.
 TEST_F(ColmapAlone, HasItsOwnSettings) {
   photos_ = test::GridPhotos(8, 8, 20.0, 25.0, {47.0, 8.0, 400.0});
+  test::MadeDatabase made(folder_ / "made.db");
+  made.Run("PRAGMA journal_mode = DELETE");
+  for (uint32_t i = 0; i < photos_.size(); ++i) made.AddImage(i + 1, photos_[i].name);
+  made.Run("UPDATE images SET prior_tx = 47, prior_ty = 8");
   WriteFake("exit 0");
   EXPECT_THROW(Find(), base::InputError);
   EXPECT_EQ(Calls(), "feature_extractor\nfeature_extractor\nspatial_matcher\nmapper\n");
@@ -73,6 +77,13 @@ TEST_F(ColmapAlone, HasItsOwnSettings) {
   EXPECT_EQ(arguments.find("ba_global"), std::string::npos) << arguments;
   EXPECT_NE(arguments.find("--SiftExtraction.max_num_features 8192"), std::string::npos) << arguments;
   EXPECT_NE(arguments.find("--SpatialMatching.max_num_neighbors 24"), std::string::npos) << arguments;
+
+  // COLMAP does not know positions from other files than the photos.
+  made.Run("UPDATE images SET prior_tx = NULL, prior_ty = NULL");
+  options_.seed = 2;
+  Calls();
+  EXPECT_THROW(Find(), base::InputError);
+  EXPECT_EQ(Calls(), "feature_extractor\nfeature_extractor\nexhaustive_matcher\nmapper\n");
 }
 
 class FastWay : public FakeColmap {
@@ -144,6 +155,27 @@ TEST_F(FastWay, OnlyPhotosWithFewFeaturesAreSearchedAgain) {
   EXPECT_EQ(names.find(photos_[2].name), std::string::npos) << names;
   const std::string arguments = base::ReadFile(folder_ / "arguments");
   EXPECT_NE(arguments.find("--ImageReader.existing_camera_id 1"), std::string::npos) << arguments;
+  // A photo that has as many features as it may keep has enough.
+  Calls();
+  options_.max_features = 30;
+  Find();
+  EXPECT_EQ(Calls(), "feature_extractor\nmatches_importer\nmapper\n");
+}
+
+TEST_F(FastWay, PhotosThatColmapCannotReadAreLeftOut) {
+  test::MadeDatabase(folder_ / "made.db").Run("PRAGMA journal_mode = DELETE; DELETE FROM images WHERE image_id = 3");
+  SetNumber("first", 19);
+  EXPECT_EQ(Find(), FirstModel());
+  const survey::ColmapDatabase database(job_.Database());
+  EXPECT_EQ(database.ReadImages().size(), 19U);
+  EXPECT_EQ(database.ReadTwoViewMatches().size(), 171U);
+}
+
+// More pairs and features would not help, and take long.
+TEST_F(FastWay, DoesNotTryAgainWhenTheMapperIsKilled) {
+  SetNumber("kill_mapper", 1);
+  EXPECT_NE(InputErrorOf([&] { Find(); }).find("mapper failed with status 137"), std::string::npos);
+  EXPECT_EQ(Calls(), kFastCalls);
 }
 
 // The names are plain while pairs are verified; a kill there leaves them so until the next run.

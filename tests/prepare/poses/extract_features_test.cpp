@@ -29,7 +29,7 @@ TEST(PhotosPerPartTest, EveryProcessGetsSomeAndEveryThreadToo) {
 }
 
 TEST(PoseTaskText, IsReadBack) {
-  const FeatureTask features{.job = {.photo_root = "/photos", .masks = "/masks", .folder = "/work"},
+  const FeatureTask features{.job = {.photo_root = "/photos", .masks = "/masks", .folder = "/project"},
                              .program = "/bin/colmap",
                              .arguments = {"--a", "1"},
                              .camera_model = "OPENCV",
@@ -37,7 +37,7 @@ TEST(PoseTaskText, IsReadBack) {
                              .few_features = 70,
                              .search_again = {"--slow", "2"},
                              .names = {"with space.jpg", "latin1 \xe4.jpg"},
-                             .file = "/work/part.db"};
+                             .file = "/project/part.db"};
   const auto again = std::get<FeatureTask>(TaskFromText(ToText(features)));
   EXPECT_EQ(again.names, features.names);
   EXPECT_EQ(again.arguments, features.arguments);
@@ -47,14 +47,14 @@ TEST(PoseTaskText, IsReadBack) {
   EXPECT_EQ(again.search_again, features.search_again);
   EXPECT_EQ(again.job.photo_root, "/photos");
   EXPECT_EQ(again.job.masks, "/masks");
-  EXPECT_EQ(again.job.folder, "/work");
+  EXPECT_EQ(again.job.folder, "/project");
   EXPECT_EQ(again.program, "/bin/colmap");
   EXPECT_EQ(again.file, features.file);
-  const MatchTask match{.database = "/work/database.db",
+  const MatchTask match{.database = "/project/database.db",
                         .pairs = {{1, 2}, {1, 9}},
                         .rules = {.max_ratio = 0.75, .max_distance = 0.6, .mutual = false},
                         .min_matches = 15,
-                        .file = "/work/chunk.bin",
+                        .file = "/project/chunk.bin",
                         .key = "0123"};
   const auto matched = std::get<MatchTask>(TaskFromText(ToText(match)));
   EXPECT_EQ(matched.database, match.database);

@@ -76,6 +76,8 @@ if call == "matches_importer":
         database.execute("INSERT INTO two_view_geometries VALUES(?, ?, 2, ?, 2, NULL, NULL, NULL, NULL, NULL)", (key, rows, data))
     database.commit()
 elif call == "mapper":
+    if setting("kill_mapper"):
+        os.kill(os.getpid(), 9)
     n = setting("again" if again else "first")
     if n == 0:
         sys.exit("no good initial pair")

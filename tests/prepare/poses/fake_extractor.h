@@ -9,14 +9,18 @@
 namespace skyquilt::test {
 
 // Needs a database without images, `folder`/made.db. Writes the names it was asked for into `folder`/calls, a line for each call, and fails when
-// there is a file `folder`/fail with one of them.
+// there is a file `folder`/fail with one of them. With a file `folder`/slow it works for a minute.
 constexpr const char* kFakeExtractor = R"py(#!/usr/bin/env python3
-import os, random, shutil, sqlite3, sys
+import os, random, shutil, sqlite3, sys, time
 folder = os.path.dirname(os.path.abspath(__file__))
 options = dict(zip(sys.argv[2::2], sys.argv[3::2]))
 names = open(options["--image_list_path"]).read().split("\n")[:-1]
 with open(folder + "/calls", "a") as calls:
     calls.write(" ".join(names) + "\n")
+if os.path.exists(folder + "/slow"):
+    for i in range(1000):
+        print("Processed file [%d/2000]" % i, flush=True)
+        time.sleep(0.05)
 if os.path.exists(folder + "/fail") and open(folder + "/fail").read() in names:
     sys.exit("cannot read " + open(folder + "/fail").read())
 shutil.copy(folder + "/made.db", options["--database_path"])

@@ -30,7 +30,7 @@ std::optional<BuildingsReport> CollectBuildings(const EvaluateInput& input) {
   if (!compared) return std::nullopt;
   BuildingsReport report;
   report.compared = *std::move(compared);
-  AddMapHeights(surface::MapFrame(input.scene->info()), &report);
+  AddMapHeights(surface::MapFrame(input.scene->info(), input.vertical), &report);
   std::error_code ignored;
   for (const char* file : kBuildingFiles) {
     if (std::filesystem::is_regular_file(input.project_folder / "buildings" / file, ignored)) report.files.emplace_back(file);

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -11,6 +13,7 @@
 #include "core/base/progress.h"
 #include "evaluate/buildings_report.h"
 #include "evaluate/choose_photos.h"
+#include "evaluate/control_pictures.h"
 #include "evaluate/held_out_scorer.h"
 #include "evaluate/kept_points.h"
 #include "evaluate/report_writer.h"
@@ -88,7 +91,9 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
 
   Summarise(input, scores, &metrics);
   for (const Warning& warning : metrics.warnings) spdlog::warn("{}. {}", warning.finding, warning.advice);
-  WriteReport(input, metrics, pictures, found ? &*found : nullptr);
+  std::vector<MarkPicture> marks;
+  if (input.options.report_photos > 0) marks = WriteMarkPictures(*input.survey, input.scene, input.ReportFolder(), threads);
+  WriteReport(input, metrics, pictures, std::move(marks), found ? &*found : nullptr);
   return metrics;
 }
 

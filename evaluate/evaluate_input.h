@@ -17,10 +17,11 @@ struct EvaluateInput {
   const scene::Scene* scene = nullptr;
   const survey::Survey* survey = nullptr;
   const partition::BlockSet* blocks = nullptr;
-  const image::PixelCache* pixels = nullptr;     // entry i belongs to survey->photos[i]
-  std::filesystem::path project_folder;          // report/ is written here; checkpoints/ and products/ are read
-  const scene::TrainReport* training = nullptr;  // null: unknown, then the report says nothing about training
-  std::string config_text;                       // TOML; empty: the configuration stored in the scene
+  const image::PixelCache* pixels = nullptr;          // entry i belongs to survey->photos[i]
+  std::filesystem::path project_folder;               // report/ is written here; checkpoints/ and products/ are read
+  const scene::TrainReport* training = nullptr;       // null: unknown, then the report says nothing about training
+  std::string config_text;                            // TOML; empty: the configuration stored in the scene
+  geo::Vertical vertical = geo::Vertical::kAsTagged;  // of the heights in the project's files, which the report repeats
   EvaluateOptions options;
 
   std::filesystem::path ReportFolder() const { return project_folder / "report"; }

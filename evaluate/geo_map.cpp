@@ -17,8 +17,6 @@ namespace {
 
 using Tags = std::vector<std::optional<TagPosition>>;
 
-// Width over height: a flight along one line needs some room too, and the page is wider than high.
-constexpr double kMinAspect = 1.3, kMaxAspect = 3.0;
 constexpr double kMaxArrowShare = 0.15;  // of the map's longer side, for exaggerated arrows
 constexpr std::array<double, 6> kExaggerations = {2.0, 5.0, 10.0, 20.0, 50.0, 100.0};
 
@@ -31,12 +29,7 @@ MapFrame FrameOf(const survey::Survey& survey, const Tags& tags, double exaggera
     bounds.Include(center.head<2>());
     if (tags[i] && survey.photos[i].gps_inlier) bounds.Include((center + exaggeration * (tags[i]->recorded - center)).head<2>());
   }
-  if (bounds.Empty()) return MapFrame(bounds);
-  const Eigen::Vector2d middle = 0.5 * (bounds.low + bounds.high);
-  const Eigen::Vector2d half = 0.5 * (bounds.high - bounds.low);
-  const Eigen::Vector2d room(std::max(half.x(), kMinAspect * half.y()), std::max(half.y(), half.x() / kMaxAspect));
-  bounds.Include(middle - room);
-  bounds.Include(middle + room);
+  bounds.MakeRoom();
   return MapFrame(bounds);
 }
 
@@ -72,17 +65,6 @@ double ShareInside(const MapFrame& frame, const Eigen::Vector2d& start_px, const
     if (end_px[axis] < 0.0) share = std::min(share, -start_px[axis] / step);
   }
   return share;
-}
-
-std::string ArrowPath(const Eigen::Vector2d& start_px, const Eigen::Vector2d& end_px) {
-  std::string path = fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", start_px.x(), start_px.y(), end_px.x(), end_px.y());
-  const Eigen::Vector2d way = end_px - start_px;
-  const double length_px = way.norm();
-  if (length_px < 4.0) return path;
-  const Eigen::Vector2d along = way / length_px * std::min(6.0, 0.4 * length_px);
-  const Eigen::Vector2d across(-0.5 * along.y(), 0.5 * along.x());
-  const Eigen::Vector2d left = end_px - along + across, right = end_px - along - across;
-  return path + fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}L{:.1f} {:.1f}", left.x(), left.y(), end_px.x(), end_px.y(), right.x(), right.y());
 }
 
 class GeoMapDrawing {

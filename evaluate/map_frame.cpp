@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kMapWidth_px = 900.0;
 constexpr double kMaxHeight_px = 820.0;
+// Width over height: a flight along one line needs some room too, and the page is wider than high.
+constexpr double kMinAspect = 1.3, kMaxAspect = 3.0;
 
 }  // namespace
 
@@ -18,6 +20,15 @@ void MapBounds::Include(const Eigen::Vector2d& x) {
   if (!x.allFinite()) return;
   low = low.cwiseMin(x);
   high = high.cwiseMax(x);
+}
+
+void MapBounds::MakeRoom() {
+  if (Empty()) return;
+  const Eigen::Vector2d middle = 0.5 * (low + high);
+  const Eigen::Vector2d half = 0.5 * (high - low);
+  const Eigen::Vector2d room(std::max(half.x(), kMinAspect * half.y()), std::max(half.y(), half.x() / kMaxAspect));
+  Include(middle - room);
+  Include(middle + room);
 }
 
 MapFrame::MapFrame(const MapBounds& bounds) {
@@ -53,6 +64,17 @@ std::string ScaleBarAndNorth(const MapFrame& frame, bool georeferenced) {
                        frame.width_px() - 26.0);
   }
   return svg;
+}
+
+std::string ArrowPath(const Eigen::Vector2d& start_px, const Eigen::Vector2d& end_px) {
+  std::string path = fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", start_px.x(), start_px.y(), end_px.x(), end_px.y());
+  const Eigen::Vector2d way = end_px - start_px;
+  const double length_px = way.norm();
+  if (length_px < 4.0) return path;
+  const Eigen::Vector2d along = way / length_px * std::min(6.0, 0.4 * length_px);
+  const Eigen::Vector2d across(-0.5 * along.y(), 0.5 * along.x());
+  const Eigen::Vector2d left = end_px - along + across, right = end_px - along - across;
+  return path + fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}L{:.1f} {:.1f}", left.x(), left.y(), end_px.x(), end_px.y(), right.x(), right.y());
 }
 
 }  // namespace skyquilt::evaluate

@@ -13,6 +13,8 @@ struct MapBounds {
   Eigen::Vector2d high = -low;
 
   void Include(const Eigen::Vector2d& x);  // unless it is not finite
+  // Widens them to the shape of a drawing on the page, unless they are empty.
+  void MakeRoom();
   bool Empty() const { return !(high.array() >= low.array()).all(); }
 };
 
@@ -33,5 +35,8 @@ class MapFrame {
 
 // SVG. Without a geo-reference the bar is in units of unknown length, and no direction is north.
 std::string ScaleBarAndNorth(const MapFrame& frame, bool georeferenced);
+
+// Path data in SVG syntax: a line, with an arrow head at its end unless it is very short.
+std::string ArrowPath(const Eigen::Vector2d& start_px, const Eigen::Vector2d& end_px);
 
 }  // namespace skyquilt::evaluate

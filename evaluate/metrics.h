@@ -141,6 +141,7 @@ struct Metrics {
 
   bool georeferenced = false;
   survey::GeoFit geo_fit;
+  survey::ControlFit control;              // no points: without ground control
   std::vector<std::string> problem_codes;  // of all Survey::problems
   double median_agl_m = kNotMeasured;
   double median_relative_altitude_m = kNotMeasured;  // from the XMP tags of the drone
@@ -167,7 +168,7 @@ double MeanOfMeasured(const std::vector<double>& values);
 double MedianOfMeasured(std::vector<double> values);
 // Text of metrics.json, keys as in the documentation. UTF-8; invalid bytes in file names are replaced.
 std::string MetricsJson(const Metrics& metrics);
-// Reads metrics.json, except for the statistics of rendering; of single photos only name and PSNR. An infinite PSNR is read as not
+// Reads metrics.json, except for the statistics of rendering and ground control; of single photos only name and PSNR. An infinite PSNR is read as not
 // measured. Throws base::InputError when the file cannot be read.
 Metrics ReadMetrics(const std::filesystem::path& file);
 

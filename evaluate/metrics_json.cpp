@@ -10,6 +10,7 @@
 #include "core/survey/geo_fit_json.h"
 #include "evaluate/buildings_json.h"
 #include "evaluate/class_json.h"
+#include "evaluate/control_json.h"
 #include "evaluate/metrics.h"
 #include "evaluate/surface_json.h"
 
@@ -280,6 +281,7 @@ std::string MetricsJson(const Metrics& metrics) {
   json["photos_held_out"] = metrics.n_test;
   json["photos_scored"] = metrics.photos.size();
   json["geo"] = GeoFitJson(metrics);
+  if (!metrics.control.points.empty()) json["control"] = ControlJson(metrics.control);
   PutNumbers(kHeights, metrics, &json);
   json["images"] = Json::array();
   for (const PhotoScore& photo : metrics.photos) json["images"].push_back(PhotoJson(photo, metrics.has_truth));

@@ -9,6 +9,7 @@
 #include "core/scene/train_report.h"
 #include "core/survey/survey.h"
 #include "evaluate/brightness_report.h"
+#include "evaluate/control_pictures.h"
 #include "evaluate/metrics.h"
 #include "evaluate/training_curve.h"
 #include "partition/block.h"
@@ -46,6 +47,7 @@ struct ReportInput {
   const BrightnessReport* brightness = nullptr;  // nothing or empty: no such section
   const BuildingsReport* buildings = nullptr;    // nothing: no such section
   std::vector<PhotoImages> images;               // entry i belongs to metrics->photos[i]
+  std::vector<MarkPicture> mark_pictures;        // of the survey's control points, in their order
   std::optional<MapBackground> background;
   std::string color_ramp;    // picture of the colour map from low to high, relative to the page; empty: no legend
   double error_high = 0.25;  // display values at the top of the error colours
@@ -61,6 +63,7 @@ std::string PhotoSection(const ReportInput& input);
 std::string SurfaceSection(const ReportInput& input);    // what was made of the scene's surface, and its scores; empty without a surface
 std::string BuildingsSection(const ReportInput& input);  // the found buildings, and their scores; empty when none were searched
 std::string GeoSection(const ReportInput& input);        // how the survey was placed on Earth; see page_geo.h
+std::string ControlSection(const ReportInput& input);    // control and check points, see page_control.h; empty without any
 std::string DetailsSection(const ReportInput& input);    // every figure and its meaning
 std::string ClassTable(const Metrics& metrics);          // empty without true classes
 std::string MethodSection(const ReportInput& input);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "core/base/file.h"
 #include "evaluate/choose_photos.h"
@@ -29,6 +30,7 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const Repor
   std::set<std::string> kept;
   if (page.background) kept.insert(page.background->image);
   for (const PhotoImages& one : page.images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.mesh});
+  for (const MarkPicture& one : page.mark_pictures) kept.insert({one.photo, one.render});
   if (found != nullptr) {
     for (const BuildingPicture& one : found->pictures) kept.insert(one.file);
   }
@@ -36,7 +38,7 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const Repor
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
     const std::string name = entry.path().filename().string();
-    const bool ours = name.starts_with("photo_") || name.starts_with("building_") || name.starts_with("preview_");
+    const bool ours = name.starts_with("photo_") || name.starts_with("building_") || name.starts_with("control_") || name.starts_with("preview_");
     if (ours && !kept.contains("images/" + name)) stale.push_back(entry.path());
   }
   for (const std::filesystem::path& file : stale) std::filesystem::remove(file, ignored);
@@ -86,7 +88,8 @@ void ReportPictures::WriteView(const ScoredPhoto& scored, size_t view) {
   shown.stops = ExposureStops(input_.scene->info().response, static_cast<size_t>(score.photo));
 }
 
-void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures, BuildingsReport* found) {
+void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures, std::vector<MarkPicture> marks,
+                 BuildingsReport* found) {
   const std::filesystem::path report_folder = input.ReportFolder();
   const scene::TrainReport unknown;
   std::vector<std::string> names;
@@ -102,6 +105,7 @@ void WriteReport(const EvaluateInput& input, const Metrics& metrics, const Repor
   page.curves = ReadCurves(input.project_folder / "checkpoints", names);
   page.brightness = &pictures.brightness();
   page.images = pictures.images();
+  page.mark_pictures = std::move(marks);
   if (found != nullptr) {
     const buildings::BuildingSet& set = found->compared.set;
     found->pictures = WriteBuildingPictures(set, BuildingsWithCards(set), *input.survey, *input.pixels, report_folder);

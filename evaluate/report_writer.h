@@ -36,8 +36,9 @@ class ReportPictures {
   BrightnessReport brightness_;
 };
 
-// Writes all other files, pictures of the buildings included (null: none were searched); metrics.json last, so that it exists only when the
-// evaluation is complete. Throws base::InputError when a file cannot be written.
-void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures, BuildingsReport* found);
+// Writes all other files, pictures of the buildings included (null: none were searched), but those of marks; metrics.json last, so that it exists
+// only when the evaluation is complete. Throws base::InputError when a file cannot be written.
+void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures, std::vector<MarkPicture> marks,
+                 BuildingsReport* found);
 
 }  // namespace skyquilt::evaluate

@@ -59,6 +59,7 @@ void AddSurveyFacts(const survey::Survey& survey, Metrics* metrics) {
   metrics->has_truth = survey.truth.has_value() && survey.georeferenced;
   metrics->georeferenced = survey.georeferenced;
   metrics->geo_fit = survey.fit;
+  metrics->control = survey.control;
   for (const survey::Problem& problem : survey.problems) metrics->problem_codes.push_back(problem.code);
   metrics->median_agl_m = survey.MedianAgl();
   std::vector<double> relative;

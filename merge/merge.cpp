@@ -62,6 +62,7 @@ void MergeScene(const MergeInput& input) {
   writer.SetAttribute("origin_height_m", input.origin.height_m);
   writer.SetAttribute("georeferenced", static_cast<int64_t>(input.georeferenced ? 1 : 0));
   scene::PutAccuracy(input.accuracy, writer);
+  scene::PutHeightReference(input.height_reference, writer);
   brightness::PutResponse(context.response, writer);
   brightness::PutLuminance(context.luminance, context.luminance_state, writer);
   scene::PutBackground(context.background, writer);

@@ -8,6 +8,7 @@
 
 #include "core/checkpoint/archive.h"
 #include "core/geo/geodetic.h"
+#include "core/geo/height_reference.h"
 #include "core/geo/place_accuracy.h"
 #include "core/scene/scene.h"
 
@@ -23,7 +24,9 @@ struct MergeInput {
   std::vector<TrainedBlock> blocks;  // in the order they get in the scene; without empty and failed ones
   geo::Geodetic origin;              // of the survey; every checkpoint must have the same
   bool georeferenced = false;
-  geo::PlaceAccuracy accuracy = {};                                 // of the survey
+  // Of the survey.
+  geo::PlaceAccuracy accuracy = {};
+  geo::HeightReference height_reference = geo::HeightReference::kUnknown;
   scene::Borders borders = scene::Borders::kSmooth;                 // how neighbouring blocks are joined
   checkpoint::Precision storage = checkpoint::Precision::kFloat32;  // of the hash tables
   bool use_context = true;  // false: leave the context field out, so that it does not fill places outside all blocks

@@ -8,6 +8,7 @@
 
 #include "core/geo/block_box.h"
 #include "core/geo/geodetic.h"
+#include "core/geo/height_reference.h"
 #include "core/geo/place_accuracy.h"
 
 namespace skyquilt::partition {
@@ -29,7 +30,9 @@ struct Block : geo::BlockBox {
 struct BlockSet {
   geo::Geodetic origin;
   bool georeferenced = false;
-  geo::PlaceAccuracy accuracy;  // of the survey; unknown in files of older programs
+  // Of the survey; unknown in files of older programs.
+  geo::PlaceAccuracy accuracy;
+  geo::HeightReference height_reference = geo::HeightReference::kUnknown;
   int rows = 0;
   int columns = 0;
   int image_width = 0;        // training width the capacities were computed for; 0 = full size

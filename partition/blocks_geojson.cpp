@@ -16,7 +16,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
-constexpr const char* kAccuracyKey = "skyquilt:accuracy";  // absent in files of older programs
+// Absent in files of older programs.
+constexpr const char* kAccuracyKey = "skyquilt:accuracy";
+constexpr const char* kHeightReferenceKey = "skyquilt:height_reference";
 
 // JSON has no NaN: null is written instead.
 Json Number(double value) {
@@ -172,6 +174,12 @@ void CheckBlock(const Block& block, size_t index, const std::filesystem::path& f
   require(std::all_of(block.photos.begin(), block.photos.end(), [](int photo) { return photo >= 0; }), "names a photo with a negative index");
 }
 
+geo::HeightReference ReadHeightReference(const Json& name, const std::filesystem::path& file) {
+  const auto reference = geo::HeightReferenceNamed(name.get<std::string>());
+  if (!reference) throw base::InputError(file, "has heights above " + name.dump() + ", which is unknown", kFix);
+  return *reference;
+}
+
 }  // namespace
 
 void SaveBlocks(const BlockSet& blocks, const std::filesystem::path& file) {
@@ -198,6 +206,7 @@ void SaveBlocks(const BlockSet& blocks, const std::filesystem::path& file) {
                  {"longitude_deg", Number(blocks.origin.longitude_deg)},
                  {"height_m", Number(blocks.origin.height_m)}}},
                {kAccuracyKey, survey::ToJson(blocks.accuracy)},
+               {kHeightReferenceKey, geo::NameOf(blocks.height_reference)},
                {"skyquilt:rows", blocks.rows},
                {"skyquilt:columns", blocks.columns},
                {"skyquilt:image_width", blocks.image_width},
@@ -223,6 +232,7 @@ BlockSet LoadBlocks(const std::filesystem::path& file) {
     set.origin = {ReadNumber(origin.at("latitude_deg")), ReadNumber(origin.at("longitude_deg")), ReadNumber(origin.at("height_m"))};
     set.georeferenced = root.at("skyquilt:georeferenced").get<bool>();
     if (root.contains(kAccuracyKey)) set.accuracy = survey::PlaceAccuracyFromJson(root.at(kAccuracyKey));
+    if (root.contains(kHeightReferenceKey)) set.height_reference = ReadHeightReference(root.at(kHeightReferenceKey), file);
     set.rows = root.at("skyquilt:rows").get<int>();
     set.columns = root.at("skyquilt:columns").get<int>();
     set.image_width = root.at("skyquilt:image_width").get<int>();

@@ -193,6 +193,7 @@ BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& option
   set.origin = survey.origin;
   set.georeferenced = survey.georeferenced;
   set.accuracy = survey.fit.accuracy;
+  set.height_reference = survey.height_reference;
   set.rows = grid.rows();
   set.columns = grid.columns();
   set.image_width = image_width;

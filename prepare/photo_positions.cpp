@@ -67,7 +67,9 @@ GeoRow ParseGeoRow(const fs::path& file, size_t line, const std::vector<std::str
     row.position = crs.ToGeodetic({number(1), number(2), has_height ? number(3) : 0.0});
   } catch (const std::invalid_argument& error) {
     FailLine(file, line, error.what(),
-             "Check that x is east or longitude and y north or latitude, and that the first line is their coordinate system");
+             crs.heights() == geo::CrsHeights::kGravity
+                 ? "Check the coordinates and the first line; heights above a geoid need its grid (projsync, or Debian's proj-data)"
+                 : "Check that x is east or longitude and y north or latitude, and that the first line is their coordinate system");
   }
   if (!has_height) row.position.height_m = std::numeric_limits<double>::quiet_NaN();
   // Zero and less mean that it is not known.

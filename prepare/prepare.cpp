@@ -15,6 +15,8 @@
 #include "core/base/log.h"
 #include "core/base/text.h"
 #include "core/survey/colmap_model.h"
+#include "core/survey/height_reference.h"
+#include "prepare/control_report.h"
 #include "prepare/flight_checks.h"
 #include "prepare/georeference.h"
 #include "prepare/holdout.h"
@@ -25,6 +27,7 @@
 #include "prepare/models/read_model.h"
 #include "prepare/photo_files.h"
 #include "prepare/photo_positions.h"
+#include "prepare/place_by_control.h"
 #include "prepare/poses/colmap_run.h"
 #include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
@@ -136,6 +139,14 @@ std::vector<Station> MakeStations(const std::vector<Registered>& registered, con
   return stations;
 }
 
+// Per station, index into the model's images.
+std::vector<size_t> ImagesOf(const std::vector<Registered>& registered, const survey::ColmapModel& model) {
+  std::vector<size_t> images;
+  images.reserve(registered.size());
+  for (const Registered& entry : registered) images.push_back(static_cast<size_t>(entry.image - model.images.data()));
+  return images;
+}
+
 // Index into the survey's photos by COLMAP's image id.
 std::unordered_map<uint32_t, int32_t> PhotoOfImage(const std::vector<Registered>& registered) {
   std::unordered_map<uint32_t, int32_t> photo_of_image;
@@ -173,6 +184,16 @@ void FillPhotos(const survey::ColmapModel& model, const std::vector<Registered>&
     photo.flight = georeference.flight[i];
     survey.photos.push_back(std::move(photo));
   }
+}
+
+// Tags of the photos that place the survey. Too few of them do not: then the model's own positions do, see PlaceByModel.
+std::vector<survey::PhotoTags> PlacingTags(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files) {
+  std::vector<survey::PhotoTags> tags;
+  for (const Registered& entry : registered) {
+    if (files[entry.file].tags.gps) tags.push_back(files[entry.file].tags);
+  }
+  if (tags.size() < kMinAgreeing) tags.clear();
+  return tags;
 }
 
 // Throws base::InputError for the first problem about the place.
@@ -222,17 +243,6 @@ void LogDirections(const survey::DominantDirections& directions) {
                text.empty() ? "none" : text);
 }
 
-PoseOptions PosesOf(const PrepareOptions& options) {
-  return {.fast = options.poses == "fast",
-          .seed_poses = options.seed_poses,
-          .colmap = options.colmap,
-          .camera_model = options.camera_model,
-          .max_image_size = options.max_image_size,
-          .max_features = options.max_features,
-          .use_gpu = options.use_gpu,
-          .seed = options.seed};
-}
-
 // For a model without any.
 std::vector<survey::ColmapPoint> PointsFromPoses(const ColmapJob& job, const survey::ColmapModel& model, const std::vector<Registered>& registered,
                                                  const std::vector<PhotoFile>& files, const PoseOptions& options, base::ThreadPool& threads,
@@ -262,12 +272,14 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   PhotoSet photos = ReadPhotos(folders.photo_root, names, threads);
   UsePositionFiles(folders.photo_root, options.geo_file, photos.usable);
   std::vector<std::string> masks = FindMasks(folders.masks, photos.usable);
+  // Faults of these files are told before the long search for poses.
+  const ControlPoints control_points = ReadControlPoints(options, photos.usable);
   base::ThrowIfCancelled();
 
   InputModel input_model;
   if (folders.model.empty()) {
     const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap"};
-    folders.model = RunColmap(job, photos.usable, PosesOf(options), threads, ranks);
+    folders.model = RunColmap(job, photos.usable, PoseOptionsOf(options), threads, ranks);
     input_model.sfm = survey::ReadColmapModel(folders.model);
   } else {
     input_model = ReadModel(folders.model, ModelPhotos(folders.photo_root, names));
@@ -278,7 +290,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   if (LacksPoints(input_model)) {
     RequireColmap(input_model, folders.model, options.colmap);
     const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap"};
-    input_model.sfm.points = PointsFromPoses(job, model, registered, photos.usable, PosesOf(options), threads, ranks);
+    input_model.sfm.points = PointsFromPoses(job, model, registered, photos.usable, PoseOptionsOf(options), threads, ranks);
   }
   const auto poses_known = std::chrono::steady_clock::now();
 
@@ -287,16 +299,23 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   std::vector<Eigen::Vector3d> points;
   points.reserve(model.points.size());
   for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
-  const Georeference georeference =
+  Georeference georeference =
       folders.exact_origin ? KeepExactFrame(stations, *folders.exact_origin, options) : PlaceOnEarth(stations, points, options);
+  const bool has_observations = !folders.exact_origin && input_model.format == ModelFormat::kColmap;
+  const std::vector<size_t> image_of_station = ImagesOf(registered, model);
+  survey::ControlFit control =
+      PlaceByControl({options, control_points, image_of_station, folders.model, has_observations, folders.exact_origin.has_value()}, input_model.sfm,
+                     stations, georeference, threads);
 
   survey::Survey survey;
   survey.origin = georeference.origin;
   survey.georeferenced = georeference.ok;
   survey.photo_root = folders.photo_root;
   survey.fit = georeference.fit;
+  survey.control = std::move(control);
   survey.problems = georeference.problems;
   survey.truth = folders.truth;
+  survey.height_reference = survey::HeightReferenceOf(survey, PlacingTags(registered, photos.usable));
   FillPhotos(model, registered, photos.usable, masks, georeference, survey);
   std::set<std::string> with_pose;
   for (const survey::Photo& photo : survey.photos) with_pose.insert(photo.name);
@@ -306,7 +325,6 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   FillPoints(model, georeference.enu_from_model, PhotoOfImage(registered), options.keep_points, survey);
   MeasureAgl(survey, threads);
   if (on_placed) on_placed(survey, poses_known);
-  const bool has_observations = !folders.exact_origin && input_model.format == ModelFormat::kColmap;
   CheckFlightOf(model, folders.model, registered, photos.usable, has_observations, survey);
   MarkHoldout(holdout, survey);
   if (options.holdout == PrepareOptions().holdout) HoldOutByModel(input_model, folders.model, survey);
@@ -319,6 +337,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   if (!survey.unregistered.empty())
     spdlog::warn("{} photos without a pose are not used: {}", survey.unregistered.size(), Joined(survey.unregistered));
   WriteResidualTable(survey, georeference, input.out_folder / "geo_residuals.csv");
+  WriteControlReport(survey, input.out_folder);
   if (survey.georeferenced) {
     WriteCameraMap(survey, input.out_folder / "cameras.geojson");
   } else {

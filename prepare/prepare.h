@@ -1,8 +1,10 @@
 // Turns photos into a prepared survey: camera poses and sparse points in one local ENU frame, the input of all later stages. A camera model of the
-// photos is used if given (models/read_model.h), otherwise COLMAP is run. Written to `out_folder`:
+// photos is used if given (models/read_model.h), otherwise COLMAP is run. GPS tags place it on Earth, or control points (options.gcp). Written to
+// `out_folder`:
 //   survey.json, points.ply, kept_points.ply, tracks.bin     the survey (core/survey/survey.h)
 //   geo_residuals.csv           per photo: camera position, GPS tag, residual, height above ground
 //   cameras.geojson             camera positions, when geo-referenced (opens in QGIS)
+//   geo_control.csv, control.geojson   errors of control and check points, when there are any (control_report.h)
 //   alpha_masks/                masks from the photos' alpha, with a transforms.json
 //   colmap/                     database, models and log, when COLMAP was run, also for points of a model without; a second call resumes where the
 //                               first stopped

@@ -31,6 +31,17 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"geo_file", &O::geo_file, Range(),
        "OpenDroneMap's table of photo positions in any coordinate system; empty: geo.txt in the photo folder, or beside it when that is called "
        "images"},
+      {"gcp", &O::gcp, Range(),
+       "file of ground control points, of any of the formats of OpenDroneMap, OpenSfM, Pix4D and Metashape; empty: the place comes from GPS tags"},
+      {"gcp_marks", &O::gcp_marks, Range(), "file of the control points' marks on photos, where the file of the points has none"},
+      {"gcp_crs", &O::gcp_crs, Range(),
+       "coordinate system of the control points, for instance EPSG:32632; empty: as the file says (tables that do not say need it)"},
+      {"gcp_columns", &O::gcp_columns, Range(),
+       "columns of a table of control points in their order, for instance label,east,north,up; empty: by its header"},
+      {"gcp_heights", &O::gcp_heights, Range::OneOf({"crs", "ellipsoid", "egm96"}),
+       "what the control points' heights are above; crs: as their coordinate system says, the ellipsoid where it does not"},
+      {"check_points", &O::check_points, Range(),
+       "points of the control file that are only compared with the result: labels separated by commas, or a file with a label per line"},
       {"flight_gap_s", &O::flight_gap_s, Range{1e-3, 1e9}, "a longer pause between photos, in seconds, starts a new flight"},
       {"flight_offsets", &O::flight_offsets, Range::OneOf({"auto", "off"}),
        "auto: tagged heights get an offset and a drift in time per flight where they need it; off: never"},
@@ -47,6 +58,17 @@ void PrepareOptions::Check() const {
   config::CheckRanges("prepare", *this);
   ParseHoldout(holdout);
   if (colmap.empty()) throw base::UsageError("prepare.colmap is empty: set it to the name or path of the COLMAP program, for instance colmap");
+}
+
+PoseOptions PoseOptionsOf(const PrepareOptions& options) {
+  return {.fast = options.poses == "fast",
+          .seed_poses = options.seed_poses,
+          .colmap = options.colmap,
+          .camera_model = options.camera_model,
+          .max_image_size = options.max_image_size,
+          .max_features = options.max_features,
+          .use_gpu = options.use_gpu,
+          .seed = options.seed};
 }
 
 }  // namespace skyquilt::prepare

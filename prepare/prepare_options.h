@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/config/options.h"
+#include "prepare/poses/pose_options.h"
 
 namespace skyquilt::prepare {
 
@@ -20,6 +21,12 @@ struct PrepareOptions {
   bool use_gpu = false;
   std::string masks;
   std::string geo_file;
+  std::string gcp;
+  std::string gcp_marks;
+  std::string gcp_crs;
+  std::string gcp_columns;
+  std::string gcp_heights = "crs";
+  std::string check_points;
   double flight_gap_s = 900.0;
   std::string flight_offsets = "auto";
   std::string tag_lag = "auto";
@@ -31,5 +38,8 @@ struct PrepareOptions {
   // Throws base::UsageError that names the option, its value and what is allowed.
   void Check() const;
 };
+
+// The part that the search for poses needs.
+PoseOptions PoseOptionsOf(const PrepareOptions& options);
 
 }  // namespace skyquilt::prepare

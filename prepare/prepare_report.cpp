@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
@@ -10,24 +9,10 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "core/survey/geo_fit_json.h"
+#include "prepare/csv_field.h"
 
 namespace skyquilt::prepare {
 namespace {
-
-std::string Field(double value, int digits) {
-  if (!std::isfinite(value)) return "";
-  char buffer[64];
-  std::snprintf(buffer, sizeof(buffer), "%.*f", digits, value);
-  return buffer;
-}
-
-// RFC 4180.
-std::string Quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char character : text) quoted += character == '"' ? std::string("\"\"") : std::string(1, character);
-  return quoted + "\"";
-}
 
 void LogProblems(const survey::Survey& survey) {
   for (const survey::Problem& problem : survey.problems) spdlog::warn("{}. What to do: {}", problem.finding, problem.advice);
@@ -58,6 +43,18 @@ void LogGravity(const survey::GeoFit& fit) {
   }
 }
 
+const char* HeightsText(geo::HeightReference reference) {
+  switch (reference) {
+    case geo::HeightReference::kEllipsoid:
+      return "height above the ellipsoid";
+    case geo::HeightReference::kEgm96:
+      return "height above EGM96, as drones without RTK tag it: often barometric and then metres off";
+    case geo::HeightReference::kUnknown:
+      break;
+  }
+  return "height as tagged; what it is above is not known";
+}
+
 }  // namespace
 
 void LogSummary(const survey::Survey& survey) {
@@ -74,26 +71,25 @@ void LogSummary(const survey::Survey& survey) {
     return;
   }
   const survey::GeoFit& fit = survey.fit;
-  spdlog::info(
-      "origin: {:.7f} deg latitude, {:.7f} deg longitude, {:.2f} m (height as tagged; without RTK usually above sea level, not the ellipsoid)",
-      survey.origin.latitude_deg, survey.origin.longitude_deg, survey.origin.height_m);
-  const std::string vertical = std::isfinite(fit.rmse_vertical_m) ? Field(fit.rmse_vertical_m, 2) + " m vertical" : "heights not used";
+  spdlog::info("origin: {:.7f} deg latitude, {:.7f} deg longitude, {:.2f} m ({})", survey.origin.latitude_deg, survey.origin.longitude_deg,
+               survey.origin.height_m, HeightsText(survey.height_reference));
+  const std::string vertical = std::isfinite(fit.rmse_vertical_m) ? CsvNumber(fit.rmse_vertical_m, 2) + " m vertical" : "heights not used";
   spdlog::info("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {}), {:.6g} m per model unit", fit.n_inliers, fit.n_matches, fit.rmse_m,
                fit.rmse_horizontal_m, vertical, fit.scale);
   if (std::isfinite(fit.tag_lag_sigma_s)) spdlog::info("GPS tags lag {:.2f} s behind the photos (+- {:.2f} s)", fit.tag_lag_s, fit.tag_lag_sigma_s);
   LogFlights(fit, survey.photos);
   LogGravity(fit);
   const geo::PlaceAccuracy& accuracy = fit.accuracy;
-  spdlog::info("accuracy (one standard deviation): position {} m, height {}, scale {} %, tilt {} deg, yaw {} deg", Field(accuracy.horizontal_m, 2),
-               std::isfinite(accuracy.vertical_m) ? Field(accuracy.vertical_m, 2) + " m" : "unknown", Field(accuracy.scale_percent, 3),
-               Field(accuracy.tilt_deg, 2), Field(accuracy.yaw_deg, 2));
+  spdlog::info("accuracy (one standard deviation): position {} m, height {}, scale {} %, tilt {} deg, yaw {} deg",
+               CsvNumber(accuracy.horizontal_m, 2), std::isfinite(accuracy.vertical_m) ? CsvNumber(accuracy.vertical_m, 2) + " m" : "unknown",
+               CsvNumber(accuracy.scale_percent, 3), CsvNumber(accuracy.tilt_deg, 2), CsvNumber(accuracy.yaw_deg, 2));
   std::vector<double> relative;
   for (const survey::Photo& photo : survey.photos) {
     if (photo.relative_altitude_m) relative.push_back(*photo.relative_altitude_m);
   }
   const std::string tagged = relative.empty() ? "no RelativeAltitude tag to compare with"
-                                              : "median RelativeAltitude tag " + Field(base::Median(relative), 1) + " m above take-off";
-  spdlog::info("height above ground: median {} m; {}", std::isfinite(agl) ? Field(agl, 1) : "unknown", tagged);
+                                              : "median RelativeAltitude tag " + CsvNumber(base::Median(relative), 1) + " m above take-off";
+  spdlog::info("height above ground: median {} m; {}", std::isfinite(agl) ? CsvNumber(agl, 1) : "unknown", tagged);
 }
 
 void WriteResidualTable(const survey::Survey& survey, const Georeference& georeference, const std::filesystem::path& file) {
@@ -105,21 +101,22 @@ void WriteResidualTable(const survey::Survey& survey, const Georeference& georef
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
     const Eigen::Vector3d centre = photo.cam_from_enu.OriginInSource();
-    text += Quoted(photo.name) + "," + Field(centre.x(), 3) + "," + Field(centre.y(), 3) + "," + Field(centre.z(), 3) + ",";
+    text += CsvText(photo.name) + "," + CsvNumber(centre.x(), 3) + "," + CsvNumber(centre.y(), 3) + "," + CsvNumber(centre.z(), 3) + ",";
     if (survey.georeferenced) {
       const geo::Geodetic position = frame.GeodeticFromEnu(centre);
-      text += Field(position.latitude_deg, 9) + "," + Field(position.longitude_deg, 9) + "," + Field(position.height_m, 3) + ",";
+      text += CsvNumber(position.latitude_deg, 9) + "," + CsvNumber(position.longitude_deg, 9) + "," + CsvNumber(position.height_m, 3) + ",";
     } else {
       text += ",,,";
     }
-    text +=
-        photo.gps ? Field(photo.gps->latitude_deg, 9) + "," + Field(photo.gps->longitude_deg, 9) + "," + Field(photo.gps->height_m, 3) + "," : ",,,";
+    text += photo.gps
+                ? CsvNumber(photo.gps->latitude_deg, 9) + "," + CsvNumber(photo.gps->longitude_deg, 9) + "," + CsvNumber(photo.gps->height_m, 3) + ","
+                : ",,,";
     for (const Eigen::Vector3d& v : {photo.gps_correction_m, georeference.residual_m[i]}) {
-      for (const double value : {v.x(), v.y(), v.z()}) text += Field(value, 3) + ",";
+      for (const double value : {v.x(), v.y(), v.z()}) text += CsvNumber(value, 3) + ",";
     }
-    text += Field(photo.gps_residual_m, 3) + "," + (photo.gps_inlier ? "1" : "0") + "," + std::to_string(photo.flight) + "," + Field(photo.agl_m, 2) +
-            ",";
-    text += (photo.relative_altitude_m ? Field(*photo.relative_altitude_m, 2) : "") + "," + (photo.is_test ? "1" : "0") + "\n";
+    text += CsvNumber(photo.gps_residual_m, 3) + "," + (photo.gps_inlier ? "1" : "0") + "," + std::to_string(photo.flight) + "," +
+            CsvNumber(photo.agl_m, 2) + ",";
+    text += (photo.relative_altitude_m ? CsvNumber(*photo.relative_altitude_m, 2) : "") + "," + (photo.is_test ? "1" : "0") + "\n";
   }
   base::WriteFileAtomically(file, text);
 }

@@ -9,6 +9,8 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/gis/geotiff.h"
+#include "core/scene/map_heights.h"
+#include "products/height_shift.h"
 #include "products/map_area.h"
 #include "products/map_preview.h"
 #include "products/place_metadata.h"
@@ -66,26 +68,19 @@ int64_t RenderPending(const RayCaster& caster, double min_opacity, Pending* pend
   return filled;
 }
 
-// A place is known, but its height is not, where the GPS tags had no usable heights.
-bool HeightsAreTagged(const scene::SceneInfo& info) {
-  return std::isfinite(info.accuracy.vertical_m) || !std::isfinite(info.accuracy.horizontal_m);
-}
-
-const char* VerticalReference(const scene::SceneInfo& info) {
-  if (!info.georeferenced) return "local frame, metres if the survey's scale is known";
-  return HeightsAreTagged(info) ? "WGS84 ellipsoid (EPSG:4979), metres" : "unknown, metres: the GPS tags have no usable heights";
-}
-
-gis::GeoTiffSpec DsmSpec(const scene::SceneInfo& info, const gis::MapGrid& grid) {
+gis::GeoTiffSpec DsmSpec(const scene::SceneInfo& info, const scene::MapHeights& heights, const gis::MapGrid& grid) {
   gis::GeoTiffSpec spec;
   spec.grid = grid;
   spec.type = gis::PixelType::kFloat32;
   spec.nodata = static_cast<double>(kNoHeight);
-  spec.band_names = {!grid.georeferenced ? "local height" : HeightsAreTagged(info) ? "ellipsoidal height" : "height"};
+  spec.band_names = {!grid.georeferenced                                       ? "local height"
+                     : heights.reference() == geo::HeightReference::kEllipsoid ? "ellipsoidal height"
+                                                                               : "height"};
   spec.unit = "m";
+  spec.heights = heights.reference();
   spec.metadata = PlaceMetadata(info, "Digital surface model");
+  spec.metadata.merge(heights.Metadata());
   spec.metadata["TIFFTAG_SOFTWARE"] = "skyquilt";
-  spec.metadata["VERTICAL_REFERENCE"] = VerticalReference(info);
   return spec;
 }
 
@@ -103,10 +98,13 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   const gis::MapGrid& grid = products.grid;
   if (!grid.georeferenced)
     spdlog::warn("the survey has no geo-reference, so orthophoto and surface model are in local coordinates without CRS; use photos with GPS tags");
+  const scene::MapHeights heights(info, options.dsm ? geo::VerticalNamed(options.vertical) : geo::Vertical::kAsTagged);
+  if (!heights.Caution().empty()) spdlog::warn("{}", heights.Caution());
+  HeightShift shift(heights, grid);
   std::optional<gis::GeoTiffWriter> ortho;
   std::optional<gis::GeoTiffWriter> dsm;
   if (options.ortho) ortho.emplace(products.orthophoto = folder / "orthophoto.tif", OrthophotoSpec(info, grid, "Orthophoto"));
-  if (options.dsm) dsm.emplace(products.dsm = folder / "dsm.tif", DsmSpec(info, grid));
+  if (options.dsm) dsm.emplace(products.dsm = folder / "dsm.tif", DsmSpec(info, heights, grid));
 
   const MapRayGenerator maker(info, grid);
   base::Progress progress(options.ortho ? "orthophoto" : "surface model", static_cast<double>(grid.width) * grid.height, "cells");
@@ -134,6 +132,7 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
     }
     filled += RenderPending(caster, options.min_opacity, &pending, &band);
     if (ortho) ortho->WriteRows(band.first_row, band.n_rows, std::span<const uint8_t>(band.rgba));
+    shift.AddTo(band.first_row, kNoHeight, band.height);
     if (dsm) dsm->WriteRows(band.first_row, band.n_rows, std::span<const float>(band.height));
   }
   progress.Update(static_cast<double>(grid.width) * grid.height);

@@ -1,6 +1,7 @@
 // Makes the maps of a scene, orthophoto and digital surface model, by rendering one vertical ray per map cell. Files:
 //   orthophoto.tif  red, green, blue, alpha bytes (display values); alpha 0 where the scene has no surface
-//   dsm.tif         float32 ellipsoidal height (WGS84) of the surface in metres, local z without geo-reference; no data: -9999
+//   dsm.tif         float32 height of the surface in metres, above what products.vertical says and its CRS names (core/scene/map_heights.h), local z
+//                   without geo-reference; no data: -9999
 //   orthophoto.png, dsm.png   previews, north of the local frame up, white where there is no data; dsm.png is a shaded relief
 //   orthophoto.json           ENU bounds of both previews (min_enu, max_enu: x, y in metres), resolution, CRS and accuracy of the maps
 // The GeoTIFFs say in their metadata how well their place is known (products/place_metadata.h).

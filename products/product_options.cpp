@@ -20,6 +20,10 @@ std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
       {"preview_width", &O::preview_width, Range{16, 16384}, "width of the PNG previews in pixels"},
       {"exposure", &O::exposure, Range(),
        "brightness of images, video and orthophoto: normal, stops above normal (-10..10), or the name of a photo whose brightness to use"},
+      {"vertical", &O::vertical, Range::OneOf({"as-tagged", "ellipsoid", "egm96"}),
+       "what heights of maps, surface and buildings are above: as-tagged keeps those of the survey, ellipsoid (WGS84) and egm96 convert them; 3D "
+       "tiles "
+       "are always above the ellipsoid"},
       {"boundary", &O::boundary, Range(),
        "file with polygons (GeoJSON or GeoPackage) that limit orthophoto, surface model, mesh, cloud, tiles and terrain; empty: the whole scene"},
       {"video_path", &O::video_path, Range::OneOf({"orbit", "flyover"}), "camera path of the video: orbit circles the scene, flyover crosses it"},

@@ -12,15 +12,16 @@ namespace skyquilt::products {
 struct ProductOptions {
   bool ortho = true;
   bool dsm = true;
-  bool preview = true;               // make previews of the orthophoto before the scene is trained (products/preview_files.h)
-  double resolution_m = 0.0;         // metres per cell of the maps; 0: ground sampling distance rounded to 1, 2 or 5 times a power of ten
-  double max_pixels = 25e6;          // most cells of a map; larger maps are made coarser if resolution_m = 0 and otherwise refused
-  double min_opacity = 0.5;          // map cells with a lower opacity have no data, in (0, 1)
-  int preview_width = 1600;          // of the PNG previews, pixels
-  std::string exposure = "normal";   // or stops above it, or the name of a photo; for images, video and orthophoto
-  std::string boundary;              // GeoJSON or GeoPackage with polygons that limit all products; empty: the whole scene
-  std::string video_path = "orbit";  // "orbit" or "flyover"
-  double video_seconds = 5.0;        // 0: no video
+  bool preview = true;                 // make previews of the orthophoto before the scene is trained (products/preview_files.h)
+  double resolution_m = 0.0;           // metres per cell of the maps; 0: ground sampling distance rounded to 1, 2 or 5 times a power of ten
+  double max_pixels = 25e6;            // most cells of a map; larger maps are made coarser if resolution_m = 0 and otherwise refused
+  double min_opacity = 0.5;            // map cells with a lower opacity have no data, in (0, 1)
+  int preview_width = 1600;            // of the PNG previews, pixels
+  std::string exposure = "normal";     // or stops above it, or the name of a photo; for images, video and orthophoto
+  std::string vertical = "as-tagged";  // what heights of maps, surface and buildings are above: as-tagged, ellipsoid or egm96
+  std::string boundary;                // GeoJSON or GeoPackage with polygons that limit all products; empty: the whole scene
+  std::string video_path = "orbit";    // "orbit" or "flyover"
+  double video_seconds = 5.0;          // 0: no video
   int video_fps = 12;
   int video_width = 480;  // pixels; even, as H.264 requires
   int video_height = 270;

@@ -27,6 +27,8 @@ SurfaceClass ClassOf(const Tag& tag, const Eigen::Vector3f& position, const City
     case Part::kParapet:
     case Part::kRooftopBox:
     case Part::kChimney:
+    case Part::kSolarPanel:
+    case Part::kSolarFrame:
       return SurfaceClass::kRoof;
     case Part::kTrunk:
     case Part::kLeaves:

@@ -24,7 +24,9 @@ enum class Part : uint8_t {
   kCarGlass,
   kCarTyre,
   kBridgeRoad,
-  kBridgeConcrete
+  kBridgeConcrete,
+  kSolarPanel,  // the side to the sun
+  kSolarFrame   // of tables: below, edges and posts
 };
 
 struct Tag {

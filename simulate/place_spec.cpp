@@ -4,10 +4,12 @@
 #include <cmath>
 #include <numbers>
 #include <sstream>
+#include <stdexcept>
 
 #include "core/base/errors.h"
 #include "core/base/random.h"
 #include "core/base/text.h"
+#include "core/geo/crs.h"
 #include "simulate/noise.h"
 #include "simulate/simulate.h"
 #include "simulate/terrain.h"
@@ -126,6 +128,20 @@ PlaceSpec TidalFlat() {
   return place;
 }
 
+PlaceSpec SolarFarm() {
+  PlaceSpec place;
+  place.name = "solar_farm";
+  place.landscape = Landscape::kSolarFarm;
+  CenterArea(place, 90.0, 130.0);
+  place.surround_m = 70.0;
+  place.terrain_amplitude_m = 0.15;
+  place.altitudes_agl_m.assign(4, 60.0);
+  place.flight_inset_m = 8.0;
+  place.camera = MakeCamera(camera::CameraModel::kSimpleRadial, 800, 600, 70.0, {-0.02});
+  place.moving_cars = 0;
+  return place;
+}
+
 [[noreturn]] void Refuse(const std::string& option, const std::string& given, const std::string& allowed) {
   throw base::UsageError("simulate." + option + " = " + given + " is not allowed: " + allowed);
 }
@@ -227,11 +243,12 @@ void ApplyHillside(const SimulateOptions& options, PlaceSpec& place) {
 
 // What a search for buildings must not take for one, and places without any.
 void ApplySpecialCases(const SimulateOptions& options, PlaceSpec& place) {
-  if (place.landscape == Landscape::kTidalFlat) {
-    if (options.building_share != 1.0) Refuse("building_share", Text(options.building_share), "place 'tidalflat' has no buildings; set it to 1");
-    if (options.tree_density != 1.0) Refuse("tree_density", Text(options.tree_density), "place 'tidalflat' has no trees; set it to 1");
-    if (options.bridge) Refuse("bridge", "true", "place 'tidalflat' has no streets; set it to false");
-    if (options.trucks > 0) Refuse("trucks", std::to_string(options.trucks), "place 'tidalflat' has no streets; set it to 0");
+  if (place.landscape != Landscape::kCity) {
+    const std::string without = "place '" + place.name + "' has no ";
+    if (options.building_share != 1.0) Refuse("building_share", Text(options.building_share), without + "buildings; set it to 1");
+    if (options.tree_density != 1.0) Refuse("tree_density", Text(options.tree_density), without + "trees; set it to 1");
+    if (options.bridge) Refuse("bridge", "true", without + "streets; set it to false");
+    if (options.trucks > 0) Refuse("trucks", std::to_string(options.trucks), without + "streets; set it to 0");
   }
   if (options.building_share == 0.0 && options.tower_m > 0.0) {
     Refuse("building_share", Text(options.building_share),
@@ -252,9 +269,10 @@ void ApplySpecialCases(const SimulateOptions& options, PlaceSpec& place) {
 void ApplyBuildings(const SimulateOptions& options, PlaceSpec& place) {
   place.city.varied = options.building_shapes == "varied";
   place.city.tower_m = options.tower_m;
-  if (place.landscape == Landscape::kTidalFlat) {
-    if (place.city.varied) Refuse("building_shapes", options.building_shapes, "place 'tidalflat' has no buildings; set it to plain");
-    if (options.tower_m > 0.0) Refuse("tower_m", Text(options.tower_m), "place 'tidalflat' has no buildings; set it to 0");
+  if (place.landscape != Landscape::kCity) {
+    const std::string without = "place '" + place.name + "' has no buildings; ";
+    if (place.city.varied) Refuse("building_shapes", options.building_shapes, without + "set it to plain");
+    if (options.tower_m > 0.0) Refuse("tower_m", Text(options.tower_m), without + "set it to 0");
   }
   ApplySpecialCases(options, place);
   if (options.tower_m == 0.0) return;
@@ -280,10 +298,21 @@ void ApplyCityYaw(const SimulateOptions& options, PlaceSpec& place) {
   Overlay(options.district_turn_deg, place.city.district_turn_deg);
 }
 
+// Found out before the photos are rendered.
+void CheckControlCrs(const SimulateOptions& options) {
+  if (options.control_crs.empty()) return;
+  if (options.control_crs.find_first_of("\r\n") != std::string::npos) Refuse("control_crs", options.control_crs, "it must be one line");
+  try {
+    geo::Crs(options.control_crs).FromGeodetic({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
+  } catch (const std::invalid_argument& error) {
+    Refuse("control_crs", options.control_crs, error.what());
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> PlaceNames() {
-  return {"hamlet", "town", "smallcity", "tidalflat"};
+  return {"hamlet", "town", "smallcity", "tidalflat", "solar_farm"};
 }
 
 PlaceSpec ResolvePlace(const SimulateOptions& options) {
@@ -295,8 +324,10 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
     place = Town();
   } else if (options.place == "smallcity") {
     place = SmallCity();
-  } else {
+  } else if (options.place == "tidalflat") {
     place = TidalFlat();
+  } else {
+    place = SolarFarm();
   }
   place.seed = static_cast<uint32_t>(options.seed);
   ApplyCityYaw(options, place);
@@ -315,13 +346,14 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
   ApplyTagOptions(options, place);
   ApplyExposure(options, place);
   if (options.moving_cars >= 0) {
-    if (place.landscape == Landscape::kTidalFlat && options.moving_cars > 0) {
-      Refuse("moving_cars", std::to_string(options.moving_cars), "place 'tidalflat' has no roads; set it to 0");
+    if (place.landscape != Landscape::kCity && options.moving_cars > 0) {
+      Refuse("moving_cars", std::to_string(options.moving_cars), "place '" + place.name + "' has no roads; set it to 0");
     }
     place.moving_cars = options.moving_cars;
   }
   Overlay(options.sun_azimuth_deg, place.sun_azimuth_deg);
   Overlay(options.sun_elevation_deg, place.sun_elevation_deg);
+  CheckControlCrs(options);
   return place;
 }
 

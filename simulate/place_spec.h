@@ -1,5 +1,5 @@
-// Settings of the simulated places (hamlet, town, smallcity, tidalflat). ResolvePlace applies the user's options to them once; everything else reads
-// the result.
+// Settings of the simulated places (hamlet, town, smallcity, tidalflat, solar_farm). ResolvePlace applies the user's options to them once; everything
+// else reads the result.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 
 namespace skyquilt::simulate {
 
-enum class Landscape { kCity, kTidalFlat };
+enum class Landscape { kCity, kTidalFlat, kSolarFarm };
 enum class ExposureTags { kAll, kNone, kHalf };  // kHalf: every second photo has none, beginning with the second
 
 struct CityPlan {

@@ -1,9 +1,12 @@
 #include "simulate/simulate.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -11,6 +14,9 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "simulate/building_truth.h"
+#include "simulate/control_marks.h"
+#include "simulate/control_targets.h"
+#include "simulate/control_writer.h"
 #include "simulate/flight.h"
 #include "simulate/model_frame.h"
 #include "simulate/photo_renderer.h"
@@ -27,12 +33,13 @@ namespace fs = std::filesystem;
 
 constexpr int kSeedsPerPhoto = 170;
 constexpr const char* kStarted = "simulate.started";
+constexpr std::array<const char*, 4> kParts = {"images", "sparse", "truth", "control"};
 
 // Makes the folders. Removes an earlier simulation, but nothing else.
 void PrepareFolder(const fs::path& folder) {
   base::RequireWritableFolder(folder);
   const bool ours = fs::exists(folder / "simulate.json") || fs::exists(folder / kStarted);
-  for (const char* name : {"images", "sparse", "truth"}) {
+  for (const char* name : kParts) {
     const fs::path part = folder / name;
     if (!fs::exists(part)) continue;
     if (!ours && !(fs::is_directory(part) && fs::is_empty(part))) {
@@ -41,7 +48,7 @@ void PrepareFolder(const fs::path& folder) {
   }
   base::WriteFileAtomically(folder / kStarted, "");
   fs::remove(folder / "simulate.json");
-  for (const char* name : {"images", "sparse", "truth"}) fs::remove_all(folder / name);
+  for (const char* name : kParts) fs::remove_all(folder / name);
   for (const char* name : {"images", "sparse/0", "truth/depth", "truth/normals", "truth/classes", "truth/masks"})
     fs::create_directories(folder / name);
 }
@@ -51,6 +58,26 @@ void WarnAboutTrucks(const World& world, const PlaceSpec& place) {
   const std::vector<Car>& parked = world.city()->contents().parked;
   const auto n = std::count_if(parked.begin(), parked.end(), [](const Car& car) { return car.kind != CarKind::kCar; });
   if (n < place.city.trucks) spdlog::warn("simulate: the streets have room for {} of {} trucks (simulate.trucks)", n, place.city.trucks);
+}
+
+// Puts the targets on the ground. Nothing when none are asked for.
+std::vector<SurveyedTarget> LayOutControl(const SimulateOptions& options, const PlaceSpec& place, const std::vector<PhotoPlan>& photos, World& world,
+                                          base::ThreadPool& threads) {
+  std::vector<ControlTarget> targets = ChooseTargets(world, place, photos, options.control_points, options.check_points, threads);
+  const int wanted = options.control_points + options.check_points;
+  if (static_cast<int>(targets.size()) < wanted) {
+    spdlog::warn("simulate: the place has open ground that {} photos see for {} of {} control and check points", kMinTargetViews, targets.size(),
+                 wanted);
+  }
+  world.PaintTargets(PaintOf(targets));
+  return SurveyTargets(std::move(targets), options, place.camera, photos, place.seed);
+}
+
+void WriteControl(const SimulateOptions& options, const PlaceSpec& place, const std::vector<PhotoPlan>& photos, std::vector<SurveyedTarget> points,
+                  const geo::EnuFrame& frame, const fs::path& folder) {
+  ControlFiles files{std::move(points), {}, place.camera, ControlCrsOf(options.control_crs, frame.origin())};
+  for (const PhotoPlan& photo : photos) files.photos.push_back(photo.name);
+  WriteControlFiles(files, frame, folder);
 }
 
 }  // namespace
@@ -69,14 +96,16 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   PrepareFolder(folder);
   const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
   spdlog::info("simulate: building place {}", place.name);
-  const World world(place, options.light_intensity, threads);
+  World world(place, options.light_intensity, threads);
   WarnAboutTrucks(world, place);
   std::vector<PhotoPlan> photos = plan(place, world);
   ApplyTagFaults(place.tag_faults, place.seed, photos);
+  std::vector<SurveyedTarget> control = LayOutControl(options, place, photos, world, threads);
   const PhotoRenderer renderer(world, place.camera, options.samples_per_pixel, options.soft_shadows);
 
   SimulateSummary summary;
   summary.n_photos = static_cast<int>(photos.size());
+  summary.n_control = static_cast<int>(control.size());
   summary.n_buildings = static_cast<int>(world.buildings().size());
   std::vector<SurfaceSeed> seeds;
   base::Progress progress("simulate", static_cast<double>(photos.size()), "photos");
@@ -116,6 +145,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   WriteExposureTruth(folder, photos, place);
   WriteBuildingTruth(folder, world.buildings(), place, frame);
   WriteSurfaceMesh(world, folder / "truth" / "surface.ply");
+  if (!control.empty()) WriteControl(options, place, photos, std::move(control), frame, folder);
   base::ThrowIfCancelled();
   WriteSummary(folder, place, options, frame, photos.size(), model_from_enu);
   fs::remove(folder / kStarted);

@@ -9,6 +9,7 @@
 //   truth/masks/<name>.jpg.png         0 on a moving car or its shadow; only for photos that show one
 //   truth/exposure.json                brightness of every photo
 //   truth/buildings.json               position and size of every part of a building, and the outlines that parts have together
+//   control/                           ground control as several programs write it (control_writer.h), with simulate.control_points or check_points
 //   simulate.json                      place, origin, options, suggested blocks, the true frame of a model without exact_frame; written last
 #pragma once
 
@@ -32,15 +33,16 @@ struct SimulateSummary {
   int n_points = 0;
   int n_buildings = 0;
   int n_masks = 0;
+  int n_control = 0;  // targets of control and check points
   double seconds = 0.0;
 };
 
-// Allowed values of simulate.place: hamlet, town, smallcity, tidalflat.
+// Allowed values of simulate.place: hamlet, town, smallcity, tidalflat, solar_farm.
 std::vector<std::string> PlaceNames();
 
 // The same options give the same bytes, for any number of threads. An earlier simulation in the folder is replaced.
-// Throws base::UsageError that names an option which cannot be used, base::InputError if the folder cannot be written or has images/, sparse/ or
-// truth/ from elsewhere, base::Interrupted.
+// Throws base::UsageError that names an option which cannot be used, base::InputError if the folder cannot be written or has images/, sparse/,
+// truth/ or control/ from elsewhere, base::Interrupted.
 SimulateSummary Simulate(const SimulateOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads);
 
 // Plans a survey's photos in the order of capture, once the place is built. Names must be unique file names.

@@ -85,6 +85,16 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
       {"gimbal_random_error_deg", &O::gimbal_random_error_deg, Range{0, 10},
        "standard deviation per axis of each photo's own error of the tagged gimbal angles, degrees"},
       {"speed_tags", &O::speed_tags, Range(), "tag the speed over ground"},
+      {"control_points", &O::control_points, Range{0, 1000},
+       "number of ground control points: targets that show in the photos; their coordinates and marks are written to control/"},
+      {"check_points", &O::check_points, Range{0, 1000}, "number of check points, targets like those of the control points"},
+      {"control_mark_noise_px", &O::control_mark_noise_px, Range{0, 100}, "standard deviation of the marks per axis, pixels"},
+      {"control_marks", &O::control_marks, Range{2, 1000}, "marks per point at most, each in another photo"},
+      {"control_wrong_points", &O::control_wrong_points, Range{0, 1000}, "number of control points whose written coordinates are wrong"},
+      {"control_wrong_m", &O::control_wrong_m, Range{0, 10000}, "error of these in metres, each in a random direction in space"},
+      {"control_wrong_marks", &O::control_wrong_marks, Range{0, 1000}, "number of marks of other control points that are far from their target"},
+      {"control_crs", &O::control_crs, Range(),
+       "coordinate system of the written points, such as EPSG:2263; empty: UTM of the place; heights are ellipsoidal"},
   };
 }
 

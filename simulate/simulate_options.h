@@ -62,6 +62,15 @@ struct SimulateOptions {
   double gimbal_common_error_deg = 0.0;  // 0..10, standard deviation per axis of an error of the gimbal angles that all photos share
   double gimbal_random_error_deg = 0.0;  // 0..10, the same of each photo's own error
   bool speed_tags = false;               // the photos have their speed over ground
+  // Ground control; none by default. See control_marks.h and control_writer.h.
+  int control_points = 0;              // 0..1000 targets that are painted on the ground, surveyed, and marked in photos
+  int check_points = 0;                // 0..1000 more of them, only to compare with
+  double control_mark_noise_px = 0.5;  // 0..100, standard deviation of the marks per axis
+  int control_marks = 5;               // 2..1000 per point at most
+  int control_wrong_points = 0;        // 0..1000 control points with wrong coordinates
+  double control_wrong_m = 5.0;        // 0..10000, how far they are off
+  int control_wrong_marks = 0;         // 0..1000 marks of the others that are far from their target
+  std::string control_crs;             // of the written coordinates, one line; empty: UTM of the place
 
   static std::vector<config::Field<SimulateOptions>> Fields();
   // Throws base::UsageError that names the option, its value and what is allowed, in general and for this place.

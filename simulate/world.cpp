@@ -9,6 +9,7 @@
 #include "simulate/noise.h"
 #include "simulate/object_material.h"
 #include "simulate/outline.h"
+#include "simulate/solar_farm.h"
 #include "simulate/tidal_material.h"
 
 namespace skyquilt::simulate {
@@ -20,6 +21,8 @@ World::World(const PlaceSpec& place, double light_intensity, base::ThreadPool& t
   const Eigen::Vector2d surround = Eigen::Vector2d::Constant(place.surround_m);
   if (place.landscape == Landscape::kCity) {
     BuildCity(place, place.area_min - surround, place.area_max + surround);
+  } else if (place.landscape == Landscape::kSolarFarm) {
+    BuildSolarFarm(place, place.area_min - surround, place.area_max + surround);
   } else {
     BuildTidalFlat(place, place.area_min - surround, place.area_max + surround);
   }
@@ -127,6 +130,16 @@ Eigen::Vector2d World::RiseUnderCar(const Eigen::Vector2d& at) const {
   return {rise(kReach_m, 0.0F), rise(0.0F, kReach_m)};
 }
 
+void World::BuildSolarFarm(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
+  const Eigen::Vector2d middle = 0.5 * (place.area_min + place.area_max);
+  terrain_ = std::make_unique<Terrain>(ground_min, ground_max, place.terrain_step_m, [&](double east, double north) {
+    return RollingHeight(east, north, place.terrain_amplitude_m, seed_ + 1U) + hillside_rise_.dot(Eigen::Vector2d(east, north) - middle);
+  });
+  terrain_->AddTo(mesh_);
+  const auto ground = [this](float east, float north) { return terrain_->Height(east, north); };
+  AddSolarTables(ground_min, ground_max, ground, mesh_);
+}
+
 void World::BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
   channels_ = std::make_unique<TidalChannels>(place.area_min, place.area_max, place.terrain_amplitude_m, seed_);
   terrain_ = std::make_unique<Terrain>(ground_min, ground_max, place.terrain_step_m,
@@ -179,10 +192,18 @@ MovingScene World::MovingAt(double time_s) const {
   return {std::move(cars), std::move(mesh), std::move(scene)};
 }
 
+Surface World::GroundAt(const Hit& hit) const {
+  Surface surface = city_       ? CityGround(*city_, hit, seed_)
+                    : channels_ ? TidalSand(hit, static_cast<float>(channels_->water_z_m()), seed_)
+                                : FarmGround(hit, seed_);
+  paint_.Apply(hit, surface);
+  return surface;
+}
+
 Surface World::SurfaceAt(const Hit& hit) const {
   switch (hit.tag.part) {
     case Part::kGround:
-      return city_ ? CityGround(*city_, hit, seed_) : TidalSand(hit, static_cast<float>(channels_->water_z_m()), seed_);
+      return GroundAt(hit);
     case Part::kWater:
       return city_ ? PondWater(hit, seed_) : TidalWater(*terrain_, hit, seed_);
     case Part::kTrunk:
@@ -195,6 +216,9 @@ Surface World::SurfaceAt(const Hit& hit) const {
     case Part::kBridgeRoad:
     case Part::kBridgeConcrete:
       return BridgeSurface(*city_->contents().bridge, hit, seed_);
+    case Part::kSolarPanel:
+    case Part::kSolarFrame:
+      return SolarTableSurface(hit);
     default:
       return BuildingSurface(city_->contents().buildings[hit.tag.object], building_axis_[hit.tag.object], hit);
   }

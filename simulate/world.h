@@ -1,8 +1,10 @@
-// A simulated place, ready to be rendered: geometry, light and surfaces, built from a PlaceSpec. Read-only once built, so thread-safe.
+// A simulated place, ready to be rendered: geometry, light and surfaces, built from a PlaceSpec. Thread-safe once built, while its ground
+// is not painted.
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/base/thread_pool.h"
@@ -12,6 +14,7 @@
 #include "simulate/place_spec.h"
 #include "simulate/sky.h"
 #include "simulate/surface.h"
+#include "simulate/target_paint.h"
 #include "simulate/terrain.h"
 #include "simulate/tidal_channels.h"
 
@@ -40,17 +43,22 @@ class World {
   // ENU height of the ground in the middle of the surveyed area, where the drone takes off.
   double TakeoffHeight(const PlaceSpec& place) const;
 
+  // Puts targets on the ground, in place of earlier ones. Not while other threads use this world.
+  void PaintTargets(std::vector<PaintedTarget> targets) { paint_ = TargetPaint(std::move(targets)); }
+
   MovingScene MovingAt(double time_s) const;
   // Surface of the static scene at a hit; of a moving car, given the cars of its MovingScene.
   Surface SurfaceAt(const Hit& hit) const;
   static Surface MovingSurfaceAt(const Hit& hit, const std::vector<Car>& cars);
 
  private:
+  Surface GroundAt(const Hit& hit) const;
   // Sets a car on the ground, or on the bridge if it drives along it.
   void PutOnRoad(const Eigen::Vector2d& direction, Car& car) const;
   // Of the ground under a car on a hillside, per metre to the east and to the north; otherwise 0, as cars stand level on rolling ground.
   Eigen::Vector2d RiseUnderCar(const Eigen::Vector2d& at) const;
   void BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  void BuildSolarFarm(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
   void BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
   // A rectangle whose half sides are `reach` radii; the ground covers it where there is no water.
   void AddWater(const Pond& pond, double reach, uint32_t object);
@@ -60,13 +68,14 @@ class World {
   uint32_t seed_;
   Eigen::Vector2d hillside_rise_;
   std::unique_ptr<CityLayout> city_;
-  std::unique_ptr<TidalChannels> channels_;
+  std::unique_ptr<TidalChannels> channels_;  // of a tidal flat
   std::unique_ptr<Terrain> terrain_;
   std::vector<MovingCar> moving_;
   std::vector<Eigen::Vector2f> building_axis_;
   Mesh mesh_;
   std::unique_ptr<raytrace::TracedScene> scene_;
   Sky sky_;
+  TargetPaint paint_;
   std::unique_ptr<AmbientVolume> ambient_;
 };
 

@@ -97,7 +97,11 @@ void ClassifyPoints(const HeightRaster& terrain, const MapFrame& frame, double l
 
 class SurfaceMaker {
  public:
-  SurfaceMaker(const SurfaceInput& input, base::ThreadPool& threads) : input_(input), threads_(threads), frame_(*input.info) {}
+  SurfaceMaker(const SurfaceInput& input, base::ThreadPool& threads) : input_(input), threads_(threads), frame_(*input.info, input.vertical) {
+    if (!frame_.heights().Caution().empty()) spdlog::warn("{}", frame_.heights().Caution());
+    // The tiles need the geoid at the end: without it, hours of work would be lost then.
+    if (input.options.tiles) frame_.heights().In(geo::Vertical::kEllipsoid);
+  }
 
   SurfaceResult Make() {
     const auto start = std::chrono::steady_clock::now();

@@ -8,13 +8,6 @@ namespace {
 
 constexpr double kOffsetStep_m = 100.0;
 
-// The same rule as that of the surface model of the products.
-std::string VerticalOf(const scene::SceneInfo& info) {
-  if (!info.georeferenced) return "local frame";
-  const bool tagged = std::isfinite(info.accuracy.vertical_m) || !std::isfinite(info.accuracy.horizontal_m);
-  return tagged ? "WGS84 ellipsoid (EPSG:4979)" : "unknown: the GPS tags have no usable heights";
-}
-
 // The rotation part of the map at x. The map stretches both horizontal directions alike (UTM and UPS are conformal) and does not stretch heights.
 Eigen::Matrix3d RotationAt(const MapFrame& frame, const Eigen::Vector3d& x) {
   constexpr double kStep_m = 10.0;
@@ -35,7 +28,7 @@ Eigen::Matrix3d RotationAt(const MapFrame& frame, const Eigen::Vector3d& x) {
 
 }  // namespace
 
-MapFrame::MapFrame(const scene::SceneInfo& info) : origin_(info.origin), vertical_(VerticalOf(info)) {
+MapFrame::MapFrame(const scene::SceneInfo& info, geo::Vertical vertical) : origin_(info.origin), heights_(info, vertical) {
   if (!info.georeferenced) return;
   frame_.emplace(info.origin);
   zone_ = geo::UtmZoneOf(info.origin);
@@ -49,12 +42,14 @@ Eigen::Vector3d MapFrame::MapFromEnu(const Eigen::Vector3d& x_in_enu) const {
   if (!frame_) return x_in_enu;
   const geo::Geodetic position = frame_->GeodeticFromEnu(x_in_enu);
   const Eigen::Vector2d plane = geo::UtmFromGeodetic(position, zone_);
-  return {plane.x(), plane.y(), position.height_m};
+  return {plane.x(), plane.y(), heights_.FromSurvey(position)};
 }
 
 Eigen::Vector3d MapFrame::EnuFromMap(const Eigen::Vector3d& x_in_map) const {
   if (!frame_) return x_in_map;
-  return frame_->EnuFromGeodetic(geo::GeodeticFromUtm(x_in_map.head<2>(), x_in_map.z(), zone_));
+  geo::Geodetic place = geo::GeodeticFromUtm(x_in_map.head<2>(), x_in_map.z(), zone_);
+  place.height_m = heights_.ToSurvey(place);
+  return frame_->EnuFromGeodetic(place);
 }
 
 Eigen::Vector3f MapFrame::MapDirection(const Eigen::Vector3f& direction_enu) const {
@@ -66,7 +61,7 @@ std::string MapFrame::CrsName() const {
 }
 
 std::string MapFrame::VerticalName() const {
-  return vertical_;
+  return heights_.Name();
 }
 
 }  // namespace skyquilt::surface

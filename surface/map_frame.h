@@ -1,5 +1,5 @@
-// The coordinates of the maps and of all files of the surface but the 3D tiles: easting and northing of the survey's UTM (or UPS) zone and
-// ellipsoidal height; without geo-reference the local x, y, z.
+// The coordinates of the maps and of all files of the surface but the 3D tiles: easting and northing of the survey's UTM (or UPS) zone and height
+// above what products.vertical says; without geo-reference the local x, y, z.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,17 +8,20 @@
 
 #include "core/geo/enu_frame.h"
 #include "core/geo/utm.h"
+#include "core/scene/map_heights.h"
 #include "core/scene/scene.h"
 
 namespace skyquilt::surface {
 
 class MapFrame {
  public:
-  explicit MapFrame(const scene::SceneInfo& info);
+  // Throws base::InputError when heights have to be converted and PROJ has no geoid.
+  explicit MapFrame(const scene::SceneInfo& info, geo::Vertical vertical = geo::Vertical::kAsTagged);
 
   bool georeferenced() const { return frame_.has_value(); }
-  const geo::UtmZone& zone() const { return zone_; }  // without meaning when not geo-referenced
-  const geo::Geodetic& origin() const { return origin_; }
+  const geo::UtmZone& zone() const { return zone_; }       // without meaning when not geo-referenced
+  const geo::Geodetic& origin() const { return origin_; }  // with the survey's height
+  const scene::MapHeights& heights() const { return heights_; }
   // Easting, northing, height in metres.
   Eigen::Vector3d MapFromEnu(const Eigen::Vector3d& x_in_enu) const;
   Eigen::Vector3d EnuFromMap(const Eigen::Vector3d& x_in_map) const;
@@ -30,7 +33,7 @@ class MapFrame {
 
   // "EPSG:32617", or "local frame, metres" when not geo-referenced.
   std::string CrsName() const;
-  // What heights are above: "WGS84 ellipsoid (EPSG:4979)", "unknown: the GPS tags have no usable heights", or "local frame".
+  // What heights are above, see scene::MapHeights::Name.
   std::string VerticalName() const;
 
  private:
@@ -39,7 +42,7 @@ class MapFrame {
   geo::UtmZone zone_;
   Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d map_from_enu_ = Eigen::Matrix3d::Identity();
-  std::string vertical_;
+  scene::MapHeights heights_;
 };
 
 }  // namespace skyquilt::surface

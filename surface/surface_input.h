@@ -25,14 +25,15 @@ struct SurfaceInput {
   SurfaceOptions options;
   const scene::SceneInfo* info = nullptr;
   const survey::Survey* survey = nullptr;
-  RayCaster caster;                           // of the scene, at the brightness that the texture shall have
-  const image::PixelCache* photos = nullptr;  // for fine detail of the texture; null: none. Entry i belongs to survey->photos[i]
-  std::optional<gis::Boundary> boundary;      // in coordinates of the maps; none: the whole scene
-  double map_resolution_m = 0.0;              // cells of the maps
-  double memory_bytes = 0.0;                  // the limit, of which the fields of the scene may take half
-  std::string work_key;                       // identity of scene and options: results of another key are not used
-  std::filesystem::path work_folder;          // results of finished steps, for going on after an interruption
-  std::filesystem::path maps_folder;          // of orthophoto.tif and dsm.tif, for SurfaceOptions::odm_names
+  RayCaster caster;                                   // of the scene, at the brightness that the texture shall have
+  const image::PixelCache* photos = nullptr;          // for fine detail of the texture; null: none. Entry i belongs to survey->photos[i]
+  std::optional<gis::Boundary> boundary;              // in coordinates of the maps; none: the whole scene
+  geo::Vertical vertical = geo::Vertical::kAsTagged;  // of all files but the 3D tiles
+  double map_resolution_m = 0.0;                      // cells of the maps
+  double memory_bytes = 0.0;                          // the limit, of which the fields of the scene may take half
+  std::string work_key;                               // identity of scene and options: results of another key are not used
+  std::filesystem::path work_folder;                  // results of finished steps, for going on after an interruption
+  std::filesystem::path maps_folder;                  // of orthophoto.tif and dsm.tif, for SurfaceOptions::odm_names
   std::filesystem::path out_folder;
 };
 

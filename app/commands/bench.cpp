@@ -141,6 +141,7 @@ void AddBench(CLI::App& app, CommandState& state) {
   AddKernelBench(*bench, state);
   AddScheduleBench(*bench, state);
   AddNumericsBench(*bench, state);
+  AddPosesBench(*bench, state);
   AddStudyBenches(*bench, state);
 }
 

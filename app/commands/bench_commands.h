@@ -9,5 +9,6 @@ namespace skyquilt::app {
 int BenchThreads(const CommandState& state);
 
 void AddNumericsBench(CLI::App& bench, CommandState& state);
+void AddPosesBench(CLI::App& bench, CommandState& state);
 
 }  // namespace skyquilt::app

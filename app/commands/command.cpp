@@ -141,6 +141,19 @@ void AddModelFlag(CLI::App& command, std::string& model) {
       ->type_name("PATH");
 }
 
+void AddControlFlags(CLI::App& command, const Overrides& overrides) {
+  command
+      .add_option_function<std::string>(
+          "--gcp",
+          [overrides](const std::string& file) {
+            overrides->push_back({"prepare.gcp", file.empty() ? file : std::filesystem::absolute(file).lexically_normal().string()});
+          },
+          "ground control points that give the place, from OpenDroneMap, OpenSfM, Pix4D or Metashape [prepare.gcp]")
+      ->type_name("FILE");
+  AddOptionFlag(command, overrides, "--check-points", "prepare.check_points",
+                "points of the control file that are only compared: labels separated by commas, or a file with a label per line");
+}
+
 void AddBoundaryFlag(CLI::App& command, const Overrides& overrides) {
   command
       .add_option_function<std::string>(

@@ -49,6 +49,8 @@ void AddOptionFlag(CLI::App& command, const Overrides& overrides, const std::str
 void AddPlaceFlag(CLI::App& command, const std::string& names, const std::function<void(const std::string&)>& take, const std::string& help);
 // --model: a path.
 void AddModelFlag(CLI::App& command, std::string& model);
+// --gcp: a file, stored as an absolute path; --check-points.
+void AddControlFlags(CLI::App& command, const Overrides& overrides);
 // --boundary: a file; stored as an absolute path, as later commands may run elsewhere.
 void AddBoundaryFlag(CLI::App& command, const Overrides& overrides);
 // --memory.

@@ -4,6 +4,7 @@
 #include "app/commands/describe.h"
 #include "app/commands/describe_number.h"
 #include "core/survey/survey.h"
+#include "evaluate/control_summary.h"
 
 namespace skyquilt::app {
 namespace {
@@ -21,6 +22,33 @@ Json Gravity(const survey::GeoFit& fit) {
                     {"weight", Round(evidence.weight, 3)}});
   }
   return rows;
+}
+
+// Errors of one group of points.
+Json Errors(const evaluate::ControlErrors& errors) {
+  const auto metres = [](double value) { return Round(value, 4); };
+  return {{"points", errors.n},
+          {"mean_m", {metres(errors.mean_m.x()), metres(errors.mean_m.y()), metres(errors.mean_m.z())}},
+          {"rmse_horizontal_m", metres(errors.rmse_horizontal_m)},
+          {"rmse_vertical_m", metres(errors.rmse_vertical_m)},
+          {"rmse_horizontal_gsd", Round(errors.rmse_horizontal_gsd, 2)},
+          {"rmse_vertical_gsd", Round(errors.rmse_vertical_gsd, 2)}};
+}
+
+Json Control(const survey::ControlFit& fit) {
+  const evaluate::ControlSummary summary = evaluate::SummariseControl(fit);
+  Json json = {{"file", fit.file}, {"crs", fit.crs}, {"heights", fit.heights}, {"placed", fit.placed}, {"adjusted", fit.adjusted}};
+  if (summary.check.n > 0) json["check"] = Errors(summary.check);
+  if (summary.left_out.n > 0) json["left_out"] = Errors(summary.left_out);
+  if (summary.control.n > 0) json["control"] = Errors(summary.control);
+  json["rejected"] = Json::array();
+  json["unseen"] = Json::array();
+  for (const survey::ControlPointFit& point : fit.points) {
+    if (point.use == survey::ControlUse::kRejected) json["rejected"].push_back(point.label);
+    if (point.use == survey::ControlUse::kUnseen) json["unseen"].push_back(point.label);
+  }
+  json["accuracy"] = evaluate::AccuracyStatement(summary);
+  return json;
 }
 
 }  // namespace
@@ -51,6 +79,7 @@ nlohmann::ordered_json DescribePlace(const survey::Survey& survey) {
   }
   place["accuracy"] = DescribeAccuracy(fit.accuracy);
   if (!fit.gravity.empty()) place["gravity"] = Gravity(fit);
+  if (!survey.control.points.empty()) place["control"] = Control(survey.control);
   Json problems = Json::array();
   for (const survey::Problem& problem : survey.problems) {
     problems.push_back({{"code", problem.code}, {"finding", problem.finding}, {"advice", problem.advice}});

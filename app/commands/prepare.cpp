@@ -17,6 +17,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->required()->type_name("FOLDER");
   command->add_option("-o,--out", flags->out, "project folder; created if it does not exist")->required()->type_name("FOLDER");
   AddModelFlag(*command, flags->model);
+  AddControlFlags(*command, overrides);
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddOptionFlag(*command, overrides, "--masks", "prepare.masks", "folder of masks named PHOTO.jpg.png; pixels with value 0 are ignored");
@@ -27,6 +28,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
       "  skyquilt prepare photos/ --model sparse/0 -o out\n"
       "  skyquilt prepare photos/ --model odm/opensfm/reconstruction.json -o out\n"
       "  skyquilt prepare photos/ -o out --holdout every:10\n"
+      "  skyquilt prepare photos/ --gcp gcp_list.txt --check-points T3,T7 -o out\n"
       "Writes out/survey/. Exit status: 0 done, 2 wrong usage, 3 bad input, 130 interrupted.");
   command->callback([&state, flags, overrides] {
     state.run_command = [&state, flags, overrides] {

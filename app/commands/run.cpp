@@ -46,6 +46,11 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   if (const std::string& masks = settings.prepare.masks; !masks.empty() && !std::filesystem::is_directory(masks)) {
     throw base::InputError(masks, "no such folder", "Give the folder of the masks as prepare.masks, or leave it empty");
   }
+  for (const std::string* file : {&settings.prepare.gcp, &settings.prepare.gcp_marks}) {
+    if (!file->empty() && !std::filesystem::is_regular_file(*file)) {
+      throw base::InputError(*file, "no such file", "Give the file of the control points or of their marks, or leave the option empty");
+    }
+  }
   coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags.out), std::move(settings), flags.restart);
   coordinator::RequireSameConfiguration(pipeline, "prepare");
   std::filesystem::path photos = flags.photos;
@@ -81,6 +86,7 @@ void AddRun(CLI::App& app, CommandState& state) {
       },
       "simulated place to use instead of photos" + AllowedText("simulate.place") + " [simulate.place]");
   AddModelFlag(*command, flags->model);
+  AddControlFlags(*command, overrides);
   AddOptionFlag(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
   AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",
                 "altitude above ground in metres of each block, row by row from the south-west, separated by commas");

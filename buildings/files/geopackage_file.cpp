@@ -50,6 +50,7 @@ void WriteGeoPackage(const BuildingSet& set, const surface::MapFrame& map, const
   layers[1] = {.name = "solids",
                .description = "Buildings with their roofs, level of detail 2.2. " + heights,
                .geometry = gis::LayerGeometry::kMultiPolygonZ,
+               .heights = map.heights().reference(),
                .fields = table.fields,
                .features = {}};
   for (size_t i = 0; i < set.buildings.size(); ++i) {

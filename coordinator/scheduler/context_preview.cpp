@@ -25,6 +25,7 @@ scene::SceneInfo InfoOfContext(const render::TrainedField& context, const survey
   info.origin = blocks.origin;
   info.georeferenced = blocks.georeferenced;
   info.accuracy = blocks.accuracy;
+  info.height_reference = blocks.height_reference;
   info.min_enu = context.box.min_enu;
   info.max_enu = context.box.max_enu;
   info.gsd_m = SpecOfSurvey(blocks, survey, project.BlocksFile()).finest_voxel_m;

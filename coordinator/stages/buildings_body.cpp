@@ -9,6 +9,7 @@
 #include "coordinator/stages/stage_bodies.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "core/gis/read_maps.h"
 #include "core/gis/read_outlines.h"
 #include "core/survey/survey.h"
 #include "products/ray_caster.h"
@@ -75,7 +76,7 @@ std::string BuildingsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const Settings& settings = pipeline.settings;
   SceneSession session(pipeline.comm, project.SceneFile(), settings.run, pipeline.verbose, pipeline.quiet);
   const scene::SceneInfo& info = session.scene().info();
-  const surface::MapFrame frame(info);
+  const surface::MapFrame frame(info, geo::VerticalNamed(settings.products.vertical));
   buildings::BuildingsInput input;
   input.options = settings.buildings;
   input.georeferenced = info.georeferenced;
@@ -89,6 +90,10 @@ std::string BuildingsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
     const std::filesystem::path terrain = project.SurfaceFolder() / "dtm.tif";
     if (!std::filesystem::exists(terrain)) {
       throw base::InputError(terrain, "no such file", "Run 'skyquilt surface' with --restart and --set surface.maps=true");
+    }
+    if (gis::ReadUndulations(terrain) != frame.heights().undulations()) {
+      throw base::InputError(terrain, "has other heights than products.vertical = \"" + settings.products.vertical + "\" gives",
+                             "Run 'skyquilt surface' with it first");
     }
     const buildings::PointCloud cloud = buildings::LoadSurfacePoints(project.SurfaceWorkFolder(), surface::ReadVoxel(project.SurfaceTable()));
     const buildings::GroundGrid ground = buildings::GroundGrid::Read(terrain, frame);
@@ -114,7 +119,7 @@ void WriteFacades(Pipeline& pipeline, const std::vector<int>& ids) {
   }
   SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
   const scene::SceneInfo& info = session.scene().info();
-  const surface::MapFrame map(info);
+  const surface::MapFrame map(info, geo::VerticalNamed(pipeline.settings.products.vertical));
   const buildings::FileFrame frame(set, map);
   const surface::RayCaster caster =
       products::CasterOf(session.scene(), products::AppearanceOf(pipeline.settings.products.exposure, info), session.threads());

@@ -83,6 +83,7 @@ std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
                           .origin = blocks.origin,
                           .georeferenced = blocks.georeferenced,
                           .accuracy = blocks.accuracy,
+                          .height_reference = blocks.height_reference,
                           .borders = pipeline.settings.merge.Borders(),
                           .storage = pipeline.settings.merge.Storage(),
                           .use_context = pipeline.settings.train.coupling != "independent",
@@ -143,6 +144,7 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
                                       .project_folder = project.folder,
                                       .training = training ? &*training : nullptr,
                                       .config_text = pipeline.settings.Toml(),
+                                      .vertical = geo::VerticalNamed(pipeline.settings.products.vertical),
                                       .options = pipeline.settings.evaluate};
   pipeline.metrics = evaluate::Evaluate(input, threads);
   const evaluate::Metrics& metrics = pipeline.metrics;

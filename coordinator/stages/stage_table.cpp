@@ -50,6 +50,13 @@ FlatOptions PrepareInputs(const Pipeline& pipeline) {
     positions += FileIdentity(file);
   }
   if (!positions.empty()) inputs["positions"] = base::HashHex(positions);
+  const prepare::PrepareOptions& options = pipeline.settings.prepare;
+  std::string control;
+  for (const std::string& file : {options.gcp, options.gcp_marks, options.check_points}) {
+    // The check points may be labels.
+    if (std::filesystem::is_regular_file(file)) control += FileIdentity(file);
+  }
+  if (!control.empty()) inputs["control points"] = base::HashHex(control);
   return inputs;
 }
 
@@ -59,10 +66,24 @@ std::string BoundaryIdentity(const Pipeline& pipeline) {
   return file.empty() ? "" : FileIdentity(file);
 }
 
+// What heights are above is an input, so that another choice makes the files again. The default is left out: it gives what older programs gave.
+void AddVertical(const Pipeline& pipeline, FlatOptions* inputs) {
+  const std::string& vertical = pipeline.settings.products.vertical;
+  if (vertical != products::ProductOptions().vertical) (*inputs)["vertical"] = vertical;
+}
+
+FlatOptions ProductInputs(const Pipeline& pipeline) {
+  FlatOptions inputs{{"scene", FileIdentity(pipeline.project.StampFile("merge"))}, {"boundary", BoundaryIdentity(pipeline)}};
+  AddVertical(pipeline, &inputs);
+  return inputs;
+}
+
 FlatOptions SurfaceInputs(const Pipeline& pipeline) {
-  return {{"scene", FileIdentity(pipeline.project.StampFile("merge"))},
-          {"survey", SurveyIdentity(pipeline.project)},
-          {"boundary", BoundaryIdentity(pipeline)}};
+  FlatOptions inputs{{"scene", FileIdentity(pipeline.project.StampFile("merge"))},
+                     {"survey", SurveyIdentity(pipeline.project)},
+                     {"boundary", BoundaryIdentity(pipeline)}};
+  AddVertical(pipeline, &inputs);
+  return inputs;
 }
 
 // Of the file with known outlines.
@@ -174,13 +195,11 @@ std::vector<Stage> MakeTable() {
        .body = MergeBody},
       {.name = "products",
        .options = {"products."},
-       // The boundary's content is an input, so that another boundary makes the products again. Previews are made before, by other stages.
-       .ignored_options = {"products.boundary", "products.preview"},
+       // The boundary's content and the vertical system are inputs, so that others make the products again. Previews are made before, by other
+       // stages.
+       .ignored_options = {"products.boundary", "products.preview", "products.vertical"},
        .required = {{SceneFile, "merge"}},
-       .inputs =
-           [](const Pipeline& pipeline) {
-             return FlatOptions{{"scene", FileIdentity(pipeline.project.StampFile("merge"))}, {"boundary", BoundaryIdentity(pipeline)}};
-           },
+       .inputs = ProductInputs,
        .outputs =
            [](const Project& p) {
              return Paths{p.ProductsFolder(), p.RendersFolder()};

@@ -29,6 +29,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   input.survey = &survey;
   input.caster = products::CasterOf(scene, products::AppearanceOf(settings.products.exposure, scene.info()), session.threads());
   input.boundary = products::BoundaryOf(grid, settings.products);
+  input.vertical = geo::VerticalNamed(settings.products.vertical);
   input.map_resolution_m = grid.resolution_m;
   input.memory_bytes = settings.run.MemoryLimitBytes();
   input.work_key = stamp.Hash();

@@ -77,9 +77,9 @@ double HeightOf(int64_t level, double interval_m) {
 }
 
 void WritePackage(const MapGrid& grid, const std::vector<Line>& lines, double interval_m, const std::string& vertical,
-                  const std::filesystem::path& partial, const std::filesystem::path& file) {
+                  const std::map<std::string, std::string>& metadata, const std::filesystem::path& partial, const std::filesystem::path& file) {
   internal::Dataset dataset = internal::CreatePackage(partial, file);
-  OGRSpatialReference reference = internal::LayerReference(grid.georeferenced, grid.zone, file);
+  OGRSpatialReference reference = internal::LayerReference(grid.georeferenced, grid.zone, geo::HeightReference::kUnknown, file);
   CPLStringList options;
   options.SetNameValue("DESCRIPTION", ("Contour lines of the ground. Heights in metres above: " + vertical).c_str());
   OGRLayer* layer = dataset->CreateLayer("contours", &reference, wkbLineString, options.List());
@@ -88,6 +88,9 @@ void WritePackage(const MapGrid& grid, const std::vector<Line>& lines, double in
   if (layer == nullptr || layer->CreateField(&height) != OGRERR_NONE || layer->CreateField(&index) != OGRERR_NONE ||
       dataset->StartTransaction() != OGRERR_NONE) {
     internal::FailWriting(file, "cannot be written");
+  }
+  for (const auto& [key, value] : metadata) {
+    if (layer->SetMetadataItem(key.c_str(), value.c_str()) != CE_None) internal::FailWriting(file, "cannot be written");
   }
   for (const Line& line : lines) {
     base::ThrowIfCancelled();
@@ -123,7 +126,7 @@ double AllowedContourInterval(std::span<const float> height_m, double interval_m
 }
 
 int64_t WriteContours(const MapGrid& grid, std::span<const float> height_m, double interval_m, const std::string& vertical,
-                      const std::filesystem::path& gpkg) {
+                      const std::filesystem::path& gpkg, const std::map<std::string, std::string>& metadata) {
   SKYQUILT_CHECK(std::isfinite(interval_m) && interval_m > 0.0, std::to_string(interval_m));
   SKYQUILT_CHECK(height_m.size() == static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), std::to_string(height_m.size()));
   const internal::QuietErrors quiet;
@@ -140,7 +143,7 @@ int64_t WriteContours(const MapGrid& grid, std::span<const float> height_m, doub
     lines = LinesOf(raster.get(), interval, gpkg);
   }
   const internal::PartialPackage partial(gpkg);
-  WritePackage(grid, lines, interval, vertical, partial.path(), gpkg);
+  WritePackage(grid, lines, interval, vertical, metadata, partial.path(), gpkg);
   internal::RenameComplete(partial.path(), gpkg);
   return static_cast<int64_t>(lines.size());
 }

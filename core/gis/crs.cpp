@@ -4,10 +4,10 @@
 
 namespace skyquilt::gis {
 
-std::string WktOfZone(const geo::UtmZone& zone) {
+std::string WktOfZone(const geo::UtmZone& zone, geo::HeightReference heights) {
   const internal::QuietErrors quiet;
-  const OGRSpatialReference reference = internal::ReferenceOf(zone, "EPSG:" + std::to_string(zone.Epsg()));
-  const char* const options[] = {"FORMAT=WKT1_GDAL", nullptr};
+  const OGRSpatialReference reference = internal::ReferenceOf(zone, heights, "EPSG:" + std::to_string(zone.Epsg()));
+  const char* const options[] = {"FORMAT=WKT1_GDAL", "ALLOW_ELLIPSOIDAL_HEIGHT_AS_VERTICAL_CRS=YES", nullptr};
   char* text = nullptr;
   const OGRErr result = reference.exportToWkt(&text, options);
   const std::string wkt = text != nullptr ? text : "";

@@ -15,6 +15,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/geo/height_reference.h"
 #include "core/geo/utm.h"
 
 namespace skyquilt::gis::internal {
@@ -69,6 +70,29 @@ inline OGRSpatialReference ReferenceOf(const geo::UtmZone& zone, const std::file
   OGRSpatialReference reference;
   if (reference.importFromEPSG(zone.Epsg()) != OGRERR_NONE) {
     throw base::InputError(file, "needs the definition of EPSG:" + std::to_string(zone.Epsg()) + ", which PROJ cannot find",
+                           "Install PROJ's data files (proj.db)");
+  }
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+// The same with heights: a three-dimensional CRS for those above the ellipsoid, a compound one with EPSG:5773 for those above EGM96, the zone's CRS
+// where their reference is unknown.
+inline OGRSpatialReference ReferenceOf(const geo::UtmZone& zone, geo::HeightReference heights, const std::filesystem::path& file) {
+  OGRSpatialReference reference = ReferenceOf(zone, file);
+  if (heights == geo::HeightReference::kUnknown) return reference;
+  OGRErr error = OGRERR_NONE;
+  if (heights == geo::HeightReference::kEllipsoid) {
+    error = reference.PromoteTo3D(nullptr);
+  } else {
+    OGRSpatialReference egm96;
+    error = egm96.importFromEPSG(5773);
+    const OGRSpatialReference horizontal(reference);
+    const std::string name = std::string(horizontal.GetName()) + " + EGM96 height";
+    if (error == OGRERR_NONE) error = reference.SetCompoundCS(name.c_str(), &horizontal, &egm96);
+  }
+  if (error != OGRERR_NONE) {
+    throw base::InputError(file, "needs the definition of " + geo::NameOf(heights) + " heights, which PROJ cannot find",
                            "Install PROJ's data files (proj.db)");
   }
   reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);

@@ -57,8 +57,9 @@ inline Dataset CreatePackage(const std::filesystem::path& partial, const std::fi
 }
 
 // The CRS of a layer. Without a CRS GDAL would write GeoPackage's "undefined geographic" one, whose coordinates are degrees.
-inline OGRSpatialReference LayerReference(bool georeferenced, const geo::UtmZone& zone, const std::filesystem::path& file) {
-  if (georeferenced) return ReferenceOf(zone, file);
+inline OGRSpatialReference LayerReference(bool georeferenced, const geo::UtmZone& zone, geo::HeightReference heights,
+                                          const std::filesystem::path& file) {
+  if (georeferenced) return ReferenceOf(zone, heights, file);
   OGRSpatialReference reference;
   reference.SetLocalCS("Undefined Cartesian SRS");
   reference.SetLinearUnits(SRS_UL_METER, 1.0);

@@ -86,7 +86,8 @@ GeoTiffWriter::GeoTiffWriter(const std::filesystem::path& file, const GeoTiffSpe
   double transform[6] = {spec.grid.left, spec.grid.resolution_m, 0.0, spec.grid.top, 0.0, -spec.grid.resolution_m};
   if (dataset.SetGeoTransform(transform) != CE_None) FailWriting(file, "cannot store its position");
   if (spec.grid.georeferenced) {
-    const OGRSpatialReference reference = internal::ReferenceOf(spec.grid.zone, file);
+    const OGRSpatialReference reference =
+        internal::ReferenceOf(spec.grid.zone, spec.heights == geo::HeightReference::kEgm96 ? spec.heights : geo::HeightReference::kUnknown, file);
     if (dataset.SetSpatialRef(&reference) != CE_None) FailWriting(file, "cannot store its coordinate system");
   }
   for (const auto& [key, value] : spec.metadata) dataset.SetMetadataItem(key.c_str(), value.c_str());

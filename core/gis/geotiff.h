@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geo/height_reference.h"
 #include "core/gis/map_grid.h"
 #include "core/image/image.h"
 
@@ -25,6 +26,9 @@ struct GeoTiffSpec {
   std::optional<double> nodata;  // value of cells without data
   std::vector<std::string> band_names;
   std::string unit;  // of the values, for instance "m"; empty: none
+  // What the values are above, when they are heights. EGM96 becomes part of the CRS; ellipsoidal heights do not, because GDAL 3.6 puts a projected
+  // CRS of three dimensions into a file beside the GeoTIFF: name them in the metadata.
+  geo::HeightReference heights = geo::HeightReference::kUnknown;
   std::map<std::string, std::string> metadata;
 };
 

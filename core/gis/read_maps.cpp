@@ -26,8 +26,10 @@ internal::Dataset OpenToRead(const std::filesystem::path& file, unsigned kind) {
 // Nothing without a CRS, or with a local one.
 std::optional<geo::UtmZone> ZoneOf(const OGRSpatialReference* reference, const std::filesystem::path& file) {
   if (reference == nullptr || reference->IsEmpty() || reference->IsLocal()) return {};
-  const char* authority = reference->GetAuthorityName(nullptr);
-  const char* code_text = reference->GetAuthorityCode(nullptr);
+  OGRSpatialReference horizontal(*reference);
+  if (horizontal.IsCompound()) horizontal.StripVertical();
+  const char* authority = horizontal.GetAuthorityName(nullptr);
+  const char* code_text = horizontal.GetAuthorityCode(nullptr);
   const int code = authority != nullptr && code_text != nullptr && std::string(authority) == "EPSG" ? std::atoi(code_text) : 0;
   if (code == 32661 || code == 32761) return geo::UtmZone{.zone = 0, .north = code == 32661};
   for (const int base : {32600, 32700}) {
@@ -36,6 +38,14 @@ std::optional<geo::UtmZone> ZoneOf(const OGRSpatialReference* reference, const s
   const char* name = reference->GetName();
   throw base::InputError(file, std::string("is in ") + (name != nullptr ? name : "an unknown CRS") + ", which is no UTM or UPS zone of WGS84",
                          kMakeAgain);
+}
+
+int UndulationsOf(GDALMajorObject* object, const std::filesystem::path& file) {
+  const char* const text = object->GetMetadataItem(geo::kUndulationsItem);
+  if (text == nullptr) return 0;
+  const std::string value = text;
+  if (value != "1" && value != "-1") throw base::InputError(file, std::string("has ") + geo::kUndulationsItem + " = " + value, kMakeAgain);
+  return value == "1" ? 1 : -1;
 }
 
 MapGrid GridOf(GDALDataset* dataset, const std::filesystem::path& file) {
@@ -135,6 +145,13 @@ MapGrid ReadMapGrid(const std::filesystem::path& file) {
   return GridOf(dataset.get(), file);
 }
 
+int ReadUndulations(const std::filesystem::path& file) {
+  const internal::QuietErrors quiet;
+  GDALRegister_GTiff();
+  const internal::Dataset dataset = OpenToRead(file, GDAL_OF_RASTER);
+  return UndulationsOf(dataset.get(), file);
+}
+
 image::ImageF ReadMapPart(const std::filesystem::path& file, const Eigen::AlignedBox2d& part, int width, int height) {
   SKYQUILT_CHECK(width > 0 && height > 0 && part.min().allFinite() && part.max().allFinite() && part.sizes().minCoeff() > 0.0,
                  std::to_string(width) + " x " + std::to_string(height));
@@ -176,6 +193,7 @@ Contours ReadContours(const std::filesystem::path& gpkg, int64_t max_vertices) {
     contours.georeferenced = true;
     contours.zone = *zone;
   }
+  contours.undulations = UndulationsOf(layer, gpkg);
   contours.lines = ReadLines(layer, false, max_vertices, &contours.thinned);
   if (contours.thinned) {
     bool stopped = false;

@@ -13,8 +13,12 @@
 namespace skyquilt::gis {
 
 // Size, place and zone of a GeoTIFF; not geo-referenced when it has no CRS. Throws base::InputError when the file cannot be read, is not north-up
-// with square cells, or has a CRS other than a UTM or UPS zone of WGS84.
+// with square cells, or has a CRS other than a UTM or UPS zone of WGS84, alone or with a vertical CRS.
 MapGrid ReadMapGrid(const std::filesystem::path& file);
+
+// How often the undulation of EGM96 was added to the survey's heights for a GeoTIFF of heights: -1, 0 or 1 (geo::kUndulationsItem). Throws
+// base::InputError when the file cannot be read, or says something else.
+int ReadUndulations(const std::filesystem::path& file);
 
 // All bands, interleaved as float, of a rectangle in map coordinates, whose edges are the outer edges of the result. Averaged when cells are smaller
 // than pixels, else interpolated; transparent cells (alpha) do not count. NaN outside the map and where it has no data. width and height must be
@@ -28,7 +32,8 @@ struct ContourLine {
 };
 struct Contours {
   bool georeferenced = false;
-  geo::UtmZone zone;  // then
+  geo::UtmZone zone;    // then
+  int undulations = 0;  // as of ReadUndulations
   std::vector<ContourLine> lines;
   bool thinned = false;  // lines were left out
 };

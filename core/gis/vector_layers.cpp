@@ -93,9 +93,10 @@ void WriteVectorLayers(std::span<const VectorLayer> layers, bool georeferenced, 
   const internal::FixedTimeStamp time_stamp;
   const internal::PartialPackage partial(gpkg);
   internal::Dataset dataset = internal::CreatePackage(partial.path(), gpkg);
-  const OGRSpatialReference reference = internal::LayerReference(georeferenced, zone, gpkg);
   if (dataset->StartTransaction() != OGRERR_NONE) internal::FailWriting(gpkg, "cannot be written");
-  for (const VectorLayer& layer : layers) WriteLayer(layer, reference, dataset.get(), gpkg);
+  for (const VectorLayer& layer : layers) {
+    WriteLayer(layer, internal::LayerReference(georeferenced, zone, layer.heights, gpkg), dataset.get(), gpkg);
+  }
   if (dataset->CommitTransaction() != OGRERR_NONE) internal::FailWriting(gpkg, "cannot be written");
   internal::CloseWritten(&dataset, gpkg);
   internal::RenameComplete(partial.path(), gpkg);

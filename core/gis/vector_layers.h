@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/geo/height_reference.h"
 #include "core/geo/utm.h"
 
 namespace skyquilt::gis {
@@ -36,13 +37,15 @@ struct LayerFeature {
 
 struct VectorLayer {
   std::string name;         // distinct in the file
-  std::string description;  // for people, for instance what heights are above
+  std::string description;  // for people
   LayerGeometry geometry = LayerGeometry::kPolygon;
-  std::vector<LayerField> fields;  // distinct names; none may be "fid" or "geom", which GeoPackage uses itself
+  geo::HeightReference heights = geo::HeightReference::kUnknown;  // of kMultiPolygonZ: what heights are above becomes part of the CRS
+  std::vector<LayerField> fields;                                 // distinct names; none may be "fid" or "geom", which GeoPackage uses itself
   std::vector<LayerFeature> features;
 };
 
-// Writes all layers, in their order and with their features in order. CRS: the zone's, none without geo-reference. Real numbers that are not finite
+// Writes all layers, in their order and with their features in order. CRS: the zone's, with the heights of the layer
+// where they are known; none without geo-reference. Real numbers that are not finite
 // become NULL. Written under another name and renamed; the same layers give the same bytes, so the file's time stamp is fixed. Throws
 // base::InputError when it cannot be written, base::Interrupted, and std::logic_error when features do not fit their layer or a ring has fewer than
 // three points or a coordinate that is not finite.

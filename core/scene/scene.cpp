@@ -118,6 +118,7 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
                  reader.DoubleAttribute("origin_height_m")};
   info.georeferenced = reader.IntAttribute("georeferenced") != 0;
   info.accuracy = GetAccuracy(reader);
+  info.height_reference = GetHeightReference(reader, scene_h5);
   info.response = brightness::GetResponse(reader, scene_h5);
   brightness::GetLuminance(reader, &info.luminance, &info.luminance_state);
   info.config = reader.StringAttribute("config");

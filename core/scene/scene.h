@@ -18,6 +18,7 @@
 #include "core/camera/camera.h"
 #include "core/geo/block_box.h"
 #include "core/geo/geodetic.h"
+#include "core/geo/height_reference.h"
 #include "core/geo/place_accuracy.h"
 #include "core/geo/transform.h"
 #include "core/render/ray.h"
@@ -45,7 +46,9 @@ inline std::string NameOf(Borders borders) {
 struct SceneInfo {
   geo::Geodetic origin;
   bool georeferenced = false;
-  geo::PlaceAccuracy accuracy;       // of the survey; unknown in scenes of older programs
+  // Of the survey; unknown in scenes of older programs.
+  geo::PlaceAccuracy accuracy;
+  geo::HeightReference height_reference = geo::HeightReference::kUnknown;
   std::vector<SceneBlock> blocks;    // without empty ones
   Eigen::Vector3d min_enu, max_enu;  // union of the core boxes
   brightness::Response response;     // of the photos, relative to light at reference exposure

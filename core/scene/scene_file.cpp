@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/base/errors.h"
@@ -16,6 +17,7 @@ constexpr std::array<std::pair<const char*, double geo::PlaceAccuracy::*>, 5> kA
     {"accuracy_horizontal_m", &geo::PlaceAccuracy::horizontal_m},
     {"accuracy_vertical_m", &geo::PlaceAccuracy::vertical_m},
 }};
+constexpr const char* kHeightReferenceAttribute = "height_reference";
 
 }  // namespace
 
@@ -45,6 +47,19 @@ geo::PlaceAccuracy GetAccuracy(const checkpoint::ArchiveReader& scene) {
     if (scene.HasAttribute(name)) accuracy.*member = scene.DoubleAttribute(name);
   }
   return accuracy;
+}
+
+void PutHeightReference(geo::HeightReference reference, checkpoint::ArchiveWriter& writer) {
+  writer.SetAttribute(kHeightReferenceAttribute, geo::NameOf(reference));
+}
+
+geo::HeightReference GetHeightReference(const checkpoint::ArchiveReader& scene, const std::filesystem::path& scene_h5) {
+  if (!scene.HasAttribute(kHeightReferenceAttribute)) return geo::HeightReference::kUnknown;
+  const std::string name = scene.StringAttribute(kHeightReferenceAttribute);
+  const std::optional<geo::HeightReference> reference = geo::HeightReferenceNamed(name);
+  if (!reference)
+    throw base::InputError(scene_h5, "has heights above '" + name + "', which is unknown", "Merge the scene again with `skyquilt merge`");
+  return *reference;
 }
 
 }  // namespace skyquilt::scene

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/checkpoint/archive.h"
+#include "core/geo/height_reference.h"
 #include "core/geo/place_accuracy.h"
 #include "core/scene/scene.h"
 
@@ -25,5 +26,8 @@ Borders BordersOf(const checkpoint::ArchiveReader& scene);
 // The accuracy of the scene's place on Earth: attributes accuracy_scale_percent and so on, without those that are unknown.
 void PutAccuracy(const geo::PlaceAccuracy& accuracy, checkpoint::ArchiveWriter& writer);
 geo::PlaceAccuracy GetAccuracy(const checkpoint::ArchiveReader& scene);
+// Attribute height_reference; unknown where there is none. Throws base::InputError, which names the file, for one that no program writes.
+void PutHeightReference(geo::HeightReference reference, checkpoint::ArchiveWriter& writer);
+geo::HeightReference GetHeightReference(const checkpoint::ArchiveReader& scene, const std::filesystem::path& scene_h5);
 
 }  // namespace skyquilt::scene

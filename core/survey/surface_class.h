@@ -8,7 +8,7 @@ namespace skyquilt::survey {
 
 enum class SurfaceClass : uint8_t {
   kNone = 0,       // sky, or unknown
-  kRoof = 1,       // decks and slopes, with what stands on them: parapets, stair housings, machines, chimneys; tops and sides
+  kRoof = 1,       // decks and slopes, with what stands on them: parapets, stair housings, machines, chimneys; tops and sides; tables of solar panels
   kWall = 2,       // of buildings, gables included
   kGround = 3,     // everything else that one can walk on: gardens, fields, sand, pavements, paths, driveways, terraces, plazas
   kRoad = 4,       // carriageways of streets, car parks, and bridges with all their faces

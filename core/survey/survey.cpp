@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/survey/control_fit_json.h"
 #include "core/survey/geo_fit_json.h"
 #include "core/survey/points_ply.h"
 
@@ -112,6 +113,10 @@ Survey SurveyFromJson(const json& value) {
   survey.origin = GeodeticFromJson(value.at("origin"));
   survey.georeferenced = value.at("georeferenced").get<bool>();
   if (!geo::IsValid(survey.origin)) throw std::invalid_argument("has an origin that is not a position on Earth");
+  const std::string heights = value.value("height_reference", geo::NameOf(survey.height_reference));  // absent in surveys of older programs
+  const auto reference = geo::HeightReferenceNamed(heights);
+  if (!reference) throw std::invalid_argument("has heights above '" + heights + "', which is unknown");
+  survey.height_reference = *reference;
   survey.photo_root = value.at("photo_root").get<std::string>();
   for (const json& camera : value.at("cameras")) survey.cameras.push_back(CameraFromJson(camera));
   std::set<std::string> names;
@@ -126,6 +131,7 @@ Survey SurveyFromJson(const json& value) {
   }
   survey.unregistered = value.at("unregistered").get<std::vector<std::string>>();
   survey.fit = GeoFitFromJson(value.at("fit"));
+  if (value.contains("control")) survey.control = ControlFitFromJson(value.at("control"));  // absent without control points
   survey.checks = FlightChecksFromJson(value.at("checks"));
   for (const json& problem : value.at("problems")) survey.problems.push_back(ProblemFromJson(problem));
   const json& truth = value.at("truth");
@@ -186,6 +192,7 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
                         {"version", kVersion},
                         {"origin", ToJson(survey.origin)},
                         {"georeferenced", survey.georeferenced},
+                        {"height_reference", geo::NameOf(survey.height_reference)},
                         {"photo_root", survey.photo_root.string()},
                         {"n_points", survey.points.size()},
                         {"n_kept_points", survey.kept_points.size()},
@@ -203,6 +210,7 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
                       {"exposure_json", survey.truth->exposure_json.string()},   {"normals_folder", survey.truth->normals_folder.string()},
                       {"classes_folder", survey.truth->classes_folder.string()}, {"surface_ply", survey.truth->surface_ply.string()}};
   }
+  if (!survey.control.points.empty()) value["control"] = ToJson(survey.control);
   for (const Problem& problem : survey.problems) value["problems"].push_back(ToJson(problem));
   for (const camera::Camera& camera : survey.cameras) value["cameras"].push_back(ToJson(camera));
   for (const Photo& photo : survey.photos) value["photos"].push_back(ToJson(photo));

@@ -13,7 +13,9 @@
 
 #include "core/camera/camera.h"
 #include "core/geo/geodetic.h"
+#include "core/geo/height_reference.h"
 #include "core/geo/transform.h"
+#include "core/survey/control_fit.h"
 #include "core/survey/directions.h"
 #include "core/survey/geo_fit.h"
 #include "core/survey/point_tracks.h"
@@ -62,8 +64,11 @@ struct Truth {
 };
 
 struct Survey {
-  geo::Geodetic origin;              // of the ENU frame
-  bool georeferenced = false;        // false: levelled local frame of unknown scale, the origin has no meaning
+  geo::Geodetic origin;        // of the ENU frame
+  bool georeferenced = false;  // false: levelled local frame of unknown scale, the origin has no meaning
+  // What the heights of the frame, the origin's among them, are measured from; core/survey/height_reference.h decides it. Computations take them for
+  // ellipsoidal whatever it is; unknown in surveys of older programs.
+  geo::HeightReference height_reference = geo::HeightReference::kUnknown;
   std::filesystem::path photo_root;  // absolute
   std::vector<camera::Camera> cameras;
   std::vector<Photo> photos;              // registered photos only, in name order
@@ -75,6 +80,7 @@ struct Survey {
   std::vector<SparsePoint> kept_points;
   PointTracks kept_tracks;  // of `kept_points`; may be empty
   GeoFit fit;
+  ControlFit control;  // agreement with ground control and check points
   FlightChecks checks;
   std::vector<Problem> problems;  // found while preparing, the worst first
   std::optional<Truth> truth;

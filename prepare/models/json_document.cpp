@@ -10,16 +10,20 @@
 namespace skyquilt::prepare {
 namespace {
 
+using Offsets = std::unordered_map<const nlohmann::json*, size_t>;
+
 // Follows the text and the values read from it side by side until it meets one value: the parser does not keep positions. The text is valid JSON, and
 // not nested deeply.
 class JsonLocator {
  public:
-  JsonLocator(std::string_view text, const nlohmann::json* target) : text_(text), target_(target) {}
+  // With `offsets` the positions of all values on the way are kept there.
+  JsonLocator(std::string_view text, const nlohmann::json* target, Offsets* offsets = nullptr) : text_(text), target_(target), offsets_(offsets) {}
 
   // False when the value is not there. `node`: what was read at this place; null where a repeated key hides it.
   bool Walk(const nlohmann::json* node, const std::string& path) {
     SkipSpace();
-    if (node == target_) {
+    if (offsets_ != nullptr && node != nullptr) offsets_->emplace(node, at_);
+    if (target_ != nullptr && node == target_) {
       path_ = path;
       return true;
     }
@@ -87,6 +91,7 @@ class JsonLocator {
 
   std::string_view text_;
   const nlohmann::json* target_;
+  Offsets* offsets_;
   size_t at_ = 0;
   std::string path_;
 };
@@ -130,6 +135,16 @@ void JsonDocument::Fail(const nlohmann::json& value, const std::string& found, c
     where = "line " + std::to_string(LineOf(text_, locator.offset())) + ": " + (locator.path().empty() ? "the file" : locator.path()) + " ";
   }
   throw base::InputError(file_, where + found, fix.empty() ? fix_ : fix);
+}
+
+int JsonDocument::LineOfValue(const nlohmann::json& value) const {
+  if (offsets_.empty()) JsonLocator(text_, nullptr, &offsets_).Walk(&json_, "");
+  const auto found = offsets_.find(&value);
+  return found == offsets_.end() ? 0 : static_cast<int>(LineOf(text_, found->second));
+}
+
+int JsonValue::Line() const {
+  return document_->LineOfValue(*value_);
 }
 
 void JsonValue::Fail(const std::string& found, const std::string& fix) const {

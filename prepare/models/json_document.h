@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,8 @@ class JsonValue {
   std::vector<double> Numbers(size_t count) const;
   // 0 when the object has no such member.
   double NumberOr0(const std::string& key) const;
+  // Where it begins in the file, from 1; 0: not known (a key that is there twice).
+  int Line() const;
 
   // Throws base::InputError: the line and the path of this value, what was found and how to fix it (empty: the document's usual advice).
   [[noreturn]] void Fail(const std::string& found, const std::string& fix = "") const;
@@ -61,11 +64,13 @@ class JsonDocument {
  private:
   friend class JsonValue;
   [[noreturn]] void Fail(const nlohmann::json& value, const std::string& found, const std::string& fix) const;
+  int LineOfValue(const nlohmann::json& value) const;
 
   std::filesystem::path file_;
   std::string fix_;
   std::string text_;
   nlohmann::json json_;
+  mutable std::unordered_map<const nlohmann::json*, size_t> offsets_;  // of all values in the text; filled when first asked for
 };
 
 // Number of the line in which the byte is, from 1.

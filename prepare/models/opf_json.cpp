@@ -115,6 +115,21 @@ geo::Rigid3d PoseOfCamera(const JsonValue& camera) {
   return PoseFromCentre(frame_from_image * Vector3d(1.0, -1.0, -1.0).asDiagonal(), camera.At("position").Vector3());
 }
 
+// The system in which the positions are, with heights above a geoid left out where the project has a constant for them, or PROJ no grid: without it
+// they are taken as ellipsoidal, which is tens of metres off, but the place on the map is right.
+geo::Crs UsableSystem(const fs::path& file, geo::Crs system, bool has_constant, const Eigen::Vector3d& somewhere) {
+  if (system.heights() != geo::CrsHeights::kGravity) return system;
+  if (!has_constant) {
+    try {
+      system.ToGeodetic(somewhere);
+      return system;
+    } catch (const std::invalid_argument& error) {
+      spdlog::warn("{}: its heights are taken as ellipsoidal ({})", file.string(), error.what());
+    }
+  }
+  return system.WithoutHeights();
+}
+
 // The similarity that is nearest to the frame's map projection around the cameras.
 std::optional<ModelPlace> PlaceOf(const fs::path& file, const survey::ColmapModel& sfm) {
   const JsonDocument document(file, kOpfFix);
@@ -135,12 +150,19 @@ std::optional<ModelPlace> PlaceOf(const fs::path& file, const survey::ColmapMode
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const survey::ColmapImage& image : sfm.images) middle += image.cam_from_world.OriginInSource() / static_cast<double>(sfm.images.size());
   try {
-    const geo::Crs system(text, geo::AxisOrder::kAsDefined);
-    const auto geodetic = [&](const Eigen::Vector3d& x_in_frame) {
+    const auto base_of = [&](const Eigen::Vector3d& x_in_frame) {
       Eigen::Vector3d base = x_in_frame - shift;
       if (swap_xy) std::swap(base.x(), base.y());
       base = base.cwiseQuotient(scale);
       base.z() += geoid_height;
+      return base;
+    };
+    geo::Crs whole(text, geo::AxisOrder::kAsDefined);
+    const double height_unit_m = whole.heights() == geo::CrsHeights::kGravity ? whole.vertical().unit_m : 1.0;
+    const geo::Crs system = UsableSystem(file, std::move(whole), crs.Find("geoid_height").has_value(), base_of(middle));
+    const auto geodetic = [&](const Eigen::Vector3d& x_in_frame) {
+      Eigen::Vector3d base = base_of(x_in_frame);
+      if (system.heights() == geo::CrsHeights::kNone) base.z() *= height_unit_m;
       return system.ToGeodetic(base);
     };
     ModelPlace place{file.string(), geodetic(middle), {}};

@@ -10,11 +10,12 @@
 
 namespace skyquilt::prepare {
 
-// What all commands need. `fast`: FastColmapFlags instead of COLMAP's defaults.
+// What all commands need. `fast`: FastColmapFlags instead of COLMAP's defaults. `hold_focal`: the mapper keeps the focal lengths of the tags.
 struct ColmapSettings {
   std::filesystem::path program;
   int n_threads = 1;
   bool fast = false;
+  bool hold_focal = false;
 };
 
 // All throw base::InputError that names the log when COLMAP fails, base::Interrupted when asked to stop.

@@ -1,15 +1,20 @@
 #include "prepare/poses/colmap_run.h"
 
+#include <algorithm>
+#include <exception>
 #include <optional>
 
 #include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/survey/colmap_database.h"
+#include "core/survey/colmap_model.h"
 #include "prepare/poses/choose_pairs.h"
 #include "prepare/poses/colmap_commands.h"
 #include "prepare/poses/extract_features.h"
 #include "prepare/poses/fill_database.h"
+#include "prepare/poses/focal_check.h"
 #include "prepare/poses/seed_model.h"
 
 namespace skyquilt::prepare {
@@ -54,6 +59,7 @@ StepHashes HashSteps(const Attempt& attempt, const std::vector<PhotoFile>& photo
     text += fmt::format("fast {} {} {} {}\n", flags.ba_global_function_tolerance, flags.ba_global_images_ratio, flags.ba_global_points_ratio,
                         flags.ba_global_max_refinements);
   }
+  if (attempt.settings.hold_focal) text += "focal lengths of the tags\n";
   hashes.model = base::HashHex(text);
   return hashes;
 }
@@ -74,17 +80,77 @@ void FillDatabaseOf(const Attempt& attempt, const StepHashes& hashes, const std:
   FillDatabase(job, attempt.settings, photos, options, {hashes.features, hashes.matches}, choose, threads, ranks);
 }
 
+std::optional<FarFocal> FarFocalOf(const ColmapJob& job, const FoundModel& model) {
+  return FindFarFocal(survey::ReadColmapModel(model.folder), survey::ColmapDatabase(job.Database()).ReadCameras());
+}
+
 FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
                      base::ThreadPool& threads) {
   const ColmapJob& job = attempt.job;
-  const ColmapStep mapper{kModelStep, hashes.model};
+  const ColmapStep mapper{attempt.settings.hold_focal ? kHeldFocalStep : kModelStep, hashes.model};
   // What the mapper has finished stays: the seeding had failed, or was not wanted.
   if (attempt.seed && !IsDone(job, mapper)) {
     RunStep(job, {kSeededStep, hashes.seeded}, {}, [&] { SeedModel(job, photos, threads); });
-    if (const std::optional<FoundModel> seeded = SeededModelOf(job)) return *seeded;
+    if (const std::optional<FoundModel> seeded = SeededModelOf(job)) {
+      const std::optional<FarFocal> far = FarFocalOf(job, *seeded);
+      if (!far) return *seeded;
+      spdlog::info("poses by tags and matches are left to COLMAP's mapper: they need {}", far->Text());
+    }
   }
   RunStep(job, mapper, {}, [&] { MakeModels(job, attempt.settings, photos.size(), options); });
   return LargestModel(job);
+}
+
+// What an attempt gave.
+struct Outcome {
+  std::optional<FoundModel> model;
+  std::optional<FarFocal> far;
+  std::exception_ptr error;  // when there is no model
+  std::string reason;        // why it is not enough; empty: it is
+
+  // A model of a wrong shape is worth less than one of the right shape with more than half as many photos.
+  double Worth() const {
+    constexpr double kWrongShape = 0.5;
+    return model ? static_cast<double>(model->n_photos) * (far ? kWrongShape : 1.0) : -1.0;
+  }
+};
+
+Outcome Try(const Attempt& attempt, const std::vector<PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads, RemoteTasks* ranks) {
+  const StepHashes hashes = HashSteps(attempt, photos, options);
+  FillDatabaseOf(attempt, hashes, photos, options, threads, ranks);
+  Outcome outcome;
+  try {
+    outcome.model = FindModel(attempt, hashes, photos, options, threads);
+  } catch (const NoModelError& error) {
+    outcome.error = std::current_exception();
+    outcome.reason = error.what();
+    return outcome;
+  }
+  outcome.far = FarFocalOf(attempt.job, *outcome.model);
+  if (outcome.far) {
+    outcome.reason = "it found " + outcome.far->Text();
+  } else if (static_cast<double>(outcome.model->n_photos) < kEnoughRegistered * static_cast<double>(photos.size())) {
+    outcome.reason = fmt::format("it found the poses of {} of {} photos only", outcome.model->n_photos, photos.size());
+  }
+  return outcome;
+}
+
+void HoldFocal(Attempt& attempt) {
+  attempt.settings.hold_focal = true;
+  attempt.job.models = "sparse_held_focal";
+}
+
+// The best of several; when none has a model, throws what the last one threw.
+fs::path ChooseModel(const std::vector<Outcome>& outcomes) {
+  const Outcome& best = *std::max_element(outcomes.begin(), outcomes.end(), [](const Outcome& a, const Outcome& b) { return a.Worth() < b.Worth(); });
+  if (!best.model) std::rethrow_exception(outcomes.back().error);
+  if (best.far) {
+    spdlog::warn(
+        "the poses have {}: one of both is wrong. If it is the poses, heights are too; photos from another height or at an angle would show it. "
+        "If the tags are wrong (cropped or enlarged photos), give a model with --model",
+        best.far->Text());
+  }
+  return best.model->folder;
 }
 
 }  // namespace
@@ -98,35 +164,24 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, c
   }
   const ColmapSettings settings{.program = program, .n_threads = threads.size(), .fast = options.fast};
   const Attempt first{job, settings, options.fast ? std::optional(PairRules{}) : std::nullopt, options.fast && options.seed_poses};
-  const StepHashes hashes = HashSteps(first, photos, options);
-  FillDatabaseOf(first, hashes, photos, options, threads, ranks);
-  if (!options.fast) return FindModel(first, hashes, photos, options, threads).folder;
+  std::vector<Outcome> outcomes = {Try(first, photos, options, threads, ranks)};
+  if (!options.fast || outcomes.front().reason.empty()) return ChooseModel(outcomes);
 
-  std::optional<FoundModel> found;
-  std::string reason;
-  try {
-    found = FindModel(first, hashes, photos, options, threads);
-    if (static_cast<double>(found->n_photos) >= kEnoughRegistered * static_cast<double>(photos.size())) return found->folder;
-    reason = fmt::format("it found the poses of {} of {} photos only", found->n_photos, photos.size());
-  } catch (const NoModelError& error) {
-    reason = error.what();
-  }
-  spdlog::warn("the fast way is not enough: {}. Once more with COLMAP's own settings and more pairs", reason);
+  spdlog::warn("the fast way is not enough: {}. Once more with COLMAP's own settings and more pairs", outcomes.front().reason);
   Attempt second{job, settings, kMorePairs};
   second.job.folder = job.folder / "more_pairs";
   second.settings.fast = false;
-  const StepHashes second_hashes = HashSteps(second, photos, options);
-  FillDatabaseOf(second, second_hashes, photos, options, threads, ranks);
-  FoundModel again;
-  try {
-    again = FindModel(second, second_hashes, photos, options, threads);
-  } catch (const NoModelError& error) {
-    if (!found) throw;
-    spdlog::warn("more pairs give no model: {}", error.what());
-    return found->folder;
+  if (outcomes.front().far) HoldFocal(second);
+  outcomes.push_back(Try(second, photos, options, threads, ranks));
+  if (outcomes.back().far && !second.settings.hold_focal) {
+    spdlog::warn("more pairs are not enough: {}. Once more with the focal length of the tags", outcomes.back().reason);
+    HoldFocal(second);
+    outcomes.push_back(Try(second, photos, options, threads, ranks));
   }
-  spdlog::info("poses: {} photos in the fast way, {} with more pairs", found ? found->n_photos : 0, again.n_photos);
-  return found && found->n_photos >= again.n_photos ? found->folder : again.folder;
+  const auto n_photos = [](const Outcome& outcome) { return outcome.model ? outcome.model->n_photos : 0; };
+  if (!outcomes.back().model) spdlog::warn("more pairs give no model: {}", outcomes.back().reason);
+  spdlog::info("poses: {} photos in the fast way, {} with more pairs", n_photos(outcomes.front()), n_photos(outcomes.back()));
+  return ChooseModel(outcomes);
 }
 
 }  // namespace skyquilt::prepare

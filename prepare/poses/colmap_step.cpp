@@ -76,7 +76,7 @@ double ColmapLineProgress(const std::string& line, size_t n_photos) {
 
 bool IsDone(const ColmapJob& job, const ColmapStep& step) {
   const fs::path stamp = StampFile(job, step.name);
-  const fs::path product = step.name == kModelStep ? job.Models() : job.Database();
+  const fs::path product = step.name == kModelStep || step.name == kHeldFocalStep ? job.Models() : job.Database();
   return fs::exists(product) && fs::exists(stamp) && base::ReadFile(stamp) == step.hash + "\n";
 }
 

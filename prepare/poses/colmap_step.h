@@ -15,9 +15,10 @@ struct ColmapJob {
   std::filesystem::path masks;       // empty: none
   std::filesystem::path folder;      // for COLMAP's database, models and log, and for our stamps of finished steps
   std::string log = "colmap.log";    // its name in the folder
+  std::string models = "sparse";     // folder of the mapper's models in the folder
 
   std::filesystem::path Database() const { return folder / "database.db"; }
-  std::filesystem::path Models() const { return folder / "sparse"; }
+  std::filesystem::path Models() const { return folder / models; }
   std::filesystem::path Log() const { return folder / log; }
 };
 
@@ -56,6 +57,8 @@ void RunStep(const ColmapJob& job, const ColmapStep& step, const std::vector<std
 
 constexpr const char* kNoModelFix = "The photos may overlap too little or be blurred: read the log, add photos, or give a model with --model";
 
-constexpr const char* kModelStep = "model";  // makes the models; the other steps fill the database
+// Make the models of the job's folder `models`; the other steps fill the database.
+constexpr const char* kModelStep = "model";
+constexpr const char* kHeldFocalStep = "model_held_focal";  // with the focal lengths of the tags
 
 }  // namespace skyquilt::prepare

@@ -44,7 +44,7 @@ std::vector<PhotoFile> PhotosInDatabase(const ColmapJob& job, const std::vector<
 void FillFeatures(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options,
                   const std::string& hash, RemoteTasks* ranks) {
   base::RequireWritableFolder(job.folder);
-  RunStep(job, {"features", hash}, {kOwnMatchesStep, kMatchesStep, kSeededStep, kModelStep},
+  RunStep(job, {"features", hash}, {kOwnMatchesStep, kMatchesStep, kSeededStep, kModelStep, kHeldFocalStep},
           [&] { ExtractFeatures(job, settings, photos, options, hash, ranks); });
   RemoveFeatureParts(job);
 }
@@ -53,7 +53,7 @@ void FillDatabase(const ColmapJob& job, const ColmapSettings& settings, const st
                   const DatabaseHashes& hashes, const PairChooser& choose, base::ThreadPool& threads, RemoteTasks* ranks) {
   FillFeatures(job, settings, photos, options, hashes.features, ranks);
   const MatchJob match_job{.folder = job.folder / "matches", .input = hashes.features};
-  RunStep(job, {kOwnMatchesStep, hashes.matches}, {kMatchesStep, kSeededStep, kModelStep}, [&] {
+  RunStep(job, {kOwnMatchesStep, hashes.matches}, {kMatchesStep, kSeededStep, kModelStep, kHeldFocalStep}, [&] {
     const std::vector<PhotoFile> found = PhotosInDatabase(job, photos);
     std::vector<std::string> names;
     names.reserve(found.size());
@@ -63,7 +63,7 @@ void FillDatabase(const ColmapJob& job, const ColmapSettings& settings, const st
   });
   // Only now: a kill before the step is marked as done would have to match everything again.
   RemoveChunks(match_job);
-  RunStep(job, {kMatchesStep, hashes.matches}, {kSeededStep, kModelStep}, [&] { VerifyMatches(job, settings, options); });
+  RunStep(job, {kMatchesStep, hashes.matches}, {kSeededStep, kModelStep, kHeldFocalStep}, [&] { VerifyMatches(job, settings, options); });
 }
 
 }  // namespace skyquilt::prepare

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <unordered_map>
 
 #include "core/base/log.h"
 #include "core/survey/colmap_database.h"
 #include "core/survey/colmap_model.h"
+#include "prepare/poses/focal_check.h"
 #include "prepare/seeded/point_colors.h"
 #include "prepare/seeded/seed_poses.h"
 #include "prepare/tag_accuracy.h"
@@ -21,13 +21,6 @@ constexpr int kSeedVersion = 1;  // a new number makes finished models anew
 
 fs::path SeededFolder(const ColmapJob& job) {
   return job.folder / "seeded";
-}
-
-// COLMAP's focal length for photos without one in their tags is 1.2 times the longer side.
-bool IsGuess(const camera::Camera& camera) {
-  constexpr double kGuessFactor = 1.2;
-  const double guess = kGuessFactor * std::max(camera.width, camera.height);
-  return std::abs(camera.FocalX() - guess) < 1e-6 * guess;
 }
 
 SeedPhoto SeedPhotoOf(const survey::DatabaseImage& image, const survey::PhotoTags& tags, const std::vector<survey::DatabaseKeypoint>& keypoints) {
@@ -79,7 +72,7 @@ std::optional<SeedInput> ReadSeedInput(const fs::path& file, const std::vector<P
       *reason = "COLMAP's database has no camera for " + photo.name;
       return std::nullopt;
     }
-    input.cameras.try_emplace(camera->first, SeedLens{camera->second, !IsGuess(camera->second)});
+    input.cameras.try_emplace(camera->first, SeedLens{camera->second, !IsGuessedFocal(camera->second)});
     input.photos.push_back(SeedPhotoOf(image->second, photo.tags, database.ReadKeypoints(image->second.id)));
     n_features.emplace(image->second.id, input.photos.back().features.size());
   }

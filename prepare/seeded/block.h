@@ -54,6 +54,7 @@ struct Block {
   std::vector<Eigen::Vector3d> point;  // per track, ENU metres
   std::vector<char> has_point;         // per track
   std::vector<char> agrees;            // per entry: in a placed photo and near the projection of its point
+  std::vector<double> sigma;           // per entry, accuracy of its pixel in units of the lens; empty: 1 for all
 
   // Error of an entry against a point, in units; negative when the point is behind the camera. The photo must be placed.
   double Error(uint32_t entry, const Eigen::Vector3d& x_in_enu) const {
@@ -63,6 +64,13 @@ struct Block {
     if (!(x_in_cam.z() > 1e-6)) return -1.0;
     return (Project(lens.numbers, x_in_cam, nullptr) - pixel[entry]).norm() / lens.unit_px;
   }
+};
+
+// A point whose place has been measured.
+struct KnownPoint {
+  uint32_t track = 0;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  // ENU metres; finite
+  Eigen::Vector3d sigma = Eigen::Vector3d::Ones();  // metres; infinite: nothing is known along this axis
 };
 
 constexpr double kUnitWidth_px = 1600.0;

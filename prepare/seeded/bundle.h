@@ -17,11 +17,20 @@ struct BundleStage {
   double gps_factor = 1.0;       // on the accuracy of the positions
   double angle_sigma_deg = 3.0;  // of the tagged directions
   int max_iterations = 20;
-  double tolerance = 1e-4;  // stops when the cost falls by less than this share
+  double tolerance = 1e-4;                 // stops when the cost falls by less than this share
+  std::span<const KnownPoint> known = {};  // points of `tracks` with a measured place, at most one per track
+  double known_loss = 3.0;                 // errors of their places beyond this many sigmas count linearly
 };
+
+// What a lens may be without having been measured, one standard deviation of each number from its initial value.
+Lens LensSigma(const BlockLens& lens);
+// Positions with an error beyond this many sigmas lose almost all weight (Cauchy).
+constexpr double kTagLoss = 2.0;
 
 // Adjusts all placed photos and the points of `tracks` to the entries that agree. Uses one thread: sums in the order of another number of threads
 // would give other bits. Throws base::Interrupted. False when no solution is found; then nothing has changed. `on_iteration` is called after each.
-bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration);
+// `shift`: of the positions, with its value to begin with; null: none.
+bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration,
+                  Eigen::Vector3d* shift = nullptr);
 
 }  // namespace skyquilt::prepare

@@ -109,6 +109,24 @@ bool PlaceCost::Evaluate(double const* const* parameters, double* residuals, dou
   return true;
 }
 
+bool ShiftedPlaceCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  VectorAt<3>(residuals) = (CentreOf(parameters[0]) - gps_ - CopyOf<3>(parameters[1])).cwiseQuotient(sigma_);
+  if (jacobians == nullptr) return true;
+  if (jacobians[0] != nullptr) {
+    auto by_pose = MatrixAt<3, 7>(jacobians[0]);
+    by_pose.setZero();
+    for (int axis = 0; axis < 3; ++axis) by_pose(axis, 3 + axis) = 1.0 / sigma_[axis];
+  }
+  if (jacobians[1] != nullptr) MatrixAt<3, 3>(jacobians[1]) = -sigma_.cwiseInverse().asDiagonal().toDenseMatrix();
+  return true;
+}
+
+bool KnownPointCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  VectorAt<3>(residuals) = (CopyOf<3>(parameters[0]) - place_).cwiseQuotient(sigma_);
+  if (jacobians != nullptr && jacobians[0] != nullptr) MatrixAt<3, 3>(jacobians[0]) = sigma_.cwiseInverse().asDiagonal().toDenseMatrix();
+  return true;
+}
+
 bool TurnCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   const Eigen::Vector3d turn = Log(RotationOf(parameters[0]) * tagged_.conjugate());
   VectorAt<3>(residuals) = turn / sigma_rad_;

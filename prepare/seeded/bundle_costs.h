@@ -47,6 +47,26 @@ class PlaceCost : public ceres::SizedCostFunction<3, 7> {
   Eigen::Vector3d gps_, sigma_;
 };
 
+// (centre - gps - shift) / sigma per axis, for positions that are all off by the same: blocks pose, shift.
+class ShiftedPlaceCost : public ceres::SizedCostFunction<3, 7, 3> {
+ public:
+  ShiftedPlaceCost(const Eigen::Vector3d& gps, const Eigen::Vector3d& sigma) : gps_(gps), sigma_(sigma) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  Eigen::Vector3d gps_, sigma_;
+};
+
+// (point - place) / sigma per axis: block point. An infinite sigma leaves its axis free.
+class KnownPointCost : public ceres::SizedCostFunction<3, 3> {
+ public:
+  KnownPointCost(const Eigen::Vector3d& place, const Eigen::Vector3d& sigma) : place_(place), sigma_(sigma) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  Eigen::Vector3d place_, sigma_;
+};
+
 // Rotation vector from the tagged rotation to the pose's, in the camera's frame, over sigma: block pose.
 class TurnCost : public ceres::SizedCostFunction<3, 7> {
  public:

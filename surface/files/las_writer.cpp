@@ -34,7 +34,7 @@ void PutPoint(std::vector<uint8_t>* bytes, const std::array<int32_t, 3>& xyz, co
 
 LasWriter::LasWriter(const MapFrame& frame, const std::filesystem::path& folder, int64_t max_points)
     : frame_(frame), folder_(folder), max_points_(std::max<int64_t>(max_points, 1)) {
-  wkt_ = frame.georeferenced() ? gis::WktOfZone(frame.zone())
+  wkt_ = frame.georeferenced() ? gis::WktOfZone(frame.zone(), frame.heights().reference())
                                : "LOCAL_CS[\"local frame\",LOCAL_DATUM[\"local frame\",0],UNIT[\"metre\",1],AXIS[\"X\",EAST],AXIS[\"Y\",NORTH]]";
   SKYQUILT_CHECK(wkt_.size() < std::numeric_limits<uint16_t>::max(), "the WKT is too long");
 }

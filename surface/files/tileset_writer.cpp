@@ -52,7 +52,7 @@ Json TileJson(const Nodes& nodes, const TileId& id) {
 }  // namespace
 
 TilesetWriter::TilesetWriter(const MapFrame& frame, double tile_size_m, const std::filesystem::path& folder)
-    : frame_(frame), tile_size_m_(tile_size_m), folder_(folder / "tiles"), partial_(folder / "tiles.partial") {}
+    : frame_(frame), earth_(frame), tile_size_m_(tile_size_m), folder_(folder / "tiles"), partial_(folder / "tiles.partial") {}
 
 TilesetWriter::~TilesetWriter() {
   if (nodes_.empty() || published_) return;
@@ -72,9 +72,12 @@ void TilesetWriter::AddTile(const TexturedTile& tile, const MapVertices* /*in_ma
 }
 
 void TilesetWriter::WriteContent(const std::string& name, const TexturedTile& tile, Node* node) {
-  Eigen::Vector3d min = tile.position.front();
+  std::vector<Eigen::Vector3d> positions;
+  positions.reserve(tile.position.size());
+  for (const Eigen::Vector3d& position : tile.position) positions.push_back(earth_.PositionOf(position));
+  Eigen::Vector3d min = positions.front();
   Eigen::Vector3d max = min;
-  for (const Eigen::Vector3d& position : tile.position) {
+  for (const Eigen::Vector3d& position : positions) {
     min = min.cwiseMin(position);
     max = max.cwiseMax(position);
   }
@@ -85,8 +88,8 @@ void TilesetWriter::WriteContent(const std::string& name, const TexturedTile& ti
 
   GltfPrimitive primitive;
   primitive.name = name;
-  primitive.position.reserve(tile.position.size());
-  for (const Eigen::Vector3d& position : tile.position) {
+  primitive.position.reserve(positions.size());
+  for (const Eigen::Vector3d& position : positions) {
     const Eigen::Vector3f relative = (position - middle).cast<float>();
     // The box holds what is in the file, after rounding.
     node->min = node->min.cwiseMin(middle + relative.cast<double>());
@@ -100,7 +103,7 @@ void TilesetWriter::WriteContent(const std::string& name, const TexturedTile& ti
 
   GltfPlace place;
   place.crs = frame_.georeferenced() ? "east-north-up frame of tileset.json, y up" : frame_.CrsName() + ", y up";
-  place.vertical = frame_.VerticalName();
+  place.vertical = earth_.VerticalName();
   place.translation = {middle.x(), middle.z(), -middle.y()};
   GltfDocument document;
   const std::vector<uint8_t> binary = document.Add(primitive);
@@ -168,14 +171,15 @@ void TilesetWriter::Complete() {
     for (const TileId& id : top) root["children"].push_back(TileJson(nodes_, id));
   }
   root["refine"] = "REPLACE";
-  if (frame_.georeferenced()) root["transform"] = ColumnMajor(geo::EcefFromEnu(frame_.origin()));
+  if (frame_.georeferenced()) root["transform"] = ColumnMajor(geo::EcefFromEnu(earth_.origin()));
 
   Json tileset;
   tileset["asset"] = {{"version", "1.1"}, {"extras", {{"generator", "Skyquilt"}}}};
   Json& extras = tileset["asset"]["extras"];
   extras["crs"] = frame_.georeferenced() ? "EPSG:4978" : "local frame, metres, z up; not placed on Earth";
-  extras["verticalDatum"] = frame_.VerticalName();
+  extras["verticalDatum"] = earth_.VerticalName();
   extras["tileSize"] = tile_size_m_;
+  if (earth_.raised()) extras[kSurveyTransform] = ColumnMajor(geo::EcefFromEnu(frame_.origin()));
   tileset["geometricError"] = whole_m;
   tileset["root"] = root;
   OutputFile file(partial_ / "tileset.json");
@@ -199,7 +203,7 @@ std::vector<WrittenFile> TilesetWriter::Rows() const {
            .content = "textured mesh in levels of detail",
            .format = "3D Tiles 1.1",
            .crs = frame_.georeferenced() ? "EPSG:4978" : frame_.CrsName(),
-           .vertical = frame_.VerticalName(),
+           .vertical = earth_.VerticalName(),
            .bytes = static_cast<int64_t>(bytes_),
            .detail = CountText(static_cast<int64_t>(nodes_.size()), "tile") + " in " + CountText(levels, "level")}};
 }

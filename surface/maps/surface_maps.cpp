@@ -26,7 +26,8 @@ struct MapText {
   const char* content;
   const char* band;
   const char* description;
-  std::string vertical;  // what the heights are above; empty: the values are no heights
+  std::string vertical;       // what the heights are above; empty: the values are no heights
+  bool in_map_frame = false;  // they are heights of the maps' CRS
 };
 
 class MapWriter {
@@ -46,6 +47,10 @@ class MapWriter {
     if (spec.type == gis::PixelType::kFloat32) {
       spec.unit = "m";
       spec.metadata["VERTICAL_REFERENCE"] = text.vertical;
+      if (text.in_map_frame) {
+        spec.heights = frame_.heights().reference();
+        spec.metadata.merge(frame_.heights().Metadata());
+      }
     }
     gis::GeoTiffWriter writer(folder_ / text.file, spec);
     std::vector<T> values;
@@ -110,7 +115,8 @@ SurfaceMaps MakeSurfaceMaps(const HeightRaster& surface, const MapFrame& frame, 
                        .content = "terrain model",
                        .band = "height of the ground",
                        .description = "Digital terrain model: height of the ground without what stands on it.",
-                       .vertical = frame.VerticalName()},
+                       .vertical = frame.VerticalName(),
+                       .in_map_frame = true},
                       kNoData, [&](size_t cell) { return inside(cell) && std::isfinite(ground[cell]) ? ground[cell] : kNoData; });
   writer.Write<float>({.file = "height_above_ground.tif",
                        .content = "height above ground",
@@ -133,8 +139,8 @@ SurfaceMaps MakeSurfaceMaps(const HeightRaster& surface, const MapFrame& frame, 
   const ContourRaster contours = MakeContourRaster(maps.terrain, mask, options.terrain_cell_m);
   const double wanted_m = options.contour_interval_m > 0.0 ? options.contour_interval_m : contours.interval_m;
   const double interval_m = gis::AllowedContourInterval(contours.heights.height_m, wanted_m);
-  const int64_t lines =
-      gis::WriteContours(contours.heights.grid, contours.heights.height_m, wanted_m, frame.VerticalName(), folder / "contours.gpkg");
+  const int64_t lines = gis::WriteContours(contours.heights.grid, contours.heights.height_m, wanted_m, frame.VerticalName(), folder / "contours.gpkg",
+                                           frame.heights().Metadata());
   if (lines == 0) spdlog::info("the ground is too level for contour lines every {:.6g} m", interval_m);
   writer.Add("contours.gpkg", "contour lines", "GeoPackage", frame.VerticalName(), fmt::format("{} lines every {:.6g} m", lines, interval_m));
   maps.files = writer.TakeFiles();

@@ -52,6 +52,29 @@ void ExpectPlace(const nlohmann::ordered_json& place) {
   EXPECT_EQ(place.at("problems")[0].at("advice"), "look at the tags on the map of the report");
 }
 
+TEST(DescribeSurvey, ShowsErrorsOfControlPoints) {
+  survey::Survey survey = LaggingSurvey();
+  EXPECT_FALSE(DescribePlace(survey).contains("control"));
+  survey.control.file = "gcp_list.txt";
+  survey.control.placed = true;
+  survey::ControlPointFit check, wrong;
+  check.label = "c1";
+  check.use = survey::ControlUse::kCheck;
+  check.error_m = {0.03, 0.04, -0.02};
+  check.gsd_m = 0.025;
+  wrong.label = "g1";
+  wrong.use = survey::ControlUse::kRejected;
+  survey.control.points = {check, wrong};
+  const nlohmann::ordered_json control = DescribePlace(survey).at("control");
+  EXPECT_EQ(control.at("file"), "gcp_list.txt");
+  EXPECT_EQ(control.at("check").at("rmse_horizontal_m"), 0.05);
+  EXPECT_EQ(control.at("check").at("rmse_horizontal_gsd"), 2.0);
+  EXPECT_EQ(control.at("check").at("rmse_vertical_m"), 0.02);
+  EXPECT_FALSE(control.contains("control"));
+  EXPECT_EQ(control.at("rejected"), nlohmann::ordered_json::array({"g1"}));
+  EXPECT_TRUE(control.at("accuracy").get<std::string>().starts_with("There are fewer than 30 check points (1)."));
+}
+
 TEST(DescribeSurvey, ShowsAccuracyLagAndProblems) {
   const TemporaryFolder folder;
   survey::SaveSurvey(LaggingSurvey(), folder.path());

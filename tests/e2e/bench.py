@@ -1,6 +1,7 @@
 """`bench kernel` works with every instruction set and reports its settings; speed itself is not tested. Benchmarks write JSON, CSV and a page."""
 import csv
 import json
+import shutil
 
 from harness import expect, main
 
@@ -32,6 +33,25 @@ def check_kernel_files(out, result):
     expect(phases == result["share"], f"{phases} in kernel_phases.csv, {result['share']} in kernel.json")
     machine = [float(row[1]) for row in rows_of(out / "kernel_machine.csv")[1:4]]
     expect(machine == list(result["limit_ns_per_sample_and_thread"].values()), machine)
+
+
+def check_poses(skyquilt, out):
+    small = ["--place", "hamlet", "--set", "simulate.image_width=320", "-o", out]
+    skyquilt.call("bench", "poses", "--sets", "plain", "--photos", "9,9", "-o", out, status=2)
+    text = skyquilt.call("bench", "poses", "--sets", "plain", "--photos", "900", *small, status=2)
+    expect("--photos 900" in text and "hamlet" in text, text)
+    text = skyquilt.call("bench", "poses", "--sets", "plain,turned", "--photos", "9", *small)
+    expect("registered" in text and "no fewer photos than COLMAP alone" in text, text)
+    result = json.loads((out / "poses.json").read_text())
+    expect([(row["set"], row["way"]) for row in result["rows"]] == [("plain", "fast"), ("plain", "colmap"), ("turned", "fast"), ("turned", "colmap")],
+           result["rows"])
+    for row in result["rows"]:
+        expect(row["photos"] == 9 and row["registered"] >= row["right"] and row["seconds"] > 0.0, row)
+    expect(result["rows"][0]["right"] == 9, result["rows"][0])
+    rows = rows_of(out / "poses.csv")
+    expect([row[0] for row in rows] == ["set", "plain", "plain", "turned", "turned"] and float(rows[1][5]) == 9, rows)
+    expect("Poses of photos that are hard to place" in (out / "poses.html").read_text(), "poses.html lacks its title")
+    expect(not (out / "poses_work").exists(), "the folder of the photo sets is still there")
 
 
 def test(skyquilt, folder):
@@ -74,6 +94,9 @@ def test(skyquilt, folder):
     expect("How far rounding moves a place" in page and "North pole" in page, "the page lacks its plot or its rows")
     expect(rows[0] == "case,verdict,worst error,allowed,expected,seen" and len(rows) == 13, rows)
     expect(not (out / "work").exists(), "the folder of the cases' surveys is still there")
+
+    if shutil.which("colmap"):
+        check_poses(skyquilt, out)
 
 
 if __name__ == "__main__":

@@ -34,6 +34,7 @@ BlockSet TwoByTwo(const geo::Geodetic& origin, double side_m) {
   BlockSet set;
   set.origin = origin;
   set.georeferenced = true;
+  set.height_reference = geo::HeightReference::kEgm96;
   set.accuracy = {.scale_percent = 0.1 / 3.0, .tilt_deg = 0.3, .yaw_deg = 1.0 / 7.0, .horizontal_m = 1.5};
   set.rows = 2;
   set.columns = 2;
@@ -68,6 +69,7 @@ void ExpectEqual(const BlockSet& a, const BlockSet& b) {
   EXPECT_EQ(a.origin.longitude_deg, b.origin.longitude_deg);
   EXPECT_EQ(a.origin.height_m, b.origin.height_m);
   EXPECT_EQ(a.georeferenced, b.georeferenced);
+  EXPECT_EQ(a.height_reference, b.height_reference);
   EXPECT_EQ(survey::ToJson(a.accuracy), survey::ToJson(b.accuracy));
   EXPECT_EQ(a.rows, b.rows);
   EXPECT_EQ(a.columns, b.columns);
@@ -216,9 +218,11 @@ TEST(BlocksGeoJson, FilesOfOlderProgramsHaveUnknownAccuracy) {
   SaveBlocks(TwoByTwo({1, 2, 3}, 100.0), file.path());
   Json older = Json::parse(base::ReadFile(file.path()));
   older.erase("skyquilt:accuracy");
+  older.erase("skyquilt:height_reference");
   base::WriteFileAtomically(file.path(), older.dump());
   BlockSet expected = TwoByTwo({1, 2, 3}, 100.0);
   expected.accuracy = {};
+  expected.height_reference = geo::HeightReference::kUnknown;
   ExpectEqual(LoadBlocks(file.path()), expected);
 }
 
@@ -253,6 +257,9 @@ TEST(BlocksGeoJson, DamagedFilesAreRefusedByName) {
   expect_refused(bad.dump());
   bad = good;
   bad["skyquilt:origin"]["latitude_deg"] = 91.0;
+  expect_refused(bad.dump());
+  bad = good;
+  bad["skyquilt:height_reference"] = "sea level";
   expect_refused(bad.dump());
   bad = good;
   bad["skyquilt:accuracy"]["tilt_deg"] = "small";

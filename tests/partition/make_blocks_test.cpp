@@ -56,7 +56,10 @@ TEST(MakeBlocks, CoversTheSurveyOnce) {
 TEST(MakeBlocks, KeepsTheAccuracyOfTheSurvey) {
   survey::Survey survey = FlySurvey({});
   survey.fit.accuracy = {.scale_percent = 0.4, .tilt_deg = 0.3, .yaw_deg = 0.2, .horizontal_m = 1.5, .vertical_m = 3.0};
-  const geo::PlaceAccuracy accuracy = MakeBlocks(survey, Request("1x1"), 0).accuracy;
+  survey.height_reference = geo::HeightReference::kEgm96;
+  const BlockSet blocks = MakeBlocks(survey, Request("1x1"), 0);
+  EXPECT_EQ(blocks.height_reference, geo::HeightReference::kEgm96);
+  const geo::PlaceAccuracy accuracy = blocks.accuracy;
   EXPECT_EQ(accuracy.scale_percent, 0.4);
   EXPECT_EQ(accuracy.tilt_deg, 0.3);
   EXPECT_EQ(accuracy.yaw_deg, 0.2);

@@ -12,7 +12,9 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/geo/enu_frame.h"
+#include "core/geo/geoid.h"
 #include "core/image/image.h"
+#include "products/height_shift.h"
 #include "products/place_metadata.h"
 #include "tests/products/analytic_scene.h"
 #include "tests/support/error_of.h"
@@ -221,12 +223,79 @@ TEST(MapProducts, SayHowAccurateTheirPlaceIs) {
   EXPECT_EQ(Item(products.orthophoto, "TIFFTAG_IMAGEDESCRIPTION"),
             "Orthophoto, placed on Earth by its GPS tags with a standard deviation of 1.53 m horizontally, unknown vertically, 0.3 degrees in tilt, "
             "0.25 degrees in yaw, 0.412 % in scale.");
-  EXPECT_EQ(Item(products.dsm, "VERTICAL_REFERENCE"), "unknown, metres: the GPS tags have no usable heights");
+  EXPECT_EQ(Item(products.dsm, "VERTICAL_REFERENCE"), "unknown: the GPS tags have no usable heights");
   const auto map = nlohmann::json::parse(base::ReadFile(folder.path() / "orthophoto.json"));
   EXPECT_EQ(map["georeference"], "fitted to GPS tags");
   EXPECT_EQ(map["accuracy"]["scale_percent"], 0.412345);
   EXPECT_EQ(map["accuracy"]["horizontal_m"], 1.53);
   EXPECT_TRUE(map["accuracy"].at("vertical_m").is_null());
+}
+
+// A level scene 100 m above the ellipsoid, where the geoid is 48.411 m above it.
+TEST(MapProducts, ConvertHeights) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  scene::SceneInfo info = scene.Info({52.0, -1.5, 100.0 - scene.ground_z}, true);
+  ProductOptions options;
+  options.ortho = false;
+  const auto ground = [&](const std::string& vertical) {
+    options.vertical = vertical;
+    const MapProducts products = MakeMapProducts(info, scene.Caster(), options, folder.path());
+    const OtherProgram dsm(products.dsm);
+    const Eigen::Vector2d pixel = dsm.PixelOf(-1.5, 52.0) + Eigen::Vector2d(-20.0, 20.0);  // the ground 14 m south-west of the origin
+    return static_cast<double>(dsm.Band(1)[static_cast<size_t>(pixel.y()) * static_cast<size_t>(dsm.Width()) + static_cast<size_t>(pixel.x())]);
+  };
+  const std::filesystem::path dsm = folder / "dsm.tif";
+  info.height_reference = geo::HeightReference::kEllipsoid;
+  const double given = ground("as-tagged");
+  EXPECT_NEAR(given, 100.0, 0.01);
+  EXPECT_EQ(Item(dsm, "VERTICAL_REFERENCE"), "WGS84 ellipsoid (EPSG:4979)");
+  EXPECT_STREQ(OtherProgram(dsm).dataset()->GetSpatialRef()->GetAuthorityCode(nullptr), "32630");
+  EXPECT_EQ(ground("ellipsoid"), given);
+  EXPECT_NEAR(ground("egm96"), given - 48.411, 2e-3);
+  EXPECT_EQ(Item(dsm, "VERTICAL_REFERENCE"), "EGM96 geoid (EPSG:5773)");
+  EXPECT_STREQ(OtherProgram(dsm).dataset()->GetSpatialRef()->GetAuthorityCode("VERT_CS"), "5773");
+  info.height_reference = geo::HeightReference::kEgm96;
+  EXPECT_EQ(ground("as-tagged"), given);
+  EXPECT_EQ(ground("egm96"), given);
+  EXPECT_NEAR(ground("ellipsoid"), given + 48.411, 2e-3);
+  info.height_reference = geo::HeightReference::kUnknown;
+  EXPECT_EQ(ground("as-tagged"), given);
+  EXPECT_EQ(Item(dsm, "VERTICAL"), "as tagged (unknown)");
+  EXPECT_NEAR(ground("egm96"), given - 48.411, 2e-3) << "taken for ellipsoidal";
+  EXPECT_NE(Item(dsm, "VERTICAL_REFERENCE").find("if tagged heights are above the ellipsoid"), std::string::npos);
+}
+
+// In every cell, also of maps that are larger than the spacing of exact places, and where cells of the geoid's grid meet.
+TEST(HeightShift, IsExactInEveryCell) {
+  for (const geo::Geodetic& origin : {geo::Geodetic{27.999, 86.999, 0.0}, {-16.5, 180.0, 0.0}, {52.0, -1.5, 0.0}}) {
+    scene::SceneInfo info;
+    info.origin = origin;
+    info.georeferenced = true;
+    info.height_reference = geo::HeightReference::kEllipsoid;
+    info.min_enu = Eigen::Vector3d(-500.0, -500.0, 0.0);
+    info.max_enu = Eigen::Vector3d(500.0, 500.0, 10.0);
+    const scene::MapHeights heights(info, geo::Vertical::kEgm96);
+    gis::MapGrid grid{.georeferenced = true, .zone = geo::UtmZoneOf(origin), .left = 0, .top = 0, .resolution_m = 7.0, .width = 91, .height = 83};
+    const Eigen::Vector2d middle = geo::UtmFromGeodetic(origin, grid.zone);
+    grid.left = middle.x() - 300.0;
+    grid.top = middle.y() + 300.0;
+    std::vector<float> cells(static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), 0.0F);
+    cells[5] = -9999.0F;
+    HeightShift shift(heights, grid);
+    const size_t half = cells.size() / 83 * 40;
+    shift.AddTo(0, -9999.0F, std::span(cells).first(half));
+    shift.AddTo(40, -9999.0F, std::span(cells).subspan(half));
+    EXPECT_EQ(cells[5], -9999.0F);
+    for (int row = 0; row < grid.height; ++row) {
+      for (int column = 0; column < grid.width; ++column) {
+        if (row == 0 && column == 5) continue;
+        const geo::Geodetic place = geo::GeodeticFromUtm(grid.CellCentre(column, row), 0.0, grid.zone);
+        const auto cell = static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(column);
+        ASSERT_NEAR(static_cast<double>(cells[cell]), -geo::Egm96Undulation(place.latitude_deg, place.longitude_deg), 1e-5) << row << " " << column;
+      }
+    }
+  }
 }
 
 TEST(PlaceMetadata, NamesTheGeoreference) {

@@ -15,7 +15,8 @@ namespace {
 
 TEST(Presets, EveryNameResolvesToUsableNumbers) {
   const std::vector<std::string> names = PlaceNames();
-  for (const char* wanted : {"hamlet", "town", "smallcity", "tidalflat"}) EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end());
+  for (const char* wanted : {"hamlet", "town", "smallcity", "tidalflat", "solar_farm"})
+    EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end());
   for (const std::string& name : names) {
     SimulateOptions options;
     options.place = name;

@@ -12,6 +12,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "surface/files/earth_place.h"
 #include "tour/export/script_data.h"
 
 namespace skyquilt::tour {
@@ -65,6 +66,8 @@ OrderedJson Trimmed(const OrderedJson& tile, const std::vector<bool>& kept, size
 TileTree::TileTree(const std::filesystem::path& folder) : file_(folder / kTilesetName) {
   try {
     tileset_ = OrderedJson::parse(base::ReadFile(file_));
+    // Tours show tiles beside what is in the survey's frame.
+    surface::StandInSurvey(&tileset_);
     Add(tileset_.at("root"), folder, 0);
   } catch (const OrderedJson::exception& damage) {
     throw base::InputError(file_, std::string("is damaged: ") + damage.what(), kMakeSurfaceAgain);

@@ -6,11 +6,16 @@
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
 
 #include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/geo/geoid_patch.h"
 #include "core/gis/geotiff.h"
 #include "core/gis/read_maps.h"
 #include "core/image/image.h"
+#include "surface/files/earth_place.h"
 
 namespace skyquilt::viewer {
 namespace {
@@ -57,6 +62,31 @@ struct PointGrid {
   }
 };
 
+// The survey's heights from those of a map around a place.
+class SurveyHeights {
+ public:
+  // undulations: gis::ReadUndulations of the file. Throws base::InputError when PROJ has no geoid but it is needed.
+  SurveyHeights(int undulations, const Eigen::Vector2d& middle_xy, double radius_m, const geo::UtmZone& zone, const std::filesystem::path& file)
+      : undulations_(undulations), zone_(zone) {
+    if (undulations == 0) return;
+    try {
+      geoid_.emplace(geo::GeodeticFromUtm(middle_xy, 0.0, zone), radius_m);
+    } catch (const std::runtime_error& missing) {
+      throw base::InputError(file, std::string("has heights that cannot be converted: ") + missing.what(), "Install proj-data");
+    }
+  }
+  double At(const Eigen::Vector2d& map_xy, double height_m) const {
+    if (!geoid_) return height_m;
+    const geo::Geodetic place = geo::GeodeticFromUtm(map_xy, height_m, zone_);
+    return height_m - undulations_ * geoid_->At(place.latitude_deg, place.longitude_deg);
+  }
+
+ private:
+  int undulations_;
+  geo::UtmZone zone_;
+  std::optional<geo::GeoidPatch> geoid_;
+};
+
 uint8_t Byte(float value) {
   return static_cast<uint8_t>(std::lround(std::clamp(std::isfinite(value) ? value : 0.0F, 0.0F, 255.0F)));
 }
@@ -69,19 +99,25 @@ std::string TerrainFile(const std::filesystem::path& dsm, const SurveyFrame& fra
   // The highest of each cell: ways of tours keep away from what these points and the surface between them show.
   const gis::ReducedRaster heights = gis::ReadReduced(dsm, grid.columns, gis::Reduction::kMaximum);
   SKYQUILT_CHECK(heights.image.width == grid.columns && heights.image.height == grid.rows, dsm.string());
+  const SurveyHeights in_survey(gis::ReadUndulations(dsm), grid.At(grid.columns / 2, grid.rows / 2),
+                                grid.map.resolution_m * std::max(grid.map.width, grid.map.height), grid.map.zone, dsm);
+  const auto place_at = [&](int column, int row, double height_m) {
+    const Eigen::Vector2d at = grid.At(column, row);
+    return frame.EnuFromMap(at, in_survey.At(at, height_m), grid.map.zone);
+  };
   std::string bytes = "SKYTERR1";
   Append(&bytes, static_cast<uint32_t>(grid.columns));
   Append(&bytes, static_cast<uint32_t>(grid.rows));
   const auto known = std::find_if(heights.image.data.begin(), heights.image.data.end(), [](float height) { return std::isfinite(height); });
   const double some_height = known == heights.image.data.end() ? 0.0 : static_cast<double>(*known);
-  const Eigen::Vector3d anchor = frame.EnuFromMap(grid.At(grid.columns / 2, grid.rows / 2), some_height, grid.map.zone);
+  const Eigen::Vector3d anchor = place_at(grid.columns / 2, grid.rows / 2, some_height);
   AppendAnchor(&bytes, anchor);
   bytes.reserve(bytes.size() + heights.image.data.size() * 12);
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const float height = *heights.image.At(column, row);
       if (std::isfinite(height)) {
-        AppendOffset(&bytes, frame.EnuFromMap(grid.At(column, row), static_cast<double>(height), grid.map.zone) - anchor);
+        AppendOffset(&bytes, place_at(column, row, static_cast<double>(height)) - anchor);
       } else {
         AppendOffset(&bytes, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
       }
@@ -131,6 +167,9 @@ std::string PointsFile(const std::vector<survey::SparsePoint>& points) {
 std::string ContoursFile(const std::filesystem::path& gpkg, const SurveyFrame& frame) {
   const gis::Contours contours = gis::ReadContours(gpkg, kMaxContourVertices);
   frame.RequireFits(contours.georeferenced, gpkg);
+  const Eigen::Vector2d some_place = contours.lines.empty() ? Eigen::Vector2d::Zero() : contours.lines.front().map_xy.front();
+  constexpr double kNear_m = 10000.0;
+  const SurveyHeights in_survey(contours.lines.empty() ? 0 : contours.undulations, some_place, kNear_m, contours.zone, gpkg);
   double interval = 0.0;
   nlohmann::json lines = nlohmann::json::array();
   double last = std::numeric_limits<double>::quiet_NaN();
@@ -138,16 +177,28 @@ std::string ContoursFile(const std::filesystem::path& gpkg, const SurveyFrame& f
     const double rise = line.height_m - last;
     if (rise > 1e-9 && (interval == 0.0 || rise < interval)) interval = rise;
     last = line.height_m;
+    // A line has one height, so that of its first point stands for it: along a line the geoid changes by centimetres.
+    const double height_m = in_survey.At(line.map_xy.front(), line.height_m);
     nlohmann::json points = nlohmann::json::array();
     for (const Eigen::Vector2d& map : line.map_xy) {
-      const Eigen::Vector3d enu = frame.EnuFromMap(map, line.height_m, contours.zone);
+      const Eigen::Vector3d enu = frame.EnuFromMap(map, height_m, contours.zone);
       // Millimetres.
       points.push_back(std::round(enu.x() * 1000.0) / 1000.0);
       points.push_back(std::round(enu.y() * 1000.0) / 1000.0);
     }
-    lines.push_back({{"height_m", line.height_m}, {"index", line.index}, {"points", std::move(points)}});
+    lines.push_back({{"height_m", height_m}, {"index", line.index}, {"points", std::move(points)}});
   }
   return nlohmann::json{{"interval_m", interval}, {"thinned", contours.thinned}, {"lines", std::move(lines)}}.dump();
+}
+
+std::string TilesetFile(const std::filesystem::path& tileset_json) {
+  std::string text = base::ReadFile(tileset_json);
+  try {
+    nlohmann::ordered_json tileset = nlohmann::ordered_json::parse(text);
+    if (surface::StandInSurvey(&tileset)) text = tileset.dump(1) + "\n";
+  } catch (const nlohmann::json::exception&) {
+  }
+  return text;
 }
 
 }  // namespace skyquilt::viewer

@@ -29,6 +29,7 @@ struct SceneFacts {
   geo::Geodetic origin;
   bool georeferenced = false;
   geo::PlaceAccuracy accuracy;
+  geo::HeightReference height_reference = geo::HeightReference::kUnknown;
   double gsd_m = 0.0;
   std::vector<geo::BlockBox> boxes;
   int64_t parameters = 0;
@@ -85,6 +86,7 @@ std::optional<SceneFacts> ReadScene(OpenedProject* opened) {
                     reader.DoubleAttribute("origin_height_m")};
     facts.georeferenced = reader.IntAttribute("georeferenced") != 0;
     facts.accuracy = scene::GetAccuracy(reader);
+    facts.height_reference = scene::GetHeightReference(reader, file);
     facts.gsd_m = reader.DoubleAttribute("gsd_m");
     const scene::FieldStore store(std::move(reader), file, 1.0, false);
     for (int k = 0; k < store.size(); ++k) {
@@ -115,14 +117,17 @@ void DescribePlace(OpenedProject* opened, const std::optional<SceneFacts>& scene
   info.min_enu = info.max_enu = Eigen::Vector3d::Zero();
   if (opened->survey != nullptr) {
     info.accuracy = opened->survey->fit.accuracy;
+    info.height_reference = opened->survey->height_reference;
   } else if (scene) {
     opened->origin = scene->origin;
     opened->georeferenced = scene->georeferenced;
     info.accuracy = scene->accuracy;
+    info.height_reference = scene->height_reference;
   } else if (blocks) {
     opened->origin = blocks->origin;
     opened->georeferenced = blocks->georeferenced;
     info.accuracy = blocks->accuracy;
+    info.height_reference = blocks->height_reference;
   }
   info.origin = opened->origin;
   info.georeferenced = opened->georeferenced && geo::IsValid(opened->origin);

@@ -128,7 +128,10 @@ DataReply ProjectFile(MadeFiles* made, const OpenedProject& opened, const std::s
   if (path.starts_with("tiles/")) {
     const std::string name = path.substr(6);
     if (!opened.tiles.contains(name)) return DataReply::NotFound("there is no such tile");
-    return File(name.ends_with(".json") ? "application/json" : "model/gltf-binary", opened.project.SurfaceFolder() / "tiles" / name);
+    if (name == "tileset.json") {
+      return Kept("application/json", made->Get(prefix + path, [&] { return TilesetFile(opened.project.SurfaceFolder() / "tiles" / name); }));
+    }
+    return File("model/gltf-binary", opened.project.SurfaceFolder() / "tiles" / name);
   }
   if (path.starts_with("buildings/")) {
     const std::string name = path.substr(10);

@@ -8,6 +8,7 @@ surface::MapFrame SampleFrame(bool georeferenced) {
   scene::SceneInfo info;
   info.origin = {48.4, 9.99, 520.0};
   info.georeferenced = georeferenced;
+  info.height_reference = geo::HeightReference::kEllipsoid;
   info.min_enu = Eigen::Vector3d(-150.0, -100.0, -20.0);
   info.max_enu = Eigen::Vector3d(350.0, 300.0, 60.0);
   info.gsd_m = 0.1;

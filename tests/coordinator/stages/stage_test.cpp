@@ -49,6 +49,22 @@ TEST(Stages, StagesDependOnTheirOwnOptionsOnly) {
   EXPECT_NE(StageOptions(StageNamed("partition"), before), StageOptions(StageNamed("partition"), after));
 }
 
+// Another vertical system makes maps and surface again, without a complaint about options; the default leaves records of older programs valid.
+TEST_F(StageFiles, AnotherVerticalSystemIsANewInput) {
+  const auto comm = comm::ConnectAlone();
+  Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
+  for (const Stage& stage : Stages()) {
+    if (stage.name != "products" && stage.name != "surface") continue;
+    pipeline.settings.products.vertical = "as-tagged";
+    Settings before = pipeline.settings;
+    const FlatOptions inputs = stage.inputs(pipeline);
+    EXPECT_FALSE(inputs.contains("vertical")) << stage.name;
+    pipeline.settings.products.vertical = "egm96";
+    EXPECT_NE(stage.inputs(pipeline), inputs) << stage.name;
+    EXPECT_EQ(StageOptions(stage, before), StageOptions(stage, pipeline.settings)) << stage.name;
+  }
+}
+
 TEST(Stages, HaveUniqueNamesAndNeedOnlyEarlierOnes) {
   std::set<std::string> names;
   for (const Stage& stage : Stages()) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/base/errors.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::scene {
@@ -39,6 +40,19 @@ TEST(SceneFile, WithoutAccuracyItIsUnknown) {
   EXPECT_TRUE(std::isnan(accuracy.yaw_deg));
   EXPECT_TRUE(std::isnan(accuracy.horizontal_m));
   EXPECT_TRUE(std::isnan(accuracy.vertical_m));
+}
+
+TEST(SceneFile, KeepsWhatItsHeightsAreAbove) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(GetHeightReference(Stored({}, folder / "old.h5"), folder / "old.h5"), geo::HeightReference::kUnknown);
+  checkpoint::ArchiveWriter writer(kSceneKind, kSceneVersion);
+  PutHeightReference(geo::HeightReference::kEgm96, writer);
+  writer.Commit(folder / "scene.h5");
+  EXPECT_EQ(GetHeightReference(OpenScene(folder / "scene.h5"), folder / "scene.h5"), geo::HeightReference::kEgm96);
+  checkpoint::ArchiveWriter damaged(kSceneKind, kSceneVersion);
+  damaged.SetAttribute("height_reference", std::string("sea level"));
+  damaged.Commit(folder / "damaged.h5");
+  EXPECT_THROW(GetHeightReference(OpenScene(folder / "damaged.h5"), folder / "damaged.h5"), base::InputError);
 }
 
 }  // namespace

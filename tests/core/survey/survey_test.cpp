@@ -20,6 +20,7 @@ Survey SmallSurvey() {
   Survey survey;
   survey.origin = {46.84271234567, -91.99412345678, 158.5};
   survey.georeferenced = true;
+  survey.height_reference = geo::HeightReference::kEgm96;
   survey.photo_root = "/some/where";
   survey.cameras.push_back({camera::CameraModel::kPinhole, 100, 80, {90.0, 91.0, 50.0, 40.0}});
   for (int i = 0; i < 3; ++i) {
@@ -124,6 +125,16 @@ TEST(Survey, SavingAndLoadingKeepsEveryBit) {
 }
 
 // As earlier versions wrote it.
+TEST(Survey, KeepsWhatItsHeightsAreAbove) {
+  const TemporaryFolder folder;
+  SaveSurvey(SmallSurvey(), folder.path());
+  EXPECT_EQ(LoadSurvey(folder.path()).height_reference, geo::HeightReference::kEgm96);
+  nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
+  ASSERT_EQ(json.erase("height_reference"), 1U);
+  base::WriteFileAtomically(folder / "survey.json", json.dump());
+  EXPECT_EQ(LoadSurvey(folder.path()).height_reference, geo::HeightReference::kUnknown) << "of an older program";
+}
+
 TEST(Survey, ATruthWithoutNormalsAndClassesIsLoaded) {
   const TemporaryFolder folder;
   SaveSurvey(SmallSurvey(), folder.path());
@@ -186,6 +197,7 @@ TEST(Survey, DamagedDescriptionsAreRefusedWithTheReason) {
   ExpectRefused("camera 4", [](nlohmann::json& json) { json["photos"][0]["camera"] = 4; });
   ExpectRefused("twice", [](nlohmann::json& json) { json["photos"][0]["name"] = "p1.jpg"; });
   ExpectRefused("origin", [](nlohmann::json& json) { json["origin"]["latitude_deg"] = 91.0; });
+  ExpectRefused("sea level", [](nlohmann::json& json) { json["height_reference"] = "sea level"; });
   ExpectRefused("another version", [](nlohmann::json& json) { json["version"] = 99; });
   ExpectRefused("damaged", [](nlohmann::json& json) { json.erase("fit"); });
   ExpectRefused("survey.json says", [](nlohmann::json& json) { json["n_points"] = 6; });

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/geo/ecef.h"
 #include "core/geo/enu_frame.h"
+#include "core/geo/geoid.h"
 #include "core/geo/utm.h"
 #include "core/image/image.h"
 #include "prepare/models/read_model.h"
@@ -139,6 +141,36 @@ TEST_F(Conventions, Opf) {
         return geo::GeodeticFromUtm(utm.head<2>(), utm.z(), {32, true});
       },
       0.01);
+}
+
+// Heights above a geoid: the project's constant goes before PROJ's grid, and is needed where there is none.
+TEST_F(Conventions, OpfWithHeightsAboveAGeoid) {
+  test::Files files = test::OpfFiles(survey_);
+  std::string* frame = nullptr;
+  for (auto& [name, content] : files) {
+    if (content.find("EPSG:32632") != std::string::npos) frame = &content;
+  }
+  ASSERT_NE(frame, nullptr);
+  nlohmann::json file = nlohmann::json::parse(*frame);
+  const auto expect = [&](const char* definition, std::optional<double> constant_m, const auto& added_m) {
+    file["crs"] = {{"definition", definition}};
+    if (constant_m) file["crs"]["geoid_height"] = *constant_m;
+    *frame = file.dump();
+    ExpectPlace(
+        Read(files),
+        [&](const Vector3d& x) {
+          const Vector3d utm = x - test::kOpfShift;
+          geo::Geodetic place = geo::GeodeticFromUtm(utm.head<2>(), utm.z(), {32, true});
+          place.height_m += added_m(place);
+          return place;
+        },
+        0.02);
+  };
+  const auto constant = [](const geo::Geodetic&) { return 47.5; };
+  expect("EPSG:32632+3855", 47.5, constant);
+  expect("EPSG:32632+5773", 47.5, constant);
+  expect("EPSG:32632+3855", std::nullopt, [](const geo::Geodetic&) { return 0.0; });
+  expect("EPSG:32632+5773", std::nullopt, [](const geo::Geodetic& place) { return geo::Egm96Undulation(place.latitude_deg, place.longitude_deg); });
 }
 
 TEST_F(Conventions, FisheyesOfTransformsAndMetashapeAreOpencvs) {

@@ -104,6 +104,14 @@ class FastWay : public FakeColmap {
       made.AddDescriptors(i + 1, rows);
     }
   }
+  // The tags of all photos say 60 px.
+  void TagFocal() {
+    test::MadeDatabase made(folder_ / "made.db");
+    made.Run(
+        "PRAGMA journal_mode = DELETE;"
+        "INSERT INTO cameras VALUES(1, 1, 64, 48, X'0000000000004e400000000000004e4000000000000040400000000000003840', 1)");
+  }
+  std::string HeldModel() const { return (job_.folder / "more_pairs" / "sparse_held_focal" / "0").string(); }
 };
 
 // All photos have few features, so they are searched twice.
@@ -208,6 +216,47 @@ TEST_F(FastWay, KeepsItsModelWhenMorePairsAreNoBetter) {
   SetNumber("again", 0);
   std::filesystem::remove(job_.folder / "more_pairs" / "model.done");
   EXPECT_EQ(Find(), FirstModel());
+}
+
+// Poses of level ground that looks alike everywhere.
+TEST_F(FastWay, KeepsTheFocalLengthOfTheTagsWhenTheMapperLeavesItFarBehind) {
+  TagFocal();
+  SetNumber("first", 20);
+  SetNumber("held", 11);
+  EXPECT_EQ(Find(), FirstModel());
+  SetNumber("focal", 170);
+  std::filesystem::remove(job_.folder / "model.done");
+  Calls();
+  EXPECT_EQ(Find(), HeldModel());
+  EXPECT_EQ(Calls(), std::string("mapper\n") + kSecondCalls);
+  EXPECT_EQ(Find(), HeldModel());
+  EXPECT_EQ(Calls(), "");
+  // With too few photos it is the focal length of the tags that does not fit.
+  SetNumber("held", 9);
+  std::filesystem::remove(job_.folder / "more_pairs" / "model_held_focal.done");
+  EXPECT_EQ(Find(), FirstModel());
+  SetNumber("held", 0);
+  std::filesystem::remove(job_.folder / "more_pairs" / "model_held_focal.done");
+  EXPECT_EQ(Find(), FirstModel());
+}
+
+TEST_F(FastWay, KeepsTheFocalLengthOfTheTagsAlsoWithMorePairs) {
+  TagFocal();
+  SetNumber("first", 0);
+  SetNumber("again", 19);
+  SetNumber("held", 18);
+  SetNumber("focal", 20);
+  EXPECT_EQ(Find(), HeldModel());
+  EXPECT_EQ(Calls(), std::string(kFastCalls) + kSecondCalls + "mapper again\n");
+  EXPECT_EQ(Find(), HeldModel());
+  EXPECT_EQ(Calls(), "mapper\n");  // only what failed is tried again
+}
+
+TEST_F(FastWay, FocalLengthsWithoutTagsAreFree) {
+  SetNumber("first", 20);
+  SetNumber("focal", 170);
+  EXPECT_EQ(Find(), FirstModel());
+  EXPECT_EQ(Calls(), kFastCalls);
 }
 
 TEST_F(FastWay, TriesMorePairsWhenItFindsNoModel) {

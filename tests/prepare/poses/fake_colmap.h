@@ -47,7 +47,8 @@ class FakeColmap : public testing::Test {
   base::ThreadPool threads_{1};
 };
 
-// It takes a made database for features, verifies all matches of the listed pairs, and makes models of so many photos.
+// It takes a made database for features, verifies all matches of the listed pairs, and makes models of so many photos, with the focal length "focal"
+// (60 px without) unless it must keep that of the tags, 60 px.
 inline constexpr const char* kFastProgram = R"py(#!/usr/bin/env python3
 import os, shutil, sqlite3, struct, sys
 folder = os.path.dirname(os.path.abspath(__file__))
@@ -78,13 +79,15 @@ if call == "matches_importer":
 elif call == "mapper":
     if setting("kill_mapper"):
         os.kill(os.getpid(), 9)
-    n = setting("again" if again else "first")
+    held = options.get("--Mapper.ba_refine_focal_length") == "0"
+    n = setting("held" if held else "again" if again else "first")
+    focal = 60.0 if held else setting("focal") or 60.0
     if n == 0:
         sys.exit("no good initial pair")
     model = options["--output_path"] + "/0"
     os.makedirs(model)
     names = sorted(ids)[:n]
-    camera = struct.pack("<QIiQQ4d", 1, 1, 1, 64, 48, 60.0, 60.0, 32.0, 24.0)
+    camera = struct.pack("<QIiQQ4d", 1, 1, 1, 64, 48, focal, focal, 32.0, 24.0)
     images = struct.pack("<Q", n)
     for name in names:
         images += struct.pack("<I7dI", ids[name], 1, 0, 0, 0, 0, 0, 0, 1) + name.encode() + b"\0" + struct.pack("<Q", 0)

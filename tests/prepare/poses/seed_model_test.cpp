@@ -33,6 +33,7 @@ class SeededWay : public test::FakeColmap {
     made_ = test::MakeSurvey({.strips = 3, .per_strip = 4, .points_per_photo = 200, .seed = 5});
     WriteProgram(test::kFastProgram);
     SetNumber("first", 12);
+    SetNumber("focal", static_cast<size_t>(made_.input.cameras.at(1).camera.FocalX()));
     test::MadeDatabase database(folder_ / "made.db");
     database.Run("PRAGMA journal_mode = DELETE");
     AddCamera(database, 1, made_.input.cameras.at(1).camera);

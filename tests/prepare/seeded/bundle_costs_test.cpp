@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -88,6 +89,27 @@ TEST(BundleCosts, TagsHaveTheDerivativesOfTheirValue) {
     const Eigen::Quaterniond tagged = Eigen::AngleAxisd(0.15 * k, axis) * Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(pose.data()));
     ExpectDerivatives(TurnCost(tagged, 0.05), {Numbers(pose)});
   }
+}
+
+TEST(BundleCosts, SharedShiftsAndKnownPointsHaveTheDerivativesOfTheirValue) {
+  base::Random random(4);
+  for (int k = 0; k < 20; ++k) {
+    const std::vector<double> shift = {random.Normal(), random.Normal(), 20.0 * random.Normal()};
+    ExpectDerivatives(ShiftedPlaceCost({1.0, 2.0, 70.0}, {3.0, 3.0, 5.0}), {Numbers(RandomPose(random)), shift});
+    ExpectDerivatives(KnownPointCost({1.0, 2.0, 3.0}, {0.5, 0.25, 2.0}), {shift});
+  }
+}
+
+TEST(BundleCosts, AnInfiniteSigmaLeavesItsAxisFree) {
+  const KnownPointCost cost({1.0, 2.0, 0.0}, {0.5, 0.5, std::numeric_limits<double>::infinity()});
+  const Eigen::Vector3d point(1.5, 2.0, 999.0);
+  const double* parameters[] = {point.data()};
+  Eigen::Vector3d residual;
+  Eigen::Matrix<double, 3, 3, Eigen::RowMajor> jacobian;
+  double* jacobians[] = {jacobian.data()};
+  ASSERT_TRUE(cost.Evaluate(parameters, residual.data(), jacobians));
+  EXPECT_EQ(residual, Eigen::Vector3d(1.0, 0.0, 0.0));
+  EXPECT_EQ(jacobian, Eigen::Matrix3d(Eigen::Vector3d(2.0, 2.0, 0.0).asDiagonal()));
 }
 
 TEST(BundleCosts, LensPrior) {

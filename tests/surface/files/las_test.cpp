@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/base/file.h"
-#include "core/gis/crs.h"
 #include "surface/files/surface_files.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/surface/files/sample_surface.h"
@@ -153,10 +152,17 @@ TEST(Las, LocalCloudsSaySo) {
   EXPECT_NE(Las(folder / "cloud.las").Wkt().find("LOCAL_CS"), std::string::npos);
 }
 
-TEST(WktOfZone, NamesPolarZonesToo) {
-  const std::string wkt = gis::WktOfZone({0, false});
-  EXPECT_TRUE(wkt.starts_with("PROJCS[")) << wkt;
-  EXPECT_NE(wkt.find("AUTHORITY[\"EPSG\",\"32761\"]"), std::string::npos) << wkt;
+TEST(Las, NamesWhatHeightsAreAbove) {
+  for (const geo::Vertical vertical : {geo::Vertical::kAsTagged, geo::Vertical::kEgm96}) {
+    const TemporaryFolder folder;
+    const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}), vertical);
+    SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder.path());
+    files.AddPoints(SamplePoints(3));
+    files.Close();
+    const std::string wkt = Las(folder / "cloud.las").Wkt();
+    EXPECT_NE(wkt.find("32617"), std::string::npos) << wkt;
+    EXPECT_NE(wkt.find(vertical == geo::Vertical::kEgm96 ? "EGM96 height" : "VERT_DATUM[\"Ellipsoid\",2002]"), std::string::npos) << wkt;
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/geo/geoid.h"
 #include "tests/surface/files/sample_surface.h"
 
 namespace skyquilt::surface {
@@ -91,11 +92,28 @@ TEST(MapFrame, NamesItsSystems) {
   scene::SceneInfo info = SampleInfo({43.64, -79.39, 100.0});
   EXPECT_EQ(MapFrame(info).CrsName(), "EPSG:32617");
   EXPECT_EQ(MapFrame(info).VerticalName(), "WGS84 ellipsoid (EPSG:4979)");
+  info.height_reference = geo::HeightReference::kUnknown;
+  EXPECT_EQ(MapFrame(info).VerticalName(), "as tagged (unknown)");
   info.accuracy.horizontal_m = 1.0;
   EXPECT_EQ(MapFrame(info).VerticalName(), "unknown: the GPS tags have no usable heights");
   info.accuracy.vertical_m = 3.0;
-  EXPECT_EQ(MapFrame(info).VerticalName(), "WGS84 ellipsoid (EPSG:4979)");
+  EXPECT_EQ(MapFrame(info).VerticalName(), "as tagged (unknown)");
   EXPECT_EQ(MapFrame(SampleInfo({-90.0, 0.0, 0.0})).CrsName(), "EPSG:32761");
+}
+
+TEST(MapFrame, ConvertsHeightsAndBack) {
+  for (const geo::Geodetic& origin : DifficultOrigins()) {
+    const scene::SceneInfo info = SampleInfo(origin);
+    const MapFrame given(info), egm96(info, geo::Vertical::kEgm96);
+    const geo::EnuFrame enu(origin);
+    for (const Eigen::Vector3d& x : Places()) {
+      const geo::Geodetic place = enu.GeodeticFromEnu(x);
+      const Eigen::Vector3d moved = egm96.MapFromEnu(x) - given.MapFromEnu(x);
+      EXPECT_LT((moved - Eigen::Vector3d(0.0, 0.0, -geo::Egm96Undulation(place.latitude_deg, place.longitude_deg))).norm(), 1e-5);
+      EXPECT_LT((egm96.EnuFromMap(egm96.MapFromEnu(x)) - x).norm(), 1e-3) << origin.latitude_deg;
+    }
+  }
+  EXPECT_EQ(MapFrame(SampleInfo({43.64, -79.39, 100.0}), geo::Vertical::kEgm96).VerticalName(), "EGM96 geoid (EPSG:5773)");
 }
 
 TEST(MapFrame, LocalCoordinatesStayAsTheyAre) {

@@ -13,6 +13,7 @@ scene::SceneInfo SampleInfo(const geo::Geodetic& origin, bool georeferenced) {
   scene::SceneInfo info;
   info.origin = origin;
   info.georeferenced = georeferenced;
+  info.height_reference = geo::HeightReference::kEllipsoid;
   info.min_enu = Eigen::Vector3d(-150.0, -100.0, -20.0);
   info.max_enu = Eigen::Vector3d(350.0, 300.0, 60.0);
   info.gsd_m = 0.1;

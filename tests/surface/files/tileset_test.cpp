@@ -7,6 +7,8 @@
 
 #include "core/base/file.h"
 #include "core/geo/ecef.h"
+#include "core/geo/geoid.h"
+#include "surface/files/earth_place.h"
 #include "surface/files/surface_files.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/surface/files/sample_surface.h"
@@ -28,8 +30,9 @@ json ReadTileset(const std::filesystem::path& folder) {
   return json::parse(base::ReadFile(folder / "tiles" / "tileset.json"));
 }
 
-Eigen::Matrix4d TransformOf(const json& tile) {
-  const auto values = tile["transform"].get<std::vector<double>>();
+template <typename Json>
+Eigen::Matrix4d TransformOf(const Json& tile) {
+  const auto values = tile["transform"].template get<std::vector<double>>();
   return Eigen::Map<const Eigen::Matrix4d>(values.data());  // both column-major
 }
 
@@ -79,6 +82,46 @@ TEST(Tileset, VerticesStandWhereTheyAreOnEarth) {
       EXPECT_LT((moved - expected).norm(), 0.01) << origin.latitude_deg << " " << origin.longitude_deg;
     }
   }
+}
+
+// EPSG:4978 has heights above the ellipsoid only, whatever the survey and products.vertical have.
+TEST(Tileset, HeightsAboveTheGeoidAreRaisedToTheEllipsoid) {
+  for (const geo::Geodetic& origin : DifficultOrigins()) {
+    const TemporaryFolder folder;
+    const TexturedTile tile = SampleTile({0, 30, -20});  // 2 km from the origin
+    scene::SceneInfo info = SampleInfo(origin);
+    info.height_reference = geo::HeightReference::kEgm96;
+    WriteTiles(MapFrame(info, geo::Vertical::kEgm96), {tile}, folder.path());
+    auto tileset = nlohmann::ordered_json::parse(base::ReadFile(folder / "tiles/tileset.json"));
+    EXPECT_EQ(tileset["asset"]["extras"]["verticalDatum"], "WGS84 ellipsoid (EPSG:4979)");
+    const Eigen::Matrix4d ecef_from_tile = TransformOf(tileset["root"]);
+    const Glb glb(folder.path() / "tiles" / "0_30_-20.glb");
+    const std::vector<Eigen::Vector3d> positions = ContentPositions(glb);
+    const auto indices = glb.Accessor(glb.primitive(0)["indices"]);
+    const geo::EnuFrame frame(origin);
+    ASSERT_TRUE(StandInSurvey(&tileset));
+    const Eigen::Matrix4d survey_from_tile = TransformOf(tileset["root"]);
+    for (size_t corner = 0; corner < indices.size(); ++corner) {
+      geo::Geodetic place = frame.GeodeticFromEnu(tile.position[tile.triangle[corner / 3][corner % 3]]);
+      const Eigen::Vector3d in_survey = geo::EcefFromGeodetic(place);
+      place.height_m += geo::Egm96Undulation(place.latitude_deg, place.longitude_deg);
+      const Eigen::Vector4d position = positions.at(static_cast<size_t>(indices[corner][0])).homogeneous();
+      EXPECT_LT(((ecef_from_tile * position).head<3>() - geo::EcefFromGeodetic(place)).norm(), 0.01) << origin.latitude_deg;
+      // Beside the survey, the geoid's slope over 2 km is left, 0.6 m at most.
+      EXPECT_LT(((survey_from_tile * position).head<3>() - in_survey).norm(), 0.6) << origin.latitude_deg;
+    }
+  }
+}
+
+TEST(Tileset, OfTheEllipsoidStandsInItsSurveyAlready) {
+  const TemporaryFolder folder;
+  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0}), geo::Vertical::kEgm96), {SampleTile({0, 0, 0})}, folder.path());
+  auto tileset = nlohmann::ordered_json::parse(base::ReadFile(folder / "tiles/tileset.json"));
+  const auto before = tileset;
+  EXPECT_FALSE(StandInSurvey(&tileset));
+  EXPECT_EQ(tileset, before);
+  nlohmann::ordered_json empty = nlohmann::ordered_json::object();
+  EXPECT_FALSE(StandInSurvey(&empty));
 }
 
 TEST(Tileset, ContentsStandUpright) {

@@ -14,6 +14,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/gis/read_maps.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -23,6 +24,7 @@ namespace {
 scene::SceneInfo Info(bool georeferenced) {
   scene::SceneInfo info;
   info.georeferenced = georeferenced;
+  info.height_reference = geo::HeightReference::kEllipsoid;
   info.origin = {41.38, 2.17, 50.0};
   info.min_enu = {-100.0, -100.0, 0.0};
   info.max_enu = {100.0, 100.0, 30.0};
@@ -133,6 +135,19 @@ TEST(SurfaceMaps, ShowGroundAndWhatStandsOnIt) {
   EXPECT_EQ(maps.files[0].format, "GeoTIFF (COG)");
   EXPECT_EQ(maps.files[0].detail, "cells of 0.25 m");
   EXPECT_NE(maps.files[3].detail.find("lines every 0.2 m"), std::string::npos);
+}
+
+TEST(SurfaceMaps, NameTheGeoidWhereHeightsAreAboveIt) {
+  const TemporaryFolder folder;
+  base::ThreadPool threads(2);
+  MakeSurfaceMaps(Surface(true), MapFrame(Info(true), geo::Vertical::kEgm96), std::nullopt, {}, folder.path(), threads);
+  const OpenedFile dtm(folder / "dtm.tif"), above(folder / "height_above_ground.tif");
+  EXPECT_STREQ(dtm->GetSpatialRef()->GetAuthorityCode("VERT_CS"), "5773");
+  EXPECT_EQ(dtm.Item("VERTICAL_REFERENCE"), "EGM96 geoid (EPSG:5773)");
+  EXPECT_STREQ(above->GetSpatialRef()->GetAuthorityCode(nullptr), "32631") << "no height above the geoid";
+  EXPECT_EQ(gis::ReadUndulations(folder / "dtm.tif"), -1);
+  EXPECT_EQ(gis::ReadUndulations(folder / "height_above_ground.tif"), 0);
+  EXPECT_EQ(gis::ReadContours(folder / "contours.gpkg", 100000).undulations, -1);
 }
 
 TEST(SurfaceMaps, TheBoundaryCutsAllOfThem) {

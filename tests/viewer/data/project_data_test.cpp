@@ -9,6 +9,7 @@
 
 #include "core/base/errors.h"
 #include "core/geo/enu_frame.h"
+#include "core/geo/geoid.h"
 #include "tests/viewer/data/sample_project.h"
 
 namespace skyquilt::viewer {
@@ -105,6 +106,29 @@ TEST(ProjectData, TerrainLiesWhereTheMapSays) {
   const image::Image8 decoded = image::DecodeRgb8({reinterpret_cast<const uint8_t*>(picture.data()), picture.size()});
   EXPECT_EQ(decoded.width, 39) << "from the first to the last column of points";
   EXPECT_NEAR(*decoded.At(5, 5), 200, 3);
+}
+
+// The map is in another system than the survey, whose frame everything is shown in.
+TEST(ProjectData, TerrainHasTheHeightsOfTheSurvey) {
+  SampleProject own, other;
+  own.AddMaps();
+  other.AddMaps(40, 30, 418.0 - geo::Egm96Undulation(47.3769, 8.5417), -1);
+  ProjectData own_data(own.project), other_data(other.project);
+  const std::string expected = own_data.Get("terrain.bin", "").Content(), terrain = other_data.Get("terrain.bin", "").Content();
+  ASSERT_EQ(terrain.size(), expected.size());
+  for (const size_t axis : {size_t{0}, size_t{1}, size_t{2}}) {
+    EXPECT_NEAR(ValueAt<double>(terrain, 16 + 8 * axis), ValueAt<double>(expected, 16 + 8 * axis), 2e-3) << axis;
+  }
+}
+
+TEST(ProjectData, TilesStandAtTheHeightsOfTheSurvey) {
+  SampleProject sample;
+  sample.AddSurface();
+  const std::filesystem::path file = sample.project.SurfaceFolder() / "tiles" / "tileset.json";
+  base::WriteFileAtomically(file, R"({"asset": {"extras": {"surveyTransform": [1, 2]}}, "root": {"transform": [3, 4]}})");
+  ProjectData data(sample.project);
+  const auto tileset = nlohmann::json::parse(data.Get("tiles/tileset.json", "").Content());
+  EXPECT_EQ(tileset["root"]["transform"], nlohmann::json::array({1, 2}));
 }
 
 TEST(ProjectData, LargeMapsAreReduced) {

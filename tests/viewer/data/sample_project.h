@@ -42,7 +42,8 @@ struct SampleProject {
   }
 
   // A plane 10 m above the origin, with one hole, and an orthophoto of one colour.
-  void AddMaps(int width = 40, int height = 30) const {
+  // dsm_height_m: of all cells but one, in a map whose heights had the undulation of EGM96 added so often.
+  void AddMaps(int width = 40, int height = 30, double dsm_height_m = 418.0, int undulations = 0) const {
     gis::MapGrid grid;
     grid.georeferenced = true;
     const geo::Geodetic origin{47.3769, 8.5417, 408.0};
@@ -54,12 +55,13 @@ struct SampleProject {
     grid.left = middle.x() - 0.25 * width;
     grid.top = middle.y() + 0.25 * height;
     std::filesystem::create_directories(project.ProductsFolder());
-    std::vector<float> heights(static_cast<size_t>(width) * static_cast<size_t>(height), 418.0F);
+    std::vector<float> heights(static_cast<size_t>(width) * static_cast<size_t>(height), static_cast<float>(dsm_height_m));
     heights[0] = -9999.0F;
     gis::GeoTiffSpec heights_spec;
     heights_spec.grid = grid;
     heights_spec.type = gis::PixelType::kFloat32;
     heights_spec.nodata = -9999.0;
+    if (undulations != 0) heights_spec.metadata[geo::kUndulationsItem] = std::to_string(undulations);
     gis::GeoTiffWriter dsm(project.ProductsFolder() / "dsm.tif", heights_spec);
     dsm.WriteRows(0, height, std::span<const float>(heights));
     dsm.Close();

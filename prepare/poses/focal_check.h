@@ -1,0 +1,36 @@
+// Compares the focal lengths of a model with those that the photos' tags say. Over level ground that looks alike everywhere, photos taken straight
+// down fit a focal length that is far too long or too short about as well as the right one: the model then has few errors, and a wrong shape.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "core/camera/camera.h"
+#include "core/survey/colmap_model.h"
+
+namespace skyquilt::prepare {
+
+// A focal length is far from the tagged one when it is less than this many times, or more than this many times as long. Tags say the focal length for
+// a film of 35 mm by the width or by the diagonal, which differ by 4 % for usual photos, and in whole millimetres.
+constexpr double kShortestFocal = 0.8, kLongestFocal = 1.25;
+// And so a model is wrong when more than this share of its photos have such a camera.
+constexpr double kMaxFarFocal = 0.1;
+
+struct FarFocal {
+  double found_px = 0.0;   // of the camera with the most photos among those that are far off
+  double tagged_px = 0.0;  // of the same camera
+  size_t n_photos = 0;     // of all cameras that are far off
+
+  std::string Text() const;  // both numbers, for the log
+};
+
+// COLMAP's focal length for photos whose tags have none is 1.2 times the longer side.
+bool IsGuessedFocal(const camera::Camera& camera);
+
+// Empty when the model can be right. `tagged`: by the camera ids of the model, as COLMAP's database has them before any adjustment; cameras without a
+// tagged focal length are not judged.
+std::optional<FarFocal> FindFarFocal(const survey::ColmapModel& model, const std::map<uint32_t, camera::Camera>& tagged);
+
+}  // namespace skyquilt::prepare

@@ -1,0 +1,61 @@
+#include "prepare/poses/focal_check.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace skyquilt::prepare {
+namespace {
+
+camera::Camera CameraWith(double focal_px) {
+  return {camera::CameraModel::kPinhole, 800, 600, {focal_px, focal_px, 400.0, 300.0}};
+}
+
+// Photos of camera 1, and of camera 2 after them.
+survey::ColmapModel ModelWith(double focal_1_px, size_t n_1, double focal_2_px = 571.0, size_t n_2 = 0) {
+  survey::ColmapModel model;
+  model.cameras = {{1, CameraWith(focal_1_px)}, {2, CameraWith(focal_2_px)}};
+  for (size_t i = 0; i < n_1 + n_2; ++i) model.images.push_back({static_cast<uint32_t>(i + 1), i < n_1 ? 1U : 2U, "photo", {}});
+  return model;
+}
+
+const std::map<uint32_t, camera::Camera> kTagged = {{1, CameraWith(571.0)}, {2, CameraWith(571.0)}};
+
+TEST(FocalCheck, AcceptsWhatTagsMayMean) {
+  EXPECT_FALSE(FindFarFocal(ModelWith(571.0, 10), kTagged));
+  EXPECT_FALSE(FindFarFocal(ModelWith(0.81 * 571.0, 10), kTagged));
+  EXPECT_FALSE(FindFarFocal(ModelWith(1.24 * 571.0, 10), kTagged));
+}
+
+TEST(FocalCheck, NamesBothNumbers) {
+  const auto far = FindFarFocal(ModelWith(1634.0, 10), kTagged);
+  ASSERT_TRUE(far);
+  EXPECT_EQ(far->n_photos, 10U);
+  EXPECT_EQ(far->Text(), "a focal length of 1634 px for 10 photos, whose tags say 571 px");
+  EXPECT_TRUE(FindFarFocal(ModelWith(0.79 * 571.0, 10), kTagged));
+  EXPECT_TRUE(FindFarFocal(ModelWith(1.26 * 571.0, 10), kTagged));
+  EXPECT_TRUE(FindFarFocal(ModelWith(std::numeric_limits<double>::quiet_NaN(), 10), kTagged));
+}
+
+TEST(FocalCheck, CannotJudgeWithoutTags) {
+  EXPECT_TRUE(IsGuessedFocal(CameraWith(960.0)));
+  EXPECT_FALSE(IsGuessedFocal(CameraWith(961.0)));
+  EXPECT_FALSE(FindFarFocal(ModelWith(1634.0, 10), {{1, CameraWith(960.0)}, {2, CameraWith(571.0)}}));
+  EXPECT_FALSE(FindFarFocal(ModelWith(1634.0, 10), {}));
+}
+
+// A camera with a few photos says little about the shape of the whole.
+TEST(FocalCheck, CountsThePhotosOfAllCameras) {
+  EXPECT_FALSE(FindFarFocal(ModelWith(571.0, 9, 1634.0, 1), kTagged));
+  const auto far = FindFarFocal(ModelWith(571.0, 8, 300.0, 2), kTagged);
+  ASSERT_TRUE(far);
+  EXPECT_EQ(far->found_px, 300.0);
+  // The camera with the most photos is named.
+  const auto both = FindFarFocal(ModelWith(1634.0, 3, 300.0, 7), kTagged);
+  ASSERT_TRUE(both);
+  EXPECT_EQ(both->found_px, 300.0);
+  EXPECT_EQ(both->n_photos, 10U);
+}
+
+}  // namespace
+}  // namespace skyquilt::prepare

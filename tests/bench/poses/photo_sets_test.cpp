@@ -121,7 +121,7 @@ TEST_F(PhotoSets, EveryFourthPhotoIsBlurred) {
   for (size_t i = 0; i < set.photos.size(); ++i) {
     EXPECT_EQ(SameFile(PhotoSet::kBlurred, set.photos[i]), i % 4 != 3);
     if (i % 4 == 3) {
-      EXPECT_LT(steps(Out(PhotoSet::kBlurred) / set.photos[i].name), 0.8 * steps(Original(set.photos[i])));
+      EXPECT_LT(steps(Out(PhotoSet::kBlurred) / set.photos[i].name), 0.9 * steps(Original(set.photos[i])));
     }
     EXPECT_TRUE(survey::ReadPhotoTags(Out(PhotoSet::kBlurred) / set.photos[i].name).gps);
   }

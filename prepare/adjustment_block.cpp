@@ -1,9 +1,10 @@
 #include "prepare/adjustment_block.h"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <unordered_map>
+
+#include "core/base/disjoint_sets.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -62,26 +63,18 @@ std::vector<BlockPoint> EvenlyChosen(std::vector<BlockPoint> points, size_t max_
 
 // Per photo: true for those of the largest group that points connect.
 std::vector<char> LargestGroup(size_t n_photos, const std::vector<BlockPoint>& points) {
-  std::vector<int> parent(n_photos);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int photo) {
-    while (parent[static_cast<size_t>(photo)] != photo) {
-      // Halving the path keeps the search short.
-      int& up = parent[static_cast<size_t>(photo)];
-      up = parent[static_cast<size_t>(up)];
-      photo = up;
-    }
-    return photo;
-  };
+  base::DisjointSets groups(n_photos);
   for (const BlockPoint& point : points) {
-    for (const Sighting& sighting : point.sightings) parent[static_cast<size_t>(root(sighting.photo))] = root(point.sightings.front().photo);
+    for (const Sighting& sighting : point.sightings) {
+      groups.Join(static_cast<uint32_t>(sighting.photo), static_cast<uint32_t>(point.sightings.front().photo));
+    }
   }
   std::vector<int> size(n_photos, 0);
-  for (size_t photo = 0; photo < n_photos; ++photo) ++size[static_cast<size_t>(root(static_cast<int>(photo)))];
+  for (uint32_t photo = 0; photo < n_photos; ++photo) ++size[groups.Root(photo)];
   std::vector<char> keep(n_photos, 0);
   if (n_photos == 0) return keep;
-  const auto largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
-  for (size_t photo = 0; photo < n_photos; ++photo) keep[photo] = root(static_cast<int>(photo)) == largest ? 1 : 0;
+  const auto largest = static_cast<uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+  for (uint32_t photo = 0; photo < n_photos; ++photo) keep[photo] = groups.Root(photo) == largest ? 1 : 0;
   return keep;
 }
 

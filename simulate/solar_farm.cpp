@@ -90,9 +90,11 @@ Surface FarmGround(const Hit& hit, uint32_t seed) {
   const float x = hit.position.x(), y = hit.position.y(), w = SurfaceFootprint(hit);
   Surface surface;
   surface.normal = hit.normal;
-  // Weak, so that the rows are what stands out.
-  const float tone = 1.0F + 0.10F * FractalNoise(x, y, {2.6F, 4, 0.55F}, seed + 100U, w);
-  surface.albedo = Vector3f(0.150F, 0.165F, 0.075F) * tone;
+  // Patches of bare soil, and tufts: the only thing that tells one gap between rows from another.
+  const float bare = Smoothstep(0.1F, 0.9F, FractalNoise(x, y, {7.0F, 4, 0.6F}, seed + 100U, w));
+  const float tone = 1.0F + 0.25F * FractalNoise(x, y, {1.8F, 4, 0.7F}, seed + 200U, w);
+  const Vector3f grass(0.105F, 0.135F, 0.050F), soil(0.240F, 0.195F, 0.130F);
+  surface.albedo = ((grass + bare * (soil - grass)) * tone).cwiseMax(0.01F);
   return surface;
 }
 

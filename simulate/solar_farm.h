@@ -20,7 +20,7 @@ void AddSolarTables(const Eigen::Vector2d& min, const Eigen::Vector2d& max, cons
 
 // Dark cells in thin bright frames, the same on every table; sheet metal below.
 Surface SolarTableSurface(const Hit& hit);
-// Short grass on sandy soil, evenly everywhere.
+// Short grass with patches of bare soil, the same everywhere.
 Surface FarmGround(const Hit& hit, uint32_t seed);
 
 }  // namespace skyquilt::simulate

@@ -8,6 +8,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/text.h"
 #include "core/survey/colmap_database.h"
 #include "core/survey/colmap_model.h"
 #include "prepare/poses/choose_pairs.h"
@@ -15,12 +16,15 @@
 #include "prepare/poses/extract_features.h"
 #include "prepare/poses/fill_database.h"
 #include "prepare/poses/focal_check.h"
+#include "prepare/poses/loose_photos.h"
 #include "prepare/poses/seed_model.h"
 
 namespace skyquilt::prepare {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr size_t kMostNamed = 5;  // photos in a warning
 
 // One way from photos to a model.
 struct Attempt {
@@ -84,6 +88,21 @@ std::optional<FarFocal> FarFocalOf(const ColmapJob& job, const FoundModel& model
   return FindFarFocal(survey::ReadColmapModel(model.folder), survey::ColmapDatabase(job.Database()).ReadCameras());
 }
 
+// The model, or the same without the photos that it has no reason to place, beside the folder of the mapper's models.
+FoundModel WithoutLoosePhotos(const ColmapJob& job, const FoundModel& found) {
+  const fs::path folder = job.folder / (job.models + "_tied");
+  fs::remove_all(folder);
+  survey::ColmapModel model = survey::ReadColmapModel(found.folder);
+  survey::ColmapObservations observations = survey::ReadColmapObservations(found.folder);
+  const std::vector<std::string> removed = RemoveLoosePhotos(model, observations);
+  if (removed.empty()) return found;
+  const std::vector<std::string> named(removed.begin(), removed.begin() + static_cast<std::ptrdiff_t>(std::min(removed.size(), kMostNamed)));
+  spdlog::warn("{} photos get no pose, because they have fewer than {} points in common with each of the others: {}{}", removed.size(), kLeastTied,
+               base::Join(named), removed.size() > kMostNamed ? ", ..." : "");
+  survey::WriteColmapBinary(model, observations, folder);
+  return {folder, model.images.size()};
+}
+
 FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
                      base::ThreadPool& threads) {
   const ColmapJob& job = attempt.job;
@@ -98,7 +117,7 @@ FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std
     }
   }
   RunStep(job, mapper, {}, [&] { MakeModels(job, attempt.settings, photos.size(), options); });
-  return LargestModel(job);
+  return options.fast ? WithoutLoosePhotos(job, LargestModel(job)) : LargestModel(job);
 }
 
 // What an attempt gave.

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSeedVersion = 1;  // a new number makes finished models anew
+constexpr int kSeedVersion = 2;  // a new number makes finished models anew
 
 fs::path SeededFolder(const ColmapJob& job) {
   return job.folder / "seeded";

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/base/cancel.h"
+#include "core/base/disjoint_sets.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -11,25 +12,18 @@ namespace {
 // Groups of nodes, each a ring. Every node belongs to a photo; no group has two nodes of one photo.
 class Groups {
  public:
-  Groups(std::vector<uint32_t> photo, size_t n_photos) : photo_(std::move(photo)), parent_(photo_.size()), next_(photo_.size()), seen_(n_photos, 0) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
+  Groups(std::vector<uint32_t> photo, size_t n_photos) : photo_(std::move(photo)), next_(photo_.size()), sets_(photo_.size()), seen_(n_photos, 0) {
     std::iota(next_.begin(), next_.end(), 0U);
   }
 
   void Join(uint32_t a, uint32_t b) {
     const uint32_t root_a = Root(a), root_b = Root(b);
     if (root_a == root_b || ShareAPhoto(root_a, root_b)) return;
-    parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+    sets_.Join(root_a, root_b);
     std::swap(next_[root_a], next_[root_b]);
   }
 
-  uint32_t Root(uint32_t node) {
-    while (parent_[node] != node) {
-      parent_[node] = parent_[parent_[node]];
-      node = parent_[node];
-    }
-    return node;
-  }
+  uint32_t Root(uint32_t node) { return sets_.Root(node); }
 
   uint32_t Next(uint32_t node) const { return next_[node]; }
   uint32_t Photo(uint32_t node) const { return photo_[node]; }
@@ -50,7 +44,8 @@ class Groups {
     return false;
   }
 
-  std::vector<uint32_t> photo_, parent_, next_;
+  std::vector<uint32_t> photo_, next_;
+  base::DisjointSets sets_;
   std::vector<uint64_t> seen_;
   uint64_t mark_ = 0;
 };

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/order_statistics.h"
 
 namespace skyquilt::prepare {
@@ -106,25 +107,18 @@ double Mode(const std::vector<AbsoluteTurn>& turns) {
   return middle + (total > 0.0 ? sum / total : 0.0);
 }
 
-uint32_t RootOf(std::vector<uint32_t>& parent, uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 // Turns along a tree of the pairs with the most matches; each tree is turned as a whole to where the absolute measurements want it.
 std::vector<double> StartAlongTrees(const std::vector<PairTurn>& pairs, const std::vector<AbsoluteTurn>& absolute, size_t n_photos,
                                     std::vector<char>* known) {
   std::vector<size_t> order(pairs.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](size_t x, size_t y) { return pairs[x].n > pairs[y].n; });
-  std::vector<uint32_t> parent(n_photos);
-  std::iota(parent.begin(), parent.end(), 0U);
+  base::DisjointSets trees(n_photos);
   std::vector<std::vector<std::pair<uint32_t, double>>> links(n_photos);
   for (const size_t k : order) {
     const PairTurn& pair = pairs[k];
-    const uint32_t a = RootOf(parent, pair.a), b = RootOf(parent, pair.b);
-    if (a == b) continue;
-    parent[b] = a;
+    if (trees.Root(pair.a) == trees.Root(pair.b)) continue;
+    trees.Join(pair.a, pair.b);
     links[pair.a].emplace_back(pair.b, pair.difference);
     links[pair.b].emplace_back(pair.a, -pair.difference);
   }

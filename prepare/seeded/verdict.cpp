@@ -5,6 +5,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/order_statistics.h"
 #include "prepare/seeded/resect.h"
 
@@ -59,27 +60,65 @@ std::unordered_map<uint64_t, size_t> SharedPoints(const Block& block) {
 }
 
 size_t KeepLargestGroup(Block& block) {
-  std::vector<uint32_t> parent(block.photos.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  base::DisjointSets groups(block.photos.size());
   for (const auto& [pair, n] : SharedPoints(block)) {
     if (n < kLeastShared) continue;
-    const uint32_t a = root(static_cast<uint32_t>(pair >> 32U)), b = root(static_cast<uint32_t>(pair));
-    parent[std::max(a, b)] = std::min(a, b);
+    groups.Join(static_cast<uint32_t>(pair >> 32U), static_cast<uint32_t>(pair));
   }
   std::vector<size_t> size(block.photos.size(), 0);
-  for (uint32_t i = 0; i < parent.size(); ++i) size[root(i)] += block.photos[i].placed ? 1 : 0;
+  for (uint32_t i = 0; i < size.size(); ++i) size[groups.Root(i)] += block.photos[i].placed ? 1 : 0;
   const auto largest = static_cast<uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
   size_t removed = 0;
-  for (uint32_t i = 0; i < parent.size(); ++i) {
-    if (!block.photos[i].placed || root(i) == largest) continue;
+  for (uint32_t i = 0; i < size.size(); ++i) {
+    if (!block.photos[i].placed || groups.Root(i) == largest) continue;
     block.photos[i].placed = false;
     ++removed;
   }
   return removed;
+}
+
+// Per photo, the most tracks that it has in common with one placed photo.
+std::vector<size_t> MostCommonTracks(const Block& block) {
+  std::vector<std::unordered_map<uint32_t, size_t>> common(block.photos.size());
+  for (uint32_t t = 0; t < block.tracks.size(); ++t) {
+    const uint32_t first = block.tracks.first[t], last = block.tracks.first[t + 1];
+    // The next few in the track, as above.
+    constexpr uint32_t kReach = 5;
+    for (uint32_t e = first; e < last; ++e) {
+      for (uint32_t other = e + 1; other < std::min(last, e + 1 + kReach); ++other) {
+        const uint32_t a = block.tracks.entries[e].photo, b = block.tracks.entries[other].photo;
+        if (block.photos[b].placed) ++common[a][b];
+        if (block.photos[a].placed) ++common[b][a];
+      }
+    }
+  }
+  std::vector<size_t> most;
+  most.reserve(common.size());
+  for (const auto& with : common) {
+    size_t n = 0;
+    for (const auto& [photo, tracks] : with) n = std::max(n, tracks);
+    most.push_back(n);
+  }
+  return most;
+}
+
+// Photos without a pose that hardly look like any placed photo, as those of another place: nobody else could place them.
+std::vector<char> FindStrangers(const Block& block) {
+  const std::vector<size_t> most = MostCommonTracks(block);
+  std::vector<double> usual;
+  for (size_t i = 0; i < most.size(); ++i) {
+    if (block.photos[i].placed) usual.push_back(static_cast<double>(most[i]));
+  }
+  std::vector<char> strange(most.size(), 0);
+  if (usual.empty()) return strange;
+  const double few = kStrangersShare * base::Median(std::move(usual));
+  for (size_t i = 0; i < most.size(); ++i) {
+    strange[i] = !block.photos[i].placed && most[i] < kStrangersMatches && static_cast<double>(most[i]) < few ? 1 : 0;
+  }
+  // Many are a part of the survey that is not connected yet.
+  const auto n_strange = static_cast<double>(std::count(strange.begin(), strange.end(), 1));
+  if (n_strange > kMaxStrangers * static_cast<double>(strange.size())) std::fill(strange.begin(), strange.end(), 0);
+  return strange;
 }
 
 std::string Percent(double share) {
@@ -111,10 +150,11 @@ Verdict Judge(const Block& block, double height_m) {
   Verdict verdict;
   std::vector<size_t> n_entries(block.photos.size(), 0);
   for (const TrackEntry& entry : block.tracks.entries) ++n_entries[entry.photo];
+  const std::vector<char> strange = FindStrangers(block);
   std::vector<double> off_m;
   for (size_t i = 0; i < block.photos.size(); ++i) {
     const BlockPhoto& photo = block.photos[i];
-    verdict.n_matched += n_entries[i] >= kLeastObservations ? 1 : 0;
+    verdict.n_matched += n_entries[i] >= kLeastObservations && strange[i] == 0 ? 1 : 0;
     verdict.n_placed += photo.placed ? 1 : 0;
     if (photo.placed && photo.gps) off_m.push_back((photo.centre - *photo.gps).head<2>().norm());
   }

@@ -1,0 +1,67 @@
+#include "prepare/poses/loose_photos.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "core/base/disjoint_sets.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+// Numbers of common points of pairs of photos; the key is the smaller id times 2^32 plus the larger.
+std::unordered_map<uint64_t, size_t> CommonPoints(const survey::ColmapModel& model) {
+  // The next few in the track: all pairs of a long one would take long.
+  constexpr size_t kReach = 8;
+  std::unordered_map<uint64_t, size_t> common;
+  for (const survey::ColmapPoint& point : model.points) {
+    const std::set<uint32_t> unique(point.image_ids.begin(), point.image_ids.end());
+    const std::vector<uint32_t> seen(unique.begin(), unique.end());
+    for (size_t i = 0; i < seen.size(); ++i) {
+      for (size_t j = i + 1; j < std::min(seen.size(), i + 1 + kReach); ++j) ++common[(uint64_t{seen[i]} << 32U) + seen[j]];
+    }
+  }
+  return common;
+}
+
+// Ids of the largest group of photos.
+std::unordered_set<uint32_t> LargestGroup(const survey::ColmapModel& model) {
+  std::unordered_map<uint32_t, uint32_t> index;
+  for (const survey::ColmapImage& image : model.images) index.emplace(image.id, static_cast<uint32_t>(index.size()));
+  base::DisjointSets groups(index.size());
+  for (const auto& [pair, n] : CommonPoints(model)) {
+    if (n >= kLeastTied) groups.Join(index.at(static_cast<uint32_t>(pair >> 32U)), index.at(static_cast<uint32_t>(pair)));
+  }
+  std::map<uint32_t, std::unordered_set<uint32_t>> members;
+  for (const survey::ColmapImage& image : model.images) members[groups.Root(index.at(image.id))].insert(image.id);
+  const auto largest =
+      std::max_element(members.begin(), members.end(), [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  return largest == members.end() ? std::unordered_set<uint32_t>() : largest->second;
+}
+
+}  // namespace
+
+std::vector<std::string> RemoveLoosePhotos(survey::ColmapModel& model, survey::ColmapObservations& observations) {
+  if (model.points.empty()) return {};
+  const std::unordered_set<uint32_t> kept = LargestGroup(model);
+  std::vector<std::string> removed;
+  for (const survey::ColmapImage& image : model.images) {
+    if (!kept.contains(image.id)) removed.push_back(image.name);
+  }
+  if (removed.empty()) return {};
+  std::erase_if(model.images, [&](const survey::ColmapImage& image) { return !kept.contains(image.id); });
+  for (survey::ColmapPoint& point : model.points) std::erase_if(point.image_ids, [&](uint32_t id) { return !kept.contains(id); });
+  std::erase_if(model.points, [](const survey::ColmapPoint& point) {
+    return std::all_of(point.image_ids.begin(), point.image_ids.end(), [&](uint32_t id) { return id == point.image_ids.front(); });
+  });
+  std::unordered_set<uint64_t> points;
+  for (const survey::ColmapPoint& point : model.points) points.insert(point.id);
+  std::erase_if(observations, [&](const auto& entry) { return !kept.contains(entry.first); });
+  for (auto& [id, seen] : observations) std::erase_if(seen, [&](const survey::ColmapObservation& one) { return !points.contains(one.point_id); });
+  std::sort(removed.begin(), removed.end());
+  return removed;
+}
+
+}  // namespace skyquilt::prepare

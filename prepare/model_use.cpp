@@ -1,13 +1,13 @@
 #include "prepare/model_use.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "core/base/cancel.h"
 #include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
+#include "core/base/text.h"
 #include "core/geo/enu_frame.h"
 #include "core/image/image.h"
 #include "prepare/georeference.h"
@@ -50,9 +50,7 @@ void UseAlphaAsMasks(const InputModel& model, const std::filesystem::path& photo
   std::vector<size_t> without_mask;
   for (size_t i = 0; i < photos.size(); ++i) {
     // JPEGs have no alpha.
-    std::string extension = std::filesystem::path(photos[i].name).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (masks[i].empty() && extension == ".png") without_mask.push_back(i);
+    if (masks[i].empty() && base::LowerCase(std::filesystem::path(photos[i].name).extension().string()) == ".png") without_mask.push_back(i);
   }
   if (without_mask.empty()) return;
   base::Progress progress("read alpha of photos", static_cast<double>(without_mask.size()), "photos");

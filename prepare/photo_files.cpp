@@ -1,7 +1,6 @@
 #include "prepare/photo_files.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "core/base/cancel.h"
@@ -9,6 +8,7 @@
 #include "core/base/log.h"
 #include "core/base/memory_map.h"
 #include "core/base/progress.h"
+#include "core/base/text.h"
 #include "core/image/image.h"
 #include "core/image/jpeg_structure.h"
 
@@ -33,8 +33,7 @@ void CheckComplete(const fs::path& file) {
 
 bool LooksLikePhoto(const fs::path& file) {
   if (IsHidden(file)) return false;
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = base::LowerCase(file.extension().string());
   return extension == ".jpg" || extension == ".jpeg" || extension == ".png" || extension == ".tif" || extension == ".tiff";
 }
 

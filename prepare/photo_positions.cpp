@@ -1,7 +1,6 @@
 #include "prepare/photo_positions.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -14,6 +13,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/text.h"
 #include "core/geo/crs.h"
 #include "core/geo/ecef.h"
 
@@ -29,11 +29,6 @@ constexpr const char* kMrkFix = "Copy the file from the drone again, or remove i
 constexpr double kMeasured_m = 0.1;
 // Tags of the same photo differ less.
 constexpr double kFarOff_m = 100.0;
-
-std::string LowerName(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 std::optional<double> ParseNumber(const std::string& text) {
   double value = 0.0;
@@ -105,13 +100,13 @@ void UseGeoFile(const fs::path& file, std::vector<PhotoFile>& photos) {
   std::map<std::string, std::vector<PhotoFile*>> by_base_name;
   for (PhotoFile& photo : photos) {
     by_name[photo.name] = &photo;
-    by_base_name[LowerName(fs::path(photo.name).filename().string())].push_back(&photo);
+    by_base_name[base::LowerCase(fs::path(photo.name).filename().string())].push_back(&photo);
   }
   size_t n_used = 0;
   const std::vector<GeoRow> rows = ReadGeoFile(file);
   for (const GeoRow& row : rows) {
     const auto exact = by_name.find(row.photo);
-    const auto same = by_base_name.find(LowerName(fs::path(row.photo).filename().string()));
+    const auto same = by_base_name.find(base::LowerCase(fs::path(row.photo).filename().string()));
     if (exact == by_name.end() && (same == by_base_name.end() || same->second.size() != 1)) continue;
     survey::PhotoTags& tags = (exact != by_name.end() ? exact->second : same->second.front())->tags;
     tags.gps = row.position;
@@ -132,7 +127,7 @@ std::map<int, Numbered> RowsOfFolder(const fs::path& folder) {
   std::set<int> ambiguous;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    if (LowerName(entry->path().extension().string()) != ".mrk") continue;
+    if (base::LowerCase(entry->path().extension().string()) != ".mrk") continue;
     try {
       for (const MrkRow& row : ReadMrkFile(entry->path())) {
         if (row.status > 0 && !rows.emplace(row.number, Numbered{row, entry->path()}).second) ambiguous.insert(row.number);
@@ -268,7 +263,7 @@ std::vector<fs::path> PositionFiles(const fs::path& photo_root, const std::strin
   std::error_code error;
   for (fs::recursive_directory_iterator entry(photo_root, fs::directory_options::skip_permission_denied, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (LowerName(entry->path().extension().string()) == ".mrk") logs.push_back(entry->path());
+    if (base::LowerCase(entry->path().extension().string()) == ".mrk") logs.push_back(entry->path());
   }
   std::sort(logs.begin(), logs.end());
   return logs;

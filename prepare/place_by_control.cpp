@@ -45,7 +45,7 @@ ControlPoints ReadControlPoints(const PrepareOptions& options, const std::vector
   std::vector<geo::Geodetic> tags;
   photos.reserve(files.size());
   for (const PhotoFile& file : files) {
-    photos.push_back({file.name, file.width, file.height});
+    photos.push_back({file.name, file.width, file.height, file.tags.original_width, file.tags.original_height});
     if (file.tags.gps) tags.push_back(*file.tags.gps);
   }
   ControlPoints control = ReadControl({.points = options.gcp,

@@ -1,7 +1,6 @@
 #include "prepare/prepare.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -50,9 +49,7 @@ std::string Joined(const std::vector<std::string>& names) {
 }
 
 std::string BaseNameKey(const std::string& name) {
-  std::string key = fs::path(name).filename().string();
-  std::transform(key.begin(), key.end(), key.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return key;
+  return base::LowerCase(fs::path(name).filename().string());
 }
 
 // Finds the photo of a name in the model: by the full name, otherwise by the file name if it occurs only once on both sides. Models are often made

@@ -5,6 +5,8 @@
 #include <cctype>
 #include <limits>
 
+#include "core/base/text.h"
+
 namespace skyquilt::prepare {
 namespace {
 
@@ -65,12 +67,6 @@ constexpr std::array kShutters = {
 
 constexpr double kWide = 1.7;  // of width over height; 16:9 is 1.78, 3:2 is 1.5
 
-std::string Lower(const std::string& text) {
-  std::string lower = text;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
 std::string Trimmed(const std::string& text) {
   const size_t first = text.find_first_not_of(" \t");
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
@@ -79,7 +75,7 @@ std::string Trimmed(const std::string& text) {
 }  // namespace
 
 double SensorReadout(const ShutterQuery& query) {
-  std::string key = Lower(query.camera_name);
+  std::string key = base::LowerCase(query.camera_name);
   std::erase_if(key, [](unsigned char c) { return std::isspace(c) != 0; });
   const auto* found = std::find_if(kShutters.begin(), kShutters.end(), [&](const Shutter& shutter) { return key == shutter.camera; });
   if (found == kShutters.end()) return kNotMeasured;
@@ -95,7 +91,7 @@ double SensorReadout(const ShutterQuery& query) {
 std::string CameraName(const std::string& make, const std::string& model) {
   const std::string brand = Trimmed(make);
   std::string type = Trimmed(model);
-  if (brand.empty() || Lower(type).starts_with(Lower(brand))) return type;
+  if (brand.empty() || base::LowerCase(type).starts_with(base::LowerCase(brand))) return type;
   return type.empty() ? brand : brand + " " + type;
 }
 

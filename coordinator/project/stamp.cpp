@@ -1,7 +1,6 @@
 #include "coordinator/project/stamp.h"
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -95,8 +94,7 @@ std::string PhotosIdentity(const std::filesystem::path& folder, const std::files
       continue;
     }
     if (!it->is_regular_file(error)) continue;
-    std::string extension = it->path().extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = base::LowerCase(it->path().extension().string());
     if (!kImages.contains(extension)) continue;
     const auto time = std::chrono::duration_cast<std::chrono::seconds>(it->last_write_time(error).time_since_epoch()).count();
     lines.push_back(it->path().lexically_relative(folder).generic_string() + "|" + std::to_string(it->file_size(error)) + "|" + std::to_string(time));

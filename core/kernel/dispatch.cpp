@@ -1,24 +1,18 @@
 #include <hwy/targets.h>
 
-#include <algorithm>
-#include <cctype>
 #include <stdexcept>
 
+#include "core/base/text.h"
 #include "core/kernel/kernels.h"
 
 namespace skyquilt::kernel {
 namespace {
 
-std::string Lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 // The common name of one of Highway's instruction sets.
 std::string CommonName(int64_t target) {
   if (target <= HWY_AVX3) return "avx512";
   if (target == HWY_AVX2) return "avx2";
-  return Lower(hwy::TargetName(target));
+  return base::LowerCase(hwy::TargetName(target));
 }
 
 // Instruction sets that the program was built for and this processor has, best first. Read once, before one is forced: afterwards Highway reports
@@ -36,12 +30,12 @@ const std::vector<int64_t>& UsableTargets() {
 
 std::string ActiveInstructionSet() {
   const int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
-  return Lower(hwy::TargetName(usable & -usable));
+  return base::LowerCase(hwy::TargetName(usable & -usable));
 }
 
 std::vector<std::string> InstructionSets() {
   std::vector<std::string> names;
-  for (const int64_t target : UsableTargets()) names.push_back(Lower(hwy::TargetName(target)));
+  for (const int64_t target : UsableTargets()) names.push_back(base::LowerCase(hwy::TargetName(target)));
   return names;
 }
 
@@ -49,7 +43,7 @@ void ForceInstructionSet(const std::string& name) {
   const std::vector<int64_t>& usable = UsableTargets();
   std::string known;
   for (const int64_t target : usable) {
-    const std::string own = Lower(hwy::TargetName(target));
+    const std::string own = base::LowerCase(hwy::TargetName(target));
     const bool portable = name == "portable" && target == usable.back();
     if (name == own || name == CommonName(target) || portable) {
       // Highway chooses the lowest set bit, which is then this target.

@@ -165,6 +165,15 @@ std::optional<double> ReadSpeed(const Exiv2::ExifData& exif, const Exiv2::XmpDat
   return std::nullopt;
 }
 
+void ReadOriginalSize(const Exiv2::ExifData& exif, PhotoTags& tags) {
+  constexpr double kMost = 100'000.0;
+  const std::optional<double> width = Positive(ExifNumber(exif, "Exif.Photo.PixelXDimension"));
+  const std::optional<double> height = Positive(ExifNumber(exif, "Exif.Photo.PixelYDimension"));
+  if (!width || !height || *width > kMost || *height > kMost) return;
+  tags.original_width = static_cast<int>(*width);
+  tags.original_height = static_cast<int>(*height);
+}
+
 ExposureSettings ReadExposure(const Exiv2::ExifData& exif) {
   ExposureSettings exposure;
   exposure.time_s = Positive(ExifNumber(exif, "Exif.Photo.ExposureTime"));
@@ -244,6 +253,7 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
     tags.exposure = ReadExposure(exif);
     tags.focal_length_mm = ExifNumber(exif, "Exif.Photo.FocalLength");
     tags.focal_length_35mm = ExifNumber(exif, "Exif.Photo.FocalLengthIn35mmFilm");
+    ReadOriginalSize(exif, tags);
     tags.capture_time_s = ReadCaptureTime(exif);
     tags.make = ExifText(exif, "Exif.Image.Make");
     tags.model = ExifText(exif, "Exif.Image.Model");

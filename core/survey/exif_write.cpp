@@ -131,6 +131,8 @@ void WritePhotoTags(const PhotoTags& tags, const std::filesystem::path& file) {
     if (tags.exposure.iso) exif["Exif.Photo.ISOSpeedRatings"] = static_cast<uint16_t>(std::lround(std::min(*tags.exposure.iso, 65534.0)));
     if (tags.focal_length_mm) SetRational(exif, "Exif.Photo.FocalLength", *tags.focal_length_mm, 10'000);
     if (tags.focal_length_35mm) exif["Exif.Photo.FocalLengthIn35mmFilm"] = static_cast<uint16_t>(std::lround(*tags.focal_length_35mm));
+    if (tags.original_width > 0) exif["Exif.Photo.PixelXDimension"] = static_cast<uint32_t>(tags.original_width);
+    if (tags.original_height > 0) exif["Exif.Photo.PixelYDimension"] = static_cast<uint32_t>(tags.original_height);
     if (tags.capture_time_s) SetCaptureTime(exif, *tags.capture_time_s);
     image->writeMetadata();
   } catch (const Exiv2::AnyError& error) {

@@ -10,19 +10,11 @@
 namespace skyquilt::prepare {
 namespace {
 
-// Files of other systems may have '\'.
-std::string FileNameOf(std::string name) {
-  std::replace(name.begin(), name.end(), '\\', '/');
-  return LowerCase(std::filesystem::path(name).filename().string());
-}
-
-std::string StemOf(const std::string& file_name) {
-  return std::filesystem::path(file_name).stem().string();
-}
-
-const size_t* OnlyOne(const std::map<std::string, std::vector<size_t>>& by_key, const std::string& key) {
-  const auto found = by_key.find(key);
-  return found == by_key.end() || found->second.size() != 1 ? nullptr : &found->second.front();
+std::vector<std::string> NamesOf(const std::vector<PhotoSize>& photos) {
+  std::vector<std::string> names;
+  names.reserve(photos.size());
+  for (const PhotoSize& photo : photos) names.push_back(photo.name);
+  return names;
 }
 
 // In pixels from the corner, of an image of this size.
@@ -76,24 +68,11 @@ bool AreOfOriginals(const std::vector<RawMark>& marks, const std::vector<const P
 
 }  // namespace
 
-ControlPhotos::ControlPhotos(const std::vector<PhotoSize>& photos) : photos_(photos) {
-  for (size_t i = 0; i < photos_.size(); ++i) {
-    by_name_[photos_[i].name] = i;
-    const std::string file_name = FileNameOf(photos_[i].name);
-    by_file_name_[file_name].push_back(i);
-    by_stem_[StemOf(file_name)].push_back(i);
-  }
-}
+ControlPhotos::ControlPhotos(const std::vector<PhotoSize>& photos) : photos_(photos), finder_(NamesOf(photos)) {}
 
 const PhotoSize* ControlPhotos::Find(const std::string& name) const {
-  if (const auto exact = by_name_.find(name); exact != by_name_.end()) return &photos_[exact->second];
-  const std::string file_name = FileNameOf(name);
-  if (by_file_name_.contains(file_name)) {
-    const size_t* const only = OnlyOne(by_file_name_, file_name);
-    return only == nullptr ? nullptr : &photos_[*only];
-  }
-  const size_t* const only = OnlyOne(by_stem_, file_name);
-  return only == nullptr ? nullptr : &photos_[*only];
+  const std::optional<size_t> found = finder_.Find(name);
+  return found ? &photos_[*found] : nullptr;
 }
 
 std::vector<Eigen::Vector2d> StoredPixels(const std::filesystem::path& file, const std::vector<RawMark>& marks,

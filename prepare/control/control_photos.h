@@ -2,12 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "prepare/control/raw_control.h"
+#include "prepare/models/photo_names.h"
 
 namespace skyquilt::prepare {
 
@@ -21,13 +21,12 @@ class ControlPhotos {
  public:
   explicit ControlPhotos(const std::vector<PhotoSize>& photos);
 
-  // By the name, else by the file name in any case where it is unique, else by the file name without its extension (Metashape's labels). Null: none.
+  // As PhotoNames::Find; null: none.
   const PhotoSize* Find(const std::string& name) const;
 
  private:
   std::vector<PhotoSize> photos_;
-  std::map<std::string, size_t> by_name_;
-  std::map<std::string, std::vector<size_t>> by_file_name_, by_stem_;
+  PhotoNames finder_;
 };
 
 // The marks' pixels in the stored photos, in the convention of ControlMark. `photos[i]` is that of marks[i]. Marks of which the file states the size

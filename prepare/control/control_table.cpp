@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/base/checked_json.h"
+#include "core/base/text.h"
 #include "prepare/control/raw_control.h"
 
 namespace skyquilt::prepare {
@@ -18,7 +19,7 @@ std::string Trimmed(const std::string& text) {
 }
 
 bool LooksLikeCrs(const std::string& line) {
-  const std::string text = LowerCase(line);
+  const std::string text = base::LowerCase(line);
   for (const char* start : {"epsg:", "+proj", "+init", "wgs84", "wgs 84", "esri:", "projcs[", "geogcs[", "compd_cs[", "projcrs[", "geogcrs[",
                             "compoundcrs[", "boundcrs["}) {
     if (text.starts_with(start)) return true;
@@ -64,7 +65,7 @@ std::vector<std::string> FieldsOf(const std::string& line, char separator) {
 std::string CrsOfComment(const std::string& comment) {
   constexpr std::string_view kKey = "coordinatesystem:";
   const std::string text = Trimmed(comment);
-  if (!LowerCase(text).starts_with(kKey)) return "";
+  if (!base::LowerCase(text).starts_with(kKey)) return "";
   const std::string crs = Trimmed(text.substr(kKey.size()));
   return LooksLikeCrs(crs) ? crs : "";
 }

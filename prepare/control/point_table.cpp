@@ -3,6 +3,7 @@
 #include <map>
 
 #include "core/base/errors.h"
+#include "core/base/text.h"
 #include "prepare/control/control_columns.h"
 #include "prepare/control/table_readers.h"
 
@@ -41,7 +42,7 @@ class RowReader {
     RawPoint point;
     point.line = row.line;
     point.label = Text(row, ControlColumn::kLabel, "label");
-    const std::string z = LowerCase(columns_.Field(row.fields, ControlColumn::kZ));
+    const std::string z = base::LowerCase(columns_.Field(row.fields, ControlColumn::kZ));
     const bool no_height = z.empty() || z == "nan";
     point.given = {Number(row, ControlColumn::kX, "x"), Number(row, ControlColumn::kY, "y"),
                    no_height ? std::numeric_limits<double>::quiet_NaN() : Number(row, ControlColumn::kZ, "height")};

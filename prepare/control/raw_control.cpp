@@ -1,7 +1,6 @@
 #include "prepare/control/raw_control.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -18,11 +17,6 @@ std::optional<double> ParseControlNumber(const std::string& text, bool decimal_c
   const auto result = std::from_chars(number.data(), number.data() + number.size(), value);
   if (result.ec != std::errc() || result.ptr != number.data() + number.size() || !(std::abs(value) <= 1e9)) return std::nullopt;
   return value;
-}
-
-std::string LowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 void FailControlLine(const std::filesystem::path& file, int line, const std::string& found, const std::string& fix) {

@@ -47,9 +47,6 @@ struct RawControl {
 // A number of a file: '.' or, with `decimal_comma`, one ',' before its decimals. Nothing when it is no number or larger than 1e9.
 std::optional<double> ParseControlNumber(const std::string& text, bool decimal_comma);
 
-// ASCII letters only.
-std::string LowerCase(std::string text);
-
 // Throws base::InputError that names the line.
 [[noreturn]] void FailControlLine(const std::filesystem::path& file, int line, const std::string& found, const std::string& fix);
 

@@ -113,10 +113,10 @@ class Adjuster {
     made_.SetAccuracy(std::max(sigma, kLeastTieSigma), made_.mark_sigma_px);
   }
 
-  // Marks' sigma: what was said of it counts as much as ten residuals of the marks.
+  // Estimates the marks' sigma; its value before counts as much as ten residuals of the marks.
   void MeasureMarks() {
     PlaceUnusedPoints(made_, points_, made_.MarkThreshold(kMarkThreshold));
-    constexpr double kSaid = 10.0, kLeast = 0.2, kMost = 6.0;
+    constexpr double kPriorWeight = 10.0, kLeast = 0.2, kMost = 6.0;
     std::vector<double> errors_px;
     double residuals = 0.0, unknowns = 0.0;
     for (size_t i = 0; i < points_.size(); ++i) {
@@ -141,7 +141,7 @@ class Adjuster {
     double sigma_px = said;
     if (!errors_px.empty()) {
       const double seen = base::UpperMedian(errors_px) / kRayleighMedian / std::sqrt((residuals - unknowns) / residuals);
-      sigma_px = std::sqrt((kSaid * said * said + (residuals - unknowns) * seen * seen) / (kSaid + residuals - unknowns));
+      sigma_px = std::sqrt((kPriorWeight * said * said + (residuals - unknowns) * seen * seen) / (kPriorWeight + residuals - unknowns));
     }
     made_.SetAccuracy(made_.tie_sigma, std::clamp(sigma_px, kLeast * said, kMost * said));
   }

@@ -1,24 +1,14 @@
 #include "prepare/models/input_model.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "core/base/errors.h"
 #include "core/image/image.h"
 
 namespace skyquilt::prepare {
-namespace {
 
 namespace fs = std::filesystem;
-
-std::string LowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-}  // namespace
 
 std::string FormatName(ModelFormat format) {
   switch (format) {
@@ -36,36 +26,25 @@ std::string FormatName(ModelFormat format) {
   return "";
 }
 
-ModelPhotos::ModelPhotos(fs::path root, const std::vector<std::string>& names) : root_(std::move(root)), names_(names.begin(), names.end()) {
-  for (const std::string& name : names_) {
-    by_file_name_[LowerCase(fs::path(name).filename().string())].push_back(name);
-    by_stem_[LowerCase(fs::path(name).stem().string())].push_back(name);
-  }
-}
+ModelPhotos::ModelPhotos(fs::path root, const std::vector<std::string>& names) : root_(std::move(root)), names_(names), finder_(names) {}
 
 std::string ModelPhotos::Resolve(const std::string& label, const fs::path& model_folder) const {
-  // Windows paths, which Metashape and Pix4D write.
-  std::string path = label;
-  std::replace(path.begin(), path.end(), '\\', '/');
-  const fs::path clean = fs::path(path).lexically_normal();
-  if (names_.contains(clean.generic_string())) return clean.generic_string();
+  const std::string clean = PhotoNames::Cleaned(label);
+  if (finder_.FindPath(clean)) return clean;
   std::error_code ignored;
   const fs::path below = fs::relative(model_folder / clean, root_, ignored);
   if (!ignored) {
     for (const char* extension : {"", ".png", ".jpg", ".jpeg", ".JPG", ".tif"}) {
       const std::string name = below.generic_string() + extension;
-      if (names_.contains(name)) return name;
+      if (finder_.FindPath(name)) return name;
     }
   }
-  const auto same_file = by_file_name_.find(LowerCase(clean.filename().string()));
-  if (same_file != by_file_name_.end()) return same_file->second.size() == 1 ? same_file->second.front() : clean.generic_string();
-  const auto same_stem = by_stem_.find(LowerCase(clean.filename().string()));
-  if (same_stem != by_stem_.end() && same_stem->second.size() == 1) return same_stem->second.front();
-  return clean.generic_string();
+  const std::optional<size_t> same = finder_.FindFileName(clean);
+  return same ? names_[*same] : clean;
 }
 
 std::optional<Eigen::Vector2i> ModelPhotos::SizeOf(const std::string& name) const {
-  if (!names_.contains(name)) return std::nullopt;
+  if (!finder_.FindPath(name)) return std::nullopt;
   try {
     Eigen::Vector2i size;
     image::ReadImageSize(root_ / name, &size.x(), &size.y());

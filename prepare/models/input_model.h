@@ -11,6 +11,7 @@
 
 #include "core/geo/geodetic.h"
 #include "core/survey/colmap_model.h"
+#include "prepare/models/photo_names.h"
 
 namespace skyquilt::prepare {
 
@@ -39,16 +40,16 @@ class ModelPhotos {
   // names: relative to root, '/' separated.
   ModelPhotos(std::filesystem::path root, const std::vector<std::string>& names);
 
-  // The name among the photos that a model means by `label`: the same path; a file below the model's folder; the only photo with this file name, or
-  // with this name less its extension (upper and lower case are the same). Otherwise the label itself, cleaned: a photo that is not there.
+  // The name among the photos that a model means by `label`: the same path; a file below the model's folder; PhotoNames::FindFileName. Otherwise the
+  // label itself, cleaned: a photo that is not there.
   std::string Resolve(const std::string& label, const std::filesystem::path& model_folder) const;
   // Width and height as stored; nothing when there is no such photo or it cannot be read.
   std::optional<Eigen::Vector2i> SizeOf(const std::string& name) const;
 
  private:
   std::filesystem::path root_;
-  std::set<std::string> names_;
-  std::map<std::string, std::vector<std::string>> by_file_name_, by_stem_;  // keys in lower case
+  std::vector<std::string> names_;
+  PhotoNames finder_;
 };
 
 // Collects images and cameras with ids from 1; equal cameras are one.

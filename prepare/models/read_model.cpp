@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -24,9 +23,7 @@ constexpr const char* kFormats =
     "Metashape cameras.xml or a Pix4D .opf";
 
 std::string ExtensionOf(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
+  return base::LowerCase(file.extension().string());
 }
 
 bool IsColmapFolder(const fs::path& folder) {

@@ -1,16 +1,20 @@
-"""`prepare --gcp` on a simulated hamlet: poses from photos in the fast way, then the same reconstruction placed by ten control points and judged by ten
+"""`prepare --gcp` on a simulated survey: poses from photos in the fast way, then the same reconstruction placed by ten control points and judged by ten
 check points, with tags that are wrong by tens of metres and with none, from the files of all programs and in US survey feet, with a wrong point, and
-with files that cannot be used. Skipped where COLMAP is missing."""
+with files that cannot be used. Skipped where COLMAP is missing.
+
+    control.py skyquilt [place]      another place than the hamlet"""
 import json
 import math
 import os
 import pathlib
 import shutil
 import subprocess
+import sys
 
 from harness import expect, main
 
 SKIPPED = 77
+PLACE = sys.argv[2] if len(sys.argv) > 2 else "hamlet"
 SIMULATE = ["--image-width", "800", "--seed", "3", "--set", "simulate.latitude_deg=40.7", "--set", "simulate.longitude_deg=-74.0", "--set",
             "simulate.height_m=20", "--set", "simulate.gps_noise_m=2", "--set", "simulate.tag_bias_m=15", "--set", "simulate.control_points=10",
             "--set", "simulate.check_points=10"]
@@ -76,8 +80,8 @@ def in_feet(text):
 
 
 def test(skyquilt, folder):
-    skyquilt.call("simulate", "hamlet", "-o", folder / "hamlet", *SIMULATE)
-    photos, control = folder / "hamlet" / "images", folder / "hamlet" / "control"
+    skyquilt.call("simulate", PLACE, "-o", folder / "survey", *SIMULATE)
+    photos, control = folder / "survey" / "images", folder / "survey" / "control"
     checks = ",".join((control / "check_points.txt").read_text().split())
     skyquilt.call("prepare", photos, "-o", folder / "poses")
     log = (folder / "poses" / "log.txt").read_text() if (folder / "poses" / "log.txt").exists() else ""

@@ -1,10 +1,9 @@
 #include "viewer/data/control_points.h"
 
-#include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "core/base/checked_json.h"
+#include "core/base/text.h"
 
 namespace skyquilt::viewer {
 namespace {
@@ -20,9 +19,7 @@ std::string WithoutFolders(const std::string& name) {
 }
 
 std::string LowerShortName(const std::string& name) {
-  std::string lower = WithoutFolders(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
+  return base::LowerCase(WithoutFolders(name));
 }
 
 void CheckMark(const Json& mark, const MarkablePhotos& photos, const std::set<std::string>& allowed, const std::string& where) {

@@ -79,6 +79,8 @@ TEST(Exif, EveryTagSurvivesTheRoundTrip) {
   tags.exposure = {1.0 / 546.0, 2.8, 100.0};
   tags.focal_length_mm = 3.61;
   tags.focal_length_35mm = 20.0;
+  tags.original_width = 4000;
+  tags.original_height = 2250;
   tags.capture_time_s = 1466699519.9996;  // rounds up into the next second
   tags.make = "DJI";
   tags.model = "FC300S";
@@ -94,6 +96,8 @@ TEST(Exif, EveryTagSurvivesTheRoundTrip) {
   EXPECT_EQ(*read.exposure.iso, 100.0);
   EXPECT_NEAR(*read.focal_length_mm, 3.61, 1e-4);
   EXPECT_EQ(*read.focal_length_35mm, 20.0);
+  EXPECT_EQ(read.original_width, 4000);
+  EXPECT_EQ(read.original_height, 2250);
   EXPECT_NEAR(*read.capture_time_s, 1466699520.0, 1e-3);
   EXPECT_EQ(read.make, "DJI");
   EXPECT_EQ(read.model, "FC300S");
@@ -302,6 +306,19 @@ TEST(Exif, RealDjiTagsAreRead) {
   EXPECT_EQ(*tags.exposure.iso, 100.0);
   EXPECT_EQ(*tags.capture_time_s, 1466699519.0);  // 2016-06-23 16:31:59
   EXPECT_EQ(tags.model, "FC300S");
+}
+
+TEST(Exif, SizesThatCannotBeAreLeftOut) {
+  for (const char* width : {"0", "4294967295"}) {
+    const PhotoTags tags = ReadForged([&](Exiv2::ExifData& exif, Exiv2::XmpData&) {
+      Exiv2::ULongValue value;
+      value.read(width);
+      exif["Exif.Photo.PixelXDimension"] = value;
+      exif["Exif.Photo.PixelYDimension"] = uint32_t{2250};
+    });
+    EXPECT_EQ(tags.original_width, 0) << width;
+    EXPECT_EQ(tags.original_height, 0) << width;
+  }
 }
 
 }  // namespace

@@ -111,8 +111,9 @@ Json GeoFitJson(const Metrics& metrics) {
   json["georeferenced"] = metrics.georeferenced;
   for (const auto& [key, fit_key] : kFitKeys) json[key] = fit.at(fit_key);
   if (!metrics.georeferenced || metrics.geo_fit.n_inliers == 0) {
-    for (const char* key : {"rmse_m", "rmse_horizontal_m", "rmse_vertical_m", "scale_m_per_model_unit"}) json[key] = nullptr;
+    for (const char* key : {"rmse_m", "rmse_horizontal_m", "rmse_vertical_m"}) json[key] = nullptr;
   }
+  if (!metrics.georeferenced) json["scale_m_per_model_unit"] = nullptr;
   json["problems"] = metrics.problem_codes;
   return json;
 }

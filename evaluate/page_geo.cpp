@@ -25,9 +25,16 @@ std::string WithSigma(double value, double sigma, int decimals, const char* unit
 std::string FittedLead(const survey::Survey& survey) {
   const survey::GeoFit& fit = survey.fit;
   std::string html = "<p class=\"lead\">";
-  html += FrameIsExact(fit) ? "The frame is known exactly from the simulation: nothing was fitted, and the GPS tags are only compared with it."
-                            : "The model was placed on Earth by one similarity transform (scale, rotation, shift), from the GPS tags and from "
-                              "evidence for the direction of gravity.";
+  if (survey.control.placed) {
+    html += "The model was placed on Earth by its <a href=\"#control\">control points</a>; the GPS tags are only compared with it.";
+  } else if (FrameIsExact(fit)) {
+    html += "The frame is known exactly from the simulation: nothing was fitted, and the GPS tags are only compared with it.";
+  } else {
+    html +=
+        "The model was placed on Earth by one similarity transform (scale, rotation, shift), from the GPS tags and from evidence for the direction "
+        "of gravity.";
+    if (fit.adjusted_to_tags) html += " Its shape is that of a bundle adjustment with the tags.";
+  }
   if (fit.n_inliers > 0) {
     html +=
         fmt::format(" RMSE against the tags {} over {} of {} tagged photos: {} horizontal, {} vertical.", page::FormatFixed(fit.rmse_m, 2, "m"),

@@ -5,6 +5,7 @@
 
 #include "core/page/html.h"
 #include "core/page/page_frame.h"
+#include "evaluate/control_summary.h"
 #include "evaluate/page_geo.h"
 #include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
@@ -26,10 +27,24 @@ std::string PlaceAccuracyNote(const survey::GeoFit& fit) {
   return note;
 }
 
+// Points that the place was not fitted to say more about it than tags.
+std::string ControlFigure(const ControlErrors& judged, bool check_points) {
+  std::string note = "RMSE horizontally";
+  if (std::isfinite(judged.rmse_vertical_m)) note += ", " + page::FormatFixed(judged.rmse_vertical_m, 3, "m") + " vertically";
+  note += fmt::format(" at {} {}", judged.n,
+                      !check_points   ? "control points, each left out in turn"
+                      : judged.n == 1 ? "check point"
+                                      : "check points");
+  return page::KeyFigure(check_points ? "Error at check points" : "Error at points left out", page::FormatFixed(judged.rmse_horizontal_m, 3, "m"),
+                         note);
+}
+
 std::string PositionFigure(const Metrics& metrics) {
   const survey::GeoFit& fit = metrics.geo_fit;
   const std::string label = "Position error against GPS";
   if (!metrics.georeferenced) return page::KeyFigure(label, "none", "no geo-reference: local frame, unknown scale");
+  const ControlSummary control = SummariseControl(metrics.control);
+  if (const ControlErrors* const judged = control.Judged()) return ControlFigure(*judged, judged == &control.check);
   const double rmse_m = fit.n_inliers > 0 ? fit.rmse_m : kNotMeasured;
   return page::KeyFigure(label, page::FormatFixed(rmse_m, 2, "m"),
                          fmt::format("RMSE, {} of {} GPS tags used{}", fit.n_inliers, fit.n_matches, PlaceAccuracyNote(fit)));

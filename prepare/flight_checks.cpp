@@ -102,8 +102,8 @@ survey::Problem DomingProblem(const survey::FlightChecks& checks) {
   return {"doming",
           fmt::format("The reconstruction is bent against the GPS heights: its middle is {:.1f} m too {} compared with its edge (sigma {:.1f} m)",
                       std::abs(checks.dome_m), checks.dome_m > 0.0 ? "high" : "low", checks.dome_sigma_m),
-          "Unless the GPS heights drifted, do not trust heights to better than this. Reconstruct with GPS positions or control points in the bundle "
-          "adjustment, or with a lens calibrated beforehand and held fixed; next time add photos that look 10 degrees or more off nadir, or lines "
+          "Unless the GPS heights drifted, do not trust heights to better than this. The tags did not straighten it; control points may (--gcp), "
+          "or a lens calibrated beforehand and held fixed; next time add photos that look 10 degrees or more off nadir, or lines "
           "across at another flying height"};
 }
 

@@ -30,6 +30,7 @@
 #include "prepare/poses/colmap_run.h"
 #include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
+#include "prepare/shape_by_tags.h"
 #include "prepare/sparse_cloud.h"
 #include "prepare/survey_points.h"
 
@@ -300,6 +301,11 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
       folders.exact_origin ? KeepExactFrame(stations, *folders.exact_origin, options) : PlaceOnEarth(stations, points, options);
   const bool has_observations = !folders.exact_origin && input_model.format == ModelFormat::kColmap;
   const std::vector<size_t> image_of_station = ImagesOf(registered, model);
+  // Control points say more of the shape than tags; check points are compared with the final one.
+  const bool any_control = std::any_of(control_points.points.begin(), control_points.points.end(), [](const ControlPoint& p) { return !p.check; });
+  if (has_observations && !any_control) {
+    ShapeByTags({options, image_of_station, folders.model}, input_model.sfm, stations, georeference, threads);
+  }
   survey::ControlFit control =
       PlaceByControl({options, control_points, image_of_station, folders.model, has_observations, folders.exact_origin.has_value()}, input_model.sfm,
                      stations, georeference, threads);

@@ -55,6 +55,23 @@ const char* HeightsText(geo::HeightReference reference) {
   return "height as tagged; what it is above is not known";
 }
 
+void LogTags(const survey::Survey& survey) {
+  const survey::GeoFit& fit = survey.fit;
+  if (fit.n_inliers > 0) {
+    const std::string vertical = std::isfinite(fit.rmse_vertical_m) ? CsvNumber(fit.rmse_vertical_m, 2) + " m vertical" : "heights not used";
+    spdlog::info("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {}), {:.6g} m per model unit", fit.n_inliers, fit.n_matches,
+                 fit.rmse_m, fit.rmse_horizontal_m, vertical, fit.scale);
+    return;
+  }
+  std::vector<double> distances_m;
+  for (const survey::Photo& photo : survey.photos) {
+    if (std::isfinite(photo.gps_residual_m)) distances_m.push_back(photo.gps_residual_m);
+  }
+  if (distances_m.empty()) return;
+  spdlog::info("GPS: none of {} tags agrees with the place found; they are {:.1f} m from their photos (median)", distances_m.size(),
+               base::Median(distances_m));
+}
+
 }  // namespace
 
 void LogSummary(const survey::Survey& survey) {
@@ -73,9 +90,7 @@ void LogSummary(const survey::Survey& survey) {
   const survey::GeoFit& fit = survey.fit;
   spdlog::info("origin: {:.7f} deg latitude, {:.7f} deg longitude, {:.2f} m ({})", survey.origin.latitude_deg, survey.origin.longitude_deg,
                survey.origin.height_m, HeightsText(survey.height_reference));
-  const std::string vertical = std::isfinite(fit.rmse_vertical_m) ? CsvNumber(fit.rmse_vertical_m, 2) + " m vertical" : "heights not used";
-  spdlog::info("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {}), {:.6g} m per model unit", fit.n_inliers, fit.n_matches, fit.rmse_m,
-               fit.rmse_horizontal_m, vertical, fit.scale);
+  LogTags(survey);
   if (std::isfinite(fit.tag_lag_sigma_s)) spdlog::info("GPS tags lag {:.2f} s behind the photos (+- {:.2f} s)", fit.tag_lag_s, fit.tag_lag_sigma_s);
   LogFlights(fit, survey.photos);
   LogGravity(fit);

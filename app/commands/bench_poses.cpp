@@ -10,6 +10,7 @@
 #include "bench/poses/poses_bench.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/log.h"
 
 namespace skyquilt::app {
 namespace {
@@ -71,11 +72,19 @@ void AddPosesBench(CLI::App& bench, CommandState& state) {
       options.threads = BenchThreads(state);
       options.keep = flags->keep;
       base::RequireWritableFolder(flags->out);
-      const bench::PosesResult result = bench::RunPosesBench(options);
-      const bench::BenchPage page = bench::PosesPage(result, state.command_line);
-      const std::string json = bench::PosesJson(result, state.command_line);
-      std::cout << (flags->json ? json : bench::BenchText(page));
-      bench::WriteBench(flags->out, page, json);
+      size_t n_rows = 0;
+      // After each row: a single one may take COLMAP half an hour.
+      options.on_row = [&](const bench::PosesResult& result) {
+        n_rows = result.rows.size();
+        bench::WriteBench(flags->out, bench::PosesPage(result, state.command_line), bench::PosesJson(result, state.command_line));
+      };
+      try {
+        const bench::PosesResult result = bench::RunPosesBench(options);
+        std::cout << (flags->json ? bench::PosesJson(result, state.command_line) : bench::BenchText(bench::PosesPage(result, state.command_line)));
+      } catch (const base::Interrupted&) {
+        throw base::Interrupted(
+            fmt::format("interrupted; {} finished row{} in {}; the same command begins anew", n_rows, n_rows == 1 ? " is" : "s are", flags->out));
+      }
     };
   });
 }

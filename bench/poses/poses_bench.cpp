@@ -145,6 +145,8 @@ PosesResult RunPosesBench(const PosesBenchOptions& options) {
         PosesRow row = FindAndJudge(folder, truth, way, options, threads);
         row.set = set;
         result.rows.push_back(std::move(row));
+        result.seconds = SecondsSince(start);
+        options.on_row(result);
       }
       if (!options.keep) fs::remove_all(folder);
     }

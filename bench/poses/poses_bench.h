@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,18 +20,6 @@ inline constexpr const char* kFastWay = "fast";
 inline constexpr const char* kColmapWay = "colmap";
 // Time per photo of the largest survey relative to the smallest, at most.
 constexpr double kMaxSlope = 1.3;
-
-struct PosesBenchOptions {
-  std::filesystem::path folder;        // surveys, photo sets and COLMAP's files are in its folder "poses_work"
-  std::vector<PhotoSet> sets;          // empty: all
-  std::vector<int> photos;             // simulated photos per set, >= 3; empty: as many as the place has. solar_farm has at most its 40
-  std::vector<std::string> ways;       // kFastWay, kColmapWay; empty: both
-  simulate::SimulateOptions simulate;  // of the place of all sets but solar_farm
-  std::optional<std::string> place;    // its name; nothing: simulate.place, or a city when --photos asks for more than the town has
-  prepare::PoseOptions poses;          // of both ways, but for `fast`
-  int threads = 0;                     // <= 0: every core
-  bool keep = false;                   // the folder "poses_work"
-};
 
 struct PosesRow {
   PhotoSet set = PhotoSet::kPlain;
@@ -69,6 +58,20 @@ struct PosesResult {
 
   std::vector<WayComparison> Comparisons() const;  // point into `rows`
   std::vector<PosesSlope> Slopes() const;          // of sets measured in several sizes
+};
+
+struct PosesBenchOptions {
+  std::filesystem::path folder;        // surveys, photo sets and COLMAP's files are in its folder "poses_work"
+  std::vector<PhotoSet> sets;          // empty: all
+  std::vector<int> photos;             // simulated photos per set, >= 3; empty: as many as the place has. solar_farm has at most its 40
+  std::vector<std::string> ways;       // kFastWay, kColmapWay; empty: both
+  simulate::SimulateOptions simulate;  // of the place of all sets but solar_farm
+  std::optional<std::string> place;    // its name; nothing: simulate.place, or a city when --photos asks for more than the town has
+  prepare::PoseOptions poses;          // of both ways, but for `fast`
+  int threads = 0;                     // <= 0: every core
+  bool keep = false;                   // the folder "poses_work"
+  // Called after every row with the rows so far.
+  std::function<void(const PosesResult&)> on_row = [](const PosesResult&) {};
 };
 
 // What was used to find a model that RunColmap put into `model`, for a job in `job`; see PosesRow::used.

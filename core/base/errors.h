@@ -46,6 +46,7 @@ class FailedCheck : public std::runtime_error {
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted; run the same command again to continue") {}
+  using std::runtime_error::runtime_error;  // where the same command begins anew
 };
 
 [[noreturn]] void ThrowCheckFailure(const char* condition, const char* file, int line, const std::string& detail);

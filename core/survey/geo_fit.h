@@ -37,6 +37,7 @@ struct GeoFit {
   geo::PlaceAccuracy accuracy = {};
   std::vector<GravityEvidence> gravity = {};
   double tags_alone_tilt_deg = std::numeric_limits<double>::quiet_NaN();  // tilt of a fit to the tags alone against the final frame
+  bool adjusted_to_tags = false;                                          // the poses are those of a bundle adjustment with the tags
 };
 
 // Blur and bending that a flight may cause and that the geo-reference cannot repair. NaN: unknown.

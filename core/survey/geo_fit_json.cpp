@@ -53,7 +53,8 @@ ordered_json ToJson(const GeoFit& fit) {
           {"flight_vertical_drift_m", fit.flight_vertical_drift_m},
           {"accuracy", ToJson(fit.accuracy)},
           {"gravity", std::move(gravity)},
-          {"tags_alone_tilt_deg", NumberOrNull(fit.tags_alone_tilt_deg)}};
+          {"tags_alone_tilt_deg", NumberOrNull(fit.tags_alone_tilt_deg)},
+          {"adjusted_to_tags", fit.adjusted_to_tags}};
 }
 
 GeoFit GeoFitFromJson(const json& value) {
@@ -78,6 +79,7 @@ GeoFit GeoFitFromJson(const json& value) {
                            .weight = entry.at("weight").get<double>()});
   }
   fit.tags_alone_tilt_deg = NanIfNull(value.at("tags_alone_tilt_deg"));
+  fit.adjusted_to_tags = value.value("adjusted_to_tags", false);  // not in surveys of earlier versions
   return fit;
 }
 

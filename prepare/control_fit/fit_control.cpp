@@ -27,7 +27,6 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Marks that agree before there is an adjustment, pixels of a photo of 1600 pixels width: right marks of a model that bends a little, but not another
 // object.
 constexpr double kRoughThreshold = 6.0;
-constexpr size_t kLeastTies = 50;
 
 // A height for the conversion of points without: a plausible one moves the others by less than a millimetre.
 double UsualHeight(const ControlPoints& control) {

@@ -20,6 +20,9 @@
 
 namespace skyquilt::prepare {
 
+// Points of the model with observations in two photos or more; with fewer there is no adjustment.
+constexpr size_t kLeastTies = 50;
+
 // Where the survey is without control points, by GPS tags or by its model.
 struct PlaceWithoutControl {
   geo::Geodetic origin;

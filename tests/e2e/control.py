@@ -1,6 +1,6 @@
 """`prepare --gcp` on a simulated survey: poses from photos in the fast way, then the same reconstruction placed by ten control points and judged by ten
 check points, with tags that are wrong by tens of metres and with none, from the files of all programs and in US survey feet, with a wrong point, and
-with files that cannot be used. Skipped where COLMAP is missing.
+with files that cannot be used. Then a scene is trained, and the targets are searched in its maps. Skipped where COLMAP is missing.
 
     control.py skyquilt [place]      another place than the hamlet"""
 import json
@@ -11,10 +11,13 @@ import shutil
 import subprocess
 import sys
 
+from foreign_readers import Raster, transformed
 from harness import expect, main
+from targets import find_target
 
 SKIPPED = 77
 PLACE = sys.argv[2] if len(sys.argv) > 2 else "hamlet"
+SEEN = 0.15  # contrast of a target's fields in a map; beside targets it is less
 SIMULATE = ["--image-width", "800", "--seed", "3", "--set", "simulate.latitude_deg=40.7", "--set", "simulate.longitude_deg=-74.0", "--set",
             "simulate.height_m=20", "--set", "simulate.gps_noise_m=2", "--set", "simulate.tag_bias_m=15", "--set", "simulate.control_points=10",
             "--set", "simulate.check_points=10"]
@@ -77,6 +80,33 @@ def in_feet(text):
     for row, xy in zip(rows[1:], moved):
         lines.append(" ".join([*xy.split()[:2], f"{float(row[2]) / foot_m:.5f}", *row[3:]]))
     return "\n".join(lines) + "\n"
+
+
+def expect_in_maps(skyquilt, project, truth):
+    """Orthophoto and surface model have the targets within 1 GSD of their coordinates, root mean square over the points."""
+    skyquilt.call("partition", project, "--blocks", "1x1")
+    skyquilt.call("train", project, "--set", "context.steps=300", "--set", "train.steps=900")
+    skyquilt.call("merge", project)
+    skyquilt.call("render", project, "--ortho", "--dsm", "--resolution", "0.1")
+    picture, surface = Raster(project / "products" / "orthophoto.tif", band=2), Raster(project / "products" / "dsm.tif")
+    expect(surface.crs() == truth["crs"], f"dsm.tif is in '{surface.crs()}'")
+    gsd = sum(point["gsd_m"] for point in points_of(project)) / len(points_of(project))
+    true = transformed([(p["longitude_deg"], p["latitude_deg"], 0.0) for p in truth["points"]], "EPSG:4326", truth["crs"])
+    off, heights, unseen = [], [], []
+    for point, (easting, northing, *_) in zip(truth["points"], true, strict=True):
+        found, east, north = find_target(picture, easting, northing, point["side_m"], 3.0 * gsd)
+        height = surface.at(easting, northing) - point["height_m"]
+        if found < SEEN or math.isnan(height):
+            unseen.append(point["label"])
+            continue
+        off.append(math.hypot(east, north))
+        heights.append(height)
+    plan, up = (math.sqrt(sum(value ** 2 for value in values) / max(1, len(values))) / gsd for values in (off, heights))
+    print(f"maps: {len(off)} targets off by {plan:.2f} GSD in the orthophoto, {up:.2f} GSD in the surface model; not seen: {unseen}")
+    expect(len(off) >= 0.8 * len(true), f"targets that the maps do not show: {unseen}")
+    blank = sorted(find_target(picture, easting + 5.0, northing, truth["points"][0]["side_m"], 3.0 * gsd)[0] for easting, northing, *_ in true)
+    expect(blank[len(blank) // 2] < SEEN, f"targets are seen beside their places: {blank}")
+    expect(plan <= 1.0 and up <= 1.0, f"targets are off by {plan:.2f} GSD in the orthophoto, {up:.2f} GSD in the surface model")
 
 
 def test(skyquilt, folder):
@@ -179,6 +209,8 @@ def test(skyquilt, folder):
     text = prepare("fault_empty", "--gcp", empty, status=3)
     expect("empty.txt" in text, f"an empty file is not named:\n{text}")
     prepare("fault_absent", "--gcp", folder / "absent.txt", status=3)
+
+    expect_in_maps(skyquilt, folder / "tags", truth)
 
 
 if __name__ == "__main__":

@@ -81,6 +81,18 @@ TEST_F(ControlPage, IsThereOnlyWithPoints) {
   EXPECT_EQ(page.find("href=\"#control\""), std::string::npos);
 }
 
+TEST_F(ControlPage, ChecksComeBeforeTags) {
+  sample_.metrics.control = sample_.survey.control;
+  const std::string figures = SummarySection(sample_.input);
+  EXPECT_NE(figures.find("Error at check points"), std::string::npos);
+  EXPECT_NE(figures.find("0.050\xE2\x80\xAFm vertically at 1 check point<"), std::string::npos) << figures;
+  EXPECT_EQ(figures.find("against GPS"), std::string::npos);
+  EXPECT_NE(GeoSection(sample_.input).find("by its <a href=\"#control\">control points</a>"), std::string::npos);
+  sample_.metrics.control = sample_.survey.control = {};
+  EXPECT_NE(SummarySection(sample_.input).find("against GPS"), std::string::npos);
+  EXPECT_EQ(GeoSection(sample_.input).find("#control"), std::string::npos);
+}
+
 TEST_F(ControlPage, MetricsHaveThePoints) {
   Metrics metrics = sample_.metrics;
   EXPECT_FALSE(nlohmann::json::parse(MetricsJson(metrics)).contains("control"));

@@ -254,6 +254,13 @@ TEST_F(GeoPage, AnExactFrameIsOnlyComparedWithItsTags) {
   EXPECT_NE(SummarySection(input).find("78 of 80 GPS tags used; the frame is known exactly<"), std::string::npos);
 }
 
+TEST_F(GeoPage, SaysThatTheShapeIsThatOfTheTags) {
+  survey::Survey survey = sample_->survey;
+  EXPECT_EQ(SectionOf(survey).find("bundle adjustment"), std::string::npos);
+  survey.fit.adjusted_to_tags = true;
+  EXPECT_NE(SectionOf(survey).find("a bundle adjustment with the tags"), std::string::npos);
+}
+
 TEST_F(GeoPage, AnExactFrameWithoutTagsHasNothingToShow) {
   survey::Survey exact = ExactSurvey();
   exact.fit.n_matches = exact.fit.n_inliers = 0;

@@ -61,7 +61,8 @@ Survey SmallSurvey() {
                 .flight_vertical_drift_m = {1.0, -100.0},
                 .accuracy = {.scale_percent = 0.2, .tilt_deg = 0.3, .yaw_deg = 0.1, .horizontal_m = 1.5},
                 .gravity = {{.kind = "gimbal", .n = 3, .lean_east_deg = 0.1, .lean_north_deg = -0.2, .sigma_deg = 0.25, .weight = 0.9}},
-                .tags_alone_tilt_deg = 19.0};
+                .tags_alone_tilt_deg = 19.0,
+                .adjusted_to_tags = true};
   survey.checks = {.speed_mps = 8.0, .speed_source = "speed tags", .camera_name = "DJI FC300S", .smear_px = 2.0, .k1 = -0.02};
   survey.problems = {{.code = "tags_disagree", .finding = "half of the tags disagree", .advice = "look", .about_place = true}};
   survey.truth = Truth{"/t/depth", "/t/buildings.json", "/t/exposure.json", "/t/normals", "/t/classes", "/t/surface.ply"};

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSeedVersion = 2;  // a new number makes finished models anew
+constexpr int kSeedVersion = 3;  // a new number makes finished models anew
 
 fs::path SeededFolder(const ColmapJob& job) {
   return job.folder / "seeded";
@@ -38,6 +38,27 @@ SeedPhoto SeedPhotoOf(const survey::DatabaseImage& image, const survey::PhotoTag
   photo.features.reserve(keypoints.size());
   for (const survey::DatabaseKeypoint& keypoint : keypoints) photo.features.emplace_back(keypoint.x, keypoint.y);
   return photo;
+}
+
+// Photos that look straight down fit other focal lengths nearly as well, and features weigh so much more than tags that a little misfit of the lens
+// drives it away. Then poses with the focal length held near the tagged one are better, if they agree with the matches too.
+std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput input, base::ThreadPool& threads, std::string* reason) {
+  constexpr double kHeldSigma = 0.01;
+  std::optional<SeededModel> seeded = SeedPoses(input, threads, reason);
+  if (!seeded) return std::nullopt;
+  std::map<uint32_t, camera::Camera> tagged;
+  for (auto& [id, lens] : input.cameras) {
+    tagged.emplace(id, lens.camera);
+    lens.focal_sigma = kHeldSigma;
+  }
+  const std::optional<FarFocal> far = FindFarFocal(seeded->model, tagged);
+  if (!far) return seeded;
+  spdlog::info("poses by tags and matches need {}; once more with focal lengths held near the tags'", far->Text());
+  std::string held_reason;
+  std::optional<SeededModel> held = SeedPoses(input, threads, &held_reason);
+  if (held && !FindFarFocal(held->model, tagged)) return held;
+  // The caller refuses it and says why.
+  return seeded;
 }
 
 }  // namespace
@@ -98,7 +119,7 @@ void SeedModel(const ColmapJob& job, const std::vector<PhotoFile>& photos, base:
   std::string reason;
   const std::optional<SeedInput> input = ReadSeedInput(job.Database(), photos, &reason);
   std::optional<SeededModel> seeded;
-  if (input) seeded = SeedPoses(*input, threads, &reason);
+  if (input) seeded = SeedWithPlausibleFocal(*input, threads, &reason);
   if (!seeded) {
     spdlog::info("poses are left to COLMAP's mapper ({:.1f} s): {}", seconds(), reason);
     return;

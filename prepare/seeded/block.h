@@ -41,9 +41,9 @@ struct BlockPhoto {
 struct BlockLens {
   Lens numbers{};
   Lens initial{};
-  camera::Camera camera;  // to begin with
-  bool focal_is_known = true;
-  double unit_px = 1.0;  // errors are counted in pixels of a photo of 1600 pixels width, so that thresholds suit every camera
+  camera::Camera camera;      // to begin with
+  double focal_sigma = 0.05;  // of the initial focal length, relative, one standard deviation
+  double unit_px = 1.0;       // errors are counted in pixels of a photo of 1600 pixels width, so that thresholds suit every camera
 };
 
 struct Block {

@@ -31,7 +31,7 @@ class Watch : public ceres::IterationCallback {
 // Photos that look straight down at level ground hardly tell the focal length from the height: there the tagged one, which is
 // right to a few percent, must keep the height from being wrong by a quarter. Other photos outweigh it by far.
 Lens LensSigma(const BlockLens& lens) {
-  const double focal = lens.initial[0] * (lens.focal_is_known ? 0.05 : 0.5);
+  const double focal = lens.initial[0] * lens.focal_sigma;
   const double centre = 0.02 * lens.camera.width;
   return {focal, 0.01, centre, centre, 0.3, 0.3, 0.01, 0.01};
 }

@@ -132,7 +132,8 @@ bool MakeSeedSurvey(const SeedInput& input, SeedSurvey* survey, std::string* rea
       return false;
     }
     lens_of.emplace(id, static_cast<int>(survey->lenses.size()));
-    survey->lenses.push_back({*numbers, *numbers, seed.camera, seed.focal_is_known, std::max(seed.camera.width, seed.camera.height) / kUnitWidth_px});
+    survey->lenses.push_back({*numbers, *numbers, seed.camera, seed.focal_is_known ? seed.focal_sigma : kGuessedFocalSigma,
+                              std::max(seed.camera.width, seed.camera.height) / kUnitWidth_px});
   }
   std::map<uint32_t, uint32_t> index;
   survey->photos.resize(n);

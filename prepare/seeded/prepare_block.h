@@ -23,7 +23,8 @@ struct SeedSurvey {
 
 constexpr size_t kLeastPairMatches = 15;
 constexpr size_t kMaxRays = 60;
-constexpr double kMinTagged = 0.9;  // share of photos with a GPS tag
+constexpr double kMinTagged = 0.9;          // share of photos with a GPS tag
+constexpr double kGuessedFocalSigma = 0.5;  // relative
 
 // False with a reason when the survey cannot be seeded: too few GPS tags, a camera model that the adjustment does not know. Throws std::logic_error
 // for unknown ids and features.

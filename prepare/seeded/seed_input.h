@@ -28,6 +28,7 @@ struct SeedPhoto {
 struct SeedLens {
   camera::Camera camera;       // to begin with
   bool focal_is_known = true;  // from the photo's tags; false: a guess from the width of the photo
+  double focal_sigma = 0.05;   // of a known focal length, relative, one standard deviation
 };
 
 // Features `first` of image a and `second` of image b that agree with one geometry of the two views.

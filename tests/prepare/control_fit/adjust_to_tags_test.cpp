@@ -75,7 +75,7 @@ TagJob JobOf(MadeControl& made) {
           .enu_from_model = {}};
 }
 
-const ControlPlan kPlan = {.survey = {.strips = 6, .per_strip = 9, .gimbal_tags = false}, .control = 0, .check = 0};
+const ControlPlan kPlan = {.survey = {.strips = 7, .per_strip = 9, .gimbal_tags = false}, .control = 0, .check = 0};
 
 TEST(AdjustToTags, StraightensABentReconstruction) {
   for (const double sigma_m : {0.02, 0.3}) {

@@ -98,6 +98,19 @@ TEST_F(SeedPosesTest, TwoCameras) {
   ExpectRight(made, SeedPoses(made.input, threads_, &reason_), 30);
 }
 
+// The initial focal length is 6 % too long.
+TEST_F(SeedPosesTest, AFocalLengthIsHeldAsFirmlyAsItsAccuracySays) {
+  MadeSurvey made = MakeSurvey({.seed = 5});
+  const double initial_px = made.input.cameras.begin()->second.camera.FocalX(), true_px = made.cameras.front().FocalX();
+  const auto free = SeedPoses(made.input, threads_, &reason_);
+  ASSERT_TRUE(free) << reason_;
+  EXPECT_LT(std::abs(free->model.cameras.begin()->second.FocalX() - true_px), 0.5 * std::abs(initial_px - true_px));
+  made.input.cameras.begin()->second.focal_sigma = 1e-5;
+  const auto held = SeedPoses(made.input, threads_, &reason_);
+  ASSERT_TRUE(held) << reason_;
+  EXPECT_NEAR(held->model.cameras.begin()->second.FocalX(), initial_px, 1e-3 * initial_px);
+}
+
 // A camera mounted across, or a compass that is off: the same error of all.
 TEST_F(SeedPosesTest, YawOffsetCommonToAll) {
   MadeSurvey made = MakeSurvey({.seed = 6});

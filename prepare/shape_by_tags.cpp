@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/geo/enu_frame.h"
 #include "prepare/control_fit/adjust_to_tags.h"
@@ -69,7 +70,14 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
                  base::ThreadPool& threads) {
   if (!TagsTellTheShape(stations, georeference)) return;
   survey::ColmapModel adjusted = model;
-  const survey::ColmapObservations observations = survey::ReadColmapObservations(input.model_folder);
+  survey::ColmapObservations observations;
+  try {
+    observations = survey::ReadColmapObservations(input.model_folder);
+  } catch (const base::InputError& error) {
+    // Nothing else needs them.
+    spdlog::info("the poses are not adjusted to the GPS tags: {}", error.what());
+    return;
+  }
   const AdjustedToTags result = AdjustToTags({.model = adjusted,
                                               .observations = observations,
                                               .stations = Corrected(stations, georeference),

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/order_statistics.h"
+#include "core/base/progress.h"
 #include "core/geo/enu_frame.h"
 #include "prepare/control/control_points.h"
 #include "prepare/control_fit/control_adjustment.h"
@@ -16,6 +17,8 @@ namespace {
 
 // The first one straightens the bend that the scatter of the tags contains, the next ones count them as what they are.
 constexpr int kRounds = 3;
+// Photos that move by at most this many standard deviations of their tags have arrived.
+constexpr double kArrived = 1.0;
 // Features that fit that much worse contradict the tags.
 constexpr double kMostError = 1.1;
 
@@ -31,6 +34,15 @@ double MedianError(const ControlBlock& made) {
     }
   }
   return errors.empty() ? 0.0 : base::UpperMedian(errors);
+}
+
+// The farthest that a photo with a tag has moved, in standard deviations of its tag.
+double Moved(const std::vector<BlockPhoto>& before, const std::vector<BlockPhoto>& after) {
+  double farthest = 0.0;
+  for (size_t i = 0; i < after.size(); ++i) {
+    if (after[i].gps) farthest = std::max(farthest, (after[i].centre - before[i].centre).cwiseQuotient(after[i].gps_sigma).norm());
+  }
+  return farthest;
 }
 
 }  // namespace
@@ -56,6 +68,7 @@ AdjustedToTags AdjustToTags(const TagJob& job, base::ThreadPool& threads) {
   result.error_before = MedianError(made);
   const geo::EnuFrame frame(job.origin);
   std::vector<ControlState> no_states;
+  base::Progress progress("adjust to tags", kRounds * kUsualIterations, "iterations");
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Vector3d shift;
     if (!UseTagScatter(job.stations, job.image_of_station, frame, made.block, &shift)) {
@@ -66,11 +79,14 @@ AdjustedToTags AdjustToTags(const TagJob& job, base::ThreadPool& threads) {
     for (BlockPhoto& photo : made.block.photos) {
       if (photo.gps) *photo.gps += shift;
     }
-    if (!AdjustWithControl(made, no_states, nullptr, threads).ok) {
+    const std::vector<BlockPhoto> photos_then = made.block.photos;
+    if (!AdjustWithControl(made, no_states, nullptr, threads, [&] { progress.Advance(); }).ok) {
       result.reason = "the adjustment found no solution";
       return result;
     }
+    if (Moved(photos_then, made.block.photos) < kArrived) break;
   }
+  progress.Finish();
   result.error_after = MedianError(made);
   if (result.error_after > kMostError * result.error_before) {
     result.reason = "the photos contradict them";

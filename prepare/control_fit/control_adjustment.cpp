@@ -30,8 +30,9 @@ constexpr int kMaxRejected = 4;   // each needs an adjustment
 
 class Adjuster {
  public:
-  Adjuster(ControlBlock& made, std::vector<ControlState>& points, Vector3d* shift, base::ThreadPool& threads)
-      : made_(made), block_(made.block), points_(points), shift_(shift), threads_(threads), all_ties_(made.n_ties) {
+  Adjuster(ControlBlock& made, std::vector<ControlState>& points, Vector3d* shift, base::ThreadPool& threads,
+           const std::function<void()>& on_iteration)
+      : made_(made), block_(made.block), points_(points), shift_(shift), threads_(threads), on_iteration_(on_iteration), all_ties_(made.n_ties) {
     std::iota(all_ties_.begin(), all_ties_.end(), uint32_t{0});
   }
 
@@ -83,7 +84,7 @@ class Adjuster {
       known_.push_back(points_[i].Known(made_.TrackOfPoint(i)));
       tracks_.push_back(made_.TrackOfPoint(i));
     }
-    return AdjustBundle(block_, tracks_, Stage(tolerance, iterations), {}, shift_);
+    return AdjustBundle(block_, tracks_, Stage(tolerance, iterations), on_iteration_, shift_);
   }
 
   void Choose() {
@@ -243,6 +244,7 @@ class Adjuster {
   std::vector<ControlState>& points_;
   Vector3d* shift_;
   base::ThreadPool& threads_;
+  const std::function<void()>& on_iteration_;
   std::vector<uint32_t> all_ties_, ties_, tracks_;
   std::vector<KnownPoint> known_;
   double first_mark_sigma_px_ = 0.0;
@@ -250,8 +252,9 @@ class Adjuster {
 
 }  // namespace
 
-ControlAdjustment AdjustWithControl(ControlBlock& made, std::vector<ControlState>& points, Vector3d* shift, base::ThreadPool& threads) {
-  return Adjuster(made, points, shift, threads).Run();
+ControlAdjustment AdjustWithControl(ControlBlock& made, std::vector<ControlState>& points, Vector3d* shift, base::ThreadPool& threads,
+                                    const std::function<void()>& on_iteration) {
+  return Adjuster(made, points, shift, threads, on_iteration).Run();
 }
 
 bool LeaveOut(const Vector3d& error_m, const Matrix3d& covariance, const Vector3d& own_information, Vector3d* left_out_error_m,

@@ -38,8 +38,11 @@ struct ControlAdjustment {
 
 // The block is in ENU about where it belongs, and used points have a place and agreeing marks. Points that then contradict the others lose `used`.
 // `shift`: see UseTagScatter; null without tags. Entries of marks agree afterwards where they are used, and points of the model have been placed
-// anew. Points without two marks that agree have no place (Block::has_point). Throws base::Interrupted.
-ControlAdjustment AdjustWithControl(ControlBlock& made, std::vector<ControlState>& points, Eigen::Vector3d* shift, base::ThreadPool& threads);
+// anew. Points without two marks that agree have no place (Block::has_point). `on_iteration` is called after each iteration of a bundle adjustment,
+// of which there are seldom more than kUsualIterations. Throws base::Interrupted.
+ControlAdjustment AdjustWithControl(ControlBlock& made, std::vector<ControlState>& points, Eigen::Vector3d* shift, base::ThreadPool& threads,
+                                    const std::function<void()>& on_iteration);
+constexpr int kUsualIterations = 60;
 
 // What the others say of a point of the adjustment, from its error, its covariance in the adjustment and the information that its own place gave
 // (the inverse of its variances): error and covariance of the estimate without it. False when the others do not determine it.

@@ -7,6 +7,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
+#include "core/base/progress.h"
 #include "core/geo/enu_frame.h"
 #include "prepare/control_fit/control_adjustment.h"
 #include "prepare/control_fit/control_block.h"
@@ -108,7 +109,9 @@ class Fitter {
     if (not_adjusted == NotAdjusted::kNo) {
       Vector3d shift = Vector3d::Zero();
       const bool tagged = job_.use_tags && UseTagScatter(job_.stations, job_.image_of_station, frame, block_, &shift);
-      adjustment = AdjustWithControl(made_, states_, tagged ? &shift : nullptr, threads_);
+      base::Progress progress("adjust to control points", kUsualIterations, "iterations");
+      adjustment = AdjustWithControl(made_, states_, tagged ? &shift : nullptr, threads_, [&] { progress.Advance(); });
+      progress.Finish();
       if (!adjustment.ok) not_adjusted = NotAdjusted::kNoSolution;
     }
     if (!adjustment.ok) adjustment = BySimilarity(similarity);

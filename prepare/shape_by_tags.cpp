@@ -99,7 +99,7 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
   const Dome after = placed.ok ? BendOf(new_stations, placed) : Dome();
   if (!placed.ok || placed.fit.n_inliers < georeference.fit.n_inliers ||
       std::abs(after.height_m) > std::abs(before.height_m) + kBendSigmas * after.sigma_m) {
-    spdlog::info("the poses are not adjusted to the GPS tags: fewer tags agree with the result");
+    spdlog::info("the poses are not adjusted to the GPS tags: fewer tags would agree, or the bend would be larger");
     return;
   }
   // The adjustment has made metres of the model's units.

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "core/base/cancel.h"
+#include "core/base/disjoint_sets.h"
 #include "core/base/errors.h"
 
 namespace skyquilt::prepare {
@@ -77,30 +77,12 @@ std::vector<uint32_t> Neighbors(const std::vector<std::optional<PhotoPlace>>& pl
   return chosen;
 }
 
-// Which group each photo belongs to (union by the smaller number, paths halved).
-class Groups {
- public:
-  Groups(size_t n_photos, const PhotoPairs& pairs) : parent_(n_photos), count_(n_photos) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
-    for (const PhotoPair& pair : pairs) Join(pair.a, pair.b);
-  }
-  uint32_t Of(uint32_t photo) {
-    while (parent_[photo] != photo) photo = parent_[photo] = parent_[parent_[photo]];
-    return photo;
-  }
-  void Join(uint32_t a, uint32_t b) {
-    a = Of(a);
-    b = Of(b);
-    if (a == b) return;
-    parent_[std::max(a, b)] = std::min(a, b);
-    --count_;
-  }
-  size_t count() const { return count_; }
-
- private:
-  std::vector<uint32_t> parent_;
-  size_t count_;
-};
+// Which photos pairs join, one after the other.
+base::DisjointSets GroupsOf(size_t n_photos, const PhotoPairs& pairs) {
+  base::DisjointSets groups(n_photos);
+  for (const PhotoPair& pair : pairs) groups.Join(pair.a, pair.b);
+  return groups;
+}
 
 }  // namespace
 
@@ -151,7 +133,7 @@ PhotoPairs NamePairs(const std::vector<uint32_t>& photos, size_t n_photos, size_
 }
 
 size_t CountGroups(size_t n_photos, const PhotoPairs& pairs) {
-  return Groups(n_photos, pairs).count();
+  return GroupsOf(n_photos, pairs).count();
 }
 
 void ConnectGroups(size_t n_photos, size_t links, const std::function<std::vector<double>(uint32_t)>& costs, PhotoPairs& pairs) {
@@ -161,10 +143,10 @@ void ConnectGroups(size_t n_photos, size_t links, const std::function<std::vecto
     auto operator<=>(const Link&) const = default;
   };
   // Every group but the largest gets links to others, so that the number of groups falls at least by half in a round.
-  for (Groups groups(n_photos, pairs); groups.count() > 1;) {
+  for (base::DisjointSets groups = GroupsOf(n_photos, pairs); groups.count() > 1;) {
     std::vector<size_t> size(n_photos, 0);
     std::vector<uint32_t> group(n_photos);
-    for (uint32_t photo = 0; photo < n_photos; ++photo) ++size[group[photo] = groups.Of(photo)];
+    for (uint32_t photo = 0; photo < n_photos; ++photo) ++size[group[photo] = groups.Root(photo)];
     const auto largest = static_cast<uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
     std::vector<std::vector<Link>> of_group(n_photos);
     for (uint32_t photo = 0; photo < n_photos; ++photo) {

@@ -55,7 +55,7 @@ TEST(RealSurvey, BrightonBeachLandsOnItsTags) {
   // Its heights are bent against the tags by 1.4 m; the adjustment to them takes out 0.1 m, as much as the photos allow.
   EXPECT_TRUE(survey.fit.adjusted_to_tags);
   EXPECT_LT(survey.checks.dome_m, 1.35);
-  EXPECT_NEAR(survey.checks.k1_sigma, 1.2e-3, 0.15e-3);
+  EXPECT_NEAR(survey.checks.k1_sigma, 1.18e-3, 0.1e-3);
 }
 
 TEST(RealSurvey, SenecaLandsOnItsTags) {

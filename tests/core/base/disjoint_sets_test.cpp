@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "core/base/random.h"
 
 namespace skyquilt::base {
@@ -26,6 +28,7 @@ TEST(DisjointSets, JoinWhatLabelsJoin) {
     sets.Join(a, b);
     const uint32_t kept = std::min(label[a], label[b]), gone = std::max(label[a], label[b]);
     std::replace(label.begin(), label.end(), gone, kept);
+    ASSERT_EQ(sets.count(), std::set<uint32_t>(label.begin(), label.end()).size());
     for (uint32_t i = 0; i < kN; ++i) ASSERT_EQ(sets.Root(i), label[i]) << "step " << step;
   }
 }

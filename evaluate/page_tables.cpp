@@ -19,6 +19,13 @@ std::string StatusCell(const scene::FieldTraining* log, const partition::Block* 
   if (log == nullptr) return "<td class=\"status\"><span class=\"state idle\">no record</span></td>";
   if (!log->ok)
     return fmt::format("<td class=\"status\"><span class=\"state bad\">failed</span><small>{}</small></td>", page::EscapeHtml(log->reason));
+  if (log->shows_context) {
+    return "<td class=\"status\"><span class=\"state warn\">context</span><small>worse than the context, which is shown in its place</small></td>";
+  }
+  if (!log->falls.empty()) {
+    return fmt::format("<td class=\"status\"><span class=\"state warn\">{}</span><small>fell apart and was taken back {}</small></td>",
+                       log->ended_early ? "ended early" : "done", log->falls.size() == 1 ? "once" : fmt::format("{} times", log->falls.size()));
+  }
   if (log->dropped_steps > 0) {
     return fmt::format("<td class=\"status\"><span class=\"state warn\">done</span><small>{} steps left out: not finite</small></td>",
                        page::FormatInteger(log->dropped_steps));

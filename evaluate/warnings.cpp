@@ -7,6 +7,9 @@
 #include <map>
 #include <string>
 
+#include "core/page/html.h"
+#include "partition/altitude.h"
+
 namespace skyquilt::evaluate {
 
 namespace {
@@ -56,6 +59,13 @@ void AboutBlocks(const partition::BlockSet& blocks, const scene::TrainReport* tr
       untrained.push_back(block.name);
     }
   }
+  for (const partition::Block& block : blocks.blocks) {
+    if (block.empty) continue;
+    if (const std::string doubt = partition::AltitudeDoubt(block); !doubt.empty()) {
+      warnings->push_back({fmt::format("Block {}: {}", block.name, doubt),
+                           "Leave out --altitudes to use the heights that were flown, or give the right ones, and run again with --restart"});
+    }
+  }
   for (const auto& [reason, names] : empty) {
     warnings->push_back({fmt::format("{} empty and not trained: {}", BlocksAre(names), reason.empty() ? "no reason was given" : reason),
                          "Nothing needs to be done if this ground lies outside the survey or is water. Otherwise add photos of it, so that at least "
@@ -64,6 +74,26 @@ void AboutBlocks(const partition::BlockSet& blocks, const scene::TrainReport* tr
   if (!untrained.empty()) {
     warnings->push_back({fmt::format("{} without a record of training", BlocksAre(untrained)),
                          "The map is coarse there or has a hole. Run 'skyquilt train' on the project folder again: only what is missing is trained"});
+  }
+}
+
+// A training that was taken back, and a block that does not show its own field.
+void AboutFalls(const std::string& name, const scene::FieldTraining& field, std::vector<Warning>* warnings) {
+  if (!field.falls.empty()) {
+    const scene::FieldFall& last = field.falls.back();
+    warnings->push_back({fmt::format("Training of {} fell apart {} (the last time from {} to {} of training PSNR at step {}) and was taken back to "
+                                     "step {}{}",
+                                     name, field.falls.size() == 1 ? "once" : fmt::format("{} times", field.falls.size()),
+                                     page::FormatFixed(last.best_psnr_db, 1, "dB"), page::FormatFixed(last.psnr_db, 1, "dB"), last.step,
+                                     last.restored_step, field.ended_early ? ", where it ended" : ""),
+                         "What is shown is its best state. If it looks poor, lower train.learning_rate and train again with --restart"});
+  }
+  if (field.shows_context) {
+    warnings->push_back(
+        {fmt::format("Block {} shows its photos worse than the coarse context does ({} instead of {} on the same training pixels), so "
+                     "the context is shown in its place",
+                     field.name, page::FormatFixed(field.block_psnr_db, 2, "dB"), page::FormatFixed(field.context_psnr_db, 2, "dB")),
+         fmt::format("It was trained for {} steps. Train longer with --time-budget, or cut fewer blocks with --blocks", field.steps)});
   }
 }
 
@@ -84,6 +114,7 @@ void AboutTraining(const scene::TrainReport* training, std::vector<Warning>* war
                                        field.dropped_steps == 1 ? "step" : "steps"),
                            "A few do no harm. If there are many, lower train.learning_rate and train again with --restart"});
     }
+    AboutFalls(name, field, warnings);
   }
 }
 

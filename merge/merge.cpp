@@ -49,10 +49,16 @@ Loaded LoadTrained(const std::filesystem::path& file, const std::string& kind, c
 void MergeScene(const MergeInput& input) {
   if (input.blocks.empty()) throw base::InputError(input.scene, "there is no trained block to merge", "Run `skyquilt train` first");
   const Loaded context = LoadTrained(input.context, "context", input.origin);
-  std::vector<render::TrainedField> blocks;
+  const bool nothing_to_show =
+      !input.use_context && std::all_of(input.blocks.begin(), input.blocks.end(), [](const TrainedBlock& block) { return block.shows_context; });
+  if (nothing_to_show)
+    throw base::InputError(input.scene, "no block can be shown without the context", "Train longer, or with train.coupling = guided");
+  std::vector<render::TrainedField> blocks, covered;
+  std::vector<std::filesystem::path> files;
   double gsd_m = std::numeric_limits<double>::infinity();
   for (const TrainedBlock& block : input.blocks) {
-    blocks.push_back(LoadTrained(block.checkpoint, "block", input.origin).description);
+    (block.shows_context ? covered : blocks).push_back(LoadTrained(block.checkpoint, "block", input.origin).description);
+    if (!block.shows_context) files.push_back(block.checkpoint);
     gsd_m = std::min(gsd_m, block.gsd_m);
   }
 
@@ -73,7 +79,9 @@ void MergeScene(const MergeInput& input) {
   writer.SetAttribute("blocks", static_cast<int64_t>(blocks.size()));
   if (input.use_context) scene::PutSceneField(context.description, input.context, scene::kContextPrefix, writer, input.storage);
   for (size_t i = 0; i < blocks.size(); ++i)
-    scene::PutSceneField(blocks[i], input.blocks[i].checkpoint, scene::BlockPrefix(static_cast<int64_t>(i)), writer, input.storage);
+    scene::PutSceneField(blocks[i], files[i], scene::BlockPrefix(static_cast<int64_t>(i)), writer, input.storage);
+  writer.SetAttribute(scene::kCoveredBlocksAttribute, static_cast<int64_t>(covered.size()));
+  for (size_t i = 0; i < covered.size(); ++i) scene::PutDescription(covered[i], scene::CoveredBlockPrefix(static_cast<int64_t>(i)), writer);
   writer.Commit(input.scene);
 }
 

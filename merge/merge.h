@@ -17,6 +17,7 @@ namespace skyquilt::merge {
 struct TrainedBlock {
   std::filesystem::path checkpoint;  // of a block, trained to the end
   double gsd_m = 0.0;                // ground sampling distance of its photos, metres per pixel
+  bool shows_context = false;        // the scene keeps its place, but shows the context there
 };
 
 struct MergeInput {
@@ -35,8 +36,8 @@ struct MergeInput {
   std::filesystem::path scene;  // out
 };
 
-// Throws base::InputError when there is no block, when a checkpoint is missing, damaged, not trained to the end or of a survey with another origin,
-// and when the scene cannot be written.
+// Throws base::InputError when there is no block, or only blocks that show a context that is left out, when a checkpoint is missing, damaged, not
+// trained to the end or of a survey with another origin, and when the scene cannot be written.
 void MergeScene(const MergeInput& input);
 
 }  // namespace skyquilt::merge

@@ -1,5 +1,7 @@
 #include "partition/altitude.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -39,6 +41,17 @@ double BlockAltitude(const survey::Survey& survey, const std::vector<double>& ph
   std::vector<double> nearest;
   for (size_t i = 0; i < n; ++i) nearest.push_back(by_distance[i].second);
   return base::Median(std::move(nearest));
+}
+
+std::string AltitudeDoubt(const Block& block) {
+  constexpr double kMuch = 2.0;
+  if (!(block.flown_agl_m > 0.0) || !(block.altitude_agl_m > 0.0)) return "";
+  const double ratio = block.altitude_agl_m / block.flown_agl_m;
+  if (ratio >= 1.0 / kMuch && ratio <= kMuch) return "";
+  const std::string said =
+      fmt::format("its height is given as {:.3g} m above ground, but its photos were taken from {:.3g} m", block.altitude_agl_m, block.flown_agl_m);
+  if (ratio < 1.0) return said + ": voxels are as fine as the photos' pixels, not finer";
+  return said + ": voxels are coarser than the photos' pixels, and detail is lost";
 }
 
 }  // namespace skyquilt::partition

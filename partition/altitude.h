@@ -2,9 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "core/survey/survey.h"
+#include "partition/block.h"
 
 namespace skyquilt::partition {
 
@@ -16,5 +18,8 @@ std::vector<double> PhotoAltitudes(const survey::Survey& survey, const Eigen::Ve
 // elsewhere may see the block too, but their altitude is that of another block.
 double BlockAltitude(const survey::Survey& survey, const std::vector<double>& photo_altitude_m, const Eigen::Vector2d& low,
                      const Eigen::Vector2d& high);
+
+// What is odd about a block's height when it is not half to twice the flown one, and what follows from it; empty otherwise.
+std::string AltitudeDoubt(const Block& block);
 
 }  // namespace skyquilt::partition

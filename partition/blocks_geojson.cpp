@@ -92,6 +92,7 @@ Json Properties(const Block& block) {
           {"max_enu", Vector(block.max_enu)},
           {"margin_m", Number(block.margin_m)},
           {"altitude_agl_m", Number(block.altitude_agl_m)},
+          {"flown_agl_m", Number(block.flown_agl_m)},
           {"gsd_m", Number(block.gsd_m)},
           {"finest_voxel_m", Number(block.finest_voxel_m)},
           {"log2_table_size", block.log2_table_size},
@@ -146,6 +147,7 @@ Block ReadBlock(const Json& feature) {
   block.max_enu = ReadVector(properties.at("max_enu"));
   block.margin_m = ReadNumber(properties.at("margin_m"));
   block.altitude_agl_m = ReadNumber(properties.at("altitude_agl_m"));
+  if (properties.contains("flown_agl_m")) block.flown_agl_m = ReadNumber(properties.at("flown_agl_m"));
   block.gsd_m = ReadNumber(properties.at("gsd_m"));
   block.finest_voxel_m = ReadNumber(properties.at("finest_voxel_m"));
   block.log2_table_size = properties.at("log2_table_size").get<int>();

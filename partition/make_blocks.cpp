@@ -5,6 +5,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/order_statistics.h"
 #include "partition/altitude.h"
 #include "partition/block_grid.h"
 #include "partition/capacity.h"
@@ -33,9 +34,10 @@ double MarginOf(const BlockGrid& grid, const PartitionOptions& options) {
   return std::min(std::max(options.margin_fraction * side, options.min_margin_m), 0.25 * side);
 }
 
-double AltitudeOf(const Inputs& in, const BlockGrid& grid, int index) {
-  if (!in.options.altitudes.empty()) return in.options.altitudes[static_cast<size_t>(index)];
-  return BlockAltitude(in.survey, in.photo_altitude_m, grid.Min(index), grid.Max(index));
+// The lowest height whose pixels the block may have: of the flight above it, or of its lowest photos.
+double LowestAltitude(const Inputs& in, double flown_agl_m) {
+  constexpr double kLowest = 0.05;
+  return std::min(flown_agl_m, base::Quantile(in.photo_altitude_m, kLowest));
 }
 
 double VoxelsOf(const Inputs& in, const BlockGrid& grid, int index, double voxel_m) {
@@ -93,8 +95,11 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   block.id = index;
   block.name = "r" + std::to_string(index / grid.columns()) + "c" + std::to_string(index % grid.columns());
   block.margin_m = MarginOf(grid, in.options);
-  block.altitude_agl_m = AltitudeOf(in, grid, index);
-  block.gsd_m = SurveyGsd(in.survey, block.altitude_agl_m, in.image_width);
+  block.flown_agl_m = BlockAltitude(in.survey, in.photo_altitude_m, grid.Min(index), grid.Max(index));
+  block.altitude_agl_m = in.options.altitudes.empty() ? block.flown_agl_m : in.options.altitudes[static_cast<size_t>(index)];
+  // Voxels far finer than the photos' pixels cannot be told apart by them.
+  const double sharpest_agl_m = std::max(block.altitude_agl_m, LowestAltitude(in, block.flown_agl_m));
+  block.gsd_m = SurveyGsd(in.survey, sharpest_agl_m, in.image_width);
   block.finest_voxel_m = in.options.voxel_per_gsd * block.gsd_m;
   block.min_enu.head<2>() = grid.Min(index);
   block.max_enu.head<2>() = grid.Max(index);

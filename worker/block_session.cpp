@@ -10,6 +10,64 @@
 #include "core/scene/scene_file.h"
 
 namespace skyquilt::worker {
+namespace {
+
+// Checkpoints of older programs have no guard.
+double DoubleOr(const checkpoint::ArchiveReader& reader, const char* name, double missing) {
+  return reader.HasAttribute(name) ? reader.DoubleAttribute(name) : missing;
+}
+
+int64_t IntOr(const checkpoint::ArchiveReader& reader, const char* name, int64_t missing) {
+  return reader.HasAttribute(name) ? reader.IntAttribute(name) : missing;
+}
+
+// Writes what the guard knows and found. Returns numbers that the writer refers to.
+std::vector<double> PutGuard(const TrainJob& job, const SessionRecord& record, checkpoint::ArchiveWriter& writer) {
+  const FallGuard::State& guard = record.guard;
+  writer.SetAttribute("attempt", static_cast<int64_t>(job.attempt));
+  writer.SetAttribute("learning_rate_scale", job.learning_rate_scale);
+  writer.SetAttribute("rate_factor", record.rate_factor);
+  writer.SetAttribute("ended_early", static_cast<int64_t>(record.ended_early ? 1 : 0));
+  if (std::isfinite(guard.best.mean)) {
+    writer.SetAttribute("guard_best", guard.best.mean);
+    writer.SetAttribute("guard_best_error", guard.best.error);
+    writer.SetAttribute("guard_last", guard.last.mean);
+    writer.SetAttribute("guard_last_error", guard.last.error);
+    writer.SetAttribute("guard_bad_in_a_row", static_cast<int64_t>(guard.bad_in_a_row));
+  }
+  if (record.comparison) {
+    writer.SetAttribute("block_psnr_db", record.comparison->block_psnr_db);
+    writer.SetAttribute("context_psnr_db", record.comparison->context_psnr_db);
+    writer.SetAttribute("block_is_worse", static_cast<int64_t>(record.comparison->block_is_worse ? 1 : 0));
+  }
+  std::vector<double> falls;
+  for (const Fall& fall : record.falls) {
+    falls.insert(falls.end(), {static_cast<double>(fall.step), fall.best_psnr_db, fall.psnr_db, static_cast<double>(fall.restored_step)});
+  }
+  if (!falls.empty()) writer.Put("falls", falls, {static_cast<int64_t>(record.falls.size()), 4});
+  return falls;
+}
+
+void GetGuard(const checkpoint::ArchiveReader& reader, SessionRecord& record) {
+  record.rate_factor = DoubleOr(reader, "rate_factor", 1.0);
+  record.ended_early = IntOr(reader, "ended_early", 0) != 0;
+  if (reader.HasAttribute("guard_best")) {
+    record.guard = {.best = {reader.DoubleAttribute("guard_best"), reader.DoubleAttribute("guard_best_error")},
+                    .last = {reader.DoubleAttribute("guard_last"), reader.DoubleAttribute("guard_last_error")},
+                    .bad_in_a_row = static_cast<int>(reader.IntAttribute("guard_bad_in_a_row"))};
+  }
+  if (reader.HasAttribute("block_is_worse")) {
+    record.comparison = {reader.DoubleAttribute("block_psnr_db"), reader.DoubleAttribute("context_psnr_db"),
+                         reader.IntAttribute("block_is_worse") != 0};
+  }
+  if (!reader.Has("falls")) return;
+  const std::vector<double> falls = reader.Doubles("falls");
+  for (size_t i = 0; i + 3 < falls.size(); i += 4) {
+    record.falls.push_back({static_cast<int64_t>(falls[i]), falls[i + 1], falls[i + 2], static_cast<int64_t>(falls[i + 3])});
+  }
+}
+
+}  // namespace
 
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
                  const ContextBrightness* extras, const ContextResults* findings) {
@@ -30,6 +88,8 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   writer.SetAttribute("rays", record.rays);
   writer.SetAttribute("dropped_steps", static_cast<int64_t>(record.dropped_steps));
   writer.SetAttribute("mean_squared_error", record.mean_squared_error);
+  writer.SetAttribute("network_gradient_norm", state.network_gradient_norm);
+  const std::vector<double> guard = PutGuard(job, record, writer);  // must exist until Commit
   writer.SetAttribute("complete", static_cast<int64_t>(record.complete ? 1 : 0));
   writer.SetAttribute("origin_latitude_deg", job.survey->origin.latitude_deg);
   writer.SetAttribute("origin_longitude_deg", job.survey->origin.longitude_deg);
@@ -74,14 +134,19 @@ SessionRecord RecordOf(const checkpoint::ArchiveReader& reader) {
   record.rays = reader.IntAttribute("rays");
   record.dropped_steps = static_cast<int>(reader.IntAttribute("dropped_steps"));
   record.mean_squared_error = reader.DoubleAttribute("mean_squared_error");
+  GetGuard(reader, record);
   record.complete = reader.IntAttribute("complete") != 0;
   return record;
 }
 
 }  // namespace
 
+double PsnrOfError(double mean_squared_error) {
+  return std::isnan(mean_squared_error) ? mean_squared_error : -10.0 * std::log10(std::max(1e-10, mean_squared_error));
+}
+
 double RunningPsnr(const SessionRecord& record) {
-  return -10.0 * std::log10(std::max(1e-10, record.mean_squared_error));
+  return PsnrOfError(record.mean_squared_error);
 }
 
 std::optional<TrainResult> FinishedResult(const SavedSession& session) {
@@ -100,7 +165,20 @@ std::optional<TrainResult> FinishedResult(const SavedSession& session) {
   }
   result.final_psnr_db = RunningPsnr(record);
   result.dropped_steps = record.dropped_steps;
+  result.falls = record.falls;
+  result.ended_early = record.ended_early;
+  result.comparison = record.comparison;
   return result;
+}
+
+int ContinueAttempt(const SavedSession& session, TrainJob& job) {
+  const int attempt = static_cast<int>(IntOr(session.reader, "attempt", 0));
+  if (attempt > job.attempt) {
+    job.attempt = attempt;
+    job.seed = static_cast<uint64_t>(session.reader.IntAttribute("seed"));
+    job.learning_rate_scale = session.reader.DoubleAttribute("learning_rate_scale");
+  }
+  return attempt;
 }
 
 void LoadSession(const SavedSession& session, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
@@ -134,6 +212,7 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
   target.footprint_min_m = loaded.footprint_min_m;
   target.footprint_max_m = loaded.footprint_max_m;
   state.step = loaded.steps;
+  state.network_gradient_norm = DoubleOr(reader, "network_gradient_norm", 0.0);
   trainer.rays_per_step() = static_cast<int>(reader.IntAttribute("rays_per_step"));
   *record = RecordOf(reader);
 }

@@ -1,6 +1,6 @@
 // Saves and loads the complete training state of one field, so that an interrupted training can be resumed with the same bits: parameters, Adam
-// moments, occupancy, step, rays per step, and the hash of the configuration. Random numbers are functions of (seed, step), so the step is all of
-// their state.
+// moments, occupancy, step, rays per step, what the guard against falls knows, and the hash of the configuration. Random numbers are functions of
+// (seed, step), so the step is all of their state.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,7 @@
 
 #include "core/brightness/response_learner.h"
 #include "core/checkpoint/archive.h"
+#include "worker/fall_guard.h"
 #include "worker/field_trainer.h"
 #include "worker/surface_interval.h"
 #include "worker/trainer.h"
@@ -18,6 +19,11 @@ namespace skyquilt::worker {
 
 // Progress of a training, over all its runs.
 struct SessionRecord {
+  double rate_factor = 1.0;  // on the learning rate, halved by every fall
+  FallGuard::State guard;
+  std::vector<Fall> falls;
+  bool ended_early = false;  // fell too often, and ended at its best state
+  std::optional<ContextComparison> comparison;
   double seconds = 0.0;
   int64_t samples = 0;
   int64_t rays = 0;
@@ -37,8 +43,9 @@ struct ContextBrightness {
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
                  const ContextBrightness* extras, const ContextResults* findings);
 
-// PSNR of recent training rays.
+// PSNR of recent training rays, and of any mean squared error.
 double RunningPsnr(const SessionRecord& record);
+double PsnrOfError(double mean_squared_error);
 
 // An undamaged checkpoint of this configuration.
 struct SavedSession {
@@ -52,6 +59,10 @@ std::optional<SavedSession> OpenSession(const std::string& kind, const TrainJob&
 
 // The result of a finished training, otherwise empty. Reads only attributes, so that a resumed run skips finished fields quickly.
 std::optional<TrainResult> FinishedResult(const SavedSession& session);
+
+// Returns the attempt that the session belongs to. When it is a later one than the job's, which an interrupted run had begun, the job goes on with
+// its attempt, seed and learning rate.
+int ContinueAttempt(const SavedSession& session, TrainJob& job);
 
 // Restores the state. Throws base::InputError when the sizes of the arrays do not fit the field.
 void LoadSession(const SavedSession& session, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,

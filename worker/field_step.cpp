@@ -8,6 +8,9 @@ namespace {
 
 constexpr int64_t kEncodePackets = 16;  // packets per task: enough work, and the table stays in cache
 constexpr double kMeansFollow = 0.1;    // weight of a new batch in the running means
+// A batch with rare pixels must not turn the networks around: their gradient is clipped at this multiple of its running norm (Pascanu et al. 2013).
+constexpr double kMostOfRunningNorm = 2.0;
+constexpr double kNormFollows = 0.01;
 
 // Loads the table of a part into the cache by reading it once in order, which is several times faster than the random reads of the encoding. The sum
 // keeps the compiler from removing the loop.
@@ -111,6 +114,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
     ++state.step;  // the same rays would fail the same way
     return result;
   }
+  ClipNetworkGradient(state, result);
   UpdateRunningMeans(sums);
   for (size_t k = 0; k < gain_gradients_.size(); ++k) {
     const PixelRay& ray = batch.rays[k].ray;
@@ -131,6 +135,8 @@ LossSums FieldStep::SumResults(const RayBatch& batch, StepResult* result) {
     const PacketResult& p = results_[k];
     result->n_live += p.live;
     result->finite = result->finite && p.finite;
+    result->saturated.densities += p.saturated.densities;
+    result->saturated.colors += p.saturated.colors;
     sums.loss += p.sums.loss;
     sums.squared_error += p.sums.squared_error;
     sums.color_rays += p.sums.color_rays;
@@ -155,6 +161,21 @@ bool FieldStep::SumNetworkGradients(field::OptimizerState& state) const {
     for (size_t i = 0; i < network_size; ++i) state.network_gradient[i] += slot_gradients_[slot * network_size + i];
   }
   return kernel::AllFinite(state.network_gradient.data(), static_cast<int64_t>(network_size));
+}
+
+void FieldStep::ClipNetworkGradient(field::OptimizerState& state, StepResult& result) {
+  double squares = 0.0;
+  for (const float value : state.network_gradient) squares += static_cast<double>(value) * static_cast<double>(value);
+  const double norm = std::sqrt(squares);
+  result.gradient_norm = norm;
+  double& running = state.network_gradient_norm;
+  const double most = kMostOfRunningNorm * running;
+  if (running > 0.0 && norm > most) {
+    result.clipped = true;
+    const auto factor = static_cast<float>(most / norm);
+    for (float& value : state.network_gradient) value *= factor;
+  }
+  running = running > 0.0 ? running + kNormFollows * (std::min(norm, most) - running) : norm;
 }
 
 void FieldStep::UpdateRunningMeans(const LossSums& sums) {

@@ -43,6 +43,9 @@ struct StepResult {
   double loss = 0.0;           // mean over rays
   double squared_error = 0.0;  // mean over colour rays and channels, display values
   bool finite = true;          // false: the step was left out
+  double gradient_norm = 0.0;  // of the networks' gradient, before it is clipped
+  bool clipped = false;        // whether it was
+  SaturatedCounts saturated;
 };
 
 class FieldStep {
@@ -72,6 +75,8 @@ class FieldStep {
   void Encode(const RayBatch& batch, std::span<const float> grid);
   // Sums the packets' results in their order.
   LossSums SumResults(const RayBatch& batch, StepResult* result);
+  // Shortens the networks' gradient to at most twice its running norm, which follows.
+  static void ClipNetworkGradient(field::OptimizerState& state, StepResult& result);
   // Adds the slots' gradients to the state's; false when one is not finite.
   bool SumNetworkGradients(field::OptimizerState& state) const;
   void UpdateRunningMeans(const LossSums& sums);

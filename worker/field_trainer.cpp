@@ -148,8 +148,9 @@ void FieldTrainer::ObserveSamples() {
     const int64_t end = (task + 1) * grid.CellCount() / tasks;
     for (const Packet& packet : batch_.packets) {
       for (auto s = static_cast<size_t>(packet.begin); s < static_cast<size_t>(packet.begin + packet.count); ++s) {
-        const int64_t cell = batch_.cell[s];
-        if (cell >= first && cell < end) grid.UpdateTau(cell, depth[s]);
+        const bool sharp = batch_.cell[s] >= 0;
+        const int64_t cell = sharp ? batch_.cell[s] : ~batch_.cell[s];
+        if (cell >= first && cell < end) grid.Observe(cell, depth[s], sharp);
       }
     }
     times_.Add(thread, Phase::kOccupancy, start);

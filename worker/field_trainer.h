@@ -38,6 +38,8 @@ class FieldTrainer {
   field::OptimizerState& state() { return state_; }
   int& rays_per_step() { return rays_per_step_; }
   brightness::LuminanceState& luminance_state() { return step_.luminance_state(); }
+  // Call it when the photos' response was changed from outside.
+  void UpdateExposures() { source_.UpdateExposures(); }
   void InitializeParameters();
 
   // Sets the target's range of footprints from rays of its photos. Call it when the occupancy has its initial state.

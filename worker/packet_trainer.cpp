@@ -42,6 +42,7 @@ PacketResult PacketTrainer::Train(const PacketStep& step, const Packet& packet, 
     result.finite = kernel::AllFinite(points.feature_gradient.data(), static_cast<int64_t>(points.feature_gradient.size())) &&
                     kernel::AllFinite(points.along.data(), static_cast<int64_t>(points.along.size()));
   }
+  result.saturated = saturated_;
   at = times_.Add(thread_, Phase::kCompose, at);
   if (live_ > 0) result.finite = Backward(network_gradient, more_geometry_gradient) && result.finite;
   times_.Add(thread_, Phase::kBackward, at);
@@ -62,6 +63,7 @@ void PacketTrainer::Begin(const PacketStep& step, const Packet& packet) {
   step_ = &step;
   packet_ = &packet;
   live_ = packet.count;
+  saturated_ = {};
   a_.Reserve(shared_.field, kernel::Padded(packet.count));
   for (auto* v : {&depth_, &keep_, &tau_, &weight_}) Grow(*v, a_.stride);
   Grow(rgb_, 3 * a_.stride);

@@ -51,8 +51,15 @@ struct PacketStep {
   SurfacePoints* surface_points;         // per packet, written; null without losses of normals
 };
 
+// Samples at the ends of their ranges.
+struct SaturatedCounts {
+  int64_t densities = 0;  // far denser than opaque
+  int64_t colors = 0;     // channels within 2 % of an end of their range
+};
+
 struct PacketResult {
   LossSums sums;
+  SaturatedCounts saturated;
   int64_t live = 0;    // samples that light reaches; they are moved to the front
   bool finite = true;  // whether the features' gradient is finite
 };
@@ -127,6 +134,7 @@ class PacketTrainer {
   const PacketStep* step_ = nullptr;
   const Packet* packet_ = nullptr;
   int64_t live_ = 0;  // its samples that light reaches; all of them until DropHidden
+  SaturatedCounts saturated_;
   // Per sample, rows of a_.stride.
   field::Activations a_;
   std::vector<float> depth_, keep_, tau_, weight_, rgb_, weight_gradient_;

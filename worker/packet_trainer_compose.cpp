@@ -8,6 +8,10 @@ namespace skyquilt::worker {
 namespace {
 
 constexpr float kLeastColorSlope = 0.02F;
+// tau of a sample beyond which it gets no denser: less than 1 % of the light passes, so more density changes nothing but its own parameters.
+constexpr float kNoDenserTau = 5.0F;
+// For the diagnostics: a sample this dense has left the range that a scene can need.
+constexpr float kSaturatedTau = 1e3F;
 
 }  // namespace
 
@@ -82,14 +86,25 @@ void PacketTrainer::FinishGradients() {
   const auto range = static_cast<float>(shared_.target.config.color_range);
   const auto live = static_cast<size_t>(live_);
   const auto padded = static_cast<size_t>(kernel::Padded(live_));
-  // d tau / d log density = tau; d rgb / d raw = rgb (1 - rgb / range), but at least kLeastColorSlope: in a dark or bright survey colours that reach
-  // the end of their range in the first steps would otherwise get no gradient and stay there.
-  for (size_t i = 0; i < live; ++i) a_.log_density_gradient[i] *= tau_[i];
+  // d tau / d log density = tau, but 0 where a step would make an opaque sample denser.
+  for (size_t i = 0; i < live; ++i) {
+    float& gradient = a_.log_density_gradient[i];
+    gradient = tau_[i] > kNoDenserTau && gradient < 0.0F ? 0.0F : gradient * tau_[i];
+    if (tau_[i] > kSaturatedTau) ++saturated_.densities;
+  }
   std::fill(a_.log_density_gradient + live, a_.log_density_gradient + padded, 0.0F);
+  // d rgb / d raw = rgb (1 - rgb / range). In a dark or bright survey colours that reach the end of their range in the first steps would get no
+  // gradient and stay there, so a step towards the middle of the range has at least kLeastColorSlope. A step outwards has not: black pixels, glare
+  // and sky ask for it in every step, and the networks' weights would grow without end.
   for (size_t c = 0; c < 3; ++c) {
     float* gradient = a_.color_gradient + c * a_.stride;
     const float* color = rgb_.data() + c * a_.stride;
-    for (size_t i = 0; i < live; ++i) gradient[i] *= std::max(color[i] * (1.0F - color[i] / range), kLeastColorSlope);
+    for (size_t i = 0; i < live; ++i) {
+      const float slope = color[i] * (1.0F - color[i] / range);
+      const bool inwards = (gradient[i] > 0.0F) == (color[i] > 0.5F * range);
+      gradient[i] *= inwards ? std::max(slope, kLeastColorSlope) : slope;
+      if (slope < kLeastColorSlope) ++saturated_.colors;
+    }
   }
   for (size_t row = 0; row < field::kColorRows; ++row) {
     float* gradient = a_.color_gradient + row * a_.stride;

@@ -13,9 +13,11 @@ namespace {
 constexpr int kGroupRays = 64;
 constexpr int kMaxRaySamples = 1024;
 constexpr uint64_t kRayStream = 1;
-// Density that is blurred over several cells must not decide which of them are free: least sharpness in cells, where the finest level's weight is a
-// half.
+// Density that is blurred over several cells must not decide which of them are free where sharper samples do: least sharpness in cells, where the
+// finest level's weight is a half.
 constexpr float kLeastSharpnessToObserve = 0.4769F;
+// A sample of a coarse march belongs to none; its pixel is so wide that one is drawn for it.
+constexpr int64_t kNoCell = 0;
 // Marching step of rays from reduced photos in widths of their pixels.
 constexpr double kCoarsePixelsPerStep = 1.0;
 
@@ -144,7 +146,11 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
     if (cones) {
       const float sharpness = render::SharpnessOf(width_m, target_.map.VolumeScale(r.ray.origin_enu + t * r.ray.direction_enu), points);
       group.sharpness[at] = sharpness;
-      if (sharpness < observing) group.cell[at] = -1;
+      if (sharpness < observing) {
+        const Eigen::Vector3d shares(random.UniformDouble(), random.UniformDouble(), random.UniformDouble());
+        const Eigen::Vector3f place = cone.Within(t, length, width_m, shares);
+        group.cell[at] = ~static_cast<int32_t>(target_.occupancy.IndexAt(place.x(), place.y(), place.z()));
+      }
     }
     return ++at < end;
   };
@@ -153,7 +159,7 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
   const double coarse_step_m = may_step_far ? kCoarsePixelsPerStep * cone_axis.Footprint(interval.t_near) : 0.0;
   if (coarse_step_m > 1.01 * target_.step_m) {
     render::MarchCoarse(target_, r.ray.origin_enu, r.ray.direction_enu, interval, coarse_step_m, jitter,
-                        [&](double t, double length, double unit_length) { return emit(t, length, unit_length, -1); });
+                        [&](double t, double length, double unit_length) { return emit(t, length, unit_length, kNoCell); });
   } else {
     render::March(target_, r.ray.origin_enu, r.ray.direction_enu, interval, target_.step_m, jitter, emit);
   }

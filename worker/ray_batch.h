@@ -34,13 +34,15 @@ struct Packet {
 struct RayBatch {
   std::vector<BatchRay> rays;
   std::vector<Packet> packets;
-  int points = 1;                                                  // positions per sample
-  size_t plane = 0;                                                // room for samples: position j of sample s is element j * plane + s of x, y, z
-  std::vector<float> x, y, z;                                      // unit frame of the field
-  std::vector<float> sharpness;                                    // of the footprints (kernel::Positions); not used without cones
-  std::vector<float> t;                                            // metres from the camera
-  std::vector<float> unit_length;                                  // length of the interval in marching steps
-  std::vector<int32_t> cell;                                       // index in the occupancy grid; -1: too coarse to tell whether the cell is free
+  int points = 1;                  // positions per sample
+  size_t plane = 0;                // room for samples: position j of sample s is element j * plane + s of x, y, z
+  std::vector<float> x, y, z;      // unit frame of the field
+  std::vector<float> sharpness;    // of the footprints (kernel::Positions); not used without cones
+  std::vector<float> t;            // metres from the camera
+  std::vector<float> unit_length;  // length of the interval in marching steps
+  // Index in the occupancy grid. Negative: ~cell is one, drawn at random, of the cells that the sample stands for; it is too coarse to tell them
+  // apart.
+  std::vector<int32_t> cell;
   int64_t n_samples = 0;                                           // without padding
   int64_t Size() const { return static_cast<int64_t>(t.size()); }  // with padding
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
+#include "core/base/log.h"
 #include "worker/starting_occupancy.h"
 
 namespace skyquilt::worker {
@@ -16,6 +18,8 @@ constexpr double kGrowUntil = 0.6;       // share of the budget; later, new cell
 constexpr double kVisitsToJudge = 16.0;  // samples per occupied cell: with fewer, cells may be unsampled by chance
 constexpr int kMaxDroppedInARow = 20;
 constexpr double kReportEvery_s = 0.5;
+constexpr size_t kMostFalls = 3;        // the last one ends the training
+constexpr double kRateAfterFall = 0.5;  // factor on the learning rate
 
 double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -37,19 +41,27 @@ TrainLoop::TrainLoop(const std::string& kind, const TrainJob& job, render::Train
       extras_(extras),
       record_(record),
       report_(report),
-      total_steps_(TotalSteps(job.options)) {}
+      total_steps_(TotalSteps(job.options)),
+      good_(target, trainer, extras, record_),
+      diagnostics_(job.diagnostics) {
+  guard_.SetState(record_.guard);
+  // A resumed training continues from a good state.
+  if (std::isfinite(record_.guard.best.mean)) good_.Keep();
+}
 
 bool TrainLoop::Run() {
   last_ = last_save_ = last_report_ = Now();
   for (double fraction = Fraction(); fraction < 1.0; fraction = Fraction()) {
+    if (record_.ended_early) break;
     if (base::CancelRequested()) {
-      SaveSession(kind_, job_, target_, trainer_, record_, extras_, nullptr);
+      Save();
       throw base::Interrupted();
     }
     if (!Step(fraction)) return false;
     ReportIfDue(fraction);
     SaveIfDue();
   }
+  if (!record_.ended_early && !good_.Empty() && guard_.EndsFallen()) TakeBack(guard_.state().last.mean);
   MarkUnsampledCells();
   if (recent_.seconds > 0.0) Report(1.0);
   return true;
@@ -74,11 +86,16 @@ double TrainLoop::Fraction() const {
 }
 
 bool TrainLoop::Step(double fraction) {
-  const StepResult step = trainer_.Step(fraction, job_.learning_rate_scale);
+  const int64_t before = trainer_.state().step;
+  const double rate = job_.learning_rate_scale * record_.rate_factor * (job_.rate_fault ? job_.rate_fault(before) : 1.0);
+  diagnostics_.Before(target_.parameters.networks);
+  const StepResult step = trainer_.Step(fraction, rate);
   const int64_t done = trainer_.state().step;
+  diagnostics_.After(done, step, target_.parameters.networks, rate);
   if (done % kOccupancyEvery == 0) trainer_.UpdateOccupancy(done % kGrowEvery == 0 && fraction < kGrowUntil);
   if (!RecordError(step)) return false;
   RecordCounts(step);
+  Judge(step);
   return true;
 }
 
@@ -86,13 +103,54 @@ bool TrainLoop::Step(double fraction) {
 bool TrainLoop::RecordError(const StepResult& step) {
   if (!step.finite) {
     ++record_.dropped_steps;
-    return ++dropped_in_a_row_ < kMaxDroppedInARow;
+    if (++dropped_in_a_row_ < kMaxDroppedInARow) return true;
+    if (good_.Empty()) return false;
+    TakeBack(std::numeric_limits<double>::quiet_NaN());
+    return true;
   }
   dropped_in_a_row_ = 0;
   const int64_t done = trainer_.state().step;
   const double keep = done <= 1 ? 0.0 : std::min(0.98, 1.0 - 1.0 / static_cast<double>(done));
   record_.mean_squared_error = keep * record_.mean_squared_error + (1.0 - keep) * step.squared_error;
   return true;
+}
+
+void TrainLoop::Judge(const StepResult& step) {
+  if (!step.finite) return;
+  const double live = static_cast<double>(std::max<int64_t>(1, step.n_live));
+  switch (guard_.Add(trainer_.state().step, step.squared_error, static_cast<double>(step.saturated.densities) / live)) {
+    case FallGuard::Verdict::kGood:
+      if (good_.Empty() || trainer_.state().step - good_.step() >= GoodState::Interval(target_.ParameterCount(), job_.options.batch_samples)) {
+        record_.guard = guard_.state();
+        good_.Keep();
+      }
+      break;
+    case FallGuard::Verdict::kFallen:
+      if (!good_.Empty()) TakeBack(guard_.state().last.mean);
+      break;
+    case FallGuard::Verdict::kNone:
+    case FallGuard::Verdict::kBad:
+      break;
+  }
+}
+
+void TrainLoop::TakeBack(double fell_to) {
+  Fall fall;
+  fall.step = trainer_.state().step;
+  fall.best_psnr_db = PsnrOfError(guard_.state().best.mean);
+  fall.psnr_db = PsnrOfError(fell_to);
+  fall.restored_step = good_.step();
+  good_.Restore();
+  guard_.SetState(record_.guard);
+  dropped_in_a_row_ = 0;
+  record_.falls.push_back(fall);
+  record_.rate_factor *= kRateAfterFall;
+  record_.ended_early = record_.falls.size() >= kMostFalls;
+  const std::string what = std::isnan(fall.psnr_db)                  ? "gave values that are not finite"
+                           : fall.psnr_db >= fall.best_psnr_db - 0.1 ? "filled space with density"
+                                                                     : fmt::format("fell from {:.1f} to {:.1f} dB", fall.best_psnr_db, fall.psnr_db);
+  spdlog::warn("{}: training {} at step {} and is taken back to step {}{}", kind_ == "context" ? kind_ : "block " + target_.name, what, fall.step,
+               fall.restored_step, record_.ended_early ? ", where it ends" : ", with half the learning rate from there");
 }
 
 void TrainLoop::RecordCounts(const StepResult& step) {
@@ -130,13 +188,27 @@ void TrainLoop::Report(double fraction) {
   report_(status);
 }
 
+// Writes the last good state, or before there is one the present state.
+void TrainLoop::Save() {
+  const auto save = [this] { SaveSession(kind_, job_, target_, trainer_, record_, extras_, nullptr); };
+  const int64_t step = good_.Empty() ? trainer_.state().step : good_.step();
+  if (step == saved_step_) return;
+  if (good_.Empty()) {
+    save();
+  } else {
+    good_.With(save);
+  }
+  saved_step_ = step;
+}
+
 void TrainLoop::SaveIfDue() {
   if (last_ - last_save_ < job_.options.checkpoint_every_s) return;
-  SaveSession(kind_, job_, target_, trainer_, record_, extras_, nullptr);
+  Save();
   last_ = last_save_ = Now();  // saving is not training
 }
 
-// Frees cells at the edge of the photos that no ray has crossed: their densities and colours were never trained.
+// Frees cells at the edge of the photos that no ray has crossed: their densities and colours were never trained. A crossed cell has another tau,
+// however wide the samples in it were.
 void TrainLoop::MarkUnsampledCells() {
   field::OccupancyGrid& cells = target_.occupancy;
   if (static_cast<double>(record_.samples) > kVisitsToJudge * cells.OccupiedShare() * static_cast<double>(cells.CellCount())) {
@@ -154,6 +226,9 @@ TrainResult TrainLoop::Summarise() const {
   result.parameters = target_.ParameterCount();
   result.final_psnr_db = RunningPsnr(record_);
   result.dropped_steps = record_.dropped_steps;
+  result.falls = record_.falls;
+  result.ended_early = record_.ended_early;
+  result.comparison = record_.comparison;
   result.phase_seconds = trainer_.PhaseSeconds();
   return result;
 }

@@ -1,10 +1,14 @@
-// The training loop of context and blocks: steps until the budget is used up, with progress reports and checkpoints.
+// The training loop of context and blocks: steps until the budget is used up, with progress reports and checkpoints. A training that falls apart
+// (fall_guard.h) is taken back to its last good state and goes on with half the learning rate; after three falls it ends there.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 #include "worker/block_session.h"
+#include "worker/fall_guard.h"
+#include "worker/good_state.h"
+#include "worker/train_diagnostics.h"
 
 namespace skyquilt::worker {
 
@@ -14,9 +18,11 @@ class TrainLoop {
   TrainLoop(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const ContextBrightness* extras,
             const SessionRecord& record, const Reporter& report);
 
-  // False when too many steps in a row were not finite: the result is then Failure(). Throws base::Interrupted after saving when cancelled,
-  // base::InputError when a checkpoint cannot be written.
+  // False when too many steps in a row were not finite and there is no good state: the result is then Failure(). Throws base::Interrupted after
+  // saving when cancelled, base::InputError when a checkpoint cannot be written.
   bool Run();
+  // What was found about the finished field; saved with it.
+  void SetComparison(const ContextComparison& comparison) { record_.comparison = comparison; }
   // Saves the field as complete. findings: null for blocks. Throws base::InputError when the checkpoint cannot be written.
   TrainResult SaveResult(const ContextResults* findings);
   TrainResult Failure() const;
@@ -31,9 +37,14 @@ class TrainLoop {
   // One step, with occupancy and counts; false when too many steps in a row were not finite.
   bool Step(double fraction);
   bool RecordError(const StepResult& step);
+  // Keeps the state or takes it back, as the guard says.
+  void Judge(const StepResult& step);
+  // Goes back to the last good state. fell_to: mean squared error that shows the fall; NaN: values were not finite.
+  void TakeBack(double fell_to);
   void RecordCounts(const StepResult& step);
   void ReportIfDue(double fraction);
   void Report(double fraction);
+  void Save();
   void SaveIfDue();
   void MarkUnsampledCells();
   TrainResult Summarise() const;
@@ -49,6 +60,10 @@ class TrainLoop {
   // Times of the last step's end, the last checkpoint and the last report, in seconds of a steady clock.
   double last_ = 0.0, last_save_ = 0.0, last_report_ = 0.0;
   int dropped_in_a_row_ = 0;
+  FallGuard guard_;
+  GoodState good_;
+  int64_t saved_step_ = -1;  // of the last checkpoint that this loop wrote
+  TrainDiagnostics diagnostics_;
   double loss_ = 0.0;  // of the last step
   Recent recent_;
 };

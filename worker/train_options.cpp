@@ -46,6 +46,9 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
       {"empty_ray_share", &O::empty_ray_share, Range{0, 0.5},
        "share of a block's rays whose surface is behind the block, so that the block learns to be transparent there"},
       {"checkpoint_every_s", &O::checkpoint_every_s, Range{1e-3, 1e8}, "seconds between checkpoints"},
+      {"diagnostics", &O::diagnostics, Range(),
+       "true: write checkpoints/<field>.diagnostics.csv, a row per step: gradient and update norms, saturated colours and densities, samples that "
+       "light reaches; to find out why a training falls apart"},
       {"coupling", &O::coupling, Range::OneOf({"guided", "independent"}),
        "guided: the context is rendered outside the block; independent: blocks are trained without it"},
       {"start", &O::start, Range::OneOf({"surfaces", "everywhere"}),

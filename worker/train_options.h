@@ -44,6 +44,7 @@ struct TrainOptions {
   double empty_ray_share = 0.05;  // share of a block's rays whose surface is behind the block: it must be transparent there
 
   double checkpoint_every_s = 20.0;
+  bool diagnostics = false;         // write worker/train_diagnostics.h beside the log
   std::string coupling = "guided";  // guided: blocks render the context outside their ground plan; independent: they do not use its field
   std::string start = "surfaces";   // cells that are sampled first: near known surfaces, or everywhere that photos see
 

@@ -127,12 +127,16 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   return loop.SaveResult(&findings);
 }
 
-TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
+TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std::filesystem::path& context_checkpoint, base::ThreadPool& threads,
                        const Reporter& report) {
-  RequireJob(job);
+  RequireJob(given);
+  TrainJob job = given;
   std::optional<SavedSession> saved = OpenSession("block", job);
   if (saved) {
-    if (const std::optional<TrainResult> finished = FinishedResult(*saved)) return *finished;
+    const std::optional<TrainResult> finished = FinishedResult(*saved);
+    const int earlier = ContinueAttempt(*saved, job);
+    if (finished && !(earlier < job.attempt && finished->ShowsContext())) return *finished;
+    if (finished) saved.reset();
   }
   // Even independent blocks use the context's brightness.
   LoadedContext loaded = LoadContext(context_checkpoint);
@@ -178,7 +182,9 @@ TrainResult TrainBlock(const TrainJob& job, const BlockSpec& block, const std::f
     trainer.MeasureFootprints();
   }
   TrainLoop loop("block", job, target, trainer, nullptr, record, report);
-  return loop.Run() ? loop.SaveResult(nullptr) : loop.Failure();
+  if (!loop.Run()) return loop.Failure();
+  if (context != nullptr) loop.SetComparison(CompareWithContext(source, target, *context, job.seed, threads));
+  return loop.SaveResult(nullptr);
 }
 
 }  // namespace skyquilt::worker

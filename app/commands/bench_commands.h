@@ -10,5 +10,6 @@ int BenchThreads(const CommandState& state);
 
 void AddNumericsBench(CLI::App& bench, CommandState& state);
 void AddPosesBench(CLI::App& bench, CommandState& state);
+void AddStabilityBench(CLI::App& bench, CommandState& state);
 
 }  // namespace skyquilt::app

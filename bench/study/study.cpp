@@ -25,7 +25,8 @@ namespace {
 constexpr const char* kFix = "Run the bench again with --restart, or remove this file";
 
 // Options that do not change a result.
-constexpr const char* kIdle[] = {"run.threads", "run.memory_gb", "context.checkpoint_every_s", "train.checkpoint_every_s"};
+constexpr const char* kIdle[] = {"run.threads",         "run.memory_gb",    "context.checkpoint_every_s", "train.checkpoint_every_s",
+                                 "context.diagnostics", "train.diagnostics"};
 
 void RemoveOldRuns(const std::filesystem::path& folder) {
   for (const char* part : {"runs", "source", "cache"}) {
@@ -64,6 +65,20 @@ std::vector<std::pair<double, double>> JoinedCurve(const scene::TrainReport& tra
     if (counted == curves.size()) joined.emplace_back(share * seconds, sum / static_cast<double>(curves.size()));
   }
   return joined;
+}
+
+// How far the field's training PSNR fell, and how far below its best it is in the end.
+void AddFalls(const evaluate::Curves& curves, double final_psnr_db, VariantField* field) {
+  constexpr double kFirstStep = 300.0;  // before, surfaces are not found yet
+  const auto curve = curves.find(field->name);
+  if (curve == curves.end()) return;
+  double best = -std::numeric_limits<double>::infinity();
+  for (const evaluate::CurvePoint& point : curve->second) {
+    if (point.step < kFirstStep || !std::isfinite(point.psnr_db)) continue;
+    best = std::max(best, point.psnr_db);
+    field->worst_fall_db = std::max(std::isnan(field->worst_fall_db) ? 0.0 : field->worst_fall_db, best - point.psnr_db);
+  }
+  if (std::isfinite(best) && std::isfinite(final_psnr_db)) field->end_below_best_db = std::max(0.0, best - final_psnr_db);
 }
 
 // Number of parameters of every field in a scene, by name.
@@ -132,6 +147,7 @@ std::string Study::Identity(const Variant& variant, const coordinator::Settings&
   if (views_ > 0) identity.append(" views ").append(std::to_string(views_));
   if (variant.max_tilt_deg < 180.0) identity.append(" tilt ").append(std::to_string(variant.max_tilt_deg));
   if (buildings_) identity.append(" buildings");
+  if (variant.edit != SurveyEdit::kNone) identity.append(" edit ").append(std::to_string(static_cast<int>(variant.edit)));
   return identity;
 }
 
@@ -212,7 +228,7 @@ VariantResult Study::Measure(const Variant& variant, const coordinator::Settings
 
 void Study::RemoveLargeFiles(const Variant& variant) const {
   std::error_code ignored;
-  for (const char* part : {"checkpoints", "cache", "scene.h5", "scene.h5.prev", "surface", "survey"})
+  for (const char* part : {"checkpoints", "cache", "scene.h5", "scene.h5.prev", "surface", "survey", "photos"})
     std::filesystem::remove_all(RunFolder(variant) / part, ignored);
 }
 
@@ -231,7 +247,8 @@ void Study::LinkPixels(const std::filesystem::path& run_folder, int image_width,
 coordinator::Pipeline Study::BeginRun(const Variant& variant, const coordinator::Settings& settings, bool merge_anew) const {
   const coordinator::Project project = coordinator::Project::Create(RunFolder(variant));
   if (!std::filesystem::exists(project.SurveyFolder() / "survey.json")) {
-    survey::SaveSurvey(variant.AllPhotos() ? survey_ : ThinSurvey(survey_, variant), project.SurveyFolder());
+    const survey::Survey edited = variant.edit == SurveyEdit::kNone ? survey_ : EditSurvey(survey_, variant.edit, project.folder / "photos");
+    survey::SaveSurvey(variant.AllPhotos() ? edited : ThinSurvey(edited, variant), project.SurveyFolder());
   }
   coordinator::Pipeline pipeline{.comm = comm_, .project = project, .settings = settings, .quiet = options_.quiet, .verbose = options_.verbose};
   if (!merge_anew) coordinator::RequireSameConfiguration(pipeline, "partition");
@@ -294,6 +311,9 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   r.samples = r.parameters = 0.0;
   const std::map<std::string, int64_t> kept = SceneParameters(project.SceneFile());
   const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
+  std::vector<std::string> names;
+  for (const scene::FieldTraining& field : training.fields) names.push_back(field.name);
+  const evaluate::Curves curves = evaluate::ReadCurves(project.CheckpointFolder(), names);
   for (const scene::FieldTraining& field : training.fields) {
     r.samples += static_cast<double>(field.samples);
     r.parameters += static_cast<double>(field.parameters);
@@ -308,7 +328,10 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
                         .log2_table_size = block == blocks.blocks.end() ? 0 : block->log2_table_size,
                         .steps = field.steps,
                         .seconds = field.seconds,
-                        .psnr_db = score == metrics.blocks.end() ? VariantResult::kNone : known(score->psnr_db)});
+                        .psnr_db = score == metrics.blocks.end() ? VariantResult::kNone : known(score->psnr_db),
+                        .falls = static_cast<int>(field.falls.size()),
+                        .shows_context = field.shows_context});
+    AddFalls(curves, field.psnr_db, &r.fields.back());
     if (field.block >= 0) ++r.blocks;
   }
   r.layout = std::to_string(blocks.rows) + "x" + std::to_string(blocks.columns);

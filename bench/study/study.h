@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/study/edited_survey.h"
 #include "bench/study/scale_scores.h"
 #include "coordinator/project/settings.h"
 #include "coordinator/stages/pipeline.h"
@@ -40,8 +41,9 @@ struct Variant {
   std::vector<std::string> photo_prefixes = {};
   // Train only with photos that look straight down to within this angle. Applied before every_nth_photo; held-out photos always stay.
   double max_tilt_deg = 180.0;
+  SurveyEdit edit = SurveyEdit::kNone;  // made to the survey first
 
-  bool AllPhotos() const { return every_nth_photo == 1 && photo_prefixes.empty() && max_tilt_deg >= 180.0; }
+  bool AllPhotos() const { return every_nth_photo == 1 && photo_prefixes.empty() && max_tilt_deg >= 180.0 && edit == SurveyEdit::kNone; }
 };
 
 struct VariantField {
@@ -52,6 +54,10 @@ struct VariantField {
   int64_t steps = 0;
   double seconds = 0.0;
   double psnr_db = std::numeric_limits<double>::quiet_NaN();  // held-out; NaN for the context
+  // Of the training: how often it was taken back after a fall, how far its PSNR fell from its best so far, and how far below its best it ended.
+  int falls = 0;
+  double worst_fall_db = std::numeric_limits<double>::quiet_NaN(), end_below_best_db = std::numeric_limits<double>::quiet_NaN();
+  bool shows_context = false;  // the scene shows the context in its place
 };
 
 // Scores and costs of one variant. NaN: not measured.

@@ -66,7 +66,11 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"samples", field.samples},
                               {"steps", field.steps},
                               {"seconds", field.seconds},
-                              {"psnr_db", OrNull(field.psnr_db)}});
+                              {"psnr_db", OrNull(field.psnr_db)},
+                              {"falls", field.falls},
+                              {"worst_fall_db", OrNull(field.worst_fall_db)},
+                              {"end_below_best_db", OrNull(field.end_below_best_db)},
+                              {"shows_context", field.shows_context}});
   }
   json["scales"] = Json::array();
   for (const ScaleScore& score : result.scales) {
@@ -112,7 +116,11 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .log2_table_size = field.at("log2_table_size").get<int>(),
                              .steps = field.value("steps", int64_t{0}),  // absent in results of older programs, as are scales
                              .seconds = field.at("seconds").get<double>(),
-                             .psnr_db = OrNone(field.at("psnr_db"))});
+                             .psnr_db = OrNone(field.at("psnr_db")),
+                             .falls = field.value("falls", 0),
+                             .worst_fall_db = OrNone(field.value("worst_fall_db", Json(nullptr))),
+                             .end_below_best_db = OrNone(field.value("end_below_best_db", Json(nullptr))),
+                             .shows_context = field.value("shows_context", false)});
   }
   for (const Json& score : json.value("scales", Json::array())) {
     result.scales.push_back({.group = score.at("group").get<std::string>(),

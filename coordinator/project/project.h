@@ -16,6 +16,7 @@ struct Project {
   std::filesystem::path ContextCheckpoint() const { return CheckpointFolder() / "context.h5"; }
   std::filesystem::path BlockCheckpoint(const std::string& block_name) const { return CheckpointFolder() / ("block_" + block_name + ".h5"); }
   std::filesystem::path TrainLog(const std::string& field_name) const { return CheckpointFolder() / (field_name + ".log.csv"); }
+  std::filesystem::path DiagnosticsLog(const std::string& field_name) const { return CheckpointFolder() / (field_name + ".diagnostics.csv"); }
   std::filesystem::path TrainReport() const { return folder / "train.json"; }
   std::filesystem::path PixelCacheFile() const { return folder / "cache" / "pixels.bin"; }
   std::filesystem::path SceneFile() const { return folder / "scene.h5"; }

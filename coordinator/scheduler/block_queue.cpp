@@ -12,6 +12,8 @@ namespace {
 
 // Shortest budget of a block. It may exceed the time budget a little, but no block stays untrained.
 constexpr double kShortestBudget_s = 2.0;
+// A block that is worse than the context after fewer steps has had too few.
+constexpr int64_t kStepsToBlameTheRate = 1000;
 
 }  // namespace
 
@@ -91,8 +93,14 @@ FieldJob BlockQueue::TakeNext(double now_s, std::span<const double> busy_until_s
   return job;
 }
 
+bool BlockQueue::DeservesAnotherTry(const FieldOutcome& outcome) const {
+  if (outcome.failure.kind == Failure::kBlock) return outcome.job.attempt + 1 < options_.max_tries;
+  return outcome.failure.kind == Failure::kNone && outcome.result.ShowsContext() && HasFixedSteps() && outcome.job.attempt == 0 &&
+         outcome.result.steps >= kStepsToBlameTheRate;
+}
+
 bool BlockQueue::RecordOutcome(const FieldOutcome& outcome) {
-  if (outcome.failure.kind == Failure::kBlock && outcome.job.attempt + 1 < options_.max_tries) {
+  if (DeservesAnotherTry(outcome)) {
     const auto found = std::find_if(all_.begin(), all_.end(), [&outcome](const QueueBlock& block) { return block.block == outcome.job.block; });
     SKYQUILT_CHECK(found != all_.end(), outcome.job.name);
     Waiting again{*found, outcome.job.attempt + 1};

@@ -37,8 +37,9 @@ class BlockQueue {
   // Removes and returns the most expensive waiting block (ties: the lower index). At least one block must wait.
   // busy_until_s: when each rank that is training now will be free, on the caller's clock.
   FieldJob TakeNext(double now_s, std::span<const double> busy_until_s);
-  // Stores the result of a job. A failed block waits again, with another seed and half the learning rate, until its tries are used up; returns
-  // true when it waits again.
+  // Stores the result of a job. A failed block waits again, with another seed and half the learning rate, until its tries are used up; a block that
+  // is worse than the context once, where the number of steps is fixed and was not too small: with a time budget, its time is used up. Returns true
+  // when it waits again.
   bool RecordOutcome(const FieldOutcome& outcome);
   // Final outcomes in the order they came.
   const std::vector<FieldOutcome>& outcomes() const { return outcomes_; }
@@ -56,6 +57,7 @@ class BlockQueue {
     int attempt = 0;
   };
   void Insert(const Waiting& entry);
+  bool DeservesAnotherTry(const FieldOutcome& outcome) const;
   // Time budget per unit of cost such that all waiting blocks end at the deadline. The value is reused until 1/500 of the time left has passed:
   // handing out blocks does not change it, and computing it for ten thousand blocks is slow.
   double SecondsPerCost(double now_s, std::span<const double> busy_until_s);

@@ -62,9 +62,10 @@ int ContextSteps(const Settings& settings) {
 
 double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads) {
   const double entries = std::ldexp(1.0, block.log2_table_size);
-  // Parameters and two moments of every level, and the gradient of one level per thread. Other encodings with tables need as much.
+  // Parameters and two moments of every level, once as they are and once as the last good state, and the gradient of one level per thread. Other
+  // encodings with tables need as much.
   const bool tables = encoding::KindNamed(options.encoding) != encoding::Kind::kFrequency;
-  const double table = !tables ? 0.0 : entries * options.features * 4.0 * (3.0 * options.levels + std::min(threads, options.levels));
+  const double table = !tables ? 0.0 : entries * options.features * 4.0 * (6.0 * options.levels + std::min(threads, options.levels));
   const double per_sample = 4.0 * (2.0 * options.levels * options.features + 6.0 * options.hidden + 64.0);
   return table + per_sample * options.batch_samples + 64e6 * threads;
 }
@@ -94,7 +95,9 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
     train.response = plan.response;
     train.learn = plan.learn;
     train.min_views = settings.partition.min_views;
+    train.attempt = job.attempt;
     train.learning_rate_scale = job.rate_factor;
+    if (train.options.diagnostics) train.diagnostics = project.DiagnosticsLog(job.name);
     train.config_hash = config_hash;
     train.seed = job.seed;
     TrainingLog log(project.TrainLog(job.name));

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/base/system.h"
@@ -31,6 +32,29 @@ FieldJob JobFromJson(const json& j) {
 // JSON has no NaN: it is sent as null and read as 0.
 double Number(const json& j, const char* key) {
   return j.contains(key) && j.at(key).is_number() ? j.at(key).get<double>() : 0.0;
+}
+
+// What was found about the training, in objects that the outcome's own text holds.
+json FindingsToJson(const worker::TrainResult& r) {
+  json falls = json::array();
+  for (const worker::Fall& fall : r.falls) falls.push_back({fall.step, fall.best_psnr_db, fall.psnr_db, fall.restored_step});
+  json findings = {{"falls", falls}, {"ended_early", r.ended_early}};
+  if (r.comparison) findings["comparison"] = {r.comparison->block_psnr_db, r.comparison->context_psnr_db, r.comparison->block_is_worse};
+  return findings;
+}
+
+double NumberOf(const json& j) {
+  return j.is_number() ? j.get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+void FindingsFromJson(const json& j, worker::TrainResult& r) {
+  for (const json& fall : j.at("falls")) {
+    r.falls.push_back({fall.at(0).get<int64_t>(), NumberOf(fall.at(1)), NumberOf(fall.at(2)), fall.at(3).get<int64_t>()});
+  }
+  r.ended_early = j.at("ended_early").get<bool>();
+  if (!j.contains("comparison")) return;
+  const json& c = j.at("comparison");
+  r.comparison = worker::ContextComparison{NumberOf(c.at(0)), NumberOf(c.at(1)), c.at(2).get<bool>()};
 }
 
 }  // namespace
@@ -72,6 +96,7 @@ std::string ToText(const FieldOutcome& outcome) {
                   {"parameters", r.parameters},
                   {"psnr", r.final_psnr_db},
                   {"dropped", r.dropped_steps},
+                  {"findings", FindingsToJson(r)},
                   {"phases", r.phase_seconds}};
   return j.dump(-1, ' ', false, json::error_handler_t::replace);
 }
@@ -108,6 +133,7 @@ FieldOutcome OutcomeFromText(const std::string& text) {
   outcome.result.parameters = j.at("parameters").get<int64_t>();
   outcome.result.final_psnr_db = Number(j, "psnr");
   outcome.result.dropped_steps = j.at("dropped").get<int>();
+  if (j.contains("findings")) FindingsFromJson(j.at("findings"), outcome.result);
   if (j.contains("phases")) outcome.result.phase_seconds = j.at("phases").get<std::array<double, worker::kPhases>>();
   return outcome;
 }

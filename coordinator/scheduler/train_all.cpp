@@ -173,7 +173,8 @@ class Training {
     };
     hooks.finished = [&](const FieldOutcome& outcome, bool retried) {
       if (retried) {
-        spdlog::warn("{} failed and is tried again with half the learning rate: {}", outcome.job.name, outcome.failure.reason);
+        spdlog::warn("{} {} and is tried again with half the learning rate", outcome.job.name,
+                     outcome.failure ? "failed (" + outcome.failure.reason + ")" : "shows its photos worse than the context");
         progress.FieldRestarted(outcome.job);
         return;
       }
@@ -212,6 +213,10 @@ class Training {
                  base::FormatDuration(r.seconds), base::FormatCount(static_cast<double>(r.samples)),
                  base::FormatCount(static_cast<double>(r.parameters)), r.final_psnr_db,
                  r.dropped_steps > 0 ? ", " + std::to_string(r.dropped_steps) + " steps dropped because of non-finite values" : "");
+    if (r.ShowsContext()) {
+      spdlog::warn("{}: {:.2f} dB on its training photos, where the context alone has {:.2f} dB: the scene will show the context there",
+                   outcome.job.name, r.comparison->block_psnr_db, r.comparison->context_psnr_db);
+    }
   }
 
   comm::Communicator& comm_;

@@ -53,7 +53,7 @@ void TrainLedger::AddOutcome(const FieldOutcome& outcome) {
   // A field that was already complete was only loaded: keep the time and memory measured when it was trained.
   if (previous != outcomes_.end() && !outcome.failure) {
     const FieldOutcome earlier = OutcomeFromText(previous->second);
-    if (!earlier.failure && earlier.result.steps >= outcome.result.steps) return;
+    if (!earlier.failure && earlier.job.attempt >= outcome.job.attempt && earlier.result.steps >= outcome.result.steps) return;
   }
   outcomes_[outcome.job.name] = ToText(outcome);
   Save();
@@ -84,6 +84,13 @@ scene::TrainReport TrainLedger::Report(int ranks, int threads) const {
     field.parameters = r.parameters;
     field.psnr_db = r.final_psnr_db;
     field.dropped_steps = r.dropped_steps;
+    for (const worker::Fall& fall : r.falls) field.falls.push_back({fall.step, fall.best_psnr_db, fall.psnr_db, fall.restored_step});
+    field.ended_early = r.ended_early;
+    field.shows_context = r.ShowsContext();
+    if (r.comparison) {
+      field.block_psnr_db = r.comparison->block_psnr_db;
+      field.context_psnr_db = r.comparison->context_psnr_db;
+    }
     field.attempts = outcome.job.attempt + 1;
     field.rank = outcome.rank;
     field.threads = outcome.threads;

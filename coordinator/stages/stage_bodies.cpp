@@ -14,6 +14,7 @@
 #include "core/scene/scene.h"
 #include "evaluate/evaluate.h"
 #include "merge/merge.h"
+#include "partition/altitude.h"
 #include "partition/make_blocks.h"
 #include "prepare/prepare.h"
 #include "products/camera_path.h"
@@ -33,6 +34,7 @@ void LogBlocks(const partition::BlockSet& blocks) {
       const Eigen::Vector3d size = block.max_enu - block.min_enu;
       spdlog::info("  {}: {:.0f} x {:.0f} m, {:.1f} m high, {} photos from {:.0f} m above ground, GSD {:.3f} m, 2^{} table entries per level",
                    block.name, size.x(), size.y(), size.z(), block.photos.size(), block.altitude_agl_m, block.gsd_m, block.log2_table_size);
+      if (const std::string doubt = partition::AltitudeDoubt(block); !doubt.empty()) spdlog::warn("  {}: {}", block.name, doubt);
     }
   }
 }
@@ -93,7 +95,11 @@ std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) continue;
     const scene::FieldTraining* field = training.Find(block.name);
-    if (field != nullptr && field->ok) {
+    if (field != nullptr && field->ok && field->shows_context && pipeline.settings.train.coupling != "independent") {
+      spdlog::warn("block {} shows its photos worse than the context does ({:.2f} dB instead of {:.2f} dB): the scene shows the context there",
+                   block.name, field->block_psnr_db, field->context_psnr_db);
+      input.blocks.push_back({.checkpoint = project.BlockCheckpoint(block.name), .gsd_m = block.gsd_m, .shows_context = true});
+    } else if (field != nullptr && field->ok) {
       input.blocks.push_back({.checkpoint = project.BlockCheckpoint(block.name), .gsd_m = block.gsd_m});
     } else {
       spdlog::warn("block {} has no finished checkpoint: the scene shows the coarse context field there. Run 'skyquilt train' to train it again",

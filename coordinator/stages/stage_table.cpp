@@ -165,7 +165,7 @@ std::vector<Stage> MakeTable() {
       {.name = "train",
        .options = {"brightness.", "context.", "train.", "priors.", "run.image_width", "run.time_budget_s", "run.context_share", "run.seed"},
        // How often a field is saved does not change its result.
-       .ignored_options = {"context.checkpoint_every_s", "train.checkpoint_every_s"},
+       .ignored_options = {"context.checkpoint_every_s", "train.checkpoint_every_s", "context.diagnostics", "train.diagnostics"},
        .required = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},
        .inputs =
            [](const Pipeline& pipeline) {

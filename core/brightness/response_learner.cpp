@@ -26,8 +26,8 @@ ResponseLearner::ResponseLearner(Response& response, const LearnerOptions& optio
   SKYQUILT_CHECK(options.learns_gain.size() == photos, "one flag per photo");
   SKYQUILT_CHECK(options.tag_weight.empty() || options.tag_weight.size() == photos, "a tag weight per photo, or none");
   active_ = options.Gains();
-  for (auto* moment : {&moment1_, &moment2_}) moment->assign(3 * photos, 0.0F);
-  steps_.assign(photos, 0);
+  for (auto* moment : {&moments_.first, &moments_.second}) moment->assign(3 * photos, 0.0F);
+  moments_.steps.assign(photos, 0);
   gradient_.assign(3 * photos, 0.0);
   touched_.assign(photos, 0);
   weight_.assign(photos, 0.0);
@@ -54,16 +54,16 @@ void ResponseLearner::Update(float rate) {
   for (size_t i = 0; i < touched_.size(); ++i) {
     if (touched_[i] == 0) continue;
     const bool finite = std::isfinite(gradient_[3 * i]) && std::isfinite(gradient_[3 * i + 1]) && std::isfinite(gradient_[3 * i + 2]);
-    if (finite) ++steps_[i];
-    const auto t = static_cast<float>(steps_[i]);
+    if (finite) ++moments_.steps[i];
+    const auto t = static_cast<float>(moments_.steps[i]);
     const float correction1 = 1.0F - std::pow(kBeta1, t), correction2 = 1.0F - std::pow(kBeta2, t);
     for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
       const auto g = static_cast<float>(gradient_[k]);
       gradient_[k] = 0.0;
       if (!finite) continue;
-      moment1_[k] = kBeta1 * moment1_[k] + (1.0F - kBeta1) * g;
-      moment2_[k] = kBeta2 * moment2_[k] + (1.0F - kBeta2) * g * g;
-      response_.log_gain[k] -= rate * (moment1_[k] / correction1) / (std::sqrt(moment2_[k] / correction2) + 1e-15F);
+      moments_.first[k] = kBeta1 * moments_.first[k] + (1.0F - kBeta1) * g;
+      moments_.second[k] = kBeta2 * moments_.second[k] + (1.0F - kBeta2) * g * g;
+      response_.log_gain[k] -= rate * (moments_.first[k] / correction1) / (std::sqrt(moments_.second[k] / correction2) + 1e-15F);
     }
     touched_[i] = 0;
     weight_[i] = 0.0;
@@ -87,9 +87,9 @@ void ResponseLearner::SubtractMean() {
 
 void ResponseLearner::Put(checkpoint::ArchiveWriter& writer) const {
   writer.SetAttribute("learner_frozen", frozen_ ? 1 : 0);
-  writer.Put("learner/gain_moment1", moment1_);
-  writer.Put("learner/gain_moment2", moment2_);
-  writer.Put("learner/gain_steps", steps_);
+  writer.Put("learner/gain_moment1", moments_.first);
+  writer.Put("learner/gain_moment2", moments_.second);
+  writer.Put("learner/gain_steps", moments_.steps);
 }
 
 void ResponseLearner::Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
@@ -103,9 +103,9 @@ void ResponseLearner::Get(const checkpoint::ArchiveReader& reader, const std::fi
     to = std::move(from);
   };
   frozen_ = reader.IntAttribute("learner_frozen") != 0;
-  take(moment1_, reader.Floats("learner/gain_moment1"), "learner/gain_moment1");
-  take(moment2_, reader.Floats("learner/gain_moment2"), "learner/gain_moment2");
-  take(steps_, reader.Ints("learner/gain_steps"), "learner/gain_steps");
+  take(moments_.first, reader.Floats("learner/gain_moment1"), "learner/gain_moment1");
+  take(moments_.second, reader.Floats("learner/gain_moment2"), "learner/gain_moment2");
+  take(moments_.steps, reader.Ints("learner/gain_steps"), "learner/gain_steps");
 }
 
 }  // namespace skyquilt::brightness

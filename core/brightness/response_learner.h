@@ -44,6 +44,14 @@ class ResponseLearner {
   // Freezes the gains: call it when tie points have given better gains than an unfinished field could. From then on active() is false.
   void Freeze() { frozen_ = true; }
 
+  // Adam's state.
+  struct Moments {
+    std::vector<float> first, second;  // [photo][colour]
+    std::vector<int64_t> steps;        // number of updates per photo
+  };
+  // Together with the response they are all that a step changes: whoever keeps both can go back to them.
+  Moments& moments() { return moments_; }
+
   // Writes moments and counts under "learner/". Together with the response they are the complete state.
   void Put(checkpoint::ArchiveWriter& writer) const;
   // Throws base::InputError when the file has another number of photos.
@@ -56,11 +64,10 @@ class ResponseLearner {
   Response& response_;
   LearnerOptions options_;
   bool active_ = false, frozen_ = false;
-  std::vector<float> moment1_, moment2_;  // [photo][colour]
-  std::vector<int64_t> steps_;            // number of updates per photo
-  std::vector<double> gradient_;          // of this step
-  std::vector<uint8_t> touched_;          // per photo: has a gradient in this step
-  std::vector<double> weight_;            // per photo: sum of the weights of this step's pixels
+  Moments moments_;
+  std::vector<double> gradient_;  // of this step
+  std::vector<uint8_t> touched_;  // per photo: has a gradient in this step
+  std::vector<double> weight_;    // per photo: sum of the weights of this step's pixels
 };
 
 }  // namespace skyquilt::brightness

@@ -14,6 +14,7 @@ OccupancyGrid OccupancyGrid::Make(const double extent[3], double wanted_cell, in
   grid.cell = static_cast<float>(cell);
   grid.tau.assign(static_cast<size_t>(grid.CellCount()), 0.0F);
   grid.occupied.assign(static_cast<size_t>(grid.CellCount()), 1);
+  grid.judged.assign(static_cast<size_t>(grid.CellCount()), 0);
   return grid;
 }
 

@@ -18,6 +18,7 @@ struct OccupancyGrid {
   float cell = 1.0F;              // edge of a cell, unit lengths; the same on all axes
   std::vector<float> tau;         // per cell: decaying maximum of the optical depth of a step; negative: no camera sees the cell
   std::vector<uint8_t> occupied;  // 0 or 1 per cell
+  std::vector<uint8_t> judged;    // 0 or 1 per cell: whether a sample was in it that is not wider than the cell; empty in scenes
 
   // Covers [0, extent] with cells of edge `wanted_cell`, or larger so that there are at most max_cells; all cells occupied.
   static OccupancyGrid Make(const double extent[3], double wanted_cell, int64_t max_cells);
@@ -29,6 +30,14 @@ struct OccupancyGrid {
   void UpdateTau(int64_t index, float step_tau) {
     float& cell_tau = tau[static_cast<size_t>(index)];
     if (cell_tau >= 0.0F) cell_tau = std::max(kDecay * cell_tau, step_tau);
+  }
+  // The same for a sample that trained the field. sharp: it is not wider than the cell. A wider one stands for several cells and counts only where no
+  // sharp one has been, so that a cell that only wide pixels see is freed by evidence too, and never for lack of it.
+  void Observe(int64_t index, float step_tau, bool sharp) {
+    uint8_t& known = judged[static_cast<size_t>(index)];
+    if (!sharp && known != 0) return;
+    if (sharp) known = 1;
+    UpdateTau(index, step_tau);
   }
   // Raises tau of the six neighbours of every cell with tau > solid to at least `wake`, so that a surface can grow into them. Cells never seen stay.
   void RaiseNeighbours(float solid, float wake);

@@ -11,6 +11,7 @@ void OptimizerState::Allocate(const HashField& field) {
   for (auto* buffer : {&grid_moment1, &grid_moment2}) AssignTable(buffer, grid_size);
   for (auto* buffer : {&network_moment1, &network_moment2, &network_gradient}) buffer->assign(network_size, 0.0F);
   step = 0;
+  network_gradient_norm = 0.0;
 }
 
 void AddPartGradient(const HashField& field, int part, const float* table, const kernel::Positions& at, std::span<const FeatureGradient> segments,

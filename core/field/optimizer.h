@@ -17,7 +17,8 @@ namespace skyquilt::field {
 // State of the optimiser: the moments of all parameters, and the gradient of the networks.
 struct OptimizerState {
   std::vector<float> grid_moment1, grid_moment2, network_moment1, network_moment2;
-  int64_t step = 0;  // updates done
+  int64_t step = 0;                    // updates done
+  double network_gradient_norm = 0.0;  // running mean, by which the trainer clips; 0: not known yet
 
   std::vector<float> network_gradient;  // zero between steps, so not saved
 

@@ -29,7 +29,6 @@ Turn Turn::Alternating(int index) {
 }
 
 Cone::Cone(const encoding::SpaceMap& map, const Ray& ray, int points) : ray_(map, ray.origin_enu, ray.direction_enu), points_(points) {
-  if (points <= 1) return;
   if (ray.pixel_pitch > 0.0F) tip_m_ = static_cast<double>(ray.pixel_width) / static_cast<double>(ray.pixel_pitch);
   const Eigen::Vector3d& d = ray.direction_enu;
   // The axis farthest from the ray.
@@ -37,6 +36,11 @@ Cone::Cone(const encoding::SpaceMap& map, const Ray& ray, int points) : ray_(map
   d.cwiseAbs().minCoeff(&axis);
   right_ = d.cross(Eigen::Vector3d::Unit(axis)).normalized();
   up_ = right_.cross(d);
+}
+
+Eigen::Vector3f Cone::Within(double t, double length_m, double width_m, const Eigen::Vector3d& shares) const {
+  const Eigen::Vector3d from_middle = shares.array() - 0.5;
+  return ray_.At(t + from_middle.x() * length_m, width_m * (from_middle.y() * right_ + from_middle.z() * up_));
 }
 
 void Cone::Positions(double t, double length_m, double width_m, Turn turn, float* x, float* y, float* z, size_t step) const {

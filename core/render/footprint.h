@@ -42,6 +42,8 @@ class Cone {
   // Writes `points` positions in the unit frame, `step` floats apart, of the sample in the middle of an interval of `length_m` at distance t.
   // width_m: of the cone at t; positions before and behind the middle take their share of it. Not finite for an infinite width.
   void Positions(double t, double length_m, double width_m, Turn turn, float* x, float* y, float* z, size_t step) const;
+  // One position in the unit frame within that piece of space. shares: along the ray and twice across it, 0 to 1.
+  Eigen::Vector3f Within(double t, double length_m, double width_m, const Eigen::Vector3d& shares) const;
 
  private:
   UnitRay ray_;

@@ -112,6 +112,7 @@ void PutField(const render::TrainedField& f, const std::string& prefix, checkpoi
   const std::vector<int64_t> shape = {f.occupancy.size[2], f.occupancy.size[1], f.occupancy.size[0]};
   writer.Put(prefix + "occupied", f.occupancy.occupied, shape);
   writer.Put(prefix + "occupancy_tau", f.occupancy.tau, shape);
+  writer.PutOwned(prefix + "judged_bits", PackBits(f.occupancy.judged));
 }
 
 void PutSceneField(const render::TrainedField& description, const std::filesystem::path& checkpoint, const std::string& prefix,
@@ -216,6 +217,9 @@ render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std
     f.occupancy.occupied = reader.Bytes(prefix + "occupied");
     f.occupancy.tau = reader.Floats(prefix + "occupancy_tau");
     fits = fits && f.occupancy.occupied.size() == cells && f.occupancy.tau.size() == cells;
+    // In checkpoints of older programs all cells were judged by sharp samples alone.
+    const std::vector<uint8_t> all((cells + 7) / 8, 0xFFU);
+    f.occupancy.judged = UnpackBits(reader.Has(prefix + "judged_bits") ? reader.Bytes(prefix + "judged_bits") : all, cells);
   }
   if (!fits || static_cast<int64_t>(f.parameters.grid.size()) != f.field->GridParameters() ||
       static_cast<int64_t>(f.parameters.networks.size()) != f.field->NetworkParameters() || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {

@@ -11,6 +11,7 @@
 #include "core/render/ray_segments.h"
 #include "core/scene/background.h"
 #include "core/scene/camera_rays.h"
+#include "core/scene/field_file.h"
 #include "core/scene/field_store.h"
 #include "core/scene/paged_renderer.h"
 #include "core/scene/ray_service.h"
@@ -127,22 +128,32 @@ Scene Scene::Load(const std::filesystem::path& scene_h5, const SceneOptions& opt
   info.scales = GetScales(reader);
   impl.scale_check = ScaleCheck(info.scales);
   impl.background = GetBackground(reader, scene_h5);
+  std::vector<SceneBlock> covered;
+  for (int64_t i = 0; reader.HasAttribute(kCoveredBlocksAttribute) && i < reader.IntAttribute(kCoveredBlocksAttribute); ++i) {
+    const render::TrainedField f = GetDescription(reader, scene_h5, CoveredBlockPrefix(i));
+    covered.push_back({f.box, f.name, 0, f.steps, f.seconds, f.samples, true});
+  }
   impl.store = std::make_unique<FieldStore>(std::move(reader), scene_h5, options.memory_bytes, info.borders == Borders::kHard);
   const FieldStore& store = *impl.store;
-  if (store.size() == 0) throw base::InputError(scene_h5, "has no blocks", "Train at least one block, then merge again");
+  if (store.size() == 0 && (covered.empty() || !store.HasContext())) {
+    throw base::InputError(scene_h5, "has no blocks", "Train at least one block, then merge again");
+  }
   info.min_enu = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   info.max_enu = -info.min_enu;
   const auto has_slope = [](const render::TrainedField& f) { return field::HashField(f.config).encoding().HasSlope(); };
   info.density_normals = !store.HasContext() || has_slope(store.context());
-  info.normal_head = true;
+  info.normal_head = store.size() > 0;
   for (int k = 0; k < store.size(); ++k) {
     const render::TrainedField& f = store.block(k);
     info.density_normals = info.density_normals && has_slope(f);
     info.normal_head = info.normal_head && f.config.normal_head;
     info.blocks.push_back({f.box, f.name, store.Parameters(k), f.steps, f.seconds, f.samples});
     info.parameters += store.Parameters(k);
-    info.min_enu = info.min_enu.cwiseMin(f.box.min_enu);
-    info.max_enu = info.max_enu.cwiseMax(f.box.max_enu);
+  }
+  info.blocks.insert(info.blocks.end(), covered.begin(), covered.end());
+  for (const SceneBlock& block : info.blocks) {
+    info.min_enu = info.min_enu.cwiseMin(block.min_enu);
+    info.max_enu = info.max_enu.cwiseMax(block.max_enu);
   }
   impl.segments = std::make_unique<render::RaySegments>(store.Blocks());
   if (store.HasContext()) {

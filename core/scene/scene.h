@@ -31,7 +31,8 @@ struct SceneBlock : geo::BlockBox {
   int64_t parameters = 0;
   int64_t steps = 0;
   double train_seconds = 0.0;
-  int64_t samples = 0;  // evaluated in training
+  int64_t samples = 0;         // evaluated in training
+  bool shows_context = false;  // the context is rendered in its place; parameters is then 0
 };
 
 // How neighbouring blocks are joined.
@@ -49,7 +50,7 @@ struct SceneInfo {
   // Of the survey; unknown in scenes of older programs.
   geo::PlaceAccuracy accuracy;
   geo::HeightReference height_reference = geo::HeightReference::kUnknown;
-  std::vector<SceneBlock> blocks;    // without empty ones
+  std::vector<SceneBlock> blocks;    // without empty ones; those that show the context last
   Eigen::Vector3d min_enu, max_enu;  // union of the core boxes
   brightness::Response response;     // of the photos, relative to light at reference exposure
   brightness::Luminance luminance;   // concealing field, for under- or over-exposed surveys

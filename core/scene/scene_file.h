@@ -20,6 +20,12 @@ inline std::string BlockPrefix(int64_t i) {
   return "blocks/" + std::to_string(i) + "/";
 }
 
+// Blocks in whose place the context is shown: descriptions without arrays. Missing: none.
+constexpr const char* kCoveredBlocksAttribute = "covered_blocks";
+inline std::string CoveredBlockPrefix(int64_t i) {
+  return "covered_blocks/" + std::to_string(i) + "/";
+}
+
 // Throws base::InputError when the file is damaged, is not a scene, or has another version.
 checkpoint::ArchiveReader OpenScene(const std::filesystem::path& scene_h5);
 Borders BordersOf(const checkpoint::ArchiveReader& scene);

@@ -33,12 +33,36 @@ std::string Text(const Json& json, const char* key) {
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+bool Flag(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_boolean() && found->get<bool>();
+}
+
+std::vector<FieldFall> FallsFrom(const Json& json) {
+  std::vector<FieldFall> falls;
+  const auto list = json.find("falls");
+  if (list == json.end() || !list->is_array()) return falls;
+  for (const Json& fall : *list) {
+    if (!fall.is_object()) continue;
+    falls.push_back(
+        {Integer(fall, "step"), Number(fall, "best_psnr_db", kUnknown), Number(fall, "psnr_db", kUnknown), Integer(fall, "restored_step")});
+  }
+  return falls;
+}
+
+Json FallsToJson(const std::vector<FieldFall>& falls) {
+  Json list = Json::array();
+  for (const FieldFall& fall : falls) {
+    list.push_back({{"step", fall.step}, {"best_psnr_db", fall.best_psnr_db}, {"psnr_db", fall.psnr_db}, {"restored_step", fall.restored_step}});
+  }
+  return list;
+}
+
 FieldTraining FieldFrom(const Json& json) {
   FieldTraining field;
   field.name = Text(json, "name");
   field.block = static_cast<int>(Integer(json, "block", field.name == "context" ? -1 : 0));
-  const auto ok = json.find("ok");
-  field.ok = ok != json.end() && ok->is_boolean() && ok->get<bool>();
+  field.ok = Flag(json, "ok");
   field.reason = Text(json, "reason");
   field.steps = Integer(json, "steps");
   field.seconds = Number(json, "seconds", 0.0);
@@ -48,6 +72,11 @@ FieldTraining FieldFrom(const Json& json) {
   field.parameters = Integer(json, "parameters");
   field.psnr_db = Number(json, "psnr_db", kUnknown);
   field.dropped_steps = Integer(json, "dropped_steps");
+  field.falls = FallsFrom(json);
+  field.ended_early = Flag(json, "ended_early");
+  field.block_psnr_db = Number(json, "block_psnr_db", kUnknown);
+  field.context_psnr_db = Number(json, "context_psnr_db", kUnknown);
+  field.shows_context = Flag(json, "shows_context");
   field.attempts = static_cast<int>(Integer(json, "attempts", 1));
   field.rank = static_cast<int>(Integer(json, "rank"));
   field.threads = static_cast<int>(Integer(json, "threads"));
@@ -73,6 +102,11 @@ Json ToJson(const FieldTraining& field) {
           {"parameters", field.parameters},
           {"psnr_db", field.psnr_db},
           {"dropped_steps", field.dropped_steps},
+          {"falls", FallsToJson(field.falls)},
+          {"ended_early", field.ended_early},
+          {"block_psnr_db", field.block_psnr_db},
+          {"context_psnr_db", field.context_psnr_db},
+          {"shows_context", field.shows_context},
           {"attempts", field.attempts},
           {"rank", field.rank},
           {"threads", field.threads},

@@ -3,12 +3,20 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace skyquilt::scene {
+
+// A training that fell apart and was taken back to an earlier state.
+struct FieldFall {
+  int64_t step = 0;                          // at which it was noticed
+  double best_psnr_db = 0.0, psnr_db = 0.0;  // of recent training rays, before and after the fall; NaN: not finite
+  int64_t restored_step = 0;
+};
 
 struct FieldTraining {
   std::string name;         // "context" or a block's name
@@ -21,8 +29,14 @@ struct FieldTraining {
   int64_t samples = 0;        // evaluated in all steps together
   int64_t rays = 0;
   int64_t parameters = 0;
-  double psnr_db = 0.0;       // of recent training rays; NaN when unknown
-  int64_t dropped_steps = 0;  // steps left out because they were not finite
+  double psnr_db = 0.0;               // of recent training rays; NaN when unknown
+  int64_t dropped_steps = 0;          // steps left out because they were not finite
+  std::vector<FieldFall> falls = {};  // of the training
+  bool ended_early = false;           // after too many of them, at its best state
+  // Of a finished block that the context guided, over the same training pixels; NaN when unknown. The scene shows the context where it is clearly
+  // better.
+  double block_psnr_db = std::numeric_limits<double>::quiet_NaN(), context_psnr_db = std::numeric_limits<double>::quiet_NaN();
+  bool shows_context = false;
   int attempts = 1;
   int rank = 0;
   int threads = 0;

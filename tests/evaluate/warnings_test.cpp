@@ -85,6 +85,26 @@ TEST(CollectWarnings, NamesEmptyFailedAndUntrainedBlocks) {
   EXPECT_TRUE(Mentions(warnings, "r0c2"));
 }
 
+TEST(CollectWarnings, SaysWhatFellAndWhereTheContextIsShown) {
+  Case c;
+  c.training->fields[0].falls = {{.step = 5223, .best_psnr_db = 23.6, .psnr_db = 15.9, .restored_step = 4992}};
+  c.training->fields[0].shows_context = true;
+  c.training->fields[0].block_psnr_db = 15.6;
+  c.training->fields[0].context_psnr_db = 19.5;
+  const std::vector<Warning> warnings = c.Collect();
+  EXPECT_TRUE(Mentions(warnings, "fell apart once"));
+  EXPECT_TRUE(Mentions(warnings, "from 23.6 dB to 15.9 dB"));
+  EXPECT_TRUE(Mentions(warnings, "taken back to step 4992"));
+  EXPECT_TRUE(Mentions(warnings, "15.60 dB instead of 19.50 dB"));
+}
+
+TEST(CollectWarnings, SaysWhichGivenHeightsWereNotFlown) {
+  Case c;
+  c.blocks.blocks[0].flown_agl_m = 45.0;
+  c.blocks.blocks[0].altitude_agl_m = 4.0;
+  EXPECT_TRUE(Mentions(c.Collect(), "given as 4 m above ground, but its photos were taken from 45 m"));
+}
+
 TEST(CollectWarnings, EmptyBlocksOfOneReasonAreOneWarning) {
   Case c;
   for (int i = 1; i <= 30; ++i) {
@@ -121,6 +141,10 @@ TEST(CollectWarnings, EachSaysWhatToDoAndLeavesTheFullStopToOthers) {
   untrained.name = "r0c2";
   poor.blocks.blocks.insert(poor.blocks.blocks.end(), {empty, untrained});
   poor.training->fields[0].dropped_steps = 1;
+  poor.training->fields[0].falls = {{.step = 5223, .best_psnr_db = 23.6, .psnr_db = 15.9, .restored_step = 4992}};
+  poor.training->fields[0].shows_context = true;
+  poor.blocks.blocks[0].flown_agl_m = 45.0;
+  poor.blocks.blocks[0].altitude_agl_m = 4.0;
   scene::FieldTraining failed;
   failed.name = "r0c3";
   poor.training->fields.push_back(failed);
@@ -129,9 +153,9 @@ TEST(CollectWarnings, EachSaysWhatToDoAndLeavesTheFullStopToOthers) {
   bare.training.reset();
   bare.metrics.photos.clear();
   std::vector<Warning> warnings = poor.Collect();
-  EXPECT_EQ(warnings.size(), 7U);
+  EXPECT_EQ(warnings.size(), 10U);
   for (const Warning& warning : bare.Collect()) warnings.push_back(warning);
-  EXPECT_EQ(warnings.size(), 9U) << "every kind there is";
+  EXPECT_EQ(warnings.size(), 12U) << "every kind there is";
   for (const Warning& warning : warnings) {
     EXPECT_GE(warning.finding.size(), 20U) << warning.advice;
     EXPECT_GE(warning.advice.size(), 20U) << warning.finding;

@@ -48,15 +48,19 @@ class Merge : public testing::Test {
     scene::PutBackground(background, writer);
     writer.Commit(folder_ / (name + ".h5"));
   }
-  scene::SceneInfo Merged(const geo::PlaceAccuracy& accuracy) const {
+  MergeInput Input() const {
     MergeInput input;
     input.context = folder_ / "context.h5";
     input.blocks = {{.checkpoint = folder_ / "r0c0.h5", .gsd_m = 0.05}};
     if (std::filesystem::exists(folder_ / "r0c1.h5")) input.blocks.push_back({.checkpoint = folder_ / "r0c1.h5", .gsd_m = 0.05});
     input.origin = kOrigin;
     input.georeferenced = true;
-    input.accuracy = accuracy;
     input.scene = folder_ / "scene.h5";
+    return input;
+  }
+  scene::SceneInfo Merged(const geo::PlaceAccuracy& accuracy) const {
+    MergeInput input = Input();
+    input.accuracy = accuracy;
     MergeScene(input);
     return scene::Scene::Load(input.scene).info();
   }
@@ -96,6 +100,42 @@ TEST_F(Merge, TheSceneKnowsTheFootprintsOfAllBlocks) {
   EXPECT_TRUE(info.scales.Cones());
   EXPECT_EQ(info.scales.footprint_min_m, 0.05);
   EXPECT_EQ(info.scales.footprint_max_m, 0.5);
+}
+
+// The place of a block that is worse than the context stays in the scene, but its field does not.
+TEST_F(Merge, TheContextIsShownInThePlaceOfABlock) {
+  Write("block", "r0c1", {});
+  const double wide = Merged({}).max_enu.x();
+  const std::vector<render::Ray> rays = {{{2.0, 2.0, 30.0}, {0.0, 0.0, -1.0}}, {{7.0, 2.0, 30.0}, {0.0, 0.0, -1.0}}};
+  base::ThreadPool threads(1);
+  const auto rendered = [&](const scene::Scene& scene) {
+    std::vector<render::RayColor> out(rays.size());
+    scene.RenderRays(rays, out, {}, threads);
+    return std::pair(out[0].rgb_srgb[0], out[1].rgb_srgb[0]);
+  };
+  MergeInput input = Input();
+  const auto all_blocks = rendered(scene::Scene::Load(input.scene));
+  input.blocks[1].shows_context = true;
+  MergeScene(input);
+  const scene::Scene one = scene::Scene::Load(input.scene);
+  ASSERT_EQ(one.info().blocks.size(), 2U);
+  EXPECT_FALSE(one.info().blocks[0].shows_context);
+  EXPECT_TRUE(one.info().blocks[1].shows_context);
+  EXPECT_EQ(one.info().blocks[1].name, "r0c1");
+  EXPECT_EQ(one.info().blocks[1].parameters, 0);
+  EXPECT_EQ(one.info().max_enu.x(), wide);
+  EXPECT_EQ(rendered(one).first, all_blocks.first);
+  EXPECT_NE(rendered(one).second, all_blocks.second);
+  // All of them: the scene is the context, with the same extent.
+  input.blocks[0].shows_context = true;
+  MergeScene(input);
+  const scene::Scene none = scene::Scene::Load(input.scene);
+  EXPECT_EQ(none.info().blocks.size(), 2U);
+  EXPECT_EQ(none.info().max_enu.x(), wide);
+  EXPECT_EQ(rendered(none).second, rendered(one).second);
+  // Without the context nothing would be left to show.
+  input.use_context = false;
+  EXPECT_THROW(MergeScene(input), base::InputError);
 }
 
 // A single field without them is enough, the context included.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/errors.h"
+#include "partition/altitude.h"
 #include "tests/partition/flown_survey.h"
 
 namespace skyquilt::partition {
@@ -160,6 +161,24 @@ TEST(MakeBlocks, GivenAltitudesSetTheResolution) {
     EXPECT_NEAR(set.blocks[i].gsd_m, options.altitudes[i] / 700.0, 1e-9);
   }
   EXPECT_GT(set.blocks[0].log2_table_size, set.blocks[3].log2_table_size);
+}
+
+// Voxels far finer than the photos' pixels could not be told apart by them.
+TEST(MakeBlocks, GivenAltitudesMakeVoxelsNoFinerThanThePhotosPixels) {
+  PartitionOptions options = Request("1x1");
+  const Block flown = MakeBlocks(FlySurvey({}), options, 0).blocks[0];
+  EXPECT_EQ(AltitudeDoubt(flown), "");
+  options.altitudes = {10.0};
+  const Block low = MakeBlocks(FlySurvey({}), options, 0).blocks[0];
+  EXPECT_NEAR(low.gsd_m, flown.gsd_m, 0.02 * flown.gsd_m);
+  EXPECT_NEAR(low.finest_voxel_m, flown.finest_voxel_m, 0.02 * flown.finest_voxel_m);
+  EXPECT_EQ(low.altitude_agl_m, 10.0);
+  EXPECT_NEAR(low.flown_agl_m, 100.0, 0.5);
+  EXPECT_NE(AltitudeDoubt(low).find("given as 10 m above ground, but its photos were taken from 100 m"), std::string::npos) << AltitudeDoubt(low);
+  options.altitudes = {1000.0};
+  const Block high = MakeBlocks(FlySurvey({}), options, 0).blocks[0];
+  EXPECT_NEAR(high.gsd_m, 10.0 * flown.gsd_m, 0.1 * flown.gsd_m);
+  EXPECT_NE(AltitudeDoubt(high).find("detail is lost"), std::string::npos) << AltitudeDoubt(high);
 }
 
 TEST(MakeBlocks, AltitudeComesFromThePhotosAboveTheBlock) {

@@ -45,9 +45,9 @@ class PriorsTest : public SmallSurvey {
     priors.from = 0.1;
     priors.until = priors.points > 0.0 ? 0.9 : 0.2;  // points begin to fade then
     priors.points_end = 1.0;
-    TrainContext(Job("context.h5", 200), Box(20.0, 0.0), threads, {});
-    TrainBlock(Job("free.h5", 500), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
-    TrainBlock(JobWith("held.h5", 500, priors), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
+    TrainContext(Job("context.h5", 400), Box(20.0, 0.0), threads, {});
+    TrainBlock(Job("free.h5", 1000), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
+    TrainBlock(JobWith("held.h5", 1000, priors), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
   }
   // Rays straight down from 30 m onto the ground beside the box.
   std::vector<render::RayColor> LookDown(const std::string& checkpoint, base::ThreadPool& threads) const {

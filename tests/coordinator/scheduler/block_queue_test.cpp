@@ -51,6 +51,27 @@ TEST(BlockQueue, EqualCostsAreOrderedByIndex) {
   EXPECT_EQ(queue.TakeNext(0.0, {}).block, 2);
 }
 
+// One that is worse than the context, after enough steps, when its steps are fixed: a time budget would be used up.
+TEST(BlockQueue, BlockWorseThanTheContextIsTriedOnceMore) {
+  const auto worse = [](const FieldJob& job, int64_t steps) {
+    FieldOutcome outcome = Outcome(job, true);
+    outcome.result.steps = steps;
+    outcome.result.comparison = worker::ContextComparison{15.0, 20.0, true};
+    return outcome;
+  };
+  BlockQueue queue({{0, "a", 1.0, 0.0}}, {.steps = 4000});
+  EXPECT_TRUE(queue.RecordOutcome(worse(queue.TakeNext(0.0, {}), 4000)));
+  const FieldJob second = queue.TakeNext(0.0, {});
+  EXPECT_EQ(second.attempt, 1);
+  EXPECT_EQ(second.rate_factor, 0.5);
+  EXPECT_FALSE(queue.RecordOutcome(worse(second, 4000)));
+  EXPECT_FALSE(queue.HasWaiting());
+  BlockQueue few({{0, "a", 1.0, 0.0}}, {.steps = 50});
+  EXPECT_FALSE(few.RecordOutcome(worse(few.TakeNext(0.0, {}), 50))) << "it had too few steps";
+  BlockQueue timed({{0, "a", 1.0, 0.0}}, {.has_deadline = true, .deadline_s = 60.0});
+  EXPECT_FALSE(timed.RecordOutcome(worse(timed.TakeNext(0.0, {}), 4000)));
+}
+
 TEST(BlockQueue, FailedBlockIsTriedThreeTimesWithOtherSeedAndHalfTheRate) {
   BlockQueue queue({{0, "a", 1.0, 0.0}}, {.steps = 1, .max_tries = 3, .seed = 5});
   std::set<uint64_t> seeds;

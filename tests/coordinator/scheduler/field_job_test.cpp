@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -34,12 +35,20 @@ TEST(FieldJob, OutcomeReadsBackUnchangedEvenWithStrangeText) {
   outcome.result.final_psnr_db = std::numeric_limits<double>::quiet_NaN();
   outcome.peak_rss_bytes = 123456789012;
   outcome.result.phase_seconds[3] = 1.5;
+  outcome.result.falls = {{5223, 23.6, 15.9, 4992}, {6000, 23.5, std::numeric_limits<double>::quiet_NaN(), 5504}};
+  outcome.result.comparison = worker::ContextComparison{15.5, 20.25, true};
   const FieldOutcome back = OutcomeFromText(ToText(outcome));
   EXPECT_EQ(back.failure.kind, Failure::kInput);
   EXPECT_NE(back.failure.reason.find("\"quoted\"\nsecond line"), std::string::npos);
   EXPECT_EQ(back.result.samples, outcome.result.samples);
   EXPECT_EQ(back.peak_rss_bytes, outcome.peak_rss_bytes);
   EXPECT_EQ(back.result.phase_seconds, outcome.result.phase_seconds);
+  ASSERT_EQ(back.result.falls.size(), 2U);
+  EXPECT_EQ(back.result.falls[0].restored_step, 4992);
+  EXPECT_EQ(back.result.falls[0].psnr_db, 15.9);
+  EXPECT_TRUE(std::isnan(back.result.falls[1].psnr_db));
+  EXPECT_TRUE(back.result.ShowsContext());
+  EXPECT_EQ(back.result.comparison->context_psnr_db, 20.25);
 }
 
 TEST(FieldJob, OutcomeOfAnEarlierVersionsLedgerIsRead) {

@@ -80,6 +80,25 @@ TEST(OccupancyGrid, DilateReachesExactlyItsDistance) {
   EXPECT_EQ(count, 125);
 }
 
+// A wide sample stands for several cells, so it judges only those that no sharp one has been in.
+TEST(OccupancyGrid, WideSamplesJudgeWhereSharpOnesDoNot) {
+  const double extent[3] = {1.0, 1.0, 1.0};
+  OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 8);
+  std::fill(grid.tau.begin(), grid.tau.end(), 0.1F);
+  grid.Observe(1, 0.5F, false);
+  EXPECT_EQ(grid.tau[1], 0.5F);
+  EXPECT_EQ(grid.judged[1], 0);
+  for (int i = 0; i < 60; ++i) grid.Observe(1, 0.0F, false);
+  EXPECT_LT(grid.tau[1], 0.01F);
+  grid.Observe(2, 0.3F, true);
+  grid.Observe(2, 0.9F, false);
+  EXPECT_EQ(grid.tau[2], 0.3F);
+  grid.Observe(3, 0.05F, false);
+  grid.MarkUnsampled(0.1F);
+  for (const int64_t crossed : {1, 2, 3}) EXPECT_GE(grid.tau[static_cast<size_t>(crossed)], 0.0F) << crossed;
+  EXPECT_LT(grid.tau[4], 0.0F);
+}
+
 TEST(OccupancyGrid, ForgetsCellsThatWereNeverSampled) {
   const double extent[3] = {1.0, 1.0, 1.0};
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 8);

@@ -22,8 +22,18 @@ TEST_F(TrainReportFile, IsReadBackAsItWasWritten) {
   TrainReport report{.ranks = 3, .threads = 2, .wall_seconds = 31.5, .config_hash = "abc", .fields = {}};
   FieldTraining context{.name = "context", .ok = true, .steps = 10, .seconds = 20.25, .samples = (int64_t{1} << 60) + 1, .rays = 100};
   context.peak_rss_bytes = 1000;
+  context.falls = {{700, 24.8, 12.1, 640}};
+  context.ended_early = true;
   context.phase_seconds = {{"compose", 0.5}, {"hash forward", 1.5}};
-  FieldTraining failed{.name = "r0c1", .block = 1, .reason = "diverged", .psnr_db = std::nan(""), .attempts = 3, .rank = 2};
+  FieldTraining failed{.name = "r0c1",
+                       .block = 1,
+                       .reason = "diverged",
+                       .psnr_db = std::nan(""),
+                       .block_psnr_db = 15.0,
+                       .context_psnr_db = 19.5,
+                       .shows_context = true,
+                       .attempts = 3,
+                       .rank = 2};
   report.fields = {context, failed};
   WriteTrainReport(report, file_);
   const TrainReport back = ReadTrainReport(file_);
@@ -35,6 +45,15 @@ TEST_F(TrainReportFile, IsReadBackAsItWasWritten) {
   EXPECT_EQ(back.Find("context")->samples, context.samples);
   EXPECT_EQ(back.Find("context")->block, -1);
   EXPECT_EQ(back.Find("context")->phase_seconds, context.phase_seconds);
+  ASSERT_EQ(back.Find("context")->falls.size(), 1U);
+  EXPECT_EQ(back.Find("context")->falls[0].step, 700);
+  EXPECT_EQ(back.Find("context")->falls[0].best_psnr_db, 24.8);
+  EXPECT_EQ(back.Find("context")->falls[0].psnr_db, 12.1);
+  EXPECT_EQ(back.Find("context")->falls[0].restored_step, 640);
+  EXPECT_TRUE(back.Find("context")->ended_early);
+  EXPECT_TRUE(std::isnan(back.Find("context")->block_psnr_db));
+  EXPECT_TRUE(back.Find("r0c1")->shows_context);
+  EXPECT_EQ(back.Find("r0c1")->context_psnr_db, 19.5);
   EXPECT_TRUE(std::isnan(back.Find("r0c1")->psnr_db));
   EXPECT_EQ(back.Find("r0c1")->attempts, 3);
   EXPECT_EQ(back.Find("r9c9"), nullptr);

@@ -1,0 +1,51 @@
+#include "worker/fall_guard.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skyquilt::worker {
+namespace {
+
+// Whether `window` is worse than `best` by this factor and by more than noise.
+bool Worse(const FallGuard::Window& window, const FallGuard::Window& best, double factor) {
+  return window.mean > factor * best.mean && window.mean - best.mean > FallGuard::kSigmas * std::hypot(window.error, best.error);
+}
+
+}  // namespace
+
+FallGuard::Verdict FallGuard::Add(int64_t step, double mean_squared_error, double saturated) {
+  sum_ += mean_squared_error;
+  squares_ += mean_squared_error * mean_squared_error;
+  saturated_ += saturated;
+  ++count_;
+  if (step % kWindow != 0) return Verdict::kNone;
+  const double n = count_;
+  const bool whole = count_ == kWindow;
+  const Window window{sum_ / n, std::sqrt(std::max(0.0, squares_ / n - sum_ / n * (sum_ / n)) / std::max(1.0, n - 1.0))};
+  const bool dense = saturated_ / n > kMostSaturated;
+  Discard();
+  if (!whole || step < kFirstStep) return Verdict::kNone;
+  state_.last = window;
+  const bool bad = dense || Worse(window, state_.best, kBadFactor);
+  state_.bad_in_a_row = bad ? state_.bad_in_a_row + 1 : 0;
+  if (state_.bad_in_a_row >= kBadInARow || Worse(window, state_.best, kWorstFactor)) return Verdict::kFallen;
+  if (bad) return Verdict::kBad;
+  if (window.mean < state_.best.mean) state_.best = window;
+  return window.mean <= kGoodFactor * state_.best.mean ? Verdict::kGood : Verdict::kBad;
+}
+
+bool FallGuard::EndsFallen() const {
+  return std::isfinite(state_.best.mean) && (state_.bad_in_a_row > 0 || Worse(state_.last, state_.best, kEndFactor));
+}
+
+void FallGuard::Discard() {
+  sum_ = squares_ = saturated_ = 0.0;
+  count_ = 0;
+}
+
+void FallGuard::SetState(const State& state) {
+  state_ = state;
+  Discard();
+}
+
+}  // namespace skyquilt::worker

@@ -1,0 +1,68 @@
+// Watches the training error of a field for falls. A training can fall apart with finite numbers: its error rises within some dozens of steps far
+// above what it was, and nothing else shows it.
+// The steps are divided into windows. A window is bad when its mean error exceeds the smallest mean of an earlier window by a factor and by more than
+// the noise of both; enough bad windows in a row are a fall. No clock and no state beside State, so that a resumed training judges as it would have.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace skyquilt::worker {
+
+// A training that fell apart and was taken back.
+struct Fall {
+  int64_t step = 0;           // at which it was noticed
+  double best_psnr_db = 0.0;  // of a window before
+  double psnr_db = 0.0;       // of the window that showed it
+  int64_t restored_step = 0;  // of the state that it was taken back to
+};
+
+class FallGuard {
+ public:
+  static constexpr int kWindow = 32;                 // steps
+  static constexpr int64_t kFirstStep = 256;         // earlier, nothing is judged: surfaces are not found yet
+  static constexpr double kBadFactor = 1.2589254;    // 1 dB
+  static constexpr double kWorstFactor = 1.9952623;  // 3 dB: one window is enough
+  static constexpr int kBadInARow = 2;
+  static constexpr double kGoodFactor = 1.0592537;  // 0.25 dB
+  static constexpr double kEndFactor = 1.0964782;   // 0.4 dB: most that a field may end above its best
+  static constexpr double kSigmas = 5.0;            // of the difference of two windows
+  // Share of the samples that light reaches which are far denser than opaque. A field that fills with them shows the photos no more, whatever its
+  // error.
+  static constexpr double kMostSaturated = 0.25;
+
+  // A window's mean squared error and the standard error of that mean.
+  struct Window {
+    double mean = std::numeric_limits<double>::infinity();
+    double error = 0.0;
+  };
+  // At the end of a window; part of the checkpoint.
+  struct State {
+    Window best, last;
+    int bad_in_a_row = 0;
+  };
+  enum class Verdict {
+    kNone,    // within a window, or too early
+    kGood,    // as good as ever: worth keeping
+    kBad,     // not good, not yet a fall
+    kFallen,  // go back
+  };
+
+  // Of the step with this number, 1 for the first. mean_squared_error: of its rays. saturated: share of its samples, 0..1.
+  Verdict Add(int64_t step, double mean_squared_error, double saturated);
+  // Whether the training, which ends now, must not end as it is: the last window is worse than the best by kEndFactor and by more than noise.
+  bool EndsFallen() const;
+  // Forgets the current window. Call it when the field was taken back.
+  void Discard();
+
+  const State& state() const { return state_; }
+  void SetState(const State& state);
+
+ private:
+  State state_;
+  double sum_ = 0.0, squares_ = 0.0, saturated_ = 0.0;
+  int count_ = 0;
+};
+
+}  // namespace skyquilt::worker

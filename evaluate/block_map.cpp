@@ -38,7 +38,8 @@ std::string Blocks(const ReportInput& input, const MapFrame& frame) {
   for (const partition::Block& block : input.blocks->blocks) {
     const scene::FieldTraining* log = input.training->Find(block.name);
     const bool failed = log != nullptr && !log->ok;
-    const std::string value = block.empty ? "empty" : failed ? "failed" : HeldOutPsnr(input, block);
+    const bool context = log != nullptr && log->shows_context;
+    const std::string value = block.empty ? "empty" : failed ? "failed" : HeldOutPsnr(input, block) + (context ? ", shows the context" : "");
     svg += "<g>";
     if (!block.empty) svg += Rect(frame, block.TrainMin(), block.TrainMax(), "margin");
     svg += Rect(frame, block.min_enu, block.max_enu, block.empty ? "block empty" : failed ? "block failed" : "block");

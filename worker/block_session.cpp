@@ -1,6 +1,7 @@
 #include "worker/block_session.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -21,40 +22,50 @@ int64_t IntOr(const checkpoint::ArchiveReader& reader, const char* name, int64_t
   return reader.HasAttribute(name) ? reader.IntAttribute(name) : missing;
 }
 
-// Writes what the guard knows and found. Returns numbers that the writer refers to.
-std::vector<double> PutGuard(const TrainJob& job, const SessionRecord& record, checkpoint::ArchiveWriter& writer) {
-  const FallGuard::State& guard = record.guard;
+// Writes what the guard knows and found. Returns the numbers that the writer refers to.
+std::array<std::vector<double>, 2> PutGuard(const TrainJob& job, const SessionRecord& record, checkpoint::ArchiveWriter& writer) {
   writer.SetAttribute("attempt", static_cast<int64_t>(job.attempt));
   writer.SetAttribute("learning_rate_scale", job.learning_rate_scale);
   writer.SetAttribute("rate_factor", record.rate_factor);
   writer.SetAttribute("ended_early", static_cast<int64_t>(record.ended_early ? 1 : 0));
-  if (std::isfinite(guard.best.mean)) {
-    writer.SetAttribute("guard_best", guard.best.mean);
-    writer.SetAttribute("guard_best_error", guard.best.error);
-    writer.SetAttribute("guard_last", guard.last.mean);
-    writer.SetAttribute("guard_last_error", guard.last.error);
-    writer.SetAttribute("guard_bad_in_a_row", static_cast<int64_t>(guard.bad_in_a_row));
-  }
   if (record.comparison) {
     writer.SetAttribute("block_psnr_db", record.comparison->block_psnr_db);
     writer.SetAttribute("context_psnr_db", record.comparison->context_psnr_db);
     writer.SetAttribute("block_is_worse", static_cast<int64_t>(record.comparison->block_is_worse ? 1 : 0));
   }
-  std::vector<double> falls;
+  const FallGuard::State& g = record.guard;
+  std::array<std::vector<double>, 2> numbers;
+  numbers[0] = {g.best.mean,
+                g.best.error,
+                g.last.mean,
+                g.last.error,
+                static_cast<double>(g.bad_in_a_row),
+                g.sum,
+                g.squares,
+                g.saturated,
+                static_cast<double>(g.count)};
+  writer.Put("guard", numbers[0]);
   for (const Fall& fall : record.falls) {
-    falls.insert(falls.end(), {static_cast<double>(fall.step), fall.best_psnr_db, fall.psnr_db, static_cast<double>(fall.restored_step)});
+    numbers[1].insert(numbers[1].end(), {static_cast<double>(fall.step), fall.best_psnr_db, fall.psnr_db, static_cast<double>(fall.restored_step)});
   }
-  if (!falls.empty()) writer.Put("falls", falls, {static_cast<int64_t>(record.falls.size()), 4});
-  return falls;
+  if (!record.falls.empty()) writer.Put("falls", numbers[1], {static_cast<int64_t>(record.falls.size()), 4});
+  return numbers;
 }
 
 void GetGuard(const checkpoint::ArchiveReader& reader, SessionRecord& record) {
   record.rate_factor = DoubleOr(reader, "rate_factor", 1.0);
   record.ended_early = IntOr(reader, "ended_early", 0) != 0;
-  if (reader.HasAttribute("guard_best")) {
-    record.guard = {.best = {reader.DoubleAttribute("guard_best"), reader.DoubleAttribute("guard_best_error")},
-                    .last = {reader.DoubleAttribute("guard_last"), reader.DoubleAttribute("guard_last_error")},
-                    .bad_in_a_row = static_cast<int>(reader.IntAttribute("guard_bad_in_a_row"))};
+  if (reader.Has("guard")) {
+    const std::vector<double> g = reader.Doubles("guard");
+    if (g.size() == 9) {
+      record.guard = {.best = {g[0], g[1]},
+                      .last = {g[2], g[3]},
+                      .bad_in_a_row = static_cast<int>(g[4]),
+                      .sum = g[5],
+                      .squares = g[6],
+                      .saturated = g[7],
+                      .count = static_cast<int>(g[8])};
+    }
   }
   if (reader.HasAttribute("block_is_worse")) {
     record.comparison = {reader.DoubleAttribute("block_psnr_db"), reader.DoubleAttribute("context_psnr_db"),
@@ -89,7 +100,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   writer.SetAttribute("dropped_steps", static_cast<int64_t>(record.dropped_steps));
   writer.SetAttribute("mean_squared_error", record.mean_squared_error);
   writer.SetAttribute("network_gradient_norm", state.network_gradient_norm);
-  const std::vector<double> guard = PutGuard(job, record, writer);  // must exist until Commit
+  const std::array<std::vector<double>, 2> guard = PutGuard(job, record, writer);  // must exist until Commit
   writer.SetAttribute("complete", static_cast<int64_t>(record.complete ? 1 : 0));
   writer.SetAttribute("origin_latitude_deg", job.survey->origin.latitude_deg);
   writer.SetAttribute("origin_longitude_deg", job.survey->origin.longitude_deg);

@@ -14,16 +14,18 @@ bool Worse(const FallGuard::Window& window, const FallGuard::Window& best, doubl
 }  // namespace
 
 FallGuard::Verdict FallGuard::Add(int64_t step, double mean_squared_error, double saturated) {
-  sum_ += mean_squared_error;
-  squares_ += mean_squared_error * mean_squared_error;
-  saturated_ += saturated;
-  ++count_;
+  State& s = state_;
+  s.sum += mean_squared_error;
+  s.squares += mean_squared_error * mean_squared_error;
+  s.saturated += saturated;
+  ++s.count;
   if (step % kWindow != 0) return Verdict::kNone;
-  const double n = count_;
-  const bool whole = count_ == kWindow;
-  const Window window{sum_ / n, std::sqrt(std::max(0.0, squares_ / n - sum_ / n * (sum_ / n)) / std::max(1.0, n - 1.0))};
-  const bool dense = saturated_ / n > kMostSaturated;
-  Discard();
+  const double n = s.count, mean = s.sum / n;
+  const Window window{mean, std::sqrt(std::max(0.0, s.squares / n - mean * mean) / std::max(1.0, n - 1.0))};
+  const bool dense = s.saturated / n > kMostSaturated;
+  const bool whole = s.count == kWindow;
+  s.sum = s.squares = s.saturated = 0.0;
+  s.count = 0;
   if (!whole || step < kFirstStep) return Verdict::kNone;
   state_.last = window;
   const bool bad = dense || Worse(window, state_.best, kBadFactor);
@@ -36,16 +38,6 @@ FallGuard::Verdict FallGuard::Add(int64_t step, double mean_squared_error, doubl
 
 bool FallGuard::EndsFallen() const {
   return std::isfinite(state_.best.mean) && (state_.bad_in_a_row > 0 || Worse(state_.last, state_.best, kEndFactor));
-}
-
-void FallGuard::Discard() {
-  sum_ = squares_ = saturated_ = 0.0;
-  count_ = 0;
-}
-
-void FallGuard::SetState(const State& state) {
-  state_ = state;
-  Discard();
 }
 
 }  // namespace skyquilt::worker

@@ -37,10 +37,13 @@ class FallGuard {
     double mean = std::numeric_limits<double>::infinity();
     double error = 0.0;
   };
-  // At the end of a window; part of the checkpoint.
+  // Part of the checkpoint.
   struct State {
     Window best, last;
     int bad_in_a_row = 0;
+    // Sums over the steps of the present window so far.
+    double sum = 0.0, squares = 0.0, saturated = 0.0;
+    int count = 0;
   };
   enum class Verdict {
     kNone,    // within a window, or too early
@@ -53,16 +56,11 @@ class FallGuard {
   Verdict Add(int64_t step, double mean_squared_error, double saturated);
   // Whether the training, which ends now, must not end as it is: the last window is worse than the best by kEndFactor and by more than noise.
   bool EndsFallen() const;
-  // Forgets the current window. Call it when the field was taken back.
-  void Discard();
-
   const State& state() const { return state_; }
-  void SetState(const State& state);
+  void SetState(const State& state) { state_ = state; }
 
  private:
   State state_;
-  double sum_ = 0.0, squares_ = 0.0, saturated_ = 0.0;
-  int count_ = 0;
 };
 
 }  // namespace skyquilt::worker

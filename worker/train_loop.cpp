@@ -190,6 +190,7 @@ void TrainLoop::Report(double fraction) {
 
 // Writes the last good state, or before there is one the present state.
 void TrainLoop::Save() {
+  if (good_.Empty()) record_.guard = guard_.state();
   const auto save = [this] { SaveSession(kind_, job_, target_, trainer_, record_, extras_, nullptr); };
   const int64_t step = good_.Empty() ? trainer_.state().step : good_.step();
   if (step == saved_step_) return;

@@ -21,7 +21,7 @@ struct StabilityFlags {
 
 // Small photos and batches: many steps in a short time.
 const std::vector<config::Override> kShort = {
-    {"run.image_width", "480"},   {"train.batch_samples", "8192"}, {"context.batch_samples", "8192"},     {"products.preview", "false"},
+    {"run.image_width", "480"},   {"train.batch_samples", "2048"}, {"context.batch_samples", "2048"},     {"products.preview", "false"},
     {"evaluate.max_photos", "6"}, {"evaluate.report_photos", "1"}, {"evaluate.report_image_width", "320"}};
 
 struct NamedSurvey {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/base/errors.h"
 #include "core/brightness/luminance.h"
 #include "core/brightness/response.h"
 #include "core/scene/background.h"

@@ -71,8 +71,14 @@ TEST(FieldJob, StatusWithANonFiniteLossIsSent) {
 TEST(RunField, EveryExceptionBecomesAnOutcome) {
   const auto failure = [](const FieldTrainer& trainer) { return RunField(trainer, {}, kSilent, 1, 2).failure.kind; };
   using Result = worker::TrainResult;
-  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) { return Result{.ok = true, .reason = ""}; }), Failure::kNone);
-  EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) { return Result{.ok = false, .reason = "x"}; }), Failure::kBlock);
+  const auto result = [](bool ok, const std::string& reason) {
+    Result made;
+    made.ok = ok;
+    made.reason = reason;
+    return made;
+  };
+  EXPECT_EQ(failure([&](const FieldJob&, const worker::Reporter&) { return result(true, ""); }), Failure::kNone);
+  EXPECT_EQ(failure([&](const FieldJob&, const worker::Reporter&) { return result(false, "x"); }), Failure::kBlock);
   EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) -> Result { throw std::bad_alloc(); }), Failure::kBlock);
   EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) -> Result { throw std::logic_error("x"); }), Failure::kBlock);
   EXPECT_EQ(failure([](const FieldJob&, const worker::Reporter&) -> Result { throw base::InputError("a", "b", "c"); }), Failure::kInput);

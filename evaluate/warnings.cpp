@@ -7,7 +7,6 @@
 #include <map>
 #include <string>
 
-#include "core/page/html.h"
 #include "partition/altitude.h"
 
 namespace skyquilt::evaluate {
@@ -23,6 +22,10 @@ std::string Names(const std::vector<std::string>& names) {
   for (size_t i = 0; i < names.size() && i < kShown; ++i) text += (i == 0 ? "" : ", ") + names[i];
   if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
   return text;
+}
+
+std::string Decibels(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f} dB", value, decimals) : "values that are not finite";
 }
 
 // "Block a is", "Blocks a and 3 more are"
@@ -81,18 +84,18 @@ void AboutBlocks(const partition::BlockSet& blocks, const scene::TrainReport* tr
 void AboutFalls(const std::string& name, const scene::FieldTraining& field, std::vector<Warning>* warnings) {
   if (!field.falls.empty()) {
     const scene::FieldFall& last = field.falls.back();
-    warnings->push_back({fmt::format("Training of {} fell apart {} (the last time from {} to {} of training PSNR at step {}) and was taken back to "
-                                     "step {}{}",
-                                     name, field.falls.size() == 1 ? "once" : fmt::format("{} times", field.falls.size()),
-                                     page::FormatFixed(last.best_psnr_db, 1, "dB"), page::FormatFixed(last.psnr_db, 1, "dB"), last.step,
-                                     last.restored_step, field.ended_early ? ", where it ended" : ""),
-                         "What is shown is its best state. If it looks poor, lower train.learning_rate and train again with --restart"});
+    warnings->push_back(
+        {fmt::format("Training of {} fell apart {} (the last time from {} to {} of training PSNR at step {}) and was taken back to "
+                     "step {}{}",
+                     name, field.falls.size() == 1 ? "once" : fmt::format("{} times", field.falls.size()), Decibels(last.best_psnr_db, 1),
+                     Decibels(last.psnr_db, 1), last.step, last.restored_step, field.ended_early ? ", where it ended" : ""),
+         "What is shown is its best state. If it looks poor, lower train.learning_rate and train again with --restart"});
   }
   if (field.shows_context) {
     warnings->push_back(
         {fmt::format("Block {} shows its photos worse than the coarse context does ({} instead of {} on the same training pixels), so "
                      "the context is shown in its place",
-                     field.name, page::FormatFixed(field.block_psnr_db, 2, "dB"), page::FormatFixed(field.context_psnr_db, 2, "dB")),
+                     field.name, Decibels(field.block_psnr_db, 2), Decibels(field.context_psnr_db, 2)),
          fmt::format("It was trained for {} steps. Train longer with --time-budget, or cut fewer blocks with --blocks", field.steps)});
   }
 }

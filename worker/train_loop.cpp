@@ -61,7 +61,7 @@ bool TrainLoop::Run() {
     ReportIfDue(fraction);
     SaveIfDue();
   }
-  if (!record_.ended_early && !good_.Empty() && guard_.EndsFallen()) TakeBack(guard_.state().last.mean);
+  if (!record_.ended_early && !good_.Empty() && guard_.EndsFallen()) EndAtBest();
   MarkUnsampledCells();
   if (recent_.seconds > 0.0) Report(1.0);
   return true;
@@ -134,23 +134,36 @@ void TrainLoop::Judge(const StepResult& step) {
   }
 }
 
+void TrainLoop::RestoreGoodState() {
+  good_.Restore();
+  guard_.SetState(record_.guard);
+  dropped_in_a_row_ = 0;
+}
+
+void TrainLoop::EndAtBest() {
+  const FallGuard::State& guard = guard_.state();
+  // A fall that two windows would have shown.
+  if (guard.bad_in_a_row > 0) return TakeBack(guard.last.mean);
+  spdlog::info("{}: ends {:.1f} dB below its best, so the state of step {} is kept instead", Name(),
+               PsnrOfError(guard.best.mean) - PsnrOfError(guard.last.mean), good_.step());
+  RestoreGoodState();
+}
+
 void TrainLoop::TakeBack(double fell_to) {
   Fall fall;
   fall.step = trainer_.state().step;
   fall.best_psnr_db = PsnrOfError(guard_.state().best.mean);
   fall.psnr_db = PsnrOfError(fell_to);
   fall.restored_step = good_.step();
-  good_.Restore();
-  guard_.SetState(record_.guard);
-  dropped_in_a_row_ = 0;
+  RestoreGoodState();
   record_.falls.push_back(fall);
   record_.rate_factor *= kRateAfterFall;
   record_.ended_early = record_.falls.size() >= kMostFalls;
   const std::string what = std::isnan(fall.psnr_db)                  ? "gave values that are not finite"
                            : fall.psnr_db >= fall.best_psnr_db - 0.1 ? "filled space with density"
                                                                      : fmt::format("fell from {:.1f} to {:.1f} dB", fall.best_psnr_db, fall.psnr_db);
-  spdlog::warn("{}: training {} at step {} and is taken back to step {}{}", kind_ == "context" ? kind_ : "block " + target_.name, what, fall.step,
-               fall.restored_step, record_.ended_early ? ", where it ends" : ", with half the learning rate from there");
+  spdlog::warn("{}: training {} at step {} and is taken back to step {}{}", Name(), what, fall.step, fall.restored_step,
+               record_.ended_early ? ", where it ends" : ", with half the learning rate from there");
 }
 
 void TrainLoop::RecordCounts(const StepResult& step) {

@@ -39,8 +39,12 @@ class TrainLoop {
   bool RecordError(const StepResult& step);
   // Keeps the state or takes it back, as the guard says.
   void Judge(const StepResult& step);
-  // Goes back to the last good state. fell_to: mean squared error that shows the fall; NaN: values were not finite.
+  void RestoreGoodState();
+  // After a fall. fell_to: mean squared error that shows it; NaN: values were not finite.
   void TakeBack(double fell_to);
+  // Of a training that is over and is worse than it was.
+  void EndAtBest();
+  std::string Name() const { return kind_ == "context" ? kind_ : "block " + target_.name; }  // for the log
   void RecordCounts(const StepResult& step);
   void ReportIfDue(double fraction);
   void Report(double fraction);

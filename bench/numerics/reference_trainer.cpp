@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kMaxLogTau = 15.0;
 const double kHiddenBehind = -std::log(1e-3);
-constexpr double kLeastSlope = 0.02;
+// Of a colour, but only towards the middle of its range; and the optical depth of a sample from which on it gets no denser.
+constexpr double kLeastSlope = 0.02, kNoDenserTau = 5.0;
 
 // IEC 61966-2-1 and its derivatives.
 double ToLinear(double srgb) {
@@ -143,9 +144,12 @@ ReferenceResult ReferenceTrainer::Ray(const worker::RayBatch& batch, const worke
     behind_sum += lit[i].weight * by_weight[i];
     std::array<double, 3> raw_gradient;
     for (size_t c = 0; c < 3; ++c) {
-      raw_gradient[c] = rgb_gradient[c] * lit[i].weight * std::max(lit[i].rgb[c] * (1.0 - lit[i].rgb[c] / range), kLeastSlope);
+      const double slope = lit[i].rgb[c] * (1.0 - lit[i].rgb[c] / range);
+      const bool inwards = (rgb_gradient[c] > 0.0) == (lit[i].rgb[c] > 0.5 * range);
+      raw_gradient[c] = rgb_gradient[c] * lit[i].weight * (inwards ? std::max(slope, kLeastSlope) : slope);
     }
-    reference_.Backward(state.networks, lit[i].sample, tau_gradient * lit[i].tau, raw_gradient, *grid_gradient, *network_gradient);
+    const double denser = lit[i].tau > kNoDenserTau && tau_gradient < 0.0 ? 0.0 : tau_gradient * lit[i].tau;
+    reference_.Backward(state.networks, lit[i].sample, denser, raw_gradient, *grid_gradient, *network_gradient);
   }
   return result;
 }

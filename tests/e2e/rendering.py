@@ -56,7 +56,8 @@ def test(skyquilt, folder):
     project = folder / "project"
     skyquilt.call("prepare", survey, "-o", project)
     skyquilt.call("partition", project, "--blocks", "1x3", "--set", "partition.max_log2_table_size=14")
-    skyquilt.call("train", project, "--steps", "60", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096")
+    # A context that the blocks soon surpass: it would be shown in their place otherwise.
+    skyquilt.call("train", project, "--steps", "60", "--set", "context.steps=10", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096")
     skyquilt.call("merge", project)
     fields = bytes_of_fields(json.loads(skyquilt.call("info", project / "scene.h5", "--json")))
     # Memory of each rank: too little for the whole scene, but enough for the context and any two neighbouring blocks.

@@ -28,7 +28,7 @@ FallGuard::Verdict FallGuard::Add(int64_t step, double mean_squared_error, doubl
   s.count = 0;
   if (!whole || step < kFirstStep) return Verdict::kNone;
   state_.last = window;
-  const bool bad = dense || Worse(window, state_.best, kBadFactor);
+  const bool bad = Worse(window, state_.best, dense ? kGoodFactor : kBadFactor);
   state_.bad_in_a_row = bad ? state_.bad_in_a_row + 1 : 0;
   if (state_.bad_in_a_row >= kBadInARow || Worse(window, state_.best, kWorstFactor)) return Verdict::kFallen;
   if (bad) return Verdict::kBad;

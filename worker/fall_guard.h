@@ -28,8 +28,8 @@ class FallGuard {
   static constexpr double kGoodFactor = 1.0592537;  // 0.25 dB
   static constexpr double kEndFactor = 1.0964782;   // 0.4 dB: most that a field may end above its best
   static constexpr double kSigmas = 5.0;            // of the difference of two windows
-  // Share of the samples that light reaches which are far denser than opaque. A field that fills with them shows the photos no more, whatever its
-  // error.
+  // Share of the samples that light reaches which are far denser than opaque. While space fills with them, a window is bad that is not good. Alone
+  // they mean nothing: hard surfaces are as dense.
   static constexpr double kMostSaturated = 0.25;
 
   // A window's mean squared error and the standard error of that mean.

@@ -32,7 +32,7 @@ void CopyInto(const field::OptimizerState& from, field::OptimizerState& to) {
 }  // namespace
 
 int64_t GoodState::Interval(int64_t parameters, int batch) {
-  const int64_t steps = std::clamp<int64_t>(parameters / std::max(1, batch), 2 * FallGuard::kWindow, 1024);
+  const int64_t steps = std::clamp<int64_t>(parameters / (2 * std::max(1, batch)), 2 * FallGuard::kWindow, 512);
   return (steps + FallGuard::kWindow - 1) / FallGuard::kWindow * FallGuard::kWindow;
 }
 

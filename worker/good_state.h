@@ -17,7 +17,7 @@ class GoodState {
   bool Empty() const { return empty_; }
   // Of the kept state, updates done.
   int64_t step() const { return optimizer_.step; }
-  // Steps between two states: copying takes less than about one per cent of the training. parameters: of the field; batch: samples per step. A
+  // Steps between two states: copying takes about one per cent of the training. parameters: of the field; batch: samples per step. A
   // multiple of FallGuard::kWindow.
   static int64_t Interval(int64_t parameters, int batch);
 

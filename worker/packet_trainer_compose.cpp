@@ -10,8 +10,8 @@ namespace {
 constexpr float kLeastColorSlope = 0.02F;
 // tau of a sample beyond which it gets no denser: less than 1 % of the light passes, so more density changes nothing but its own parameters.
 constexpr float kNoDenserTau = 5.0F;
-// For the diagnostics: a sample this dense has left the range that a scene can need.
-constexpr float kSaturatedTau = 1e3F;
+// A sample this dense has left the range that a scene can need.
+constexpr float kSaturatedTau = 1e4F;
 
 }  // namespace
 

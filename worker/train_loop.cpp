@@ -159,9 +159,8 @@ void TrainLoop::TakeBack(double fell_to) {
   record_.falls.push_back(fall);
   record_.rate_factor *= kRateAfterFall;
   record_.ended_early = record_.falls.size() >= kMostFalls;
-  const std::string what = std::isnan(fall.psnr_db)                  ? "gave values that are not finite"
-                           : fall.psnr_db >= fall.best_psnr_db - 0.1 ? "filled space with density"
-                                                                     : fmt::format("fell from {:.1f} to {:.1f} dB", fall.best_psnr_db, fall.psnr_db);
+  const std::string what =
+      std::isnan(fall.psnr_db) ? "gave values that are not finite" : fmt::format("fell from {:.1f} to {:.1f} dB", fall.best_psnr_db, fall.psnr_db);
   spdlog::warn("{}: training {} at step {} and is taken back to step {}{}", Name(), what, fall.step, fall.restored_step,
                record_.ended_early ? ", where it ends" : ", with half the learning rate from there");
 }

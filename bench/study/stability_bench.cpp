@@ -133,6 +133,7 @@ std::string WorstChart(const std::vector<StabilityRun>& runs, const char* title,
     at->second = std::max(at->second, value);
   }
   std::vector<page::Bar> bars;
+  bars.reserve(order.size());
   for (const std::string& row : order) bars.push_back({.label = row, .value = worst[row], .limit = kMostBelowBest_db});
   return page::BarChart(bars, {.title = title, .x_label = "dB", .limit_name = fmt::format("{:g} dB", kMostBelowBest_db)});
 }

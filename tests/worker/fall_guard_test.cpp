@@ -56,12 +56,15 @@ TEST(FallGuardTest, TheFirstStepsAreNotJudged) {
   EXPECT_EQ(FirstFall(guard, FallGuard::kFirstStep, 1000, [](int64_t) { return Db(10.0); }), 0);
 }
 
-TEST(FallGuardTest, DensityEverywhereIsAFallWhateverTheError) {
-  FallGuard guard;
-  EXPECT_EQ(FirstFall(guard, 1, 640, [](int64_t) { return Db(20.0); }), 0);
+TEST(FallGuardTest, WithDensityEverywhereASmallerFallIsEnough) {
+  const auto error = [](int64_t step) { return Db(step <= 640 ? 20.0 : 19.5); };
+  FallGuard solid, filled, hard;
+  EXPECT_EQ(FirstFall(solid, 1, 1000, error), 0);
+  EXPECT_EQ(FirstFall(filled, 1, 1000, error, 0.9), 704);
   EXPECT_EQ(FirstFall(
-                guard, 641, 1000, [](int64_t) { return Db(20.0); }, 0.9),
-            704);
+                hard, 1, 1000, [](int64_t) { return Db(20.0); }, 0.9),
+            0)
+      << "density alone means nothing";
 }
 
 TEST(FallGuardTest, ATrainingMustNotEndBelowItsBest) {

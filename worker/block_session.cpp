@@ -40,6 +40,9 @@ std::array<std::vector<double>, 2> PutGuard(const TrainJob& job, const SessionRe
                 g.last.mean,
                 g.last.error,
                 static_cast<double>(g.bad_in_a_row),
+                g.swing,
+                g.previous,
+                static_cast<double>(g.windows),
                 g.sum,
                 g.squares,
                 g.saturated,
@@ -57,14 +60,17 @@ void GetGuard(const checkpoint::ArchiveReader& reader, SessionRecord& record) {
   record.ended_early = IntOr(reader, "ended_early", 0) != 0;
   if (reader.Has("guard")) {
     const std::vector<double> g = reader.Doubles("guard");
-    if (g.size() == 9) {
+    if (g.size() == 12) {
       record.guard = {.best = {g[0], g[1]},
                       .last = {g[2], g[3]},
                       .bad_in_a_row = static_cast<int>(g[4]),
-                      .sum = g[5],
-                      .squares = g[6],
-                      .saturated = g[7],
-                      .count = static_cast<int>(g[8])};
+                      .swing = g[5],
+                      .windows = static_cast<int>(g[7]),
+                      .previous = g[6],
+                      .sum = g[8],
+                      .squares = g[9],
+                      .saturated = g[10],
+                      .count = static_cast<int>(g[11])};
     }
   }
   if (reader.HasAttribute("block_is_worse")) {

@@ -6,12 +6,32 @@
 namespace skyquilt::worker {
 namespace {
 
-// Whether `window` is worse than `best` by this factor and by more than noise.
-bool Worse(const FallGuard::Window& window, const FallGuard::Window& best, double factor) {
-  return window.mean > factor * best.mean && window.mean - best.mean > FallGuard::kSigmas * std::hypot(window.error, best.error);
-}
+constexpr double kSwingFollows = 0.05;
+constexpr int kFirstWindows = 24;  // whose swing is always learned; later, that of windows that are worse than the best might be a slow fall
+constexpr double kMostUp = 0.25, kMostUpSwings = 4.0;
+constexpr double kMostSwings = 10.0;  // a window and the best of hundreds, both of a field that swings slowly
+// A window that is this many swings worse than the best, which is the luckiest of many, is still good.
+constexpr double kGoodSwings = 1.5;
 
 }  // namespace
+
+bool FallGuard::Worse(const Window& window, double factor) const {
+  return window.mean > factor * state_.best.mean && window.mean - state_.best.mean > kSigmas * std::hypot(window.error, state_.best.error) &&
+         std::log(window.mean / state_.best.mean) > kMostSwings * std::sqrt(state_.swing);
+}
+
+void FallGuard::LearnSwing(double mean) {
+  if (!(mean > 0.0)) return;
+  if (state_.previous > 0.0) {
+    // Steps up only: a training that gets better fast does not swing. Of noise, every other step is one, so their mean square is its variance.
+    // Cut off, so that the beginning of a fall does not hide the rest of it.
+    const double most = state_.windows < kFirstWindows ? kMostUp : std::min(kMostUp, kMostUpSwings * std::sqrt(state_.swing) + 1e-3);
+    const double up = std::clamp(std::log(mean / state_.previous), 0.0, most);
+    const double follow = std::max(kSwingFollows, 1.0 / ++state_.windows);
+    state_.swing += follow * (up * up - state_.swing);
+  }
+  state_.previous = mean;
+}
 
 FallGuard::Verdict FallGuard::Add(int64_t step, double mean_squared_error, double saturated) {
   State& s = state_;
@@ -28,16 +48,18 @@ FallGuard::Verdict FallGuard::Add(int64_t step, double mean_squared_error, doubl
   s.count = 0;
   if (!whole || step < kFirstStep) return Verdict::kNone;
   state_.last = window;
-  const bool bad = Worse(window, state_.best, dense ? kGoodFactor : kBadFactor);
+  const bool bad = Worse(window, dense ? kGoodFactor : kBadFactor);
   state_.bad_in_a_row = bad ? state_.bad_in_a_row + 1 : 0;
-  if (state_.bad_in_a_row >= kBadInARow || Worse(window, state_.best, kWorstFactor)) return Verdict::kFallen;
+  if (state_.bad_in_a_row >= kBadInARow || Worse(window, kWorstFactor)) return Verdict::kFallen;
   if (bad) return Verdict::kBad;
+  if (state_.windows < kFirstWindows || !Worse(window, kEndFactor)) LearnSwing(window.mean);
   if (window.mean < state_.best.mean) state_.best = window;
-  return window.mean <= kGoodFactor * state_.best.mean ? Verdict::kGood : Verdict::kBad;
+  const double good = std::max(kGoodFactor, std::exp(kGoodSwings * std::sqrt(state_.swing)));
+  return window.mean <= good * state_.best.mean ? Verdict::kGood : Verdict::kBad;
 }
 
 bool FallGuard::EndsFallen() const {
-  return std::isfinite(state_.best.mean) && (state_.bad_in_a_row > 0 || Worse(state_.last, state_.best, kEndFactor));
+  return std::isfinite(state_.best.mean) && (state_.bad_in_a_row > 0 || Worse(state_.last, kEndFactor));
 }
 
 }  // namespace skyquilt::worker

@@ -1,7 +1,8 @@
 // Watches the training error of a field for falls. A training can fall apart with finite numbers: its error rises within some dozens of steps far
 // above what it was, and nothing else shows it.
-// The steps are divided into windows. A window is bad when its mean error exceeds the smallest mean of an earlier window by a factor and by more than
-// the noise of both; enough bad windows in a row are a fall. No clock and no state beside State, so that a resumed training judges as it would have.
+// The steps are divided into windows. A window is bad when its mean error exceeds the smallest mean of an earlier window by a factor, by more than
+// the noise of both, and by more than windows differ anyway: photos whose water glints differently in each make a training swing for as long as it
+// lasts. Enough bad windows in a row are a fall. No clock and no state beside State, so that a resumed training judges as it would have.
 #pragma once
 
 #include <cstdint>
@@ -41,6 +42,10 @@ class FallGuard {
   struct State {
     Window best, last;
     int bad_in_a_row = 0;
+    // How much windows swing: variance of the logarithm of their means, from how many of them, and the mean of the last of these.
+    double swing = 0.0;
+    int windows = 0;
+    double previous = 0.0;
     // Sums over the steps of the present window so far.
     double sum = 0.0, squares = 0.0, saturated = 0.0;
     int count = 0;
@@ -60,6 +65,11 @@ class FallGuard {
   void SetState(const State& state) { state_ = state; }
 
  private:
+  // Whether a window is worse than the best by this factor and by more than noise and swing.
+  bool Worse(const Window& window, double factor) const;
+  // Learns from a window that is not bad how much windows differ.
+  void LearnSwing(double mean);
+
   State state_;
 };
 

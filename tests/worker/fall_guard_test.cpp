@@ -38,6 +38,21 @@ RC_GTEST_PROP(FallGuardTest, NoiseIsNoFall, ()) {
   RC_ASSERT(!guard.EndsFallen());
 }
 
+// Where photos contradict each other, the error of the field itself goes up and down, for longer than a window.
+TEST(FallGuardTest, SwingsAreNoFall) {
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    base::Random random(seed, 1);
+    double swing = 0.0;
+    FallGuard guard;
+    const int64_t fallen = FirstFall(guard, 1, 3000, [&](int64_t) {
+      swing = 0.95 * swing + 0.03 * random.Normal();
+      return Db(15.0) * std::exp(swing + 0.3 * random.Normal());
+    });
+    EXPECT_EQ(fallen, 0) << seed;
+    EXPECT_GT(FirstFall(guard, 3001, 3200, [](int64_t) { return Db(8.0); }), 0) << "a real fall after it, " << seed;
+  }
+}
+
 TEST(FallGuardTest, AFallIsSeenWithinTwoWindows) {
   base::Random random(3, 1);
   const auto falls_by = [&](double fall_db) {

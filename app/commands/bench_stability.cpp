@@ -74,7 +74,7 @@ void RunStability(const CommandState& state, StabilityFlags flags) {
       runs.push_back(std::move(run));
     }
   }
-  bench::BenchPage page = bench::StabilityPage(runs, flags.options);
+  bench::BenchPage page = bench::StabilityPage(runs);
   page.machine = base::MachineDescription();
   page.date = base::UtcTimestamp();
   page.command = state.command_line;

@@ -188,17 +188,17 @@ std::vector<StabilityRun> RunStability(Study& study, const std::string& survey, 
   return runs;
 }
 
-BenchPage StabilityPage(const std::vector<StabilityRun>& runs, const StabilityOptions& options) {
+BenchPage StabilityPage(const std::vector<StabilityRun>& runs) {
   BenchPage page;
   page.name = "stability";
   page.title = "Stability of training";
   page.lead = fmt::format(
-      "Every survey is trained with {} layouts of blocks, {} learning rates, {} seeds and {} budgets, and once with each extreme: photos that are "
-      "black or far too "
-      "bright, water in most of the picture, three photos, heights ten times too low or high, pixels of 1 mm and 10 m, a zone's edge, and a tiny "
-      "batch. A training "
-      "must not end more than {:g} dB below its best, and no block may be shown that is worse than the context.",
-      options.blocks.size(), options.rates.size(), options.seeds.size(), options.budgets_s.size(), kMostBelowBest_db);
+      "Every survey is trained with all combinations of blocks, learning rates, seeds and budgets, and once with each extreme: photos that are black "
+      "or "
+      "far too bright, water in most of the picture, three photos, heights ten times too low or high, pixels of 1 mm and 10 m, a zone's edge, and a "
+      "tiny "
+      "batch. A training must not end more than {:g} dB below its best, and no block may be shown that is worse than the context.",
+      kMostBelowBest_db);
   const auto count = [&](auto&& test) { return static_cast<int>(std::count_if(runs.begin(), runs.end(), test)); };
   const int below = count(EndsBelowBest);
   const int taken_back = count([](const StabilityRun& run) { return run.Falls() > 0; });

@@ -41,6 +41,6 @@ constexpr double kMostBelowBest_db = 0.5;
 
 // The runs of one survey, in order. Finished runs are read from the study's folder. A run that a stage refuses has its reason.
 std::vector<StabilityRun> RunStability(Study& study, const std::string& survey, const StabilityOptions& options);
-BenchPage StabilityPage(const std::vector<StabilityRun>& runs, const StabilityOptions& options);
+BenchPage StabilityPage(const std::vector<StabilityRun>& runs);
 
 }  // namespace skyquilt::bench

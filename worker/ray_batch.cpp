@@ -1,6 +1,7 @@
 #include "worker/ray_batch.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "core/field/hash_field.h"
@@ -16,8 +17,8 @@ constexpr uint64_t kRayStream = 1;
 // Density that is blurred over several cells must not decide which of them are free where sharper samples do: least sharpness in cells, where the
 // finest level's weight is a half.
 constexpr float kLeastSharpnessToObserve = 0.4769F;
-// A sample of a coarse march belongs to none; its pixel is so wide that one is drawn for it.
-constexpr int64_t kNoCell = 0;
+// Of a sample of a coarse march that is sharp enough: it crosses several cells and says nothing about any. ~kNoCell is no cell of a grid.
+constexpr int32_t kNoCell = std::numeric_limits<int32_t>::min();
 // Marching step of rays from reduced photos in widths of their pixels.
 constexpr double kCoarsePixelsPerStep = 1.0;
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sets up, builds everything with warnings as errors, and runs all tests. Ends with the summary and exit status of ctest.
 #   scripts/test.sh [ctest options]      for instance: scripts/test.sh -R core_geo
-# SKYQUILT_TEST_JOBS: number of unit tests to run in parallel (default 2). Tests of the whole program always run alone.
+# SKYQUILT_TEST_JOBS: number of tests to run in parallel (default 2).
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

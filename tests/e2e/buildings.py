@@ -13,7 +13,7 @@ import time
 from building_faults import BuildingFaults, made, sha
 from building_files import BuildingFiles, is_inside, page_text
 from foreign_readers import NodeReaders, node_cache, output, transformed
-from harness import expect, main, metrics_of
+from harness import expect, hamlet, main, metrics_of
 
 WIDTH = "160"
 SMALL = ["--blocks", "1x1", "--set", "partition.max_log2_table_size=15"]
@@ -31,8 +31,7 @@ class Buildings(BuildingFaults):
     """How buildings are made and used."""
 
     def check_run(self):
-        survey = self.folder / "hamlet"
-        self.skyquilt.call("simulate", "hamlet", "-o", survey, "--set", f"simulate.image_width={WIDTH}")
+        survey = hamlet(self.skyquilt, WIDTH)
         words = ["run", survey, "-o", self.project, "--image-width", WIDTH, "--set", "products.video_seconds=0", *SMALL, *TRAIN]
         self.skyquilt.call(*words, "--set", "buildings.enabled=false")
         expect(not (self.project / "buildings").exists(), "buildings were made although they are turned off")

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 
-from harness import QUICK_TRAIN, Failure, children, expect, main, small_project, small_survey, state_of
+from harness import QUICK_TRAIN, Failure, children, expect, main, small_project, state_of
 
 LAYOUTS = (0, 2, 3)  # ranks; 0: without a launcher
 WAYS = ("anywhere", "while a checkpoint is written", "just after one")
@@ -27,7 +27,7 @@ class Drill:
         self.projects = 0
         self.kills = dict.fromkeys(WAYS, 0)
         self.unreadable = 0
-        self.template = small_project(skyquilt, small_survey(skyquilt, folder), folder / "template")
+        self.template = small_project(skyquilt, folder / "template")
         self.wanted = {}
         for ranks in LAYOUTS:
             project = self.fresh()

@@ -1,4 +1,8 @@
 """Runs the skyquilt program as a user would and checks exit status and files. Needs only Python's standard library."""
+import atexit
+import contextlib
+import fcntl
+import hashlib
 import json
 import os
 import pathlib
@@ -87,16 +91,71 @@ def kill_group(process):
     process.wait()
 
 
-def small_survey(skyquilt, folder):
-    skyquilt.call("simulate", "hamlet", "-o", folder / "hamlet", "--set", "simulate.image_width=160")
-    return folder / "hamlet"
+@contextlib.contextmanager
+def locked(path):
+    pathlib.Path(path).parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
-def small_project(skyquilt, survey, project):
-    """A project that is prepared and divided into two blocks, ready to be trained."""
-    skyquilt.call("prepare", survey, "-o", project)
-    skyquilt.call("partition", project, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
-    return project
+def shared(skyquilt, name, make):
+    """A folder that several tests read and none changes: the first test that needs it calls make(folder). It is kept in SKYQUILT_TEST_SHARED, which
+    ctest sets, until the program changes; without that, every run of a test makes its own."""
+    root = os.environ.get("SKYQUILT_TEST_SHARED")
+    if not root:
+        root = tempfile.mkdtemp(prefix="skyquilt_shared_")
+        atexit.register(shutil.rmtree, root, ignore_errors=True)
+        os.environ["SKYQUILT_TEST_SHARED"] = root
+    of_program = pathlib.Path(root) / hashlib.sha256(pathlib.Path(skyquilt.program).read_bytes()).hexdigest()[:16]
+    with locked(f"{root}.lock"):
+        if not of_program.exists():
+            shutil.rmtree(root, ignore_errors=True)  # those of former programs
+            of_program.mkdir(parents=True)
+    with locked(of_program / f"{name}.lock"):
+        folder, finished = of_program / name, of_program / f"{name}.finished"
+        if not finished.exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            make(folder)
+            finished.touch()
+        return folder
+
+
+def hamlet(skyquilt, width):
+    """The simulated hamlet with photos of that width; only to be read."""
+    return shared(skyquilt, f"hamlet_{width}", lambda folder: skyquilt.call("simulate", "hamlet", "-o", folder, "--image-width", width))
+
+
+def small_survey(skyquilt):
+    return hamlet(skyquilt, 160)
+
+
+def copied(source, target):
+    shutil.copytree(source, target, symlinks=True)
+    return target
+
+
+def small_project(skyquilt, project):
+    """A project of the small survey that is prepared and divided into two blocks, ready to be trained."""
+    def make(folder):
+        skyquilt.call("prepare", small_survey(skyquilt), "-o", folder)
+        skyquilt.call("partition", folder, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
+
+    return copied(shared(skyquilt, "small_project", make), project)
+
+
+HOUSES_WIDTH = 480
+
+
+def houses_project(skyquilt, project):
+    """A finished project of the hamlet, trained long enough that a house can be measured, with a surface; returns its survey too."""
+    survey = hamlet(skyquilt, HOUSES_WIDTH)
+
+    def make(folder):
+        skyquilt.call("run", survey, "-o", folder, "--blocks", "1x1", "--image-width", HOUSES_WIDTH, "--time-budget", "25s", "--set",
+                      "products.video_seconds=0", "--set", "buildings.enabled=false")
+
+    return copied(shared(skyquilt, "houses", make), project), survey
 
 
 def arrays_of(skyquilt, file):

@@ -4,14 +4,13 @@ import pathlib
 import signal
 import subprocess
 
-from harness import QUICK_TRAIN, children, expect, main, small_project, small_survey, state_of, wait_for
+from harness import QUICK_TRAIN, children, expect, main, small_project, state_of, wait_for
 
 LAUNCHER = str(pathlib.Path(__file__).resolve().parents[2] / "scripts" / "skyquilt-mpirun")
 
 
 def test(skyquilt, folder):
-    survey = small_survey(skyquilt, folder)
-    whole = small_project(skyquilt, survey, folder / "whole")
+    whole = small_project(skyquilt, folder / "whole")
     skyquilt.call("train", whole, *QUICK_TRAIN)
 
     def start(name, *words):
@@ -27,7 +26,7 @@ def test(skyquilt, folder):
         return [rank for mpirun in children(launcher) for rank in children(mpirun)]
 
     # A rank is killed during training. --restart applies to the first start only.
-    project = small_project(skyquilt, survey, folder / "lost")
+    project = small_project(skyquilt, folder / "lost")
     process, log = start("lost", *ranks, "train", str(project), *QUICK_TRAIN, "--restart")
     wait_for(lambda: any(project.glob("checkpoints/block_*.h5")), "first checkpoint of a block", process)
     os.kill(ranks_of(process.pid)[-1], signal.SIGKILL)
@@ -37,7 +36,7 @@ def test(skyquilt, folder):
     expect(state_of(skyquilt, project) == state_of(skyquilt, whole), "killed and started again differs from undisturbed")
 
     # A signal to the launcher makes the ranks save and end.
-    project = small_project(skyquilt, survey, folder / "stopped")
+    project = small_project(skyquilt, folder / "stopped")
     process, log = start("stopped", *ranks, "train", str(project), *QUICK_TRAIN)
     wait_for(lambda: any(project.glob("checkpoints/block_*.h5")), "first checkpoint of a block", process)
     os.kill(process.pid, signal.SIGTERM)

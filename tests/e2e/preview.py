@@ -25,7 +25,7 @@ def state_of_products(skyquilt, project):
 
 
 def test(skyquilt, folder):
-    survey = small_survey(skyquilt, folder)
+    survey = small_survey(skyquilt)
     project = folder / "project"
     text = skyquilt.call("prepare", survey, "-o", project)
     expect(re.search(r"first picture: .*products/preview_ortho.png, \d+ s after the poses", text), f"the picture is not named:\n{text}")

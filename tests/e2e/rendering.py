@@ -52,7 +52,7 @@ def bytes_of_fields(described):
 
 
 def test(skyquilt, folder):
-    survey = small_survey(skyquilt, folder)
+    survey = small_survey(skyquilt)
     project = folder / "project"
     skyquilt.call("prepare", survey, "-o", project)
     skyquilt.call("partition", project, "--blocks", "1x3", "--set", "partition.max_log2_table_size=14")

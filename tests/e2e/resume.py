@@ -2,12 +2,11 @@
 import os
 import signal
 
-from harness import SMALL, expect, kill_group, main, metrics_of, replaced, wait_for
+from harness import SMALL, expect, hamlet, kill_group, main, metrics_of, replaced, wait_for
 
 
 def test(skyquilt, folder):
-    survey = folder / "hamlet"
-    skyquilt.call("simulate", "hamlet", "-o", survey)
+    survey = hamlet(skyquilt, 240)
     # Blocks that take long enough to be stopped in between.
     options = replaced(SMALL, "--steps", "1500") + ["--set", "train.checkpoint_every_s=0.3", "--set", "context.checkpoint_every_s=0.3"]
     whole = folder / "whole"

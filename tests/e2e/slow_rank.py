@@ -5,7 +5,7 @@ import signal
 import subprocess
 import time
 
-from harness import children, expect, main, small_project, small_survey, state_of
+from harness import children, expect, main, small_project, state_of
 
 TRAIN = ["--steps", "3000", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096", "--set", "context.steps=300"]
 
@@ -20,11 +20,10 @@ def rank_of(pid):
 
 
 def test(skyquilt, folder):
-    survey = small_survey(skyquilt, folder)
-    whole = small_project(skyquilt, survey, folder / "whole")
+    whole = small_project(skyquilt, folder / "whole")
     skyquilt.call("train", whole, *TRAIN)
 
-    slowed = small_project(skyquilt, survey, folder / "slowed")
+    slowed = small_project(skyquilt, folder / "slowed")
     log = folder / "slowed.log"
     with open(log, "w") as stream:
         process = subprocess.Popen(skyquilt.command(["train", slowed, *TRAIN], 3), env=skyquilt.environment, stdout=stream, stderr=subprocess.STDOUT,

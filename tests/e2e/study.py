@@ -20,7 +20,7 @@ def check_page(folder, name, pictures=True):
 
 
 def test(skyquilt, folder):
-    survey = small_survey(skyquilt, folder)
+    survey = small_survey(skyquilt)
     out = folder / "bench"
     words = ["bench", "single-vs-multi", "--survey", survey, "-o", out, "--blocks", "1x2", *SMALL]
     process = skyquilt.start(*words)

@@ -14,7 +14,7 @@ import glb_reader
 import las_reader
 import tileset_checker
 from foreign_readers import NodeReaders, Nearest, Obj, Ply, Raster, assimp_faces, node_cache, output, plane_distance, projected_area, transformed
-from harness import Failure, Skyquilt, digest, expect, main
+from harness import Failure, Skyquilt, digest, expect, hamlet, main
 
 WIDTH = "160"
 TRAIN = ["--steps", "400", "--set", "train.batch_samples=8192", "--set", "context.batch_samples=8192", "--set", "partition.max_log2_table_size=15"]
@@ -326,8 +326,7 @@ def test(skyquilt: Skyquilt, folder):
     for reader in (glb_reader, las_reader, tileset_checker):
         reader.self_test()
     node = NodeReaders(sys.argv[2] if len(sys.argv) > 2 else node_cache(skyquilt.program))
-    survey, project = folder / "hamlet", folder / "project"
-    skyquilt.call("simulate", "hamlet", "-o", survey, "--set", f"simulate.image_width={WIDTH}")
+    survey, project = hamlet(skyquilt, WIDTH), folder / "project"
     skyquilt.call("run", survey, "-o", project, "--blocks", "1x2", "--image-width", WIDTH, "--set", "products.video_seconds=0",
                   "--set", "buildings.enabled=false", *TRAIN)  # buildings would change the classes of the cloud
     before = digest(project / "surface")

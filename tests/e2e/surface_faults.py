@@ -12,7 +12,7 @@ import signal
 import subprocess
 import time
 
-from harness import QUICK_TRAIN, expect, kill_group, main, small_project, small_survey
+from harness import QUICK_TRAIN, expect, kill_group, main, small_project
 
 LIMITED_BYTES = 200_000  # of a file, where no small disk can be mounted: less than a mesh needs
 
@@ -49,7 +49,7 @@ class Faults:
         self.options = options
         self.random = random.Random(options.seed)
         self.projects = 0
-        self.template = small_project(skyquilt, small_survey(skyquilt, folder), folder / "template")
+        self.template = small_project(skyquilt, folder / "template")
         skyquilt.call("train", self.template, *QUICK_TRAIN)
         skyquilt.call("merge", self.template)
         whole = self.fresh()

@@ -9,12 +9,10 @@ import subprocess
 import sys
 import time
 
-from harness import Failure, Skyquilt, expect, main
+from harness import Failure, Skyquilt, expect, houses_project, main
 from web_client import Viewer, page_can_be_checked, skip
 from web_documents import asset_path, collection, png, tour
 
-# A field that shows houses; nothing is measured on it.
-TRAIN = ["--blocks", "1x1", "--image-width", "320", "--steps", "400", "--set", "products.video_seconds=0", "--set", "buildings.enabled=false"]
 # Pictures of the size in which the page is looked at, and small ones where nobody looks.
 EXPORT = ["--size", "40MB", "--set", "tour.still_width=400", "--set", "tour.still_height=250", "--set", "tour.panorama_width=512"]
 SMALL_EXPORT = ["--size", "40MB", "--set", "tour.still_width=160", "--set", "tour.still_height=100", "--set", "tour.panorama_width=256"]
@@ -171,9 +169,7 @@ def check_exported_page(skyquilt, project, exported, web, out):
 
 def test(skyquilt: Skyquilt, folder):
     build = pathlib.Path(sys.argv[2]).resolve()
-    survey, project = folder / "hamlet", folder / "project"
-    skyquilt.call("simulate", "hamlet", "-o", survey, "--set", "simulate.image_width=320")
-    skyquilt.call("run", survey, "-o", project, *TRAIN)
+    project, survey = houses_project(skyquilt, folder / "project")
     try:
         Viewer(skyquilt, project).close()
     except Failure as failure:

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 
-from harness import expect, main, small_project, small_survey, state_of, wait_for
+from harness import expect, main, small_project, state_of, wait_for
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HOSTS = {"skyquilt-a": "10.231.77.1", "skyquilt-b": "10.231.77.2"}
@@ -70,12 +70,11 @@ def agent_in(folder):
 
 
 def test(skyquilt, folder):
-    survey = small_survey(skyquilt, folder)
     first = list(HOSTS)[0]
     agent = agent_in(folder)
 
     def start(project, name):
-        small_project(skyquilt, survey, project)
+        small_project(skyquilt, project)
         words = entering(first) + [str(ROOT / "scripts" / "skyquilt-mpirun"), "--restarts", "5", "--wait", "3", "-n", "3", "--host",
                                    f"{HOSTS[first]}:2,{HOSTS[list(HOSTS)[1]]}:1", "--mca", "plm_rsh_agent", str(agent), "--mca", "btl", "tcp,self", "--mca",
                                    "btl_tcp_if_include", "cable0", "--mca", "oob_tcp_if_include", "cable0", *QUICK, skyquilt.program, "train", str(project),

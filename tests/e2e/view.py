@@ -9,13 +9,9 @@ import subprocess
 import sys
 import time
 
-from harness import Failure, Skyquilt, expect, main
+from harness import Failure, Skyquilt, expect, houses_project, main
 from web_client import Viewer, WebSocket, looking, page_can_be_checked, skip
 from web_documents import asset_path, collection, png
-
-# Good enough that a house can be measured.
-WIDTH = 480
-TRAIN = ["--blocks", "1x1", "--image-width", str(WIDTH), "--time-budget", "25s", "--set", "products.video_seconds=0"]
 
 
 def views(description):
@@ -328,9 +324,7 @@ def check_port(skyquilt, project):
 
 def test(skyquilt: Skyquilt, folder):
     build = pathlib.Path(sys.argv[2]).resolve()
-    survey, project = folder / "hamlet", folder / "project"
-    skyquilt.call("simulate", "hamlet", "-o", survey, "--set", f"simulate.image_width={WIDTH}")
-    skyquilt.call("run", survey, "-o", project, *TRAIN)
+    project, survey = houses_project(skyquilt, folder / "project")
     try:
         probe = Viewer(skyquilt, project)
         probe.close()

@@ -104,9 +104,9 @@ def shared(skyquilt, name, make):
     ctest sets, until the program changes; without that, every run of a test makes its own."""
     root = os.environ.get("SKYQUILT_TEST_SHARED")
     if not root:
-        root = tempfile.mkdtemp(prefix="skyquilt_shared_")
-        atexit.register(shutil.rmtree, root, ignore_errors=True)
-        os.environ["SKYQUILT_TEST_SHARED"] = root
+        own = tempfile.mkdtemp(prefix="skyquilt_shared_")
+        atexit.register(shutil.rmtree, own, ignore_errors=True)
+        root = os.environ["SKYQUILT_TEST_SHARED"] = os.path.join(own, "shared")
     of_program = pathlib.Path(root) / hashlib.sha256(pathlib.Path(skyquilt.program).read_bytes()).hexdigest()[:16]
     with locked(f"{root}.lock"):
         if not of_program.exists():
@@ -148,11 +148,12 @@ HOUSES_WIDTH = 480
 
 
 def houses_project(skyquilt, project):
-    """A finished project of the hamlet, trained long enough that a house can be measured, with a surface; returns its survey too."""
+    """A finished project of the hamlet, trained long enough that a house can be measured, with a surface; returns its survey too. By steps, so that
+    it does not depend on what runs beside it."""
     survey = hamlet(skyquilt, HOUSES_WIDTH)
 
     def make(folder):
-        skyquilt.call("run", survey, "-o", folder, "--blocks", "1x1", "--image-width", HOUSES_WIDTH, "--time-budget", "25s", "--set",
+        skyquilt.call("run", survey, "-o", folder, "--blocks", "1x1", "--image-width", HOUSES_WIDTH, "--steps", "1300", "--set",
                       "products.video_seconds=0", "--set", "buildings.enabled=false")
 
     return copied(shared(skyquilt, "houses", make), project), survey

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/kernel_bench.h"
+#include "core/base/json_text.h"
 #include "core/base/system.h"
 #include "core/page/bar_chart.h"
 #include "core/page/html.h"
@@ -204,7 +205,7 @@ std::string KernelBenchJson(const KernelBenchResult& r) {
                     {"rounds", o.rounds}};
   json["machine"] = base::MachineDescription();
   json["date"] = base::UtcTimestamp();
-  return json.dump(2) + "\n";
+  return base::JsonText(json, 2) + "\n";
 }
 
 std::string KernelBenchTable(const KernelBenchResult& r) {

@@ -1,8 +1,9 @@
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
 
 #include "bench/schedule_bench.h"
+#include "core/base/json_text.h"
 #include "core/base/progress.h"
 #include "core/base/system.h"
 #include "core/page/bar_chart.h"
@@ -136,7 +137,7 @@ std::string ScheduleBenchJson(const ScheduleBenchResult& r) {
                                          {"seed", o.seed}}},
                                        {"machine", base::MachineDescription()},
                                        {"date", base::UtcTimestamp()}};
-  return json.dump(2) + "\n";
+  return base::JsonText(json, 2) + "\n";
 }
 
 std::string ScheduleBenchTable(const ScheduleBenchResult& r) {

@@ -223,8 +223,8 @@ class Maker {
                                    empty_outlines_.begin() + std::min<std::ptrdiff_t>(kNamedOutlines, std::ssize(empty_outlines_)));
     if (named.size() < empty_outlines_.size()) named.emplace_back("...");
     const bool all = empty_outlines_.size() == candidates_.size();
-    spdlog::warn("{} of {} outlines have no roof in the surface and are left out: {}{}", empty_outlines_.size(), candidates_.size(),
-                 base::Join(named), all ? ". Do they lie in the survey, in the coordinate system that their file names?" : "");
+    base::LogWarning("{} of {} outlines have no roof in the surface and are left out: {}{}", empty_outlines_.size(), candidates_.size(),
+                     base::Join(named), all ? ". Do they lie in the survey, in the coordinate system that their file names?" : "");
   }
 
   void SetOverhang(const Fitted& fitted, Building* building) const {

@@ -1,6 +1,6 @@
 #include "evaluate/brightness_report.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 #include "core/brightness/captured_photos.h"
 #include "core/brightness/predict_gains.h"
 #include "core/image/srgb.h"
@@ -165,7 +166,7 @@ std::string BrightnessJson(const BrightnessReport& report) {
     json["photos"].push_back(
         {{"name", photo.name}, {"held_out", photo.held_out}, {"exif_stops", number(photo.exif_stops)}, {"learned_stops", photo.learned_stops}});
   }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return base::JsonText(json, 1) + "\n";
 }
 
 double ExposureStops(const brightness::Response& response, size_t photo) {

@@ -1,7 +1,7 @@
 // Scores of buildings in JSON, as in metrics.json.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "evaluate/buildings_scores.h"
 

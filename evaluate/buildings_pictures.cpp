@@ -1,6 +1,6 @@
 #include "evaluate/buildings_pictures.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,7 @@
 #include "evaluate/class_json.h"
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/survey/geo_fit_json.h"

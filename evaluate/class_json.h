@@ -1,7 +1,7 @@
 // Scores by class of surface in JSON, as in metrics.json and in the results of benches.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <vector>
 

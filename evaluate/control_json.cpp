@@ -1,6 +1,7 @@
 #include "evaluate/control_json.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/survey/geo_fit_json.h"
 #include "evaluate/control_summary.h"

@@ -1,7 +1,7 @@
 // Ground control in metrics.json.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "core/survey/control_fit.h"
 

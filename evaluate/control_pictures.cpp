@@ -1,6 +1,6 @@
 #include "evaluate/control_pictures.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ std::optional<image::Image8> ReadPhoto(const std::filesystem::path& file) {
   try {
     return image::LoadRgb8(file);
   } catch (const base::InputError& error) {
-    spdlog::warn("the report lacks pictures of control points: {}", error.what());
+    base::LogWarning("the report lacks pictures of control points: {}", error.what());
     return std::nullopt;
   }
 }

@@ -1,6 +1,6 @@
 #include "evaluate/control_summary.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <cmath>
 

@@ -90,7 +90,7 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   metrics.evaluate_seconds = std::chrono::duration<double>(Clock::now() - start).count();
 
   Summarise(input, scores, &metrics);
-  for (const Warning& warning : metrics.warnings) spdlog::warn("{}. {}", warning.finding, warning.advice);
+  for (const Warning& warning : metrics.warnings) base::LogWarning("{}. {}", warning.finding, warning.advice);
   std::vector<MarkPicture> marks;
   if (input.options.report_photos > 0) marks = WriteMarkPictures(*input.survey, input.scene, input.ReportFolder(), threads);
   WriteReport(input, metrics, pictures, std::move(marks), found ? &*found : nullptr);

@@ -1,6 +1,5 @@
 #include "evaluate/flat_roofs.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -9,7 +8,9 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/order_statistics.h"
+#include "core/linear/linear.h"
 #include "core/survey/surface_class.h"
 
 namespace skyquilt::evaluate {
@@ -26,7 +27,7 @@ bool RoofArea::Contains(const Vector2d& point) const {
 std::vector<RoofArea> ReadFlatRoofs(const std::filesystem::path& buildings_json) {
   std::vector<RoofArea> roofs;
   try {
-    const nlohmann::json json = nlohmann::json::parse(base::ReadFile(buildings_json));
+    const nlohmann::json json = base::ParseJson(base::ReadFile(buildings_json));
     for (const nlohmann::json& building : json.at("buildings")) {
       if (building.at("roof").get<std::string>() != "flat") continue;
       // A deck under another part of its building: little of it is seen, and its points are not told from those of the deck above.
@@ -58,7 +59,7 @@ PlaneSpread SpreadAboutPlane(std::span<const Vector3d> points) {
   }
   // Points on a line leave a slope open; the damping takes the smaller one.
   spread += Eigen::Matrix2d::Identity() * (1e-12 * spread.trace() + std::numeric_limits<double>::min());
-  const Vector2d slope = spread.ldlt().solve(with_height);
+  const Vector2d slope = linear::SolveSymmetric(spread, with_height);
   double squares = 0.0;
   std::vector<double> off_m;
   for (const Vector3d& point : points) {

@@ -52,7 +52,8 @@ double LpipsOf(metrics::Lpips& network, const HeldOutPhoto& task, const image::I
 HeldOutScorer::HeldOutScorer(const EvaluateInput& input)
     : input_(input), area_(AreaOf(input.scene->info())), training_(ViewsOf(input)), views_(training_) {
   if (input.options.field_normals && !input.scene->info().density_normals) {
-    spdlog::warn("The scene's encoding has no normals of the density, so they are not scored. evaluate.field_normals needs \"hash\" or \"voxels\"");
+    base::LogWarning(
+        "The scene's encoding has no normals of the density, so they are not scored. evaluate.field_normals needs \"hash\" or \"voxels\"");
   }
   if (!input.options.lpips_network.empty()) lpips_.emplace(input.options.lpips_network);
 }

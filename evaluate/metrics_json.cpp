@@ -7,6 +7,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/survey/geo_fit_json.h"
 #include "evaluate/buildings_json.h"
 #include "evaluate/class_json.h"
@@ -295,7 +296,7 @@ std::string MetricsJson(const Metrics& metrics) {
   json["machine"] = metrics.machine;
   json["date"] = metrics.date;
   json["config"] = metrics.config;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return base::JsonText(json, 2) + "\n";
 }
 
 Metrics ReadMetrics(const std::filesystem::path& file) {

@@ -1,4 +1,4 @@
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include "core/page/curve_chart.h"
 #include "core/page/html.h"

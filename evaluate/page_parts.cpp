@@ -1,6 +1,6 @@
 #include "evaluate/page_parts.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

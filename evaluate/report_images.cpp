@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
 #include "core/image/normal_image.h"
@@ -136,7 +137,7 @@ std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& prod
   const std::filesystem::path png = products_folder / (name + ".png");
   const std::filesystem::path bounds = products_folder / (name + ".json");
   if (!std::filesystem::is_regular_file(png, ignored) || !std::filesystem::is_regular_file(bounds, ignored)) return std::nullopt;
-  const auto json = nlohmann::json::parse(base::ReadFile(bounds), nullptr, false);
+  const auto json = base::TryParseJson(base::ReadFile(bounds));
   const auto corner = [&](const char* key) -> std::optional<Eigen::Vector2d> {
     if (!json.is_object() || !json.contains(key) || !json[key].is_array() || json[key].size() < 2) return std::nullopt;
     if (!json[key][0].is_number() || !json[key][1].is_number()) return std::nullopt;
@@ -144,7 +145,7 @@ std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& prod
   };
   const auto low = corner("min_enu"), high = corner("max_enu");
   if (!low || !high || !(high->array() > low->array()).all()) {
-    spdlog::warn("{}: has no usable bounds, so the map of the report has no orthophoto; make it again with `skyquilt run`", bounds.string());
+    base::LogWarning("{}: has no usable bounds, so the map of the report has no orthophoto; make it again with `skyquilt run`", bounds.string());
     return std::nullopt;
   }
   try {
@@ -161,10 +162,10 @@ std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& prod
     }
     return background;
   } catch (const base::InputError& error) {
-    spdlog::warn("the map of the report has no orthophoto: {}", error.what());
+    base::LogWarning("the map of the report has no orthophoto: {}", error.what());
     return std::nullopt;
   } catch (const std::filesystem::filesystem_error& error) {
-    spdlog::warn("the map of the report has no orthophoto: {}", error.what());
+    base::LogWarning("the map of the report has no orthophoto: {}", error.what());
     return std::nullopt;
   }
 }

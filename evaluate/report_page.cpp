@@ -1,6 +1,6 @@
 #include "evaluate/report_page.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "evaluate/report_writer.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <set>

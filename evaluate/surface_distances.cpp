@@ -1,6 +1,6 @@
 #include "evaluate/surface_distances.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

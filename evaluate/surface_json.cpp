@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/base/errors.h"
@@ -171,9 +172,9 @@ SurfaceRecord ReadSurfaceRecord(const std::filesystem::path& file) {
   try {
     const OrderedJson json = OrderedJson::parse(base::ReadFile(file), nullptr, false);
     if (json.is_object()) return TakeRecord(json);
-    spdlog::warn("{}: is not valid JSON, so the report does not list the files of the surface; run 'skyquilt surface' again", file.string());
+    base::LogWarning("{}: is not valid JSON, so the report does not list the files of the surface; run 'skyquilt surface' again", file.string());
   } catch (const base::InputError& error) {
-    spdlog::warn("the report does not list the files of the surface: {}", error.what());
+    base::LogWarning("the report does not list the files of the surface: {}", error.what());
   }
   return {};
 }

@@ -1,6 +1,7 @@
 #include "evaluate/surface_scorer.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "evaluate/surface_decks.h"
 #include "evaluate/surface_distances.h"

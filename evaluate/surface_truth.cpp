@@ -11,6 +11,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
 
 namespace skyquilt::evaluate {
@@ -58,7 +59,7 @@ std::optional<geo::Geodetic> TruthOrigin(const std::filesystem::path& simulate_j
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(simulate_json, ignored)) return std::nullopt;
   try {
-    const nlohmann::json origin = nlohmann::json::parse(base::ReadFile(simulate_json)).at("origin");
+    const nlohmann::json origin = base::ParseJson(base::ReadFile(simulate_json)).at("origin");
     const geo::Geodetic found{origin.at("latitude_deg").get<double>(), origin.at("longitude_deg").get<double>(), origin.at("height_m").get<double>()};
     if (!geo::IsValid(found)) throw base::InputError(simulate_json, "has an origin that is not a place on Earth", kSimulateAgain);
     return found;

@@ -1,6 +1,6 @@
 #include "partition/altitude.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,6 +5,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
 #include "core/survey/geo_fit_json.h"
 #include "partition/block.h"
@@ -178,7 +179,7 @@ void CheckBlock(const Block& block, size_t index, const std::filesystem::path& f
 
 geo::HeightReference ReadHeightReference(const Json& name, const std::filesystem::path& file) {
   const auto reference = geo::HeightReferenceNamed(name.get<std::string>());
-  if (!reference) throw base::InputError(file, "has heights above " + name.dump() + ", which is unknown", kFix);
+  if (!reference) throw base::InputError(file, "has heights above " + base::JsonText(name) + ", which is unknown", kFix);
   return *reference;
 }
 
@@ -215,7 +216,7 @@ void SaveBlocks(const BlockSet& blocks, const std::filesystem::path& file) {
                {"skyquilt:config_hash", blocks.config_hash}};
   if (!outlines.empty() && blocks.georeferenced) root["bbox"] = BoundingBox(Union(outlines));
   root["features"] = features;
-  base::WriteFileAtomically(file, root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  base::WriteFileAtomically(file, base::JsonText(root, 1) + "\n");
 }
 
 BlockSet LoadBlocks(const std::filesystem::path& file) {
@@ -228,7 +229,7 @@ BlockSet LoadBlocks(const std::filesystem::path& file) {
     }
     if (root.at("skyquilt:version").get<int>() != kVersion) {
       throw base::InputError(
-          file, "has version " + root.at("skyquilt:version").dump() + " but this program reads version " + std::to_string(kVersion), kFix);
+          file, "has version " + base::JsonText(root.at("skyquilt:version")) + " but this program reads version " + std::to_string(kVersion), kFix);
     }
     const Json& origin = root.at("skyquilt:origin");
     set.origin = {ReadNumber(origin.at("latitude_deg")), ReadNumber(origin.at("longitude_deg")), ReadNumber(origin.at("height_m"))};

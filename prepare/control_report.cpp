@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
 #include "prepare/csv_field.h"
 
@@ -65,7 +66,7 @@ void WriteControlMap(const survey::Survey& survey, const std::filesystem::path& 
         {{"type", "Feature"}, {"geometry", {{"type", "Point"}, {"coordinates", std::move(coordinates)}}}, {"properties", std::move(properties)}});
   }
   const Json map = {{"type", "FeatureCollection"}, {"features", std::move(features)}};
-  base::WriteFileAtomically(file, map.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  base::WriteFileAtomically(file, base::JsonText(map, 1) + "\n");
 }
 
 void WriteControlReport(const survey::Survey& survey, const std::filesystem::path& folder) {

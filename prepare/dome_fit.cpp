@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/order_statistics.h"
-#include "prepare/dense.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -23,11 +23,10 @@ constexpr double kMinCurvature = 0.02;
 constexpr Index kUnknowns = 4;
 
 bool CoverAnArea(const Eigen::Matrix2Xd& centred) {
-  VectorXd squares;
-  MatrixXd directions;
-  if (!SymmetricEigen(centred * centred.transpose(), &squares, &directions)) return false;
-  // Eigenvalues are squares of singular values, in increasing order.
-  return squares[1] > 0.0 && squares[0] > kMinBreadth * kMinBreadth * squares[1];
+  const linear::EigenPairs<2> eigen = linear::SymmetricEigen<2>(centred * centred.transpose());
+  // Eigenvalues are squares of singular values.
+  const Eigen::Vector2d& squares = eigen.values;
+  return eigen.found && squares[1] > 0.0 && squares[0] > kMinBreadth * kMinBreadth * squares[1];
 }
 
 double MadScale(const VectorXd& residual) {
@@ -76,17 +75,17 @@ Dome FitDome(const std::vector<HeightDifference>& differences) {
   design.middleCols(1, 2) = centred.transpose() / edge_m;
   design.col(3) = (radius / edge_m).cwiseAbs2();
   const MatrixXd plane = design.leftCols(3);
-  const VectorXd curvature = design.col(3) - plane * SolveLeastSquares(plane, design.col(3));
+  const VectorXd curvature = design.col(3) - plane * linear::SolveLeastSquares(plane, design.col(3));
   if (curvature.norm() < kMinCurvature * std::sqrt(static_cast<double>(n))) return {};
 
-  VectorXd solution = SolveLeastSquares(design, up);
+  VectorXd solution = linear::SolveLeastSquares(design, up);
   VectorXd residual = up - design * solution;
   double scale = MadScale(residual);
   // Residuals of rounding size: an exact fit, where weights mean nothing.
   const double rounding = 1e-12 * (1.0 + up.cwiseAbs().maxCoeff());
   for (int round = 0; round < kMaxRounds && scale > rounding; ++round) {
     const VectorXd root_weight = (kHuber * scale * residual.cwiseAbs().cwiseMax(rounding).cwiseInverse()).cwiseMin(1.0).cwiseSqrt();
-    const VectorXd next = SolveLeastSquares(root_weight.asDiagonal() * design, root_weight.cwiseProduct(up));
+    const VectorXd next = linear::SolveLeastSquares(root_weight.asDiagonal() * design, root_weight.cwiseProduct(up));
     const double change = (next - solution).cwiseAbs().maxCoeff();
     solution = next;
     residual = up - design * solution;
@@ -98,7 +97,7 @@ Dome FitDome(const std::vector<HeightDifference>& differences) {
   const VectorXd cut = residual.cwiseMax(-limit).cwiseMin(limit);
   const double share_uncut = static_cast<double>((residual.cwiseAbs().array() <= limit).count()) / static_cast<double>(n);
   const double variance = cut.squaredNorm() / static_cast<double>(n - kUnknowns) / (share_uncut * share_uncut);
-  const MatrixXd normal_inverse = InverseOf(design.transpose() * design);
+  const MatrixXd normal_inverse = linear::Inverse<Eigen::Dynamic>(design.transpose() * design);
   const double sigma = std::sqrt(variance * normal_inverse(3, 3) * CorrelationFactor(cut));
   if (!std::isfinite(solution[3]) || !std::isfinite(sigma)) return {};
   return {-solution[3], sigma};

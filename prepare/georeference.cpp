@@ -1,6 +1,6 @@
 #include "prepare/georeference.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "core/geo/robust_similarity.h"
-#include "prepare/dense.h"
+#include "core/linear/linear.h"
 #include "prepare/fit_report.h"
 #include "prepare/height_bias.h"
 #include "prepare/levelled_fit.h"
@@ -104,9 +104,7 @@ TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<T
     if (fit.inlier[k] != 0) inliers.col(column++) = in_enu[k];
   }
   const Eigen::Matrix3Xd centred = inliers.colwise() - inliers.rowwise().mean();
-  Eigen::VectorXd squares;
-  Eigen::MatrixXd directions;
-  SymmetricEigen(centred * centred.transpose(), &squares, &directions);
+  const Vector3d squares = linear::SymmetricEigen<3>(centred * centred.transpose()).values;
   // The second largest singular value of the positions.
   alone.sigma_deg = kDegrees * fit.rmse_m / std::max(std::sqrt(std::max(squares[1], 0.0)), 1e-9);
   return alone;
@@ -120,7 +118,7 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
   const double gravity_sigma_deg = kDegrees * gravity.Sigma();
   // Cameras that were turned at random say nothing about gravity; then the positions have to.
   if (!(gravity_sigma_deg < kMaxUsefulSigma_deg) && alone.ok) up = alone.up_in_model;
-  const Eigen::Quaterniond level_from_model = Eigen::Quaterniond::FromTwoVectors(up, Vector3d::UnitZ()).normalized();
+  const Eigen::Quaterniond level_from_model = linear::RotationBetween(up, Vector3d::UnitZ()).normalized();
   const HorizontalFit flat = FitLevelled(flight, tags, level_from_model.toRotationMatrix());
   if (!flat.ok) {
     result.problems.push_back(NoPlace("no_fit", "the GPS tags do not determine position, scale and direction", "Use photos with good GPS tags"));
@@ -208,7 +206,7 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
 // When most tags disagree: are their coordinates written wrongly in one of the usual ways? A mirrored line is a line, so photos on one line cannot
 // tell.
 std::optional<survey::Problem> CoordinateProblem(const TaggedFlight& flight, const Gravity& gravity, int n_tags) {
-  const Matrix3d level_from_model = Eigen::Quaterniond::FromTwoVectors(gravity.up, Vector3d::UnitZ()).toRotationMatrix();
+  const Matrix3d level_from_model = linear::RotationBetween(gravity.up, Vector3d::UnitZ()).toRotationMatrix();
   if (OnOneLine(flight.stations, level_from_model)) return std::nullopt;
   const auto agreeing = [&](const std::vector<Station>& stations) {
     const std::vector<Tag> tags = CollectTags(stations, flight.track.order(), MedianPosition(stations), HeightTags::kUnknown);

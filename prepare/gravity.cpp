@@ -1,13 +1,13 @@
 #include "prepare/gravity.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "core/base/order_statistics.h"
-#include "prepare/dense.h"
+#include "core/linear/linear.h"
 #include "prepare/robust.h"
 
 namespace skyquilt::prepare {
@@ -40,13 +40,13 @@ Basis TangentBasis(const Vector3d& up) {
 double SigmaOf(const Vector3d& up, const Matrix3d& information) {
   const Basis basis = TangentBasis(up);
   const Eigen::Matrix2d tangent = basis.transpose() * information * basis;
-  if (!(tangent.determinant() > 1e-12 * tangent.squaredNorm()) || !(tangent(0, 0) > 0.0)) return std::numeric_limits<double>::infinity();
-  return std::sqrt(tangent.inverse().trace());
+  if (!(linear::Determinant(tangent) > 1e-12 * tangent.squaredNorm()) || !(tangent(0, 0) > 0.0)) return std::numeric_limits<double>::infinity();
+  return std::sqrt(linear::Inverse(tangent).trace());
 }
 
 // Information from a covariance in the tangent plane.
 Matrix3d Information(const Basis& basis, const Eigen::Matrix2d& covariance) {
-  return basis * covariance.inverse() * basis.transpose();
+  return basis * linear::Inverse(covariance) * basis.transpose();
 }
 
 // One camera's statement: up in its frame, of which only the components along some directions count.
@@ -116,7 +116,7 @@ UpEvidence SolveUp(const std::vector<Statement>& statements, const Vector3d& sta
     right.tail<3>() += prior * common;
     // Keeps directions without any evidence in place; their variance stays large.
     normal.topLeftCorner<2, 2>().diagonal().array() += 1e-3;
-    const Eigen::Matrix<double, 5, 5> inverse = InverseOf(normal);
+    const Eigen::Matrix<double, 5, 5> inverse = linear::Inverse<Eigen::Dynamic>(normal);
     const Eigen::Matrix<double, 5, 1> step = -(inverse * right);
     result.up = (result.up + basis * step.head<2>()).normalized();
     common += step.tail<3>();
@@ -144,12 +144,12 @@ Vector3d RoughUp(const std::vector<Station>& stations) {
     view += model_from_cam.col(2) / n;
     camera_up -= model_from_cam.col(1) / n;
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(right_axes);  // ascending
+  const linear::EigenPairs<3> eigen = linear::SymmetricEigen(right_axes);
   constexpr double kSpread = 0.03;
   const Vector3d hint = view.norm() > 0.1 ? Vector3d(-view) : camera_up;
   Vector3d up = hint;
-  if (solver.eigenvalues()[1] > kSpread && solver.eigenvalues()[0] < 0.5 * solver.eigenvalues()[1]) {
-    up = solver.eigenvectors().col(0);
+  if (eigen.values[1] > kSpread && eigen.values[0] < 0.5 * eigen.values[1]) {
+    up = eigen.vectors.col(0);
     // Level cameras all around give no hint by their views; their own up does.
     if (up.dot(std::abs(up.dot(view)) > 0.1 ? Vector3d(-view) : camera_up) < 0.0) up = -up;
   }
@@ -218,7 +218,7 @@ std::vector<UpEvidence> GroundEvidence(const std::vector<Vector3d>& points, cons
   std::vector<double> weight;
   weight.reserve(points.size());
   for (const double r : radius) weight.push_back(r <= farthest ? 1.0 : 0.0);
-  Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
+  linear::EigenPairs<3> eigen;
   double roughness = 0.0;
   for (int round = 0; round < kGravityRounds; ++round) {
     Vector3d sum = Vector3d::Zero();
@@ -231,8 +231,8 @@ std::vector<UpEvidence> GroundEvidence(const std::vector<Vector3d>& points, cons
     middle = sum / total;
     Matrix3d covariance = Matrix3d::Zero();
     for (size_t i = 0; i < points.size(); ++i) covariance += weight[i] / total * (points[i] - middle) * (points[i] - middle).transpose();
-    solver.compute(covariance);
-    const Vector3d normal = solver.eigenvectors().col(0);
+    eigen = linear::SymmetricEigen(covariance);
+    const Vector3d normal = eigen.vectors.col(0);
     std::vector<double> distance;
     distance.reserve(points.size());
     for (size_t i = 0; i < points.size(); ++i) {
@@ -242,14 +242,14 @@ std::vector<UpEvidence> GroundEvidence(const std::vector<Vector3d>& points, cons
     if (!(roughness > 0.0)) break;
     for (size_t i = 0; i < points.size(); ++i) weight[i] = radius[i] <= farthest ? TukeyWeight(normal.dot(points[i] - middle) / roughness) : 0.0;
   }
-  const Vector3d spread = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const Vector3d spread = eigen.values.cwiseMax(0.0).cwiseSqrt();
   if (!(spread[1] > 0.02 * spread[2]) || !(spread[0] < 0.7 * spread[1])) return {};  // a line, or no plane at all
-  UpEvidence evidence{.kind = "ground", .n = static_cast<int>(points.size()), .up = solver.eigenvectors().col(0)};
+  UpEvidence evidence{.kind = "ground", .n = static_cast<int>(points.size()), .up = eigen.vectors.col(0)};
   if (evidence.up.dot(rough_up) < 0.0) evidence.up = -evidence.up;
   for (int axis = 1; axis < 3; ++axis) {
     const double fit = roughness / (spread[axis] * std::sqrt(kIndependentPoints));
     const double variance = 0.5 * std::pow(kGroundSlope_deg * kRadiansPerDegree, 2) + fit * fit;
-    evidence.information += solver.eigenvectors().col(axis) * solver.eigenvectors().col(axis).transpose() / variance;
+    evidence.information += eigen.vectors.col(axis) * eigen.vectors.col(axis).transpose() / variance;
   }
   return {evidence};
 }
@@ -277,7 +277,7 @@ Gravity FindGravity(const std::vector<Station>& stations, const std::vector<Vect
     }
     const Basis basis = TangentBasis(gravity.up);
     const Eigen::Matrix2d normal = basis.transpose() * gravity.information * basis;
-    gravity.up = (gravity.up + basis * (normal.inverse() * (basis.transpose() * pull))).normalized();
+    gravity.up = (gravity.up + basis * (linear::Inverse(normal) * (basis.transpose() * pull))).normalized();
   }
   double chi_squared = 0.0;
   int n_independent = -1;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/base/order_statistics.h"
-#include "prepare/dense.h"
+#include "core/linear/linear.h"
 #include "prepare/robust.h"
 
 namespace skyquilt::prepare {
@@ -83,8 +83,8 @@ Eigen::MatrixXd Prior(const HeightObservations& observations, const HeightBias& 
 // Logarithm of the likelihood with all parameters integrated out, up to a constant. The weights in `design` are inverse variances.
 double MarginalLikelihood(const Design& design, const Eigen::MatrixXd& prior) {
   const Eigen::MatrixXd posterior = design.normal + prior;
-  const Eigen::VectorXd solution = SolvePositive(posterior, design.right);
-  return -0.5 * (design.square - design.right.dot(solution)) - 0.5 * LogDeterminant(posterior) + 0.5 * LogDeterminant(prior);
+  const Eigen::VectorXd solution = linear::SolvePositive(posterior, design.right);
+  return -0.5 * (design.square - design.right.dot(solution)) - 0.5 * linear::LogDeterminant(posterior) + 0.5 * linear::LogDeterminant(prior);
 }
 
 }  // namespace
@@ -154,7 +154,7 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
   for (int round = 0; round < kBiasRounds; ++round) {
     design.Weigh(weight, observations.height_m);
     const Eigen::MatrixXd posterior = design.normal + Prior(observations, bias, kFlexible);
-    const Eigen::VectorXd residual = design.columns * SolvePositive(posterior, design.right) - observations.height_m;
+    const Eigen::VectorXd residual = design.columns * linear::SolvePositive(posterior, design.right) - observations.height_m;
     scale = std::max(least, ScaleOf(residual, observations.sigma));
     for (Index k = 0; k < n; ++k) {
       const double sigma_m = std::max(scale * observations.sigma[k], kLeastHeightNoise_m);
@@ -186,7 +186,7 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
     }
   }
   const Eigen::MatrixXd posterior = design.normal + Prior(observations, bias, choice.sigmas);
-  choice.solution = SolvePositive(posterior, design.right);
+  choice.solution = linear::SolvePositive(posterior, design.right);
   return choice;
 }
 

@@ -37,7 +37,7 @@ void MarkList(const std::filesystem::path& file, survey::Survey& survey) {
     if (found != by_name.end()) {
       found->second->is_test = true;
     } else if (std::find(survey.unregistered.begin(), survey.unregistered.end(), name) != survey.unregistered.end()) {
-      spdlog::warn("{}: '{}' has no pose, so it is not used as a test photo", file.string(), name);
+      base::LogWarning("{}: '{}' has no pose, so it is not used as a test photo", file.string(), name);
     } else {
       throw base::InputError(file, "names '" + name + "', which is not among the photos",
                              "Write names relative to the photo folder, as in survey.json");

@@ -82,7 +82,7 @@ FoundLines FindHorizontalLines(const survey::Survey& survey, base::ThreadPool& t
       of_photo[i] = LinesOf(survey, photo, ground_z);
       read[i] = 1;
     } catch (const base::InputError& error) {
-      spdlog::warn("no lines are searched in {}: {}", photo.name, error.finding());
+      base::LogWarning("no lines are searched in {}: {}", photo.name, error.finding());
     }
   });
   base::ThrowIfCancelled();

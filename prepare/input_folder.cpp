@@ -5,6 +5,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "prepare/models/read_model.h"
 #include "prepare/photo_files.h"
@@ -30,7 +31,7 @@ void ReadSimulated(const fs::path& folder, bool own_model, InputFolder& found) {
   const fs::path file = folder / "simulate.json";
   const std::string fix = "Run 'skyquilt simulate' again";
   try {
-    const nlohmann::json json = nlohmann::json::parse(base::ReadFile(file));
+    const nlohmann::json json = base::ParseJson(base::ReadFile(file));
     if (own_model && json.value("exact_frame", false)) {
       const nlohmann::json& origin = json.at("origin");
       found.exact_origin =
@@ -64,8 +65,8 @@ InputFolder FindInputs(const fs::path& photos, const fs::path& model, const fs::
   } else if (simulated) {
     found.model = folder / "sparse" / "0";
   } else if (fs::is_directory(folder / "sparse" / "0")) {
-    spdlog::info("found a COLMAP model in {}, which is not used; give it with --model to use it instead of running COLMAP",
-                 (folder / "sparse" / "0").string());
+    base::LogInfo("found a COLMAP model in {}, which is not used; give it with --model to use it instead of running COLMAP",
+                  (folder / "sparse" / "0").string());
   }
   if (simulated) ReadSimulated(folder, model.empty() || fs::equivalent(found.model, folder / "sparse" / "0"), found);
 

@@ -1,12 +1,12 @@
 #include "prepare/intrinsics_sigma.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "core/linear/linear.h"
 #include "prepare/adjustment_block.h"
-#include "prepare/dense.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -125,30 +125,32 @@ struct Reduced {
 void AddPoint(const std::vector<std::pair<int, Linearized>>& rows, Reduced& reduced) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const auto& [photo, row] : rows) information += row.point.transpose() * row.point;
-  const Eigen::LLT<Eigen::Matrix3d> cholesky(information);
-  if (cholesky.info() != Eigen::Success || !(cholesky.rcond() > 1e-14)) return;
+  MatrixXd columns(3, 2 * static_cast<Index>(rows.size())), roots;
+  for (size_t i = 0; i < rows.size(); ++i) columns.middleCols<2>(2 * static_cast<Index>(i)) = rows[i].second.point.transpose();
+  if (!linear::SolveLowerCholesky(information, columns, &roots, 1e-14)) return;
   // B L^-T turns B^T A, which the point takes away, into a sum of squares.
   std::vector<Eigen::Matrix<double, 6, 3>> taken;
   taken.reserve(rows.size());
   MatrixXd camera_taken = MatrixXd::Zero(reduced.camera.rows(), 3);
-  for (const auto& [photo, row] : rows) {
-    const Eigen::Matrix<double, 3, 2> root = cholesky.matrixL().solve(row.point.transpose());
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const auto& row = rows[i].second;
+    const Eigen::Matrix<double, 3, 2> root = roots.middleCols<2>(2 * static_cast<Index>(i));
     taken.emplace_back(row.pose.transpose() * root.transpose());
-    camera_taken.noalias() += row.camera.transpose() * root.transpose();
+    camera_taken += row.camera.transpose().lazyProduct(root.transpose());
   }
   for (size_t i = 0; i < rows.size(); ++i) {
     const auto& [photo, row] = rows[i];
     const Index at = 6 * static_cast<Index>(photo);
     reduced.poses.block<6, 6>(at, at).noalias() += row.pose.transpose() * row.pose;
-    reduced.pose_camera.middleRows<6>(at).noalias() += row.pose.transpose() * row.camera - taken[i] * camera_taken.transpose();
-    reduced.camera.noalias() += row.camera.transpose() * row.camera;
+    reduced.pose_camera.middleRows<6>(at).noalias() += row.pose.transpose().lazyProduct(row.camera) - taken[i].lazyProduct(camera_taken.transpose());
+    reduced.camera += row.camera.transpose().lazyProduct(row.camera);
     reduced.sum_of_squares += row.residual.squaredNorm();
     for (size_t j = 0; j < rows.size(); ++j) {
       if (rows[j].first > photo) continue;
       reduced.poses.block<6, 6>(at, 6 * static_cast<Index>(rows[j].first)).noalias() -= taken[i] * taken[j].transpose();
     }
   }
-  reduced.camera.noalias() -= camera_taken * camera_taken.transpose();
+  reduced.camera -= camera_taken.lazyProduct(camera_taken.transpose());
   reduced.n_observations += static_cast<int>(rows.size());
   ++reduced.n_points;
 }
@@ -200,8 +202,8 @@ std::optional<MatrixXd> CameraInformation(const Reduced& reduced, const std::vec
   poses = inverse.asDiagonal() * poses * inverse.asDiagonal();
   pose_camera = inverse.asDiagonal() * pose_camera;
   MatrixXd taken;
-  if (!SolveLowerCholesky(poses, pose_camera, &taken)) return std::nullopt;
-  return MatrixXd(reduced.camera - taken.transpose() * taken);
+  if (!linear::SolveLowerCholesky(poses, pose_camera, &taken)) return std::nullopt;
+  return MatrixXd(reduced.camera - linear::TransposedProduct(taken, taken));
 }
 
 // Diagonal element of the inverse. Directions without information get a very large variance instead of infinity.
@@ -209,12 +211,11 @@ double InverseDiagonal(const MatrixXd& information, Index index) {
   const VectorXd scale = information.diagonal().cwiseMax(0.0).cwiseSqrt();
   if (!scale.allFinite() || !(scale.minCoeff() > 0.0)) return std::numeric_limits<double>::quiet_NaN();
   const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
-  VectorXd values;
-  MatrixXd vectors;
-  if (!SymmetricEigen(scaled, &values, &vectors)) return std::numeric_limits<double>::quiet_NaN();
-  const double floor = kInformationFloor * values.maxCoeff();
-  const VectorXd along = vectors.row(index);
-  return along.cwiseAbs2().dot(values.cwiseMax(floor).cwiseInverse()) / (scale[index] * scale[index]);
+  const linear::EigenPairs<Eigen::Dynamic> eigen = linear::SymmetricEigen(scaled);
+  if (!eigen.found) return std::numeric_limits<double>::quiet_NaN();
+  const double floor = kInformationFloor * eigen.values.maxCoeff();
+  const VectorXd along = eigen.vectors.row(index);
+  return along.cwiseAbs2().dot(eigen.values.cwiseMax(floor).cwiseInverse()) / (scale[index] * scale[index]);
 }
 
 }  // namespace

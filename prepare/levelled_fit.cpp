@@ -1,12 +1,13 @@
 #include "prepare/levelled_fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "core/base/order_statistics.h"
+#include "core/linear/linear.h"
 #include "prepare/georeference.h"
 #include "prepare/robust.h"
 
@@ -119,8 +120,8 @@ bool OnOneLine(const std::vector<Station>& stations, const Matrix3d& level_from_
     x.col(static_cast<Eigen::Index>(i)) = (level_from_model * stations[i].cam_from_model.OriginInSource()).head<2>();
   }
   const Eigen::Matrix2Xd centred = x.colwise() - x.rowwise().mean();
-  const Eigen::Matrix2d spread = centred * centred.transpose();
-  const Eigen::Vector2d value = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::Matrix2d spread = centred.lazyProduct(centred.transpose());
+  const Eigen::Vector2d value = linear::SymmetricEigen(spread).values.cwiseMax(0.0).cwiseSqrt();
   return value[0] <= kLineRatio * value[1];
 }
 

@@ -1,7 +1,8 @@
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "core/base/order_statistics.h"
+#include "core/linear/linear.h"
 #include "prepare/georeference.h"
 
 namespace skyquilt::prepare {
@@ -37,7 +38,7 @@ geo::Similarity3d LocalFrame(const std::vector<Station>& stations, const std::ve
     if (!own.empty()) depths.push_back(base::Median(own));
   }
   const double depth = base::Median(depths);
-  local_from_model.rotation = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).normalized();
+  local_from_model.rotation = linear::RotationBetween(up, Eigen::Vector3d::UnitZ()).normalized();
   local_from_model.scale = std::isfinite(depth) && depth > 0.0 ? kLocalDepth / depth : 1.0;
   local_from_model.translation = -(local_from_model.scale * (local_from_model.rotation * origin));
   return local_from_model;

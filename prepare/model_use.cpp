@@ -32,8 +32,8 @@ void RequireColmap(const InputModel& model, const std::filesystem::path& path, c
 void PlaceByModel(const ModelPlace& place, std::vector<Station>& stations) {
   const auto tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
   if (tagged >= kMinAgreeing) return;
-  spdlog::info("{} of {} photos have GPS tags, so the positions of the model are used ({}); their accuracy is not known", tagged, stations.size(),
-               place.source);
+  base::LogInfo("{} of {} photos have GPS tags, so the positions of the model are used ({}); their accuracy is not known", tagged, stations.size(),
+                place.source);
   const geo::EnuFrame frame(place.origin);
   const Station untagged;
   for (Station& station : stations) {
@@ -68,7 +68,7 @@ void UseAlphaAsMasks(const InputModel& model, const std::filesystem::path& photo
   });
   progress.Finish();
   const auto n_masks = std::count_if(without_mask.begin(), without_mask.end(), [&](size_t i) { return !masks[i].empty(); });
-  if (n_masks > 0) spdlog::info("masks: {} photos have transparent pixels, which are ignored ({})", n_masks, folder.string());
+  if (n_masks > 0) base::LogInfo("masks: {} photos have transparent pixels, which are ignored ({})", n_masks, folder.string());
 }
 
 void HoldOutByModel(const InputModel& model, const std::filesystem::path& path, survey::Survey& survey) {
@@ -76,14 +76,14 @@ void HoldOutByModel(const InputModel& model, const std::filesystem::path& path, 
   const auto is_test = [&model](const survey::Photo& photo) { return model.test_photos.contains(photo.name); };
   const auto n_test = static_cast<size_t>(std::count_if(survey.photos.begin(), survey.photos.end(), is_test));
   if (n_test == 0) {
-    spdlog::warn("{}: none of the {} photos that the model holds out has a pose, so photos are held out by prepare.holdout", path.string(),
-                 model.test_photos.size());
+    base::LogWarning("{}: none of the {} photos that the model holds out has a pose, so photos are held out by prepare.holdout", path.string(),
+                     model.test_photos.size());
     return;
   }
   if (n_test == survey.photos.size())
     throw base::InputError(path, "holds out every photo, so none is left to train on", "Choose the held-out photos with --holdout");
   for (survey::Photo& photo : survey.photos) photo.is_test = is_test(photo);
-  spdlog::info("{} photos are held out, as the model says (choose others with prepare.holdout)", n_test);
+  base::LogInfo("{} photos are held out, as the model says (choose others with prepare.holdout)", n_test);
 }
 
 }  // namespace skyquilt::prepare

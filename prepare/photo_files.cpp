@@ -88,7 +88,7 @@ PhotoSet ReadPhotos(const fs::path& root, const std::vector<std::string>& names,
     if (problems[i].empty()) {
       set.usable.push_back(std::move(files[i]));
     } else {
-      spdlog::warn("photo left out: {}", problems[i]);
+      base::LogWarning("photo left out: {}", problems[i]);
       set.unreadable.push_back(names[i]);
     }
   }
@@ -122,7 +122,7 @@ std::vector<std::string> FindMasks(const fs::path& masks, const std::vector<Phot
     ++n_found;
   }
   if (n_found == 0) throw base::InputError(masks, "has no mask for any photo", "Name masks like " + photos.front().name + ".png");
-  spdlog::info("masks: {} of {} photos have one in {}", n_found, photos.size(), masks.string());
+  base::LogInfo("masks: {} of {} photos have one in {}", n_found, photos.size(), masks.string());
   return found;
 }
 

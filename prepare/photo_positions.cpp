@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/pattern.h"
 #include "core/base/text.h"
 #include "core/geo/crs.h"
 #include "core/geo/ecef.h"
@@ -80,11 +80,10 @@ struct Numbered {
 
 // The number of a photo in its folder by its name.
 std::optional<int> NumberOf(const std::string& name) {
-  static const std::regex kNumber("(?:^|.*_)(\\d{4})(?:_[A-Za-z]+)*");
   const std::string stem = fs::path(name).stem().string();
-  std::smatch match;
-  if (stem.size() > 200 || !std::regex_match(stem, match, kNumber)) return std::nullopt;
-  return std::stoi(match[1]);
+  if (stem.size() > 200) return std::nullopt;
+  const auto match = base::MatchWhole(stem, "(?:^|.*_)(\\d{4})(?:_[A-Za-z]+)*");
+  return match ? std::optional(std::stoi((*match)[1])) : std::nullopt;
 }
 
 // Empty: there is none.
@@ -117,8 +116,8 @@ void UseGeoFile(const fs::path& file, std::vector<PhotoFile>& photos) {
     ++n_used;
   }
   if (n_used == 0) throw base::InputError(file, "names none of the photos", "Write the photos' file names in its first column");
-  spdlog::info("positions of {} of {} photos come from {} instead of their tags", n_used, photos.size(), file.string());
-  if (n_used < rows.size()) spdlog::warn("{}: {} of {} rows name no photo, or more than one", file.string(), rows.size() - n_used, rows.size());
+  base::LogInfo("positions of {} of {} photos come from {} instead of their tags", n_used, photos.size(), file.string());
+  if (n_used < rows.size()) base::LogWarning("{}: {} of {} rows name no photo, or more than one", file.string(), rows.size() - n_used, rows.size());
 }
 
 // By number; without numbers that several files have.
@@ -133,11 +132,11 @@ std::map<int, Numbered> RowsOfFolder(const fs::path& folder) {
         if (row.status > 0 && !rows.emplace(row.number, Numbered{row, entry->path()}).second) ambiguous.insert(row.number);
       }
     } catch (const base::InputError& problem) {
-      spdlog::warn("not used: {}", problem.what());
+      base::LogWarning("not used: {}", problem.what());
     }
   }
   if (!ambiguous.empty())
-    spdlog::warn(
+    base::LogWarning(
         "{}: the .MRK files number {} photos twice, which keep their tags; keep the photos of a flight in a folder of their own with its .MRK",
         folder.string(), ambiguous.size());
   for (const int number : ambiguous) rows.erase(number);
@@ -166,8 +165,8 @@ void UseMrkFiles(const fs::path& photo_root, std::vector<PhotoFile>& photos) {
     }
     if (pairs.empty()) continue;
     if (2 * n_far > pairs.size()) {
-      spdlog::warn("{}: the .MRK is not used, because it is more than {} m from the tags of {} of {} photos", folder.string(), kFarOff_m, n_far,
-                   pairs.size());
+      base::LogWarning("{}: the .MRK is not used, because it is more than {} m from the tags of {} of {} photos", folder.string(), kFarOff_m, n_far,
+                       pairs.size());
       continue;
     }
     for (const auto& [photo, numbered] : pairs) {
@@ -178,8 +177,8 @@ void UseMrkFiles(const fs::path& photo_root, std::vector<PhotoFile>& photos) {
       if (row.horizontal_accuracy_m > 0.0) photo->tags.horizontal_accuracy_m = row.horizontal_accuracy_m;
       if (row.vertical_accuracy_m > 0.0) photo->tags.vertical_accuracy_m = row.vertical_accuracy_m;
     }
-    spdlog::info("positions of {} of {} photos come from {} instead of their tags", pairs.size(), in_folder.size(),
-                 pairs.front().second->file.string());
+    base::LogInfo("positions of {} of {} photos come from {} instead of their tags", pairs.size(), in_folder.size(),
+                  pairs.front().second->file.string());
   }
 }
 

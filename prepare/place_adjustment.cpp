@@ -1,13 +1,12 @@
 #include "prepare/place_adjustment.h"
 
-#include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
-#include "prepare/dense.h"
+#include "core/linear/linear.h"
 #include "prepare/robust.h"
 
 namespace skyquilt::prepare {
@@ -152,8 +151,8 @@ class Solver {
       // Only the parameters of the tag's own flight: with many flights the rest of the row is zero.
       const Eigen::RowVectorXd basis = input_.bias.basis().row(static_cast<Index>(k)).segment(span.first, span.count);
       const Index at = kGlobal + span.first;
-      normal_.block(0, at, kGlobal, span.count) += v * row.row(2).transpose() * basis;
-      normal_.block(at, at, span.count, span.count) += v * basis.transpose() * basis;
+      normal_.block(0, at, kGlobal, span.count) += v * row.row(2).transpose().lazyProduct(basis);
+      normal_.block(at, at, span.count, span.count) += v * basis.transpose().lazyProduct(basis);
       gradient_.segment(at, span.count) += v * basis.transpose() * residual_[k].z();
     }
     normal_.bottomLeftCorner(bias_.size(), kGlobal) = normal_.topRightCorner(kGlobal, bias_.size()).transpose();
@@ -182,7 +181,7 @@ class Solver {
 
   Eigen::VectorXd Step() {
     Build();
-    Eigen::VectorXd step = -SolveSymmetric(normal_, gradient_);
+    Eigen::VectorXd step = -linear::SolveSymmetric(normal_, gradient_);
     if (!step.allFinite()) return Eigen::VectorXd::Zero(normal_.rows());
     const Vector3d turn = step.head<3>();
     if (turn.norm() > 0.0) rotation_ = (Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * rotation_).normalized();
@@ -212,16 +211,16 @@ class Solver {
     result.horizontal_noise = noise_h_.robust;
     result.vertical_noise = noise_v_.robust;
     const Index size = normal_.rows();
-    const Eigen::MatrixXd inverse = SolveSymmetric(normal_, Eigen::MatrixXd::Identity(size, size));
+    const Eigen::MatrixXd inverse = linear::SolveSymmetric(normal_, Eigen::MatrixXd::Identity(size, size));
     result.covariance = inverse.topLeftCorner<kGlobal, kGlobal>();
     // The tags' own statement on the rotation about east and north: everything else eliminated.
     const Index rest = size - 2;
     const Eigen::MatrixXd others = tags_normal_.bottomRightCorner(rest, rest);
     const Eigen::MatrixXd coupling = tags_normal_.topRightCorner(2, rest);
-    result.tags_information = tags_normal_.topLeftCorner<2, 2>() - coupling * SolveSymmetric(others, coupling.transpose());
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(result.tags_information);
-    if (solver.eigenvalues()[0] > 1e-9 * std::max(1.0, solver.eigenvalues()[1])) {
-      result.tags_covariance = result.tags_information.inverse();
+    result.tags_information = tags_normal_.topLeftCorner<2, 2>() - coupling.lazyProduct(linear::SolveSymmetric(others, coupling.transpose()));
+    const Eigen::Vector2d values = linear::SymmetricEigen(result.tags_information).values;
+    if (values[0] > 1e-9 * std::max(1.0, values[1])) {
+      result.tags_covariance = linear::Inverse(result.tags_information);
       // At the optimum gravity and tags pull with the same force against each other.
       result.tags_rotation = result.tags_covariance * gravity_gradient_.head<2>();
     }

@@ -33,8 +33,8 @@ std::string Describe(const survey::ControlFit& fit, survey::ControlUse use) {
 
 void LogControl(const survey::ControlFit& fit) {
   const char* how = !fit.placed ? "compared with the place from GPS tags" : fit.adjusted ? "adjusted with the photos" : "fitted by a similarity";
-  spdlog::info("{} points of {}, {}: control points: {}; check points: {}", fit.points.size(), fit.file, how,
-               Describe(fit, survey::ControlUse::kControl), Describe(fit, survey::ControlUse::kCheck));
+  base::LogInfo("{} points of {}, {}: control points: {}; check points: {}", fit.points.size(), fit.file, how,
+                Describe(fit, survey::ControlUse::kControl), Describe(fit, survey::ControlUse::kCheck));
 }
 
 }  // namespace
@@ -55,11 +55,11 @@ ControlPoints ReadControlPoints(const PrepareOptions& options, const std::vector
                                        .heights = options.gcp_heights,
                                        .check_points = options.check_points},
                                       photos);
-  for (const std::string& warning : control.warnings) spdlog::warn("{}", warning);
+  for (const std::string& warning : control.warnings) base::LogWarning("{}", warning);
   CheckNear(control, tags);
   // Tags may turn out not to place the survey; then FitControl refuses.
   const std::string doubt = CheckGeometry(control, static_cast<int>(tags.size()) >= kMinAgreeing);
-  if (!doubt.empty()) spdlog::warn("{}", doubt);
+  if (!doubt.empty()) base::LogWarning("{}", doubt);
   return control;
 }
 

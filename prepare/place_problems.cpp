@@ -1,6 +1,6 @@
 #include "prepare/place_problems.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

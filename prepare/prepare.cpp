@@ -108,12 +108,13 @@ std::vector<Registered> MatchPhotos(const survey::ColmapModel& model, const std:
     registered.push_back({&image, *file});
   }
   if (!missing.empty()) {
-    spdlog::warn("{}: {} of {} photos of the model are left out, because they are not in {}, cannot be read or have a name that several share: {}",
-                 model_folder.string(), missing.size(), model.images.size(), photo_root.string(), Joined(missing));
+    base::LogWarning(
+        "{}: {} of {} photos of the model are left out, because they are not in {}, cannot be read or have a name that several share: {}",
+        model_folder.string(), missing.size(), model.images.size(), photo_root.string(), Joined(missing));
   }
   if (!other_size.empty()) {
-    spdlog::warn("{} photos are left out, because their size is not that of their camera in the model: {} ({})", other_size.size(),
-                 Joined(other_size), size_example);
+    base::LogWarning("{} photos are left out, because their size is not that of their camera in the model: {} ({})", other_size.size(),
+                     Joined(other_size), size_example);
   }
   if (registered.size() < kMinPhotos) {
     std::string found =
@@ -209,7 +210,7 @@ double MeasureK1Sigma(const survey::ColmapModel& model, const fs::path& model_fo
   try {
     return MeasureLensAccuracy(model, survey::ReadColmapObservations(model_folder), camera_id).k1_sigma;
   } catch (const base::InputError& error) {
-    spdlog::info("the accuracy of the lens is not computed: {}", error.what());
+    base::LogInfo("the accuracy of the lens is not computed: {}", error.what());
     return std::numeric_limits<double>::quiet_NaN();
   }
 }
@@ -228,7 +229,7 @@ void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folde
     const uint32_t camera_id = registered[static_cast<size_t>(main - survey.photos.begin())].image->camera_id;
     survey.checks.k1_sigma = MeasureK1Sigma(model, model_folder, camera_id);
   }
-  spdlog::info(DescribeChecks(survey.checks));
+  base::LogInfo(DescribeChecks(survey.checks));
   for (survey::Problem& problem : FlightProblems(survey.checks, survey)) survey.problems.push_back(std::move(problem));
 }
 
@@ -237,8 +238,8 @@ void LogDirections(const survey::DominantDirections& directions) {
   for (const survey::YawMode& mode : directions.modes) {
     text += fmt::format("{}{:.1f} +- {:.1f} degrees ({:.0f} %)", text.empty() ? "" : ", ", mode.yaw_deg, mode.sigma_deg, 100.0 * mode.share);
   }
-  spdlog::info("{} straight lines in {} photos; directions of buildings and streets: {}", directions.lines, directions.photos,
-               text.empty() ? "none" : text);
+  base::LogInfo("{} straight lines in {} photos; directions of buildings and streets: {}", directions.lines, directions.photos,
+                text.empty() ? "none" : text);
 }
 
 // For a model without any.
@@ -338,7 +339,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
 
   LogSummary(survey);
   if (!survey.unregistered.empty())
-    spdlog::warn("{} photos without a pose are not used: {}", survey.unregistered.size(), Joined(survey.unregistered));
+    base::LogWarning("{} photos without a pose are not used: {}", survey.unregistered.size(), Joined(survey.unregistered));
   WriteResidualTable(survey, georeference, input.out_folder / "geo_residuals.csv");
   WriteControlReport(survey, input.out_folder);
   if (survey.georeferenced) {

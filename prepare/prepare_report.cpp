@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
@@ -15,7 +16,7 @@ namespace skyquilt::prepare {
 namespace {
 
 void LogProblems(const survey::Survey& survey) {
-  for (const survey::Problem& problem : survey.problems) spdlog::warn("{}. What to do: {}", problem.finding, problem.advice);
+  for (const survey::Problem& problem : survey.problems) base::LogWarning("{}. What to do: {}", problem.finding, problem.advice);
 }
 
 void LogFlights(const survey::GeoFit& fit, const std::vector<survey::Photo>& photos) {
@@ -24,8 +25,8 @@ void LogFlights(const survey::GeoFit& fit, const std::vector<survey::Photo>& pho
     if (fit.flight_vertical_drift_m.size() < 2 && std::abs(drift_m) < 1.0) continue;
     const auto n_photos =
         std::count_if(photos.begin(), photos.end(), [flight](const survey::Photo& photo) { return photo.flight == static_cast<int>(flight); });
-    spdlog::info("flight {}: {} photos, tagged heights moved by {:+.1f} m, their drift over the flight {:+.1f} m", flight + 1, n_photos, offset_m,
-                 drift_m);
+    base::LogInfo("flight {}: {} photos, tagged heights moved by {:+.1f} m, their drift over the flight {:+.1f} m", flight + 1, n_photos, offset_m,
+                  drift_m);
   }
 }
 
@@ -38,8 +39,8 @@ const char* EvidenceName(const std::string& kind) {
 void LogGravity(const survey::GeoFit& fit) {
   for (const survey::GravityEvidence& evidence : fit.gravity) {
     if (std::isnan(evidence.sigma_deg)) continue;
-    spdlog::info("gravity by {}: leans {:.2f} deg from the result, accuracy {:.2f} deg, weight {:.0f} %", EvidenceName(evidence.kind),
-                 std::hypot(evidence.lean_east_deg, evidence.lean_north_deg), evidence.sigma_deg, 100.0 * evidence.weight);
+    base::LogInfo("gravity by {}: leans {:.2f} deg from the result, accuracy {:.2f} deg, weight {:.0f} %", EvidenceName(evidence.kind),
+                  std::hypot(evidence.lean_east_deg, evidence.lean_north_deg), evidence.sigma_deg, 100.0 * evidence.weight);
   }
 }
 
@@ -59,8 +60,8 @@ void LogTags(const survey::Survey& survey) {
   const survey::GeoFit& fit = survey.fit;
   if (fit.n_inliers > 0) {
     const std::string vertical = std::isfinite(fit.rmse_vertical_m) ? CsvNumber(fit.rmse_vertical_m, 2) + " m vertical" : "heights not used";
-    spdlog::info("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {}), {:.6g} m per model unit", fit.n_inliers, fit.n_matches,
-                 fit.rmse_m, fit.rmse_horizontal_m, vertical, fit.scale);
+    base::LogInfo("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {}), {:.6g} m per model unit", fit.n_inliers, fit.n_matches,
+                  fit.rmse_m, fit.rmse_horizontal_m, vertical, fit.scale);
     return;
   }
   std::vector<double> distances_m;
@@ -68,8 +69,8 @@ void LogTags(const survey::Survey& survey) {
     if (std::isfinite(photo.gps_residual_m)) distances_m.push_back(photo.gps_residual_m);
   }
   if (distances_m.empty()) return;
-  spdlog::info("GPS: none of {} tags agrees with the place found; they are {:.1f} m from their photos (median)", distances_m.size(),
-               base::Median(distances_m));
+  base::LogInfo("GPS: none of {} tags agrees with the place found; they are {:.1f} m from their photos (median)", distances_m.size(),
+                base::Median(distances_m));
 }
 
 }  // namespace
@@ -77,9 +78,9 @@ void LogTags(const survey::Survey& survey) {
 void LogSummary(const survey::Survey& survey) {
   const size_t n_all = survey.photos.size() + survey.unregistered.size();
   const auto n_test = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.is_test; });
-  spdlog::info("photos with a pose: {} of {}, {} of them held out for testing", survey.photos.size(), n_all, n_test);
+  base::LogInfo("photos with a pose: {} of {}, {} of them held out for testing", survey.photos.size(), n_all, n_test);
   for (const camera::Camera& camera : survey.cameras) {
-    spdlog::info("camera: {} {}x{}, focal length {:.1f} px", camera::ModelName(camera.model), camera.width, camera.height, camera.FocalX());
+    base::LogInfo("camera: {} {}x{}, focal length {:.1f} px", camera::ModelName(camera.model), camera.width, camera.height, camera.FocalX());
   }
   const double agl = survey.MedianAgl();
   LogProblems(survey);
@@ -88,23 +89,23 @@ void LogSummary(const survey::Survey& survey) {
     return;
   }
   const survey::GeoFit& fit = survey.fit;
-  spdlog::info("origin: {:.7f} deg latitude, {:.7f} deg longitude, {:.2f} m ({})", survey.origin.latitude_deg, survey.origin.longitude_deg,
-               survey.origin.height_m, HeightsText(survey.height_reference));
+  base::LogInfo("origin: {:.7f} deg latitude, {:.7f} deg longitude, {:.2f} m ({})", survey.origin.latitude_deg, survey.origin.longitude_deg,
+                survey.origin.height_m, HeightsText(survey.height_reference));
   LogTags(survey);
-  if (std::isfinite(fit.tag_lag_sigma_s)) spdlog::info("GPS tags lag {:.2f} s behind the photos (+- {:.2f} s)", fit.tag_lag_s, fit.tag_lag_sigma_s);
+  if (std::isfinite(fit.tag_lag_sigma_s)) base::LogInfo("GPS tags lag {:.2f} s behind the photos (+- {:.2f} s)", fit.tag_lag_s, fit.tag_lag_sigma_s);
   LogFlights(fit, survey.photos);
   LogGravity(fit);
   const geo::PlaceAccuracy& accuracy = fit.accuracy;
-  spdlog::info("accuracy (one standard deviation): position {} m, height {}, scale {} %, tilt {} deg, yaw {} deg",
-               CsvNumber(accuracy.horizontal_m, 2), std::isfinite(accuracy.vertical_m) ? CsvNumber(accuracy.vertical_m, 2) + " m" : "unknown",
-               CsvNumber(accuracy.scale_percent, 3), CsvNumber(accuracy.tilt_deg, 2), CsvNumber(accuracy.yaw_deg, 2));
+  base::LogInfo("accuracy (one standard deviation): position {} m, height {}, scale {} %, tilt {} deg, yaw {} deg",
+                CsvNumber(accuracy.horizontal_m, 2), std::isfinite(accuracy.vertical_m) ? CsvNumber(accuracy.vertical_m, 2) + " m" : "unknown",
+                CsvNumber(accuracy.scale_percent, 3), CsvNumber(accuracy.tilt_deg, 2), CsvNumber(accuracy.yaw_deg, 2));
   std::vector<double> relative;
   for (const survey::Photo& photo : survey.photos) {
     if (photo.relative_altitude_m) relative.push_back(*photo.relative_altitude_m);
   }
   const std::string tagged = relative.empty() ? "no RelativeAltitude tag to compare with"
                                               : "median RelativeAltitude tag " + CsvNumber(base::Median(relative), 1) + " m above take-off";
-  spdlog::info("height above ground: median {} m; {}", std::isfinite(agl) ? CsvNumber(agl, 1) : "unknown", tagged);
+  base::LogInfo("height above ground: median {} m; {}", std::isfinite(agl) ? CsvNumber(agl, 1) : "unknown", tagged);
 }
 
 void WriteResidualTable(const survey::Survey& survey, const Georeference& georeference, const std::filesystem::path& file) {
@@ -155,7 +156,7 @@ void WriteCameraMap(const survey::Survey& survey, const std::filesystem::path& f
   }
   const nlohmann::ordered_json map = {
       {"type", "FeatureCollection"}, {"skyquilt:accuracy", survey::ToJson(survey.fit.accuracy)}, {"features", std::move(features)}};
-  base::WriteFileAtomically(file, map.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  base::WriteFileAtomically(file, base::JsonText(map, 1) + "\n");
 }
 
 }  // namespace skyquilt::prepare

@@ -75,7 +75,7 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
     observations = survey::ReadColmapObservations(input.model_folder);
   } catch (const base::InputError& error) {
     // Nothing else needs them.
-    spdlog::info("the poses are not adjusted to the GPS tags: {}", error.what());
+    base::LogInfo("the poses are not adjusted to the GPS tags: {}", error.what());
     return;
   }
   const AdjustedToTags result = AdjustToTags({.model = adjusted,
@@ -86,7 +86,7 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
                                               .enu_from_model = georeference.enu_from_model},
                                              threads);
   if (!result.adjusted) {
-    spdlog::info("the poses are not adjusted to the GPS tags: {}", result.reason);
+    base::LogInfo("the poses are not adjusted to the GPS tags: {}", result.reason);
     return;
   }
   std::vector<Station> new_stations = stations;
@@ -99,13 +99,13 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
   const Dome after = placed.ok ? BendOf(new_stations, placed) : Dome();
   if (!placed.ok || placed.fit.n_inliers < georeference.fit.n_inliers ||
       std::abs(after.height_m) > std::abs(before.height_m) + kBendSigmas * after.sigma_m) {
-    spdlog::info("the poses are not adjusted to the GPS tags: fewer tags would agree, or the bend would be larger");
+    base::LogInfo("the poses are not adjusted to the GPS tags: fewer tags would agree, or the bend would be larger");
     return;
   }
   // The adjustment has made metres of the model's units.
   placed.fit.scale *= georeference.fit.scale;
   placed.fit.adjusted_to_tags = true;
-  spdlog::info(
+  base::LogInfo(
       "poses adjusted to the GPS tags: middle above edge against the tags {:+.2f} m, before {:+.2f} m; median error of features {:.2f} px, "
       "before {:.2f} px, at 1600 px",
       after.height_m, before.height_m, result.error_after, result.error_before);

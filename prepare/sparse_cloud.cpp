@@ -65,8 +65,8 @@ std::vector<size_t> FilterSparsePoints(std::vector<survey::SparsePoint>& points)
   RemoveOutliers(points, order);
   for (size_t i = 0; i < order.size(); ++i) points[i] = points[order[i]];
   points.resize(order.size());
-  spdlog::info("sparse points: {} of {} kept ({} with a large error or short track and {} far outliers removed)", points.size(), n_all,
-               n_all - n_good, n_good - points.size());
+  base::LogInfo("sparse points: {} of {} kept ({} with a large error or short track and {} far outliers removed)", points.size(), n_all,
+                n_all - n_good, n_good - points.size());
   return order;
 }
 

@@ -49,7 +49,7 @@ void FillPoints(const survey::ColmapModel& model, const geo::Similarity3d& enu_f
   }
   // Formats without tracks: none is known, rather than points that nobody saw.
   if (survey.tracks.observations() + survey.kept_tracks.observations() == 0) survey.tracks = survey.kept_tracks = {};
-  if (keep_every > 0) spdlog::info("{} sparse points are kept from training, to measure depth errors with", survey.kept_points.size());
+  if (keep_every > 0) base::LogInfo("{} sparse points are kept from training, to measure depth errors with", survey.kept_points.size());
 }
 
 }  // namespace skyquilt::prepare

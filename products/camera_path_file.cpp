@@ -6,6 +6,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/config/options.h"
 #include "core/geo/enu_frame.h"
 #include "products/camera_path.h"
@@ -130,7 +131,7 @@ std::vector<View> ParseCameraPath(const std::string& text, const std::filesystem
   if (is_object && root.contains("frames_between")) {
     const Json& value = root["frames_between"];
     if (!value.is_number_integer() || value.get<int64_t>() < 0 || value.get<int64_t>() > kMaxFramesBetween) {
-      throw base::InputError(file, "has a \"frames_between\" of " + value.dump(), "It must be a whole number from 0 to 10000");
+      throw base::InputError(file, "has a \"frames_between\" of " + base::JsonText(value), "It must be a whole number from 0 to 10000");
     }
     frames_between = value.get<int>();
   }

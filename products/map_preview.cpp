@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/order_statistics.h"
 #include "core/gis/geotiff.h"
 #include "core/image/encode.h"
@@ -172,7 +173,7 @@ void WriteMapBounds(const scene::SceneInfo& info, const gis::MapGrid& grid, cons
                                    {"georeference", NameOfGeoreference(info)},
                                    {"accuracy", survey::ToJson(info.accuracy)}};
   if (!preview.empty()) bounds["preview"] = preview;
-  base::WriteFileAtomically(file, bounds.dump(1) + "\n");
+  base::WriteFileAtomically(file, base::JsonText(bounds, 1) + "\n");
 }
 
 void WriteMapPreviews(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& orthophoto,

@@ -97,9 +97,10 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   base::RequireWritableFolder(folder);
   const gis::MapGrid& grid = products.grid;
   if (!grid.georeferenced)
-    spdlog::warn("the survey has no geo-reference, so orthophoto and surface model are in local coordinates without CRS; use photos with GPS tags");
+    base::LogWarning(
+        "the survey has no geo-reference, so orthophoto and surface model are in local coordinates without CRS; use photos with GPS tags");
   const scene::MapHeights heights(info, options.dsm ? geo::VerticalNamed(options.vertical) : geo::Vertical::kAsTagged);
-  if (!heights.Caution().empty()) spdlog::warn("{}", heights.Caution());
+  if (!heights.Caution().empty()) base::LogWarning("{}", heights.Caution());
   HeightShift shift(heights, grid);
   std::optional<gis::GeoTiffWriter> ortho;
   std::optional<gis::GeoTiffWriter> dsm;

@@ -74,7 +74,7 @@ gis::MapGrid PlanMapGrid(const scene::SceneInfo& info, const ProductOptions& opt
                              " million cells, more than products.max_pixels = " + std::to_string(options.max_pixels / 1e6) +
                              " million; set it to at least " + std::to_string(fits) + " m, or raise products.max_pixels");
     }
-    spdlog::warn(
+    base::LogWarning(
         "maps with {} m per cell would have {:.3g} million cells, more than products.max_pixels; they are made with {} m instead. Raise "
         "products.max_pixels for finer maps",
         grid.resolution_m, cells / 1e6, fits);

@@ -167,8 +167,8 @@ PreviewMap Paint(const gis::MapGrid& grid, const SurfaceCells& cells, const Node
 void WarnOfUnreadable(const std::vector<std::string>& failures, int chosen) {
   if (failures.empty()) return;
   const size_t named = std::min(failures.size(), kNamedPhotos);
-  spdlog::warn("the preview of the orthophoto does without {} of {} photos, which cannot be read:\n  {}{}", failures.size(), chosen,
-               base::Join(std::span(failures).first(named), "\n  "), named < failures.size() ? "\n  ..." : "");
+  base::LogWarning("the preview of the orthophoto does without {} of {} photos, which cannot be read:\n  {}{}", failures.size(), chosen,
+                   base::Join(std::span(failures).first(named), "\n  "), named < failures.size() ? "\n  ..." : "");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/gis/geotiff.h"
 #include "products/map_preview.h"
 #include "products/map_rays.h"
@@ -75,7 +76,7 @@ std::optional<FoundPreview> FindPreview(const std::filesystem::path& folder, con
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
   }
-  const auto json = nlohmann::json::parse(base::ReadFile(files.json), nullptr, false);
+  const auto json = base::TryParseJson(base::ReadFile(files.json));
   if (!json.is_object() || !json.contains("preview") || json["preview"] != made_from) return std::nullopt;
   return FoundPreview{files.png, made_from};
 }

@@ -70,7 +70,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int heigh
     impl_->encoder = "ffmpeg libx264";
     return;
   }
-  spdlog::warn("the program ffmpeg is not installed, so the video is written as MPEG-4 instead of H.264; install ffmpeg for H.264");
+  base::LogWarning("the program ffmpeg is not installed, so the video is written as MPEG-4 instead of H.264; install ffmpeg for H.264");
   impl_->encoder = "OpenCV mp4v";
   bool opened = false;
   try {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "simulate/outline.h"
 
 namespace skyquilt::simulate {
@@ -105,7 +106,7 @@ void WriteBuildingTruth(const std::filesystem::path& folder, const std::vector<B
     outlines.push_back(OutlineJson(buildings, outline, place));
   }
   const TruthJson json = {{"about", kAboutBuildings}, {"buildings", parts}, {"outlines", outlines}};
-  base::WriteFileAtomically(folder / "truth" / "buildings.json", json.dump(1) + "\n");
+  base::WriteFileAtomically(folder / "truth" / "buildings.json", base::JsonText(json, 1) + "\n");
 }
 
 }  // namespace skyquilt::simulate

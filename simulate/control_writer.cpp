@@ -1,12 +1,13 @@
 #include "simulate/control_writer.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/crs.h"
 #include "core/geo/utm.h"
 
@@ -157,13 +158,13 @@ void WriteControlFiles(const ControlFiles& files, const geo::EnuFrame& frame, co
     if (point.target.check) checks += point.target.label + "\n";
   }
   base::WriteFileAtomically(control / "gcp_list.txt", GcpList(files, written));
-  base::WriteFileAtomically(control / "ground_control_points.json", OpenSfm(files, places).dump(1) + "\n");
+  base::WriteFileAtomically(control / "ground_control_points.json", base::JsonText(OpenSfm(files, places), 1) + "\n");
   base::WriteFileAtomically(control / "pix4d.csv", Table(files, written));
   base::WriteFileAtomically(control / "pix4d_marks.csv", MarkTable(files));
   base::WriteFileAtomically(control / "metashape.csv", "label,x,y,z\n" + Table(files, written));
   base::WriteFileAtomically(control / "metashape_marks.xml", MetashapeMarks(files));
   base::WriteFileAtomically(control / "check_points.txt", checks);
-  base::WriteFileAtomically(control / "truth.json", Truth(files, frame).dump(1) + "\n");
+  base::WriteFileAtomically(control / "truth.json", base::JsonText(Truth(files, frame), 1) + "\n");
 }
 
 }  // namespace skyquilt::simulate

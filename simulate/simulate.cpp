@@ -57,7 +57,7 @@ void WarnAboutTrucks(const World& world, const PlaceSpec& place) {
   if (world.city() == nullptr) return;
   const std::vector<Car>& parked = world.city()->contents().parked;
   const auto n = std::count_if(parked.begin(), parked.end(), [](const Car& car) { return car.kind != CarKind::kCar; });
-  if (n < place.city.trucks) spdlog::warn("simulate: the streets have room for {} of {} trucks (simulate.trucks)", n, place.city.trucks);
+  if (n < place.city.trucks) base::LogWarning("simulate: the streets have room for {} of {} trucks (simulate.trucks)", n, place.city.trucks);
 }
 
 // Puts the targets on the ground. Nothing when none are asked for.
@@ -66,8 +66,8 @@ std::vector<SurveyedTarget> LayOutControl(const SimulateOptions& options, const 
   std::vector<ControlTarget> targets = ChooseTargets(world, place, photos, options.control_points, options.check_points, threads);
   const int wanted = options.control_points + options.check_points;
   if (static_cast<int>(targets.size()) < wanted) {
-    spdlog::warn("simulate: the place has open ground that {} photos see for {} of {} control and check points", kMinTargetViews, targets.size(),
-                 wanted);
+    base::LogWarning("simulate: the place has open ground that {} photos see for {} of {} control and check points", kMinTargetViews, targets.size(),
+                     wanted);
   }
   world.PaintTargets(PaintOf(targets));
   return SurveyTargets(std::move(targets), options, place.camera, photos, place.seed);
@@ -95,7 +95,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   const PlaceSpec place = ResolvePlace(options);
   PrepareFolder(folder);
   const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
-  spdlog::info("simulate: building place {}", place.name);
+  base::LogInfo("simulate: building place {}", place.name);
   World world(place, options.light_intensity, threads);
   WarnAboutTrucks(world, place);
   std::vector<PhotoPlan> photos = plan(place, world);
@@ -150,8 +150,8 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   WriteSummary(folder, place, options, frame, photos.size(), model_from_enu);
   fs::remove(folder / kStarted);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  spdlog::info("simulate: {} photos ({} test photos), {} points, {} buildings in {}", summary.n_photos, summary.n_test, summary.n_points,
-               summary.n_buildings, base::FormatDuration(summary.seconds));
+  base::LogInfo("simulate: {} photos ({} test photos), {} points, {} buildings in {}", summary.n_photos, summary.n_test, summary.n_points,
+                summary.n_buildings, base::FormatDuration(summary.seconds));
   return summary;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/config/options.h"
 #include "core/image/normal_image.h"
 #include "core/image/srgb.h"
@@ -143,7 +144,7 @@ void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<P
        "where r is the distance from the principal point, 1 at that corner"},
       {"vignetting", place.vignetting},
       {"photos", list}};
-  base::WriteFileAtomically(folder / "truth" / "exposure.json", json.dump(1) + "\n");
+  base::WriteFileAtomically(folder / "truth" / "exposure.json", base::JsonText(json, 1) + "\n");
 }
 
 void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, const SimulateOptions& options, const geo::EnuFrame& frame,
@@ -175,7 +176,7 @@ void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, c
     json["truth"] = {{"enu_from_model",
                       {{"scale", enu_from_model.scale}, {"rotation_wxyz", {r.w(), r.x(), r.y(), r.z()}}, {"translation_m", {t.x(), t.y(), t.z()}}}}};
   }
-  base::WriteFileAtomically(folder / "simulate.json", json.dump(1) + "\n");
+  base::WriteFileAtomically(folder / "simulate.json", base::JsonText(json, 1) + "\n");
 }
 
 }  // namespace skyquilt::simulate

@@ -1,6 +1,6 @@
 #include "surface/fuse_mesh.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <bit>
@@ -68,7 +68,7 @@ Plan MakePlan(const SurfaceInput& input, const DepthViews& views, double voxel_m
     try {
       plan.pieces = PlanPieces(views, BoxOf(*input.info, voxel), plan.fuse, input.memory_bytes, threads);
       if (voxel > voxel_m) {
-        spdlog::warn(
+        base::LogWarning(
             "the surface is fused in voxels of {:.3g} m instead of {:.3g} m, because a piece of it would not fit into the memory limit; a "
             "larger --memory, with --restart, gives the finer surface",
             voxel, voxel_m);
@@ -94,7 +94,7 @@ bool LoadPiece(const std::filesystem::path& file, std::vector<MeshTile>* tiles) 
     *tiles = LoadMeshTiles(file);
     return true;
   } catch (const base::InputError& error) {
-    spdlog::warn("{}; the piece is made again", error.what());
+    base::LogWarning("{}; the piece is made again", error.what());
     return false;
   }
 }
@@ -209,8 +209,8 @@ FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double vo
   result.area_m2 = Area(mesh);
   result.tiles = SplitIntoTiles(mesh, result.tile_size_m);
   for (MeshTile& tile : result.tiles) tile.error_m = error_m;
-  spdlog::info("surface of {} triangles and {:.0f} m2 in {} tile(s); {} small piece(s) dropped, {:.0f} m2 of holes in the ground closed",
-               base::FormatCount(static_cast<double>(mesh.triangle.size())), result.area_m2, result.tiles.size(), islands, result.filled_m2);
+  base::LogInfo("surface of {} triangles and {:.0f} m2 in {} tile(s); {} small piece(s) dropped, {:.0f} m2 of holes in the ground closed",
+                base::FormatCount(static_cast<double>(mesh.triangle.size())), result.area_m2, result.tiles.size(), islands, result.filled_m2);
   return result;
 }
 

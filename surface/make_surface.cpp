@@ -1,6 +1,6 @@
 #include "surface/make_surface.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <bit>
@@ -68,7 +68,7 @@ bool LoadFinished(const fs::path& file, BakedTile* baked) {
     *baked = LoadBakedTile(file);
     return true;
   } catch (const base::InputError& error) {
-    spdlog::warn("{}; the texture is made again", error.what());
+    base::LogWarning("{}; the texture is made again", error.what());
     return false;
   }
 }
@@ -98,7 +98,7 @@ void ClassifyPoints(const HeightRaster& terrain, const MapFrame& frame, double l
 class SurfaceMaker {
  public:
   SurfaceMaker(const SurfaceInput& input, base::ThreadPool& threads) : input_(input), threads_(threads), frame_(*input.info, input.vertical) {
-    if (!frame_.heights().Caution().empty()) spdlog::warn("{}", frame_.heights().Caution());
+    if (!frame_.heights().Caution().empty()) base::LogWarning("{}", frame_.heights().Caution());
     // The tiles need the geoid at the end: without it, hours of work would be lost then.
     if (input.options.tiles) frame_.heights().In(geo::Vertical::kEllipsoid);
   }
@@ -119,7 +119,7 @@ class SurfaceMaker {
       edges_ = fused.edges;
       for (const MeshTile& tile : fused.tiles) result_.triangles += static_cast<int64_t>(tile.mesh.triangle.size());
       if (result_.triangles == 0) {
-        spdlog::warn(
+        base::LogWarning(
             "no surface was found: too few photos see the same places, or the scene is still fog. No mesh, cloud, tiles or maps are made. Train "
             "longer, raise surface.max_spread_voxels or lower surface.min_views");
       } else {

@@ -4,6 +4,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 template <typename Value>
 Value ReadNumber(const std::filesystem::path& file, const char* key) {
   try {
-    return nlohmann::json::parse(base::ReadFile(file)).at(key).get<Value>();
+    return base::ParseJson(base::ReadFile(file)).at(key).get<Value>();
   } catch (const nlohmann::json::exception&) {
     throw base::InputError(file, "is damaged", "Run 'skyquilt surface' again with --restart");
   }
@@ -52,7 +53,7 @@ void WriteSurfaceTable(const SurfaceResult& result, const EdgeCounts& edges, con
                               {"bytes", written.bytes},
                               {"detail", written.detail}});
   }
-  base::WriteFileAtomically(file, table.dump(2) + "\n");
+  base::WriteFileAtomically(file, base::JsonText(table, 2) + "\n");
 }
 
 }  // namespace skyquilt::surface

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 #include "viewer/assets.h"
 #include "viewer/data/map_files.h"
 #include "viewer/data/open_project.h"
@@ -13,7 +14,7 @@ tour::ExportParts TourParts(const coordinator::Project& project, const std::file
   parts.page = TourPage(front_end);
   parts.made_by = made_by;
   const OpenedProject opened = OpenProject(project);
-  parts.project_json = opened.description.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  parts.project_json = base::JsonText(opened.description);
   if (!opened.tiles.empty()) parts.tiles = project.SurfaceFolder() / "tiles";
   if (!opened.buildings.empty()) parts.buildings = project.BuildingsFile();
   const std::filesystem::path dsm = project.ProductsFolder() / "dsm.tif", orthophoto = project.ProductsFolder() / "orthophoto.tif";

@@ -66,7 +66,7 @@ void View(comm::Communicator& comm, const ViewOptions& options) {
   if (!options.listen.empty()) server_options.address = options.listen == "localhost" ? "127.0.0.1" : options.listen;
   if (!IsLoopback(options.listen)) {
     server_options.extra_hosts = OwnHosts();
-    spdlog::warn(
+    base::LogWarning(
         "--listen {}: other machines can reach this viewer, and the connection is not encrypted. Whoever has the link can see the project and change "
         "its measurements{}. Better: keep the default and forward the port, for instance with ssh -t -L 8000:127.0.0.1:8000 host skyquilt view out "
         "--port 8000",
@@ -90,7 +90,7 @@ void View(comm::Communicator& comm, const ViewOptions& options) {
   } catch (const base::Interrupted&) {
     // The normal end.
   }
-  spdlog::info("viewer closed");
+  base::LogInfo("viewer closed");
 }
 
 }  // namespace skyquilt::viewer

@@ -130,7 +130,7 @@ std::optional<SavedSession> OpenSession(const std::string& kind, const TrainJob&
   std::string why;
   const std::filesystem::path usable = checkpoint::NewestUsable(job.checkpoint, kind, &why);
   if (usable.empty()) {
-    spdlog::warn("{}: cannot be used ({}); training this field from the beginning", job.checkpoint.string(), why);
+    base::LogWarning("{}: cannot be used ({}); training this field from the beginning", job.checkpoint.string(), why);
     return std::nullopt;
   }
   checkpoint::ArchiveReader reader(usable);

@@ -1,8 +1,9 @@
 #include "worker/plane_fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
+
+#include "core/linear/linear.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -27,10 +28,10 @@ std::optional<Plane> FitPlane(const std::vector<Vector3d>& points) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Vector3d& x : points) spread += (x - mean) * (x - mean).transpose();
   if (!spread.allFinite()) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  const Vector3d& variance = solver.eigenvalues();
+  const linear::EigenPairs<3> eigen = linear::SymmetricEigen(spread);
+  const Vector3d& variance = eigen.values;
   if (!(variance[1] > kFlatness * variance[0] && variance[1] > kBreadth * variance[2])) return std::nullopt;
-  return Plane{mean, solver.eigenvectors().col(0)};
+  return Plane{mean, eigen.vectors.col(0)};
 }
 
 std::optional<Plane> UprightPlane(const Plane& plane, std::optional<double> yaw_deg) {

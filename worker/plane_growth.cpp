@@ -1,6 +1,5 @@
 #include "worker/plane_growth.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <optional>
 
 #include "core/base/order_statistics.h"
+#include "core/linear/linear.h"
 #include "worker/nearest_points.h"
 
 namespace skyquilt::worker {
@@ -53,8 +53,8 @@ class Moments {
   };
   Fit Solve() const {
     const Vector3d mean = sum_ / n_;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(products_ / n_ - mean * mean.transpose());
-    return {{origin_ + mean, solver.eigenvectors().col(0)}, solver.eigenvalues()};
+    const linear::EigenPairs<3> eigen = linear::SymmetricEigen<3>(products_ / n_ - mean * mean.transpose());
+    return {{origin_ + mean, eigen.vectors.col(0)}, eigen.values};
   }
 
  private:

@@ -1,12 +1,12 @@
 #include "worker/tie_point_gains.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
 
 #include "core/image/srgb.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -165,7 +165,7 @@ void SolveVignetting(std::span<const Sighting> sightings, const std::array<std::
     });
   }
   for (size_t camera = 0; camera < cameras; ++camera) {
-    Eigen::Vector3d solved = left[camera].ldlt().solve(right[camera]);
+    Eigen::Vector3d solved = linear::SolveSymmetric(left[camera], right[camera]);
     if (!(solved.dot(right[camera]) > kVignettingExplains * squares[camera])) solved.setZero();
     for (size_t k = 0; k < 3; ++k) response.vignetting[3 * camera + k] = static_cast<float>(solved[static_cast<Eigen::Index>(k)]);
   }

@@ -144,8 +144,8 @@ void TrainLoop::EndAtBest() {
   const FallGuard::State& guard = guard_.state();
   // A fall that two windows would have shown.
   if (guard.bad_in_a_row > 0) return TakeBack(guard.last.mean);
-  spdlog::info("{}: ends {:.1f} dB below its best, so the state of step {} is kept instead", Name(),
-               PsnrOfError(guard.best.mean) - PsnrOfError(guard.last.mean), good_.step());
+  base::LogInfo("{}: ends {:.1f} dB below its best, so the state of step {} is kept instead", Name(),
+                PsnrOfError(guard.best.mean) - PsnrOfError(guard.last.mean), good_.step());
   RestoreGoodState();
 }
 
@@ -161,8 +161,8 @@ void TrainLoop::TakeBack(double fell_to) {
   record_.ended_early = record_.falls.size() >= kMostFalls;
   const std::string what =
       std::isnan(fall.psnr_db) ? "gave values that are not finite" : fmt::format("fell from {:.1f} to {:.1f} dB", fall.best_psnr_db, fall.psnr_db);
-  spdlog::warn("{}: training {} at step {} and is taken back to step {}{}", Name(), what, fall.step, fall.restored_step,
-               record_.ended_early ? ", where it ends" : ", with half the learning rate from there");
+  base::LogWarning("{}: training {} at step {} and is taken back to step {}{}", Name(), what, fall.step, fall.restored_step,
+                   record_.ended_early ? ", where it ends" : ", with half the learning rate from there");
 }
 
 void TrainLoop::RecordCounts(const StepResult& step) {

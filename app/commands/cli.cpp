@@ -107,28 +107,28 @@ int Guarded(const std::function<void()>& body) {
     body();
     return kDone;
   } catch (const base::UsageError& error) {
-    spdlog::error("{}", error.what());
+    base::LogError("{}", error.what());
     return kUsage;
   } catch (const base::InputError& error) {
-    spdlog::error("{}", error.what());
+    base::LogError("{}", error.what());
     return kInput;
   } catch (const base::BlockError& error) {
-    spdlog::error("{}", error.what());
+    base::LogError("{}", error.what());
     return kBlockFailed;
   } catch (const base::FailedCheck& error) {
-    spdlog::error("{}", error.what());
+    base::LogError("{}", error.what());
     return kCheckFailed;
   } catch (const base::Interrupted& error) {
-    spdlog::warn("{}", error.what());
+    base::LogWarning("{}", error.what());
     return kInterrupted;
   } catch (const std::filesystem::filesystem_error& error) {
-    spdlog::error("{}. Check that the path exists, that you have permission and that the disk has free space", error.what());
+    base::LogError("{}. Check that the path exists, that you have permission and that the disk has free space", error.what());
     return kInput;
   } catch (const std::bad_alloc&) {
-    spdlog::error("out of memory. Use a smaller --image-width, more blocks, or fewer ranks on this machine");
+    base::LogError("out of memory. Use a smaller --image-width, more blocks, or fewer ranks on this machine");
     return kBug;
   } catch (const std::exception& error) {
-    spdlog::error("{}\nThis is a bug in skyquilt. Please report it with the project's log.txt. Results saved before are intact", error.what());
+    base::LogError("{}\nThis is a bug in skyquilt. Please report it with the project's log.txt. Results saved before are intact", error.what());
     return kBug;
   }
 }
@@ -170,7 +170,7 @@ int RunCommandLine(int argc, char** argv) {
   }
   base::InitLog(state.verbose);
   if (state.quiet) {
-    spdlog::set_level(spdlog::level::warn);
+    base::SetLogLevel(base::LogLevel::kWarning);
     base::Progress::SetQuiet(true);
   }
   return Guarded(state.run_command);

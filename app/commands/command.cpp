@@ -106,8 +106,8 @@ void AddPlaceFlag(CLI::App& command, const std::string& names, const std::functi
       .add_option_function<std::string>(
           "--preset",
           [take](const std::string& name) {
-            spdlog::warn("--preset NAME is now --place NAME; the old form still works. Presets ({}) are given with --config",
-                         base::Join(PresetNames()));
+            base::LogWarning("--preset NAME is now --place NAME; the old form still works. Presets ({}) are given with --config",
+                             base::Join(PresetNames()));
             take(name);
           },
           "old name of --place")

@@ -5,6 +5,7 @@
 #include "app/commands/command.h"
 #include "app/commands/describe.h"
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::app {
 
@@ -36,7 +37,7 @@ void AddInfo(CLI::App& app, CommandState& state) {
       if (flags->path.empty()) throw base::UsageError("skyquilt info needs a file or folder, or --defaults");
       const nlohmann::ordered_json described = Describe(flags->path);
       if (flags->json) {
-        std::cout << described.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+        std::cout << base::JsonText(described, 2) << "\n";
       } else {
         std::cout << FormatReadable(described);
       }

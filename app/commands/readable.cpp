@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "app/commands/describe.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::app {
 namespace {
@@ -13,7 +14,7 @@ std::string Scalar(const Json& value) {
   if (value.is_null()) return "-";
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  return value.dump();
+  return base::JsonText(value);
 }
 
 bool IsFlat(const Json& value) {

@@ -50,7 +50,7 @@ Target FindTarget(const std::filesystem::path& path) {
 }
 
 void LogStats(const products::RenderStats& stats, const std::filesystem::path& where) {
-  spdlog::info("{} image(s), {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), where.string());
+  base::LogInfo("{} image(s), {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), where.string());
 }
 
 void RenderAsked(const RenderFlags& flags, const Target& target, const coordinator::Settings& settings, coordinator::SceneSession& session,
@@ -103,8 +103,8 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     asked.ortho = flags.ortho;
     asked.dsm = flags.dsm;
     const products::MapProducts made = products::MakeMapProducts(scene, asked, maps, threads);
-    spdlog::info("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", made.grid.width, made.grid.height, made.grid.resolution_m,
-                 100.0 * made.filled, maps.string());
+    base::LogInfo("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", made.grid.width, made.grid.height, made.grid.resolution_m,
+                  100.0 * made.filled, maps.string());
   }
 }
 

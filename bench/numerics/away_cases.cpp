@@ -1,6 +1,6 @@
 // The same training with the scene at increasing distances from the frame's origin: once with positions as the worker computes them, once from
 // survey-wide coordinates in single precision.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

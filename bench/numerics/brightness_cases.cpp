@@ -1,5 +1,5 @@
 // Extreme brightness: the tone curve near 0 and 1, gains of ten stops, photos of one colour.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

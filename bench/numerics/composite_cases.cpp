@@ -1,5 +1,5 @@
 // Compositing along a ray in float, forward and backward, against sums in long double that follow the definition.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

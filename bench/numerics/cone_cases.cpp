@@ -1,5 +1,5 @@
 // Footprints of nothing, of a whole block and infinite ones: features, renderings and training steps against double.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

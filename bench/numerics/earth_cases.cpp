@@ -1,5 +1,5 @@
 // One small simulated survey at many places on Earth: the same photos with other GPS tags, through the whole pipeline.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Every kernel on every instruction set of this processor, against a scalar version in double.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // NaN and infinity in batches and parameters: they must never spread to other parameters.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <cmath>
 

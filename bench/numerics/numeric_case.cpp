@@ -1,6 +1,6 @@
 #include "bench/numerics/numeric_case.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <chrono>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "bench/numerics/numerics_bench.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>

@@ -1,9 +1,10 @@
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "bench/numerics/numerics_bench.h"
+#include "core/base/json_text.h"
 #include "core/base/progress.h"
 #include "core/base/system.h"
 
@@ -157,7 +158,7 @@ std::string NumericsJson(const NumericsResult& result, const std::string& comman
                                        {"command", command},
                                        {"machine", base::MachineDescription()},
                                        {"date", base::UtcTimestamp()}};
-  return json.dump(2) + "\n";
+  return base::JsonText(json, 2) + "\n";
 }
 
 }  // namespace skyquilt::bench

@@ -1,5 +1,5 @@
 // The geo-reference under faults of the tags: what it finds, and whether the accuracy that it states is true.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

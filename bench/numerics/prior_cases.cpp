@@ -1,5 +1,5 @@
 // Priors where they have nothing to hold on to: planes of points that have none, patches across a step, normals of nothing, enormous weights.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>

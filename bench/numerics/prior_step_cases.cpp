@@ -1,6 +1,6 @@
 #include "bench/numerics/prior_step_cases.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -11,12 +11,12 @@ namespace skyquilt::bench {
 class QuietStages {
  public:
   // always: keep progress hidden afterwards too.
-  explicit QuietStages(bool always) : always_(always), level_(spdlog::get_level()) {
-    spdlog::set_level(std::max(level_, spdlog::level::warn));
+  explicit QuietStages(bool always) : always_(always), level_(base::GetLogLevel()) {
+    base::SetLogLevel(std::max(level_, base::LogLevel::kWarning));
     base::Progress::SetQuiet(true);
   }
   ~QuietStages() {
-    spdlog::set_level(level_);
+    base::SetLogLevel(level_);
     base::Progress::SetQuiet(always_);
   }
   QuietStages(const QuietStages&) = delete;
@@ -24,7 +24,7 @@ class QuietStages {
 
  private:
   bool always_;
-  spdlog::level::level_enum level_;
+  base::LogLevel level_;
 };
 
 }  // namespace skyquilt::bench

@@ -1,6 +1,6 @@
 // Intersections of rays and boxes, and samples along rays. The reference does not use the slab method: it intersects the six planes one by one in
 // long double and keeps the intersections that are on the box.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // A position goes from latitude, longitude and height through ENU into a block's unit box, is rounded to float there once, and goes back. The error
 // is measured against long double.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

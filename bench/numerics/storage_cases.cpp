@@ -1,5 +1,5 @@
 // The 16-bit formats in which scenes can be stored: rounding, overflow, and the quality of a scene stored with them.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // 3D tiles at extreme places: what a viewer of the files sees, from the bytes on disk, against closed formulas in long double.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <cstring>
@@ -10,6 +10,7 @@
 #include "bench/numerics/groups.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
 #include "core/image/image.h"
 #include "surface/files/surface_files.h"
@@ -45,7 +46,7 @@ std::vector<Eigen::Vector3d> CornersOf(const fs::path& glb) {
     return static_cast<size_t>(value);
   };
   const size_t json_bytes = word(12);
-  const nlohmann::json json = nlohmann::json::parse(bytes.substr(20, json_bytes));
+  const nlohmann::json json = base::ParseJson(bytes.substr(20, json_bytes));
   const size_t binary = 20 + json_bytes + 8;
   const auto& accessor = json["accessors"][json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].get<size_t>()];
   const auto& view = json["bufferViews"][accessor["bufferView"].get<size_t>()];
@@ -78,7 +79,7 @@ CaseResult TileAt(const geo::Geodetic& origin, const fs::path& folder) {
     files.Add(wall);
     files.Close();
   }
-  const nlohmann::json root = nlohmann::json::parse(base::ReadFile(folder / "tiles" / "tileset.json"))["root"];
+  const nlohmann::json root = base::ParseJson(base::ReadFile(folder / "tiles" / "tileset.json"))["root"];
   Eigen::Matrix4d ecef_from_tile;
   for (int i = 0; i < 16; ++i) ecef_from_tile(i % 4, i / 4) = root["transform"][static_cast<size_t>(i)].get<double>();
   const std::vector<Eigen::Vector3d> corners = CornersOf(folder / "tiles" / (wall.id.Name() + ".glb"));

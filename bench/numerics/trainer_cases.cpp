@@ -1,5 +1,5 @@
 // The trainer against its double-precision reference: same start, same batches, same losses.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -141,7 +141,7 @@ PosesResult RunPosesBench(const PosesBenchOptions& options) {
       const fs::path folder = work / (std::string(NameOf(set)) + (n == kAllPhotos ? "" : "_" + std::to_string(n)));
       const TrueSet truth = MakePhotoSet(set, survey, elsewhere, folder / "images");
       for (const std::string& way : ways) {
-        spdlog::info("bench poses: {}, {} photos, {}", NameOf(set), truth.photos.size(), way);
+        base::LogInfo("bench poses: {}, {} photos, {}", NameOf(set), truth.photos.size(), way);
         PosesRow row = FindAndJudge(folder, truth, way, options, threads);
         row.set = set;
         result.rows.push_back(std::move(row));

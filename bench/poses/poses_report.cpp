@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/poses/poses_bench.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/base/system.h"
@@ -183,7 +184,7 @@ std::string PosesJson(const PosesResult& result, const std::string& command) {
                                        {"command", command},
                                        {"machine", base::MachineDescription()},
                                        {"date", base::UtcTimestamp()}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return base::JsonText(json, 2) + "\n";
 }
 
 }  // namespace skyquilt::bench

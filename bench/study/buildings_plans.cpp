@@ -1,4 +1,4 @@
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include "bench/study/buildings_parts.h"
 #include "core/page/html.h"

@@ -1,7 +1,7 @@
 #include "bench/study/heights_survey.h"
 
-#include <spdlog/fmt/fmt.h>
-#include <spdlog/fmt/ranges.h>
+#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
@@ -13,6 +13,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "simulate/simulate.h"
 #include "simulate/world.h"
@@ -26,10 +27,10 @@ using simulate::PlaceSpec;
 using simulate::SimulateOptions;
 using simulate::World;
 
-constexpr double kClearance_m = 8.0;   // from buildings
-constexpr double kPause_s = 1800.0;    // between flights, long enough to make them flights of their own
-constexpr double kLeastSpread = 0.3;   // of the area's sides, over which the views of a height are spread
-constexpr double kViewsPerPick = 2.0;  // planned per view, as some may be too close to buildings
+constexpr double kBuildingClearance_m = 8.0;  // from buildings
+constexpr double kPause_s = 1800.0;           // between flights, long enough to make them flights of their own
+constexpr double kLeastSpread = 0.3;          // of the area's sides, over which the views of a height are spread
+constexpr double kViewsPerPick = 2.0;         // planned per view, as some may be too close to buildings
 
 void CheckPlan(const HeightsPlan& plan) {
   std::vector<int> all = plan.flights_m;
@@ -38,7 +39,8 @@ void CheckPlan(const HeightsPlan& plan) {
   for (const int height : all) {
     if (height < 1 || height > 999) throw base::UsageError(fmt::format("a height of {} m is not allowed: 1 to 999 m", height));
   }
-  if (std::set<int>(all.begin(), all.end()).size() != all.size()) throw base::UsageError(fmt::format("heights {} m: one is named twice", all));
+  if (std::set<int>(all.begin(), all.end()).size() != all.size())
+    throw base::UsageError(fmt::format("heights {} m: one is named twice", fmt::join(all, ", ")));
   if (plan.views < 1) throw base::UsageError(fmt::format("{} views per height: at least 1 is needed", plan.views));
   if (plan.test_every < 2) throw base::UsageError(fmt::format("every {}. photo held out: none is left to train with", plan.test_every));
 }
@@ -48,13 +50,13 @@ std::string Identity(SimulateOptions options, const HeightsPlan& plan) {
   config::Sections sections;
   sections.Add("simulate", options, "");
   std::map<std::string, std::string> flat = config::Flatten(sections);
-  flat["heights.plan"] = fmt::format("{} {} {} {}", plan.flights_m, plan.views_m, plan.views, plan.test_every);
+  flat["heights.plan"] = fmt::format("[{}] [{}] {} {}", fmt::join(plan.flights_m, ", "), fmt::join(plan.views_m, ", "), plan.views, plan.test_every);
   return config::Hash(flat);
 }
 
 bool IsComplete(const fs::path& folder, const std::string& identity) {
   if (!fs::exists(folder / "simulate.json") || !fs::exists(folder / "heights.json") || !fs::exists(folder / "holdout.txt")) return false;
-  const nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "heights.json"), nullptr, false);
+  const nlohmann::json json = base::TryParseJson(base::ReadFile(folder / "heights.json"));
   return json.is_object() && json.value("identity", "") == identity;
 }
 
@@ -78,7 +80,7 @@ std::vector<PhotoPlan> Fly(PlaceSpec place, const World& world, int height_m) {
     const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
     return std::any_of(world.buildings().begin(), world.buildings().end(), [&eye](const simulate::Building& building) {
       const double top = building.ground_z_m + building.ridge_height_m + building.parapet_height_m;
-      return eye.z() < top + kClearance_m && building.DistanceTo(eye.head<2>()) < kClearance_m;
+      return eye.z() < top + kBuildingClearance_m && building.DistanceTo(eye.head<2>()) < kBuildingClearance_m;
     });
   });
   for (PhotoPlan& photo : photos) photo.name = HeightPrefix(height_m) + photo.name;
@@ -160,7 +162,7 @@ void WritePlan(const fs::path& folder, const std::string& identity, const Height
                                        {"test_every", plan.test_every},
                                        {"photos", names}};
   base::WriteFileAtomically(folder / "holdout.txt", holdout);
-  base::WriteFileAtomically(folder / "heights.json", json.dump(1) + "\n");
+  base::WriteFileAtomically(folder / "heights.json", base::JsonText(json, 1) + "\n");
 }
 
 }  // namespace
@@ -176,7 +178,7 @@ fs::path SimulateHeights(const SimulateOptions& options, const HeightsPlan& plan
   const std::string identity = Identity(still, plan);
   fs::path holdout = fs::absolute(folder / "holdout.txt").lexically_normal();
   if (IsComplete(folder, identity)) {
-    spdlog::info("simulate: {} is complete", folder.string());
+    base::LogInfo("simulate: {} is complete", folder.string());
     return holdout;
   }
   simulate::Simulate(still, folder, threads, [&](const PlaceSpec& place, const World& world) {

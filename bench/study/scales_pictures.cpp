@@ -1,6 +1,6 @@
 #include "bench/study/scales_pictures.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "bench/study/scene_views.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include "core/base/cancel.h"
 #include "core/base/file.h"

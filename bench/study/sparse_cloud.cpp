@@ -1,6 +1,5 @@
 #include "bench/study/sparse_cloud.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "buildings/planes/point_grid.h"
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -41,7 +41,7 @@ Eigen::Vector3f PlaneNormal(const PointCloud& cloud, std::span<const PointGrid::
     const Eigen::Vector3d from_mean = cloud.points[one.place].position.cast<double>() - mean;
     spread += from_mean * from_mean.transpose();
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0).cast<float>();
+  return linear::SymmetricEigen(spread).vectors.col(0).cast<float>();
 }
 
 struct SeenPoint {

@@ -1,6 +1,6 @@
 #include "bench/study/stability_bench.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -179,10 +179,10 @@ std::vector<StabilityRun> RunStability(Study& study, const std::string& survey, 
     } catch (const base::InputError& error) {
       // Too little of the survey is left. That it is said clearly is what this run measures.
       run.refused = error.what();
-      spdlog::warn("{}, {}: refused: {}", survey, run.extreme, run.refused);
+      base::LogWarning("{}, {}: refused: {}", survey, run.extreme, run.refused);
     } catch (const base::BlockError& error) {
       run.refused = error.what();
-      spdlog::warn("{}, {}: {}", survey, run.extreme, run.refused);
+      base::LogWarning("{}, {}: {}", survey, run.extreme, run.refused);
     }
   }
   return runs;

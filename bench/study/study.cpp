@@ -178,7 +178,7 @@ std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::v
     if (known) results.push_back(*known);
   }
   if (results.size() == 1 + merged.size()) {
-    spdlog::info("{}: nothing to do, its result is saved", variant.label);
+    base::LogInfo("{}: nothing to do, its result is saved", variant.label);
     return results;
   }
   scene::TrainReport training;
@@ -188,7 +188,7 @@ std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::v
   if (!merged.empty() && results.front().failure.empty()) MoveFolder(project.ReportFolder(), own_report);
   for (const Variant& other : merged) {
     if (!results.front().failure.empty()) break;
-    spdlog::info("--- {}", other.label);
+    base::LogInfo("--- {}", other.label);
     const coordinator::Settings own = SettingsOf(other);
     // restart: the existing scene has other merge settings, which would be refused otherwise.
     coordinator::Pipeline pipeline{
@@ -207,7 +207,7 @@ std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::v
 
 VariantResult Study::Measure(const Variant& variant, const coordinator::Settings& settings, const std::string& identity, bool merge_anew,
                              scene::TrainReport* training) {
-  spdlog::info("--- {}", variant.label);
+  base::LogInfo("--- {}", variant.label);
   VariantResult result;
   result.name = variant.name;
   try {
@@ -221,7 +221,7 @@ VariantResult Study::Measure(const Variant& variant, const coordinator::Settings
   if (result.failure.empty()) {
     base::WriteFileAtomically(RunFolder(variant).string() + ".json", ResultJson(result, identity));
   } else {
-    spdlog::error("{}: {}", variant.label, result.failure);
+    base::LogError("{}: {}", variant.label, result.failure);
   }
   return result;
 }

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/study/study.h"
+#include "core/base/json_text.h"
 #include "evaluate/buildings_json.h"
 #include "evaluate/class_json.h"
 
@@ -93,7 +94,7 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
        {std::pair{"photo", &result.photo}, {"render", &result.render}, {"error", &result.error}, {"report", &result.report}}) {
     json[key] = *value;
   }
-  return json.dump(1) + "\n";
+  return base::JsonText(json, 1) + "\n";
 }
 
 VariantResult ParseResult(const std::string& text, std::string* identity) {

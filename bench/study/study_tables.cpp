@@ -1,12 +1,13 @@
 #include "bench/study/study_tables.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 #include "core/page/curve_chart.h"
 
 namespace skyquilt::bench {
@@ -140,7 +141,7 @@ std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& r
   json["verdicts"] = page.verdicts;
   json["results"] = nlohmann::ordered_json::array();
   for (const VariantResult& r : results) {
-    nlohmann::ordered_json result = nlohmann::ordered_json::parse(ResultJson(r, ""));
+    nlohmann::ordered_json result = base::ParseOrderedJson(ResultJson(r, ""));
     result.erase("identity");
     json["results"].push_back(std::move(result));
   }
@@ -148,7 +149,7 @@ std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& r
   json["command"] = page.command;
   json["machine"] = page.machine;
   json["date"] = page.date;
-  return json.dump(2) + "\n";
+  return base::JsonText(json, 2) + "\n";
 }
 
 }  // namespace skyquilt::bench

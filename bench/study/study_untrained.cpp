@@ -9,10 +9,10 @@ VariantResult Study::RunUntrained(const Variant& variant, const UntrainedWork& w
   const coordinator::Settings settings = SettingsOf(variant);
   const std::string identity = Identity(variant, settings) + " untrained";
   if (std::optional<VariantResult> known = Load(variant, identity)) {
-    spdlog::info("{}: nothing to do, its result is saved", variant.label);
+    base::LogInfo("{}: nothing to do, its result is saved", variant.label);
     return *std::move(known);
   }
-  spdlog::info("--- {}", variant.label);
+  base::LogInfo("--- {}", variant.label);
   coordinator::Pipeline pipeline = BeginRun(variant, settings, false);
   VariantResult result;
   result.name = variant.name;

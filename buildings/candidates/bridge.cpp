@@ -1,10 +1,11 @@
 #include "buildings/candidates/bridge.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "core/linear/linear.h"
 
 namespace skyquilt::buildings {
 namespace {
@@ -53,7 +54,7 @@ class Deck {
       if (cell.continues) directions += cell.out * cell.out.transpose();
     }
     if (directions.isZero()) return false;
-    const Eigen::Vector2d along = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(directions).eigenvectors().col(1);
+    const Eigen::Vector2d along = linear::SymmetricEigen(directions).vectors.col(1);
     double first = 0.0, last = 0.0;
     size_t known_ends = 0;
     const double least = kEndShare * WidthAcross(along) / area_.cell_m;

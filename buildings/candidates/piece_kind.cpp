@@ -1,6 +1,5 @@
 #include "buildings/candidates/piece_kind.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,6 +7,7 @@
 
 #include "buildings/candidates/top_raster.h"
 #include "core/base/order_statistics.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::buildings {
 namespace {
@@ -29,7 +29,7 @@ double PlanWidth(const RoofPlane& plane, const PointCloud& cloud) {
     covariance += d * d.transpose();
   }
   covariance /= static_cast<double>(plane.points.size());
-  return std::sqrt(12.0 * std::max(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()[0], 0.0));
+  return std::sqrt(12.0 * std::max(linear::SymmetricEigen(covariance).values[0], 0.0));
 }
 
 }  // namespace

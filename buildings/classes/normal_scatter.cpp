@@ -1,12 +1,12 @@
 #include "buildings/classes/normal_scatter.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/base/cancel.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::buildings {
 namespace {
@@ -42,9 +42,7 @@ float LeastEigenvalue(const std::array<double, 6>& sum, size_t count) {
   Eigen::Matrix3d mean;
   mean << sum[0], sum[3], sum[4], sum[3], sum[1], sum[5], sum[4], sum[5], sum[2];
   mean /= static_cast<double>(count);
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(mean, Eigen::EigenvaluesOnly);
-  return static_cast<float>(std::max(0.0, solver.eigenvalues()[0]));
+  return static_cast<float>(std::max(0.0, linear::FastSymmetricEigen(mean).values[0]));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "buildings/files/building_files.h"
 #include "buildings/files/building_table.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::buildings {
 namespace {
@@ -175,7 +176,7 @@ void WriteCityJson(const BuildingSet& set, const surface::MapFrame& map, const s
   document["metadata"] = std::move(metadata);
   document["CityObjects"] = std::move(objects);
   document["vertices"] = pool.ToJson();
-  base::WriteFileAtomically(file, document.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+  base::WriteFileAtomically(file, base::JsonText(document) + "\n");
 }
 
 }  // namespace skyquilt::buildings

@@ -11,6 +11,7 @@
 #include "buildings/files/building_table.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "surface/files/bytes.h"
 #include "surface/files/gltf_document.h"
 
@@ -140,7 +141,7 @@ Json ExtrasOf(const Building& building, const FileFrame& frame) {
 }
 
 std::vector<uint8_t> Packed(const Json& document, const std::vector<uint8_t>& binary, const std::filesystem::path& file) {
-  std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string json = base::JsonText(document);
   json.resize((json.size() + 3) / 4 * 4, ' ');
   constexpr uint64_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
   const uint64_t total = kHeaderBytes + kChunkHeaderBytes + json.size() + (binary.empty() ? 0 : kChunkHeaderBytes + binary.size());

@@ -10,6 +10,7 @@
 #include "buildings/files/buildings_format.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::buildings {
 namespace {
@@ -226,7 +227,7 @@ BuildingSet LoadBuildings(const std::filesystem::path& file) {
   const std::string content = base::ReadFile(file);
   nlohmann::json document;
   try {
-    document = nlohmann::json::parse(content);
+    document = base::ParseJson(content);
   } catch (const nlohmann::json::exception& error) {
     throw base::InputError(file, std::string("is damaged (") + error.what() + ")", kRunAgain);
   }

@@ -6,6 +6,7 @@
 #include "buildings/files/buildings_format.h"
 #include "buildings/files/file_frame.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::buildings {
 namespace {
@@ -123,7 +124,7 @@ void SaveBuildings(const BuildingSet& set, const surface::MapFrame& frame, const
   json["vertical"] = names.VerticalName();
   json["buildings"] = Json::array();
   for (const Building& building : set.buildings) json["buildings"].push_back(BuildingJson(building));
-  base::WriteFileAtomically(file, json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+  base::WriteFileAtomically(file, base::JsonText(json) + "\n");
 }
 
 }  // namespace skyquilt::buildings

@@ -1,11 +1,12 @@
 #include "buildings/fit/ground_level.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "buildings/fit/correlation.h"
 #include "core/base/order_statistics.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::buildings {
 namespace {
@@ -39,7 +40,7 @@ Measure GroundLevel(const std::vector<FitPoint>& points, const Eigen::Vector2d& 
       information += weight * row * row.transpose();
       right += weight * point.z * row;
     }
-    const Eigen::Vector3d better = information.ldlt().solve(right);
+    const Eigen::Vector3d better = linear::SolveSymmetric(information, right);
     if (!better.allFinite()) break;
     plane = better;
     plane.tail<2>() = plane.tail<2>().cwiseMax(-kSteepest).cwiseMin(kSteepest);
@@ -55,7 +56,7 @@ Measure GroundLevel(const std::vector<FitPoint>& points, const Eigen::Vector2d& 
   const auto n = static_cast<double>(points.size());
   const double area = n * spacing_m * spacing_m;
   const double n_eff = std::clamp(area / std::max(CorrelationArea(at, residuals, area), 1e-9), 1.0, n);
-  const double random = sigma * sigma * n / n_eff * information.inverse()(0, 0);
+  const double random = sigma * sigma * n / n_eff * linear::Inverse(information)(0, 0);
   return {plane[0], std::sqrt(random + kGroundCommon_gsd * kGroundCommon_gsd * gsd_m * gsd_m)};
 }
 

@@ -2,7 +2,6 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -10,6 +9,7 @@
 
 #include "buildings/fit/correlation.h"
 #include "core/base/order_statistics.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::buildings {
 namespace {
@@ -124,7 +124,7 @@ Eigen::MatrixXd CovarianceOf(std::span<const Group> groups, const Parameters& pa
     scatter += weight * weight * square * n / std::max(group.n_eff, 1.0) * products;
     scatter += weight * weight * slope * slope * group.common_m * group.common_m * shift * shift.transpose();
   }
-  const Eigen::MatrixXd inverse = information.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::MatrixXd inverse = linear::SolveSymmetric(information, Eigen::MatrixXd::Identity(size, size));
   const Eigen::MatrixXd covariance = inverse * scatter * inverse.transpose();
   return 0.5 * (covariance + covariance.transpose());
 }

@@ -11,6 +11,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/image/encode.h"
 
 namespace skyquilt::buildings {
@@ -176,7 +177,7 @@ std::vector<std::filesystem::path> WriteFacades(const Building& building, const 
   }
   // Last, so that it never names a picture that is not there.
   files.push_back(folder / (name + ".json"));
-  base::WriteFileAtomically(files.back(), json.dump(2) + "\n");
+  base::WriteFileAtomically(files.back(), base::JsonText(json, 2) + "\n");
   return files;
 }
 

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "core/linear/linear.h"
 
 namespace skyquilt::buildings {
 
@@ -37,10 +38,10 @@ class PlaneSums {
     FittedPlane plane;
     plane.middle = sum_ / n_;
     const Eigen::Matrix3d covariance = squares_ / n_ - plane.middle * plane.middle.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-    plane.normal = solver.eigenvectors().col(0);
+    const linear::EigenPairs<3> eigen = linear::SymmetricEigen(covariance);
+    plane.normal = eigen.vectors.col(0);
     if (plane.normal.dot(out) < 0.0) plane.normal = -plane.normal;
-    const double smallest = std::max(solver.eigenvalues()[0], 0.0), sum = solver.eigenvalues().cwiseMax(0.0).sum();
+    const double smallest = std::max(eigen.values[0], 0.0), sum = eigen.values.cwiseMax(0.0).sum();
     plane.rms_m = std::sqrt(smallest);
     plane.roughness = sum > 0.0 ? smallest / sum : 0.0;
     return plane;

@@ -7,6 +7,7 @@
 #include "coordinator/poses/task_message.h"
 #include "coordinator/ranks/failure.h"
 #include "coordinator/ranks/messages.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 
 namespace skyquilt::coordinator {
@@ -14,7 +15,7 @@ namespace skyquilt::coordinator {
 using nlohmann::json;
 
 RankTasks::RankTasks(comm::Communicator& comm, const RunOptions& options, bool verbose, bool quiet)
-    : comm_(comm), setup_(json{{"threads", options.threads}, {"verbose", verbose}, {"quiet", quiet}}.dump()) {}
+    : comm_(comm), setup_(base::JsonText(json{{"threads", options.threads}, {"verbose", verbose}, {"quiet", quiet}})) {}
 
 const std::vector<GroupMember>& RankTasks::Members() {
   if (group_ == nullptr) {
@@ -22,7 +23,7 @@ const std::vector<GroupMember>& RankTasks::Members() {
     members_ = group->WaitForRanks();
     group_ = std::move(group);
     for (const GroupMember& member : members_) comm_.Send(member.rank, kTagThreads, std::to_string(member.threads));
-    spdlog::info("features and matches are found by {} ranks with {} threads at most", members_.size(), threads());
+    base::LogInfo("features and matches are found by {} ranks with {} threads at most", members_.size(), threads());
   }
   return members_;
 }
@@ -54,7 +55,7 @@ void RankTasks::Run(std::span<const prepare::PoseTask> tasks, const prepare::Tas
   while (n_done < tasks.size()) {
     const comm::Message message = comm_.Receive();
     if (message.tag == kTagReady) {
-      const json hello = json::parse(message.bytes);
+      const json hello = base::ParseJson(message.bytes);
       if (hello.contains("failure")) Throw(FailureFromJson(hello.at("failure")), NameOf(message.source));
     }
     if (message.tag != kTagTaskPart && message.tag != kTagTaskEnd) continue;
@@ -64,7 +65,7 @@ void RankTasks::Run(std::span<const prepare::PoseTask> tasks, const prepare::Tas
       on_progress(std::stod(rest));
       continue;
     }
-    if (!rest.empty()) Throw(FailureFromJson(json::parse(rest)), NameOf(message.source));
+    if (!rest.empty()) Throw(FailureFromJson(base::ParseJson(rest)), NameOf(message.source));
     rank_of.erase(number);
     ++n_done;
     hand_out(message.source);

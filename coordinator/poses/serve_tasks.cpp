@@ -8,6 +8,7 @@
 #include "coordinator/ranks/failure.h"
 #include "coordinator/ranks/messages.h"
 #include "core/base/cancel.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
 
@@ -59,7 +60,7 @@ bool RunTask(comm::Communicator& comm, const std::string& bytes, prepare::TaskRu
   try {
     runner.Run(prepare::TaskFromText(text), [&reporter](double more) { reporter(more); });
   } catch (...) {
-    failure = ToJson(CurrentFailure()).dump(-1, ' ', false, json::error_handler_t::replace);
+    failure = base::JsonText(ToJson(CurrentFailure()));
   }
   if (reporter.over()) {
     base::WithdrawRequest();
@@ -74,10 +75,10 @@ bool RunTask(comm::Communicator& comm, const std::string& bytes, prepare::TaskRu
 
 void ServeTasks(comm::Communicator& comm, const std::string& setup_text) {
   ServeRankGroup(comm, [&](json& hello) {
-    const json setup = json::parse(setup_text);
+    const json setup = base::ParseJson(setup_text);
     const std::string name = "rank " + std::to_string(comm.rank());
     base::InitLog(setup.at("verbose").get<bool>(), name);
-    if (setup.at("quiet").get<bool>()) spdlog::set_level(spdlog::level::warn);
+    if (setup.at("quiet").get<bool>()) base::SetLogLevel(base::LogLevel::kWarning);
     base::Progress::SetQuiet(true);
     RunOptions options;
     options.threads = setup.at("threads").get<int>();

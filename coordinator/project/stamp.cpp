@@ -8,6 +8,7 @@
 #include "coordinator/project/settings.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/memory_map.h"
 #include "core/base/text.h"
 #include "core/config/options.h"
@@ -25,7 +26,7 @@ std::optional<StageStamp> LoadStamp(const Project& project, const std::string& s
   const std::filesystem::path file = project.StampFile(stage);
   if (!std::filesystem::exists(file)) return std::nullopt;
   try {
-    const nlohmann::json json = nlohmann::json::parse(base::ReadFile(file));
+    const nlohmann::json json = base::ParseJson(base::ReadFile(file));
     StageStamp stamp;
     stamp.stage = json.at("stage").get<std::string>();
     stamp.state = json.at("state").get<std::string>();
@@ -46,7 +47,7 @@ void SaveStamp(const Project& project, const StageStamp& stamp) {
   const nlohmann::json json = {{"stage", stamp.stage},    {"state", stamp.state}, {"options", stamp.options},
                                {"inputs", stamp.inputs},  {"hash", stamp.Hash()}, {"finished_utc", stamp.finished_utc},
                                {"seconds", stamp.seconds}};
-  base::WriteFileAtomically(project.StampFile(stamp.stage), json.dump(2) + "\n");
+  base::WriteFileAtomically(project.StampFile(stamp.stage), base::JsonText(json, 2) + "\n");
 }
 
 Freshness CheckStage(const Project& project, const std::string& stage, const FlatOptions& options, const FlatOptions& inputs,

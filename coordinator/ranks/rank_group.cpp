@@ -6,6 +6,7 @@
 
 #include "coordinator/ranks/failure.h"
 #include "coordinator/ranks/messages.h"
+#include "core/base/json_text.h"
 #include "core/base/system.h"
 
 namespace skyquilt::coordinator {
@@ -32,7 +33,7 @@ std::vector<GroupMember> RankGroup::WaitForRanks() {
   for (int n = 1; n < comm_.size();) {
     const comm::Message message = comm_.Receive();
     if (message.tag != kTagReady) continue;
-    json one = json::parse(message.bytes);
+    json one = base::ParseJson(message.bytes);
     const std::string host = one.at("host").get<std::string>();
     if (one.contains("failure")) Throw(FailureFromJson(one.at("failure")), "rank " + std::to_string(message.source) + " on " + host);
     ++ranks_on[host];
@@ -52,7 +53,7 @@ std::vector<GroupMember> RankGroup::WaitForRanks() {
 }
 
 std::string Register(comm::Communicator& comm, const json& hello, int tag) {
-  comm.Send(0, kTagReady, hello.dump());
+  comm.Send(0, kTagReady, base::JsonText(hello));
   while (true) {
     comm::Message message = WaitForMessage(comm);
     if (message.tag == tag) return std::move(message.bytes);
@@ -72,7 +73,7 @@ void ServeRankGroup(comm::Communicator& comm, const std::function<void(json& hel
     if (failure.kind == Failure::kInterrupted) return;  // rank 0 is gone
     hello["failure"] = ToJson(failure);
   }
-  comm.Send(0, kTagReady, hello.dump(-1, ' ', false, json::error_handler_t::replace));
+  comm.Send(0, kTagReady, base::JsonText(hello));
   while (WaitForMessage(comm).tag != kTagDone) {
   }
 }

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "core/base/json_text.h"
+
 namespace skyquilt::coordinator {
 namespace {
 
@@ -50,7 +52,7 @@ class Unpacker {
   }
   Failure TakeFailure() {
     try {
-      return FailureFromJson(nlohmann::json::parse(TakeText()));
+      return FailureFromJson(base::ParseJson(TakeText()));
     } catch (const nlohmann::json::exception&) {
       Fail();
     }
@@ -235,7 +237,7 @@ std::string ToBytes(const RayReply& reply) {
   packer.Add(reply.id);
   packer.Add(reply.samples);
   packer.Add(reply.field_loads);
-  packer.AddText(ToJson(reply.failure).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  packer.AddText(base::JsonText(ToJson(reply.failure)));
   const auto in_flight_normals = [](const scene::RayInFlight& ray_in_flight) { return HasNormals(ray_in_flight.state); };
   const bool normals = std::any_of(reply.in_flight.begin(), reply.in_flight.end(), in_flight_normals) ||
                        std::any_of(reply.colors.begin(), reply.colors.end(), HasNormals<render::RayColor>);

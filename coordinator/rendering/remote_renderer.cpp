@@ -7,6 +7,7 @@
 
 #include "coordinator/ranks/messages.h"
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -55,7 +56,7 @@ void RemoteRenderer::Begin(const scene::FieldStore& store, const render::RaySegm
     for (size_t number = 0; number < group.ranks.size(); ++number) {
       const auto member = std::find_if(members.begin(), members.end(), [&](const GroupMember& one) { return one.rank == group.ranks[number]; });
       const nlohmann::json part = {{"threads", member->threads}, {"memory_bytes", member->memory_bytes}, {"number", number}, {"owner", group.owner}};
-      comm_.Send(member->rank, kTagAssignment, part.dump());
+      comm_.Send(member->rank, kTagAssignment, base::JsonText(part));
     }
   }
   statistics_.ranks = static_cast<int>(ranks.size());
@@ -79,7 +80,7 @@ void RemoteRenderer::Render(std::span<const render::Ray> rays, std::span<render:
     if (message.tag == kTagRayReply) TakeBack(work, message);
     // A rank says this a second time when it cannot open the scene after all.
     if (message.tag == kTagReady) {
-      const nlohmann::json hello = nlohmann::json::parse(message.bytes);
+      const nlohmann::json hello = base::ParseJson(message.bytes);
       if (!hello.contains("failure")) continue;
       broken_ = FailureFromJson(hello.at("failure"));
       Throw(*broken_, "rank " + std::to_string(message.source));

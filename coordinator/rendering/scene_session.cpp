@@ -18,12 +18,12 @@ SceneSession::~SceneSession() {
   const scene::RenderStatistics s = scene_->statistics();
   if (remote_ == nullptr) {
     if (s.field_loads > fields) {
-      spdlog::info("fields were loaded from disk {} times, because they do not all fit in memory. Raise --memory to render faster", s.field_loads);
+      base::LogInfo("fields were loaded from disk {} times, because they do not all fit in memory. Raise --memory to render faster", s.field_loads);
     }
     return;
   }
   if (s.rays == 0) return;
-  spdlog::info(
+  base::LogInfo(
       "{} rays rendered by {} rank(s) in {} group(s) that each hold the whole scene: {}B sent, {}B received, {:.0f} bytes per ray, "
       "{} handovers of rays between ranks, {} fields loaded",
       count(s.rays), s.ranks, s.groups, count(s.bytes_sent), count(s.bytes_received),

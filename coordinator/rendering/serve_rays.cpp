@@ -10,6 +10,7 @@
 #include "coordinator/rendering/block_owners.h"
 #include "coordinator/rendering/ray_request.h"
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/base/system.h"
@@ -88,14 +89,14 @@ std::string RenderingSetup(const std::filesystem::path& scene_h5, const RunOptio
                       {"file", LookAt(scene_h5)},
                       {"verbose", verbose},
                       {"quiet", quiet}};
-  return setup.dump();
+  return base::JsonText(setup);
 }
 
 void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
   ServeRankGroup(comm, [&](json& hello) {
-    const json setup = json::parse(setup_text);
+    const json setup = base::ParseJson(setup_text);
     base::InitLog(setup.at("verbose").get<bool>(), "rank " + std::to_string(comm.rank()));
-    if (setup.at("quiet").get<bool>()) spdlog::set_level(spdlog::level::warn);
+    if (setup.at("quiet").get<bool>()) base::SetLogLevel(base::LogLevel::kWarning);
     base::Progress::SetQuiet(true);
     RunOptions options;
     options.threads = setup.at("threads").get<int>();
@@ -109,7 +110,7 @@ void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
     }
     hello["threads"] = options.UsableThreads();
     hello["memory_bytes"] = options.MemoryLimitBytes();
-    RayServer server(scene_h5, json::parse(Register(comm, hello, kTagAssignment)));
+    RayServer server(scene_h5, base::ParseJson(Register(comm, hello, kTagAssignment)));
     while (true) {
       const comm::Message message = WaitForMessage(comm);
       if (message.tag == kTagDone) return;

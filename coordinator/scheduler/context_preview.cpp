@@ -55,8 +55,8 @@ void Make(const survey::Survey& survey, const partition::BlockSet& blocks, const
   const products::FieldPreview made =
       products::MakeFieldPreview(InfoOfContext(context, survey, blocks, project), caster,
                                  std::clamp(seconds, kFewestPreviewSeconds, kMostPreviewSeconds), settings.products, project.ProductsFolder());
-  spdlog::info("picture from the context: {}, {} x {} cells of {:.3g} m", made.picture.string(), made.grid.width, made.grid.height,
-               made.grid.resolution_m);
+  base::LogInfo("picture from the context: {}, {} x {} cells of {:.3g} m", made.picture.string(), made.grid.width, made.grid.height,
+                made.grid.resolution_m);
 }
 
 }  // namespace

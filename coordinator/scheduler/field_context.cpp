@@ -109,7 +109,7 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
       if (settings.brightness.Luminance()) {
         const brightness::BrightnessStatistics statistics = MeasureBrightness(survey, pixels);
         train.luminance = brightness::PlanLuminance(settings.brightness, statistics);
-        spdlog::info("{}", LuminanceRemark(train.luminance, statistics));
+        base::LogInfo("{}", LuminanceRemark(train.luminance, statistics));
       }
       train.checkpoint = project.ContextCheckpoint();
       return worker::TrainContext(train, SpecOfSurvey(blocks, survey, project.BlocksFile()), threads, both);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 #include "core/base/system.h"
 
 namespace skyquilt::coordinator {
@@ -77,7 +78,7 @@ FieldOutcome RunField(const FieldTrainer& trainer, const FieldJob& job, const wo
 }
 
 std::string ToText(const FieldJob& job) {
-  return JobToJson(job).dump();
+  return base::JsonText(JobToJson(job));
 }
 
 std::string ToText(const FieldOutcome& outcome) {
@@ -98,22 +99,22 @@ std::string ToText(const FieldOutcome& outcome) {
                   {"dropped", r.dropped_steps},
                   {"findings", FindingsToJson(r)},
                   {"phases", r.phase_seconds}};
-  return j.dump(-1, ' ', false, json::error_handler_t::replace);
+  return base::JsonText(j);
 }
 
 std::string ToText(const worker::TrainStatus& s) {
   const json j = {
       {"step", s.step},    {"total", s.total_steps},    {"fraction", s.fraction},          {"seconds", s.seconds},        {"loss", s.loss},
       {"psnr", s.psnr_db}, {"rays", s.rays_per_second}, {"samples", s.samples_per_second}, {"per_ray", s.samples_per_ray}};
-  return j.dump();
+  return base::JsonText(j);
 }
 
 FieldJob JobFromText(const std::string& text) {
-  return JobFromJson(json::parse(text));
+  return JobFromJson(base::ParseJson(text));
 }
 
 FieldOutcome OutcomeFromText(const std::string& text) {
-  const json j = json::parse(text);
+  const json j = base::ParseJson(text);
   FieldOutcome outcome;
   outcome.job = JobFromJson(j.at("job"));
   const json& failure = j.at("failure");
@@ -139,7 +140,7 @@ FieldOutcome OutcomeFromText(const std::string& text) {
 }
 
 worker::TrainStatus StatusFromText(const std::string& text) {
-  const json j = json::parse(text);
+  const json j = base::ParseJson(text);
   worker::TrainStatus s;
   s.step = j.at("step").get<int64_t>();
   s.total_steps = j.at("total").get<int64_t>();

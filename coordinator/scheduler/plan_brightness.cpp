@@ -1,6 +1,6 @@
 #include "coordinator/scheduler/plan_brightness.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

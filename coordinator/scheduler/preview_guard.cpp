@@ -14,7 +14,7 @@ void AsPreview(const Settings& settings, const Project& project, const std::stri
   } catch (const base::Interrupted&) {
     throw;
   } catch (const std::exception& error) {
-    spdlog::warn("there is no {}: {}", what, error.what());
+    base::LogWarning("there is no {}: {}", what, error.what());
   }
 }
 

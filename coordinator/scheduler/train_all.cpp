@@ -15,6 +15,7 @@
 #include "coordinator/scheduler/train_progress.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/base/system.h"
@@ -53,8 +54,8 @@ class Training {
     image::PixelCache pixels = image::PixelCache::Open(project_.PixelCacheFile(), PixelSources(*input_.survey), settings_.run.image_width, pool);
     pixels.Stream(MustStream(pixels, *input_.blocks, settings_, all_threads, comm_.local_size()));
     if (pixels.streaming()) {
-      spdlog::info("pixels of the photos ({}B) are read from disk on demand: with a block they exceed the memory limit of {}B (--memory)",
-                   base::FormatCount(static_cast<double>(pixels.FileBytes())), base::FormatCount(settings_.run.MemoryLimitBytes()));
+      base::LogInfo("pixels of the photos ({}B) are read from disk on demand: with a block they exceed the memory limit of {}B (--memory)",
+                    base::FormatCount(static_cast<double>(pixels.FileBytes())), base::FormatCount(settings_.run.MemoryLimitBytes()));
     }
     // Decoding is not training: the budget starts here.
     start_ = std::chrono::steady_clock::now();
@@ -63,8 +64,8 @@ class Training {
                         {"config_hash", input_.config_hash},
                         {"verbose", input_.verbose},
                         {"quiet", input_.quiet}};
-    RankGroup group(comm_, kTagSetup, setup.dump());
-    if (const std::string remark = PlanBrightness(*input_.survey, settings_.brightness).remark; !remark.empty()) spdlog::info("{}", remark);
+    RankGroup group(comm_, kTagSetup, base::JsonText(setup));
+    if (const std::string remark = PlanBrightness(*input_.survey, settings_.brightness).remark; !remark.empty()) base::LogInfo("{}", remark);
     const FieldTrainer trainer = MakeFieldTrainer(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
     int per_host = 1;
     int threads = all_threads;
@@ -116,7 +117,7 @@ class Training {
       const FieldOutcome outcome = RunField(trainer, job, report, 0, threads);
       RethrowIfFatal(outcome);
       if (queue.RecordOutcome(outcome)) {
-        spdlog::warn("the context failed and is tried again with half the learning rate: {}", outcome.failure.reason);
+        base::LogWarning("the context failed and is tried again with half the learning rate: {}", outcome.failure.reason);
         progress.FieldRestarted(job);
       }
     }
@@ -142,14 +143,14 @@ class Training {
     for (const partition::Block& block : input_.blocks->blocks) {
       const std::string name = "block_" + block.name;
       if (block.empty) {
-        spdlog::info("{} is empty and skipped: {}", name, block.empty_reason);
+        base::LogInfo("{} is empty and skipped: {}", name, block.empty_reason);
       } else {
         waiting.push_back({block.id, name, block.cost, ledger_.AssignedSeconds(name)});
       }
     }
     if (comm_.size() - 1 > static_cast<int>(waiting.size())) {
-      spdlog::info("{} ranks train {} blocks: {} of them have no block of their own. Use more and smaller blocks (--blocks) or fewer ranks",
-                   comm_.size() - 1, waiting.size(), comm_.size() - 1 - static_cast<int>(waiting.size()));
+      base::LogInfo("{} ranks train {} blocks: {} of them have no block of their own. Use more and smaller blocks (--blocks) or fewer ranks",
+                    comm_.size() - 1, waiting.size(), comm_.size() - 1 - static_cast<int>(waiting.size()));
     }
     QueueOptions options;
     options.steps = settings_.run.time_budget_s > 0.0 ? 0 : settings_.train.steps;
@@ -165,7 +166,7 @@ class Training {
     hooks.now_s = [this] { return Now(); };
     hooks.handed_out = [&](const FieldJob& job, int rank) {
       if (options.has_deadline) ledger_.AssignSeconds(job.name, job.seconds);
-      spdlog::debug("{} is given to rank {}{}", job.name, rank, job.seconds > 0.0 ? " for " + base::FormatDuration(job.seconds) : "");
+      base::LogDebug("{} is given to rank {}{}", job.name, rank, job.seconds > 0.0 ? " for " + base::FormatDuration(job.seconds) : "");
     };
     hooks.status = [&](const FieldJob& job, const worker::TrainStatus& status) {
       progress.Update(job, queue.Cost(job.block), status);
@@ -173,8 +174,8 @@ class Training {
     };
     hooks.finished = [&](const FieldOutcome& outcome, bool retried) {
       if (retried) {
-        spdlog::warn("{} {} and is tried again with half the learning rate", outcome.job.name,
-                     outcome.failure ? "failed (" + outcome.failure.reason + ")" : "shows its photos worse than the context");
+        base::LogWarning("{} {} and is tried again with half the learning rate", outcome.job.name,
+                         outcome.failure ? "failed (" + outcome.failure.reason + ")" : "shows its photos worse than the context");
         progress.FieldRestarted(outcome.job);
         return;
       }
@@ -183,14 +184,14 @@ class Training {
       if (outcome.failure.kind == Failure::kNone) {
         LogField(outcome);
       } else {
-        spdlog::error("{} failed after {} tries: {}", outcome.job.name, outcome.job.attempt + 1, outcome.failure.reason);
+        base::LogError("{} failed after {} tries: {}", outcome.job.name, outcome.job.attempt + 1, outcome.failure.reason);
       }
     };
     hooks.moved = [](const FieldJob& job, int from_rank, int to_rank) {
       if (to_rank == from_rank) {
-        spdlog::info("{} stays on rank {}: no other rank would finish it earlier", job.name, from_rank);
+        base::LogInfo("{} stays on rank {}: no other rank would finish it earlier", job.name, from_rank);
       } else {
-        spdlog::info("{} continues on rank {}: rank {} is slow", job.name, to_rank, from_rank);
+        base::LogInfo("{} continues on rank {}: rank {} is slow", job.name, to_rank, from_rank);
       }
     };
     try {
@@ -209,13 +210,13 @@ class Training {
 
   static void LogField(const FieldOutcome& outcome) {
     const worker::TrainResult& r = outcome.result;
-    spdlog::info("{}: {} steps in {}, {} samples, {} parameters, training PSNR {:.2f} dB{}", outcome.job.name, r.steps,
-                 base::FormatDuration(r.seconds), base::FormatCount(static_cast<double>(r.samples)),
-                 base::FormatCount(static_cast<double>(r.parameters)), r.final_psnr_db,
-                 r.dropped_steps > 0 ? ", " + std::to_string(r.dropped_steps) + " steps dropped because of non-finite values" : "");
+    base::LogInfo("{}: {} steps in {}, {} samples, {} parameters, training PSNR {:.2f} dB{}", outcome.job.name, r.steps,
+                  base::FormatDuration(r.seconds), base::FormatCount(static_cast<double>(r.samples)),
+                  base::FormatCount(static_cast<double>(r.parameters)), r.final_psnr_db,
+                  r.dropped_steps > 0 ? ", " + std::to_string(r.dropped_steps) + " steps dropped because of non-finite values" : "");
     if (r.ShowsContext()) {
-      spdlog::warn("{}: {:.2f} dB on its training photos, where the context alone has {:.2f} dB: the scene will show the context there",
-                   outcome.job.name, r.comparison->block_psnr_db, r.comparison->context_psnr_db);
+      base::LogWarning("{}: {:.2f} dB on its training photos, where the context alone has {:.2f} dB: the scene will show the context there",
+                       outcome.job.name, r.comparison->block_psnr_db, r.comparison->context_psnr_db);
     }
   }
 
@@ -238,9 +239,9 @@ scene::TrainReport TrainAll(comm::Communicator& comm, const TrainInput& input, c
 
 void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
   ServeRankGroup(comm, [&](json& hello) {
-    const json setup = json::parse(setup_text);
+    const json setup = base::ParseJson(setup_text);
     base::InitLog(setup.at("verbose").get<bool>(), "rank " + std::to_string(comm.rank()));
-    if (setup.at("quiet").get<bool>()) spdlog::set_level(spdlog::level::warn);
+    if (setup.at("quiet").get<bool>()) base::SetLogLevel(base::LogLevel::kWarning);
     base::Progress::SetQuiet(true);
     const Project project{setup.at("project").get<std::string>()};
     Settings settings;

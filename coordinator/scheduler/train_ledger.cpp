@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 
 namespace skyquilt::coordinator {
@@ -16,15 +17,15 @@ using nlohmann::json;
 TrainLedger::TrainLedger(const Project& project, const std::string& config_hash) : project_(project), config_hash_(config_hash) {
   if (!std::filesystem::exists(project.TrainLedgerFile())) return;
   try {
-    const json ledger = json::parse(base::ReadFile(project.TrainLedgerFile()));
+    const json ledger = base::ParseJson(base::ReadFile(project.TrainLedgerFile()));
     if (ledger.at("config_hash") != config_hash) return;
     spent_s_ = ledger.at("spent_s").get<double>();
     promised_s_ = ledger.at("promised_s").get<std::map<std::string, double>>();
     outcomes_ = ledger.at("outcomes").get<std::map<std::string, std::string>>();
   } catch (const json::exception& error) {
     // Only the division of the time budget depends on this file; checkpoints do not.
-    spdlog::warn("{}: is damaged ({}). Checkpoints are kept and training continues, but with the full time budget again",
-                 project.TrainLedgerFile().string(), error.what());
+    base::LogWarning("{}: is damaged ({}). Checkpoints are kept and training continues, but with the full time budget again",
+                     project.TrainLedgerFile().string(), error.what());
     spent_s_ = 0.0;
     promised_s_.clear();
     outcomes_.clear();
@@ -62,7 +63,7 @@ void TrainLedger::AddOutcome(const FieldOutcome& outcome) {
 void TrainLedger::Save() const {
   std::filesystem::create_directories(project_.StateFolder());
   const json ledger = {{"config_hash", config_hash_}, {"spent_s", spent_s_}, {"promised_s", promised_s_}, {"outcomes", outcomes_}};
-  base::WriteFileAtomically(project_.TrainLedgerFile(), ledger.dump(1) + "\n");
+  base::WriteFileAtomically(project_.TrainLedgerFile(), base::JsonText(ledger, 1) + "\n");
 }
 
 scene::TrainReport TrainLedger::Report(int ranks, int threads) const {

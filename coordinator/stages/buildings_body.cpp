@@ -59,13 +59,14 @@ void ClassifyCloud(const Pipeline& pipeline, const surface::MapFrame& frame, con
 
 void LogBuildings(const BuildingSet& set, bool georeferenced, const std::filesystem::path& folder) {
   const auto accepted = std::count_if(set.buildings.begin(), set.buildings.end(), [](const buildings::Building& one) { return one.accepted; });
-  spdlog::info("{} building(s), {} of them fit their roof well: {}", set.buildings.size(), accepted, folder.string());
+  base::LogInfo("{} building(s), {} of them fit their roof well: {}", set.buildings.size(), accepted, folder.string());
   if (georeferenced && set.scale != 1.0) {
-    spdlog::warn("the scale bar makes lengths {} times as long as the geo-reference. Measures are by the scale bar, coordinates by the geo-reference",
-                 set.scale);
+    base::LogWarning(
+        "the scale bar makes lengths {} times as long as the geo-reference. Measures are by the scale bar, coordinates by the geo-reference",
+        set.scale);
   }
   if (!set.metric && !set.buildings.empty()) {
-    spdlog::warn("the survey has no scale, so lengths of buildings have no unit. Give --scale-bar A B LENGTH with two points and their distance");
+    base::LogWarning("the survey has no scale, so lengths of buildings have no unit. Give --scale-bar A B LENGTH with two points and their distance");
   }
 }
 
@@ -85,7 +86,7 @@ std::string BuildingsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   input.footprints = ReadFootprints(settings.buildings.footprints, frame);
   BuildingSet set;
   if (surface::ReadTriangles(project.SurfaceTable()) == 0) {
-    spdlog::warn("there is no surface, so there are no buildings");
+    base::LogWarning("there is no surface, so there are no buildings");
   } else {
     const std::filesystem::path terrain = project.SurfaceFolder() / "dtm.tif";
     if (!std::filesystem::exists(terrain)) {
@@ -132,7 +133,7 @@ void WriteFacades(Pipeline& pipeline, const std::vector<int>& ids) {
         buildings::WriteFacades(building, caster, frame, pipeline.settings.buildings.facade_gsd * info.gsd_m, folder, session.threads());
     pictures += std::count_if(files.begin(), files.end(), [](const std::filesystem::path& file) { return file.extension() == ".png"; });
   }
-  spdlog::info("{} facade picture(s): {}", pictures, folder.string());
+  base::LogInfo("{} facade picture(s): {}", pictures, folder.string());
 }
 
 }  // namespace skyquilt::coordinator

@@ -12,8 +12,8 @@ void MakeFirstPicture(const Pipeline& pipeline, const survey::Survey& survey, st
   AsPreview(pipeline.settings, pipeline.project, "preview of the orthophoto", [&](const std::filesystem::path& folder) {
     const products::PointPreview made = products::MakePointPreview(survey, pipeline.settings.products, folder, threads);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - poses_known).count();
-    spdlog::info("first picture: {}, {:.0f} s after the poses ({} photos on the sparse points, {} x {} cells of {:.3g} m)", made.picture.string(),
-                 seconds, made.photos, made.grid.width, made.grid.height, made.grid.resolution_m);
+    base::LogInfo("first picture: {}, {:.0f} s after the poses ({} photos on the sparse points, {} x {} cells of {:.3g} m)", made.picture.string(),
+                  seconds, made.photos, made.grid.width, made.grid.height, made.grid.resolution_m);
   });
 }
 

@@ -71,18 +71,18 @@ void RunStage(Pipeline& pipeline, const std::string& name) {
   const Freshness freshness = CheckStage(project, name, stamp.options, stamp.inputs, stage.completion_files(project));
   if (freshness == Freshness::kUpToDate) {
     if (stage.load_results == nullptr || stage.load_results(pipeline)) {
-      spdlog::info("{}: nothing to do, results are up to date", name);
+      base::LogInfo("{}: nothing to do, results are up to date", name);
       return;
     }
-    spdlog::info("{}: running again, because its results cannot be read", name);
+    base::LogInfo("{}: running again, because its results cannot be read", name);
   }
   if (freshness == Freshness::kInputsChanged) {
     RequireSameInputs(project, stage, stamp.inputs);
-    spdlog::info("{}: running again, because its inputs have changed", name);
+    base::LogInfo("{}: running again, because its inputs have changed", name);
   }
   SaveStamp(project, stamp);
   if (stage.dated) base::WriteFileAtomically(project.ConfigFile(), pipeline.settings.Toml());
-  spdlog::info("{} started", name);
+  base::LogInfo("{} started", name);
   const auto start = std::chrono::steady_clock::now();
   stamp.state = stage.body(pipeline, stamp);
   if (stage.dated) {
@@ -90,7 +90,7 @@ void RunStage(Pipeline& pipeline, const std::string& name) {
     stamp.finished_utc = base::UtcTimestamp();
   }
   SaveStamp(project, stamp);
-  spdlog::debug("{} took {}", name, base::FormatDuration(stamp.seconds));
+  base::LogDebug("{} took {}", name, base::FormatDuration(stamp.seconds));
 }
 
 }  // namespace skyquilt::coordinator

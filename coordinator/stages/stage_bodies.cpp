@@ -26,15 +26,15 @@ namespace skyquilt::coordinator {
 namespace {
 
 void LogBlocks(const partition::BlockSet& blocks) {
-  spdlog::info("{} x {} blocks (rows x columns)", blocks.rows, blocks.columns);
+  base::LogInfo("{} x {} blocks (rows x columns)", blocks.rows, blocks.columns);
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) {
-      spdlog::info("  {}: empty ({})", block.name, block.empty_reason);
+      base::LogInfo("  {}: empty ({})", block.name, block.empty_reason);
     } else {
       const Eigen::Vector3d size = block.max_enu - block.min_enu;
-      spdlog::info("  {}: {:.0f} x {:.0f} m, {:.1f} m high, {} photos from {:.0f} m above ground, GSD {:.3f} m, 2^{} table entries per level",
-                   block.name, size.x(), size.y(), size.z(), block.photos.size(), block.altitude_agl_m, block.gsd_m, block.log2_table_size);
-      if (const std::string doubt = partition::AltitudeDoubt(block); !doubt.empty()) spdlog::warn("  {}: {}", block.name, doubt);
+      base::LogInfo("  {}: {:.0f} x {:.0f} m, {:.1f} m high, {} photos from {:.0f} m above ground, GSD {:.3f} m, 2^{} table entries per level",
+                    block.name, size.x(), size.y(), size.z(), block.photos.size(), block.altitude_agl_m, block.gsd_m, block.log2_table_size);
+      if (const std::string doubt = partition::AltitudeDoubt(block); !doubt.empty()) base::LogWarning("  {}: {}", block.name, doubt);
     }
   }
 }
@@ -96,18 +96,18 @@ std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
     if (block.empty) continue;
     const scene::FieldTraining* field = training.Find(block.name);
     if (field != nullptr && field->ok && field->shows_context && pipeline.settings.train.coupling != "independent") {
-      spdlog::warn("block {} shows its photos worse than the context does ({:.2f} dB instead of {:.2f} dB): the scene shows the context there",
-                   block.name, field->block_psnr_db, field->context_psnr_db);
+      base::LogWarning("block {} shows its photos worse than the context does ({:.2f} dB instead of {:.2f} dB): the scene shows the context there",
+                       block.name, field->block_psnr_db, field->context_psnr_db);
       input.blocks.push_back({.checkpoint = project.BlockCheckpoint(block.name), .gsd_m = block.gsd_m, .shows_context = true});
     } else if (field != nullptr && field->ok) {
       input.blocks.push_back({.checkpoint = project.BlockCheckpoint(block.name), .gsd_m = block.gsd_m});
     } else {
-      spdlog::warn("block {} has no finished checkpoint: the scene shows the coarse context field there. Run 'skyquilt train' to train it again",
-                   block.name);
+      base::LogWarning("block {} has no finished checkpoint: the scene shows the coarse context field there. Run 'skyquilt train' to train it again",
+                       block.name);
     }
   }
   merge::MergeScene(input);
-  spdlog::info("scene: {}", project.SceneFile().string());
+  base::LogInfo("scene: {}", project.SceneFile().string());
   return StageStamp::kDone;
 }
 
@@ -120,15 +120,15 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   std::filesystem::create_directories(folder);
   if (options.ortho || options.dsm) {
     const products::MapProducts maps = products::MakeMapProducts(scene, options, folder, threads);
-    spdlog::info("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", maps.grid.width, maps.grid.height, maps.grid.resolution_m,
-                 100.0 * maps.filled, folder.string());
+    base::LogInfo("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", maps.grid.width, maps.grid.height, maps.grid.resolution_m,
+                  100.0 * maps.filled, folder.string());
   }
   if (options.video_seconds > 0.0) {
     const std::filesystem::path file = folder / (options.video_path + ".mp4");
     const products::RenderStats stats =
         products::RenderVideo(products::RendererOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads),
                               products::BuiltInPath(scene.info(), options), options.video_fps, file);
-    spdlog::info("video of {} frames, {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), file.string());
+    base::LogInfo("video of {} frames, {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), file.string());
   }
   return StageStamp::kDone;
 }
@@ -154,17 +154,17 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
                                       .options = pipeline.settings.evaluate};
   pipeline.metrics = evaluate::Evaluate(input, threads);
   const evaluate::Metrics& metrics = pipeline.metrics;
-  spdlog::info(
+  base::LogInfo(
       "{} held-out photos: PSNR {:.2f} dB, SSIM {:.3f}, FLIP {:.3f} over the {:.0f} % of pixels that are covered; PSNR of full frames {:.2f} dB",
       metrics.photos.size(), metrics.psnr, metrics.ssim, metrics.flip, 100.0 * metrics.coverage, metrics.psnr_full_frame);
   if (metrics.has_truth) {
-    spdlog::info("depth error against ground truth: median {:.2f} m, RMSE {:.2f} m", metrics.depth_median_abs_m, metrics.depth_rmse_m);
+    base::LogInfo("depth error against ground truth: median {:.2f} m, RMSE {:.2f} m", metrics.depth_median_abs_m, metrics.depth_rmse_m);
   }
   if (const evaluate::KeptPointErrors& kept = metrics.kept_points; kept.rays > 0) {
-    spdlog::info("distance error against {} sparse points kept from training: median {:+.2f} GSD, NMAD {:.2f} GSD", kept.points, kept.median_gsd,
-                 kept.nmad_gsd);
+    base::LogInfo("distance error against {} sparse points kept from training: median {:+.2f} GSD, NMAD {:.2f} GSD", kept.points, kept.median_gsd,
+                  kept.nmad_gsd);
   }
-  spdlog::info("report: {}", (project.ReportFolder() / "index.html").string());
+  base::LogInfo("report: {}", (project.ReportFolder() / "index.html").string());
   return StageStamp::kDone;
 }
 

@@ -129,7 +129,7 @@ bool RecallMetrics(Pipeline& pipeline) {
     pipeline.metrics = evaluate::ReadMetrics(pipeline.project.MetricsFile());
     return true;
   } catch (const base::InputError& error) {
-    spdlog::warn("{}", error.what());
+    base::LogWarning("{}", error.what());
     return false;
   }
 }

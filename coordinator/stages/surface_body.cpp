@@ -43,9 +43,9 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
     input.photos = &*photos;
   }
   const surface::SurfaceResult made = surface::MakeSurface(input, session.threads());
-  spdlog::info("surface from {} photos and {} virtual views: {} triangles, {} points, {} file(s) in {}: {}", made.photos, made.virtual_views,
-               base::FormatCount(static_cast<double>(made.triangles)), base::FormatCount(static_cast<double>(made.points)), made.files.size(),
-               base::FormatDuration(made.seconds), project.SurfaceFolder().string());
+  base::LogInfo("surface from {} photos and {} virtual views: {} triangles, {} points, {} file(s) in {}: {}", made.photos, made.virtual_views,
+                base::FormatCount(static_cast<double>(made.triangles)), base::FormatCount(static_cast<double>(made.points)), made.files.size(),
+                base::FormatDuration(made.seconds), project.SurfaceFolder().string());
   return StageStamp::kDone;
 }
 

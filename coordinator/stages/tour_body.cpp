@@ -8,6 +8,7 @@
 #include "coordinator/stages/stage_bodies.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "tour/export/disk_space.h"
 #include "tour/export/export_tour.h"
@@ -54,13 +55,13 @@ std::optional<tour::Heights> HeightsOf(const tour::ExportParts& parts) {
   try {
     return tour::HeightsFromTerrain(parts.terrain());
   } catch (const std::runtime_error& damage) {
-    spdlog::warn("ways and views of the tour do without the surface model: {}", damage.what());
+    base::LogWarning("ways and views of the tour do without the surface model: {}", damage.what());
     return {};
   }
 }
 
 tour::Tour Propose(const Project& project, const scene::SceneInfo& info, const tour::ExportParts& parts, int stops) {
-  const nlohmann::json description = nlohmann::json::parse(parts.project_json);
+  const nlohmann::json description = base::ParseJson(parts.project_json);
   const std::optional<tour::Heights> heights = HeightsOf(parts);
   tour::ProposeInput input;
   input.name = description.value("name", "");
@@ -71,7 +72,7 @@ tour::Tour Propose(const Project& project, const scene::SceneInfo& info, const t
   input.metric = info.georeferenced;
   input.stops = stops;
   tour::Tour proposed = tour::ProposeTour(input);
-  spdlog::info("tour of {} stop(s) proposed: {}", proposed.stops.size(), project.TourFile().string());
+  base::LogInfo("tour of {} stop(s) proposed: {}", proposed.stops.size(), project.TourFile().string());
   return proposed;
 }
 
@@ -120,7 +121,7 @@ void Export(Pipeline& pipeline, const TourRequest& request) {
     };
   }
   const tour::Exported exported = tour::ExportTour(input, parts, field, session.threads());
-  spdlog::info("tour of {} stop(s), {}: {}", exported.stops, tour::MegabytesText(exported.bytes), (request.out / "index.html").string());
+  base::LogInfo("tour of {} stop(s), {}: {}", exported.stops, tour::MegabytesText(exported.bytes), (request.out / "index.html").string());
 }
 
 }  // namespace
@@ -138,7 +139,7 @@ void ExportProjectTour(Pipeline& pipeline, const TourRequest& request) {
 }
 
 std::string TourBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
-  if (IsEdited(pipeline.project)) spdlog::info("{} is exported as it is", pipeline.project.TourFile().string());
+  if (IsEdited(pipeline.project)) base::LogInfo("{} is exported as it is", pipeline.project.TourFile().string());
   Export(pipeline, {.out = pipeline.project.TourFolder(), .auto_stops = pipeline.settings.tour.auto_stops, .video = false});
   return StageStamp::kDone;
 }

@@ -4,6 +4,12 @@
 
 namespace skyquilt::base {
 
+InputError::InputError(const std::filesystem::path& file, const std::string& found, const std::string& fix)
+    : InputError(file, found + (fix.empty() ? "" : ". " + fix)) {}
+
+InputError::InputError(const std::filesystem::path& file, const std::string& finding)
+    : std::runtime_error(file.string() + ": " + finding), file_(file), finding_(finding) {}
+
 void ThrowCheckFailure(const char* condition, const char* file, int line, const std::string& detail) {
   std::ostringstream message;
   message << "check failed: " << condition << " at " << file << ":" << line;

@@ -20,15 +20,13 @@ class UsageError : public std::runtime_error {
 
 class InputError : public std::runtime_error {
  public:
-  InputError(const std::filesystem::path& file, const std::string& found, const std::string& fix)
-      : InputError(file, found + (fix.empty() ? "" : ". " + fix)) {}
+  InputError(const std::filesystem::path& file, const std::string& found, const std::string& fix);
   const std::filesystem::path& file() const { return file_; }
   // What was found and how to fix it: the message without the file's name.
   const std::string& finding() const { return finding_; }
 
  private:
-  InputError(const std::filesystem::path& file, const std::string& finding)
-      : std::runtime_error(file.string() + ": " + finding), file_(file), finding_(finding) {}
+  InputError(const std::filesystem::path& file, const std::string& finding);
   std::filesystem::path file_;
   std::string finding_;
 };

@@ -1,9 +1,11 @@
 #include "core/camera/distortion.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "core/linear/linear.h"
 
 namespace skyquilt::camera {
 namespace {
@@ -118,7 +120,7 @@ std::optional<Eigen::Vector2d> Distortion::Distort(const Eigen::Vector3d& direct
   if (!GrowsUpTo(ideal.norm())) return std::nullopt;
   Eigen::Matrix2d jacobian;
   const Eigen::Vector2d distorted = DistortPlane(ideal, &jacobian);
-  if (!(jacobian.determinant() > 0.0)) return std::nullopt;
+  if (!(linear::Determinant(jacobian) > 0.0)) return std::nullopt;
   return distorted;
 }
 
@@ -133,8 +135,8 @@ Eigen::Vector2d Distortion::UndistortPlane(const Eigen::Vector2d& distorted) con
   Eigen::Vector2d residual = DistortPlane(ideal, &jacobian) - distorted;
   for (int step = 0; step < kNewtonSteps && residual.norm() > kTolerance * (1.0 + distorted_radius); ++step) {
     // Near a fold the Newton direction is unreliable; the residual itself (a fixed-point step) is safer.
-    const bool is_regular = jacobian.determinant() > 1e-6;
-    const Eigen::Vector2d direction = is_regular ? Eigen::Vector2d(jacobian.inverse() * residual) : residual;
+    const bool is_regular = linear::Determinant(jacobian) > 1e-6;
+    const Eigen::Vector2d direction = is_regular ? Eigen::Vector2d(linear::Inverse(jacobian) * residual) : residual;
     bool improved = false;
     for (double length = 1.0; length > 1e-4 && !improved; length *= 0.5) {
       const Eigen::Vector2d candidate = ideal - length * direction;

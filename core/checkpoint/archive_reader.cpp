@@ -267,7 +267,7 @@ std::filesystem::path NewestUsable(const std::filesystem::path& file, const std:
     try {
       const ArchiveReader reader(candidate);
       if (reader.kind() == kind) {
-        if (candidate == previous) spdlog::warn("{}; using the previous file {} instead", reasons, previous.string());
+        if (candidate == previous) base::LogWarning("{}; using the previous file {} instead", reasons, previous.string());
         return candidate;
       }
       throw InputError(candidate, "is an archive of kind '" + reader.kind() + "' where '" + kind + "' is expected", "");

@@ -34,7 +34,7 @@ class SingleCommunicator : public Communicator {
   void Barrier() override {}
   int64_t bytes_sent() const override { return bytes_sent_; }
   [[noreturn]] void Abort(int exit_status) override {
-    spdlog::default_logger()->flush();
+    base::FlushLog();
     std::fflush(nullptr);
     std::_Exit(exit_status);
   }

@@ -95,7 +95,7 @@ class MpiCommunicator : public Communicator {
       MPI_Comm_free(&comm_);
       MPI_Finalize();
     } catch (const std::exception& error) {
-      spdlog::error("{}", error.what());
+      base::LogError("{}", error.what());
     }
   }
 
@@ -161,7 +161,7 @@ class MpiCommunicator : public Communicator {
   int64_t bytes_sent() const override { return bytes_sent_; }
 
   [[noreturn]] void Abort(int exit_status) override {
-    spdlog::default_logger()->flush();
+    base::FlushLog();
     std::fflush(nullptr);
     MPI_Abort(comm_, exit_status);
     std::_Exit(exit_status);

@@ -49,14 +49,14 @@ void Sections::Check() const {
 bool Sections::IsRetired(const std::string& key, const std::string& origin) const {
   const auto retired = retired_.find(key);
   if (retired == retired_.end()) return false;
-  spdlog::warn("{}: option '{}' no longer has an effect ({}); remove it", origin, key, retired->second);
+  base::LogWarning("{}: option '{}' no longer has an effect ({}); remove it", origin, key, retired->second);
   return true;
 }
 
 std::string Sections::CurrentName(const std::string& key, const std::string& origin) const {
   const auto renamed = renamed_.find(key);
   if (renamed == renamed_.end()) return key;
-  if (!origin.empty()) spdlog::warn("{}: option '{}' is now called '{}'; use the new name", origin, key, renamed->second);
+  if (!origin.empty()) base::LogWarning("{}: option '{}' is now called '{}'; use the new name", origin, key, renamed->second);
   return renamed->second;
 }
 

@@ -3,11 +3,11 @@
 #include <proj_experimental.h>
 
 #include <cmath>
-#include <regex>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "core/base/pattern.h"
 #include "core/geo/proj_handles.h"
 
 namespace skyquilt::geo {
@@ -15,13 +15,13 @@ namespace {
 
 // "WGS84 UTM 32N" as its EPSG code.
 std::string Resolved(const std::string& definition) {
-  static const std::regex kUtm("\\s*WGS\\s?84[\\s/]+UTM\\s+(?:zone\\s+)?(\\d{1,2})\\s*([NSns])\\s*", std::regex::icase);
+  constexpr const char* kUtm = "\\s*WGS\\s?84[\\s/]+UTM\\s+(?:zone\\s+)?(\\d{1,2})\\s*([NSns])\\s*";
   // Long definitions are WKT, which the expression need not see.
-  std::smatch match;
-  if (definition.size() <= 64 && std::regex_match(definition, match, kUtm)) {
-    const int zone = std::stoi(match[1]);
+  const auto match = definition.size() <= 64 ? base::MatchWhole(definition, kUtm, true) : std::nullopt;
+  if (match) {
+    const int zone = std::stoi((*match)[1]);
     if (zone < 1 || zone > 60) throw std::invalid_argument("UTM has zones 1 to 60");
-    const bool south = match[2] == "S" || match[2] == "s";
+    const bool south = (*match)[2] == "S" || (*match)[2] == "s";
     return "EPSG:" + std::to_string((south ? 32700 : 32600) + zone);
   }
   // PROJ takes a string without this for an operation.

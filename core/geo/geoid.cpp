@@ -21,7 +21,9 @@ struct GridShift {
   ProjObject shift;
   GridShift() {
     // multiplier 1: adds the undulation to the height.
-    shift.reset(proj_create(context.get(), (std::string("+proj=vgridshift +multiplier=1 +grids=") + kGrid).c_str()));
+    std::string definition = "+proj=vgridshift +multiplier=1 +grids=";
+    definition += kGrid;
+    shift.reset(proj_create(context.get(), definition.c_str()));
   }
 };
 

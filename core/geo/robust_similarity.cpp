@@ -1,6 +1,6 @@
 #include "core/geo/robust_similarity.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +9,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/random.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::geo {
 namespace {
@@ -32,7 +33,7 @@ constexpr int kRefitRounds = 10;
 Eigen::Vector3d Spread(const Points& points) {
   const Points centred = points.colwise() - points.rowwise().mean();
   const Eigen::Matrix3d products = centred * centred.transpose() / static_cast<double>(points.cols());
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(products).eigenvalues().cwiseMax(0.0).cwiseSqrt().reverse();
+  return linear::SymmetricEigen(products).values.cwiseMax(0.0).cwiseSqrt().reverse();
 }
 
 // Why points of this shape cannot determine a similarity; null when they can.
@@ -45,11 +46,11 @@ const char* ShapeProblem(const Points& points, double line_ratio) {
 }
 
 std::optional<Similarity3d> Umeyama(const Points& a, const Points& b) {
-  const Eigen::Matrix4d matrix = Eigen::umeyama(a, b, true);
+  const Eigen::Matrix4d matrix = linear::Similarity(a, b);
   if (!matrix.allFinite()) return std::nullopt;
   const Eigen::Matrix3d scaled = matrix.topLeftCorner<3, 3>();
   Similarity3d fit;
-  fit.scale = std::cbrt(scaled.determinant());
+  fit.scale = std::cbrt(linear::Determinant(scaled));
   if (!(fit.scale > 0.0)) return std::nullopt;
   fit.rotation = Eigen::Quaterniond(scaled / fit.scale).normalized();
   fit.translation = matrix.topRightCorner<3, 1>();

@@ -136,8 +136,8 @@ int64_t WriteContours(const MapGrid& grid, std::span<const float> height_m, doub
   if (!height_m.empty()) {
     interval = AllowedContourInterval(height_m, interval_m);
     if (interval > interval_m) {
-      spdlog::warn("{}: contours every {} m would be at more than {} heights; they are made every {} m instead", gpkg.string(), interval_m,
-                   kMostLevels, interval);
+      base::LogWarning("{}: contours every {} m would be at more than {} heights; they are made every {} m instead", gpkg.string(), interval_m,
+                       kMostLevels, interval);
     }
     const internal::Dataset raster = RasterInMemory(grid, height_m, gpkg);
     lines = LinesOf(raster.get(), interval, gpkg);

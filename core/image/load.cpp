@@ -64,7 +64,7 @@ std::string ReadStart(const std::filesystem::path& file) {
 void WarnAboutAlpha(const std::filesystem::path& file) {
   static std::once_flag once;
   std::call_once(once, [&] {
-    spdlog::warn("{}: has an alpha channel, which is ignored in this and all other photos; use masks to leave out pixels", file.string());
+    base::LogWarning("{}: has an alpha channel, which is ignored in this and all other photos; use masks to leave out pixels", file.string());
   });
 }
 

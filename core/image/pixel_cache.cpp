@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/image/pixel_cache_file.h"
 #include "core/image/srgb.h"
 
@@ -20,7 +21,7 @@ nlohmann::json Stamp(const std::filesystem::path& path) {
 }
 
 std::string Dump(const nlohmann::json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return base::JsonText(json);
 }
 
 template <typename T>
@@ -75,7 +76,7 @@ std::optional<PixelCacheIndex> ReadPixelCacheIndex(std::span<const uint8_t> byte
   const std::string text(reinterpret_cast<const char*>(bytes.data()) + index_offset, index_length);
   if (base::HashHex(text) != std::string(reinterpret_cast<const char*>(bytes.data()) + 32, 16)) return std::nullopt;
   try {
-    const nlohmann::json json = nlohmann::json::parse(text);
+    const nlohmann::json json = base::ParseJson(text);
     PixelCacheIndex index;
     index.key = json.at("key").get<std::string>();
     for (const nlohmann::json& row : json.at("entries")) {

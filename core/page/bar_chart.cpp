@@ -1,6 +1,6 @@
 #include "core/page/bar_chart.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

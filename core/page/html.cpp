@@ -1,6 +1,6 @@
 #include "core/page/html.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <cmath>

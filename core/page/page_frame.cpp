@@ -1,6 +1,6 @@
 #include "core/page/page_frame.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include "core/page/html.h"
 

@@ -1,6 +1,6 @@
 #include "core/page/plot_frame.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

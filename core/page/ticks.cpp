@@ -1,6 +1,6 @@
 #include "core/page/ticks.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <cmath>
 

@@ -1,6 +1,5 @@
 #include "core/scene/depth_normals.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "core/base/errors.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::scene {
 
@@ -58,11 +58,10 @@ image::ImageF NormalsOfDepth(const camera::Camera& camera, const geo::Rigid3d& c
       mean /= static_cast<double>(points.size());
       Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
       for (const Vector3d& point : points) spread += (point - mean) * (point - mean).transpose();
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-      solver.computeDirect(spread);
-      Vector3d normal = solver.eigenvectors().col(0);
+      const linear::EigenPairs<3> eigen = linear::FastSymmetricEigen(spread);
+      Vector3d normal = eigen.vectors.col(0);
       // Points on a line fit many planes.
-      if (!(solver.eigenvalues()[1] > 1e-9 * solver.eigenvalues()[2])) continue;
+      if (!(eigen.values[1] > 1e-9 * eigen.values[2])) continue;
       if (normal.dot(towards) < 0.0) normal = -normal;
       const Vector3d in_enu = enu_from_cam * normal;
       for (Eigen::Index c = 0; c < 3; ++c) normals.At(x, y)[c] = static_cast<float>(in_enu[c]);

@@ -1,11 +1,10 @@
 #include "core/scene/scales.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "core/base/log.h"
 #include "core/scene/scene_file.h"
 
 namespace skyquilt::scene {
@@ -49,10 +48,10 @@ void ScaleCheck::Look(std::span<const render::Ray> rays, std::span<const render:
   if (seen == 0 || (static_cast<double>(wide) <= share && static_cast<double>(narrow) <= share)) return;
   warned_ = true;
   const bool too_wide = wide > narrow;
-  spdlog::warn("pixels of about {:.2g} m are rendered, but the scene was trained with {:.2g} to {:.2g} m per pixel: {}",
-               std::exp(sum_log / static_cast<double>(seen)), scales_.footprint_min_m, scales_.footprint_max_m,
-               too_wide ? "expect aliasing. Render larger images and reduce them, or train with smaller photos too (train.pyramid)"
-                        : "they show no more detail than the photos did");
+  base::LogWarning("pixels of about {:.2g} m are rendered, but the scene was trained with {:.2g} to {:.2g} m per pixel: {}",
+                   std::exp(sum_log / static_cast<double>(seen)), scales_.footprint_min_m, scales_.footprint_max_m,
+                   too_wide ? "expect aliasing. Render larger images and reduce them, or train with smaller photos too (train.pyramid)"
+                            : "they show no more detail than the photos did");
 }
 
 }  // namespace skyquilt::scene

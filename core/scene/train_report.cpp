@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 
 namespace skyquilt::scene {
@@ -177,7 +178,7 @@ void WriteTrainReport(const TrainReport& report, const std::filesystem::path& fi
                      {"parameters", report.Parameters()},
                      {"config_hash", report.config_hash},
                      {"fields", fields}};
-  base::WriteFileAtomically(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  base::WriteFileAtomically(file, base::JsonText(json, 2) + "\n");
 }
 
 TrainReport ReadTrainReport(const std::filesystem::path& file) {
@@ -202,7 +203,7 @@ std::optional<TrainReport> TryReadTrainReport(const std::filesystem::path& file)
   try {
     return ReadTrainReport(file);
   } catch (const base::InputError& error) {
-    spdlog::warn("{}", error.what());
+    base::LogWarning("{}", error.what());
     return std::nullopt;
   }
 }

@@ -72,8 +72,8 @@ ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
   if (model.images.empty()) throw base::InputError(folder, "the model has no registered photo", "Run the reconstruction again");
   const size_t n_dropped = std::erase_if(model.points, [](const ColmapPoint& point) { return !point.x_in_world.allFinite(); });
   if (n_dropped > 0)
-    spdlog::warn("{}: {} sparse points have no finite coordinates and are ignored; if there are many, run the reconstruction again", folder.string(),
-                 n_dropped);
+    base::LogWarning("{}: {} sparse points have no finite coordinates and are ignored; if there are many, run the reconstruction again",
+                     folder.string(), n_dropped);
   return model;
 }
 

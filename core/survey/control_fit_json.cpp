@@ -1,6 +1,7 @@
 #include "core/survey/control_fit_json.h"
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 #include <utility>

@@ -1,7 +1,7 @@
 // The control points' part of survey.json. Numbers that are NaN are stored as null.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "core/survey/control_fit.h"
 

@@ -5,6 +5,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::survey {
 namespace {
@@ -59,7 +60,7 @@ void SaveDirections(const DominantDirections& directions, const std::filesystem:
   for (const YawCell& cell : directions.cells) {
     json["cells"].push_back({{"min_enu", {cell.min_enu.x(), cell.min_enu.y()}}, {"mode", cell.mode}, {"share", cell.share}});
   }
-  base::WriteFileAtomically(file, json.dump(1) + "\n");
+  base::WriteFileAtomically(file, base::JsonText(json, 1) + "\n");
 }
 
 DominantDirections LoadDirections(const std::filesystem::path& file) {

@@ -1,6 +1,7 @@
 #include "core/survey/geo_fit_json.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace skyquilt::survey {
 

@@ -1,7 +1,7 @@
 // The geo-reference part of survey.json. Numbers that are NaN are stored as null.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "core/survey/geo_fit.h"
 

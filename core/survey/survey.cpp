@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/survey/control_fit_json.h"
 #include "core/survey/geo_fit_json.h"
 #include "core/survey/points_ply.h"
@@ -227,7 +228,7 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
   } else {
     std::filesystem::remove(folder / "tracks.bin");
   }
-  base::WriteFileAtomically(folder / "survey.json", value.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  base::WriteFileAtomically(folder / "survey.json", base::JsonText(value, 1) + "\n");
 }
 
 Survey LoadSurvey(const std::filesystem::path& folder) {
@@ -238,7 +239,7 @@ Survey LoadSurvey(const std::filesystem::path& folder) {
   TrackCounts counts;
   bool has_tracks = false;
   try {
-    const json value = json::parse(text);
+    const json value = base::ParseJson(text);
     survey = SurveyFromJson(value);
     counts.photos = survey.photos.size();
     counts.points = value.at("n_points").get<size_t>();

@@ -1,8 +1,8 @@
 #include "prepare/control/control_checks.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -12,6 +12,7 @@
 #include "core/geo/crs.h"
 #include "core/geo/ecef.h"
 #include "core/geo/utm.h"
+#include "core/linear/linear.h"
 #include "prepare/control/raw_control.h"
 
 namespace skyquilt::prepare {
@@ -119,7 +120,7 @@ Eigen::Vector3d Spread(const std::vector<Eigen::Vector3d>& points) {
   for (size_t i = 0; i < points.size(); ++i) all.col(static_cast<Eigen::Index>(i)) = points[i];
   const Eigen::Matrix3Xd centred = all.colwise() - all.rowwise().mean();
   const Eigen::Matrix3d products = centred * centred.transpose() / static_cast<double>(points.size());
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(products).eigenvalues().cwiseMax(0.0).cwiseSqrt().reverse();
+  return linear::SymmetricEigen(products).values.cwiseMax(0.0).cwiseSqrt().reverse();
 }
 
 // Why they cannot place a survey; empty: they can.

@@ -1,6 +1,6 @@
 #include "prepare/control/control_photos.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "prepare/control/read_control.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <map>

@@ -1,13 +1,14 @@
 #include "prepare/control_fit/adjustment_accuracy.h"
 
-#include <Eigen/LU>
-#include <Eigen/SparseCholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <unordered_map>
 #include <vector>
 
+#include "core/linear/linear.h"
+#include "core/linear/sparse.h"
 #include "prepare/control_fit/control_similarity.h"
 #include "prepare/control_fit/entry_term.h"
 
@@ -19,6 +20,16 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 // Of at most eight unknowns of a photo or a lens, without memory of its own.
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 8, 8>;
+
+// Two products compiled once: those of other types, or by Eigen's blocked algorithm, take seconds to compile and are no faster at these sizes.
+SmallMatrix Times(const SmallMatrix& a, const SmallMatrix& b) {
+  return a.lazyProduct(b);
+}
+
+// weight a^T b
+SmallMatrix Weighted(double weight, const SmallMatrix& a, const SmallMatrix& b) {
+  return weight * a.transpose().lazyProduct(b);
+}
 
 double HuberWeight(double norm, double limit) {
   return norm <= limit ? 1.0 : limit / norm;
@@ -55,7 +66,7 @@ struct AdjustmentAccuracy::Impl {
   int shift_group = -1;
   std::unordered_map<uint64_t, SmallMatrix> blocks;  // lower triangle, by groups
   Eigen::VectorXd scale;                             // of the unknowns, so that all have the same accuracy without the others
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+  std::optional<linear::SparseFactors> factors;
   bool ok = false;
 
   explicit Impl(const Block& of) : block(of) {}
@@ -98,14 +109,14 @@ struct AdjustmentAccuracy::Impl {
       const int pose_group = group_of_photo[photo], lens_group = group_of_lens[static_cast<size_t>(lens)];
       ++terms.entries;
       terms.information += weight * term.by_point.transpose() * term.by_point;
-      terms.Add(pose_group, weight * by_pose.transpose() * term.by_point);
-      if (direct) AddBlock(pose_group, pose_group, weight * by_pose.transpose() * by_pose);
+      terms.Add(pose_group, Weighted(weight, by_pose, term.by_point));
+      if (direct) AddBlock(pose_group, pose_group, Weighted(weight, by_pose, by_pose));
       if (lens_group < 0) continue;
       const SmallMatrix by_lens = FreePart(term, lens);
-      terms.Add(lens_group, weight * by_lens.transpose() * term.by_point);
+      terms.Add(lens_group, Weighted(weight, by_lens, term.by_point));
       if (!direct) continue;
-      AddBlock(lens_group, lens_group, weight * by_lens.transpose() * by_lens);
-      AddBlock(lens_group, pose_group, weight * by_lens.transpose() * by_pose);
+      AddBlock(lens_group, lens_group, Weighted(weight, by_lens, by_lens));
+      AddBlock(lens_group, pose_group, Weighted(weight, by_lens, by_pose));
     }
     return terms;
   }
@@ -179,7 +190,7 @@ struct AdjustmentAccuracy::Impl {
   void Factor() {
     const int n = first.back();
     scale = Eigen::VectorXd::Zero(n);
-    std::vector<Eigen::Triplet<double>> triplets;
+    std::vector<linear::SparseElement> elements;
     for (size_t group = 0; group + 1 < first.size(); ++group) {
       const auto diagonal = blocks.find(group * first.size() + group);
       if (diagonal == blocks.end()) return;
@@ -194,21 +205,19 @@ struct AdjustmentAccuracy::Impl {
       for (Eigen::Index j = 0; j < value.cols(); ++j) {
         for (Eigen::Index i = 0; i < value.rows(); ++i) {
           if (row + i < col + j) continue;
-          triplets.emplace_back(row + static_cast<int>(i), col + static_cast<int>(j), value(i, j) * scale[row + i] * scale[col + j]);
+          elements.push_back({row + static_cast<int>(i), col + static_cast<int>(j), value(i, j) * scale[row + i] * scale[col + j]});
         }
       }
     }
     blocks.clear();
-    Eigen::SparseMatrix<double> matrix(n, n);
-    matrix.setFromTriplets(triplets.begin(), triplets.end());
-    solver.compute(matrix);
-    ok = solver.info() == Eigen::Success && solver.vectorD().minCoeff() > 0.0;
+    factors.emplace(n, elements);
+    ok = factors->positive_definite();
   }
 
   // x^T (inverse of the normal equations) x.
   MatrixXd Propagate(const MatrixXd& x) const {
     const MatrixXd scaled = scale.asDiagonal() * x;
-    return scaled.transpose() * solver.solve(scaled);
+    return linear::TransposedProduct(scaled, factors->Solve(scaled));
   }
 };
 
@@ -224,11 +233,12 @@ AdjustmentAccuracy::AdjustmentAccuracy(const Block& block, std::span<const uint3
     if (block.has_point[t] == 0) continue;
     PointTerms terms = impl.Collect(t, true);
     if (const auto found = known.find(t); found != known.end()) impl.AddKnown(t, *found->second, &terms);
-    const Matrix3d inverse = terms.information.inverse();
+    const Matrix3d inverse = linear::Inverse(terms.information);
     if (!inverse.allFinite()) continue;
     for (size_t a = 0; a < terms.products.size(); ++a) {
-      const SmallMatrix left = -terms.products[a].second * inverse;
-      for (size_t b = 0; b <= a; ++b) impl.AddBlock(terms.products[a].first, terms.products[b].first, left * terms.products[b].second.transpose());
+      const SmallMatrix left = Times(-terms.products[a].second, inverse);
+      for (size_t b = 0; b <= a; ++b)
+        impl.AddBlock(terms.products[a].first, terms.products[b].first, Times(left, terms.products[b].second.transpose()));
     }
   }
   impl.AddTags(shift != nullptr ? *shift : Vector3d::Zero());
@@ -249,11 +259,11 @@ std::optional<Matrix3d> AdjustmentAccuracy::OfPoint(uint32_t track, const KnownP
   PointTerms terms = impl_->Collect(track, false);
   if (terms.entries < 2) return std::nullopt;
   if (known != nullptr) impl_->AddKnown(track, *known, &terms);
-  const Matrix3d inverse = terms.information.inverse();
+  const Matrix3d inverse = linear::Inverse(terms.information);
   if (!inverse.allFinite()) return std::nullopt;
   MatrixXd motion = MatrixXd::Zero(impl_->first.back(), 3);
   for (const auto& [group, product] : terms.products)
-    motion.middleRows(impl_->first[static_cast<size_t>(group)], product.rows()) += product * inverse;
+    motion.middleRows(impl_->first[static_cast<size_t>(group)], product.rows()) += Times(product, inverse);
   return inverse + impl_->Propagate(motion);
 }
 
@@ -272,17 +282,17 @@ geo::PlaceAccuracy AdjustmentAccuracy::OfPlace() const {
   MatrixXd motion = MatrixXd::Zero(impl_->first.back(), 7);
   for (const uint32_t t : chosen) {
     const PointTerms terms = impl_->Collect(t, false);
-    const Matrix3d inverse = terms.information.inverse();
+    const Matrix3d inverse = linear::Inverse(terms.information);
     if (!inverse.allFinite()) continue;
     const Eigen::Matrix<double, 3, 7> jacobian = SimilarityJacobian(block.point[t] - middle);
     normal += jacobian.transpose() * jacobian;
     for (const auto& [group, product] : terms.products) {
-      motion.middleRows(impl_->first[static_cast<size_t>(group)], product.rows()) += product * inverse * jacobian;
+      motion.middleRows(impl_->first[static_cast<size_t>(group)], product.rows()) += Times(Times(product, inverse), jacobian);
     }
   }
-  const Eigen::Matrix<double, 7, 7> solve = normal.inverse();
+  const Eigen::Matrix<double, 7, 7> solve = linear::Inverse(normal);
   if (!solve.allFinite()) return {};
-  const Eigen::Matrix<double, 7, 7> covariance = impl_->Propagate(motion * solve);
+  const Eigen::Matrix<double, 7, 7> covariance = impl_->Propagate(linear::Product(motion, solve));
   constexpr double kDegrees = 180.0 / std::numbers::pi;
   return {.scale_percent = 100.0 * std::sqrt(covariance(6, 6)),
           .tilt_deg = kDegrees * std::sqrt(covariance(3, 3) + covariance(4, 4)),

@@ -1,12 +1,13 @@
 #include "prepare/control_fit/control_adjustment.h"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 
 #include "core/base/order_statistics.h"
+#include "core/linear/linear.h"
 #include "prepare/control_fit/adjustment_accuracy.h"
 #include "prepare/control_fit/entry_term.h"
 #include "prepare/robust.h"
@@ -261,11 +262,12 @@ bool LeaveOut(const Vector3d& error_m, const Matrix3d& covariance, const Vector3
               Matrix3d* left_out_covariance) {
   // The information without the point is that with it less its own, and its own says that the error is zero.
   const Matrix3d others = Matrix3d::Identity() - covariance * own_information.asDiagonal();
-  const Eigen::FullPivLU<Matrix3d> solver(others);
   constexpr double kLeastShare = 1e-6;  // of the information that is the others'
-  if (!(std::abs(solver.matrixLU().diagonal().cwiseAbs().minCoeff()) > kLeastShare)) return false;
-  *left_out_error_m = solver.solve(error_m);
-  *left_out_covariance = solver.solve(covariance);
+  Eigen::MatrixXd right(3, 4), solution;
+  right << error_m, covariance;
+  if (!linear::SolvePivoted(others, right, kLeastShare, &solution)) return false;
+  *left_out_error_m = solution.col(0);
+  *left_out_covariance = solution.rightCols<3>();
   return left_out_error_m->allFinite() && (left_out_covariance->diagonal().array() > 0.0).all();
 }
 

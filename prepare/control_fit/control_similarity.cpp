@@ -1,7 +1,5 @@
 #include "prepare/control_fit/control_similarity.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -9,6 +7,7 @@
 
 #include "core/base/order_statistics.h"
 #include "core/base/random.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -58,8 +57,8 @@ bool OnOneLineOf(const std::vector<Vector3d>& points) {
   for (const Vector3d& x : points) mean += x / static_cast<double>(points.size());
   Matrix3d squares = Matrix3d::Zero();
   for (const Vector3d& x : points) squares += (x - mean) * (x - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(squares, Eigen::EigenvaluesOnly);
-  return !(eigen.eigenvalues()[1] > kLeastWidth * kLeastWidth * eigen.eigenvalues()[2]);
+  const Vector3d values = linear::SymmetricEigen(squares).values;
+  return !(values[1] > kLeastWidth * kLeastWidth * values[2]);
 }
 
 using Triple = std::array<size_t, 3>;
@@ -92,7 +91,7 @@ bool ByThree(const std::vector<ControlPair>& pairs, const Triple& triple, geo::S
     in_enu.col(k) = pairs[triple[static_cast<size_t>(k)]].in_enu;
   }
   if (OnOneLineOf({in_enu.col(0), in_enu.col(1), in_enu.col(2)}) || OnOneLineOf({in_model.col(0), in_model.col(1), in_model.col(2)})) return false;
-  const Eigen::Matrix4d matrix = Eigen::umeyama(in_model, in_enu, true);
+  const Eigen::Matrix4d matrix = linear::Similarity(in_model, in_enu);
   const double scale = matrix.topLeftCorner<3, 3>().col(0).norm();
   if (!matrix.allFinite() || !(scale > 0.0)) return false;
   *enu_from_model = {scale, Eigen::Quaterniond(Matrix3d(matrix.topLeftCorner<3, 3>() / scale)).normalized(), matrix.topRightCorner<3, 1>()};
@@ -125,12 +124,11 @@ void RefineSimilarity(const std::vector<ControlPair>& pairs, ControlSimilarity* 
       squares += error.cwiseAbs2().dot(weight);
       residuals += HasHeight(pairs[i]) ? 3.0 : 2.0;
     }
-    const Eigen::LDLT<Eigen::Matrix<double, 7, 7>> solver(normal);
     if (step == kSteps) {
-      fit->covariance = solver.solve(Eigen::Matrix<double, 7, 7>::Identity()) * (residuals > 0.0 ? std::max(1.0, squares / residuals) : 1.0);
+      fit->covariance = linear::Inverse(normal) * (residuals > 0.0 ? std::max(1.0, squares / residuals) : 1.0);
       break;
     }
-    const Vector7 change = -solver.solve(gradient);
+    const Vector7 change = -linear::SolveSymmetric(normal, gradient);
     if (!change.allFinite()) break;
     const double angle = change.segment<3>(3).norm(), factor = std::exp(change[6]);
     const Eigen::Quaterniond turn(angle > 0.0 ? Eigen::AngleAxisd(angle, change.segment<3>(3) / angle) : Eigen::AngleAxisd::Identity());

@@ -1,8 +1,6 @@
 #include "prepare/control_fit/entry_term.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
+#include "core/linear/linear.h"
 #include "prepare/seeded/bundle_costs.h"
 
 namespace skyquilt::prepare {
@@ -36,7 +34,7 @@ void RefineByMarks(Block& block, uint32_t track) {
       information += term.by_point.transpose() * term.by_point;
       gradient += term.by_point.transpose() * term.residual;
     }
-    const Eigen::Vector3d change = information.ldlt().solve(gradient);
+    const Eigen::Vector3d change = linear::SolveSymmetric(information, gradient);
     if (!change.allFinite()) return;
     block.point[track] -= change;
   }
@@ -51,7 +49,7 @@ std::optional<Eigen::Matrix3d> CovarianceByMarks(const Block& block, uint32_t tr
     information += term.by_point.transpose() * term.by_point;
     ++n;
   }
-  const Eigen::Matrix3d inverse = information.inverse();
+  const Eigen::Matrix3d inverse = linear::Inverse(information);
   if (n < 2 || !inverse.allFinite()) return std::nullopt;
   return inverse;
 }

@@ -6,6 +6,7 @@
 #include "core/base/checked_json.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -47,7 +48,7 @@ class JsonLocator {
     const size_t begin = at_++;
     while (at_ < text_.size() && text_[at_] != '"') at_ += text_[at_] == '\\' ? 2 : 1;
     at_ = std::min(at_ + 1, text_.size());
-    const nlohmann::json value = nlohmann::json::parse(text_.substr(begin, at_ - begin), nullptr, false);
+    const nlohmann::json value = base::TryParseJson(text_.substr(begin, at_ - begin));
     return value.is_string() ? value.get<std::string>() : std::string();
   }
   // After a member; true at the end of the list or object.
@@ -98,7 +99,7 @@ class JsonLocator {
 
 // For a message: long lists are cut off.
 std::string Shown(const nlohmann::json& value) {
-  std::string text = value.is_structured() ? value.type_name() : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string text = value.is_structured() ? value.type_name() : base::JsonText(value);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
   return text;
 }
@@ -118,7 +119,7 @@ JsonDocument::JsonDocument(const std::filesystem::path& file, const std::string&
     if (std::string(refused.what()).find("nested") != std::string::npos) throw base::InputError(file, refused.what(), fix);
   }
   try {
-    json_ = nlohmann::json::parse(text_);
+    json_ = base::ParseJson(text_);
   } catch (const nlohmann::json::parse_error& error) {
     const size_t offset = std::min(error.byte == 0 ? 0 : error.byte - 1, text_.size());
     const std::string found = offset >= text_.size() ? ": the file ends too early" : "";

@@ -128,7 +128,7 @@ class MetashapeFile {
     }
     if (!chosen)
       Fail(root, "has no chunk with an aligned camera (no <camera> has a <transform>)", "Align the photos in Metashape, then export again");
-    if (others > 0) spdlog::warn("{}: {} more chunks have aligned cameras; only the first is used", file_.string(), others);
+    if (others > 0) base::LogWarning("{}: {} more chunks have aligned cameras; only the first is used", file_.string(), others);
     return chosen;
   }
   // Components are not in one frame.
@@ -137,8 +137,8 @@ class MetashapeFile {
     for (const Aligned& entry : aligned) ++counts[entry.component];
     const auto largest = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     if (counts.size() > 1)
-      spdlog::warn("{}: the cameras form {} components that do not hang together; the largest is used, with {} of {}", file_.string(), counts.size(),
-                   largest->second, aligned.size());
+      base::LogWarning("{}: the cameras form {} components that do not hang together; the largest is used, with {} of {}", file_.string(),
+                       counts.size(), largest->second, aligned.size());
     std::erase_if(aligned, [&](const Aligned& entry) { return entry.component != largest->first; });
     return largest->first;
   }
@@ -183,7 +183,7 @@ class MetashapeFile {
       const auto sensor = sensors_.find(sensor_id);
       if (sensor == sensors_.end()) Fail(camera, "has sensor_id " + sensor_id + ", but there is no such <sensor>");
       if (sensor->second.child("rolling_shutter") || std::string_view(sensor->second.attribute("rolling_shutter").value()) == "true")
-        spdlog::warn("{}: the rolling shutter of sensor {} is not used", file_.string(), sensor_id);
+        base::LogWarning("{}: the rolling shutter of sensor {} is not used", file_.string(), sensor_id);
       camera_ids_[sensor_id] = builder.AddCamera(LensOf(sensor->second));
     }
     const std::string name = photos_->Resolve(Attribute(camera, "label"), file_.parent_path());
@@ -218,8 +218,8 @@ class MetashapeFile {
     // A chunk that was never placed has no place near the surface.
     if (middle.norm() < 6.3e6 || middle.norm() > 6.5e6) return std::nullopt;
     if (reference.find("WGS") == std::string::npos)
-      spdlog::warn("{}: its coordinates are read as WGS84, though the chunk's reference has another datum; they may be off by metres",
-                   file_.string());
+      base::LogWarning("{}: its coordinates are read as WGS84, though the chunk's reference has another datum; they may be off by metres",
+                       file_.string());
     ModelPlace place{file_.string(), geo::GeodeticFromEcef(middle), {}};
     const Eigen::Matrix4d ecef_from_enu = geo::EcefFromEnu(place.origin);
     const Eigen::Matrix3d enu_from_ecef = ecef_from_enu.topLeftCorner<3, 3>().transpose();

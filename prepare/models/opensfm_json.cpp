@@ -82,8 +82,8 @@ JsonValue LargestReconstruction(const JsonDocument& document) {
   }
   if (n_best == 0) root.Fail("has no photos");
   if (root.Size() > 1) {
-    spdlog::warn("{} has {} reconstructions that do not hang together; the largest is used, with {} of {} photos", document.file().string(),
-                 root.Size(), n_best, n_all);
+    base::LogWarning("{} has {} reconstructions that do not hang together; the largest is used, with {} of {} photos", document.file().string(),
+                     root.Size(), n_best, n_all);
   }
   return root.At(best);
 }

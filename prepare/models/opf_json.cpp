@@ -12,6 +12,7 @@
 #include "core/base/log.h"
 #include "core/geo/crs.h"
 #include "core/geo/enu_frame.h"
+#include "core/linear/linear.h"
 #include "prepare/models/json_document.h"
 #include "prepare/models/opf_points.h"
 
@@ -124,7 +125,7 @@ geo::Crs UsableSystem(const fs::path& file, geo::Crs system, bool has_constant, 
       system.ToGeodetic(somewhere);
       return system;
     } catch (const std::invalid_argument& error) {
-      spdlog::warn("{}: its heights are taken as ellipsoidal ({})", file.string(), error.what());
+      base::LogWarning("{}: its heights are taken as ellipsoidal ({})", file.string(), error.what());
     }
   }
   return system.WithoutHeights();
@@ -144,7 +145,7 @@ std::optional<ModelPlace> PlaceOf(const fs::path& file, const survey::ColmapMode
   if (!(scale.cwiseAbs().minCoeff() > 1e-9)) transform.At("scale").Fail("must not have a 0");
   const double geoid_height = crs.NumberOr0("geoid_height");
   if (text.find("ENGCRS") != std::string::npos || text.find("ENGINEERINGCRS") != std::string::npos || text.find("LOCAL_CS") != std::string::npos) {
-    spdlog::info("{}: the project has a local coordinate system, so its place on Earth comes from the photos", file.string());
+    base::LogInfo("{}: the project has a local coordinate system, so its place on Earth comes from the photos", file.string());
     return std::nullopt;
   }
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -172,14 +173,14 @@ std::optional<ModelPlace> PlaceOf(const fs::path& file, const survey::ColmapMode
       in_frame.col(i) = middle + (i % 2 == 0 ? 100.0 : -100.0) * Eigen::Vector3d::Unit(i / 2);
       in_enu.col(i) = frame.EnuFromGeodetic(geodetic(in_frame.col(i)));
     }
-    const Eigen::Matrix4d fit = Eigen::umeyama(in_frame, in_enu, true);
+    const Eigen::Matrix4d fit = linear::Similarity(in_frame, in_enu);
     const Eigen::Matrix3d turn = fit.topLeftCorner<3, 3>();
     const std::optional<Eigen::Matrix3d> rotation = RotationOf(turn);
     if (!rotation) return std::nullopt;
     place.enu_from_model = {std::cbrt(turn.determinant()), Eigen::Quaterniond(*rotation), fit.topRightCorner<3, 1>()};
     return place;
   } catch (const std::invalid_argument& error) {
-    spdlog::warn("{}: the coordinate system cannot be used ({}), so the place on Earth comes from the photos", file.string(), error.what());
+    base::LogWarning("{}: the coordinate system cannot be used ({}), so the place on Earth comes from the photos", file.string(), error.what());
     return std::nullopt;
   }
 }

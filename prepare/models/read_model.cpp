@@ -110,7 +110,7 @@ ModelFiles FindModel(const fs::path& path) {
 
 InputModel ReadModel(const fs::path& path, const ModelPhotos& photos) {
   const ModelFiles files = FindModel(path);
-  spdlog::info("the model is {}: {}", FormatName(files.format), files.path.string());
+  base::LogInfo("the model is {}: {}", FormatName(files.format), files.path.string());
   switch (files.format) {
     case ModelFormat::kTransforms:
       return ReadTransforms(fs::is_directory(files.path) ? SplitFiles(files.path) : std::vector<TransformsFile>{{files.path, false}}, photos);

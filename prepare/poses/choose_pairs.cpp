@@ -18,7 +18,7 @@ PhotoPairs ChoosePairs(const std::vector<PhotoFile>& photos, const PairRules& ru
                        base::ThreadPool& threads) {
   const size_t n = photos.size();
   if (n < rules.all_below) {
-    spdlog::info("pairs: all {} of {} photos", n * (n - std::min<size_t>(n, 1)) / 2, n);
+    base::LogInfo("pairs: all {} of {} photos", n * (n - std::min<size_t>(n, 1)) / 2, n);
     return AllPairs(n);
   }
   const std::vector<std::optional<PhotoPlace>> places = FindPlaces(photos);
@@ -31,7 +31,7 @@ PhotoPairs ChoosePairs(const std::vector<PhotoFile>& photos, const PairRules& ru
 
   std::optional<PhotoIndex> index;
   if (!without.empty()) {
-    spdlog::info("{} of {} photos have no usable GPS tag: they are matched with the photos that look most like them", without.size(), n);
+    base::LogInfo("{} of {} photos have no usable GPS tag: they are matched with the photos that look most like them", without.size(), n);
     RetrievalOptions options;
     options.seed = seed;
     index.emplace(
@@ -60,8 +60,8 @@ PhotoPairs ChoosePairs(const std::vector<PhotoFile>& photos, const PairRules& ru
         return costs;
       },
       pairs);
-  spdlog::info("pairs: {} of {} possible ones of {} photos; {} by place, {} by looks or name, {} between {} groups", pairs.size(), n * (n - 1) / 2, n,
-               n_in_space, n_chosen - n_in_space, pairs.size() - n_chosen, n_groups);
+  base::LogInfo("pairs: {} of {} possible ones of {} photos; {} by place, {} by looks or name, {} between {} groups", pairs.size(), n * (n - 1) / 2,
+                n, n_in_space, n_chosen - n_in_space, pairs.size() - n_chosen, n_groups);
   return pairs;
 }
 

@@ -54,7 +54,7 @@ void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const s
   } else {
     Append(command.arguments, {"--ExhaustiveMatching.block_size", std::to_string(photos.size() < 100 ? kBlockSize : 50)});
     if (photos.size() > 300) {
-      spdlog::warn(
+      base::LogWarning(
           "most of {} photos without GPS in their EXIF tags: matching all {} pairs takes long; use photos with GPS tags, or give a model with "
           "--model",
           photos.size(), photos.size() * (photos.size() - 1) / 2);
@@ -81,7 +81,7 @@ void VerifyMatches(const ColmapJob& job, const ColmapSettings& settings, const P
     }
   }
   if (pairs.empty()) {
-    spdlog::warn("no pair of photos has {} matches", kMinVerified);
+    base::LogWarning("no pair of photos has {} matches", kMinVerified);
     return;
   }
   const fs::path list = job.folder / "pairs.txt";
@@ -104,7 +104,7 @@ void VerifyMatches(const ColmapJob& job, const ColmapSettings& settings, const P
     throw base::InputError(job.Log(), fmt::format("COLMAP verified {} of {} pairs only", n_verified, pairs.size()),
                            "Read the log; to let COLMAP do the matching, set prepare.poses = \"colmap\" and add --restart");
   }
-  spdlog::info("{} of {} pairs with matches see the same things", database.CountTwoViewGeometries(kMinVerified), pairs.size());
+  base::LogInfo("{} of {} pairs with matches see the same things", database.CountTwoViewGeometries(kMinVerified), pairs.size());
 }
 
 void MakeModels(const ColmapJob& job, const ColmapSettings& settings, size_t n_photos, const PoseOptions& options) {
@@ -140,8 +140,9 @@ FoundModel LargestModel(const ColmapJob& job) {
   }
   if (best.folder.empty()) throw NoModelError(job.Log(), "COLMAP found no model", kNoModelFix);
   if (n_models > 1)
-    spdlog::warn("COLMAP found {} models that do not connect; only the largest is used, with {} photos ({}). Photos between them would connect them",
-                 n_models, best.n_photos, best.folder.string());
+    base::LogWarning(
+        "COLMAP found {} models that do not connect; only the largest is used, with {} photos ({}). Photos between them would connect them", n_models,
+        best.n_photos, best.folder.string());
   return best;
 }
 

@@ -72,7 +72,7 @@ StepHashes HashSteps(const Attempt& attempt, const std::vector<PhotoFile>& photo
 void FillDatabaseOf(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
                     base::ThreadPool& threads, RemoteTasks* ranks) {
   const ColmapJob& job = attempt.job;
-  spdlog::info("running COLMAP on {} photos; its log is {}", photos.size(), job.Log().string());
+  base::LogInfo("running COLMAP on {} photos; its log is {}", photos.size(), job.Log().string());
   if (!attempt.pairs) {
     FillFeatures(job, attempt.settings, photos, options, hashes.features, ranks);
     RunStep(job, {"matches", hashes.matches}, {kModelStep}, [&] { MatchByColmap(job, attempt.settings, photos, options); });
@@ -97,8 +97,8 @@ FoundModel WithoutLoosePhotos(const ColmapJob& job, const FoundModel& found) {
   const std::vector<std::string> removed = RemoveLoosePhotos(model, observations);
   if (removed.empty()) return found;
   const std::vector<std::string> named(removed.begin(), removed.begin() + static_cast<std::ptrdiff_t>(std::min(removed.size(), kMostNamed)));
-  spdlog::warn("{} photos get no pose, because they have fewer than {} points in common with each of the others: {}{}", removed.size(), kLeastTied,
-               base::Join(named), removed.size() > kMostNamed ? ", ..." : "");
+  base::LogWarning("{} photos get no pose, because they have fewer than {} points in common with each of the others: {}{}", removed.size(),
+                   kLeastTied, base::Join(named), removed.size() > kMostNamed ? ", ..." : "");
   survey::WriteColmapBinary(model, observations, folder);
   return {folder, model.images.size()};
 }
@@ -113,7 +113,7 @@ FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std
     if (const std::optional<FoundModel> seeded = SeededModelOf(job)) {
       const std::optional<FarFocal> far = FarFocalOf(job, *seeded);
       if (!far) return *seeded;
-      spdlog::info("poses by tags and matches are left to COLMAP's mapper: they need {}", far->Text());
+      base::LogInfo("poses by tags and matches are left to COLMAP's mapper: they need {}", far->Text());
     }
   }
   RunStep(job, mapper, {}, [&] { MakeModels(job, attempt.settings, photos.size(), options); });
@@ -164,7 +164,7 @@ fs::path ChooseModel(const std::vector<Outcome>& outcomes) {
   const Outcome& best = *std::max_element(outcomes.begin(), outcomes.end(), [](const Outcome& a, const Outcome& b) { return a.Worth() < b.Worth(); });
   if (!best.model) std::rethrow_exception(outcomes.back().error);
   if (best.far) {
-    spdlog::warn(
+    base::LogWarning(
         "the poses have {}: one of both is wrong. If it is the poses, heights are too; photos from another height or at an angle would show it. "
         "If the tags are wrong (cropped or enlarged photos), give a model with --model",
         best.far->Text());
@@ -186,20 +186,20 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, c
   std::vector<Outcome> outcomes = {Try(first, photos, options, threads, ranks)};
   if (!options.fast || outcomes.front().reason.empty()) return ChooseModel(outcomes);
 
-  spdlog::warn("the fast way is not enough: {}. Once more with COLMAP's own settings and more pairs", outcomes.front().reason);
+  base::LogWarning("the fast way is not enough: {}. Once more with COLMAP's own settings and more pairs", outcomes.front().reason);
   Attempt second{job, settings, kMorePairs};
   second.job.folder = job.folder / "more_pairs";
   second.settings.fast = false;
   if (outcomes.front().far) HoldFocal(second);
   outcomes.push_back(Try(second, photos, options, threads, ranks));
   if (outcomes.back().far && !second.settings.hold_focal) {
-    spdlog::warn("more pairs are not enough: {}. Once more with the focal length of the tags", outcomes.back().reason);
+    base::LogWarning("more pairs are not enough: {}. Once more with the focal length of the tags", outcomes.back().reason);
     HoldFocal(second);
     outcomes.push_back(Try(second, photos, options, threads, ranks));
   }
   const auto n_photos = [](const Outcome& outcome) { return outcome.model ? outcome.model->n_photos : 0; };
-  if (!outcomes.back().model) spdlog::warn("more pairs give no model: {}", outcomes.back().reason);
-  spdlog::info("poses: {} photos in the fast way, {} with more pairs", n_photos(outcomes.front()), n_photos(outcomes.back()));
+  if (!outcomes.back().model) base::LogWarning("more pairs give no model: {}", outcomes.back().reason);
+  base::LogInfo("poses: {} photos in the fast way, {} with more pairs", n_photos(outcomes.front()), n_photos(outcomes.back()));
   return ChooseModel(outcomes);
 }
 

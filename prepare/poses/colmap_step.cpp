@@ -90,7 +90,7 @@ void ForgetStep(const ColmapJob& job, const std::string& name) {
 
 void RunStep(const ColmapJob& job, const ColmapStep& step, const std::vector<std::string>& later, const std::function<void()>& run) {
   if (IsDone(job, step)) {
-    spdlog::info("COLMAP {}: already done", step.name);
+    base::LogInfo("COLMAP {}: already done", step.name);
     return;
   }
   ForgetStep(job, step.name);

@@ -45,7 +45,7 @@ std::vector<survey::DatabasePart> SplitPhotos(const ColmapJob& job, const std::v
                                               size_t photos_per_part) {
   std::map<std::string, std::vector<std::string>> groups;
   for (const PhotoFile& photo : photos) groups[CameraKey(photo)].push_back(photo.name);
-  if (groups.size() > 1) spdlog::info("{} kinds of photos (by size, camera, focal length): each gets its own camera model", groups.size());
+  if (groups.size() > 1) base::LogInfo("{} kinds of photos (by size, camera, focal length): each gets its own camera model", groups.size());
   std::vector<survey::DatabasePart> parts;
   uint32_t camera_id = 1;
   for (const auto& [key, names] : groups) {
@@ -117,7 +117,7 @@ void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const
                                      .file = part.file});
     n_missing += part.names.size();
   }
-  if (n_missing < photos.size()) spdlog::info("features of {} of {} photos are already found", photos.size() - n_missing, photos.size());
+  if (n_missing < photos.size()) base::LogInfo("features of {} of {} photos are already found", photos.size() - n_missing, photos.size());
   if (!missing.empty()) {
     base::Progress progress("find features", static_cast<double>(n_missing), "photos");
     const auto advance = [&progress](double more) { progress.Advance(more); };

@@ -32,9 +32,9 @@ std::vector<PhotoFile> PhotosInDatabase(const ColmapJob& job, const std::vector<
     }
   }
   if (!missing.empty()) {
-    spdlog::warn("COLMAP cannot read {} of {} photos, which are left out (its log {} says why): {}{}", missing.size(), photos.size(),
-                 job.Log().string(), base::Join(std::span(missing).first(std::min(missing.size(), kNamedPhotos))),
-                 missing.size() > kNamedPhotos ? ", ..." : "");
+    base::LogWarning("COLMAP cannot read {} of {} photos, which are left out (its log {} says why): {}{}", missing.size(), photos.size(),
+                     job.Log().string(), base::Join(std::span(missing).first(std::min(missing.size(), kNamedPhotos))),
+                     missing.size() > kNamedPhotos ? ", ..." : "");
   }
   return found;
 }

@@ -101,7 +101,7 @@ std::optional<std::vector<survey::DatabaseMatches>> LoadChunk(const fs::path& fi
   if (!fs::exists(file)) return std::nullopt;
   const std::string bytes = base::ReadFile(file);
   const auto damaged = [&] {
-    spdlog::warn("{} is damaged: its pairs are matched again", file.string());
+    base::LogWarning("{} is damaged: its pairs are matched again", file.string());
     return std::nullopt;
   };
   if (bytes.size() < kMagic.size() + 4 || !bytes.starts_with(kMagic)) return damaged();

@@ -63,7 +63,7 @@ void MatchPairs(const MatchJob& job, FeatureStore& features, const PhotoPairs& p
       missing.push_back(&chunk);
     }
   }
-  if (n_done > 0) spdlog::info("{} of {} pairs are already matched", n_done, pairs.size());
+  if (n_done > 0) base::LogInfo("{} of {} pairs are already matched", n_done, pairs.size());
   if (!missing.empty()) {
     base::Progress progress("match features", static_cast<double>(pairs.size() - n_done), "pairs");
     std::vector<PoseTask> tasks;
@@ -102,7 +102,7 @@ void MatchPairs(const MatchJob& job, FeatureStore& features, const PhotoPairs& p
     n_matched += matches.features.empty() ? 0 : 1;
     return true;
   });
-  spdlog::info("matches: {} of {} pairs of photos have some, {} on average", n_matched, pairs.size(), n_matched == 0 ? 0 : n_matches / n_matched);
+  base::LogInfo("matches: {} of {} pairs of photos have some, {} on average", n_matched, pairs.size(), n_matched == 0 ? 0 : n_matches / n_matched);
 }
 
 void RemoveChunks(const MatchJob& job) {

@@ -79,7 +79,7 @@ std::vector<std::optional<PhotoPlace>> FindPlaces(const std::vector<PhotoFile>& 
   }
   const double median_height_m = heights.empty() ? kDefaultHeight_m : base::Median(heights);
   const bool use_directions = YawsDiffer(photos);
-  if (!use_directions) spdlog::warn("all oblique photos have the same gimbal yaw: directions are not used to choose the pairs to match");
+  if (!use_directions) base::LogWarning("all oblique photos have the same gimbal yaw: directions are not used to choose the pairs to match");
 
   for (size_t i = 0; i < photos.size(); ++i) {
     if (!HasPosition(photos[i])) continue;
@@ -100,7 +100,7 @@ std::vector<std::optional<PhotoPlace>> FindPlaces(const std::vector<PhotoFile>& 
 
   const auto n_tagged = static_cast<size_t>(std::count_if(places.begin(), places.end(), [](const auto& place) { return place.has_value(); }));
   if (2 * CountDistinct(places) < n_tagged) {
-    spdlog::warn("the GPS tags of {} photos hardly differ: they are not used to choose the pairs to match", n_tagged);
+    base::LogWarning("the GPS tags of {} photos hardly differ: they are not used to choose the pairs to match", n_tagged);
     std::fill(places.begin(), places.end(), std::nullopt);
   }
   return places;

@@ -53,7 +53,7 @@ std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput input, base::ThreadP
   }
   const std::optional<FarFocal> far = FindFarFocal(seeded->model, tagged);
   if (!far) return seeded;
-  spdlog::info("poses by tags and matches need {}; once more with focal lengths held near the tags'", far->Text());
+  base::LogInfo("poses by tags and matches need {}; once more with focal lengths held near the tags'", far->Text());
   std::string held_reason;
   std::optional<SeededModel> held = SeedPoses(input, threads, &held_reason);
   if (held && !FindFarFocal(held->model, tagged)) return held;
@@ -121,12 +121,12 @@ void SeedModel(const ColmapJob& job, const std::vector<PhotoFile>& photos, base:
   std::optional<SeededModel> seeded;
   if (input) seeded = SeedWithPlausibleFocal(*input, threads, &reason);
   if (!seeded) {
-    spdlog::info("poses are left to COLMAP's mapper ({:.1f} s): {}", seconds(), reason);
+    base::LogInfo("poses are left to COLMAP's mapper ({:.1f} s): {}", seconds(), reason);
     return;
   }
   ColorPoints(seeded->model, seeded->observations, job.photo_root, threads);
   WriteSeededModel(*seeded, folder);
-  spdlog::info("poses by tags and matches, without COLMAP's mapper ({:.1f} s): {}", seconds(), seeded->summary);
+  base::LogInfo("poses by tags and matches, without COLMAP's mapper ({:.1f} s): {}", seconds(), seeded->summary);
 }
 
 std::optional<FoundModel> SeededModelOf(const ColmapJob& job) {

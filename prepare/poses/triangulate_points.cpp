@@ -73,14 +73,14 @@ void RunTriangulator(const ColmapJob& job, const ColmapSettings& settings, const
 std::vector<survey::ColmapPoint> TriangulatePoints(const ColmapJob& job, const std::vector<PhotoFile>& photos, const survey::ColmapModel& poses,
                                                    const PoseOptions& options, base::ThreadPool& threads, RemoteTasks* ranks) {
   const ColmapSettings settings{.program = base::FindProgram(options.colmap), .n_threads = threads.size(), .fast = true};
-  spdlog::info("the model has no points: COLMAP triangulates some from its poses; the log is {}", job.Log().string());
+  base::LogInfo("the model has no points: COLMAP triangulates some from its poses; the log is {}", job.Log().string());
   const ImageOfName images = ImagesByName(poses);
   const std::string inputs = FeatureInputs(job, settings, photos, options);
   const auto choose = [&](const std::vector<PhotoFile>& found, FeatureStore& /*features*/) {
     std::vector<geo::Rigid3d> cam_from_world;
     for (const PhotoFile& photo : found) cam_from_world.push_back(images.at(photo.name)->cam_from_world);
     PhotoPairs pairs = PairsByPose(cam_from_world, PairRules{});
-    spdlog::info("pairs: {} of {} photos, by their poses", pairs.size(), found.size());
+    base::LogInfo("pairs: {} of {} photos, by their poses", pairs.size(), found.size());
     return pairs;
   };
   const std::string poses_hash = base::HashHex(inputs + PosesText(poses));
@@ -98,7 +98,7 @@ std::vector<survey::ColmapPoint> TriangulatePoints(const ColmapJob& job, const s
     throw base::InputError(job.Log(), fmt::format("COLMAP triangulated {} points only from the poses of the model", points.size()),
                            "Check that the model was made from these photos; leave out --model to let COLMAP find the poses too");
   }
-  spdlog::info("{} points triangulated from the poses of {} photos", points.size(), photos.size());
+  base::LogInfo("{} points triangulated from the poses of {} photos", points.size(), photos.size());
   return points;
 }
 

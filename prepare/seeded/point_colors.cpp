@@ -32,7 +32,7 @@ void ColorPoints(survey::ColmapModel& model, const survey::ColmapObservations& o
     try {
       pixels = image::LoadReducedRgb8(photo_root / photo.name, std::max(1, camera.width / 4));
     } catch (const base::InputError& error) {
-      spdlog::warn("{}; its points get their colors from other photos", error.what());
+      base::LogWarning("{}; its points get their colors from other photos", error.what());
       return;
     }
     const double scale_x = static_cast<double>(pixels.width) / camera.width, scale_y = static_cast<double>(pixels.height) / camera.height;

@@ -1,7 +1,6 @@
 #include "prepare/seeded/seed_rotation.h"
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/order_statistics.h"
+#include "core/linear/sparse.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -155,21 +155,20 @@ std::vector<double> StartAlongTrees(const std::vector<PairTurn>& pairs, const st
 // Gauss-Newton on all measurements with Cauchy weights.
 void Average(const std::vector<PairTurn>& pairs, const std::vector<AbsoluteTurn>& absolute, const std::vector<char>& known,
              std::vector<double>* turn) {
-  const auto n = static_cast<Eigen::Index>(turn->size());
+  const int n = static_cast<int>(turn->size());
   for (int round = 0; round < 10; ++round) {
-    std::vector<Eigen::Triplet<double>> entries;
+    std::vector<linear::SparseElement> elements;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index i = 0; i < n; ++i) entries.emplace_back(i, i, 1e-6);
+    for (int i = 0; i < n; ++i) elements.push_back({i, i, 1e-6});
     const auto weight_of = [](double residual, double sigma) { return 1.0 / (sigma * sigma * (1.0 + std::pow(residual / (3.0 * sigma), 2))); };
     for (const PairTurn& pair : pairs) {
       if (known[pair.a] == 0 || known[pair.b] == 0) continue;
       const double residual = Wrapped((*turn)[pair.b] - (*turn)[pair.a] - pair.difference);
       const double weight = weight_of(residual, kSigmaOfPair);
-      const auto a = static_cast<Eigen::Index>(pair.a), b = static_cast<Eigen::Index>(pair.b);
-      entries.emplace_back(a, a, weight);
-      entries.emplace_back(b, b, weight);
-      entries.emplace_back(a, b, -weight);
-      entries.emplace_back(b, a, -weight);
+      const int a = static_cast<int>(pair.a), b = static_cast<int>(pair.b);
+      elements.push_back({a, a, weight});
+      elements.push_back({b, b, weight});
+      elements.push_back({std::max(a, b), std::min(a, b), -weight});
       gradient[b] += weight * residual;
       gradient[a] -= weight * residual;
     }
@@ -177,15 +176,13 @@ void Average(const std::vector<PairTurn>& pairs, const std::vector<AbsoluteTurn>
       if (known[one.photo] == 0) continue;
       const double residual = Wrapped((*turn)[one.photo] - one.turn);
       const double weight = weight_of(residual, one.sigma);
-      const auto i = static_cast<Eigen::Index>(one.photo);
-      entries.emplace_back(i, i, weight);
+      const int i = static_cast<int>(one.photo);
+      elements.push_back({i, i, weight});
       gradient[i] += weight * residual;
     }
-    Eigen::SparseMatrix<double> normal(n, n);
-    normal.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(normal);
-    if (solver.info() != Eigen::Success) return;
-    const Eigen::VectorXd step = solver.solve(gradient);
+    const linear::SparseFactors normal(n, elements);
+    if (!normal.ok()) return;
+    const Eigen::VectorXd step = normal.Solve(gradient);
     if (!step.allFinite()) return;
     for (Eigen::Index i = 0; i < n; ++i) (*turn)[static_cast<size_t>(i)] -= step[i];
     if (step.cwiseAbs().maxCoeff() < 1e-5) return;

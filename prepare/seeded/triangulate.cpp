@@ -1,13 +1,12 @@
 #include "prepare/seeded/triangulate.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "core/base/cancel.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -85,7 +84,7 @@ Eigen::Vector3d Refined(const Block& block, const std::vector<Sight>& sights, Ei
       gradient += by_x.transpose() * residual;
     }
     normal.diagonal() *= 1.0 + 1e-9;
-    const Eigen::Vector3d change = normal.ldlt().solve(gradient);
+    const Eigen::Vector3d change = linear::SolveSymmetric(normal, gradient);
     if (!change.allFinite()) break;
     x -= change;
   }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
+
 namespace skyquilt::surface {
 namespace {
 
@@ -44,7 +46,7 @@ void GeoreferenceFile::Complete() {
         "The survey has no geo-reference: all files have the coordinates of its local frame, z up (mesh.glb and the contents of tiles/: y up), in "
         "metres if its scale is known.";
   }
-  json_.Append(json.dump(2) + "\n");
+  json_.Append(base::JsonText(json, 2) + "\n");
   json_.Complete();
   if (!offset_) return;
   const geo::UtmZone& zone = frame_.zone();

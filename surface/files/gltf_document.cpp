@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 #include "surface/files/bytes.h"
 
 namespace skyquilt::surface {
@@ -149,7 +150,7 @@ std::vector<uint8_t> GltfDocument::Head(const GltfPlace& place, const std::files
   document["bufferViews"] = views;
   document["buffers"] = Json::array({{{"byteLength", binary_bytes_}}});
 
-  std::string json = document.dump();
+  std::string json = base::JsonText(document);
   json.resize((json.size() + 3) / 4 * 4, ' ');
   constexpr uint64_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
   const uint64_t total = kHeaderBytes + kChunkHeaderBytes + json.size() + kChunkHeaderBytes + binary_bytes_;

@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/ecef.h"
 #include "surface/files/gltf_document.h"
 #include "surface/files/output_file.h"
@@ -183,7 +184,7 @@ void TilesetWriter::Complete() {
   tileset["geometricError"] = whole_m;
   tileset["root"] = root;
   OutputFile file(partial_ / "tileset.json");
-  file.Append(tileset.dump(1) + "\n");
+  file.Append(base::JsonText(tileset, 1) + "\n");
   file.Complete();
   file.Publish();
   bytes_ += file.size();

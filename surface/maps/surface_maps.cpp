@@ -1,6 +1,6 @@
 #include "surface/maps/surface_maps.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +100,7 @@ SurfaceMaps MakeSurfaceMaps(const HeightRaster& surface, const MapFrame& frame, 
   SurfaceMaps maps;
   maps.terrain.grid = surface.grid;
   if (surface.height_m.empty()) {
-    spdlog::warn("the surface has no cells, so no maps are made of it");
+    base::LogWarning("the surface has no cells, so no maps are made of it");
     return maps;
   }
   if (options.maps) base::RequireWritableFolder(folder);
@@ -141,7 +141,7 @@ SurfaceMaps MakeSurfaceMaps(const HeightRaster& surface, const MapFrame& frame, 
   const double interval_m = gis::AllowedContourInterval(contours.heights.height_m, wanted_m);
   const int64_t lines = gis::WriteContours(contours.heights.grid, contours.heights.height_m, wanted_m, frame.VerticalName(), folder / "contours.gpkg",
                                            frame.heights().Metadata());
-  if (lines == 0) spdlog::info("the ground is too level for contour lines every {:.6g} m", interval_m);
+  if (lines == 0) base::LogInfo("the ground is too level for contour lines every {:.6g} m", interval_m);
   writer.Add("contours.gpkg", "contour lines", "GeoPackage", frame.VerticalName(), fmt::format("{} lines every {:.6g} m", lines, interval_m));
   maps.files = writer.TakeFiles();
   return maps;

@@ -266,7 +266,7 @@ Terrain FindTerrain(const HeightRaster& surface, const TerrainOptions& options) 
   if (std::all_of(low.value.begin(), low.value.end(), [](float value) { return std::isnan(value); })) return terrain;
   const std::vector<uint8_t> outline = ClosedOutline(low, options.window_m, cells.cell_m);
   const int64_t pits = RemoveLowOutliers(&low, cells.cell_m, options.low_m);
-  if (pits > 0) spdlog::debug("{} working cells of the surface are pits below the ground and are left out", pits);
+  if (pits > 0) base::LogDebug("{} working cells of the surface are pits below the ground and are left out", pits);
   KeepGround(options, cells.cell_m, &low, &progress);
   FillSmoothly(&low);
   FloatGrid means = GroundMeans(surface, GroundMask(surface, cells, low, options), cells);

@@ -61,9 +61,9 @@ std::optional<DepthViews> OpenFinished(const std::filesystem::path& file, const 
   try {
     DepthViews views = DepthViews::Open(file);
     if (views.key() == key) return views;
-    spdlog::info("surface views: options or scene have changed; they are rendered again");
+    base::LogInfo("surface views: options or scene have changed; they are rendered again");
   } catch (const base::InputError& error) {
-    spdlog::warn("surface views are rendered again: {}", error.what());
+    base::LogWarning("surface views are rendered again: {}", error.what());
   }
   return std::nullopt;
 }
@@ -120,8 +120,8 @@ void Report(const ViewMaker& maker, size_t photos) {
   if (maker.rendered_rays() > 0 && maker.seconds() > 0.0) {
     rate = ", " + base::FormatCount(static_cast<double>(maker.rendered_rays()) / maker.seconds()) + " rays/s";
   }
-  spdlog::info("surface views: {} of photos, {} virtual, {} pixels{}", photos, maker.made().size() - photos,
-               base::FormatCount(static_cast<double>(RaysOf(maker.made()))), rate);
+  base::LogInfo("surface views: {} of photos, {} virtual, {} pixels{}", photos, maker.made().size() - photos,
+                base::FormatCount(static_cast<double>(RaysOf(maker.made()))), rate);
 }
 
 }  // namespace

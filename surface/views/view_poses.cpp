@@ -111,7 +111,7 @@ PhotoPlaces PlacesOfPhotos(const SurfaceInput& input) {
     const survey::Photo& photo = survey.photos[i];
     const auto camera = static_cast<size_t>(photo.camera);
     if (photo.camera < 0 || camera >= rectangles.size() || !rectangles[camera]) {
-      spdlog::warn("surface: the camera of photo {} cannot be used for a picture of depth; it is left out", photo.name);
+      base::LogWarning("surface: the camera of photo {} cannot be used for a picture of depth; it is left out", photo.name);
       continue;
     }
     const TangentRectangle& rectangle = *rectangles[camera];

@@ -9,6 +9,7 @@
 #include "bench/numerics/numerics_bench.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "tests/support/call_program.h"
 
 namespace skyquilt::app {
@@ -99,7 +100,7 @@ TEST(CommandLine, AFailedNumericCaseIsStatusFive) {
 TEST(CommandLine, NumericsRunsTheGroupsAskedFor) {
   const Called run = CallProgram({"--quiet", "bench", "numerics", "--quick", "--only", "rays,compositing", "--json"});
   ASSERT_EQ(run.status, 0) << run.err;
-  const nlohmann::json json = nlohmann::json::parse(run.out);
+  const nlohmann::json json = base::ParseJson(run.out);
   EXPECT_EQ(json.at("failed"), 0);
   for (const nlohmann::json& row : json.at("rows")) {
     EXPECT_TRUE(row.at("group") == "rays" || row.at("group") == "compositing") << row;

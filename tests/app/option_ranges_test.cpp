@@ -1,18 +1,18 @@
 // Every option of the program: a value out of its range is refused before any work, and help and configuration files show the same range.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
-#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <regex>
 #include <set>
 
 #include "app/commands/cli.h"
 #include "coordinator/project/settings.h"
 #include "core/base/file.h"
+#include "core/base/pattern.h"
 #include "tests/support/call_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -99,7 +99,9 @@ TEST(OptionRanges, AreTheSameInConfigurationFilesAndHelp) {
   for (const char* command : {"run", "simulate", "prepare", "partition", "train", "merge", "render", "evaluate"}) {
     help += CallProgram({command, "--help"}).out;
   }
-  help = std::regex_replace(help, std::regex("\\s+"), " ");
+  std::string on_one_line;
+  for (const base::PatternMatch& word : base::FindAll(help, "\\S+")) on_one_line += word[0] + " ";
+  help = on_one_line;
   // Flags that take durations and memory sizes, in units of their own.
   const std::set<std::string> other_units = {"run.time_budget_s", "run.memory_gb", "context.checkpoint_every_s", "train.checkpoint_every_s"};
   size_t in_help = 0;

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/progress.h"
 #include "core/image/image.h"
 #include "core/survey/colmap_model.h"
@@ -83,7 +84,7 @@ TEST_F(HeightsSurvey, WholeFlightsHaveEquallyManyPhotosAndViewsTheirNumber) {
   EXPECT_EQ(names.at(30).size(), 4U);
   EXPECT_EQ(names.at(240).size(), 4U);
   for (const survey::ColmapImage& image : model_.images) EXPECT_TRUE(fs::exists(folder_ / "images" / image.name)) << image.name;
-  const auto json = nlohmann::json::parse(base::ReadFile(folder_ / "heights.json"));
+  const auto json = base::ParseJson(base::ReadFile(folder_ / "heights.json"));
   EXPECT_EQ(json["photos"]["h120_"].get<std::vector<std::string>>(), names.at(120));
 }
 
@@ -152,7 +153,7 @@ TEST_F(HeightsSurvey, ViewsAddNoPoints) {
 }
 
 TEST_F(HeightsSurvey, ViewsSeeLittleBeyondTheArea) {
-  const auto summary = nlohmann::json::parse(base::ReadFile(folder_ / "simulate.json"));
+  const auto summary = base::ParseJson(base::ReadFile(folder_ / "simulate.json"));
   const Eigen::Vector2d low(summary["blocks"]["min_enu"][0], summary["blocks"]["min_enu"][1]);
   const Eigen::Vector2d high(summary["blocks"]["max_enu"][0], summary["blocks"]["max_enu"][1]);
   for (const survey::ColmapImage& image : model_.images) {

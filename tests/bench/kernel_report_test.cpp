@@ -7,6 +7,7 @@
 
 #include "bench/bench_page.h"
 #include "bench/kernel_bench.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -49,7 +50,7 @@ const BenchTable& TableOf(const BenchPage& page, const std::string& name) {
 TEST(KernelBenchPage, HasTheFiguresOfTheJson) {
   const KernelBenchResult result = TwoThreads();
   const BenchPage page = KernelBenchPage(result, "skyquilt bench kernel <-o out>");
-  const nlohmann::json json = nlohmann::json::parse(KernelBenchJson(result));
+  const nlohmann::json json = base::ParseJson(KernelBenchJson(result));
   const BenchTable& limit = TableOf(page, "limit");
   ASSERT_EQ(limit.rows.size(), 4U);
   EXPECT_EQ(limit.rows[0][1].value, json.at("train_samples_per_second"));

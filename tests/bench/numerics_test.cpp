@@ -7,13 +7,14 @@
 #include "bench/numerics/geodesy.h"
 #include "bench/numerics/numerics_bench.h"
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 #include "core/base/progress.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::bench {
 namespace {
 
-class Numerics : public testing::Test {
+class Numerics : public ::testing::Test {
  protected:
   void SetUp() override { base::Progress::SetQuiet(true); }
   void TearDown() override { base::Progress::SetQuiet(false); }
@@ -73,7 +74,7 @@ TEST_F(Numerics, AFailedCaseIsInTheTableAndEndsTheCommand) {
   const BenchPage page = NumericsPage(result, "skyquilt bench numerics");
   EXPECT_NE(BenchText(page).find("FAILED"), std::string::npos);
   EXPECT_NE(BenchHtml(page).find("1 of 2"), std::string::npos);
-  const nlohmann::json json = nlohmann::json::parse(NumericsJson(result, "skyquilt bench numerics"));
+  const nlohmann::json json = base::ParseJson(NumericsJson(result, "skyquilt bench numerics"));
   EXPECT_EQ(json.at("failed"), 1);
   EXPECT_EQ(json.at("rows").at(0).at("verdict"), "failed");
   EXPECT_EQ(json.at("rows").at(1).at("worst"), 0.1);

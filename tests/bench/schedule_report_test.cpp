@@ -5,6 +5,7 @@
 
 #include "bench/bench_page.h"
 #include "bench/schedule_bench.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -35,7 +36,7 @@ ScheduleBenchResult DefaultCluster() {
 TEST(ScheduleBenchPage, HasTheFiguresOfTheJson) {
   const ScheduleBenchResult result = DefaultCluster();
   const BenchPage page = ScheduleBenchPage(result, "skyquilt bench schedule");
-  const nlohmann::json json = nlohmann::json::parse(ScheduleBenchJson(result));
+  const nlohmann::json json = base::ParseJson(ScheduleBenchJson(result));
   const BenchTable& runs = page.sections.at(0).tables.at(0);
   ASSERT_EQ(runs.rows.size(), 2U);
   for (size_t i = 0; i < 2; ++i) {

@@ -8,6 +8,7 @@
 #include "bench/study/study.h"
 #include "bench/study/study_tables.h"
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -114,7 +115,7 @@ TEST(ResultJson, ReadsBackUnchanged) {
 }
 
 TEST(ResultJson, OfAnOlderProgramHasFewerScores) {
-  nlohmann::json json = nlohmann::json::parse(ResultJson(Example(), "abc"));
+  nlohmann::json json = base::ParseJson(ResultJson(Example(), "abc"));
   json.erase("scales");
   json.erase("scale_pictures");
   json.erase("kept_median_gsd");
@@ -127,7 +128,7 @@ TEST(ResultJson, OfAnOlderProgramHasFewerScores) {
   json.erase("buildings");
   for (nlohmann::json& field : json["fields"]) field.erase("steps");
   std::string identity;
-  const VariantResult back = ParseResult(json.dump(), &identity);
+  const VariantResult back = ParseResult(base::JsonText(json), &identity);
   EXPECT_TRUE(back.scales.empty());
   EXPECT_TRUE(std::isnan(back.kept_nmad_gsd));
   EXPECT_TRUE(back.classes.empty());

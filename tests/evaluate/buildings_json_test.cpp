@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "evaluate/metrics.h"
 #include "tests/support/temporary_folder.h"
 
@@ -39,9 +41,9 @@ BuildingScores SampleScores() {
 
 TEST(BuildingsJson, HasThePromisedKeys) {
   Metrics metrics;
-  EXPECT_FALSE(nlohmann::json::parse(MetricsJson(metrics)).contains("buildings"));
+  EXPECT_FALSE(base::ParseJson(MetricsJson(metrics)).contains("buildings"));
   metrics.buildings = SampleScores();
-  const auto json = nlohmann::json::parse(MetricsJson(metrics)).at("buildings");
+  const auto json = base::ParseJson(MetricsJson(metrics)).at("buildings");
   EXPECT_EQ(json.at("building_completeness"), 0.8);
   EXPECT_EQ(json.at("building_correctness"), 0.875);
   EXPECT_EQ(json.at("building_quality"), 0.75);
@@ -79,7 +81,7 @@ TEST(BuildingsJson, IsReadBackAsItWasWritten) {
 }
 
 TEST(BuildingsJson, WrongTypesAreNotMeasured) {
-  const BuildingScores scores = BuildingScoresFromJson(nlohmann::ordered_json::parse(
+  const BuildingScores scores = BuildingScoresFromJson(base::ParseOrderedJson(
       R"({"found": "many", "metric": 3, "outlines_not_counted": 1, "building_quality": [], "by_size": 7, "by_roof": {"flat": null}, "errors": "no",
           "each": [7, {"fate": "lost"}, {"fate": "matched", "truth_id": "x", "errors": {"length": [null, 1], "width": [0.5, "?"]}}]})"));
   EXPECT_EQ(scores.found, 0);

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <regex>
-
+#include "core/base/pattern.h"
 #include "evaluate/buildings_numbers.h"
 #include "evaluate/buildings_report.h"
 #include "tests/evaluate/buildings_sample.h"
@@ -52,9 +51,8 @@ void ExpectSound(const std::string& html) {
     EXPECT_EQ(OccurrencesIn(html, "<" + name + " ") + OccurrencesIn(html, "<" + name + ">"), OccurrencesIn(html, "</" + name + ">")) << name;
   }
   EXPECT_EQ(OccurrencesIn(html, "nan") + OccurrencesIn(html, ">inf"), 0U);
-  const std::regex link("href=\"#([^\"]+)\"");
-  for (std::sregex_iterator it(html.begin(), html.end(), link), end; it != end; ++it) {
-    EXPECT_EQ(OccurrencesIn(html, "id=\"" + (*it)[1].str() + "\""), 1U) << (*it)[1];
+  for (const base::PatternMatch& link : base::FindAll(html, "href=\"#([^\"]+)\"")) {
+    EXPECT_EQ(OccurrencesIn(html, "id=\"" + link[1] + "\""), 1U) << link[1];
   }
 }
 

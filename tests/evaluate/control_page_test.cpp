@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 #include "core/image/image.h"
 #include "evaluate/page_control.h"
 #include "evaluate/report_page.h"
@@ -44,13 +45,40 @@ survey::ControlFit SampleControl() {
   return fit;
 }
 
+// The sample's pictures take two seconds, so that all tests share them; each begins with the same survey and metrics.
 class ControlPage : public testing::Test {
  protected:
-  ControlPage() : sample_(folder_.path()) { sample_.survey.control = SampleControl(); }
+  static void SetUpTestSuite() {
+    shared_folder_ = std::make_unique<TemporaryFolder>();
+    shared_ = std::make_unique<SampleReport>(shared_folder_->path());
+    survey_ = shared_->survey;
+    survey_.control = SampleControl();
+    metrics_ = shared_->metrics;
+  }
+  static void TearDownTestSuite() {
+    shared_.reset();
+    shared_folder_.reset();
+  }
+  ControlPage() {
+    sample_.survey = survey_;
+    sample_.metrics = metrics_;
+    sample_.input.mark_pictures.clear();
+  }
 
-  TemporaryFolder folder_;
-  SampleReport sample_;
+  SampleReport& sample_ = *shared_;
+  TemporaryFolder& folder_ = *shared_folder_;
+
+ private:
+  static std::unique_ptr<TemporaryFolder> shared_folder_;
+  static std::unique_ptr<SampleReport> shared_;
+  static survey::Survey survey_;
+  static Metrics metrics_;
 };
+
+std::unique_ptr<TemporaryFolder> ControlPage::shared_folder_;
+std::unique_ptr<SampleReport> ControlPage::shared_;
+survey::Survey ControlPage::survey_;
+Metrics ControlPage::metrics_;
 
 void ExpectBalanced(const std::string& html) {
   for (const char* tag : {"section", "table", "tbody", "tr", "td", "svg", "figure", "figcaption", "div", "span", "g", "p", "ul", "li", "h3", "b"}) {
@@ -95,9 +123,9 @@ TEST_F(ControlPage, ChecksComeBeforeTags) {
 
 TEST_F(ControlPage, MetricsHaveThePoints) {
   Metrics metrics = sample_.metrics;
-  EXPECT_FALSE(nlohmann::json::parse(MetricsJson(metrics)).contains("control"));
+  EXPECT_FALSE(base::ParseJson(MetricsJson(metrics)).contains("control"));
   metrics.control = SampleControl();
-  const auto json = nlohmann::json::parse(MetricsJson(metrics));
+  const auto json = base::ParseJson(MetricsJson(metrics));
   EXPECT_EQ(json["control"]["points"].size(), 4U);
   EXPECT_EQ(json["control"]["check"]["rmse_m"][0], 0.04);
 }

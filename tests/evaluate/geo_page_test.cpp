@@ -3,8 +3,8 @@
 
 #include <filesystem>
 #include <memory>
-#include <regex>
 
+#include "core/base/pattern.h"
 #include "evaluate/page_geo.h"
 #include "evaluate/page_parts.h"
 #include "evaluate/report_page.h"
@@ -13,6 +13,8 @@
 
 namespace skyquilt::evaluate {
 namespace {
+
+constexpr const char* kSize = "viewBox=\"0 0 ([0-9.]+) ([0-9.]+)\"";
 
 // A survey with every kind of evidence and bad tags, and one without a geo-reference.
 class GeoPage : public testing::Test {
@@ -135,16 +137,15 @@ TEST_F(GeoPage, MapHasAnArrowPerTagAndKeepsFarOnesInside) {
   EXPECT_EQ(CountOf(map, "class=\"north\""), 1U);
   EXPECT_EQ(CountOf(map, "class=\"scale\""), 1U);
   EXPECT_NE(map.find("moved by 2.4\xE2\x80\xAFm for a lag of 0.30\xE2\x80\xAFs"), std::string::npos);
-  std::smatch size;
-  ASSERT_TRUE(std::regex_search(map, size, std::regex("viewBox=\"0 0 ([0-9.]+) ([0-9.]+)\"")));
-  const double width_px = std::stod(size[1]), height_px = std::stod(size[2]);
-  const std::regex end("</title><path[^>]* d=\"M[-0-9.]+ [-0-9.]+L([-0-9.]+) ([-0-9.]+)");
-  size_t n_arrows = 0;
-  for (std::sregex_iterator it(map.begin(), map.end(), end), stop; it != stop; ++it, ++n_arrows) {
-    const double x_px = std::stod((*it)[1]), y_px = std::stod((*it)[2]);
-    EXPECT_TRUE(x_px >= 0.0 && x_px <= width_px && y_px >= 0.0 && y_px <= height_px) << (*it)[0];
+  const auto size = base::FindAll(map, kSize);
+  ASSERT_FALSE(size.empty());
+  const double width_px = std::stod(size[0][1]), height_px = std::stod(size[0][2]);
+  const auto arrows = base::FindAll(map, "</title><path[^>]* d=\"M[-0-9.]+ [-0-9.]+L([-0-9.]+) ([-0-9.]+)");
+  for (const base::PatternMatch& arrow : arrows) {
+    const double x_px = std::stod(arrow[1]), y_px = std::stod(arrow[2]);
+    EXPECT_TRUE(x_px >= 0.0 && x_px <= width_px && y_px >= 0.0 && y_px <= height_px) << arrow[0];
   }
-  EXPECT_EQ(n_arrows, 80U);
+  EXPECT_EQ(arrows.size(), 80U);
 }
 
 TEST_F(GeoPage, SmallResidualsAreExaggeratedAndTheMapSaysSo) {
@@ -163,10 +164,10 @@ TEST_F(GeoPage, MapOfOnePhotoOrOneLineHasASize) {
     survey.photos.resize(n);
     const std::string map = GeoMap(survey);
     ExpectBalanced(map);
-    std::smatch size;
-    ASSERT_TRUE(std::regex_search(map, size, std::regex("viewBox=\"0 0 ([0-9.]+) ([0-9.]+)\"")));
-    EXPECT_GT(std::stod(size[1]), 250.0);
-    EXPECT_GT(std::stod(size[2]), 250.0);
+    const auto size = base::FindAll(map, kSize);
+    ASSERT_FALSE(size.empty());
+    EXPECT_GT(std::stod(size[0][1]), 250.0);
+    EXPECT_GT(std::stod(size[0][2]), 250.0);
   }
 }
 

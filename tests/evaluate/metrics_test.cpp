@@ -7,6 +7,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::evaluate {
@@ -25,7 +26,7 @@ TEST(MedianOfMeasured, IsTheMiddle) {
 }
 
 TEST(MetricsJson, HasEveryPromisedKeyEvenWhenNothingWasMeasured) {
-  const auto json = nlohmann::json::parse(MetricsJson(Metrics{}));
+  const auto json = base::ParseJson(MetricsJson(Metrics{}));
   for (const char* key : {"psnr", "ssim", "flip", "coverage", "psnr_full_frame", "ssim_full_frame", "flip_full_frame", "lpips", "seam_psnr_gap_db",
                           "train_seconds", "samples_per_second", "peak_rss_bytes"}) {
     ASSERT_TRUE(json.contains(key)) << key;
@@ -59,7 +60,7 @@ TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   equal.psnr_db = std::numeric_limits<double>::infinity();
   metrics.photos = {good, blank, equal};
   metrics.blocks = {{"r0c0", 28.0, 100}, {"r0c1", kNotMeasured, 0}};
-  const auto json = nlohmann::json::parse(MetricsJson(metrics));
+  const auto json = base::ParseJson(MetricsJson(metrics));
   EXPECT_DOUBLE_EQ(json["psnr"].get<double>(), 27.5);
   EXPECT_DOUBLE_EQ(json["depth_rmse_m"].get<double>(), 0.75);
   EXPECT_TRUE(json["depth_median_abs_m"].is_null());
@@ -125,8 +126,8 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
 TEST(MetricsJson, ScoresByClassAreReadBackToo) {
   Metrics metrics;
   metrics.has_truth = true;
-  EXPECT_FALSE(nlohmann::json::parse(MetricsJson(metrics)).contains("classes"));
-  EXPECT_FALSE(nlohmann::json::parse(MetricsJson(metrics)).contains("flat_roof_rms_m"));
+  EXPECT_FALSE(base::ParseJson(MetricsJson(metrics)).contains("classes"));
+  EXPECT_FALSE(base::ParseJson(MetricsJson(metrics)).contains("flat_roof_rms_m"));
   ClassScore roof{.name = "roof", .pixels = 12, .missing_pixels = 3, .depth_bias_m = -0.125, .depth_median_abs_m = 0.25, .depth_nmad_m = 0.5};
   roof.depth_rmse_m = 0.75;
   roof.normal_median_deg = 7.5;
@@ -137,7 +138,7 @@ TEST(MetricsJson, ScoresByClassAreReadBackToo) {
   metrics.flat_roof_rms_m = 0.0625;
   metrics.flat_roof_nmad_m = 0.03125;
   const std::string text = MetricsJson(metrics);
-  const auto json = nlohmann::json::parse(text);
+  const auto json = base::ParseJson(text);
   EXPECT_EQ(json["classes"]["roof"]["depth_bias_m"], -0.125);
   EXPECT_EQ(json["classes"]["roof"]["normal_mean_deg"], 12.0);
   EXPECT_EQ(json["classes"]["roof"]["head_normal_median_deg"], 6.5);
@@ -166,7 +167,7 @@ TEST(MetricsJson, TheGeoReferenceIsReadBackToo) {
   fit.tags_alone_tilt_deg = 19.0;
   metrics.problem_codes = {"no_gimbal", "lag"};
   const std::string text = MetricsJson(metrics);
-  const auto geo = nlohmann::json::parse(text).at("geo");
+  const auto geo = base::ParseJson(text).at("geo");
   EXPECT_EQ(geo.at("photos_with_gps"), 9);
   EXPECT_EQ(geo.at("scale_m_per_model_unit"), 37.5);
   EXPECT_EQ(geo.at("tag_lag_s"), 0.25);
@@ -191,7 +192,7 @@ TEST(MetricsJson, AFitThatSaysNothingIsNull) {
   Metrics metrics;
   metrics.geo_fit.rmse_m = 3.0;  // of a fit that was refused
   metrics.geo_fit.n_inliers = 3;
-  const auto geo = nlohmann::json::parse(MetricsJson(metrics)).at("geo");
+  const auto geo = base::ParseJson(MetricsJson(metrics)).at("geo");
   for (const char* key : {"rmse_m", "rmse_horizontal_m", "rmse_vertical_m", "scale_m_per_model_unit", "tag_lag_sigma_s", "tags_alone_tilt_deg"}) {
     EXPECT_TRUE(geo.at(key).is_null()) << key;
   }
@@ -219,7 +220,7 @@ TEST(MetricsJson, FileNamesThatAreNotUtf8AreRepaired) {
   photo.name = "M\xFChle.jpg";
   metrics.photos = {photo};
   EXPECT_NO_THROW({
-    const auto json = nlohmann::json::parse(MetricsJson(metrics));
+    const auto json = base::ParseJson(MetricsJson(metrics));
     EXPECT_EQ(json["psnr_per_image"].size(), 1U);
   });
 }

@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
-#include <regex>
 
 #include "core/base/file.h"
+#include "core/base/pattern.h"
 #include "evaluate/report_images.h"
 #include "tests/evaluate/count_of.h"
 #include "tests/evaluate/sample_report.h"
@@ -98,21 +98,15 @@ TEST_F(ReportPage, OpensOfflineAndEveryPictureExists) {
   EXPECT_EQ(html_.find("http://"), std::string::npos);
   EXPECT_EQ(html_.find("https://"), std::string::npos);
   EXPECT_EQ(html_.find("@import"), std::string::npos);
-  const std::regex source("(?:src|href)=\"(images/[^\"]+)\"");
-  size_t n_pictures = 0;
-  for (std::sregex_iterator it(html_.begin(), html_.end(), source), end; it != end; ++it, ++n_pictures) {
-    EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / (*it)[1].str())) << (*it)[1];
-  }
-  EXPECT_GE(n_pictures, 4 * sample_->metrics.photos.size());
+  const auto pictures = base::FindAll(html_, "(?:src|href)=\"(images/[^\"]+)\"");
+  for (const base::PatternMatch& picture : pictures) EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / picture[1])) << picture[1];
+  EXPECT_GE(pictures.size(), 4 * sample_->metrics.photos.size());
 }
 
 TEST_F(ReportPage, LinksWithinThePageArrive) {
-  const std::regex link("href=\"#([^\"]+)\"");
-  size_t n_links = 0;
-  for (std::sregex_iterator it(html_.begin(), html_.end(), link), end; it != end; ++it, ++n_links) {
-    EXPECT_EQ(CountOf(html_, "id=\"" + (*it)[1].str() + "\""), 1U) << (*it)[1];
-  }
-  EXPECT_GT(n_links, 10U);
+  const auto links = base::FindAll(html_, "href=\"#([^\"]+)\"");
+  for (const base::PatternMatch& link : links) EXPECT_EQ(CountOf(html_, "id=\"" + link[1] + "\""), 1U) << link[1];
+  EXPECT_GT(links.size(), 10U);
 }
 
 TEST_F(ReportPage, FileNamesNeverBecomeMarkup) {
@@ -140,8 +134,7 @@ TEST_F(ReportPage, AtMostSixKeyFiguresStandBeforeTheDetails) {
     EXPECT_LE(before, 6U);
     EXPECT_EQ(CountOf(html, "<div class=\"kpi\">"), before);
     // A label, a value and a note each.
-    const std::regex complete("<div class=\"kpi\"><span>[^<]+</span><strong>[^<]+</strong><small>[^<]+</small></div>");
-    EXPECT_EQ(static_cast<size_t>(std::distance(std::sregex_iterator(html.begin(), html.end(), complete), std::sregex_iterator())), before);
+    EXPECT_EQ(base::FindAll(html, "<div class=\"kpi\"><span>[^<]+</span><strong>[^<]+</strong><small>[^<]+</small></div>").size(), before);
   }
 }
 
@@ -175,9 +168,7 @@ TEST_F(ReportPage, EveryWarningSaysWhatToDo) {
     EXPECT_GE(warnings.size(), 4U);
     const std::string banner = WarningsBanner(sample->metrics);
     EXPECT_NE(BuildReportPage(sample->input).find(banner), std::string::npos);
-    const std::regex advised("<li>[^<]+<span class=\"advice\"><b>What to do:</b>[^<]+</span></li>");
-    EXPECT_EQ(static_cast<size_t>(std::distance(std::sregex_iterator(banner.begin(), banner.end(), advised), std::sregex_iterator())),
-              warnings.size());
+    EXPECT_EQ(base::FindAll(banner, "<li>[^<]+<span class=\"advice\"><b>What to do:</b>[^<]+</span></li>").size(), warnings.size());
   }
 }
 

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "evaluate/metrics.h"
 #include "tests/support/temporary_folder.h"
 
@@ -33,10 +35,10 @@ SurfaceScores SomeScores() {
 
 TEST(SurfaceJson, IsPartOfTheMetricsAndReadBack) {
   Metrics metrics;
-  EXPECT_FALSE(nlohmann::json::parse(MetricsJson(metrics)).contains("surface"));
+  EXPECT_FALSE(base::ParseJson(MetricsJson(metrics)).contains("surface"));
   metrics.surface = SomeScores();
   const std::string text = MetricsJson(metrics);
-  const auto json = nlohmann::json::parse(text).at("surface");
+  const auto json = base::ParseJson(text).at("surface");
   EXPECT_EQ(json["psnr"], 25.5);
   EXPECT_EQ(json["missing_share"], 0.015625);
   EXPECT_TRUE(json["psnr_where_mesh"].is_null());

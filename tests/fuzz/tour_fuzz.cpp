@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "core/base/checked_json.h"
+#include "core/base/json_text.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/tour/format/sample_assets.h"
 #include "tests/tour/format/sample_tour.h"
@@ -13,7 +14,7 @@ namespace skyquilt::fuzz {
 
 std::vector<std::string> Seeds() {
   return {
-      tour::SampleTour().dump(),
+      base::JsonText(tour::SampleTour()),
       tour::SampleTourWith([](nlohmann::json& json) { json["version"] = 2; }),
       tour::SampleGlb(),
       tour::SampleGlb([](nlohmann::json& json) {

@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/survey/geo_fit_json.h"
 #include "partition/block.h"
 #include "partition/lonlat_polygon.h"
@@ -219,7 +220,7 @@ TEST(BlocksGeoJson, FilesOfOlderProgramsHaveUnknownAccuracy) {
   Json older = Json::parse(base::ReadFile(file.path()));
   older.erase("skyquilt:accuracy");
   older.erase("skyquilt:height_reference");
-  base::WriteFileAtomically(file.path(), older.dump());
+  base::WriteFileAtomically(file.path(), base::JsonText(older));
   BlockSet expected = TwoByTwo({1, 2, 3}, 100.0);
   expected.accuracy = {};
   expected.height_reference = geo::HeightReference::kUnknown;
@@ -245,25 +246,25 @@ TEST(BlocksGeoJson, DamagedFilesAreRefusedByName) {
   const Json good = Json::parse(base::ReadFile(file.path()));
   Json bad = good;
   bad["features"].erase(2);
-  expect_refused(bad.dump());
+  expect_refused(base::JsonText(bad));
   bad = good;
   bad["features"][1]["properties"]["max_enu"][0] = -1e6;
-  expect_refused(bad.dump());
+  expect_refused(base::JsonText(bad));
   bad = good;
   bad["features"][1]["properties"]["margin_m"] = "wide";
-  expect_refused(bad.dump());
+  expect_refused(base::JsonText(bad));
   bad = good;
   bad["features"][1]["properties"].erase("photos");
-  expect_refused(bad.dump());
+  expect_refused(base::JsonText(bad));
   bad = good;
   bad["skyquilt:origin"]["latitude_deg"] = 91.0;
-  expect_refused(bad.dump());
+  expect_refused(base::JsonText(bad));
   bad = good;
   bad["skyquilt:height_reference"] = "sea level";
-  expect_refused(bad.dump());
+  expect_refused(base::JsonText(bad));
   bad = good;
   bad["skyquilt:accuracy"]["tilt_deg"] = "small";
-  expect_refused(bad.dump());
+  expect_refused(base::JsonText(bad));
   EXPECT_THROW(LoadBlocks(file.path().string() + ".missing"), base::InputError);
 }
 

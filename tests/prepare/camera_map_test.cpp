@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "prepare/prepare_report.h"
 #include "tests/support/nadir_photo.h"
 #include "tests/support/temporary_folder.h"
@@ -18,7 +19,7 @@ TEST(CameraMap, SaysHowAccurateItsPlaceIs) {
   survey.fit.accuracy = {.scale_percent = 0.4, .tilt_deg = 0.3, .yaw_deg = 0.2, .horizontal_m = 1.5};
   const TemporaryFolder folder;
   WriteCameraMap(survey, folder / "cameras.geojson");
-  const nlohmann::json map = nlohmann::json::parse(base::ReadFile(folder / "cameras.geojson"));
+  const nlohmann::json map = base::ParseJson(base::ReadFile(folder / "cameras.geojson"));
   EXPECT_EQ(map["features"].size(), 1U);
   EXPECT_EQ(map["skyquilt:accuracy"]["scale_percent"], 0.4);
   EXPECT_EQ(map["skyquilt:accuracy"]["horizontal_m"], 1.5);

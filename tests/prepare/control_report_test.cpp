@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::prepare {
@@ -44,7 +45,7 @@ TEST(ControlReport, TableHasALinePerPoint) {
 TEST(ControlReport, MapHasThePointsOnEarth) {
   const TemporaryFolder folder;
   WriteControlReport(ControlledSurvey(), folder.path());
-  const nlohmann::json map = nlohmann::json::parse(base::ReadFile(folder / "control.geojson"));
+  const nlohmann::json map = base::ParseJson(base::ReadFile(folder / "control.geojson"));
   ASSERT_EQ(map["features"].size(), 2U);
   const nlohmann::json& first = map["features"][0];
   EXPECT_NEAR(first["geometry"]["coordinates"][0].get<double>(), 8.0 + 10.0 / 76000.0, 1e-6);

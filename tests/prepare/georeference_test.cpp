@@ -7,6 +7,7 @@
 
 #include "core/base/random.h"
 #include "core/geo/enu_frame.h"
+#include "core/linear/linear.h"
 #include "tests/prepare/synthetic_flight.h"
 
 namespace skyquilt::prepare {
@@ -190,7 +191,7 @@ TEST(LocalFrame, PutsTheGroundBelowAtAFixedDepth) {
 TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirHorizons) {
   std::vector<Station> stations;
   const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
-  const Eigen::Quaterniond tilt = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
+  const Eigen::Quaterniond tilt = linear::RotationBetween(Eigen::Vector3d::UnitZ(), up);
   for (int i = 0; i < 12; ++i) {
     const double angle = i * M_PI / 6.0;
     const Eigen::Vector3d centre(10.0 * std::cos(angle), 10.0 * std::sin(angle), 4.0);

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "core/linear/linear.h"
 #include "prepare/adjustment_block.h"
-#include "prepare/dense.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -112,12 +112,11 @@ double DenseSigma(const Block& block, const std::vector<size_t>& free, size_t k1
   // The pseudo-inverse of J^T J with columns of length 1. Its seven smallest eigenvalues are those of moves, turns and a scaling of everything.
   const Eigen::VectorXd norms = jacobian.colwise().norm();
   jacobian *= norms.cwiseInverse().asDiagonal();
-  Eigen::VectorXd values;
-  Eigen::MatrixXd vectors;
-  if (!SymmetricEigen(jacobian.transpose() * jacobian, &values, &vectors)) return std::nan("");
+  const linear::EigenPairs<Eigen::Dynamic> eigen = linear::SymmetricEigen<Eigen::Dynamic>(jacobian.transpose() * jacobian);
+  if (!eigen.found) return std::nan("");
   const auto k1_at = static_cast<Index>(6 * n_images) + (std::find(free.begin(), free.end(), k1_index) - free.begin());
   double variance = 0.0;
-  for (Index i = 7; i < x.size(); ++i) variance += std::pow(vectors(k1_at, i) / norms[k1_at], 2) / values[i];
+  for (Index i = 7; i < x.size(); ++i) variance += std::pow(eigen.vectors(k1_at, i) / norms[k1_at], 2) / eigen.values[i];
   return std::sqrt(variance * squares / (2.0 * static_cast<double>(rows.size()) - static_cast<double>(x.size() - 7)));
 }
 

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
 #include "prepare/photo_positions.h"
 #include "prepare/prepare.h"
@@ -74,9 +75,9 @@ TEST_F(OtherModel, IsPlacedByItselfWherePhotosHaveNoTags) {
 
 TEST_F(OtherModel, ItsSplitIsKeptUnlessAnotherIsAskedFor) {
   test::Files files = test::TransformsFiles(Made());
-  nlohmann::json file = nlohmann::json::parse(files["transforms.json"]);
+  nlohmann::json file = base::ParseJson(files["transforms.json"]);
   file["test_filenames"] = {"images/photo_05.jpg", "images/photo_06.jpg"};
-  files["transforms.json"] = file.dump();
+  files["transforms.json"] = base::JsonText(file);
   survey::Survey survey = Run(files, "transforms.json");
   for (const survey::Photo& photo : survey.photos)
     EXPECT_EQ(photo.is_test, photo.name == "photo_05.jpg" || photo.name == "photo_06.jpg") << photo.name;
@@ -130,9 +131,9 @@ TEST_F(OtherModel, ThePositionFileOfTheOptionCountsInPlaceOfTheTags) {
 
 TEST_F(OtherModel, ASplitOfPhotosWithoutPosesLeavesTheUsualOne) {
   test::Files files = test::TransformsFiles(Made());
-  nlohmann::json file = nlohmann::json::parse(files["transforms.json"]);
+  nlohmann::json file = base::ParseJson(files["transforms.json"]);
   file["test_filenames"] = {"images/elsewhere.jpg"};
-  files["transforms.json"] = file.dump();
+  files["transforms.json"] = base::JsonText(file);
   const survey::Survey survey = Run(files, "transforms.json");
   const auto n_test = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.is_test; });
   EXPECT_EQ(n_test, 3);  // every eighth of 20

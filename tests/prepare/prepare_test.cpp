@@ -9,6 +9,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/image/image.h"
 #include "tests/prepare/synthetic_flight.h"
 #include "tests/support/error_of.h"
@@ -84,7 +85,7 @@ TEST_F(PrepareTest, AGoodFlightIsPlacedOnEarthAndSaved) {
   const survey::Survey loaded = survey::LoadSurvey(folder_ / "out");
   EXPECT_EQ(loaded.photos.size(), 20U);
   EXPECT_EQ(loaded.points.size(), survey.points.size());
-  const nlohmann::json map = nlohmann::json::parse(base::ReadFile(folder_ / "out/cameras.geojson"));
+  const nlohmann::json map = base::ParseJson(base::ReadFile(folder_ / "out/cameras.geojson"));
   EXPECT_EQ(map["features"].size(), 20U);
   EXPECT_NEAR(map["features"][0]["geometry"]["coordinates"][0].get<double>(), 8.0, 0.01);
   EXPECT_NEAR(map["features"][0]["geometry"]["coordinates"][1].get<double>(), 47.0, 0.01);

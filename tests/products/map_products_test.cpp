@@ -11,6 +11,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
 #include "core/geo/geoid.h"
 #include "core/image/image.h"
@@ -224,7 +225,7 @@ TEST(MapProducts, SayHowAccurateTheirPlaceIs) {
             "Orthophoto, placed on Earth by its GPS tags with a standard deviation of 1.53 m horizontally, unknown vertically, 0.3 degrees in tilt, "
             "0.25 degrees in yaw, 0.412 % in scale.");
   EXPECT_EQ(Item(products.dsm, "VERTICAL_REFERENCE"), "unknown: the GPS tags have no usable heights");
-  const auto map = nlohmann::json::parse(base::ReadFile(folder.path() / "orthophoto.json"));
+  const auto map = base::ParseJson(base::ReadFile(folder.path() / "orthophoto.json"));
   EXPECT_EQ(map["georeference"], "fitted to GPS tags");
   EXPECT_EQ(map["accuracy"]["scale_percent"], 0.412345);
   EXPECT_EQ(map["accuracy"]["horizontal_m"], 1.53);
@@ -345,7 +346,7 @@ TEST(MapProducts, PreviewsLieInTheLocalFrame) {
   // Far from the zone's central meridian, map north and true north differ by two degrees.
   MakeMapProducts(scene.Info({50.0, 5.9, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path());
   const image::Image8 picture = image::LoadRgb8(folder.path() / "orthophoto.png");
-  const auto bounds = nlohmann::json::parse(base::ReadFile(folder.path() / "orthophoto.json"));
+  const auto bounds = base::ParseJson(base::ReadFile(folder.path() / "orthophoto.json"));
   EXPECT_EQ(bounds["min_enu"][0], -60.0);
   EXPECT_EQ(bounds["max_enu"][1], 50.0);
   EXPECT_EQ(bounds["crs"], "EPSG:32631");

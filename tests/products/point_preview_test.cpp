@@ -10,6 +10,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "core/gis/geotiff.h"
@@ -78,7 +79,7 @@ TEST_F(PointPreviewTest, ShowsTheTrueColoursAtTheirPlaces) {
     ASSERT_GT(errors.size(), 2000U);
     EXPECT_LT(base::Quantile(errors, 0.5), 2.5);
     EXPECT_LT(base::Quantile(errors, 0.99), 10.0);
-    const auto json = nlohmann::json::parse(base::ReadFile(folder_ / "products/preview_ortho.json"));
+    const auto json = base::ParseJson(base::ReadFile(folder_ / "products/preview_ortho.json"));
     EXPECT_EQ(json["preview"], kFromSparsePoints);
     EXPECT_EQ(json["crs"], georeferenced ? "EPSG:32632" : "local");
     EXPECT_EQ(made.picture, folder_ / "products/preview_ortho.png");

@@ -8,11 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
-#include <regex>
 #include <sstream>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
+#include "core/base/pattern.h"
 #include "core/base/progress.h"
 #include "core/geo/crs.h"
 #include "core/image/image.h"
@@ -60,7 +61,7 @@ class ControlSurvey : public testing::Test {
     options.test_every = 3;
     base::ThreadPool threads(2);
     summary_ = Simulate(options, Root(), threads);
-    truth_ = nlohmann::json::parse(base::ReadFile(Root() / "control/truth.json"));
+    truth_ = base::ParseJson(base::ReadFile(Root() / "control/truth.json"));
     model_ = survey::ReadColmapModel(Root() / "sparse/0");
   }
   static void TearDownTestSuite() { delete folder_; }
@@ -200,7 +201,7 @@ TEST_F(ControlSurvey, AllProgramsGetTheSamePointsAndMarks) {
     EXPECT_LT((Vector3d(std::stod(list[i][0]), std::stod(list[i][1]), std::stod(list[i][2])) - utm.at(list[i][6])).norm(), 1e-3);
     EXPECT_LT((Vector2d(std::stod(list[i][3]) + 0.5, std::stod(list[i][4]) + 0.5) - marks.at({list[i][5], list[i][6]})).norm(), 1e-2);
   }
-  const auto opensfm = nlohmann::json::parse(base::ReadFile(Root() / "control/ground_control_points.json"));
+  const auto opensfm = base::ParseJson(base::ReadFile(Root() / "control/ground_control_points.json"));
   ASSERT_EQ(opensfm["points"].size(), 9U);
   for (const auto& point : opensfm["points"]) {
     const auto& at = point["position"];
@@ -214,8 +215,7 @@ TEST_F(ControlSurvey, AllProgramsGetTheSamePointsAndMarks) {
   EXPECT_EQ(metashape[0], (std::vector<std::string>{"label", "x", "y", "z"}));
   EXPECT_EQ(metashape.size(), 10U);
   const std::string xml = base::ReadFile(Root() / "control/metashape_marks.xml");
-  const std::regex location("<location camera_id=\"(\\d+)\" pinned=\"true\" x=\"([^\"]+)\" y=\"([^\"]+)\"/>");
-  EXPECT_EQ(static_cast<size_t>(std::distance(std::sregex_iterator(xml.begin(), xml.end(), location), std::sregex_iterator())), marks.size());
+  EXPECT_EQ(base::FindAll(xml, "<location camera_id=\"(\\d+)\" pinned=\"true\" x=\"([^\"]+)\" y=\"([^\"]+)\"/>").size(), marks.size());
 }
 
 // Targets in the middle of a made-up photo that looks down from 50 m.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/image/srgb.h"
 #include "core/survey/exif.h"
 #include "simulate/survey_writer.h"
@@ -136,7 +137,7 @@ TEST_F(SurveyFiles, TruthTellsTheLightThatNoTagTells) {
   const PlaceSpec place = ResolvePlace(options);
   const std::vector<PhotoPlan> photos = PlanFlight(place, 0.0);
   WriteExposureTruth(root_, photos, place);
-  const auto truth = nlohmann::json::parse(base::ReadFile(root_ / "truth" / "exposure.json"));
+  const auto truth = base::ParseJson(base::ReadFile(root_ / "truth" / "exposure.json"));
   EXPECT_EQ(truth["vignetting"], 0.2);
   ASSERT_EQ(truth["photos"].size(), photos.size());
   double largest_error = 0.0;

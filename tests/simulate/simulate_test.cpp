@@ -11,6 +11,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/progress.h"
 #include "core/geo/enu_frame.h"
 #include "core/image/image.h"
@@ -50,7 +51,7 @@ class HamletSurvey : public testing::Test {
   }
   static void TearDownTestSuite() { fs::remove_all(root_); }
 
-  static nlohmann::json Json(const std::string& name) { return nlohmann::json::parse(base::ReadFile(root_ / "two" / name)); }
+  static nlohmann::json Json(const std::string& name) { return base::ParseJson(base::ReadFile(root_ / "two" / name)); }
   static bool IsTest(size_t index) { return index % 8 == 0; }
 
   static fs::path root_;
@@ -290,7 +291,7 @@ TEST_F(HamletSurvey, FaultsAreInModelAndTagsOnly) {
   Simulate(options, root_ / "faults", threads);
   EXPECT_TRUE(ReadTree(root_ / "faults/truth") == ReadTree(root_ / "two/truth"));
   EXPECT_FALSE(Json("simulate.json").contains("truth"));
-  const auto summary = nlohmann::json::parse(base::ReadFile(root_ / "faults/simulate.json"));
+  const auto summary = base::ParseJson(base::ReadFile(root_ / "faults/simulate.json"));
   EXPECT_EQ(summary["exact_frame"], false);
   const auto& stored = summary["truth"]["enu_from_model"];
   const auto q = stored["rotation_wxyz"].get<std::vector<double>>();

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/survey/surface_class.h"
 #include "simulate/building_truth.h"
 #include "simulate/flight.h"
@@ -314,7 +315,7 @@ TEST(SpecialCases, WithoutBuildingsTheTruthIsEmpty) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.path() / "truth");
   WriteBuildingTruth(folder.path(), world.buildings(), place, geo::EnuFrame({47.0, 8.0, 400.0}));
-  const auto truth = nlohmann::json::parse(base::ReadFile(folder.path() / "truth/buildings.json"));
+  const auto truth = base::ParseJson(base::ReadFile(folder.path() / "truth/buildings.json"));
   EXPECT_EQ(truth["buildings"], nlohmann::json::array());
   EXPECT_EQ(truth["outlines"], nlohmann::json::array());
   // A wood: trees in the surveyed area as dense as crowns allow.

@@ -10,6 +10,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "surface/fuse_mesh.h"
 #include "surface/fusion/fuse.h"
 #include "surface/map_frame.h"
@@ -110,7 +111,7 @@ TEST_F(MakeSurfaceTest, GroundAndRoofAreWhereTheyAre) {
   }
   EXPECT_GT(n_roof, 4U);
   EXPECT_GT(n_ground, 4U);
-  const auto table = nlohmann::json::parse(base::ReadFile(input.out_folder / "surface.json"));
+  const auto table = base::ParseJson(base::ReadFile(input.out_folder / "surface.json"));
   EXPECT_EQ(table["triangles"].get<int64_t>(), result.triangles);
   EXPECT_EQ(table["non_manifold_edges"].get<int64_t>(), 0);
   EXPECT_EQ(table["crs"], "EPSG:32615");

@@ -1,6 +1,6 @@
 #include "tour/export/disk_space.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <system_error>
 

@@ -121,7 +121,7 @@ FixedFiles CollectFixedFiles(const ExportInput& input, const ExportParts& parts,
     if (bytes <= input.options.SizeBytes() / kLargestBuildingsPart) {
       fixed.files["buildings/buildings.json"] = parts.buildings;
     } else {
-      spdlog::warn("the tour goes without the measures of buildings, which are too large ({})", MegabytesText(bytes));
+      base::LogWarning("the tour goes without the measures of buildings, which are too large ({})", MegabytesText(bytes));
     }
   }
   if (parts.terrain) fixed.contents["terrain.bin"] = parts.terrain();

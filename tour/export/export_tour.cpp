@@ -9,6 +9,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/base/system.h"
@@ -57,7 +58,7 @@ std::vector<StopPictures> RenderPictures(const Tour& tour, const ExportInput& in
     for (const PictureRequest& request : missing) rays += request.Rays();
     RequireFreeSpace(input.work, kWorkBytesPerRay * rays, "pictures of the tour");
     if (rays >= kRaysWorthAnEstimate) {
-      spdlog::info("pictures of the tour: {} to render, about {}", missing.size(), base::FormatDuration(EstimateSeconds(missing, field)));
+      base::LogInfo("pictures of the tour: {} to render, about {}", missing.size(), base::FormatDuration(EstimateSeconds(missing, field)));
     }
   }
   const MadePictures made = MakePictures(requests, field, input.work);
@@ -106,7 +107,7 @@ std::string ManifestText(const ExportParts& parts, const FixedFiles& fixed, cons
   nlohmann::json manifest = {
       {"version", 1}, {"missing", missing}, {"stops", std::move(stops)}, {"made_by", parts.made_by}, {"date", base::UtcTimestamp()}};
   manifest["files"] = FileNames(fixed);
-  return manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return base::JsonText(manifest);
 }
 
 int64_t SizeOf(const std::string& text) {
@@ -115,16 +116,16 @@ int64_t SizeOf(const std::string& text) {
 
 void LogPlan(const ExportPlan& plan, const TileTree* tree, const TourOptions& options) {
   if (plan.pictures.shrink > 1) {
-    spdlog::warn("panoramas are {} pixels wide instead of {}, so that the tour fits into {}. Give a larger --size for more",
-                 options.panorama_width / plan.pictures.shrink, options.panorama_width, MegabytesText(options.SizeBytes()));
+    base::LogWarning("panoramas are {} pixels wide instead of {}, so that the tour fits into {}. Give a larger --size for more",
+                     options.panorama_width / plan.pictures.shrink, options.panorama_width, MegabytesText(options.SizeBytes()));
   }
-  spdlog::debug("pictures: JPEG quality {}, stills {}, {}", plan.pictures.quality, plan.pictures.lossless_stills ? "PNG" : "JPEG",
-                MegabytesText(plan.pictures.bytes));
+  base::LogDebug("pictures: JPEG quality {}, stills {}, {}", plan.pictures.quality, plan.pictures.lossless_stills ? "PNG" : "JPEG",
+                 MegabytesText(plan.pictures.bytes));
   if (tree == nullptr) return;
   const TileTree::Choice all = tree->All();
   if (plan.tiles->tiles == all.tiles) return;
-  spdlog::info("surface: {} of {} pieces fit; {} of finer ones far from the stops are left out. Give a larger --size for more", plan.tiles->tiles,
-               all.tiles, MegabytesText(all.bytes - plan.tiles->bytes));
+  base::LogInfo("surface: {} of {} pieces fit; {} of finer ones far from the stops are left out. Give a larger --size for more", plan.tiles->tiles,
+                all.tiles, MegabytesText(all.bytes - plan.tiles->bytes));
 }
 
 int64_t BytesIn(const fs::path& folder) {
@@ -171,7 +172,7 @@ Exported ExportTour(const ExportInput& input, const ExportParts& parts, const Pi
   if (!parts.tiles.empty()) tree.emplace(parts.tiles);
   std::vector<std::string> missing = content.playable.missing;
   if (!tree) missing.emplace_back("The textured surface is not there: between the stops only the surface model is shown.");
-  for (const std::string& sentence : missing) spdlog::warn("{}", sentence);
+  for (const std::string& sentence : missing) base::LogWarning("{}", sentence);
 
   const std::vector<StopPictures> pictures = RenderPictures(tour, input, field);
   if (input.make_video) input.make_video(tour, staged.partial() / "tour.mp4");

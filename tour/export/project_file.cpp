@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::tour {
 
@@ -20,7 +21,7 @@ std::string ExportedProjectJson(const std::string& project_json, const ExportedF
   if (json["buildings"].is_object()) json["buildings"]["files"] = Json::array();
   if (!json["photos"].is_array()) json["photos"] = Json::array();
   for (Json& photo : json["photos"]) photo["available"] = false;
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return base::JsonText(json);
 }
 
 }  // namespace skyquilt::tour

@@ -12,6 +12,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "surface/files/earth_place.h"
 #include "tour/export/script_data.h"
 
@@ -122,7 +123,7 @@ TileTree::Choice TileTree::Least() const {
   Choice choice;
   choice.kept.assign(nodes_.size(), false);
   // The whole tree's, which is the longest.
-  choice.bytes = ScriptBytes(DataName(kTilesetName), static_cast<int64_t>(tileset_.dump().size()));
+  choice.bytes = ScriptBytes(DataName(kTilesetName), static_cast<int64_t>(base::JsonText(tileset_).size()));
   Keep(0, &choice);
   return choice;
 }
@@ -168,7 +169,7 @@ std::string TileTree::Text(const Choice& choice) const {
   OrderedJson trimmed = tileset_;
   size_t next = 0;
   trimmed["root"] = Trimmed(tileset_["root"], choice.kept, &next);
-  return trimmed.dump();
+  return base::JsonText(trimmed);
 }
 
 }  // namespace skyquilt::tour

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/json_text.h"
+
 namespace skyquilt::tour {
 namespace {
 
@@ -16,7 +18,7 @@ constexpr const char* kIdForm = "a name of 1 to 40 letters, digits, - or _";
 
 // 200, 0.0001.
 std::string Shown(double value) {
-  return value == std::floor(value) ? std::to_string(static_cast<int64_t>(value)) : Json(value).dump();
+  return value == std::floor(value) ? std::to_string(static_cast<int64_t>(value)) : base::JsonText(Json(value));
 }
 
 // The names of members come from outside: shown short and in one line.

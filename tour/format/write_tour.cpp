@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
+
 namespace skyquilt::tour {
 namespace {
 
@@ -92,8 +94,8 @@ std::string FormatTour(const Tour& tour) {
   for (const Thing& thing : tour.things) json["things"].push_back(JsonOf(thing));
   json["assets"] = Ordered::object();
   for (const auto& [name, entry] : tour.assets) json["assets"][name] = {{"name", entry.name}, {"bytes", entry.bytes}};
-  std::string text = json.dump(1, ' ', false, Ordered::error_handler_t::replace) + "\n";
-  if (text.size() > kMaxTourBytes) text = json.dump(-1, ' ', false, Ordered::error_handler_t::replace) + "\n";
+  std::string text = base::JsonText(json, 1) + "\n";
+  if (text.size() > kMaxTourBytes) text = base::JsonText(json) + "\n";
   return text;
 }
 

@@ -61,7 +61,7 @@ MadePictures MakePictures(std::span<const PictureRequest> requests, const Pictur
   }
   const std::vector<PictureRequest> missing = MissingPictures(requests, field, folder);
   if (missing.size() < wanted.size()) {
-    spdlog::info("pictures of the tour: {} of {} are there from an earlier run", wanted.size() - missing.size(), wanted.size());
+    base::LogInfo("pictures of the tour: {} of {} are there from an earlier run", wanted.size() - missing.size(), wanted.size());
   }
   if (!missing.empty()) {
     int64_t rays = 0;
@@ -80,7 +80,7 @@ MadePictures MakePictures(std::span<const PictureRequest> requests, const Pictur
     }
     progress.Finish();
     const double rate = made.seconds > 0.0 ? static_cast<double>(made.rays) / made.seconds : 0.0;
-    spdlog::info("pictures of the tour: {} rendered, {} rays/s", made.rendered, base::FormatCount(rate));
+    base::LogInfo("pictures of the tour: {} rendered, {} rays/s", made.rendered, base::FormatCount(rate));
   }
   RemoveOthers(folder, wanted);
   return made;

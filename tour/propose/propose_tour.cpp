@@ -1,6 +1,6 @@
 #include "tour/propose/propose_tour.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "core/linear/linear.h"
 #include "tour/ways/heights.h"
 
 namespace skyquilt::tour {
@@ -76,8 +77,8 @@ Lattice FitLattice(const TerrainPoints& terrain) {
     mixed += d * c.transpose();
   }
   Lattice lattice;
-  if (cells.determinant() > 1e-9 * cells(0, 0) * cells(1, 1)) {
-    const Eigen::Matrix2d steps = mixed * cells.inverse();
+  if (linear::Determinant(cells) > 1e-9 * cells(0, 0) * cells(1, 1)) {
+    const Eigen::Matrix2d steps = mixed * linear::Inverse(cells);
     lattice = {steps.col(0), steps.col(1)};
   } else if (cells(0, 0) >= cells(1, 1) && cells(0, 0) > 0.0) {
     lattice.per_column = mixed.col(0) / cells(0, 0);

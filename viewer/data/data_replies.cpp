@@ -22,7 +22,7 @@ DataReply FailureReply(const base::InputError& failure, const std::string& name)
   // The limit of a process for the size of its files has the effect of a full disk.
   static constexpr std::array<Kind, 6> kKinds = {
       {{ENOSPC, 507, kFree}, {EDQUOT, 507, kFree}, {EFBIG, 507, kFree}, {EACCES, 409, kAllow}, {EPERM, 409, kAllow}, {EROFS, 409, kAllow}}};
-  spdlog::warn("{}", failure.what());
+  base::LogWarning("{}", failure.what());
   for (const Kind& kind : kKinds) {
     const std::string message = std::generic_category().message(kind.code);
     if (failure.finding().find(message) == std::string::npos) continue;

@@ -1,7 +1,7 @@
 // The parts of project.json about files: surface, maps, photos, scores. Each says in "missing" what is not there.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 
 #include "partition/block.h"

@@ -11,6 +11,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/geoid_patch.h"
 #include "core/gis/geotiff.h"
 #include "core/gis/read_maps.h"
@@ -188,14 +189,14 @@ std::string ContoursFile(const std::filesystem::path& gpkg, const SurveyFrame& f
     }
     lines.push_back({{"height_m", height_m}, {"index", line.index}, {"points", std::move(points)}});
   }
-  return nlohmann::json{{"interval_m", interval}, {"thinned", contours.thinned}, {"lines", std::move(lines)}}.dump();
+  return base::JsonText(nlohmann::json{{"interval_m", interval}, {"thinned", contours.thinned}, {"lines", std::move(lines)}});
 }
 
 std::string TilesetFile(const std::filesystem::path& tileset_json) {
   std::string text = base::ReadFile(tileset_json);
   try {
-    nlohmann::ordered_json tileset = nlohmann::ordered_json::parse(text);
-    if (surface::StandInSurvey(&tileset)) text = tileset.dump(1) + "\n";
+    nlohmann::ordered_json tileset = base::ParseOrderedJson(text);
+    if (surface::StandInSurvey(&tileset)) text = base::JsonText(tileset, 1) + "\n";
   } catch (const nlohmann::json::exception&) {
   }
   return text;

@@ -10,6 +10,7 @@
 #include "coordinator/project/stamp.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::viewer::opening {
 namespace {
@@ -59,7 +60,7 @@ bool IsUnfinished(const OpenedProject& opened, const std::string& stage) {
 JsonFile ReadJson(const std::filesystem::path& file) {
   if (!Exists(file)) return {};
   try {
-    nlohmann::json json = nlohmann::json::parse(base::ReadFile(file), nullptr, false);
+    nlohmann::json json = base::TryParseJson(base::ReadFile(file));
     if (json.is_object()) return {std::move(json), false};
   } catch (const base::InputError&) {
   }

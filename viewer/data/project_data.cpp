@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "viewer/data/data_replies.h"
 #include "viewer/data/describe_buildings.h"
@@ -120,7 +121,7 @@ std::string Description(const Served& served) {
     }
     json["before"] = std::move(earlier);
   }
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return base::JsonText(json);
 }
 
 // The files that both projects have. `prefix`: of their names in the cache.
@@ -220,7 +221,7 @@ DataReply ProjectData::Get(const std::string& path, const std::string& query) {
     reply.cache = reply.cache || (reply.status == 200 && !query.empty() && path != "project.json" && !IsDocument(path));
     return reply;
   } catch (const base::InputError& error) {
-    spdlog::warn("{}", error.what());
+    base::LogWarning("{}", error.what());
     return DataReply::NotFound(error.what());
   }
 }

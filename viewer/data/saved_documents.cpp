@@ -7,6 +7,7 @@
 #include "core/base/checked_json.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "tour/format/read_tour.h"
 #include "tour/format/write_tour.h"
@@ -47,7 +48,7 @@ std::string ContentOf(const fs::path& file) {
 }
 
 std::string Indented(const Json& json) {
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return base::JsonText(json, 1) + "\n";
 }
 
 std::optional<geo::UtmZone> ZoneOf(const OpenedProject& opened) {
@@ -69,11 +70,11 @@ GcpList ListFromElsewhere(const OpenedProject& opened, const MarkablePhotos& pho
     } catch (const base::InputError& failure) {
       // Only the project's own list is ever replaced, so the others may be passed over.
       if (&file == &files.front()) throw;
-      spdlog::warn("{}", failure.what());
+      base::LogWarning("{}", failure.what());
     }
     if (text.empty()) continue;
     GcpList list = ReadGcpList(text, ZoneOf(opened), photos);
-    if (!list.problem.empty()) spdlog::warn("{}: not shown as control points: {}", file.string(), list.problem);
+    if (!list.problem.empty()) base::LogWarning("{}: not shown as control points: {}", file.string(), list.problem);
     return list;
   }
   return {};
@@ -176,7 +177,7 @@ DataReply GetDocument(const OpenedProject& opened, const std::string& name) {
     }
     return NoContent("");
   } catch (const base::InputError& failure) {
-    spdlog::warn("{}", failure.what());
+    base::LogWarning("{}", failure.what());
     return TextReply(500, failure.file().filename().string() + ": " + failure.finding());
   }
 }

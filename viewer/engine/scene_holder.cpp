@@ -112,7 +112,7 @@ void SceneHolder::ReloadData() {
     } catch (const base::Interrupted&) {
       throw;
     } catch (const std::exception& error) {
-      spdlog::warn("the project could not be read again: {}", error.what());
+      base::LogWarning("the project could not be read again: {}", error.what());
     }
   }
   ++state_.revision;
@@ -146,12 +146,12 @@ void SceneHolder::LoadPlace(Which which) {
         if (!loaded_once_) bad_exposure = error;
         throw;
       }
-      spdlog::warn("the earlier project has no photo '{}': its exact frames have normal brightness", exposure_);
+      base::LogWarning("the earlier project has no photo '{}': its exact frames have normal brightness", exposure_);
     }
     const SceneFrame frame{.cones = info.scales.Cones(), .min_enu = info.min_enu, .max_enu = info.max_enu, .scene_from_main = std::nullopt};
     const BatchSize batch(session->threads().size(), ranks ? place.comm->size() - 1 : 0);
     place.loaded = std::make_unique<Loaded>(Loaded{.session = std::move(session), .appearance = appearance, .frame = frame, .batch = batch});
-    spdlog::info("{} loaded: {} block(s)", file.string(), info.blocks.size());
+    base::LogInfo("{} loaded: {} block(s)", file.string(), info.blocks.size());
     return;
   } catch (const base::Interrupted&) {
     throw;
@@ -161,7 +161,7 @@ void SceneHolder::LoadPlace(Which which) {
     place.why_not = error.what();
   }
   if (bad_exposure) throw base::UsageError(*bad_exposure);
-  spdlog::warn("no exact frames of {}: {}", place.project.folder.string(), place.why_not);
+  base::LogWarning("no exact frames of {}: {}", place.project.folder.string(), place.why_not);
   if (ranks && begun) DropLateMessages(*place.comm);
 }
 

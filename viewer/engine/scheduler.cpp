@@ -26,14 +26,14 @@ std::string ErrorOf(const std::function<void()>& work) {
   } catch (const BadMessage& error) {
     return error.what();
   } catch (const base::UsageError& error) {
-    spdlog::warn("view: {}", error.what());
+    base::LogWarning("view: {}", error.what());
     return error.what();
   } catch (const base::InputError& error) {
-    spdlog::warn("view: {}", error.what());
+    base::LogWarning("view: {}", error.what());
     // Without the folder: the browser may be on another machine.
     return error.file().filename().string() + " " + error.finding();
   } catch (const std::exception& error) {
-    spdlog::error("view: {}", error.what());
+    base::LogError("view: {}", error.what());
     return kOurFault;
   }
 }
@@ -275,7 +275,7 @@ bool Scheduler::Deliver() {
     const auto to = clients_.find(encoding.client);
     const bool wanted = to != clients_.end() && to->second.wanted == encoding.seq;
     if (encoded.bytes == nullptr) {
-      spdlog::error("view: a frame could not be encoded: {}", encoded.error);
+      base::LogError("view: a frame could not be encoded: {}", encoded.error);
       if (wanted) Tell(encoding.client, ErrorText(kOurFault));
       continue;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 #include "viewer/protocol/messages.h"
 
 namespace skyquilt::viewer {
@@ -16,7 +17,7 @@ constexpr size_t kLongestText = 2000;  // bytes of a message that is shown
 
 // Not finite numbers become null; bytes that are not UTF-8 become U+FFFD.
 std::string Dump(const Reply& reply) {
-  return reply.dump(-1, ' ', false, Reply::error_handler_t::replace);
+  return base::JsonText(reply);
 }
 
 std::string Shortened(std::string_view text) {

@@ -1,9 +1,10 @@
 #include "viewer/queries/volume_base.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/linear/linear.h"
 
 namespace skyquilt::viewer {
 namespace {
@@ -74,10 +75,10 @@ BasePlane CornerPatches::FitPlane(const Eigen::Vector2d& centroid) const {
     right += d * (corner.height_m - plane.height_m);
   }
   // The product of the eigenvalues relative to the square of their sum.
-  if (!(normal.determinant() > kFlattest * normal.trace() * normal.trace())) {
+  if (!(linear::Determinant(normal) > kFlattest * normal.trace() * normal.trace())) {
     throw BadMessage("the corners that lie on a surface are almost on a line, which gives no base plane; add a corner, or choose another base");
   }
-  const Eigen::Matrix2d inverse = normal.inverse();
+  const Eigen::Matrix2d inverse = linear::Inverse(normal);
   plane.slope = inverse * right;
   // The height at the centroid is a weighted sum of the corners' heights, whose errors are independent.
   double variance = 0.0;

@@ -41,7 +41,7 @@ void DataThread::Stop() {
 
 DataReply DataThread::Answer(const Job& job) const {
   const auto failed = [&job](const char* what) {
-    spdlog::error("viewer: /data/{}: {}", job.path, what);
+    base::LogError("viewer: /data/{}: {}", job.path, what);
     return DataReply{.status = 500,
                      .content_type = "text/plain; charset=utf-8",
                      .body = "the viewer could not answer this request; the terminal where it runs says why\n",

@@ -222,7 +222,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     http::async_read_some(stream_, buffer_, *parser_, [self = shared_from_this()](const beast::error_code& error, size_t) {
       if (self->AnsweredParseError(error) || self->Failed(error)) return;
       if (self->IsTooSlow(self->receive_began_, self->stream_.rate_policy().received() - self->received_before_)) {
-        spdlog::debug("viewer: a client that uploads too slowly is disconnected");
+        base::LogDebug("viewer: a client that uploads too slowly is disconnected");
         self->Abort();
         return;
       }
@@ -280,7 +280,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!answer.file.empty()) {
       file_ = FileReader::Open(answer.file);
       if (!file_) {
-        spdlog::warn("viewer: {} cannot be read any more", answer.file.string());
+        base::LogWarning("viewer: {} cannot be read any more", answer.file.string());
         answer = PlainAnswer(404, "this file is not there any more");
       }
     }
@@ -324,7 +324,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       self->body_left_.remove_prefix(bytes - of_head);
       const bool more = !self->body_left_.empty() || (self->file_ && self->file_->left() > 0);
       if (more && self->IsTooSlow(self->send_began_, self->stream_.rate_policy().sent() - self->sent_before_)) {
-        spdlog::debug("viewer: a client that reads its answer too slowly is disconnected");
+        base::LogDebug("viewer: a client that reads its answer too slowly is disconnected");
         self->Abort();
         return;
       }

@@ -76,7 +76,7 @@ void Listener::Accept() {
         StartHttpSession(*server_, std::move(socket));
       } catch (const std::exception& failure) {
         // This connection only (out of memory, say): others must still be accepted.
-        spdlog::error("viewer: {}", failure.what());
+        base::LogError("viewer: {}", failure.what());
       }
       Accept();
       return;
@@ -86,7 +86,7 @@ void Listener::Accept() {
       return;
     }
     // Usually no more file descriptors: the connection stays in the system's queue, so trying again at once would only spin.
-    spdlog::debug("viewer: cannot accept a connection: {}", error.message());
+    base::LogDebug("viewer: cannot accept a connection: {}", error.message());
     server_->connections.CloseOne();
     pause_.expires_after(std::chrono::milliseconds(100));
     pause_.async_wait([this](const boost::system::error_code& cancelled) {

@@ -52,7 +52,7 @@ struct Server::Impl {
         return;
       } catch (const std::exception& error) {
         // One connection's trouble (out of memory, say) must not end the service for the others.
-        spdlog::error("viewer: {}", error.what());
+        base::LogError("viewer: {}", error.what());
       }
     }
   }
@@ -70,7 +70,7 @@ struct Server::Impl {
     try {
       if (call) call(right, Link(right));
     } catch (const std::exception& error) {
-      spdlog::error("viewer: {}", error.what());
+      base::LogError("viewer: {}", error.what());
     }
   }
 

@@ -48,7 +48,7 @@ class WebsocketSession : public std::enable_shared_from_this<WebsocketSession> {
     try {
       Finish();
     } catch (const std::exception& error) {
-      spdlog::error("viewer: client {}: {}", id_, error.what());
+      base::LogError("viewer: client {}: {}", id_, error.what());
     }
   }
   WebsocketSession(const WebsocketSession&) = delete;
@@ -158,7 +158,7 @@ class WebsocketSession : public std::enable_shared_from_this<WebsocketSession> {
     try {
       call();
     } catch (const std::exception& error) {
-      spdlog::error("viewer: client {}: {}", id_, error.what());
+      base::LogError("viewer: client {}: {}", id_, error.what());
       Close(close_code::internal_error, "the viewer failed; its terminal says why");
     }
   }
@@ -167,7 +167,7 @@ class WebsocketSession : public std::enable_shared_from_this<WebsocketSession> {
     queue_->BeginLook();
     if (finished_ || closing_) return;
     if (queue_->overflowed()) {
-      spdlog::warn("viewer: client {} does not read what is sent to it and is disconnected", id_);
+      base::LogWarning("viewer: client {} does not read what is sent to it and is disconnected", id_);
       Finish();
     } else if (!writing_) {
       WriteNext();
@@ -199,7 +199,7 @@ class WebsocketSession : public std::enable_shared_from_this<WebsocketSession> {
       Finish();
       return;
     }
-    spdlog::debug("viewer: client {} is disconnected: {}", id_, reason);
+    base::LogDebug("viewer: client {} is disconnected: {}", id_, reason);
     closing_ = true;
     closing_since_ = Clock::now();
     Leave();
@@ -230,7 +230,7 @@ class WebsocketSession : public std::enable_shared_from_this<WebsocketSession> {
     try {
       server_.handler.OnClose(id_);
     } catch (const std::exception& error) {
-      spdlog::error("viewer: client {}: {}", id_, error.what());
+      base::LogError("viewer: client {}: {}", id_, error.what());
     }
   }
 
@@ -256,7 +256,7 @@ class WebsocketSession : public std::enable_shared_from_this<WebsocketSession> {
     if (closing_) {
       if (now - closing_since_ > Seconds(std::min(kCloseS, server_.options.handshake_s))) Finish();
     } else if (writing_ && now - progressed_ > Seconds(server_.options.write_stall_s)) {
-      spdlog::warn("viewer: client {} does not read what is sent to it and is disconnected", id_);
+      base::LogWarning("viewer: client {} does not read what is sent to it and is disconnected", id_);
       Finish();
     } else if (!greeted_ && now - opened_ > Seconds(server_.options.handshake_s)) {
       Close(close_code::protocol_error, "the first message must be hello, and come at once");

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/poses/poses_bench.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -40,7 +41,7 @@ TEST(PosesReport, FewerPhotosThanColmapPassOnlyWithTheFallBack) {
   const BenchPage page = PosesPage(result, "skyquilt bench poses");
   EXPECT_TRUE(Says(page, "fewer photos than COLMAP alone: turned (60 photos): 58 against 60."));
   EXPECT_TRUE(Says(page, "was taken for blurred (60 photos)"));
-  const nlohmann::json json = nlohmann::json::parse(PosesJson(result, "skyquilt bench poses"));
+  const nlohmann::json json = base::ParseJson(PosesJson(result, "skyquilt bench poses"));
   EXPECT_EQ(json["rows"].size(), 6U);
   EXPECT_EQ(json["comparisons"][0]["passed"], false);
   EXPECT_EQ(json["comparisons"][1]["fell_back"], true);

@@ -8,6 +8,7 @@
 
 #include "buildings/files/building_files.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "tests/buildings/files/sample_set.h"
 #include "tests/support/temporary_folder.h"
 
@@ -170,7 +171,7 @@ TEST(CityJson, AttributesAreMeasuresWithTheirSigma) {
   EXPECT_FALSE(unknown.contains("pitch_deg")) << "what is not known is left out";
   EXPECT_FALSE(unknown.contains("ridge_m_sigma"));
   EXPECT_EQ(unknown["lod22_valid"], false);
-  EXPECT_EQ(document.dump().find("null"), std::string::npos);
+  EXPECT_EQ(base::JsonText(document).find("null"), std::string::npos);
 }
 
 TEST(CityJson, WithoutGeoreferenceThereIsNoCrs) {
@@ -184,7 +185,7 @@ TEST(CityJson, WithoutGeoreferenceThereIsNoCrs) {
   const Json unknown = WrittenCityJson(set, SampleFrame(false));
   EXPECT_TRUE(unknown["CityObjects"]["building_1"]["attributes"].contains("length"));
   EXPECT_FALSE(unknown["CityObjects"]["building_1"]["attributes"].contains("measuredHeight"));
-  EXPECT_EQ(unknown.dump().find("_m\""), std::string::npos);
+  EXPECT_EQ(base::JsonText(unknown).find("_m\""), std::string::npos);
 }
 
 TEST(CityJson, OfNoBuildingsIsComplete) {

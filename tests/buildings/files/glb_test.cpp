@@ -6,6 +6,7 @@
 
 #include "buildings/files/building_files.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "tests/buildings/files/sample_set.h"
 #include "tests/support/temporary_folder.h"
 
@@ -79,7 +80,7 @@ TEST(BuildingsGlb, HasANodePerBuildingWithItsMeasures) {
   }
   EXPECT_FALSE(glb.json["nodes"][3]["extras"].contains("pitch_deg"));
   EXPECT_EQ(glb.json["asset"]["extras"]["crs"], "EPSG:32632");
-  EXPECT_EQ(glb.json.dump().find("null"), std::string::npos);
+  EXPECT_EQ(base::JsonText(glb.json).find("null"), std::string::npos);
 }
 
 TEST(BuildingsGlb, MeshesAreTheSolids) {

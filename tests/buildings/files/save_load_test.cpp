@@ -8,6 +8,7 @@
 
 #include "buildings/files/building_files.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "tests/buildings/files/sample_set.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
@@ -201,7 +202,7 @@ TEST(LoadBuildings, RefusesWhatIsDamaged) {
   const auto error_after = [&](const std::function<void(Json&)>& change) {
     Json json = Json::parse(good);
     change(json);
-    return error_of(json.dump());
+    return error_of(base::JsonText(json));
   };
   EXPECT_EQ(error_after([](Json&) {}), "");
   EXPECT_NE(InputErrorOf([&] { LoadBuildings(folder / "none.json"); }).find("none.json: cannot open"), std::string::npos);

@@ -14,6 +14,8 @@
 #include "buildings/pictures/wall_sides.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
+#include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/ray_box.h"
 #include "tests/buildings/sample_buildings.h"
 #include "tests/support/error_of.h"
@@ -78,7 +80,7 @@ struct Result {
          double pixel_m = 0.1, const BuildingSet& set = {}) {
     base::ThreadPool threads(2);
     files = WriteFacades(building, caster, FileFrame(set, frame), pixel_m, folder.path() / "facades", threads);
-    description = json::parse(std::ifstream(folder.path() / "facades" / ("facade_" + std::to_string(building.id) + ".json")));
+    description = base::ParseJson(base::ReadFile(folder.path() / "facades" / ("facade_" + std::to_string(building.id) + ".json")));
   }
   // The facade that looks into this direction.
   const json& Facing(double azimuth_deg) const {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -16,7 +17,7 @@ Failure Caught(const Error& error) {
   try {
     throw error;
   } catch (...) {
-    return FailureFromJson(nlohmann::json::parse(ToJson(CurrentFailure()).dump()));
+    return FailureFromJson(base::ParseJson(base::JsonText(ToJson(CurrentFailure()))));
   }
 }
 

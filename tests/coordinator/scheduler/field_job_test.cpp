@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -52,11 +53,11 @@ TEST(FieldJob, OutcomeReadsBackUnchangedEvenWithStrangeText) {
 }
 
 TEST(FieldJob, OutcomeOfAnEarlierVersionsLedgerIsRead) {
-  nlohmann::json old = nlohmann::json::parse(ToText(FieldOutcome{}));
+  nlohmann::json old = base::ParseJson(ToText(FieldOutcome{}));
   old["failure"] = 1;
   old["reason"] = "diverged";
   old["job"]["team"] = {0, 1};
-  const FieldOutcome outcome = OutcomeFromText(old.dump());
+  const FieldOutcome outcome = OutcomeFromText(base::JsonText(old));
   EXPECT_EQ(outcome.failure.kind, Failure::kBlock);
   EXPECT_EQ(outcome.failure.reason, "diverged");
 }

@@ -7,6 +7,7 @@
 #include "coordinator/scheduler/train_ledger.h"
 #include "coordinator/scheduler/training_log.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -107,7 +108,7 @@ TEST_F(TrainingFiles, ReportKeepsTheFiguresOfFieldsThatWereAlreadyComplete) {
   ledger.AddOutcome(failed);
   ledger.SetSpent(31.0, true);
   scene::WriteTrainReport(ledger.Report(3, 2), project_.TrainReport());
-  const nlohmann::json report = nlohmann::json::parse(base::ReadFile(project_.TrainReport()));
+  const nlohmann::json report = base::ParseJson(base::ReadFile(project_.TrainReport()));
   EXPECT_EQ(report.at("ranks"), 3);
   EXPECT_EQ(report.at("peak_rss_bytes"), 1000);
   ASSERT_EQ(report.at("fields").size(), 2U);

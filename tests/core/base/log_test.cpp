@@ -15,10 +15,10 @@ TEST(Log, FileReceivesLaterMessages) {
   WriteFileAtomically(file, "before\n");
   testing::internal::CaptureStderr();
   InitLog(false, "rank 1");
-  spdlog::info("too early");
+  base::LogInfo("too early");
   AddLogFile(file);
-  spdlog::warn("in both");
-  spdlog::debug("hidden");
+  base::LogWarning("in both");
+  base::LogDebug("hidden");
   const std::string shown = testing::internal::GetCapturedStderr();
   InitLog(false);
   const std::string kept = ReadFile(file);
@@ -33,7 +33,7 @@ TEST(Log, FileReceivesLaterMessages) {
 TEST(Log, VerboseShowsDebug) {
   testing::internal::CaptureStderr();
   InitLog(true);
-  spdlog::debug("shown");
+  base::LogDebug("shown");
   InitLog(false);
   EXPECT_NE(testing::internal::GetCapturedStderr().find("debug: shown"), std::string::npos);
 }

@@ -4,8 +4,9 @@
 #include <sched.h>
 
 #include <cstdlib>
-#include <regex>
 #include <vector>
+
+#include "core/base/pattern.h"
 
 namespace skyquilt::base {
 namespace {
@@ -40,8 +41,8 @@ TEST(System, PeakMemoryIncludesWrittenPages) {
 
 TEST(System, DescribesItself) {
   EXPECT_GE(UsableCores(), 1);
-  EXPECT_TRUE(std::regex_match(MachineDescription(), std::regex(".+, [0-9]+ cores?, [0-9]+ GiB.*"))) << MachineDescription();
-  EXPECT_TRUE(std::regex_match(UtcTimestamp(), std::regex("20[0-9]{2}-[01][0-9]-[0-3][0-9]T[0-2][0-9]:[0-5][0-9]:[0-6][0-9]Z"))) << UtcTimestamp();
+  EXPECT_TRUE(MatchWhole(MachineDescription(), ".+, [0-9]+ cores?, [0-9]+ GiB.*")) << MachineDescription();
+  EXPECT_TRUE(MatchWhole(UtcTimestamp(), "20[0-9]{2}-[01][0-9]-[0-3][0-9]T[0-2][0-9]:[0-5][0-9]:[0-6][0-9]Z")) << UtcTimestamp();
 }
 
 }  // namespace

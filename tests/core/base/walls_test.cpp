@@ -38,10 +38,11 @@ const std::map<std::string, std::set<std::string>>& AllowedIncludes() {
       {"evaluate", {"partition", "surface", "buildings", "core"}},
       {"core/base", {}},
       {"core/config", {"core/base"}},
+      {"core/linear", {}},
       {"core/checkpoint", {"core/base"}},
       {"core/comm", {"core/base"}},
-      {"core/geo", {"core/base"}},
-      {"core/camera", {"core/geo", "core/base"}},
+      {"core/geo", {"core/linear", "core/base"}},
+      {"core/camera", {"core/geo", "core/linear", "core/base"}},
       {"core/image", {"core/base"}},
       {"core/survey", {"core/camera", "core/image", "core/geo", "core/config", "core/base"}},
       {"core/kernel", {"core/base"}},
@@ -50,7 +51,8 @@ const std::map<std::string, std::set<std::string>>& AllowedIncludes() {
       {"core/brightness", {"core/survey", "core/image", "core/config", "core/checkpoint", "core/base"}},
       {"core/render", {"core/field", "core/encoding", "core/kernel", "core/brightness", "core/geo", "core/image", "core/base"}},
       {"core/scene",
-       {"core/render", "core/field", "core/encoding", "core/brightness", "core/camera", "core/geo", "core/checkpoint", "core/image", "core/base"}},
+       {"core/render", "core/field", "core/encoding", "core/brightness", "core/camera", "core/geo", "core/linear", "core/checkpoint", "core/image",
+        "core/base"}},
       {"core/metrics", {"core/image", "core/base"}},
       {"core/gis", {"core/geo", "core/image", "core/base"}},
       {"core/raytrace", {"core/base"}},
@@ -67,6 +69,7 @@ struct Library {
 
 const std::vector<Library>& Libraries() {
   static const std::vector<Library> libraries = {
+      {"Eigen's decompositions, which take long to compile,", std::regex("Eigen/(Cholesky|Dense|Eigenvalues|LU|QR|SVD|Sparse.*)"), {"core/linear"}},
       {"MPI", std::regex("(.*/)?mpi\\.h"), {"core/comm"}},
       {"HDF5", std::regex("(.*/)?(hdf5(_hl)?\\.h|H5[^/]*\\.h|highfive/.*)"), {"core/checkpoint"}},
       {"GeographicLib", std::regex("GeographicLib/.*"), {"core/geo"}},
@@ -228,12 +231,52 @@ TEST(Rooms, ThoseThatLeadToASceneDoNotReadKeptPoints) {
   EXPECT_TRUE(readers.contains("prepare") && readers.contains("evaluate"));
 }
 
+// Eigen/Geometry makes them visible too, and each use of one costs its file seconds of compilation.
+TEST(Rooms, EigensDecompositionsAreUsedInOneRoom) {
+  static const std::regex kDecomposition(
+      "Eigen::(SelfAdjointEigenSolver|EigenSolver|JacobiSVD|BDCSVD|LLT|LDLT|PartialPivLU|FullPivLU|[A-Za-z]*HouseholderQR|Simplicial[A-Z]+|umeyama|"
+      "Quaterniond::FromTwoVectors)"
+      "\\b"
+      "|[.](ldlt|llt|lu|partialPivLu|fullPivLu|jacobiSvd|bdcSvd|householderQr|colPivHouseholderQr|fullPivHouseholderQr)[(][)]");
+  bool in_linear = false;
+  for (const fs::path& file : Sources()) {
+    std::ifstream in(fs::path(SKYQUILT_SOURCE_DIR) / file);
+    for (std::string line; std::getline(in, line);) {
+      line.resize(std::min(line.size(), line.find("//")));
+      if (!std::regex_search(line, kDecomposition)) continue;
+      if (RoomOf(file.generic_string()) == "core/linear") {
+        in_linear = true;
+      } else {
+        ADD_FAILURE() << file << ": " << line << "\nuse core/linear, or add there what is missing";
+      }
+    }
+  }
+  EXPECT_TRUE(in_linear);
+}
+
+// The same holds for regular expressions, for JSON's parser and writer, and for spdlog.
+TEST(Rooms, CostlyTemplatesAreUsedInOneFile) {
+  static const std::regex kCostly("std::(regex|smatch|sregex_iterator)\\b|\\b(ordered_)?json::parse[(]|[.]dump[(]|<spdlog/");
+  static const std::set<std::string> kMay = {"core/base/pattern.cpp", "core/base/json_text.cpp", "core/base/log.cpp", "core/base/checked_json.cpp",
+                                             "viewer/protocol/json_fields.cpp"};
+  for (const fs::path& file : Sources()) {
+    if (kMay.contains(file.generic_string())) continue;
+    std::ifstream in(fs::path(SKYQUILT_SOURCE_DIR) / file);
+    for (std::string line; std::getline(in, line);) {
+      line.resize(std::min(line.size(), line.find("//")));
+      EXPECT_FALSE(std::regex_search(line, kCostly)) << file << ": " << line << "\nuse core/base/pattern.h, core/base/json_text.h or core/base/log.h";
+    }
+  }
+}
+
 TEST(Rooms, ForbiddenIncludesAreFound) {
   const std::vector<std::pair<std::string, std::string>> violators = {
       {"worker/trainer.cpp", "#include <mpi.h>"},
       {"core/checkpoint/writer.cpp", "#include <mpi.h>"},
       {"core/field/save.cpp", "#include <hdf5.h>"},
       {"core/field/save.cpp", "#include <hdf5/serial/H5Cpp.h>"},
+      {"prepare/a.cpp", "#include <Eigen/Dense>"},
+      {"core/geo/a.cpp", "#include <Eigen/SVD>"},
       {"prepare/a.cpp", "  #  include <GeographicLib/Geocentric.hpp>"},
       {"core/encoding/hash.cpp", "#include \"hwy/highway.h\""},
       {"core/metrics/ssim.cpp", "#include <opencv2/imgcodecs.hpp>"},
@@ -280,6 +323,8 @@ TEST(Rooms, AllowedIncludesAreAccepted) {
       {"core/comm/mpi_comm.cpp", "#include <mpi.h>"},
       {"core/checkpoint/file.cpp", "#include <hdf5.h>"},
       {"core/geo/utm.cpp", "#include <GeographicLib/UTMUPS.hpp>"},
+      {"core/linear/linear.cpp", "#include <Eigen/QR>"},
+      {"core/geo/transform.h", "#include <Eigen/Geometry>"},
       {"core/kernel/adam.cpp", "#include <hwy/foreach_target.h>"},
       {"core/image/decode.cpp", "#include <opencv2/imgcodecs.hpp>"},
       {"core/metrics/ssim.cpp", "#include <opencv2/imgproc.hpp>"},

@@ -115,7 +115,7 @@ TEST(ReadImageSize, AgreesWithDecodingForEveryKind) {
   WriteBytes(folder.path() / "a.jpg", jpeg);
   // Maker notes can put the frame header far into the file.
   std::string app;
-  for (int i = 0; i < 8; ++i) app += std::string("\xFF\xE4\xFF\xFF", 4) + std::string(65533, '\x5A');
+  for (int i = 0; i < 8; ++i) app.append("\xFF\xE4\xFF\xFF", 4).append(65533, '\x5A');
   WriteBytes(folder.path() / "far.jpg", jpeg.substr(0, 2) + app + jpeg.substr(2));
   for (const char* name : {"a.png", "a.tif", "a.jpg", "far.jpg"}) {
     int width = 0;

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/survey/survey.h"
 #include "tests/support/temporary_folder.h"
 
@@ -94,7 +96,7 @@ TEST(ControlFitJson, RefusesDamage) {
   const auto refused = [&](const std::function<void(nlohmann::json&)>& damage) {
     nlohmann::json value = good;
     damage(value);
-    EXPECT_THROW(survey::ControlFitFromJson(value), std::invalid_argument) << value.dump();
+    EXPECT_THROW(survey::ControlFitFromJson(value), std::invalid_argument) << base::JsonText(value);
   };
   refused([](auto& value) { value["points"][0]["use"] = "controlled"; });
   refused([](auto& value) { value["points"][0]["error_m"] = {1.0, 2.0}; });
@@ -113,9 +115,9 @@ TEST(ControlFitJson, RefusesDamage) {
   survey::Survey survey;
   survey.control = SmallFit();
   SaveSurvey(survey, folder.path());
-  nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
   json["control"]["points"][0]["use"] = 7;
-  base::WriteFileAtomically(folder / "survey.json", json.dump());
+  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
   EXPECT_THROW(survey::LoadSurvey(folder.path()), base::InputError);
 }
 

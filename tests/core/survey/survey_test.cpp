@@ -9,6 +9,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/survey/geo_fit_json.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
@@ -74,9 +75,9 @@ template <typename Edit>
 void ExpectRefused(const std::string& word, const Edit& edit) {
   const TemporaryFolder folder;
   SaveSurvey(SmallSurvey(), folder.path());
-  nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
   edit(json);
-  base::WriteFileAtomically(folder / "survey.json", json.dump());
+  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
   const std::string error = InputErrorOf([&] { LoadSurvey(folder.path()); });
   EXPECT_NE(error.find(word), std::string::npos) << word << ": " << error;
 }
@@ -130,18 +131,18 @@ TEST(Survey, KeepsWhatItsHeightsAreAbove) {
   const TemporaryFolder folder;
   SaveSurvey(SmallSurvey(), folder.path());
   EXPECT_EQ(LoadSurvey(folder.path()).height_reference, geo::HeightReference::kEgm96);
-  nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
   ASSERT_EQ(json.erase("height_reference"), 1U);
-  base::WriteFileAtomically(folder / "survey.json", json.dump());
+  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
   EXPECT_EQ(LoadSurvey(folder.path()).height_reference, geo::HeightReference::kUnknown) << "of an older program";
 }
 
 TEST(Survey, ATruthWithoutNormalsAndClassesIsLoaded) {
   const TemporaryFolder folder;
   SaveSurvey(SmallSurvey(), folder.path());
-  nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
   for (const char* key : {"normals_folder", "classes_folder", "surface_ply"}) ASSERT_EQ(json["truth"].erase(key), 1U) << key;
-  base::WriteFileAtomically(folder / "survey.json", json.dump());
+  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
   const Survey survey = LoadSurvey(folder.path());
   ASSERT_TRUE(survey.truth);
   EXPECT_EQ(survey.truth->depth_folder, "/t/depth");
@@ -167,10 +168,10 @@ TEST(Survey, AnEmptySurveyIsSavedAndLoaded) {
 TEST(Survey, OfAnOlderProgramHasNeitherKeptPointsNorTracks) {
   const TemporaryFolder folder;
   SaveSurvey(SmallSurvey(), folder.path());
-  nlohmann::json json = nlohmann::json::parse(base::ReadFile(folder / "survey.json"));
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
   json.erase("n_kept_points");
   json.erase("n_observations");
-  base::WriteFileAtomically(folder / "survey.json", json.dump());
+  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
   std::filesystem::remove(folder / "kept_points.ply");
   std::filesystem::remove(folder / "tracks.bin");
   const Survey survey = LoadSurvey(folder.path());

@@ -1,6 +1,6 @@
 #include "tests/prepare/control/made_control.h"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <fstream>
 

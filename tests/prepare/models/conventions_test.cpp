@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/base/json_text.h"
 #include "core/geo/ecef.h"
 #include "core/geo/enu_frame.h"
 #include "core/geo/geoid.h"
@@ -112,10 +113,10 @@ TEST_F(Conventions, Opensfm) {
 
 TEST_F(Conventions, OpensfmOfReducedPhotosFitsTheWholeOnes) {
   test::Files files = test::OpensfmFiles(survey_);
-  nlohmann::json file = nlohmann::json::parse(files["reconstruction.json"]);
+  nlohmann::json file = base::ParseJson(files["reconstruction.json"]);
   file[0]["cameras"]["v2 made"]["width"] = 160;
   file[0]["cameras"]["v2 made"]["height"] = 120;
-  files["reconstruction.json"] = file.dump();
+  files["reconstruction.json"] = base::JsonText(file);
   Expect(Read(files, "reconstruction.json"), test::ProjectOpensfm);
 }
 
@@ -151,11 +152,11 @@ TEST_F(Conventions, OpfWithHeightsAboveAGeoid) {
     if (content.find("EPSG:32632") != std::string::npos) frame = &content;
   }
   ASSERT_NE(frame, nullptr);
-  nlohmann::json file = nlohmann::json::parse(*frame);
+  nlohmann::json file = base::ParseJson(*frame);
   const auto expect = [&](const char* definition, std::optional<double> constant_m, const auto& added_m) {
     file["crs"] = {{"definition", definition}};
     if (constant_m) file["crs"]["geoid_height"] = *constant_m;
-    *frame = file.dump();
+    *frame = base::JsonText(file);
     ExpectPlace(
         Read(files),
         [&](const Vector3d& x) {
@@ -175,19 +176,19 @@ TEST_F(Conventions, OpfWithHeightsAboveAGeoid) {
 
 TEST_F(Conventions, FisheyesOfTransformsAndMetashapeAreOpencvs) {
   test::Files files = test::TransformsFiles(survey_);
-  nlohmann::json file = nlohmann::json::parse(files["transforms.json"]);
+  nlohmann::json file = base::ParseJson(files["transforms.json"]);
   file["camera_model"] = "OPENCV_FISHEYE";
   file["k4"] = 0.001;
   file.erase("p1");
   file.erase("p2");
-  files["transforms.json"] = file.dump();
+  files["transforms.json"] = base::JsonText(file);
   const camera::Camera camera = Read(files, "transforms.json").sfm.cameras.at(1);
   EXPECT_EQ(camera.model, camera::CameraModel::kOpencvFisheye);
   EXPECT_EQ(camera.params, (std::vector<double>{510.0, 500.0, 322.0, 237.0, -0.1, 0.02, -0.003, 0.001}));
   // As instant-ngp's scripts say it.
   file.erase("camera_model");
   file["is_fisheye"] = true;
-  files["transforms.json"] = file.dump();
+  files["transforms.json"] = base::JsonText(file);
   EXPECT_EQ(Read(files, "transforms.json").sfm.cameras.at(1).params, camera.params);
   std::string xml = test::MetashapeFiles(survey_).at("cameras.xml");
   const auto replace = [&](const std::string& from, const std::string& to) {

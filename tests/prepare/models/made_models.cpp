@@ -8,6 +8,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "core/base/json_text.h"
 #include "core/geo/ecef.h"
 
 namespace skyquilt::test {
@@ -106,7 +107,7 @@ Files TransformsFiles(const MadeSurvey& survey) {
       "ply\nformat ascii 1.0\ncomment made\nelement vertex " + std::to_string(survey.points.size()) +
       "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
   for (const Vector3d& x : survey.points) ply += Text(x.x()) + " " + Text(x.y()) + " " + Text(x.z()) + " 10 20 30\n";
-  return {{"transforms.json", file.dump(1)}, {"points.ply", ply}};
+  return {{"transforms.json", base::JsonText(file, 1)}, {"points.ply", ply}};
 }
 
 Files BlenderFiles(const MadeSurvey& survey) {
@@ -118,7 +119,7 @@ Files BlenderFiles(const MadeSurvey& survey) {
     json& part = i + 1 < survey.photos.size() ? train : test;
     part["frames"].push_back({{"file_path", stem}, {"rotation", 0.01}, {"transform_matrix", Rows(RightUpBack(photo.axes), photo.centre)}});
   }
-  return {{"transforms_train.json", train.dump(1)}, {"transforms_test.json", test.dump(1)}};
+  return {{"transforms_train.json", base::JsonText(train, 1)}, {"transforms_test.json", base::JsonText(test, 1)}};
 }
 
 Files OpensfmFiles(const MadeSurvey& survey) {
@@ -151,7 +152,8 @@ Files OpensfmFiles(const MadeSurvey& survey) {
     reconstruction["points"][std::to_string(i)] = {{"color", {10.0, 20.0, 30.0}}, {"coordinates", List(survey.points[i])}};
   }
   const json lla = {{"latitude", kMadeOrigin.latitude_deg}, {"longitude", kMadeOrigin.longitude_deg}, {"altitude", kMadeOrigin.height_m}};
-  return {{"reconstruction.json", json::array({reconstruction}).dump(1)}, {"reference_lla.json", lla.dump()}, {"tracks.csv", tracks}};
+  return {
+      {"reconstruction.json", base::JsonText(json::array({reconstruction}), 1)}, {"reference_lla.json", base::JsonText(lla)}, {"tracks.csv", tracks}};
 }
 
 Files MetashapeFiles(const MadeSurvey& survey) {
@@ -256,9 +258,14 @@ Files OpfFiles(const MadeSurvey& survey) {
                        view(1, camera_ids.size(), ranges.size())}},
                      {"buffers", json::array({{{"uri", "points.bin"}, {"byteLength", positions.size() + colors.size()}},
                                               {{"uri", "matches.bin"}, {"byteLength", camera_ids.size() + ranges.size()}}})}};
-  return {{"project.opf", project.dump(1)},   {"cameras.json", list.dump(1)},          {"input.json", input.dump(1)},
-          {"frame.json", frame.dump(1)},      {"calibrated.json", calibrated.dump(1)}, {"tracks.gltf", gltf.dump(1)},
-          {"points.bin", positions + colors}, {"matches.bin", camera_ids + ranges}};
+  return {{"project.opf", base::JsonText(project, 1)},
+          {"cameras.json", base::JsonText(list, 1)},
+          {"input.json", base::JsonText(input, 1)},
+          {"frame.json", base::JsonText(frame, 1)},
+          {"calibrated.json", base::JsonText(calibrated, 1)},
+          {"tracks.gltf", base::JsonText(gltf, 1)},
+          {"points.bin", positions + colors},
+          {"matches.bin", camera_ids + ranges}};
 }
 
 // Camera x right, y up, z backward; the image's v grows downwards.

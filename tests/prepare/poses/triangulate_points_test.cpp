@@ -11,6 +11,7 @@
 #include "core/base/child_process.h"
 #include "core/base/file.h"
 #include "core/base/order_statistics.h"
+#include "core/linear/linear.h"
 #include "prepare/poses/pose_pairs.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
@@ -20,7 +21,7 @@ namespace {
 
 // A camera at x that looks along the direction.
 geo::Rigid3d Looking(const Eigen::Vector3d& x, const Eigen::Vector3d& direction) {
-  const Eigen::Quaterniond cam_from_world = Eigen::Quaterniond::FromTwoVectors(direction, Eigen::Vector3d::UnitZ());
+  const Eigen::Quaterniond cam_from_world = linear::RotationBetween(direction, Eigen::Vector3d::UnitZ());
   return {cam_from_world, -(cam_from_world * x)};
 }
 

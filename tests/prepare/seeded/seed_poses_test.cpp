@@ -9,6 +9,7 @@
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
+#include "core/linear/linear.h"
 #include "tests/prepare/seeded/made_survey.h"
 #include "tests/support/temporary_folder.h"
 
@@ -30,7 +31,7 @@ Accuracy Compare(const MadeSurvey& made, const survey::ColmapModel& model) {
     found.col(static_cast<Eigen::Index>(k)) = model.images[k].cam_from_world.OriginInSource();
     truth.col(static_cast<Eigen::Index>(k)) = made.cam_from_enu[model.images[k].id - 1].OriginInSource();
   }
-  const Eigen::Matrix4d map = Eigen::umeyama(found, truth);
+  const Eigen::Matrix4d map = linear::Similarity(found, truth);
   const double scale = std::cbrt(map.topLeftCorner<3, 3>().determinant());
   const Eigen::Quaterniond turn(Eigen::Matrix3d(map.topLeftCorner<3, 3>() / scale));
   Accuracy accuracy;

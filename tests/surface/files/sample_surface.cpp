@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/image/image.h"
 
 namespace skyquilt::surface {
@@ -99,7 +100,7 @@ Glb::Glb(const std::filesystem::path& file) {
   if (ReadAs<uint32_t>(bytes, 8) != bytes.size()) throw std::runtime_error("wrong length of the file");
   const size_t json_bytes = ReadAs<uint32_t>(bytes, 12);
   if (bytes.substr(16, 4) != "JSON" || json_bytes % 4 != 0) throw std::runtime_error("wrong JSON chunk");
-  json = nlohmann::json::parse(bytes.substr(20, json_bytes));
+  json = base::ParseJson(bytes.substr(20, json_bytes));
   const size_t at = 20 + json_bytes;
   if (bytes.substr(at + 4, 4) != std::string("BIN\0", 4)) throw std::runtime_error("wrong BIN chunk");
   binary = bytes.substr(at + 8);

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "surface/files/file_writer.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
@@ -146,7 +147,7 @@ TEST(SurfaceFiles, GeoReferenceTellsHowToReadTheRest) {
   const TemporaryFolder folder;
   const MapFrame frame(SampleInfo(kToronto));
   WriteAll(frame, folder.path());
-  const auto json = nlohmann::json::parse(base::ReadFile(folder / "georeference.json"));
+  const auto json = base::ParseJson(base::ReadFile(folder / "georeference.json"));
   EXPECT_EQ(json["crs"], "EPSG:32617");
   EXPECT_EQ(json["offset"].get<std::vector<double>>(), std::vector<double>(frame.offset().data(), frame.offset().data() + 3));
   EXPECT_EQ(json["origin"]["latitude_deg"], 43.64);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/geo/ecef.h"
 #include "core/geo/geoid.h"
 #include "surface/files/earth_place.h"
@@ -27,7 +28,7 @@ void WriteTiles(const MapFrame& frame, const std::vector<TexturedTile>& tiles, c
 }
 
 json ReadTileset(const std::filesystem::path& folder) {
-  return json::parse(base::ReadFile(folder / "tiles" / "tileset.json"));
+  return base::ParseJson(base::ReadFile(folder / "tiles" / "tileset.json"));
 }
 
 template <typename Json>
@@ -92,7 +93,7 @@ TEST(Tileset, HeightsAboveTheGeoidAreRaisedToTheEllipsoid) {
     scene::SceneInfo info = SampleInfo(origin);
     info.height_reference = geo::HeightReference::kEgm96;
     WriteTiles(MapFrame(info, geo::Vertical::kEgm96), {tile}, folder.path());
-    auto tileset = nlohmann::ordered_json::parse(base::ReadFile(folder / "tiles/tileset.json"));
+    auto tileset = base::ParseOrderedJson(base::ReadFile(folder / "tiles/tileset.json"));
     EXPECT_EQ(tileset["asset"]["extras"]["verticalDatum"], "WGS84 ellipsoid (EPSG:4979)");
     const Eigen::Matrix4d ecef_from_tile = TransformOf(tileset["root"]);
     const Glb glb(folder.path() / "tiles" / "0_30_-20.glb");
@@ -116,7 +117,7 @@ TEST(Tileset, HeightsAboveTheGeoidAreRaisedToTheEllipsoid) {
 TEST(Tileset, OfTheEllipsoidStandsInItsSurveyAlready) {
   const TemporaryFolder folder;
   WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0}), geo::Vertical::kEgm96), {SampleTile({0, 0, 0})}, folder.path());
-  auto tileset = nlohmann::ordered_json::parse(base::ReadFile(folder / "tiles/tileset.json"));
+  auto tileset = base::ParseOrderedJson(base::ReadFile(folder / "tiles/tileset.json"));
   const auto before = tileset;
   EXPECT_FALSE(StandInSurvey(&tileset));
   EXPECT_EQ(tileset, before);

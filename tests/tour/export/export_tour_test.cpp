@@ -9,6 +9,7 @@
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 #include "core/image/image.h"
 #include "core/image/srgb.h"
 #include "tests/core/gis/limited_file_size.h"
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 nlohmann::json JsonOf(const fs::path& out, const std::string& name) {
-  return nlohmann::json::parse(ContentOf(out, name));
+  return base::ParseJson(ContentOf(out, name));
 }
 
 std::set<std::string> AllFiles(const fs::path& folder) {
@@ -152,11 +153,11 @@ TEST(ExportTour, AFullDiskLeavesTheEarlierExport) {
 
 TEST(ExportTour, AnotherVersionIsExportedAsFarAsItIsUnderstood) {
   SampleTourProject sample;
-  nlohmann::json json = nlohmann::json::parse(base::ReadFile(sample.project / "tour.json"));
+  nlohmann::json json = base::ParseJson(base::ReadFile(sample.project / "tour.json"));
   json["version"] = 2;
   json["weather"] = "sunny";
   json["stops"][1]["pose"] = "inside";
-  base::WriteFileAtomically(sample.project / "tour.json", json.dump());
+  base::WriteFileAtomically(sample.project / "tour.json", base::JsonText(json));
   const Exported exported = sample.Export();
   EXPECT_EQ(exported.stops, 1U);
   EXPECT_GE(exported.missing.size(), 2U);

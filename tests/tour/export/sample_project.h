@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/sha256.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tour/format/sample_assets.h"
@@ -44,7 +45,7 @@ inline void WriteSampleTiles(const std::filesystem::path& folder) {
   root["refine"] = "REPLACE";
   root["transform"] = Json::array({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 100, 200, 300, 1});
   const Json tileset = {{"asset", {{"version", "1.1"}}}, {"geometricError", 16.0}, {"root", root}};
-  base::WriteFileAtomically(folder / "tileset.json", tileset.dump(1));
+  base::WriteFileAtomically(folder / "tileset.json", base::JsonText(tileset, 1));
 }
 
 struct SampleTourProject {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 #include "tests/tour/export/sample_project.h"
 #include "tour/export/script_data.h"
 
@@ -106,7 +107,7 @@ TEST_F(Tiles, AreFinestNearThePlaces) {
 TEST_F(Tiles, ARootWithoutContentHasItsChildren) {
   Json tileset = Json::parse(base::ReadFile(folder_ / "tileset.json"));
   tileset["root"].erase("content");
-  base::WriteFileAtomically(folder_ / "tileset.json", tileset.dump());
+  base::WriteFileAtomically(folder_ / "tileset.json", base::JsonText(tileset));
   const TileTree tree = Tree();
   EXPECT_EQ(tree.Least().tiles, 4U);
   EXPECT_EQ(tree.All().tiles, 20U);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/json_text.h"
 #include "tests/tour/format/sample_assets.h"
 
 namespace skyquilt::tour {
@@ -38,7 +39,7 @@ TEST(GlbCheck, EveryTruncationIsRefused) {
 
 TEST(GlbCheck, PartsFillTheFile) {
   const SampleModel model;
-  const std::string json = GlbChunk("JSON", model.json.dump(), ' '), binary = GlbChunk(std::string("BIN\0", 4), model.binary, '\0');
+  const std::string json = GlbChunk("JSON", base::JsonText(model.json), ' '), binary = GlbChunk(std::string("BIN\0", 4), model.binary, '\0');
   ASSERT_EQ(WhyNotGlb(GlbOfChunks(json + binary)), "");
   EXPECT_NE(WhyNotGlb(GlbOfChunks(json + binary, 1)).find("version 2"), std::string::npos);
   for (const std::string& chunks :
@@ -123,7 +124,7 @@ TEST(GlbCheck, EverythingStaysWithinItsBounds) {
                                                   {"/buffers", nullptr}};
   for (const auto& [pointer, value] : changes) {
     EXPECT_NE(WhyNotGlb([&, &where = pointer, &what = value](Json& json) { json[Json::json_pointer(where)] = what; }), "")
-        << pointer << " = " << value.dump();
+        << pointer << " = " << base::JsonText(value);
   }
   EXPECT_NE(WhyNotGlb([](Json& json) {
               json["accessors"][0] = {{"componentType", 5126}, {"count", 100'000'000}, {"type", "MAT4"}};

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/json_text.h"
 #include "tests/tour/format/sample_tour.h"
 #include "tour/format/write_tour.h"
 
@@ -22,7 +23,7 @@ std::string Refusal(const std::function<void(Json&)>& change) {
 }
 
 TEST(ParseTour, ReadsEveryMember) {
-  const Tour tour = ParseTour(SampleTour().dump());
+  const Tour tour = ParseTour(base::JsonText(SampleTour()));
   EXPECT_EQ(tour.title, "Der Hof, 農場, <script>alert(1)</script>") << "text stays text";
   EXPECT_EQ(tour.start, "gate");
   ASSERT_EQ(tour.stops.size(), 3U);
@@ -56,7 +57,7 @@ TEST(ParseTour, ReadsEveryMember) {
 }
 
 TEST(ParseTour, WhatIsWrittenIsTheSameAgain) {
-  const std::string text = FormatTour(ParseTour(SampleTour().dump()));
+  const std::string text = FormatTour(ParseTour(base::JsonText(SampleTour())));
   EXPECT_EQ(Json::parse(text), SampleTour());
   EXPECT_EQ(FormatTour(ParseTour(text)), text);
   EXPECT_NO_THROW(ParseTour(FormatTour(Tour{}))) << "a tour without stops may be saved";
@@ -145,7 +146,7 @@ TEST(ParseTour, NamesThePathAndTheRule) {
   };
   for (const auto& [pointer, value, path] : cases) {
     const std::string refusal = Refusal([&, &where = pointer, &what = value](Json& json) { json[Json::json_pointer(where)] = what; });
-    EXPECT_TRUE(refusal.starts_with(path)) << pointer << " = " << value.dump().substr(0, 60) << ": " << refusal;
+    EXPECT_TRUE(refusal.starts_with(path)) << pointer << " = " << base::JsonText(value).substr(0, 60) << ": " << refusal;
     EXPECT_GT(refusal.size(), std::string(path).size() + 10) << refusal;
   }
   EXPECT_TRUE(Refusal([](Json& json) { json["assets"][kSampleModel]["bytes"] = 0; }).starts_with("assets." + kSampleModel + ".bytes "));
@@ -215,7 +216,7 @@ TEST(ParseTour, NumbersAndSizesAreLimited) {
   EXPECT_NE(
       Refusal([](Json& json) { json["stops"][0]["branches"] = Json(std::vector<Json>(21, json["stops"][0]["branches"][0])); }).find("at most 20"),
       std::string::npos);
-  EXPECT_THROW(ParseTour(SampleTour().dump() + std::string(kMaxTourBytes, ' ')), base::Refused);
+  EXPECT_THROW(ParseTour(base::JsonText(SampleTour()) + std::string(kMaxTourBytes, ' ')), base::Refused);
   EXPECT_THROW(ParseTour(std::string(1000, '[')), base::Refused);
   EXPECT_THROW(ParseTour("[]"), base::Refused);
   EXPECT_THROW(ParseTour(""), base::Refused);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/json_text.h"
 #include "core/base/sha256.h"
 #include "core/image/encode.h"
 #include "core/image/image.h"
@@ -50,7 +51,7 @@ struct SampleModel {
   SampleModel() {
     const std::string picture = SamplePng();
     binary = std::string(36, '\0') + std::string("\0\0\1\0\2\0\0\0", 8) + picture;
-    json = nlohmann::json::parse(R"({
+    json = base::ParseJson(R"({
       "asset": {"version": "2.0", "generator": "by hand", "extras": {"uri": "https://example.org/from"}},
       "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"children": [1, 2]}, {"mesh": 0}, {"name": "empty"}],
       "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
@@ -63,7 +64,7 @@ struct SampleModel {
     json["buffers"] = {{{"byteLength", binary.size()}}};
   }
 
-  std::string Glb() const { return GlbOfChunks(GlbChunk("JSON", json.dump(), ' ') + GlbChunk(std::string("BIN\0", 4), binary, '\0')); }
+  std::string Glb() const { return GlbOfChunks(GlbChunk("JSON", base::JsonText(json), ' ') + GlbChunk(std::string("BIN\0", 4), binary, '\0')); }
 };
 
 inline std::string SampleGlb(const std::function<void(nlohmann::json&)>& change = {}) {

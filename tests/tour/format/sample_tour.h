@@ -5,12 +5,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/base/json_text.h"
+
 namespace skyquilt::tour {
 
 inline const std::string kSamplePicture = std::string(64, 'a') + ".jpg", kSampleModel = std::string(64, 'b') + ".glb";
 
 inline nlohmann::json SampleTour() {
-  nlohmann::json json = nlohmann::json::parse(R"({
+  nlohmann::json json = base::ParseJson(R"({
     "version": 1, "title": "Der Hof, 農場, <script>alert(1)</script>", "start": "gate",
     "stops": [
       {"id": "gate", "title": "The gate \"1\"", "text": "Line 1\nLine 2 <b>&amp;</b>", "picture": null,
@@ -42,7 +44,7 @@ inline nlohmann::json SampleTour() {
 inline std::string SampleTourWith(const std::function<void(nlohmann::json&)>& change) {
   nlohmann::json json = SampleTour();
   change(json);
-  return json.dump();
+  return base::JsonText(json);
 }
 
 }  // namespace skyquilt::tour

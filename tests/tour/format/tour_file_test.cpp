@@ -4,6 +4,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tour/format/sample_tour.h"
 
@@ -21,7 +22,7 @@ std::string ErrorOf(const std::filesystem::path& folder) {
 
 TEST(TourFile, IsSavedAndLoadedWithTheAssetsThatAreThere) {
   const TemporaryFolder folder;
-  SaveTour(ParseTour(SampleTour().dump()), folder.path());
+  SaveTour(ParseTour(base::JsonText(SampleTour())), folder.path());
   std::filesystem::create_directories(AssetFolder(folder.path()));
   base::WriteFileAtomically(AssetFolder(folder.path()) / kSamplePicture, std::string(1234, 'x'));
   base::WriteFileAtomically(AssetFolder(folder.path()) / kSampleModel, "not 77 bytes");
@@ -43,7 +44,7 @@ TEST(TourFile, ErrorsNameTheFileAndTheRemedy) {
 
 TEST(TourFile, ATourThatCouldNotBeReadIsNotSaved) {
   const TemporaryFolder folder;
-  Tour tour = ParseTour(SampleTour().dump());
+  Tour tour = ParseTour(base::JsonText(SampleTour()));
   SaveTour(tour, folder.path());
   const std::string before = base::ReadFile(TourFile(folder.path()));
   tour.stops[1].id = "gate";

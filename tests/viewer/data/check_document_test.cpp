@@ -1,6 +1,7 @@
 // What browsers may not save, and what must not prevent saving.
 #include <gtest/gtest.h>
 
+#include "core/base/json_text.h"
 #include "products/camera_path.h"
 #include "tests/viewer/data/sample_project.h"
 
@@ -8,7 +9,7 @@ namespace skyquilt::viewer {
 namespace {
 
 nlohmann::json OnePoint() {
-  return nlohmann::json::parse(R"({"crs": "EPSG:32632", "points": [
+  return base::ParseJson(R"({"crs": "EPSG:32632", "points": [
     {"name": "GCP 1", "x": 465400.5, "y": 5247100.25, "z": 410, "marks": [{"photo": "IMG_0.jpg", "pixel": [100.5, 200.25]}]}]})");
 }
 
@@ -18,7 +19,7 @@ TEST(CheckDocument, ControlPointsFitTheProject) {
   const auto refused = [&](const std::function<void(nlohmann::json&)>& spoil) {
     nlohmann::json json = OnePoint();
     spoil(json);
-    return data.Put("gcp.json", json.dump(), "").status == 400;
+    return data.Put("gcp.json", base::JsonText(json), "").status == 400;
   };
   // The front end would not read these again.
   EXPECT_TRUE(refused([](auto& json) { json["crs"] = nullptr; }));
@@ -36,21 +37,21 @@ TEST(CheckDocument, MarksInPhotosThatHaveLeftTheSurveyMayStay) {
   const std::filesystem::path list = sample.photos / "gcp_list.txt";
   base::WriteFileAtomically(list, "EPSG:32632\n1 2 3 10 20 gone.jpg a\n1 2 3 30 40 img_1.JPG a\n1 2 3 9999 40 IMG_0.jpg a\n");
   ProjectData data(sample.project);
-  nlohmann::json gcp = nlohmann::json::parse(data.Get("gcp.json", "").body);
+  nlohmann::json gcp = base::ParseJson(data.Get("gcp.json", "").body);
   EXPECT_EQ(gcp["skipped"], 1) << "outside the photo";
   ASSERT_EQ(gcp["points"][0]["marks"].size(), 2U);
   EXPECT_EQ(gcp["points"][0]["marks"][0]["unknown"], true);
   EXPECT_EQ(gcp["points"][0]["marks"][1]["photo"], "IMG_1.jpg");
   gcp["points"][0]["marks"][0].erase("unknown");
-  for (int i = 0; i < 2; ++i) EXPECT_EQ(data.Put("gcp.json", gcp.dump(), "").status, 204);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(data.Put("gcp.json", base::JsonText(gcp), "").status, 204);
   EXPECT_NE(base::ReadFile(sample.project.folder / "gcp_list.txt").find("gone.jpg a"), std::string::npos);
   EXPECT_NE(base::ReadFile(list).find("9999"), std::string::npos) << "the list beside the photos is not ours";
   gcp["points"][0]["marks"][0]["photo"] = "gone_too.jpg";
-  EXPECT_EQ(data.Put("gcp.json", gcp.dump(), "").status, 400);
+  EXPECT_EQ(data.Put("gcp.json", base::JsonText(gcp), "").status, 400);
   gcp["points"][0]["marks"][0]["unknown"] = "yes";
-  EXPECT_EQ(data.Put("gcp.json", gcp.dump(), "").status, 400);
+  EXPECT_EQ(data.Put("gcp.json", base::JsonText(gcp), "").status, 400);
   gcp["points"][0]["marks"][0]["unknown"] = true;
-  EXPECT_EQ(data.Put("gcp.json", gcp.dump(), "").status, 204) << "the page takes a deletion back";
+  EXPECT_EQ(data.Put("gcp.json", base::JsonText(gcp), "").status, 204) << "the page takes a deletion back";
 }
 
 TEST(CheckDocument, ADamagedOldDocumentDoesNotPreventSaving) {
@@ -61,7 +62,7 @@ TEST(CheckDocument, ADamagedOldDocumentDoesNotPreventSaving) {
        {std::string("{"), std::string("[]"), std::string(R"({"points": [{}]})"), std::string(R"({"points": [{"marks": [{"photo": 1}]}]})"), deep}) {
     base::WriteFileAtomically(sample.project.folder / "gcp.json", old);
     base::WriteFileAtomically(sample.project.folder / "gcp_list.txt", "EPSG:32632\n");
-    EXPECT_EQ(data.Put("gcp.json", OnePoint().dump(), "").status, 204) << old.substr(0, 40);
+    EXPECT_EQ(data.Put("gcp.json", base::JsonText(OnePoint()), "").status, 204) << old.substr(0, 40);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <csignal>
 
+#include "core/base/json_text.h"
 #include "tests/viewer/data/sample_project.h"
 
 namespace skyquilt::viewer {
@@ -18,11 +19,11 @@ std::string Points(size_t count) {
                                 {"properties", {{"name", "p" + std::to_string(i)}, {"own", 7}}},
                                 {"geometry", {{"type", "Point"}, {"coordinates", {8.5, 47.3, 400.0 + static_cast<double>(i)}}}}});
   }
-  return json.dump();
+  return base::JsonText(json);
 }
 
 nlohmann::json Gcps() {
-  return nlohmann::json::parse(R"({"crs": "EPSG:32632", "points": [
+  return base::ParseJson(R"({"crs": "EPSG:32632", "points": [
     {"name": "GCP 1", "x": 465400.5, "y": 5247100.25, "z": 410, "marks": [{"photo": "IMG_0.jpg", "pixel": [100.5, 200.25]}]},
     {"name": "later", "x": 1, "y": 2, "z": 3, "marks": []}]})");
 }
@@ -32,8 +33,8 @@ TEST(Documents, AreAbsentThenSavedThenRead) {
   ProjectData data(sample.project);
   EXPECT_EQ(data.Get("measurements.geojson", "").status, 204);
   EXPECT_EQ(data.Put("measurements.geojson", Points(3), "").status, 204);
-  const nlohmann::json read = nlohmann::json::parse(data.Get("measurements.geojson", "").body);
-  EXPECT_EQ(read, nlohmann::json::parse(Points(3))) << "nothing is lost, also what the server does not know";
+  const nlohmann::json read = base::ParseJson(data.Get("measurements.geojson", "").body);
+  EXPECT_EQ(read, base::ParseJson(Points(3))) << "nothing is lost, also what the server does not know";
   EXPECT_TRUE(std::filesystem::exists(sample.project.folder / "measurements.geojson"));
 }
 
@@ -56,7 +57,7 @@ TEST(Documents, RefusesWhatIsNotOne) {
     EXPECT_EQ(reply.status, 400) << wrong.substr(0, 80);
     EXPECT_NE(reply.body.find("not saved"), std::string::npos);
   }
-  EXPECT_EQ(nlohmann::json::parse(data.Get("measurements.geojson", "").body)["features"].size(), 1U) << "the old file stays";
+  EXPECT_EQ(base::ParseJson(data.Get("measurements.geojson", "").body)["features"].size(), 1U) << "the old file stays";
 }
 
 TEST(Documents, ControlPointsAreAlsoWrittenForOtherPrograms) {
@@ -64,18 +65,18 @@ TEST(Documents, ControlPointsAreAlsoWrittenForOtherPrograms) {
   ProjectData data(sample.project);
   const std::filesystem::path list = sample.project.folder / "gcp_list.txt";
   base::WriteFileAtomically(list, "EPSG:32632\n465400.5 5247100.25 410 1 2 IMG_1.jpg old\n");
-  const nlohmann::json converted = nlohmann::json::parse(data.Get("gcp.json", "").body);
+  const nlohmann::json converted = base::ParseJson(data.Get("gcp.json", "").body);
   EXPECT_EQ(converted["points"][0]["name"], "old");
-  EXPECT_EQ(data.Put("gcp.json", Gcps().dump(), "").status, 204);
+  EXPECT_EQ(data.Put("gcp.json", base::JsonText(Gcps()), "").status, 204);
   EXPECT_EQ(base::ReadFile(list),
             "EPSG:32632\n465400.5000 5247100.2500 410.0000 100.50 200.25 IMG_0.jpg GCP_1\n# no marks yet: 1.0000 2.0000 3.0000 later\n");
   EXPECT_NE(base::ReadFile(sample.project.folder / "gcp_list.txt.orig").find("old"), std::string::npos) << "a list from elsewhere is kept";
   nlohmann::json changed = Gcps();
   changed["points"].erase(1);
-  EXPECT_EQ(data.Put("gcp.json", changed.dump(), "").status, 204);
+  EXPECT_EQ(data.Put("gcp.json", base::JsonText(changed), "").status, 204);
   EXPECT_EQ(base::ReadFile(list).find("later"), std::string::npos);
   EXPECT_NE(base::ReadFile(sample.project.folder / "gcp_list.txt.orig").find("old"), std::string::npos) << "and not replaced by our own";
-  EXPECT_EQ(nlohmann::json::parse(data.Get("gcp.json", "").body), changed);
+  EXPECT_EQ(base::ParseJson(data.Get("gcp.json", "").body), changed);
 }
 
 TEST(Documents, EveryListFromElsewhereIsKept) {
@@ -85,7 +86,7 @@ TEST(Documents, EveryListFromElsewhereIsKept) {
   const std::string first = "EPSG:32632\n1 2 3 1 2 IMG_1.jpg first\n", second = "EPSG:32632\n1 2 3 1 2 IMG_1.jpg second\n";
   for (const std::string& theirs : {first, second, first, second}) {
     base::WriteFileAtomically(list, theirs);
-    ASSERT_EQ(data.Put("gcp.json", Gcps().dump(), "").status, 204);
+    ASSERT_EQ(data.Put("gcp.json", base::JsonText(Gcps()), "").status, 204);
   }
   EXPECT_EQ(base::ReadFile(sample.project.folder / "gcp_list.txt.orig"), first);
   EXPECT_EQ(base::ReadFile(sample.project.folder / "gcp_list.txt.orig.2"), second);
@@ -97,7 +98,7 @@ TEST(Documents, TwoWindowsDoNotOverwriteEachOther) {
   ProjectData data(sample.project);
   const std::pair<const char*, std::array<std::string, 2>> documents[] = {
       {"measurements.geojson", {Points(1), Points(2)}},
-      {"gcp.json", {Gcps().dump(), R"({"crs": "EPSG:32632", "points": []})"}},
+      {"gcp.json", {base::JsonText(Gcps()), R"({"crs": "EPSG:32632", "points": []})"}},
       {"camera_path.json", {R"([{"position_enu": [1, 2, 3]}])", R"({"views": [], "frames_between": 3})"}}};
   for (const auto& [name, bodies] : documents) {
     const std::string none = data.Get(name, "").etag;
@@ -128,7 +129,9 @@ TEST(Documents, WhatCannotBeReadIsNoAbsence) {
     EXPECT_EQ(reply.status, 500) << name;
     EXPECT_NE(reply.body.find(name), std::string::npos);
     EXPECT_TRUE(reply.etag.empty());
-    const std::string body = document == "gcp.json" ? Gcps().dump() : document == "camera_path.json" ? R"([{"position_enu": [1, 2, 3]}])" : Points(1);
+    const std::string body = document == "gcp.json"           ? base::JsonText(Gcps())
+                             : document == "camera_path.json" ? R"([{"position_enu": [1, 2, 3]}])"
+                                                              : Points(1);
     EXPECT_EQ(data.Put(document, body, "").status, 500) << name;
     EXPECT_TRUE(std::filesystem::is_directory(file / "inside"));
     EXPECT_EQ(std::filesystem::exists(sample.project.folder / "gcp.json"), std::string(name) == "gcp.json");
@@ -144,7 +147,7 @@ TEST(Documents, RefusesControlPointsThatCannotBeUsed) {
   const auto refused = [&](const std::function<void(nlohmann::json&)>& spoil) {
     nlohmann::json json = Gcps();
     spoil(json);
-    return data.Put("gcp.json", json.dump(), "").status == 400;
+    return data.Put("gcp.json", base::JsonText(json), "").status == 400;
   };
   EXPECT_TRUE(refused([](auto& json) { json["points"][1]["name"] = "GCP 1"; }));
   EXPECT_TRUE(refused([](auto& json) { json["points"][0]["name"] = ""; }));
@@ -191,7 +194,7 @@ TEST(Documents, AreOldOrNewWhenTheProcessIsKilled) {
     usleep(static_cast<useconds_t>(20'000 + 7'000 * attempt));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
-    const nlohmann::json saved = nlohmann::json::parse(base::ReadFile(sample.project.folder / "measurements.geojson"), nullptr, false);
+    const nlohmann::json saved = base::TryParseJson(base::ReadFile(sample.project.folder / "measurements.geojson"));
     ASSERT_FALSE(saved.is_discarded()) << "half a file";
     const size_t count = saved["features"].size();
     EXPECT_TRUE(count == 2 || count == 3000) << count;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/json_text.h"
 #include "core/geo/utm.h"
 #include "tests/support/nadir_photo.h"
 
@@ -40,9 +41,8 @@ TEST(GcpList, ReadsWhatOthersWrite) {
   ASSERT_EQ(gcp["points"].size(), 2U);
   EXPECT_EQ(gcp["points"][0]["name"], "north");
   ASSERT_EQ(gcp["points"][0]["marks"].size(), 2U);
-  EXPECT_EQ(gcp["points"][0]["marks"][0], nlohmann::json::parse(R"({"photo": "a.jpg", "pixel": [100.5, 200.25]})"));
-  EXPECT_EQ(gcp["points"][0]["marks"][1], nlohmann::json::parse(R"({"photo": "west/b.jpg", "pixel": [7.0, 8.0]})"))
-      << "the last mark in a photo counts";
+  EXPECT_EQ(gcp["points"][0]["marks"][0], base::ParseJson(R"({"photo": "a.jpg", "pixel": [100.5, 200.25]})"));
+  EXPECT_EQ(gcp["points"][0]["marks"][1], base::ParseJson(R"({"photo": "west/b.jpg", "pixel": [7.0, 8.0]})")) << "the last mark in a photo counts";
   EXPECT_EQ(gcp["points"][1]["name"], "GCP_1");
   ASSERT_EQ(gcp["points"][1]["marks"].size(), 2U) << "the same place without a name is one point";
   EXPECT_EQ(gcp["points"][1]["marks"][0]["unknown"], true) << "two photos have this name";
@@ -81,7 +81,7 @@ TEST(GcpList, KnowsTheUsualCoordinateSystems) {
 TEST(GcpList, ReadsBackWhatItWrites) {
   const survey::Survey survey = SurveyOf({"west/1.jpg", "east/1.jpg", "west/2.jpg"});
   const MarkablePhotos photos(&survey);
-  const nlohmann::json gcp = nlohmann::json::parse(R"({"crs": "EPSG:32632", "points": [
+  const nlohmann::json gcp = base::ParseJson(R"({"crs": "EPSG:32632", "points": [
     {"name": "a", "x": 465400.1234, "y": 5247100.25, "z": -410.5,
      "marks": [{"photo": "west/1.jpg", "pixel": [0.25, 2999.75]}, {"photo": "west/2.jpg", "pixel": [1.0, 2.0]}]},
     {"name": "b", "x": 1.0, "y": 2.0, "z": 3.0, "marks": [{"photo": "east/1.jpg", "pixel": [5.0, 6.0]}]}]})");
@@ -94,7 +94,7 @@ TEST(GcpList, ReadsBackWhatItWrites) {
 TEST(GcpList, BlanksInNamesDoNotMoveFields) {
   const survey::Survey survey = SurveyOf({"my photo.jpg", "b.jpg"});
   const MarkablePhotos photos(&survey);
-  const nlohmann::json gcp = nlohmann::json::parse(R"({"crs": null, "points": [
+  const nlohmann::json gcp = base::ParseJson(R"({"crs": null, "points": [
     {"name": "p 1", "x": 1, "y": 2, "z": 3, "marks": [{"photo": "my photo.jpg", "pixel": [4, 5]}, {"photo": "b.jpg", "pixel": [6, 7]}]},
     {"name": "p_1", "x": 1, "y": 2, "z": 3, "marks": [{"photo": "b.jpg", "pixel": [8, 9]}]}]})");
   EXPECT_EQ(GcpListText(gcp, photos),

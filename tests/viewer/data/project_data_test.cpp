@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/base/errors.h"
+#include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
 #include "core/geo/geoid.h"
 #include "tests/viewer/data/sample_project.h"
@@ -127,7 +128,7 @@ TEST(ProjectData, TilesStandAtTheHeightsOfTheSurvey) {
   const std::filesystem::path file = sample.project.SurfaceFolder() / "tiles" / "tileset.json";
   base::WriteFileAtomically(file, R"({"asset": {"extras": {"surveyTransform": [1, 2]}}, "root": {"transform": [3, 4]}})");
   ProjectData data(sample.project);
-  const auto tileset = nlohmann::json::parse(data.Get("tiles/tileset.json", "").Content());
+  const auto tileset = base::ParseJson(data.Get("tiles/tileset.json", "").Content());
   EXPECT_EQ(tileset["root"]["transform"], nlohmann::json::array({1, 2}));
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/gis/geotiff.h"
 #include "core/image/image.h"
 #include "tests/support/temporary_folder.h"
@@ -96,7 +97,7 @@ struct SampleProject {
 
 inline nlohmann::json DescriptionOf(ProjectData& data) {
   const DataReply reply = data.Get("project.json", "");
-  return reply.status == 200 ? nlohmann::json::parse(reply.body) : nlohmann::json();
+  return reply.status == 200 ? base::ParseJson(reply.body) : nlohmann::json();
 }
 
 inline bool IsMissing(const nlohmann::json& description, const std::string& what) {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 
+#include "core/base/json_text.h"
 #include "core/base/sha256.h"
 #include "tests/tour/format/sample_assets.h"
 #include "tests/tour/format/sample_tour.h"
@@ -44,18 +45,18 @@ TEST(TourDocument, IsSavedWholeAndTextStaysText) {
   SampleProject sample;
   ProjectData data(sample.project);
   EXPECT_EQ(data.Get("tour.json", "").status, 204);
-  ASSERT_EQ(data.Put("tour.json", tour::SampleTour().dump(), "").status, 204);
+  ASSERT_EQ(data.Put("tour.json", base::JsonText(tour::SampleTour()), "").status, 204);
   const DataReply reply = data.Get("tour.json", "v=1");
   EXPECT_EQ(reply.content_type, "application/json");
   EXPECT_FALSE(reply.cache);
-  EXPECT_EQ(nlohmann::json::parse(reply.body), tour::SampleTour());
+  EXPECT_EQ(base::ParseJson(reply.body), tour::SampleTour());
   EXPECT_NE(reply.body.find("<script>alert(1)</script>"), std::string::npos);
 }
 
 TEST(TourDocument, RefusalsNameThePathAndLeaveTheOldFile) {
   SampleProject sample;
   ProjectData data(sample.project);
-  ASSERT_EQ(data.Put("tour.json", tour::SampleTour().dump(), "").status, 204);
+  ASSERT_EQ(data.Put("tour.json", base::JsonText(tour::SampleTour()), "").status, 204);
   const std::string before = base::ReadFile(sample.project.folder / "tour.json");
   const DataReply reply = data.Put("tour.json", tour::SampleTourWith([](nlohmann::json& json) { json["stops"][1]["pose"]["fovy_deg"] = 500; }), "");
   EXPECT_EQ(reply.status, 400);
@@ -70,7 +71,7 @@ TEST(TourDocument, TheSecondEditorIsToldAndOverwritesNothing) {
   SampleProject sample;
   ProjectData data(sample.project);
   const std::string none = data.Get("tour.json", "").etag;
-  const DataReply first = data.Put("tour.json", tour::SampleTour().dump(), none);
+  const DataReply first = data.Put("tour.json", base::JsonText(tour::SampleTour()), none);
   ASSERT_EQ(first.status, 204);
   EXPECT_EQ(first.etag, data.Get("tour.json", "").etag);
   const std::string other = tour::SampleTourWith([](nlohmann::json& json) { json["title"] = "mine"; });
@@ -104,7 +105,7 @@ TEST(TourDocument, WhatCannotBeReadIsNoAbsence) {
   ProjectData data(sample.project);
   fs::create_directories(sample.project.folder / "tour.json" / "inside");
   EXPECT_EQ(data.Get("tour.json", "").status, 500);
-  EXPECT_EQ(data.Put("tour.json", tour::SampleTour().dump(), "").status, 500);
+  EXPECT_EQ(data.Put("tour.json", base::JsonText(tour::SampleTour()), "").status, 500);
 }
 
 TEST(TourAssets, AreStoredUnderTheirDigestAndServed) {
@@ -211,7 +212,7 @@ TEST(TourAssets, AFullDiskLeavesNothingHalf) {
   SampleProject sample;
   ProjectData data(sample.project);
   const std::string small = tour::SamplePng(), large = LargeGlb(300'000, 'a');
-  ASSERT_EQ(data.Put("tour.json", tour::SampleTour().dump(), "").status, 204);
+  ASSERT_EQ(data.Put("tour.json", base::JsonText(tour::SampleTour()), "").status, 204);
   const std::string tour_before = base::ReadFile(sample.project.folder / "tour.json");
   ASSERT_EQ(data.Put(PathOf(small, "png"), small, "").status, 204);
   // A limit on the file size makes writes fail like a full disk.

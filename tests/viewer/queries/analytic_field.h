@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/base/json_text.h"
 #include "viewer/queries/query.h"
 
 namespace skyquilt::viewer {
@@ -91,7 +92,7 @@ inline nlohmann::json AnswerOf(Query& query, FieldAccess access) {
     if (!done) continue;
     if (too_many) throw std::logic_error("a batch was too large");
     if (fraction != 1.0) throw std::logic_error("an answer before the end: " + std::to_string(fraction));
-    return nlohmann::json::parse(query.Reply());
+    return base::ParseJson(query.Reply());
   }
   throw std::logic_error("no end");
 }

@@ -17,6 +17,14 @@ if(SKYQUILT_SANITIZE)
   target_link_options(skyquilt_warnings INTERFACE -fsanitize=${SKYQUILT_SANITIZE})
 endif()
 
+# Headers that most files read, parsed once instead of in every batch: one set for the program, a larger one for tests. All targets share these two,
+# so they are compiled with the same macros. Each header here costs every batch time, too, which pays for those that most of them use.
+if(SKYQUILT_PCH)
+  set(header_macros $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
+  set(program_headers <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional> <set> <span> <stdexcept>
+    <string> <string_view> <unordered_map> <utility> <vector> <Eigen/Core> <Eigen/Geometry> <fmt/core.h>)
+endif()
+
 # Settings of all our targets.
 function(skyquilt_target name)
   target_compile_features(${name} PUBLIC cxx_std_20)
@@ -27,21 +35,56 @@ function(skyquilt_target name)
   target_link_libraries(${name} PRIVATE skyquilt_warnings)
 endfunction()
 
+# Lets a target use the parsed headers of `kind`, program or tests; the first one of a kind parses them.
+function(skyquilt_use_parsed_headers name kind)
+  if(NOT SKYQUILT_PCH)
+    return()
+  endif()
+  set(owner skyquilt_${kind}_headers)
+  if(NOT TARGET ${owner})
+    file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/${owner}.cpp CONTENT "")
+    add_library(${owner} OBJECT ${PROJECT_BINARY_DIR}/${owner}.cpp)
+    skyquilt_target(${owner})
+    target_compile_definitions(${owner} PRIVATE ${header_macros})
+    target_link_libraries(${owner} PRIVATE Eigen3::Eigen fmt::fmt Threads::Threads)
+    target_precompile_headers(${owner} PRIVATE ${program_headers})
+    if(kind STREQUAL tests)
+      target_link_libraries(${owner} PRIVATE GTest::gtest rapidcheck rapidcheck_gtest)
+      target_precompile_headers(${owner} PRIVATE <gtest/gtest.h> <rapidcheck/gtest.h>)
+    endif()
+  endif()
+  target_compile_definitions(${name} PRIVATE ${header_macros})
+  target_precompile_headers(${name} REUSE_FROM ${owner})
+endfunction()
+
+# The sources with those that use JSON last: its templates cost a batch three seconds, so files that need them share their batches.
+function(skyquilt_json_last out)
+  set(json)
+  set(others)
+  foreach(source ${ARGN})
+    cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE path)
+    file(STRINGS ${path} uses LIMIT_COUNT 1 REGEX "nlohmann/json.hpp")
+    if(uses)
+      list(APPEND json ${source})
+    else()
+      list(APPEND others ${source})
+    endif()
+  endforeach()
+  set(${out} ${others} ${json} PARENT_SCOPE)
+endfunction()
+
+# NO_PARSED_HEADERS: for sources with compiler options of their own.
 function(skyquilt_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-  add_library(${name} STATIC ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "NO_PARSED_HEADERS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  skyquilt_json_last(sources ${ARG_SOURCES})
+  add_library(${name} STATIC ${sources})
   skyquilt_target(${name})
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${SKYQUILT_UNITY} UNITY_BUILD_BATCH_SIZE 12)
   # Warnings apply to our code only, not to third-party headers.
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
-endfunction()
-
-# For libraries that are long to compile and short to run, because others do their heavy work: g++ takes a third less time in release builds.
-function(skyquilt_quick_to_compile)
-  foreach(name ${ARGN})
-    target_compile_options(${name} PRIVATE
-      "$<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-O1;-fno-tree-dominator-opts;-fno-tree-pta>")
-  endforeach()
+  if(NOT ARG_NO_PARSED_HEADERS)
+    skyquilt_use_parsed_headers(${name} program)
+  endif()
 endfunction()
 
 # skyquilt_timeout(600 test...): seconds after which a test is stopped as hung; six times as long with sanitizers, which are slow.
@@ -54,10 +97,12 @@ endfunction()
 
 function(skyquilt_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
-  add_executable(test_${name} ${ARG_SOURCES})
+  skyquilt_json_last(sources ${ARG_SOURCES})
+  add_executable(test_${name} ${sources})
   skyquilt_target(test_${name})
   set_target_properties(test_${name} PROPERTIES UNITY_BUILD ${SKYQUILT_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   target_link_libraries(test_${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
+  skyquilt_use_parsed_headers(test_${name} tests)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)
   endif()

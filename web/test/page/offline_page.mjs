@@ -107,6 +107,8 @@ async function checkWide(page, stop) {
   });
   expect(figures.wide <= 0.01, `${figures.wide} of the wide picture are neither still nor panorama`);
   await page.setViewportSize(SIZE);
+  // The pictures of this size come before the next check counts them.
+  await page.evaluate(() => window.__skyquilt.settle());
 }
 
 async function checkBetween(page, [from, to]) {

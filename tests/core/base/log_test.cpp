@@ -30,6 +30,24 @@ TEST(Log, FileReceivesLaterMessages) {
   EXPECT_EQ((shown + kept).find("hidden"), std::string::npos);
 }
 
+TEST(Log, FormatsWhatItsLevelLetsThrough) {
+  testing::internal::CaptureStderr();
+  InitLog(false);
+  EXPECT_EQ(GetLogLevel(), LogLevel::kInfo);
+  LogInfo("{} of {:.1f}", 2, 3.0);
+  LogInfo("{as it is}");
+  SetLogLevel(LogLevel::kWarning);
+  EXPECT_EQ(GetLogLevel(), LogLevel::kWarning);
+  LogInfo("no {}", "news");
+  LogError("{} left", "nothing");
+  const std::string shown = testing::internal::GetCapturedStderr();
+  InitLog(false);
+  EXPECT_NE(shown.find("info: 2 of 3.0"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("info: {as it is}"), std::string::npos) << shown;
+  EXPECT_EQ(shown.find("news"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("error: nothing left"), std::string::npos) << shown;
+}
+
 TEST(Log, VerboseShowsDebug) {
   testing::internal::CaptureStderr();
   InitLog(true);

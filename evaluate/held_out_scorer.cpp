@@ -70,16 +70,15 @@ HeldOutScorer::Recordings HeldOutScorer::RecordingsOf(int photo) const {
 }
 
 PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads) const {
-  using Clock = std::chrono::steady_clock;
   const Recordings recordings = RecordingsOf(photo);
-  const Clock::time_point start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   // A field whose encoding has no slope cannot be rendered with normals, not even with those of a head.
   const bool field_normals = input_.options.field_normals && input_.scene->info().density_normals && !task.true_normals.Empty();
   const scene::Appearance appearance{.look = scene::Rendition::kRecorded, .normals = field_normals};
   std::vector<render::RayColor> rendered = input_.scene->RenderCamera(task.camera, task.cam_from_enu, appearance, threads);
   const std::vector<render::RayColor> as_reference = recordings.Differ() ? rendered : std::vector<render::RayColor>();
   ApplyResponse(task.camera, recordings.predicted, rendered, threads);
-  const double render_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  const double render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   PhotoResult findings = ScorePhoto(task, rendered, views_, area_, threads);
   if (field_normals) findings.density_normals = NormalsOf(rendered, findings.scored, &render::RayColor::density_normal);

@@ -2,12 +2,11 @@
 # Installs the Debian 12 packages needed to build and run, except those already installed.
 #   scripts/setup.sh         everything, including tests and checks
 #   scripts/setup.sh --run   only what the program needs
-#   scripts/setup.sh --fuzz  everything plus clang, for scripts/fuzz.sh and scripts/sanitize.sh
 # SKYQUILT_SKIP_SETUP=1 skips it, for systems where the libraries are installed in another way.
 set -euo pipefail
 
 run_packages=(
-  build-essential cmake ninja-build ccache pkg-config
+  build-essential clang cmake ninja-build ccache pkg-config
   libopenmpi-dev openmpi-bin libeigen3-dev libopencv-dev colmap libgeographiclib-dev libhdf5-dev libhwy-dev
   libgdal-dev gdal-bin libexiv2-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libspdlog-dev libfmt-dev
   libembree-dev
@@ -20,8 +19,7 @@ command -v npm >/dev/null || run_packages+=(nodejs npm)
 case "${1:-}" in
   --run) wanted=("${run_packages[@]}") ;;
   "") wanted=("${run_packages[@]}" "${test_packages[@]}") ;;
-  --fuzz) wanted=("${run_packages[@]}" "${test_packages[@]}" clang) ;;
-  *) echo "usage: scripts/setup.sh [--run|--fuzz]" >&2; exit 2 ;;
+  *) echo "usage: scripts/setup.sh [--run]" >&2; exit 2 ;;
 esac
 
 if [[ "${SKYQUILT_SKIP_SETUP:-0}" == 1 ]]; then
@@ -33,7 +31,7 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   {
     echo "setup: this system has no apt-get. Install the contents of these Debian packages, then set SKYQUILT_SKIP_SETUP=1:"
     printf '  %s\n' "${wanted[@]}"
-    echo "Needed versions: g++ 12, CMake 3.25, COLMAP 3.8, Embree 3, OpenCV 4.6, GDAL 3.6, or newer ones that are compatible."
+    echo "Needed versions: clang 14 or g++ 12 (-DCMAKE_C_COMPILER=gcc -DCMAKE_CXX_COMPILER=g++), CMake 3.25, COLMAP 3.8, Embree 3, OpenCV 4.6, GDAL 3.6, or newer ones that are compatible."
   } >&2
   exit 2
 fi

@@ -10,7 +10,8 @@ namespace skyquilt::worker {
 namespace {
 
 // Felzenszwalb: blur in pixels, threshold, smallest segment in pixels.
-constexpr float kBlur = 0.5F, kThreshold = 200.0F;
+constexpr double kBlur = 0.5;
+constexpr float kThreshold = 200.0F;
 constexpr int kSmallest = 40;
 // A segment is left out when its mean excess green 2 g - r - b (shares of the sum of colours) is above the first, or its mean absolute step between
 // neighbouring pixels (display values, 0..1) above the second. Pixels of other segments with a step above the third are left out.

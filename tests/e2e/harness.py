@@ -44,9 +44,10 @@ class Skyquilt:
 
     def call(self, *words, ranks=0, status=0, timeout=900):
         """Runs to the end and returns everything printed; a different exit status is a failure."""
+        shown, began = " ".join(str(word) for word in words), time.monotonic()
         done = subprocess.run(self.command(words, ranks), env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", timeout=timeout)
-        shown = " ".join(str(word) for word in words)
+        print(f"{time.monotonic() - began:6.1f} s  skyquilt {shown}", flush=True)  # what the test's time is spent on
         expect(done.returncode == status, f"'skyquilt {shown}' ended with {done.returncode}, not {status}:\n{done.stdout}")
         return done.stdout
 

@@ -26,8 +26,7 @@ RC_GTEST_PROP(OverlapGains, UndoTheExposuresOfAChainOfPhotos, (uint32_t seed)) {
   base::Random random(seed);
   const size_t n = 2 + random.Below(30);
   std::vector<double> log_exposure(n);
-  double mean = 0.0;
-  for (double& value : log_exposure) mean += (value = random.Uniform(-0.5, 0.5)) / static_cast<double>(n);
+  for (double& value : log_exposure) value = random.Uniform(-0.5, 0.5);
   std::vector<OverlapRatio> ratios;
   for (size_t i = 0; i + 1 < n; ++i) {
     for (int k = 0; k < 9; ++k) {

@@ -6,9 +6,13 @@
 #include "core/base/json_text.h"
 
 namespace skyquilt::tour {
+namespace {
+
+using Json = nlohmann::json;
+
+}  // namespace
 
 std::string ExportedProjectJson(const std::string& project_json, const ExportedFiles& files) {
-  using Json = nlohmann::json;
   Json json = Json::parse(project_json, nullptr, false);
   SKYQUILT_CHECK(json.is_object(), "project.json is no object");
   json["revision"] = 0;

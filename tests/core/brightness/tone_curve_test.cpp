@@ -13,7 +13,7 @@ namespace skyquilt::brightness {
 namespace {
 
 // The published curve, cut where the float code cuts it.
-constexpr double kLow = kSafe, kHigh = 1.0F - kSafe;
+constexpr auto kLow = static_cast<double>(kSafe), kHigh = static_cast<double>(1.0F - kSafe);
 double Published(double x) {
   return 0.5 - std::sin(std::asin(1.0 - 2.0 * x) / 3.0);
 }

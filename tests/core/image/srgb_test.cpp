@@ -14,7 +14,7 @@ using testing::EachValue;
 
 // The curves of IEC 61966-2-1 in double. They change from line to power law where the float code does: the standard's two pieces miss each other by
 // up to 3e-8 there.
-constexpr double kLinearEnd = 0.0031308F, kSrgbEnd = 0.04045F;
+constexpr auto kLinearEnd = static_cast<double>(0.0031308F), kSrgbEnd = static_cast<double>(0.04045F);
 double Decoded(double srgb, bool line) {
   return line ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
 }

@@ -42,8 +42,8 @@ TEST(DepthNormals, OfAPlaneAreItsNormal) {
     const image::ImageF normals = NormalsOfDepth(Pinhole(), Above(), DepthOfPlane(Pinhole(), Above(), unit, 1.0), {}, threads);
     for (int y = 0; y < normals.height; ++y) {
       for (int x = 0; x < normals.width; ++x) {
-        const float* n = normals.At(x, y);
-        EXPECT_GT(Vector3d(n[0], n[1], n[2]).dot(unit), 0.9999) << x << " " << y;
+        const Eigen::Map<const Eigen::Vector3f> n(normals.At(x, y));
+        EXPECT_GT(n.cast<double>().dot(unit), 0.9999) << x << " " << y;
       }
     }
   }

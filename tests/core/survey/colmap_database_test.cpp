@@ -81,7 +81,7 @@ TEST_F(Database, ImagesCamerasAndFeaturesAreRead) {
 
 TEST_F(Database, FeaturesOfTheGivenImagesAreRemoved) {
   const std::vector<float> place = {1.0F, 2.0F};
-  for (const uint32_t id : {1, 2, 3}) {
+  for (const uint32_t id : {1U, 2U, 3U}) {
     made_.AddImage(id, std::to_string(id) + ".jpg");
     made_.AddMatrix<float>("keypoints", id, 1, 2, place);
     made_.AddDescriptors(id, std::vector<uint8_t>(128, static_cast<uint8_t>(id)));

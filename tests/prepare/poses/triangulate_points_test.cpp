@@ -90,7 +90,10 @@ TEST(TriangulatePoints, OfARealModelLieWhereItsOwnPointsWere) {
   EXPECT_GT(points.size(), 60U);  // woods: few features in three photos
 
   std::vector<double> off;
-  for (const auto& [id, image] : images) {
+  for (const auto& entry : images) {
+    // Not [id, image], which clang 14 does not capture.
+    const uint32_t id = entry.first;
+    const auto& image = entry.second;
     const auto in_photo = [&](const std::vector<survey::ColmapPoint>& all) {
       std::vector<Eigen::Vector3d> seen;  // pixel and depth
       for (const survey::ColmapPoint& point : all) {

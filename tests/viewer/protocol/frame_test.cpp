@@ -128,7 +128,8 @@ RC_GTEST_PROP(Frames, DepthsAreWithinHalfAStep, ()) {
       const float before = z[2 * row * 16 + 2 * column], after = frame.depth_m[row * 8 + column];
       RC_ASSERT(std::isnan(before) == std::isnan(after));
       if (std::isnan(before)) continue;
-      const double b = before, a = after, low = frame.near_m, high = frame.far_m;
+      const auto b = static_cast<double>(before), a = static_cast<double>(after);
+      const auto low = static_cast<double>(frame.near_m), high = static_cast<double>(frame.far_m);
       // Rounding to float comes on top.
       if (header.orthographic) {
         RC_ASSERT(std::abs(a - b) <= 0.5001 * (high - low) / 65534.0 + 1e-6 * std::abs(b));

@@ -100,7 +100,8 @@ void FurnishFlats(Cell& cell, CityContents& contents, base::Random& random) {
     slab.length_m = random.Uniform(0.52, 0.68) * size.x();
     slab.width_m = random.Uniform(10.5, 12.5);
     slab.yaw_deg = random.Uniform(-2.0, 2.0);
-    FlatRoofed(slab, 3.0 * static_cast<double>(3 + random.Below(4)) + 0.6, random.Uniform(0.4, 0.7));
+    const double slab_parapet_m = random.Uniform(0.4, 0.7);
+    FlatRoofed(slab, 3.0 * static_cast<double>(3 + random.Below(4)) + 0.6, slab_parapet_m);
     slab.centre = {middle.x() + random.Uniform(-0.08, 0.08) * size.x(), middle.y() + side * (0.5 * size.y() - 5.0 - 0.5 * slab.width_m)};
     slab.seed = random.NextU32();
     contents.buildings.push_back(slab);
@@ -125,7 +126,8 @@ void FurnishTowers(Cell& cell, CityContents& contents, base::Random& random) {
     tower.length_m = random.Uniform(15.0, 19.0);
     tower.width_m = random.Uniform(13.0, 15.0);
     tower.yaw_deg = random.UniformDouble() < 0.5 ? random.Uniform(-3.0, 3.0) : 90.0 + random.Uniform(-3.0, 3.0);
-    FlatRoofed(tower, 3.1 * static_cast<double>(6 + random.Below(4)) + 1.0, random.Uniform(0.6, 1.0));
+    const double tower_parapet_m = random.Uniform(0.6, 1.0);
+    FlatRoofed(tower, 3.1 * static_cast<double>(6 + random.Below(4)) + 1.0, tower_parapet_m);
     tower.centre = middle + Vector2d(side * 0.27 * size.x(), side * random.Uniform(0.12, 0.2) * size.y());
     tower.seed = random.NextU32();
     contents.buildings.push_back(tower);
@@ -150,7 +152,8 @@ void FurnishPark(Cell& cell, CityContents& contents, base::Random& random) {
   const Vector2d size = cell.max - cell.min;
   const Vector2d middle = 0.5 * (cell.min + cell.max);
   Pond pond;
-  pond.centre = middle + Vector2d(random.Uniform(0.12, 0.2) * size.x(), random.Uniform(0.1, 0.2) * size.y());
+  const double pond_y = random.Uniform(0.1, 0.2) * size.y(), pond_x = random.Uniform(0.12, 0.2) * size.x();
+  pond.centre = middle + Vector2d(pond_x, pond_y);
   pond.radii = {random.Uniform(8.0, 11.0), random.Uniform(6.0, 8.5)};
   contents.ponds.push_back(pond);
   const double diagonal = 0.5 * size.norm();
@@ -158,7 +161,8 @@ void FurnishPark(Cell& cell, CityContents& contents, base::Random& random) {
   cell.pads.push_back(MakePad(PadKind::kPath, middle - Vector2d(0.0, 0.18 * size.y()), {0.98 * diagonal * 0.7, 1.1}, random.Uniform(-5.0, 5.0)));
   const int n_trees = static_cast<int>(size.x() * size.y() / 75.0);
   for (int i = 0; i < n_trees; ++i) {
-    const Vector2d at(random.Uniform(cell.min.x() + 3.0, cell.max.x() - 3.0), random.Uniform(cell.min.y() + 3.0, cell.max.y() - 3.0));
+    const double at_y = random.Uniform(cell.min.y() + 3.0, cell.max.y() - 3.0), at_x = random.Uniform(cell.min.x() + 3.0, cell.max.x() - 3.0);
+    const Vector2d at(at_x, at_y);
     AddGardenTree(at, 6.0, 12.0, contents, random);
   }
 }
@@ -167,7 +171,8 @@ void FurnishWood(const Cell& cell, CityContents& contents, base::Random& random)
   const Vector2d size = cell.max - cell.min;
   const int n_trees = static_cast<int>(size.x() * size.y() / 75.0);
   for (int i = 0; i < n_trees; ++i) {
-    const Vector2d at(random.Uniform(cell.min.x() + 1.0, cell.max.x() - 1.0), random.Uniform(cell.min.y() + 1.0, cell.max.y() - 1.0));
+    const double at_y = random.Uniform(cell.min.y() + 1.0, cell.max.y() - 1.0), at_x = random.Uniform(cell.min.x() + 1.0, cell.max.x() - 1.0);
+    const Vector2d at(at_x, at_y);
     AddGardenTree(at, 6.0, kHighestInWood_m, contents, random);
   }
 }

@@ -203,7 +203,8 @@ void CityLayout::AddFieldTrees(const CityPlan& plan, const Eigen::Vector2d& grou
   const int count = static_cast<int>(0.0012 * plan.trees * std::max(plan.tree_density, 1.0) * size.x() * size.y());
   for (int i = 0; i < count; ++i) {
     Tree tree;
-    tree.position = ground_min + Eigen::Vector2d(random.UniformDouble() * size.x(), random.UniformDouble() * size.y());
+    const double tree_y = random.UniformDouble() * size.y(), tree_x = random.UniformDouble() * size.x();
+    tree.position = ground_min + Eigen::Vector2d(tree_x, tree_y);
     tree.height_m = random.Uniform(5.0, 11.0);
     tree.crown_radius_m = random.Uniform(0.28, 0.4) * tree.height_m;
     tree.conifer = random.UniformDouble() < 0.3;

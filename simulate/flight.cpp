@@ -220,11 +220,13 @@ std::vector<PhotoPlan> PlanFlight(const PlaceSpec& place, double takeoff_z_m) {
     photo.yaw_deg = station.yaw_deg + 1.2 * random.Normal();
     photo.pitch_deg = std::max(station.pitch_deg + 0.7 * random.Normal(), -90.0);
     photo.roll_deg = 0.7 * random.Normal();
-    const Vector3d drift(0.25 * random.Normal(), 0.25 * random.Normal(), 0.3 * random.Normal());
+    const double drift_z = 0.3 * random.Normal(), drift_y = 0.25 * random.Normal(), drift_x = 0.25 * random.Normal();
+    const Vector3d drift(drift_x, drift_y, drift_z);
     const Vector3d position = Vector3d(station.position.x(), station.position.y(), takeoff_z_m + station.altitude_m) + drift;
     photo.cam_from_enu = PoseFromGimbal(position, photo.yaw_deg, photo.pitch_deg, photo.roll_deg);
     const double noise = place.gps_noise_m;
-    const Vector3d gps_error(noise * random.Normal(), noise * random.Normal(), 1.5 * noise * random.Normal());
+    const double gps_error_z = 1.5 * noise * random.Normal(), gps_error_y = noise * random.Normal(), gps_error_x = noise * random.Normal();
+    const Vector3d gps_error(gps_error_x, gps_error_y, gps_error_z);
     photo.tagged_position = position + gps_error;
     photo.tagged_gimbal = GimbalAngles{photo.yaw_deg, photo.pitch_deg, photo.roll_deg};
     photo.relative_altitude_m = position.z() - takeoff_z_m + 0.15 * random.Normal();

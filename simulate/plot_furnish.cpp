@@ -34,7 +34,8 @@ void AddGardenTree(const Vector2d& position, double low_m, double high_m, CityCo
 void MultiplyTrees(double density, size_t first_tree, const Cell& cell, CityContents& contents, base::Random& random) {
   const auto n_more = static_cast<int>(std::lround((density - 1.0) * static_cast<double>(contents.trees.size() - first_tree)));
   for (int i = 0; i < n_more; ++i) {
-    const Vector2d at(random.Uniform(cell.min.x() + 2.0, cell.max.x() - 2.0), random.Uniform(cell.min.y() + 2.0, cell.max.y() - 2.0));
+    const double at_y = random.Uniform(cell.min.y() + 2.0, cell.max.y() - 2.0), at_x = random.Uniform(cell.min.x() + 2.0, cell.max.x() - 2.0);
+    const Vector2d at(at_x, at_y);
     const bool paved = std::any_of(cell.pads.begin(), cell.pads.end(), [&](const PavedArea& pad) {
       const Eigen::Vector2f local = pad.Local(static_cast<float>(at.x()), static_cast<float>(at.y()));
       return DistanceToRectangle(local.cast<double>(), pad.half.cast<double>()) < 0.5;

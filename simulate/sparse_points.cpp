@@ -81,7 +81,8 @@ std::vector<survey::ColmapPoint> MakeSparsePoints(const World& world, const came
     // More views give smaller errors; along the viewing direction they are larger.
     const double gsd = (views.Centre(photo) - found->position.cast<double>()).norm() / camera.FocalX();
     const double sigma = 0.5 * point.error_px * gsd / std::sqrt(static_cast<double>(point.image_ids.size()));
-    const Vector3d error(sigma * random.Normal(), sigma * random.Normal(), 2.0 * sigma * random.Normal());
+    const double error_z = 2.0 * sigma * random.Normal(), error_y = sigma * random.Normal(), error_x = sigma * random.Normal();
+    const Vector3d error(error_x, error_y, error_z);
     point.x_in_world = found->position.cast<double>() + error;
     point.rgb = chosen.rgb;
     made[static_cast<size_t>(task)] = std::move(point);

@@ -29,7 +29,8 @@ void FurnishCourtyard(Cell& cell, CityContents& contents, base::Random& random) 
   wing.parapet_height_m = random.Uniform(0.4, 0.7);
   wing.seed = random.NextU32();
   const double depth = random.Uniform(9.0, 10.4);
-  const Vector2d size(random.Uniform(37.0, 40.0), random.Uniform(3.0 * depth + 0.5, 33.0));
+  const double size_y = random.Uniform(3.0 * depth + 0.5, 33.0), size_x = random.Uniform(37.0, 40.0);
+  const Vector2d size(size_x, size_y);
   const uint32_t storeys = 3 + random.Below(2);
   std::array<double, 4> heights{};
   for (double& height : heights) height = DeckOf(storeys);
@@ -42,7 +43,8 @@ void FurnishCourtyard(Cell& cell, CityContents& contents, base::Random& random) 
     cell.pads.push_back(MakePad(PadKind::kPath, {middle.x() + side * (0.5 * size.x() + 2.4), middle.y()}, {0.9, 0.5 * size.y()}));
   }
   cell.pads.push_back(MakePad(PadKind::kTerrace, middle, {0.2 * size.x() - 2.0, 2.0}));
-  AddGardenTree(middle + Vector2d(random.Uniform(-4.0, 4.0), random.Uniform(1.0, 2.0)), 5.0, 7.0, contents, random);
+  const double tree_y = random.Uniform(1.0, 2.0), tree_x = random.Uniform(-4.0, 4.0);
+  AddGardenTree(middle + Vector2d(tree_x, tree_y), 5.0, 7.0, contents, random);
   for (int i = 0; i < 16; ++i) {
     AddGardenTree({random.Uniform(cell.min.x() + 2.0, cell.max.x() - 2.0), random.Uniform(cell.min.y() + 2.0, cell.max.y() - 2.0)}, 4.0, 8.0,
                   contents, random);
@@ -59,11 +61,13 @@ void FurnishSlabs(Cell& cell, CityContents& contents, base::Random& random) {
     slab.kind = BuildingKind::kApartment;
     slab.length_m = random.Uniform(0.52, 0.68) * size.x();
     slab.width_m = random.Uniform(11.0, 12.5);
-    FlatRoofed(slab, DeckOf(3 + random.Below(3)), random.Uniform(0.4, 0.7));
+    const double parapet_m = random.Uniform(0.4, 0.7);
+    FlatRoofed(slab, DeckOf(3 + random.Below(3)), parapet_m);
     slab.seed = random.NextU32();
     const Vector2d place(middle.x() + random.Uniform(-0.08, 0.08) * size.x(), middle.y() + side * (0.5 * size.y() - 5.0 - 0.5 * slab.width_m));
     const double yaw_deg = random.Uniform(-2.0, 2.0);
-    const Vector2d top(slab.length_m - random.Uniform(5.0, 9.0), slab.width_m - random.Uniform(3.6, 4.6));
+    const double top_y = slab.width_m - random.Uniform(3.6, 4.6), top_x = slab.length_m - random.Uniform(5.0, 9.0);
+    const Vector2d top(top_x, top_y);
     const Vector2d offset(random.Uniform(-1.0, 1.0), 0.0);
     std::vector<Building> parts = {slab};
     if (side == with_setback) parts = WithSetback(slab, top, offset, slab.eave_height_m + kStorey_m + 0.3);
@@ -73,7 +77,8 @@ void FurnishSlabs(Cell& cell, CityContents& contents, base::Random& random) {
   AddParking(cell, {middle.x() - 0.08 * size.x(), middle.y()}, {0.34 * size.x(), 8.0}, 0.5, contents, random);
   cell.pads.push_back(MakePad(PadKind::kDriveway, {cell.max.x() - 0.12 * size.x(), middle.y()}, {0.14 * size.x(), 2.6}));
   for (int i = 0; i < 14; ++i) {
-    const Vector2d at(random.Uniform(cell.min.x() + 2.0, cell.max.x() - 2.0), random.Uniform(cell.min.y() + 2.0, cell.max.y() - 2.0));
+    const double at_y = random.Uniform(cell.min.y() + 2.0, cell.max.y() - 2.0), at_x = random.Uniform(cell.min.x() + 2.0, cell.max.x() - 2.0);
+    const Vector2d at(at_x, at_y);
     if (std::abs(at.y() - middle.y()) > 10.5) AddGardenTree(at, 5.0, 10.0, contents, random);
   }
 }
@@ -100,9 +105,12 @@ void FurnishVariedTowers(Cell& cell, CityContents& contents, base::Random& rando
   podium.length_m = random.Uniform(22.0, 24.0);
   podium.width_m = random.Uniform(17.0, 19.0);
   podium.seed = random.NextU32();
-  FlatRoofed(podium, random.Uniform(4.5, 8.0), random.Uniform(0.6, 1.0));
-  const Vector2d upper(random.Uniform(16.0, 16.8), random.Uniform(12.2, 13.0));
-  const Vector2d offset(random.Uniform(-1.0, 1.0), random.Uniform(-0.6, 0.6));
+  const double parapet_m = random.Uniform(0.6, 1.0);
+  FlatRoofed(podium, random.Uniform(4.5, 8.0), parapet_m);
+  const double upper_y = random.Uniform(12.2, 13.0), upper_x = random.Uniform(16.0, 16.8);
+  const Vector2d upper(upper_x, upper_y);
+  const double offset_y = random.Uniform(-0.6, 0.6), offset_x = random.Uniform(-1.0, 1.0);
+  const Vector2d offset(offset_x, offset_y);
   PutCompound(WithSetback(podium, upper, offset, TowerHeight()), middle - 0.19 * size, random.Uniform(-1.5, 1.5), contents);
 
   Building tower;
@@ -111,7 +119,8 @@ void FurnishVariedTowers(Cell& cell, CityContents& contents, base::Random& rando
   tower.width_m = random.Uniform(13.0, 15.0);
   FlatRoofed(tower, TowerHeight(), random.Uniform(0.6, 1.0));
   tower.seed = random.NextU32();
-  PutCompound({tower}, middle + Vector2d(0.28 * size.x(), random.Uniform(0.14, 0.2) * size.y()), random.Uniform(-3.0, 3.0), contents);
+  const double tower_yaw_deg = random.Uniform(-3.0, 3.0);
+  PutCompound({tower}, middle + Vector2d(0.28 * size.x(), random.Uniform(0.14, 0.2) * size.y()), tower_yaw_deg, contents);
 
   Building hall;
   hall.kind = BuildingKind::kHall;

@@ -130,7 +130,8 @@ std::optional<double> AddGarage(const HousePlot& plot, double street_y, double d
   garage.length_m = random.Uniform(5.5, 6.2);
   garage.width_m = random.Uniform(2.9, 3.3);
   garage.yaw_deg = 90.0 + random.Uniform(-1.5, 1.5);
-  FlatRoofed(garage, random.Uniform(2.5, 2.9), random.UniformDouble() < 0.3 ? 0.2 : 0.0);
+  const double garage_parapet_m = random.UniformDouble() < 0.3 ? 0.2 : 0.0;
+  FlatRoofed(garage, random.Uniform(2.5, 2.9), garage_parapet_m);
   garage.seed = random.NextU32();
   for (double door = nearest_m; door + garage.length_m + 0.4 < depth_m; door += 0.5) {
     garage.centre = {drive_x, street_y - plot.front * (door + 0.5 * garage.length_m)};
@@ -149,7 +150,10 @@ void AddShed(const HousePlot& plot, double middle_y, CityContents& contents, bas
   shed.width_m = large ? random.Uniform(2.6, 3.3) : random.Uniform(2.2, 2.8);
   shed.yaw_deg = random.Uniform(-4.0, 4.0);
   FlatRoofed(shed, random.Uniform(2.1, 2.7), 0.0);
-  if (large && random.UniformDouble() < 0.35) PitchRoofed(shed, RoofKind::kGable, random.Uniform(2.1, 2.4), random.Uniform(20.0, 30.0));
+  if (large && random.UniformDouble() < 0.35) {
+    const double shed_pitch_deg = random.Uniform(20.0, 30.0);
+    PitchRoofed(shed, RoofKind::kGable, random.Uniform(2.1, 2.4), shed_pitch_deg);
+  }
   shed.seed = random.NextU32();
   // Not nearer to the neighbour's garden than its overhang.
   const double half_depth = 0.5 * shed.width_m + 0.07 * shed.length_m + kLargestShedOverhang_m;

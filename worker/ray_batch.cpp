@@ -148,7 +148,8 @@ void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
       const float sharpness = render::SharpnessOf(width_m, target_.map.VolumeScale(r.ray.origin_enu + t * r.ray.direction_enu), points);
       group.sharpness[at] = sharpness;
       if (sharpness < observing) {
-        const Eigen::Vector3d shares(random.UniformDouble(), random.UniformDouble(), random.UniformDouble());
+        const double shares_z = random.UniformDouble(), shares_y = random.UniformDouble(), shares_x = random.UniformDouble();
+        const Eigen::Vector3d shares(shares_x, shares_y, shares_z);
         const Eigen::Vector3f place = cone.Within(t, length, width_m, shares);
         group.cell[at] = ~static_cast<int32_t>(target_.occupancy.IndexAt(place.x(), place.y(), place.z()));
       }

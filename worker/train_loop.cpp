@@ -69,6 +69,7 @@ bool TrainLoop::Run() {
 
 TrainResult TrainLoop::SaveResult(const ContextResults* findings) {
   record_.complete = true;
+  if (good_.Empty()) record_.guard = guard_.state();
   SaveSession(kind_, job_, target_, trainer_, record_, extras_, findings);
   return Summarise();
 }

@@ -29,7 +29,8 @@ std::vector<Vector3d> MakePoints(const simulate::PlaceSpec& place, base::Random&
   std::vector<Vector3d> points;
   points.reserve(kPoints);
   for (int i = 0; i < kPoints; ++i) {
-    const Vector2d at(random.Uniform(place.area_min.x(), place.area_max.x()), random.Uniform(place.area_min.y(), place.area_max.y()));
+    const double at_y = random.Uniform(place.area_min.y(), place.area_max.y()), at_x = random.Uniform(place.area_min.x(), place.area_max.x());
+    const Vector2d at(at_x, at_y);
     const double ground_m = simulate::RollingHeight(at.x(), at.y(), place.terrain_amplitude_m, place.seed + 1U) + rise.dot(at - middle);
     const double above_m = random.UniformDouble() < 1.0 / 3.0 ? random.Uniform(0.0, 12.0) : 0.0;
     points.emplace_back(at.x(), at.y(), ground_m + above_m + 0.1 * random.Normal());

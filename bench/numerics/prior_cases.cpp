@@ -50,7 +50,10 @@ CaseResult PlanesOfRoundings() {
   int found = 0;
   for (int i = 0; i < 1000; ++i) {
     std::vector<Vector3d> points;
-    for (int k = 0; k < 6; ++k) points.emplace_back(kFarAway + 1e-10 * Vector3d(random.Normal(), random.Normal(), 0.1 * random.Normal()));
+    for (int k = 0; k < 6; ++k) {
+      const double z = 0.1 * random.Normal(), y = random.Normal(), x = random.Normal();
+      points.emplace_back(kFarAway + 1e-10 * Vector3d(x, y, z));
+    }
     const std::optional<worker::Plane> plane = worker::FitPlane(points);
     if (!plane) continue;
     ++found;

@@ -50,7 +50,8 @@ double WorstRoundTripMm(const geo::Geodetic& origin, double extent_m, int places
   Worst worst;
   for (int i = 0; i < places; ++i) {
     const double up = 0.5 * std::min(extent_m, 2.0 * kBlockHeight_m);
-    const Eigen::Vector3d enu(random.Uniform(-0.5, 0.5) * extent_m, random.Uniform(-0.5, 0.5) * extent_m, random.Uniform(-up, up));
+    const double enu_z = random.Uniform(-up, up), enu_y = random.Uniform(-0.5, 0.5) * extent_m, enu_x = random.Uniform(-0.5, 0.5) * extent_m;
+    const Eigen::Vector3d enu(enu_x, enu_y, enu_z);
     const geo::Geodetic place = frame.GeodeticFromEnu(enu);
     worst.Take(1e3 * DistanceMetres(place, ThroughThePipeline(frame, place, std::min(extent_m, kBlock_m))));
   }
@@ -84,8 +85,10 @@ CaseResult RaySamples() {
     const double distance = std::pow(10.0, random.Uniform(1.0, 4.85));
     const Eigen::Vector3d aim(distance * std::cos(angle), distance * std::sin(angle), random.Uniform(1.0, 40.0));
     geo::Rigid3d cam_from_enu;
-    cam_from_enu.rotation = Eigen::Quaterniond(random.Normal(), random.Normal(), random.Normal(), random.Normal()).normalized();
-    const Eigen::Vector3d centre = aim + Eigen::Vector3d(random.Uniform(-90, 90), random.Uniform(-90, 90), random.Uniform(50, 150));
+    const double z = random.Normal(), y = random.Normal(), x = random.Normal(), w = random.Normal();
+    cam_from_enu.rotation = Eigen::Quaterniond(w, x, y, z).normalized();
+    const double up = random.Uniform(50, 150), north = random.Uniform(-90, 90), east = random.Uniform(-90, 90);
+    const Eigen::Vector3d centre = aim + Eigen::Vector3d(east, north, up);
     cam_from_enu.translation = -(cam_from_enu.rotation * centre);
     const Eigen::Vector3d origin = cam_from_enu.Inverse().translation;
     const Eigen::Vector3d direction = (aim - centre).normalized();
@@ -113,7 +116,9 @@ NumericCase BoxStepCase(double edge_m) {
                 encoding::SpaceMap::Box({-0.3 * edge_m, 1.7 * edge_m, -4.0}, {0.7 * edge_m, 2.7 * edge_m, -4.0 + std::min(60.0, edge_m)});
             Worst worst;
             for (int i = 0; i < 20000; ++i) {
-              const Eigen::Vector3d x(map.min_enu().x() + random.UniformDouble() * edge_m, map.min_enu().y() + random.UniformDouble() * edge_m, -3.5);
+              const double x_z = -3.5, x_y = map.min_enu().y() + random.UniformDouble() * edge_m,
+                           x_x = map.min_enu().x() + random.UniformDouble() * edge_m;
+              const Eigen::Vector3d x(x_x, x_y, x_z);
               worst.Take(1e3 * (map.EnuFromUnit(map.UnitFromEnu(x).cast<double>()) - x).cwiseAbs().maxCoeff());
             }
             return CaseResult{.seen = "worst axis of 20000 places", .worst = worst.value()};

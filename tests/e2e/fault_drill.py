@@ -53,7 +53,7 @@ class Drill:
         def writing():
             return checkpoints.exists() and any(".tmp" in name for name in os.listdir(checkpoints))
 
-        end = began + self.random.uniform(0.05, 2.5)
+        end = began + self.random.uniform(0.05, 1.6)
         while time.monotonic() < end:
             if process.poll() is not None:
                 return False

@@ -20,7 +20,7 @@ SMALL = ["--steps", STEPS, "--blocks", "1x2", "--image-width", "240", "--set", "
          "--set", "surface.enabled=false"]
 
 # For small_project: two blocks of some seconds each, saved so often that a checkpoint is always recent.
-QUICK_TRAIN = ["--steps", "700", "--set", "train.checkpoint_every_s=0.1", "--set", "context.checkpoint_every_s=0.1", "--set", "train.batch_samples=4096",
+QUICK_TRAIN = ["--steps", "450", "--set", "train.checkpoint_every_s=0.1", "--set", "context.checkpoint_every_s=0.1", "--set", "train.batch_samples=4096",
                "--set", "context.batch_samples=4096"]
 
 

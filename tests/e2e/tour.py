@@ -7,9 +7,8 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 
-from harness import Failure, Skyquilt, expect, houses_project, main
+from harness import Failure, Skyquilt, expect, houses_project, main, wait_for
 from web_client import Viewer, page_can_be_checked, skip
 from web_documents import asset_path, collection, png, tour
 
@@ -102,7 +101,7 @@ def check_export(skyquilt, project, folder):
     edited["stops"][0]["title"] = "<img src=x onerror=alert(1)>"
     tour_file.write_text(json.dumps(edited))
     process = skyquilt.start(*export)
-    time.sleep(0.3)
+    wait_for((folder / "exported.partial").exists, "the folder in which the export is made", process)
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     expect(contents(target) == first, "a killed export changed the folder")

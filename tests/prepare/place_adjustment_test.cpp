@@ -51,9 +51,11 @@ struct Problem {
   void AddNoise(base::Random& random) {
     for (Tag& tag : tags) {
       const double horizontal_m = kHorizontalNoise_m / 3.0 * tag.horizontal_sigma_m, vertical_m = kVerticalNoise_m / 4.5 * tag.vertical_sigma_m;
-      tag.x_in_enu += Vector3d(horizontal_m * random.Normal(), horizontal_m * random.Normal(), vertical_m * random.Normal());
+      const double up = vertical_m * random.Normal(), north = horizontal_m * random.Normal(), east = horizontal_m * random.Normal();
+      tag.x_in_enu += Vector3d(east, north, up);
     }
-    const Vector3d turn(random.Normal(), random.Normal(), random.Normal());
+    const double turn_z = random.Normal(), turn_y = random.Normal(), turn_x = random.Normal();
+    const Vector3d turn(turn_x, turn_y, turn_z);
     gravity.up = (gravity.up + kGravitySigma_deg * kRadiansPerDegree * turn.cross(gravity.up)).normalized();
   }
   // From a start that is off by a degree, 2 % and a few metres.
@@ -175,7 +177,10 @@ TEST(Adjust, ADriftOfHeightsGoesIntoTheBias) {
 TEST(Adjust, TellsWhatTheTagsAloneSayOfTheTilt) {
   Problem problem;
   base::Random random(4);
-  for (Tag& tag : problem.tags) tag.x_in_enu += 0.5 * Vector3d(random.Normal(), random.Normal(), random.Normal());
+  for (Tag& tag : problem.tags) {
+    const double up = random.Normal(), north = random.Normal(), east = random.Normal();
+    tag.x_in_enu += 0.5 * Vector3d(east, north, up);
+  }
   // Gravity is off by a degree: the result stays with it in part, the tags alone do not.
   const Vector3d off_in_enu = Eigen::AngleAxisd(1.0 * kRadiansPerDegree, Vector3d::UnitY()) * Vector3d::UnitZ();
   problem.gravity.up = problem.model_from_enu.rotation * off_in_enu;

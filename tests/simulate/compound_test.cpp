@@ -65,13 +65,15 @@ double ExpectedHeight(const std::vector<Building>& parts, const Vector2d& at) {
 TEST(Compound, RoofsAreAsHighAsTheSizesSay) {
   base::Random random(5);
   for (std::vector<Building> parts : Compounds()) {
-    MoveParts({Vector2d::Zero(), random.Uniform(0.0, 360.0)}, {random.Uniform(-50.0, 50.0), random.Uniform(-50.0, 50.0)}, parts);
+    const Vector2d to{random.Uniform(-50.0, 50.0), random.Uniform(-50.0, 50.0)};
+    MoveParts({Vector2d::Zero(), random.Uniform(0.0, 360.0)}, to, parts);
     Mesh mesh;
     for (size_t i = 0; i < parts.size(); ++i) AddBuilding(parts[i], static_cast<uint32_t>(i), mesh);
     const raytrace::TracedScene scene(mesh.position, mesh.triangle);
     int n_roof = 0, n_run_on = 0;
     for (int k = 0; k < 3000; ++k) {
-      const Vector2d at = parts[0].centre + Vector2d(random.Uniform(-26.0, 26.0), random.Uniform(-26.0, 26.0));
+      const double y = random.Uniform(-26.0, 26.0), x = random.Uniform(-26.0, 26.0);
+      const Vector2d at = parts[0].centre + Vector2d(x, y);
       const double expected = ExpectedHeight(parts, at);
       if (std::isnan(expected)) continue;
       raytrace::RayPacket ray{};

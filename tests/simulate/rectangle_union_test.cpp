@@ -20,7 +20,8 @@ constexpr int kGrid = 12;
 std::vector<Rectangle2d> RandomRectangles(base::Random& random) {
   std::vector<Rectangle2d> made;
   while (made.size() < 7) {
-    const Vector2d min(random.Below(kGrid - 1), random.Below(kGrid - 1));
+    const double min_y = random.Below(kGrid - 1), min_x = random.Below(kGrid - 1);
+    const Vector2d min(min_x, min_y);
     const Rectangle2d one{min, {min.x() + 1 + random.Below(static_cast<uint32_t>(kGrid - min.x())), min.y() + 1 + random.Below(3)}};
     const bool touches = std::any_of(made.begin(), made.end(), [&](const Rectangle2d& other) {
       return (one.max.cwiseMin(other.max) - one.min.cwiseMax(other.min)).minCoeff() > 0.5;

@@ -279,7 +279,9 @@ TEST(PointPlanes, TooFewOrUnsuitablePointsGiveNone) {
   EXPECT_TRUE(line.Planes().Empty());
   Cloud broken;
   broken.AddPatch({0.0, 0.0, 0.0}, {5.0, 0.0, 0.0}, {0.0, 5.0, 0.0}, 100, 0.0);
-  for (const Vector3d& x : {Vector3d(1.0, 1.0, std::nan("")), Vector3d(std::nan(""), 1.0, 0.0), Vector3d(1.0, 1.0, std::numeric_limits<double>::infinity())}) broken.Add(x);
+  for (const Vector3d& x :
+       {Vector3d(1.0, 1.0, std::nan("")), Vector3d(std::nan(""), 1.0, 0.0), Vector3d(1.0, 1.0, std::numeric_limits<double>::infinity())})
+    broken.Add(x);
   EXPECT_EQ(broken.Planes().planes().size(), 1U) << "points without numbers do no harm";
 }
 

@@ -148,6 +148,8 @@ class SmallSurvey : public ::testing::Test {
       const std::vector<float> values = reader.Floats(array);
       bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
     }
+    const std::vector<double> guard = reader.Doubles("guard");
+    bytes.append(reinterpret_cast<const char*>(guard.data()), guard.size() * sizeof(double));
     return base::HashHex(bytes);
   }
 

@@ -91,7 +91,8 @@ class MadeScene {
     cloud.middle = {0.0, 0.0, kGround};
     cloud.spacing_m = kSpacing_m;
     const auto add = [&](const Eigen::Vector3d& at, const Eigen::Vector3d& normal, Color color) {
-      const Eigen::Vector3d noisy = normal + 0.1 * Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal());
+      const double z = random.Normal(), y = random.Normal(), x = random.Normal();
+      const Eigen::Vector3d noisy = normal + 0.1 * Eigen::Vector3d(x, y, z);
       for (uint8_t& part : color) part = static_cast<uint8_t>(part + random.Uniform(-6, 6));
       cloud.points.push_back({(at + noise_m * random.Normal() * normal).cast<float>(), noisy.normalized().cast<float>(), color, 6, 0});
     };

@@ -87,7 +87,8 @@ class SurfaceMaker {
     const double margin = plan_.overhang_m + 0.5;
     for (double u = shape_.u.front() - margin; u < shape_.u.back() + margin; u += plan_.spacing_m) {
       for (double v = shape_.v.front() - margin; v < shape_.v.back() + margin; v += plan_.spacing_m) {
-        const Eigen::Vector2d uv = Eigen::Vector2d(u, v) + 0.2 * plan_.spacing_m * Eigen::Vector2d(random_.Uniform(-1, 1), random_.Uniform(-1, 1));
+        const double off_v = random_.Uniform(-1, 1), off_u = random_.Uniform(-1, 1);
+        const Eigen::Vector2d uv = Eigen::Vector2d(u, v) + 0.2 * plan_.spacing_m * Eigen::Vector2d(off_u, off_v);
         int part = -1, other = -1;
         double z = RoofAt(uv, &part);
         if (part < 0) continue;

@@ -34,9 +34,10 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
     const int strip = i / plan.per_strip, k = i % plan.per_strip;
     const bool back = strip % 2 == 1;
     const double x = plan.along_m * (back ? plan.per_strip - 1 - k : k);
-    const Eigen::Vector3d centre(x + random.Normal(), plan.across_m * strip + random.Normal(), plan.height_m + random.Normal());
-    const Eigen::Vector3d angles((back ? 270.0 : 90.0) + plan.tilt_noise_deg * random.Normal(),
-                                 plan.pitch_deg + plan.tilt_noise_deg * random.Normal(), plan.tilt_noise_deg * random.Normal());
+    const double centre_z = plan.height_m + random.Normal(), centre_y = plan.across_m * strip + random.Normal(), centre_x = x + random.Normal();
+    const Eigen::Vector3d centre(centre_x, centre_y, centre_z);
+    const double roll = plan.tilt_noise_deg * random.Normal(), pitch = plan.pitch_deg + plan.tilt_noise_deg * random.Normal();
+    const Eigen::Vector3d angles((back ? 270.0 : 90.0) + plan.tilt_noise_deg * random.Normal(), pitch, roll);
     geo::Rigid3d pose;
     pose.rotation = prepare::RotationFromAngles(angles.x(), angles.y(), angles.z());
     pose.translation = -(pose.rotation * centre);
@@ -47,7 +48,9 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
     photo.image_id = static_cast<uint32_t>(i + 1);
     photo.camera_id = static_cast<uint32_t>(i % plan.cameras + 1);
     photo.name = "photo_" + std::to_string(100 + i) + ".jpg";
-    const Eigen::Vector3d error(plan.gps_noise_m * random.Normal(), plan.gps_noise_m * random.Normal(), plan.gps_height_noise_m * random.Normal());
+    const double error_z = plan.gps_height_noise_m * random.Normal(), error_y = plan.gps_noise_m * random.Normal(),
+                 error_x = plan.gps_noise_m * random.Normal();
+    const Eigen::Vector3d error(error_x, error_y, error_z);
     photo.gps = frame.GeodeticFromEnu(centre + error);
     if (plan.gimbal_tags) {
       photo.yaw_deg = angles.x() + plan.angle_noise_deg * random.Normal();
@@ -72,7 +75,8 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
       if (!pixel || pixel->x() < 0.0 || pixel->y() < 0.0 || pixel->x() > camera.width || pixel->y() > camera.height) continue;
       feature_of[i][p] = static_cast<uint32_t>(photo.features.size());
       made.points[i].push_back(p);
-      const Eigen::Vector2d noise(plan.pixel_noise_px * random.Normal(), plan.pixel_noise_px * random.Normal());
+      const double noise_y = plan.pixel_noise_px * random.Normal(), noise_x = plan.pixel_noise_px * random.Normal();
+      const Eigen::Vector2d noise(noise_x, noise_y);
       photo.features.push_back((*pixel + noise).cast<float>());
     }
   }

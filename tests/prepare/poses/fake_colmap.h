@@ -49,7 +49,8 @@ class FakeColmap : public testing::Test {
 
 // It takes a made database for features, verifies all matches of the listed pairs, and makes models of so many photos, with the focal length "focal"
 // (60 px without) unless it must keep that of the tags, 60 px.
-inline constexpr const char* kFastProgram = R"py(#!/usr/bin/env python3
+// Not env python3: version managers put a shell script of half a second there.
+inline constexpr const char* kFastProgram = R"py(#!/usr/bin/python3
 import os, shutil, sqlite3, struct, sys
 folder = os.path.dirname(os.path.abspath(__file__))
 call = sys.argv[1]

@@ -10,7 +10,8 @@ namespace skyquilt::test {
 
 // Needs a database without images, `folder`/made.db. Writes the names it was asked for into `folder`/calls, a line for each call, and fails when
 // there is a file `folder`/fail with one of them. With a file `folder`/slow it works for a minute.
-constexpr const char* kFakeExtractor = R"py(#!/usr/bin/env python3
+// Not env python3: version managers put a shell script of half a second there.
+constexpr const char* kFakeExtractor = R"py(#!/usr/bin/python3
 import os, random, shutil, sqlite3, sys, time
 folder = os.path.dirname(os.path.abspath(__file__))
 options = dict(zip(sys.argv[2::2], sys.argv[3::2]))

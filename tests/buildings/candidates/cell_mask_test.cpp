@@ -28,7 +28,7 @@ RC_GTEST_PROP(CellMask, NearestCellsAreNearest, ()) {
       if (mask.value[other] != 0) least = std::min(least, CellDistance(mask, cell, static_cast<int32_t>(other)));
     }
     const double found = CellDistance(mask, cell, nearest[cell]);
-    RC_ASSERT(nearest[cell] < 0 || mask.value[static_cast<size_t>(nearest[cell])] != 0);
+    RC_ASSERT((nearest[cell] < 0 || mask.value[static_cast<size_t>(nearest[cell])] != 0));  // RC_ASSERT evaluates both sides of a bare ||
     RC_ASSERT(found == least || (found > least && found < least + 0.5));
   }
 }

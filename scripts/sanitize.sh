@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the tests with clang's sanitizers and runs those of units, ranks and readers. About an hour each on two cores.
+# Builds the tests with clang's sanitizers and runs those of units, ranks and readers. An hour and more each on two cores.
 #   scripts/sanitize.sh [address|thread|all] [ctest options...]      default: all
 # address: memory errors, leaks and undefined behaviour; thread: data races. Reports caused by Open MPI itself are suppressed, see
 # tests/support/lsan.supp and tests/support/tsan.supp. With ctest options of your own, such as -R e2e_resume, exactly those tests run.

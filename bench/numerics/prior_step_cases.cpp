@@ -192,8 +192,8 @@ survey::Survey LevelPoints(const SyntheticOptions& scene, double height_m) {
   base::Random random(3);
   const double half = 0.5 * scene.edge_m;
   for (int i = 0; i < 400; ++i) {
-    const double x_z = height_m + 0.02 * random.Normal(), x_y = random.Uniform(-half, half), x_x = random.Uniform(-half, half);
-    const Vector3d x(x_x, x_y, x_z);
+    const double up = height_m + 0.02 * random.Normal(), north = random.Uniform(-half, half), east = random.Uniform(-half, half);
+    const Vector3d x(east, north, up);
     survey.points.push_back({scene.offset_enu + x, {}, 0.5F, 3});
   }
   return survey;

@@ -116,9 +116,9 @@ NumericCase BoxStepCase(double edge_m) {
                 encoding::SpaceMap::Box({-0.3 * edge_m, 1.7 * edge_m, -4.0}, {0.7 * edge_m, 2.7 * edge_m, -4.0 + std::min(60.0, edge_m)});
             Worst worst;
             for (int i = 0; i < 20000; ++i) {
-              const double x_z = -3.5, x_y = map.min_enu().y() + random.UniformDouble() * edge_m,
-                           x_x = map.min_enu().x() + random.UniformDouble() * edge_m;
-              const Eigen::Vector3d x(x_x, x_y, x_z);
+              const double north = map.min_enu().y() + random.UniformDouble() * edge_m;
+              const double east = map.min_enu().x() + random.UniformDouble() * edge_m;
+              const Eigen::Vector3d x(east, north, -3.5);
               worst.Take(1e3 * (map.EnuFromUnit(map.UnitFromEnu(x).cast<double>()) - x).cwiseAbs().maxCoeff());
             }
             return CaseResult{.seen = "worst axis of 20000 places", .worst = worst.value()};

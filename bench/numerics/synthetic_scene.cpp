@@ -65,10 +65,10 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
   std::vector<int32_t> cell;
   const double half = 0.5 * scene.edge_m;
   for (int i = 0; i < rays.rays; ++i) {
-    const double camera_z = kCamera_m, camera_y = random.Uniform(-half, half), camera_x = random.Uniform(-half, half);
-    const Eigen::Vector3d camera(camera_x, camera_y, camera_z);
-    const double ground_z = 0.0, ground_y = random.Uniform(-half, half), ground_x = random.Uniform(-half, half);
-    const Eigen::Vector3d ground(ground_x, ground_y, ground_z);
+    const double camera_y = random.Uniform(-half, half), camera_x = random.Uniform(-half, half);
+    const Eigen::Vector3d camera(camera_x, camera_y, kCamera_m);
+    const double ground_y = random.Uniform(-half, half), ground_x = random.Uniform(-half, half);
+    const Eigen::Vector3d ground(ground_x, ground_y, 0.0);
     const float stops = rays.most_stops * (2.0F * random.Uniform() - 1.0F);
     worker::BatchRay ray;
     ray.ray.direction_enu = (ground - camera).normalized();

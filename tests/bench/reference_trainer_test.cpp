@@ -126,7 +126,7 @@ TEST(ReferenceField, ScalesAreWhatTheFootprintHides) {
 TEST(ReferenceField, HarmonicsEqualTheFields) {
   base::Random random(7);
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector3d d = i == 0 ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
+    const Eigen::Vector3d d = i == 0 ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d{random.Normal(), random.Normal(), random.Normal()}.normalized();
     double own[16];
     encoding::SphericalHarmonics(d.x(), d.y(), d.z(), 4, own);
     const std::vector<double> values = ReferenceHarmonics({d.x(), d.y(), d.z()}, 4);

@@ -114,7 +114,7 @@ class Sampler {
   }
 
   void Add(const Eigen::Vector3d& x, const Eigen::Vector3d& normal, const std::array<uint8_t, 3>& rgb, MadeSurface surface, int id) {
-    const Eigen::Vector3d bend = plan_.normal_noise * Eigen::Vector3d(random_.Normal(), random_.Normal(), random_.Normal());
+    const Eigen::Vector3d bend = plan_.normal_noise * Eigen::Vector3d{random_.Normal(), random_.Normal(), random_.Normal()};
     const Eigen::Vector3d moved = x + plan_.noise_m * random_.Normal() * normal;
     SurfacePoint point;
     point.position = (moved - made_.cloud.middle).cast<float>();
@@ -178,7 +178,7 @@ void AddTree(MadeCloud* made, const Eigen::Vector3d& middle, double radius_m, bo
   Sampler sampler(plan, made);
   const double area_m2 = 4.0 * std::numbers::pi * radius_m * radius_m;
   const auto count = static_cast<int>(area_m2 / (made->cloud.spacing_m * made->cloud.spacing_m));
-  const auto direction = [&] { return Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized(); };
+  const auto direction = [&] { return Eigen::Vector3d{random.Normal(), random.Normal(), random.Normal()}.normalized(); };
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d out = direction();
     const Eigen::Vector3d x = middle + radius_m * random.Uniform(0.7, 1.0) * out;

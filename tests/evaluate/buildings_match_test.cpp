@@ -13,7 +13,10 @@ namespace {
 
 std::vector<buildings::Polygon> RandomSquares(size_t n, base::Random& random) {
   std::vector<buildings::Polygon> squares;
-  for (size_t i = 0; i < n; ++i) squares.push_back(Square(random.Uniform(0.0, 40.0), random.Uniform(0.0, 40.0), random.Uniform(3.0, 12.0)));
+  for (size_t i = 0; i < n; ++i) {
+    const double x = random.Uniform(0.0, 40.0), y = random.Uniform(0.0, 40.0);
+    squares.push_back(Square(x, y, random.Uniform(3.0, 12.0)));
+  }
   return squares;
 }
 
@@ -24,7 +27,7 @@ TEST(MatchFootprints, IsOneToOneAndBestFirst) {
     std::vector<buildings::Polygon> truth = RandomSquares(25, random);
     for (size_t i = 0; i < 12; ++i) {  // some that agree more or less
       truth[i] = found[2 * i];
-      for (Eigen::Vector2d& point : truth[i].outer) point += Eigen::Vector2d(random.Uniform(-2.0, 2.0), random.Uniform(-2.0, 2.0)) * 0.5;
+      for (Eigen::Vector2d& point : truth[i].outer) point += Eigen::Vector2d{random.Uniform(-2.0, 2.0), random.Uniform(-2.0, 2.0)} * 0.5;
     }
     const std::vector<BuildingPair> pairs = MatchFootprints(found, truth);
     EXPECT_FALSE(pairs.empty());

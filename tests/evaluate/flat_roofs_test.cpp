@@ -165,11 +165,11 @@ TEST(SpreadAboutPlane, NeedsThreePointsAndSurvivesThoseOnALine) {
 RC_GTEST_PROP(SpreadAboutPlane, DoesNotDependOnThePlaneOrTheYaw, ()) {
   base::Random random(*rc::gen::arbitrary<uint32_t>());
   const double yaw = random.Uniform(0.0, 6.28);
-  const Vector3d plane(random.Uniform(-2.0, 2.0), random.Uniform(-2.0, 2.0), random.Uniform(-500.0, 500.0));
+  const Vector3d plane{random.Uniform(-2.0, 2.0), random.Uniform(-2.0, 2.0), random.Uniform(-500.0, 500.0)};
   std::vector<Vector3d> points, moved;
   const auto n = *rc::gen::inRange(3, 200);
   for (int i = 0; i < n; ++i) {
-    const Vector3d p(random.Uniform(-10.0, 10.0), random.Uniform(-10.0, 10.0), random.Normal());
+    const Vector3d p{random.Uniform(-10.0, 10.0), random.Uniform(-10.0, 10.0), random.Normal()};
     points.push_back(p);
     moved.emplace_back(std::cos(yaw) * p.x() - std::sin(yaw) * p.y(), std::sin(yaw) * p.x() + std::cos(yaw) * p.y(),
                        p.z() + plane.x() * p.x() + plane.y() * p.y() + plane.z());

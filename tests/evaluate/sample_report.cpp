@@ -179,7 +179,7 @@ survey::Survey FlownSurvey(base::Random& random) {
       photo.flight = line < 5 ? 0 : 1;
       photo.cam_from_enu.rotation = Eigen::Quaterniond(0, 1, 0, 0);
       photo.cam_from_enu.translation = -(photo.cam_from_enu.rotation * center);
-      Eigen::Vector3d residual(1.4 * random.Normal(), 1.4 * random.Normal(), 2.0 * random.Normal());
+      Eigen::Vector3d residual{1.4 * random.Normal(), 1.4 * random.Normal(), 2.0 * random.Normal()};
       if (index == 40) residual += Eigen::Vector3d(22.0, 5.0, 0.0);
       if (index == 60) residual += Eigen::Vector3d(-140.0, 400.0, 30.0);
       photo.gps_correction_m = -TagError(line, along);

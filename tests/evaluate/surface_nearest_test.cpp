@@ -47,17 +47,17 @@ RC_GTEST_PROP(NearestTriangles, AgreesWithTryingAllTriangles, ()) {
   std::vector<std::array<uint32_t, 3>> triangle;
   for (uint32_t i = 0; i < n; ++i) {
     const double size = random.Uniform() < 0.1F ? 20.0 : 0.5;
-    const Vector3d at = random.Uniform() < 0.2F ? Vector3d(1, 2, 3) : Vector3d(random.Uniform(-9, 9), random.Uniform(-9, 9), random.Uniform(-2, 2));
+    const Vector3d at = random.Uniform() < 0.2F ? Vector3d(1, 2, 3) : Vector3d{random.Uniform(-9, 9), random.Uniform(-9, 9), random.Uniform(-2, 2)};
     const bool flat = random.Uniform() < 0.1F;
     for (int k = 0; k < 3; ++k) {
-      const Vector3d off = flat ? Vector3d(size * k, 0, 0) : Vector3d(size * random.Normal(), size * random.Normal(), size * random.Normal());
+      const Vector3d off = flat ? Vector3d(size * k, 0, 0) : Vector3d{size * random.Normal(), size * random.Normal(), size * random.Normal()};
       position.push_back((at + off).cast<float>());
     }
     triangle.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
   const NearestTriangles nearest(position, triangle);
   for (int k = 0; k < 20; ++k) {
-    const Vector3d p(random.Uniform(-12, 12), random.Uniform(-12, 12), random.Uniform(-4, 4));
+    const Vector3d p{random.Uniform(-12, 12), random.Uniform(-12, 12), random.Uniform(-4, 4)};
     double best = std::numeric_limits<double>::infinity();
     for (const auto& corner : triangle) {
       const Vector3d q =
@@ -79,7 +79,7 @@ RC_GTEST_PROP(NearestTriangles, AgreesWithTryingAllTriangles, ()) {
 // No point inside or outside a triangle is nearer than the one that is returned.
 RC_GTEST_PROP(NearestOnTriangle, NoOtherPointOfTheTriangleIsNearer, ()) {
   base::Random random(*rc::gen::arbitrary<uint32_t>());
-  const auto any = [&] { return Vector3d(random.Normal(), random.Normal(), random.Normal()); };
+  const auto any = [&] { return Vector3d{random.Normal(), random.Normal(), random.Normal()}; };
   const Vector3d a = any(), b = any(), c = any(), p = 2.0 * any();
   const Vector3d nearest = NearestOnTriangle(p, a, b, c);
   for (int k = 0; k < 100; ++k) {

@@ -116,7 +116,7 @@ TEST(Georeference, FlightsThatAgreeAreNotMovedApart) {
   for (size_t i = 10; i < 20; ++i) flight.photos[i].tags.capture_time_s = *flight.photos[i].tags.capture_time_s + 86400.0;
   base::Random random(5);
   test::SetTags(flight, [&](size_t, const Eigen::Vector3d& centre) {
-    return Eigen::Vector3d(centre + Eigen::Vector3d(random.Normal(), random.Normal(), 2.0 * random.Normal()));
+    return Eigen::Vector3d(centre + Eigen::Vector3d{random.Normal(), random.Normal(), 2.0 * random.Normal()});
   });
   const Georeference result = Place(flight);
   EXPECT_EQ(result.flight[9], 0);

@@ -116,7 +116,7 @@ TEST(GimbalEvidence, WrongAnglesDoNotPull) {
   base::Random random(6);
   for (size_t i = 0; i < attempt.stations.size(); ++i) {
     Vector3d& up = *attempt.stations[i].up_in_cam;
-    up = i % 5 == 3 ? Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized() : Vector3d(test::SmallRotation(0.3, random) * up);
+    up = i % 5 == 3 ? Vector3d{random.Normal(), random.Normal(), random.Normal()}.normalized() : Vector3d(test::SmallRotation(0.3, random) * up);
   }
   EXPECT_LT(AngleDeg(GimbalEvidence(attempt.stations).at(0).up, attempt.Up()), 0.2);
 }
@@ -158,7 +158,7 @@ TEST(GroundEvidence, FindsALeaningPlaneDespiteFarPoints) {
   const geo::Similarity3d model_from_enu = test::RandomFrame(random);
   const Vector3d normal = model_from_enu.rotation * Vector3d(-std::sin(8.0 / kDegrees), 0.0, std::cos(8.0 / kDegrees));
   std::vector<Vector3d> points = Ground(model_from_enu, 8.0, 1.0);
-  for (size_t i = 0; i < points.size(); i += 6) points[i] = model_from_enu * Vector3d(2000.0 * random.Normal(), 2000.0 * random.Normal(), 3000.0);
+  for (size_t i = 0; i < points.size(); i += 6) points[i] = model_from_enu * Vector3d{2000.0 * random.Normal(), 2000.0 * random.Normal(), 3000.0};
   for (const double side : {1.0, -1.0}) {
     const std::vector<UpEvidence> evidence = GroundEvidence(points, side * (model_from_enu.rotation * Vector3d::UnitZ()));
     ASSERT_EQ(evidence.size(), 1U);
@@ -177,7 +177,7 @@ TEST(GroundEvidence, SaysNothingWithoutAPlane) {
   std::vector<Vector3d> line, ball;
   for (int i = 0; i < 200; ++i) {
     line.emplace_back(model_from_enu * Vector3d(i, 0.5 * i, 0.0));
-    ball.emplace_back(random.Normal(), random.Normal(), random.Normal());
+    ball.push_back({random.Normal(), random.Normal(), random.Normal()});
   }
   EXPECT_TRUE(GroundEvidence(line, Vector3d::UnitZ()).empty());
   EXPECT_TRUE(GroundEvidence(ball, Vector3d::UnitZ()).empty());
@@ -225,7 +225,7 @@ TEST(FindGravity, CamerasTurnedAtRandomAreNotTrusted) {
     base::Random random(seed);
     std::vector<Station> stations(30);
     for (Station& station : stations) {
-      station.cam_from_model.rotation = Eigen::Quaterniond(random.Normal(), random.Normal(), random.Normal(), random.Normal()).normalized();
+      station.cam_from_model.rotation = Eigen::Quaterniond{random.Normal(), random.Normal(), random.Normal(), random.Normal()}.normalized();
     }
     EXPECT_GT(FindGravity(stations, {}).Sigma() * kDegrees, 5.0) << seed;
   }

@@ -29,7 +29,7 @@ std::vector<Vector2d> TagsOf(const std::vector<Vector2d>& level, double noise_m,
   base::Random random(seed);
   std::vector<Vector2d> tags;
   tags.reserve(level.size());
-  for (const Vector2d& x : level) tags.emplace_back(kTruth * x + noise_m * Vector2d(random.Normal(), random.Normal()));
+  for (const Vector2d& x : level) tags.emplace_back(kTruth * x + noise_m * Vector2d{random.Normal(), random.Normal()});
   return tags;
 }
 
@@ -59,7 +59,7 @@ TEST(FitHorizontally, FourTagsOfTenMayBeWrong) {
   std::vector<Vector2d> tags = TagsOf(Level(), 0.5, 2);
   base::Random random(3);
   for (size_t k = 0; k < tags.size(); ++k) {
-    if (k % 5 < 2) tags[k] += 200.0 * Vector2d(random.Uniform(0.2, 1.0), random.Uniform(-1.0, 1.0));
+    if (k % 5 < 2) tags[k] += 200.0 * Vector2d{random.Uniform(0.2, 1.0), random.Uniform(-1.0, 1.0)};
   }
   const HorizontalFit fit = Fit(tags, Level());
   ASSERT_TRUE(fit.ok);
@@ -91,7 +91,7 @@ TEST(FitHorizontally, FindsTheLagOnALawnmower) {
   for (double lag_s = -1.5; lag_s <= 5.0; lag_s += 0.25) options.lags_s.push_back(lag_s);
   for (const double lag_s : {-0.75, 0.0, 1.25, 4.0}) {
     std::vector<Vector2d> tags;
-    for (size_t k = 0; k < kTags; ++k) tags.emplace_back(kTruth * level(k, lag_s) + 0.5 * Vector2d(random.Normal(), random.Normal()));
+    for (size_t k = 0; k < kTags; ++k) tags.emplace_back(kTruth * level(k, lag_s) + 0.5 * Vector2d{random.Normal(), random.Normal()});
     const HorizontalFit fit = FitHorizontally(tags, level, options);
     ASSERT_TRUE(fit.ok);
     EXPECT_EQ(fit.lag_s, lag_s);
@@ -136,7 +136,7 @@ TEST(FitHorizontally, FailsWithoutTwoPlaces) {
 std::vector<Vector2d> TagsWithOutliers(uint64_t seed) {
   std::vector<Vector2d> tags = TagsOf(Level(), 1.0, seed);
   base::Random random(seed, 1);
-  for (size_t k = 0; k < tags.size(); k += 3) tags[k] += Vector2d(random.Uniform(60.0, 300.0), random.Uniform(60.0, 300.0));
+  for (size_t k = 0; k < tags.size(); k += 3) tags[k] += Vector2d{random.Uniform(60.0, 300.0), random.Uniform(60.0, 300.0)};
   return tags;
 }
 

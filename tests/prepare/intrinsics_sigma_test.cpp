@@ -50,7 +50,7 @@ Block MakeBlock(const camera::Camera& camera, int side, double lean_deg, double 
       for (const survey::ColmapImage& image : block.model.images) {
         const auto pixel = camera.ImgFromCam(image.cam_from_world * point.x_in_world);
         if (!pixel || (pixel->array() < 0.0).any() || pixel->x() > camera.width || pixel->y() > camera.height) continue;
-        block.observations[image.id].push_back({point.id, *pixel + noise_px * Eigen::Vector2d(random.Normal(), random.Normal())});
+        block.observations[image.id].push_back({point.id, *pixel + noise_px * Eigen::Vector2d{random.Normal(), random.Normal()}});
       }
       block.model.points.push_back(point);
     }

@@ -25,8 +25,8 @@ Eigen::Quaterniond CamFromEnu(const Attitude& attitude) {
 }
 
 geo::Similarity3d RandomFrame(base::Random& random) {
-  const Eigen::Quaterniond rotation(random.Normal(), random.Normal(), random.Normal(), random.Normal());
-  return {std::exp(random.Uniform(-3.0, 3.0)), rotation.normalized(), Vector3d(random.Normal(), random.Normal(), random.Normal())};
+  const Eigen::Quaterniond rotation{random.Normal(), random.Normal(), random.Normal(), random.Normal()};
+  return {std::exp(random.Uniform(-3.0, 3.0)), rotation.normalized(), Vector3d{random.Normal(), random.Normal(), random.Normal()}};
 }
 
 prepare::Station StationAt(const Vector3d& centre_in_enu, const Attitude& attitude, const geo::Similarity3d& model_from_enu) {
@@ -37,7 +37,7 @@ prepare::Station StationAt(const Vector3d& centre_in_enu, const Attitude& attitu
 }
 
 Eigen::Quaterniond SmallRotation(double sigma_deg, base::Random& random) {
-  const Vector3d axis(random.Normal(), random.Normal(), random.Normal());
+  const Vector3d axis{random.Normal(), random.Normal(), random.Normal()};
   return Eigen::Quaterniond(AngleAxisd(axis.norm() * sigma_deg * kRadians, axis.normalized()));
 }
 

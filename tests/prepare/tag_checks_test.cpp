@@ -33,7 +33,7 @@ std::vector<Station> Tagged(const geo::Geodetic& origin, uint64_t seed) {
   for (int i = 0; i < 40; ++i) {
     Station& station = stations[static_cast<size_t>(i)];
     station.name = "photo_" + std::to_string(i) + ".jpg";
-    station.gps = frame.GeodeticFromEnu(test::OnLawnmower(i, 40) + Vector3d(random.Normal(), random.Normal(), random.Normal()));
+    station.gps = frame.GeodeticFromEnu(test::OnLawnmower(i, 40) + Vector3d{random.Normal(), random.Normal(), random.Normal()});
     station.up_in_cam = UpInCamera(-90.0, 0.0);
   }
   return stations;

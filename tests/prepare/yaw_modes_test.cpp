@@ -19,7 +19,7 @@ using survey::YawDifference;
 void AddTown(double yaw_deg, double noise_deg, int n, const Eigen::Vector2d& place, base::Random& random, std::vector<HorizontalLine>* lines) {
   for (int i = 0; i < n; ++i) {
     const double quarter = 90.0 * static_cast<double>(random.Below(4));
-    const Eigen::Vector2d off(random.Uniform(-20.0, 20.0), random.Uniform(-20.0, 20.0));
+    const Eigen::Vector2d off{random.Uniform(-20.0, 20.0), random.Uniform(-20.0, 20.0)};
     lines->push_back({yaw_deg + quarter + random.Uniform(-noise_deg, noise_deg), random.Uniform(4.0, 12.0), place + off});
   }
 }

@@ -102,7 +102,7 @@ TEST(Flight, GimbalAnglesOfAPoseGiveItsRotationBack) {
   }
   // Rotations that were not made from angles.
   for (int i = 0; i < 500; ++i) {
-    const Eigen::Quaterniond rotation = Eigen::Quaterniond(random.Normal(), random.Normal(), random.Normal(), random.Normal()).normalized();
+    const Eigen::Quaterniond rotation = Eigen::Quaterniond{random.Normal(), random.Normal(), random.Normal(), random.Normal()}.normalized();
     const GimbalAngles found = GimbalFromPose({rotation, Eigen::Vector3d::Zero()});
     const geo::Rigid3d again = PoseFromGimbal(Eigen::Vector3d::Zero(), found.yaw_deg, found.pitch_deg, found.roll_deg);
     EXPECT_LT((again.rotation.toRotationMatrix() - rotation.toRotationMatrix()).cwiseAbs().maxCoeff(), 1e-13);

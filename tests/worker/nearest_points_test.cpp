@@ -16,7 +16,7 @@ RC_GTEST_PROP(NearestPoints, AreThoseOfAWholeSearch, ()) {
   base::Random random(static_cast<uint64_t>(*rc::gen::inRange(0, 1'000'000)));
   const auto count = static_cast<size_t>(*rc::gen::inRange(0, 200));
   // On a lattice of few numbers, so that many coordinates and points are equal.
-  const auto any = [&random] { return Vector3d(random.Below(6), random.Below(6), 0.5 * random.Below(3)); };
+  const auto any = [&random] { return Vector3d{1.0 * random.Below(6), 1.0 * random.Below(6), 0.5 * random.Below(3)}; };
   std::vector<Vector3d> points;
   for (size_t i = 0; i < count; ++i) points.push_back(any());
   const Vector3d x = any() + Vector3d(0.1, 0.2, 0.3);

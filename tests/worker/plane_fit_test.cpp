@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 RC_GTEST_PROP(PlaneFit, FindsThePlaneOfItsPoints, ()) {
   base::Random random(static_cast<uint64_t>(*rc::gen::inRange(0, 1'000'000)));
-  const auto any = [&random] { return Vector3d(random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0)); };
+  const auto any = [&random] { return Vector3d{random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0)}; };
   const Vector3d normal = (any() + Vector3d(0, 0, 1e-3)).normalized();
   const Vector3d along = normal.unitOrthogonal(), across = normal.cross(along), centre = 1000.0 * any();
   std::vector<Vector3d> points = {centre + along, centre - along, centre + across, centre - across};

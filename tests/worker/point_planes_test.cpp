@@ -34,7 +34,7 @@ struct Cloud {
   }
   void AddBall(const Vector3d& centre, double radius_m, int n) {
     while (n > 0) {
-      const Vector3d x(random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0));
+      const Vector3d x{random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0)};
       if (x.squaredNorm() > 1.0) continue;
       Add(centre + radius_m * x);
       --n;
@@ -116,7 +116,7 @@ RC_GTEST_PROP(PointPlanes, FindsAnyTiltedPlane, ()) {
   Cloud cloud;
   cloud.random = base::Random(static_cast<uint64_t>(*rc::gen::inRange(0, 1'000'000)));
   base::Random& random = cloud.random;
-  const Vector3d normal = Vector3d(random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(0.05, 1.0)).normalized();
+  const Vector3d normal = Vector3d{random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(0.05, 1.0)}.normalized();
   const Vector3d along = normal.unitOrthogonal(), across = normal.cross(along);
   cloud.AddPatch(-6.0 * along - 4.0 * across, 12.0 * along, 8.0 * across, 150, 0.5 * kGsd_m);
   const PointPlanes planes = cloud.Planes();

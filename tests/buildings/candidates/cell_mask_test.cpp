@@ -13,7 +13,7 @@ namespace {
 
 CellMask RandomMask(uint64_t seed) {
   base::Random random(seed);
-  CellMask mask(1 + static_cast<int>(random.Below(30)), 1 + static_cast<int>(random.Below(30)));
+  CellMask mask{1 + static_cast<int>(random.Below(30)), 1 + static_cast<int>(random.Below(30))};
   const double density = random.Uniform(0.01, 0.9);
   for (uint8_t& cell : mask.value) cell = random.UniformDouble() < density ? 1 : 0;
   return mask;

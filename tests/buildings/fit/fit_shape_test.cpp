@@ -184,7 +184,7 @@ TEST(FitShape, TreesBeforeAWallDoNotMoveIt) {
   base::Random random(6);
   for (int i = 0; i < 400; ++i) {
     SurfacePoint point;
-    point.position = Eigen::Vector3d(random.Uniform(-3, 4), -4.0 - random.Uniform(0.3, 1.5), random.Uniform(5, 8.5)).cast<float>();
+    point.position = Eigen::Vector3d{random.Uniform(-3, 4), -4.0 - random.Uniform(0.3, 1.5), random.Uniform(5, 8.5)}.cast<float>();
     point.normal = Eigen::Vector3f(0, -1, 0);
     point.views = 12;
     made.candidate.wall.push_back(static_cast<uint32_t>(made.cloud.points.size()));

@@ -109,7 +109,7 @@ RC_GTEST_PROP(RoofPieces, CoverTheFootprintOnceAtTheHeightOfTheRoof, ()) {
   const std::vector<RoofPiece> pieces = RoofPieces(shape);
   base::Random random(*rc::gen::inRange<uint64_t>(1, 1000));
   for (int i = 0; i < 300; ++i) {
-    const Eigen::Vector2d uv(random.Uniform(-1.0, shape.u.back() + 1.0), random.Uniform(-1.0, shape.v.back() + 1.0));
+    const Eigen::Vector2d uv{random.Uniform(-1.0, shape.u.back() + 1.0), random.Uniform(-1.0, shape.v.back() + 1.0)};
     const double height = RoofHeight(shape, uv);
     int covers = 0;
     bool on_border = false;

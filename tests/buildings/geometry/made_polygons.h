@@ -28,7 +28,7 @@ inline Polygon Moved(Polygon polygon, double angle_rad, const Eigen::Vector2d& b
 
 // Star-shaped around a random place in [0, 10)^2, with deep notches; sometimes with a hole around the same place.
 inline Polygon RandomStar(base::Random& random) {
-  const Eigen::Vector2d middle(random.Uniform(0.0, 10.0), random.Uniform(0.0, 10.0));
+  const Eigen::Vector2d middle{random.Uniform(0.0, 10.0), random.Uniform(0.0, 10.0)};
   const int n = 3 + static_cast<int>(random.Below(12));
   const bool with_hole = random.Below(3) == 0;
   Polygon star;

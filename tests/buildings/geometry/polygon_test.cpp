@@ -66,7 +66,7 @@ RC_GTEST_PROP(Polygon, ContainsAsTheWindingNumber, (uint32_t seed)) {
     return static_cast<int>(std::lround(sum / (2.0 * std::numbers::pi)));
   };
   for (int k = 0; k < 50; ++k) {
-    const Eigen::Vector2d p(random.Uniform(-5.0, 15.0), random.Uniform(-5.0, 15.0));
+    const Eigen::Vector2d p{random.Uniform(-5.0, 15.0), random.Uniform(-5.0, 15.0)};
     if (DistanceToBorder(star, p) < 1e-9) continue;
     int turns = winding(star.outer, p);
     for (const auto& hole : star.holes) turns += winding(hole, p);

@@ -45,7 +45,7 @@ RC_GTEST_PROP(LeastAreaRectangle, HoldsAllPointsAndIsLeastOverAllDirections, (ui
   base::Random random(seed);
   Points points;
   const uint32_t n = 3 + random.Below(40);
-  for (uint32_t i = 0; i < n; ++i) points.emplace_back(random.Uniform(0.0, 8.0), random.Uniform(0.0, 3.0) + random.Uniform(0.0, 3.0));
+  for (uint32_t i = 0; i < n; ++i) points.push_back({random.Uniform(0.0, 8.0), random.Uniform(0.0, 3.0) + random.Uniform(0.0, 3.0)});
   const Rectangle found = LeastAreaRectangle(points);
   RC_ASSERT(found.half.x() >= found.half.y());
   RC_ASSERT(std::abs(found.axis.norm() - 1.0) < 1e-12);

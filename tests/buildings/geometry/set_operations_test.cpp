@@ -81,7 +81,7 @@ RC_GTEST_PROP(SetOperations, AgreeWithPointsInside, (uint32_t seed)) {
   const std::span<const Polygon> rest = std::span<const Polygon>(stars).subspan(1);
   const Polygons all = Union(stars), common = Intersection(stars[0], stars[1]), left = Difference(stars[0], rest);
   for (int k = 0; k < 200; ++k) {
-    const Eigen::Vector2d p(random.Uniform(-5.0, 15.0), random.Uniform(-5.0, 15.0));
+    const Eigen::Vector2d p{random.Uniform(-5.0, 15.0), random.Uniform(-5.0, 15.0)};
     if (NearestBorder(stars, p) < 1e-6) continue;
     RC_ASSERT(AnyContains(all, p) == AnyContains(stars, p));
     RC_ASSERT(AnyContains(common, p) == (Contains(stars[0], p) && Contains(stars[1], p)));
@@ -116,7 +116,7 @@ RC_GTEST_PROP(SetOperations, IntersectionOverUnionAgreesWithSampling, (uint32_t 
 RC_GTEST_PROP(SetOperations, TurnedBoxesOnAGridJoinWithoutLoss, (uint32_t seed)) {
   base::Random random(seed);
   const double angle = random.Uniform(0.0, 3.0);
-  const Eigen::Vector2d by(random.Uniform(-500.0, 500.0), random.Uniform(-500.0, 500.0));
+  const Eigen::Vector2d by{random.Uniform(-500.0, 500.0), random.Uniform(-500.0, 500.0)};
   constexpr int kCells = 8;
   std::vector<bool> covered(kCells * kCells, false);
   Polygons boxes;

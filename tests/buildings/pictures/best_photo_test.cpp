@@ -55,8 +55,8 @@ TEST(PartAround, HoldsTheBuildingWithAMarginAndStaysInTheImage) {
   base::Random random(3);
   int parts = 0, cut = 0;
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector3d at = kTarget + Eigen::Vector3d(random.Uniform(-20, 20), random.Uniform(-20, 20), 0.0);
-    const geo::Rigid3d pose = LookingAt(at + Eigen::Vector3d(random.Uniform(-40, 40), -30.0, random.Uniform(20, 60)), at);
+    const Eigen::Vector3d at = kTarget + Eigen::Vector3d{random.Uniform(-20, 20), random.Uniform(-20, 20), 0.0};
+    const geo::Rigid3d pose = LookingAt(at + Eigen::Vector3d{random.Uniform(-40, 40), -30.0, random.Uniform(20, 60)}, at);
     const camera::Camera camera = i % 2 == 0 ? Pinhole() : Barrel();
     const PhotoPart part = PartAround(house, camera, pose);
     if (part.width == 0) continue;

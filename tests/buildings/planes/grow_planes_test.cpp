@@ -32,7 +32,8 @@ class MadePlanes {
       for (double y = y0 + 0.5 * kSpacing_m; y < y1; y += kSpacing_m) {
         const double to_east = 0.05 * random_.Normal();
         const Eigen::Vector3d at(x + to_east, y + 0.05 * random_.Normal(), z0 + slope * (x + to_east - x0));
-        AddPoint(at + noise_m * random_.Normal() * normal, normal + 0.15 * Eigen::Vector3d(random_.Normal(), random_.Normal(), random_.Normal()));
+        const Eigen::Vector3d measured = at + noise_m * random_.Normal() * normal;
+        AddPoint(measured, normal + 0.15 * Eigen::Vector3d{random_.Normal(), random_.Normal(), random_.Normal()});
       }
     }
     ++n_;
@@ -168,7 +169,7 @@ RC_GTEST_PROP(PointGrid, FindsTheNearest, ()) {
   PointCloud cloud;
   std::vector<uint32_t> chosen;
   for (uint32_t i = 0; i < 300; ++i) {
-    const Eigen::Vector3d at(random.Uniform(-3, 3), random.Uniform(-3, 3), random.Uniform(-1, 1));
+    const Eigen::Vector3d at{random.Uniform(-3, 3), random.Uniform(-3, 3), random.Uniform(-1, 1)};
     cloud.points.push_back({at.cast<float>(), Eigen::Vector3f::UnitZ(), {0, 0, 0}, 0, 0});
     if (i % 3 != 0) chosen.push_back(i);
   }

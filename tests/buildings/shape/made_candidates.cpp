@@ -27,7 +27,7 @@ class Maker {
 
   uint32_t Add(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) {
     const Eigen::Vector3d moved = at + plan_.noise_m * random_.Normal() * normal;
-    const Eigen::Vector3d turned = normal + plan_.normal_noise * Eigen::Vector3d(random_.Normal(), random_.Normal(), random_.Normal());
+    const Eigen::Vector3d turned = normal + plan_.normal_noise * Eigen::Vector3d{random_.Normal(), random_.Normal(), random_.Normal()};
     SurfacePoint point;
     point.position = (moved - made_.cloud.middle).cast<float>();
     point.normal = turned.normalized().cast<float>();
@@ -62,7 +62,7 @@ class Maker {
     for (auto& [key, plane] : planes_) {
       plane.middle = Eigen::Vector3d::Zero();
       for (const uint32_t i : plane.points) plane.middle += made_.cloud.At(i) / static_cast<double>(plane.points.size());
-      const Eigen::Vector3d tilt(random_.Normal(), random_.Normal(), 0.0);
+      const Eigen::Vector3d tilt{random_.Normal(), random_.Normal(), 0.0};
       plane.normal = (plane.normal + 0.01 * tilt).normalized();
       plane.rms_m = plan_.noise_m;
       plane.area_m2 = static_cast<double>(plane.points.size()) * kSpacing_m * kSpacing_m;

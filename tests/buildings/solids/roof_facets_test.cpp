@@ -115,7 +115,7 @@ RC_GTEST_PROP(RoofFacets, AreTheHighestRoofOverTheWholeFootprintOnce, (uint32_t 
   RC_ASSERT(std::abs(TotalArea(facets) - footprint) < 1e-4);
   int differ = 0, looked = 0;
   for (int k = 0; k < 300; ++k) {
-    const Eigen::Vector2d uv(random.Uniform(shape.u.front(), shape.u.back()), random.Uniform(shape.v.front(), shape.v.back()));
+    const Eigen::Vector2d uv{random.Uniform(shape.u.front(), shape.u.back()), random.Uniform(shape.v.front(), shape.v.back())};
     const double height = RoofHeight(shape, uv);
     const auto holder = std::find_if(facets.begin(), facets.end(), [&](const RoofFacet& facet) { return Contains(facet.outline, uv); });
     const bool at_border =

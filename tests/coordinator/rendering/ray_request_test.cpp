@@ -20,7 +20,7 @@ RayRequest Request(int n, bool one_camera, bool fresh, uint64_t seed, bool norma
       .id = seed, .options = {.step_scale = 2.0, .normals = normals, .concealing = render::Concealing::kGain}, .rays = {}, .in_flight = {}};
   for (int i = 0; i < n; ++i) {
     Ray ray;
-    ray.origin_enu = one_camera ? Eigen::Vector3d(1.0, 2.0, 3.0) : Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal());
+    ray.origin_enu = one_camera ? Eigen::Vector3d(1.0, 2.0, 3.0) : Eigen::Vector3d{random.Normal(), random.Normal(), random.Normal()};
     ray.direction_enu = {random.Normal(), random.Normal(), random.Normal()};
     ray.pixel_pitch = 0.001F * random.Uniform();  // differs within a photo
     ray.pixel_width = one_camera ? 0.25F : random.Uniform();

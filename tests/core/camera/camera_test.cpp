@@ -47,7 +47,7 @@ TEST(Camera, EveryDirectionComesBack) {
   base::Random random(1);
   for (const Camera& camera : RealisticCameras()) {
     for (int i = 0; i < 2000; ++i) {
-      const Eigen::Vector3d x(random.Uniform(-0.7, 0.7), random.Uniform(-0.5, 0.5), 1.0);
+      const Eigen::Vector3d x{random.Uniform(-0.7, 0.7), random.Uniform(-0.5, 0.5), 1.0};
       const auto pixel = camera.ImgFromCam(x);
       ASSERT_TRUE(pixel.has_value());
       ASSERT_LT((camera.RayFromImg(*pixel) - x.normalized()).norm(), 1e-11) << ModelName(camera.model) << " at " << x.transpose();
@@ -141,7 +141,7 @@ TEST(Camera, RaysAreNeverNan) {
     camera.params[0] = 700.0;
     if (!one_focal_length) camera.params[1] = 710.0;
     for (const Eigen::Vector2d& pixel :
-         {Eigen::Vector2d(random.Uniform(-2000.0, 3000.0), random.Uniform(-2000.0, 3000.0)), camera.PrincipalPoint(), Eigen::Vector2d(1e9, -1e9),
+         {Eigen::Vector2d{random.Uniform(-2000.0, 3000.0), random.Uniform(-2000.0, 3000.0)}, camera.PrincipalPoint(), Eigen::Vector2d(1e9, -1e9),
           Eigen::Vector2d(1e300, 1.0), Eigen::Vector2d(HUGE_VAL, 0.0), Eigen::Vector2d(std::numeric_limits<double>::quiet_NaN(), 0.0)}) {
       const Eigen::Vector3d ray = camera.RayFromImg(pixel);
       ASSERT_TRUE(ray.allFinite()) << ModelName(camera.model) << " trial " << trial << " at " << pixel.transpose();

@@ -78,7 +78,7 @@ TEST(SpaceMap, BoxRoundTripsAndFitsTheUnitBox) {
   EXPECT_DOUBLE_EQ(map.extent().maxCoeff(), 1.0);
   base::Random random(1);
   for (int i = 0; i < 100; ++i) {
-    const Eigen::Vector3d x(random.Uniform(-50, 70), random.Uniform(20, 90), random.Uniform(-3, 12));
+    const Eigen::Vector3d x{random.Uniform(-50, 70), random.Uniform(20, 90), random.Uniform(-3, 12)};
     const Eigen::Vector3f unit = map.UnitFromEnu(x);
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_GE(unit[axis], 0.0F);
@@ -94,7 +94,7 @@ TEST(SpaceMap, SlabKeepsTheSurveyAndContractsTheRest) {
   EXPECT_NEAR(map.LocalScale({400, 0, 0}), 1.0 / 16.0, 1e-12);
   base::Random random(2);
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector3d x(random.Uniform(-900, 900), random.Uniform(-900, 900), random.Uniform(-5, 40));
+    const Eigen::Vector3d x{random.Uniform(-900, 900), random.Uniform(-900, 900), random.Uniform(-5, 40)};
     const Eigen::Vector3f unit = map.UnitFromEnu(x);
     EXPECT_GT(unit.minCoeff(), -1e-6F);
     EXPECT_LT(unit.maxCoeff(), 1.0F + 1e-6F);

@@ -27,7 +27,7 @@ TEST(SpaceMap, DerivativeIsTheInverseOfTheDerivativeBack) {
     int contracted = 0;
     for (int i = 0; i < 200; ++i) {
       const Eigen::Vector3d x =
-          map.extent().cwiseProduct(Eigen::Vector3d(random.Uniform(0.05, 0.95), random.Uniform(0.05, 0.95), random.Uniform(0.05, 0.95)));
+          map.extent().cwiseProduct(Eigen::Vector3d{random.Uniform(0.05, 0.95), random.Uniform(0.05, 0.95), random.Uniform(0.05, 0.95)});
       const Eigen::Vector3d x_in_enu = map.EnuFromUnit(x);
       contracted += map.LocalScale(x_in_enu) < 1.0 ? 1 : 0;
       EXPECT_LT((map.UnitPerEnu(x_in_enu) * Inverse(map, x) - Eigen::Matrix3d::Identity()).norm(), 1e-4) << x.transpose();

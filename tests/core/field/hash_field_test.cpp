@@ -80,7 +80,7 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
     x[s] = random.Uniform();
     y[s] = random.Uniform();
     z[s] = 0.4F * random.Uniform();
-    const Eigen::Vector3d d = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
+    const Eigen::Vector3d d = Eigen::Vector3d{random.Normal(), random.Normal(), random.Normal()}.normalized();
     for (size_t axis = 0; axis < 3; ++axis) direction[axis * stride + s] = static_cast<float>(d[static_cast<int>(axis)]);
     for (size_t c = 0; c < 3; ++c) color_gradient[c * stride + s] = random.Uniform() - 0.5F;
     density_gradient[s] = random.Uniform() - 0.5F;

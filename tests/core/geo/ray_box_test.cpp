@@ -28,8 +28,8 @@ TEST(RayBox, IntervalEndsAreOnTheBox) {
   base::Random random(37);
   int hits = 0;
   for (int i = 0; i < 5000; ++i) {
-    const Eigen::Vector3d origin(random.Uniform(-10, 10), random.Uniform(-10, 10), random.Uniform(-10, 10));
-    const Eigen::Vector3d direction = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
+    const Eigen::Vector3d origin{random.Uniform(-10, 10), random.Uniform(-10, 10), random.Uniform(-10, 10)};
+    const Eigen::Vector3d direction = Eigen::Vector3d{random.Normal(), random.Normal(), random.Normal()}.normalized();
     const Interval s = RayBox(origin, direction, kMin, kMax);
     if (s.Empty()) {
       // No point of the ray is inside.

@@ -24,7 +24,7 @@ struct Problem {
 Similarity3d RandomSimilarity(base::Random& random) {
   Similarity3d transform;
   transform.scale = std::exp(random.Uniform(-2.0, 4.0));
-  transform.rotation = Eigen::Quaterniond(random.Normal(), random.Normal(), random.Normal(), random.Normal()).normalized();
+  transform.rotation = Eigen::Quaterniond{random.Normal(), random.Normal(), random.Normal(), random.Normal()}.normalized();
   transform.translation = {random.Uniform(-500.0, 500.0), random.Uniform(-500.0, 500.0), random.Uniform(-50.0, 50.0)};
   return transform;
 }
@@ -45,8 +45,8 @@ Problem MakeProblem(base::Random& random, const Vectors& b, double noise_m, doub
     problem.a.push_back(problem.b_from_a.rotation.conjugate() * (x_in_b - problem.b_from_a.translation) / problem.b_from_a.scale);
     const bool is_outlier = random.UniformDouble() < outlier_share;
     problem.is_outlier.push_back(is_outlier ? 1 : 0);
-    Eigen::Vector3d error(noise_m * random.Normal(), noise_m * random.Normal(), noise_m * random.Normal());
-    if (is_outlier) error = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized() * random.Uniform(40.0, 4000.0);
+    Eigen::Vector3d error{noise_m * random.Normal(), noise_m * random.Normal(), noise_m * random.Normal()};
+    if (is_outlier) error = Eigen::Vector3d{random.Normal(), random.Normal(), random.Normal()}.normalized() * random.Uniform(40.0, 4000.0);
     problem.b.push_back(x_in_b + error);
   }
   return problem;
@@ -175,7 +175,7 @@ TEST(RobustSimilarity, NonFiniteMatchesAreNeverInliers) {
 TEST(RobustSimilarity, MirrorImageIsNotAFit) {
   base::Random random(8);
   Vectors a;
-  for (int i = 0; i < 50; ++i) a.emplace_back(random.Uniform(-200.0, 200.0), random.Uniform(-200.0, 200.0), random.Uniform(-200.0, 200.0));
+  for (int i = 0; i < 50; ++i) a.push_back({random.Uniform(-200.0, 200.0), random.Uniform(-200.0, 200.0), random.Uniform(-200.0, 200.0)});
   Vectors b = a;
   for (Eigen::Vector3d& x : b) x.z() = -x.z();
   const RobustSimilarityFit fit = FitSimilarityRobustly(a, b, {});

@@ -14,7 +14,7 @@ Eigen::Vector3d RandomVector(base::Random& random, double size) {
 }
 
 Eigen::Quaterniond RandomRotation(base::Random& random) {
-  return Eigen::Quaterniond(random.Normal(), random.Normal(), random.Normal(), random.Normal()).normalized();
+  return Eigen::Quaterniond{random.Normal(), random.Normal(), random.Normal(), random.Normal()}.normalized();
 }
 
 TEST(Rigid3d, InverseUndoes) {

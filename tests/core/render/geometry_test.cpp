@@ -37,8 +37,8 @@ TEST(March, FullOccupancyGivesEverySampleOnce) {
   const TrainedField f = BoxField();
   base::Random random(41);
   for (int i = 0; i < 300; ++i) {
-    const Eigen::Vector3d origin(random.Uniform(-6, 6), random.Uniform(-6, 6), random.Uniform(-3, 9));
-    const Eigen::Vector3d target(random.Uniform(-1, 3), random.Uniform(-2, 2), random.Uniform(0, 5));
+    const Eigen::Vector3d origin{random.Uniform(-6, 6), random.Uniform(-6, 6), random.Uniform(-3, 9)};
+    const Eigen::Vector3d target{random.Uniform(-1, 3), random.Uniform(-2, 2), random.Uniform(0, 5)};
     const Eigen::Vector3d direction = (target - origin).normalized();
     const geo::Interval s = FieldInterval(f.map, origin, direction);
     if (s.Empty()) continue;
@@ -88,8 +88,8 @@ TEST(March, SamplesAreInOccupiedCellsOnly) {
   for (uint8_t& cell : f.occupancy.occupied) cell = random.Below(3) == 0 ? 1 : 0;
   int samples = 0;
   for (int i = 0; i < 300; ++i) {
-    const Eigen::Vector3d origin(random.Uniform(-6, 6), random.Uniform(-6, 6), 8.0);
-    const Eigen::Vector3d direction = Eigen::Vector3d(random.Uniform(-0.5, 0.5), random.Uniform(-0.5, 0.5), -1.0).normalized();
+    const Eigen::Vector3d origin{random.Uniform(-6, 6), random.Uniform(-6, 6), 8.0};
+    const Eigen::Vector3d direction = Eigen::Vector3d{random.Uniform(-0.5, 0.5), random.Uniform(-0.5, 0.5), -1.0}.normalized();
     const geo::Interval s = FieldInterval(f.map, origin, direction);
     std::set<int64_t> expected, got;
     // Tests every sample position; positions within rounding of a cell face may be on either side.

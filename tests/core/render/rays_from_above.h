@@ -15,7 +15,7 @@ inline std::vector<Ray> RaysFromAbove(int n) {
   for (int i = 0; i < n; ++i) {
     Ray ray;
     ray.origin_enu = {random.Uniform(-3.0, 13.0), random.Uniform(-3.0, 7.0), 12.0};
-    ray.direction_enu = Eigen::Vector3d(random.Uniform(-0.6, 0.6), random.Uniform(-0.6, 0.6), -1.0).normalized();
+    ray.direction_enu = Eigen::Vector3d{random.Uniform(-0.6, 0.6), random.Uniform(-0.6, 0.6), -1.0}.normalized();
     rays.push_back(ray);
   }
   return rays;

@@ -26,7 +26,7 @@ std::vector<render::Ray> SlantedRays(int n, uint64_t seed) {
   for (int i = 0; i < n; ++i) {
     render::Ray ray;
     ray.origin_enu = {random.Uniform(-6.0, 21.0), random.Uniform(-6.0, 16.0), random.Uniform(2.0, 9.0)};
-    ray.direction_enu = Eigen::Vector3d(random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(-0.6, 0.1)).normalized();
+    ray.direction_enu = Eigen::Vector3d{random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(-0.6, 0.1)}.normalized();
     if (i % 7 == 0) ray.direction_enu = {0.0, 0.0, -1.0};
     if (i % 7 == 1) ray.origin_enu.x() = kRandomBlock_m;  // along a border
     if (i % 7 == 2) ray.pixel_pitch = 0.02F;

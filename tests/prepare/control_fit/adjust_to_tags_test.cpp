@@ -51,7 +51,7 @@ void Tag(double horizontal_m, double vertical_m, MadeControl* made) {
   const geo::EnuFrame frame(kMadeOrigin);
   base::Random random(5, 1);
   for (size_t i = 0; i < made->stations.size(); ++i) {
-    const Eigen::Vector3d noise(horizontal_m * random.Normal(), horizontal_m * random.Normal(), vertical_m * random.Normal());
+    const Eigen::Vector3d noise{horizontal_m * random.Normal(), horizontal_m * random.Normal(), vertical_m * random.Normal()};
     made->stations[i].gps = frame.GeodeticFromEnu(made->true_poses[i].OriginInSource() + noise);
   }
 }

@@ -16,7 +16,7 @@ const geo::Similarity3d kTruth = {
     3.5, Eigen::Quaterniond(Eigen::AngleAxisd(1.2, Eigen::Vector3d(0.2, 0.5, -0.8).normalized())), {100.0, -40.0, 12.0}};
 
 ControlPair PairAt(const Eigen::Vector3d& x_in_enu, base::Random& random, double noise_m) {
-  const Eigen::Vector3d noise(random.Normal(), random.Normal(), random.Normal());
+  const Eigen::Vector3d noise{random.Normal(), random.Normal(), random.Normal()};
   const Eigen::Vector3d in_model = kTruth.rotation.conjugate() * ((x_in_enu - kTruth.translation) / kTruth.scale);
   return {in_model, x_in_enu + noise_m * noise, Eigen::Vector3d(0.01, 0.01, 0.02), 0.01 / kTruth.scale};
 }

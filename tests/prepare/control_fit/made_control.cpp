@@ -78,9 +78,9 @@ MadeControl MakeControl(const ControlPlan& plan, base::ThreadPool& threads) {
     point.check = i >= plan.control;
     point.horizontal_sigma_m = plan.horizontal_sigma_m;
     point.vertical_sigma_m = plan.vertical_sigma_m;
-    const Eigen::Vector3d noise(plan.horizontal_sigma_m * random.Normal(), plan.horizontal_sigma_m * random.Normal(),
-                                plan.vertical_sigma_m * random.Normal());
-    point.place = frame.GeodeticFromEnu(x + plan.given_noise * noise);
+    const double up = plan.vertical_sigma_m * random.Normal(), north = plan.horizontal_sigma_m * random.Normal(),
+                 east = plan.horizontal_sigma_m * random.Normal();
+    point.place = frame.GeodeticFromEnu(x + plan.given_noise * Eigen::Vector3d(east, north, up));
     std::vector<std::pair<double, size_t>> by_distance;
     for (size_t photo = 0; photo < made.true_poses.size(); ++photo) {
       by_distance.emplace_back((made.true_poses[photo].OriginInSource() - x).norm() + random.Uniform(0.0, 15.0), photo);
@@ -89,7 +89,8 @@ MadeControl MakeControl(const ControlPlan& plan, base::ThreadPool& threads) {
     for (const auto& [distance, photo] : by_distance) {
       const auto pixel = cameras[photo]->ImgFromCam(made.true_poses[photo] * x);
       if (!pixel || pixel->x() < 5.0 || pixel->y() < 5.0 || pixel->x() > 1595.0 || pixel->y() > 1195.0) continue;
-      const Eigen::Vector2d at = *pixel + plan.mark_noise_px * Eigen::Vector2d(random.Normal(), random.Normal());
+      const double noise_y = plan.mark_noise_px * random.Normal(), noise_x = plan.mark_noise_px * random.Normal();
+      const Eigen::Vector2d at = *pixel + Eigen::Vector2d(noise_x, noise_y);
       point.marks.push_back({made.stations[photo].name, at, 0});
       if (static_cast<int>(point.marks.size()) == plan.marks) break;
     }

@@ -32,7 +32,8 @@ Places RandomPlaces(size_t n, base::Random& random) {
     } else if (kind == 1 && i > 0) {
       places.push_back(places[random.Below(static_cast<uint32_t>(i))]);
     } else {
-      places.emplace_back(Down(random.Uniform(-1000.0, 1000.0), random.Uniform(-10.0, 10.0)));
+      const double east = random.Uniform(-1000.0, 1000.0);
+      places.emplace_back(Down(east, random.Uniform(-10.0, 10.0)));
     }
   }
   return places;
@@ -73,7 +74,10 @@ RC_GTEST_PROP(PairsInSpace, AreOrderedBoundedAndEnough, ()) {
 RC_GTEST_PROP(PairsInSpace, DoNotDependOnTheOrderOfPhotos, ()) {
   base::Random random(*rc::gen::arbitrary<uint32_t>());
   Places places;
-  for (size_t i = 0; i < 50; ++i) places.emplace_back(Down(random.Uniform(0.0, 100.0), random.Uniform(0.0, 100.0)));
+  for (size_t i = 0; i < 50; ++i) {
+    const double east = random.Uniform(0.0, 100.0);
+    places.emplace_back(Down(east, random.Uniform(0.0, 100.0)));
+  }
   const PhotoPairs pairs = PairsInSpace(places, PairRules{});
   Places reversed(places.rbegin(), places.rend());
   PhotoPairs back;

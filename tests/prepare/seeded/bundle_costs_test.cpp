@@ -15,7 +15,8 @@ namespace {
 using namespace prepare;
 
 PoseNumbers RandomPose(base::Random& random) {
-  const Eigen::Quaterniond rotation = RotationFromAngles(random.Uniform(0.0, 360.0), random.Uniform(-90.0, -40.0), random.Uniform(-10.0, 10.0));
+  const double yaw = random.Uniform(0.0, 360.0), pitch = random.Uniform(-90.0, -40.0);
+  const Eigen::Quaterniond rotation = RotationFromAngles(yaw, pitch, random.Uniform(-10.0, 10.0));
   PoseNumbers pose{};
   Eigen::Map<Eigen::Vector4d>(pose.data()) = rotation.coeffs();
   for (size_t k = 4; k < 7; ++k) pose[k] = random.Uniform(-20.0, 20.0);
@@ -85,7 +86,7 @@ TEST(BundleCosts, TagsHaveTheDerivativesOfTheirValue) {
     const PoseNumbers pose = RandomPose(random);
     ExpectDerivatives(PlaceCost({1.0, 2.0, 70.0}, {3.0, 3.0, 5.0}), {Numbers(pose)});
     // From no turn at all to nearly half a turn.
-    const Eigen::Vector3d axis = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
+    const Eigen::Vector3d axis = Eigen::Vector3d{random.Normal(), random.Normal(), random.Normal()}.normalized();
     const Eigen::Quaterniond tagged = Eigen::AngleAxisd(0.15 * k, axis) * Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(pose.data()));
     ExpectDerivatives(TurnCost(tagged, 0.05), {Numbers(pose)});
   }

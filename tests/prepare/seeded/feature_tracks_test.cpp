@@ -61,7 +61,7 @@ TEST(ChooseTracks, BoundsTheObservationsOfEachPhoto) {
     const uint32_t start = random.Below(kPhotos - 4), length = 2 + random.Below(4);
     for (uint32_t k = 0; k < length && start + k < kPhotos; ++k) {
       block.tracks.entries.push_back({start + k, t});
-      block.pixel.emplace_back(random.Uniform(0.0, 1600.0), random.Uniform(0.0, 1200.0));
+      block.pixel.push_back({random.Uniform(0.0, 1600.0), random.Uniform(0.0, 1200.0)});
     }
     block.tracks.first.push_back(static_cast<uint32_t>(block.tracks.entries.size()));
   }

@@ -19,7 +19,8 @@ FuseOptions BrickOptions() {
 test::Pictures Close(base::Random* random) {
   const test::AnalyticScene scene{.planes = {{{0, 0, -3}, {0.5, 0.1, 1.0}}}, .spheres = {}, .boxes = {}};
   test::Pictures pictures;
-  pictures.Add(scene, {random->Uniform(-4, 4), random->Uniform(-4, 4), 6}, {random->Uniform(-9, 9), random->Uniform(-9, 9), -3}, 30.0, 40, 0);
+  const Eigen::Vector3d from{random->Uniform(-4, 4), random->Uniform(-4, 4), 6};
+  pictures.Add(scene, from, {random->Uniform(-9, 9), random->Uniform(-9, 9), -3}, 30.0, 40, 0);
   return pictures;
 }
 

@@ -69,7 +69,7 @@ TEST(Terrain, OfATownOnASlope) {
                                       {20, 90, 50, 120, 6}, {70, 100, 76, 104, 2.6}, {90, 110, 94.5, 112, 1.6}, {0, 130, 25, 160, 10}};
   base::Random random(7);
   std::vector<Eigen::Vector3d> trees;  // place, radius
-  for (int i = 0; i < 40; ++i) trees.emplace_back(random.Uniform(100, 180), random.Uniform(85, 155), random.Uniform(1.5, 4.0));
+  for (int i = 0; i < 40; ++i) trees.push_back({random.Uniform(100, 180), random.Uniform(85, 155), random.Uniform(1.5, 4.0)});
   const HeightRaster surface = RasterFromCorner(720, 640, 0.25, [&](double x, double y) {
     // Nothing was seen in the strip north of the tall buildings.
     if (y >= 60 && y < 63 && x > 20 && x < 60) return std::nan("");

@@ -27,7 +27,7 @@ RC_GTEST_PROP(Pack, RectanglesStayInsideAndApart, ()) {
   const int n = *rc::gen::inRange(1, 60);
   base::Random random(seed);
   std::vector<Eigen::Vector2i> sizes;
-  for (int i = 0; i < n; ++i) sizes.emplace_back(1 + random.Below(40), 1 + random.Below(70));
+  for (int i = 0; i < n; ++i) sizes.push_back(Eigen::Vector2i{1 + static_cast<int>(random.Below(40)), 1 + static_cast<int>(random.Below(70))});
   const auto packing = PackRows(sizes, 1024);
   RC_ASSERT(packing.has_value());
   RC_ASSERT(packing->width % kAtlasMultiple == 0 && packing->height % kAtlasMultiple == 0);

@@ -64,7 +64,8 @@ inline Mesh RandomTown(uint64_t seed, double roughness) {
     const auto i = static_cast<size_t>(std::lround(x * 14.0) + std::lround(y * 26.0)) % noise.size();
     return roughness * noise[i] + 0.1 * x;
   });
-  Append(&mesh, Box({1.0, 1.5, -0.5}, {3.0, 4.0, random.Uniform(1.0, 4.0)}, random.Uniform(0.0, 1.5)));
+  const double top = random.Uniform(1.0, 4.0);
+  Append(&mesh, Box({1.0, 1.5, -0.5}, {3.0, 4.0, top}, random.Uniform(0.0, 1.5)));
   return mesh;
 }
 

@@ -101,7 +101,7 @@ TEST(ViewChoice, DiffersFromPlaceToPlaceAndNotFromThreadToThread) {
 
 RC_GTEST_PROP(ViewChoice, ABallIsNeverLeftOutOfAPictureThatShowsPartOfIt, ()) {
   base::Random random(*rc::gen::arbitrary<uint64_t>());
-  const auto place = [&random] { return Eigen::Vector3d(random.Uniform(-9.0, 9.0), random.Uniform(-9.0, 9.0), random.Uniform(-9.0, 9.0)); };
+  const auto place = [&random] { return Eigen::Vector3d{random.Uniform(-9.0, 9.0), random.Uniform(-9.0, 9.0), random.Uniform(-9.0, 9.0)}; };
   ViewPose pose = PoseAt(place(), place(), 64, 50.0, 0);
   pose.cx = random.Uniform(10.0, 50.0);
   for (int i = 0; i < 50; ++i) {

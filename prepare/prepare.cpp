@@ -326,12 +326,13 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   for (const std::string& name : names) {
     if (!with_pose.contains(name)) survey.unregistered.push_back(name);
   }
+  // Before the points: those that only held-out photos observed are not used.
+  MarkHoldout(holdout, survey);
+  if (options.holdout == PrepareOptions().holdout) HoldOutByModel(input_model, folders.model, survey);
   FillPoints(model, georeference.enu_from_model, PhotoOfImage(registered), options.keep_points, survey);
   MeasureAgl(survey, threads);
   if (on_placed) on_placed(survey, poses_known);
   CheckFlightOf(model, folders.model, registered, photos.usable, has_observations, survey);
-  MarkHoldout(holdout, survey);
-  if (options.holdout == PrepareOptions().holdout) HoldOutByModel(input_model, folders.model, survey);
   base::ThrowIfCancelled();
   const FoundLines lines = FindHorizontalLines(survey, threads);
   survey.directions = FindDirections(lines.lines, lines.photos);

@@ -43,13 +43,14 @@ struct Photo {
   double gps_residual_m = 0.0;  // distance between the camera centre and its corrected GPS tag (horizontal if heights are not used); NaN without GPS
   bool gps_inlier = false;      // the tag agrees with the fit
   int flight = 0;               // index of the flight the photo belongs to
-  bool is_test = false;         // held out for evaluation: trains and starts no field, but took part in finding poses and points
+  // Held out for evaluation: trains and starts no field. It took part in finding poses and points unless Survey::resected_holdout.
+  bool is_test = false;
 };
 
 struct SparsePoint {
   Eigen::Vector3d x_in_enu = Eigen::Vector3d::Zero();
   std::array<uint8_t, 3> rgb{};
-  float error_px = 0.0F;  // mean reprojection error in pixels of the full photos, held-out ones included
+  float error_px = 0.0F;  // mean reprojection error in pixels of the full photos, of held-out ones too unless Survey::resected_holdout
   int track_length = 0;   // number of training photos that observed it; of all photos in surveys of older programs; 0 when not known
 };
 
@@ -73,6 +74,8 @@ struct Survey {
   std::vector<camera::Camera> cameras;
   std::vector<Photo> photos;              // registered photos only, in name order
   std::vector<std::string> unregistered;  // names of photos without a pose
+  // Held-out photos were placed last, by points that they had not helped to place (prepare.holdout_poses); else they took part as all others.
+  bool resected_holdout = false;
   std::vector<SparsePoint> points;
   DominantDirections directions;
   PointTracks tracks;  // of `points`, training photos only (in surveys of older programs all photos); may be empty

@@ -17,6 +17,7 @@
 #include "evaluate/held_out_scorer.h"
 #include "evaluate/kept_points.h"
 #include "evaluate/report_writer.h"
+#include "evaluate/scored_pixels.h"
 #include "evaluate/summary.h"
 #include "evaluate/surface_scorer.h"
 #include "surface/make_surface.h"
@@ -62,6 +63,7 @@ Scores ScorePhotos(const EvaluateInput& input, const std::vector<int>& held_out,
     ScoredPhoto scored = scorer.Score(photo, pictures.ShowsNormal(photo), threads);
     if (made != nullptr) scored.mesh = made->Score(scored, threads);
     pictures.Write(scored);
+    if (!input.options.scored_pixels_folder.empty()) WriteScoredPixels(scored, input.options.scored_pixels_folder);
     scores.Add(scored);
     progress.Advance(1.0, fmt::format("{} {:.2f} dB", scored.findings.score.name, scored.findings.score.psnr_db));
   }

@@ -1,6 +1,7 @@
 // Options of section [evaluate] of the configuration: how a scene is scored on the held-out photos.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct EvaluateOptions {
   bool field_normals = false;    // also score normals of the density and of the head; needs true normals
   int report_photos = 40;        // photos shown in the report, evenly spread
   int report_image_width = 960;  // pixels
+  // Not in the configuration: where a study wants the scored pixels of every photo (scored_pixels.h). Empty: they are not written.
+  std::filesystem::path scored_pixels_folder = {};
 
   static std::vector<config::Field<EvaluateOptions>> Fields();
   // Throws base::UsageError for options out of range.

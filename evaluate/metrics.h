@@ -149,7 +149,8 @@ struct Metrics {
   int n_photos = 0;  // registered
   int n_unregistered = 0;
   int n_test = 0;
-  int image_width = 0;  // of the first scored photo, pixels
+  bool resected_holdout = false;  // Survey::resected_holdout
+  int image_width = 0;            // of the first scored photo, pixels
   std::string machine;
   std::string date;  // UTC
   std::vector<Warning> warnings;

@@ -225,6 +225,7 @@ Metrics MetricsFrom(const Json& json) {
   metrics.n_photos = ValueAt<int>(json, "photos_registered");
   metrics.n_unregistered = ValueAt<int>(json, "photos_unregistered");
   metrics.n_test = ValueAt<int>(json, "photos_held_out");
+  metrics.resected_holdout = ValueAt<std::string>(json, "holdout_poses") == "resected";
   TakeGeoFit(json, &metrics);
   for (const Json& warning : ValueAt<Json>(json, "warnings")) {
     if (warning.is_string()) {
@@ -281,6 +282,7 @@ std::string MetricsJson(const Metrics& metrics) {
   json["photos_registered"] = metrics.n_photos;
   json["photos_unregistered"] = metrics.n_unregistered;
   json["photos_held_out"] = metrics.n_test;
+  json["holdout_poses"] = metrics.resected_holdout ? "resected" : "given";
   json["photos_scored"] = metrics.photos.size();
   json["geo"] = GeoFitJson(metrics);
   if (!metrics.control.points.empty()) json["control"] = ControlJson(metrics.control);

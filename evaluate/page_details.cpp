@@ -135,6 +135,10 @@ std::string MethodSection(const ReportInput& input) {
   }
   fact("Photos", fmt::format("{} placed, {} not placed, {} held out, {} scored", page::FormatInteger(metrics.n_photos),
                              page::FormatInteger(metrics.n_unregistered), page::FormatInteger(metrics.n_test), metrics.photos.size()));
+  if (metrics.n_test > 0) {
+    fact("Poses of held-out photos", metrics.resected_holdout ? "resected: placed last, by points that they had not helped to place"
+                                                              : "given: found together with those of all other photos");
+  }
   fact("Scored at", metrics.image_width > 0 ? fmt::format("a width of {} pixels", metrics.image_width) : page::FormatFixed(kNotMeasured, 0));
   html += "</dl><div class=\"card prose\"><h3>Definitions</h3>";
   for (const char* definition : {kPsnrDefinition, kCoverageDefinition, kSeamDefinition, kRightHalfDefinition}) {

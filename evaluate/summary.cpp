@@ -70,6 +70,7 @@ void AddSurveyFacts(const survey::Survey& survey, Metrics* metrics) {
   metrics->n_photos = static_cast<int>(survey.photos.size());
   metrics->n_unregistered = static_cast<int>(survey.unregistered.size());
   metrics->n_test = static_cast<int>(std::count_if(survey.photos.begin(), survey.photos.end(), [](const auto& photo) { return photo.is_test; }));
+  metrics->resected_holdout = survey.resected_holdout;
 }
 
 }  // namespace

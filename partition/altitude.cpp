@@ -10,29 +10,28 @@
 
 namespace skyquilt::partition {
 
-std::vector<double> PhotoAltitudes(const survey::Survey& survey, const Eigen::Vector2d& centre, double ground_m) {
-  std::vector<double> altitude;
-  altitude.reserve(survey.photos.size());
+std::vector<PhotoAltitude> TrainingAltitudes(const survey::Survey& survey, const Eigen::Vector2d& centre, double ground_m) {
+  std::vector<PhotoAltitude> altitudes;
+  altitudes.reserve(survey.photos.size());
   for (const survey::Photo& photo : survey.photos) {
+    if (photo.is_test) continue;
     const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
     double agl = photo.agl_m;
     if (!std::isfinite(agl) || agl <= 0.0) agl = eye.z() - ground_m;
     if (agl <= 0.0) agl = std::max(1e-3, (eye - Eigen::Vector3d(centre.x(), centre.y(), ground_m)).norm());
-    altitude.push_back(agl);
+    altitudes.push_back({eye.head<2>(), agl});
   }
-  return altitude;
+  return altitudes;
 }
 
-double BlockAltitude(const survey::Survey& survey, const std::vector<double>& photo_altitude_m, const Eigen::Vector2d& low,
-                     const Eigen::Vector2d& high) {
-  SKYQUILT_CHECK(photo_altitude_m.size() == survey.photos.size() && !survey.photos.empty(), std::to_string(photo_altitude_m.size()));
+double BlockAltitude(const std::vector<PhotoAltitude>& photos, const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
+  SKYQUILT_CHECK(!photos.empty(), "a block's altitude is that of photos");
   std::vector<double> above;
   std::vector<std::pair<double, double>> by_distance;
-  for (size_t i = 0; i < survey.photos.size(); ++i) {
-    const Eigen::Vector2d eye = survey.photos[i].cam_from_enu.OriginInSource().head<2>();
-    const Eigen::Vector2d outside = (low - eye).cwiseMax(eye - high).cwiseMax(0.0);
-    if (outside.isZero(0.0)) above.push_back(photo_altitude_m[i]);
-    by_distance.emplace_back(outside.norm(), photo_altitude_m[i]);
+  for (const PhotoAltitude& photo : photos) {
+    const Eigen::Vector2d outside = (low - photo.eye_enu).cwiseMax(photo.eye_enu - high).cwiseMax(0.0);
+    if (outside.isZero(0.0)) above.push_back(photo.agl_m);
+    by_distance.emplace_back(outside.norm(), photo.agl_m);
   }
   if (above.size() >= 2) return base::Median(std::move(above));
   constexpr size_t kNearest = 5;

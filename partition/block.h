@@ -21,7 +21,7 @@ struct Block : geo::BlockBox {
   double gsd_m = 0.0;            // ground sampling distance at that altitude and the training image width, but no finer than the photos' pixels
   double finest_voxel_m = 0.0;   // cell size of the finest level of its encoding
   int log2_table_size = 0;       // of its hash tables; 0 when empty
-  std::vector<int> photos;       // indices into Survey::photos that see the box, training and test
+  std::vector<int> photos;       // indices into Survey::photos: training photos that see the box; in files of older programs held-out ones, too
   double expected_pixels = 0.0;  // training pixels whose ray crosses the box
   double cost = 0.0;             // estimated share of the total training time, > 0 unless empty
   bool empty = false;            // not trained

@@ -12,7 +12,9 @@ namespace {
 
 const camera::Camera& CommonCamera(const survey::Survey& survey) {
   std::vector<int> uses(survey.cameras.size(), 0);
-  for (const survey::Photo& photo : survey.photos) ++uses.at(static_cast<size_t>(photo.camera));
+  for (const survey::Photo& photo : survey.photos) {
+    if (!photo.is_test) ++uses.at(static_cast<size_t>(photo.camera));
+  }
   return survey.cameras.at(static_cast<size_t>(std::max_element(uses.begin(), uses.end()) - uses.begin()));
 }
 

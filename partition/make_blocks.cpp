@@ -26,7 +26,7 @@ struct Inputs {
   int image_width;
   std::vector<Eigen::Vector3d> points;
   SurveyArea area;
-  std::vector<double> photo_altitude_m;
+  std::vector<PhotoAltitude> altitudes;  // of the training photos
 };
 
 double MarginOf(const BlockGrid& grid, const PartitionOptions& options) {
@@ -37,7 +37,9 @@ double MarginOf(const BlockGrid& grid, const PartitionOptions& options) {
 // The lowest height whose pixels the block may have: of the flight above it, or of its lowest photos.
 double LowestAltitude(const Inputs& in, double flown_agl_m) {
   constexpr double kLowest = 0.05;
-  return std::min(flown_agl_m, base::Quantile(in.photo_altitude_m, kLowest));
+  std::vector<double> agl_m;
+  for (const PhotoAltitude& photo : in.altitudes) agl_m.push_back(photo.agl_m);
+  return std::min(flown_agl_m, base::Quantile(std::move(agl_m), kLowest));
 }
 
 double VoxelsOf(const Inputs& in, const BlockGrid& grid, int index, double voxel_m) {
@@ -66,7 +68,7 @@ BlockGrid AutoGrid(const Inputs& in) {
     // A factor of sqrt(2) too much is accepted, as Log2TableSize rounds to the nearest power of two.
     bool fits = true;
     for (int index = 0; fits && index < rows * columns; ++index) {
-      const double agl = BlockAltitude(in.survey, in.photo_altitude_m, grid.Min(index), grid.Max(index));
+      const double agl = BlockAltitude(in.altitudes, grid.Min(index), grid.Max(index));
       const double voxel_m = in.options.voxel_per_gsd * SurveyGsd(in.survey, agl, in.image_width);
       fits = VoxelsOf(in, grid, index, voxel_m) <= most_voxels * std::sqrt(2.0);
     }
@@ -95,7 +97,7 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   block.id = index;
   block.name = "r" + std::to_string(index / grid.columns()) + "c" + std::to_string(index % grid.columns());
   block.margin_m = MarginOf(grid, in.options);
-  block.flown_agl_m = BlockAltitude(in.survey, in.photo_altitude_m, grid.Min(index), grid.Max(index));
+  block.flown_agl_m = BlockAltitude(in.altitudes, grid.Min(index), grid.Max(index));
   block.altitude_agl_m = in.options.altitudes.empty() ? block.flown_agl_m : in.options.altitudes[static_cast<size_t>(index)];
   // Voxels far finer than the photos' pixels cannot be told apart by them.
   const double sharpest_agl_m = std::max(block.altitude_agl_m, LowestAltitude(in, block.flown_agl_m));
@@ -122,9 +124,9 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
 }
 
 void AddViews(Block& block, BoxVisibility views, double surface_voxels, const PartitionOptions& options) {
-  if (!block.empty && views.n_training < 2) {
+  if (!block.empty && views.photos.size() < 2) {
     block.empty = true;
-    block.empty_reason = views.n_training == 0 ? "no training photo sees it" : "only one training photo sees it";
+    block.empty_reason = views.photos.empty() ? "no training photo sees it" : "only one training photo sees it";
   }
   if (block.empty) return;
   block.photos = std::move(views.photos);
@@ -190,7 +192,7 @@ BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& option
 
   Inputs in{survey, options, image_width, ReliablePoints(survey), {}, {}};
   in.area = FindSurveyArea(survey, in.points, options.area, options.min_views);
-  in.photo_altitude_m = PhotoAltitudes(survey, 0.5 * (in.area.min_enu + in.area.max_enu), in.area.ground_m);
+  in.altitudes = TrainingAltitudes(survey, 0.5 * (in.area.min_enu + in.area.max_enu), in.area.ground_m);
   const BlockGrid grid = MakeGrid(in);
   CheckAltitudeCount(options, grid.rows(), grid.columns());
 

@@ -102,9 +102,10 @@ double SurveyArea::CoveredArea(const Eigen::Vector2d& low, const Eigen::Vector2d
 
 SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen::Vector3d>& points, const std::string& rule, int min_views) {
   const std::filesystem::path name = survey.photo_root.empty() ? std::filesystem::path("survey") : survey.photo_root;
-  if (survey.photos.size() < 2) {
-    throw base::InputError(name, "the survey has " + std::to_string(survey.photos.size()) + " photo(s) with a pose",
-                           "Run `skyquilt prepare` with at least two photos that see the same ground");
+  const auto n_training = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return !photo.is_test; });
+  if (n_training < 2) {
+    throw base::InputError(name, "the survey has " + std::to_string(n_training) + " photo(s) with a pose that are not held out",
+                           "Run `skyquilt prepare` with at least two photos that see the same ground, or hold out fewer");
   }
   if (points.size() < 4) {
     throw base::InputError(name, "the survey has " + std::to_string(points.size()) + " usable sparse points",
@@ -133,8 +134,7 @@ SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen:
   area.raster_rows = std::max(4, static_cast<int>(std::ceil(extent.y() / cell)));
   area.raster_cell = extent.cwiseQuotient(Eigen::Vector2d(area.raster_columns, area.raster_rows));
 
-  const auto n_training = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return !photo.is_test; });
-  const int needed = std::min(min_views, std::max(1, static_cast<int>(n_training)));
+  const int needed = std::min(min_views, static_cast<int>(n_training));
   const std::vector<int> views = CountViews(survey, area, ground);
   std::vector<double> x_covered;
   std::vector<double> y_covered;

@@ -1,4 +1,4 @@
-// The rectangle of ground that the photos cover well enough to reconstruct, and a raster of which parts of it are covered.
+// The rectangle of ground that the training photos cover well enough to reconstruct, and a raster of which parts of it are covered.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace skyquilt::partition {
 
-// Finite sparse points, only those seen by at least three photos if there are enough of them. ENU metres.
+// Finite sparse points, only those observed by at least three training photos if there are enough of them. ENU metres.
 std::vector<Eigen::Vector3d> ReliablePoints(const survey::Survey& survey);
 
 // Height of the ground on a coarse raster: median of the points of a cell, the overall median in cells with fewer than three points.
@@ -44,7 +44,7 @@ struct SurveyArea {
 
 // `rule`: "covered" or "points" (see PartitionOptions::area). A photo sees a piece of ground when it projects into the image and is no farther away
 // than three times the flying height; beyond that, oblique views are too coarse.
-// Throws base::InputError when there are fewer than two photos or four usable points, or when the points have no extent.
+// Throws base::InputError when there are fewer than two training photos or four usable points, or when the points have no extent.
 SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen::Vector3d>& points, const std::string& rule, int min_views);
 
 }  // namespace skyquilt::partition

@@ -65,6 +65,7 @@ std::vector<BoxVisibility> FindVisibility(const survey::Survey& survey, const st
   std::vector<BoxVisibility> views(boxes.size());
   for (size_t p = 0; p < survey.photos.size(); ++p) {
     const survey::Photo& photo = survey.photos[p];
+    if (photo.is_test) continue;
     const camera::Camera& camera = survey.cameras.at(static_cast<size_t>(photo.camera));
     const RayGrid& grid = grids[static_cast<size_t>(photo.camera)];
     const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
@@ -78,8 +79,6 @@ std::vector<BoxVisibility> FindVisibility(const survey::Survey& survey, const st
       if (share == 0.0) share = ShareByProjection(camera, photo, boxes[b]);
       if (share == 0.0) continue;
       views[b].photos.push_back(static_cast<int>(p));
-      if (photo.is_test) continue;
-      ++views[b].n_training;
       views[b].training_pixels += share * pixels;
     }
   }

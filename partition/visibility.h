@@ -1,4 +1,4 @@
-// Finds which photos see which box, and with how many pixels: the photos a block is trained on and the amount of work.
+// Finds which training photos see which box, and with how many pixels: the photos a block is trained on and the amount of work.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,9 +14,8 @@ struct Box {
 };
 
 struct BoxVisibility {
-  std::vector<int> photos;       // indices into Survey::photos, ascending; training and test
-  int n_training = 0;            // of these photos, for training
-  double training_pixels = 0.0;  // training pixels whose ray hits the box, at the training size
+  std::vector<int> photos;       // indices into Survey::photos, ascending; held-out ones are not among them
+  double training_pixels = 0.0;  // pixels of these photos whose ray hits the box, at the training size
 };
 
 // Pixels are estimated with 16 x 12 rays per photo, image borders included (trapezoid rule). A box that none of these rays hits is projected

@@ -61,23 +61,35 @@ std::vector<HorizontalLine> LinesOf(const survey::Survey& survey, const survey::
   return lines;
 }
 
+// Evenly among the training photos: the directions may guide training.
+std::vector<const survey::Photo*> ChoosePhotos(const survey::Survey& survey) {
+  std::vector<const survey::Photo*> training;
+  for (const survey::Photo& photo : survey.photos) {
+    if (!photo.is_test) training.push_back(&photo);
+  }
+  const size_t n = std::min<size_t>(kLinePhotos, training.size());
+  std::vector<const survey::Photo*> chosen;
+  for (size_t i = 0; i < n; ++i) chosen.push_back(training[i * training.size() / n]);
+  return chosen;
+}
+
 }  // namespace
 
 FoundLines FindHorizontalLines(const survey::Survey& survey, base::ThreadPool& threads) {
   FoundLines found;
-  if (survey.points.empty() || survey.photos.empty()) return found;
+  const std::vector<const survey::Photo*> chosen = ChoosePhotos(survey);
+  if (survey.points.empty() || chosen.empty()) return found;
   std::vector<double> heights;
   heights.reserve(survey.points.size());
   for (const survey::SparsePoint& point : survey.points) heights.push_back(point.x_in_enu.z());
   std::nth_element(heights.begin(), heights.begin() + static_cast<ptrdiff_t>(heights.size() / 2), heights.end());
   const double ground_z = heights[heights.size() / 2];
-  const size_t n = std::min<size_t>(kLinePhotos, survey.photos.size());
-  std::vector<std::vector<HorizontalLine>> of_photo(n);
-  std::vector<char> read(n, 0);
-  threads.ParallelFor(static_cast<int64_t>(n), [&](int64_t task, int) {
+  std::vector<std::vector<HorizontalLine>> of_photo(chosen.size());
+  std::vector<char> read(chosen.size(), 0);
+  threads.ParallelFor(static_cast<int64_t>(chosen.size()), [&](int64_t task, int) {
     if (base::CancelRequested()) return;
     const auto i = static_cast<size_t>(task);
-    const survey::Photo& photo = survey.photos[i * survey.photos.size() / n];
+    const survey::Photo& photo = *chosen[i];
     try {
       of_photo[i] = LinesOf(survey, photo, ground_z);
       read[i] = 1;
@@ -86,7 +98,7 @@ FoundLines FindHorizontalLines(const survey::Survey& survey, base::ThreadPool& t
     }
   });
   base::ThrowIfCancelled();
-  for (size_t i = 0; i < n; ++i) {
+  for (size_t i = 0; i < chosen.size(); ++i) {
     found.photos += read[i];
     found.lines.insert(found.lines.end(), of_photo[i].begin(), of_photo[i].end());
   }

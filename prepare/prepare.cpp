@@ -2,26 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
-#include <span>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
-#include "core/base/text.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/height_reference.h"
 #include "prepare/control_report.h"
 #include "prepare/flight_checks.h"
 #include "prepare/georeference.h"
 #include "prepare/holdout.h"
+#include "prepare/holdout_poses.h"
 #include "prepare/horizontal_lines.h"
 #include "prepare/input_folder.h"
 #include "prepare/intrinsics_sigma.h"
+#include "prepare/match_photos.h"
 #include "prepare/model_use.h"
 #include "prepare/models/read_model.h"
 #include "prepare/photo_files.h"
@@ -30,6 +33,7 @@
 #include "prepare/poses/colmap_run.h"
 #include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
+#include "prepare/seeded/resect.h"
 #include "prepare/shape_by_tags.h"
 #include "prepare/sparse_cloud.h"
 #include "prepare/survey_points.h"
@@ -38,96 +42,6 @@ namespace skyquilt::prepare {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A photo of the model together with its file.
-struct Registered {
-  const survey::ColmapImage* image;
-  size_t file;  // index into the usable photos
-};
-
-std::string Joined(const std::vector<std::string>& names) {
-  return base::Join(std::span(names).first(std::min<size_t>(names.size(), 5))) + (names.size() > 5 ? ", ..." : "");
-}
-
-std::string BaseNameKey(const std::string& name) {
-  return base::LowerCase(fs::path(name).filename().string());
-}
-
-// Finds the photo of a name in the model: by the full name, otherwise by the file name if it occurs only once on both sides. Models are often made
-// from another folder than the one given now.
-class PhotoFinder {
- public:
-  PhotoFinder(const std::vector<PhotoFile>& files, const survey::ColmapModel& model) {
-    for (size_t i = 0; i < files.size(); ++i) {
-      by_name_[files[i].name] = i;
-      by_base_name_[BaseNameKey(files[i].name)].push_back(i);
-    }
-    for (const survey::ColmapImage& image : model.images) ++uses_[BaseNameKey(image.name)];
-  }
-  std::optional<size_t> Find(const std::string& name) const {
-    if (const auto exact = by_name_.find(name); exact != by_name_.end()) return exact->second;
-    const std::string key = BaseNameKey(name);
-    const auto same = by_base_name_.find(key);
-    if (same == by_base_name_.end() || same->second.size() != 1 || uses_.at(key) != 1) return std::nullopt;
-    return same->second.front();
-  }
-
- private:
-  std::map<std::string, size_t> by_name_;
-  std::map<std::string, std::vector<size_t>> by_base_name_;
-  std::map<std::string, int> uses_;
-};
-
-// In name order. Photos without a file or of another size than their camera are left out with a warning.
-std::vector<Registered> MatchPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files, const fs::path& model_folder,
-                                    const fs::path& photo_root) {
-  const PhotoFinder finder(files, model);
-  // Names of other programs may lack the folder, so that several images seem to be one photo.
-  std::map<size_t, int> claims;
-  for (const survey::ColmapImage& image : model.images) {
-    if (const std::optional<size_t> file = finder.Find(image.name)) ++claims[*file];
-  }
-  std::vector<Registered> registered;
-  std::vector<std::string> missing;
-  std::vector<std::string> other_size;
-  std::string size_example;
-  for (const survey::ColmapImage& image : model.images) {
-    const std::optional<size_t> file = finder.Find(image.name);
-    if (!file || claims[*file] > 1) {
-      missing.push_back(image.name);
-      continue;
-    }
-    const camera::Camera& camera = model.cameras.at(image.camera_id);
-    const PhotoFile& photo = files[*file];
-    if (camera.width != photo.width || camera.height != photo.height) {
-      other_size.push_back(photo.name);
-      size_example = photo.name + " is " + std::to_string(photo.width) + "x" + std::to_string(photo.height) + ", its camera in the model " +
-                     std::to_string(camera.width) + "x" + std::to_string(camera.height) + " pixels";
-      continue;
-    }
-    registered.push_back({&image, *file});
-  }
-  if (!missing.empty()) {
-    base::LogWarning(
-        "{}: {} of {} photos of the model are left out, because they are not in {}, cannot be read or have a name that several share: {}",
-        model_folder.string(), missing.size(), model.images.size(), photo_root.string(), Joined(missing));
-  }
-  if (!other_size.empty()) {
-    base::LogWarning("{} photos are left out, because their size is not that of their camera in the model: {} ({})", other_size.size(),
-                     Joined(other_size), size_example);
-  }
-  if (registered.size() < kMinPhotos) {
-    std::string found =
-        "only " + std::to_string(registered.size()) + " photos of the model can be used, at least " + std::to_string(kMinPhotos) + " are needed";
-    if (!missing.empty()) found += "; " + std::to_string(missing.size()) + " are not in " + photo_root.string() + " (" + Joined(missing) + ")";
-    if (!other_size.empty()) found += "; " + std::to_string(other_size.size()) + " have another size: " + size_example;
-    throw base::InputError(
-        model_folder, found,
-        other_size.empty() ? "Give the folder with the photos the model was made from" : "Give the photos in the size the model was made from");
-  }
-  std::sort(registered.begin(), registered.end(), [&](const Registered& a, const Registered& b) { return files[a.file].name < files[b.file].name; });
-  return registered;
-}
 
 std::vector<Station> MakeStations(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files) {
   std::vector<Station> stations;
@@ -257,12 +171,74 @@ std::vector<survey::ColmapPoint> PointsFromPoses(const ColmapJob& job, const sur
   return TriangulatePoints(job, photos, poses, options, threads, ranks);
 }
 
+// Names of the held-out photos, those of photos with a pose. Chosen while all of these still have it, so that the same ones are held out whatever
+// prepare.holdout_poses does. `names`: of all photos.
+std::set<std::string> ChooseHeldOut(const PrepareOptions& options, const InputModel& model, const fs::path& model_path,
+                                    const std::vector<Registered>& registered, const std::vector<PhotoFile>& files,
+                                    const std::vector<std::string>& names) {
+  survey::Survey survey;
+  std::set<std::string> with_pose;
+  for (const Registered& entry : registered) {
+    survey.photos.emplace_back().name = files[entry.file].name;
+    with_pose.insert(files[entry.file].name);
+  }
+  std::set_difference(names.begin(), names.end(), with_pose.begin(), with_pose.end(), std::back_inserter(survey.unregistered));
+  MarkHoldout(ParseHoldout(options.holdout), survey);
+  if (options.holdout == PrepareOptions().holdout) HoldOutByModel(model, model_path, survey);
+  std::set<std::string> held_out;
+  for (const survey::Photo& photo : survey.photos) {
+    if (photo.is_test) held_out.insert(photo.name);
+  }
+  return held_out;
+}
+
+// Takes the held-out photos out of the model. Nothing when their poses stay as the model has them; the log says why.
+std::optional<WithheldPhotos> Withhold(const std::set<std::string>& held_out, const std::vector<Registered>& registered,
+                                       const std::vector<PhotoFile>& files, const fs::path& model_folder, bool has_observations,
+                                       survey::ColmapModel& model, base::ThreadPool& threads) {
+  std::unordered_set<uint32_t> images;
+  for (const Registered& entry : registered) {
+    if (held_out.contains(files[entry.file].name)) images.insert(entry.image->id);
+  }
+  std::optional<WithheldPhotos> withheld;
+  std::string reason = "the model has no observations of points in photos, or its poses are exact";
+  try {
+    if (has_observations) withheld = WithholdPhotos(images, survey::ReadColmapObservations(model_folder), model, threads, &reason);
+  } catch (const base::InputError& error) {
+    reason = error.what();
+  }
+  if (!withheld) base::LogWarning("held-out photos keep the poses of the model, in spite of prepare.holdout_poses: {}", reason);
+  return withheld;
+}
+
+// Puts withheld photos back into the model and the geo-reference. Returns all photos of the model in name order. Throws base::UsageError when none
+// of them can be placed.
+std::vector<Registered> PutBack(const WithheldPhotos& withheld, const std::set<std::string>& held_out, const FileOfImage& file_of_image,
+                                const std::vector<PhotoFile>& files, survey::ColmapModel& model, Georeference& georeference) {
+  const std::vector<std::string> lost = ResectWithheld(withheld, model);
+  if (lost.size() == withheld.images.size()) {
+    throw base::UsageError(
+        fmt::format("prepare.holdout_poses = resected: none of the {} held-out photos ({}) sees enough points of the others to be placed by them. "
+                    "Set it to given, or "
+                    "hold out photos that overlap more with others (prepare.holdout), and add --restart",
+                    lost.size(), FewNames(lost)));
+  }
+  if (!lost.empty()) {
+    base::LogWarning("{} held-out photos get no pose, because they see fewer than {} points of the others: {}", lost.size(), kLeastObservations,
+                     FewNames(lost));
+  }
+  std::vector<Registered> registered = RegisteredPhotos(model, file_of_image);
+  std::vector<char> resected;
+  for (const Registered& entry : registered) resected.push_back(held_out.contains(files[entry.file].name) ? 1 : 0);
+  AddResected(MakeStations(registered, files), resected, georeference);
+  return registered;
+}
+
 }  // namespace
 
 survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks,
                        const OnPlaced& on_placed) {
   options.Check();
-  const Holdout holdout = ParseHoldout(options.holdout);
   InputFolder folders = FindInputs(input.photos, input.model, options.masks);
   base::RequireWritableFolder(input.out_folder);
 
@@ -285,13 +261,21 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
     UseAlphaAsMasks(input_model, folders.photo_root, photos.usable, fs::absolute(input.out_folder) / "alpha_masks", masks, threads);
   }
   const survey::ColmapModel& model = input_model.sfm;
-  const std::vector<Registered> registered = MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
+  const FileOfImage file_of_image = MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
+  std::vector<Registered> registered = RegisteredPhotos(model, file_of_image);
   if (LacksPoints(input_model)) {
     RequireColmap(input_model, folders.model, options.colmap);
     const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap"};
     input_model.sfm.points = PointsFromPoses(job, model, registered, photos.usable, PoseOptionsOf(options), threads, ranks);
   }
   const auto poses_known = std::chrono::steady_clock::now();
+  const bool has_observations = !folders.exact_origin && input_model.format == ModelFormat::kColmap;
+  const std::set<std::string> held_out = ChooseHeldOut(options, input_model, folders.model, registered, photos.usable, names);
+  std::optional<WithheldPhotos> withheld;
+  if (options.holdout_poses == "resected" && !held_out.empty()) {
+    withheld = Withhold(held_out, registered, photos.usable, folders.model, has_observations, input_model.sfm, threads);
+    registered = RegisteredPhotos(model, file_of_image);
+  }
 
   std::vector<Station> stations = MakeStations(registered, photos.usable);
   if (input_model.place) PlaceByModel(*input_model.place, stations);
@@ -300,7 +284,6 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
   Georeference georeference =
       folders.exact_origin ? KeepExactFrame(stations, *folders.exact_origin, options) : PlaceOnEarth(stations, points, options);
-  const bool has_observations = !folders.exact_origin && input_model.format == ModelFormat::kColmap;
   const std::vector<size_t> image_of_station = ImagesOf(registered, model);
   // Control points say more of the shape than tags; check points are compared with the final one.
   const bool any_control = std::any_of(control_points.points.begin(), control_points.points.end(), [](const ControlPoint& p) { return !p.check; });
@@ -310,6 +293,8 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   survey::ControlFit control =
       PlaceByControl({options, control_points, image_of_station, folders.model, has_observations, folders.exact_origin.has_value()}, input_model.sfm,
                      stations, georeference, threads);
+  const std::vector<survey::PhotoTags> placing_tags = PlacingTags(registered, photos.usable);
+  if (withheld) registered = PutBack(*withheld, held_out, file_of_image, photos.usable, input_model.sfm, georeference);
 
   survey::Survey survey;
   survey.origin = georeference.origin;
@@ -319,8 +304,11 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   survey.control = std::move(control);
   survey.problems = georeference.problems;
   survey.truth = folders.truth;
-  survey.height_reference = survey::HeightReferenceOf(survey, PlacingTags(registered, photos.usable));
+  survey.height_reference = survey::HeightReferenceOf(survey, placing_tags);
   FillPhotos(model, registered, photos.usable, masks, georeference, survey);
+  // Before the points: those that only held-out photos observed are not used.
+  for (survey::Photo& photo : survey.photos) photo.is_test = held_out.contains(photo.name);
+  survey.resected_holdout = withheld.has_value();
   std::set<std::string> with_pose;
   for (const survey::Photo& photo : survey.photos) with_pose.insert(photo.name);
   for (const std::string& name : names) {
@@ -330,8 +318,6 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   MeasureAgl(survey, threads);
   if (on_placed) on_placed(survey, poses_known);
   CheckFlightOf(model, folders.model, registered, photos.usable, has_observations, survey);
-  MarkHoldout(holdout, survey);
-  if (options.holdout == PrepareOptions().holdout) HoldOutByModel(input_model, folders.model, survey);
   base::ThrowIfCancelled();
   const FoundLines lines = FindHorizontalLines(survey, threads);
   survey.directions = FindDirections(lines.lines, lines.photos);
@@ -339,7 +325,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
 
   LogSummary(survey);
   if (!survey.unregistered.empty())
-    base::LogWarning("{} photos without a pose are not used: {}", survey.unregistered.size(), Joined(survey.unregistered));
+    base::LogWarning("{} photos without a pose are not used: {}", survey.unregistered.size(), FewNames(survey.unregistered));
   WriteResidualTable(survey, georeference, input.out_folder / "geo_residuals.csv");
   WriteControlReport(survey, input.out_folder);
   if (survey.georeferenced) {

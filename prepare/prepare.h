@@ -29,8 +29,8 @@ struct PrepareInput {
   std::filesystem::path out_folder;  // created if needed
 };
 
-// Called once photos, poses, place and sparse points of the survey are known, while its checks and directions are not: a first look at the survey
-// need not wait for these. poses_known: when poses and points were there, from COLMAP or a given model.
+// Called once photos, poses, place, held-out photos and sparse points of the survey are known, while its checks and directions are not: a first look
+// at the survey need not wait for these. poses_known: when poses and points were there, from COLMAP or a given model.
 using OnPlaced = std::function<void(const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known)>;
 
 // Photos that cannot be used are left out with a warning that names them. Throws base::UsageError for invalid options, base::InputError when fewer

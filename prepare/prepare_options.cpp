@@ -10,6 +10,9 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
   using O = PrepareOptions;
   return {
       {"holdout", &O::holdout, Range(), "photos kept for testing, in name order: every:N, every:N:offset, list:FILE (one name per line) or none"},
+      {"holdout_poses", &O::holdout_poses, Range::OneOf({"given", "resected"}),
+       "poses of held-out photos. given: found together with all others; resected: these photos are removed before the final adjustment and placed "
+       "afterwards by the points that remain, so that they help no other pose, lens or point (needs a model with observations)"},
       {"ransac_threshold_m", &O::ransac_threshold_m, Range{1e-3, 1e6},
        "largest distance in metres between fitted and tagged camera position; tags farther off are not used"},
       {"poses", &O::poses, Range::OneOf({"fast", "colmap"}),

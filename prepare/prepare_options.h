@@ -11,6 +11,7 @@ namespace skyquilt::prepare {
 
 struct PrepareOptions {
   std::string holdout = "every:8";
+  std::string holdout_poses = "given";
   double ransac_threshold_m = 10.0;
   std::string poses = "fast";
   bool seed_poses = true;

@@ -78,7 +78,8 @@ void LogTags(const survey::Survey& survey) {
 void LogSummary(const survey::Survey& survey) {
   const size_t n_all = survey.photos.size() + survey.unregistered.size();
   const auto n_test = std::count_if(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return photo.is_test; });
-  base::LogInfo("photos with a pose: {} of {}, {} of them held out for testing", survey.photos.size(), n_all, n_test);
+  base::LogInfo("photos with a pose: {} of {}, {} of them held out for testing{}", survey.photos.size(), n_all, n_test,
+                survey.resected_holdout ? " and placed by the points of the others" : "");
   for (const camera::Camera& camera : survey.cameras) {
     base::LogInfo("camera: {} {}x{}, focal length {:.1f} px", camera::ModelName(camera.model), camera.width, camera.height, camera.FocalX());
   }

@@ -8,9 +8,9 @@
 
 namespace skyquilt::prepare {
 
-// Removes points with a reprojection error above kMaxPointErrorPx or seen by fewer than kMinTrack photos, and points far outside the bounds of the
-// rest. These limits are relaxed when hardly any point would remain. Logs how many were removed. Returns where the remaining ones were before,
-// ascending indices.
+// Removes points with a reprojection error above kMaxPointErrorPx or a track shorter than kMinTrack, and points far outside the bounds of the rest.
+// These limits are relaxed when hardly any point would remain. Logs how many were removed. Returns where the remaining ones were before, ascending
+// indices.
 std::vector<size_t> FilterSparsePoints(std::vector<survey::SparsePoint>& points);
 
 // Sets agl_m of every photo: the camera's height above the median of the kAglPoints points nearest to the spot below it, no farther from there than

@@ -1,34 +1,24 @@
 #include "prepare/survey_points.h"
 
+#include <algorithm>
 #include <set>
-#include <utility>
 #include <vector>
 
 #include "core/base/log.h"
 #include "core/base/mix_bits.h"
+#include "core/survey/training_points.h"
 #include "prepare/sparse_cloud.h"
 
 namespace skyquilt::prepare {
 namespace {
 
-std::vector<survey::SparsePoint> ConvertPoints(const survey::ColmapModel& model, const geo::Similarity3d& enu_from_model) {
-  std::vector<survey::SparsePoint> points;
-  points.reserve(model.points.size());
-  for (const survey::ColmapPoint& point : model.points) {
-    // A point may be seen more than once in one photo; only the number of photos counts.
-    const std::set<uint32_t> photos(point.image_ids.begin(), point.image_ids.end());
-    points.push_back({enu_from_model * point.x_in_world, point.rgb, static_cast<float>(point.error_px), static_cast<int>(photos.size())});
-  }
-  return points;
-}
-
+// Ascending indices into Survey::photos, each once.
 std::vector<int32_t> TrackOf(const survey::ColmapPoint& point, const std::unordered_map<uint32_t, int32_t>& photo_of_image) {
-  std::vector<int32_t> photos;
-  photos.reserve(point.image_ids.size());
+  std::set<int32_t> photos;
   for (const uint32_t id : point.image_ids) {
-    if (const auto found = photo_of_image.find(id); found != photo_of_image.end()) photos.push_back(found->second);
+    if (const auto found = photo_of_image.find(id); found != photo_of_image.end()) photos.insert(found->second);
   }
-  return photos;
+  return {photos.begin(), photos.end()};
 }
 
 }  // namespace
@@ -39,16 +29,29 @@ bool IsKeptPoint(uint64_t colmap_id, int every) {
 
 void FillPoints(const survey::ColmapModel& model, const geo::Similarity3d& enu_from_model,
                 const std::unordered_map<uint32_t, int32_t>& photo_of_image, int keep_every, survey::Survey& survey) {
-  std::vector<survey::SparsePoint> points = ConvertPoints(model, enu_from_model);
+  const bool any_track = std::any_of(model.points.begin(), model.points.end(),
+                                     [&](const survey::ColmapPoint& point) { return !TrackOf(point, photo_of_image).empty(); });
+  std::vector<survey::SparsePoint> points;
+  std::vector<size_t> of_model;  // where the points are in the model
+  for (size_t i = 0; i < model.points.size(); ++i) {
+    const survey::ColmapPoint& point = model.points[i];
+    const size_t n_training = survey::CountTrainingPhotos(survey, TrackOf(point, photo_of_image));
+    if (any_track && n_training < survey::kFewestTrainingObservers) continue;
+    points.push_back({enu_from_model * point.x_in_world, point.rgb, static_cast<float>(point.error_px), static_cast<int>(n_training)});
+    of_model.push_back(i);
+  }
+  if (of_model.size() < model.points.size()) {
+    base::LogInfo("{} of {} sparse points are not used, because fewer than two training photos observed them", model.points.size() - of_model.size(),
+                  model.points.size());
+  }
   const std::vector<size_t> good = FilterSparsePoints(points);
   for (size_t i = 0; i < good.size(); ++i) {
-    const survey::ColmapPoint& of_model = model.points[good[i]];
-    const bool kept = IsKeptPoint(of_model.id, keep_every);
+    const survey::ColmapPoint& point = model.points[of_model[good[i]]];
+    const bool kept = IsKeptPoint(point.id, keep_every);
     (kept ? survey.kept_points : survey.points).push_back(points[i]);
-    (kept ? survey.kept_tracks : survey.tracks).Add(TrackOf(of_model, photo_of_image));
+    if (any_track) (kept ? survey.kept_tracks : survey.tracks).Add(TrackOf(point, photo_of_image));
   }
-  // Formats without tracks: none is known, rather than points that nobody saw.
-  if (survey.tracks.observations() + survey.kept_tracks.observations() == 0) survey.tracks = survey.kept_tracks = {};
+  survey::KeepTrainingObservations(survey);
   if (keep_every > 0) base::LogInfo("{} sparse points are kept from training, to measure depth errors with", survey.kept_points.size());
 }
 

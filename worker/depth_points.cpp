@@ -8,6 +8,7 @@
 
 #include "core/base/mix_bits.h"
 #include "core/camera/pixel_pitch.h"
+#include "core/survey/training_points.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -36,7 +37,9 @@ std::vector<GoodPoint> GoodPoints(const survey::Survey& survey, const std::vecto
     const auto error_px = static_cast<double>(point.error_px);
     if (!InPlan(point.x_in_enu, box) || !(error_px <= kLargestPointError_px)) continue;
     seen_from.clear();
-    for (const int32_t photo : survey.tracks.PhotosOf(i)) seen_from.push_back(centres[static_cast<size_t>(photo)]);
+    for (const int32_t photo : survey.tracks.PhotosOf(i)) {
+      if (!survey.photos[static_cast<size_t>(photo)].is_test) seen_from.push_back(centres[static_cast<size_t>(photo)]);
+    }
     const double angle = TriangulationAngle(point.x_in_enu, seen_from);
     if (angle < kSmallestPointAngle_deg * kRadians) continue;
     good.push_back({i, std::max(error_px, kSmallestError_px) / std::tan(std::min(angle, kLargestUsefulAngle))});
@@ -47,7 +50,7 @@ std::vector<GoodPoint> GoodPoints(const survey::Survey& survey, const std::vecto
 // Leaves out points by a hash so that about `most` observations remain.
 void Thin(const survey::Survey& survey, size_t most, std::vector<GoodPoint>& good) {
   size_t n = 0;
-  for (const GoodPoint& point : good) n += survey.tracks.PhotosOf(point.index).size();
+  for (const GoodPoint& point : good) n += survey::CountTrainingPhotos(survey, survey.tracks.PhotosOf(point.index));
   if (n <= most) return;
   const double share = static_cast<double>(most) / static_cast<double>(n);
   std::erase_if(good, [share](const GoodPoint& point) { return static_cast<double>(base::MixBits(point.index) >> 11U) * 0x1.0p-53 >= share; });

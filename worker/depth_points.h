@@ -4,8 +4,9 @@
 //
 // The standard deviation along the ray is that of a triangulation, error_px * pixel * distance / tan(angle): error_px is the point's mean
 // reprojection error, at least 0.5; pixel the angle of a pixel of the photo at full size, to which reprojection errors refer; angle the largest one
-// between two rays that observed the point, at most 45 degrees, because no point is known better along a ray than across it. It is therefore between
-// 0.5 and 57 widths of a pixel at the point. More observations make points more accurate than this, errors of the poses less.
+// between two rays of training photos that observed the point, at most 45 degrees, because no point is known better along a ray than across it. It is
+// therefore between 0.5 and 57 widths of a pixel at the point. More observations make points more accurate than this, errors of the poses less.
+// Observations in held-out photos, which tracks of surveys of older programs have, count nowhere.
 #pragma once
 
 #include <cstddef>
@@ -36,8 +37,8 @@ class DepthPoints {
   static constexpr size_t kMost = 2'000'000;  // observations; 40 MB
 
   DepthPoints() = default;  // empty
-  // The observations of the survey's points in the plan of a field's box with its margin, in order of point and photo. Empty without tracks. Where
-  // they are more than `most` (about), a part of the points is used, chosen by a hash.
+  // The training photos' observations of the survey's points in the plan of a field's box with its margin, in order of point and photo. Empty without
+  // tracks. Where they are more than `most` (about), a part of the points is used, chosen by a hash.
   DepthPoints(const survey::Survey& survey, const RaySource& source, const geo::BlockBox& box, size_t most = kMost);
 
   bool Empty() const { return points_.empty(); }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "core/render/march.h"
 #include "core/render/ray_engine.h"
@@ -10,16 +12,12 @@ namespace skyquilt::worker {
 
 std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
                                               base::ThreadPool& threads) {
-  std::vector<render::Ray> rays;
-  for (size_t photo = 0; photo < survey.photos.size(); ++photo) {
-    for (int row = 0; row < kTileRows; ++row) {
-      for (int column = 0; column < kTileColumns; ++column) {
-        const Tile tile{static_cast<int>(photo), static_cast<int16_t>(column), static_cast<int16_t>(row)};
-        render::Ray ray;
-        source.RayThrough(tile.photo, source.TileCentre(tile), &ray.origin_enu, &ray.direction_enu);
-        rays.push_back(ray);
-      }
-    }
+  std::vector<int> photos(survey.photos.size());
+  std::iota(photos.begin(), photos.end(), 0);
+  const std::vector<Tile> tiles = TrainingTiles(survey, photos);
+  std::vector<render::Ray> rays(tiles.size());
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    source.RayThrough(tiles[i].photo, source.TileCentre(tiles[i]), &rays[i].origin_enu, &rays[i].direction_enu);
   }
   std::vector<render::RayColor> seen(rays.size());
   context.BuildNetworks();
@@ -28,8 +26,12 @@ std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const sur
   render::EngineOptions options;
   options.colour_threshold = 2.0F;  // depth only
   render::RenderRays(set, rays, seen, options, threads);
-  std::vector<SurfaceInterval> bands(seen.size());
-  for (size_t i = 0; i < seen.size(); ++i) bands[i] = {seen[i].depth_front, seen[i].depth_median, seen[i].depth_back};
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  std::vector<SurfaceInterval> bands(survey.photos.size() * kTileRows * kTileColumns, {kUnknown, kUnknown, kUnknown});
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    const Tile& tile = tiles[i];
+    bands[BandIndex(tile.photo, tile.row, tile.column)] = {seen[i].depth_front, seen[i].depth_median, seen[i].depth_back};
+  }
   return bands;
 }
 

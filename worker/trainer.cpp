@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/base/errors.h"
 #include "core/brightness/captured_photos.h"
@@ -69,6 +70,13 @@ render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool
   if (luminance.On()) f.config.color_range = std::max(f.config.color_range, kLuminanceRange);
   f.occupancy = field::OccupancyGrid::Make(grid.extent, kCellPerVoxel * spec.finest_voxel_m * f.map.units_per_metre(), kMaxOccupancyCells);
   return f;
+}
+
+std::vector<int> TrainingPhotos(const survey::Survey& survey, const std::vector<int>& photos) {
+  std::vector<int> training;
+  std::copy_if(photos.begin(), photos.end(), std::back_inserter(training),
+               [&](int photo) { return !survey.photos[static_cast<size_t>(photo)].is_test; });
+  return training;
 }
 
 bool SearchesEverywhere(const TrainOptions& options) {
@@ -161,7 +169,7 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
   }
   const LuminancePlan luminance{loaded.luminance, loaded.luminance_state, false};
   std::optional<PhotoSegments> segments;
-  if (prior_options.Segments()) segments.emplace(*job.pixels, block.photos, threads);
+  if (prior_options.Segments()) segments.emplace(*job.pixels, TrainingPhotos(*job.survey, block.photos), threads);
   const DepthPoints points = prior_options.points > 0.0 ? DepthPoints(*job.survey, source, block.box) : DepthPoints();
   const PointPlanes planes = prior_options.Planes() ? PointPlanes(*job.survey, block.box, block.gsd_m) : PointPlanes();
   const FieldPriors priors{prior_options, segments ? &*segments : nullptr, &points, &planes, &job.survey->directions};

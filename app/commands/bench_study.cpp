@@ -20,10 +20,9 @@ struct StudyFlags {
   std::vector<double> voxels_per_entry;  // empty: the study's own
   std::vector<int> positions;            // empty: the study's own
   std::vector<std::string> parts = {"time", "steps"};
-  int seeds = 1;
   std::vector<std::string> variants;  // of --priors and --variants; empty: all
   std::string shapes;                 // empty: the settings' own
-  std::vector<int> seed_list;         // empty: the settings' own
+  std::vector<int> seeds;             // empty: the settings' own
   bool quick = false, restart = false, keep = false, json = false;
 };
 
@@ -38,6 +37,7 @@ struct StudyCommand {
   std::string place;   // simulated when no survey is given
   std::string budget;  // default training time, as shown in the help
   std::string footer;
+  bool seeds_of_places = false;                                                    // --seeds are those of the simulated place, too
   std::function<void(CLI::App*, StudyFlags*)> options = {};                        // adds the options that only this command has
   std::function<std::vector<config::Override>(const StudyFlags&)> overrides = {};  // changes to the settings, after --config and --set
   std::function<void(const StudyFlags&)> check = {};                               // refuses combinations of options before any work
@@ -84,6 +84,12 @@ void WriteResults(bench::StudyBench bench, const bench::Study& study, const Comm
   if (!flags.json) std::cout << "\n" << (std::filesystem::path(flags.out) / (page.name + ".html")).string() << "\n";
 }
 
+void CheckSeeds(const StudyFlags& flags) {
+  std::vector<int> seeds = flags.seeds;
+  std::sort(seeds.begin(), seeds.end());
+  if (std::adjacent_find(seeds.begin(), seeds.end()) != seeds.end()) throw base::UsageError("--seeds names a seed twice");
+}
+
 void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& study_command) {
   const auto flags = std::make_shared<StudyFlags>();
   const std::string& name = study_command.name;
@@ -96,6 +102,13 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   command->add_option("--model", flags->model, "camera model of the photos, as for prepare; without it COLMAP is run")->type_name("PATH");
   command->add_option("--time-budget", flags->budget, "training time of every variant, such as 90s or 10min; default: " + study_command.budget)
       ->type_name("TIME");
+  command
+      ->add_option("--seeds", flags->seeds,
+                   std::string(study_command.seeds_of_places ? "seeds of training and of the simulated place" : "seeds of training") +
+                       ": every variant is trained once with each; default: that of the settings, 1")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N,...");
   command->add_flag("--quick", flags->quick, "test with a hamlet and small photos: seconds instead of minutes, figures without meaning");
   command->add_flag("--restart", flags->restart, "remove earlier runs in the output folder first");
   command->add_flag("--keep", flags->keep, "keep checkpoints and scenes of finished variants");
@@ -104,6 +117,7 @@ void AddStudyCommand(CLI::App& bench, CommandState& state, const StudyCommand& s
   command->footer(study_command.footer);
   command->callback([&state, flags, study_command] {
     state.run_command = [&state, flags, study_command] {
+      CheckSeeds(*flags);
       if (study_command.check) study_command.check(*flags);
       bench::Study study = Begin(state, *flags, study_command);
       WriteResults(study_command.run(study, *flags), study, state, *flags);
@@ -117,6 +131,7 @@ bench::StudyBench RunSingleVsMulti(bench::Study& study, const StudyFlags& flags)
   options.budget_s = BudgetOf(flags, options.budget_s, 20.0);
   if (smaller) options.blocks = "2x2";
   if (!flags.blocks.empty()) options.blocks = flags.blocks;
+  study.UseSeeds(flags.seeds);
   return bench::SingleVsMulti(study, options);
 }
 
@@ -127,6 +142,7 @@ bench::StudyBench RunBlocks(bench::Study& study, const StudyFlags& flags) {
     options.per_side = {1, 2, 3};
     options.log2_table_sizes = {12, 15};
   }
+  study.UseSeeds(flags.seeds);
   return bench::BlocksBench(study, options);
 }
 
@@ -137,12 +153,14 @@ bench::StudyBench RunCapacity(bench::Study& study, const StudyFlags& flags) {
   if (flags.quick) options.log2_table_sizes = {13, 15};
   if (!flags.log2_table_sizes.empty()) options.log2_table_sizes = flags.log2_table_sizes;
   if (!flags.voxels_per_entry.empty()) options.voxels_per_entry = flags.voxels_per_entry;
+  study.UseSeeds(flags.seeds);
   return bench::CapacityBench(study, options);
 }
 
 bench::StudyBench RunEncodings(bench::Study& study, const StudyFlags& flags) {
   bench::EncodingsOptions options;
   options.budget_s = BudgetOf(flags, options.budget_s, 20.0);
+  study.UseSeeds(flags.seeds);
   return bench::EncodingsBench(study, options);
 }
 
@@ -158,6 +176,7 @@ bench::StudyBench RunTradeoff(bench::Study& study, const StudyFlags& flags) {
     options.step_voxels = {2.0, 4.0};
     options.every_nth_photo = {1, 2};
   }
+  study.UseSeeds(flags.seeds);
   return bench::Tradeoff(study, options);
 }
 
@@ -200,41 +219,31 @@ void AddScalesOptions(CLI::App* command, StudyFlags* flags) {
       ->delimiter(',')
       ->check(CLI::IsMember({"time", "steps", "heights"}))
       ->type_name("PART,...");
-  command->add_option("--seeds", flags->seeds, "trainings per variant, with different random numbers; default: 1")
-      ->check(CLI::Range(1, 100))
-      ->type_name("N");
-}
-
-void CheckSeeds(const StudyFlags& flags) {
-  std::vector<int> seeds = flags.seed_list;
-  std::sort(seeds.begin(), seeds.end());
-  if (std::adjacent_find(seeds.begin(), seeds.end()) != seeds.end()) throw base::UsageError("--seeds names a seed twice");
 }
 
 bench::StudyBench RunPriors(bench::Study& study, const StudyFlags& flags) {
   bench::PriorsOptions options;
   options.variants = flags.variants;
   options.budget_s = BudgetOf(flags, options.budget_s, 4.0);
-  options.seeds = flags.seed_list;
+  options.seeds = flags.seeds;
   return bench::PriorsBench(study, options);
 }
 
 // The study simulates the place of the first seed.
 std::vector<config::Override> FirstPlace(const StudyFlags& flags) {
-  if (flags.seed_list.empty() || !flags.survey.empty()) return {};
-  return {{"simulate.seed", std::to_string(flags.seed_list.front())}};
+  if (flags.seeds.empty() || !flags.survey.empty()) return {};
+  return {{"simulate.seed", std::to_string(flags.seeds.front())}};
 }
 
 bench::StudyBench RunBuildings(bench::Study& study, const StudyFlags& flags) {
   bench::BuildingsBenchOptions options;
   options.variants = flags.variants;
   options.budget_s = BudgetOf(flags, options.budget_s, 4.0);
-  options.seeds = flags.seed_list;
+  options.seeds = flags.seeds;
   return bench::BuildingsBench(study, options);
 }
 
 void CheckBuildings(const StudyFlags& flags) {
-  CheckSeeds(flags);
   if (!flags.shapes.empty() && !flags.survey.empty()) {
     throw base::UsageError("--shapes is for a simulated place, so it needs --place NAME instead of --survey");
   }
@@ -246,15 +255,6 @@ std::vector<config::Override> TownsOf(const StudyFlags& flags) {
   return overrides;
 }
 
-void AddSeedsOption(CLI::App* command, StudyFlags* flags) {
-  command
-      ->add_option("--seeds", flags->seed_list,
-                   "seeds of training and of the simulated place: every variant is trained once with each; default: those of the settings, 1")
-      ->delimiter(',')
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("N,...");
-}
-
 // The options that only `bench buildings` has.
 void AddBuildingsOptions(CLI::App* command, StudyFlags* flags) {
   std::string names;
@@ -263,7 +263,6 @@ void AddBuildingsOptions(CLI::App* command, StudyFlags* flags) {
       ->delimiter(',')
       ->check(CLI::IsMember(bench::BuildingsVariantNames()))
       ->type_name("NAME,...");
-  AddSeedsOption(command, flags);
   command->add_option("--shapes", flags->shapes, "shapes of the simulated buildings: plain or varied; default: that of the settings, plain")
       ->check(CLI::IsMember({"plain", "varied"}))
       ->type_name("NAME");
@@ -277,7 +276,6 @@ void AddPriorsOptions(CLI::App* command, StudyFlags* flags) {
       ->delimiter(',')
       ->check(CLI::IsMember(bench::PriorVariantNames()))
       ->type_name("NAME,...");
-  AddSeedsOption(command, flags);
 }
 
 }  // namespace
@@ -306,7 +304,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                    .budget = "3min",
                    .footer = "Examples:\n"
                              "  skyquilt bench blocks -o out/bench\n"
-                             "  skyquilt bench blocks --quick -o out/bench",
+                             "  skyquilt bench blocks --seeds 1,2,3 -o out/bench",
                    .run = RunBlocks});
   AddStudyCommand(
       bench, state,
@@ -360,7 +358,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                    .budget = "1min",
                    .footer = "Examples:\n"
                              "  skyquilt bench scales -o out/bench\n"
-                             "  skyquilt bench scales --survey photos/ --model sparse/0 --parts time --seeds 3 -o out/bench\n"
+                             "  skyquilt bench scales --survey photos/ --model sparse/0 --parts time --seeds 1,2,3 -o out/bench\n"
                              "  skyquilt bench scales --parts heights -o out/bench\n"
                              "Also writes scales.png with crops side by side. After an interruption, the same command continues.",
                    .options = AddScalesOptions,
@@ -377,9 +375,9 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                              "  skyquilt bench priors --survey photos/ --model sparse/0 -o out/bench\n"
                              "Also writes priors.png with crops side by side. After an interruption, the same command continues; seeds may be added\n"
                              "behind the first.",
+                   .seeds_of_places = true,
                    .options = AddPriorsOptions,
                    .overrides = FirstPlace,
-                   .check = CheckSeeds,
                    .run = RunPriors});
   AddStudyCommand(bench, state,
                   {.name = "buildings",
@@ -390,6 +388,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                              "  skyquilt bench buildings -o out/bench\n"
                              "  skyquilt bench buildings --seeds 11,12,13 --shapes varied -o out/bench\n"
                              "The survey must be simulated. After an interruption, the same command continues; seeds may be added behind the first.",
+                   .seeds_of_places = true,
                    .options = AddBuildingsOptions,
                    .overrides = TownsOf,
                    .check = CheckBuildings,

@@ -1,12 +1,35 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "bench/study/common_pixels.h"
+#include "bench/study/compare.h"
 #include "bench/study/study_benches.h"
 #include "bench/study/study_tables.h"
 #include "core/page/curve_chart.h"
 
 namespace skyquilt::bench {
+namespace {
+
+// The variant of the highest PSNR, and those that are as good as far as can be seen.
+void AddBest(const std::vector<VariantResult>& results, BenchPage* page) {
+  const std::vector<double> psnr_db = ComparablePsnr(PointersTo(results));
+  const auto highest =
+      std::max_element(psnr_db.begin(), psnr_db.end(), [](double a, double b) { return a < b || (std::isnan(a) && !std::isnan(b)); });
+  if (highest == psnr_db.end() || std::isnan(*highest)) return;
+  const VariantResult& best = results[static_cast<size_t>(highest - psnr_db.begin())];
+  page->figures.push_back({"Best", fmt::format("{:.2f} dB", *highest), best.label});
+  page->verdicts.push_back(fmt::format("Best at this budget: {} with {:.2f} dB, {:.1f} M parameters, {:.2f} M samples/s.", best.label, *highest,
+                                       best.parameters / 1e6, best.samples_per_second / 1e6));
+  for (const VariantResult& other : results) {
+    const Difference difference = PsnrDifference(other, best);
+    if (&other == &best || difference.pairs == 0 || difference.seen) continue;
+    page->verdicts.push_back(fmt::format("{} against it: {}.", other.label, Shown(difference)));
+  }
+}
+
+}  // namespace
 
 StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options) {
   StudyBench bench;
@@ -32,6 +55,7 @@ StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options) {
     }
     grid.rows.push_back(std::move(row));
   }
+  ScoreCommonPixels(study.folder(), PointersTo(bench.results));
   for (size_t c = 0; c < options.log2_table_sizes.size(); ++c) {
     page::Curve curve{.name = fmt::format("2^{}", options.log2_table_sizes[c]), .points = {}, .marks = true};
     for (size_t r = 0; r < options.per_side.size(); ++r)
@@ -43,13 +67,7 @@ StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options) {
   page.title = "Number of blocks and table size";
   page.lead =
       fmt::format("Compares numbers of blocks and sizes of each block's tables, with {:.0f} s of training for every variant.", options.budget_s);
-  const auto by_psnr = [](const VariantResult& a, const VariantResult& b) { return !(a.psnr_db >= b.psnr_db); };
-  const auto best = std::max_element(bench.results.begin(), bench.results.end(), by_psnr);
-  if (best != bench.results.end() && best->failure.empty()) {
-    page.figures.push_back({"Best", fmt::format("{:.2f} dB", best->psnr_db), best->label});
-    page.verdicts.push_back(fmt::format("Best at this budget: {} with {:.2f} dB, {:.1f} M parameters, {:.2f} M samples/s.", best->label,
-                                        best->psnr_db, best->parameters / 1e6, best->samples_per_second / 1e6));
-  }
+  AddBest(bench.results, &page);
   page.sections.push_back({.id = "grid",
                            .title = "Number of blocks and table size",
                            .lead = "",

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/study/buildings_parts.h"
+#include "bench/study/common_pixels.h"
 #include "bench/study/priors_parts.h"
 #include "bench/study/study_tables.h"
 #include "core/base/errors.h"
@@ -65,6 +66,10 @@ void RunTown(Study& study, const std::vector<BuildingsVariant>& variants, int se
     }
     (*results)[i].towns.push_back(std::move(result));
   }
+  std::vector<VariantResult*> of_town;
+  of_town.reserve(results->size());
+  for (BuildingsResults& of_variant : *results) of_town.push_back(&of_variant.towns.back());
+  ScoreCommonPixels(study.folder(), of_town);
 }
 
 // Plans of the first town.

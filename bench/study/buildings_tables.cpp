@@ -182,7 +182,7 @@ BenchTable BuildingsTownTable(const std::vector<BuildingsResults>& results, cons
                    .title = "",
                    .note = "",
                    .columns = {"variant and town", "outlines", "found", "missed", "invented", "completeness", "correctness", "GSD", "deck RMSE",
-                               "eave RMSE", "ridge RMSE", "length RMSE", "width RMSE", "PSNR", "training"},
+                               "eave RMSE", "ridge RMSE", "length RMSE", "width RMSE", "PSNR", "PSNR, common", "training"},
                    .rows = {}};
   for (const BuildingsResults& of : results) {
     for (const VariantResult& town : of.towns) {
@@ -200,6 +200,7 @@ BenchTable BuildingsTownTable(const std::vector<BuildingsResults>& results, cons
         row.push_back(BenchCell::Number(PooledErrors(pool, measure).rmse, kMeasureDecimals, "m"));
       }
       row.push_back(BenchCell::Number(town.psnr_db, 2, "dB"));
+      row.push_back(BenchCell::Number(town.psnr_common_db, 2, "dB"));
       row.push_back(BenchCell::Seconds(town.train_seconds));
       table.rows.push_back(std::move(row));
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "bench/study/thin_survey.h"
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
 #include "core/base/random.h"
@@ -112,16 +113,12 @@ void KeepThree(survey::Survey& survey) {
   const Eigen::Vector3d centre = survey.photos[training[training.size() / 2]].cam_from_enu.OriginInSource();
   const auto distance = [&](size_t i) { return (survey.photos[i].cam_from_enu.OriginInSource() - centre).norm(); };
   std::partial_sort(training.begin(), training.begin() + 3, training.end(), [&](size_t a, size_t b) { return distance(a) < distance(b); });
-  std::vector<survey::Photo> kept;
-  std::vector<int32_t> new_index;
+  std::vector<bool> keep;
+  keep.reserve(survey.photos.size());
   for (size_t i = 0; i < survey.photos.size(); ++i) {
-    const bool keep = survey.photos[i].is_test || std::find(training.begin(), training.begin() + 3, i) != training.begin() + 3;
-    new_index.push_back(keep ? static_cast<int32_t>(kept.size()) : -1);
-    if (keep) kept.push_back(survey.photos[i]);
+    keep.push_back(survey.photos[i].is_test || std::find(training.begin(), training.begin() + 3, i) != training.begin() + 3);
   }
-  survey.photos = std::move(kept);
-  survey.tracks = survey.tracks.Renumbered(new_index);
-  survey.kept_tracks = survey.kept_tracks.Renumbered(new_index);
+  KeepPhotos(survey, keep);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bench/study/common_pixels.h"
+#include "bench/study/compare.h"
 #include "bench/study/study_benches.h"
 #include "bench/study/study_tables.h"
 
@@ -37,6 +39,7 @@ StudyBench EncodingsBench(Study& study, const EncodingsOptions& options) {
     }
     bench.results.push_back(study.Run({.name = baseline.encoding, .label = baseline.label, .overrides = std::move(overrides)}));
   }
+  ScoreCommonPixels(study.folder(), PointersTo(bench.results));
   BenchPage& page = bench.page;
   page.name = "encodings";
   page.title = "Encodings of position";
@@ -49,10 +52,12 @@ StudyBench EncodingsBench(Study& study, const EncodingsOptions& options) {
   for (size_t i = 1; i < bench.results.size(); ++i) {
     const VariantResult& other = bench.results[i];
     if (!hash.failure.empty() || !other.failure.empty()) continue;
-    page.figures.push_back({other.label, Signed(other.psnr_db - hash.psnr_db, 2) + " dB", "against the hash grid"});
+    const Difference difference = PsnrDifference(other, hash);
+    const std::vector<double> psnr_db = ComparablePsnr({&other, &hash});
+    page.figures.push_back(DifferenceFigure(other.label, difference, "against the hash grid"));
     page.verdicts.push_back(
-        fmt::format("{} against the hash grid: {} dB ({:.2f} against {:.2f}), with {:.0f} % of its parameters at {:.0f} % of its samples per second.",
-                    other.label, Signed(other.psnr_db - hash.psnr_db, 2), other.psnr_db, hash.psnr_db, 100.0 * other.parameters / hash.parameters,
+        fmt::format("{} against the hash grid: {}, {:.2f} against {:.2f} dB, with {:.0f} % of its parameters at {:.0f} % of its samples per second.",
+                    other.label, Shown(difference), psnr_db[0], psnr_db[1], 100.0 * other.parameters / hash.parameters,
                     100.0 * other.samples_per_second / hash.samples_per_second));
   }
   page.sections.push_back({.id = "quality",

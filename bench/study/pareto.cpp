@@ -25,12 +25,12 @@ std::vector<size_t> ParetoFront(const std::vector<Priced>& points) {
   return front;
 }
 
-double BelowFront(const std::vector<Priced>& points, size_t point, double same_cost) {
-  double best = points.at(point).quality;
-  for (const Priced& other : points) {
-    if (other.cost <= (1.0 + same_cost) * points[point].cost && other.quality > best) best = other.quality;
+size_t BestForCost(const std::vector<Priced>& points, size_t point, double same_cost) {
+  size_t best = point;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (points[i].cost <= (1.0 + same_cost) * points.at(point).cost && points[i].quality > points[best].quality) best = i;
   }
-  return best - points[point].quality;
+  return best;
 }
 
 }  // namespace skyquilt::bench

@@ -14,8 +14,8 @@ struct Priced {
 // Indices of the points for which no other point is at most as expensive and better, or cheaper and as good. In order of cost.
 // Points with a NaN are left out.
 std::vector<size_t> ParetoFront(const std::vector<Priced>& points);
-// How far a point is below the front: the best quality at its cost or less, minus its own quality; 0 on the front.
+// The point of the best quality at the cost of `point` or less; `point` itself where none is better.
 // Points that cost up to the fraction same_cost (0 or more) more count as equally expensive, because measured times of equal budgets differ a little.
-double BelowFront(const std::vector<Priced>& points, size_t point, double same_cost = 0.0);
+size_t BestForCost(const std::vector<Priced>& points, size_t point, double same_cost = 0.0);
 
 }  // namespace skyquilt::bench

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bench/study/common_pixels.h"
 #include "bench/study/priors_parts.h"
 #include "bench/study/study_tables.h"
 #include "core/base/errors.h"
@@ -32,6 +33,10 @@ void RunSeed(Study& study, const std::vector<PriorVariant>& variants, int seed, 
     }
     (*results)[i].seeds.push_back(std::move(result));
   }
+  std::vector<VariantResult*> of_seed;
+  of_seed.reserve(results->size());
+  for (PriorResults& of_variant : *results) of_seed.push_back(&of_variant.seeds.back());
+  ScoreCommonPixels(study.folder(), of_seed);
 }
 
 // The changes that answer the question, of the variant with all priors or the last one.
@@ -41,12 +46,12 @@ void AddPriorFigures(const std::vector<PriorResults>& results, BenchPage* page) 
   if (shown == results.end()) --shown;
   if (shown == results.begin()) return;
   for (const PriorFigure& figure : PriorFigures()) {
-    const PriorChange change = ChangeOf(none, *shown, figure);
-    const bool key = figure.title == "PSNR" || figure.title.ends_with("NMAD") || figure.title.starts_with("flat roofs");
-    if (!key || change.seeds == 0) continue;
-    const bool percent = figure.change == ChangeKind::kPercent;
-    page->figures.push_back({figure.title, percent ? Signed(change.mean, 1) + " %" : Signed(change.mean, figure.decimals) + " " + figure.unit,
-                             fmt::format("'{}' against '{}'", shown->label, none.label)});
+    const Difference change = ChangeOf(none, *shown, figure).difference;
+    if (change.pairs == 0) continue;
+    const std::string note = fmt::format("'{}' against '{}'", shown->label, none.label);
+    if (figure.title == ComparedPsnr(results)) page->figures.push_back(DifferenceFigure(figure.title, change, note));
+    const bool key = figure.title.ends_with("NMAD") || figure.title.starts_with("flat roofs");
+    if (key) page->figures.push_back({figure.title, Signed(change.median, 1) + " %", note});
   }
 }
 

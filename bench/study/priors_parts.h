@@ -1,4 +1,4 @@
-// The parts of the bench about priors, and what they share: variants, their figures as means over seeds, and their change against no priors.
+// The parts of the bench about priors, and what they share: variants, their figures as medians over seeds, and their change against no priors.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/bench_page.h"
+#include "bench/study/compare.h"
 #include "bench/study/picture_sheet.h"
 #include "bench/study/study.h"
 #include "bench/study/study_benches.h"
@@ -41,18 +42,20 @@ struct PriorFigure {
 };
 // Cost, images, depth and normals by class of surface, flat roofs, kept sparse points.
 const std::vector<PriorFigure>& PriorFigures();
-// Mean over the seeds that have the figure; NaN when none has.
-double MeanOverSeeds(const PriorResults& results, const PriorFigure& figure);
+// The title of the figure by which variants are compared: PSNR over common pixels where it was measured.
+std::string ComparedPsnr(const std::vector<PriorResults>& results);
+// Median over the seeds that have the figure; NaN when none has.
+double MedianOverSeeds(const PriorResults& results, const PriorFigure& figure);
 
 // Change of a figure from `before` to `after`, which have the same seeds. Only seeds that have the figure in both count.
 struct PriorChange {
-  double mean = VariantResult::kNone;                                    // of the means; NaN without a seed, and percent of 0
-  double lowest = VariantResult::kNone, highest = VariantResult::kNone;  // over seeds
-  int seeds = 0;
+  // Over the changes of each seed. Percent of 0 do not count. Of single trainings only the noise of PSNR is known.
+  Difference difference;
+  double lowest = VariantResult::kNone, highest = VariantResult::kNone;
 };
 PriorChange ChangeOf(const PriorResults& before, const PriorResults& after, const PriorFigure& figure);
 
-// One row per variant: means over seeds. Columns without any number are left out, as in the other tables.
+// One row per variant: medians over seeds. Columns without any number are left out, as in the other tables.
 BenchTable PriorTable(const std::vector<PriorResults>& results, const std::string& name);
 // Change against the first, with the range over seeds when there are several.
 BenchTable PriorChangeTable(const std::vector<PriorResults>& results, const std::string& name);
@@ -60,7 +63,7 @@ BenchTable PriorChangeTable(const std::vector<PriorResults>& results, const std:
 BenchTable PriorTrainingTable(const std::vector<PriorResults>& results, const std::string& name);
 // NMAD of depth in percent of the first's: one chart per class of surface and one of kept points, as far as measured.
 std::vector<std::string> PriorCharts(const std::vector<PriorResults>& results);
-// One sentence per variant with its changes against the first.
+// One sentence per variant with its changes against the first, and what the seeds do not tell.
 std::vector<std::string> PriorVerdicts(const std::vector<PriorResults>& results);
 
 // Crops that show one kind of surface: the photo and what variants show there; below the true normals (the photo where they are unknown) and those

@@ -12,6 +12,8 @@ namespace skyquilt::bench {
 namespace {
 
 constexpr int kPercentDecimals = 1;
+constexpr const char* kPsnr = "PSNR";
+constexpr const char* kCommonPsnr = "PSNR, common";
 
 double OfClass(const VariantResult& result, const char* name, double evaluate::ClassScore::*figure) {
   const auto at = std::find_if(result.classes.begin(), result.classes.end(), [name](const evaluate::ClassScore& c) { return c.name == name; });
@@ -40,7 +42,7 @@ double StepsOfBlocks(const VariantResult& result) {
 }
 
 bool MeasuredInAny(const std::vector<PriorResults>& results, const PriorFigure& figure) {
-  return std::any_of(results.begin(), results.end(), [&](const PriorResults& r) { return std::isfinite(MeanOverSeeds(r, figure)); });
+  return std::any_of(results.begin(), results.end(), [&](const PriorResults& r) { return std::isfinite(MedianOverSeeds(r, figure)); });
 }
 
 // The unit as the change of the figure has it, with a space in front where there is one.
@@ -55,11 +57,12 @@ int DecimalsOfChange(const PriorFigure& figure) {
 
 // "-12.3 % (-15.0 to -9.6)"; an en dash when nothing was measured.
 BenchCell ChangeCell(const PriorChange& change, const PriorFigure& figure) {
-  if (std::isnan(change.mean)) return BenchCell::Number(change.mean, 0);
+  const double median = change.difference.median;
+  if (std::isnan(median)) return BenchCell::Number(median, 0);
   const int decimals = DecimalsOfChange(figure);
-  std::string shown = Signed(change.mean, decimals) + UnitOfChange(figure);
-  if (change.seeds > 1) shown += fmt::format(" ({} to {})", Signed(change.lowest, decimals), Signed(change.highest, decimals));
-  return {std::move(shown), change.mean};
+  std::string shown = Signed(median, decimals) + UnitOfChange(figure);
+  if (change.difference.pairs > 1) shown += fmt::format(" ({} to {})", Signed(change.lowest, decimals), Signed(change.highest, decimals));
+  return {std::move(shown), median};
 }
 
 std::string WithFailures(const PriorResults& results) {
@@ -77,12 +80,23 @@ double Change(double before, double after, ChangeKind kind) {
 
 }  // namespace
 
+std::string ComparedPsnr(const std::vector<PriorResults>& results) {
+  return std::any_of(results.begin(), results.end(),
+                     [](const PriorResults& r) {
+                       return std::any_of(r.seeds.begin(), r.seeds.end(),
+                                          [](const VariantResult& seed) { return std::isfinite(seed.psnr_common_db); });
+                     })
+             ? kCommonPsnr
+             : kPsnr;
+}
+
 const std::vector<PriorFigure>& PriorFigures() {
   using R = const VariantResult&;
   static const std::vector<PriorFigure> kFigures = {
       {"steps", "", 0, ChangeKind::kPercent, StepsOfBlocks},
       {"training", "s", 1, ChangeKind::kNone, [](R r) { return r.train_seconds; }},
-      {"PSNR", "dB", 2, ChangeKind::kDifference, [](R r) { return r.psnr_db; }},
+      {kPsnr, "dB", 2, ChangeKind::kDifference, [](R r) { return r.psnr_db; }},
+      {kCommonPsnr, "dB", 2, ChangeKind::kDifference, [](R r) { return r.psnr_common_db; }},
       {"SSIM", "", 4, ChangeKind::kDifference, [](R r) { return r.ssim; }},
       {"FLIP", "", 4, ChangeKind::kDifference, [](R r) { return r.flip; }},
       DepthOf("roofs, NMAD", "roof"),
@@ -100,30 +114,29 @@ const std::vector<PriorFigure>& PriorFigures() {
   return kFigures;
 }
 
-double MeanOverSeeds(const PriorResults& results, const PriorFigure& figure) {
+double MedianOverSeeds(const PriorResults& results, const PriorFigure& figure) {
   std::vector<double> values;
   for (const VariantResult& r : results.seeds) {
     if (const double value = figure.value(r); std::isfinite(value)) values.push_back(value);
   }
-  return evaluate::MeanOfMeasured(values);
+  return evaluate::MedianOfMeasured(std::move(values));
 }
 
 PriorChange ChangeOf(const PriorResults& before, const PriorResults& after, const PriorFigure& figure) {
   PriorChange change;
   if (figure.change == ChangeKind::kNone) return change;
-  double sum_before = 0.0, sum_after = 0.0;
+  std::vector<double> each;
   for (size_t seed = 0; seed < std::min(before.seeds.size(), after.seeds.size()); ++seed) {
     const double from = figure.value(before.seeds[seed]), to = figure.value(after.seeds[seed]);
-    if (!std::isfinite(from) || !std::isfinite(to)) continue;
     const double own = Change(from, to, figure.change);
-    sum_before += from;
-    sum_after += to;
+    if (!std::isfinite(own)) continue;
+    each.push_back(own);
     // std::fmin ignores NaN.
     change.lowest = std::fmin(change.lowest, own);
     change.highest = std::fmax(change.highest, own);
-    ++change.seeds;
   }
-  if (change.seeds > 0) change.mean = Change(sum_before / change.seeds, sum_after / change.seeds, figure.change);
+  const bool noise_known = figure.title == kPsnr || figure.title == kCommonPsnr;
+  change.difference = DifferenceOf(std::move(each), noise_known ? kNoise_db : VariantResult::kNone);
   return change;
 }
 
@@ -131,8 +144,9 @@ BenchTable PriorTable(const std::vector<PriorResults>& results, const std::strin
   BenchTable table{.name = name,
                    .title = "",
                    .note =
-                       "Means over the seeds. Steps: mean over blocks. PSNR, SSIM and FLIP over the pixels of held-out photos that at least two "
-                       "training photos see. NMAD: spread of the depth error, 1.4826 times the median distance from its median. Normals: median "
+                       "Medians over the seeds. Steps: mean over blocks. PSNR, SSIM and FLIP over the pixels of held-out photos that at least two "
+                       "training photos see; common: over those where this is so for all variants of the seed. NMAD: spread of the depth error, "
+                       "1.4826 times the median distance from its median. Normals: median "
                        "angle to the true surface. Flat roofs: rms about the plane that fits best. Kept points: depth at sparse points that were "
                        "kept from training, in ground sampling distances.",
                    .columns = {"variant"},
@@ -142,7 +156,7 @@ BenchTable PriorTable(const std::vector<PriorResults>& results, const std::strin
     if (!MeasuredInAny(results, figure)) continue;
     table.columns.push_back(figure.title);
     for (size_t i = 0; i < results.size(); ++i) {
-      table.rows[i].push_back(BenchCell::Number(MeanOverSeeds(results[i], figure), figure.decimals, figure.unit));
+      table.rows[i].push_back(BenchCell::Number(MedianOverSeeds(results[i], figure), figure.decimals, figure.unit));
     }
   }
   return table;
@@ -151,7 +165,7 @@ BenchTable PriorTable(const std::vector<PriorResults>& results, const std::strin
 BenchTable PriorChangeTable(const std::vector<PriorResults>& results, const std::string& name) {
   BenchTable table{.name = name,
                    .title = "Change against no priors",
-                   .note = "Of the means over those seeds in which both were measured; in parentheses the range over seeds.",
+                   .note = "Median over those seeds in which both were measured; in parentheses the range over seeds.",
                    .columns = {"variant"},
                    .rows = {}};
   for (size_t i = 1; i < results.size(); ++i) table.rows.push_back({BenchCell::Text(results[i].label)});
@@ -189,9 +203,9 @@ std::vector<std::string> PriorCharts(const std::vector<PriorResults>& results) {
     if (!figure.title.ends_with(", NMAD")) continue;
     std::vector<page::Bar> bars;
     for (size_t i = 1; i < results.size(); ++i) {
-      const PriorChange change = ChangeOf(results.front(), results[i], figure);
-      page::Bar bar{.label = results[i].label, .value = 100.0 + change.mean, .limit = 100.0, .limit_shown = "100 %"};
-      if (std::isfinite(change.mean)) bar.shown = Signed(change.mean, kPercentDecimals) + " %";
+      const double change = ChangeOf(results.front(), results[i], figure).difference.median;
+      page::Bar bar{.label = results[i].label, .value = 100.0 + change, .limit = 100.0, .limit_shown = "100 %"};
+      if (std::isfinite(change)) bar.shown = Signed(change, kPercentDecimals) + " %";
       bars.push_back(std::move(bar));
     }
     if (std::none_of(bars.begin(), bars.end(), [](const page::Bar& bar) { return std::isfinite(bar.value); })) continue;
@@ -203,16 +217,19 @@ std::vector<std::string> PriorCharts(const std::vector<PriorResults>& results) {
 
 std::vector<std::string> PriorVerdicts(const std::vector<PriorResults>& results) {
   std::vector<std::string> verdicts;
+  bool noise_unknown = false;
   for (size_t i = 1; i < results.size(); ++i) {
     std::string text;
     for (const PriorFigure& figure : PriorFigures()) {
-      const PriorChange change = ChangeOf(results.front(), results[i], figure);
-      const bool told = figure.change == ChangeKind::kPercent || figure.title == "PSNR";
-      if (!told || std::isnan(change.mean)) continue;
-      text += fmt::format("{}{} {}{}", text.empty() ? "" : "; ", figure.title, Signed(change.mean, DecimalsOfChange(figure)), UnitOfChange(figure));
+      const Difference change = ChangeOf(results.front(), results[i], figure).difference;
+      const bool told = figure.change == ChangeKind::kPercent || figure.title == ComparedPsnr(results);
+      if (!told || change.pairs == 0) continue;
+      text += fmt::format("{}{} {}", text.empty() ? "" : "; ", figure.title, Shown(change, DecimalsOfChange(figure), UnitOfChange(figure)));
+      noise_unknown |= std::isnan(change.noise);
     }
     if (!text.empty()) verdicts.push_back(fmt::format("'{}' against '{}': {}.", results[i].label, results.front().label, text));
   }
+  if (noise_unknown) verdicts.emplace_back("Three seeds or more would tell which changes in percent are larger than those of equal trainings.");
   return verdicts;
 }
 

@@ -2,11 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "bench/study/scales_parts.h"
 #include "bench/study/scales_pictures.h"
-#include "bench/study/study_tables.h"
 #include "core/base/errors.h"
 
 namespace skyquilt::bench {
@@ -55,8 +53,8 @@ void AddFigures(const std::vector<MethodResults>& methods, BenchPage* page) {
   const MethodResults* cones = BestCones(methods);
   if (points == nullptr || cones == nullptr) return;
   for (const int divisor : DivisorsOf(methods)) {
-    const double before = points->Psnr("", divisor, false), after = cones->Psnr("", divisor, false);
-    page->figures.push_back({WidthName(divisor), fmt::format("{} dB", Signed(after - before, 2)), cones->label + " against " + points->label});
+    page->figures.push_back(
+        DifferenceFigure(WidthName(divisor), PsnrDifferenceAt(*cones, *points, "", divisor), cones->label + " against " + points->label));
   }
 }
 
@@ -83,21 +81,19 @@ std::vector<config::Override> ScaleMethod::Overrides() const {
 
 std::vector<MethodResults> RunMethods(Study& study, const std::string& part, const std::vector<ScaleMethod>& methods, const ScalesOptions& options,
                                       const Variant& like, const SeedOverrides& own) {
+  const std::vector<int> seeds = options.seeds.empty() ? std::vector<int>{study.settings().run.seed} : options.seeds;
   std::vector<MethodResults> results;
   results.reserve(methods.size());
   for (const ScaleMethod& method : methods) {
     results.push_back({.method = method, .label = method.Label() + like.label, .seeds = {}});
-    for (int seed = 1; seed <= options.seeds; ++seed) {
-      std::vector<config::Override> overrides = own(seed);
-      const std::vector<config::Override> of_method = method.Overrides();
-      overrides.insert(overrides.end(), of_method.begin(), of_method.end());
-      overrides.push_back({"run.seed", std::to_string(study.settings().run.seed + seed - 1)});
-      const std::string suffix = seed == 1 ? "" : fmt::format("_s{}", seed);
+    for (size_t seed = 0; seed < seeds.size(); ++seed) {
       Variant variant = like;
-      variant.name = fmt::format("{}_{}{}", part, method.Name(), suffix);
-      variant.label = results.back().label + (seed == 1 ? "" : fmt::format(", seed {}", seed));
-      variant.overrides = std::move(overrides);
-      results.back().seeds.push_back(study.Run(variant));
+      variant.name = fmt::format("{}_{}", part, method.Name());
+      variant.label = results.back().label;
+      variant.overrides = own(seed);
+      const std::vector<config::Override> of_method = method.Overrides();
+      variant.overrides.insert(variant.overrides.end(), of_method.begin(), of_method.end());
+      results.back().seeds.push_back(study.Run(study.WithSeed(std::move(variant), seeds[seed])));
     }
   }
   return results;
@@ -120,11 +116,12 @@ StudyBench ScalesBench(Study& study, const ScalesOptions& options) {
     coordinator::Settings settings = study.settings();
     for (const config::Override& entry : method.Overrides()) settings.Set(entry);
   }
-  const auto timed = [&options](int) { return std::vector<config::Override>{{"run.time_budget_s", fmt::format("{}", options.budget_s)}}; };
+  const auto timed = [&options](size_t) { return std::vector<config::Override>{{"run.time_budget_s", fmt::format("{}", options.budget_s)}}; };
   std::vector<MethodResults> shown;
   if (options.equal_time) {
     shown = RunMethods(study, "time", methods, options, {}, timed);
-    AddPart(shown, "time", "Equal time", fmt::format("{:g} s of training each, {} training(s) per method.", options.budget_s, options.seeds), &bench);
+    const std::string lead = fmt::format("{:g} s of training each, {} training(s) per method.", options.budget_s, shown.front().seeds.size());
+    AddPart(shown, "time", "Equal time", lead, &bench);
   }
   if (options.equal_steps) {
     // The first method of part "time", which may not be among the methods.
@@ -132,8 +129,8 @@ StudyBench ScalesBench(Study& study, const ScalesOptions& options) {
     const auto& seeds = reference.front().seeds;
     const auto failed = std::find_if(seeds.begin(), seeds.end(), [](const VariantResult& r) { return !r.failure.empty(); });
     if (failed != seeds.end()) throw base::BlockError("equal steps need the training of '" + failed->label + "': " + failed->failure);
-    const std::vector<MethodResults> stepped = RunMethods(study, "steps", methods, options, {}, [&seeds](int seed) {
-      const VariantResult& like = seeds[static_cast<size_t>(seed - 1)];
+    const std::vector<MethodResults> stepped = RunMethods(study, "steps", methods, options, {}, [&seeds](size_t seed) {
+      const VariantResult& like = seeds[seed];
       std::vector<config::Override> overrides = SameSteps(like);
       overrides.push_back({"partition.blocks", like.layout});
       return overrides;

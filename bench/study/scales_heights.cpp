@@ -1,12 +1,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "bench/study/heights_survey.h"
 #include "bench/study/scales_parts.h"
 #include "bench/study/scales_pictures.h"
-#include "bench/study/study_tables.h"
 #include "core/base/thread_pool.h"
 #include "core/page/curve_chart.h"
 
@@ -59,7 +57,7 @@ std::vector<Flown> FlownChoices(const HeightsPlan& plan) {
 BenchTable HeightTable(const std::vector<MethodResults>& methods, const std::vector<int>& heights) {
   BenchTable table{.name = "heights",
                    .title = "PSNR by height of the rendering",
-                   .note = "Full width, one ray per pixel. Pixels that show the area flown over; mean over held-out photos and trainings.",
+                   .note = "Full width, one ray per pixel. Pixels that show the area flown over; mean over held-out photos, median over trainings.",
                    .columns = {"method", "photos"},
                    .rows = {}};
   for (const int height_m : heights) table.columns.push_back(fmt::format("{} m", height_m));
@@ -99,8 +97,8 @@ std::string HeightVerdict(const std::vector<MethodResults>& of_choice, const std
   if (best == nullptr) return "";
   std::string text = fmt::format("'{}' against '{}':", best->label, points->label);
   for (const int height_m : heights) {
-    const double gain_db = best->Psnr(HeightPrefix(height_m), 1, false) - points->Psnr(HeightPrefix(height_m), 1, false);
-    text += fmt::format("{} {} dB at {} m", height_m == heights.front() ? "" : ",", Signed(gain_db, 2), height_m);
+    const std::string gain = Shown(PsnrDifferenceAt(*best, *points, HeightPrefix(height_m), 1));
+    text += fmt::format("{} {} at {} m", height_m == heights.front() ? "" : ",", gain, height_m);
   }
   return text + ".";
 }
@@ -124,7 +122,7 @@ void AddHeights(const Study& study, const ScalesOptions& options, StudyBench* be
   const std::vector<ScaleMethod> methods = {{0, false}, {0, true}, {1, false}, {1, true}};
   std::vector<MethodResults> results;
   for (const Flown& flown : FlownChoices(plan)) {
-    std::vector<MethodResults> own = RunMethods(heights_study, "from" + flown.name, methods, options, flown.photos, [&options](int) {
+    std::vector<MethodResults> own = RunMethods(heights_study, "from" + flown.name, methods, options, flown.photos, [&options](size_t) {
       return std::vector<config::Override>{{"run.time_budget_s", fmt::format("{}", options.budget_s)}};
     });
     if (const std::string verdict = HeightVerdict(own, heights); !verdict.empty()) bench->page.verdicts.push_back(verdict);

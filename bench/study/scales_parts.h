@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/bench_page.h"
+#include "bench/study/compare.h"
 #include "bench/study/study.h"
 #include "bench/study/study_benches.h"
 
@@ -27,12 +28,14 @@ struct MethodResults {
   std::string label;
   std::vector<VariantResult> seeds;
 
-  // Means over the seeds that have the score; NaN when none has.
+  // Medians over the seeds that have the score; NaN when none has.
   double Psnr(const std::string& group, int divisor, bool averaged) const;
   double FrameSeconds(const std::string& group, int divisor) const;
   const VariantResult& First() const { return seeds.front(); }
 };
 
+// Of the PSNR with one ray per pixel; both have the same seeds in the same order.
+Difference PsnrDifferenceAt(const MethodResults& of, const MethodResults& against, const std::string& group, int divisor);
 // Rows: each method with one ray per pixel, and with the full frame averaged. Columns: widths.
 BenchTable ScaleTable(const std::vector<MethodResults>& methods, const std::string& name);
 // Seconds per frame at each width.
@@ -41,7 +44,7 @@ BenchTable FrameTimeTable(const std::vector<MethodResults>& methods, const std::
 BenchTable TrainingTable(const std::vector<MethodResults>& methods, const std::string& name);
 // PSNR over the divisor of the width.
 std::string ScaleChart(const std::vector<MethodResults>& methods, const std::string& title);
-// The method with cones that has the highest mean PSNR at divisors above 1; null when none was scored.
+// The method with cones that has the highest PSNR at divisors above 1, on average over them; null when none was scored.
 const MethodResults* BestCones(const std::vector<MethodResults>& methods);
 const MethodResults* Find(const std::vector<MethodResults>& methods, const ScaleMethod& method);
 // The best method with cones against points, at each width, and whether small frames are as fast as they should be. condition: of all trainings.
@@ -53,9 +56,10 @@ std::string WidthName(int divisor);
 // The distinct divisors that were scored, rising.
 std::vector<int> DivisorsOf(const std::vector<MethodResults>& methods);
 
-// Overrides of every method's variant, by seed (1, 2, ...).
-using SeedOverrides = std::function<std::vector<config::Override>(int seed)>;
-// Trains `methods` as variants "<part>_<method>[_s<seed>]". like: its photos are those of every variant, its label follows that of the method.
+// Overrides of every method's variant, by the place of the seed in the list of seeds.
+using SeedOverrides = std::function<std::vector<config::Override>(size_t seed)>;
+// Trains `methods` as variants "<part>_<method>", as Study::WithSeed names them. like: its photos are those of every variant, its label follows that
+// of the method.
 std::vector<MethodResults> RunMethods(Study& study, const std::string& part, const std::vector<ScaleMethod>& methods, const ScalesOptions& options,
                                       const Variant& like, const SeedOverrides& own);
 

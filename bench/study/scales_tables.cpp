@@ -5,7 +5,6 @@
 #include <set>
 
 #include "bench/study/scales_parts.h"
-#include "bench/study/study_tables.h"
 #include "core/page/curve_chart.h"
 #include "evaluate/metrics.h"
 
@@ -21,12 +20,12 @@ const ScaleScore* ScoreOf(const VariantResult& result, const std::string& group,
 }
 
 template <typename Value>
-double MeanOver(const std::vector<VariantResult>& seeds, const std::string& group, int divisor, bool averaged, const Value& value) {
+double MedianOver(const std::vector<VariantResult>& seeds, const std::string& group, int divisor, bool averaged, const Value& value) {
   std::vector<double> values;
   for (const VariantResult& r : seeds) {
     if (const ScaleScore* score = ScoreOf(r, group, divisor, averaged)) values.push_back(value(*score));
   }
-  return evaluate::MeanOfMeasured(values);
+  return evaluate::MedianOfMeasured(std::move(values));
 }
 
 // "1/8 (80 px)"
@@ -56,11 +55,20 @@ std::string FractionName(int divisor) {
 }
 
 double MethodResults::Psnr(const std::string& group, int divisor, bool averaged) const {
-  return MeanOver(seeds, group, divisor, averaged, [](const ScaleScore& s) { return s.psnr_db; });
+  return MedianOver(seeds, group, divisor, averaged, [](const ScaleScore& s) { return s.psnr_db; });
 }
 
 double MethodResults::FrameSeconds(const std::string& group, int divisor) const {
-  return MeanOver(seeds, group, divisor, false, [](const ScaleScore& s) { return s.frame_seconds; });
+  return MedianOver(seeds, group, divisor, false, [](const ScaleScore& s) { return s.frame_seconds; });
+}
+
+Difference PsnrDifferenceAt(const MethodResults& of, const MethodResults& against, const std::string& group, int divisor) {
+  std::vector<double> differences;
+  for (size_t i = 0; i < std::min(of.seeds.size(), against.seeds.size()); ++i) {
+    const ScaleScore *a = ScoreOf(of.seeds[i], group, divisor, false), *b = ScoreOf(against.seeds[i], group, divisor, false);
+    if (a != nullptr && b != nullptr) differences.push_back(a->psnr_db - b->psnr_db);
+  }
+  return DifferenceOf(std::move(differences), kNoise_db);
 }
 
 std::vector<int> DivisorsOf(const std::vector<MethodResults>& methods) {
@@ -75,7 +83,7 @@ std::vector<int> DivisorsOf(const std::vector<MethodResults>& methods) {
 
 BenchTable ScaleTable(const std::vector<MethodResults>& methods, const std::string& name) {
   BenchTable table = WithWidths(methods, name, "PSNR by width",
-                                "Full frames, mean over held-out photos and trainings. k x k rays: rendered at full width, "
+                                "Full frames, mean over held-out photos, median over trainings. k x k rays: rendered at full width, "
                                 "then averaged in linear light.");
   const std::vector<int> divisors = DivisorsOf(methods);
   for (const MethodResults& m : methods) {
@@ -104,20 +112,16 @@ BenchTable FrameTimeTable(const std::vector<MethodResults>& methods, const std::
 
 BenchTable TrainingTable(const std::vector<MethodResults>& methods, const std::string& name) {
   BenchTable table = WithWidths(methods, name, "Trainings", "Steps: mean over blocks. Widths: PSNR with one ray per pixel.");
-  table.columns.insert(table.columns.begin() + 1, {"seed", "photos", "training", "steps", "samples"});
+  table.columns.insert(table.columns.begin() + 1, {"photos", "training", "steps", "samples"});
   const std::vector<int> divisors = DivisorsOf(methods);
   for (const MethodResults& m : methods) {
-    for (size_t seed = 0; seed < m.seeds.size(); ++seed) {
-      const VariantResult& r = m.seeds[seed];
+    for (const VariantResult& r : m.seeds) {
       double steps = 0.0;
       for (const VariantField& field : r.fields) {
         if (field.name != "context") steps += static_cast<double>(field.steps) / std::max(1, r.blocks);
       }
-      std::vector<BenchCell> row = {BenchCell::Text(r.failure.empty() ? m.label : m.label + " (" + r.failure + ")"),
-                                    BenchCell::Number(static_cast<double>(seed + 1), 0),
-                                    BenchCell::Number(r.training_photos, 0),
-                                    BenchCell::Seconds(r.train_seconds),
-                                    BenchCell::Number(steps, 0),
+      std::vector<BenchCell> row = {BenchCell::Text(r.failure.empty() ? r.label : r.label + " (" + r.failure + ")"),
+                                    BenchCell::Number(r.training_photos, 0), BenchCell::Seconds(r.train_seconds), BenchCell::Number(steps, 0),
                                     BenchCell::Count(r.samples)};
       for (const int divisor : divisors) {
         const ScaleScore* score = ScoreOf(r, "", divisor, false);
@@ -173,9 +177,10 @@ std::vector<std::string> ScaleVerdicts(const std::vector<MethodResults>& methods
   const std::vector<int> divisors = DivisorsOf(methods);
   for (const int divisor : divisors) {
     const double before = points->Psnr("", divisor, false), after = cones->Psnr("", divisor, false);
-    verdicts.push_back(fmt::format("{}, at {}: '{}' {} dB against '{}' ({:.2f} against {:.2f}; with k x k rays {:.2f} and {:.2f}).", condition,
-                                   WidthName(divisor), cones->label, Signed(after - before, 2), points->label, after, before,
-                                   cones->Psnr("", divisor, divisor > 1), points->Psnr("", divisor, divisor > 1)));
+    const std::string change = Shown(PsnrDifferenceAt(*cones, *points, "", divisor));
+    verdicts.push_back(fmt::format("{}, at {}: '{}' against '{}': {} ({:.2f} against {:.2f}; with k x k rays {:.2f} and {:.2f}).", condition,
+                                   WidthName(divisor), cones->label, points->label, change, after, before, cones->Psnr("", divisor, divisor > 1),
+                                   points->Psnr("", divisor, divisor > 1)));
   }
   const double faster = cones->FrameSeconds("", divisors.front()) / cones->FrameSeconds("", divisors.back());
   if (divisors.back() == 8 && std::isfinite(faster)) {

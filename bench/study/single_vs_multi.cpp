@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/study/common_pixels.h"
+#include "bench/study/compare.h"
 #include "bench/study/study_benches.h"
 #include "bench/study/study_tables.h"
 #include "core/page/curve_chart.h"
@@ -24,8 +26,9 @@ int JoinedTableSize(const VariantResult& divided, int log2_table_size) {
   return entries > 0.0 ? std::min(24, static_cast<int>(std::lround(std::log2(entries)))) : log2_table_size;
 }
 
-std::string Difference(const VariantResult& a, const VariantResult& b) {
-  return fmt::format("{} dB ({:.2f} against {:.2f}), SSIM {}", Signed(a.psnr_db - b.psnr_db, 2), a.psnr_db, b.psnr_db, Signed(a.ssim - b.ssim, 3));
+std::string Against(const VariantResult& a, const VariantResult& b) {
+  const std::vector<double> psnr_db = ComparablePsnr({&a, &b});
+  return fmt::format("{}, {:.2f} against {:.2f} dB, SSIM {}", Shown(PsnrDifference(a, b)), psnr_db[0], psnr_db[1], Signed(a.ssim - b.ssim, 3));
 }
 
 // Opacity this far in front of surfaces comes from floaters, not from blurred surfaces.
@@ -79,11 +82,11 @@ std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
   std::vector<std::string> verdicts;
   if (guided == nullptr) return {"The model with several blocks could not be trained, so nothing can be compared."};
   if (small != nullptr) {
-    verdicts.push_back("Blocks against one model with the table size of one block, equal time: " + Difference(*guided, *small) + ".");
+    verdicts.push_back("Blocks against one model with the table size of one block, equal time: " + Against(*guided, *small) + ".");
   }
   if (large != nullptr) {
     verdicts.push_back(fmt::format("Blocks against one model with as many parameters ({:.1f} M against {:.1f} M), equal time: {}.",
-                                   guided->parameters / 1e6, large->parameters / 1e6, Difference(*guided, *large)));
+                                   guided->parameters / 1e6, large->parameters / 1e6, Against(*guided, *large)));
     verdicts.push_back(
         fmt::format("The large model was trained with {:.0f} M samples ({:.2f} M/s), the blocks with {:.0f} M together ({:.2f} M/s){}.",
                     large->samples / 1e6, large->samples_per_second / 1e6, guided->samples / 1e6, guided->samples_per_second / 1e6,
@@ -91,18 +94,18 @@ std::vector<std::string> Verdicts(const std::vector<VariantResult>& results) {
     verdicts.push_back(fmt::format("Each block was trained with {}, the large model with {}.", OfItsOwn(*guided), OfItsOwn(*large)));
   }
   if (independent != nullptr)
-    verdicts.push_back("Blocks with the context (guided) against blocks without it: " + Difference(*guided, *independent) + ".");
+    verdicts.push_back("Blocks with the context (guided) against blocks without it: " + Against(*guided, *independent) + ".");
   if (shared != nullptr) {
-    verdicts.push_back("Boxes as high as their content against boxes with the height of the whole survey: " + Difference(*guided, *shared) +
+    verdicts.push_back("Boxes as high as their content against boxes with the height of the whole survey: " + Against(*guided, *shared) +
                        FloaterRatio(*guided, *shared) + ".");
   }
   if (everywhere != nullptr && shared_everywhere != nullptr) {
-    verdicts.push_back("The same when training starts in the whole box (train.start = everywhere): " + Difference(*everywhere, *shared_everywhere) +
+    verdicts.push_back("The same when training starts in the whole box (train.start = everywhere): " + Against(*everywhere, *shared_everywhere) +
                        FloaterRatio(*everywhere, *shared_everywhere) + ".");
   }
   if (shared_everywhere != nullptr) {
     verdicts.push_back("Boxes as high as their content and training that starts at known surfaces, against neither: " +
-                       Difference(*guided, *shared_everywhere) + FloaterRatio(*guided, *shared_everywhere) + ".");
+                       Against(*guided, *shared_everywhere) + FloaterRatio(*guided, *shared_everywhere) + ".");
   }
   for (const VariantResult* one : {small, large}) {
     if (one == nullptr || !std::isfinite(one->floater_opacity) || !(guided->floater_opacity > 0.0)) continue;
@@ -135,6 +138,7 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
     run("everywhere", "blocks, start in the whole box", {divided, everywhere});
     run("shared_everywhere", "one height for all, start in the whole box", {divided, one_height, everywhere});
   }
+  ScoreCommonPixels(study.folder(), PointersTo(results));
 
   BenchPage& page = bench.page;
   page.name = "single-vs-multi";
@@ -147,10 +151,10 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
   if (const VariantResult* guided = Find(results, "guided")) {
     page.figures.push_back({"Blocks, guided", fmt::format("{:.2f} dB", guided->psnr_db), fmt::format("{} blocks", guided->blocks)});
     if (const VariantResult* small = Find(results, "single_small")) {
-      page.figures.push_back({"against one such model", Signed(guided->psnr_db - small->psnr_db, 2) + " dB", "equal time"});
+      page.figures.push_back(DifferenceFigure("against one such model", PsnrDifference(*guided, *small), "equal time"));
     }
     if (const VariantResult* large = Find(results, "single_large")) {
-      page.figures.push_back({"against one as large as all", Signed(guided->psnr_db - large->psnr_db, 2) + " dB", "equal time and parameters"});
+      page.figures.push_back(DifferenceFigure("against one as large as all", PsnrDifference(*guided, *large), "equal time and parameters"));
     }
     if (const VariantResult* naive = Find(results, "shared_everywhere"); naive != nullptr && HighFloaters(*guided) > 0.0) {
       page.figures.push_back({"Floaters high above surfaces", fmt::format("{:.1f} x less", HighFloaters(*naive) / HighFloaters(*guided)),

@@ -44,38 +44,28 @@ Eigen::Vector3f PlaneNormal(const PointCloud& cloud, std::span<const PointGrid::
   return linear::SymmetricEigen(spread).vectors.col(0).cast<float>();
 }
 
-struct SeenPoint {
-  const survey::SparsePoint* point;
-  std::span<const int32_t> photos;  // empty: unknown
-};
-
-std::vector<SeenPoint> AllPoints(const survey::Survey& survey) {
-  std::vector<SeenPoint> all;
-  for (const auto& [points, tracks] : {std::pair{&survey.points, &survey.tracks}, {&survey.kept_points, &survey.kept_tracks}}) {
-    for (size_t i = 0; i < points->size(); ++i) {
-      if ((*points)[i].x_in_enu.allFinite()) all.push_back({&(*points)[i], tracks->PhotosOf(i)});
-    }
-  }
-  return all;
-}
-
 }  // namespace
 
 PointCloud SparseCloud(const survey::Survey& survey, base::ThreadPool& threads) {
-  const std::vector<SeenPoint> all = AllPoints(survey);
+  std::vector<size_t> all;  // indices into Survey::points
+  for (size_t i = 0; i < survey.points.size(); ++i) {
+    if (survey.points[i].x_in_enu.allFinite()) all.push_back(i);
+  }
   if (all.empty()) throw base::InputError(survey.photo_root, "has no sparse points", "Give a survey whose model has points");
-  Eigen::Vector3d low = all.front().point->x_in_enu, high = low;
-  for (const SeenPoint& one : all) {
-    low = low.cwiseMin(one.point->x_in_enu);
-    high = high.cwiseMax(one.point->x_in_enu);
+  Eigen::Vector3d low = survey.points[all.front()].x_in_enu, high = low;
+  for (const size_t i : all) {
+    low = low.cwiseMin(survey.points[i].x_in_enu);
+    high = high.cwiseMax(survey.points[i].x_in_enu);
   }
   PointCloud cloud;
   cloud.middle = (0.5 * (low + high)).array().round();
-  for (const SeenPoint& one : all) {
-    const int views = one.photos.empty() ? one.point->track_length : static_cast<int>(one.photos.size());
-    cloud.points.push_back({.position = (one.point->x_in_enu - cloud.middle).cast<float>(),
+  for (const size_t i : all) {
+    const survey::SparsePoint& point = survey.points[i];
+    const std::span<const int32_t> photos = survey.tracks.PhotosOf(i);
+    const int views = photos.empty() ? point.track_length : static_cast<int>(photos.size());
+    cloud.points.push_back({.position = (point.x_in_enu - cloud.middle).cast<float>(),
                             .normal = Eigen::Vector3f::UnitZ(),
-                            .rgb = one.point->rgb,
+                            .rgb = point.rgb,
                             .views = static_cast<uint8_t>(std::clamp(views, 1, 255)),
                             .filled = 0});
   }
@@ -92,7 +82,7 @@ PointCloud SparseCloud(const survey::Survey& survey, base::ThreadPool& threads) 
     const size_t first = static_cast<size_t>(task) * kPerTask;
     for (size_t i = first; i < std::min(all.size(), first + kPerTask); ++i) {
       grid.Near(static_cast<uint32_t>(i), reach_m, kNeighbours + 1, &near);
-      const Eigen::Vector3d towards = TowardsPhotos(all[i].point->x_in_enu, all[i].photos, survey);
+      const Eigen::Vector3d towards = TowardsPhotos(survey.points[all[i]].x_in_enu, survey.tracks.PhotosOf(all[i]), survey);
       normals[i] = near.size() > kLeastNeighbours ? PlaneNormal(cloud, near) : Eigen::Vector3f(towards.normalized().cast<float>());
       if (normals[i].cast<double>().dot(towards) < 0.0) normals[i] = -normals[i];
       // A disc as large as the distance of the n-th neighbour has n points.

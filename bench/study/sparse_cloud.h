@@ -8,8 +8,8 @@
 
 namespace skyquilt::bench {
 
-// All sparse points, those kept from training included, with the colours of the model. Normals are those of the plane through a point and its 16
-// nearest neighbours, turned towards the photos that saw the point (up where these are unknown). Throws base::InputError without points.
+// The sparse points that training sees, with the colours of the model. Normals are those of the plane through a point and its 16 nearest neighbours,
+// turned towards the photos that saw the point (up where these are unknown). Throws base::InputError without points.
 buildings::PointCloud SparseCloud(const survey::Survey& survey, base::ThreadPool& threads);
 
 // The ground sampling distance with which buildings are sought in the points: outlines are drawn in cells of this size, which must not be smaller

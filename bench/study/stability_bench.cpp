@@ -6,11 +6,12 @@
 #include <cmath>
 #include <map>
 
-#include "bench/study/study_tables.h"
+#include "bench/study/common_pixels.h"
+#include "bench/study/compare.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
-#include "core/base/order_statistics.h"
 #include "core/page/bar_chart.h"
+#include "evaluate/metrics.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -84,12 +85,16 @@ std::vector<StabilityRun> Plan(const std::string& survey, const StabilityOptions
 
 // Held-out PSNR minus the median of the runs that differ only in seed and learning rate.
 double AgainstMedian(const StabilityRun& run, const std::vector<StabilityRun>& runs) {
-  std::vector<double> others;
+  std::vector<const VariantResult*> row;
   for (const StabilityRun& other : runs) {
     const bool same_row = other.survey == run.survey && other.extreme == run.extreme && other.blocks == run.blocks && other.budget_s == run.budget_s;
-    if (same_row && std::isfinite(other.result.psnr_db)) others.push_back(other.result.psnr_db);
+    if (same_row) row.push_back(&other.result);
   }
-  return run.result.psnr_db - base::Median(std::move(others));
+  row.push_back(&run.result);
+  std::vector<double> psnr_db = ComparablePsnr(row);
+  const double own_db = psnr_db.back();
+  psnr_db.pop_back();
+  return own_db - evaluate::MedianOfMeasured(std::move(psnr_db));
 }
 
 bool EndsBelowBest(const StabilityRun& run) {
@@ -101,8 +106,8 @@ BenchTable RunTable(const std::vector<StabilityRun>& runs) {
                    .title = "",
                    .note =
                        "Fall: of a field's training PSNR from its best so far, after step 300. End: how far below its best a field ended. Against "
-                       "median: held-out "
-                       "PSNR minus the median over seeds and rates. On context: blocks in whose place the scene shows the context.",
+                       "median: held-out PSNR over common pixels minus the median over seeds and rates. On context: blocks in whose place the scene "
+                       "shows the context.",
                    .columns = {"Survey", "Extreme", "Blocks", "Rate", "Seed", "Time", "Steps", "Held-out PSNR", "Against median", "Worst fall",
                                "Worst end", "Taken back", "On context", "Layout"},
                    .rows = {}};
@@ -185,6 +190,11 @@ std::vector<StabilityRun> RunStability(Study& study, const std::string& survey, 
       base::LogWarning("{}, {}: {}", survey, run.extreme, run.refused);
     }
   }
+  std::vector<VariantResult*> comparable;
+  for (StabilityRun& run : runs) {
+    if (run.extreme.empty()) comparable.push_back(&run.result);
+  }
+  ScoreCommonPixels(study.folder(), comparable);
   return runs;
 }
 
@@ -210,6 +220,10 @@ BenchPage StabilityPage(const std::vector<StabilityRun>& runs) {
                   {"On context", std::to_string(on_context), "runs with a block that is worse than the context, which is shown instead"}};
   page.verdicts.push_back(below == 0 ? fmt::format("No run ends more than {:g} dB below its best.", kMostBelowBest_db)
                                      : fmt::format("{} of {} runs end more than {:g} dB below their best.", below, runs.size(), kMostBelowBest_db));
+  const int poor = count([&runs](const StabilityRun& run) { return AgainstMedian(run, runs) < -kNoise_db; });
+  page.verdicts.push_back(
+      fmt::format("{} of {} runs are more than {:g} dB below the median over seeds and rates; smaller distances are no more than noise.", poor,
+                  runs.size(), kNoise_db));
   page.sections.push_back({.id = "worst",
                            .title = "Worst runs",
                            .lead = "",

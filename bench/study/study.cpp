@@ -148,6 +148,8 @@ std::string Study::Identity(const Variant& variant, const coordinator::Settings&
   if (variant.max_tilt_deg < 180.0) identity.append(" tilt ").append(std::to_string(variant.max_tilt_deg));
   if (buildings_) identity.append(" buildings");
   if (variant.edit != SurveyEdit::kNone) identity.append(" edit ").append(std::to_string(static_cast<int>(variant.edit)));
+  // Older programs left the points of all photos to variants with fewer.
+  if (!variant.AllPhotos()) identity.append(" own points");
   return identity;
 }
 
@@ -161,11 +163,7 @@ coordinator::Settings Study::SettingsOf(const Variant& variant) const {
   return settings;
 }
 
-VariantResult Study::Run(const Variant& variant) {
-  return RunMerged(variant, {}).front();
-}
-
-std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::vector<Variant>& merged) {
+std::vector<VariantResult> Study::RunOnce(const Variant& variant, const std::vector<Variant>& merged) {
   const coordinator::Settings settings = SettingsOf(variant);
   const std::string identity = Identity(variant, settings);
   std::vector<VariantResult> results;
@@ -187,14 +185,20 @@ std::vector<VariantResult> Study::RunMerged(const Variant& variant, const std::v
   const std::filesystem::path own_report = project.folder / "report_of_itself";
   if (!merged.empty() && results.front().failure.empty()) MoveFolder(project.ReportFolder(), own_report);
   for (const Variant& other : merged) {
-    if (!results.front().failure.empty()) break;
+    if (!results.front().failure.empty()) {
+      VariantResult failed = results.front();
+      failed.name = other.name;
+      failed.label = other.label;
+      results.push_back(std::move(failed));
+      continue;
+    }
     base::LogInfo("--- {}", other.label);
     const coordinator::Settings own = SettingsOf(other);
     // restart: the existing scene has other merge settings, which would be refused otherwise.
     coordinator::Pipeline pipeline{
         .comm = comm_, .project = project, .settings = own, .restart = true, .quiet = options_.quiet, .verbose = options_.verbose};
     coordinator::MergeStage(pipeline);
-    const evaluate::Metrics& metrics = coordinator::EvaluateStage(pipeline);
+    const evaluate::Metrics metrics = Evaluate(other, pipeline);
     MoveFolder(project.ReportFolder(), coordinator::Project{RunFolder(other)}.ReportFolder());
     results.push_back(Collect(variant, other, training, metrics));
     results.back().label = other.label;
@@ -257,6 +261,11 @@ coordinator::Pipeline Study::BeginRun(const Variant& variant, const coordinator:
   return pipeline;
 }
 
+evaluate::Metrics Study::Evaluate(const Variant& variant, coordinator::Pipeline& pipeline) const {
+  pipeline.settings.evaluate.scored_pixels_folder = RunFolder(variant) / "covered";
+  return coordinator::EvaluateStage(pipeline);
+}
+
 evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training) {
   coordinator::Pipeline pipeline = BeginRun(variant, settings, merge_anew);
   const coordinator::Project& project = pipeline.project;
@@ -274,7 +283,7 @@ evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settin
     coordinator::SurfaceStage(pipeline);
     coordinator::BuildingsStage(pipeline);
   }
-  return coordinator::EvaluateStage(pipeline);
+  return Evaluate(variant, pipeline);
 }
 
 VariantResult Study::Collect(const Variant& trained, const Variant& scored, const scene::TrainReport& training,

@@ -1,8 +1,9 @@
 // Trains one survey in several ways to compare them. Each variant is a separate project, from blocks to report. Its result is saved, so that an
 // interrupted bench continues with the next variant; large files of finished variants are removed.
-//   FOLDER/source/              the survey that all variants use (unless it is given as a project)
-//   FOLDER/runs/<variant>/      project: blocks.geojson, train.json, report/ and the rest
-//   FOLDER/runs/<variant>.json  result
+//   FOLDER/source/                   the survey that all variants use (unless it is given as a project)
+//   FOLDER/runs/<variant>/           project: blocks.geojson, train.json, report/ and the rest
+//   FOLDER/runs/<variant>/covered/   which pixels of held-out photos were scored, and their errors (evaluate/scored_pixels.h)
+//   FOLDER/runs/<variant>.json       result
 #pragma once
 
 #include <cstdint>
@@ -65,8 +66,10 @@ struct VariantResult {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   std::string name, label;
-  std::string failure;  // empty when it has results
-  double psnr_db = kNone, ssim = kNone, flip = kNone, lpips = kNone, psnr_full_db = kNone, coverage = kNone, seam_gap_db = kNone;
+  std::string failure;            // empty when it has results
+  double psnr_db = kNone;         // over its own covered pixels
+  double psnr_common_db = kNone;  // over those that all variants cover that it is compared with (common_pixels.h); never in its saved result
+  double ssim = kNone, flip = kNone, lpips = kNone, psnr_full_db = kNone, coverage = kNone, seam_gap_db = kNone;
   double depth_rmse_m = kNone, depth_median_abs_m = kNone, floater_opacity = kNone;  // simulated surveys
   double kept_median_gsd = kNone, kept_nmad_gsd = kNone;  // against sparse points kept from training, evaluate::KeptPointErrors
   double train_seconds = kNone, samples_per_second = kNone, samples = kNone, peak_rss_bytes = kNone;
@@ -85,6 +88,8 @@ struct VariantResult {
   double flat_roof_rms_m = kNone, flat_roof_nmad_m = kNone;  // the same; evaluate::FlatRoofScore
   std::string views;                                         // folder of the pictures that WriteViews makes, relative to FOLDER; may be empty
   std::optional<evaluate::BuildingScores> buildings;         // when the study measures them
+  // The trainings of which the single numbers are medians; all else is of the first that succeeded. Empty: this is one training.
+  std::vector<VariantResult> seeds;
 };
 
 class Study {
@@ -110,13 +115,17 @@ class Study {
   void KeepViews(int photos) { views_ = photos; }
   // Every variant that is trained from now on also gets surface and buildings.
   void MeasureBuildings() { buildings_ = true; }
+  // Every variant that is run from now on is trained once with each seed of run.seed; its result has the medians.
+  void UseSeeds(std::vector<int> seeds) { seeds_ = std::move(seeds); }
+  // The variant with another seed, and with name and label that say so, unless it is the seed of the settings.
+  Variant WithSeed(Variant variant, int seed) const;
   // A study of another survey with the same settings and `overrides`, in FOLDER/name.
   Study Beside(const std::string& name, const StudySurvey& survey, const std::vector<config::Override>& overrides) const;
-  // Trains and scores a variant, or reads its saved result. When it cannot be trained, `failure` of the result has the reason.
+  // Trains and scores a variant, or reads its saved results. When it cannot be trained, `failure` of the result has the reason.
   // Throws base::Interrupted (the same call continues), base::UsageError when the saved result was made with other settings.
   VariantResult Run(const Variant& variant);
-  // The same, and then merges and scores its checkpoints again with the settings of each variant in `merged`. Returns the variant's result first.
-  // Trains again when the checkpoints were removed before all results were saved.
+  // The same, and then merges and scores its checkpoints again with the settings of each variant in `merged`. Returns the variant's result first;
+  // its failure is that of the others, too. Trains again when the checkpoints were removed before all results were saved.
   std::vector<VariantResult> RunMerged(const Variant& variant, const std::vector<Variant>& merged);
   // A variant that is not trained: `work` fills in its result, or a saved one is read. The project of the pipeline has survey and blocks. Throws what
   // `work` throws; then the same call does it again.
@@ -125,11 +134,15 @@ class Study {
 
  private:
   coordinator::Settings SettingsOf(const Variant& variant) const;
+  // RunMerged with the seed of the settings.
+  std::vector<VariantResult> RunOnce(const Variant& variant, const std::vector<Variant>& merged);
   // merge_anew: merge and score again, because the existing scene was made with other settings.
   VariantResult Measure(const Variant& variant, const coordinator::Settings& settings, const std::string& identity, bool merge_anew,
                         scene::TrainReport* training);
   void RemoveLargeFiles(const Variant& variant) const;
   std::filesystem::path RunFolder(const Variant& variant) const { return options_.folder / "runs" / variant.name; }
+  // Scores the scene of the pipeline's project as that of the variant.
+  evaluate::Metrics Evaluate(const Variant& variant, coordinator::Pipeline& pipeline) const;
   std::string Identity(const Variant& variant, const coordinator::Settings& settings) const;
   // The variant's project with survey and blocks.
   coordinator::Pipeline BeginRun(const Variant& variant, const coordinator::Settings& settings, bool merge_anew) const;
@@ -148,10 +161,14 @@ class Study {
   std::optional<ScaleOptions> scales_;
   int views_ = 0;
   bool buildings_ = false;
+  std::vector<int> seeds_;  // empty: that of the settings
 };
 
 // Writes and reads the text of FOLDER/runs/<variant>.json. identity: of settings and survey. ParseResult throws nlohmann::json::exception.
 std::string ResultJson(const VariantResult& result, const std::string& identity);
 VariantResult ParseResult(const std::string& text, std::string* identity);
+
+// The result of a variant from one training or more, as VariantResult::seeds says; of a single one that one. Its label tells how many failed.
+VariantResult MedianResult(const std::string& name, const std::string& label, std::vector<VariantResult> trainings);
 
 }  // namespace skyquilt::bench

@@ -70,7 +70,7 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options);
 struct ScalesOptions {
   std::vector<int> positions = {0, 1, 4, 6};  // per sample, as train.multisample: 0 are points, the others cones
   double budget_s = 60.0;                     // training time of every variant of equal time
-  int seeds = 1;                              // trainings per method, with seeds from run.seed on
+  std::vector<int> seeds;                     // of training, each once; empty: that of the settings
   bool equal_time = true, equal_steps = true;
   bool heights = false;        // train with photos from several heights; the photos are simulated
   std::string place = "town";  // simulated for `heights`

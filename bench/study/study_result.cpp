@@ -1,10 +1,16 @@
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "bench/study/study.h"
 #include "core/base/json_text.h"
 #include "evaluate/buildings_json.h"
 #include "evaluate/class_json.h"
+#include "evaluate/metrics.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -15,6 +21,7 @@ using Json = nlohmann::ordered_json;
 template <typename Result, typename Each>
 void EachNumber(Result& r, const Each& each) {
   each("psnr_db", r.psnr_db);
+  each("psnr_common_db", r.psnr_common_db);
   each("ssim", r.ssim);
   each("flip", r.flip);
   each("lpips", r.lpips);
@@ -144,6 +151,24 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
     json.at(key).get_to(*value);
   }
   return result;
+}
+
+VariantResult MedianResult(const std::string& name, const std::string& label, std::vector<VariantResult> trainings) {
+  if (trainings.size() == 1) return std::move(trainings.front());
+  const auto succeeded = [](const VariantResult& r) { return r.failure.empty(); };
+  const auto first = std::find_if(trainings.begin(), trainings.end(), succeeded);
+  VariantResult median = first == trainings.end() ? trainings.front() : *first;
+  median.name = name;
+  median.label = label;
+  const auto failed = std::count_if(trainings.begin(), trainings.end(), std::not_fn(succeeded));
+  if (failed > 0) median.label += fmt::format(" ({} of {} trainings failed)", failed, trainings.size());
+  std::map<std::string, std::vector<double>> values;
+  for (const VariantResult& training : trainings) {
+    EachNumber(training, [&](const char* key, double value) { values[key].push_back(value); });
+  }
+  EachNumber(median, [&](const char* key, double& value) { value = evaluate::MedianOfMeasured(std::move(values[key])); });
+  median.seeds = std::move(trainings);
+  return median;
 }
 
 }  // namespace skyquilt::bench

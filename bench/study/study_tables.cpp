@@ -21,6 +21,7 @@ struct Column {
 const std::vector<Column>& Columns() {
   static const std::vector<Column> kColumns = {
       {"PSNR", [](const VariantResult& r) { return BenchCell::Number(r.psnr_db, 2, "dB"); }},
+      {"PSNR, common", [](const VariantResult& r) { return BenchCell::Number(r.psnr_common_db, 2, "dB"); }},
       {"SSIM", [](const VariantResult& r) { return BenchCell::Number(r.ssim, 3); }},
       {"FLIP", [](const VariantResult& r) { return BenchCell::Number(r.flip, 3); }},
       {"LPIPS", [](const VariantResult& r) { return BenchCell::Number(r.lpips, 3); }},
@@ -41,15 +42,25 @@ const std::vector<Column>& Columns() {
   return kColumns;
 }
 
+nlohmann::ordered_json JsonOf(const VariantResult& result) {
+  nlohmann::ordered_json json = base::ParseOrderedJson(ResultJson(result, ""));
+  json.erase("identity");
+  for (const VariantResult& seed : result.seeds) json["seeds"].push_back(JsonOf(seed));
+  return json;
+}
+
 }  // namespace
 
 BenchTable QualityTable(const std::vector<VariantResult>& results, const std::string& name) {
   BenchTable table{
       .name = name,
       .title = "",
-      .note = "PSNR, SSIM and FLIP over the pixels of held-out photos that at least two training photos see. Memory is the peak during training.",
+      .note =
+          "PSNR, SSIM and FLIP over the pixels of held-out photos that at least two training photos see; common: over those where this is so for all "
+          "variants that are compared. Memory is the peak during training.",
       .columns = {"variant"},
       .rows = {}};
+  if (!results.empty() && !results.front().seeds.empty()) table.note += fmt::format(" Medians over {} seeds.", results.front().seeds.size());
   for (const VariantResult& r : results) table.rows.push_back({BenchCell::Text(r.failure.empty() ? r.label : r.label + " (" + r.failure + ")")});
   for (const Column& column : Columns()) {
     if (std::all_of(results.begin(), results.end(), [&](const VariantResult& r) { return std::isnan(column.cell(r).value); })) continue;
@@ -140,11 +151,7 @@ std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& r
   json["bench"] = page.name;
   json["verdicts"] = page.verdicts;
   json["results"] = nlohmann::ordered_json::array();
-  for (const VariantResult& r : results) {
-    nlohmann::ordered_json result = base::ParseOrderedJson(ResultJson(r, ""));
-    result.erase("identity");
-    json["results"].push_back(std::move(result));
-  }
+  for (const VariantResult& r : results) json["results"].push_back(JsonOf(r));
   json["settings"] = settings_toml;
   json["command"] = page.command;
   json["machine"] = page.machine;

@@ -27,7 +27,7 @@ std::string Signed(double number, int decimals);
 // Range of training seconds and samples over the blocks: "2 to 31 s and 5 to 87 M samples"; "nothing" without blocks.
 std::string OfItsOwn(const VariantResult& result);
 
-// The JSON of a study bench: name, verdicts, results, settings, command, machine and date.
+// The JSON of a study bench: name, verdicts, results (with those of each seed, when there are several), settings, command, machine and date.
 std::string StudyJson(const BenchPage& page, const std::vector<VariantResult>& results, const std::string& settings_toml);
 
 }  // namespace skyquilt::bench

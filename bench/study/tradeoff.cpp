@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "bench/study/common_pixels.h"
+#include "bench/study/compare.h"
 #include "bench/study/pareto.h"
 #include "bench/study/study_benches.h"
 #include "bench/study/study_tables.h"
@@ -12,8 +13,7 @@
 namespace skyquilt::bench {
 namespace {
 
-constexpr double kSameTime = 0.03;     // training times of one budget differ by at most this fraction
-constexpr double kNearFront_db = 0.1;  // a preset this close to the front counts as on it; the verdict gives the figure
+constexpr double kSameTime = 0.03;  // training times of one budget differ by at most this fraction
 
 // Rounded to 1 s, or to 0.1 s below 10 s, so that the label shows the exact budget.
 double Rounded(double seconds) {
@@ -28,7 +28,8 @@ config::Override Budget(double seconds) {
 std::vector<Priced> Prices(const std::vector<VariantResult>& results) {
   std::vector<Priced> points;
   points.reserve(results.size());
-  for (const VariantResult& r : results) points.push_back({r.train_seconds, r.psnr_db});
+  const std::vector<double> psnr_db = ComparablePsnr(PointersTo(results));
+  for (size_t i = 0; i < results.size(); ++i) points.push_back({results[i].train_seconds, psnr_db[i]});
   return points;
 }
 
@@ -49,9 +50,10 @@ std::string ParetoChart(const std::vector<std::string>& presets, const std::vect
   page::Curve front{.name = "best for its time", .points = {}, .band = true};
   for (const size_t i : ParetoFront(points)) front.points.emplace_back(points[i].cost, points[i].quality);
   std::vector<page::Curve> curves = {std::move(front)};
+  auto point = points.begin();
   for (size_t p = 0; p < presets.size(); ++p) {
     page::Curve curve{.name = presets[p], .points = {}, .marks = true};
-    for (const VariantResult& r : by_preset[p]) curve.points.emplace_back(r.train_seconds, r.psnr_db);
+    for (size_t i = 0; i < by_preset[p].size(); ++i, ++point) curve.points.emplace_back(point->cost, point->quality);
     curves.push_back(std::move(curve));
   }
   return page::CurveChart(curves, {.title = "Quality for time", .x_label = "training time (s)", .y_label = "PSNR (dB)", .log_x = true});
@@ -71,8 +73,8 @@ BenchSection OneThing(const std::string& id, const std::string& title, const std
 // The training of a preset that is nearest to the Pareto front of all presets; of equals the longest training.
 struct Nearest {
   const VariantResult* result = nullptr;  // none when no training of the preset succeeded
-  double below_db = std::numeric_limits<double>::infinity();
-  bool OnFront() const { return below_db <= kNearFront_db; }
+  Difference below;                       // of the best in its time, minus it
+  bool OnFront() const { return !below.seen; }
 };
 
 Nearest NearestToFront(const std::vector<VariantResult>& own, const std::vector<VariantResult>& all) {
@@ -81,8 +83,9 @@ Nearest NearestToFront(const std::vector<VariantResult>& own, const std::vector<
   for (const VariantResult& r : own) {
     for (size_t i = 0; i < all.size(); ++i) {
       if (all[i].name != r.name || !r.failure.empty()) continue;
-      const double below = BelowFront(points, i, kSameTime);
-      if (below <= nearest.below_db) nearest = {&r, below};
+      const Difference below = PsnrDifference(all[BestForCost(points, i, kSameTime)], all[i]);
+      if (below.pairs == 0) continue;
+      if (nearest.result == nullptr || below.median <= nearest.below.median) nearest = {&r, below};
     }
   }
   return nearest;
@@ -91,8 +94,9 @@ Nearest NearestToFront(const std::vector<VariantResult>& own, const std::vector<
 std::string PresetVerdict(const std::string& preset, const Nearest& nearest) {
   if (nearest.result == nullptr) return "Preset '" + preset + "' could not be trained.";
   const VariantResult& r = *nearest.result;
-  std::string text = fmt::format("Preset '{}' {}: nearest with {}, {:.2f} dB below it.", preset,
-                                 nearest.OnFront() ? "is on the Pareto front" : "is not on the Pareto front", r.label, nearest.below_db);
+  std::string text = fmt::format("Preset '{}' {}: nearest with {}; the best in that time is higher by {:.2f} dB{}.", preset,
+                                 nearest.OnFront() ? "is on the Pareto front" : "is not on the Pareto front", r.label, nearest.below.median,
+                                 nearest.OnFront() && nearest.below.median > 0.0 ? ", no more than the noise" : "");
   if (!nearest.OnFront()) text += fmt::format(" Each of its {} blocks was trained with {}.", r.layout, OfItsOwn(r));
   return text;
 }
@@ -102,10 +106,6 @@ std::string PresetVerdict(const std::string& preset, const Nearest& nearest) {
 StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
   StudyBench bench;
   BenchPage& page = bench.page;
-  const auto keep = [&bench](const std::vector<VariantResult>& results) {
-    bench.results.insert(bench.results.end(), results.begin(), results.end());
-  };
-
   const config::Override scoring_width = ScoringWidth(study);
   std::vector<std::string> names;
   std::vector<std::vector<VariantResult>> by_preset;
@@ -122,17 +122,20 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
                                             .label = fmt::format("{}, {:g} s", preset.name, budget_s),
                                             .overrides = std::move(overrides)}));
     }
-    presets.insert(presets.end(), by_preset.back().begin(), by_preset.back().end());
   }
-  keep(presets);
+  std::vector<VariantResult*> trained;
+  for (std::vector<VariantResult>& results : by_preset) {
+    for (VariantResult& result : results) trained.push_back(&result);
+  }
+  ScoreCommonPixels(study.folder(), trained);
+  for (const std::vector<VariantResult>& results : by_preset) presets.insert(presets.end(), results.begin(), results.end());
+  bench.results = presets;
 
   const config::Override middle = Budget(options.middle_budget_s);
   // The same training, written with fewer bits.
-  const std::vector<VariantResult> storage =
-      study.RunMerged({.name = "storage_fp32", .label = "fp32", .overrides = {middle}},
-                      {{.name = "storage_bf16", .label = "bf16", .overrides = {middle, {"merge.storage", "bf16"}}},
-                       {.name = "storage_fp16", .label = "fp16", .overrides = {middle, {"merge.storage", "fp16"}}}});
-  keep(storage);
+  std::vector<VariantResult> storage = study.RunMerged({.name = "storage_fp32", .label = "fp32", .overrides = {middle}},
+                                                       {{.name = "storage_bf16", .label = "bf16", .overrides = {middle, {"merge.storage", "bf16"}}},
+                                                        {.name = "storage_fp16", .label = "fp16", .overrides = {middle, {"merge.storage", "fp16"}}}});
   // The blocks are fixed, because automatic partition would make other blocks for other tables.
   const config::Override layout = {"partition.blocks", storage.front().layout.empty() ? study.settings().partition.blocks : storage.front().layout};
   std::vector<VariantResult> tables, samples, placing, photos;
@@ -165,7 +168,11 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
                                 .every_nth_photo = every}));
     photo_x.push_back(photos.back().training_photos);
   }
-  for (const auto* group : {&tables, &samples, &placing, &photos}) keep(*group);
+  // Each section is a comparison of its own, like the presets.
+  for (auto* group : {&storage, &tables, &samples, &placing, &photos}) {
+    ScoreCommonPixels(study.folder(), PointersTo(*group));
+    bench.results.insert(bench.results.end(), group->begin(), group->end());
+  }
 
   page.name = "tradeoff";
   page.title = "Speed against accuracy";
@@ -181,14 +188,14 @@ StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
     page.figures.push_back({"preset " + names[p], fmt::format("{:.2f} dB", nearest.result->psnr_db),
                             fmt::format("in {:.0f} s{}", nearest.result->train_seconds, nearest.OnFront() ? "" : ", not the best for its time")});
   }
-  if (storage.size() == 3 && storage[0].failure.empty()) {
+  if (storage[0].failure.empty()) {
     for (const size_t k : {size_t{1}, size_t{2}}) {
-      page.verdicts.push_back(fmt::format("{} storage: {} dB against fp32 at {:.0f} % of its bytes.", storage[k].label,
-                                          Signed(storage[k].psnr_db - storage[0].psnr_db, 3),
-                                          100.0 * storage[k].scene_bytes / storage[0].scene_bytes));
+      // Of the same training, so there is no noise, and so small that the rounded errors of common pixels would not show it.
+      const std::string change = Signed(storage[k].psnr_db - storage[0].psnr_db, 3) + " dB";
+      const double bytes = 100.0 * storage[k].scene_bytes / storage[0].scene_bytes;
+      page.verdicts.push_back(fmt::format("{} storage: {} against fp32 at {:.0f} % of its bytes.", storage[k].label, change, bytes));
+      if (k == 1) page.figures.push_back({"bf16 storage", change, fmt::format("{:.0f} % of the bytes", bytes)});
     }
-    page.figures.push_back({"bf16 storage", Signed(storage[1].psnr_db - storage[0].psnr_db, 3) + " dB",
-                            fmt::format("{:.0f} % of the bytes", 100.0 * storage[1].scene_bytes / storage[0].scene_bytes)});
   }
   page.sections.push_back({.id = "presets",
                            .title = "Presets and time",

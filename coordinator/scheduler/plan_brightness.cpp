@@ -19,16 +19,18 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
   plan.learn.learns_gain.assign(n, 0);
   plan.learn.vignetting = options.Vignette();
   std::vector<std::optional<double>> exposures;
+  std::vector<bool> in_training;
   for (size_t i = 0; i < n; ++i) {
     const survey::Photo& photo = survey.photos[i];
     plan.response.camera[i] = photo.camera;
     plan.response.names.insert(plan.response.names.end(), photo.name.begin(), photo.name.end());
     plan.response.names.push_back('\n');
     exposures.push_back(brightness::ExifExposure(photo.exposure.time_s, photo.exposure.f_number, photo.exposure.iso));
+    in_training.push_back(!photo.is_test);
   }
   std::vector<bool> known(n, false);
   if (options.Exif()) {
-    brightness::PhotoGains gains = brightness::GainsFromExif(exposures);
+    brightness::PhotoGains gains = brightness::GainsFromExif(exposures, in_training);
     plan.response.reference_exposure = gains.reference_exposure;
     plan.response.exif_gain = std::move(gains.gain);
     known = std::move(gains.known);
@@ -36,10 +38,11 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
   // Only photos with usable tags are kept near their EXIF gain.
   plan.learn.tag_weight.assign(n, 0.0F);
   for (size_t i = 0; i < n; ++i) plan.learn.tag_weight[i] = known[i] ? kTagWeight : 0.0F;
-  size_t untagged = 0;
+  size_t untagged = 0, n_training = 0;
   for (size_t i = 0; i < n; ++i) {
+    if (!in_training[i]) continue;
+    ++n_training;
     if (options.Exif() && !known[i]) ++untagged;
-    if (survey.photos[i].is_test) continue;
     const bool learns = options.Gain() || (options.Exif() && !known[i]);
     plan.learn.learns_gain[i] = learns ? 1 : 0;
     plan.learn.anchored = plan.learn.anchored || !learns;
@@ -47,10 +50,11 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
   if (options.Exif() && n > 0) {
     const auto [darkest, brightest] = std::minmax_element(plan.response.exif_gain.begin(), plan.response.exif_gain.end());
     const double stops = std::log2(static_cast<double>(*brightest) / static_cast<double>(*darkest));
-    if (untagged == n) {
+    if (untagged == n_training) {
       plan.remark = "no photo has an exposure time in its EXIF tags: brightness gains are learned from the photos";
     } else if (untagged > 0) {
-      plan.remark = fmt::format("{} of {} photos have no exposure time in their EXIF tags: their brightness gains are learned", untagged, n);
+      plan.remark =
+          fmt::format("{} of {} training photos have no exposure time in their EXIF tags: their brightness gains are learned", untagged, n_training);
     } else if (stops >= 0.1) {
       plan.remark =
           fmt::format("exposures differ by {:.1f} stops according to the EXIF tags: all photos are corrected to the median exposure", stops);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "core/base/errors.h"
 #include "core/base/order_statistics.h"
 #include "core/image/srgb.h"
 
@@ -24,16 +26,17 @@ std::optional<double> ExifExposure(std::optional<double> time_s, std::optional<d
   return *time_s * sensitivity / (100.0 * aperture * aperture);
 }
 
-PhotoGains GainsFromExif(const std::vector<std::optional<double>>& exposures) {
+PhotoGains GainsFromExif(const std::vector<std::optional<double>>& exposures, const std::vector<bool>& in_training) {
+  SKYQUILT_CHECK(exposures.size() == in_training.size(), std::to_string(exposures.size()) + " and " + std::to_string(in_training.size()));
   PhotoGains result;
   result.gain.assign(exposures.size(), 1.0F);
   result.known.assign(exposures.size(), false);
-  std::vector<double> known;
-  for (const auto& exposure : exposures) {
-    if (exposure) known.push_back(*exposure);
+  std::vector<double> trained;
+  for (size_t i = 0; i < exposures.size(); ++i) {
+    if (exposures[i] && in_training[i]) trained.push_back(*exposures[i]);
   }
-  if (known.empty()) return result;
-  result.reference_exposure = base::UpperMedian(known);
+  if (trained.empty()) return result;
+  result.reference_exposure = base::UpperMedian(trained);
   const double limit = std::exp(static_cast<double>(kMaxLogGain));
   for (size_t i = 0; i < exposures.size(); ++i) {
     if (!exposures[i]) continue;

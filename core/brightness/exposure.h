@@ -1,7 +1,7 @@
 // The same place is brighter in a photo with a longer exposure. To compare renderings with photos, this header computes a photo's gain from its
 // camera settings and applies a gain to display values.
 // Exposure: E = t * ISO / (100 * N^2), t shutter time in seconds, N f-number: linear light collected per unit of scene radiance.
-// Gain: E over the survey's median E, so that recorded linear light = gain * scene light.
+// Gain: E over the median E of the survey's training photos, so that recorded linear light = gain * scene light.
 #pragma once
 
 #include <optional>
@@ -16,13 +16,14 @@ std::optional<double> ExifExposure(std::optional<double> time_s, std::optional<d
 constexpr float kMaxLogGain = 6.9314718F;
 
 struct PhotoGains {
-  double reference_exposure = 0.0;  // median E of the tagged photos; 0 when none is tagged, and all gains are 1
+  double reference_exposure = 0.0;  // median E of the tagged training photos; 0 when none is tagged, and all gains are 1
   std::vector<float> gain;          // per photo, > 0; 1 for photos without tags
   std::vector<bool> known;          // per photo: whether its gain comes from its tags
 };
 
-// Gains relative to the median exposure, limited to +-kMaxLogGain. One entry per photo; an empty exposure means no tags.
-PhotoGains GainsFromExif(const std::vector<std::optional<double>>& exposures);
+// Gains relative to the median exposure of the training photos, limited to +-kMaxLogGain. Both arguments have one entry per photo; an empty exposure
+// means no tags. Without a tagged training photo no gain is known: held-out photos alone must not decide the brightness of the scene.
+PhotoGains GainsFromExif(const std::vector<std::optional<double>>& exposures, const std::vector<bool>& in_training);
 
 // Largest display value a field's colours must reach so that the photo with the smallest gain can still record white; within [1.02, 4].
 double ColorRange(const std::vector<float>& gains);

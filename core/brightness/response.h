@@ -18,7 +18,7 @@
 namespace skyquilt::brightness {
 
 struct Response {
-  double reference_exposure = 0.0;  // EXIF exposure E at gain 1 (exposure.h); 0 when unknown
+  double reference_exposure = 0.0;  // EXIF exposure E at gain 1, the median of training photos (exposure.h); 0 when unknown
   std::vector<float> exif_gain;     // per photo, > 0; 1 where tags are missing or not used
   std::vector<float> log_gain;      // [photo][red, green, blue], natural logarithm; 0 for held-out photos until PredictGains
   std::vector<int64_t> camera;      // per photo: index into vignetting

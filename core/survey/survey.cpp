@@ -21,6 +21,7 @@ using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "skyquilt survey";
 constexpr int kVersion = 2;
+constexpr const char *kGivenPoses = "given", *kResectedPoses = "resected";  // of held-out photos
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 ordered_json NumberOrNull(const std::optional<double>& value) {
@@ -131,6 +132,11 @@ Survey SurveyFromJson(const json& value) {
     survey.photos.push_back(std::move(photo));
   }
   survey.unregistered = value.at("unregistered").get<std::vector<std::string>>();
+  const std::string holdout_poses = value.value("holdout_poses", kGivenPoses);  // absent in surveys of older programs
+  if (holdout_poses != kGivenPoses && holdout_poses != kResectedPoses) {
+    throw std::invalid_argument("has held-out photos with poses that are '" + holdout_poses + "', which is unknown");
+  }
+  survey.resected_holdout = holdout_poses == kResectedPoses;
   survey.fit = GeoFitFromJson(value.at("fit"));
   if (value.contains("control")) survey.control = ControlFitFromJson(value.at("control"));  // absent without control points
   survey.checks = FlightChecksFromJson(value.at("checks"));
@@ -204,6 +210,7 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
                         {"truth", nullptr},
                         {"cameras", ordered_json::array()},
                         {"unregistered", survey.unregistered},
+                        {"holdout_poses", survey.resected_holdout ? kResectedPoses : kGivenPoses},
                         {"photos", ordered_json::array()}};
   if (survey.HasTracks()) value["n_observations"] = survey.tracks.observations() + survey.kept_tracks.observations();
   if (survey.truth) {

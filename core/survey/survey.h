@@ -43,14 +43,15 @@ struct Photo {
   double gps_residual_m = 0.0;  // distance between the camera centre and its corrected GPS tag (horizontal if heights are not used); NaN without GPS
   bool gps_inlier = false;      // the tag agrees with the fit
   int flight = 0;               // index of the flight the photo belongs to
-  bool is_test = false;         // held out for evaluation: never trained on
+  // Held out for evaluation: trains and starts no field. It took part in finding poses and points unless Survey::resected_holdout.
+  bool is_test = false;
 };
 
 struct SparsePoint {
   Eigen::Vector3d x_in_enu = Eigen::Vector3d::Zero();
   std::array<uint8_t, 3> rgb{};
-  float error_px = 0.0F;
-  int track_length = 0;
+  float error_px = 0.0F;  // mean reprojection error in pixels of the full photos, of held-out ones too unless Survey::resected_holdout
+  int track_length = 0;   // number of training photos that observed it; of all photos in surveys of older programs; 0 when not known
 };
 
 // Ground truth of a simulated survey; absolute paths. The last three are empty for surveys that were simulated or prepared by versions without them.
@@ -73,12 +74,14 @@ struct Survey {
   std::vector<camera::Camera> cameras;
   std::vector<Photo> photos;              // registered photos only, in name order
   std::vector<std::string> unregistered;  // names of photos without a pose
+  // Held-out photos were placed last, by points that they had not helped to place (prepare.holdout_poses); else they took part as all others.
+  bool resected_holdout = false;
   std::vector<SparsePoint> points;
   DominantDirections directions;
-  PointTracks tracks;  // of `points`; may be empty
-  // Sparse points that nothing may use which leads to a scene: only scores of finished scenes.
+  PointTracks tracks;  // of `points`, training photos only (in surveys of older programs all photos); may be empty
+  // Sparse points that nothing may use which leads to a scene: only scores of finished scenes. Structure from motion used them as all others.
   std::vector<SparsePoint> kept_points;
-  PointTracks kept_tracks;  // of `kept_points`; may be empty
+  PointTracks kept_tracks;  // of `kept_points`, held-out photos among them; may be empty
   GeoFit fit;
   ControlFit control;  // agreement with ground control and check points
   FlightChecks checks;

@@ -22,8 +22,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr size_t kTiesPerPhoto = 512;
-constexpr double kTieThreshold = 5.0;   // sigmas of a feature's error that is no outlier
-constexpr double kMarkThreshold = 4.5;  // likewise of a mark's
+constexpr double kMarkThreshold = 4.5;  // sigmas of a mark's error that is no outlier
 constexpr double kKnownLoss = 3.0;
 constexpr double kLeastTieSigma = 0.05;
 constexpr size_t kLeastUsed = 4;  // with fewer, any of them might be the wrong one
@@ -41,10 +40,7 @@ class Adjuster {
     ControlAdjustment result;
     const ControlBlock before = made_;
     const std::vector<ControlState> points_before = points_;
-    MeasureTies(all_ties_);
-    DropOutliers();
-    Choose();
-    if (!Adjust(1e-6, 30)) return Failed(before, points_before);
+    if (!Begin()) return Failed(before, points_before);
     for (int round = 0;; ++round) {
       Triangulate(block_, all_ties_, kTieThreshold, threads_);
       MeasureTies(ties_);
@@ -66,7 +62,31 @@ class Adjuster {
     return result;
   }
 
+  bool RunByFeatures() {
+    const ControlBlock before = made_;
+    bool solved = Begin();
+    if (solved) {
+      Triangulate(block_, all_ties_, kTieThreshold, threads_);
+      MeasureTies(ties_);
+      Choose();
+      solved = Adjust(1e-9, 50);
+    }
+    if (solved) {
+      Triangulate(block_, all_ties_, kTieThreshold, threads_);
+    } else {
+      made_ = before;
+    }
+    return solved;
+  }
+
  private:
+  bool Begin() {
+    MeasureTies(all_ties_);
+    DropOutliers();
+    Choose();
+    return Adjust(1e-6, 30);
+  }
+
   ControlAdjustment Failed(const ControlBlock& before, const std::vector<ControlState>& points_before) {
     made_ = before;
     points_ = points_before;
@@ -256,6 +276,11 @@ class Adjuster {
 ControlAdjustment AdjustWithControl(ControlBlock& made, std::vector<ControlState>& points, Vector3d* shift, base::ThreadPool& threads,
                                     const std::function<void()>& on_iteration) {
   return Adjuster(made, points, shift, threads, on_iteration).Run();
+}
+
+bool AdjustToFeatures(ControlBlock& made, base::ThreadPool& threads, const std::function<void()>& on_iteration) {
+  std::vector<ControlState> no_points;
+  return Adjuster(made, no_points, nullptr, threads, on_iteration).RunByFeatures();
 }
 
 bool LeaveOut(const Vector3d& error_m, const Matrix3d& covariance, const Vector3d& own_information, Vector3d* left_out_error_m,

@@ -44,6 +44,13 @@ ControlAdjustment AdjustWithControl(ControlBlock& made, std::vector<ControlState
                                     const std::function<void()>& on_iteration);
 constexpr int kUsualIterations = 60;
 
+// The same to the features alone, of a block without control points. Only positions of photos (BlockPhoto::gps) hold its frame. False: no solution;
+// the block is as before. Else the features' accuracy has been measured (ControlBlock::tie_sigma), points of the model have been placed anew, and
+// those that their photos do not agree about have no place.
+bool AdjustToFeatures(ControlBlock& made, base::ThreadPool& threads, const std::function<void()>& on_iteration);
+// Sigmas of a feature's error that is no outlier.
+constexpr double kTieThreshold = 5.0;
+
 // What the others say of a point of the adjustment, from its error, its covariance in the adjustment and the information that its own place gave
 // (the inverse of its variances): error and covariance of the estimate without it. False when the others do not determine it.
 bool LeaveOut(const Eigen::Vector3d& error_m, const Eigen::Matrix3d& covariance, const Eigen::Vector3d& own_information,

@@ -43,25 +43,38 @@ std::unordered_set<uint32_t> LargestGroup(const survey::ColmapModel& model) {
 
 }  // namespace
 
-std::vector<std::string> RemoveLoosePhotos(survey::ColmapModel& model, survey::ColmapObservations& observations) {
+std::vector<std::string> LoosePhotos(const survey::ColmapModel& model) {
   if (model.points.empty()) return {};
-  const std::unordered_set<uint32_t> kept = LargestGroup(model);
-  std::vector<std::string> removed;
+  const std::unordered_set<uint32_t> tied = LargestGroup(model);
+  std::vector<std::string> loose;
   for (const survey::ColmapImage& image : model.images) {
-    if (!kept.contains(image.id)) removed.push_back(image.name);
+    if (!tied.contains(image.id)) loose.push_back(image.name);
   }
-  if (removed.empty()) return {};
-  std::erase_if(model.images, [&](const survey::ColmapImage& image) { return !kept.contains(image.id); });
+  std::sort(loose.begin(), loose.end());
+  return loose;
+}
+
+void RemovePhotos(const std::function<bool(const survey::ColmapImage&)>& removed, survey::ColmapModel& model) {
+  std::erase_if(model.images, removed);
+  std::unordered_set<uint32_t> kept;
+  for (const survey::ColmapImage& image : model.images) kept.insert(image.id);
   for (survey::ColmapPoint& point : model.points) std::erase_if(point.image_ids, [&](uint32_t id) { return !kept.contains(id); });
   std::erase_if(model.points, [](const survey::ColmapPoint& point) {
     return std::all_of(point.image_ids.begin(), point.image_ids.end(), [&](uint32_t id) { return id == point.image_ids.front(); });
   });
+}
+
+std::vector<std::string> RemoveLoosePhotos(survey::ColmapModel& model, survey::ColmapObservations& observations) {
+  std::vector<std::string> loose = LoosePhotos(model);
+  if (loose.empty()) return loose;
+  RemovePhotos([&](const survey::ColmapImage& image) { return std::binary_search(loose.begin(), loose.end(), image.name); }, model);
+  std::unordered_set<uint32_t> photos;
+  for (const survey::ColmapImage& image : model.images) photos.insert(image.id);
   std::unordered_set<uint64_t> points;
   for (const survey::ColmapPoint& point : model.points) points.insert(point.id);
-  std::erase_if(observations, [&](const auto& entry) { return !kept.contains(entry.first); });
+  std::erase_if(observations, [&](const auto& entry) { return !photos.contains(entry.first); });
   for (auto& [id, seen] : observations) std::erase_if(seen, [&](const survey::ColmapObservation& one) { return !points.contains(one.point_id); });
-  std::sort(removed.begin(), removed.end());
-  return removed;
+  return loose;
 }
 
 }  // namespace skyquilt::prepare

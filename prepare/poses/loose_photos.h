@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,12 @@
 
 namespace skyquilt::prepare {
 
-// Takes the poses from all photos but the largest group that is tied together by at least kLeastTied common points of two photos each. Points that
-// fewer than two photos are left to see go too, and so do the observations of what is gone. Returns the names of the photos that lost their pose, in
-// name order; of a model without points nothing can be said, so that none do.
+// Names, in name order, of the photos outside of the largest group that is tied together by at least kLeastTied common points of two photos each. Of
+// a model without points nothing can be said: then there are none.
+std::vector<std::string> LoosePhotos(const survey::ColmapModel& model);
+// Takes these photos out of the model, and the points that fewer than two photos are left to see.
+void RemovePhotos(const std::function<bool(const survey::ColmapImage&)>& removed, survey::ColmapModel& model);
+// Takes the poses from loose photos, and the observations of what is gone. Returns the names of the photos that lost their pose, in name order.
 std::vector<std::string> RemoveLoosePhotos(survey::ColmapModel& model, survey::ColmapObservations& observations);
 // Photos of another place have up to 5 by chance (`bench poses`), neighbours of a flight hundreds.
 constexpr size_t kLeastTied = 10;

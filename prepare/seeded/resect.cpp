@@ -1,10 +1,12 @@
 #include "prepare/seeded/resect.h"
 
+#include <algorithm>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/core/eigen.hpp>
 
 #include "core/base/cancel.h"
+#include "core/linear/linear.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -59,6 +61,37 @@ bool Resect(Block& block, uint32_t index, const std::vector<uint32_t>& entries, 
   return true;
 }
 
+Eigen::Matrix3d CrossProduct(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
+  return matrix;
+}
+
+// Change of a photo's pose by the errors of entries within the threshold: turn of the camera in its own frame, shift of its centre. Large errors
+// count as in the bundle adjustment.
+Eigen::VectorXd PoseChange(const Block& block, const BlockPhoto& photo, const std::vector<uint32_t>& entries, const std::vector<uint32_t>& track_of,
+                           double threshold) {
+  constexpr double kGentle = 2.5;
+  const BlockLens& lens = block.lenses[static_cast<size_t>(photo.lens)];
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(6, 6);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(6);
+  for (const uint32_t e : entries) {
+    const uint32_t t = track_of[e];
+    const double error = block.has_point[t] != 0 ? block.Error(e, block.point[t]) : -1.0;
+    if (error < 0.0 || error > threshold) continue;
+    const Eigen::Vector3d x_in_cam = photo.cam_from_enu * (block.point[t] - photo.centre);
+    LensJacobian jacobian;
+    const Eigen::Vector2d residual = (Project(lens.numbers, x_in_cam, &jacobian) - block.pixel[e]) / lens.unit_px;
+    Eigen::Matrix<double, 2, 6> by_pose;
+    by_pose << -jacobian.by_point * CrossProduct(x_in_cam), -jacobian.by_point * photo.cam_from_enu.toRotationMatrix();
+    by_pose /= lens.unit_px;
+    const double weight = kGentle / std::max(kGentle, error);
+    normal += weight * by_pose.transpose().lazyProduct(by_pose);
+    gradient += weight * by_pose.transpose().lazyProduct(residual);
+  }
+  return -linear::SolvePositive(normal, gradient);
+}
+
 }  // namespace
 
 std::vector<std::vector<uint32_t>> EntriesOfPhotos(const Block& block) {
@@ -83,6 +116,28 @@ size_t ResectPhotos(Block& block, double threshold) {
     if (block.photos[i].placed) continue;
     base::ThrowIfCancelled();
     n += Resect(block, i, entries[i], track_of, threshold) ? 1 : 0;
+  }
+  return n;
+}
+
+size_t RefineByPoints(Block& block, uint32_t photo, const std::vector<uint32_t>& entries, const std::vector<uint32_t>& track_of, double threshold) {
+  BlockPhoto& moved = block.photos[photo];
+  constexpr int kSteps = 10;
+  for (int step = 0; step < kSteps; ++step) {
+    const Eigen::VectorXd change = PoseChange(block, moved, entries, track_of, threshold);
+    if (!change.allFinite()) break;
+    const Eigen::Vector3d turn = change.head<3>();
+    if (turn.norm() > 0.0) {
+      moved.cam_from_enu = (Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * moved.cam_from_enu).normalized();
+    }
+    moved.centre += change.tail<3>();
+  }
+  size_t n = 0;
+  for (const uint32_t e : entries) {
+    const uint32_t t = track_of[e];
+    const double error = block.has_point[t] != 0 ? block.Error(e, block.point[t]) : -1.0;
+    block.agrees[e] = error >= 0.0 && error <= threshold ? 1 : 0;
+    n += block.agrees[e] != 0 ? 1 : 0;
   }
   return n;
 }

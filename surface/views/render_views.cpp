@@ -50,7 +50,6 @@ std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double v
   add(input.info->parameters);
   text.append(input.info->config);
   for (const ViewPose& pose : places.training) add_pose(pose);
-  for (const ViewPose& pose : places.held_out) add_pose(pose);
   return base::HashHex(text);
 }
 
@@ -74,13 +73,13 @@ class ViewMaker {
   ViewMaker(const SurfaceInput& input, double voxel_m, std::string key, std::filesystem::path folder, base::ThreadPool& threads)
       : input_(input), limits_(LimitsOf(input, voxel_m)), key_(std::move(key)), folder_(std::move(folder)), threads_(threads) {}
 
-  // `coarse`: takes those of photos; may be null.
+  // `coarse`: takes them; may be null.
   void Make(std::span<const ViewPose> poses, const std::string& label, CoarseDepths* coarse) {
     if (poses.empty()) return;
     base::Progress progress(label, static_cast<double>(RaysOf(poses)), "rays");
     for (size_t i = 0; i < poses.size(); ++i) {
       const RenderedView view = MakeOne(poses[i], folder_ / ViewFileName(made_.size()), progress);
-      if (coarse != nullptr && view.pose.photo >= 0) coarse->Add(view.Get());
+      if (coarse != nullptr) coarse->Add(view.Get());
       made_.push_back(view.pose);
       progress.Advance(0.0, std::to_string(i + 1) + " of " + std::to_string(poses.size()) + " views");
     }
@@ -127,10 +126,7 @@ void Report(const ViewMaker& maker, size_t photos) {
 }  // namespace
 
 DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::ThreadPool& threads) {
-  PhotoPlaces places = PlacesOfPhotos(input);
-  const auto budget = static_cast<int64_t>(kVirtualShare * static_cast<double>(RaysOf(places.training)));
-  if (!input.options.virtual_views) places.held_out.clear();
-  while (RaysOf(places.held_out) > budget) places.held_out.pop_back();
+  const PhotoPlaces places = PlacesOfPhotos(input);
   const std::string key = KeyOf(input, places, voxel_m);
   const std::filesystem::path folder = input.work_folder / "views", joined = input.work_folder / "views.bin";
   std::error_code ignored;
@@ -143,11 +139,10 @@ DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::Thr
   base::RequireWritableFolder(folder);
   ViewMaker maker(input, voxel_m, key, folder, threads);
   CoarseDepths coarse(RaysOf(places.training), kCoarseBytes);
-  std::vector<ViewPose> at_photos = places.training;
-  at_photos.insert(at_photos.end(), places.held_out.begin(), places.held_out.end());
-  maker.Make(at_photos, "surface views", input.options.virtual_views ? &coarse : nullptr);
+  maker.Make(places.training, "surface views", input.options.virtual_views ? &coarse : nullptr);
   if (input.options.virtual_views) {
-    const GapOptions gaps{voxel_m, input.options.min_views, places.agl_m, budget - RaysOf(places.held_out)};
+    const auto budget = static_cast<int64_t>(kVirtualShare * static_cast<double>(RaysOf(places.training)));
+    const GapOptions gaps{voxel_m, input.options.min_views, places.agl_m, budget};
     maker.Make(PlanGapViews(coarse, gaps, threads), "surface views of gaps", nullptr);
   }
   JoinViews(maker.made(), key, folder, joined);

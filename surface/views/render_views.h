@@ -1,5 +1,5 @@
 // Renders the pictures of depth from which a surface is fused: one per training photo, and virtual ones where photos leave gaps.
-// The places of held-out photos may be used for virtual views, their pixels are not: a rendering knows only the scene.
+// The places of held-out photos play no part: the mesh is scored from there, and a mesh is best where it was made from.
 #pragma once
 
 #include "surface/surface_input.h"

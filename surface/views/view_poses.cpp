@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
@@ -57,6 +58,15 @@ double HeightAboveGround(const survey::Photo& photo, double median_agl_m, const 
   return 1.0;
 }
 
+// Metres; NaN when no training photo has one.
+double MedianAgl(const survey::Survey& survey) {
+  std::vector<double> known;
+  for (const survey::Photo& photo : survey.photos) {
+    if (!photo.is_test && std::isfinite(photo.agl_m)) known.push_back(photo.agl_m);
+  }
+  return base::Median(std::move(known));
+}
+
 }  // namespace
 
 std::optional<TangentRectangle> InnerRectangle(const camera::Camera& camera) {
@@ -106,9 +116,10 @@ PhotoPlaces PlacesOfPhotos(const SurfaceInput& input) {
 
   PhotoPlaces places;
   std::vector<double> heights;
-  const double median_agl_m = survey.MedianAgl();
+  const double median_agl_m = MedianAgl(survey);
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
+    if (photo.is_test) continue;
     const auto camera = static_cast<size_t>(photo.camera);
     if (photo.camera < 0 || camera >= rectangles.size() || !rectangles[camera]) {
       base::LogWarning("surface: the camera of photo {} cannot be used for a picture of depth; it is left out", photo.name);
@@ -117,10 +128,6 @@ PhotoPlaces PlacesOfPhotos(const SurfaceInput& input) {
     const TangentRectangle& rectangle = *rectangles[camera];
     const double agl_m = HeightAboveGround(photo, median_agl_m, *input.info);
     const double focal = FocalOf(rectangle, survey.cameras[camera], agl_m / (input.options.view_gsd * input.info->gsd_m));
-    if (photo.is_test) {
-      places.held_out.push_back(PinholeOf(rectangle, WithinLimits(rectangle, 0.5 * WithinLimits(rectangle, focal)), photo.cam_from_enu));
-      continue;
-    }
     places.training.push_back(PinholeOf(rectangle, WithinLimits(rectangle, focal), photo.cam_from_enu));
     places.training.back().photo = static_cast<int>(i);
     heights.push_back(agl_m);

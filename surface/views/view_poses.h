@@ -1,4 +1,5 @@
-// Pinhole cameras at the places of photos. A pinhole has no distortion, so its image is a rectangle inside the area that the photo shows.
+// Pinhole cameras at the places of photos. A pinhole has no distortion, so its image is a rectangle inside the area that the photo shows. Photos that
+// are held out have none: the mesh is scored from their places.
 #pragma once
 
 #include <optional>
@@ -28,13 +29,12 @@ constexpr int kLeastViewWidth = 16;
 constexpr double kMaxViewPixels = 4e6;
 
 struct PhotoPlaces {
-  std::vector<ViewPose> training;  // of the photos that may be trained on, in the order of the survey
-  std::vector<ViewPose> held_out;  // places of the others, half as wide, with photo = -1
-  double agl_m = 0.0;              // median height of the training photos above ground; 0 without training photos
+  std::vector<ViewPose> training;  // of the photos that are not held out, in the order of the survey
+  double agl_m = 0.0;              // median height of these photos above ground; 0 without any
 };
 
-// A pixel is options.view_gsd ground sampling distances wide at the photo's height above ground, but never finer than the photo's own. Photos whose
-// camera cannot be used are left out with a warning.
+// A pixel is options.view_gsd ground sampling distances wide at the photo's height above ground (where it is unknown, the median of the training
+// photos), but never finer than the photo's own. Photos whose camera cannot be used are left out with a warning.
 PhotoPlaces PlacesOfPhotos(const SurfaceInput& input);
 
 }  // namespace skyquilt::surface

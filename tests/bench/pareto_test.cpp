@@ -27,8 +27,10 @@ RC_GTEST_PROP(ParetoFront, ContainsExactlyThePointsThatNoOtherBeats, (const std:
     const bool on_front =
         std::any_of(front.begin(), front.end(), [&](size_t k) { return points[k].cost == points[i].cost && points[k].quality == points[i].quality; });
     RC_ASSERT(on_front == !beaten);
-    RC_ASSERT(BelowFront(points, i) >= 0.0);
-    if (on_front) RC_ASSERT(BelowFront(points, i) == 0.0);
+    const Priced& best = points[BestForCost(points, i)];
+    RC_ASSERT(best.quality >= points[i].quality);
+    RC_ASSERT(best.cost <= points[i].cost);
+    if (on_front) RC_ASSERT(BestForCost(points, i) == i);
   }
   for (size_t k = 1; k < front.size(); ++k) {
     RC_ASSERT(points[front[k]].cost > points[front[k - 1]].cost);
@@ -40,14 +42,14 @@ TEST(ParetoFront, IgnoresNaN) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(ParetoFront({{1.0, nan}, {nan, 9.0}, {2.0, 3.0}}), std::vector<size_t>{2});
   EXPECT_TRUE(ParetoFront({}).empty());
-  EXPECT_DOUBLE_EQ(BelowFront({{1.0, 30.0}, {2.0, 29.5}, {3.0, 31.0}}, 1), 0.5);
+  EXPECT_EQ(BestForCost({{1.0, 30.0}, {2.0, 29.5}, {2.0, nan}, {3.0, 31.0}}, 1), 0U);
 }
 
-TEST(BelowFront, TreatsNearlyEqualCostsAsEqual) {
+TEST(BestForCost, TreatsNearlyEqualCostsAsEqual) {
   const std::vector<Priced> points = {{100.0, 30.0}, {101.0, 30.4}, {110.0, 32.0}};
-  EXPECT_DOUBLE_EQ(BelowFront(points, 0), 0.0);
-  EXPECT_DOUBLE_EQ(BelowFront(points, 0, 0.02), 30.4 - 30.0);
-  EXPECT_DOUBLE_EQ(BelowFront(points, 2, 0.02), 0.0);
+  EXPECT_EQ(BestForCost(points, 0), 0U);
+  EXPECT_EQ(BestForCost(points, 0, 0.02), 1U);
+  EXPECT_EQ(BestForCost(points, 2, 0.02), 2U);
 }
 
 }  // namespace

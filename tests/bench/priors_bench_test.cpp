@@ -65,7 +65,7 @@ TEST(PriorVariants, OfAllHaveEveryWeight) {
   }
 }
 
-TEST(PriorTable, HasMeansOverSeedsAndNoColumnsWithoutNumbers) {
+TEST(PriorTable, HasMediansOverSeedsAndNoColumnsWithoutNumbers) {
   const BenchTable table = PriorTable(ExampleResults(), "");
   ASSERT_EQ(table.rows.size(), 2U);
   for (const auto& row : table.rows) ASSERT_EQ(row.size(), table.columns.size());
@@ -87,25 +87,27 @@ TEST(PriorTable, OfARealSurveyHasNoClasses) {
     }
   }
   EXPECT_EQ(PriorTable(results, "").columns, (std::vector<std::string>{"variant", "steps", "PSNR", "kept points, NMAD"}));
-  EXPECT_NEAR(ChangeOf(results[0], results[1], FigureOf("kept points, NMAD")).mean, -25.0, 1e-9);
+  EXPECT_NEAR(ChangeOf(results[0], results[1], FigureOf("kept points, NMAD")).difference.median, -25.0, 1e-9);
   EXPECT_EQ(PriorCharts(results).size(), 1U);
 }
 
 TEST(ChangeOf, IsInPercentOrInTheUnitWithTheRangeOverSeeds) {
   const std::vector<PriorResults> results = ExampleResults();
   const PriorChange nmad = ChangeOf(results[0], results[1], FigureOf("roofs, NMAD"));
-  EXPECT_NEAR(nmad.mean, -50.0, 1e-9) << "of the means, not the mean of the changes";
+  EXPECT_NEAR(nmad.difference.median, -40.0, 1e-9) << "of the changes of each seed";
   EXPECT_NEAR(nmad.lowest, -60.0, 1e-9);
   EXPECT_NEAR(nmad.highest, -20.0, 1e-9);
-  EXPECT_EQ(nmad.seeds, 2);
+  EXPECT_EQ(nmad.difference.pairs, 2);
+  EXPECT_TRUE(std::isnan(nmad.difference.noise)) << "unknown for two trainings";
   const PriorChange psnr = ChangeOf(results[0], results[1], FigureOf("PSNR"));
-  EXPECT_NEAR(psnr.mean, 0.0, 1e-12);
+  EXPECT_NEAR(psnr.difference.median, 0.0, 1e-12);
+  EXPECT_EQ(psnr.difference.noise, kNoise_db);
   EXPECT_NEAR(psnr.lowest, -0.5, 1e-12);
   EXPECT_NEAR(psnr.highest, 0.5, 1e-12);
-  EXPECT_NEAR(ChangeOf(results[0], results[1], FigureOf("steps")).mean, -20.0, 1e-9);
-  EXPECT_NEAR(ChangeOf(results[0], results[1], FigureOf("roofs, normals")).mean, 0.0, 1e-12);
-  EXPECT_EQ(ChangeOf(results[0], results[1], FigureOf("trees, NMAD")).seeds, 0);
-  EXPECT_TRUE(std::isnan(ChangeOf(results[0], results[1], FigureOf("trees, NMAD")).mean));
+  EXPECT_NEAR(ChangeOf(results[0], results[1], FigureOf("steps")).difference.median, -20.0, 1e-9);
+  EXPECT_NEAR(ChangeOf(results[0], results[1], FigureOf("roofs, normals")).difference.median, 0.0, 1e-12);
+  EXPECT_EQ(ChangeOf(results[0], results[1], FigureOf("trees, NMAD")).difference.pairs, 0);
+  EXPECT_TRUE(std::isnan(ChangeOf(results[0], results[1], FigureOf("trees, NMAD")).difference.median));
 }
 
 TEST(ChangeOf, ComparesOnlySeedsThatBothHave) {
@@ -114,8 +116,8 @@ TEST(ChangeOf, ComparesOnlySeedsThatBothHave) {
   failed.failure = "no memory";
   results[1].seeds[1] = failed;
   const PriorChange nmad = ChangeOf(results[0], results[1], FigureOf("roofs, NMAD"));
-  EXPECT_NEAR(nmad.mean, -20.0, 1e-9) << "the other town is harder and must not count on one side only";
-  EXPECT_EQ(nmad.seeds, 1);
+  EXPECT_NEAR(nmad.difference.median, -20.0, 1e-9) << "the other town is harder and must not count on one side only";
+  EXPECT_EQ(nmad.difference.pairs, 1);
   EXPECT_NE(PriorTable(results, "").rows[1][0].shown.find("no memory"), std::string::npos);
 }
 
@@ -124,7 +126,7 @@ TEST(PriorChangeTable, LeavesOutTheReferenceAndWhatHasNoChange) {
   ASSERT_EQ(table.rows.size(), 1U);
   EXPECT_EQ(table.rows[0].size(), table.columns.size());
   EXPECT_EQ(ColumnOf(table, "training"), table.columns.size());
-  EXPECT_EQ(table.rows[0][ColumnOf(table, "roofs, NMAD")].shown, "-50.0 % (-60.0 to -20.0)");
+  EXPECT_EQ(table.rows[0][ColumnOf(table, "roofs, NMAD")].shown, "-40.0 % (-60.0 to -20.0)");
   EXPECT_EQ(table.rows[0][ColumnOf(table, "PSNR")].shown, "0.00 dB (-0.50 to +0.50)");
 }
 
@@ -142,9 +144,31 @@ TEST(PriorTrainingTable, HasARowForEveryTraining) {
 
 TEST(PriorVerdicts, TellTheChangesOfEachVariant) {
   const std::vector<std::string> verdicts = PriorVerdicts(ExampleResults());
-  ASSERT_EQ(verdicts.size(), 1U);
-  EXPECT_EQ(verdicts[0], "'planar 0.03' against 'none': steps -20.0 %; PSNR 0.00 dB; roofs, NMAD -50.0 %; walls, NMAD -50.0 %.");
+  ASSERT_EQ(verdicts.size(), 2U);
+  EXPECT_EQ(verdicts[0],
+            "'planar 0.03' against 'none': steps -20.0 %; PSNR no difference seen (0.00 dB, noise up to 0.3 dB); roofs, NMAD -40.0 %; "
+            "walls, NMAD -40.0 %.");
+  EXPECT_NE(verdicts[1].find("Three seeds"), std::string::npos) << verdicts[1];
   EXPECT_TRUE(PriorVerdicts({ExampleResults().front()}).empty());
+}
+
+TEST(PriorVerdicts, OfThreeSeedsLeaveOutWhatIsNoMoreThanNoise) {
+  const std::vector<PriorResults> results = {
+      {.name = "none", .label = "none", .seeds = {Trained(25.0, 0.10, 1000), Trained(27.0, 0.20, 1000), Trained(26.0, 0.30, 1000)}},
+      {.name = "planar", .label = "planar", .seeds = {Trained(25.2, 0.15, 900), Trained(27.2, 0.15, 890), Trained(26.2, 0.28, 910)}}};
+  const std::vector<std::string> verdicts = PriorVerdicts(results);
+  ASSERT_EQ(verdicts.size(), 1U) << "the noise of all figures is known";
+  EXPECT_NE(verdicts[0].find("steps -10.0 %; PSNR +0.20 dB; roofs, NMAD no difference seen (-6.7 %, noise up to"), std::string::npos) << verdicts[0];
+}
+
+TEST(PriorVerdicts, CompareOverCommonPixelsWhereTheyWereScored) {
+  std::vector<PriorResults> results = ExampleResults();
+  for (PriorResults& of : results) {
+    for (VariantResult& r : of.seeds) r.psnr_common_db = of.name == "none" ? 20.0 : 21.0;
+  }
+  const std::string verdict = PriorVerdicts(results)[0];
+  EXPECT_NE(verdict.find("PSNR, common +1.00 dB;"), std::string::npos) << verdict;
+  EXPECT_EQ(verdict.find("PSNR no"), std::string::npos) << verdict;
 }
 
 }  // namespace

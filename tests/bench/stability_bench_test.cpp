@@ -78,6 +78,15 @@ TEST_F(EditedSurvey, ScalesToAGroundSamplingDistance) {
 }
 
 TEST_F(EditedSurvey, ThreeNeighboursStay) {
+  // Each point was seen from up to 60 m beside it.
+  for (const survey::SparsePoint& point : survey_.points) {
+    std::vector<int32_t> photos;
+    for (size_t i = 0; i < survey_.photos.size(); ++i) {
+      const Eigen::Vector3d eye = survey_.photos[i].cam_from_enu.OriginInSource();
+      if ((eye - point.x_in_enu).head<2>().norm() < 60.0) photos.push_back(static_cast<int32_t>(i));
+    }
+    survey_.tracks.Add(std::move(photos));
+  }
   const survey::Survey three = Edited(SurveyEdit::kThreePhotos);
   std::vector<Eigen::Vector3d> eyes;
   for (const survey::Photo& photo : three.photos) {
@@ -86,6 +95,14 @@ TEST_F(EditedSurvey, ThreeNeighboursStay) {
   ASSERT_EQ(eyes.size(), 3U);
   EXPECT_EQ(three.photos.size(), 5U);
   for (const Eigen::Vector3d& eye : eyes) EXPECT_LE((eye - eyes[0]).norm(), 150.0);
+  EXPECT_GT(three.points.size(), 5U);
+  EXPECT_LT(three.points.size(), survey_.points.size() / 2);
+  for (size_t i = 0; i < three.points.size(); ++i) {
+    const auto near =
+        std::count_if(eyes.begin(), eyes.end(), [&](const Eigen::Vector3d& eye) { return (eye - three.points[i].x_in_enu).head<2>().norm() < 60.0; });
+    EXPECT_GE(near, 2);
+    EXPECT_EQ(static_cast<size_t>(near), three.tracks.PhotosOf(i).size());
+  }
   EXPECT_EQ(Edited(SurveyEdit::kZoneEdge).origin.longitude_deg, 180.0);
 }
 
@@ -107,6 +124,7 @@ TEST(StabilityPage, CountsWhatFellAndWhatEndsBelowItsBest) {
   EXPECT_EQ(page.figures[1].value, "1");
   EXPECT_EQ(page.figures[2].value, "2");
   EXPECT_EQ(page.verdicts[0], "1 of 3 runs end more than 0.5 dB below their best.");
+  EXPECT_TRUE(page.verdicts[1].starts_with("1 of 3 runs are more than 0.3 dB below the median")) << page.verdicts[1];
   // A block that is not shown cannot be poor.
   runs[2].result.fields[1].shows_context = true;
   page = StabilityPage(runs);

@@ -18,6 +18,7 @@ VariantResult Example() {
   r.name = "guided";
   r.label = "blocks, \"guided\"";
   r.psnr_db = 27.5;
+  r.psnr_common_db = 27.25;
   r.kept_nmad_gsd = 1.25;
   r.flip = 0.125;
   r.train_seconds = 61.0;
@@ -73,6 +74,7 @@ TEST(ResultJson, ReadsBackUnchanged) {
   EXPECT_EQ(back.label, r.label);
   EXPECT_EQ(back.layout, "1x2");
   EXPECT_EQ(back.psnr_db, r.psnr_db);
+  EXPECT_EQ(back.psnr_common_db, 27.25);
   EXPECT_TRUE(std::isnan(back.ssim));
   EXPECT_EQ(back.kept_nmad_gsd, 1.25);
   EXPECT_TRUE(std::isnan(back.kept_median_gsd));
@@ -118,6 +120,7 @@ TEST(ResultJson, OfAnOlderProgramHasFewerScores) {
   nlohmann::json json = base::ParseJson(ResultJson(Example(), "abc"));
   json.erase("scales");
   json.erase("scale_pictures");
+  json.erase("psnr_common_db");
   json.erase("kept_median_gsd");
   json.erase("kept_nmad_gsd");
   json.erase("flip");
@@ -130,6 +133,7 @@ TEST(ResultJson, OfAnOlderProgramHasFewerScores) {
   std::string identity;
   const VariantResult back = ParseResult(base::JsonText(json), &identity);
   EXPECT_TRUE(back.scales.empty());
+  EXPECT_TRUE(std::isnan(back.psnr_common_db));
   EXPECT_TRUE(std::isnan(back.kept_nmad_gsd));
   EXPECT_TRUE(back.classes.empty());
   EXPECT_TRUE(std::isnan(back.flat_roof_rms_m));
@@ -145,6 +149,60 @@ TEST(ResultJson, RefusesADamagedText) {
   const std::string text = ResultJson(Example(), "abc");
   EXPECT_THROW(ParseResult(text.substr(0, text.size() / 2), &identity), nlohmann::json::exception);
   EXPECT_THROW(ParseResult("{}", &identity), nlohmann::json::exception);
+}
+
+std::vector<VariantResult> ThreeSeeds() {
+  std::vector<VariantResult> seeds(3, Example());
+  for (size_t i = 0; i < 3; ++i) {
+    seeds[i].name = "guided_s" + std::to_string(i + 1);
+    seeds[i].psnr_db = 27.0 + static_cast<double>(i * i);
+    seeds[i].train_seconds = 60.0 - static_cast<double>(i);
+    seeds[i].layout = "1x" + std::to_string(i + 2);
+  }
+  return seeds;
+}
+
+TEST(MedianResult, HasMediansOfNumbersAndTheRestOfTheFirst) {
+  const VariantResult median = MedianResult("guided", "blocks", ThreeSeeds());
+  EXPECT_EQ(median.name, "guided");
+  EXPECT_EQ(median.label, "blocks");
+  EXPECT_EQ(median.psnr_db, 28.0) << "not the mean";
+  EXPECT_EQ(median.train_seconds, 59.0);
+  EXPECT_EQ(median.layout, "1x2");
+  EXPECT_TRUE(std::isnan(median.ssim));
+  ASSERT_EQ(median.seeds.size(), 3U);
+  EXPECT_EQ(median.seeds[2].psnr_db, 31.0);
+  const VariantResult one = MedianResult("guided", "blocks", {ThreeSeeds()[1]});
+  EXPECT_EQ(one.name, "guided_s2");
+  EXPECT_TRUE(one.seeds.empty());
+}
+
+TEST(MedianResult, LeavesOutTrainingsThatFailed) {
+  std::vector<VariantResult> seeds = ThreeSeeds();
+  seeds[0] = {};
+  seeds[0].failure = "no memory";
+  VariantResult median = MedianResult("guided", "blocks", seeds);
+  EXPECT_EQ(median.failure, "");
+  EXPECT_EQ(median.label, "blocks (1 of 3 trainings failed)");
+  EXPECT_EQ(median.psnr_db, 29.5);
+  EXPECT_EQ(median.layout, "1x3");
+  for (VariantResult& seed : seeds) seed = seeds[0];
+  median = MedianResult("guided", "blocks", seeds);
+  EXPECT_EQ(median.failure, "no memory");
+  EXPECT_TRUE(std::isnan(median.psnr_db));
+}
+
+TEST(StudyJson, HasEverySeed) {
+  BenchPage page;
+  page.name = "blocks";
+  const nlohmann::json json =
+      base::ParseJson(StudyJson(page, {MedianResult("guided", "blocks", ThreeSeeds()), MedianResult("single", "one", {Example()})}, ""));
+  const nlohmann::json& guided = json.at("results").at(0);
+  EXPECT_EQ(guided.at("psnr_db"), 28.0);
+  ASSERT_EQ(guided.at("seeds").size(), 3U);
+  EXPECT_EQ(guided.at("seeds").at(1).at("name"), "guided_s2");
+  EXPECT_EQ(guided.at("seeds").at(1).at("psnr_common_db"), 27.25);
+  EXPECT_FALSE(json.at("results").at(1).contains("seeds"));
 }
 
 TEST(QualityTable, LeavesOutColumnsWithoutNumbers) {
@@ -174,8 +232,8 @@ TEST(BenchPage, IsEscapedAndHasNumbersInFullPrecision) {
   EXPECT_EQ(html.find("blocks, \"guided\""), std::string::npos);
   EXPECT_EQ(html.find("http"), std::string::npos) << "the page opens offline";
   const std::string csv = BenchCsv(page.sections[0].tables[0]);
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "variant,PSNR,FLIP,\"kept points, NMAD\",training");
-  EXPECT_NE(csv.find("\"blocks, \"\"guided\"\"\",27.5,0.125,1.25,61"), std::string::npos) << csv;
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "variant,PSNR,\"PSNR, common\",FLIP,\"kept points, NMAD\",training");
+  EXPECT_NE(csv.find("\"blocks, \"\"guided\"\"\",27.5,27.25,0.125,1.25,61"), std::string::npos) << csv;
   const std::string text = BenchText(page);
   EXPECT_NE(text.find("27.50"), std::string::npos);
   EXPECT_NE(text.find("- It works."), std::string::npos);

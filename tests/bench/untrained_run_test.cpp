@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <span>
 #include <stdexcept>
 
 #include "bench/study/study.h"
@@ -9,6 +10,7 @@
 #include "core/base/errors.h"
 #include "tests/partition/flown_survey.h"
 #include "tests/support/connect_alone.h"
+#include "tests/support/nadir_photo.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::bench {
@@ -74,9 +76,6 @@ TEST(ThinSurvey, LeavesOutTiltedPhotosButNoHeldOutOnes) {
   survey.photos[3].is_test = true;
   EXPECT_NEAR(TiltDeg(survey.photos[1]), 30.0, 1e-9);
   EXPECT_NEAR(TiltDeg(survey.photos[4]), 90.0, 1e-9);
-  survey.points.resize(2);
-  survey.tracks.Add({0, 1, 2});
-  survey.tracks.Add({1, 3, 5});
   const auto names = [](const survey::Survey& of) {
     std::string joined;
     for (const survey::Photo& photo : of.photos) joined += photo.name.substr(0, 1);
@@ -84,11 +83,55 @@ TEST(ThinSurvey, LeavesOutTiltedPhotosButNoHeldOutOnes) {
   };
   const survey::Survey nadir = ThinSurvey(survey, {.name = "nadir", .label = "", .max_tilt_deg = 10.0});
   EXPECT_EQ(names(nadir), "acdf");
-  EXPECT_EQ(nadir.tracks.PhotosOf(0).size(), 2U);
-  EXPECT_EQ(std::vector<int32_t>(nadir.tracks.PhotosOf(1).begin(), nadir.tracks.PhotosOf(1).end()), (std::vector<int32_t>{2, 3}));
   EXPECT_EQ(names(ThinSurvey(survey, {.name = "n", .label = "", .every_nth_photo = 2, .max_tilt_deg = 10.0})), "adf");
   EXPECT_EQ(names(ThinSurvey(survey, {.name = "n", .label = ""})), "abcdef");
   EXPECT_FALSE((Variant{.name = "n", .label = "", .max_tilt_deg = 10.0}).AllPhotos());
+}
+
+TEST(ThinSurvey, KnowsOnlyWhatItsOwnPhotosSaw) {
+  survey::Survey survey;
+  for (const char* name : {"a.jpg", "b.jpg", "c.jpg", "d.jpg", "e.jpg", "f.jpg"}) survey.photos.push_back(NadirPhoto({0, 0, 100}, name));
+  survey.photos[3].is_test = true;
+  const auto add = [&survey](double z, std::vector<int32_t> photos, bool kept) {
+    (kept ? survey.kept_points : survey.points).push_back({Eigen::Vector3d(0, 0, z), {}, 0.5F, static_cast<int>(photos.size())});
+    (kept ? survey.kept_tracks : survey.tracks).Add(std::move(photos));
+  };
+  // Of the training photos a, b, c, e, f every second stays: a, c, f; d is held out.
+  for (int i = 0; i < 3; ++i) add(10.0, {0, 1, 2, 3}, false);  // a, b, c, d
+  add(50.0, {1, 2, 4}, false);                                 // b, c, e
+  add(51.0, {1, 4}, false);                                    // b, e
+  add(52.0, {2, 3}, false);                                    // c, d
+  add(53.0, {3, 4, 5, 0}, true);                               // d, e, f, a
+  add(54.0, {1, 3, 5}, true);                                  // b, d, f
+  const survey::Survey thin = ThinSurvey(survey, {.name = "n", .label = "", .every_nth_photo = 2});
+  ASSERT_EQ(thin.photos.size(), 4U);
+  ASSERT_EQ(thin.points.size(), 3U);
+  const auto observers = [](std::span<const int32_t> photos) { return std::vector<int32_t>(photos.begin(), photos.end()); };
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(thin.points[i].x_in_enu.z(), 10.0);
+    EXPECT_EQ(thin.points[i].track_length, 2);
+    EXPECT_EQ(observers(thin.tracks.PhotosOf(i)), (std::vector<int32_t>{0, 1})) << "a and c by their new numbers";
+  }
+  ASSERT_EQ(thin.kept_points.size(), 1U);
+  EXPECT_EQ(observers(thin.kept_tracks.PhotosOf(0)), (std::vector<int32_t>{0, 2, 3})) << "scores use the held-out photo";
+  for (const survey::Photo& photo : thin.photos) EXPECT_DOUBLE_EQ(photo.agl_m, 90.0) << "above the points that are left";
+
+  survey.tracks = {};
+  survey.kept_tracks = {};
+  EXPECT_EQ(ThinSurvey(survey, {.name = "n", .label = "", .every_nth_photo = 2}).points.size(), 6U) << "nothing is known of who saw them";
+}
+
+TEST_F(UntrainedRun, OnlyOtherSeedsHaveNamesOfTheirOwn) {
+  const Study study = Open();
+  const Variant variant{.name = "guided", .label = "blocks", .overrides = {{"run.time_budget_s", "8"}}};
+  const Variant same = study.WithSeed(variant, study.settings().run.seed), other = study.WithSeed(variant, 7);
+  EXPECT_EQ(same.name, "guided") << "its saved result is used";
+  EXPECT_EQ(same.label, "blocks");
+  EXPECT_EQ(other.name, "guided_s7");
+  EXPECT_EQ(other.label, "blocks, seed 7");
+  ASSERT_EQ(other.overrides.size(), 2U);
+  EXPECT_EQ(other.overrides[1].key, "run.seed");
+  EXPECT_EQ(other.overrides[1].value, "7");
 }
 
 }  // namespace

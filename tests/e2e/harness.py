@@ -136,13 +136,16 @@ def copied(source, target):
     return target
 
 
-def small_project(skyquilt, project):
-    """A project of the small survey that is prepared and divided into two blocks, ready to be trained."""
-    def make(folder):
-        skyquilt.call("prepare", small_survey(skyquilt), "-o", folder)
-        skyquilt.call("partition", folder, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
+def prepare_small(skyquilt, survey, project):
+    """Prepares a survey and divides it into two blocks, ready to be trained."""
+    skyquilt.call("prepare", survey, "-o", project)
+    skyquilt.call("partition", project, "--blocks", "1x2", "--set", "partition.max_log2_table_size=14")
+    return project
 
-    return copied(shared(skyquilt, "small_project", make), project)
+
+def small_project(skyquilt, project):
+    """A project of the small survey, from prepare_small."""
+    return copied(shared(skyquilt, "small_project", lambda folder: prepare_small(skyquilt, small_survey(skyquilt), folder)), project)
 
 
 HOUSES_WIDTH = 480

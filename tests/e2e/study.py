@@ -43,6 +43,7 @@ def test(skyquilt, folder):
         expect(variant["blocks"] == (1 if variant["name"].startswith("single") else 2), variant)
         expect(not (out / "runs" / variant["name"] / "checkpoints").exists(), "large files were kept")
         expect((out / variant["report"]).is_file(), "the variant's report is gone")
+        expect(variant["psnr_common_db"] is not None and len(list((out / "runs" / variant["name"] / "covered").rglob("*.png"))) == 2, variant)
     large = {variant["name"]: variant for variant in result["results"]}
     expect(large["single_large"]["parameters"] > large["single_small"]["parameters"], "the large model is not larger")
 
@@ -51,12 +52,23 @@ def test(skyquilt, folder):
     skyquilt.call("bench", "blocks", "--survey", folder / "nowhere", "-o", folder / "none", status=3)
     skyquilt.call("bench", "blocks", "--survey", survey, "--place", "town", "-o", folder / "none", status=2)
 
-    # Parameters kept in the scene against parameters trained.
+    # Parameters kept in the scene against parameters trained. Two seeds of one survey, of which the first goes on with what there is.
     out = folder / "capacity"
-    skyquilt.call("bench", "capacity", "--survey", survey, "-o", out, "--blocks", "1x2", *SMALL)
+    words = ["bench", "capacity", "--survey", survey, "-o", out, "--blocks", "1x2", "--log2-table-sizes", "13", "--voxels-per-entry", "8", *SMALL]
+    skyquilt.call(*words)
+    before = digest(out / "runs" / "fitted")
     result = check_page(out, "capacity")
-    expect([variant["name"] for variant in result["results"]] == ["fitted", "uniform_13", "uniform_15", "shared_1", "shared_2", "shared_8"], result["results"])
+    psnr = {variant["name"]: variant["psnr_common_db"] for variant in result["results"]}
+    told = [verdict for verdict in result["verdicts"] if "8 voxels per entry" in verdict]
+    expect(len(told) == 1 and ("no difference seen" in told[0]) == (abs(psnr["shared_8"] - psnr["fitted"]) <= 0.3), (told, psnr))
+    skyquilt.call(*words, "--seeds", "1,2")
+    expect(digest(out / "runs" / "fitted") == before and not (out / "seed_2").exists(), "the first seed was run again, or the survey prepared twice")
+    result = check_page(out, "capacity")
+    expect([variant["name"] for variant in result["results"]] == ["fitted", "uniform_13", "shared_8"], result["results"])
     for variant in result["results"]:
+        expect([seed["name"] for seed in variant["seeds"]] == [variant["name"], variant["name"] + "_s2"], variant["seeds"])
+        for score in ("psnr_db", "psnr_common_db"):
+            expect(abs(2.0 * variant[score] - sum(seed[score] for seed in variant["seeds"])) < 1e-9, variant)
         fields = variant["fields"]
         expect([field["name"] for field in fields] == ["context", "r0c0", "r0c1"], fields)
         for field in fields:
@@ -66,7 +78,7 @@ def test(skyquilt, folder):
         if variant["name"] == "uniform_13":
             expect([field["log2_table_size"] for field in fields] == [0, 13, 13], fields)
 
-    # One training, merged in three ways.
+    # One training, merged in three ways; and photos left out with what only they observed.
     out = folder / "tradeoff"
     skyquilt.call("bench", "tradeoff", "--survey", survey, "-o", out, *SMALL)
     result = check_page(out, "tradeoff")
@@ -76,18 +88,21 @@ def test(skyquilt, folder):
         expect(stored[name]["scene_bytes"] < 0.65 * stored["storage_fp32"]["scene_bytes"], stored)
         expect(abs(stored[name]["psnr_db"] - stored["storage_fp32"]["psnr_db"]) < 0.1, stored)
         expect(stored[name]["train_seconds"] == stored["storage_fp32"]["train_seconds"], "it was trained again")
+    photos = {variant["name"]: variant["training_photos"] for variant in result["results"] if variant["name"].startswith("photos")}
+    expect(photos["photos_1"] > photos["photos_2"] > 0 and "without the others" in (out / "log.txt").read_text(), photos)
 
     # Renderings of several widths.
     out = folder / "scales"
-    words = ["bench", "scales", "--survey", survey, "-o", out, "--parts", "time,steps", "--positions", "0,1", *SMALL]
+    words = ["bench", "scales", "--survey", survey, "-o", out, "--parts", "steps", "--positions", "0,1", *SMALL]
     skyquilt.call("bench", "scales", "--survey", survey, "-o", out, "--parts", "heights", *SMALL, status=2)
     skyquilt.call(*words)
     result = check_page(out, "scales")
-    names = [f"{part}_{samples}_{photos}" for part in ("time", "steps") for samples in ("points", "cones1") for photos in ("photos", "pyramid")]
+    names = [f"steps_{samples}_{photos}" for samples in ("points", "cones1") for photos in ("photos", "pyramid")]
     expect([variant["name"] for variant in result["results"]] == names, result["results"])
     steps = {variant["name"]: [field["steps"] for field in variant["fields"]] for variant in result["results"]}
-    for name in names[4:]:
-        expect(steps[name] == steps["steps_points_photos"] and steps[name][0] == steps["time_points_photos"][0], steps)
+    timed = json.loads((out / "runs" / "time_points_photos.json").read_text())
+    for name in names:
+        expect(steps[name] == steps["steps_points_photos"] and steps[name][0] == timed["fields"][0]["steps"], steps)
     for variant in result["results"]:
         scores = [(score["divisor"], score["averaged"], score["width"]) for score in variant["scales"]]
         expect(scores == [(1, False, 160), (2, False, 80), (2, True, 80), (4, False, 40), (4, True, 40), (8, False, 20), (8, True, 20)], scores)

@@ -90,6 +90,7 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   metrics.peak_rss_bytes = 123456789012;
   metrics.parameters = 7;
   metrics.n_test = 3;
+  metrics.resected_holdout = true;
   metrics.warnings = {{"one", "do this"}, {"two", "do that"}};
   const TemporaryFolder folder;
   base::WriteFileAtomically(folder.path() / "metrics.json", MetricsJson(metrics));
@@ -116,6 +117,7 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   EXPECT_EQ(back.train_seconds, metrics.train_seconds);
   EXPECT_EQ(back.peak_rss_bytes, metrics.peak_rss_bytes);
   EXPECT_EQ(back.n_test, 3);
+  EXPECT_TRUE(back.resected_holdout);
   EXPECT_EQ(back.warnings, metrics.warnings);
   base::WriteFileAtomically(folder.path() / "metrics.json", "{\"psnr\": 1, \"rank");
   EXPECT_THROW(ReadMetrics(folder.path() / "metrics.json"), base::InputError);

@@ -193,6 +193,70 @@ TEST(MakeBlocks, AltitudeComesFromThePhotosAboveTheBlock) {
   EXPECT_NEAR(set.blocks[1].altitude_agl_m, 200.0, 1.0);
 }
 
+void MoveTo(const Eigen::Vector3d& eye, survey::Photo& photo) {
+  photo.cam_from_enu.translation = -(photo.cam_from_enu.rotation * eye);
+}
+
+// Held-out photos, every eighth of a flight, taken from 8 m above ground by another camera: no height, resolution, capacity or area follows from
+// them.
+TEST(MakeBlocks, HeldOutPhotosLeaveNoTrace) {
+  const survey::Survey given = FlySurvey({});
+  survey::Survey other = given;
+  other.cameras.insert(other.cameras.begin(), other.cameras[0].Resized(3200, 2400));
+  for (survey::Photo& photo : other.photos) {
+    photo.camera = photo.is_test ? 0 : 1;
+    if (photo.is_test) MoveTo({0.9 * photo.cam_from_enu.OriginInSource().x() + 15.0, 10.0, 20.0}, photo);
+  }
+  for (const char* request : {"2x3", "auto"}) {
+    PartitionOptions options = Request(request);
+    options.max_log2_table_size = 16;
+    options.altitudes.assign(std::string(request) == "2x3" ? 6 : 0, 5.0);  // voxels as fine as the lowest photos' pixels
+    const BlockSet a = MakeBlocks(given, options, 0), b = MakeBlocks(other, options, 0);
+    ASSERT_EQ(b.blocks.size(), a.blocks.size());
+    EXPECT_GT(a.blocks.size(), 1U);
+    for (size_t i = 0; i < a.blocks.size(); ++i) {
+      EXPECT_EQ(b.blocks[i].min_enu, a.blocks[i].min_enu);
+      EXPECT_EQ(b.blocks[i].max_enu, a.blocks[i].max_enu);
+      EXPECT_EQ(b.blocks[i].flown_agl_m, a.blocks[i].flown_agl_m);
+      EXPECT_EQ(b.blocks[i].finest_voxel_m, a.blocks[i].finest_voxel_m);
+      EXPECT_EQ(b.blocks[i].log2_table_size, a.blocks[i].log2_table_size);
+      EXPECT_EQ(b.blocks[i].photos, a.blocks[i].photos);
+      EXPECT_EQ(b.blocks[i].expected_pixels, a.blocks[i].expected_pixels);
+      EXPECT_EQ(b.blocks[i].cost, a.blocks[i].cost);
+    }
+  }
+}
+
+// With more held-out photos than others, the camera and the height of most photos would be theirs.
+TEST(MakeBlocks, TheCommonCameraAndHeightAreThoseOfTrainingPhotos) {
+  survey::Survey survey = FlySurvey({});
+  survey.cameras.push_back(survey.cameras[0].Resized(3200, 2400));
+  for (size_t i = 0; i < survey.photos.size(); ++i) {
+    survey::Photo& photo = survey.photos[i];
+    photo.is_test = i % 3 != 0;
+    if (!photo.is_test) continue;
+    photo.camera = 1;
+    MoveTo(photo.cam_from_enu.OriginInSource() + Eigen::Vector3d(0.0, 0.0, 200.0), photo);
+  }
+  const Block block = MakeBlocks(survey, Request("1x1"), 0).blocks[0];
+  EXPECT_NEAR(block.flown_agl_m, 100.0, 0.5);
+  EXPECT_NEAR(block.gsd_m, 100.0 / 700.0, 1e-3);
+  EXPECT_LE(block.photos.size(), 22U);
+  for (const int photo : block.photos) EXPECT_FALSE(survey.photos[static_cast<size_t>(photo)].is_test);
+}
+
+TEST(MakeBlocks, AtLeastTwoTrainingPhotosAreNeeded) {
+  survey::Survey survey = FlySurvey({});
+  for (size_t i = 1; i < survey.photos.size(); ++i) survey.photos[i].is_test = true;
+  survey.photos[0].is_test = false;
+  try {
+    MakeBlocks(survey, Request("1x1"), 0);
+    FAIL();
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("1 photo(s) with a pose that are not held out"), std::string::npos) << error.what();
+  }
+}
+
 TEST(MakeBlocks, AutoSplitsUntilTablesFit) {
   PartitionOptions options = Request("auto");
   const BlockSet one = MakeBlocks(FlySurvey({}), options, 200);

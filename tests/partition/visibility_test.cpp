@@ -21,13 +21,15 @@ TEST(FindVisibility, CountsTheShareOfANadirPhoto) {
   EXPECT_NEAR(FindVisibility(survey, boxes, 400)[0].training_pixels, 60000.0, 1.0);
 }
 
-TEST(FindVisibility, TestPhotosBelongButDoNotCount) {
+TEST(FindVisibility, HeldOutPhotosDoNotCount) {
   survey::Survey survey = FlySurvey({});
   survey.photos = {NadirPhoto({0, 0, 100}, "a.jpg"), NadirPhoto({1, 0, 100}, "b.jpg")};
   survey.photos[1].is_test = true;
-  const BoxVisibility views = FindVisibility(survey, {{{-5, -5, -1}, {5, 5, 0}}}, 0).front();
-  EXPECT_EQ(views.photos, (std::vector<int>{0, 1}));
-  EXPECT_EQ(views.n_training, 1);
+  const std::vector<Box> box = {{{-5, -5, -1}, {5, 5, 0}}};
+  const BoxVisibility views = FindVisibility(survey, box, 0).front();
+  EXPECT_EQ(views.photos, (std::vector<int>{0}));
+  survey.photos.pop_back();
+  EXPECT_EQ(views.training_pixels, FindVisibility(survey, box, 0).front().training_pixels);
 }
 
 TEST(FindVisibility, NotBehindTheCamera) {

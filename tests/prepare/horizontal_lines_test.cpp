@@ -67,6 +67,34 @@ TEST(HorizontalLines, HaveTheYawOfTheStripes) {
   }
 }
 
+// Held-out photos cannot be read: a look at one would be missed in the count. With 256 photos every eighth one is held out, just where an even choice
+// of 32 among all photos falls.
+TEST(HorizontalLines, AreSearchedInTrainingPhotosOnly) {
+  base::ThreadPool threads(2);
+  survey::Survey survey = StripedSurvey(0.0, 0.3, testing::TempDir());
+  survey.photos = std::vector<survey::Photo>(256, survey.photos[0]);
+  for (size_t i = 0; i < survey.photos.size(); i += 8) {
+    survey.photos[i].is_test = true;
+    survey.photos[i].name = "absent.png";
+  }
+  const FoundLines found = FindHorizontalLines(survey, threads);
+  EXPECT_EQ(found.photos, kLinePhotos);
+  EXPECT_GT(found.lines.size(), 4U * kLinePhotos);
+  std::erase_if(survey.photos, [](const survey::Photo& photo) { return photo.is_test; });
+  const FoundLines without = FindHorizontalLines(survey, threads);
+  ASSERT_EQ(found.lines.size(), without.lines.size());
+  for (size_t i = 0; i < found.lines.size(); ++i) EXPECT_EQ(found.lines[i].yaw_deg, without.lines[i].yaw_deg);
+}
+
+TEST(HorizontalLines, WithoutHeldOutPhotosAllMayBeChosen) {
+  base::ThreadPool threads(2);
+  survey::Survey survey = StripedSurvey(0.0, 0.3, testing::TempDir());
+  survey.photos = std::vector<survey::Photo>(5, survey.photos[0]);
+  EXPECT_EQ(FindHorizontalLines(survey, threads).photos, 5);
+  for (survey::Photo& photo : survey.photos) photo.is_test = true;
+  EXPECT_EQ(FindHorizontalLines(survey, threads).photos, 0);
+}
+
 TEST(HorizontalLines, UnreadablePhotosAreLeftOut) {
   base::ThreadPool threads(1);
   survey::Survey survey = StripedSurvey(0.0, 0.0, testing::TempDir());

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <atomic>
 #include <cmath>
 #include <fstream>
@@ -135,6 +136,21 @@ TEST_F(MakeSurfaceTest, AnInterruptedRunGoesOnWithTheSameResult) {
   MakeSurface(input, threads_);
   EXPECT_LT(rays_, all / 2) << "finished steps are made again";
   ExpectSameFiles(folder_ / "whole", folder_ / "stopped");
+}
+
+// The mesh is scored from their poses.
+TEST_F(MakeSurfaceTest, HeldOutPosesChangeNothing) {
+  for (size_t i = 0; i < survey_.photos.size(); i += 8) survey_.photos[i].is_test = true;
+  EXPECT_EQ(MakeSurface(Input("given"), threads_).photos, 42);
+  for (survey::Photo& photo : survey_.photos) {
+    if (!photo.is_test) continue;
+    const Eigen::Vector3d centre = photo.cam_from_enu.OriginInSource() + Eigen::Vector3d(5.0, -4.0, -20.0);
+    photo.cam_from_enu.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX())) * photo.cam_from_enu.rotation;
+    photo.cam_from_enu.translation = -(photo.cam_from_enu.rotation * centre);
+    photo.agl_m = 60.0;
+  }
+  MakeSurface(Input("moved"), threads_);
+  ExpectSameFiles(folder_ / "given", folder_ / "moved");
 }
 
 TEST_F(MakeSurfaceTest, ResultsOfOtherOptionsAreNotUsed) {

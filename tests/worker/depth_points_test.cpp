@@ -115,6 +115,34 @@ TEST_F(DepthPointsTest, HeldOutPhotosAndKeptPointsAreNeverAmongThem) {
   EXPECT_TRUE(Make().Empty()) << "of a survey of an older program";
 }
 
+// As in surveys of older programs, whose tracks have held-out photos.
+TEST_F(DepthPointsTest, AnglesAreThoseOfTrainingPhotos) {
+  Add({10.0, 0.0, -300.0}, 0.5F, {0, 1});  // 3.3 degrees
+  const std::vector<DepthPoint> alone = Make().points();
+  ASSERT_EQ(alone.size(), 2U);
+  survey_.points.clear();
+  survey_.tracks = {};
+  survey_.photos[2].is_test = true;
+  survey_.photos[2].cam_from_enu = NadirPhoto({200.0, 0.0, kHeight_m}, "").cam_from_enu;
+  source_ = std::make_unique<RaySource>(survey_, pixels_, response_);
+  Add({10.0, 0.0, -300.0}, 0.5F, {0, 1, 2});
+  const std::vector<DepthPoint> with_held_out = Make().points();
+  ASSERT_EQ(with_held_out.size(), 2U);
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(with_held_out[i].photo, alone[i].photo);
+    EXPECT_EQ(with_held_out[i].sigma_m, alone[i].sigma_m);
+  }
+  Add({10.0, 0.0, -600.0}, 0.5F, {0, 1, 2});  // 1.8 degrees between the training photos
+  Add({10.0, 0.0, 0.0}, 0.5F, {1, 2});        // one training photo
+  EXPECT_EQ(Make().points().size(), 2U);
+}
+
+TEST_F(DepthPointsTest, HeldOutPhotosDoNotCountTowardsTheLimit) {
+  survey_.photos[2].is_test = true;
+  for (int i = 0; i < 100; ++i) Add({10.0, 0.05 * i, 0.0}, 0.5F, {0, 1, 2});
+  EXPECT_EQ(Make(200).points().size(), 200U);
+}
+
 TEST_F(DepthPointsTest, AllAreEquallyLikelyAndTheSameNumbersGiveTheSameOnes) {
   for (int i = 0; i < 10; ++i) Add({10.0, i - 5.0, 0.0}, 0.5F, {0, 1});
   const DepthPoints depth = Make();

@@ -1,6 +1,9 @@
 // Trains real fields on a small synthetic survey: a checkered ground with a box on it, seen straight down and from the side.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include "core/base/errors.h"
@@ -8,6 +11,7 @@
 #include "tests/worker/small_survey.h"
 #include "worker/block_session.h"
 #include "worker/starting_occupancy.h"
+#include "worker/surface_interval.h"
 #include "worker/trainer.h"
 
 namespace skyquilt::worker {
@@ -73,6 +77,48 @@ TEST_F(TrainBlockTest, BlockWithoutPhotosFailsWithItsReason) {
   const TrainResult result = TrainBlock(Job("far.h5", 10), far, folder_ / "context.h5", threads, {});
   EXPECT_FALSE(result.ok);
   EXPECT_NE(result.reason.find("r0c0"), std::string::npos);
+}
+
+// Photos 0 and 8 are held out. Other pixels in them, other poses and other observations by them change no field, nor what the context tells blocks.
+TEST_F(TrainBlockTest, HeldOutPhotosLeaveNoTrace) {
+  base::ThreadPool threads(2);
+  // The fields of context and block.
+  const auto train = [&](bool other) {
+    fs::remove(folder_ / "pixels.bin");
+    Photograph([&](int photo, int, double value, double) { return other && photo % 8 == 0 ? 1.0 - value : value; });
+    for (double x = -12.0; x < 12.5; x += 1.5) {
+      for (double y = -9.0; y < 9.5; y += 1.5) {
+        survey_.points.push_back({{x, y, 0.0}, {}, 0.5F, 4});
+        survey_.tracks.Add(other ? std::vector<int32_t>{5, 6, 9} : std::vector<int32_t>{0, 5, 6, 8, 9});
+      }
+    }
+    if (other) {
+      for (const size_t i : {0U, 8U}) survey_.photos[i].cam_from_enu = NadirPhoto({3.0, -4.0, 15.0}, "").cam_from_enu;
+    }
+    const std::string name = other ? "other_" : "given_";
+    TrainContext(Job(name + "context.h5", 30), Box(20.0, 0.0), threads, {});
+    TrainJob job = Job(name + "block.h5", 60);
+    job.priors = {};
+    job.priors.planar = 0.01;  // needs segments
+    job.priors.from = job.priors.until = 0.0;
+    EXPECT_TRUE(TrainBlock(job, Box(12.0, 1.0), folder_ / (name + "context.h5"), threads, {}).ok);
+    return std::vector<std::string>{Bytes(name + "context.h5"), Bytes(name + "block.h5")};
+  };
+  const std::vector<std::string> given_fields = train(false);
+  EXPECT_EQ(train(true), given_fields);
+
+  const auto intervals = [&](const std::string& name) { return checkpoint::ArchiveReader(folder_ / name).Floats("surface_intervals"); };
+  const std::vector<float> given = intervals("given_context.h5"), other = intervals("other_context.h5");
+  ASSERT_EQ(given.size(), survey_.photos.size() * kTileRows * kTileColumns * 3);
+  ASSERT_EQ(other.size(), given.size());
+  EXPECT_EQ(std::memcmp(given.data(), other.data(), given.size() * sizeof(float)), 0);
+  const auto any_known = [&](int photo) {
+    const auto begin = given.begin() + static_cast<std::ptrdiff_t>(3 * BandIndex(photo, 0, 0));
+    return std::any_of(begin, begin + 3 * kTileRows * kTileColumns, [](float value) { return std::isfinite(value); });
+  };
+  EXPECT_FALSE(any_known(0)) << "nothing is rendered from a held-out camera";
+  EXPECT_FALSE(any_known(8));
+  EXPECT_TRUE(any_known(5));
 }
 
 TEST(TrainOptions, RefusesImpossibleValuesByName) {

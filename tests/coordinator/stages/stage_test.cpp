@@ -65,6 +65,20 @@ TEST_F(StageFiles, AnotherVerticalSystemIsANewInput) {
   }
 }
 
+// Surveys of programs without the option stay valid as long as it has its default; another value is an input that has changed.
+TEST_F(StageFiles, PosesOfHeldOutPhotosAreAnInputWhereTheyAreNotTheDefault) {
+  const auto comm = comm::ConnectAlone();
+  Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}, .photos = folder_.path()};
+  const Stage& stage = StageNamed("prepare");
+  const FlatOptions options = StageOptions(stage, pipeline.settings), inputs = stage.inputs(pipeline);
+  EXPECT_TRUE(options.contains("prepare.holdout"));
+  EXPECT_FALSE(options.contains("prepare.holdout_poses") || inputs.contains("prepare.holdout_poses"));
+  SaveStamp(project_, {.stage = stage.name, .state = StageStamp::kDone, .options = options, .inputs = inputs});
+  EXPECT_EQ(CheckStage(project_, stage.name, StageOptions(stage, pipeline.settings), stage.inputs(pipeline), {}), Freshness::kUpToDate);
+  pipeline.settings.prepare.holdout_poses = "resected";
+  EXPECT_EQ(CheckStage(project_, stage.name, StageOptions(stage, pipeline.settings), stage.inputs(pipeline), {}), Freshness::kInputsChanged);
+}
+
 TEST(Stages, HaveUniqueNamesAndNeedOnlyEarlierOnes) {
   std::set<std::string> names;
   for (const Stage& stage : Stages()) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/image/srgb.h"
 
@@ -18,7 +19,7 @@ TEST(ExifExposure, FollowsTheFormula) {
 }
 
 TEST(GainsFromExif, AreRelativeToTheMedian) {
-  const PhotoGains gains = GainsFromExif({0.01, 0.02, 0.04, std::nullopt});
+  const PhotoGains gains = GainsFromExif({0.01, 0.02, 0.04, std::nullopt}, std::vector<bool>(4, true));
   EXPECT_DOUBLE_EQ(gains.reference_exposure, 0.02);
   EXPECT_FLOAT_EQ(gains.gain[0], 0.5F);
   EXPECT_FLOAT_EQ(gains.gain[2], 2.0F);
@@ -26,22 +27,38 @@ TEST(GainsFromExif, AreRelativeToTheMedian) {
 }
 
 TEST(GainsFromExif, TellsPhotosWithoutTags) {
-  const PhotoGains gains = GainsFromExif({0.01, std::nullopt, 0.02});
+  const PhotoGains gains = GainsFromExif({0.01, std::nullopt, 0.02}, std::vector<bool>(3, true));
   EXPECT_EQ(gains.known, (std::vector<bool>{true, false, true}));
   EXPECT_EQ(gains.gain[1], 1.0F);
 }
 
 TEST(GainsFromExif, UntaggedSurveysKeepTheirColours) {
-  const PhotoGains gains = GainsFromExif({std::nullopt, std::nullopt});
+  const PhotoGains gains = GainsFromExif({std::nullopt, std::nullopt}, {true, true});
   EXPECT_EQ(gains.reference_exposure, 0.0);
   for (const float g : gains.gain) EXPECT_EQ(g, 1.0F);
-  EXPECT_TRUE(GainsFromExif({}).gain.empty());
+  EXPECT_TRUE(GainsFromExif({}, {}).gain.empty());
 }
 
 TEST(GainsFromExif, LimitsImpossibleTags) {
-  const PhotoGains gains = GainsFromExif({1e-9, 0.01, 0.01, 1e9});
+  const PhotoGains gains = GainsFromExif({1e-9, 0.01, 0.01, 1e9}, std::vector<bool>(4, true));
   EXPECT_FLOAT_EQ(gains.gain[0], 1.0F / 1024.0F);
   EXPECT_FLOAT_EQ(gains.gain[3], 1024.0F);
+}
+
+TEST(GainsFromExif, TheMedianIsThatOfTrainingPhotos) {
+  const std::vector<bool> in_training = {true, false, true, false, true, false, false};
+  const PhotoGains gains = GainsFromExif({0.01, 0.08, 0.02, 0.08, 0.04, std::nullopt, 0.08}, in_training);
+  EXPECT_DOUBLE_EQ(gains.reference_exposure, 0.02);
+  EXPECT_FLOAT_EQ(gains.gain[0], 0.5F);
+  EXPECT_FLOAT_EQ(gains.gain[1], 4.0F) << "a held-out photo's gain is relative to it, too";
+  EXPECT_EQ(gains.known, (std::vector<bool>{true, true, true, true, true, false, true}));
+}
+
+TEST(GainsFromExif, TagsOfHeldOutPhotosAloneSayNothing) {
+  const PhotoGains gains = GainsFromExif({std::nullopt, 0.08, std::nullopt}, {true, false, true});
+  EXPECT_EQ(gains.reference_exposure, 0.0);
+  EXPECT_EQ(gains.gain, (std::vector<float>{1.0F, 1.0F, 1.0F}));
+  EXPECT_EQ(gains.known, (std::vector<bool>{false, false, false}));
 }
 
 TEST(Expose, SlopesMatchFiniteDifferencesOverTenStops) {

@@ -137,6 +137,20 @@ TEST(Survey, KeepsWhatItsHeightsAreAbove) {
   EXPECT_EQ(LoadSurvey(folder.path()).height_reference, geo::HeightReference::kUnknown) << "of an older program";
 }
 
+TEST(Survey, KeepsWhetherHeldOutPhotosWereResected) {
+  const TemporaryFolder folder;
+  Survey survey = SmallSurvey();
+  survey.resected_holdout = true;
+  SaveSurvey(survey, folder.path());
+  EXPECT_TRUE(LoadSurvey(folder.path()).resected_holdout);
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
+  EXPECT_EQ(json.at("holdout_poses"), "resected");
+  ASSERT_EQ(json.erase("holdout_poses"), 1U);
+  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
+  EXPECT_FALSE(LoadSurvey(folder.path()).resected_holdout) << "of an older program";
+  ExpectRefused("'guessed'", [](nlohmann::json& edited) { edited["holdout_poses"] = "guessed"; });
+}
+
 TEST(Survey, ATruthWithoutNormalsAndClassesIsLoaded) {
   const TemporaryFolder folder;
   SaveSurvey(SmallSurvey(), folder.path());

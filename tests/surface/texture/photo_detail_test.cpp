@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "core/base/progress.h"
@@ -35,7 +36,7 @@ class PhotoDetail : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  // The red values after adding the detail of a grey photo.
+  // The red values after adding the detail of a grey photo. All photos of the survey have its pixels, and texels take turns among the views.
   std::vector<float> Add(const std::function<int(int x, int y)>& grey, double share, const std::function<bool(int x, int y)>& masked = nullptr) {
     image::Image8 photo(kPhotoSize, kPhotoSize, 3);
     image::Image8 mask(kPhotoSize, kPhotoSize, 1, 255);
@@ -48,12 +49,15 @@ class PhotoDetail : public ::testing::Test {
     const std::string name = std::to_string(count_++);
     image::SavePng(photo, folder_ / (name + ".png"));
     image::SavePng(mask, folder_ / (name + "_mask.png"));
-    const auto cache = image::PixelCache::Open(folder_ / (name + ".bin"), {{folder_ / (name + ".png"), folder_ / (name + "_mask.png")}}, 0, threads_);
+    const std::vector<image::PixelSource> sources(survey_.photos.size(), {folder_ / (name + ".png"), folder_ / (name + "_mask.png")});
+    const auto cache = image::PixelCache::Open(folder_ / (name + ".bin"), sources, 0, threads_);
     TexelColors colors;
     colors.rgb_srgb.assign(texels_.texel.size(), {0.5F, 0.5F, 0.5F});
     colors.known.assign(texels_.texel.size(), 1);
-    const std::vector<int32_t> chosen(texels_.texel.size(), 0);
-    const std::vector<DepthView> views = {view_.Get()};
+    std::vector<DepthView> views = {view_.Get()};
+    for (const testing::FilledView& view : more_views_) views.push_back(view.Get());
+    std::vector<int32_t> chosen;
+    for (size_t i = 0; i < texels_.texel.size(); ++i) chosen.push_back(static_cast<int32_t>(i % views.size()));
     AddPhotoDetail(geometry_, texels_, chosen, views, survey_, cache, share, 0.05, 0.3, threads_, &colors);
     std::vector<float> red;
     for (const auto& rgb : colors.rgb_srgb) red.push_back(rgb[0]);
@@ -73,6 +77,7 @@ class PhotoDetail : public ::testing::Test {
   TileGeometry geometry_;
   AtlasTexels texels_;
   testing::FilledView view_;
+  std::vector<testing::FilledView> more_views_;
   survey::Survey survey_;
 };
 
@@ -145,6 +150,23 @@ TEST_F(PhotoDetail, NeedsATrainingPhotoThatSeesThePlace) {
   view_.pose.photo = 0;
   std::fill(view_.depth_m.begin(), view_.depth_m.end(), 5.0F);  // something is in between
   EXPECT_TRUE(is_unchanged());
+}
+
+TEST_F(PhotoDetail, ReadsAllPhotosButTheHeldOutOnes) {
+  survey_.photos.push_back(survey_.photos[0]);
+  more_views_ = {view_};
+  more_views_[0].pose.photo = 1;
+  const auto stripes = [](int x, int) { return x % 4 < 2 ? 50 : 200; };
+  // Whether texels of each of the two photos have changed.
+  const auto changed = [&] {
+    const std::vector<float> values = Add(stripes, 1.0);
+    std::array<bool, 2> any = {};
+    for (size_t i = 0; i < values.size(); ++i) any[i % 2] = any[i % 2] || values[i] != 0.5F;
+    return any;
+  };
+  EXPECT_EQ(changed(), (std::array<bool, 2>{true, true}));
+  survey_.photos[1].is_test = true;
+  EXPECT_EQ(changed(), (std::array<bool, 2>{true, false}));
 }
 
 TEST_F(PhotoDetail, NothingIsAddedAtFlatAngles) {

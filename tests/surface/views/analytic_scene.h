@@ -87,6 +87,17 @@ struct AnalyticSurvey {
     photo.is_test = is_test;
     survey.photos.push_back(photo);
   }
+
+  // Of every held-out photo: by metres, and by some degrees.
+  void MoveHeldOut() {
+    for (survey::Photo& photo : survey.photos) {
+      if (!photo.is_test) continue;
+      const Eigen::Vector3d centre = photo.cam_from_enu.OriginInSource() + Eigen::Vector3d(7.0, -4.0, -12.0);
+      photo.cam_from_enu.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(0.15, Eigen::Vector3d::UnitY())) * photo.cam_from_enu.rotation;
+      photo.cam_from_enu.translation = -(photo.cam_from_enu.rotation * centre);
+      photo.agl_m -= 12.0;
+    }
+  }
 };
 
 }  // namespace skyquilt::surface

@@ -107,18 +107,28 @@ TEST(PlacesOfPhotos, NeverFinerThanThePhotoNorTooSmallNorTooLarge) {
   EXPECT_GT(static_cast<double>(pose.width) * pose.height, 3.9e6);
 }
 
-TEST(PlacesOfPhotos, HeldOutPlacesAreHalfAsWideAndBelongToNoPhoto) {
+TEST(PlacesOfPhotos, HeldOutPhotosHaveNone) {
   TemporaryFolder folder;
   AnalyticSurvey s(folder.path());
   s.AddPhoto(0, 0, true);
   s.AddPhoto(10, 0);
   const PhotoPlaces places = PlacesOfPhotos(s.input);
   ASSERT_EQ(places.training.size(), 1U);
-  ASSERT_EQ(places.held_out.size(), 1U);
   EXPECT_EQ(places.training[0].photo, 1);
-  EXPECT_EQ(places.held_out[0].photo, -1);
-  EXPECT_EQ(places.held_out[0].width, 50);
-  EXPECT_NEAR((places.held_out[0].Centre() - Eigen::Vector3d(0, 0, 60)).norm(), 0.0, 1e-9);
+  s.survey.photos[0].is_test = false;
+  EXPECT_EQ(PlacesOfPhotos(s.input).training.size(), 2U);
+}
+
+TEST(PlacesOfPhotos, HeightsOfHeldOutPhotosDoNotStandInForUnknownOnes) {
+  TemporaryFolder folder;
+  AnalyticSurvey s(folder.path());
+  for (const double x : {0.0, 10.0, 20.0, 30.0}) s.AddPhoto(x, 0, x > 15.0);
+  s.survey.photos[0].agl_m = std::numeric_limits<double>::quiet_NaN();
+  s.survey.photos[1].agl_m = 30.0;
+  const PhotoPlaces places = PlacesOfPhotos(s.input);
+  ASSERT_EQ(places.training.size(), 2U);
+  EXPECT_NEAR(places.training[0].focal_px, 50.0, 1e-9);  // at 30 m, as training photos are, not at the median of all, 60 m
+  EXPECT_NEAR(places.agl_m, 30.0, 1e-9);
 }
 
 }  // namespace

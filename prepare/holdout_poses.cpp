@@ -1,0 +1,195 @@
+#include "prepare/holdout_poses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/base/progress.h"
+#include "core/geo/enu_frame.h"
+#include "prepare/control/control_points.h"
+#include "prepare/control_fit/control_adjustment.h"
+#include "prepare/control_fit/control_block.h"
+#include "prepare/control_fit/fit_control.h"
+#include "prepare/control_fit/update_model.h"
+#include "prepare/poses/focal_check.h"
+#include "prepare/poses/loose_photos.h"
+#include "prepare/seeded/resect.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+// Photos that look straight down hardly determine the focal length. What the search for poses found, by tags too, must not be lost here.
+constexpr double kFocalSigma = 0.01;  // relative
+
+ControlBlock BlockWithoutControl(survey::ColmapModel& model, const survey::ColmapObservations& observations) {
+  const std::vector<Station> no_stations;
+  const std::vector<size_t> no_images;
+  const ControlPoints no_points;
+  return MakeControlBlock(
+      {.model = model, .observations = observations, .stations = no_stations, .image_of_station = no_images, .control = no_points});
+}
+
+// Where photos are holds the frame of an adjustment without tags, so loosely (the size of the survey) that it bends nothing.
+void HoldFrame(Block& block) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const BlockPhoto& photo : block.photos) middle += photo.centre / static_cast<double>(block.photos.size());
+  double size = 0.0;
+  for (const BlockPhoto& photo : block.photos) size = std::max(size, (photo.centre - middle).norm());
+  if (!(size > 0.0)) return;
+  for (BlockPhoto& photo : block.photos) {
+    photo.gps = photo.centre;
+    photo.gps_sigma = Eigen::Vector3d::Constant(size);
+  }
+}
+
+// How many photos only the removed ones tie to the rest.
+size_t CountNewlyLoose(const survey::ColmapModel& before, const survey::ColmapModel& after) {
+  const std::vector<std::string> were_loose = LoosePhotos(before), are_loose = LoosePhotos(after);
+  std::vector<std::string> newly;
+  std::set_difference(are_loose.begin(), are_loose.end(), were_loose.begin(), were_loose.end(), std::back_inserter(newly));
+  return newly.size();
+}
+
+// Why the model cannot be adjusted without the others; empty: it can.
+std::string WhyNot(const survey::ColmapModel& given, const survey::ColmapModel& rest, const ControlBlock& made) {
+  if (!made.known_lenses) return "the camera model has coefficients that the adjustment does not know";
+  if (made.n_ties < kLeastTies) {
+    return fmt::format("the model has {} points with observations in two of the other photos, {} are needed", made.n_ties, kLeastTies);
+  }
+  const size_t loose = CountNewlyLoose(given, rest);
+  return loose > 0 ? fmt::format("without them, {} of the other photos have nearly no points in common with the rest", loose) : "";
+}
+
+// By the order of names where times are not known.
+size_t NearestInTime(const std::vector<Station>& stations, size_t station, const std::vector<size_t>& among) {
+  const auto distance = [&](size_t i) {
+    const double in_list = std::abs(static_cast<double>(i) - static_cast<double>(station));
+    const bool timed = stations[station].time_s && stations[i].time_s;
+    return std::pair(timed ? std::abs(*stations[i].time_s - *stations[station].time_s) : std::numeric_limits<double>::infinity(), in_list);
+  };
+  return *std::min_element(among.begin(), among.end(), [&](size_t a, size_t b) { return distance(a) < distance(b); });
+}
+
+// The camera less its tag, corrected as another one's.
+Eigen::Vector3d ResidualAs(const Station& station, size_t other, const Georeference& georeference) {
+  const geo::EnuFrame frame(georeference.origin);
+  geo::Geodetic tag = *station.gps;
+  const bool has_height = std::isfinite(tag.height_m) && std::isfinite(georeference.residual_m[other].z());
+  if (!has_height) tag.height_m = georeference.origin.height_m;
+  Eigen::Vector3d residual = georeference.enu_from_model * station.cam_from_model.OriginInSource() - frame.EnuFromGeodetic(tag);
+  residual -= georeference.correction_m[other];
+  if (!has_height) residual.z() = std::numeric_limits<double>::quiet_NaN();
+  return residual;
+}
+
+}  // namespace
+
+std::optional<WithheldPhotos> WithholdPhotos(const std::unordered_set<uint32_t>& withheld, survey::ColmapObservations observations,
+                                             survey::ColmapModel& model, base::ThreadPool& threads, std::string* reason) {
+  const auto is_withheld = [&](const survey::ColmapImage& image) { return withheld.contains(image.id); };
+  survey::ColmapModel rest = model;
+  RemovePhotos(is_withheld, rest);
+  ControlBlock made = BlockWithoutControl(rest, observations);
+  *reason = WhyNot(model, rest, made);
+  if (!reason->empty()) return std::nullopt;
+  HoldFrame(made.block);
+  for (BlockLens& lens : made.block.lenses) lens.focal_sigma = kFocalSigma;
+  const std::vector<BlockPhoto> before = made.block.photos;
+  base::Progress progress("adjust without held-out photos", kUsualIterations, "iterations");
+  const bool adjusted = AdjustToFeatures(made, threads, [&] { progress.Advance(); });
+  progress.Finish();
+  if (!adjusted) {
+    *reason = "the adjustment without them found no solution";
+    return std::nullopt;
+  }
+  UpdateModel(made, {}, before, true, rest);
+  if (const auto far = FindFarFocal(rest, model.cameras)) {
+    *reason = fmt::format("without them, the adjustment makes a focal length of {:.0f} px out of {:.0f} px", far->found_px, far->tagged_px);
+    return std::nullopt;
+  }
+  std::vector<survey::ColmapPoint> placed;
+  for (size_t t = 0; t < made.n_ties; ++t) {
+    if (made.block.has_point[t] != 0) placed.push_back(std::move(rest.points[made.point_of_tie[t]]));
+  }
+  rest.points = std::move(placed);
+  WithheldPhotos photos{.images = {}, .observations = std::move(observations), .tie_sigma = made.tie_sigma};
+  std::copy_if(model.images.begin(), model.images.end(), std::back_inserter(photos.images), is_withheld);
+  base::LogInfo(
+      "{} held-out photos taken out of the model, {} others adjusted to their own features (sigma {:.2f} px at 1600 px); {} of {} points stay",
+      photos.images.size(), rest.images.size(), photos.tie_sigma, rest.points.size(), model.points.size());
+  model = std::move(rest);
+  return photos;
+}
+
+std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::ColmapModel& model) {
+  // Features of photos that did not help to place the points fit them a little less well.
+  constexpr double kLeastThreshold = 1.5;  // pixels of a photo of 1600 pixels width
+  const size_t first = model.images.size();
+  model.images.insert(model.images.end(), photos.images.begin(), photos.images.end());
+  ControlBlock made = BlockWithoutControl(model, photos.observations);
+  made.SetAccuracy(photos.tie_sigma, made.mark_sigma_px);
+  const double threshold = std::max(kTieThreshold, kLeastThreshold / photos.tie_sigma);
+  Block& block = made.block;
+  for (size_t i = first; i < block.photos.size(); ++i) block.photos[i].placed = false;
+  ResectPhotos(block, threshold);
+
+  const std::vector<std::vector<uint32_t>> entries = EntriesOfPhotos(block);
+  const std::vector<uint32_t> track_of = TrackOfEntries(block.tracks);
+  std::vector<survey::ColmapImage> resected;
+  std::vector<std::string> lost;
+  for (size_t i = first; i < block.photos.size(); ++i) {
+    survey::ColmapImage& image = model.images[i];
+    const BlockPhoto& photo = block.photos[i];
+    if (!photo.placed || RefineByPoints(block, static_cast<uint32_t>(i), entries[i], track_of, threshold) < kLeastObservations) {
+      lost.push_back(image.name);
+      continue;
+    }
+    image.cam_from_world = {photo.cam_from_enu, -(photo.cam_from_enu * photo.centre)};
+    for (const uint32_t e : entries[i]) {
+      if (block.agrees[e] != 0) model.points[made.point_of_tie[track_of[e]]].image_ids.push_back(image.id);
+    }
+    resected.push_back(std::move(image));
+  }
+  model.images.resize(first);
+  model.images.insert(model.images.end(), resected.begin(), resected.end());
+  base::LogInfo("{} of {} held-out photos placed by the points of the others", resected.size(), photos.images.size());
+  return lost;
+}
+
+void AddResected(const std::vector<Station>& stations, const std::vector<char>& resected, Georeference& georeference) {
+  SKYQUILT_CHECK(stations.size() == resected.size(), "one flag per station");
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const size_t n = stations.size();
+  Georeference all = georeference;
+  all.flight.assign(n, 0);
+  all.correction_m.assign(n, Eigen::Vector3d::Zero());
+  all.residual_m.assign(n, Eigen::Vector3d::Constant(kNan));
+  all.inlier.assign(n, 0);
+  std::vector<size_t> others, tagged;
+  for (size_t i = 0; i < n; ++i) {
+    if (resected[i] != 0) continue;
+    const size_t k = others.size();
+    SKYQUILT_CHECK(k < georeference.flight.size(), "one entry per station with a part in the geo-reference");
+    all.flight[i] = georeference.flight[k];
+    all.correction_m[i] = georeference.correction_m[k];
+    all.residual_m[i] = georeference.residual_m[k];
+    all.inlier[i] = georeference.inlier[k];
+    others.push_back(i);
+    if (stations[i].gps) tagged.push_back(i);
+  }
+  for (size_t i = 0; i < n; ++i) {
+    if (resected[i] == 0) continue;
+    all.flight[i] = all.flight[NearestInTime(stations, i, others)];
+    if (!georeference.ok || !stations[i].gps || tagged.empty()) continue;
+    const size_t like = NearestInTime(stations, i, tagged);
+    all.correction_m[i] = all.correction_m[like];
+    all.residual_m[i] = ResidualAs(stations[i], like, all);
+  }
+  georeference = std::move(all);
+}
+
+}  // namespace skyquilt::prepare

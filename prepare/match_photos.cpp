@@ -1,0 +1,108 @@
+#include "prepare/match_photos.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/base/text.h"
+
+namespace skyquilt::prepare {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string BaseNameKey(const std::string& name) {
+  return base::LowerCase(fs::path(name).filename().string());
+}
+
+class PhotoFinder {
+ public:
+  PhotoFinder(const std::vector<PhotoFile>& files, const survey::ColmapModel& model) {
+    for (size_t i = 0; i < files.size(); ++i) {
+      by_name_[files[i].name] = i;
+      by_base_name_[BaseNameKey(files[i].name)].push_back(i);
+    }
+    for (const survey::ColmapImage& image : model.images) ++uses_[BaseNameKey(image.name)];
+  }
+  std::optional<size_t> Find(const std::string& name) const {
+    if (const auto exact = by_name_.find(name); exact != by_name_.end()) return exact->second;
+    const std::string key = BaseNameKey(name);
+    const auto same = by_base_name_.find(key);
+    if (same == by_base_name_.end() || same->second.size() != 1 || uses_.at(key) != 1) return std::nullopt;
+    return same->second.front();
+  }
+
+ private:
+  std::map<std::string, size_t> by_name_;
+  std::map<std::string, std::vector<size_t>> by_base_name_;
+  std::map<std::string, int> uses_;
+};
+
+}  // namespace
+
+FileOfImage MatchPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files, const fs::path& model_folder,
+                        const fs::path& photo_root) {
+  const PhotoFinder finder(files, model);
+  // Names of other programs may lack the folder, so that several images seem to be one photo.
+  std::map<size_t, int> claims;
+  for (const survey::ColmapImage& image : model.images) {
+    if (const std::optional<size_t> file = finder.Find(image.name)) ++claims[*file];
+  }
+  FileOfImage registered;
+  std::vector<std::string> missing;
+  std::vector<std::string> other_size;
+  std::string size_example;
+  for (const survey::ColmapImage& image : model.images) {
+    const std::optional<size_t> file = finder.Find(image.name);
+    if (!file || claims[*file] > 1) {
+      missing.push_back(image.name);
+      continue;
+    }
+    const camera::Camera& camera = model.cameras.at(image.camera_id);
+    const PhotoFile& photo = files[*file];
+    if (camera.width != photo.width || camera.height != photo.height) {
+      other_size.push_back(photo.name);
+      size_example = photo.name + " is " + std::to_string(photo.width) + "x" + std::to_string(photo.height) + ", its camera in the model " +
+                     std::to_string(camera.width) + "x" + std::to_string(camera.height) + " pixels";
+      continue;
+    }
+    registered.emplace(image.id, *file);
+  }
+  if (!missing.empty()) {
+    base::LogWarning(
+        "{}: {} of {} photos of the model are left out, because they are not in {}, cannot be read or have a name that several share: {}",
+        model_folder.string(), missing.size(), model.images.size(), photo_root.string(), FewNames(missing));
+  }
+  if (!other_size.empty()) {
+    base::LogWarning("{} photos are left out, because their size is not that of their camera in the model: {} ({})", other_size.size(),
+                     FewNames(other_size), size_example);
+  }
+  if (registered.size() < kMinPhotos) {
+    std::string found =
+        "only " + std::to_string(registered.size()) + " photos of the model can be used, at least " + std::to_string(kMinPhotos) + " are needed";
+    if (!missing.empty()) found += "; " + std::to_string(missing.size()) + " are not in " + photo_root.string() + " (" + FewNames(missing) + ")";
+    if (!other_size.empty()) found += "; " + std::to_string(other_size.size()) + " have another size: " + size_example;
+    throw base::InputError(
+        model_folder, found,
+        other_size.empty() ? "Give the folder with the photos the model was made from" : "Give the photos in the size the model was made from");
+  }
+  return registered;
+}
+
+std::vector<Registered> RegisteredPhotos(const survey::ColmapModel& model, const FileOfImage& file_of_image) {
+  std::vector<Registered> registered;
+  for (const survey::ColmapImage& image : model.images) {
+    if (const auto file = file_of_image.find(image.id); file != file_of_image.end()) registered.push_back({&image, file->second});
+  }
+  // Files are in name order.
+  std::sort(registered.begin(), registered.end(), [](const Registered& a, const Registered& b) { return a.file < b.file; });
+  return registered;
+}
+
+std::string FewNames(const std::vector<std::string>& names) {
+  return base::Join(std::span(names).first(std::min<size_t>(names.size(), 5))) + (names.size() > 5 ? ", ..." : "");
+}
+
+}  // namespace skyquilt::prepare

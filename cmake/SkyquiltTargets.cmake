@@ -19,20 +19,27 @@ if(SKYQUILT_SANITIZE)
   target_link_options(skyquilt_warnings INTERFACE -fsanitize=${SKYQUILT_SANITIZE})
 endif()
 
-# Headers that most files read, parsed once instead of in every batch: one set for the program, a larger one for tests. All targets share these two,
-# so they are compiled with the same macros. Each header here costs every batch time, too, which pays for those that most of them use.
+# Headers that most files read, parsed once instead of in every batch: one set for the program, a larger one for tests, and that once more for
+# optimised tests. All targets share these, so they are compiled with the same macros. Each header here costs every batch time, too, which pays for those that most of them use.
 if(SKYQUILT_PCH)
   set(header_macros $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
   set(program_headers <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional> <set> <span> <stdexcept>
     <string> <string_view> <unordered_map> <utility> <vector> <Eigen/Core> <Eigen/Geometry> <fmt/core.h>)
 endif()
 
-# Settings of all our targets.
+# Tests run once, on small scenes, with libraries that are optimised: without optimisation they take half the time to compile.
+set(test_level -O0)
+
+# Settings of all our targets: skyquilt_target(name), skyquilt_target(name -O0) for another optimisation of release builds than -O2.
 function(skyquilt_target name)
+  set(level -O2)
+  if(ARGC GREATER 1)
+    set(level ${ARGV1})
+  endif()
   target_compile_features(${name} PUBLIC cxx_std_20)
   set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
-  # After CMake's -O3 of release builds, so that -O2 takes effect.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O2>
+  # After CMake's -O3 of release builds, so that this one takes effect.
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${level}>
     # g++ in ISO mode rounds between a multiplication and an addition; clang must be told, so that results do not depend on what a processor can fuse.
     $<$<CXX_COMPILER_ID:Clang>:-ffp-contract=off>
     # Else every new parse of the headers looks like a change to ccache.
@@ -41,7 +48,7 @@ function(skyquilt_target name)
   target_link_libraries(${name} PRIVATE skyquilt_warnings)
 endfunction()
 
-# Lets a target use the parsed headers of `kind`, program or tests; the first one of a kind parses them.
+# Lets a target use the parsed headers of `kind`: program, tests or optimised_tests; the first one of a kind parses them.
 function(skyquilt_use_parsed_headers name kind)
   if(NOT SKYQUILT_PCH)
     return()
@@ -50,11 +57,16 @@ function(skyquilt_use_parsed_headers name kind)
   if(NOT TARGET ${owner})
     file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/${owner}.cpp CONTENT "")
     add_library(${owner} OBJECT ${PROJECT_BINARY_DIR}/${owner}.cpp)
-    skyquilt_target(${owner})
+    # Parsed headers serve only files with the same optimisation.
+    set(level)
+    if(kind STREQUAL tests)
+      set(level ${test_level})
+    endif()
+    skyquilt_target(${owner} ${level})
     target_compile_definitions(${owner} PRIVATE ${header_macros})
     target_link_libraries(${owner} PRIVATE Eigen3::Eigen fmt::fmt Threads::Threads)
     target_precompile_headers(${owner} PRIVATE ${program_headers})
-    if(kind STREQUAL tests)
+    if(NOT kind STREQUAL program)
       target_link_libraries(${owner} PRIVATE GTest::gtest rapidcheck rapidcheck_gtest)
       target_precompile_headers(${owner} PRIVATE <gtest/gtest.h> <rapidcheck/gtest.h>)
     endif()
@@ -101,14 +113,21 @@ function(skyquilt_timeout seconds)
   set_tests_properties(${ARGN} PROPERTIES TIMEOUT ${seconds})
 endfunction()
 
+# OPTIMISED: for tests whose own code computes for longer than optimising it takes.
 function(skyquilt_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "OPTIMISED" "TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
   skyquilt_json_last(sources ${ARG_SOURCES})
   add_executable(test_${name} ${sources})
-  skyquilt_target(test_${name})
+  set(level ${test_level})
+  set(kind tests)
+  if(ARG_OPTIMISED)
+    set(level)
+    set(kind optimised_tests)
+  endif()
+  skyquilt_target(test_${name} ${level})
   set_target_properties(test_${name} PROPERTIES UNITY_BUILD ${SKYQUILT_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   target_link_libraries(test_${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
-  skyquilt_use_parsed_headers(test_${name} tests)
+  skyquilt_use_parsed_headers(test_${name} ${kind})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)
   endif()

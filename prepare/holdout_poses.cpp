@@ -162,12 +162,12 @@ std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::Co
 
 void AddResected(const std::vector<Station>& stations, const std::vector<char>& resected, Georeference& georeference) {
   SKYQUILT_CHECK(stations.size() == resected.size(), "one flag per station");
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const size_t n = stations.size();
   Georeference all = georeference;
   all.flight.assign(n, 0);
   all.correction_m.assign(n, Eigen::Vector3d::Zero());
-  all.residual_m.assign(n, Eigen::Vector3d::Constant(kNan));
+  all.residual_m.assign(n, Eigen::Vector3d::Constant(unknown));
   all.inlier.assign(n, 0);
   std::vector<size_t> others, tagged;
   for (size_t i = 0; i < n; ++i) {

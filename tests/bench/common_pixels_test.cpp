@@ -134,7 +134,7 @@ TEST_F(CommonPixels, OfSeveralSeedsAreCommonToAllTrainings) {
     }
   }
   Score(results);
-  EXPECT_NEAR(results[0].seeds[0].psnr_common_db, PsnrOver(photo_, NoisyRender(photo_, 8, 1), Columns(8, kSize)), 0.03);
+  EXPECT_NEAR(results[0].seeds[0].psnr_common_db, PsnrOver(photo_, NoisyRender(photo_, 8, 1), Columns(8, kSize)), 0.05);
   EXPECT_EQ(results[0].psnr_common_db, results[0].seeds[1].psnr_common_db) << "the median";
   EXPECT_EQ(results[1].psnr_common_db, results[1].seeds[1].psnr_common_db);
   EXPECT_GT(results[0].psnr_common_db, results[1].psnr_common_db);

@@ -69,14 +69,15 @@ def test(skyquilt, folder):
         expect([seed["name"] for seed in variant["seeds"]] == [variant["name"], variant["name"] + "_s2"], variant["seeds"])
         for score in ("psnr_db", "psnr_common_db"):
             expect(abs(2.0 * variant[score] - sum(seed[score] for seed in variant["seeds"])) < 1e-9, variant)
-        fields = variant["fields"]
-        expect([field["name"] for field in fields] == ["context", "r0c0", "r0c1"], fields)
-        for field in fields:
-            expect(0 < field["scene_parameters"] <= field["parameters"], field)
-        expect(sum(field["scene_parameters"] for field in fields) == variant["scene_parameters"], variant)
-        expect(sum(field["parameters"] for field in fields) == variant["parameters"], variant)
-        if variant["name"] == "uniform_13":
-            expect([field["log2_table_size"] for field in fields] == [0, 13, 13], fields)
+        for seed in variant["seeds"]:
+            fields = seed["fields"]
+            expect([field["name"] for field in fields] == ["context", "r0c0", "r0c1"], fields)
+            for field in fields:
+                expect(0 < field["scene_parameters"] <= field["parameters"], field)
+            for count in ("parameters", "scene_parameters"):
+                expect(sum(field[count] for field in fields) == seed[count], seed)
+            if variant["name"] == "uniform_13":
+                expect([field["log2_table_size"] for field in fields] == [0, 13, 13], fields)
 
     # One training, merged in three ways; and photos left out with what only they observed.
     out = folder / "tradeoff"

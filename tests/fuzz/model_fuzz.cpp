@@ -10,7 +10,7 @@ namespace skyquilt::fuzz {
 namespace {
 
 struct Model {
-  test::Files files = test::FUZZ_FILES(test::MakeSurvey());
+  test::Files files = test::FUZZ_FILES(test::MakeModel());
   TemporaryFolder folder;
   Model() { test::WriteFiles(files, folder.path()); }
 };

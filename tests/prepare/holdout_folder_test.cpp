@@ -13,7 +13,6 @@
 #include "core/survey/exif.h"
 #include "prepare/prepare.h"
 #include "tests/prepare/control_fit/made_control.h"
-#include "tests/prepare/synthetic_flight.h"
 #include "tests/support/error_of.h"
 
 namespace skyquilt::prepare {
@@ -229,7 +228,10 @@ TEST_F(HoldoutFolder, AHeldOutPhotoThatSeesTooLittleIsNotUsedAndTheOthersStayHel
 
 TEST_F(HoldoutFolder, WithoutObservationsOrInAnExactFrameTheGivenPosesStay) {
   // A model without observations of its points.
-  test::WriteFlight(test::MakeFlight({47.0, 8.0, 400.0}), folder_ / "blind");
+  test::MadeControl blind = MadeFolder();
+  for (auto& [image, seen] : blind.observations) seen.clear();
+  for (survey::ColmapPoint& point : blind.model.points) point.image_ids.clear();
+  Write(blind, folder_ / "blind");
   const auto run = [&](const PrepareInput& input, const std::string& poses) {
     options_.holdout_poses = poses;
     return Prepare(input, options_, threads_);

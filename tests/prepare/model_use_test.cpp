@@ -22,8 +22,8 @@ namespace {
 class OtherModel : public ::testing::Test {
  protected:
   // The flight as another program reconstructs it, in ENU about the flight's origin.
-  test::MadeSurvey Made() const {
-    test::MadeSurvey made;
+  test::MadeModel Made() const {
+    test::MadeModel made;
     made.lens = {.width = 64, .height = 48, .fx = 60.0, .fy = 60.0, .cx = 32.0, .cy = 24.0, .k1 = 0.0, .k2 = 0.0, .k3 = 0.0, .p1 = 0.0, .p2 = 0.0};
     for (const test::FlightPhoto& photo : flight_.photos) {
       made.photos.push_back({photo.name, Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal().toDenseMatrix(), photo.centre_in_enu});
@@ -91,7 +91,7 @@ TEST_F(OtherModel, WithoutPointsOrOfOtherPhotosHasItsOwnMessage) {
   const std::string no_points = InputErrorOf([&] { Run(test::MetashapeFiles(Made()), "cameras.xml"); });
   EXPECT_NE(no_points.find("has poses but no sparse points"), std::string::npos) << no_points;
   EXPECT_NE(no_points.find("Install COLMAP"), std::string::npos) << no_points;
-  test::MadeSurvey other_size = Made();
+  test::MadeModel other_size = Made();
   other_size.lens.width = 128;
   const std::string size = InputErrorOf([&] { Run(test::TransformsFiles(other_size), "transforms.json"); });
   EXPECT_NE(size.find("have another size"), std::string::npos) << size;

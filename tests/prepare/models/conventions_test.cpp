@@ -20,7 +20,7 @@ namespace skyquilt::prepare {
 namespace {
 
 using Eigen::Vector3d;
-using test::MadeSurvey;
+using test::MadeModel;
 
 using Project = Eigen::Vector2d (*)(const test::MadeLens&, const test::MadePhoto&, const Vector3d&);
 
@@ -79,7 +79,7 @@ class Conventions : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  MadeSurvey survey_ = test::MakeSurvey();
+  MadeModel survey_ = test::MakeModel();
   std::vector<std::string> names_;
 };
 
@@ -106,7 +106,7 @@ TEST_F(Conventions, Opensfm) {
   EXPECT_EQ(model.format, ModelFormat::kOpensfm);
   Expect(model, test::ProjectOpensfm);
   ExpectPoints(model, survey_.photos.size());
-  const geo::EnuFrame frame(test::kMadeOrigin);
+  const geo::EnuFrame frame(test::kModelOrigin);
   ExpectPlace(
       model, [&](const Vector3d& x) { return frame.GeodeticFromEnu(x); }, 1e-6);
 }
@@ -124,7 +124,7 @@ TEST_F(Conventions, Metashape) {
   const InputModel model = Read(test::MetashapeFiles(survey_));
   EXPECT_EQ(model.format, ModelFormat::kMetashape);
   Expect(model, test::ProjectMetashape, {10.0, Eigen::Quaterniond(test::MetashapeTurn()), Vector3d::Zero()});
-  const geo::EnuFrame frame(test::kMadeOrigin);
+  const geo::EnuFrame frame(test::kModelOrigin);
   ExpectPlace(
       model, [&](const Vector3d& x) { return frame.GeodeticFromEnu(x); }, 1e-6);
 }

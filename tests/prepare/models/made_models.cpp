@@ -69,8 +69,8 @@ Matrix3d MetashapeTurn() {
   return Eigen::AngleAxisd(0.8, Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
 }
 
-MadeSurvey MakeSurvey() {
-  MadeSurvey survey;
+MadeModel MakeModel() {
+  MadeModel survey;
   for (int i = 0; i < 3; ++i) {
     const Matrix3d down = (Matrix3d() << 1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0).finished();  // north is up in the image
     const Matrix3d tilt = Eigen::AngleAxisd(0.2 * i - 0.1, Vector3d(0.3, 1.0, 0.2).normalized()).toRotationMatrix();
@@ -85,7 +85,7 @@ void WriteFiles(const Files& files, const std::filesystem::path& folder) {
   for (const auto& [name, content] : files) std::ofstream(folder / name, std::ios::binary) << content;
 }
 
-Files TransformsFiles(const MadeSurvey& survey) {
+Files TransformsFiles(const MadeModel& survey) {
   const MadeLens& lens = survey.lens;
   json file = {{"camera_model", "OPENCV"},
                {"fl_x", lens.fx},
@@ -110,7 +110,7 @@ Files TransformsFiles(const MadeSurvey& survey) {
   return {{"transforms.json", base::JsonText(file, 1)}, {"points.ply", ply}};
 }
 
-Files BlenderFiles(const MadeSurvey& survey) {
+Files BlenderFiles(const MadeModel& survey) {
   json train = {{"camera_angle_x", 2.0 * std::atan(0.5 * survey.lens.width / survey.lens.fx)}};
   json test = train;
   for (size_t i = 0; i < survey.photos.size(); ++i) {
@@ -122,7 +122,7 @@ Files BlenderFiles(const MadeSurvey& survey) {
   return {{"transforms_train.json", base::JsonText(train, 1)}, {"transforms_test.json", base::JsonText(test, 1)}};
 }
 
-Files OpensfmFiles(const MadeSurvey& survey) {
+Files OpensfmFiles(const MadeModel& survey) {
   const MadeLens& lens = survey.lens;
   const double unit = std::max(lens.width, lens.height);
   json reconstruction;
@@ -151,12 +151,12 @@ Files OpensfmFiles(const MadeSurvey& survey) {
   for (size_t i = 0; i < survey.points.size(); ++i) {
     reconstruction["points"][std::to_string(i)] = {{"color", {10.0, 20.0, 30.0}}, {"coordinates", List(survey.points[i])}};
   }
-  const json lla = {{"latitude", kMadeOrigin.latitude_deg}, {"longitude", kMadeOrigin.longitude_deg}, {"altitude", kMadeOrigin.height_m}};
+  const json lla = {{"latitude", kModelOrigin.latitude_deg}, {"longitude", kModelOrigin.longitude_deg}, {"altitude", kModelOrigin.height_m}};
   return {
       {"reconstruction.json", base::JsonText(json::array({reconstruction}), 1)}, {"reference_lla.json", base::JsonText(lla)}, {"tracks.csv", tracks}};
 }
 
-Files MetashapeFiles(const MadeSurvey& survey) {
+Files MetashapeFiles(const MadeModel& survey) {
   const MadeLens& lens = survey.lens;
   const auto element = [](const std::string& name, double value) { return "<" + name + ">" + Text(value) + "</" + name + ">\n"; };
   std::string xml =
@@ -170,7 +170,7 @@ Files MetashapeFiles(const MadeSurvey& survey) {
          element("p2", lens.p1);
   xml += "</calibration>\n</sensor>\n</sensors>\n<components>\n<component id=\"0\" active=\"true\">\n<transform>\n<rotation>";
   // ecef_from_chunk = ecef_from_enu * (10 turn).
-  const Eigen::Matrix4d ecef_from_enu = geo::EcefFromEnu(kMadeOrigin);
+  const Eigen::Matrix4d ecef_from_enu = geo::EcefFromEnu(kModelOrigin);
   const Matrix3d rotation = ecef_from_enu.topLeftCorner<3, 3>() * MetashapeTurn();
   for (int i = 0; i < 9; ++i) xml += Text(rotation(i / 3, i % 3)) + " ";
   xml += "</rotation>\n<translation>";
@@ -190,7 +190,7 @@ Files MetashapeFiles(const MadeSurvey& survey) {
   return {{"cameras.xml", xml + "</chunk>\n</document>\n"}};
 }
 
-Files OpfFiles(const MadeSurvey& survey) {
+Files OpfFiles(const MadeModel& survey) {
   const MadeLens& lens = survey.lens;
   const auto resource = [](const char* type, std::vector<std::pair<const char*, const char*>> files) {
     json item = {{"id", type}, {"type", type}, {"sources", json::array()}};

@@ -25,24 +25,24 @@ struct MadeLens {
   double k1 = -0.1, k2 = 0.02, k3 = -0.003, p1 = 0.001, p2 = -0.0007;
 };
 
-struct MadeSurvey {
+struct MadeModel {
   MadeLens lens;
   std::vector<MadePhoto> photos;
   std::vector<Eigen::Vector3d> points;  // seen by every photo
 };
 
-// Three photos that look down obliquely, turned differently; the frame is east, north, up about kMadeOrigin.
-MadeSurvey MakeSurvey();
-inline constexpr geo::Geodetic kMadeOrigin{47.1, 8.4, 420.0};
+// Three photos that look down obliquely, turned differently; the frame is east, north, up about kModelOrigin.
+MadeModel MakeModel();
+inline constexpr geo::Geodetic kModelOrigin{47.1, 8.4, 420.0};
 
 // By file name.
 using Files = std::map<std::string, std::string>;
 
-Files TransformsFiles(const MadeSurvey& survey);  // transforms.json, points.ply
-Files BlenderFiles(const MadeSurvey& survey);     // transforms_train.json with all photos but the last, transforms_test.json; no lens errors
-Files OpensfmFiles(const MadeSurvey& survey);     // reconstruction.json, reference_lla.json, tracks.csv
-Files MetashapeFiles(const MadeSurvey& survey);   // cameras.xml: the chunk is turned and 10 times smaller
-Files OpfFiles(const MadeSurvey& survey);         // project.opf and the files it names: the frame is UTM 32N less kOpfShift; fx is left out
+Files TransformsFiles(const MadeModel& survey);  // transforms.json, points.ply
+Files BlenderFiles(const MadeModel& survey);     // transforms_train.json with all photos but the last, transforms_test.json; no lens errors
+Files OpensfmFiles(const MadeModel& survey);     // reconstruction.json, reference_lla.json, tracks.csv
+Files MetashapeFiles(const MadeModel& survey);   // cameras.xml: the chunk is turned and 10 times smaller
+Files OpfFiles(const MadeModel& survey);         // project.opf and the files it names: the frame is UTM 32N less kOpfShift; fx is left out
 inline const Eigen::Vector3d kOpfShift(-450000.0, -5216000.0, -400.0);
 
 void WriteFiles(const Files& files, const std::filesystem::path& folder);

@@ -33,7 +33,7 @@ std::string MessageOf(const test::Files& good, const Fault& fault, const std::st
   }
   test::WriteFiles(files, folder.path());
   std::vector<std::string> names;
-  for (const test::MadePhoto& photo : test::MakeSurvey().photos) names.push_back(photo.name);
+  for (const test::MadePhoto& photo : test::MakeModel().photos) names.push_back(photo.name);
   return InputErrorOf([&] { ReadModel(folder / path, ModelPhotos(folder.path(), names)); });
 }
 
@@ -48,7 +48,7 @@ void ExpectMessages(const test::Files& good, const std::string& path, const std:
 }
 
 TEST(MalformedModel, Transforms) {
-  ExpectMessages(test::TransformsFiles(test::MakeSurvey()), "transforms.json",
+  ExpectMessages(test::TransformsFiles(test::MakeModel()), "transforms.json",
                  {{"transforms.json", "\"frames\"", "\"frames\" 1", "is not JSON", "Give a COLMAP folder"},
                   {"transforms.json", "\"fl_x\"", "\"focal\"", "has neither fl_x nor camera_angle_x", "Export the cameras again"},
                   {"transforms.json", "510.0", "\"long\"", "fl_x must be a number", "Export the cameras again"},
@@ -64,12 +64,12 @@ TEST(MalformedModel, Transforms) {
 
 TEST(MalformedModel, TheLineIsThatOfTheValue) {
   const Fault fault{"transforms.json", "", "{\"fl_x\": 500, \"w\": 4, \"h\": 3,\n \"frames\": [\n  {\"file_path\": 7}]}", "", ""};
-  const std::string message = MessageOf(test::TransformsFiles(test::MakeSurvey()), fault, "transforms.json");
+  const std::string message = MessageOf(test::TransformsFiles(test::MakeModel()), fault, "transforms.json");
   EXPECT_NE(message.find("line 3: frames[0].file_path must be a text, not 7"), std::string::npos) << message;
 }
 
 TEST(MalformedModel, Opensfm) {
-  ExpectMessages(test::OpensfmFiles(test::MakeSurvey()), "reconstruction.json",
+  ExpectMessages(test::OpensfmFiles(test::MakeModel()), "reconstruction.json",
                  {{"reconstruction.json", "", "[]", "has no reconstruction", "Run OpenSfM"},
                   {"reconstruction.json", "", "[{\"shots\": {\"a\": {}}, \"cameras\": {}}", "is not JSON: the file ends too early", "Run OpenSfM"},
                   {"reconstruction.json", "\"brown\"", "\"spherical\"", "is spherical", "camera_projection_type BROWN"},
@@ -81,7 +81,7 @@ TEST(MalformedModel, Opensfm) {
 }
 
 TEST(MalformedModel, Metashape) {
-  ExpectMessages(test::MetashapeFiles(test::MakeSurvey()), "cameras.xml",
+  ExpectMessages(test::MetashapeFiles(test::MakeModel()), "cameras.xml",
                  {{"cameras.xml", "</sensors>", "</sensor>", "is not XML", "Export Cameras"},
                   {"cameras.xml", "<f>500</f>", "<f>wide</f>", "<f> must have 1 number", "Export Cameras"},
                   {"cameras.xml", "<k3>", "<b2>3</b2>\n<k3>", "has b2, the skew of the axes", "Export undistorted photos"},
@@ -93,14 +93,14 @@ TEST(MalformedModel, Metashape) {
 
 TEST(MalformedModel, MetashapeWithoutAlignedCameras) {
   const Fault fault{"cameras.xml", "", "<document>\n<chunk>\n<cameras><camera id=\"0\" label=\"a\"/></cameras></chunk></document>", "", ""};
-  const std::string message = MessageOf(test::MetashapeFiles(test::MakeSurvey()), fault, "cameras.xml");
+  const std::string message = MessageOf(test::MetashapeFiles(test::MakeModel()), fault, "cameras.xml");
   EXPECT_NE(message.find("no <camera> has a <transform>"), std::string::npos) << message;
   EXPECT_NE(message.find("Align the photos"), std::string::npos) << message;
 }
 
 TEST(MalformedModel, Opf) {
   ExpectMessages(
-      test::OpfFiles(test::MakeSurvey()), "project.opf",
+      test::OpfFiles(test::MakeModel()), "project.opf",
       {{"project.opf", "application/opf-project+json", "application/other", "is not application/opf-project+json", "OPF again"},
        {"project.opf", "application/opf-calibrated-cameras+json", "application/opf-gps-bias+json", "have no calibration", "after the calibration"},
        {"calibrated.json", "\"perspective\"", "\"fisheye\"", "is fisheye", "undistorted photos"},

@@ -20,7 +20,8 @@ if(SKYQUILT_SANITIZE)
 endif()
 
 # Headers that most files read, parsed once instead of in every batch: one set for the program, a larger one for tests, and that once more for
-# optimised tests. All targets share these, so they are compiled with the same macros. Each header here costs every batch time, too, which pays for those that most of them use.
+# optimised tests. All targets share these, so they are compiled with the same macros. Each header here costs every batch time, too, which pays for
+# those that most of them use.
 if(SKYQUILT_PCH)
   set(header_macros $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
   set(program_headers <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional> <set> <span> <stdexcept>

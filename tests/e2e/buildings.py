@@ -122,7 +122,8 @@ class Buildings(BuildingFaults):
 
         given = write("given.geojson", named)
         package = self.folder / "given.gpkg"
-        output("ogr2ogr", "-f", "GPKG", "-t_srs", "EPSG:2056", package, given)
+        # Of the same datum: from EPSG:2056, outlines come back slightly moved, and in this coarse survey one house was then 0.39 m longer.
+        output("ogr2ogr", "-f", "GPKG", "-t_srs", "EPSG:32631", package, given)
         found = []
         for file in (given, package):
             self.skyquilt.call("buildings", project, "--footprints", file, *(["--restart"] if found else []))
@@ -135,9 +136,7 @@ class Buildings(BuildingFaults):
                 middle = [sum(point[axis] for point in rings_of[0]) / len(rings_of[0]) for axis in range(2)]
                 expect(is_inside(named[row["outline_id"]], middle), f"building {row['id']} is not in its outline")
         for a, b in zip(*found):
-            # Outlines that differ by a millimetre: the same house to within its own accuracy.
-            expect(math.isclose(float(a["length_m"]), float(b["length_m"]), abs_tol=max(0.3, float(a["length_m_sigma"]))),
-                   f"GeoJSON and GeoPackage differ: {a['length_m']}, {b['length_m']}")
+            expect(math.isclose(float(a["length_m"]), float(b["length_m"]), abs_tol=0.3), f"GeoJSON and GeoPackage differ: {a['length_m']}, {b['length_m']}")
         before = made(project)
         text = self.skyquilt.call("buildings", project)
         expect("nothing to do" in text and made(project) == before, "outlines are not remembered")

@@ -12,6 +12,8 @@ std::vector<config::Field<RunOptions>> RunOptions::Fields() {
       {"time_budget_s", &O::time_budget_s, Range{0, 1e8},
        "seconds for the whole training, divided between context and blocks; 0: the steps of [context] and [train] decide"},
       {"context_share", &O::context_share, Range{0.01, 0.9}, "fraction of the time budget for the context"},
+      {"shortest_block_s", &O::shortest_block_s, Range{0.1, 1e6},
+       "seconds; every block trains for at least so long, even when many blocks together exceed the time budget"},
       {"seed", &O::seed, Range::AtLeast(0), "seed of the random numbers of training"},
       {"threads", &O::threads, Range{0, 4096}, "threads per machine; 0: all cores that this process may use"},
       {"memory_gb", &O::memory_gb, Range{0, 1e6},

@@ -10,8 +10,6 @@
 namespace skyquilt::coordinator {
 namespace {
 
-// Shortest budget of a block. It may exceed the time budget a little, but no block stays untrained.
-constexpr double kShortestBudget_s = 2.0;
 // A block that is worse than the context after fewer steps has had too few.
 constexpr int64_t kStepsToBlameTheRate = 1000;
 
@@ -85,7 +83,7 @@ FieldJob BlockQueue::TakeNext(double now_s, std::span<const double> busy_until_s
   } else if (next.block.assigned_seconds > 0.0) {
     job.seconds = next.block.assigned_seconds;
   } else if (options_.has_deadline) {
-    job.seconds = std::max(kShortestBudget_s, SecondsPerCost(now_s, busy_until_s) * next.block.cost);
+    job.seconds = std::max(options_.shortest_s, SecondsPerCost(now_s, busy_until_s) * next.block.cost);
   } else {
     job.seconds = options_.seconds;
   }

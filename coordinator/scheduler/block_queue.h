@@ -23,6 +23,7 @@ struct QueueOptions {
   int steps = 0;              // > 0: every block gets exactly this many; the deadline is ignored
   bool has_deadline = false;  // with steps = 0: the time left until the deadline is divided among the blocks
   double deadline_s = 0.0;    // on the caller's clock
+  double shortest_s = 2.0;    // with a deadline: least budget of a block, so that none stays untrained
   double seconds = 0.0;       // without steps and deadline: budget of each block; 0: the trainer's default
   int n_workers = 1;          // ranks that train at the same time
   int max_tries = 3;

@@ -156,6 +156,7 @@ class Training {
     options.steps = settings_.run.time_budget_s > 0.0 ? 0 : settings_.train.steps;
     options.has_deadline = settings_.run.time_budget_s > 0.0;
     options.deadline_s = settings_.run.time_budget_s;
+    options.shortest_s = settings_.run.shortest_block_s;
     options.seconds = settings_.train.seconds;
     options.n_workers = std::max(1, std::min(comm_.size() - 1, static_cast<int>(waiting.size())));
     options.max_tries = kMaxTries;

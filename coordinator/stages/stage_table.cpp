@@ -166,7 +166,8 @@ std::vector<Stage> MakeTable() {
        .body = PartitionBody,
        .on_new_inputs = OnNewInputs::kRefuse},
       {.name = "train",
-       .options = {"brightness.", "context.", "train.", "priors.", "run.image_width", "run.time_budget_s", "run.context_share", "run.seed"},
+       .options = {"brightness.", "context.", "train.", "priors.", "run.image_width", "run.time_budget_s", "run.context_share",
+                   "run.shortest_block_s", "run.seed"},
        // How often a field is saved does not change its result.
        .ignored_options = {"context.checkpoint_every_s", "train.checkpoint_every_s", "context.diagnostics", "train.diagnostics"},
        .required = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},

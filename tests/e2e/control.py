@@ -18,7 +18,7 @@ from targets import find_target
 SKIPPED = 77
 PLACE = sys.argv[2] if len(sys.argv) > 2 else "hamlet"
 SEEN = 0.15  # contrast of a target's fields in a map; beside targets it is less
-SIMULATE = ["--image-width", "800", "--seed", "3", "--set", "simulate.latitude_deg=40.7", "--set", "simulate.longitude_deg=-74.0", "--set",
+SIMULATE = ["--image-width", "640", "--seed", "3", "--set", "simulate.latitude_deg=40.7", "--set", "simulate.longitude_deg=-74.0", "--set",
             "simulate.height_m=20", "--set", "simulate.gps_noise_m=2", "--set", "simulate.tag_bias_m=15", "--set", "simulate.control_points=10",
             "--set", "simulate.check_points=10"]
 
@@ -85,7 +85,7 @@ def in_feet(text):
 def expect_in_maps(skyquilt, project, truth):
     """Orthophoto and surface model have the targets within 1 GSD of their coordinates, root mean square over the points."""
     skyquilt.call("partition", project, "--blocks", "1x1")
-    skyquilt.call("train", project, "--set", "context.steps=300", "--set", "train.steps=900")
+    skyquilt.call("train", project, "--set", "context.steps=200", "--set", "train.steps=600")
     skyquilt.call("merge", project)
     skyquilt.call("render", project, "--ortho", "--dsm", "--resolution", "0.1")
     picture, surface = Raster(project / "products" / "orthophoto.tif", band=2), Raster(project / "products" / "dsm.tif")

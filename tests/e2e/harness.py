@@ -20,7 +20,7 @@ SMALL = ["--steps", STEPS, "--blocks", "1x2", "--image-width", "240", "--set", "
          "--set", "surface.enabled=false"]
 
 # For small_project: two blocks of some seconds each, saved so often that a checkpoint is always recent.
-QUICK_TRAIN = ["--steps", "450", "--set", "train.checkpoint_every_s=0.1", "--set", "context.checkpoint_every_s=0.1", "--set", "train.batch_samples=4096",
+QUICK_TRAIN = ["--steps", "300", "--set", "train.checkpoint_every_s=0.1", "--set", "context.checkpoint_every_s=0.1", "--set", "train.batch_samples=4096",
                "--set", "context.batch_samples=4096"]
 
 
@@ -148,7 +148,7 @@ def small_project(skyquilt, project):
     return copied(shared(skyquilt, "small_project", lambda folder: prepare_small(skyquilt, small_survey(skyquilt), folder)), project)
 
 
-HOUSES_WIDTH = 480
+HOUSES_WIDTH = 360
 
 
 def houses_project(skyquilt, project):
@@ -158,7 +158,7 @@ def houses_project(skyquilt, project):
 
     def make(folder):
         skyquilt.call("run", survey, "-o", folder, "--blocks", "1x1", "--image-width", HOUSES_WIDTH, "--steps", "1300", "--set",
-                      "products.video_seconds=0", "--set", "buildings.enabled=false")
+                      "products.video_seconds=0", "--set", "buildings.enabled=false", "--set", "evaluate.max_photos=1")
 
     return copied(shared(skyquilt, "houses", make), project), survey
 

@@ -8,7 +8,7 @@ from harness import SMALL, expect, hamlet, kill_group, main, metrics_of, replace
 def test(skyquilt, folder):
     survey = hamlet(skyquilt, 240)
     # Blocks that take long enough to be stopped in between.
-    options = replaced(SMALL, "--steps", "700") + ["--set", "train.checkpoint_every_s=0.3", "--set", "context.checkpoint_every_s=0.3"]
+    options = replaced(SMALL, "--steps", "450") + ["--set", "train.checkpoint_every_s=0.3", "--set", "context.checkpoint_every_s=0.3"]
     whole = folder / "whole"
     skyquilt.call("run", survey, "-o", whole, *options)
 

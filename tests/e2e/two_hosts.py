@@ -13,7 +13,7 @@ from harness import expect, main, small_project, state_of, wait_for
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HOSTS = {"skyquilt-a": "10.231.77.1", "skyquilt-b": "10.231.77.2"}
-TRAIN = ["--steps", "1500", "--set", "train.checkpoint_every_s=0.2", "--set", "context.checkpoint_every_s=0.2", "--set", "train.batch_samples=4096",
+TRAIN = ["--steps", "1000", "--set", "train.checkpoint_every_s=0.2", "--set", "context.checkpoint_every_s=0.2", "--set", "train.batch_samples=4096",
          "--set", "context.batch_samples=4096"]
 # A lost host is noticed within seconds instead of minutes.
 QUICK = ["--mca", "oob_tcp_keepalive_time", "2", "--mca", "oob_tcp_keepalive_intvl", "1", "--mca", "oob_tcp_keepalive_probes", "2"]

@@ -50,9 +50,9 @@ TEST_P(ConesTest, TrainTheSameBitsWithAnyNumberOfThreads) {
   for (const int n : {1, 3}) {
     base::ThreadPool threads(n);
     const std::string end = std::to_string(n) + ".h5";
-    const TrainResult context = TrainContext(JobOf("context" + end, 40), Box(20.0, 0.0), threads, {});
+    const TrainResult context = TrainContext(JobOf("context" + end, 20), Box(20.0, 0.0), threads, {});
     ASSERT_TRUE(context.ok) << context.reason;
-    const TrainResult block = TrainBlock(JobOf("block" + end, 60), Box(12.0, 1.0), folder_ / ("context" + end), threads, {});
+    const TrainResult block = TrainBlock(JobOf("block" + end, 30), Box(12.0, 1.0), folder_ / ("context" + end), threads, {});
     ASSERT_TRUE(block.ok) << block.reason;
     EXPECT_EQ(block.dropped_steps, 0);
     EXPECT_EQ(Field("block" + end).config.multisample, GetParam().multisample);
@@ -75,9 +75,9 @@ TEST_P(ConesTest, ResumeWithTheSameBits) {
 
 TEST_P(ConesTest, LearnTheScene) {
   base::ThreadPool threads(2);
-  ASSERT_TRUE(TrainContext(JobOf("context.h5", 150), Box(20.0, 0.0), threads, {}).ok);
+  ASSERT_TRUE(TrainContext(JobOf("context.h5", 100), Box(20.0, 0.0), threads, {}).ok);
   const TrainResult early = TrainBlock(JobOf("early.h5", 15), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
-  const TrainResult late = TrainBlock(JobOf("late.h5", 400), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
+  const TrainResult late = TrainBlock(JobOf("late.h5", 250), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
   ASSERT_TRUE(early.ok && late.ok) << early.reason << late.reason;
   EXPECT_GT(late.final_psnr_db, early.final_psnr_db + 3.0);
   EXPECT_GT(late.final_psnr_db, 20.0);

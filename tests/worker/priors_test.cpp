@@ -40,14 +40,14 @@ class PriorsTest : public SmallSurvey {
     return job;
   }
   // Trains free.h5 without priors and held.h5 with these, which grow from early on, planes to their full size at once.
-  void TrainFreeAndHeld(double lift_m, PriorOptions priors, base::ThreadPool& threads) {
+  void TrainFreeAndHeld(double lift_m, PriorOptions priors, base::ThreadPool& threads, int steps = 600) {
     AddPoints(lift_m);
     priors.from = 0.1;
     priors.until = priors.points > 0.0 ? 0.9 : 0.2;  // points begin to fade then
     priors.points_end = 1.0;
-    TrainContext(Job("context.h5", 400), Box(20.0, 0.0), threads, {});
-    TrainBlock(Job("free.h5", 1000), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
-    TrainBlock(JobWith("held.h5", 1000, priors), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
+    TrainContext(Job("context.h5", 2 * steps / 5), Box(20.0, 0.0), threads, {});
+    TrainBlock(Job("free.h5", steps), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
+    TrainBlock(JobWith("held.h5", steps, priors), Box(12.0, 1.0), folder_ / "context.h5", threads, {});
   }
   // Rays straight down from 30 m onto the ground beside the box.
   std::vector<render::RayColor> LookDown(const std::string& checkpoint, base::ThreadPool& threads) const {
@@ -149,7 +149,7 @@ TEST_F(PriorsTest, NormalsOfDensityAndHeadAgreeWithTheSurface) {
   priors.normals = 0.1;
   priors.segment_share = 0.3;
   base::ThreadPool threads(2);
-  TrainFreeAndHeld(0.0, priors, threads);
+  TrainFreeAndHeld(0.0, priors, threads, 1000);
   double free = 0.0, held = 0.0, head = 0.0;
   for (const render::RayColor& ray : LookDown("free.h5", threads)) free += Tilt_deg(ray.density_normal) / 29.0;
   for (const render::RayColor& ray : LookDown("held.h5", threads)) {

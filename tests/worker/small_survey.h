@@ -139,6 +139,7 @@ class SmallSurvey : public ::testing::Test {
     EXPECT_TRUE(interrupted);
     EXPECT_TRUE(std::filesystem::exists(job.checkpoint));
     base::ClearCancel();
+    job.options.checkpoint_every_s = 60.0;
     train(job);
   }
   std::string Bytes(const std::string& name) const {

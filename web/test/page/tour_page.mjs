@@ -325,7 +325,7 @@ async function play(page) {
   await page.setViewportSize({ width: 400, height: 700 });
   await page.evaluate(() => window.__skyquilt.idle());
   await screenshot(page, out, "play_small");
-  await page.setViewportSize({ width: 1280, height: 800 });
+  await page.setViewportSize({ width: 1024, height: 640 });
   await page.keyboard.press("Escape");
   await page.locator(".toolbar").waitFor();
   expect((await state(page)).play === null, "Escape does not leave the tour");
@@ -372,7 +372,7 @@ async function leave(page) {
 
 /** The other link: it opens with the tour, and nothing is ever sent to be saved. */
 async function visit(browser) {
-  const { page, problems } = await open(browser, playLink, { width: 1280, height: 800 });
+  const { page, problems } = await open(browser, playLink, { width: 1024, height: 640 });
   page.on("request", (request) => {
     if (request.method() !== "GET") problems.push(`a visitor's page sends ${request.method()} ${request.url()}`);
   });
@@ -391,7 +391,7 @@ async function visit(browser) {
 
 const browser = await start();
 try {
-  const { context, page, problems } = await open(browser, link, { width: 1280, height: 800 });
+  const { context, page, problems } = await open(browser, link, { width: 1024, height: 640 });
   await make(page);
   await makeMore(page);
   await placeBox(page);

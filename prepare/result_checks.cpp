@@ -16,11 +16,8 @@
 namespace skyquilt::prepare {
 namespace {
 
-using Weight = Contradiction::Weight;
+using Urgency = Contradiction::Urgency;
 
-constexpr double kNotableLow = 0.9, kNotableHigh = 1.1, kNotable_m = 3.0;
-constexpr double kDiffersLow = 0.8, kDiffersHigh = 1.25;
-constexpr double kContradictsLow = 0.67, kContradictsHigh = 1.5, kContradicts_m = 5.0;
 constexpr int kLeastCompared = 3;
 constexpr double kStraightDown_deg = 25.0, kMostlyDown = 0.75;
 constexpr double kFewPhotos = 0.1;  // share of photos whose angles may be wrong without a word
@@ -110,7 +107,7 @@ void AboutFocal(const CheckedResult& result, const FocalFinding& focal, const He
                       .tags = fmt::format("the tags of {} photos say {:.0f} px", focal.n_far, focal.tagged_px),
                       .cause = {},
                       .remedy = {},
-                      .weight = decides ? Weight::kPlace : Weight::kWarning};
+                      .urgency = decides ? Urgency::kPlace : Urgency::kWarning};
   const std::string correct =
       fmt::format("correct the focal length of the tags (the one found is {:.0f} mm for a film of 35 mm; exiftool -FocalLengthIn35mmFormat=...), {}",
                   FilmFocal(focal.found_px, focal.longer_side_px), kAgain);
@@ -145,7 +142,7 @@ void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const H
                       .tags = fmt::format("the RelativeAltitude tags of {} photos say {:.0f} m above take-off", height.n, height.tagged_m),
                       .cause = {},
                       .remedy = {},
-                      .weight = decides && height.Contradicts() ? Weight::kPlace : Weight::kWarning};
+                      .urgency = decides && height.Contradicts() ? Urgency::kPlace : Urgency::kWarning};
   const double better_mm = FilmFocal(focal.found_px / height.ratio, focal.longer_side_px);
   const std::string take_off = fmt::format("take-off was {:.0f} m {} the ground of the survey", std::abs(height.found_m - height.tagged_m),
                                            height.found_m > height.tagged_m ? "above" : "below");
@@ -187,7 +184,7 @@ void AboutWitnesses(const CheckedResult& result, const FocalFinding& focal, cons
                       .tags = "have no RelativeAltitude tags to compare the height above ground with",
                       .cause = "It follows the focal length of the tags: where that is wrong, heights are wrong by the same factor",
                       .remedy = "Compare with a known height, or add photos at an angle or from another height",
-                      .weight = Weight::kNote};
+                      .urgency = Urgency::kNote};
   if (!focal.Tagged(result.photos.size())) {
     found.code = "focal_unknown";
     found.tags = "have neither focal length nor RelativeAltitude tags";
@@ -197,7 +194,7 @@ void AboutWitnesses(const CheckedResult& result, const FocalFinding& focal, cons
         focal.found_px);
     found.remedy =
         fmt::format("Tag the focal length (exiftool -FocalLengthIn35mmFormat=...), {}. Or add photos at an angle or from another height", kAgain);
-    found.weight = Weight::kWarning;
+    found.urgency = Urgency::kWarning;
     constexpr double kGuessed = 0.5;
     std::vector<double> heights_m;
     for (const CheckedPhoto& photo : result.photos) {
@@ -242,7 +239,7 @@ void AboutGimbal(const CheckedResult& result, ResultChecks* checks) {
                                       .tags = "the survey is levelled by the gimbal angles of the tags",
                                       .cause = "One of both is wrong, and neither the ground nor the GPS tags decide",
                                       .remedy = std::string(remedy) + ", if the survey stands on its side or is mirrored; " + kAgain,
-                                      .weight = Weight::kPlace});
+                                      .urgency = Urgency::kPlace});
   }
   if (n_off < kLeastCompared || static_cast<double>(n_off) <= kFewPhotos * n_with) return;
   const GimbalFault usual = std::max_element(n_of.begin(), n_of.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
@@ -254,7 +251,7 @@ void AboutGimbal(const CheckedResult& result, ResultChecks* checks) {
        .tags = dropped ? "photos and GPS tags agree with each other, so gimbal angles are not used" : "these angles have lost their weight",
        .cause = FaultText(usual),
        .remedy = std::string(remedy) + ", " + kAgain,
-       .weight = dropped || 2 * n_off > n_with ? Weight::kPlace : Weight::kWarning});
+       .urgency = dropped || 2 * n_off > n_with ? Urgency::kPlace : Urgency::kWarning});
 }
 
 // Turn of the tagged directions about the vertical. The place does not depend on it, but the search for poses is slower with wrong ones.
@@ -282,42 +279,13 @@ void AboutYaw(const CheckedResult& result, ResultChecks* checks) {
        .tags = fmt::format("the gimbal yaw of {} photos does not say so", n),
        .cause = "The camera is mounted across, or the yaw is that of the aircraft or counted from another direction",
        .remedy = "The place does not depend on it. Correct the GimbalYawDegree tags if other programs need them",
-       .weight = Weight::kWarning});
+       .urgency = Urgency::kWarning});
 }
 
 }  // namespace
 
-bool HeightAboveTakeOff::Notable() const {
-  return Known() && !(ratio >= kNotableLow && ratio <= kNotableHigh) && std::abs(found_m - tagged_m) > kNotable_m;
-}
-
-bool HeightAboveTakeOff::Differs() const {
-  return Notable() && !(ratio >= kDiffersLow && ratio <= kDiffersHigh);
-}
-
-bool HeightAboveTakeOff::Contradicts() const {
-  return Notable() && !(ratio >= kContradictsLow && ratio <= kContradictsHigh) && std::abs(found_m - tagged_m) > kContradicts_m;
-}
-
-HeightAboveTakeOff CompareHeights(const std::vector<double>& found_m, const std::vector<double>& tagged_m) {
-  std::vector<double> found, tagged, ratio;
-  size_t n_found = 0;
-  for (size_t i = 0; i < found_m.size(); ++i) {
-    if (!(std::isfinite(found_m[i]) && found_m[i] > 0.0)) continue;
-    ++n_found;
-    if (!(std::isfinite(tagged_m[i]) && tagged_m[i] >= kLeastAltitude_m)) continue;
-    found.push_back(found_m[i]);
-    tagged.push_back(tagged_m[i]);
-    ratio.push_back(found_m[i] / tagged_m[i]);
-  }
-  constexpr size_t kLeastShare = 5;  // one of so many
-  if (ratio.size() < kLeastCompared || kLeastShare * ratio.size() < n_found) return {};
-  const auto n = static_cast<int>(ratio.size());
-  return {.n = n, .found_m = base::Median(std::move(found)), .tagged_m = base::Median(std::move(tagged)), .ratio = base::Median(std::move(ratio))};
-}
-
 survey::Problem Contradiction::ToProblem() const {
-  return {code, fmt::format("{}, but {}. {}", found, tags, cause), remedy, weight == Weight::kPlace};
+  return {code, fmt::format("{}, but {}. {}", found, tags, cause), remedy, urgency == Urgency::kPlace};
 }
 
 ResultChecks CheckResult(const CheckedResult& result) {
@@ -345,7 +313,7 @@ void ApplyChecks(const ResultChecks& checks, survey::Survey& survey) {
   if (checks.height_doubt_m > accuracy.vertical_m) accuracy.vertical_m = checks.height_doubt_m;
   bool any = false;
   for (const Contradiction& contradiction : checks.contradictions) {
-    if (contradiction.weight == Weight::kNote) {
+    if (contradiction.urgency == Urgency::kNote) {
       const survey::Problem note = contradiction.ToProblem();
       base::LogInfo("{}. {}", note.finding, note.advice);
       continue;

@@ -11,28 +11,9 @@
 
 #include "core/survey/survey.h"
 #include "prepare/gimbal_check.h"
+#include "prepare/seeded/take_off_height.h"
 
 namespace skyquilt::prepare {
-
-// Height of the cameras above the ground beside RelativeAltitude, which is above the place of take-off.
-struct HeightAboveTakeOff {
-  int n = 0;  // photos with both
-  // Medians; the ratio is that of each photo, found over tagged. NaN: unknown.
-  double found_m = std::numeric_limits<double>::quiet_NaN();
-  double tagged_m = std::numeric_limits<double>::quiet_NaN();
-  double ratio = std::numeric_limits<double>::quiet_NaN();
-
-  bool Known() const { return n > 0; }
-  // More than 10 %, more than 25 %, and by more than ground explains; and by more than a few metres. False when unknown.
-  bool Notable() const;
-  bool Differs() const;
-  bool Contradicts() const;
-};
-
-// Per photo, metres; NaN where unknown. Tags below kLeastAltitude_m count as none: 0 is written for "no value", and barometers drift. Unknown with
-// fewer than three photos, or a fifth of those with a height.
-HeightAboveTakeOff CompareHeights(const std::vector<double>& found_m, const std::vector<double>& tagged_m);
-constexpr double kLeastAltitude_m = 5.0;
 
 // One photo of the finished survey.
 struct CheckedPhoto {
@@ -56,14 +37,14 @@ struct CheckedResult {
 
 struct Contradiction {
   // kNote: for the log; kWarning: something to look at; kPlace: what the survey says of itself may be wrong.
-  enum class Weight { kNote, kWarning, kPlace };
+  enum class Urgency { kNote, kWarning, kPlace };
   std::string code;   // stable name for programs
   int n_photos = 0;   // that it concerns
   std::string found;  // what the result says, the start of a sentence
   std::string tags;   // what the tags say, the rest of it
   std::string cause;  // likely, a sentence without its full stop
   std::string remedy;
-  Weight weight = Weight::kWarning;
+  Urgency urgency = Urgency::kWarning;
 
   survey::Problem ToProblem() const;
 };

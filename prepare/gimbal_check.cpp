@@ -13,7 +13,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDegreesPerTurn = 180.0 / std::numbers::pi;
-constexpr double kLeastSigmas = 3.0;   // of the camera axes, along the direction in which they differ from the gimbal
 constexpr double kClearer_deg = 10.0;  // a witness votes for the nearer direction when it is nearer by this
 constexpr double kClearlyAbove = 0.3;  // cosine
 
@@ -49,6 +48,15 @@ int VoteOfSides(const std::vector<Station>& stations, const std::vector<Vector3d
   return cameras > kClearlyAbove && gimbal < -kClearlyAbove ? 1 : gimbal > kClearlyAbove && cameras < -kClearlyAbove ? -1 : 0;
 }
 
+// Whether the right axes of the cameras are level for this direction of up.
+bool IsLevel(const std::vector<Station>& stations, const Vector3d& up) {
+  constexpr double kLevel = 0.26;  // sine of 15 degrees
+  std::vector<double> off;
+  off.reserve(stations.size());
+  for (const Station& station : stations) off.push_back(std::abs((station.cam_from_model.rotation.conjugate() * Vector3d::UnitX()).dot(up)));
+  return base::Median(std::move(off)) < kLevel;
+}
+
 }  // namespace
 
 GimbalVerdict JudgeGimbal(const std::vector<Station>& stations, const std::vector<Vector3d>& points,
@@ -59,21 +67,27 @@ GimbalVerdict JudgeGimbal(const std::vector<Station>& stations, const std::vecto
   const Vector3d &by_gimbal = gimbal.front().up, &by_cameras = cameras.front().up;
   const double angle_deg = AngleBetween(by_gimbal, by_cameras);
   if (!(angle_deg > kGimbalConflict_deg)) return {};
-  // Level cameras that all look one way leave the tilt about their right axes open. An opposite direction is no tilt.
-  const Vector3d difference = by_gimbal - by_cameras;
-  const double squares = difference.dot(cameras.front().information * difference);
-  constexpr double kOpposite_deg = 90.0;
-  if (angle_deg < kOpposite_deg && !(squares > kLeastSigmas * kLeastSigmas)) return {};
+  // By the angles the pictures are level, and only the tilt differs: so it is too when all cameras look the same way, at an angle or at a wall, and
+  // the camera axes know nothing of it. Then only the tagged positions can contradict the angles.
+  constexpr double kOpposite_deg = 120.0;
+  const bool level = angle_deg < kOpposite_deg && IsLevel(stations, by_gimbal);
 
-  int votes = VoteOfSides(stations, points, by_cameras, by_gimbal);
+  const int sides = VoteOfSides(stations, points, by_cameras, by_gimbal);
+  int ground_vote = 0;
   if (const std::vector<UpEvidence> ground = GroundEvidence(points, by_cameras); !ground.empty()) {
     // The normal of a plane has no sign.
-    const auto to_normal = [&](const Vector3d& up) { return AngleBetween(ground.front().up.dot(up) < 0.0 ? Vector3d(-up) : up, ground.front().up); };
-    votes += Vote(to_normal(by_cameras), to_normal(by_gimbal));
+    const Vector3d& normal = ground.front().up;
+    const auto to_normal = [&](const Vector3d& up) { return AngleBetween(normal.dot(up) < 0.0 ? Vector3d(-up) : up, normal); };
+    ground_vote = Vote(to_normal(by_cameras), to_normal(by_gimbal));
   }
-  if (const std::optional<Vector3d> tags = tags_up()) votes += Vote(AngleBetween(*tags, by_cameras), AngleBetween(*tags, by_gimbal));
-  if (votes < 0) return {};
-  return {votes > 0 ? GimbalUse::kDropped : GimbalUse::kDoubted, angle_deg};
+  int tags_vote = 0;
+  if (const std::optional<Vector3d> tags = tags_up()) tags_vote = Vote(AngleBetween(*tags, by_cameras), AngleBetween(*tags, by_gimbal));
+  const int votes = sides + ground_vote + tags_vote;
+  // The plane may be a wall.
+  const bool certain = tags_vote > 0 || (sides > 0 && !level);
+  if (votes > 0 && certain) return {GimbalUse::kDropped, angle_deg};
+  if (votes < 0 || level) return {};
+  return {GimbalUse::kDoubted, angle_deg};
 }
 
 GimbalFault FaultOfAngles(const Vector3d& tagged, const Vector3d& found) {

@@ -15,7 +15,7 @@ namespace skyquilt::prepare {
 
 enum class GimbalUse {
   kUsed,     // nothing contradicts them, or there are none
-  kDropped,  // they contradict the cameras' axes, and other witnesses agree with the axes
+  kDropped,  // they contradict the cameras' axes, and the tagged positions, or what the cameras look at, agree with the axes
   kDoubted,  // they contradict the cameras' axes, and nothing decides
 };
 

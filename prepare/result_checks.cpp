@@ -142,7 +142,10 @@ void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const H
                       .tags = fmt::format("the RelativeAltitude tags of {} photos say {:.0f} m above take-off", height.n, height.tagged_m),
                       .cause = {},
                       .remedy = {},
-                      .urgency = decides && height.Contradicts() ? Urgency::kPlace : Urgency::kWarning};
+                      // Where the focal length is known, hills are the likeliest cause of a small difference.
+                      .urgency = decides && height.Contradicts()               ? Urgency::kPlace
+                                 : tagged && !focal.Far() && !height.Differs() ? Urgency::kNote
+                                                                               : Urgency::kWarning};
   const double better_mm = FilmFocal(focal.found_px / height.ratio, focal.longer_side_px);
   const std::string take_off = fmt::format("take-off was {:.0f} m {} the ground of the survey", std::abs(height.found_m - height.tagged_m),
                                            height.found_m > height.tagged_m ? "above" : "below");
@@ -167,7 +170,6 @@ void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const H
         fmt::format("Either {}, or the tagged focal length is wrong (cropped or enlarged photos, another lens), and heights with it", take_off);
     found.remedy = tag_it;
   }
-  // Where the focal length is known, hills are the likeliest cause of a small difference.
   if (decides && (height.Contradicts() || !tagged || focal.Far())) {
     checks->scale_doubt = std::max(checks->scale_doubt, ExcessOf(height.ratio));
     checks->height_doubt_m = std::max(checks->height_doubt_m, std::abs(height.found_m - height.tagged_m));

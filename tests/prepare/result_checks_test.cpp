@@ -106,13 +106,17 @@ TEST(ResultChecks, AFarFocalLengthIsNamedWithTheWitnessThatDecides) {
   EXPECT_NEAR(open.height_doubt_m, kTrueHeight_m * 0.5, 1e-9);
 }
 
-TEST(ResultChecks, SmallDifferencesOfHeightAreWarningsOnly) {
+TEST(ResultChecks, SmallDifferencesOfHeightAreNotesOrWarnings) {
   // Take-off from a hill.
   const ResultChecks hill = CheckResult(With(Nadir(), [](CheckedPhoto& photo) { photo.relative_altitude_m = kTrueHeight_m - 10.0; }));
   ASSERT_NE(Named(hill, "height_differs"), nullptr);
-  EXPECT_EQ(Named(hill, "height_differs")->urgency, Urgency::kWarning);
+  EXPECT_EQ(Named(hill, "height_differs")->urgency, Urgency::kNote);
   EXPECT_EQ(hill.scale_doubt, 0.0);
   EXPECT_NE(Named(hill, "height_differs")->cause.find("10 m above"), std::string::npos);
+  const ResultChecks untagged = CheckResult(With(Nadir(1.2), [](CheckedPhoto& photo) { photo.tagged_focal_px.reset(); }));
+  ASSERT_NE(Named(untagged, "height_differs"), nullptr);
+  EXPECT_EQ(Named(untagged, "height_differs")->urgency, Urgency::kWarning);
+  EXPECT_NEAR(untagged.scale_doubt, 0.2, 1e-9);
   // Low flights: few metres are no contradiction.
   const ResultChecks low = CheckResult(With(Nadir(), [](CheckedPhoto& photo) {
     photo.agl_m = 9.0;

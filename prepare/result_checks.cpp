@@ -235,6 +235,7 @@ void AboutGimbal(const CheckedResult& result, ResultChecks* checks) {
   const char* remedy =
       "Correct or remove the GimbalPitchDegree and GimbalRollDegree tags (exiftool -XMP-drone-dji:GimbalPitchDegree=... on the photos)";
   if (result.gimbal.use == GimbalUse::kDoubted) {
+    checks->tilt_doubt_deg = result.gimbal.angle_deg;
     checks->contradictions.push_back({.code = "gimbal_doubted",
                                       .n_photos = n_with,
                                       .found = fmt::format("By the axes of the cameras, up is elsewhere by {:.0f}\xC2\xB0", result.gimbal.angle_deg),
@@ -313,6 +314,7 @@ void ApplyChecks(const ResultChecks& checks, survey::Survey& survey) {
   }
   // An unknown height stays unknown.
   if (checks.height_doubt_m > accuracy.vertical_m) accuracy.vertical_m = checks.height_doubt_m;
+  if (checks.tilt_doubt_deg > accuracy.tilt_deg) accuracy.tilt_deg = checks.tilt_doubt_deg;
   bool any = false;
   for (const Contradiction& contradiction : checks.contradictions) {
     if (contradiction.urgency == Urgency::kNote) {

@@ -55,6 +55,7 @@ struct ResultChecks {
   // What the contradictions leave open: of every length, relative, and of heights of the ground. 0: nothing.
   double scale_doubt = 0.0;
   double height_doubt_m = 0.0;
+  double tilt_doubt_deg = 0.0;  // likewise of the direction of up
 };
 
 ResultChecks CheckResult(const CheckedResult& result);

@@ -209,6 +209,7 @@ TEST(ResultChecks, WrongGimbalAnglesAreNamed) {
   CheckedResult doubted = Nadir();
   doubted.gimbal = {GimbalUse::kDoubted, 60.0};
   ASSERT_NE(Named(CheckResult(doubted), "gimbal_doubted"), nullptr);
+  EXPECT_EQ(CheckResult(doubted).tilt_doubt_deg, 60.0);
 }
 
 TEST(ResultChecks, ATurnOfTheYawIsAWarning) {

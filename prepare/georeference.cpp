@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "core/base/order_statistics.h"
@@ -108,6 +109,23 @@ TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<T
   // The second largest singular value of the positions.
   alone.sigma_deg = kDegrees * fit.rmse_m / std::max(std::sqrt(std::max(squares[1], 0.0)), 1e-9);
   return alone;
+}
+
+// For comparison with gimbal angles that the photos contradict.
+std::optional<Vector3d> UpByTags(const std::vector<Station>& stations, const PrepareOptions& options) {
+  constexpr double kUseful_deg = 10.0;
+  const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
+  if (n_tagged < kMinAgreeing || AllTagsEqual(stations)) return std::nullopt;
+  std::vector<size_t> order(stations.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  const std::vector<Tag> tags = CollectTags(stations, order, MedianPosition(stations), JudgeHeights(stations));
+  const TagsAlone alone = FitTagsAlone(stations, tags, options);
+  return alone.ok && alone.sigma_deg < kUseful_deg ? std::optional(alone.up_in_model) : std::nullopt;
+}
+
+std::vector<Station> WithoutAngles(std::vector<Station> stations) {
+  for (Station& station : stations) station.up_in_cam.reset();
+  return stations;
 }
 
 // All stages for tags that may fit. Sets result.ok.
@@ -226,8 +244,11 @@ std::optional<survey::Problem> CoordinateProblem(const TaggedFlight& flight, con
 
 }  // namespace
 
-Georeference PlaceOnEarth(const std::vector<Station>& stations, const std::vector<Vector3d>& points, const PrepareOptions& options) {
+Georeference PlaceOnEarth(const std::vector<Station>& given, const std::vector<Vector3d>& points, const PrepareOptions& options) {
   Georeference result;
+  result.gimbal = JudgeGimbal(given, points, [&] { return UpByTags(given, options); });
+  const std::vector<Station> without_angles = result.gimbal.use == GimbalUse::kDropped ? WithoutAngles(given) : std::vector<Station>();
+  const std::vector<Station>& stations = result.gimbal.use == GimbalUse::kDropped ? without_angles : given;
   result.flight = SplitFlights(stations, options.flight_gap_s);
   Clear(stations.size(), result);
   const Gravity gravity = FindGravity(stations, points);

@@ -10,6 +10,7 @@
 #include "core/geo/geodetic.h"
 #include "core/geo/transform.h"
 #include "core/survey/survey.h"
+#include "prepare/gimbal_check.h"
 #include "prepare/gravity.h"
 #include "prepare/prepare_options.h"
 #include "prepare/station.h"
@@ -22,6 +23,7 @@ struct Georeference {
   geo::Similarity3d enu_from_model;
   survey::GeoFit fit;
   std::vector<survey::Problem> problems;
+  GimbalVerdict gimbal;     // dropped angles have no part in the result
   std::vector<int> flight;  // per station, from 0
   // Per station; zero and NaN without GPS or geo-reference.
   std::vector<Eigen::Vector3d> correction_m;  // what the fit adds to the tag, ENU
@@ -29,7 +31,8 @@ struct Georeference {
   std::vector<char> inlier;                   // 1 if the tag agrees within the threshold
 };
 
-// `points` are the sparse points in the model's frame, may be empty.
+// `points` are the sparse points in the model's frame, may be empty. Gimbal angles that stand alone against the photos and the tagged positions are
+// not used (gimbal_check.h).
 Georeference PlaceOnEarth(const std::vector<Station>& stations, const std::vector<Eigen::Vector3d>& points, const PrepareOptions& options);
 // For a model that is already in ENU about `origin`: keeps its frame and only computes the residuals of the tags.
 Georeference KeepExactFrame(const std::vector<Station>& stations, const geo::Geodetic& origin, const PrepareOptions& options);

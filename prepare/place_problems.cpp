@@ -127,15 +127,18 @@ std::vector<Problem> PlaceProblems(const PlaceFindings& findings) {
   AboutGravity(findings, &problems);
   const survey::GeoFit& fit = findings.fit;
   if (fit.accuracy.scale_percent > kWarnScale_percent) {
-    problems.push_back({"scale_uncertain",
-                        fmt::format("The scale is uncertain by {:.1f} %: a length of 100 m may be off by {:.0f} m", fit.accuracy.scale_percent,
-                                    std::max(1.0, fit.accuracy.scale_percent)),
-                        "More photos with good tags, spread over a larger area, or tags with RTK make it certain", true});
+    problems.push_back(ScaleUncertain(fit.accuracy.scale_percent));
   }
   AboutHeights(findings, &problems);
   AboutTags(findings, &problems);
   std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) { return a.about_place && !b.about_place; });
   return problems;
+}
+
+Problem ScaleUncertain(double scale_percent) {
+  return {kScaleUncertain,
+          fmt::format("The scale is uncertain by {:.1f} %: a length of 100 m may be off by {:.0f} m", scale_percent, std::max(1.0, scale_percent)),
+          "More photos with good tags, spread over a larger area, or tags with RTK make it certain", true};
 }
 
 Problem NoPlace(const std::string& code, const std::string& reason, const std::string& advice) {

@@ -27,6 +27,9 @@ struct PlaceFindings {
 // For a survey that has a place; the worst first.
 std::vector<survey::Problem> PlaceProblems(const PlaceFindings& findings);
 
+survey::Problem ScaleUncertain(double scale_percent);
+constexpr const char* kScaleUncertain = "scale_uncertain";
+
 // For a survey that gets a local frame: why, as a problem. `reason` is a sentence without its full stop.
 survey::Problem NoPlace(const std::string& code, const std::string& reason, const std::string& advice);
 

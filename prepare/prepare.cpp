@@ -14,6 +14,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/order_statistics.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/height_reference.h"
 #include "prepare/control_report.h"
@@ -31,8 +32,10 @@
 #include "prepare/photo_positions.h"
 #include "prepare/place_by_control.h"
 #include "prepare/poses/colmap_run.h"
+#include "prepare/poses/focal_check.h"
 #include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
+#include "prepare/result_checks.h"
 #include "prepare/seeded/resect.h"
 #include "prepare/shape_by_tags.h"
 #include "prepare/sparse_cloud.h"
@@ -147,6 +150,41 @@ void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folde
   for (survey::Problem& problem : FlightProblems(survey.checks, survey)) survey.problems.push_back(std::move(problem));
 }
 
+// Focal lengths that the tags say, by the camera ids of the model.
+std::map<uint32_t, double> TaggedFocals(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files) {
+  std::map<uint32_t, std::vector<double>> tagged_px;
+  for (const Registered& entry : registered) {
+    const PhotoFile& file = files[entry.file];
+    if (const auto focal_px = TaggedFocalPx(file.tags, file.width, file.height)) tagged_px[entry.image->camera_id].push_back(*focal_px);
+  }
+  std::map<uint32_t, double> median_px;
+  for (auto& [id, values] : tagged_px) median_px.emplace(id, base::Median(std::move(values)));
+  return median_px;
+}
+
+// Needs the survey's photos, place and heights above ground.
+void CheckAgainstTags(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files, const GimbalVerdict& gimbal, bool own_poses,
+                      survey::Survey& survey) {
+  CheckedResult result{
+      .photos = {}, .georeferenced = survey.georeferenced, .own_poses = own_poses, .by_control = survey.control.placed, .gimbal = gimbal};
+  for (size_t i = 0; i < survey.photos.size(); ++i) {
+    const survey::Photo& photo = survey.photos[i];
+    const PhotoFile& file = files[registered[i].file];
+    const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
+    result.photos.push_back({.cam_from_enu = photo.cam_from_enu.rotation,
+                             .camera = photo.camera,
+                             .focal_px = camera.FocalX(),
+                             .longer_side_px = static_cast<double>(std::max(camera.width, camera.height)),
+                             .agl_m = photo.agl_m,
+                             .tagged_focal_px = TaggedFocalPx(file.tags, camera.width, camera.height),
+                             .relative_altitude_m = photo.relative_altitude_m,
+                             .gimbal_yaw_deg = file.tags.gimbal_yaw_deg,
+                             .gimbal_pitch_deg = file.tags.gimbal_pitch_deg,
+                             .gimbal_roll_deg = file.tags.gimbal_roll_deg});
+  }
+  ApplyChecks(CheckResult(result), survey);
+}
+
 void LogDirections(const survey::DominantDirections& directions) {
   std::string text;
   for (const survey::YawMode& mode : directions.modes) {
@@ -252,7 +290,8 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   base::ThrowIfCancelled();
 
   InputModel input_model;
-  if (folders.model.empty()) {
+  const bool own_poses = folders.model.empty();
+  if (own_poses) {
     const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap"};
     folders.model = RunColmap(job, photos.usable, PoseOptionsOf(options), threads, ranks);
     input_model.sfm = survey::ReadColmapModel(folders.model);
@@ -288,7 +327,8 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   // Control points say more of the shape than tags; check points are compared with the final one.
   const bool any_control = std::any_of(control_points.points.begin(), control_points.points.end(), [](const ControlPoint& p) { return !p.check; });
   if (has_observations && !any_control) {
-    ShapeByTags({options, image_of_station, folders.model}, input_model.sfm, stations, georeference, threads);
+    ShapeByTags({options, image_of_station, folders.model, TaggedFocals(registered, photos.usable)}, input_model.sfm, stations, georeference,
+                threads);
   }
   survey::ControlFit control =
       PlaceByControl({options, control_points, image_of_station, folders.model, has_observations, folders.exact_origin.has_value()}, input_model.sfm,
@@ -316,6 +356,8 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   }
   FillPoints(model, georeference.enu_from_model, PhotoOfImage(registered), options.keep_points, survey);
   MeasureAgl(survey, threads);
+  // An exact frame is the truth, whatever the tags say.
+  if (!folders.exact_origin) CheckAgainstTags(registered, photos.usable, georeference.gimbal, own_poses, survey);
   if (on_placed) on_placed(survey, poses_known);
   CheckFlightOf(model, folders.model, registered, photos.usable, has_observations, survey);
   base::ThrowIfCancelled();

@@ -4,12 +4,17 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <string>
 
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/geo/enu_frame.h"
 #include "prepare/control_fit/adjust_to_tags.h"
 #include "prepare/dome_fit.h"
+#include "prepare/poses/focal_check.h"
+#include "prepare/result_checks.h"
+#include "prepare/sparse_cloud.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -57,6 +62,88 @@ std::vector<Station> Corrected(const std::vector<Station>& stations, const Geore
   return corrected;
 }
 
+struct ShapeStart {
+  const ShapeInput& input;
+  const survey::ColmapModel& model;
+  const survey::ColmapObservations& observations;
+  const std::vector<Station>& stations;
+  const Georeference& georeference;
+};
+
+// The model after an adjustment to the tags, placed on Earth.
+struct Shaped {
+  survey::ColmapModel model;
+  std::vector<Station> stations;
+  Georeference georeference;
+  double error_before = 0.0, error_after = 0.0;
+};
+
+// Nothing when there is no adjustment; the log says why.
+std::optional<Shaped> AdjustShape(const ShapeStart& start, bool hold_focal, base::ThreadPool& threads) {
+  Shaped shaped{.model = start.model, .stations = start.stations, .georeference = {}};
+  const AdjustedToTags result = AdjustToTags({.model = shaped.model,
+                                              .observations = start.observations,
+                                              .stations = Corrected(start.stations, start.georeference),
+                                              .image_of_station = start.input.image_of_station,
+                                              .origin = start.georeference.origin,
+                                              .enu_from_model = start.georeference.enu_from_model,
+                                              .hold_focal = hold_focal},
+                                             threads);
+  if (!result.adjusted) {
+    base::LogInfo("the poses are not adjusted to the GPS tags: {}", result.reason);
+    return std::nullopt;
+  }
+  for (size_t i = 0; i < shaped.stations.size(); ++i) {
+    shaped.stations[i].cam_from_model = shaped.model.images[start.input.image_of_station[i]].cam_from_world;
+  }
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(shaped.model.points.size());
+  for (const survey::ColmapPoint& point : shaped.model.points) points.push_back(point.x_in_world);
+  shaped.georeference = PlaceOnEarth(shaped.stations, points, start.input.options);
+  shaped.error_before = result.error_before;
+  shaped.error_after = result.error_after;
+  return shaped;
+}
+
+bool HasHeightTags(const std::vector<Station>& stations) {
+  return std::any_of(stations.begin(), stations.end(), [](const Station& station) { return station.relative_altitude_m.has_value(); });
+}
+
+HeightAboveTakeOff HeightsOf(const survey::ColmapModel& model, const std::vector<Station>& stations, const geo::Similarity3d& enu_from_model,
+                             base::ThreadPool& threads) {
+  survey::Survey survey;
+  for (const Station& station : stations) {
+    survey::Photo& photo = survey.photos.emplace_back();
+    photo.cam_from_enu = geo::TransformCameraWorld(station.cam_from_model, enu_from_model);
+    photo.relative_altitude_m = station.relative_altitude_m;
+  }
+  survey.points.reserve(model.points.size());
+  for (const survey::ColmapPoint& point : model.points) survey.points.emplace_back().x_in_enu = enu_from_model * point.x_in_world;
+  MeasureAgl(survey, threads);
+  std::vector<double> found, tagged;
+  for (const survey::Photo& photo : survey.photos) {
+    found.push_back(photo.agl_m);
+    tagged.push_back(photo.relative_altitude_m.value_or(std::numeric_limits<double>::quiet_NaN()));
+  }
+  return CompareHeights(found, tagged);
+}
+
+// The focal length, or where tags do not say it the height above ground, when it was near the tags before the adjustment and is far from them
+// afterwards, in words; else empty.
+std::string LostFocal(const ShapeStart& start, const Shaped& shaped, base::ThreadPool& threads) {
+  const std::map<uint32_t, double>& tagged_px = start.input.tagged_focal_px;
+  if (!tagged_px.empty()) {
+    const std::optional<FarFocal> far = FindFocalFarFrom(tagged_px, shaped.model);
+    return far && !FindFocalFarFrom(tagged_px, start.model) ? far->Text() : "";
+  }
+  if (!shaped.georeference.ok || !HasHeightTags(start.stations)) return "";
+  const HeightAboveTakeOff after = HeightsOf(shaped.model, shaped.stations, shaped.georeference.enu_from_model, threads);
+  if (!after.Differs()) return "";
+  const HeightAboveTakeOff before = HeightsOf(start.model, start.stations, start.georeference.enu_from_model, threads);
+  if (before.Differs()) return "";
+  return fmt::format("a height above ground of {:.0f} m, where RelativeAltitude says {:.0f} m", after.found_m, after.tagged_m);
+}
+
 }  // namespace
 
 bool TagsTellTheShape(const std::vector<Station>& stations, const Georeference& georeference) {
@@ -69,7 +156,6 @@ bool TagsTellTheShape(const std::vector<Station>& stations, const Georeference& 
 void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vector<Station>& stations, Georeference& georeference,
                  base::ThreadPool& threads) {
   if (!TagsTellTheShape(stations, georeference)) return;
-  survey::ColmapModel adjusted = model;
   survey::ColmapObservations observations;
   try {
     observations = survey::ReadColmapObservations(input.model_folder);
@@ -78,25 +164,23 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
     base::LogInfo("the poses are not adjusted to the GPS tags: {}", error.what());
     return;
   }
-  const AdjustedToTags result = AdjustToTags({.model = adjusted,
-                                              .observations = observations,
-                                              .stations = Corrected(stations, georeference),
-                                              .image_of_station = input.image_of_station,
-                                              .origin = georeference.origin,
-                                              .enu_from_model = georeference.enu_from_model},
-                                             threads);
-  if (!result.adjusted) {
-    base::LogInfo("the poses are not adjusted to the GPS tags: {}", result.reason);
-    return;
+  const ShapeStart start{input, model, observations, stations, georeference};
+  std::optional<Shaped> shaped = AdjustShape(start, false, threads);
+  if (!shaped) return;
+  std::string lost = LostFocal(start, *shaped, threads);
+  if (!lost.empty()) {
+    base::LogInfo("adjusting the poses to the GPS tags gives {}; once more with the focal length held", lost);
+    shaped = AdjustShape(start, true, threads);
+    if (!shaped) return;
+    lost = LostFocal(start, *shaped, threads);
+    if (!lost.empty()) {
+      base::LogInfo("the poses are not adjusted to the GPS tags: that would give {}", lost);
+      return;
+    }
   }
-  std::vector<Station> new_stations = stations;
-  for (size_t i = 0; i < stations.size(); ++i) new_stations[i].cam_from_model = adjusted.images[input.image_of_station[i]].cam_from_world;
-  std::vector<Eigen::Vector3d> points;
-  points.reserve(adjusted.points.size());
-  for (const survey::ColmapPoint& point : adjusted.points) points.push_back(point.x_in_world);
-  Georeference placed = PlaceOnEarth(new_stations, points, input.options);
+  Georeference& placed = shaped->georeference;
   const Dome before = BendOf(stations, georeference);
-  const Dome after = placed.ok ? BendOf(new_stations, placed) : Dome();
+  const Dome after = placed.ok ? BendOf(shaped->stations, placed) : Dome();
   if (!placed.ok || placed.fit.n_inliers < georeference.fit.n_inliers ||
       std::abs(after.height_m) > std::abs(before.height_m) + kBendSigmas * after.sigma_m) {
     base::LogInfo("the poses are not adjusted to the GPS tags: fewer tags would agree, or the bend would be larger");
@@ -108,12 +192,12 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
   base::LogInfo(
       "poses adjusted to the GPS tags: middle above edge against the tags {:+.2f} m, before {:+.2f} m; median error of features {:.2f} px, "
       "before {:.2f} px, at 1600 px",
-      after.height_m, before.height_m, result.error_after, result.error_before);
+      after.height_m, before.height_m, shaped->error_after, shaped->error_before);
   // In place: others point to the images.
-  std::copy(adjusted.images.begin(), adjusted.images.end(), model.images.begin());
-  model.cameras = std::move(adjusted.cameras);
-  model.points = std::move(adjusted.points);
-  stations = std::move(new_stations);
+  std::copy(shaped->model.images.begin(), shaped->model.images.end(), model.images.begin());
+  model.cameras = std::move(shaped->model.cameras);
+  model.points = std::move(shaped->model.points);
+  stations = std::move(shaped->stations);
   georeference = std::move(placed);
 }
 

@@ -253,6 +253,7 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
     tags.exposure = ReadExposure(exif);
     tags.focal_length_mm = ExifNumber(exif, "Exif.Photo.FocalLength");
     tags.focal_length_35mm = ExifNumber(exif, "Exif.Photo.FocalLengthIn35mmFilm");
+    tags.calibrated_focal_px = Positive(XmpNumber(xmp, "CalibratedFocalLength"));
     ReadOriginalSize(exif, tags);
     tags.capture_time_s = ReadCaptureTime(exif);
     tags.make = ExifText(exif, "Exif.Image.Make");

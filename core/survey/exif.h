@@ -25,6 +25,7 @@ struct PhotoTags {
   ExposureSettings exposure;
   std::optional<double> focal_length_mm;
   std::optional<double> focal_length_35mm;
+  std::optional<double> calibrated_focal_px;  // XMP drone-dji:CalibratedFocalLength, pixels of the photo as taken
   // EXIF PixelXDimension and PixelYDimension, as the camera took the photo: programs that make photos smaller often leave them. 0: no such tags.
   int original_width = 0, original_height = 0;
   std::optional<double> capture_time_s;  // DateTimeOriginal (+ SubSec) in seconds since 1970, by the camera's clock

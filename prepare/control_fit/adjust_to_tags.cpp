@@ -63,6 +63,7 @@ AdjustedToTags AdjustToTags(const TagJob& job, base::ThreadPool& threads) {
     result.reason = "the model has too few points with observations";
     return result;
   }
+  for (BlockLens& lens : made.block.lenses) lens.hold_focal = job.hold_focal;
   made.Move(job.enu_from_model);
   const std::vector<BlockPhoto> photos_before = made.block.photos;
   result.error_before = MedianError(made);

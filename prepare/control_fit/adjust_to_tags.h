@@ -22,6 +22,7 @@ struct TagJob {
   const std::vector<size_t>& image_of_station;  // index into model.images
   geo::Geodetic origin;
   geo::Similarity3d enu_from_model;  // about where it belongs
+  bool hold_focal = false;           // focal lengths stay those of the model
 };
 
 struct AdjustedToTags {

@@ -143,7 +143,7 @@ struct AdjustmentAccuracy::Impl {
     };
     for (size_t i = 0; i < sees.size(); ++i) group_of_photo.push_back(sees[i] != 0 ? add(6) : -1);
     for (size_t i = 0; i < used.size(); ++i) {
-      const std::vector<int> held = HeldNumbers(block.lenses[i].camera.model);
+      const std::vector<int> held = HeldNumbersOf(block.lenses[i]);
       std::vector<int> free;
       for (int k = 0; k < 8; ++k) {
         if (std::find(held.begin(), held.end(), k) == held.end()) free.push_back(k);

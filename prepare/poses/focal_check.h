@@ -9,6 +9,7 @@
 
 #include "core/camera/camera.h"
 #include "core/survey/colmap_model.h"
+#include "core/survey/exif.h"
 
 namespace skyquilt::prepare {
 
@@ -29,6 +30,12 @@ struct FarFocal {
 // COLMAP's focal length for photos whose tags have none is 1.2 times the longer side.
 bool IsGuessedFocal(const camera::Camera& camera);
 
+// The focal length in pixels of a photo of this size by its tags: XMP CalibratedFocalLength, else EXIF FocalLengthIn35mmFilm; nothing without. 0 and
+// what is no number count as none.
+std::optional<double> TaggedFocalPx(const survey::PhotoTags& tags, int width, int height);
+
+// The same as below for focal lengths in pixels by the camera ids of the model; cameras that are not there are not judged.
+std::optional<FarFocal> FindFocalFarFrom(const std::map<uint32_t, double>& tagged_px, const survey::ColmapModel& model);
 // Empty when the model can be right. `tagged`: by the camera ids of the model, as COLMAP's database has them before any adjustment; cameras without a
 // tagged focal length are not judged.
 std::optional<FarFocal> FindFarFocal(const survey::ColmapModel& model, const std::map<uint32_t, camera::Camera>& tagged);

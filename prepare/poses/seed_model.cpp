@@ -8,6 +8,7 @@
 #include "core/survey/colmap_database.h"
 #include "core/survey/colmap_model.h"
 #include "prepare/poses/focal_check.h"
+#include "prepare/seeded/focal_by_height.h"
 #include "prepare/seeded/point_colors.h"
 #include "prepare/seeded/seed_poses.h"
 #include "prepare/tag_accuracy.h"
@@ -17,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSeedVersion = 3;  // a new number makes finished models anew
+constexpr int kSeedVersion = 4;  // a new number makes finished models anew
 
 fs::path SeededFolder(const ColmapJob& job) {
   return job.folder / "seeded";
@@ -34,15 +35,44 @@ SeedPhoto SeedPhotoOf(const survey::DatabaseImage& image, const survey::PhotoTag
                   .yaw_deg = tags.gimbal_yaw_deg,
                   .pitch_deg = tags.gimbal_pitch_deg,
                   .roll_deg = tags.gimbal_roll_deg,
+                  .relative_altitude_m = tags.relative_altitude_m,
                   .features = {}};
   photo.features.reserve(keypoints.size());
   for (const survey::DatabaseKeypoint& keypoint : keypoints) photo.features.emplace_back(keypoint.x, keypoint.y);
   return photo;
 }
 
+bool HasFocalTags(const SeedInput& input) {
+  return std::any_of(input.cameras.begin(), input.cameras.end(), [](const auto& camera) { return camera.second.focal_is_known; });
+}
+
+// Where tags have no focal length, RelativeAltitude may tell it, by the height above ground that goes with it. It is asked when poses with a guessed
+// focal length contradict it, or when there are none: take-off need not be at the height of the ground.
+std::optional<SeededModel> SeedWithoutFocalTags(SeedInput input, base::ThreadPool& threads, std::string* reason) {
+  std::optional<SeededModel> guessed = SeedPoses(input, threads, reason);
+  const HeightAboveTakeOff height = guessed ? HeightsInModel(input, guessed->model) : HeightAboveTakeOff();
+  if (guessed && !height.Differs()) return guessed;
+  const std::optional<double> factor = FocalFactorByHeight(input);
+  if (!factor) return guessed;
+  for (auto& [id, lens] : input.cameras) {
+    lens = ScaledFocal(lens, *factor);
+    base::LogInfo(
+        "the tags have no focal length, and {}; once more with {:.0f} px, by RelativeAltitude",
+        guessed ? fmt::format("the cameras would be {:.0f} m above the ground, where RelativeAltitude says {:.0f} m", height.found_m, height.tagged_m)
+                : "a guessed one gives no poses by tags and matches",
+        lens.camera.FocalX());
+  }
+  std::string other_reason;
+  std::optional<SeededModel> by_height = SeedPoses(input, threads, &other_reason);
+  if (!by_height || HeightsInModel(input, by_height->model).Differs()) return guessed;
+  reason->clear();
+  return by_height;
+}
+
 // Photos that look straight down fit other focal lengths nearly as well, and features weigh so much more than tags that a little misfit of the lens
 // drives it away. Then poses with the focal length held near the tagged one are better, if they agree with the matches too.
 std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput input, base::ThreadPool& threads, std::string* reason) {
+  if (!HasFocalTags(input)) return SeedWithoutFocalTags(input, threads, reason);
   constexpr double kHeldSigma = 0.01;
   std::optional<SeededModel> seeded = SeedPoses(input, threads, reason);
   if (!seeded) return std::nullopt;

@@ -44,6 +44,7 @@ struct BlockLens {
   camera::Camera camera;      // to begin with
   double focal_sigma = 0.05;  // of the initial focal length, relative, one standard deviation
   double unit_px = 1.0;       // errors are counted in pixels of a photo of 1600 pixels width, so that thresholds suit every camera
+  bool hold_focal = false;    // the focal length stays what it is
 };
 
 struct Block {

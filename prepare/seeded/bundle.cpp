@@ -36,6 +36,12 @@ Lens LensSigma(const BlockLens& lens) {
   return {focal, 0.01, centre, centre, 0.3, 0.3, 0.01, 0.01};
 }
 
+std::vector<int> HeldNumbersOf(const BlockLens& lens) {
+  std::vector<int> held = HeldNumbers(lens.camera.model);
+  if (lens.hold_focal) held.insert(held.begin(), 0);
+  return held;
+}
+
 bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration,
                   Eigen::Vector3d* shift) {
   std::vector<PoseNumbers> poses(block.photos.size());
@@ -115,7 +121,7 @@ bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleSt
       problem.SetParameterBlockConstant(lenses[i].data());
       continue;
     }
-    lens_manifolds.push_back(std::make_unique<ceres::SubsetManifold>(8, HeldNumbers(block.lenses[i].camera.model)));
+    lens_manifolds.push_back(std::make_unique<ceres::SubsetManifold>(8, HeldNumbersOf(block.lenses[i])));
     problem.SetManifold(lenses[i].data(), lens_manifolds.back().get());
     problem.AddResidualBlock(new LensCost(block.lenses[i].initial, LensSigma(block.lenses[i])), nullptr, lenses[i].data());
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "prepare/seeded/block.h"
 
@@ -24,6 +25,8 @@ struct BundleStage {
 
 // What a lens may be without having been measured, one standard deviation of each number from its initial value.
 Lens LensSigma(const BlockLens& lens);
+// Numbers of a lens that stay what they are.
+std::vector<int> HeldNumbersOf(const BlockLens& lens);
 // Positions with an error beyond this many sigmas lose almost all weight (Cauchy).
 constexpr double kTagLoss = 2.0;
 

@@ -22,6 +22,7 @@ struct SeedPhoto {
   double horizontal_sigma_m = 3.0;                     // accuracy of the tag, one standard deviation per axis
   double vertical_sigma_m = 4.5;                       // likewise
   std::optional<double> yaw_deg, pitch_deg, roll_deg;  // of the gimbal: clockwise from north; -90 looks straight down; right side down
+  std::optional<double> relative_altitude_m = {};      // tagged height above take-off
   std::vector<Eigen::Vector2f> features;               // pixels of the stored photo (core/camera/camera.h)
 };
 

@@ -77,6 +77,26 @@ TEST(Georeference, ARefusedFitLeavesNoAccuracyBehind) {
   EXPECT_TRUE(result.fit.flight_vertical_drift_m.empty());
 }
 
+// Pitch of +90 at nadir: gimbal angles outweigh everything else, and a survey that hangs upside down looks mirrored to its GPS tags.
+TEST(Georeference, GimbalAnglesThatStandAloneAreDropped) {
+  const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  std::vector<Station> stations = Stations(flight);
+  const Georeference without = PlaceOnEarth(stations, Points(flight), {});
+  for (Station& station : stations) station.up_in_cam = UpInCamera(90.0, 0.0);
+  const Georeference result = PlaceOnEarth(stations, Points(flight), {});
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.gimbal.use, GimbalUse::kDropped);
+  EXPECT_EQ(result.fit.n_inliers, 20);
+  EXPECT_EQ(result.enu_from_model.scale, without.enu_from_model.scale);
+  EXPECT_EQ(result.enu_from_model.rotation.coeffs(), without.enu_from_model.rotation.coeffs());
+  EXPECT_EQ(result.enu_from_model.translation, without.enu_from_model.translation);
+  // Right angles are used.
+  for (Station& station : stations) station.up_in_cam = UpInCamera(-90.0, 0.0);
+  const Georeference right = PlaceOnEarth(stations, Points(flight), {});
+  EXPECT_EQ(right.gimbal.use, GimbalUse::kUsed);
+  EXPECT_EQ(right.fit.gravity.front().kind, "gimbal");
+}
+
 TEST(Georeference, AJumpLeavesTwoGroups) {
   test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
   test::SetTags(

@@ -77,6 +77,23 @@ TagJob JobOf(MadeControl& made) {
 
 const ControlPlan kPlan = {.survey = {.strips = 7, .per_strip = 9, .gimbal_tags = false}, .control = 0, .check = 0};
 
+TEST(AdjustToTags, HoldsTheFocalLengthWhenAsked) {
+  ControlPlan plan = kPlan;
+  plan.survey.strips = 4;
+  plan.survey.per_strip = 5;
+  for (const bool hold : {true, false}) {
+    MadeControl made = MakeControl(plan, TwoThreads());
+    Tag(0.3, 0.5, &made);
+    const uint32_t camera_id = made.model.images[0].camera_id;
+    const double before_px = made.model.cameras.at(camera_id).FocalX();
+    TagJob job = JobOf(made);
+    job.hold_focal = hold;
+    const AdjustedToTags result = AdjustToTags(job, TwoThreads());
+    ASSERT_TRUE(result.adjusted) << result.reason;
+    EXPECT_EQ(made.model.cameras.at(camera_id).FocalX() == before_px, hold);
+  }
+}
+
 TEST(AdjustToTags, StraightensABentReconstruction) {
   for (const double sigma_m : {0.02, 0.3}) {
     MadeControl made = MakeControl(kPlan, TwoThreads());

@@ -37,6 +37,30 @@ TEST(FocalCheck, NamesBothNumbers) {
   EXPECT_TRUE(FindFarFocal(ModelWith(std::numeric_limits<double>::quiet_NaN(), 10), kTagged));
 }
 
+TEST(FocalCheck, ReadsTheFocalLengthOfTheTags) {
+  survey::PhotoTags tags;
+  EXPECT_FALSE(TaggedFocalPx(tags, 800, 600));
+  tags.focal_length_35mm = 0.0;  // written for "no value"
+  EXPECT_FALSE(TaggedFocalPx(tags, 800, 600));
+  tags.focal_length_35mm = 27.0;
+  EXPECT_DOUBLE_EQ(TaggedFocalPx(tags, 800, 600).value(), 600.0);
+  EXPECT_DOUBLE_EQ(TaggedFocalPx(tags, 600, 800).value(), 600.0);
+  // Measured in pixels of the photo as taken, which was five times as large.
+  tags.calibrated_focal_px = 3000.0;
+  tags.original_width = 4000;
+  tags.original_height = 3000;
+  EXPECT_DOUBLE_EQ(TaggedFocalPx(tags, 800, 600).value(), 600.0);
+  tags.calibrated_focal_px = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_DOUBLE_EQ(TaggedFocalPx(tags, 800, 600).value(), 600.0);
+}
+
+TEST(FocalCheck, JudgesBySeveralCamerasOfTags) {
+  const std::map<uint32_t, double> tagged_px = {{1, 571.0}};
+  EXPECT_FALSE(FindFocalFarFrom(tagged_px, ModelWith(571.0, 5, 1634.0, 5)));
+  ASSERT_TRUE(FindFocalFarFrom(tagged_px, ModelWith(164.0 / 119.0 * 571.0, 5, 571.0, 5)));
+  EXPECT_FALSE(FindFocalFarFrom({}, ModelWith(1634.0, 5)));
+}
+
 TEST(FocalCheck, CannotJudgeWithoutTags) {
   EXPECT_TRUE(IsGuessedFocal(CameraWith(960.0)));
   EXPECT_FALSE(IsGuessedFocal(CameraWith(961.0)));

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* kGeoFix =
     "Write per line: photo, x (east or longitude), y (north or latitude), height; the first line is the coordinate system";
 constexpr const char* kCrsFix = "Begin the file with EPSG:4326 for longitude and latitude, or with the coordinate system of x and y";
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::string> NamesOf(const std::vector<PhotoFile>& photos) {
   std::vector<std::string> names;
@@ -214,7 +214,7 @@ class GeoReader {
       return;
     }
     RawRow raw;
-    raw.given = {number(x), number(y), IsNoValue(z) ? kNan : number(z)};
+    raw.given = {number(x), number(y), IsNoValue(z) ? kNotGiven : number(z)};
     if (raw.given.x() == 0.0 && raw.given.y() == 0.0) {
       ++n_without_position_;
       return;
@@ -244,7 +244,7 @@ class GeoReader {
     const double z = has_height ? given.z() : 0.0;
     try {
       geo::Geodetic place = crs.ToGeodetic(exchanged ? Eigen::Vector3d(given.y(), given.x(), z) : Eigen::Vector3d(given.x(), given.y(), z));
-      if (!has_height) place.height_m = kNan;
+      if (!has_height) place.height_m = kNotGiven;
       return place;
     } catch (const std::invalid_argument& error) {
       if (reason != nullptr) *reason = error.what();

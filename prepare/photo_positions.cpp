@@ -1,7 +1,6 @@
 #include "prepare/photo_positions.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
@@ -14,6 +13,7 @@
 #include "core/base/text.h"
 #include "core/geo/ecef.h"
 #include "prepare/geo_table.h"
+#include "prepare/tables/text_table.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -26,23 +26,11 @@ constexpr double kMeasured_m = 0.1;
 // Tags of the same photo differ less.
 constexpr double kFarOff_m = 100.0;
 
-std::optional<double> ParseNumber(const std::string& text) {
-  double value = 0.0;
-  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const auto result = std::from_chars(begin, text.data() + text.size(), value);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 std::vector<std::string> WordsOf(const std::string& line) {
   std::istringstream in(line);
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
   return words;
-}
-
-[[noreturn]] void FailLine(const fs::path& file, size_t line, const std::string& found, const std::string& fix) {
-  throw base::InputError(file, "line " + std::to_string(line) + ": " + found, fix);
 }
 
 struct Numbered {
@@ -158,7 +146,7 @@ void UseMrkFiles(const fs::path& photo_root, std::vector<PhotoFile>& photos) {
 std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
   std::istringstream lines(base::ReadFile(file));
   std::vector<MrkRow> rows;
-  size_t number = 0;
+  int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
     std::replace(line.begin(), line.end(), ',', ' ');
@@ -166,17 +154,17 @@ std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
     if (words.empty()) continue;
     const auto before = [&](const char* label) {
       const auto found = std::find(words.begin() + 1, words.end(), label);
-      const std::optional<double> value = found == words.end() ? std::nullopt : ParseNumber(*(found - 1));
-      if (!value) FailLine(file, number, std::string("has no number before ") + label, kMrkFix);
+      const std::optional<double> value = found == words.end() ? std::nullopt : ParseTableNumber(*(found - 1), false);
+      if (!value) FailTableLine(file, number, std::string("has no number before ") + label, kMrkFix);
       return *value;
     };
     MrkRow row;
-    const std::optional<double> index = ParseNumber(words.front());
+    const std::optional<double> index = ParseTableNumber(words.front(), false);
     if (!index || *index < 0.0 || *index > 1e6 || *index != std::floor(*index))
-      FailLine(file, number, "does not begin with the photo's number", kMrkFix);
+      FailTableLine(file, number, "does not begin with the photo's number", kMrkFix);
     row.number = static_cast<int>(*index);
     row.position = {before("Lat"), before("Lon"), before("Ellh")};
-    if (!geo::IsValid(row.position)) FailLine(file, number, "has a position that is not on Earth", kMrkFix);
+    if (!geo::IsValid(row.position)) FailTableLine(file, number, "has a position that is not on Earth", kMrkFix);
     row.position.longitude_deg = geo::WrapLongitudeDeg(row.position.longitude_deg);
     const double status = before("Q");
     row.status = status > 0.0 && status < 1000.0 ? static_cast<int>(status) : 0;
@@ -184,7 +172,7 @@ std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
     const auto height = std::find(words.begin(), words.end(), "Ellh");
     std::vector<double> sigmas;
     for (auto word = height + 1; word != words.end() && sigmas.size() < 3; ++word) {
-      const std::optional<double> sigma = ParseNumber(*word);
+      const std::optional<double> sigma = ParseTableNumber(*word, false);
       if (!sigma) break;
       sigmas.push_back(*sigma);
     }

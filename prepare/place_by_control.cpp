@@ -38,6 +38,26 @@ void LogControl(const survey::ControlFit& fit) {
                 Describe(fit, survey::ControlUse::kControl), Describe(fit, survey::ControlUse::kCheck));
 }
 
+// Decides by the photos' poses whether marks were made in upright photos, where their file leaves that open. Logs it.
+void SettleReading(const ControlJob& without_ties, ControlPoints& control) {
+  const ReadingVotes votes = CountReadings(without_ties);
+  if (votes.n_open == 0) return;
+  const MarkReading reading = votes.Reading();
+  if (reading == MarkReading::kUpright) {
+    base::LogWarning(
+        "{}: {} marks were made in photos shown upright, as their EXIF orientation says, and are turned to the stored photos: so {} of them agree "
+        "with the other marks of their points, as they are written {}",
+        control.file, votes.n_open, votes.n_upright, votes.n_stored);
+  } else if (reading == MarkReading::kUndecided) {
+    base::LogWarning(
+        "{}: {} marks are in photos that are stored turned (EXIF orientation), and it is not clear whether they were made in upright photos: they "
+        "are taken as written, so {} of them agree with the other marks of their points, turned {}. If control points are refused, mark the photos "
+        "without turning them, or state the sizes of the marked photos in columns image_width and image_height",
+        control.file, votes.n_open, votes.n_stored, votes.n_upright);
+  }
+  Settle(reading, control);
+}
+
 }  // namespace
 
 ControlPoints ReadControlPoints(const PrepareOptions& options, const std::vector<PhotoFile>& files) {
@@ -63,30 +83,6 @@ ControlPoints ReadControlPoints(const PrepareOptions& options, const std::vector
   if (!doubt.empty()) base::LogWarning("{}", doubt);
   return control;
 }
-
-namespace {
-
-// Decides by the photos' poses whether marks were made in upright photos, where their file leaves that open. Logs it.
-void SettleReading(const ControlJob& without_ties, ControlPoints& control) {
-  const ReadingVotes votes = CountReadings(without_ties);
-  if (votes.n_open == 0) return;
-  const MarkReading reading = votes.Reading();
-  if (reading == MarkReading::kUpright) {
-    base::LogWarning(
-        "{}: {} marks were made in photos shown upright, as their EXIF orientation says, and are turned to the stored photos: so {} of them agree "
-        "with the other marks of their points, as they are written {}",
-        control.file, votes.n_open, votes.n_upright, votes.n_stored);
-  } else if (reading == MarkReading::kUndecided) {
-    base::LogWarning(
-        "{}: {} marks are in photos that are stored turned (EXIF orientation), and it is not clear whether they were made in upright photos: they "
-        "are taken as written, so {} of them agree with the other marks of their points, turned {}. If control points are refused, mark the photos "
-        "without turning them, or state the sizes of the marked photos in columns image_width and image_height",
-        control.file, votes.n_open, votes.n_stored, votes.n_upright);
-  }
-  Settle(reading, control);
-}
-
-}  // namespace
 
 survey::ControlFit PlaceByControl(const ControlInput& input, survey::ColmapModel& model, std::vector<Station>& stations, Georeference& georeference,
                                   base::ThreadPool& threads) {

@@ -103,8 +103,11 @@ bool HaveDecimalCommas(const Lines& lines) {
     const std::vector<std::string> words = WordsOfLine(line);
     if (words.size() < 3) return false;
     for (const std::string& word : words) {
-      if (word.find(',') == std::string::npos) continue;
-      if (!ParseTableNumber(word, true)) return false;
+      const size_t comma = word.find(',');
+      if (comma == std::string::npos) continue;
+      // "1, 2, 3" has separators.
+      const auto is_digit = [&](size_t i) { return i < word.size() && std::isdigit(static_cast<unsigned char>(word[i])) != 0; };
+      if (comma == 0 || !is_digit(comma - 1) || !is_digit(comma + 1) || !ParseTableNumber(word, true)) return false;
       ++n;
     }
   }

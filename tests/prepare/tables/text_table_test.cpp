@@ -44,9 +44,12 @@ TEST(TextTable, CommasInNumbersAreDecimalOnesBetweenOtherSeparators) {
     EXPECT_TRUE(table.decimal_comma) << text;
     EXPECT_EQ(table.rows[0].fields, (Fields{"a.jpg", "8,4", "47,1", "400"})) << text;
   }
-  const TextTable commas = Parse("My point 1,586000,4507000,3\n");
-  EXPECT_FALSE(commas.decimal_comma);
-  EXPECT_EQ(commas.rows[0].fields, (Fields{"My point 1", "586000", "4507000", "3"}));
+  for (const char* text : {"My point 1,586000,4507000,3\n", "My point 1, 586000, 4507000, 3\n", "My point 1 ,586000 ,4507000 ,3\n"}) {
+    const TextTable commas = Parse(text);
+    EXPECT_FALSE(commas.decimal_comma) << text;
+    EXPECT_EQ(commas.rows[0].fields, (Fields{"My point 1", "586000", "4507000", "3"})) << text;
+  }
+  EXPECT_EQ(Parse("1, 586000, 4507000, 3\n").rows[0].fields, (Fields{"1", "586000", "4507000", "3"}));
 }
 
 TEST(TextTable, QuotesEncloseSpacesAlsoBetweenSpaces) {

@@ -97,9 +97,7 @@ std::string TurnedAdvice(const RawMark& mark, const PhotoSize& photo) {
   }
   return fmt::format(
       "It fits the photo turned by 90 degrees, but the photo's EXIF orientation ({}) does not say so: give the photos with their original tags "
-      "(exiftool -TagsFromFile ORIGINAL -Orientation), or turn the marks: of a photo shown turned clockwise the stored x is y, and the stored y is "
-      "{} "
-      "- x",
+      "(exiftool -TagsFromFile ORIGINAL -Orientation), or turn the marks: of a photo shown turned clockwise the stored x is y, the stored y {} - x",
       photo.orientation, photo.height);
 }
 

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <map>
+#include <optional>
 #include <sstream>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "prepare/models/photo_names.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -25,21 +26,25 @@ int ParseInt(const std::string& digits, const std::string& text) {
 }
 
 void MarkList(const std::filesystem::path& file, survey::Survey& survey) {
-  std::map<std::string, survey::Photo*> by_name;
-  for (survey::Photo& photo : survey.photos) by_name[photo.name] = &photo;
+  std::vector<std::string> all;
+  for (const survey::Photo& photo : survey.photos) all.push_back(photo.name);
+  all.insert(all.end(), survey.unregistered.begin(), survey.unregistered.end());
+  const PhotoNames names(all);
   std::istringstream lines(base::ReadFile(file));
-  std::string line;
-  while (std::getline(lines, line)) {
+  bool first_line = true;
+  for (std::string line; std::getline(lines, line);) {
+    if (first_line && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+    first_line = false;
     const size_t first = line.find_first_not_of(" \t\r");
     if (first == std::string::npos || line[first] == '#') continue;
     const std::string name = line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
-    const auto found = by_name.find(name);
-    if (found != by_name.end()) {
-      found->second->is_test = true;
-    } else if (std::find(survey.unregistered.begin(), survey.unregistered.end(), name) != survey.unregistered.end()) {
+    const std::optional<size_t> found = names.Find(name);
+    if (found && *found < survey.photos.size()) {
+      survey.photos[*found].is_test = true;
+    } else if (found) {
       base::LogWarning("{}: '{}' has no pose, so it is not used as a test photo", file.string(), name);
     } else {
-      throw base::InputError(file, "names '" + name + "', which is not among the photos",
+      throw base::InputError(file, "names '" + name + "', which is none of the photos, or several have this file name",
                              "Write names relative to the photo folder, as in survey.json");
     }
   }

@@ -1,76 +1,36 @@
 #include "prepare/photo_positions.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
-#include <stdexcept>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/pattern.h"
 #include "core/base/text.h"
-#include "core/geo/crs.h"
 #include "core/geo/ecef.h"
+#include "prepare/geo_table.h"
+#include "prepare/tables/text_table.h"
 
 namespace skyquilt::prepare {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kGeoFix =
-    "Write per line: photo, x (east or longitude), y (north or latitude), height; the first line is the coordinate system";
 constexpr const char* kMrkFix = "Copy the file from the drone again, or remove it to use the photos' tags";
 // More accurate than this, a position was measured at the moment of exposure.
 constexpr double kMeasured_m = 0.1;
 // Tags of the same photo differ less.
 constexpr double kFarOff_m = 100.0;
 
-std::optional<double> ParseNumber(const std::string& text) {
-  double value = 0.0;
-  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const auto result = std::from_chars(begin, text.data() + text.size(), value);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 std::vector<std::string> WordsOf(const std::string& line) {
   std::istringstream in(line);
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
   return words;
-}
-
-[[noreturn]] void FailLine(const fs::path& file, size_t line, const std::string& found, const std::string& fix) {
-  throw base::InputError(file, "line " + std::to_string(line) + ": " + found, fix);
-}
-
-// One row of geo.txt after its name; `words` has at least 3.
-GeoRow ParseGeoRow(const fs::path& file, size_t line, const std::vector<std::string>& words, const geo::Crs& crs) {
-  const auto number = [&](size_t i) {
-    const std::optional<double> value = ParseNumber(words[i]);
-    if (!value) FailLine(file, line, "'" + words[i] + "' is not a number", kGeoFix);
-    return *value;
-  };
-  const bool has_height = words.size() > 3;
-  GeoRow row{.photo = words[0], .position = {}, .horizontal_accuracy_m = {}, .vertical_accuracy_m = {}};
-  try {
-    row.position = crs.ToGeodetic({number(1), number(2), has_height ? number(3) : 0.0});
-  } catch (const std::invalid_argument& error) {
-    FailLine(file, line, error.what(),
-             crs.heights() == geo::CrsHeights::kGravity
-                 ? "Check the coordinates and the first line; heights above a geoid need its grid (projsync, or Debian's proj-data)"
-                 : "Check that x is east or longitude and y north or latitude, and that the first line is their coordinate system");
-  }
-  if (!has_height) row.position.height_m = std::numeric_limits<double>::quiet_NaN();
-  // Zero and less mean that it is not known.
-  if (words.size() > 7 && number(7) > 0.0) row.horizontal_accuracy_m = number(7);
-  if (words.size() > 8 && number(8) > 0.0) row.vertical_accuracy_m = number(8);
-  return row;
 }
 
 struct Numbered {
@@ -95,29 +55,27 @@ fs::path GeoFileOf(const fs::path& photo_root, const std::string& geo_file) {
 }
 
 void UseGeoFile(const fs::path& file, std::vector<PhotoFile>& photos) {
-  std::map<std::string, PhotoFile*> by_name;
-  std::map<std::string, std::vector<PhotoFile*>> by_base_name;
-  for (PhotoFile& photo : photos) {
-    by_name[photo.name] = &photo;
-    by_base_name[base::LowerCase(fs::path(photo.name).filename().string())].push_back(&photo);
-  }
+  const GeoTable table = ReadGeoTable(file, photos);
+  for (const std::string& warning : table.warnings) base::LogWarning("{}", warning);
   size_t n_used = 0;
-  const std::vector<GeoRow> rows = ReadGeoFile(file);
-  for (const GeoRow& row : rows) {
-    const auto exact = by_name.find(row.photo);
-    const auto same = by_base_name.find(base::LowerCase(fs::path(row.photo).filename().string()));
-    if (exact == by_name.end() && (same == by_base_name.end() || same->second.size() != 1)) continue;
-    survey::PhotoTags& tags = (exact != by_name.end() ? exact->second : same->second.front())->tags;
+  for (const GeoRow& row : table.rows) {
+    if (!row.index) continue;
+    survey::PhotoTags& tags = photos[*row.index].tags;
     tags.gps = row.position;
+    tags.position_file = file.string();
     tags.horizontal_accuracy_m = row.horizontal_accuracy_m;
     tags.vertical_accuracy_m = row.vertical_accuracy_m;
     tags.rtk = row.horizontal_accuracy_m && *row.horizontal_accuracy_m <= kMeasured_m;
     tags.dop.reset();
     ++n_used;
   }
-  if (n_used == 0) throw base::InputError(file, "names none of the photos", "Write the photos' file names in its first column");
+  if (n_used == 0) {
+    throw base::InputError(file,
+                           "names none of the photos; its first is '" + table.rows.front().photo.substr(0, 60) + "', that of the photos '" +
+                               (photos.empty() ? "" : photos.front().name) + "'",
+                           "Write the photos' file names in its first column");
+  }
   base::LogInfo("positions of {} of {} photos come from {} instead of their tags", n_used, photos.size(), file.string());
-  if (n_used < rows.size()) base::LogWarning("{}: {} of {} rows name no photo, or more than one", file.string(), rows.size() - n_used, rows.size());
 }
 
 // By number; without numbers that several files have.
@@ -173,6 +131,7 @@ void UseMrkFiles(const fs::path& photo_root, std::vector<PhotoFile>& photos) {
       const MrkRow& row = numbered->row;
       constexpr int kRtkFixed = 50;
       photo->tags.gps = row.position;
+      photo->tags.position_file = numbered->file.string();
       photo->tags.rtk = row.status == kRtkFixed;
       if (row.horizontal_accuracy_m > 0.0) photo->tags.horizontal_accuracy_m = row.horizontal_accuracy_m;
       if (row.vertical_accuracy_m > 0.0) photo->tags.vertical_accuracy_m = row.vertical_accuracy_m;
@@ -184,39 +143,10 @@ void UseMrkFiles(const fs::path& photo_root, std::vector<PhotoFile>& photos) {
 
 }  // namespace
 
-std::vector<GeoRow> ReadGeoFile(const fs::path& file) {
-  std::istringstream lines(base::ReadFile(file));
-  std::optional<geo::Crs> crs;
-  std::vector<GeoRow> rows;
-  std::set<std::string> seen;
-  size_t number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    if (line.ends_with('\r')) line.pop_back();
-    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-    const std::vector<std::string> words = WordsOf(line);
-    if (words.empty() || words.front().starts_with('#')) continue;
-    if (!crs) {
-      try {
-        crs.emplace(line);
-      } catch (const std::invalid_argument& error) {
-        FailLine(file, number, "'" + line.substr(0, 60) + "' is not a coordinate system (" + error.what() + ")",
-                 "Begin the file with EPSG:4326 for longitude and latitude, or with the coordinate system of x and y");
-      }
-      continue;
-    }
-    if (words.size() < 3) FailLine(file, number, "has no x and y", kGeoFix);
-    rows.push_back(ParseGeoRow(file, number, words, *crs));
-    if (!seen.insert(words.front()).second) FailLine(file, number, "names " + words.front() + " a second time", "Keep one line per photo");
-  }
-  if (rows.empty()) throw base::InputError(file, "has no positions", kGeoFix);
-  return rows;
-}
-
 std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
   std::istringstream lines(base::ReadFile(file));
   std::vector<MrkRow> rows;
-  size_t number = 0;
+  int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
     std::replace(line.begin(), line.end(), ',', ' ');
@@ -224,17 +154,17 @@ std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
     if (words.empty()) continue;
     const auto before = [&](const char* label) {
       const auto found = std::find(words.begin() + 1, words.end(), label);
-      const std::optional<double> value = found == words.end() ? std::nullopt : ParseNumber(*(found - 1));
-      if (!value) FailLine(file, number, std::string("has no number before ") + label, kMrkFix);
+      const std::optional<double> value = found == words.end() ? std::nullopt : ParseTableNumber(*(found - 1), false);
+      if (!value) FailTableLine(file, number, std::string("has no number before ") + label, kMrkFix);
       return *value;
     };
     MrkRow row;
-    const std::optional<double> index = ParseNumber(words.front());
+    const std::optional<double> index = ParseTableNumber(words.front(), false);
     if (!index || *index < 0.0 || *index > 1e6 || *index != std::floor(*index))
-      FailLine(file, number, "does not begin with the photo's number", kMrkFix);
+      FailTableLine(file, number, "does not begin with the photo's number", kMrkFix);
     row.number = static_cast<int>(*index);
     row.position = {before("Lat"), before("Lon"), before("Ellh")};
-    if (!geo::IsValid(row.position)) FailLine(file, number, "has a position that is not on Earth", kMrkFix);
+    if (!geo::IsValid(row.position)) FailTableLine(file, number, "has a position that is not on Earth", kMrkFix);
     row.position.longitude_deg = geo::WrapLongitudeDeg(row.position.longitude_deg);
     const double status = before("Q");
     row.status = status > 0.0 && status < 1000.0 ? static_cast<int>(status) : 0;
@@ -242,7 +172,7 @@ std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
     const auto height = std::find(words.begin(), words.end(), "Ellh");
     std::vector<double> sigmas;
     for (auto word = height + 1; word != words.end() && sigmas.size() < 3; ++word) {
-      const std::optional<double> sigma = ParseNumber(*word);
+      const std::optional<double> sigma = ParseTableNumber(*word, false);
       if (!sigma) break;
       sigmas.push_back(*sigma);
     }

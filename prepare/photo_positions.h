@@ -1,13 +1,11 @@
-// Positions of photos from files beside them, which are better than the photos' own tags: OpenDroneMap's geo.txt and DJI's image logs (.MRK).
-//   geo.txt  docs.opendronemap.org/geo: first line the coordinate system (EPSG:n, a PROJ string or WGS84 UTM 32N), then per photo
-//            name x y [z] [omega phi kappa] [horizontal and vertical accuracy, m] [anything]; x is east or longitude. The angles are not used.
+// Positions of photos from files beside them, which are better than the photos' own tags: OpenDroneMap's geo.txt and tables like it (see
+// prepare/geo_table.h), and DJI's image logs (.MRK).
 //   .MRK     user manuals of Zenmuse P1, Mavic 3M, Matrice 4: number of the photo in its folder, time, antenna offsets, then with the offset
 //            applied latitude, longitude, ellipsoidal height, standard deviations north, east, up in metres, and the status (50: RTK fixed). The
 //            manuals name longitude before latitude; the labels in the files (Lat, Lon, Ellh, Q) decide.
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,12 +14,6 @@
 
 namespace skyquilt::prepare {
 
-struct GeoRow {
-  std::string photo;
-  geo::Geodetic position;  // the height is NaN when the row has none
-  std::optional<double> horizontal_accuracy_m, vertical_accuracy_m;
-};
-
 struct MrkRow {
   int number = 0;  // of the photo in its folder: DJI_0012.JPG, DJI_20230101120000_0012_V.JPG
   geo::Geodetic position;
@@ -29,8 +21,7 @@ struct MrkRow {
   int status = 0;                                                 // 0 no position, 16 single, 32..49 float, 50 RTK fixed
 };
 
-// Throw base::InputError with the line and how to fix it.
-std::vector<GeoRow> ReadGeoFile(const std::filesystem::path& file);
+// Throws base::InputError with the line and how to fix it.
 std::vector<MrkRow> ReadMrkFile(const std::filesystem::path& file);
 
 // The files that UsePositionFiles reads positions from: the table, or else the .MRK files below the photo folder in name order.

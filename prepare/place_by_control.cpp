@@ -9,6 +9,7 @@
 #include "prepare/control/control_checks.h"
 #include "prepare/control/read_control.h"
 #include "prepare/control_fit/fit_control.h"
+#include "prepare/control_fit/mark_reading.h"
 #include "prepare/dome_fit.h"
 
 namespace skyquilt::prepare {
@@ -37,6 +38,26 @@ void LogControl(const survey::ControlFit& fit) {
                 Describe(fit, survey::ControlUse::kControl), Describe(fit, survey::ControlUse::kCheck));
 }
 
+// Decides by the photos' poses whether marks were made in upright photos, where their file leaves that open. Logs it.
+void SettleReading(const ControlJob& without_ties, ControlPoints& control) {
+  const ReadingVotes votes = CountReadings(without_ties);
+  if (votes.n_open == 0) return;
+  const MarkReading reading = votes.Reading();
+  if (reading == MarkReading::kUpright) {
+    base::LogWarning(
+        "{}: {} marks were made in photos shown upright, as their EXIF orientation says, and are turned to the stored photos: so {} of them agree "
+        "with the other marks of their points, as they are written {}",
+        control.file, votes.n_open, votes.n_upright, votes.n_stored);
+  } else if (reading == MarkReading::kUndecided) {
+    base::LogWarning(
+        "{}: {} marks are in photos that are stored turned (EXIF orientation), and it is not clear whether they were made in upright photos: they "
+        "are taken as written, so {} of them agree with the other marks of their points, turned {}. If control points are refused, mark the photos "
+        "without turning them, or state the sizes of the marked photos in columns image_width and image_height",
+        control.file, votes.n_open, votes.n_stored, votes.n_upright);
+  }
+  Settle(reading, control);
+}
+
 }  // namespace
 
 ControlPoints ReadControlPoints(const PrepareOptions& options, const std::vector<PhotoFile>& files) {
@@ -45,7 +66,7 @@ ControlPoints ReadControlPoints(const PrepareOptions& options, const std::vector
   std::vector<geo::Geodetic> tags;
   photos.reserve(files.size());
   for (const PhotoFile& file : files) {
-    photos.push_back({file.name, file.width, file.height, file.tags.original_width, file.tags.original_height});
+    photos.push_back({file.name, file.width, file.height, file.tags.original_width, file.tags.original_height, file.tags.orientation});
     if (file.tags.gps) tags.push_back(*file.tags.gps);
   }
   ControlPoints control = ReadControl({.points = options.gcp,
@@ -68,8 +89,11 @@ survey::ControlFit PlaceByControl(const ControlInput& input, survey::ColmapModel
   if (input.control.points.empty()) return {};
   const survey::ColmapObservations observations =
       input.has_observations ? survey::ReadColmapObservations(input.model_folder) : survey::ColmapObservations();
-  ControlJob job{
-      .model = model, .observations = observations, .stations = stations, .image_of_station = input.image_of_station, .control = input.control};
+  ControlPoints control = input.control;
+  const survey::ColmapObservations no_ties;
+  SettleReading({.model = model, .observations = no_ties, .stations = stations, .image_of_station = input.image_of_station, .control = input.control},
+                control);
+  ControlJob job{.model = model, .observations = observations, .stations = stations, .image_of_station = input.image_of_station, .control = control};
   if (georeference.ok) job.otherwise = PlaceWithoutControl{georeference.origin, georeference.enu_from_model, georeference.fit.accuracy, input.exact};
   const PlacedByControl placed = FitControl(job, threads);
   LogControl(placed.fit);

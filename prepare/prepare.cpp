@@ -40,6 +40,7 @@
 #include "prepare/shape_by_tags.h"
 #include "prepare/sparse_cloud.h"
 #include "prepare/survey_points.h"
+#include "prepare/unfilled_tags.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -284,6 +285,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
       ListPhotos(folders.photo_root, {folders.masks, input.out_folder, fs::absolute(input.out_folder).parent_path()});
   PhotoSet photos = ReadPhotos(folders.photo_root, names, threads);
   UsePositionFiles(folders.photo_root, options.geo_file, photos.usable);
+  LogUnfilledTags(options.flight_gap_s, photos.usable);
   std::vector<std::string> masks = FindMasks(folders.masks, photos.usable);
   // Faults of these files are told before the long search for poses.
   const ControlPoints control_points = ReadControlPoints(options, photos.usable);

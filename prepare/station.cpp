@@ -18,6 +18,7 @@ Station MakeStation(const std::string& name, const geo::Rigid3d& cam_from_model,
   const TagAccuracy accuracy = AccuracyOf(tags);
   station.horizontal_sigma_m = accuracy.horizontal_m;
   station.vertical_sigma_m = accuracy.vertical_m;
+  station.position_file = tags.position_file;
   if (tags.gimbal_pitch_deg) station.up_in_cam = UpInCamera(*tags.gimbal_pitch_deg, tags.gimbal_roll_deg.value_or(0.0));
   return station;
 }

@@ -24,6 +24,7 @@ struct Station {
   double horizontal_sigma_m = 3.0;
   double vertical_sigma_m = 4.5;
   std::optional<Eigen::Vector3d> up_in_cam = {};  // unit vector by the tagged gimbal angles
+  std::string position_file = {};                 // that `gps` comes from, as in PhotoTags
 };
 
 Station MakeStation(const std::string& name, const geo::Rigid3d& cam_from_model, const survey::PhotoTags& tags);

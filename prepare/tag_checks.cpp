@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <string>
 #include <utility>
 
 #include "core/geo/enu_frame.h"
@@ -14,13 +16,32 @@ namespace {
 constexpr double kSameHeight_m = 0.005;
 constexpr double kSamePlace_m = 1.0;
 
-bool Varies(const std::vector<double>& values) {
-  if (values.size() < 2) return !values.empty();
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return *high - *low > kSameHeight_m;
+// The file, or the one of most of them, that most positions come from; empty: the photos' own tags.
+std::string PositionFile(const std::vector<Station>& stations) {
+  std::map<std::string, size_t> count;
+  size_t n_gps = 0;
+  for (const Station& station : stations) {
+    if (!station.gps) continue;
+    ++n_gps;
+    if (!station.position_file.empty()) ++count[station.position_file];
+  }
+  size_t n_of_files = 0, most = 0;
+  std::string found;
+  for (const auto& [file, n] : count) {
+    n_of_files += n;
+    if (n > most) found = file;
+    most = std::max(most, n);
+  }
+  return 2 * n_of_files > n_gps ? found : "";
 }
 
 }  // namespace
+
+bool HeightsVary(const std::vector<double>& heights_m) {
+  if (heights_m.size() < 2) return !heights_m.empty();
+  const auto [low, high] = std::minmax_element(heights_m.begin(), heights_m.end());
+  return *high - *low > kSameHeight_m;
+}
 
 HeightTags JudgeHeights(const std::vector<Station>& stations) {
   std::vector<double> tagged, relative;
@@ -31,7 +52,7 @@ HeightTags JudgeHeights(const std::vector<Station>& stations) {
     if (std::isfinite(station.gps->height_m)) tagged.push_back(station.gps->height_m);
     if (station.relative_altitude_m) relative.push_back(*station.relative_altitude_m);
   }
-  if (Varies(tagged)) return HeightTags::kTagged;
+  if (HeightsVary(tagged)) return HeightTags::kTagged;
   const bool all_zero = std::all_of(relative.begin(), relative.end(), [](double height_m) { return height_m == 0.0; });
   return 2 * relative.size() > n_gps && !all_zero ? HeightTags::kRelative : HeightTags::kUnknown;
 }
@@ -55,6 +76,10 @@ std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>
     const char* code;
     const char* finding;
     const char* advice;
+    // The same of a file of positions.
+    const char* of_file;
+    const char* otherwise;
+    const char* repair_file;
     std::function<geo::Geodetic(const geo::Geodetic&)> repair;
   };
   const Kind kinds[] = {
@@ -62,6 +87,9 @@ std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>
        "Exchange them in the photos (exiftool: \"-GPSLatitude<GPSLongitude\" \"-GPSLongitude<GPSLatitude\" and the two Ref tags likewise, XMP too) "
        "or "
        "tag the photos again from the flight log, then run the same command with --restart",
+       "x and y (longitude and latitude, or east and north) look exchanged in ", "the other way round",
+       "Write x (longitude or east) before y (latitude or north), or name the columns in a first line below the coordinate system, for instance "
+       "photo,lat,lon,height",
        [](const geo::Geodetic& p) {
          return geo::Geodetic{p.longitude_deg, p.latitude_deg, p.height_m};
        }},
@@ -71,12 +99,19 @@ std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>
        "camera positions",
        "Correct GPSLatitudeRef (N or S) or GPSLongitudeRef (E or W) in the photos, for instance with exiftool, then run the same command with "
        "--restart",
+       "the latitudes or the longitudes have the wrong sign in ", "with the other sign", "West and south are negative: correct the signs",
        [](const geo::Geodetic& p) {
          return geo::Geodetic{p.latitude_deg, -p.longitude_deg, p.height_m};
        }}};
+  const std::string file = PositionFile(stations);
   std::vector<CoordinateFault> faults;
   for (const Kind& kind : kinds) {
     CoordinateFault fault{.problem = {.code = kind.code, .finding = kind.finding, .advice = kind.advice, .about_place = true}, .repaired = stations};
+    if (!file.empty()) {
+      fault.problem.finding = std::string(kind.of_file) + file + ": read " + kind.otherwise + ", its positions fit those of the cameras";
+      fault.problem.advice =
+          std::string(kind.repair_file) + ", or remove the file to use the photos' own tags, then run the same command with --restart";
+    }
     bool possible = true;
     for (Station& station : fault.repaired) {
       if (!station.gps) continue;

@@ -14,6 +14,9 @@ enum class HeightTags { kTagged, kRelative, kUnknown };
 // What the stations' heights are worth. kUnknown: none or all equal. kRelative: the same, but RelativeAltitude is tagged.
 HeightTags JudgeHeights(const std::vector<Station>& stations);
 
+// Whether heights differ as measured ones do, even of a drone that holds its height; true for a single one, false for none.
+bool HeightsVary(const std::vector<double>& heights_m);
+
 // True when all tags are at one place (within a metre).
 bool AllTagsEqual(const std::vector<Station>& stations);
 
@@ -23,7 +26,7 @@ struct CoordinateFault {
   std::vector<Station> repaired;
 };
 // Latitude and longitude exchanged, or either with the wrong sign. Candidates only: whether one of them fits better must be tried. Those that
-// would not be positions on Earth are left out.
+// would not be positions on Earth are left out. The words name the file that the positions come from, where most do.
 std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>& stations);
 
 }  // namespace skyquilt::prepare

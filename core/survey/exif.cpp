@@ -13,6 +13,7 @@
 #include "core/base/errors.h"
 #include "core/survey/dji_maker_note.h"
 #include "core/survey/exiv2_guard.h"
+#include "core/survey/orientation.h"
 
 namespace skyquilt::survey {
 namespace {
@@ -24,6 +25,12 @@ std::optional<double> Finite(double value) {
 // Where 0 means "not given".
 std::optional<double> Positive(std::optional<double> value) {
   return value && *value > 0.0 ? value : std::nullopt;
+}
+
+// Likewise; the name of a tag that is 0 is noted.
+std::optional<double> PositiveTag(std::optional<double> value, const char* name, PhotoTags& tags) {
+  if (value && *value == 0.0) tags.zero_tags.emplace_back(name);
+  return Positive(value);
 }
 
 // Component `index` of a number tag; nothing for 0/0, n/0, a wrong type or too few components.
@@ -116,30 +123,42 @@ std::optional<double> ExifAltitude(const Exiv2::ExifData& exif) {
   return reference && *reference == 1.0 ? -std::abs(*altitude) : *altitude;
 }
 
+// What receivers without a fix write.
+bool IsNoFix(const std::optional<double>& latitude_deg, const std::optional<double>& longitude_deg) {
+  return latitude_deg && longitude_deg && *latitude_deg == 0.0 && *longitude_deg == 0.0;
+}
+
 bool IsPlausible(double latitude_deg, double longitude_deg) {
-  const bool no_fix = latitude_deg == 0.0 && longitude_deg == 0.0;
-  return !no_fix && std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 360.0;
+  return !IsNoFix(latitude_deg, longitude_deg) && std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 360.0;
 }
 
 // XMP first, because the EXIF of some firmware has fewer digits. XMP altitude and XMP latitude may each be present without the other.
-std::optional<geo::Geodetic> ReadPosition(const Exiv2::ExifData& exif, const Exiv2::XmpData& xmp, const std::optional<double>& absolute_altitude_m) {
+std::optional<geo::Geodetic> ReadPosition(const Exiv2::ExifData& exif, const Exiv2::XmpData& xmp, PhotoTags& tags) {
   auto latitude = XmpNumber(xmp, "GpsLatitude");
   if (!latitude) latitude = XmpNumber(xmp, "Latitude");
   auto longitude = XmpNumber(xmp, "GpsLongitude");
   // A spelling mistake in many versions of DJI's firmware.
   if (!longitude) longitude = XmpNumber(xmp, "GpsLongtitude");
   if (!longitude) longitude = XmpNumber(xmp, "Longitude");
+  bool no_fix = IsNoFix(latitude, longitude);
   if (!latitude || !longitude || !IsPlausible(*latitude, *longitude)) {
     latitude = ExifAngle(exif, "Exif.GPSInfo.GPSLatitude", "Exif.GPSInfo.GPSLatitudeRef", 'S');
     longitude = ExifAngle(exif, "Exif.GPSInfo.GPSLongitude", "Exif.GPSInfo.GPSLongitudeRef", 'W');
   }
-  if (!latitude || !longitude || !IsPlausible(*latitude, *longitude)) return std::nullopt;
-  auto altitude = absolute_altitude_m;
-  if (!altitude) altitude = ExifAltitude(exif);
+  no_fix = no_fix || IsNoFix(latitude, longitude);
+  if (!latitude || !longitude || !IsPlausible(*latitude, *longitude)) {
+    if (no_fix) tags.zero_tags.emplace_back("GPSLatitude and GPSLongitude");
+    return std::nullopt;
+  }
+  auto altitude = tags.absolute_altitude_m;
+  const auto in_exif = ExifAltitude(exif);
+  // Heights near 0 may be rounded in one of the two.
+  constexpr double kNearZero_m = 5.0;
+  if (!altitude || (*altitude == 0.0 && in_exif && std::abs(*in_exif) > kNearZero_m)) altitude = in_exif;
   return geo::Geodetic{*latitude, geo::WrapLongitudeDeg(*longitude), altitude.value_or(std::numeric_limits<double>::quiet_NaN())};
 }
 
-// Drones without RTK write zeros into its tags.
+// Drones without RTK write zeros into its tags, which is nothing to note.
 void ReadAccuracy(const Exiv2::ExifData& exif, const Exiv2::XmpData& xmp, PhotoTags& tags) {
   const std::optional<double> east = Positive(XmpNumber(xmp, "RtkStdLon"));
   const std::optional<double> north = Positive(XmpNumber(xmp, "RtkStdLat"));
@@ -174,17 +193,25 @@ void ReadOriginalSize(const Exiv2::ExifData& exif, PhotoTags& tags) {
   tags.original_height = static_cast<int>(*height);
 }
 
-ExposureSettings ReadExposure(const Exiv2::ExifData& exif) {
+// In APEX 0 is a value (1 s, f/1), but not beside another tag for the same that was left at 0.
+std::optional<double> Apex(const Exiv2::ExifData& exif, const char* key, const std::optional<double>& other) {
+  const auto apex = ExifNumber(exif, key);
+  return apex && *apex == 0.0 && other && *other == 0.0 ? std::nullopt : apex;
+}
+
+ExposureSettings ReadExposure(const Exiv2::ExifData& exif, PhotoTags& tags) {
   ExposureSettings exposure;
-  exposure.time_s = Positive(ExifNumber(exif, "Exif.Photo.ExposureTime"));
+  const auto time_s = ExifNumber(exif, "Exif.Photo.ExposureTime");
+  exposure.time_s = PositiveTag(time_s, "ExposureTime", tags);
   if (!exposure.time_s) {
-    if (const auto apex = ExifNumber(exif, "Exif.Photo.ShutterSpeedValue")) exposure.time_s = Positive(Finite(std::exp2(-*apex)));
+    if (const auto apex = Apex(exif, "Exif.Photo.ShutterSpeedValue", time_s)) exposure.time_s = Positive(Finite(std::exp2(-*apex)));
   }
-  exposure.f_number = Positive(ExifNumber(exif, "Exif.Photo.FNumber"));
+  const auto f_number = ExifNumber(exif, "Exif.Photo.FNumber");
+  exposure.f_number = PositiveTag(f_number, "FNumber", tags);
   if (!exposure.f_number) {
-    if (const auto apex = ExifNumber(exif, "Exif.Photo.ApertureValue")) exposure.f_number = Positive(Finite(std::exp2(*apex / 2.0)));
+    if (const auto apex = Apex(exif, "Exif.Photo.ApertureValue", f_number)) exposure.f_number = Positive(Finite(std::exp2(*apex / 2.0)));
   }
-  exposure.iso = Positive(ExifNumber(exif, "Exif.Photo.ISOSpeedRatings"));
+  exposure.iso = PositiveTag(ExifNumber(exif, "Exif.Photo.ISOSpeedRatings"), "ISO", tags);
   // 65535 means that the value is in one of the 32-bit tags (EXIF 2.3).
   if (!exposure.iso || *exposure.iso >= 65535.0) {
     for (const char* key : {"Exif.Photo.RecommendedExposureIndex", "Exif.Photo.ISOSpeed", "Exif.Photo.StandardOutputSensitivity"}) {
@@ -242,7 +269,7 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
     PhotoTags tags;
     tags.relative_altitude_m = XmpNumber(xmp, "RelativeAltitude");
     tags.absolute_altitude_m = XmpNumber(xmp, "AbsoluteAltitude");
-    tags.gps = ReadPosition(exif, xmp, tags.absolute_altitude_m);
+    tags.gps = ReadPosition(exif, xmp, tags);
     constexpr double kRtkFixed = 50.0;
     tags.rtk = XmpNumber(xmp, "RtkFlag").value_or(0.0) == kRtkFixed;
     ReadAccuracy(exif, xmp, tags);
@@ -250,11 +277,13 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
     tags.gimbal_yaw_deg = XmpNumber(xmp, "GimbalYawDegree");
     tags.gimbal_pitch_deg = XmpNumber(xmp, "GimbalPitchDegree");
     tags.gimbal_roll_deg = XmpNumber(xmp, "GimbalRollDegree");
-    tags.exposure = ReadExposure(exif);
-    tags.focal_length_mm = ExifNumber(exif, "Exif.Photo.FocalLength");
-    tags.focal_length_35mm = ExifNumber(exif, "Exif.Photo.FocalLengthIn35mmFilm");
+    tags.exposure = ReadExposure(exif, tags);
+    tags.focal_length_mm = PositiveTag(ExifNumber(exif, "Exif.Photo.FocalLength"), "FocalLength", tags);
+    tags.focal_length_35mm = PositiveTag(ExifNumber(exif, "Exif.Photo.FocalLengthIn35mmFilm"), "FocalLengthIn35mmFilm", tags);
     tags.calibrated_focal_px = Positive(XmpNumber(xmp, "CalibratedFocalLength"));
     ReadOriginalSize(exif, tags);
+    const double orientation = ExifNumber(exif, "Exif.Image.Orientation").value_or(1.0);
+    if (IsOrientation(orientation)) tags.orientation = static_cast<int>(orientation);
     tags.capture_time_s = ReadCaptureTime(exif);
     tags.make = ExifText(exif, "Exif.Image.Make");
     tags.model = ExifText(exif, "Exif.Image.Model");

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/geo/geodetic.h"
 #include "core/survey/survey.h"
@@ -11,8 +12,10 @@
 namespace skyquilt::survey {
 
 struct PhotoTags {
+  // Numbers that are 0 where 0 is none that a camera can have (focal length, exposure time, ...) count as missing.
   std::optional<geo::Geodetic> gps;  // latitude and longitude from XMP if present (some firmware truncates EXIF), else EXIF; both 0 counts as
-                                     // no GPS fix. Height: XMP AbsoluteAltitude, else EXIF (GPSAltitudeRef 1 = negative), else NaN
+                                     // no GPS fix. Height: XMP AbsoluteAltitude, else EXIF (GPSAltitudeRef 1 = negative), else NaN;
+                                     // an AbsoluteAltitude of 0 goes behind another EXIF one
   std::optional<double> relative_altitude_m;  // XMP drone-dji:RelativeAltitude
   std::optional<double> absolute_altitude_m;  // XMP drone-dji:AbsoluteAltitude
   bool rtk = false;                           // XMP drone-dji:RtkFlag is 50 (RTK fixed): accurate, altitude is ellipsoidal
@@ -28,8 +31,11 @@ struct PhotoTags {
   std::optional<double> calibrated_focal_px;  // XMP drone-dji:CalibratedFocalLength, pixels of the photo as taken
   // EXIF PixelXDimension and PixelYDimension, as the camera took the photo: programs that make photos smaller often leave them. 0: no such tags.
   int original_width = 0, original_height = 0;
+  int orientation = 1;                   // EXIF Orientation, 1 to 8, see core/survey/orientation.h; 1 when missing or unknown
   std::optional<double> capture_time_s;  // DateTimeOriginal (+ SubSec) in seconds since 1970, by the camera's clock
   std::string make, model;
+  std::string position_file;           // that `gps` comes from; empty: the photo itself
+  std::vector<std::string> zero_tags;  // names of tags that are 0 and count as missing therefore
 };
 
 // Tags that are missing or unreadable stay empty. Throws base::InputError only if the file itself cannot be read as an image.

@@ -133,6 +133,7 @@ void WritePhotoTags(const PhotoTags& tags, const std::filesystem::path& file) {
     if (tags.focal_length_35mm) exif["Exif.Photo.FocalLengthIn35mmFilm"] = static_cast<uint16_t>(std::lround(*tags.focal_length_35mm));
     if (tags.original_width > 0) exif["Exif.Photo.PixelXDimension"] = static_cast<uint32_t>(tags.original_width);
     if (tags.original_height > 0) exif["Exif.Photo.PixelYDimension"] = static_cast<uint32_t>(tags.original_height);
+    if (tags.orientation != 1) exif["Exif.Image.Orientation"] = static_cast<uint16_t>(tags.orientation);
     if (tags.capture_time_s) SetCaptureTime(exif, *tags.capture_time_s);
     image->writeMetadata();
   } catch (const Exiv2::AnyError& error) {

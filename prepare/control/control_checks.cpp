@@ -13,7 +13,7 @@
 #include "core/geo/ecef.h"
 #include "core/geo/utm.h"
 #include "core/linear/linear.h"
-#include "prepare/control/raw_control.h"
+#include "prepare/tables/text_table.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -157,9 +157,9 @@ void CheckNear(const ControlPoints& points, const std::vector<geo::Geodetic>& ta
   for (const ControlPoint& point : points.points) {
     const double distance_m = Distance_m(point.place, *middle);
     if (distance_m <= kFar_m) continue;
-    FailControlLine(points.file, point.line,
-                    fmt::format("{} in {} is {:.0f} km from the photos, by their GPS tags", point.label, points.crs, 1e-3 * distance_m),
-                    Mistakes(point.given.head<2>(), points.crs_definition, *middle).Advice());
+    FailTableLine(points.file, point.line,
+                  fmt::format("{} in {} is {:.0f} km from the photos, by their GPS tags", point.label, points.crs, 1e-3 * distance_m),
+                  Mistakes(point.given.head<2>(), points.crs_definition, *middle).Advice());
   }
 }
 

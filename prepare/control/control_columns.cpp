@@ -17,14 +17,15 @@ const Names& PointNames() {
       for (const char* word : words) all[word] = column;
     };
     add(ControlColumn::kLabel, {"label", "name", "id", "point", "pointname", "gcp", "gcpname", "gcplabel", "marker"});
-    add(ControlColumn::kX, {"x", "e", "east", "easting", "lon", "long", "longitude"});
-    add(ControlColumn::kY, {"y", "n", "north", "northing", "lat", "latitude"});
-    add(ControlColumn::kZ, {"z", "h", "up", "height", "altitude", "alt", "elevation", "ellipsoidalheight"});
+    add(ControlColumn::kX, {"x", "e", "east", "easting", "lon", "long", "longitude", "gpslongitude"});
+    add(ControlColumn::kY, {"y", "n", "north", "northing", "lat", "latitude", "gpslatitude"});
+    add(ControlColumn::kZ, {"z", "h", "up", "height", "altitude", "alt", "elevation", "ellipsoidalheight", "gpsaltitude"});
     add(ControlColumn::kSigma, {"accuracy", "sigma", "sxyz"});
     add(ControlColumn::kHorizontalSigma,
         {"accuracyhorz", "accuracyhorizontal", "horizontalaccuracy", "horizontalsigma", "accuracyxy", "xyaccuracy", "sxy"});
     add(ControlColumn::kVerticalSigma, {"accuracyvert", "accuracyvertical", "verticalaccuracy", "verticalsigma", "accuracyz", "zaccuracy", "sz"});
-    add(ControlColumn::kPhoto, {"image", "photo", "imagename", "photoname", "filename", "file", "camera"});
+    add(ControlColumn::kPhoto,
+        {"image", "photo", "imagename", "photoname", "filename", "file", "camera", "imagefile", "imagefilename", "sourcefile"});
     add(ControlColumn::kPixelX, {"px", "pixelx", "imagex", "imx", "column"});
     add(ControlColumn::kPixelY, {"py", "pixely", "imagey", "imy", "row"});
     add(ControlColumn::kPhotoWidth, {"imagewidth", "photowidth"});
@@ -65,7 +66,7 @@ std::string Plain(const std::string& name) {
 std::optional<ControlColumn> ColumnOfName(const std::string& name, TableKind kind) {
   const std::string plain = Plain(name);
   if (plain == "skip" || plain == "ignore") return ControlColumn::kIgnored;
-  const Names& names = kind == TableKind::kPoints ? PointNames() : MarkNames();
+  const Names& names = kind == TableKind::kMarks ? MarkNames() : PointNames();
   const auto found = names.find(plain);
   return found == names.end() ? std::nullopt : std::optional(found->second);
 }
@@ -96,7 +97,8 @@ std::string ControlColumns::Field(const std::vector<std::string>& fields, Contro
 
 bool ControlColumns::IsComplete(TableKind kind) const {
   if (kind == TableKind::kMarks) return Has(ControlColumn::kLabel) && HasMarks();
-  return Has(ControlColumn::kLabel) && Has(ControlColumn::kX) && Has(ControlColumn::kY);
+  const bool named = Has(ControlColumn::kLabel) || (kind == TableKind::kPositions && Has(ControlColumn::kPhoto));
+  return named && Has(ControlColumn::kX) && Has(ControlColumn::kY);
 }
 
 bool ControlColumns::HasMarks() const {

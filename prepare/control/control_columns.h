@@ -24,7 +24,8 @@ enum class ControlColumn {
   kIgnored
 };
 
-enum class TableKind { kPoints, kMarks };
+// What a table is about: control points, marks, positions of photos.
+enum class TableKind { kPoints, kMarks, kPositions };
 
 // The names as they are written by programs and people: in any case, without what is in brackets, '_', '-' and spaces; of "X/Longitude" the part that
 // says more. In a table of marks x and y are pixels. Nothing for a name that has no meaning.
@@ -41,7 +42,8 @@ class ControlColumns {
   bool Has(ControlColumn column) const { return index_[static_cast<size_t>(column)] >= 0; }
   // Empty when the row is shorter or there is no such column.
   std::string Field(const std::vector<std::string>& fields, ControlColumn column) const;
-  // All that the kind of table cannot do without: label, x and y, or photo, label and pixel.
+  // All that the kind of table cannot do without: label, x and y; photo, label and pixel; or, of positions of photos, photo
+  // (or label), x and y.
   bool IsComplete(TableKind kind) const;
   // The marks' columns too.
   bool HasMarks() const;

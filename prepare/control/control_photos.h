@@ -14,7 +14,13 @@ namespace skyquilt::prepare {
 struct PhotoSize {
   std::string name;                             // as in survey::Photo::name
   int width = 0, height = 0;                    // pixels, as stored
-  int original_width = 0, original_height = 0;  // before it was made smaller or larger, if known; 0: not known
+  int original_width = 0, original_height = 0;  // before it was made smaller or larger, as stored, if known; 0: not known
+  int orientation = 1;                          // by its EXIF, see core/survey/orientation.h
+};
+
+struct StoredMark {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // of the stored photo, in the convention of ControlMark
+  std::optional<Eigen::Vector2d> if_upright = {};   // see ControlMark
 };
 
 class ControlPhotos {
@@ -29,10 +35,12 @@ class ControlPhotos {
   PhotoNames finder_;
 };
 
-// The marks' pixels in the stored photos, in the convention of ControlMark. `photos[i]` is that of marks[i]. Marks of which the file states the size
-// of the photo are scaled to the stored one. When others lie outside their photos but all of them fit the sizes the photos had before, they are
-// scaled from there, and `warnings` says so. Throws base::InputError with the line: a mark outside its photo, a stated size of another shape.
-std::vector<Eigen::Vector2d> StoredPixels(const std::filesystem::path& file, const std::vector<RawMark>& marks,
-                                          const std::vector<const PhotoSize*>& photos, std::vector<std::string>& warnings);
+// Where the marks are in the stored photos. `photos[i]` is that of marks[i]. Marks of which the file states the size of the photo are scaled to the
+// stored one. A program marks all photos either as they are stored or upright, as their EXIF orientation says, and all in their present or in their
+// original size: of these four the first with the fewest marks outside of their photos is taken, in the order stored, upright, stored in original
+// size, upright in original size. `warnings` says what is not as stored. Where upright marks would fit as well, StoredMark::if_upright has them.
+// Throws base::InputError with the line: a mark outside its photo, a stated size of another shape.
+std::vector<StoredMark> StoredPixels(const std::filesystem::path& file, const std::vector<RawMark>& marks,
+                                     const std::vector<const PhotoSize*>& photos, std::vector<std::string>& warnings);
 
 }  // namespace skyquilt::prepare

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct ControlMark {
   std::string photo;                                // name of the photo, path relative to the photo folder as in survey::Photo::name
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // of the stored photo, see core/camera/camera.h: centre of the top-left pixel is (0.5, 0.5)
   int line = 0;                                     // in the file it comes from, from 1; 0: unknown
+  // Where it is in the stored photo if the file's marks were made in upright pictures; only where that is another place and the file itself does not
+  // tell. What the photos' poses say of it: prepare/control_fit/mark_reading.h.
+  std::optional<Eigen::Vector2d> if_upright = {};
 };
 
 struct ControlPoint {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -10,10 +12,6 @@ namespace {
 
 constexpr size_t kNumbers = 5;
 constexpr const char* kGcpListFix = "Write per line: x, y, z, pixel x, pixel y, photo and, if you like, the point's name";
-
-bool IsNan(const std::string& text) {
-  return text.size() == 3 && (text[0] == 'n' || text[0] == 'N') && (text[1] == 'a' || text[1] == 'A') && (text[2] == 'n' || text[2] == 'N');
-}
 
 // The photo's name may have spaces: the shortest run of words that is the name of a photo, else the first word. `used`: number of its words.
 std::string PhotoOf(const std::vector<std::string>& words, const ControlPhotos& photos, size_t& used) {
@@ -30,18 +28,22 @@ std::string PhotoOf(const std::vector<std::string>& words, const ControlPhotos& 
 
 }  // namespace
 
-bool LooksLikeGcpList(const ControlTable& table) {
-  if (table.separator != ' ' || table.rows.empty()) return false;
+bool LooksLikeGcpList(const TextTable& table, const ControlPhotos& photos) {
+  if (table.rows.empty()) return false;
   const std::vector<std::string>& words = table.rows.front().fields;
   if (words.size() <= kNumbers) return false;
   for (size_t i = 0; i < kNumbers; ++i) {
-    if (!ParseControlNumber(words[i], false) && !(i == 2 && IsNan(words[i]))) return false;
+    if (!ParseTableNumber(words[i], table.decimal_comma) && !(i == 2 && IsNoValue(words[i]))) return false;
   }
-  // Six numbers are a table with accuracies.
-  return !ParseControlNumber(words[kNumbers], false);
+  // Six numbers are a table with accuracies; with commas and semicolons, so may five numbers and a remark be.
+  if (table.separator == ',' || table.separator == ';') {
+    return std::any_of(table.rows.begin(), table.rows.end(),
+                       [&](const TableRow& row) { return row.fields.size() > kNumbers && photos.Find(row.fields[kNumbers]) != nullptr; });
+  }
+  return !ParseTableNumber(words[kNumbers], table.decimal_comma);
 }
 
-RawControl ReadGcpList(const ControlTable& table, const ControlPhotos& photos) {
+RawControl ReadGcpList(const TextTable& table, const ControlPhotos& photos) {
   RawControl control;
   control.file = table.file;
   control.format = "OpenDroneMap's gcp_list.txt";
@@ -53,15 +55,15 @@ RawControl ReadGcpList(const ControlTable& table, const ControlPhotos& photos) {
   for (const TableRow& row : table.rows) {
     const std::vector<std::string>& words = row.fields;
     if (words.size() <= kNumbers)
-      FailControlLine(table.file, row.line, "has " + std::to_string(words.size()) + " fields instead of 6 or more", kGcpListFix);
+      FailTableLine(table.file, row.line, "has " + std::to_string(words.size()) + " fields instead of 6 or more", kGcpListFix);
     const auto number = [&](size_t i) {
-      const std::optional<double> value = ParseControlNumber(words[i], false);
-      if (!value) FailControlLine(table.file, row.line, "'" + words[i].substr(0, 60) + "' is not a number", kGcpListFix);
+      const std::optional<double> value = ParseTableNumber(words[i], table.decimal_comma);
+      if (!value) FailTableLine(table.file, row.line, "'" + words[i].substr(0, 60) + "' is not a number", kGcpListFix);
       return *value;
     };
     RawPoint point;
     point.line = row.line;
-    const double z = IsNan(words[2]) ? std::numeric_limits<double>::quiet_NaN() : number(2);
+    const double z = IsNoValue(words[2]) ? std::numeric_limits<double>::quiet_NaN() : number(2);
     point.given = {number(0), number(1), z};
     RawMark mark;
     mark.line = row.line;
@@ -69,7 +71,7 @@ RawControl ReadGcpList(const ControlTable& table, const ControlPhotos& photos) {
     mark.origin = PixelOrigin::kFirstPixel;
     size_t used = 0;
     mark.photo = PhotoOf(words, photos, used);
-    const bool named = words.size() > kNumbers + used;
+    const bool named = words.size() > kNumbers + used && !words[kNumbers + used].empty();
     // NaN is not equal to itself.
     const std::tuple key(point.given.x(), point.given.y(), std::isnan(z) ? std::numeric_limits<double>::infinity() : z);
     const size_t next = control.points.size();
@@ -88,8 +90,8 @@ RawControl ReadGcpList(const ControlTable& table, const ControlPhotos& photos) {
       const std::tuple first_key(first.given.x(), first.given.y(),
                                  std::isnan(first.given.z()) ? std::numeric_limits<double>::infinity() : first.given.z());
       if (first_key != key) {
-        FailControlLine(table.file, row.line, "gives " + first.label + " other coordinates than line " + std::to_string(first.line),
-                        "Give every point a name of its own, or the same coordinates on all its lines");
+        FailTableLine(table.file, row.line, "gives " + first.label + " other coordinates than line " + std::to_string(first.line),
+                      "Give every point a name of its own, or the same coordinates on all its lines");
       }
     }
     mark.label = control.points[found].label;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "prepare/models/json_document.h"
+#include "prepare/tables/text_table.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -25,9 +26,9 @@ class MarkerFile {
 
   RawControl Read() {
     const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
-    if (!result) FailControlLine(file_, LineAt(result.offset), std::string("is not XML (") + result.description() + ")", kMarkersFix);
+    if (!result) FailTableLine(file_, LineAt(result.offset), std::string("is not XML (") + result.description() + ")", kMarkersFix);
     const pugi::xml_node chunk = document_.child("document").child("chunk");
-    if (!chunk) FailControlLine(file_, 1, "has no <document> with a <chunk>, as Metashape's XML has", kMarkersFix);
+    if (!chunk) FailTableLine(file_, 1, "has no <document> with a <chunk>, as Metashape's XML has", kMarkersFix);
     RawControl control;
     control.file = file_;
     control.format = "Metashape's markers";
@@ -48,7 +49,7 @@ class MarkerFile {
     return static_cast<int>(LineOf(text_, std::min(static_cast<size_t>(std::max<std::ptrdiff_t>(offset, 0)), text_.size())));
   }
   [[noreturn]] void Fail(const pugi::xml_node& node, const std::string& found, const std::string& fix = kMarkersFix) const {
-    FailControlLine(file_, LineAt(node.offset_debug()), std::string("<") + node.name() + "> " + found, fix);
+    FailTableLine(file_, LineAt(node.offset_debug()), std::string("<") + node.name() + "> " + found, fix);
   }
   std::string Attribute(const pugi::xml_node& node, const char* name) const {
     const std::string value = node.attribute(name).value();
@@ -57,7 +58,7 @@ class MarkerFile {
   }
   double Number(const pugi::xml_node& node, const char* name) const {
     const std::string text = Attribute(node, name);
-    const std::optional<double> value = ParseControlNumber(text, false);
+    const std::optional<double> value = ParseTableNumber(text, false);
     if (!value) Fail(node, std::string("has ") + name + " '" + text.substr(0, 60) + "', which is not a number");
     return *value;
   }

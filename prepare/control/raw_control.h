@@ -44,10 +44,4 @@ struct RawControl {
   std::vector<RawMark> marks;
 };
 
-// A number of a file: '.' or, with `decimal_comma`, one ',' before its decimals. Nothing when it is no number or larger than 1e9.
-std::optional<double> ParseControlNumber(const std::string& text, bool decimal_comma);
-
-// Throws base::InputError that names the line.
-[[noreturn]] void FailControlLine(const std::filesystem::path& file, int line, const std::string& found, const std::string& fix);
-
 }  // namespace skyquilt::prepare

@@ -17,6 +17,7 @@
 #include "prepare/control/opensfm_control.h"
 #include "prepare/control/point_places.h"
 #include "prepare/control/table_readers.h"
+#include "prepare/tables/text_table.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -51,13 +52,13 @@ RawControl ReadPoints(const ControlFiles& files, const ControlPhotos& photos) {
     default:
       break;
   }
-  const ControlTable table = ParseControlTable(files.points, text);
-  return files.columns.empty() && LooksLikeGcpList(table) ? ReadGcpList(table, photos) : ReadPointTable(table, files.columns);
+  const TextTable table = ParseTextTable(files.points, text);
+  return files.columns.empty() && LooksLikeGcpList(table, photos) ? ReadGcpList(table, photos) : ReadPointTable(table, files.columns);
 }
 
 RawControl ReadMarks(const fs::path& file) {
   const std::string text = base::ReadFile(file);
-  return FirstCharacter(text) == '<' ? ReadMetashapeMarkers(file, text) : ReadMarkTable(ParseControlTable(file, text));
+  return FirstCharacter(text) == '<' ? ReadMetashapeMarkers(file, text) : ReadMarkTable(ParseTextTable(file, text));
 }
 
 // With the line each is on; 0 in the option itself.
@@ -92,7 +93,7 @@ void SetCheckPoints(const std::string& check_points, std::vector<ControlPoint>& 
   std::set<std::string> known;
   for (const ControlPoint& point : points) known.insert(point.label);
   const std::string found = "names '" + label.substr(0, 60) + "', but no point is called so; there are " + Some(known);
-  if (is_file) FailControlLine(check_points, line, found, "Correct the label, or leave the line out");
+  if (is_file) FailTableLine(check_points, line, found, "Correct the label, or leave the line out");
   throw base::UsageError("check_points " + found);
 }
 
@@ -141,15 +142,15 @@ void AddMarks(const RawControl& from, const ControlPhotos& photos, ControlPoints
   std::map<std::string, size_t> by_label;
   for (size_t i = 0; i < control.points.size(); ++i) by_label[control.points[i].label] = i;
   const UsableMarks usable = KeepUsable(from, by_label, photos, control.warnings);
-  const std::vector<Eigen::Vector2d> pixels = StoredPixels(from.file, usable.marks, usable.photos, control.warnings);
+  const std::vector<StoredMark> stored = StoredPixels(from.file, usable.marks, usable.photos, control.warnings);
   std::map<std::pair<size_t, std::string>, size_t> seen;
   for (size_t i = 0; i < usable.marks.size(); ++i) {
     const RawMark& mark = usable.marks[i];
     const auto [first, is_new] = seen.emplace(std::pair(usable.points[i], usable.photos[i]->name), i);
     if (is_new) {
-      control.points[usable.points[i]].marks.push_back({usable.photos[i]->name, pixels[i], mark.line});
-    } else if (pixels[first->second] != pixels[i]) {
-      FailControlLine(
+      control.points[usable.points[i]].marks.push_back({usable.photos[i]->name, stored[i].pixel, mark.line, stored[i].if_upright});
+    } else if (stored[first->second].pixel != stored[i].pixel) {
+      FailTableLine(
           from.file, mark.line,
           fmt::format("marks {} in {} a second time, elsewhere than line {}", mark.label, usable.photos[i]->name, usable.marks[first->second].line),
           "Keep one mark of a point per photo");

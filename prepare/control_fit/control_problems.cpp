@@ -57,7 +57,8 @@ NoControl WhyNoControl(SimilarityFailure failure, const std::vector<std::string>
   }
   return {fmt::format("only {} control point{} can be used{}{}, three are needed to place the survey", usable.size(), usable.size() == 1 ? "" : "s",
                       usable.empty() ? "" : ": ", base::Join(usable)),
-          "A control point needs a height and marks that agree on two photos with a pose or more, and must not be a check point"};
+          "A control point needs a height and marks that agree on two photos with a pose or more, and must not be a check point. "
+          "Marks that were made in turned pictures need photos with their EXIF orientation"};
 }
 
 std::vector<survey::Problem> ControlProblems(const ControlPoints& control, const survey::ControlFit& fit, NotAdjusted not_adjusted, double misfit) {

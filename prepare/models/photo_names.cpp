@@ -9,7 +9,16 @@ namespace skyquilt::prepare {
 
 namespace fs = std::filesystem;
 
-PhotoNames::PhotoNames(const std::vector<std::string>& names) {
+namespace {
+
+std::string Unquoted(const std::string& label) {
+  const size_t begin = label.find_first_not_of(" \t\"'");
+  return begin == std::string::npos ? "" : label.substr(begin, label.find_last_not_of(" \t\"'") - begin + 1);
+}
+
+}  // namespace
+
+PhotoNames::PhotoNames(const std::vector<std::string>& names) : names_(names) {
   for (size_t i = 0; i < names.size(); ++i) {
     if (!by_path_.emplace(names[i], i).second) continue;
     const fs::path path(names[i]);
@@ -39,8 +48,29 @@ std::optional<size_t> PhotoNames::FindFileName(const std::string& label) const {
 }
 
 std::optional<size_t> PhotoNames::Find(const std::string& label) const {
-  const std::optional<size_t> exact = FindPath(label);
-  return exact ? exact : FindFileName(label);
+  if (const std::optional<size_t> exact = FindPath(label)) return exact;
+  const std::string name = Unquoted(label);
+  if (const std::optional<size_t> exact = FindPath(Cleaned(name))) return exact;
+  if (const std::optional<size_t> only = FindFileName(name)) return only;
+  const auto same = by_file_name_.find(base::LowerCase(fs::path(Cleaned(name)).filename().string()));
+  if (same == by_file_name_.end()) return std::nullopt;
+  std::optional<size_t> best;
+  size_t most = 1;
+  for (const size_t i : same->second) {
+    const size_t parts = CommonParts(name, i);
+    if (parts < most) continue;
+    best = parts > most ? std::optional(i) : std::nullopt;
+    most = parts;
+  }
+  return best;
+}
+
+size_t PhotoNames::CommonParts(const std::string& label, size_t index) const {
+  const fs::path a(base::LowerCase(Cleaned(label))), b(base::LowerCase(names_.at(index)));
+  size_t n = 0;
+  auto x = a.end(), y = b.end();
+  while (x != a.begin() && y != b.begin() && *--x == *--y) ++n;
+  return n;
 }
 
 }  // namespace skyquilt::prepare

@@ -37,8 +37,8 @@ HeightAboveTakeOff CompareHeights(const std::vector<double>& found_m, const std:
     tagged.push_back(tagged_m[i]);
     ratio.push_back(found_m[i] / tagged_m[i]);
   }
-  constexpr size_t kLeastShare = 5;  // one of so many
-  if (ratio.size() < kLeastHeights || kLeastShare * ratio.size() < n_found) return {};
+  constexpr size_t kLeastTagged = 5;  // one of so many
+  if (ratio.size() < kLeastHeights || kLeastTagged * ratio.size() < n_found) return {};
   const auto n = static_cast<int>(ratio.size());
   return {.n = n, .found_m = base::Median(std::move(found)), .tagged_m = base::Median(std::move(tagged)), .ratio = base::Median(std::move(ratio))};
 }

@@ -53,6 +53,10 @@ TEST(Holdout, AListNamesPhotos) {
   const TemporaryFolder folder;
   base::WriteFileAtomically(folder / "list.txt", "# comment\n\n p1.jpg \r\nlost.jpg\np3.jpg");
   EXPECT_EQ(TestIndices("list:" + (folder / "list.txt").string(), 5), (std::vector<int>{1, 3}));
+  base::WriteFileAtomically(folder / "list.txt",
+                            "\xEF\xBB\xBF"
+                            "D:\\flight\\P1.JPG\r\np3\n");
+  EXPECT_EQ(TestIndices("list:" + (folder / "list.txt").string(), 5), (std::vector<int>{1, 3}));
   base::WriteFileAtomically(folder / "list.txt", "p1.jpg\nnever_seen.jpg\n");
   EXPECT_THROW(TestIndices("list:" + (folder / "list.txt").string(), 5), base::InputError);
   EXPECT_THROW(TestIndices("list:" + (folder / "absent.txt").string(), 5), base::InputError);

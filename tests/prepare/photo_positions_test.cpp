@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/geo/utm.h"
+#include "prepare/geo_table.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -29,7 +30,7 @@ class PhotoPositions : public ::testing::Test {
   }
   std::string GeoError(const std::string& text) {
     Write("table.txt", text);
-    return InputErrorOf([&] { ReadGeoFile(folder_ / "table.txt"); });
+    return InputErrorOf([&] { ReadGeoTable(folder_ / "table.txt", {Photo("a.jpg")}); });
   }
 
   TemporaryFolder folder_;
@@ -47,6 +48,8 @@ TEST_F(PhotoPositions, GeoFileReplacesTagsInAnyCoordinateSystem) {
   EXPECT_EQ(photos[0].tags.horizontal_accuracy_m, 0.02);
   EXPECT_EQ(photos[0].tags.vertical_accuracy_m, 0.05);
   EXPECT_TRUE(photos[0].tags.rtk);
+  EXPECT_EQ(photos[0].tags.position_file, (folder_ / "geo.txt").string());
+  EXPECT_EQ(photos[2].tags.position_file, "");
   EXPECT_TRUE(std::isnan(photos[1].tags.gps->height_m));
   EXPECT_FALSE(photos[1].tags.rtk || photos[1].tags.horizontal_accuracy_m || photos[1].tags.dop);
   EXPECT_EQ(photos[2].tags.gps->latitude_deg, 47.1001);
@@ -56,7 +59,7 @@ TEST_F(PhotoPositions, FaultsOfAGeoFileNameTheLine) {
   EXPECT_NE(GeoError("a.jpg 8 47 1\n").find("line 1: 'a.jpg 8 47 1' is not a coordinate system"), std::string::npos);
   EXPECT_NE(GeoError("EPSG:4326\na.jpg 8\n").find("line 2: has no x and y"), std::string::npos);
   EXPECT_NE(GeoError("EPSG:4326\n\na.jpg 8 x 1\n").find("line 3: 'x' is not a number"), std::string::npos);
-  EXPECT_NE(GeoError("EPSG:4326\na.jpg 8 147 1\n").find("line 2: the position is outside"), std::string::npos);
+  EXPECT_NE(GeoError("EPSG:4326\na.jpg 8 147 1\nb.jpg 8 47 1\n").find("line 2: the position is outside"), std::string::npos);
   EXPECT_NE(GeoError("EPSG:4326\na.jpg 8 47\na.jpg 8 47\n").find("line 3: names a.jpg a second time"), std::string::npos);
   EXPECT_NE(GeoError("EPSG:4326\n").find("has no positions"), std::string::npos);
   Write("geo.txt", "EPSG:4326\nother.jpg 8.4 47.1 1\n");

@@ -188,5 +188,17 @@ TEST(PlaceOnEarth, SaysWhenFewTagsAgree) {
   EXPECT_FALSE(Has(result, "tags_disagree"));
 }
 
+TEST(CoordinateFaults, NameTheFileThatThePositionsComeFrom) {
+  std::vector<Station> stations = WithHeights({400.0, 401.0, 402.0});
+  const std::vector<CoordinateFault> of_tags = PossibleCoordinateFaults(stations);
+  ASSERT_FALSE(of_tags.empty());
+  EXPECT_NE(of_tags[0].problem.advice.find("exiftool"), std::string::npos);
+  for (size_t i = 0; i < 2; ++i) stations[i].position_file = "survey/geo.txt";
+  for (const CoordinateFault& fault : PossibleCoordinateFaults(stations)) {
+    EXPECT_NE(fault.problem.finding.find("survey/geo.txt"), std::string::npos) << fault.problem.finding;
+    EXPECT_EQ(fault.problem.advice.find("exiftool"), std::string::npos) << fault.problem.advice;
+  }
+}
+
 }  // namespace
 }  // namespace skyquilt::prepare

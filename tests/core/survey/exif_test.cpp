@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "core/base/errors.h"
 #include "core/image/image.h"
@@ -319,6 +320,60 @@ TEST(Exif, SizesThatCannotBeAreLeftOut) {
     EXPECT_EQ(tags.original_width, 0) << width;
     EXPECT_EQ(tags.original_height, 0) << width;
   }
+}
+
+TEST(Exif, ZerosThatNoCameraHasCountAsMissing) {
+  const PhotoTags tags = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData& xmp) {
+    exif["Exif.Photo.FocalLength"] = "0/1";
+    exif["Exif.Photo.FocalLengthIn35mmFilm"] = static_cast<uint16_t>(0);
+    exif["Exif.Photo.ExposureTime"] = "0/1";
+    exif["Exif.Photo.ShutterSpeedValue"] = "0/1";
+    exif["Exif.Photo.FNumber"] = "0/1";
+    exif["Exif.Photo.ApertureValue"] = "0/1";
+    exif["Exif.Photo.ISOSpeedRatings"] = static_cast<uint16_t>(0);
+    xmp["Xmp.drone-dji.GpsLatitude"] = "0.000000000";
+    xmp["Xmp.drone-dji.GpsLongitude"] = "0.000000000";
+    xmp["Xmp.drone-dji.RtkStdLon"] = "0.00000";
+    xmp["Xmp.drone-dji.RtkStdHgt"] = "0.00000";
+  });
+  EXPECT_FALSE(tags.focal_length_mm || tags.focal_length_35mm || tags.gps);
+  EXPECT_FALSE(tags.exposure.time_s || tags.exposure.f_number || tags.exposure.iso);
+  EXPECT_FALSE(tags.horizontal_accuracy_m || tags.vertical_accuracy_m);
+  // Every drone without RTK has zeros in its tags.
+  EXPECT_EQ(tags.zero_tags,
+            (std::vector<std::string>{"GPSLatitude and GPSLongitude", "ExposureTime", "FNumber", "ISO", "FocalLength", "FocalLengthIn35mmFilm"}));
+}
+
+TEST(Exif, ApexZerosAloneAreValues) {
+  const PhotoTags tags = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData&) {
+    exif["Exif.Photo.ShutterSpeedValue"] = "0/1";
+    exif["Exif.Photo.ApertureValue"] = "0/1";
+  });
+  EXPECT_EQ(tags.exposure.time_s, 1.0);
+  EXPECT_EQ(tags.exposure.f_number, 1.0);
+  EXPECT_TRUE(tags.zero_tags.empty());
+}
+
+TEST(Exif, AnAbsoluteAltitudeOfZeroGoesBehindAnotherOneUnlessBothAreNearZero) {
+  const auto read = [](const char* in_exif) {
+    return ReadForged([&](Exiv2::ExifData& exif, Exiv2::XmpData& xmp) {
+      SetExifPosition(exif);
+      exif["Exif.GPSInfo.GPSAltitude"] = in_exif;
+      xmp["Xmp.drone-dji.AbsoluteAltitude"] = "+0.00";
+    });
+  };
+  EXPECT_EQ(read("4562/10").gps->height_m, 456.2);
+  EXPECT_EQ(read("3/10").gps->height_m, 0.0);
+}
+
+TEST(Exif, OrientationIsReadAndKept) {
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    PhotoTags tags;
+    tags.orientation = orientation;
+    EXPECT_EQ(RoundTrip(tags).orientation, orientation);
+  }
+  const PhotoTags unknown = ReadForged([](Exiv2::ExifData& exif, Exiv2::XmpData&) { exif["Exif.Image.Orientation"] = static_cast<uint16_t>(9); });
+  EXPECT_EQ(unknown.orientation, 1);
 }
 
 }  // namespace

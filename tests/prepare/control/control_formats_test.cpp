@@ -163,5 +163,16 @@ TEST_F(ControlFormats, CheckPointsAreNamedInAListOrAFile) {
   }
 }
 
+TEST_F(ControlFormats, GcpListsMayHaveOtherSeparatorsAndDecimalCommas) {
+  for (const char* row : {"586000.5 4507000.25 3.5 99.5 199.5 DJI_0001.JPG a", "586000.5,4507000.25,3.5,99.5,199.5,DJI_0001.JPG,a",
+                          "586000,5;4507000,25;3,5;99,5;199,5;C:\\a\\DJI_0001.JPG;a", "586000,5\t4507000,25\t3,5\t99,5\t199,5\tDJI_0001\ta"}) {
+    const ControlPoints control = ReadList(std::string("EPSG:32618\n") + row + "\n");
+    ASSERT_EQ(control.points.size(), 1U) << row;
+    EXPECT_EQ(control.points[0].label, "a") << row;
+    EXPECT_EQ(control.points[0].given, Eigen::Vector3d(586000.5, 4507000.25, 3.5)) << row;
+    EXPECT_EQ(control.points[0].marks.at(0).pixel, Eigen::Vector2d(100.0, 200.0)) << row;
+  }
+}
+
 }  // namespace
 }  // namespace skyquilt::prepare

@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "core/survey/orientation.h"
 #include "tests/prepare/control/control_reader_fixture.h"
 
 namespace skyquilt::prepare {
@@ -107,6 +110,116 @@ TEST_F(ControlMarks, OfPointsWithoutCoordinatesAreLeftOutWithAWarning) {
       << control.warnings[0];
   EXPECT_NE(control.warnings.at(1).find("1 of 2 points are marked in fewer than two photos and cannot be used: GCP-9"), std::string::npos)
       << control.warnings[1];
+}
+
+Eigen::Vector2i SizeOf(const PhotoSize& photo) {
+  return {photo.width, photo.height};
+}
+
+// The same marks as a program writes them that shows the photos upright. Marks near the left and right sides, so that some of photos turned by 90
+// degrees are outside of the stored ones.
+test::MadeControl ShownUpright(test::MadeControl* made, int orientation) {
+  for (PhotoSize& photo : made->photos) photo.orientation = orientation;
+  test::MadeControl upright = *made;
+  for (size_t i = 0; i < made->points.size(); ++i) {
+    for (size_t k = 0; k < made->points[i].marks.size(); ++k) {
+      test::MadeMark& mark = made->points[i].marks[k];
+      const PhotoSize& photo = made->photos[mark.photo];
+      mark.pixel = {(i % 2 == 0 ? 0.9 : 0.1) * photo.width + 0.25 * static_cast<double>(i), 0.1 * photo.height + 0.5 * static_cast<double>(k)};
+      upright.points[i].marks[k].pixel = survey::UprightFromStored(mark.pixel, SizeOf(photo), orientation);
+    }
+  }
+  for (PhotoSize& photo : upright.photos) {
+    const Eigen::Vector2i size = survey::UprightSize(SizeOf(photo), orientation);
+    photo.width = size.x();
+    photo.height = size.y();
+  }
+  return upright;
+}
+
+TEST_F(ControlMarks, OfPhotosShownUprightAreTurnedToTheStoredOnes) {
+  for (int orientation = 5; orientation <= 8; ++orientation) {
+    made_ = test::MakeControl();
+    const test::MadeControl upright = ShownUpright(&made_, orientation);
+    const ControlPoints read[] = {
+        Read(test::OdmFiles(upright, "EPSG:32618"), {.points = "gcp_list.txt"}),
+        Read(test::OpensfmControlFiles(upright), {.points = "ground_control_points.json"}),
+        Read(test::Pix4dFiles(upright, "EPSG:32618"), {.points = "points.csv", .marks = "marks.csv", .crs = "EPSG:32618"}),
+        Read(test::MetashapeControlFiles(upright, "EPSG:32618"), {.points = "reference.csv", .marks = "markers.xml", .crs = "EPSG:32618"})};
+    for (const ControlPoints& control : read) {
+      for (size_t i = 0; i < control.points.size(); ++i) {
+        ASSERT_EQ(control.points[i].marks.size(), 3U);
+        for (size_t k = 0; k < 3; ++k) {
+          EXPECT_LT((control.points[i].marks[k].pixel - made_.points[i].marks[k].pixel).norm(), 1e-4) << orientation;
+          EXPECT_FALSE(control.points[i].marks[k].if_upright);
+        }
+      }
+      ASSERT_FALSE(control.warnings.empty());
+      EXPECT_NE(control.warnings.back().find("15 of 15 marks were made in photos shown upright"), std::string::npos) << control.warnings.back();
+    }
+  }
+}
+
+TEST_F(ControlMarks, ThatFitBothWaysAreLeftOpen) {
+  for (int orientation = 2; orientation <= 4; ++orientation) {
+    made_ = test::MakeControl();
+    const test::MadeControl upright = ShownUpright(&made_, orientation);
+    const ControlPoints control = Read(test::Pix4dFiles(upright, "EPSG:32618"), {.points = "points.csv", .marks = "marks.csv", .crs = "EPSG:32618"});
+    for (size_t i = 0; i < control.points.size(); ++i) {
+      const ControlMark& mark = control.points[i].marks.at(0);
+      EXPECT_LT((mark.pixel - upright.points[i].marks[0].pixel).norm(), 1e-4) << orientation;
+      ASSERT_TRUE(mark.if_upright);
+      EXPECT_LT((*mark.if_upright - made_.points[i].marks[0].pixel).norm(), 1e-4) << orientation;
+    }
+    EXPECT_TRUE(control.warnings.empty());
+  }
+}
+
+TEST_F(ControlMarks, OfPhotosStoredUprightAreNeverOpen) {
+  const ControlPoints control = Read(test::OdmFiles(made_, "EPSG:32618"), {.points = "gcp_list.txt"});
+  for (const ControlPoint& point : control.points) {
+    for (const ControlMark& mark : point.marks) EXPECT_FALSE(mark.if_upright);
+  }
+}
+
+TEST_F(ControlMarks, OneTurnedPhotoTellsOfAllInTheFile) {
+  // The mark in the first photo is outside as it is written; that in the second, turned by 180 degrees, would fit either way.
+  made_.photos[0].orientation = 6;
+  made_.photos[1].orientation = 3;
+  const ControlPoints control = ReadList("EPSG:32618\n586000 4507000 3 999.5 3599.5 DJI_0001.JPG a\n586000 4507000 3 99.5 199.5 DJI_0002.JPG a\n");
+  EXPECT_EQ(control.points[0].marks.at(0).pixel, Eigen::Vector2d(3600.0, 2000.0));
+  EXPECT_EQ(control.points[0].marks.at(1).pixel, Eigen::Vector2d(3900.0, 2800.0));
+  EXPECT_FALSE(control.points[0].marks[1].if_upright);
+}
+
+TEST_F(ControlMarks, OfUprightPhotosInTheirOriginalSizeAreTurnedAndScaled) {
+  const test::MadeControl upright = ShownUpright(&made_, 6);
+  for (PhotoSize& photo : made_.photos) {
+    photo.original_width = photo.width;
+    photo.original_height = photo.height;
+    photo.width /= 4;
+    photo.height /= 4;
+  }
+  const ControlPoints control = Read(test::Pix4dFiles(upright, "EPSG:32618"), {.points = "points.csv", .marks = "marks.csv", .crs = "EPSG:32618"});
+  EXPECT_LT((control.points[0].marks.at(0).pixel - 0.25 * made_.points[0].marks[0].pixel).norm(), 1e-4);
+}
+
+TEST_F(ControlMarks, OfTurnedPicturesWithoutTheirOrientationSayHowToTurnThem) {
+  const test::MadeControl upright = ShownUpright(&made_, 6);
+  for (PhotoSize& photo : made_.photos) photo.orientation = 1;
+  const std::string error =
+      InputErrorOf([&] { Read(test::Pix4dFiles(upright, "EPSG:32618"), {.points = "points.csv", .marks = "marks.csv", .crs = "EPSG:32618"}); });
+  EXPECT_NE(error.find("marks.csv: line 1: the mark of GCP-1"), std::string::npos) << error;
+  EXPECT_NE(error.find("EXIF orientation (1) does not say so"), std::string::npos) << error;
+}
+
+TEST_F(ControlMarks, OneOutsideAmongUprightOnesIsNamed) {
+  test::MadeControl upright = ShownUpright(&made_, 8);
+  upright.points[1].marks[0].pixel.x() = 4100.0;
+  const std::string error =
+      InputErrorOf([&] { Read(test::Pix4dFiles(upright, "EPSG:32618"), {.points = "points.csv", .marks = "marks.csv", .crs = "EPSG:32618"}); });
+  EXPECT_NE(error.find("line 4: the mark of GCP-2 at x 4100"), std::string::npos) << error;
+  EXPECT_NE(error.find("3000x4000 pixels upright. Correct the mark"), std::string::npos) << error;
 }
 
 }  // namespace

@@ -30,5 +30,22 @@ TEST(PhotoNames, LabelsAreCleaned) {
   EXPECT_EQ(PhotoNames::Cleaned(".\\a\\..\\b.jpg"), "b.jpg");
 }
 
+TEST(PhotoNames, FoldersAboveTellPhotosOfOneNameApart) {
+  const PhotoNames names({"100/DJI_1.JPG", "101/DJI_1.JPG", "b/101/DJI_1.JPG"});
+  EXPECT_EQ(names.Find("D:\\Survey\\100\\dji_1.jpg"), 0U);
+  EXPECT_EQ(names.Find("/home/b/101/DJI_1.JPG"), 2U);
+  // Two of them lie in a folder of this name.
+  EXPECT_EQ(names.Find("D:\\c\\101\\DJI_1.JPG"), std::nullopt);
+  EXPECT_EQ(names.Find("DJI_1.JPG"), std::nullopt);
+  EXPECT_EQ(names.CommonParts("x/101/DJI_1.JPG", 2), 2U);
+  EXPECT_EQ(names.CommonParts("DJI_2.JPG", 2), 0U);
+}
+
+TEST(PhotoNames, QuotesAroundLabelsDoNotMatter) {
+  const PhotoNames names({"my photo.JPG", "b.jpg"});
+  EXPECT_EQ(names.Find("\"my photo.JPG\""), 0U);
+  EXPECT_EQ(names.Find(" 'B' "), 1U);
+}
+
 }  // namespace
 }  // namespace skyquilt::prepare

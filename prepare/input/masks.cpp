@@ -80,6 +80,11 @@ std::string SourceOf(const std::string& origin, bool shared) {
   return folder.empty() ? "beside the photos" : folder + "/";
 }
 
+bool MayHaveAlpha(const std::string& photo) {
+  const std::string extension = base::LowerCase(PartsOf(photo).extension);
+  return extension != ".jpg" && extension != ".jpeg";
+}
+
 struct Chosen {
   fs::path file;  // empty: none
   bool shared = false;
@@ -229,7 +234,7 @@ PhotoMasks FindMasks(const fs::path& photo_root, const MaskPlaces& places, const
         job.file.clear();
       }
     }
-    job.alpha = job.file.empty() && ReadPictureHeader(photo_root / photos[i].name).has_alpha;
+    job.alpha = job.file.empty() && MayHaveAlpha(photos[i].name) && ReadPictureHeader(photo_root / photos[i].name).has_alpha;
     jobs.push_back(std::move(job));
   }
   if (n_misfit > 0) base::LogWarning("{} has another shape than {} photos, where it is not used", misfit, n_misfit);

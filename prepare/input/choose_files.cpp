@@ -96,6 +96,7 @@ class Chooser {
       files.push_back(std::move(one.file));
     }
     for (auto& [name, folder] : folders) {
+      if (folder.first == 0) folder.second.kind = FileKind::kResult;
       folder.second.reason += ", with " + std::to_string(folder.first) + (folder.first == 1 ? " picture" : " pictures");
       files.push_back(std::move(folder.second));
     }
@@ -232,19 +233,22 @@ class Chooser {
         numbered[Key(one, number->shot)].emplace_back(&one, number->camera);
       }
     });
-    for (const auto& [shot, files] : numbered) {
-      // Two files with small numbers may be anything.
-      if (files.size() >= 3) bands.insert(files.begin(), files.end());
-    }
+    // Few bands, or few shots with bands, may be photos that somebody numbered.
+    std::erase_if(numbered, [](const auto& shot) { return shot.second.size() < 3; });
+    if (numbered.size() < kFewestPhotos) return bands;
+    for (const auto& [shot, files] : numbered) bands.insert(files.begin(), files.end());
     return bands;
   }
 
   void LeaveOutBands() {
     const std::map<Candidate*, std::string> bands = BandsByName();
-    const auto is_band = [&](const Candidate& one) { return bands.contains(const_cast<Candidate*>(&one)); };
+    std::set<const Candidate*> named;
+    for (const auto& [one, band] : bands) named.insert(one);
+    const auto is_band = [&](const Candidate& one) { return named.contains(&one); };
     const auto is_gray = [&](const Candidate& one) { return is_band(one) || (IsTiff(one) && one.header.channels == 1); };
-    const size_t n_gray = CountPhotos(is_gray), n_colour = CountPhotos([&](const Candidate&one) { return !is_gray(one); });
+    const size_t n_gray = CountPhotos(is_gray);
     if (n_gray == 0) return;
+    const size_t n_colour = CountPhotos([&](const Candidate& one) { return !is_gray(one); });
     if (n_colour >= kFewestPhotos && n_colour * kMostBands >= n_gray) {
       ForPhotos([&](Candidate& one) {
         if (is_band(one)) return LeaveOut(one, FileKind::kBand, "single band beside photos in colour, by its name");
@@ -271,13 +275,11 @@ class Chooser {
       static constexpr std::array kOrder = {"g", "gre", "2", "re", "reg", "r", "red", "nir"};
       return std::find(kOrder.begin(), kOrder.end(), band) - kOrder.begin();
     };
+    const auto rank = [&](const std::string& band) { return std::tuple(-sizes.at(band).second, order(band), band); };
     std::string best;
     for (const auto& [band, size] : sizes) {
       if (10 * size.first < 9 * most) continue;
-      const auto better = [&](const std::string& other) {
-        return std::tuple(-size.second, order(band), band) < std::tuple(-sizes.at(other).second, order(other), other);
-      };
-      if (best.empty() || better(best)) best = band;
+      if (best.empty() || rank(band) < rank(best)) best = band;
     }
     for (const auto& [one, band] : bands) {
       if (band == best) {

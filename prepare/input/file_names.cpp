@@ -113,6 +113,8 @@ std::optional<ShotName> NumberedBandName(const std::string& stem) {
   const size_t line = stem.rfind('_');
   if (line == std::string::npos || line == 0) return std::nullopt;
   const std::string number = stem.substr(line + 1);
+  const std::string shot = base::LowerCase(stem.substr(0, line));
+  if (shot.size() < 8 || !shot.starts_with("img_") || !std::all_of(shot.begin() + 4, shot.end(), IsDigit)) return std::nullopt;
   const bool small = number.size() == 1 || (number.size() == 2 && (number == "10" || number == "11" || number == "12"));
   if (!small || !std::all_of(number.begin(), number.end(), IsDigit) || number == "0") return std::nullopt;
   return ShotName{stem.substr(0, line), number};

@@ -34,7 +34,7 @@ struct ShotName {
 };
 // A spectral band: _MS_G, _MS_R, _MS_RE, _MS_NIR, _MS_B (DJI), _GRE, _RED, _REG, _NIR (Parrot).
 std::optional<ShotName> BandName(const std::string& stem);
-// A spectral band where others of the shot have other numbers: _1 to _12 (MicaSense).
+// A spectral band where others of the shot have other numbers: IMG_0001_1 to IMG_0001_12 (MicaSense).
 std::optional<ShotName> NumberedBandName(const std::string& stem);
 // A picture of heat: _T (DJI), _IR, _THRM, _THERMAL, IRX_ (Autel).
 std::optional<ShotName> ThermalName(const std::string& stem);

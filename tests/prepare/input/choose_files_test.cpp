@@ -135,13 +135,15 @@ RC_GTEST_PROP(ChooseFiles, PatternsTakeAllThatMatchesAndNothingElse, ()) {
 RC_GTEST_PROP(ChooseFiles, PlainPhotosAreAllTaken, ()) {
   base::Random random(static_cast<uint64_t>(*rc::gen::inRange(0, 1'000'000)));
   std::vector<MadeFile> files;
-  const std::string prefix = random.Below(2) == 0 ? "DJI_" : "IMG_2023_";
+  static const std::vector<std::string> prefixes = {"DJI_", "IMG_2023_", "strip1_", "DSC0"};
+  const std::string prefix = prefixes[random.Below(4)];
+  const int channels = random.Below(2) == 0 ? 1 : 3;
   const std::string extension = random.Below(2) == 0 ? ".JPG" : ".tif";
   const uint32_t n = 1 + random.Below(20);
   for (uint32_t i = 0; i < n; ++i) {
     MadeFile file;
     file.found.name = prefix + std::to_string(1 + i) + extension;
-    file.header = {.format = PictureFormat::kJpeg, .width = 640, .height = 480, .channels = 3};
+    file.header = {.format = PictureFormat::kJpeg, .width = 640, .height = 480, .channels = channels};
     files.push_back(file);
   }
   RC_ASSERT(TakenNames(ChooseOf(files)).size() == n);

@@ -106,8 +106,10 @@ TEST_F(InputList, GrayOrNumberedPhotosThatAreNoBandsAreTaken) {
 }
 
 TEST_F(InputList, OldGrayPhotosWithoutColoursBesideAreTaken) {
-  for (const char* name : {"1953_a.tif", "1953_b.tif", "1953_c.tif"}) folder_.Add(name, test::TiffHeader(16, 8, 1));
-  EXPECT_EQ(folder_.Taken().size(), 3U);
+  for (const char* strip : {"strip1", "strip2", "strip3"}) {
+    for (const char* number : {"_1.tif", "_2.tif", "_3.tif", "_4.tif"}) folder_.Add(std::string(strip) + number, test::TiffHeader(16, 8, 1));
+  }
+  EXPECT_EQ(folder_.Taken().size(), 12U);
 }
 
 TEST_F(InputList, PicturesOfHeatAreLeftOutByName) {

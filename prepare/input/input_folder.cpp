@@ -122,8 +122,11 @@ InputFolder FindInputs(const fs::path& photos, const fs::path& model, const std:
     const std::vector<fs::path> beside = ModelsIn(found.photo_root.parent_path());
     nearby.insert(nearby.end(), beside.begin(), beside.end());
   }
+  std::vector<fs::path> transforms;
   if (!model.empty()) {
-    found.model = fs::canonical(FindModel(model).path);  // before hours of work
+    const ModelFiles files = FindModel(model);  // before hours of work
+    found.model = fs::canonical(files.path);
+    if (files.format == ModelFormat::kTransforms && fs::is_regular_file(found.model)) transforms.push_back(found.model);
   } else if (simulated) {
     found.model = folder / "sparse" / "0";
   } else {
@@ -131,8 +134,6 @@ InputFolder FindInputs(const fs::path& photos, const fs::path& model, const std:
   }
   if (simulated) ReadSimulated(folder, model.empty() || fs::equivalent(found.model, folder / "sparse" / "0"), found);
 
-  std::vector<fs::path> transforms;
-  if (found.model.extension() == ".json") transforms.push_back(found.model);
   for (const fs::path& one : nearby) {
     if (one.filename() == "transforms.json" && one != found.model) transforms.push_back(one);
   }

@@ -139,10 +139,10 @@ class MaskSearch {
   }
 
   void TellUnfit(bool any, const std::map<std::string, fs::path>& named) const {
+    std::set<fs::path> by_model;
+    for (const auto& [photo, file] : named) by_model.insert(file.lexically_normal());
     std::vector<fs::path> unfit = index_.Unfit();
-    std::erase_if(unfit, [&named](const fs::path& file) {
-      return std::any_of(named.begin(), named.end(), [&file](const auto& one) { return one.second == file; });
-    });
+    std::erase_if(unfit, [&by_model](const fs::path& file) { return by_model.contains(file.lexically_normal()); });
     const std::string how = "Name masks like " + names_.front() + ".png";
     const bool none_fits = !any && !index_.AnyFits();
     if (none_fits && !places_.given.empty()) throw base::InputError(places_.given, "has no mask for any photo", how);

@@ -2,14 +2,10 @@
 
 #include <algorithm>
 
-#include "core/base/cancel.h"
 #include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
-#include "core/base/progress.h"
-#include "core/base/text.h"
 #include "core/geo/enu_frame.h"
-#include "core/image/image.h"
 #include "prepare/georeference.h"
 
 namespace skyquilt::prepare {
@@ -42,33 +38,6 @@ void PlaceByModel(const ModelPlace& place, std::vector<Station>& stations) {
     station.horizontal_sigma_m = untagged.horizontal_sigma_m;
     station.vertical_sigma_m = untagged.vertical_sigma_m;
   }
-}
-
-void UseAlphaAsMasks(const InputModel& model, const std::filesystem::path& photo_root, const std::vector<PhotoFile>& photos,
-                     const std::filesystem::path& folder, std::vector<std::string>& masks, base::ThreadPool& threads) {
-  if (model.format != ModelFormat::kTransforms) return;
-  std::vector<size_t> without_mask;
-  for (size_t i = 0; i < photos.size(); ++i) {
-    // JPEGs have no alpha.
-    if (masks[i].empty() && base::LowerCase(std::filesystem::path(photos[i].name).extension().string()) == ".png") without_mask.push_back(i);
-  }
-  if (without_mask.empty()) return;
-  base::Progress progress("read alpha of photos", static_cast<double>(without_mask.size()), "photos");
-  threads.ParallelFor(static_cast<int64_t>(without_mask.size()), [&](int64_t task, int /*thread*/) {
-    base::ThrowIfCancelled();
-    const size_t i = without_mask[static_cast<size_t>(task)];
-    const image::Image8 mask = image::LoadAlphaMask(photo_root / photos[i].name);
-    if (!mask.Empty()) {
-      const std::filesystem::path file = folder / (photos[i].name + ".png");
-      std::filesystem::create_directories(file.parent_path());
-      image::SavePng(mask, file);
-      masks[i] = file.string();
-    }
-    progress.Advance();
-  });
-  progress.Finish();
-  const auto n_masks = std::count_if(without_mask.begin(), without_mask.end(), [&](size_t i) { return !masks[i].empty(); });
-  if (n_masks > 0) base::LogInfo("masks: {} photos have transparent pixels, which are ignored ({})", n_masks, folder.string());
 }
 
 void HoldOutByModel(const InputModel& model, const std::filesystem::path& path, survey::Survey& survey) {

@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/thread_pool.h"
 #include "prepare/models/input_model.h"
-#include "prepare/photo_files.h"
 #include "prepare/station.h"
 
 namespace skyquilt::prepare {
@@ -19,10 +17,6 @@ void RequireColmap(const InputModel& model, const std::filesystem::path& path, c
 // Gives all stations the positions that the model states, when too few have a tag of their own for a fit (kMinAgreeing). The accuracy of these
 // positions is unknown; they count as those of a receiver without stated accuracy.
 void PlaceByModel(const ModelPlace& place, std::vector<Station>& stations);
-// Photos of a transforms.json may say in their alpha what to ignore, as Blender's do: writes it as masks (`folder`/NAME.png) for photos that have
-// none, whose paths it puts into `masks`. Photos of other formats are left as they are. Throws base::InputError.
-void UseAlphaAsMasks(const InputModel& model, const std::filesystem::path& photo_root, const std::vector<PhotoFile>& photos,
-                     const std::filesystem::path& folder, std::vector<std::string>& masks, base::ThreadPool& threads);
 // Marks the photos that the model holds out as test photos, instead of every N-th; nothing when the model has no split; a warning when no
 // photo of its split has a pose. Throws base::InputError when
 // none is left to train on.

@@ -1,4 +1,4 @@
-// Lists the photos of a folder, checks that they can be used and reads their EXIF and XMP tags.
+// Checks that the photos of a folder can be used and reads their EXIF and XMP tags. Which files are photos: input/list_files.h.
 #pragma once
 
 #include <filesystem>
@@ -24,15 +24,8 @@ struct PhotoSet {
 
 constexpr int kMinPhotos = 3;
 
-// Decides by the extension: jpg, jpeg, png, tif or tiff in any case. Hidden files are not photos.
-bool LooksLikePhoto(const std::filesystem::path& file);
-// Names of all photos under `root`, sorted. Folders in `skip` and hidden folders are not searched. Throws base::InputError when there is none.
-std::vector<std::string> ListPhotos(const std::filesystem::path& root, const std::vector<std::filesystem::path>& skip);
 // Reads sizes and tags and checks that JPEGs are complete. Photos that cannot be used are left out, with a warning that says how to fix it.
 // Throws base::InputError when fewer than kMinPhotos remain.
 PhotoSet ReadPhotos(const std::filesystem::path& root, const std::vector<std::string>& names, base::ThreadPool& threads);
-// Path of masks/<name>.png per photo, empty where there is none. Throws base::InputError when no photo has a mask or when a mask's size differs from
-// its photo's.
-std::vector<std::string> FindMasks(const std::filesystem::path& masks, const std::vector<PhotoFile>& photos);
 
 }  // namespace skyquilt::prepare

@@ -23,7 +23,11 @@
 #include "prepare/holdout.h"
 #include "prepare/holdout_poses.h"
 #include "prepare/horizontal_lines.h"
-#include "prepare/input_folder.h"
+#include "prepare/input/input_folder.h"
+#include "prepare/input/input_table.h"
+#include "prepare/input/list_files.h"
+#include "prepare/input/masks.h"
+#include "prepare/input/shots.h"
 #include "prepare/intrinsics_sigma.h"
 #include "prepare/match_photos.h"
 #include "prepare/model_use.h"
@@ -47,6 +51,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kInputTable = "input.csv";
+
 std::vector<Station> MakeStations(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files) {
   std::vector<Station> stations;
   stations.reserve(registered.size());
@@ -69,6 +75,49 @@ std::unordered_map<uint32_t, int32_t> PhotoOfImage(const std::vector<Registered>
   std::unordered_map<uint32_t, int32_t> photo_of_image;
   for (size_t i = 0; i < registered.size(); ++i) photo_of_image.emplace(registered[i].image->id, static_cast<int32_t>(i));
   return photo_of_image;
+}
+
+// All files of the photo folder, with a table of them even where too few can be used.
+std::vector<InputFile> ListFiles(const PrepareInput& input, const PrepareOptions& options, const InputFolder& folders, base::ThreadPool& threads) {
+  const ListOptions list{
+      .skip = {input.out_folder, fs::absolute(input.out_folder).parent_path()}, .masks = folders.masks.given, .patterns = options.photos};
+  std::vector<InputFile> files = ListInput(folders.photo_root, list, threads);
+  WriteInputTable(files, input.out_folder / kInputTable);
+  base::LogInfo(SummaryText(files, input.out_folder / kInputTable));
+  for (const std::string& warning : InputWarnings(folders.photo_root, files)) base::LogWarning(warning);
+  return files;
+}
+
+// What reading the photos told: those that are damaged, and those of one shot.
+void NoteReadPhotos(const PhotoSet& photos, std::vector<InputFile>& files) {
+  const std::vector<size_t> shots = FindShots(photos.usable);
+  const size_t n_shots = CountShots(shots);
+  if (n_shots < photos.usable.size()) {
+    base::LogInfo("{} photos are of {} shots, as exposure brackets; prepare.photos can choose one exposure of each by their names",
+                  photos.usable.size(), n_shots);
+  }
+  std::unordered_map<std::string, InputFile*> by_name;
+  for (InputFile& file : files) by_name.emplace(file.name, &file);
+  for (const std::string& name : photos.unreadable) {
+    by_name.at(name)->kind = FileKind::kDamaged;
+    by_name.at(name)->reason = "cannot be used: the log says why";
+  }
+  for (size_t i = 0; i < shots.size(); ++i) by_name.at(photos.usable[i].name)->shot = by_name.at(photos.usable[shots[i]].name)->shot;
+}
+
+// A model may have been made of pictures that are no photos here.
+void WarnOfPosesLeftOut(const survey::ColmapModel& model, const std::vector<InputFile>& files) {
+  std::unordered_map<std::string, const InputFile*> left_out;
+  for (const InputFile& file : files) {
+    if (!file.Taken()) left_out.emplace(file.name, &file);
+  }
+  std::vector<std::string> names;
+  for (const survey::ColmapImage& image : model.images) {
+    if (left_out.contains(image.name)) names.push_back(image.name);
+  }
+  if (names.empty()) return;
+  base::LogWarning("the model has poses of {} files that are left out here ({}; {} is: {}). To use them, choose them with prepare.photos",
+                   names.size(), FewNames(names), names.front(), left_out.at(names.front())->reason);
 }
 
 // Puts poses, tags and cameras into the survey. Cameras without photos are left out.
@@ -281,12 +330,14 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   InputFolder folders = FindInputs(input.photos, input.model, options.masks);
   base::RequireWritableFolder(input.out_folder);
 
-  const std::vector<std::string> names =
-      ListPhotos(folders.photo_root, {folders.masks, input.out_folder, fs::absolute(input.out_folder).parent_path()});
+  std::vector<InputFile> files = ListFiles(input, options, folders, threads);
+  const std::vector<std::string> names = TakenNames(files);
   PhotoSet photos = ReadPhotos(folders.photo_root, names, threads);
   UsePositionFiles(folders.photo_root, options.geo_file, photos.usable);
   LogUnfilledTags(options.flight_gap_s, photos.usable);
-  std::vector<std::string> masks = FindMasks(folders.masks, photos.usable);
+  const PhotoMasks masks = FindMasks(folders.photo_root, folders.masks, photos.usable, fs::absolute(input.out_folder) / "masks", files, threads);
+  NoteReadPhotos(photos, files);
+  WriteInputTable(files, input.out_folder / kInputTable);
   // Faults of these files are told before the long search for poses.
   const ControlPoints control_points = ReadControlPoints(options, photos.usable);
   base::ThrowIfCancelled();
@@ -294,19 +345,19 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   InputModel input_model;
   const bool own_poses = folders.model.empty();
   if (own_poses) {
-    const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap"};
+    const ColmapJob job{folders.photo_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
     folders.model = RunColmap(job, photos.usable, PoseOptionsOf(options), threads, ranks);
     input_model.sfm = survey::ReadColmapModel(folders.model);
   } else {
     input_model = ReadModel(folders.model, ModelPhotos(folders.photo_root, names));
-    UseAlphaAsMasks(input_model, folders.photo_root, photos.usable, fs::absolute(input.out_folder) / "alpha_masks", masks, threads);
+    WarnOfPosesLeftOut(input_model.sfm, files);
   }
   const survey::ColmapModel& model = input_model.sfm;
   const FileOfImage file_of_image = MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
   std::vector<Registered> registered = RegisteredPhotos(model, file_of_image);
   if (LacksPoints(input_model)) {
     RequireColmap(input_model, folders.model, options.colmap);
-    const ColmapJob job{folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "colmap"};
+    const ColmapJob job{folders.photo_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
     input_model.sfm.points = PointsFromPoses(job, model, registered, photos.usable, PoseOptionsOf(options), threads, ranks);
   }
   const auto poses_known = std::chrono::steady_clock::now();
@@ -347,7 +398,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   survey.problems = georeference.problems;
   survey.truth = folders.truth;
   survey.height_reference = survey::HeightReferenceOf(survey, placing_tags);
-  FillPhotos(model, registered, photos.usable, masks, georeference, survey);
+  FillPhotos(model, registered, photos.usable, masks.files, georeference, survey);
   // Before the points: those that only held-out photos observed are not used.
   for (survey::Photo& photo : survey.photos) photo.is_test = held_out.contains(photo.name);
   survey.resected_holdout = withheld.has_value();

@@ -5,7 +5,8 @@
 //   geo_residuals.csv           per photo: camera position, GPS tag, residual, height above ground
 //   cameras.geojson             camera positions, when geo-referenced (opens in QGIS)
 //   geo_control.csv, control.geojson   errors of control and check points, when there are any (control_report.h)
-//   alpha_masks/                masks from the photos' alpha, with a transforms.json
+//   input.csv                   every file of the photo folder: taken or why not, its shot and mask (input/list_files.h)
+//   masks/                      the photos' masks, where they are not in that form already (input/masks.h)
 //   colmap/                     database, models and log, when COLMAP was run, also for points of a model without; a second call resumes where the
 //                               first stopped
 // A folder with simulate.json is a simulated survey: its own model is used, and the survey keeps the paths of its truth.
@@ -24,7 +25,7 @@ namespace skyquilt::prepare {
 class RemoteTasks;  // poses/pose_task.h
 
 struct PrepareInput {
-  std::filesystem::path photos;      // folder, searched recursively; see FindInputs in input_folder.h
+  std::filesystem::path photos;      // folder, searched recursively; see FindInputs in input/input_folder.h
   std::filesystem::path model;       // folder or file of a model (models/read_model.h); empty: COLMAP is run (simulated survey: its own model)
   std::filesystem::path out_folder;  // created if needed
 };

@@ -2,6 +2,7 @@
 
 #include "core/base/errors.h"
 #include "prepare/holdout.h"
+#include "prepare/input/glob.h"
 
 namespace skyquilt::prepare {
 
@@ -30,7 +31,12 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"max_features", &O::max_features, Range::AtLeast(100),
        "most features per photo; with poses = fast, 4096 for photos that have so many without being doubled in size"},
       {"use_gpu", &O::use_gpu, Range(), "let COLMAP use a GPU for features, and for its own matching (needs a COLMAP built for it)"},
-      {"masks", &O::masks, Range(), "folder of masks named PHOTO.jpg.png, 0 = ignore; empty: masks/ inside the photo folder if there is one"},
+      {"photos", &O::photos, Range(),
+       "which pictures are photos: patterns of their paths below the photo folder, separated by commas, such as *.JPG or flight1/**; empty: all but "
+       "bands, pictures of heat, thumbnails and others that survey/input.csv lists with a reason"},
+      {"masks", &O::masks, Range(),
+       "folder of masks named PHOTO.jpg.png, or one mask for all photos; 0 = ignore; empty: those in and beside the photo folder by their names, and "
+       "the photos' alpha; none: no masks"},
       {"geo_file", &O::geo_file, Range(),
        "OpenDroneMap's table of photo positions in any coordinate system; empty: geo.txt in the photo folder, or beside it when that is called "
        "images"},
@@ -60,6 +66,7 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
 void PrepareOptions::Check() const {
   config::CheckRanges("prepare", *this);
   ParseHoldout(holdout);
+  if (!photos.empty()) ParsePatterns(photos);
   if (colmap.empty()) throw base::UsageError("prepare.colmap is empty: set it to the name or path of the COLMAP program, for instance colmap");
 }
 

@@ -20,7 +20,8 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   AddControlFlags(*command, overrides);
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
-  AddOptionFlag(*command, overrides, "--masks", "prepare.masks", "folder of masks named PHOTO.jpg.png; pixels with value 0 are ignored");
+  AddOptionFlag(*command, overrides, "--masks", "prepare.masks",
+                "folder of masks named PHOTO.jpg.png, or one mask for all photos; pixels with value 0 are ignored; none: no masks");
   command->add_flag("--restart", flags->restart, "remove the survey and everything made from it first");
   command->footer(
       "Examples:\n"

@@ -43,8 +43,8 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
       MakesBuildings(settings) && !footprints.empty() && !std::filesystem::is_regular_file(footprints)) {
     throw base::InputError(footprints, "no such file", "Give a file with outlines as buildings.footprints, or leave it empty to find buildings");
   }
-  if (const std::string& masks = settings.prepare.masks; !masks.empty() && !std::filesystem::is_directory(masks)) {
-    throw base::InputError(masks, "no such folder", "Give the folder of the masks as prepare.masks, or leave it empty");
+  if (const std::string& masks = settings.prepare.masks; !masks.empty() && masks != "none" && !std::filesystem::exists(masks)) {
+    throw base::InputError(masks, "no such folder", "Give the folder of the masks, or one mask for all photos, as prepare.masks, or leave it empty");
   }
   for (const std::string* file : {&settings.prepare.gcp, &settings.prepare.gcp_marks}) {
     if (!file->empty() && !std::filesystem::is_regular_file(*file)) {

@@ -13,6 +13,7 @@
 #include "core/base/log.h"
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_model.h"
+#include "prepare/input/list_files.h"
 #include "prepare/photo_files.h"
 #include "prepare/poses/colmap_run.h"
 #include "simulate/simulate.h"
@@ -88,7 +89,7 @@ PosesRow FindAndJudge(const fs::path& folder, const TrueSet& truth, const std::s
   const prepare::ColmapJob job{.photo_root = images, .masks = {}, .folder = folder / way};
   const auto start = Clock::now();
   try {
-    const prepare::PhotoSet photos = prepare::ReadPhotos(images, prepare::ListPhotos(images, {}), threads);
+    const prepare::PhotoSet photos = prepare::ReadPhotos(images, prepare::TakenNames(prepare::ListInput(images, {}, threads)), threads);
     const fs::path model = prepare::RunColmap(job, photos.usable, poses, threads);
     row.seconds = SecondsSince(start);
     row.used = UsedWay(job.folder, model, poses.fast);

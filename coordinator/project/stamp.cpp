@@ -12,6 +12,7 @@
 #include "core/base/memory_map.h"
 #include "core/base/text.h"
 #include "core/config/options.h"
+#include "prepare/input/other_projects.h"
 
 namespace skyquilt::coordinator {
 
@@ -91,6 +92,12 @@ std::string PhotosIdentity(const std::filesystem::path& folder, const std::files
   for (std::filesystem::recursive_directory_iterator it(folder, std::filesystem::directory_options::follow_directory_symlink, error), end;
        !error && it != end; it.increment(error)) {
     if (!except.empty() && it->path().lexically_normal() == except) {
+      it.disable_recursion_pending();
+      continue;
+    }
+    // Another project there may still be worked on, and gives no photos.
+    std::error_code ignored;
+    if (it->is_directory(ignored) && !prepare::ProjectKind(it->path()).empty() && !std::filesystem::is_directory(it->path() / "images", ignored)) {
       it.disable_recursion_pending();
       continue;
     }

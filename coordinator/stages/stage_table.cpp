@@ -8,6 +8,7 @@
 #include "core/base/log.h"
 #include "core/checkpoint/archive.h"
 #include "core/scene/field_file.h"
+#include "prepare/input/masks.h"
 #include "prepare/photo_positions.h"
 #include "tour/export/staged_folder.h"
 
@@ -38,6 +39,16 @@ std::string SurveyIdentity(const Project& project) {
   return identity;
 }
 
+// Of masks that were found beside the photo folder, images/; empty when there are none. Those in the folder are among its pictures.
+std::string MasksIdentity(const Pipeline& pipeline) {
+  if (!pipeline.settings.prepare.masks.empty() || !std::filesystem::is_directory(pipeline.photos)) return "";
+  const prepare::MaskPlaces places = prepare::FindMaskPlaces(std::filesystem::canonical(pipeline.photos), "", {});
+  std::string identity;
+  for (const std::filesystem::path& folder : places.folders) identity += PhotosIdentity(folder, pipeline.project.folder);
+  for (const std::filesystem::path& file : places.shared) identity += FileIdentity(file);
+  return identity.empty() ? "" : base::HashHex(identity);
+}
+
 // Files that only some surveys have count where they are, and the poses of held-out photos where they are not the default, so that records of older
 // programs stay valid.
 FlatOptions PrepareInputs(const Pipeline& pipeline) {
@@ -59,6 +70,9 @@ FlatOptions PrepareInputs(const Pipeline& pipeline) {
   }
   if (!control.empty()) inputs["control points"] = base::HashHex(control);
   if (options.holdout_poses != prepare::PrepareOptions().holdout_poses) inputs["prepare.holdout_poses"] = options.holdout_poses;
+  if (!options.photos.empty()) inputs["prepare.photos"] = options.photos;
+  const std::string masks = MasksIdentity(pipeline);
+  if (!masks.empty()) inputs["masks"] = masks;
   return inputs;
 }
 
@@ -148,7 +162,7 @@ std::vector<Stage> MakeTable() {
        .dated = false},
       {.name = "prepare",
        .options = {"prepare."},
-       .ignored_options = {"prepare.holdout_poses"},  // an input
+       .ignored_options = {"prepare.holdout_poses", "prepare.photos"},  // inputs
        .inputs = PrepareInputs,
        .outputs = [](const Project& p) { return Paths{p.SurveyFolder()}; },
        .completion_files = [](const Project& p) { return Paths{SurveyFile(p)}; },

@@ -31,7 +31,7 @@ struct BasicImage {
 using Image8 = BasicImage<uint8_t>;
 using ImageF = BasicImage<float>;
 
-// Loads a photo as 8-bit RGB. Grey becomes three equal channels, 16 bits are scaled to 8, alpha is dropped (with one warning per process). EXIF
+// Loads a photo as 8-bit RGB. Grey becomes three equal channels, 16 bits are scaled to 8, alpha is dropped (see LoadAlphaMask). EXIF
 // rotation is NOT applied, because camera models refer to stored pixels. A truncated JPEG is an error: decoders would fill the missing rows with
 // grey. Throws base::InputError.
 Image8 LoadRgb8(const std::filesystem::path& file);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <fstream>
-#include <mutex>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <span>
@@ -8,7 +7,6 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/base/log.h"
 #include "core/image/image.h"
 #include "core/image/jpeg_structure.h"
 
@@ -61,13 +59,6 @@ std::string ReadStart(const std::filesystem::path& file) {
   return content;
 }
 
-void WarnAboutAlpha(const std::filesystem::path& file) {
-  static std::once_flag once;
-  std::call_once(once, [&] {
-    base::LogWarning("{}: has an alpha channel, which is ignored in this and all other photos; use masks to leave out pixels", file.string());
-  });
-}
-
 Image8 ToRgb8(cv::Mat pixels, const std::filesystem::path& file) {
   if (pixels.depth() == CV_16U) {
     cv::Mat narrow;
@@ -80,7 +71,6 @@ Image8 ToRgb8(cv::Mat pixels, const std::filesystem::path& file) {
     conversion = cv::COLOR_GRAY2RGB;
   } else if (pixels.channels() == 4) {
     conversion = cv::COLOR_BGRA2RGB;
-    WarnAboutAlpha(file);
   } else if (pixels.channels() != 3) {
     throw InputError(file, "has " + std::to_string(pixels.channels()) + " channels", "Export it as RGB");
   }

@@ -1,14 +1,15 @@
 #include "prepare/poses/photo_places.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <utility>
 
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
+#include "prepare/input/shots.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -56,13 +57,28 @@ bool HasPosition(const PhotoFile& photo) {
   return photo.tags.gps && geo::IsValid({photo.tags.gps->latitude_deg, photo.tags.gps->longitude_deg, 0.0});
 }
 
-// Positions rounded to a grid: how many of them differ.
-size_t CountDistinct(const std::vector<std::optional<PhotoPlace>>& places) {
-  std::set<std::pair<int64_t, int64_t>> cells;
-  for (const auto& place : places) {
-    if (place) cells.emplace(std::llround(place->camera.x() / kDistinct_m), std::llround(place->camera.y() / kDistinct_m));
+// The tagged height, else that above take-off; 0 where neither is known.
+double HeightOf(const survey::PhotoTags& tags) {
+  for (const double height_m : {tags.gps->height_m, tags.relative_altitude_m.value_or(0.0)}) {
+    if (std::abs(height_m) < kMaxHeight_m) return height_m;
   }
-  return cells.size();
+  return 0.0;
+}
+
+// Whether positions, rounded to a grid, tell at least every second shot from all others. Photos of a facade differ in height; those of one shot need
+// not differ.
+bool PlacesDiffer(const std::vector<std::optional<PhotoPlace>>& places, const std::vector<PhotoFile>& photos) {
+  const std::vector<size_t> shots = FindShots(photos);
+  std::set<std::array<int64_t, 3>> cells;
+  size_t n_shots = 0;
+  for (size_t i = 0; i < places.size(); ++i) {
+    if (!places[i]) continue;
+    // The first photo of a shot has a position if any has.
+    n_shots += shots[i] == i ? 1 : 0;
+    const Eigen::Vector3d x(places[i]->camera.x(), places[i]->camera.y(), HeightOf(photos[i].tags));
+    cells.insert({std::llround(x.x() / kDistinct_m), std::llround(x.y() / kDistinct_m), std::llround(x.z() / kDistinct_m)});
+  }
+  return 2 * cells.size() >= n_shots;
 }
 
 }  // namespace
@@ -98,8 +114,8 @@ std::vector<std::optional<PhotoPlace>> FindPlaces(const std::vector<PhotoFile>& 
     places[i] = place;
   }
 
-  const auto n_tagged = static_cast<size_t>(std::count_if(places.begin(), places.end(), [](const auto& place) { return place.has_value(); }));
-  if (2 * CountDistinct(places) < n_tagged) {
+  if (!PlacesDiffer(places, photos)) {
+    const auto n_tagged = std::count_if(places.begin(), places.end(), [](const auto& place) { return place.has_value(); });
     base::LogWarning("the GPS tags of {} photos hardly differ: they are not used to choose the pairs to match", n_tagged);
     std::fill(places.begin(), places.end(), std::nullopt);
   }

@@ -18,9 +18,10 @@ struct PhotoPlace {
   Eigen::Vector3d view = Eigen::Vector3d::Zero();
 };
 
-// Empty for a photo without a position. All are empty when positions do not tell photos apart: fewer than half of the tagged ones are 0.5 m from
-// each other. The direction counts for photos with gimbal angles and height above take-off; no directions are used when the yaw of all oblique photos
-// is the same number, which is how some programs write "unknown". Anywhere on Earth.
+// Empty for a photo without a position. All are empty when positions do not tell photos apart: there are fewer that are 0.5 m from each other,
+// heights included, than half as many as shots with a tag (input/shots.h). The direction counts for photos with gimbal angles and height above
+// take-off; no directions are used when the yaw of all oblique photos is the same number, which is how some programs write "unknown". Anywhere on
+// Earth.
 std::vector<std::optional<PhotoPlace>> FindPlaces(const std::vector<PhotoFile>& photos);
 
 // Whether directions moved any target away from its camera.

@@ -14,6 +14,7 @@
 #include "prepare/prepare.h"
 #include "tests/prepare/control_fit/made_control.h"
 #include "tests/support/error_of.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::prepare {
 namespace {

@@ -234,6 +234,37 @@ TEST_F(PrepareTest, MasksFollowColmapsNames) {
   ExpectInMessage("photo_03.jpg.png");
 }
 
+TEST_F(PrepareTest, MasksBesidePhotosAreUsedAndListed) {
+  Write();
+  image::SavePng(image::Image8(32, 24, 1, 255), folder_ / "images/photo_02_mask.png");
+  base::WriteFileAtomically(folder_ / "images/photo_03.DNG", "raw");
+  base::WriteFileAtomically(folder_ / "images/photo_99.jpg", "damaged");
+  image::SavePng(image::Image8(64, 48, 3, 255), folder_ / "images/earlier/products/ortho.png");
+  base::WriteFileAtomically(folder_ / "images/earlier/blocks.geojson", "{}");
+  const survey::Survey survey = Run();
+  ASSERT_EQ(survey.photos.size(), 20U);
+  EXPECT_EQ(survey.photos[2].mask, (folder_ / "out/masks/photo_02.jpg.png").string());
+  EXPECT_TRUE(survey.photos[3].mask.empty());
+  const std::string table = base::ReadFile(folder_ / "out/input.csv");
+  for (const char* line : {"photo_02.jpg,yes,photo,,photo_02,photo_02_mask.png,64,48\n", "photo_02_mask.png,no,mask,", "photo_03.DNG,no,other form,",
+                           "photo_99.jpg,no,damaged,", "earlier/,no,other project,\"a Skyquilt project, with 1 picture\","}) {
+    EXPECT_NE(table.find(line), std::string::npos) << line << " is not in\n" << table;
+  }
+  EXPECT_EQ(survey.unregistered, (std::vector<std::string>{"photo_99.jpg"}));
+}
+
+TEST_F(PrepareTest, PatternsChooseThePhotos) {
+  Write();
+  options_.photos = "photo_0?.JPG, photo_1[.jpg, photo_1*";
+  EXPECT_EQ(Run().photos.size(), 20U);
+  options_.photos = "photo_0*";
+  EXPECT_EQ(Run().photos.size(), 10U);
+  options_.photos = "*.webp";
+  ExpectInMessage("for instance photo_00.jpg");
+  options_.photos = ",";
+  EXPECT_THROW(Run(), base::UsageError);
+}
+
 TEST_F(PrepareTest, ASimulatedSurveyKeepsItsFrameAndItsTruth) {
   // The model of a simulated survey is in ENU.
   for (size_t i = 0; i < 20; ++i) {

@@ -69,6 +69,19 @@ TEST_F(Stamp, PhotosIdentityDependsOnImagesOnly) {
   EXPECT_NE(PhotosIdentity(photos, photos / "out"), two);
 }
 
+// It may still be worked on, and gives no photos.
+TEST_F(Stamp, AnotherProjectAmongThePhotosDoesNotChangeTheirIdentity) {
+  const std::filesystem::path photos = project_.folder / "photos";
+  Touch(photos / "a.jpg");
+  const std::string one = PhotosIdentity(photos, {});
+  Touch(photos / "earlier" / "survey" / "survey.json");
+  Touch(photos / "earlier" / "report" / "images" / "x.png");
+  EXPECT_EQ(PhotosIdentity(photos, {}), one);
+  Touch(photos / "flight" / "sparse" / "0" / "cameras.txt");
+  Touch(photos / "flight" / "images" / "b.jpg");
+  EXPECT_NE(PhotosIdentity(photos, {}), one);
+}
+
 TEST_F(Stamp, OpeningAFolderThatIsNoProjectIsAnInputError) {
   EXPECT_THROW(Project::Open(project_.folder / "absent"), base::InputError);
   EXPECT_THROW(Project::Open(project_.folder), base::InputError);

@@ -79,6 +79,21 @@ TEST_F(StageFiles, PosesOfHeldOutPhotosAreAnInputWhereTheyAreNotTheDefault) {
   EXPECT_EQ(CheckStage(project_, stage.name, StageOptions(stage, pipeline.settings), stage.inputs(pipeline), {}), Freshness::kInputsChanged);
 }
 
+TEST_F(StageFiles, ChosenPhotosAndMasksBesideImagesAreInputsWhereThereAreAny) {
+  const auto comm = comm::ConnectAlone();
+  const std::filesystem::path images = folder_.path() / "photos" / "images";
+  std::filesystem::create_directories(images);
+  Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}, .photos = images};
+  const Stage& stage = StageNamed("prepare");
+  const FlatOptions options = StageOptions(stage, pipeline.settings), inputs = stage.inputs(pipeline);
+  EXPECT_FALSE(options.contains("prepare.photos") || inputs.contains("prepare.photos") || inputs.contains("masks"));
+  pipeline.settings.prepare.photos = "*.JPG";
+  EXPECT_EQ(StageOptions(stage, pipeline.settings), options);
+  EXPECT_EQ(stage.inputs(pipeline).at("prepare.photos"), "*.JPG");
+  std::filesystem::create_directories(folder_.path() / "photos" / "masks");
+  EXPECT_TRUE(stage.inputs(pipeline).contains("masks"));
+}
+
 TEST(Stages, HaveUniqueNamesAndNeedOnlyEarlierOnes) {
   std::set<std::string> names;
   for (const Stage& stage : Stages()) {

@@ -70,6 +70,36 @@ TEST(FindPlaces, PhotosWithoutAPositionHaveNone) {
   EXPECT_TRUE(FindPlaces({}).empty());
 }
 
+// Columns of a facade: one position on the map, other heights.
+TEST(FindPlaces, HeightsTellPhotosApart) {
+  const std::vector<PhotoFile> feet = test::GridPhotos(1, 2, 20.0, 30.0, kOrigin);
+  std::vector<PhotoFile> photos = test::GridPhotos(1, 12, 20.0, 30.0, kOrigin);
+  for (size_t i = 0; i < photos.size(); ++i) {
+    photos[i].tags.gps = feet[i / 6].tags.gps;
+    photos[i].tags.gps->height_m += 3.0 * static_cast<double>(i % 6);
+  }
+  for (const auto& place : FindPlaces(photos)) EXPECT_TRUE(place);
+  // Above take-off, where the position has no height.
+  for (size_t i = 0; i < photos.size(); ++i) {
+    photos[i].tags.gps->height_m = std::numeric_limits<double>::quiet_NaN();
+    photos[i].tags.relative_altitude_m = 10.0 + 3.0 * static_cast<double>(i % 6);
+  }
+  for (const auto& place : FindPlaces(photos)) EXPECT_TRUE(place);
+}
+
+TEST(FindPlaces, ExposuresOfOneShotNeedNotDiffer) {
+  std::vector<PhotoFile> photos = test::GridPhotos(3, 12, 20.0, 30.0, kOrigin);
+  for (size_t i = 0; i < photos.size(); ++i) {
+    photos[i].tags.gps = photos[i / 3 * 3].tags.gps;
+    photos[i].tags.capture_time_s = 5.0 * static_cast<double>(i / 3) + 0.5 * static_cast<double>(i % 3);
+    photos[i].tags.exposure.time_s = 0.001 * static_cast<double>(1U << i % 3);
+  }
+  for (const auto& place : FindPlaces(photos)) EXPECT_TRUE(place);
+  // Far apart in time they are photos of their own.
+  for (size_t i = 0; i < photos.size(); ++i) photos[i].tags.capture_time_s = 5.0 * static_cast<double>(i);
+  for (const auto& place : FindPlaces(photos)) EXPECT_FALSE(place);
+}
+
 TEST(FindPlaces, EqualPositionsTellNothing) {
   std::vector<PhotoFile> photos = test::GridPhotos(3, 4, 20.0, 30.0, kOrigin);
   for (size_t i = 0; i < 12; i += 2) photos[i].tags.gps = photos[i + 1].tags.gps;  // every spot twice

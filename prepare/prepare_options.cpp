@@ -23,7 +23,8 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
        "otherwise; "
        "false: always by the mapper"},
       {"camera_model", &O::camera_model,
-       Range::OneOf({"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV", "OPENCV_FISHEYE"}),
+       Range::OneOf({"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV", "OPENCV_FISHEYE", "FOV",
+                     "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE", "THIN_PRISM_FISHEYE"}),
        "camera model for COLMAP; not used when a model is given"},
       {"colmap", &O::colmap, Range(), "the COLMAP program: a name to find on the PATH, or a path"},
       {"max_image_size", &O::max_image_size, Range::AtLeast(100), "COLMAP scales photos down to this longer side, in pixels, to find features"},

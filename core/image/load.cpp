@@ -11,6 +11,8 @@
 #include "core/base/log.h"
 #include "core/image/image.h"
 #include "core/image/jpeg_structure.h"
+#include "core/image/pixel_format.h"
+#include "core/image/quiet_decoder.h"
 
 namespace skyquilt::image {
 namespace {
@@ -41,6 +43,7 @@ cv::Mat Decode(std::string_view content, const std::filesystem::path& file, int 
   cv::Mat pixels;
   try {
     const cv::Mat wrapped(1, static_cast<int>(std::min<size_t>(content.size(), INT32_MAX)), CV_8UC1, const_cast<char*>(content.data()));
+    const QuietDecoder quiet;
     pixels = cv::imdecode(wrapped, mode);  // UNCHANGED does not apply the EXIF orientation either
   } catch (const cv::Exception& error) {
     throw InputError(file, "cannot be decoded (" + error.err + ")", kFixDamaged);
@@ -119,6 +122,13 @@ Image8 DecodeRgb8(std::span<const uint8_t> bytes) {
 }
 
 void ReadImageSize(const std::filesystem::path& file, int* width, int* height) {
+  // Not all of these can be decoded here.
+  if (const PixelFormat format = ReadPixelFormat(file); format.kind == FileKind::kTiff && !IsPlain(format)) {
+    *width = format.width;
+    *height = format.height;
+    if (*width <= 0 || *height <= 0) throw InputError(file, "has no image size in its header (ends early or damaged)", kFixDamaged);
+    return;
+  }
   std::string content = ReadStart(file);
   if (ParseJpeg(AsBytes(content), true).width == 0 && !StartsWith(content, "\x89PNG")) content = base::ReadFile(file);
   *width = 0;

@@ -40,6 +40,10 @@ cv::Mat Decode(std::string_view content, const std::filesystem::path& file, int 
   if (content.empty()) throw InputError(file, "is empty", kFixDamaged);
   const JpegStructure jpeg = ParseJpeg(AsBytes(content), false);
   if (jpeg.is_jpeg && !jpeg.complete) throw InputError(file, "ends early (truncated JPEG)", kFixDamaged);
+  if (const PixelFormat format = PixelFormatOf(AsBytes(content)); format.bands > 4) {
+    throw InputError(file, "has " + std::to_string(format.bands) + " bands, which are no picture by themselves",
+                     "Give it to 'skyquilt prepare', which makes pictures of three bands (prepare.bands)");
+  }
   cv::Mat pixels;
   try {
     const cv::Mat wrapped(1, static_cast<int>(std::min<size_t>(content.size(), INT32_MAX)), CV_8UC1, const_cast<char*>(content.data()));
@@ -174,6 +178,7 @@ Image8 LoadMask(const std::filesystem::path& file) {
 }
 
 Image8 LoadAlphaMask(const std::filesystem::path& file) {
+  if (ReadPixelFormat(file).bands > 4) return {};
   const cv::Mat pixels = Decode(base::ReadFile(file), file);
   if (pixels.channels() != 4 || (pixels.depth() != CV_8U && pixels.depth() != CV_16U)) return {};
   cv::Mat alpha;

@@ -185,8 +185,10 @@ PixelFormat FormatOfPng(Bytes bytes) {
 }  // namespace
 
 PixelFormat ReadPixelFormat(const std::filesystem::path& file) {
-  const base::MemoryMap map(file);
-  const Bytes bytes = map.bytes();
+  return PixelFormatOf(base::MemoryMap(file).bytes());
+}
+
+PixelFormat PixelFormatOf(Bytes bytes) {
   const auto starts_with = [&](const char* magic, size_t size) { return bytes.size() >= size && std::memcmp(bytes.data(), magic, size) == 0; };
   if (starts_with("\x89PNG\r\n\x1A\n", 8)) return FormatOfPng(bytes);
   const bool is_tiff = starts_with("II*\0", 4) || starts_with("MM\0*", 4) || starts_with("II+\0", 4) || starts_with("MM\0+", 4);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 
 namespace skyquilt::image {
 
@@ -27,6 +28,8 @@ struct PixelFormat {
 
 // Of a file that is none of these, or whose header is damaged: as much as is known. Throws base::InputError when it cannot be read.
 PixelFormat ReadPixelFormat(const std::filesystem::path& file);
+// The same for the bytes of a file.
+PixelFormat PixelFormatOf(std::span<const uint8_t> bytes);
 
 // Whether all parts of the program and COLMAP read the photo as it is: at most 8 bits, and grey, a palette, RGB or RGBA. Also true for what is not
 // known, since decoding will tell.

@@ -165,6 +165,17 @@ std::optional<double> ReadSpeed(const Exiv2::ExifData& exif, const Exiv2::XmpDat
   return std::nullopt;
 }
 
+// Of a file with several bands; cameras of several bands write them into files of one band too.
+std::vector<std::string> ReadBandNames(const Exiv2::XmpData& xmp) {
+  std::vector<std::string> names;
+  for (const Exiv2::Xmpdatum& datum : xmp) {
+    if (datum.tagName() != "BandName") continue;
+    for (long i = 0; i < static_cast<long>(datum.count()); ++i) names.push_back(datum.toString(i));
+    break;
+  }
+  return names;
+}
+
 void ReadOriginalSize(const Exiv2::ExifData& exif, PhotoTags& tags) {
   constexpr double kMost = 100'000.0;
   const std::optional<double> width = Positive(ExifNumber(exif, "Exif.Photo.PixelXDimension"));
@@ -253,6 +264,8 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
     tags.exposure = ReadExposure(exif);
     tags.focal_length_mm = ExifNumber(exif, "Exif.Photo.FocalLength");
     tags.focal_length_35mm = ExifNumber(exif, "Exif.Photo.FocalLengthIn35mmFilm");
+    if (tags.focal_length_35mm && !IsPlausibleFocal35(*tags.focal_length_35mm)) tags.focal_length_35mm.reset();
+    tags.band_names = ReadBandNames(xmp);
     ReadOriginalSize(exif, tags);
     tags.capture_time_s = ReadCaptureTime(exif);
     tags.make = ExifText(exif, "Exif.Image.Make");

@@ -4,11 +4,19 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/geo/geodetic.h"
 #include "core/survey/survey.h"
 
 namespace skyquilt::survey {
+
+// Whether there are such lenses: from 5 mm, which sees 150 degrees, to 1500 mm on film of 35 mm. Programs write 0, 1 or 65535 where they know
+// nothing.
+constexpr double kShortestFocal35_mm = 5.0, kLongestFocal35_mm = 1500.0;
+constexpr bool IsPlausibleFocal35(double focal_mm) {
+  return focal_mm >= kShortestFocal35_mm && focal_mm <= kLongestFocal35_mm;
+}
 
 struct PhotoTags {
   std::optional<geo::Geodetic> gps;  // latitude and longitude from XMP if present (some firmware truncates EXIF), else EXIF; both 0 counts as
@@ -24,7 +32,8 @@ struct PhotoTags {
   std::optional<double> gimbal_yaw_deg, gimbal_pitch_deg, gimbal_roll_deg;
   ExposureSettings exposure;
   std::optional<double> focal_length_mm;
-  std::optional<double> focal_length_35mm;
+  std::optional<double> focal_length_35mm;  // IsPlausibleFocal35, else nothing
+  std::vector<std::string> band_names;      // XMP Camera:BandName, in the order of the bands; empty: not named
   // EXIF PixelXDimension and PixelYDimension, as the camera took the photo: programs that make photos smaller often leave them. 0: no such tags.
   int original_width = 0, original_height = 0;
   std::optional<double> capture_time_s;  // DateTimeOriginal (+ SubSec) in seconds since 1970, by the camera's clock

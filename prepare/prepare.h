@@ -6,6 +6,9 @@
 //   cameras.geojson             camera positions, when geo-referenced (opens in QGIS)
 //   geo_control.csv, control.geojson   errors of control and check points, when there are any (control_report.h)
 //   alpha_masks/                masks from the photos' alpha, with a transforms.json
+//   photos_8bit/                pictures that all later stages read instead of the photos, when some have more than 8 bits or several bands
+//                               (plain_photos.h)
+//   scaled_model/               a COLMAP model that was made from photos of another size, scaled (match_sizes.h)
 //   colmap/                     database, models and log, when COLMAP was run, also for points of a model without; a second call resumes where the
 //                               first stopped
 // A folder with simulate.json is a simulated survey: its own model is used, and the survey keeps the paths of its truth.

@@ -1,6 +1,7 @@
 #include "prepare/prepare_options.h"
 
 #include "core/base/errors.h"
+#include "prepare/band_choice.h"
 #include "prepare/holdout.h"
 
 namespace skyquilt::prepare {
@@ -31,6 +32,9 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"max_features", &O::max_features, Range::AtLeast(100),
        "most features per photo; with poses = fast, 4096 for photos that have so many without being doubled in size"},
       {"use_gpu", &O::use_gpu, Range(), "let COLMAP use a GPU for features, and for its own matching (needs a COLMAP built for it)"},
+      {"bands", &O::bands, Range(),
+       "bands of TIFF photos for red, green and blue, or one for grey pictures, by numbers from 1 or by names, separated by commas, for instance "
+       "3,2,1; empty: those named red, green and blue, or the first three of RGB photos"},
       {"masks", &O::masks, Range(), "folder of masks named PHOTO.jpg.png, 0 = ignore; empty: masks/ inside the photo folder if there is one"},
       {"geo_file", &O::geo_file, Range(),
        "OpenDroneMap's table of photo positions in any coordinate system; empty: geo.txt in the photo folder, or beside it when that is called "
@@ -61,6 +65,7 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
 void PrepareOptions::Check() const {
   config::CheckRanges("prepare", *this);
   ParseHoldout(holdout);
+  CheckBandsOption(bands);
   if (colmap.empty()) throw base::UsageError("prepare.colmap is empty: set it to the name or path of the COLMAP program, for instance colmap");
 }
 

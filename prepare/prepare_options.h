@@ -20,6 +20,7 @@ struct PrepareOptions {
   int max_image_size = 1600;
   int max_features = 8192;
   bool use_gpu = false;
+  std::string bands;
   std::string masks;
   std::string geo_file;
   std::string gcp;

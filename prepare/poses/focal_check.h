@@ -6,9 +6,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/camera/camera.h"
+#include "core/survey/colmap_database.h"
 #include "core/survey/colmap_model.h"
+#include "prepare/photo_files.h"
 
 namespace skyquilt::prepare {
 
@@ -28,6 +31,11 @@ struct FarFocal {
 
 // COLMAP's focal length for photos whose tags have none is 1.2 times the longer side.
 bool IsGuessedFocal(const camera::Camera& camera);
+
+// COLMAP takes the focal length of a camera from the tags of one of its photos, whatever they say. Where that is no lens's (IsPlausibleFocal35), or
+// COLMAP read a picture without tags (PhotoFile::converted), the database gets the focal length that the photos' other tags say, as COLMAP computes
+// it, or COLMAP's guess. A warning names the tag.
+void CorrectFocals(const std::vector<PhotoFile>& photos, survey::ColmapDatabase& database);
 
 // Empty when the model can be right. `tagged`: by the camera ids of the model, as COLMAP's database has them before any adjustment; cameras without a
 // tagged focal length are not judged.

@@ -38,8 +38,8 @@ std::string SurveyIdentity(const Project& project) {
   return identity;
 }
 
-// Files that only some surveys have count where they are, and the poses of held-out photos where they are not the default, so that records of older
-// programs stay valid.
+// Files that only some surveys have count where they are, and the poses of held-out photos and the bands where they are not the default, so that
+// records of older programs stay valid.
 FlatOptions PrepareInputs(const Pipeline& pipeline) {
   FlatOptions inputs{
       {"photos", pipeline.photos.string()}, {"model", pipeline.model.string()}, {"images", PhotosIdentity(pipeline.photos, pipeline.project.folder)}};
@@ -59,6 +59,7 @@ FlatOptions PrepareInputs(const Pipeline& pipeline) {
   }
   if (!control.empty()) inputs["control points"] = base::HashHex(control);
   if (options.holdout_poses != prepare::PrepareOptions().holdout_poses) inputs["prepare.holdout_poses"] = options.holdout_poses;
+  if (!options.bands.empty()) inputs["prepare.bands"] = options.bands;
   return inputs;
 }
 
@@ -148,7 +149,7 @@ std::vector<Stage> MakeTable() {
        .dated = false},
       {.name = "prepare",
        .options = {"prepare."},
-       .ignored_options = {"prepare.holdout_poses"},  // an input
+       .ignored_options = {"prepare.holdout_poses", "prepare.bands"},  // inputs
        .inputs = PrepareInputs,
        .outputs = [](const Project& p) { return Paths{p.SurveyFolder()}; },
        .completion_files = [](const Project& p) { return Paths{SurveyFile(p)}; },

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "core/base/errors.h"
 #include "core/image/image.h"
@@ -319,6 +320,26 @@ TEST(Exif, SizesThatCannotBeAreLeftOut) {
     EXPECT_EQ(tags.original_width, 0) << width;
     EXPECT_EQ(tags.original_height, 0) << width;
   }
+}
+
+TEST(Exif, FocalLengthsThatNoLensHasCountAsMissing) {
+  const auto focal = [](int mm) {
+    const auto set = [mm](Exiv2::ExifData& exif, Exiv2::XmpData&) { exif["Exif.Photo.FocalLengthIn35mmFilm"] = static_cast<uint16_t>(mm); };
+    return ReadForged(set).focal_length_35mm;
+  };
+  for (const int mm : {0, 1, 4, 1501, 65535}) EXPECT_FALSE(focal(mm)) << mm;
+  for (const int mm : {5, 24, 1500}) EXPECT_EQ(focal(mm), std::optional<double>(mm));
+}
+
+TEST(Exif, NamesOfBandsAreRead) {
+  Exiv2::XmpProperties::registerNs("http://pix4d.com/camera/1.0/", "Camera");
+  const PhotoTags tags = ReadForged([](Exiv2::ExifData&, Exiv2::XmpData& xmp) {
+    Exiv2::XmpArrayValue names(Exiv2::xmpSeq);
+    for (const char* name : {"Blue", "Green", "Red edge"}) names.read(name);
+    xmp.add(Exiv2::XmpKey("Xmp.Camera.BandName"), &names);
+  });
+  EXPECT_EQ(tags.band_names, (std::vector<std::string>{"Blue", "Green", "Red edge"}));
+  EXPECT_TRUE(ReadForged([](Exiv2::ExifData&, Exiv2::XmpData&) {}).band_names.empty());
 }
 
 }  // namespace

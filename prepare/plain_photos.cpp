@@ -151,6 +151,11 @@ void LogGrey(const std::vector<image::PixelFormat>& formats) {
 void ChooseBandsOf(const fs::path& file, const std::vector<std::string>& tagged_names, const std::string& wanted, PhotoSource& source) {
   const gis::PhotoBands bands(file);
   source.format.bands = bands.bands();
+  if (source.format.is_cmyk && bands.IsRgb()) {
+    source.format.is_cmyk = false;
+    source.format.is_rgb = true;
+    source.format.alpha_bands = bands.bands() - 3;
+  }
   if (source.format.is_cmyk && wanted.empty()) {
     source.bands = {1, 2, 3, 4};
   } else {

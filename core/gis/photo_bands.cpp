@@ -1,16 +1,18 @@
 #include "core/gis/photo_bands.h"
 
 #include <cmath>
+#include <cstdint>
 
 #include "core/gis/gdal_support.h"
 
 namespace skyquilt::gis {
 namespace {
 
+constexpr const char* kPhotoFix = "Copy it again from the memory card, or remove it from the folder";
+
 [[noreturn]] void FailReadingPhoto(const std::filesystem::path& file) {
   const std::string reason = CPLGetLastErrorMsg();
-  throw base::InputError(file, "cannot be decoded" + (reason.empty() ? "" : " (" + reason + ")"),
-                         "Copy it again from the memory card, or remove it from the folder");
+  throw base::InputError(file, "cannot be decoded" + (reason.empty() ? "" : " (" + reason + ")"), kPhotoFix);
 }
 
 }  // namespace
@@ -31,6 +33,16 @@ PhotoBands::PhotoBands(const std::filesystem::path& file) : file_(file), impl_(s
   width_ = impl_->dataset->GetRasterXSize();
   height_ = impl_->dataset->GetRasterYSize();
   bands_ = impl_->dataset->GetRasterCount();
+  constexpr int64_t kMostPixels = int64_t{1} << 30;
+  if (int64_t{width_} * height_ > kMostPixels) {
+    throw base::InputError(file, "says that it has " + std::to_string(width_) + "x" + std::to_string(height_) + " pixels", kPhotoFix);
+  }
+}
+
+bool PhotoBands::IsRgb() const {
+  return bands_ >= 3 && impl_->dataset->GetRasterBand(1)->GetColorInterpretation() == GCI_RedBand &&
+         impl_->dataset->GetRasterBand(2)->GetColorInterpretation() == GCI_GreenBand &&
+         impl_->dataset->GetRasterBand(3)->GetColorInterpretation() == GCI_BlueBand;
 }
 
 PhotoBands::~PhotoBands() {

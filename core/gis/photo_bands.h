@@ -12,7 +12,7 @@ namespace skyquilt::gis {
 // For one thread at a time.
 class PhotoBands {
  public:
-  // Throws base::InputError for a file that is not such a photo.
+  // Throws base::InputError for a file that is not such a photo, or has more than 2^30 pixels.
   explicit PhotoBands(const std::filesystem::path& file);
   ~PhotoBands();
   PhotoBands(const PhotoBands&) = delete;
@@ -21,6 +21,8 @@ class PhotoBands {
   int width() const { return width_; }
   int height() const { return height_; }
   int bands() const { return bands_; }
+  // Whether the first bands are red, green and blue; GDAL makes these of some other colours (8-bit CMYK) while reading.
+  bool IsRgb() const;
   // Per band, as the file describes it; empty where it does not.
   std::vector<std::string> Names() const;
   // Values of whole rows, row by row, band after band in each pixel; `bands` count from 1. What the file marks as no data, and NaN, is 0.

@@ -32,14 +32,14 @@ using Image8 = BasicImage<uint8_t>;
 using ImageF = BasicImage<float>;
 
 // Loads a photo as 8-bit RGB. Grey becomes three equal channels, 16 bits are scaled to 8, alpha is dropped (with one warning per process). EXIF
-// rotation is NOT applied, because camera models refer to stored pixels. A truncated JPEG is an error: decoders would fill the missing rows with
-// grey. Throws base::InputError.
+// rotation is NOT applied, because camera models refer to stored pixels. A
+// truncated JPEG is an error: decoders would fill the missing rows with grey. Throws base::InputError.
 Image8 LoadRgb8(const std::filesystem::path& file);
 // The same, but a JPEG is decoded at a half, a quarter or an eighth of its size when that still has `width` pixels across: up to ten times faster.
 Image8 LoadReducedRgb8(const std::filesystem::path& file, int width);
 // As LoadRgb8 for the bytes of an image file.
 Image8 DecodeRgb8(std::span<const uint8_t> bytes);
-// Width and height; JPEG and PNG are not decoded for it. Throws base::InputError.
+// Width and height; JPEG, PNG and TIFFs that are not plain (pixel_format.h) are not decoded for it. Throws base::InputError.
 void ReadImageSize(const std::filesystem::path& file, int* width, int* height);
 // Loads a mask as one channel, 0 = ignore and 255 = use. A pixel is used when any of its colour channels is not 0 (alpha does not count).
 // Throws base::InputError.

@@ -40,6 +40,10 @@ cv::Mat Decode(std::string_view content, const std::filesystem::path& file, int 
   if (content.empty()) throw InputError(file, "is empty", kFixDamaged);
   const JpegStructure jpeg = ParseJpeg(AsBytes(content), false);
   if (jpeg.is_jpeg && !jpeg.complete) throw InputError(file, "ends early (truncated JPEG)", kFixDamaged);
+  if (jpeg.is_jpeg && jpeg.bits > 8) {
+    throw InputError(file, "is a JPEG of " + std::to_string(jpeg.bits) + " bits, which no common program reads",
+                     "Export it as TIFF or as 8-bit JPEG");
+  }
   if (const PixelFormat format = PixelFormatOf(AsBytes(content)); format.bands > 4) {
     throw InputError(file, "has " + std::to_string(format.bands) + " bands, which are no picture by themselves",
                      "Give it to 'skyquilt prepare', which makes pictures of three bands (prepare.bands)");

@@ -129,6 +129,9 @@ TEST_F(PlainPhotosTest, InkBecomesLight) {
   for (const char* name : {"a.tif", "b.tif", "c.tif"}) WriteTiff<uint8_t>(name, {255, 0, 51, 51}, 5);
   // (255 - ink) (255 - black) / 255.
   EXPECT_EQ(Pixel(Make(), "a.tif"), (Rgb{0, 204, 163}));
+  StartAnew();
+  for (const char* name : {"a.tif", "b.tif", "c.tif"}) WriteTiff<uint16_t>(name, {65535, 0, 13107, 13107}, 5);
+  EXPECT_EQ(Pixel(Make(), "a.tif"), (Rgb{0, 204, 163}));
 }
 
 TEST_F(PlainPhotosTest, BandsAreChosenByNumberOrName) {

@@ -145,5 +145,17 @@ TEST(LoadRgb8, SaysThatATiffHasSeveralBandsAndPrintsNothing) {
   EXPECT_TRUE(LoadAlphaMask(folder / "five.tif").Empty());
 }
 
+TEST(LoadRgb8, SaysThatAJpegHasTwelveBits) {
+  const TemporaryFolder folder;
+  const std::vector<uint8_t> whole = EncodeJpeg(Pattern(16, 8), 90);
+  std::string bytes(whole.begin(), whole.end());
+  const size_t frame = bytes.find("\xFF\xC0");
+  ASSERT_NE(frame, std::string::npos);
+  bytes[frame + 4] = 12;
+  WriteBytes(folder / "deep.jpg", bytes);
+  const std::string message = InputErrorOf([&] { LoadRgb8(folder / "deep.jpg"); });
+  EXPECT_NE(message.find("is a JPEG of 12 bits"), std::string::npos) << message;
+}
+
 }  // namespace
 }  // namespace skyquilt::image

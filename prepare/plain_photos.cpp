@@ -77,7 +77,7 @@ double LargestValue(const gis::PhotoBands& file, std::span<const int> bands) {
   const auto above = static_cast<size_t>(kAboveRange * static_cast<double>(sample.size()));
   const auto place = sample.end() - 1 - static_cast<std::ptrdiff_t>(above);
   std::nth_element(sample.begin(), place, sample.end());
-  return std::max(0.0F, *place);
+  return std::max(0.0, static_cast<double>(*place));
 }
 
 uint8_t To8Bits(double value, double scale) {
@@ -94,12 +94,12 @@ image::Image8 Converted(const gis::PhotoBands& file, const PhotoSource& source, 
   ForRows(file, source.bands, [&](int row, std::span<const float> values) {
     uint8_t* out = image.At(0, row);
     if (!cmyk) {
-      for (size_t i = 0; i < values.size(); ++i) out[i] = To8Bits(double{values[i]}, scale);
+      for (size_t i = 0; i < values.size(); ++i) out[i] = To8Bits(static_cast<double>(values[i]), scale);
       return;
     }
     for (size_t i = 0; i < values.size(); i += 4) {
-      const double paper = white - double{values[i + 3]};
-      for (size_t c = 0; c < 3; ++c) *out++ = To8Bits((white - double{values[i + c]}) * paper / white, scale);
+      const double paper = white - static_cast<double>(values[i + 3]);
+      for (size_t c = 0; c < 3; ++c) *out++ = To8Bits((white - static_cast<double>(values[i + c])) * paper / white, scale);
     }
   });
   return image;

@@ -70,9 +70,7 @@ camera::Camera CameraOfPart(const camera::Camera& camera, const buildings::Photo
   camera::Camera of_part = camera;
   of_part.width = part.width;
   of_part.height = part.height;
-  const bool one_focal_length = camera.model == camera::CameraModel::kSimplePinhole || camera.model == camera::CameraModel::kSimpleRadial ||
-                                camera.model == camera::CameraModel::kRadial;
-  const size_t x = one_focal_length ? 1 : 2;  // place of the principal point among the parameters
+  const size_t x = camera::HasOneFocalLength(camera.model) ? 1 : 2;  // place of the principal point among the parameters
   of_part.params[x] -= part.left;
   of_part.params[x + 1] -= part.top;
   return of_part.Resized(scale * part.width, scale * part.height);

@@ -168,7 +168,7 @@ double CornerShift(const camera::Camera& camera, double change) {
   const Eigen::Vector2d corner(middle.x() > 0.5 * camera.width ? 0.0 : camera.width, middle.y() > 0.5 * camera.height ? 0.0 : camera.height);
   const Eigen::Vector3d ray = camera.RayFromImg(corner);
   // k1 multiplies the cube of the ideal radius (perspective) or of the angle from the axis (fisheye).
-  const bool fisheye = camera.model == camera::CameraModel::kOpencvFisheye;
+  const bool fisheye = camera::IsFisheye(camera.model);
   const double radius = fisheye ? std::atan2(ray.head<2>().norm(), ray.z()) : ray.head<2>().norm() / ray.z();
   return std::sqrt(camera.FocalX() * camera.FocalY()) * std::abs(change) * radius * radius * radius;
 }

@@ -32,8 +32,7 @@ bool HasDistortion(const camera::Camera& camera, int k1_index) {
 std::vector<size_t> FreeParameters(const camera::Camera& camera) {
   const Eigen::Vector2d middle = 0.5 * Eigen::Vector2d(camera.width, camera.height);
   const bool held = camera.PrincipalPoint() == middle;
-  const bool one_focal_length = camera.model == camera::CameraModel::kSimpleRadial || camera.model == camera::CameraModel::kRadial;
-  const size_t principal = one_focal_length ? 1 : 2;
+  const size_t principal = camera::HasOneFocalLength(camera.model) ? 1 : 2;
   std::vector<size_t> free;
   for (size_t i = 0; i < camera.params.size(); ++i) {
     if (!held || (i != principal && i != principal + 1)) free.push_back(i);
@@ -224,13 +223,18 @@ int RadialParameterIndex(camera::CameraModel model) {
   switch (model) {
     case camera::CameraModel::kSimpleRadial:
     case camera::CameraModel::kRadial:
+    case camera::CameraModel::kSimpleRadialFisheye:
+    case camera::CameraModel::kRadialFisheye:
       return 3;
     case camera::CameraModel::kOpencv:
     case camera::CameraModel::kOpencvFisheye:
     case camera::CameraModel::kFullOpencv:
+    case camera::CameraModel::kThinPrismFisheye:
+    case camera::CameraModel::kRadTanThinPrismFisheye:
       return 4;
     case camera::CameraModel::kSimplePinhole:
     case camera::CameraModel::kPinhole:
+    case camera::CameraModel::kFov:
       break;
   }
   return -1;

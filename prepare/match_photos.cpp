@@ -42,33 +42,43 @@ class PhotoFinder {
 
 }  // namespace
 
-FileOfImage MatchPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files, const fs::path& model_folder,
-                        const fs::path& photo_root) {
+FileOfImage FindPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files) {
   const PhotoFinder finder(files, model);
+  FileOfImage found;
   // Names of other programs may lack the folder, so that several images seem to be one photo.
   std::map<size_t, int> claims;
   for (const survey::ColmapImage& image : model.images) {
-    if (const std::optional<size_t> file = finder.Find(image.name)) ++claims[*file];
+    const std::optional<size_t> file = finder.Find(image.name);
+    if (!file) continue;
+    ++claims[*file];
+    found.emplace(image.id, *file);
   }
+  std::erase_if(found, [&](const auto& entry) { return claims[entry.second] > 1; });
+  return found;
+}
+
+FileOfImage MatchPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files, const fs::path& model_folder,
+                        const fs::path& photo_root) {
+  const FileOfImage found = FindPhotos(model, files);
   FileOfImage registered;
   std::vector<std::string> missing;
   std::vector<std::string> other_size;
   std::string size_example;
   for (const survey::ColmapImage& image : model.images) {
-    const std::optional<size_t> file = finder.Find(image.name);
-    if (!file || claims[*file] > 1) {
+    const auto file = found.find(image.id);
+    if (file == found.end()) {
       missing.push_back(image.name);
       continue;
     }
     const camera::Camera& camera = model.cameras.at(image.camera_id);
-    const PhotoFile& photo = files[*file];
+    const PhotoFile& photo = files[file->second];
     if (camera.width != photo.width || camera.height != photo.height) {
       other_size.push_back(photo.name);
       size_example = photo.name + " is " + std::to_string(photo.width) + "x" + std::to_string(photo.height) + ", its camera in the model " +
                      std::to_string(camera.width) + "x" + std::to_string(camera.height) + " pixels";
       continue;
     }
-    registered.emplace(image.id, *file);
+    registered.emplace(image.id, file->second);
   }
   if (!missing.empty()) {
     base::LogWarning(
@@ -80,13 +90,14 @@ FileOfImage MatchPhotos(const survey::ColmapModel& model, const std::vector<Phot
                      FewNames(other_size), size_example);
   }
   if (registered.size() < kMinPhotos) {
-    std::string found =
+    std::string problem =
         "only " + std::to_string(registered.size()) + " photos of the model can be used, at least " + std::to_string(kMinPhotos) + " are needed";
-    if (!missing.empty()) found += "; " + std::to_string(missing.size()) + " are not in " + photo_root.string() + " (" + FewNames(missing) + ")";
-    if (!other_size.empty()) found += "; " + std::to_string(other_size.size()) + " have another size: " + size_example;
-    throw base::InputError(
-        model_folder, found,
-        other_size.empty() ? "Give the folder with the photos the model was made from" : "Give the photos in the size the model was made from");
+    if (!missing.empty()) problem += "; " + std::to_string(missing.size()) + " are not in " + photo_root.string() + " (" + FewNames(missing) + ")";
+    if (!other_size.empty()) problem += "; " + std::to_string(other_size.size()) + " have another size: " + size_example;
+    throw base::InputError(model_folder, problem,
+                           other_size.empty()
+                               ? "Give the folder with the photos the model was made from"
+                               : "Give the photos that the model was made from, in their size or scaled, but neither cropped nor turned");
   }
   return registered;
 }

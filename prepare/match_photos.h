@@ -22,9 +22,11 @@ struct Registered {
 // Index into the usable photos by the ids of images.
 using FileOfImage = std::map<uint32_t, size_t>;
 
-// Photos are found by their full name, otherwise by the file name if it occurs only once on both sides: models are often made from another folder
-// than the one given now. Photos without a file or of another size than their camera are left out with a warning. Throws base::InputError when fewer
-// than kMinPhotos remain; `model_folder` and `photo_root` are for messages.
+// The photo of each image, whatever its size: by the full name, otherwise by the file name if it occurs only once on both sides. Images that share a
+// photo have none.
+FileOfImage FindPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files);
+// Those of FindPhotos that can be used. Photos without a file or of another size than their camera are left out with a warning. Throws
+// base::InputError when fewer than kMinPhotos remain; `model_folder` and `photo_root` are for messages.
 FileOfImage MatchPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files, const std::filesystem::path& model_folder,
                         const std::filesystem::path& photo_root);
 // Those that the model has now, in name order.

@@ -15,6 +15,7 @@ struct PhotoFile {
   int width = 0;     // pixels, as stored
   int height = 0;
   survey::PhotoTags tags;
+  bool converted = false;  // COLMAP reads a copy of 8 bits without these tags (plain_photos.h)
 };
 
 struct PhotoSet {

@@ -30,11 +30,13 @@
 #include "prepare/input/shots.h"
 #include "prepare/intrinsics_sigma.h"
 #include "prepare/match_photos.h"
+#include "prepare/match_sizes.h"
 #include "prepare/model_use.h"
 #include "prepare/models/read_model.h"
 #include "prepare/photo_files.h"
 #include "prepare/photo_positions.h"
 #include "prepare/place_by_control.h"
+#include "prepare/plain_photos.h"
 #include "prepare/poses/colmap_run.h"
 #include "prepare/poses/focal_check.h"
 #include "prepare/poses/triangulate_points.h"
@@ -333,6 +335,8 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   std::vector<InputFile> files = ListFiles(input, options, folders, threads);
   const std::vector<std::string> names = TakenNames(files);
   PhotoSet photos = ReadPhotos(folders.photo_root, names, threads);
+  // The pictures that all others read, under the same names.
+  const fs::path picture_root = MakePlainPhotos(folders.photo_root, options.bands, input.out_folder / "photos_8bit", photos, threads);
   UsePositionFiles(folders.photo_root, options.geo_file, photos.usable);
   LogUnfilledTags(options.flight_gap_s, photos.usable);
   const PhotoMasks masks = FindMasks(folders.photo_root, folders.masks, photos.usable, fs::absolute(input.out_folder) / "masks", files, threads);
@@ -345,23 +349,25 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   InputModel input_model;
   const bool own_poses = folders.model.empty();
   if (own_poses) {
-    const ColmapJob job{folders.photo_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
+    const ColmapJob job{picture_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
     folders.model = RunColmap(job, photos.usable, PoseOptionsOf(options), threads, ranks);
     input_model.sfm = survey::ReadColmapModel(folders.model);
   } else {
     input_model = ReadModel(folders.model, ModelPhotos(folders.photo_root, names));
     WarnOfPosesLeftOut(input_model.sfm, files);
   }
+  const bool has_observations = !folders.exact_origin && input_model.format == ModelFormat::kColmap;
+  folders.model = ScaleToPhotos(FindPhotos(input_model.sfm, photos.usable), photos.usable, folders.model, has_observations,
+                                fs::absolute(input.out_folder) / "scaled_model", input_model.sfm);
   const survey::ColmapModel& model = input_model.sfm;
   const FileOfImage file_of_image = MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
   std::vector<Registered> registered = RegisteredPhotos(model, file_of_image);
   if (LacksPoints(input_model)) {
     RequireColmap(input_model, folders.model, options.colmap);
-    const ColmapJob job{folders.photo_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
+    const ColmapJob job{picture_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
     input_model.sfm.points = PointsFromPoses(job, model, registered, photos.usable, PoseOptionsOf(options), threads, ranks);
   }
   const auto poses_known = std::chrono::steady_clock::now();
-  const bool has_observations = !folders.exact_origin && input_model.format == ModelFormat::kColmap;
   const std::set<std::string> held_out = ChooseHeldOut(options, input_model, folders.model, registered, photos.usable, names);
   std::optional<WithheldPhotos> withheld;
   if (options.holdout_poses == "resected" && !held_out.empty()) {
@@ -392,7 +398,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   survey::Survey survey;
   survey.origin = georeference.origin;
   survey.georeferenced = georeference.ok;
-  survey.photo_root = folders.photo_root;
+  survey.photo_root = picture_root;
   survey.fit = georeference.fit;
   survey.control = std::move(control);
   survey.problems = georeference.problems;

@@ -7,6 +7,9 @@
 //   geo_control.csv, control.geojson   errors of control and check points, when there are any (control_report.h)
 //   input.csv                   every file of the photo folder: taken or why not, its shot and mask (input/list_files.h)
 //   masks/                      the photos' masks, where they are not in that form already (input/masks.h)
+//   photos_8bit/                pictures that all later stages read instead of the photos, when some have more than 8 bits or several bands
+//                               (plain_photos.h)
+//   scaled_model/               a COLMAP model that was made from photos of another size, scaled (match_sizes.h)
 //   colmap/                     database, models and log, when COLMAP was run, also for points of a model without; a second call resumes where the
 //                               first stopped
 // A folder with simulate.json is a simulated survey: its own model is used, and the survey keeps the paths of its truth.

@@ -1,6 +1,7 @@
 #include "prepare/prepare_options.h"
 
 #include "core/base/errors.h"
+#include "prepare/band_choice.h"
 #include "prepare/holdout.h"
 #include "prepare/input/glob.h"
 
@@ -24,13 +25,17 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
        "otherwise; "
        "false: always by the mapper"},
       {"camera_model", &O::camera_model,
-       Range::OneOf({"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV", "OPENCV_FISHEYE"}),
+       Range::OneOf({"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "FULL_OPENCV", "OPENCV_FISHEYE", "FOV",
+                     "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE", "THIN_PRISM_FISHEYE"}),
        "camera model for COLMAP; not used when a model is given"},
       {"colmap", &O::colmap, Range(), "the COLMAP program: a name to find on the PATH, or a path"},
       {"max_image_size", &O::max_image_size, Range::AtLeast(100), "COLMAP scales photos down to this longer side, in pixels, to find features"},
       {"max_features", &O::max_features, Range::AtLeast(100),
        "most features per photo; with poses = fast, 4096 for photos that have so many without being doubled in size"},
       {"use_gpu", &O::use_gpu, Range(), "let COLMAP use a GPU for features, and for its own matching (needs a COLMAP built for it)"},
+      {"bands", &O::bands, Range(),
+       "bands of TIFF photos for red, green and blue, or one for grey pictures, by numbers from 1 or by names, separated by commas, for instance "
+       "3,2,1; empty: those named red, green and blue, or the first three of RGB photos"},
       {"photos", &O::photos, Range(),
        "which pictures are photos: patterns of their paths below the photo folder, separated by commas, such as *.JPG or flight1/**; empty: all but "
        "bands, pictures of heat, thumbnails and others that survey/input.csv lists with a reason"},
@@ -67,6 +72,7 @@ void PrepareOptions::Check() const {
   config::CheckRanges("prepare", *this);
   ParseHoldout(holdout);
   if (!photos.empty()) ParsePatterns(photos);
+  CheckBandsOption(bands);
   if (colmap.empty()) throw base::UsageError("prepare.colmap is empty: set it to the name or path of the COLMAP program, for instance colmap");
 }
 

@@ -21,6 +21,7 @@ struct PrepareOptions {
   int max_features = 8192;
   bool use_gpu = false;
   std::string photos;
+  std::string bands;
   std::string masks;
   std::string geo_file;
   std::string gcp;

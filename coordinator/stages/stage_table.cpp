@@ -49,8 +49,8 @@ std::string MasksIdentity(const Pipeline& pipeline) {
   return identity.empty() ? "" : base::HashHex(identity);
 }
 
-// Files that only some surveys have count where they are, and the poses of held-out photos where they are not the default, so that records of older
-// programs stay valid.
+// Files that only some surveys have count where they are, and the poses of held-out photos and the bands where they are not the default, so that
+// records of older programs stay valid.
 FlatOptions PrepareInputs(const Pipeline& pipeline) {
   FlatOptions inputs{
       {"photos", pipeline.photos.string()}, {"model", pipeline.model.string()}, {"images", PhotosIdentity(pipeline.photos, pipeline.project.folder)}};
@@ -73,6 +73,7 @@ FlatOptions PrepareInputs(const Pipeline& pipeline) {
   if (!options.photos.empty()) inputs["prepare.photos"] = options.photos;
   const std::string masks = MasksIdentity(pipeline);
   if (!masks.empty()) inputs["masks"] = masks;
+  if (!options.bands.empty()) inputs["prepare.bands"] = options.bands;
   return inputs;
 }
 
@@ -162,7 +163,7 @@ std::vector<Stage> MakeTable() {
        .dated = false},
       {.name = "prepare",
        .options = {"prepare."},
-       .ignored_options = {"prepare.holdout_poses", "prepare.photos"},  // inputs
+       .ignored_options = {"prepare.holdout_poses", "prepare.bands", "prepare.photos"},  // inputs
        .inputs = PrepareInputs,
        .outputs = [](const Project& p) { return Paths{p.SurveyFolder()}; },
        .completion_files = [](const Project& p) { return Paths{SurveyFile(p)}; },

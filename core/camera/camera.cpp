@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <utility>
 
 #include "core/base/errors.h"
@@ -17,16 +18,22 @@ struct ModelInfo {
   const char* name;
   int n_params;
   bool one_focal_length;
+  bool is_fisheye = false;
 };
 
 // In the order of COLMAP's ids.
-constexpr std::array<ModelInfo, 7> kModels = {{{CameraModel::kSimplePinhole, "SIMPLE_PINHOLE", 3, true},
-                                               {CameraModel::kPinhole, "PINHOLE", 4, false},
-                                               {CameraModel::kSimpleRadial, "SIMPLE_RADIAL", 4, true},
-                                               {CameraModel::kRadial, "RADIAL", 5, true},
-                                               {CameraModel::kOpencv, "OPENCV", 8, false},
-                                               {CameraModel::kOpencvFisheye, "OPENCV_FISHEYE", 8, false},
-                                               {CameraModel::kFullOpencv, "FULL_OPENCV", 12, false}}};
+constexpr std::array<ModelInfo, 12> kModels = {{{CameraModel::kSimplePinhole, "SIMPLE_PINHOLE", 3, true},
+                                                {CameraModel::kPinhole, "PINHOLE", 4, false},
+                                                {CameraModel::kSimpleRadial, "SIMPLE_RADIAL", 4, true},
+                                                {CameraModel::kRadial, "RADIAL", 5, true},
+                                                {CameraModel::kOpencv, "OPENCV", 8, false},
+                                                {CameraModel::kOpencvFisheye, "OPENCV_FISHEYE", 8, false, true},
+                                                {CameraModel::kFullOpencv, "FULL_OPENCV", 12, false},
+                                                {CameraModel::kFov, "FOV", 5, false},
+                                                {CameraModel::kSimpleRadialFisheye, "SIMPLE_RADIAL_FISHEYE", 4, true, true},
+                                                {CameraModel::kRadialFisheye, "RADIAL_FISHEYE", 5, true, true},
+                                                {CameraModel::kThinPrismFisheye, "THIN_PRISM_FISHEYE", 12, false, true},
+                                                {CameraModel::kRadTanThinPrismFisheye, "RAD_TAN_THIN_PRISM_FISHEYE", 16, false, true}}};
 
 const ModelInfo& Info(CameraModel model) {
   const auto index = static_cast<size_t>(model);
@@ -55,9 +62,21 @@ Distortion DistortionOf(const Camera& camera) {
     case CameraModel::kOpencv:
       return Distortion::Perspective({p[4], p[5]}, p[6], p[7]);
     case CameraModel::kOpencvFisheye:
-      return Distortion::Fisheye(p[4], p[5], p[6], p[7]);
+      return Distortion::Fisheye({p[4], p[5], p[6], p[7]});
     case CameraModel::kFullOpencv:
       return Distortion::Perspective({p[4], p[5], p[8], p[9], p[10], p[11]}, p[6], p[7]);
+    case CameraModel::kFov:
+      return Distortion::FieldOfView(p[4]);
+    case CameraModel::kSimpleRadialFisheye:
+      return Distortion::Fisheye({p[3]});
+    case CameraModel::kRadialFisheye:
+      return Distortion::Fisheye({p[3], p[4]});
+    case CameraModel::kThinPrismFisheye:
+      return Distortion::Fisheye({p[4], p[5], p[8], p[9]}, {.p1 = p[6], .p2 = p[7], .prism = {p[10], 0.0, p[11], 0.0}, .sequential = false});
+    case CameraModel::kRadTanThinPrismFisheye:
+      // Its p0 stands where OpenCV's p2 does.
+      return Distortion::Fisheye({p[4], p[5], p[6], p[7], p[8], p[9]},
+                                 {.p1 = p[11], .p2 = p[10], .prism = {p[12], p[13], p[14], p[15]}, .sequential = true});
   }
   return Distortion::Perspective({}, 0.0, 0.0);
 }
@@ -77,6 +96,14 @@ Camera WithTwoFocalLengths(const Camera& camera) {
       break;
     case CameraModel::kRadial:
       wide.model = CameraModel::kOpencv;
+      wide.params = {p[0], p[0], p[1], p[2], p[3], p[4], 0.0, 0.0};
+      break;
+    case CameraModel::kSimpleRadialFisheye:
+      wide.model = CameraModel::kOpencvFisheye;
+      wide.params = {p[0], p[0], p[1], p[2], p[3], 0.0, 0.0, 0.0};
+      break;
+    case CameraModel::kRadialFisheye:
+      wide.model = CameraModel::kOpencvFisheye;
       wide.params = {p[0], p[0], p[1], p[2], p[3], p[4], 0.0, 0.0};
       break;
     default:
@@ -107,6 +134,20 @@ std::optional<CameraModel> ModelFromId(int colmap_id) {
   return kModels[static_cast<size_t>(colmap_id)].model;
 }
 
+std::string ModelNames() {
+  std::string names;
+  for (size_t i = 0; i < kModels.size(); ++i) names += (i == 0 ? "" : i + 1 < kModels.size() ? ", " : " or ") + std::string(kModels[i].name);
+  return names;
+}
+
+bool HasOneFocalLength(CameraModel model) {
+  return Info(model).one_focal_length;
+}
+
+bool IsFisheye(CameraModel model) {
+  return Info(model).is_fisheye;
+}
+
 std::string Camera::Problem() const {
   const auto index = static_cast<size_t>(model);
   if (index >= kModels.size()) return "unknown camera model " + std::to_string(index);
@@ -120,6 +161,9 @@ std::string Camera::Problem() const {
   }
   for (const double focal : {FocalX(), FocalY()}) {
     if (!(focal > 0.0)) return "focal length " + std::to_string(focal) + " px is not positive";
+  }
+  if (model == CameraModel::kFov && !(std::abs(params[4]) < std::numbers::pi)) {
+    return "FOV's omega of " + std::to_string(params[4]) + " is not between -pi and pi";
   }
   return "";
 }

@@ -3,6 +3,9 @@
 // Parameter order per model is COLMAP's (src/colmap/sensor/models.h):
 //   SIMPLE_PINHOLE f cx cy | PINHOLE fx fy cx cy | SIMPLE_RADIAL f cx cy k | RADIAL f cx cy k1 k2
 //   OPENCV fx fy cx cy k1 k2 p1 p2 | OPENCV_FISHEYE fx fy cx cy k1..k4 | FULL_OPENCV fx fy cx cy k1 k2 p1 p2 k3..k6
+//   FOV fx fy cx cy omega | SIMPLE_RADIAL_FISHEYE f cx cy k | RADIAL_FISHEYE f cx cy k1 k2
+//   THIN_PRISM_FISHEYE fx fy cx cy k1 k2 p1 p2 k3 k4 sx1 sy1 | RAD_TAN_THIN_PRISM_FISHEYE fx fy cx cy k0..k5 p0 p1 s0..s3
+// COLMAP's FOV takes the inverse's series for |omega| < 0.01, which differs from the model by up to omega^2 / 6 of the radius; here the model holds.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,13 +15,33 @@
 
 namespace skyquilt::camera {
 
-enum class CameraModel { kSimplePinhole = 0, kPinhole = 1, kSimpleRadial = 2, kRadial = 3, kOpencv = 4, kOpencvFisheye = 5, kFullOpencv = 6 };
+// The numbers are COLMAP's ids.
+enum class CameraModel {
+  kSimplePinhole = 0,
+  kPinhole = 1,
+  kSimpleRadial = 2,
+  kRadial = 3,
+  kOpencv = 4,
+  kOpencvFisheye = 5,
+  kFullOpencv = 6,
+  kFov = 7,
+  kSimpleRadialFisheye = 8,
+  kRadialFisheye = 9,
+  kThinPrismFisheye = 10,
+  kRadTanThinPrismFisheye = 11
+};
 
 // COLMAP's name, number of parameters and id of a model. FromName / FromId return nothing for models we do not support.
 std::string ModelName(CameraModel model);
 int ModelParamCount(CameraModel model);
 std::optional<CameraModel> ModelFromName(const std::string& name);
 std::optional<CameraModel> ModelFromId(int colmap_id);
+// Names of all models, for messages: "SIMPLE_PINHOLE, PINHOLE, ... or ...".
+std::string ModelNames();
+// Whether the parameters begin with f, cx, cy; the others' with fx, fy, cx, cy.
+bool HasOneFocalLength(CameraModel model);
+// Whether distortion depends on the angle from the axis, and not on its tangent.
+bool IsFisheye(CameraModel model);
 
 struct Camera {
   CameraModel model = CameraModel::kPinhole;
@@ -26,7 +49,7 @@ struct Camera {
   int height = 0;  // pixels
   std::vector<double> params;
 
-  // Empty when the camera can be used, otherwise the problem in words (size, number of parameters, focal length, not finite).
+  // Empty when the camera can be used, otherwise the problem in words (size, number of parameters, focal length, omega, not finite).
   std::string Problem() const;
   double FocalX() const;
   double FocalY() const;
@@ -42,7 +65,7 @@ struct Camera {
   Eigen::Vector3d RayFromImg(const Eigen::Vector2d& pixel) const;
 
   // The camera of the resized image: focal lengths and principal point are scaled, distortion stays.
-  // If the aspect ratio changes, a model with one focal length becomes the same lens with two (PINHOLE, OPENCV).
+  // If the aspect ratio changes, a model with one focal length becomes the same lens with two (PINHOLE, OPENCV, OPENCV_FISHEYE).
   Camera Resized(int new_width, int new_height) const;
 };
 

@@ -23,6 +23,21 @@ constexpr double kScanStep = 0.01;
 }  // namespace
 
 Distortion::Jet Distortion::RadialFactor(double s) const {
+  if (kind_ == Kind::kFisheye) {
+    return {1.0 + s * (k_[0] + s * (k_[1] + s * (k_[2] + s * (k_[3] + s * (k_[4] + s * k_[5]))))),
+            k_[0] + s * (2.0 * k_[1] + s * (3.0 * k_[2] + s * (4.0 * k_[3] + s * (5.0 * k_[4] + s * 6.0 * k_[5]))))};
+  }
+  if (kind_ == Kind::kFieldOfView) {
+    if (is_ideal_) return {1.0, 0.0};
+    const double a = 2.0 * std::tan(0.5 * k_[0]);
+    const double b = a * a * s;
+    // Series of atan(sqrt(b)) / sqrt(b): the slope is a difference of nearly equal numbers near the axis.
+    if (b < 1e-4)
+      return {a / k_[0] * (1.0 - b * (1.0 / 3.0 - b * (1.0 / 5.0 - b / 7.0))), a * a * a / k_[0] * (-1.0 / 3.0 + 2.0 * b / 5.0 - 3.0 * b * b / 7.0)};
+    const Jet profile = Profile(std::sqrt(s));
+    const double factor = profile.value / std::sqrt(s);
+    return {factor, (profile.slope - factor) / (2.0 * s)};
+  }
   const double numerator = 1.0 + s * (k_[0] + s * (k_[1] + s * k_[2]));
   const double numerator_slope = k_[0] + s * (2.0 * k_[1] + s * 3.0 * k_[2]);
   const double denominator = 1.0 + s * (k_[3] + s * (k_[4] + s * k_[5]));
@@ -33,12 +48,21 @@ Distortion::Jet Distortion::RadialFactor(double s) const {
 
 Distortion::Jet Distortion::Profile(double r) const {
   const double s = r * r;
-  if (is_fisheye_) {
-    return {r * (1.0 + s * (k_[0] + s * (k_[1] + s * (k_[2] + s * k_[3])))),
-            1.0 + s * (3.0 * k_[0] + s * (5.0 * k_[1] + s * (7.0 * k_[2] + s * 9.0 * k_[3])))};
+  if (kind_ == Kind::kFisheye) {
+    return {r * (1.0 + s * (k_[0] + s * (k_[1] + s * (k_[2] + s * (k_[3] + s * (k_[4] + s * k_[5])))))),
+            1.0 + s * (3.0 * k_[0] + s * (5.0 * k_[1] + s * (7.0 * k_[2] + (s * 9.0 * k_[3] + s * s * (11.0 * k_[4] + s * 13.0 * k_[5])))))};
+  }
+  if (kind_ == Kind::kFieldOfView) {
+    if (is_ideal_) return {r, 1.0};
+    const double a = 2.0 * std::tan(0.5 * k_[0]);
+    return {std::atan(a * r) / k_[0], a / (k_[0] * (1.0 + a * a * s))};
   }
   const Jet factor = RadialFactor(s);
   return {r * factor.value, factor.value + 2.0 * s * factor.slope};
+}
+
+double Distortion::Limit() const {
+  return kind_ == Kind::kFisheye ? std::numbers::pi : kMaxPlaneRadius;
 }
 
 bool Distortion::GrowsUpTo(double r) const {
@@ -54,7 +78,13 @@ bool Distortion::GrowsUpTo(double r) const {
 }
 
 double Distortion::InvertProfile(double distorted_radius) const {
-  const double limit = is_fisheye_ ? std::numbers::pi : kMaxPlaneRadius;
+  const double limit = Limit();
+  if (kind_ == Kind::kFieldOfView) {
+    const double angle = distorted_radius * std::abs(k_[0]);
+    const double a = 2.0 * std::tan(0.5 * std::abs(k_[0]));
+    if (!(a > 0.0)) return 0.0;
+    return angle < std::atan(a * limit) ? std::tan(angle) / a : limit;
+  }
   double r = std::min(distorted_radius, limit);
   for (int step = 0; step < kNewtonSteps; ++step) {
     const Jet at = Profile(r);
@@ -71,7 +101,7 @@ double Distortion::InvertProfile(double distorted_radius) const {
 }
 
 double Distortion::InvertProfileSlowly(double distorted_radius) const {
-  const double limit = is_fisheye_ ? std::numbers::pi : kMaxPlaneRadius;
+  const double limit = Limit();
   // Scans from the centre to the first radius that is large enough or past the fold, then bisects the last step.
   const auto is_beyond = [&](double r) {
     const Jet at = Profile(r);
@@ -92,32 +122,50 @@ double Distortion::InvertProfileSlowly(double distorted_radius) const {
   return low;
 }
 
-Eigen::Vector2d Distortion::DistortPlane(const Eigen::Vector2d& ideal, Eigen::Matrix2d* jacobian) const {
-  const double u = ideal.x();
-  const double v = ideal.y();
-  const double s = ideal.squaredNorm();
-  const Jet factor = RadialFactor(s);
+Eigen::Vector2d Distortion::WithShift(const Eigen::Vector2d& point, const Jet& factor, Eigen::Matrix2d* jacobian) const {
+  const double u = point.x();
+  const double v = point.y();
+  const double s = point.squaredNorm();
+  const auto& [p1, p2, prism, sequential] = shift_;
   if (jacobian != nullptr) {
-    const double cross = 2.0 * (u * v * factor.slope + p1_ * u + p2_ * v);
-    (*jacobian)(0, 0) = factor.value + 2.0 * u * u * factor.slope + 2.0 * p1_ * v + 6.0 * p2_ * u;
+    const double cross = 2.0 * (u * v * factor.slope + p1 * u + p2 * v);
+    (*jacobian)(0, 0) = factor.value + 2.0 * u * u * factor.slope + 2.0 * p1 * v + 6.0 * p2 * u;
     (*jacobian)(0, 1) = cross;
     (*jacobian)(1, 0) = cross;
-    (*jacobian)(1, 1) = factor.value + 2.0 * v * v * factor.slope + 2.0 * p2_ * u + 6.0 * p1_ * v;
+    (*jacobian)(1, 1) = factor.value + 2.0 * v * v * factor.slope + 2.0 * p2 * u + 6.0 * p1 * v;
   }
-  return {u * factor.value + 2.0 * p1_ * u * v + p2_ * (s + 2.0 * u * u), v * factor.value + 2.0 * p2_ * u * v + p1_ * (s + 2.0 * v * v)};
+  Eigen::Vector2d distorted(u * factor.value + 2.0 * p1 * u * v + p2 * (s + 2.0 * u * u),
+                            v * factor.value + 2.0 * p2 * u * v + p1 * (s + 2.0 * v * v));
+  if (kind_ != Kind::kFisheye) return distorted;
+  if (jacobian != nullptr) {
+    const Eigen::Vector2d by_s(prism[0] + 2.0 * prism[1] * s, prism[2] + 2.0 * prism[3] * s);
+    *jacobian += 2.0 * by_s * point.transpose();
+  }
+  return distorted + Eigen::Vector2d(s * (prism[0] + s * prism[1]), s * (prism[2] + s * prism[3]));
+}
+
+Eigen::Vector2d Distortion::DistortPlane(const Eigen::Vector2d& ideal, Eigen::Matrix2d* jacobian) const {
+  const Jet factor = RadialFactor(ideal.squaredNorm());
+  if (!shift_.sequential) return WithShift(ideal, factor, jacobian);
+  const Eigen::Vector2d distorted = WithShift(ideal * factor.value, {1.0, 0.0}, jacobian);
+  if (jacobian != nullptr) {
+    const Eigen::Matrix2d radial = factor.value * Eigen::Matrix2d::Identity() + 2.0 * factor.slope * ideal * ideal.transpose();
+    *jacobian = jacobian->lazyProduct(radial).eval();
+  }
+  return distorted;
 }
 
 std::optional<Eigen::Vector2d> Distortion::Distort(const Eigen::Vector3d& direction) const {
-  const Eigen::Vector2d ideal = direction.head<2>() / direction.z();
+  Eigen::Vector2d ideal = direction.head<2>() / direction.z();
   if (is_ideal_) return ideal;
-  if (is_fisheye_) {
-    const double r = ideal.norm();
-    const double theta = std::atan(r);
-    if (!GrowsUpTo(theta)) return std::nullopt;
-    // theta_d / r tends to 1 at the centre.
-    return r > 1e-12 ? Eigen::Vector2d(ideal * (Profile(theta).value / r)) : ideal;
+  const double tangent = ideal.norm();
+  const double r = kind_ == Kind::kFisheye ? std::atan(tangent) : tangent;
+  if (!GrowsUpTo(r)) return std::nullopt;
+  if (kind_ != Kind::kPerspective && shift_.IsZero()) {
+    // The quotient tends to a number at the centre.
+    return tangent > 1e-12 ? Eigen::Vector2d(ideal * (Profile(r).value / tangent)) : Eigen::Vector2d(ideal * RadialFactor(0.0).value);
   }
-  if (!GrowsUpTo(ideal.norm())) return std::nullopt;
+  if (kind_ == Kind::kFisheye && tangent > 1e-12) ideal *= r / tangent;
   Eigen::Matrix2d jacobian;
   const Eigen::Vector2d distorted = DistortPlane(ideal, &jacobian);
   if (!(linear::Determinant(jacobian) > 0.0)) return std::nullopt;
@@ -129,7 +177,7 @@ Eigen::Vector2d Distortion::UndistortPlane(const Eigen::Vector2d& distorted) con
   if (distorted_radius < 1e-300) return distorted;
   // Start from the inverse of the radial part, which is safe in one dimension; the tangential part is a small correction.
   Eigen::Vector2d ideal = distorted * (InvertProfile(distorted_radius) / distorted_radius);
-  if (p1_ == 0.0 && p2_ == 0.0) return ideal;
+  if (shift_.IsZero()) return ideal;
 
   Eigen::Matrix2d jacobian;
   Eigen::Vector2d residual = DistortPlane(ideal, &jacobian) - distorted;
@@ -143,6 +191,8 @@ Eigen::Vector2d Distortion::UndistortPlane(const Eigen::Vector2d& distorted) con
       Eigen::Matrix2d candidate_jacobian;
       const Eigen::Vector2d candidate_residual = DistortPlane(candidate, &candidate_jacobian) - distorted;
       if (!(candidate_residual.norm() < residual.norm()) || !GrowsUpTo(candidate.norm())) continue;
+      // An angle of more than half a turn is another direction.
+      if (kind_ == Kind::kFisheye && !(candidate.norm() <= Limit())) continue;
       ideal = candidate;
       residual = candidate_residual;
       jacobian = candidate_jacobian;
@@ -155,11 +205,18 @@ Eigen::Vector2d Distortion::UndistortPlane(const Eigen::Vector2d& distorted) con
 
 Eigen::Vector3d Distortion::Undistort(const Eigen::Vector2d& distorted) const {
   if (!distorted.allFinite()) return Eigen::Vector3d::UnitZ();
-  if (is_fisheye_) {
+  if (kind_ == Kind::kFisheye) {
     const double distorted_radius = distorted.stableNorm();
     if (distorted_radius < 1e-300) return Eigen::Vector3d::UnitZ();
-    const double theta = InvertProfile(distorted_radius);
-    const Eigen::Vector2d across = distorted * (std::sin(theta) / distorted_radius);
+    if (shift_.IsZero()) {
+      const double theta = InvertProfile(distorted_radius);
+      const Eigen::Vector2d across = distorted * (std::sin(theta) / distorted_radius);
+      return {across.x(), across.y(), std::cos(theta)};
+    }
+    const Eigen::Vector2d plane = UndistortPlane(distorted);
+    const double theta = plane.norm();
+    if (theta < 1e-150) return Eigen::Vector3d::UnitZ();
+    const Eigen::Vector2d across = plane * (std::sin(theta) / theta);
     return {across.x(), across.y(), std::cos(theta)};
   }
   // stableNormalized: for far-off pixels the squared coordinates may overflow.

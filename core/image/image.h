@@ -39,7 +39,7 @@ Image8 LoadRgb8(const std::filesystem::path& file);
 Image8 LoadReducedRgb8(const std::filesystem::path& file, int width);
 // As LoadRgb8 for the bytes of an image file.
 Image8 DecodeRgb8(std::span<const uint8_t> bytes);
-// Width and height; JPEG and PNG are not decoded for it. Throws base::InputError.
+// Width and height; JPEG, PNG and TIFFs that are not plain (pixel_format.h) are not decoded for it. Throws base::InputError.
 void ReadImageSize(const std::filesystem::path& file, int* width, int* height);
 // Loads a mask as one channel, 0 = ignore and 255 = use. A pixel is used when any of its colour channels is not 0 (alpha does not count).
 // Throws base::InputError.

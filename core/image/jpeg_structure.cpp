@@ -51,6 +51,8 @@ JpegStructure ParseJpeg(std::span<const uint8_t> bytes, bool headers_only) {
     if (length < 2 || at + length > bytes.size()) return found;
     if (IsFrameHeader(marker) && length >= 8) {
       found.frame_marker = marker;
+      found.bits = bytes[at + 2];
+      found.components = bytes[at + 7];
       found.height = bytes[at + 3] << 8 | bytes[at + 4];
       found.width = bytes[at + 5] << 8 | bytes[at + 6];
       if (headers_only) return found;

@@ -11,6 +11,8 @@ struct JpegStructure {
   bool is_jpeg = false;  // starts with the SOI marker
   int width = 0;         // 0 if there is no frame header
   int height = 0;
+  int bits = 0;              // per number, of the frame header
+  int components = 0;        // 1: grey, 3: colours, 4: CMYK
   uint8_t frame_marker = 0;  // of the frame header: 0xC0 to 0xC2 are the kinds that all programs read; 0 if there is none
   bool complete = false;     // the first image has a scan and an end marker; data after it (previews, maker data) is not read
 };

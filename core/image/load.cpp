@@ -9,6 +9,8 @@
 #include "core/base/file.h"
 #include "core/image/image.h"
 #include "core/image/jpeg_structure.h"
+#include "core/image/pixel_format.h"
+#include "core/image/quiet_decoder.h"
 
 namespace skyquilt::image {
 namespace {
@@ -36,9 +38,18 @@ cv::Mat Decode(std::string_view content, const std::filesystem::path& file, int 
   if (content.empty()) throw InputError(file, "is empty", kFixDamaged);
   const JpegStructure jpeg = ParseJpeg(AsBytes(content), false);
   if (jpeg.is_jpeg && !jpeg.complete) throw InputError(file, "ends early (truncated JPEG)", kFixDamaged);
+  if (jpeg.is_jpeg && jpeg.bits > 8) {
+    throw InputError(file, "is a JPEG of " + std::to_string(jpeg.bits) + " bits, which no common program reads",
+                     "Export it as TIFF or as 8-bit JPEG");
+  }
+  if (const PixelFormat format = PixelFormatOf(AsBytes(content)); format.bands > 4) {
+    throw InputError(file, "has " + std::to_string(format.bands) + " bands, which are no picture by themselves",
+                     "Give it to 'skyquilt prepare', which makes pictures of three bands (prepare.bands)");
+  }
   cv::Mat pixels;
   try {
     const cv::Mat wrapped(1, static_cast<int>(std::min<size_t>(content.size(), INT32_MAX)), CV_8UC1, const_cast<char*>(content.data()));
+    const QuietDecoder quiet;
     pixels = cv::imdecode(wrapped, mode);  // UNCHANGED does not apply the EXIF orientation either
   } catch (const cv::Exception& error) {
     throw InputError(file, "cannot be decoded (" + error.err + ")", kFixDamaged);
@@ -109,6 +120,13 @@ Image8 DecodeRgb8(std::span<const uint8_t> bytes) {
 }
 
 void ReadImageSize(const std::filesystem::path& file, int* width, int* height) {
+  // Not all of these can be decoded here.
+  if (const PixelFormat format = ReadPixelFormat(file); format.kind == FileKind::kTiff && !IsPlain(format)) {
+    *width = format.width;
+    *height = format.height;
+    if (*width <= 0 || *height <= 0) throw InputError(file, "has no image size in its header (ends early or damaged)", kFixDamaged);
+    return;
+  }
   std::string content = ReadStart(file);
   if (ParseJpeg(AsBytes(content), true).width == 0 && !StartsWith(content, "\x89PNG")) content = base::ReadFile(file);
   *width = 0;
@@ -154,6 +172,7 @@ Image8 LoadMask(const std::filesystem::path& file) {
 }
 
 Image8 LoadAlphaMask(const std::filesystem::path& file) {
+  if (ReadPixelFormat(file).bands > 4) return {};
   const cv::Mat pixels = Decode(base::ReadFile(file), file);
   if (pixels.channels() != 4 || (pixels.depth() != CV_8U && pixels.depth() != CV_16U)) return {};
   cv::Mat alpha;

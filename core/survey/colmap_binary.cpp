@@ -79,7 +79,7 @@ void ReadCameras(const std::filesystem::path& file, ColmapModel& model) {
     if (!camera_model) {
       throw base::InputError(
           file, "camera " + std::to_string(id) + " has COLMAP's camera model number " + std::to_string(model_id) + ", which is not supported",
-          "Use SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV or OPENCV_FISHEYE");
+          "Use " + camera::ModelNames());
     }
     constexpr uint64_t kMaxSidePx = 1U << 20U;
     if (width > kMaxSidePx || height > kMaxSidePx) {

@@ -88,6 +88,15 @@ std::map<uint32_t, camera::Camera> ColmapDatabase::ReadCameras() const {
   return cameras;
 }
 
+void ColmapDatabase::SetFocal(uint32_t camera_id, double focal_px, bool known) {
+  camera::Camera camera = ReadCameras().at(camera_id);
+  camera.params[0] = focal_px;
+  if (!camera::HasOneFocalLength(camera.model)) camera.params[1] = focal_px;
+  Statement statement(*connection_, "UPDATE cameras SET params = ?, prior_focal_length = ? WHERE camera_id = ?", "write the cameras of");
+  statement.BindBlob(1, camera.params.data(), camera.params.size() * sizeof(double)).Bind(2, known ? 1 : 0).Bind(3, camera_id);
+  statement.Next();
+}
+
 std::vector<DatabaseKeypoint> ColmapDatabase::ReadKeypoints(uint32_t image_id) const {
   Statement statement(*connection_, "SELECT rows, cols, data FROM keypoints WHERE image_id = ?", "read the features of");
   std::vector<DatabaseKeypoint> keypoints;

@@ -61,6 +61,8 @@ class ColmapDatabase {
   std::vector<DatabaseImage> ReadImages() const;  // in the order of their ids
   size_t CountPlaced() const;                     // images with a position from their EXIF tags
   std::map<uint32_t, camera::Camera> ReadCameras() const;
+  // Gives a camera that ReadCameras has another focal length (both are equal then). `known`: COLMAP shall take it as stated by tags, not as a guess.
+  void SetFocal(uint32_t camera_id, double focal_px, bool known);
   // Empty for an image without features and for an unknown id.
   std::vector<DatabaseKeypoint> ReadKeypoints(uint32_t image_id) const;
   std::vector<uint8_t> ReadDescriptors(uint32_t image_id) const;  // rows of kDatabaseDescriptorBytes

@@ -96,7 +96,7 @@ void ParseCameras(const std::filesystem::path& file, ColmapModel& model) {
     const auto camera_model = camera::ModelFromName(name);
     if (!camera_model) {
       throw base::InputError(file, "camera " + std::to_string(id) + " has the camera model '" + name + "', which is not supported",
-                             "Use SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV or OPENCV_FISHEYE");
+                             "Use " + camera::ModelNames());
     }
     camera::Camera camera;
     camera.model = *camera_model;

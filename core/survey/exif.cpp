@@ -184,6 +184,17 @@ std::optional<double> ReadSpeed(const Exiv2::ExifData& exif, const Exiv2::XmpDat
   return std::nullopt;
 }
 
+// Of a file with several bands; cameras of several bands write them into files of one band too.
+std::vector<std::string> ReadBandNames(const Exiv2::XmpData& xmp) {
+  std::vector<std::string> names;
+  for (const Exiv2::Xmpdatum& datum : xmp) {
+    if (datum.tagName() != "BandName") continue;
+    for (long i = 0; i < static_cast<long>(datum.count()); ++i) names.push_back(datum.toString(i));
+    break;
+  }
+  return names;
+}
+
 void ReadOriginalSize(const Exiv2::ExifData& exif, PhotoTags& tags) {
   constexpr double kMost = 100'000.0;
   const std::optional<double> width = Positive(ExifNumber(exif, "Exif.Photo.PixelXDimension"));
@@ -280,7 +291,9 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
     tags.exposure = ReadExposure(exif, tags);
     tags.focal_length_mm = PositiveTag(ExifNumber(exif, "Exif.Photo.FocalLength"), "FocalLength", tags);
     tags.focal_length_35mm = PositiveTag(ExifNumber(exif, "Exif.Photo.FocalLengthIn35mmFilm"), "FocalLengthIn35mmFilm", tags);
+    if (tags.focal_length_35mm && !IsPlausibleFocal35(*tags.focal_length_35mm)) tags.focal_length_35mm.reset();
     tags.calibrated_focal_px = Positive(XmpNumber(xmp, "CalibratedFocalLength"));
+    tags.band_names = ReadBandNames(xmp);
     ReadOriginalSize(exif, tags);
     const double orientation = ExifNumber(exif, "Exif.Image.Orientation").value_or(1.0);
     if (IsOrientation(orientation)) tags.orientation = static_cast<int>(orientation);

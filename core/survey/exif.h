@@ -11,6 +11,13 @@
 
 namespace skyquilt::survey {
 
+// Whether there are such lenses: from 5 mm, which sees 150 degrees, to 1500 mm on film of 35 mm. Programs write 0, 1 or 65535 where they know
+// nothing.
+constexpr double kShortestFocal35_mm = 5.0, kLongestFocal35_mm = 1500.0;
+constexpr bool IsPlausibleFocal35(double focal_mm) {
+  return focal_mm >= kShortestFocal35_mm && focal_mm <= kLongestFocal35_mm;
+}
+
 struct PhotoTags {
   // Numbers that are 0 where 0 is none that a camera can have (focal length, exposure time, ...) count as missing.
   std::optional<geo::Geodetic> gps;  // latitude and longitude from XMP if present (some firmware truncates EXIF), else EXIF; both 0 counts as
@@ -27,8 +34,9 @@ struct PhotoTags {
   std::optional<double> gimbal_yaw_deg, gimbal_pitch_deg, gimbal_roll_deg;
   ExposureSettings exposure;
   std::optional<double> focal_length_mm;
-  std::optional<double> focal_length_35mm;
+  std::optional<double> focal_length_35mm;  // IsPlausibleFocal35, else nothing
   std::optional<double> calibrated_focal_px;  // XMP drone-dji:CalibratedFocalLength, pixels of the photo as taken
+  std::vector<std::string> band_names;      // XMP Camera:BandName, in the order of the bands; empty: not named
   // EXIF PixelXDimension and PixelYDimension, as the camera took the photo: programs that make photos smaller often leave them. 0: no such tags.
   int original_width = 0, original_height = 0;
   int orientation = 1;                   // EXIF Orientation, 1 to 8, see core/survey/orientation.h; 1 when missing or unknown

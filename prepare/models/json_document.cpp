@@ -1,6 +1,7 @@
 #include "prepare/models/json_document.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/checked_json.h"
@@ -98,10 +99,37 @@ class JsonLocator {
 };
 
 // For a message: long lists are cut off.
-std::string Shown(const nlohmann::json& value) {
+std::string ShownJson(const nlohmann::json& value) {
   std::string text = value.is_structured() ? value.type_name() : base::JsonText(value);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
   return text;
+}
+
+// Python's json writes these, which are not JSON; and numbers of as many bytes that JsonValue::Number refuses.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNoNumbers = {
+    {{"-Infinity", "-9.00e+99"}, {"Infinity", "9.00e+99"}, {"NaN", "9e9"}}};
+
+// The text with such numbers in their place, so that all offsets stay; nothing when there are none.
+std::optional<std::string> WithNumbers(const std::string& text) {
+  std::optional<std::string> changed;
+  bool in_string = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      in_string = c != '"';
+      continue;
+    }
+    in_string = c == '"';
+    for (const auto& [word, number] : kNoNumbers) {
+      if (text.compare(i, word.size(), word) != 0) continue;
+      if (!changed) changed = text;
+      changed->replace(i, number.size(), number);
+      i += word.size() - 1;
+      break;
+    }
+  }
+  return changed;
 }
 
 }  // namespace
@@ -117,6 +145,11 @@ JsonDocument::JsonDocument(const std::filesystem::path& file, const std::string&
     return;
   } catch (const base::Refused& refused) {
     if (std::string(refused.what()).find("nested") != std::string::npos) throw base::InputError(file, refused.what(), fix);
+  }
+  if (const std::optional<std::string> text = WithNumbers(text_)) {
+    json_ = base::TryParseJson(*text);
+    has_nan_ = !json_.is_discarded();
+    if (has_nan_) return;
   }
   try {
     json_ = base::ParseJson(text_);
@@ -144,6 +177,22 @@ int JsonDocument::LineOfValue(const nlohmann::json& value) const {
   return found == offsets_.end() ? 0 : static_cast<int>(LineOf(text_, found->second));
 }
 
+std::string JsonDocument::Shown(const nlohmann::json& value) const {
+  if (has_nan_) {
+    JsonLocator locator(text_, &value);
+    if (locator.Walk(&json_, "")) {
+      for (const auto& [word, number] : kNoNumbers) {
+        if (text_.compare(locator.offset(), word.size(), word) == 0) return std::string(word);
+      }
+    }
+  }
+  return ShownJson(value);
+}
+
+std::string JsonValue::Shown() const {
+  return document_->Shown(*value_);
+}
+
 int JsonValue::Line() const {
   return document_->LineOfValue(*value_);
 }
@@ -159,7 +208,7 @@ JsonValue JsonValue::At(const std::string& key) const {
 }
 
 std::optional<JsonValue> JsonValue::Find(const std::string& key) const {
-  if (!value_->is_object()) Fail("must be an object in braces, not " + Shown(*value_));
+  if (!value_->is_object()) Fail("must be an object in braces, not " + Shown());
   const auto found = value_->find(key);
   if (found == value_->end() || found->is_null()) return std::nullopt;
   return JsonValue(*document_, *found);
@@ -171,12 +220,12 @@ JsonValue JsonValue::At(size_t index) const {
 }
 
 size_t JsonValue::Size() const {
-  if (!value_->is_array()) Fail("must be a list in brackets, not " + Shown(*value_));
+  if (!value_->is_array()) Fail("must be a list in brackets, not " + Shown());
   return value_->size();
 }
 
 std::vector<std::pair<std::string, JsonValue>> JsonValue::Members() const {
-  if (!value_->is_object()) Fail("must be an object in braces, not " + Shown(*value_));
+  if (!value_->is_object()) Fail("must be an object in braces, not " + Shown());
   std::vector<std::pair<std::string, JsonValue>> members;
   members.reserve(value_->size());
   for (const auto& [key, member] : value_->items()) members.emplace_back(key, JsonValue(*document_, member));
@@ -184,19 +233,19 @@ std::vector<std::pair<std::string, JsonValue>> JsonValue::Members() const {
 }
 
 double JsonValue::Number() const {
-  if (!value_->is_number() || !(std::abs(value_->get<double>()) <= 1e9)) Fail("must be a number from -1e9 to 1e9, not " + Shown(*value_));
+  if (!value_->is_number() || !(std::abs(value_->get<double>()) <= 1e9)) Fail("must be a number from -1e9 to 1e9, not " + Shown());
   return value_->get<double>();
 }
 
 double JsonValue::Positive() const {
   const double number = Number();
-  if (!(number > 0.0)) Fail("must be more than 0, not " + Shown(*value_));
+  if (!(number > 0.0)) Fail("must be more than 0, not " + Shown());
   return number;
 }
 
 int JsonValue::Pixels() const {
   const double number = Number();
-  if (!(number >= 1.0 && number <= 1e6) || number != std::floor(number)) Fail("must be a whole number of pixels, not " + Shown(*value_));
+  if (!(number >= 1.0 && number <= 1e6) || number != std::floor(number)) Fail("must be a whole number of pixels, not " + Shown());
   return static_cast<int>(number);
 }
 
@@ -204,17 +253,17 @@ uint64_t JsonValue::Id() const {
   if (value_->is_number_unsigned()) return value_->get<uint64_t>();
   // Some programs write the upper half of the unsigned numbers as negative ones.
   if (value_->is_number_integer()) return static_cast<uint64_t>(value_->get<int64_t>());
-  Fail("must be a whole number, not " + Shown(*value_));
+  Fail("must be a whole number, not " + Shown());
 }
 
 bool JsonValue::Boolean() const {
-  if (!value_->is_boolean()) Fail("must be true or false, not " + Shown(*value_));
+  if (!value_->is_boolean()) Fail("must be true or false, not " + Shown());
   return value_->get<bool>();
 }
 
 std::string JsonValue::Text() const {
   const bool good = value_->is_string() && !value_->get_ref<const std::string&>().empty() && value_->get_ref<const std::string&>().size() <= 4096;
-  if (!good) Fail("must be a text, not " + Shown(*value_));
+  if (!good) Fail("must be a text, not " + Shown());
   const auto& text = value_->get_ref<const std::string&>();
   if (std::any_of(text.begin(), text.end(), base::IsControl)) Fail("must be one line of text");
   return text;

@@ -47,6 +47,8 @@ class JsonValue {
   [[noreturn]] void Fail(const std::string& found, const std::string& fix = "") const;
 
  private:
+  std::string Shown() const;
+
   const JsonDocument* document_;
   const nlohmann::json* value_;
 };
@@ -54,6 +56,7 @@ class JsonValue {
 class JsonDocument {
  public:
   // `fix`: how to get a good file. Throws base::InputError: not readable, not JSON (with the line), nested too deeply.
+  // NaN and Infinity, which Python writes, are read, and refused like any wrong number where one is asked for, so that the message says where.
   JsonDocument(const std::filesystem::path& file, const std::string& fix);
   JsonDocument(const JsonDocument&) = delete;
   JsonDocument& operator=(const JsonDocument&) = delete;
@@ -65,10 +68,13 @@ class JsonDocument {
   friend class JsonValue;
   [[noreturn]] void Fail(const nlohmann::json& value, const std::string& found, const std::string& fix) const;
   int LineOfValue(const nlohmann::json& value) const;
+  // The value for a message; NaN and Infinity as they are in the file.
+  std::string Shown(const nlohmann::json& value) const;
 
   std::filesystem::path file_;
   std::string fix_;
   std::string text_;
+  bool has_nan_ = false;  // or Infinity
   nlohmann::json json_;
   mutable std::unordered_map<const nlohmann::json*, size_t> offsets_;  // of all values in the text; filled when first asked for
 };

@@ -61,8 +61,8 @@ camera::Camera LensOf(const JsonValue& frame, const JsonValue& root, const Eigen
   const std::optional<JsonValue> fisheye = FrameOrFile(frame, root, "is_fisheye");
   const std::string name = model ? model->Text() : fisheye && fisheye->Boolean() ? "OPENCV_FISHEYE" : "OPENCV";
   const std::string undistort = "Undistort the photos, or export with camera model OPENCV or OPENCV_FISHEYE";
-  if (name == "OPENCV_FISHEYE") {
-    if (p1 != 0.0 || p2 != 0.0) frame.Fail("has p1 or p2 with OPENCV_FISHEYE, which has no tangential distortion", undistort);
+  if (name == "OPENCV_FISHEYE" || name == "RADIAL_FISHEYE" || name == "SIMPLE_RADIAL_FISHEYE") {
+    if (p1 != 0.0 || p2 != 0.0) frame.Fail("has p1 or p2 with " + name + ", which has no tangential distortion", undistort);
     return FisheyeCamera(size.x(), size.y(), focal, centre, {k1, k2, k3, k4});
   }
   if (name != "OPENCV" && name != "PINHOLE" && name != "SIMPLE_PINHOLE" && name != "SIMPLE_RADIAL" && name != "RADIAL") {

@@ -8,6 +8,7 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/survey/colmap_merge.h"
+#include "prepare/poses/focal_check.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -129,6 +130,8 @@ void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const
     progress.Finish();
   }
   survey::MergeFeatures(parts, job.Database());
+  survey::ColmapDatabase database(job.Database());
+  CorrectFocals(photos, database);
 }
 
 void RemoveFeatureParts(const ColmapJob& job) {

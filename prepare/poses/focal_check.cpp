@@ -2,18 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "core/base/log.h"
 
 namespace skyquilt::prepare {
+namespace {
+
+constexpr double kGuessFactor = 1.2;
+constexpr double kFilm_mm = 35.0;  // what COLMAP takes as the longer side of film of 35 mm
+
+double LongerSide(const camera::Camera& camera) {
+  return std::max(camera.width, camera.height);
+}
+
+}  // namespace
 
 std::string FarFocal::Text() const {
   return fmt::format("a focal length of {:.0f} px for {} photos, whose tags say {:.0f} px", found_px, n_photos, tagged_px);
 }
 
 bool IsGuessedFocal(const camera::Camera& camera) {
-  constexpr double kGuessFactor = 1.2;
-  const double guess = kGuessFactor * std::max(camera.width, camera.height);
+  const double guess = kGuessFactor * LongerSide(camera);
   return std::abs(camera.FocalX() - guess) < 1e-6 * guess;
 }
 
@@ -28,6 +38,46 @@ std::optional<double> TaggedFocalPx(const survey::PhotoTags& tags, int width, in
   }
   if (usable(tags.focal_length_35mm)) return *tags.focal_length_35mm / kFilmWidth_mm * longer;
   return std::nullopt;
+}
+
+void CorrectFocals(const std::vector<PhotoFile>& photos, survey::ColmapDatabase& database) {
+  std::map<std::string, const PhotoFile*> photo_of_name;
+  for (const PhotoFile& photo : photos) photo_of_name.emplace(photo.name, &photo);
+  struct OfCamera {
+    std::vector<double> focals_mm;
+    size_t n_photos = 0;
+    bool converted = false;
+  };
+  std::map<uint32_t, OfCamera> tags;
+  for (const survey::DatabaseImage& image : database.ReadImages()) {
+    const auto photo = photo_of_name.find(image.name);
+    if (photo == photo_of_name.end()) continue;
+    OfCamera& of_camera = tags[image.camera_id];
+    ++of_camera.n_photos;
+    of_camera.converted = of_camera.converted || photo->second->converted;
+    if (photo->second->tags.focal_length_35mm) of_camera.focals_mm.push_back(*photo->second->tags.focal_length_35mm);
+  }
+  for (const auto& [id, camera] : database.ReadCameras()) {
+    const auto found = tags.find(id);
+    // Cameras without a focal length are not COLMAP's.
+    if (found == tags.end() || !(camera.FocalX() > 0.0)) continue;
+    OfCamera& of_camera = found->second;
+    const double stated_mm = camera.FocalX() / LongerSide(camera) * kFilm_mm;
+    const bool plausible = survey::IsPlausibleFocal35(stated_mm);
+    if (plausible && !of_camera.converted) continue;
+    std::vector<double>& focals_mm = of_camera.focals_mm;
+    const auto middle = focals_mm.begin() + static_cast<std::ptrdiff_t>(focals_mm.size() / 2);
+    if (!focals_mm.empty()) std::nth_element(focals_mm.begin(), middle, focals_mm.end());
+    const double focal_px = LongerSide(camera) * (focals_mm.empty() ? kGuessFactor : *middle / kFilm_mm);
+    if (!plausible) {
+      base::LogWarning(
+          "the tags of {} photos say a focal length of {:.3g} mm for film of 35 mm (FocalLengthIn35mmFilm, or FocalLength with the size of the "
+          "sensor), "
+          "which no lens has: it is not used, and poses are searched for from {:.0f} px, {}",
+          of_camera.n_photos, stated_mm, focal_px, focals_mm.empty() ? "a guess" : "which other photos of the same camera say");
+    }
+    database.SetFocal(id, focal_px, !focals_mm.empty());
+  }
 }
 
 std::optional<FarFocal> FindFarFocal(const survey::ColmapModel& model, const std::map<uint32_t, camera::Camera>& tagged) {

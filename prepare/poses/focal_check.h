@@ -6,10 +6,13 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/camera/camera.h"
+#include "core/survey/colmap_database.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/exif.h"
+#include "prepare/photo_files.h"
 
 namespace skyquilt::prepare {
 
@@ -36,6 +39,11 @@ std::optional<double> TaggedFocalPx(const survey::PhotoTags& tags, int width, in
 
 // The same as below for focal lengths in pixels by the camera ids of the model; cameras that are not there are not judged.
 std::optional<FarFocal> FindFocalFarFrom(const std::map<uint32_t, double>& tagged_px, const survey::ColmapModel& model);
+// COLMAP takes the focal length of a camera from the tags of one of its photos, whatever they say. Where that is no lens's (IsPlausibleFocal35), or
+// COLMAP read a picture without tags (PhotoFile::converted), the database gets the focal length that the photos' other tags say, as COLMAP computes
+// it, or COLMAP's guess. A warning names the tag.
+void CorrectFocals(const std::vector<PhotoFile>& photos, survey::ColmapDatabase& database);
+
 // Empty when the model can be right. `tagged`: by the camera ids of the model, as COLMAP's database has them before any adjustment; cameras without a
 // tagged focal length are not judged.
 std::optional<FarFocal> FindFarFocal(const survey::ColmapModel& model, const std::map<uint32_t, camera::Camera>& tagged);

@@ -19,8 +19,7 @@ std::optional<Lens> LensOf(const camera::Camera& camera) {
       return Lens{p[0], 1.0, p[1], p[2], p[3], p[4], 0.0, 0.0};
     case CameraModel::kOpencv:
       return Lens{p[0], p[1] / p[0], p[2], p[3], p[4], p[5], p[6], p[7]};
-    case CameraModel::kOpencvFisheye:
-    case CameraModel::kFullOpencv:
+    default:
       break;
   }
   return std::nullopt;
@@ -45,8 +44,7 @@ camera::Camera CameraOf(const Lens& lens, const camera::Camera& model) {
     case CameraModel::kOpencv:
       camera.params = {f, f * ratio, cx, cy, k1, k2, p1, p2};
       break;
-    case CameraModel::kOpencvFisheye:
-    case CameraModel::kFullOpencv:
+    default:
       break;
   }
   return camera;

@@ -14,7 +14,7 @@ namespace skyquilt::prepare {
 // f, fy / fx, cx, cy, k1, k2, p1, p2; pixels for f, cx and cy.
 using Lens = std::array<double, 8>;
 
-// Nothing for models with more coefficients (FULL_OPENCV) or another kind of distortion (OPENCV_FISHEYE).
+// Nothing for models with more coefficients (FULL_OPENCV) or another kind of distortion (FOV and fisheyes).
 std::optional<Lens> LensOf(const camera::Camera& camera);
 // The camera with the numbers of the lens; `model` is the camera that LensOf was given.
 camera::Camera CameraOf(const Lens& lens, const camera::Camera& model);

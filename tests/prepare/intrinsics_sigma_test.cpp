@@ -130,6 +130,9 @@ TEST(IntrinsicsSigma, IsThatOfTheWholeAdjustment) {
   camera::Camera fisheye{camera::CameraModel::kOpencvFisheye, 1000, 800, {900.0, 905.0, 500.0, 400.0, -0.03, 0.01, 1e-3, -2e-3}};
   const Block theta = MakeBlock(fisheye, 3, 15.0, 3.0, 9.0, 0.5);
   EXPECT_NEAR(theta.K1Sigma() / DenseSigma(theta, {0, 1, 4, 5, 6, 7}, 4), 1.0, 1e-6);
+  camera::Camera radial_fisheye{camera::CameraModel::kRadialFisheye, 1000, 800, {900.0, 500.0, 400.0, -0.03, 0.01}};
+  const Block two = MakeBlock(radial_fisheye, 3, 15.0, 3.0, 9.0, 0.5);
+  EXPECT_NEAR(two.K1Sigma() / DenseSigma(two, {0, 3, 4}, 3), 1.0, 1e-6);
 }
 
 TEST(IntrinsicsSigma, FlatNadirFlightsDetermineTheLensWorse) {

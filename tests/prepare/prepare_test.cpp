@@ -13,6 +13,7 @@
 #include "core/image/image.h"
 #include "tests/prepare/synthetic_flight.h"
 #include "tests/support/error_of.h"
+#include "tests/support/raw_tiff.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -199,10 +200,43 @@ TEST_F(PrepareTest, PhotosTheModelNamesButTheFolderLacksAreLeftOut) {
   ExpectInMessage("18 are not in");
 }
 
-TEST_F(PrepareTest, PhotosOfAnotherSizeThanTheModelAreRefusedTogether) {
-  flight_.model.cameras[1] = flight_.model.cameras[1].Resized(128, 96);
+TEST_F(PrepareTest, PhotosOfAnotherAspectThanTheModelAreRefusedTogether) {
+  flight_.model.cameras[1] = flight_.model.cameras[1].Resized(128, 80);
   Write();
-  ExpectInMessage("is 64x48, its camera in the model 128x96");
+  ExpectInMessage("is 64x48, its camera in the model 128x80");
+}
+
+TEST_F(PrepareTest, AModelOfLargerPhotosIsScaled) {
+  const camera::Camera right = flight_.model.cameras[1];
+  flight_.model.cameras[1] = right.Resized(128, 96);
+  Write();
+  const survey::Survey survey = Run();
+  EXPECT_EQ(survey.photos.size(), 20U);
+  EXPECT_EQ(survey.cameras[0].width, 64);
+  EXPECT_EQ(survey.cameras[0].params, right.params);
+  EXPECT_EQ(survey.photo_root, fs::absolute(folder_ / "images"));
+}
+
+TEST_F(PrepareTest, PhotosOfSixteenBitsAreReadAsPicturesOfEight) {
+  Write();
+  for (const test::FlightPhoto& photo : flight_.photos) {
+    // 12 bits; the file's content counts, not its name.
+    std::vector<uint16_t> values(size_t{64} * 48 * 3, 1024);
+    values[0] = 4095;
+    base::WriteFileAtomically(folder_ / ("images/" + photo.name), test::TiffBytes({.width = 64,
+                                                                                   .height = 48,
+                                                                                   .bands = 3,
+                                                                                   .bits = 16,
+                                                                                   .floating = false,
+                                                                                   .photometric = 2,
+                                                                                   .extra = {},
+                                                                                   .pixels = test::LittleEndian<uint16_t>(values)}));
+  }
+  const survey::Survey survey = Run();
+  EXPECT_EQ(survey.photo_root, fs::absolute(folder_ / "out/photos_8bit"));
+  const image::Image8 picture = image::LoadRgb8(survey.photo_root / survey.photos[0].name);
+  EXPECT_EQ(picture.data[0], 255);
+  EXPECT_EQ(picture.data[3], 64);
 }
 
 TEST_F(PrepareTest, NanInAPoseNamesThePhoto) {

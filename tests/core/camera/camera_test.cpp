@@ -23,6 +23,14 @@ std::vector<Camera> RealisticCameras() {
       {CameraModel::kOpencv, 5472, 3648, {3650.0, 3648.0, 2736.0, 1824.0, -0.27, 0.11, 8e-4, -6e-4}},
       {CameraModel::kOpencvFisheye, 4000, 3000, {2200.0, 2206.0, 2010.0, 1490.0, 0.05, -0.02, 0.006, -0.001}},
       {CameraModel::kFullOpencv, 5472, 3648, {3650.0, 3648.0, 2736.0, 1824.0, 0.3, -0.08, 5e-4, 7e-4, 0.01, 0.55, -0.02, 0.005}},
+      {CameraModel::kFov, 4000, 3000, {2200.0, 2206.0, 2010.0, 1490.0, 0.9}},
+      {CameraModel::kSimpleRadialFisheye, 4000, 3000, {2200.0, 2010.0, 1490.0, 0.03}},
+      {CameraModel::kRadialFisheye, 4000, 3000, {2200.0, 2010.0, 1490.0, 0.05, -0.01}},
+      {CameraModel::kThinPrismFisheye, 4000, 3000, {2200.0, 2206.0, 2010.0, 1490.0, 0.05, -0.02, 8e-4, -6e-4, 0.006, -0.001, 1e-3, -2e-3}},
+      {CameraModel::kRadTanThinPrismFisheye,
+       4000,
+       3000,
+       {2200.0, 2206.0, 2010.0, 1490.0, 0.05, -0.02, 0.006, -0.001, 1e-4, -1e-5, 8e-4, -6e-4, 1e-3, -3e-4, -2e-3, 4e-4}},
   };
 }
 
@@ -132,14 +140,12 @@ TEST(Camera, RaysAreNeverNan) {
   base::Random random(3);
   const std::vector<double> sizes = {0.0, 0.1, 1.0, 10.0, 1e4};
   for (int trial = 0; trial < 3000; ++trial) {
-    Camera camera{*ModelFromId(static_cast<int>(random.Below(7))), 1000, 800, {}};
+    Camera camera{*ModelFromId(static_cast<int>(random.Below(12))), 1000, 800, {}};
     camera.params.assign(static_cast<size_t>(ModelParamCount(camera.model)), 0.0);
     const double size = sizes[random.Below(5)];
     for (double& value : camera.params) value = size * random.Normal();
-    const bool one_focal_length =
-        camera.model == CameraModel::kSimplePinhole || camera.model == CameraModel::kSimpleRadial || camera.model == CameraModel::kRadial;
     camera.params[0] = 700.0;
-    if (!one_focal_length) camera.params[1] = 710.0;
+    if (!HasOneFocalLength(camera.model)) camera.params[1] = 710.0;
     for (const Eigen::Vector2d& pixel :
          {Eigen::Vector2d{random.Uniform(-2000.0, 3000.0), random.Uniform(-2000.0, 3000.0)}, camera.PrincipalPoint(), Eigen::Vector2d(1e9, -1e9),
           Eigen::Vector2d(1e300, 1.0), Eigen::Vector2d(HUGE_VAL, 0.0), Eigen::Vector2d(std::numeric_limits<double>::quiet_NaN(), 0.0)}) {
@@ -183,12 +189,26 @@ TEST(Camera, ProblemsAreNamed) {
   bad = good;
   bad.params[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(bad.Problem().find("finite"), std::string::npos);
+  Camera fov{CameraModel::kFov, 100, 80, {90.0, 90.0, 50.0, 40.0, 0.9}};
+  EXPECT_EQ(fov.Problem(), "");
+  fov.params[4] = 3.5;
+  EXPECT_NE(fov.Problem().find("omega"), std::string::npos);
 }
 
 TEST(CameraModel, NamesAndIdsAreThoseOfColmap) {
   // Ids and counts of COLMAP src/colmap/sensor/models.h.
-  const std::vector<std::pair<std::string, int>> colmap = {{"SIMPLE_PINHOLE", 3}, {"PINHOLE", 4},        {"SIMPLE_RADIAL", 4}, {"RADIAL", 5},
-                                                           {"OPENCV", 8},         {"OPENCV_FISHEYE", 8}, {"FULL_OPENCV", 12}};
+  const std::vector<std::pair<std::string, int>> colmap = {{"SIMPLE_PINHOLE", 3},
+                                                           {"PINHOLE", 4},
+                                                           {"SIMPLE_RADIAL", 4},
+                                                           {"RADIAL", 5},
+                                                           {"OPENCV", 8},
+                                                           {"OPENCV_FISHEYE", 8},
+                                                           {"FULL_OPENCV", 12},
+                                                           {"FOV", 5},
+                                                           {"SIMPLE_RADIAL_FISHEYE", 4},
+                                                           {"RADIAL_FISHEYE", 5},
+                                                           {"THIN_PRISM_FISHEYE", 12},
+                                                           {"RAD_TAN_THIN_PRISM_FISHEYE", 16}};
   for (size_t id = 0; id < colmap.size(); ++id) {
     const auto model = ModelFromId(static_cast<int>(id));
     ASSERT_TRUE(model.has_value());
@@ -196,9 +216,10 @@ TEST(CameraModel, NamesAndIdsAreThoseOfColmap) {
     EXPECT_EQ(ModelParamCount(*model), colmap[id].second);
     EXPECT_EQ(ModelFromName(colmap[id].first), model);
   }
-  EXPECT_FALSE(ModelFromId(7).has_value());
+  EXPECT_FALSE(ModelFromId(12).has_value());
   EXPECT_FALSE(ModelFromId(-1).has_value());
-  EXPECT_FALSE(ModelFromName("FOV").has_value());
+  EXPECT_FALSE(ModelFromName("EUCM").has_value());
+  EXPECT_TRUE(ModelNames().ends_with("THIN_PRISM_FISHEYE or RAD_TAN_THIN_PRISM_FISHEYE")) << ModelNames();
 }
 
 TEST(GroundSamplingDistance, IsHeightOverFocalLength) {

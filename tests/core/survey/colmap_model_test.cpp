@@ -17,6 +17,14 @@ ColmapModel SmallModel() {
   ColmapModel model;
   model.cameras[3] = {camera::CameraModel::kOpencv, 640, 480, {500.0, 501.0, 320.5, 240.25, 0.01, -0.002, 1e-4, -1e-4}};
   model.cameras[7] = {camera::CameraModel::kSimplePinhole, 100, 80, {90.0, 50.0, 40.0}};
+  // Of no image.
+  model.cameras[20] = {camera::CameraModel::kFov, 640, 480, {500.0, 501.0, 320.5, 240.25, 0.9}};
+  model.cameras[21] = {
+      camera::CameraModel::kThinPrismFisheye, 640, 480, {500.0, 501.0, 320.5, 240.25, 0.01, 0.02, 3e-4, 4e-4, 0.05, 0.06, 7e-4, 8e-4}};
+  model.cameras[22] = {camera::CameraModel::kRadTanThinPrismFisheye,
+                       640,
+                       480,
+                       {500.0, 501.0, 320.5, 240.25, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 7e-4, 8e-4, 9e-4, 1e-3, 2e-3, 3e-3}};
   for (uint32_t i = 0; i < 3; ++i) {
     ColmapImage image;
     image.id = 10 + i;

@@ -376,5 +376,25 @@ TEST(Exif, OrientationIsReadAndKept) {
   EXPECT_EQ(unknown.orientation, 1);
 }
 
+TEST(Exif, FocalLengthsThatNoLensHasCountAsMissing) {
+  const auto focal = [](int mm) {
+    const auto set = [mm](Exiv2::ExifData& exif, Exiv2::XmpData&) { exif["Exif.Photo.FocalLengthIn35mmFilm"] = static_cast<uint16_t>(mm); };
+    return ReadForged(set).focal_length_35mm;
+  };
+  for (const int mm : {0, 1, 4, 1501, 65535}) EXPECT_FALSE(focal(mm)) << mm;
+  for (const int mm : {5, 24, 1500}) EXPECT_EQ(focal(mm), std::optional<double>(mm));
+}
+
+TEST(Exif, NamesOfBandsAreRead) {
+  Exiv2::XmpProperties::registerNs("http://pix4d.com/camera/1.0/", "Camera");
+  const PhotoTags tags = ReadForged([](Exiv2::ExifData&, Exiv2::XmpData& xmp) {
+    Exiv2::XmpArrayValue names(Exiv2::xmpSeq);
+    for (const char* name : {"Blue", "Green", "Red edge"}) names.read(name);
+    xmp.add(Exiv2::XmpKey("Xmp.Camera.BandName"), &names);
+  });
+  EXPECT_EQ(tags.band_names, (std::vector<std::string>{"Blue", "Green", "Red edge"}));
+  EXPECT_TRUE(ReadForged([](Exiv2::ExifData&, Exiv2::XmpData&) {}).band_names.empty());
+}
+
 }  // namespace
 }  // namespace skyquilt::survey

@@ -68,6 +68,32 @@ TEST(MalformedModel, TheLineIsThatOfTheValue) {
   EXPECT_NE(message.find("line 3: frames[0].file_path must be a text, not 7"), std::string::npos) << message;
 }
 
+// Python writes NaN and Infinity, which are not JSON.
+TEST(MalformedModel, NumbersThatAreNoneAreNamedByTheirPath) {
+  const auto message = [](const test::Files& files, const char* path, const char* file, const char* from, const char* to) {
+    return MessageOf(files, {file, from, to, "", ""}, path);
+  };
+  const test::Files transforms = test::TransformsFiles(test::MakeModel());
+  for (const char* number : {"NaN", "Infinity", "-Infinity"}) {
+    const std::string found = message(transforms, "transforms.json", "transforms.json", "510.0", number);
+    EXPECT_NE(found.find("fl_x must be a number from -1e9 to 1e9, not " + std::string(number)), std::string::npos) << found;
+    EXPECT_NE(found.find("transforms.json: line "), std::string::npos) << found;
+  }
+  const std::string in_list = message(transforms, "transforms.json", "transforms.json", "",
+                                      "{\"fl_x\": 500, \"w\": 4, \"h\": 3, \"frames\": [{\"file_path\": \"NaN.jpg\",\n"
+                                      "\"transform_matrix\": [[1, 0, 0, 0], [0, 1, 0, NaN], [0, 0, 1, 0]]}]}");
+  EXPECT_NE(in_list.find("line 2: frames[0].transform_matrix[1][3] must be a number from -1e9 to 1e9, not NaN"), std::string::npos) << in_list;
+  const std::string missing = message(transforms, "transforms.json", "transforms.json", "",
+                                      "{\"fl_x\": 500, \"w\": 4, \"h\": 3, \"frames\": [{\"file_path\": \"a.jpg\",\n"
+                                      "\"transform_matrix\": [[1, 0, 0, 0], [0, 1, 0, null], [0, 0, 1, 0]]}]}");
+  EXPECT_NE(missing.find("frames[0].transform_matrix[1][3] must be a number from -1e9 to 1e9, not null"), std::string::npos) << missing;
+  const test::Files opensfm = test::OpensfmFiles(test::MakeModel());
+  const std::string place = message(opensfm, "reconstruction.json", "reference_lla.json", "47.1", "NaN");
+  EXPECT_NE(place.find("latitude must be a number from -1e9 to 1e9, not NaN"), std::string::npos) << place;
+  // Still not JSON.
+  EXPECT_NE(message(transforms, "transforms.json", "transforms.json", "510.0", "NaNs").find("is not JSON"), std::string::npos);
+}
+
 TEST(MalformedModel, Opensfm) {
   ExpectMessages(test::OpensfmFiles(test::MakeModel()), "reconstruction.json",
                  {{"reconstruction.json", "", "[]", "has no reconstruction", "Run OpenSfM"},

@@ -1,8 +1,13 @@
 #include "prepare/poses/focal_check.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <limits>
+
+#include "tests/support/made_database.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -79,6 +84,81 @@ TEST(FocalCheck, CountsThePhotosOfAllCameras) {
   ASSERT_TRUE(both);
   EXPECT_EQ(both->found_px, 300.0);
   EXPECT_EQ(both->n_photos, 10U);
+}
+
+// A database with photos a, b, c of one camera, for which COLMAP took this focal length.
+class CorrectFocalsTest : public ::testing::Test {
+ protected:
+  void MakeCamera(double focal_px) {
+    test::MadeDatabase made(folder_ / "database.db");
+    const std::vector<double> params = {focal_px, focal_px, 400.0, 300.0};
+    std::string hex;
+    for (size_t i = 0; i < params.size() * sizeof(double); ++i) hex += fmt::format("{:02x}", reinterpret_cast<const uint8_t*>(params.data())[i]);
+    made.Run("INSERT INTO cameras VALUES(1, 1, 800, 600, x'" + hex + "', 1)");
+    uint32_t id = 0;
+    for (const char* name : {"a", "b", "c"}) {
+      made.AddImage(++id, name);
+      PhotoFile photo;
+      photo.name = name;
+      photos_.push_back(photo);
+    }
+  }
+  double Corrected() {
+    survey::ColmapDatabase database(folder_ / "database.db");
+    CorrectFocals(photos_, database);
+    const camera::Camera camera = database.ReadCameras().at(1);
+    EXPECT_EQ(camera.FocalX(), camera.FocalY());
+    EXPECT_EQ(camera.PrincipalPoint(), Eigen::Vector2d(400.0, 300.0));
+    return camera.FocalX();
+  }
+  bool IsKnown() {
+    sqlite3* handle = nullptr;
+    sqlite3_stmt* statement = nullptr;
+    EXPECT_EQ(sqlite3_open((folder_ / "database.db").c_str(), &handle), SQLITE_OK);
+    EXPECT_EQ(sqlite3_prepare_v2(handle, "SELECT prior_focal_length FROM cameras", -1, &statement, nullptr), SQLITE_OK);
+    EXPECT_EQ(sqlite3_step(statement), SQLITE_ROW);
+    const bool known = sqlite3_column_int(statement, 0) != 0;
+    sqlite3_finalize(statement);
+    sqlite3_close(handle);
+    return known;
+  }
+
+  TemporaryFolder folder_;
+  std::vector<PhotoFile> photos_;
+};
+
+TEST_F(CorrectFocalsTest, LeavesLensesAlone) {
+  for (const double focal_35mm : {5.1, 24.0, 1499.0}) {
+    std::filesystem::remove(folder_ / "database.db");
+    MakeCamera(focal_35mm / 35.0 * 800.0);
+    EXPECT_EQ(Corrected(), focal_35mm / 35.0 * 800.0);
+    EXPECT_TRUE(IsKnown());
+  }
+}
+
+// FocalLengthIn35mmFilm of 1 mm in all photos.
+TEST_F(CorrectFocalsTest, ReplacesWhatNoLensHasByTheGuess) {
+  MakeCamera(1.0 / 35.0 * 800.0);
+  EXPECT_EQ(Corrected(), 1.2 * 800.0);
+  EXPECT_FALSE(IsKnown());
+}
+
+TEST_F(CorrectFocalsTest, ReplacesWhatNoLensHasByWhatOtherPhotosSay) {
+  MakeCamera(65535.0 / 35.0 * 800.0);
+  photos_[1].tags.focal_length_35mm = 24.0;
+  photos_[2].tags.focal_length_35mm = 24.0;
+  EXPECT_EQ(Corrected(), 24.0 / 35.0 * 800.0);
+  EXPECT_TRUE(IsKnown());
+}
+
+// COLMAP has guessed: the copies have no tags.
+TEST_F(CorrectFocalsTest, PhotosThatWereConvertedKeepTheirTags) {
+  MakeCamera(960.0);
+  for (PhotoFile& photo : photos_) photo.tags.focal_length_35mm = 20.0;
+  EXPECT_EQ(Corrected(), 960.0);
+  for (PhotoFile& photo : photos_) photo.converted = true;
+  EXPECT_EQ(Corrected(), 20.0 / 35.0 * 800.0);
+  EXPECT_TRUE(IsKnown());
 }
 
 }  // namespace

@@ -53,6 +53,11 @@ test("field of view of a photo by its camera model", () => {
   right(photoFovyDeg(camera("SIMPLE_RADIAL", [100, 200, 100, 0])), 90);
   right(photoFovyDeg(camera("OPENCV", [500, 100, 200, 100, 0, 0, 0, 0])), 90);
   right(photoFovyDeg(camera("OPENCV_FISHEYE", [500, 200, 200, 100, 0, 0, 0, 0])), 180 / Math.PI);
+  right(photoFovyDeg(camera("RADIAL_FISHEYE", [200, 200, 100, 0, 0])), 180 / Math.PI);
+  // atan(2 r tan(omega / 2)) / omega is half the height over the focal length where r = 1.
+  const edge = Math.atan(2 * Math.tan(0.45)) / 0.9;
+  right(photoFovyDeg(camera("FOV", [500, 100 / edge, 200, 100, 0.9])), 90);
+  right(photoFovyDeg(camera("FOV", [500, 100, 200, 100, 0])), 90);
   assert.ok(photoFovyDeg(camera("PINHOLE", [])) > 0);
 });
 

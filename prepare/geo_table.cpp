@@ -16,6 +16,7 @@
 #include "core/geo/crs.h"
 #include "core/geo/ecef.h"
 #include "prepare/control/control_columns.h"
+#include "prepare/input/list_files.h"
 #include "prepare/models/photo_names.h"
 #include "prepare/tables/text_table.h"
 

@@ -34,9 +34,9 @@ struct PhotoTags {
   std::optional<double> gimbal_yaw_deg, gimbal_pitch_deg, gimbal_roll_deg;
   ExposureSettings exposure;
   std::optional<double> focal_length_mm;
-  std::optional<double> focal_length_35mm;  // IsPlausibleFocal35, else nothing
+  std::optional<double> focal_length_35mm;    // IsPlausibleFocal35, else nothing
   std::optional<double> calibrated_focal_px;  // XMP drone-dji:CalibratedFocalLength, pixels of the photo as taken
-  std::vector<std::string> band_names;      // XMP Camera:BandName, in the order of the bands; empty: not named
+  std::vector<std::string> band_names;        // XMP Camera:BandName, in the order of the bands; empty: not named
   // EXIF PixelXDimension and PixelYDimension, as the camera took the photo: programs that make photos smaller often leave them. 0: no such tags.
   int original_width = 0, original_height = 0;
   int orientation = 1;                   // EXIF Orientation, 1 to 8, see core/survey/orientation.h; 1 when missing or unknown

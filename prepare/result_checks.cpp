@@ -293,6 +293,7 @@ survey::Problem Contradiction::ToProblem() const {
 
 ResultChecks CheckResult(const CheckedResult& result) {
   ResultChecks checks;
+  if (result.photos.empty()) return checks;
   checks.height = HeightsOfPhotos(result);
   const FocalFinding focal = CompareFocals(result.photos);
   AboutFocal(result, focal, checks.height, &checks);

@@ -174,7 +174,7 @@ TEST_F(PrepareTest, UnusablePhotosAreLeftOutByName) {
   std::ofstream(folder_ / "images/empty.JPG").flush();
   const std::string whole = base::ReadFile(folder_ / "images/photo_04.jpg");
   std::ofstream(folder_ / "images/photo_04.jpg", std::ios::binary | std::ios::trunc) << whole.substr(0, whole.size() - 40);
-  image::SaveJpeg(image::Image8(32, 24, 3, 90), folder_ / "images/photo_06.jpg", 90);
+  image::SaveJpeg(image::Image8(32, 32, 3, 90), folder_ / "images/photo_06.jpg", 90);
   const survey::Survey survey = Run();
   EXPECT_EQ(survey.photos.size(), 18U);
   EXPECT_EQ(survey.unregistered, (std::vector<std::string>{"empty.JPG", "notes.jpg", "photo_04.jpg", "photo_06.jpg"}));
@@ -273,6 +273,7 @@ TEST_F(PrepareTest, MasksBesidePhotosAreUsedAndListed) {
   image::SavePng(image::Image8(32, 24, 1, 255), folder_ / "images/photo_02_mask.png");
   base::WriteFileAtomically(folder_ / "images/photo_03.DNG", "raw");
   base::WriteFileAtomically(folder_ / "images/photo_99.jpg", "damaged");
+  fs::create_directories(folder_ / "images/earlier/products");
   image::SavePng(image::Image8(64, 48, 3, 255), folder_ / "images/earlier/products/ortho.png");
   base::WriteFileAtomically(folder_ / "images/earlier/blocks.geojson", "{}");
   const survey::Survey survey = Run();

@@ -164,7 +164,7 @@ TEST_F(Masks, AFileMayBeGivenForAllAndNoneMayBeAskedFor) {
   Mask("b.jpg.png");
   Find("", folder_.path().string());
   EXPECT_EQ(OriginOf("b.jpg"), "b.jpg.png");
-  EXPECT_EQ(OriginOf("a.jpg"), "masks/a.jpg.png");
+  EXPECT_EQ(OriginOf("a.jpg"), "");  // that folder alone
   EXPECT_TRUE(Find("", "none").folder.empty());
   EXPECT_EQ(OriginOf("a.jpg"), "");
   EXPECT_NE(InputErrorOf([&] { Find("", "/no/such/folder"); }).find("/no/such/folder"), std::string::npos);

@@ -47,11 +47,11 @@ bool HasFocalTags(const SeedInput& input) {
 }
 
 // Where tags have no focal length, RelativeAltitude may tell it, by the height above ground that goes with it. It is asked when poses with a guessed
-// focal length contradict it, or when there are none: take-off need not be at the height of the ground.
-std::optional<SeededModel> SeedWithoutFocalTags(SeedInput input, base::ThreadPool& threads, std::string* reason) {
+// focal length contradict it, or when there are none: take-off need not be at the height of the ground. The input keeps the focal lengths tried last.
+std::optional<SeededModel> SeedWithoutFocalTags(SeedInput& input, base::ThreadPool& threads, std::string* reason) {
   std::optional<SeededModel> guessed = SeedPoses(input, threads, reason);
   const HeightAboveTakeOff height = guessed ? HeightsInModel(input, guessed->model) : HeightAboveTakeOff();
-  if (guessed && !height.Differs()) return guessed;
+  if (guessed && !height.Notable()) return guessed;
   const std::optional<double> factor = FocalFactorByHeight(input);
   if (!factor) return guessed;
   for (auto& [id, lens] : input.cameras) {
@@ -71,7 +71,7 @@ std::optional<SeededModel> SeedWithoutFocalTags(SeedInput input, base::ThreadPoo
 
 // Photos that look straight down fit other focal lengths nearly as well, and features weigh so much more than tags that a little misfit of the lens
 // drives it away. Then poses with the focal length held near the tagged one are better, if they agree with the matches too.
-std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput input, base::ThreadPool& threads, std::string* reason) {
+std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput& input, base::ThreadPool& threads, std::string* reason) {
   if (!HasFocalTags(input)) return SeedWithoutFocalTags(input, threads, reason);
   constexpr double kHeldSigma = 0.01;
   std::optional<SeededModel> seeded = SeedPoses(input, threads, reason);
@@ -89,6 +89,17 @@ std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput input, base::ThreadP
   if (held && !FindFarFocal(held->model, tagged)) return held;
   // The caller refuses it and says why.
   return seeded;
+}
+
+// COLMAP's mapper, too, begins with the focal lengths that RelativeAltitude told.
+void KeepFocalsByHeight(const SeedInput& input, const fs::path& file) {
+  survey::ColmapDatabase database(file);
+  for (const auto& [id, camera] : database.ReadCameras()) {
+    const auto lens = input.cameras.find(id);
+    if (lens == input.cameras.end() || !IsGuessedFocal(camera) || lens->second.camera.FocalX() == camera.FocalX()) continue;
+    constexpr bool kFromTags = false;
+    database.SetFocal(id, lens->second.camera.FocalX(), kFromTags);
+  }
 }
 
 }  // namespace
@@ -147,10 +158,12 @@ void SeedModel(const ColmapJob& job, const std::vector<PhotoFile>& photos, base:
   const fs::path folder = SeededFolder(job);
   fs::remove_all(folder);
   std::string reason;
-  const std::optional<SeedInput> input = ReadSeedInput(job.Database(), photos, &reason);
+  std::optional<SeedInput> input = ReadSeedInput(job.Database(), photos, &reason);
   std::optional<SeededModel> seeded;
+  const bool guesses_focal = input && !HasFocalTags(*input);
   if (input) seeded = SeedWithPlausibleFocal(*input, threads, &reason);
   if (!seeded) {
+    if (guesses_focal) KeepFocalsByHeight(*input, job.Database());
     base::LogInfo("poses are left to COLMAP's mapper ({:.1f} s): {}", seconds(), reason);
     return;
   }

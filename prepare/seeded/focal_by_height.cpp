@@ -62,7 +62,8 @@ std::optional<double> FocalFactorByHeight(const SeedInput& input) {
 }
 
 SeedLens ScaledFocal(const SeedLens& lens, double factor) {
-  constexpr double kSigma = 0.1;
+  // Smaller than what is known of it: features weigh so much more than one number that a larger one would not hold it.
+  constexpr double kSigma = 0.02;
   SeedLens scaled = lens;
   scaled.focal_is_known = true;
   scaled.focal_sigma = kSigma;

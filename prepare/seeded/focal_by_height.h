@@ -14,7 +14,7 @@ namespace skyquilt::prepare {
 // agree with none of several focal lengths. Throws std::logic_error for unknown ids and features.
 std::optional<double> FocalFactorByHeight(const SeedInput& input);
 
-// The same lens with so many times the focal length, which is known to about 10 % then: take-off is about as high as the ground.
+// The same lens with so many times the focal length, which is held near that from then on.
 SeedLens ScaledFocal(const SeedLens& lens, double factor);
 
 // Heights of the cameras above the points that they see, beside the tags. The model is of photos of the input, in ENU metres.

@@ -339,6 +339,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   const fs::path picture_root = MakePlainPhotos(folders.photo_root, options.bands, input.out_folder / "photos_8bit", photos, threads);
   UsePositionFiles(folders.photo_root, options.geo_file, photos.usable);
   LogUnfilledTags(options.flight_gap_s, photos.usable);
+  TurnPitchesThatLookUp(photos.usable);
   const PhotoMasks masks = FindMasks(folders.photo_root, folders.masks, photos.usable, fs::absolute(input.out_folder) / "masks", files, threads);
   NoteReadPhotos(photos, files);
   WriteInputTable(files, input.out_folder / kInputTable);

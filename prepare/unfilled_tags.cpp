@@ -224,4 +224,24 @@ void LogUnfilledTags(double flight_gap_s, std::vector<PhotoFile>& photos) {
   if (found.Any()) base::LogWarning("{}", found.Describe());
 }
 
+bool TurnPitchesThatLookUp(std::vector<PhotoFile>& photos) {
+  constexpr double kSteep_deg = 60.0;
+  size_t n = 0, n_steep = 0;
+  for (const PhotoFile& photo : photos) {
+    if (!photo.tags.gimbal_pitch_deg) continue;
+    ++n;
+    n_steep += *photo.tags.gimbal_pitch_deg > kSteep_deg ? 1 : 0;
+  }
+  if (n == 0 || 10 * n_steep < 9 * n) return false;
+  for (PhotoFile& photo : photos) {
+    if (photo.tags.gimbal_pitch_deg) photo.tags.gimbal_pitch_deg = -*photo.tags.gimbal_pitch_deg;
+  }
+  base::LogWarning(
+      "the gimbal pitch of {} of {} photos is above +{:g} degrees, as if the cameras looked up: it is taken with the opposite sign. "
+      "GimbalPitchDegree "
+      "should be -90 for a camera that looks straight down",
+      n_steep, n, kSteep_deg);
+  return true;
+}
+
 }  // namespace skyquilt::prepare

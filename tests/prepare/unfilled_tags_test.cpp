@@ -195,5 +195,25 @@ TEST(UnfilledTags, ZerosFoundAtReadingAreCounted) {
   EXPECT_FALSE(ClearUnfilledTags(kGap_s, photos).Any());
 }
 
+TEST(UnfilledTags, PitchesThatLookUpChangeTheirSignAndOthersStay) {
+  std::vector<PhotoFile> photos(20);
+  const auto set = [&](double most_deg, double last_deg) {
+    for (PhotoFile& photo : photos) photo.tags.gimbal_pitch_deg = most_deg;
+    photos.back().tags.gimbal_pitch_deg = last_deg;
+  };
+  set(90.0, 45.0);
+  EXPECT_TRUE(TurnPitchesThatLookUp(photos));
+  EXPECT_EQ(photos.front().tags.gimbal_pitch_deg, -90.0);
+  EXPECT_EQ(photos.back().tags.gimbal_pitch_deg, -45.0);
+  // Facades from below, and one photo of the sky, are what they are.
+  for (const double usual_deg : {-90.0, -30.0, 0.0, 40.0}) {
+    set(usual_deg, 85.0);
+    EXPECT_FALSE(TurnPitchesThatLookUp(photos)) << usual_deg;
+    EXPECT_EQ(photos.front().tags.gimbal_pitch_deg, usual_deg);
+  }
+  std::vector<PhotoFile> without(3);
+  EXPECT_FALSE(TurnPitchesThatLookUp(without));
+}
+
 }  // namespace
 }  // namespace skyquilt::prepare

@@ -94,6 +94,11 @@ bool LooksDown(const CheckedResult& result) {
   return static_cast<double>(n) >= kMostlyDown * static_cast<double>(result.photos.size());
 }
 
+bool DiffersNotably(const FocalFinding& focal) {
+  constexpr double kUsualError = 0.1;  // of tags
+  return focal.tagged_px > 0.0 && std::abs(focal.found_px / focal.tagged_px - 1.0) > kUsualError;
+}
+
 std::string HeightText(const HeightAboveTakeOff& height) {
   return fmt::format("the cameras are {:.0f} m above the ground, and RelativeAltitude says {:.0f} m", height.found_m, height.tagged_m);
 }
@@ -114,6 +119,7 @@ void AboutFocal(const CheckedResult& result, const FocalFinding& focal, const He
   if (height.Known() && !height.Differs()) {
     found.cause = fmt::format("The tagged focal length is probably wrong (cropped or enlarged photos, another lens), as {}", HeightText(height));
     found.remedy = "Compare with a known height. If the survey is right, " + correct;
+    found.urgency = Urgency::kWarning;
   } else if (height.Known()) {
     found.cause = fmt::format("The one found is probably wrong, and heights by the same factor: {}", HeightText(height));
     found.remedy = fmt::format("Add photos at an angle or from another height, or give a model with a calibrated lens (--model), {}", kAgain);
@@ -136,6 +142,8 @@ void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const H
   if (!height.Notable()) return;
   const bool tagged = focal.Tagged(result.photos.size());
   const bool decides = !result.by_control;
+  // Two tags that do not know each other say the same of the result.
+  const bool both_differ = tagged && (height.ratio - 1.0) * (focal.found_px - focal.tagged_px) > 0.0 && DiffersNotably(focal);
   Contradiction found{.code = height.Contradicts() ? "height_contradicts" : "height_differs",
                       .n_photos = height.n,
                       .found = fmt::format("The cameras are {:.0f} m above the ground (median)", height.found_m),
@@ -143,9 +151,9 @@ void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const H
                       .cause = {},
                       .remedy = {},
                       // Where the focal length is known, hills are the likeliest cause of a small difference.
-                      .urgency = decides && height.Contradicts()               ? Urgency::kPlace
-                                 : tagged && !focal.Far() && !height.Differs() ? Urgency::kNote
-                                                                               : Urgency::kWarning};
+                      .urgency = decides && height.Contradicts()                               ? Urgency::kPlace
+                                 : tagged && !both_differ && !focal.Far() && !height.Differs() ? Urgency::kNote
+                                                                                               : Urgency::kWarning};
   const double better_mm = FilmFocal(focal.found_px / height.ratio, focal.longer_side_px);
   const std::string take_off = fmt::format("take-off was {:.0f} m {} the ground of the survey", std::abs(height.found_m - height.tagged_m),
                                            height.found_m > height.tagged_m ? "above" : "below");
@@ -156,9 +164,11 @@ void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const H
   if (result.by_control) {
     found.cause = fmt::format("Control points decide here: {}, or the tags are wrong", take_off);
     found.remedy = "Compare with a known height on the ground";
-  } else if (focal.Far()) {
+  } else if (focal.Far() || both_differ) {
     found.cause = fmt::format("The focal length contradicts its tags too: it is probably wrong, and heights by the same factor. Or {}", take_off);
-    found.remedy = "See what is said about the focal length";
+    found.remedy = focal.Far()
+                       ? "See what is said about the focal length"
+                       : fmt::format("Add photos at an angle or from another height, or give a model with a calibrated lens (--model), {}", kAgain);
   } else if (!tagged) {
     found.cause = fmt::format(
         "There is no focal length tag (none, or 0), so the focal length of {:.0f} px rests on the photos alone, and photos that look straight down "
@@ -170,7 +180,7 @@ void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const H
         fmt::format("Either {}, or the tagged focal length is wrong (cropped or enlarged photos, another lens), and heights with it", take_off);
     found.remedy = tag_it;
   }
-  if (decides && (height.Contradicts() || !tagged || focal.Far())) {
+  if (decides && (height.Contradicts() || !tagged || focal.Far() || both_differ)) {
     checks->scale_doubt = std::max(checks->scale_doubt, ExcessOf(height.ratio));
     checks->height_doubt_m = std::max(checks->height_doubt_m, std::abs(height.found_m - height.tagged_m));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <unordered_map>
 
 #include "core/base/log.h"
@@ -69,6 +70,16 @@ std::optional<SeededModel> SeedWithoutFocalTags(SeedInput& input, base::ThreadPo
   return by_height;
 }
 
+// Whether a focal length is farther from its tag than tags are usually wrong.
+bool FocalMoved(const survey::ColmapModel& model, const SeedInput& input) {
+  constexpr double kUsualError = 0.1;
+  return std::any_of(model.cameras.begin(), model.cameras.end(), [&](const auto& camera) {
+    const auto lens = input.cameras.find(camera.first);
+    return lens != input.cameras.end() && lens->second.focal_is_known &&
+           std::abs(std::log(camera.second.FocalX() / lens->second.camera.FocalX())) > kUsualError;
+  });
+}
+
 // Photos that look straight down fit other focal lengths nearly as well, and features weigh so much more than tags that a little misfit of the lens
 // drives it away. Then poses with the focal length held near the tagged one are better, if they agree with the matches too.
 std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput& input, base::ThreadPool& threads, std::string* reason) {
@@ -82,7 +93,15 @@ std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput& input, base::Thread
     lens.focal_sigma = kHeldSigma;
   }
   const std::optional<FarFocal> far = FindFarFocal(seeded->model, tagged);
-  if (!far) return seeded;
+  if (!far && !FocalMoved(seeded->model, input)) return seeded;
+  if (!far) {
+    // RelativeAltitude decides whether photos or tags are right about it.
+    std::string ignored;
+    std::optional<SeededModel> held = SeedPoses(input, threads, &ignored);
+    if (!held || !HeightsInModel(input, held->model).Known() || HeightsInModel(input, held->model).Notable()) return seeded;
+    base::LogInfo("poses are found with focal lengths held near the tags', as RelativeAltitude agrees with them");
+    return held;
+  }
   base::LogInfo("poses by tags and matches need {}; once more with focal lengths held near the tags'", far->Text());
   std::string held_reason;
   std::optional<SeededModel> held = SeedPoses(input, threads, &held_reason);

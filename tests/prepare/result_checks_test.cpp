@@ -84,7 +84,7 @@ TEST(ResultChecks, AFarFocalLengthIsNamedWithTheWitnessThatDecides) {
   const ResultChecks tag = CheckResult(With(Nadir(), wrong_tag(2.0)));
   ASSERT_NE(Named(tag, "focal_far"), nullptr);
   EXPECT_NE(Named(tag, "focal_far")->cause.find("tagged focal length is probably wrong"), std::string::npos);
-  EXPECT_EQ(Named(tag, "focal_far")->urgency, Urgency::kPlace);
+  EXPECT_EQ(Named(tag, "focal_far")->urgency, Urgency::kWarning);
   EXPECT_EQ(Named(tag, "height_contradicts"), nullptr);
   EXPECT_EQ(tag.scale_doubt, 0.0);
   // Both contradict the result.
@@ -117,6 +117,11 @@ TEST(ResultChecks, SmallDifferencesOfHeightAreNotesOrWarnings) {
   ASSERT_NE(Named(untagged, "height_differs"), nullptr);
   EXPECT_EQ(Named(untagged, "height_differs")->urgency, Urgency::kWarning);
   EXPECT_NEAR(untagged.scale_doubt, 0.2, 1e-9);
+  // Focal length and height differ from their tags by the same factor: the tags agree with each other.
+  const ResultChecks both = CheckResult(Nadir(1.2));
+  ASSERT_NE(Named(both, "height_differs"), nullptr);
+  EXPECT_EQ(Named(both, "height_differs")->urgency, Urgency::kWarning);
+  EXPECT_NEAR(both.scale_doubt, 0.2, 1e-9);
   // Low flights: few metres are no contradiction.
   const ResultChecks low = CheckResult(With(Nadir(), [](CheckedPhoto& photo) {
     photo.agl_m = 9.0;

@@ -116,7 +116,7 @@ void AboutFocal(const CheckedResult& result, const FocalFinding& focal, const He
   const std::string correct =
       fmt::format("correct the focal length of the tags (the one found is {:.0f} mm for a film of 35 mm; exiftool -FocalLengthIn35mmFormat=...), {}",
                   FilmFocal(focal.found_px, focal.longer_side_px), kAgain);
-  if (height.Known() && !height.Differs()) {
+  if (height.Known() && !height.Notable()) {
     found.cause = fmt::format("The tagged focal length is probably wrong (cropped or enlarged photos, another lens), as {}", HeightText(height));
     found.remedy = "Compare with a known height. If the survey is right, " + correct;
     found.urgency = Urgency::kWarning;

@@ -128,15 +128,25 @@ HeightAboveTakeOff HeightsOf(const survey::ColmapModel& model, const std::vector
   return CompareHeights(found, tagged);
 }
 
+// Whether the adjustment changes a focal length by much: one that only passes a limit is as good as before.
+bool FocalDriven(const survey::ColmapModel& before, const survey::ColmapModel& after) {
+  constexpr double kMuch = 0.1;
+  return std::any_of(after.cameras.begin(), after.cameras.end(), [&](const auto& camera) {
+    const auto old = before.cameras.find(camera.first);
+    return old != before.cameras.end() && std::abs(std::log(camera.second.FocalX() / old->second.FocalX())) > kMuch;
+  });
+}
+
 // The focal length, or where tags do not say it the height above ground, when it was near the tags before the adjustment and is far from them
 // afterwards, in words; else empty.
 std::string LostFocal(const ShapeStart& start, const Shaped& shaped, base::ThreadPool& threads) {
   const std::map<uint32_t, double>& tagged_px = start.input.tagged_focal_px;
   if (!tagged_px.empty()) {
+    if (!FocalDriven(start.model, shaped.model)) return "";
     const std::optional<FarFocal> far = FindFocalFarFrom(tagged_px, shaped.model);
     return far && !FindFocalFarFrom(tagged_px, start.model) ? far->Text() : "";
   }
-  if (!shaped.georeference.ok || !HasHeightTags(start.stations)) return "";
+  if (!shaped.georeference.ok || !HasHeightTags(start.stations) || !FocalDriven(start.model, shaped.model)) return "";
   const HeightAboveTakeOff after = HeightsOf(shaped.model, shaped.stations, shaped.georeference.enu_from_model, threads);
   if (!after.Differs()) return "";
   const HeightAboveTakeOff before = HeightsOf(start.model, start.stations, start.georeference.enu_from_model, threads);

@@ -70,6 +70,12 @@ std::optional<SeededModel> SeedWithoutFocalTags(SeedInput& input, base::ThreadPo
   return by_height;
 }
 
+// Whether the heights of `one` are far nearer to RelativeAltitude. Ground and barometer explain small differences.
+bool IsMuchNearer(const HeightAboveTakeOff& one, const HeightAboveTakeOff& other) {
+  constexpr double kTimes = 3.0;
+  return one.Known() && other.Notable() && kTimes * std::abs(std::log(one.ratio)) < std::abs(std::log(other.ratio));
+}
+
 // Whether a focal length is farther from its tag than tags are usually wrong.
 bool FocalMoved(const survey::ColmapModel& model, const SeedInput& input) {
   constexpr double kUsualError = 0.1;
@@ -98,7 +104,7 @@ std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput& input, base::Thread
     // RelativeAltitude decides whether photos or tags are right about it.
     std::string ignored;
     std::optional<SeededModel> held = SeedPoses(input, threads, &ignored);
-    if (!held || !HeightsInModel(input, held->model).Known() || HeightsInModel(input, held->model).Notable()) return seeded;
+    if (!held || !IsMuchNearer(HeightsInModel(input, held->model), HeightsInModel(input, seeded->model))) return seeded;
     base::LogInfo("poses are found with focal lengths held near the tags', as RelativeAltitude agrees with them");
     return held;
   }

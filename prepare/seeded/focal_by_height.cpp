@@ -1,5 +1,6 @@
 #include "prepare/seeded/focal_by_height.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "core/base/order_statistics.h"
+#include "core/geo/enu_frame.h"
 #include "prepare/seeded/lens.h"
 #include "prepare/seeded/prepare_block.h"
 
@@ -74,7 +76,38 @@ SeedLens ScaledFocal(const SeedLens& lens, double factor) {
   return scaled;
 }
 
+namespace {
+
+// By how much the tagged positions are farther apart, seen from above, than those of the model, which features may have shrunk; 1 when unknown.
+double ScaleByTags(const SeedInput& input, const survey::ColmapModel& model) {
+  std::unordered_map<uint32_t, geo::Geodetic> tag_of;
+  for (const SeedPhoto& photo : input.photos) {
+    if (photo.gps) tag_of.emplace(photo.image_id, geo::Geodetic{photo.gps->latitude_deg, photo.gps->longitude_deg, 0.0});
+  }
+  if (tag_of.empty()) return 1.0;
+  const geo::EnuFrame frame(tag_of.begin()->second);
+  std::vector<Eigen::Vector2d> tagged, found;
+  for (const survey::ColmapImage& image : model.images) {
+    const auto tag = tag_of.find(image.id);
+    if (tag == tag_of.end()) continue;
+    tagged.emplace_back(frame.EnuFromGeodetic(tag->second).head<2>());
+    found.emplace_back(image.cam_from_world.OriginInSource().head<2>());
+  }
+  const auto spread = [](const std::vector<Eigen::Vector2d>& places) {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& place : places) mean += place / static_cast<double>(places.size());
+    double sum = 0.0;
+    for (const Eigen::Vector2d& place : places) sum += (place - mean).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(std::max<size_t>(1, places.size())));
+  };
+  constexpr double kLeast_m = 1.0;
+  return spread(found) > kLeast_m && spread(tagged) > kLeast_m ? spread(tagged) / spread(found) : 1.0;
+}
+
+}  // namespace
+
 HeightAboveTakeOff HeightsInModel(const SeedInput& input, const survey::ColmapModel& model) {
+  const double scale = ScaleByTags(input, model);
   std::unordered_map<uint32_t, std::vector<double>> seen_z;
   for (const survey::ColmapPoint& point : model.points) {
     for (const uint32_t id : point.image_ids) seen_z[id].push_back(point.x_in_world.z());
@@ -88,7 +121,7 @@ HeightAboveTakeOff HeightsInModel(const SeedInput& input, const survey::ColmapMo
   for (const survey::ColmapImage& image : model.images) {
     const auto z = seen_z.find(image.id);
     const auto tag = tagged_of.find(image.id);
-    found.push_back(z == seen_z.end() ? kUnknown : image.cam_from_world.OriginInSource().z() - base::Median(z->second));
+    found.push_back(z == seen_z.end() ? kUnknown : scale * (image.cam_from_world.OriginInSource().z() - base::Median(z->second)));
     tagged.push_back(tag == tagged_of.end() ? kUnknown : tag->second);
   }
   return CompareHeights(found, tagged);

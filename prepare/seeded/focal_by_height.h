@@ -17,7 +17,8 @@ std::optional<double> FocalFactorByHeight(const SeedInput& input);
 // The same lens with so many times the focal length, which is held near that from then on.
 SeedLens ScaledFocal(const SeedLens& lens, double factor);
 
-// Heights of the cameras above the points that they see, beside the tags. The model is of photos of the input, in ENU metres.
+// Heights of the cameras above the points that they see, beside the tags. The model is of photos of the input, in ENU; its scale is taken from the
+// tagged positions.
 HeightAboveTakeOff HeightsInModel(const SeedInput& input, const survey::ColmapModel& model);
 
 }  // namespace skyquilt::prepare

@@ -78,6 +78,14 @@ TEST(FocalByHeight, MeasuresHeightsAboveThePointsOfEachPhoto) {
   EXPECT_NEAR(height.ratio, 2.0, 1e-9);
   EXPECT_TRUE(height.Contradicts());
   EXPECT_FALSE(HeightsInModel({}, model).Known());
+  // By the tags the flight was twice as long.
+  for (size_t i = 0; i < 4; ++i) {
+    constexpr double kMetresPerDegree = 111'000.0;
+    const double north_m = 20.0 * static_cast<double>(i);
+    input.photos[i].gps = geo::Geodetic{north_m / kMetresPerDegree, 8.0, 0.0};
+    model.images[i].cam_from_world.translation.y() = -0.5 * north_m;
+  }
+  EXPECT_NEAR(HeightsInModel(input, model).ratio, 4.0, 0.05);
 }
 
 TEST(CompareHeights, LimitsAndUnknownValues) {

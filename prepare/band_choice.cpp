@@ -1,5 +1,7 @@
 #include "prepare/band_choice.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -88,7 +90,7 @@ BandChoice ChooseBands(const image::PixelFormat& format, const std::vector<std::
     const std::optional<int> number = WholeNumber(part);
     const std::optional<int> band = number ? number : BandNamed(names, part);
     if (!band || *band < 1 || *band > format.bands) {
-      choice.problem = "has no band " + part + " (prepare.bands = \"" + wanted + "\"), but " + BandsFound(format, names);
+      choice.problem = fmt::format("has no band {} (prepare.bands = \"{}\"), but {}", part, wanted, BandsFound(format, names));
       choice.bands.clear();
       return choice;
     }

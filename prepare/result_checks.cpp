@@ -213,6 +213,15 @@ void AboutWitnesses(const CheckedResult& result, const FocalFinding& focal, cons
       if (std::isfinite(photo.agl_m)) heights_m.push_back(photo.agl_m);
     }
     if (!heights_m.empty()) checks->height_doubt_m = std::max(checks->height_doubt_m, kGuessed * base::Median(heights_m));
+  } else if (!focal.Far() && DiffersNotably(focal)) {
+    found.code = "focal_differs";
+    found.cause = fmt::format(
+        "The focal length found is {:.0f} px, and its tags say {:.0f} px: photos that look straight down hardly tell it, and heights are wrong by "
+        "the "
+        "same factor if the tags are right",
+        focal.found_px, focal.tagged_px);
+    found.urgency = Urgency::kWarning;
+    checks->scale_doubt = std::max(checks->scale_doubt, ExcessOf(focal.found_px / focal.tagged_px));
   }
   checks->contradictions.push_back(std::move(found));
 }

@@ -6,7 +6,7 @@
 
 #include "core/render/march.h"
 #include "core/scene/scene.h"
-#include "worker/view_count.h"
+#include "worker/view_counter.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -32,6 +32,7 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
   const auto radius_at = [&](const Eigen::Vector3d& x) {
     return 0.87 * kGroup * static_cast<double>(grid.cell) / (target.map.units_per_metre() * std::max(1e-6, target.map.LocalScale(x)));
   };
+  const ViewCounter counter(survey, photos, [&source](int photo) -> const camera::Camera& { return source.CameraOf(photo); });
   // Columns of groups whose ground enough photos see.
   std::vector<uint8_t> enough_views(static_cast<size_t>(groups[0]) * static_cast<size_t>(groups[1]), 1);
   if (!surface.Empty() && min_views > 1) {
@@ -40,7 +41,7 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
         Eigen::Vector3d ground = centre_of(gx, static_cast<int>(gy), groups[2] / 2);
         ground.z() = surface.At(ground.x(), ground.y());
         enough_views[static_cast<size_t>(gy) * static_cast<size_t>(groups[0]) + static_cast<size_t>(gx)] =
-            CountViews(source, survey, photos, ground, 0.5 * radius_at(ground), min_views) >= min_views ? 1 : 0;
+            counter.Count(ground, 0.5 * radius_at(ground), min_views) >= min_views ? 1 : 0;
       }
     });
     if (std::ranges::count(enough_views, 1) == 0) std::ranges::fill(enough_views, uint8_t{1});
@@ -50,7 +51,7 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
       for (int gx = 0; gx < groups[0]; ++gx) {
         if (enough_views[static_cast<size_t>(gy) * static_cast<size_t>(groups[0]) + static_cast<size_t>(gx)] != 0) {
           const Eigen::Vector3d centre = centre_of(gx, gy, static_cast<int>(gz));
-          if (CountViews(source, survey, photos, centre, radius_at(centre), 1) > 0) continue;
+          if (counter.Count(centre, radius_at(centre), 1) > 0) continue;
         }
         for (int z = static_cast<int>(gz) * kGroup; z < std::min(grid.size[2], (static_cast<int>(gz) + 1) * kGroup); ++z) {
           for (int y = gy * kGroup; y < std::min(grid.size[1], (gy + 1) * kGroup); ++y) {

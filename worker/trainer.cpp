@@ -102,7 +102,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   const ContextBrightness extras{&response, &learner};
   RaySource source(*job.survey, *job.pixels, response);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
-  source.SetTiles(TilesWithEnoughViews(source, *job.survey, area.photos, surface, job.min_views), {}, 0.0);
+  source.SetTiles(TilesWithEnoughViews(source, *job.survey, area.photos, surface, job.min_views, threads), {}, 0.0);
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo sees the survey area; check the poses in the survey";
@@ -160,7 +160,7 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
   render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false, prior_options);
   RaySource source(*job.survey, *job.pixels, loaded.response);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
-  const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, block.photos, surface, job.min_views);
+  const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, block.photos, surface, job.min_views, threads);
   ChooseTiles(*job.survey, tiles, target, context, job.options.empty_ray_share, source);
   if (!source.HasRays()) {
     TrainResult none;

@@ -1,30 +1,33 @@
 #include "worker/view_count.h"
 
-#include "core/camera/photo_visibility.h"
+#include <algorithm>
+#include <cstdint>
+
+#include "core/base/cancel.h"
+#include "worker/view_counter.h"
 
 namespace skyquilt::worker {
 
-int CountViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const Eigen::Vector3d& x_in_enu,
-               double radius_m, int enough) {
-  int views = 0;
-  for (const int photo : photos) {
-    if (views >= enough) break;
-    if (survey.photos[static_cast<size_t>(photo)].is_test) continue;
-    const geo::Rigid3d& cam_from_enu = survey.photos[static_cast<size_t>(photo)].cam_from_enu;
-    if (camera::IsVisible(source.CameraOf(photo), cam_from_enu, x_in_enu, {.radius_m = radius_m})) ++views;
-  }
-  return views;
-}
-
 std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
-                                       const scene::HeightMap& surface, int min_views) {
+                                       const scene::HeightMap& surface, int min_views, base::ThreadPool& threads) {
   std::vector<Tile> all = TrainingTiles(survey, photos);
   if (surface.Empty() || min_views < 2) return all;
+  const ViewCounter counter(survey, photos, [&source](int photo) -> const camera::Camera& { return source.CameraOf(photo); });
+  std::vector<uint8_t> enough(all.size(), 0);
+  constexpr size_t kPart = 65'536;  // between parts, an interruption is noticed
+  for (size_t begin = 0; begin < all.size(); begin += kPart) {
+    base::ThrowIfCancelled();
+    const size_t end = std::min(all.size(), begin + kPart);
+    threads.ParallelFor(static_cast<int64_t>(end - begin), [&](int64_t k, int) {
+      const size_t i = begin + static_cast<size_t>(k);
+      Eigen::Vector3d origin, direction, x;
+      source.RayThrough(all[i].photo, source.TileCentre(all[i]), &origin, &direction);
+      enough[i] = !surface.Intersect(origin, direction, &x) || counter.Count(x, 0.0, min_views) >= min_views ? 1 : 0;
+    });
+  }
   std::vector<Tile> kept;
-  for (const Tile& tile : all) {
-    Eigen::Vector3d origin, direction, x;
-    source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
-    if (!surface.Intersect(origin, direction, &x) || CountViews(source, survey, photos, x, 0.0, min_views) >= min_views) kept.push_back(tile);
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (enough[i] != 0) kept.push_back(all[i]);
   }
   return kept.empty() ? all : kept;
 }

@@ -5,21 +5,17 @@
 
 #include <vector>
 
+#include "core/base/thread_pool.h"
 #include "core/scene/height_map.h"
 #include "core/survey/survey.h"
 #include "worker/ray_source.h"
 
 namespace skyquilt::worker {
 
-// Number of training photos among `photos` whose image shows the ball of radius_m metres around x_in_enu, even partly or hidden behind surfaces.
-// Stops counting at `enough`.
-int CountViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const Eigen::Vector3d& x_in_enu,
-               double radius_m, int enough);
-
 // The tiles of the training photos among `photos` whose ground at least min_views of these photos see, including their own. The ground of a tile is
 // where its centre ray meets `surface`; tiles that miss it are kept. All tiles when none has enough views, when `surface` is empty, and for min_views
-// < 2.
+// < 2. Throws base::Interrupted.
 std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
-                                       const scene::HeightMap& surface, int min_views);
+                                       const scene::HeightMap& surface, int min_views, base::ThreadPool& threads);
 
 }  // namespace skyquilt::worker

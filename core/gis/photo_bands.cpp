@@ -61,7 +61,7 @@ void PhotoBands::ReadRows(int first_row, int n_rows, std::span<const int> bands,
   const size_t n = static_cast<size_t>(n_rows) * static_cast<size_t>(width_) * bands.size();
   SKYQUILT_CHECK(values.size() == n, std::to_string(values.size()) + " values instead of " + std::to_string(n));
   std::vector<int> list(bands.begin(), bands.end());
-  const GSpacing pixel = static_cast<GSpacing>(sizeof(float) * bands.size());
+  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * static_cast<GSpacing>(bands.size());
   if (impl_->dataset->RasterIO(GF_Read, 0, first_row, width_, n_rows, values.data(), width_, n_rows, GDT_Float32, static_cast<int>(list.size()),
                                list.data(), pixel, pixel * width_, sizeof(float), nullptr) != CE_None) {
     FailReadingPhoto(file_);

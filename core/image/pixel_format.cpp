@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/base/memory_map.h"
@@ -189,9 +190,12 @@ PixelFormat ReadPixelFormat(const std::filesystem::path& file) {
 }
 
 PixelFormat PixelFormatOf(Bytes bytes) {
-  const auto starts_with = [&](const char* magic, size_t size) { return bytes.size() >= size && std::memcmp(bytes.data(), magic, size) == 0; };
-  if (starts_with("\x89PNG\r\n\x1A\n", 8)) return FormatOfPng(bytes);
-  const bool is_tiff = starts_with("II*\0", 4) || starts_with("MM\0*", 4) || starts_with("II+\0", 4) || starts_with("MM\0+", 4);
+  const auto starts_with = [&](std::string_view magic) {
+    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+  };
+  using namespace std::string_view_literals;
+  if (starts_with("\x89PNG\r\n\x1A\n"sv)) return FormatOfPng(bytes);
+  const bool is_tiff = starts_with("II*\0"sv) || starts_with("MM\0*"sv) || starts_with("II+\0"sv) || starts_with("MM\0+"sv);
   if (is_tiff) return FormatOfTiff(bytes);
   PixelFormat format;
   const JpegStructure jpeg = ParseJpeg(bytes, true);

@@ -126,7 +126,7 @@ std::optional<ShotName> ThermalName(const std::string& stem) {
 }
 
 std::optional<ShotName> ColourName(const std::string& stem) {
-  const std::optional<ShotName> name = WithEnding(stem, {"_d", "_w", "_z", "_v", "_s"});
+  std::optional<ShotName> name = WithEnding(stem, {"_d", "_w", "_z", "_v", "_s"});
   if (name && IsDigit(name->shot.back())) return name;
   return WithPrefix(stem, "max_", "max");
 }

@@ -92,6 +92,7 @@ std::vector<std::string> InputWarnings(const std::filesystem::path& root, const 
     auto& [n, first] = unread[GroupOf(file.name)];
     if (n++ == 0) first = file.name;
   }
+  warnings.reserve(unread.size());
   for (const auto& [group, count] : unread) {
     warnings.push_back(fmt::format("{}: {} {} are left out, because no program here reads them (for instance {}). {}", root.string(), count.first,
                                    GroupName(group), count.second, HowToConvert(group)));

@@ -15,6 +15,7 @@ constexpr std::array<const char*, 5> kMaskExtensions = {".png", ".jpg", ".jpeg",
 std::vector<std::string> MaskNames(const NameParts& photo, bool in_its_folder) {
   const std::string folder = in_its_folder ? photo.folder : "", stem = folder + photo.stem;
   std::vector<std::string> names;
+  names.reserve(3 * kMaskExtensions.size());
   for (const char* extension : kMaskExtensions) names.push_back(stem + photo.extension + extension);
   for (const char* extension : kMaskExtensions) names.push_back(stem + "_mask" + extension);
   for (const char* extension : kMaskExtensions) names.push_back(stem + extension);

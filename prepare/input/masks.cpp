@@ -172,6 +172,7 @@ void LogMasks(const std::vector<std::string>& origin, const std::vector<Chosen>&
   }
   if (n == 0) return;
   std::vector<std::string> parts;
+  parts.reserve(sources.size());
   for (const auto& [source, count] : sources) parts.push_back(sources.size() == 1 ? source : source + " (" + std::to_string(count) + ")");
   const size_t n_parts = std::min<size_t>(parts.size(), 5);
   base::LogInfo("masks for {} of {} photos, from {}{}", n, origin.size(), base::Join(std::span(parts).first(n_parts)),

@@ -148,6 +148,10 @@ TEST(ResultChecks, WithoutAnyWitnessTheCauseIsSaid) {
   ASSERT_EQ(tagged.contradictions.size(), 1U);
   EXPECT_EQ(tagged.contradictions[0].code, "height_unchecked");
   EXPECT_EQ(tagged.contradictions[0].urgency, Urgency::kNote);
+  const ResultChecks differs = CheckResult(With(Nadir(1.2), no_height));
+  ASSERT_NE(Named(differs, "focal_differs"), nullptr);
+  EXPECT_EQ(Named(differs, "focal_differs")->urgency, Urgency::kWarning);
+  EXPECT_NEAR(differs.scale_doubt, 0.2, 1e-9);
   CheckedResult nothing = With(With(Nadir(), no_height), [](CheckedPhoto& photo) { photo.tagged_focal_px.reset(); });
   EXPECT_NE(Named(CheckResult(nothing), "focal_unknown"), nullptr);
   EXPECT_GT(CheckResult(nothing).height_doubt_m, 0.0);

@@ -56,6 +56,7 @@ class ViewCountTest : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
+  base::ThreadPool threads_{2};
   survey::Survey survey_;
   image::PixelCache pixels_;
   brightness::Response response_ = brightness::Response::Neutral(2, 1);
@@ -64,7 +65,7 @@ class ViewCountTest : public ::testing::Test {
 
 TEST_F(ViewCountTest, TilesThatOtherPhotosSeeAreKept) {
   Photograph(48.0);
-  const std::vector<Tile> tiles = TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2);
+  const std::vector<Tile> tiles = TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2, threads_);
   std::set<std::pair<int, int>> columns;
   for (const Tile& tile : tiles) columns.insert({tile.photo, tile.column});
   // The second photo begins at x = 0 m, the first photo's middle.
@@ -77,13 +78,14 @@ TEST_F(ViewCountTest, TilesThatOtherPhotosSeeAreKept) {
 
 TEST_F(ViewCountTest, OneViewIsEnoughWhenAskedFor) {
   Photograph(48.0);
-  EXPECT_EQ(TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 1).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
+  EXPECT_EQ(TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 1, threads_).size(),
+            static_cast<size_t>(2 * kTileColumns * kTileRows));
 }
 
 TEST_F(ViewCountTest, AHeldOutPhotoDoesNotCountAndAllTilesAreKeptWhenNoneHasEnough) {
   Photograph(48.0);
   survey_.photos[1].is_test = true;
-  const std::vector<Tile> tiles = TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2);
+  const std::vector<Tile> tiles = TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2, threads_);
   EXPECT_EQ(tiles.size(), static_cast<size_t>(kTileColumns * kTileRows)) << "all tiles of the only training photo";
 }
 
@@ -91,7 +93,7 @@ TEST_F(ViewCountTest, WithoutPointsEveryTileCounts) {
   Photograph(48.0);
   survey_.points.clear();
   EXPECT_TRUE(SurfaceOfPoints(survey_).Empty());
-  EXPECT_EQ(TilesWithEnoughViews(*source_, survey_, {0, 1}, {}, 2).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
+  EXPECT_EQ(TilesWithEnoughViews(*source_, survey_, {0, 1}, {}, 2, threads_).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
 }
 
 TEST_F(ViewCountTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {

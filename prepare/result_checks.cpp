@@ -73,7 +73,6 @@ FocalFinding CompareFocals(const std::vector<CheckedPhoto>& photos) {
 }
 
 double FilmFocal(double focal_px, double longer_side_px) {
-  constexpr double kFilmWidth_mm = 36.0;
   return longer_side_px > 0.0 ? kFilmWidth_mm * focal_px / longer_side_px : 0.0;
 }
 
@@ -94,9 +93,17 @@ bool LooksDown(const CheckedResult& result) {
   return static_cast<double>(n) >= kMostlyDown * static_cast<double>(result.photos.size());
 }
 
+// Above ground, metres; 0 when none is known.
+double MedianHeight(const CheckedResult& result) {
+  std::vector<double> heights_m;
+  for (const CheckedPhoto& photo : result.photos) {
+    if (std::isfinite(photo.agl_m)) heights_m.push_back(photo.agl_m);
+  }
+  return heights_m.empty() ? 0.0 : base::Median(std::move(heights_m));
+}
+
 bool DiffersNotably(const FocalFinding& focal) {
-  constexpr double kUsualError = 0.1;  // of tags
-  return focal.tagged_px > 0.0 && std::abs(focal.found_px / focal.tagged_px - 1.0) > kUsualError;
+  return focal.tagged_px > 0.0 && std::abs(focal.found_px / focal.tagged_px - 1.0) > kUsualFocalError;
 }
 
 std::string HeightText(const HeightAboveTakeOff& height) {
@@ -128,11 +135,7 @@ void AboutFocal(const CheckedResult& result, const FocalFinding& focal, const He
     found.remedy = "Compare with a known height. If the survey is wrong, add photos at an angle or from another height; if it is right, " + correct;
     if (decides) {
       checks->scale_doubt = std::max(checks->scale_doubt, ExcessOf(focal.found_px / focal.tagged_px));
-      std::vector<double> heights_m;
-      for (const CheckedPhoto& photo : result.photos) {
-        if (std::isfinite(photo.agl_m)) heights_m.push_back(photo.agl_m);
-      }
-      if (!heights_m.empty()) checks->height_doubt_m = base::Median(heights_m) * std::abs(1.0 - focal.tagged_px / focal.found_px);
+      checks->height_doubt_m = MedianHeight(result) * std::abs(1.0 - focal.tagged_px / focal.found_px);
     }
   }
   checks->contradictions.push_back(std::move(found));
@@ -208,11 +211,7 @@ void AboutWitnesses(const CheckedResult& result, const FocalFinding& focal, cons
         fmt::format("Tag the focal length (exiftool -FocalLengthIn35mmFormat=...), {}. Or add photos at an angle or from another height", kAgain);
     found.urgency = Urgency::kWarning;
     constexpr double kGuessed = 0.5;
-    std::vector<double> heights_m;
-    for (const CheckedPhoto& photo : result.photos) {
-      if (std::isfinite(photo.agl_m)) heights_m.push_back(photo.agl_m);
-    }
-    if (!heights_m.empty()) checks->height_doubt_m = std::max(checks->height_doubt_m, kGuessed * base::Median(heights_m));
+    checks->height_doubt_m = std::max(checks->height_doubt_m, kGuessed * MedianHeight(result));
   } else if (!focal.Far() && DiffersNotably(focal)) {
     found.code = "focal_differs";
     found.cause = fmt::format(

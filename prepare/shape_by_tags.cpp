@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -130,11 +131,9 @@ HeightAboveTakeOff HeightsOf(const survey::ColmapModel& model, const std::vector
 
 // Whether the adjustment changes a focal length by much: one that only passes a limit is as good as before.
 bool FocalDriven(const survey::ColmapModel& before, const survey::ColmapModel& after) {
-  constexpr double kMuch = 0.1;
-  return std::any_of(after.cameras.begin(), after.cameras.end(), [&](const auto& camera) {
-    const auto old = before.cameras.find(camera.first);
-    return old != before.cameras.end() && std::abs(std::log(camera.second.FocalX() / old->second.FocalX())) > kMuch;
-  });
+  std::map<uint32_t, double> from_px;
+  for (const auto& [id, camera] : before.cameras) from_px.emplace(id, camera.FocalX());
+  return AnyFocalMoved(from_px, after);
 }
 
 // The focal length, or where tags do not say it the height above ground, when it was near the tags before the adjustment and is far from them

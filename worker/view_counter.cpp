@@ -49,6 +49,8 @@ ViewCounter::ViewCounter(const survey::Survey& survey, const std::vector<int>& p
   for (const int photo : photos) {
     if (!survey.photos[static_cast<size_t>(photo)].is_test) photos_.push_back(photo);
   }
+  widest_.assign(survey.photos.size(), 0.0);
+  for (const int photo : photos_) widest_[static_cast<size_t>(photo)] = WidestAngle(camera_of_(photo));
   if (!photos_.empty()) root_ = Build(0, static_cast<int>(photos_.size()));
 }
 
@@ -71,7 +73,7 @@ int ViewCounter::Build(int first, int last) {
   for (int i = first; i < last; ++i) {
     const int photo = photos_[static_cast<size_t>(i)];
     node.radius_m = std::max(node.radius_m, (position(photo) - node.centre).norm());
-    node.half_angle = std::max(node.half_angle, AngleBetweenUnits(node.axis, axis(photo)) + WidestAngle(camera_of_(photo)));
+    node.half_angle = std::max(node.half_angle, AngleBetweenUnits(node.axis, axis(photo)) + widest_[static_cast<size_t>(photo)]);
   }
   if (last - first > kLeafPhotos) {
     Eigen::Index along = 0;

@@ -37,7 +37,8 @@ class ViewCounter {
 
   const survey::Survey& survey_;
   CameraOf camera_of_;
-  std::vector<int> photos_;  // in the order of the leaves
+  std::vector<int> photos_;     // in the order of the leaves
+  std::vector<double> widest_;  // of each photo of the survey: from its axis to the farthest edge, radians
   std::vector<Node> nodes_;
   int root_ = -1;
 };

@@ -28,7 +28,6 @@ bool IsGuessedFocal(const camera::Camera& camera) {
 }
 
 std::optional<double> TaggedFocalPx(const survey::PhotoTags& tags, int width, int height) {
-  constexpr double kFilmWidth_mm = 36.0;
   const double longer = std::max(width, height);
   const auto usable = [](const std::optional<double>& value) { return value && std::isfinite(*value) && *value > 0.0; };
   if (usable(tags.calibrated_focal_px)) {
@@ -78,6 +77,13 @@ void CorrectFocals(const std::vector<PhotoFile>& photos, survey::ColmapDatabase&
     }
     database.SetFocal(id, focal_px, !focals_mm.empty());
   }
+}
+
+bool AnyFocalMoved(const std::map<uint32_t, double>& from_px, const survey::ColmapModel& model) {
+  return std::any_of(from_px.begin(), from_px.end(), [&](const auto& from) {
+    const auto camera = model.cameras.find(from.first);
+    return camera != model.cameras.end() && std::abs(std::log(camera->second.FocalX() / from.second)) > kUsualFocalError;
+  });
 }
 
 std::optional<FarFocal> FindFarFocal(const survey::ColmapModel& model, const std::map<uint32_t, camera::Camera>& tagged) {

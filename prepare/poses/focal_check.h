@@ -33,12 +33,21 @@ struct FarFocal {
 // COLMAP's focal length for photos whose tags have none is 1.2 times the longer side.
 bool IsGuessedFocal(const camera::Camera& camera);
 
+// Width of the film that FocalLengthIn35mmFilm is for.
+constexpr double kFilmWidth_mm = 36.0;
+
 // The focal length in pixels of a photo of this size by its tags: XMP CalibratedFocalLength, else EXIF FocalLengthIn35mmFilm; nothing without. 0 and
 // what is no number count as none.
 std::optional<double> TaggedFocalPx(const survey::PhotoTags& tags, int width, int height);
 
 // The same as below for focal lengths in pixels by the camera ids of the model; cameras that are not there are not judged.
 std::optional<FarFocal> FindFocalFarFrom(const std::map<uint32_t, double>& tagged_px, const survey::ColmapModel& model);
+
+// Tags are usually right to so much.
+constexpr double kUsualFocalError = 0.1;
+// Whether a camera's focal length differs by more than that from these, in pixels by the camera ids of the model; others are not judged.
+bool AnyFocalMoved(const std::map<uint32_t, double>& from_px, const survey::ColmapModel& model);
+
 // COLMAP takes the focal length of a camera from the tags of one of its photos, whatever they say. Where that is no lens's (IsPlausibleFocal35), or
 // COLMAP read a picture without tags (PhotoFile::converted), the database gets the focal length that the photos' other tags say, as COLMAP computes
 // it, or COLMAP's guess. A warning names the tag.

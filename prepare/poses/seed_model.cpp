@@ -76,16 +76,6 @@ bool IsMuchNearer(const HeightAboveTakeOff& one, const HeightAboveTakeOff& other
   return one.Known() && other.Notable() && kTimes * std::abs(std::log(one.ratio)) < std::abs(std::log(other.ratio));
 }
 
-// Whether a focal length is farther from its tag than tags are usually wrong.
-bool FocalMoved(const survey::ColmapModel& model, const SeedInput& input) {
-  constexpr double kUsualError = 0.1;
-  return std::any_of(model.cameras.begin(), model.cameras.end(), [&](const auto& camera) {
-    const auto lens = input.cameras.find(camera.first);
-    return lens != input.cameras.end() && lens->second.focal_is_known &&
-           std::abs(std::log(camera.second.FocalX() / lens->second.camera.FocalX())) > kUsualError;
-  });
-}
-
 // Photos that look straight down fit other focal lengths nearly as well, and features weigh so much more than tags that a little misfit of the lens
 // drives it away. Then poses with the focal length held near the tagged one are better, if they agree with the matches too.
 std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput& input, base::ThreadPool& threads, std::string* reason) {
@@ -94,25 +84,24 @@ std::optional<SeededModel> SeedWithPlausibleFocal(SeedInput& input, base::Thread
   std::optional<SeededModel> seeded = SeedPoses(input, threads, reason);
   if (!seeded) return std::nullopt;
   std::map<uint32_t, camera::Camera> tagged;
+  std::map<uint32_t, double> tagged_px;
   for (auto& [id, lens] : input.cameras) {
     tagged.emplace(id, lens.camera);
+    if (lens.focal_is_known) tagged_px.emplace(id, lens.camera.FocalX());
     lens.focal_sigma = kHeldSigma;
   }
   const std::optional<FarFocal> far = FindFarFocal(seeded->model, tagged);
-  if (!far && !FocalMoved(seeded->model, input)) return seeded;
-  if (!far) {
-    // RelativeAltitude decides whether photos or tags are right about it.
-    std::string ignored;
-    std::optional<SeededModel> held = SeedPoses(input, threads, &ignored);
-    if (!held || !IsMuchNearer(HeightsInModel(input, held->model), HeightsInModel(input, seeded->model))) return seeded;
-    base::LogInfo("poses are found with focal lengths held near the tags', as RelativeAltitude agrees with them");
-    return held;
-  }
-  base::LogInfo("poses by tags and matches need {}; once more with focal lengths held near the tags'", far->Text());
+  if (!far && !AnyFocalMoved(tagged_px, seeded->model)) return seeded;
+  if (far) base::LogInfo("poses by tags and matches need {}; once more with focal lengths held near the tags'", far->Text());
   std::string held_reason;
   std::optional<SeededModel> held = SeedPoses(input, threads, &held_reason);
-  if (held && !FindFarFocal(held->model, tagged)) return held;
-  // The caller refuses it and says why.
+  if (!held) return seeded;
+  // Far ones cannot be right; of others RelativeAltitude decides whether photos or tags are.
+  if (far ? !FindFarFocal(held->model, tagged) : IsMuchNearer(HeightsInModel(input, held->model), HeightsInModel(input, seeded->model))) {
+    if (!far) base::LogInfo("poses are found with focal lengths held near the tags', as RelativeAltitude agrees with them");
+    return held;
+  }
+  // The caller refuses far ones and says why.
   return seeded;
 }
 

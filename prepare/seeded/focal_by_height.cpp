@@ -35,6 +35,32 @@ std::optional<double> HeightByMatches(const SeedInput& input) {
   return starts.empty() || !(starts.front().height_m > 0.0) ? std::nullopt : std::optional(starts.front().height_m);
 }
 
+// By how much the tagged positions are farther apart, seen from above, than those of the model, which features may have shrunk; 1 when unknown.
+double ScaleByTags(const SeedInput& input, const survey::ColmapModel& model) {
+  std::unordered_map<uint32_t, geo::Geodetic> tag_of;
+  for (const SeedPhoto& photo : input.photos) {
+    if (photo.gps) tag_of.emplace(photo.image_id, geo::Geodetic{photo.gps->latitude_deg, photo.gps->longitude_deg, 0.0});
+  }
+  if (tag_of.empty()) return 1.0;
+  const geo::EnuFrame frame(tag_of.begin()->second);
+  std::vector<Eigen::Vector2d> tagged, found;
+  for (const survey::ColmapImage& image : model.images) {
+    const auto tag = tag_of.find(image.id);
+    if (tag == tag_of.end()) continue;
+    tagged.emplace_back(frame.EnuFromGeodetic(tag->second).head<2>());
+    found.emplace_back(image.cam_from_world.OriginInSource().head<2>());
+  }
+  const auto spread = [](const std::vector<Eigen::Vector2d>& places) {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& place : places) mean += place / static_cast<double>(places.size());
+    double sum = 0.0;
+    for (const Eigen::Vector2d& place : places) sum += (place - mean).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(std::max<size_t>(1, places.size())));
+  };
+  constexpr double kLeast_m = 1.0;
+  return spread(found) > kLeast_m && spread(tagged) > kLeast_m ? spread(tagged) / spread(found) : 1.0;
+}
+
 }  // namespace
 
 std::optional<double> FocalFactorByHeight(const SeedInput& input) {
@@ -75,36 +101,6 @@ SeedLens ScaledFocal(const SeedLens& lens, double factor) {
   }
   return scaled;
 }
-
-namespace {
-
-// By how much the tagged positions are farther apart, seen from above, than those of the model, which features may have shrunk; 1 when unknown.
-double ScaleByTags(const SeedInput& input, const survey::ColmapModel& model) {
-  std::unordered_map<uint32_t, geo::Geodetic> tag_of;
-  for (const SeedPhoto& photo : input.photos) {
-    if (photo.gps) tag_of.emplace(photo.image_id, geo::Geodetic{photo.gps->latitude_deg, photo.gps->longitude_deg, 0.0});
-  }
-  if (tag_of.empty()) return 1.0;
-  const geo::EnuFrame frame(tag_of.begin()->second);
-  std::vector<Eigen::Vector2d> tagged, found;
-  for (const survey::ColmapImage& image : model.images) {
-    const auto tag = tag_of.find(image.id);
-    if (tag == tag_of.end()) continue;
-    tagged.emplace_back(frame.EnuFromGeodetic(tag->second).head<2>());
-    found.emplace_back(image.cam_from_world.OriginInSource().head<2>());
-  }
-  const auto spread = [](const std::vector<Eigen::Vector2d>& places) {
-    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    for (const Eigen::Vector2d& place : places) mean += place / static_cast<double>(places.size());
-    double sum = 0.0;
-    for (const Eigen::Vector2d& place : places) sum += (place - mean).squaredNorm();
-    return std::sqrt(sum / static_cast<double>(std::max<size_t>(1, places.size())));
-  };
-  constexpr double kLeast_m = 1.0;
-  return spread(found) > kLeast_m && spread(tagged) > kLeast_m ? spread(tagged) / spread(found) : 1.0;
-}
-
-}  // namespace
 
 HeightAboveTakeOff HeightsInModel(const SeedInput& input, const survey::ColmapModel& model) {
   const double scale = ScaleByTags(input, model);

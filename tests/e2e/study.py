@@ -74,7 +74,7 @@ def test(skyquilt, folder):
             expect([field["name"] for field in fields] == ["context", "r0c0", "r0c1"], fields)
             for field in fields:
                 # A block that is worse than the context after so short a time is not in the scene.
-                expect(field["shows_context"] or 0 < field["scene_parameters"] <= field["parameters"], field)
+                expect(field["scene_parameters"] == 0 if field["shows_context"] else 0 < field["scene_parameters"] <= field["parameters"], field)
             for count in ("parameters", "scene_parameters"):
                 expect(sum(field[count] for field in fields) == seed[count], seed)
             if variant["name"] == "uniform_13":
